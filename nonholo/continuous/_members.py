@@ -3,9 +3,9 @@
 import numpy as np
 
 from nonholo.base.types import Bool, Float, Int
-from nonholo.continuous._series import GUARD, body_equations, body_numbers, is_compact, power_of_two
+from nonholo.continuous._series import GUARD, body_equations, body_numbers, is_compact, power_of_two, quadratic
 from nonholo.continuous._solution import PLANE, States, first_heading, on_same_turn
-from nonholo.kernels import solve_members
+from nonholo.kernels import Quadratic, solve_members
 from nonholo.systems import AbstractSystem
 
 
@@ -17,6 +17,21 @@ def has_series(system: AbstractSystem) -> bool:
         (True, False)
     """
     return not system.is_spatial and is_compact(system.group) and system.forces is None
+
+
+def _equations(
+    system: AbstractSystem, inertias: Float[np.ndarray, "m dim dim"]
+) -> tuple[Quadratic, Float[np.ndarray, "m k k"], Float[np.ndarray, "m Q"]]:
+    """Return the equations of members, and their velocities and factors; those of one body are known."""
+    if len(inertias) == 1:
+        f = quadratic(system)
+        return f, f.velocities[None], f.factors
+    group, S = system.group, system.constraint_subspace
+    velocities, torques = body_numbers(group, S, inertias)
+    used = (torques != 0).any(axis=0)
+    f = body_equations(group, S, velocities[0], used.astype(np.float64))
+    own = np.moveaxis(torques, -1, 1)[:, np.moveaxis(used, -1, 0)]  # row by row of the equations
+    return f, velocities, np.hstack([np.tile(f.factors[0, : f.factors.size - own.shape[1]], (len(own), 1)), own])
 
 
 def members_by_series(
@@ -39,12 +54,8 @@ def members_by_series(
         tolerance: Relative error of a step.
         stop: Ends the work when it becomes true.
     """
-    group, S, k = system.group, system.canonical.constraint_subspace, momenta.shape[1]
-    velocities, torques = body_numbers(group, S, inertias)
-    used = (torques != 0).any(axis=0)
-    f = body_equations(group, S, velocities[0], used.astype(np.float64))
-    own = np.moveaxis(torques, -1, 1)[:, np.moveaxis(used, -1, 0)]  # row by row of the equations
-    factors = np.hstack([np.tile(f.factors[0, : f.factors.size - own.shape[1]], (len(own), 1)), own])
+    group, k = system.group, momenta.shape[1]
+    f, velocities, factors = _equations(system.canonical, inertias)
     units = np.array([power_of_two(w) for w in (velocities @ momenta[..., None])[..., 0]])
     starts = np.hstack([poses, first_heading(group, poses), momenta / units[:, None]])
     rows = np.full((len(momenta), len(elapsed), starts.shape[1]), np.nan)

@@ -13,7 +13,7 @@ from nonholo.base.limits import within_disk, within_memory
 from nonholo.base.progress import waiting
 from nonholo.ensembles._block import block_of
 from nonholo.ensembles._describe import NO_NAME, design_text, differences, function_from, function_name
-from nonholo.ensembles._ensemble_task import EnsembleTask, ensemble_task_from
+from nonholo.ensembles._ensemble_task import RULE, EnsembleTask, ensemble_task_from
 from nonholo.ensembles._family_task import FamilyTask, family_task_from, imported_functions
 from nonholo.ensembles._names import Axes, check_dimensions
 from nonholo.ensembles._reductions import REDUCTIONS
@@ -95,12 +95,13 @@ def check_same(store: SweepStore, task: Any, design: Design) -> None:
 
 
 def functions_of(store: str | Path) -> list[str]:
-    """Return the names of the functions that the task of a store would import: all but reductions of the library."""
+    """Return the names of the functions that the task of a store would import: all but those of the library."""
     entry = open_store(store).description["task"]
     if entry["kind"] == "FamilyTask":
         return imported_functions(entry)
     names = entry.get("reductions", []) if entry["kind"] in _MAKERS else [entry["name"]]
-    return [name for name in names if name not in REDUCTIONS]
+    rules = [entry[RULE]] if RULE in entry else []
+    return [name for name in names if name not in REDUCTIONS] + rules
 
 
 def restored_task(store: SweepStore, task: Any, *, trust: bool = False) -> Task:

@@ -13,19 +13,22 @@ from nonholo import io
 from nonholo.base.calls import called
 from nonholo.base.checks import array, count, error, flag, shown
 from nonholo.base.types import Float
-from nonholo.discrete import Discretization, as_discretization
+from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretization
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
 from nonholo.ensembles._names import OUTCOME, STARTS, start_component
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.io import unstored
-from nonholo.simulation import Ensemble, Members, check_forces, ensemble, run_in_lanes
+from nonholo.simulation import Ensemble, Members, check_forces, ensemble, run_in_lanes, stepper_of
 from nonholo.systems import one_start, refuse_forces
 
 _MEMBER = re.compile(r"This is member (\d+)\.")
 _BLOCK, _NUMBERS = 1 << 16, 1 << 22  # most members of a block, and numbers of all their states
 _LANES, _STEPS = 32, 1 << 28  # members that the compiled loop takes at once, and most steps of a block: some seconds
 _STEPS_EACH = 1 << 20  # the same for systems that run one by one
+
+RULE = "branch_function"
+"""The key of a description for a branch rule that is a function."""
 
 Start: TypeAlias = tuple[str, Float[np.ndarray, "n"]]
 
@@ -52,6 +55,7 @@ class EnsembleTask:
         reductions: What to keep.
         save_every: Steps between the states that reductions see; None for the last one alone. It is 1 with
             "lyapunov" and with the turn of a sleigh, which take all states.
+        branch: The branch rule, as in `ensemble`.
         reconstruct: Whether there are poses.
 
     Example:
@@ -69,6 +73,7 @@ class EnsembleTask:
     start: tuple[str, Any] | None
     reductions: tuple[str | Callable[[Ensemble], Any], ...]
     save_every: int | None
+    branch: BranchRule
     reconstruct: bool
 
     def __init__(
@@ -81,6 +86,7 @@ class EnsembleTask:
         momentum: Any = None,
         reductions: Any = ("final_state",),
         save_every: int | None = None,
+        branch: BranchRule = PRINCIPAL.name,
         reconstruct: bool = True,
     ) -> None:
         starts = dict(zip(STARTS, (body_velocity, restricted_velocity, momentum), strict=True))
@@ -95,10 +101,12 @@ class EnsembleTask:
             "start": given[0] if given else None,
             "reductions": _checked_reductions(reductions),
             "save_every": save_every,
+            "branch": branch,
             "reconstruct": flag("EnsembleTask(reconstruct=...)", reconstruct),
         }
         for name, value in kept.items():
             object.__setattr__(self, name, value)
+        stepper_of(discrete, branch, "auto", posed=self.reconstruct, owner="EnsembleTask")
         check_forces("EnsembleTask", discrete, self.steps)
         if free := ({*REDUCTIONS} - {"final_state"}) & {*self.reductions}:
             refuse_forces(f"EnsembleTask(reductions={sorted(free)})", discrete.system)
@@ -107,9 +115,11 @@ class EnsembleTask:
         """Run a block of members and reduce it."""
         parameters = self._parameters(block)
         starts: dict[str, Any] = _rows_of_starts(self.start, block)
-        run = {"steps": self.steps, "save_every": self._every, "reconstruct": self.reconstruct}
+        run: Any = {"steps": self.steps, "save_every": self._every, "branch": self.branch}
         try:
-            batch = ensemble(self.discrete, parameters=parameters or None, **run, **starts)
+            batch = ensemble(
+                self.discrete, parameters=parameters or None, reconstruct=self.reconstruct, **run, **starts
+            )
         except ValueError as failure:  # its members are counted from the first one of the block
             message = _MEMBER.sub(lambda number: f"This is member {block.first + int(number[1])}.", str(failure))
             raise ValueError(message) from failure
@@ -126,7 +136,7 @@ class EnsembleTask:
     @property
     def block(self) -> int:
         """Members of a block that make a good piece of work: their states fit in memory, and it takes some seconds."""
-        compiled = run_in_lanes(self.discrete)
+        compiled = self.branch == PRINCIPAL.name and run_in_lanes(self.discrete)
         lanes, steps = (_LANES, _STEPS) if compiled else (1, _STEPS_EACH)
         states = 1 if self._every is None else 1 + self.steps // self._every
         state = 2 * self.discrete.system.rank + self.discrete.system.group.pose_size
@@ -178,6 +188,7 @@ class EnsembleTask:
             "reductions": named,
             "save_every": self.save_every,
             "reconstruct": self.reconstruct,
+            **_described_rule(self.branch),
         }
 
 
@@ -188,9 +199,18 @@ def ensemble_task_from(entry: dict[str, Any]) -> EnsembleTask:
         raise ValueError(f"one whose {missing}")
     reductions = [name if name in REDUCTIONS else function_from(name) for name in entry["reductions"]]
     start = dict([entry["start"]]) if entry["start"] else {}
-    options = {name: entry[name] for name in ("steps", "save_every", "reconstruct")}
+    options = {name: entry[name] for name in ("steps", "save_every", "reconstruct", "branch") if name in entry}
+    if RULE in entry:
+        options["branch"] = function_from(entry[RULE])
     motion: Any = io.restore_motion(entry, None)
     return EnsembleTask(motion, reductions=reductions, **options, **start)
+
+
+def _described_rule(branch: BranchRule) -> dict[str, str]:
+    """Return what a store tells of a branch rule: nothing of the principal one."""
+    if isinstance(branch, str):
+        return {} if branch == PRINCIPAL.name else {"branch": branch}
+    return {RULE: function_name(branch)}
 
 
 def _start(name: str, value: Any) -> np.ndarray:

@@ -12,7 +12,7 @@ from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.discrete import displacements_over, has_frame, step_jacobians
-from nonholo.simulation import Ensemble, have_kernel, scalar_members, tangents
+from nonholo.simulation import Ensemble, in_lanes, scalar_members, tangents
 from nonholo.systems import AbstractSystem
 
 Reduced = dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]
@@ -52,7 +52,7 @@ def _is_plane_sleigh(system: AbstractSystem) -> bool:
 
 def _limit_angle(batch: Ensemble) -> Reduced:
     form = batch.members.discrete.system.normal_form
-    if form is None or not have_kernel(batch.members):
+    if form is None or not in_lanes(batch.members):
         got, remedy = shown(batch.members.discrete), "Write your own reduction."
         raise error("reduction 'limit_angle'", "have a plane sleigh or a top with n = 3", got, remedy)
     if form.is_sleigh:
@@ -62,7 +62,7 @@ def _limit_angle(batch: Ensemble) -> Reduced:
 
 def _heading_turn(batch: Ensemble) -> Float[np.ndarray, "M"]:
     """Sum the angles of the steps, which know of full turns: the first chart coordinate is the tangent of the half."""
-    angles = 2 * np.arctan(batch.cayley[:, :-1, 0])
+    angles = 2 * np.arctan(scalar_members(batch.members).charts(batch.cayley[:, :-1])[..., 0])
     taken = np.arange(angles.shape[1]) < batch.steps_done[:, None]
     turn = np.where(taken, angles, 0.0).sum(axis=1)
     return np.where(np.isfinite(batch.reduced_momentum[:, 0, 0]), turn, np.nan)
@@ -70,10 +70,10 @@ def _heading_turn(batch: Ensemble) -> Float[np.ndarray, "M"]:
 
 def _turning_deviation(batch: Ensemble) -> Reduced:
     """Compare the turn of sleighs with that of the flow, to which it tends from below as the time step tends to 0."""
-    if not (have_kernel(batch.members) and _is_plane_sleigh(batch.members.discrete.system)):
+    if not (in_lanes(batch.members) and _is_plane_sleigh(batch.members.discrete.system)):
         got, remedy = shown(batch.members.discrete), "Keep another reduction."
         raise error("reduction 'turning_deviation'", "have a plane sleigh", got, remedy)
-    mass, inertia, a = (batch.members.values(name) for name in ("mass", "inertia", "a"))
+    mass, inertia, a = scalar_members(batch.members).fields
     with np.errstate(divide="ignore", invalid="ignore"):  # a balanced sleigh turns forever
         part = np.abs(_heading_turn(batch)) / np.where(a == 0, np.nan, turn_of_flow(mass, inertia, a))
     missing = np.where(batch.outcome == Outcome.successful, 1 - part, np.nan)
@@ -87,7 +87,7 @@ def _axis_angle(batch: Ensemble) -> Float[np.ndarray, "M"]:
     pose = np.stack([np.broadcast_to(scalar.pose, (len(batch), 4)), ended.canonical_pose[:, 0]], axis=1)
     r = np.stack([batch.first_momentum, ended.reduced_momentum[:, 0]], axis=1)
     velocity = applied(np.linalg.inv(scalar.inertia), r)
-    body = np.stack([-velocity[..., 1], velocity[..., 0], np.zeros_like(velocity[..., 0])], axis=-1)
+    body = applied(scalar.route.system.canonical.constraint_subspace.T, velocity)
     axes = (batch.members.discrete.system.group.matrix_from_pose(pose) @ body[..., None])[..., 0]
     before, after = axes[:, 0], axes[:, 1]
     return np.arctan2(np.linalg.norm(np.cross(before, after), axis=1), (before * after).sum(axis=1))
@@ -128,7 +128,7 @@ def _multiplied(slopes: Float[np.ndarray, "M K k k"]) -> tuple[Float[np.ndarray,
 def _jacobians(batch: Ensemble) -> Float[np.ndarray, "M K k k"]:
     """Return the derivatives of the steps of members, the identity after their end."""
     taken, k = np.arange(batch.steps) < batch.steps_done[:, None], batch.reduced_momentum.shape[-1]
-    if have_kernel(batch.members):
+    if in_lanes(batch.members):
         found = tangents(batch.members, batch.reduced_momentum[:, :-1], batch.cayley[:, :-1])
         return np.where(taken[..., None, None], found, np.eye(k))
     slopes = np.broadcast_to(np.eye(k), (*taken.shape, k, k)).copy()

@@ -2,7 +2,7 @@
 
 from nonholo.orbit import Crossings, EventLog
 from nonholo.simulation._flow import flow
-from nonholo.simulation._options import check_forces, refuse_many_matrices
+from nonholo.simulation._options import check_forces, refuse_many_matrices, stepper_of
 from nonholo.simulation._resume import extend, resume_run
 from nonholo.simulation._simulate import iterate, simulate
 from nonholo.simulation._stored import size_in_blocks
@@ -11,7 +11,7 @@ from nonholo.simulation.members import (
     Ensemble,
     Members,
     ensemble,
-    have_kernel,
+    in_lanes,
     in_one_thread,
     run_in_lanes,
     scalar_members,

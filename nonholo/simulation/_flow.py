@@ -151,13 +151,14 @@ def _first_state(
     return reduced, pose
 
 
-def flow_from(system: System, first: First, time: np.ndarray, rtol: float) -> Orbit:
-    """Return the flow from a checked start with a pose, by the method that is the default."""
-    solver, _ = solver_of(system, None, float(time[0]), reconstruct=True)
+def flow_from(system: System, first: First, time: np.ndarray, rtol: float, *, reconstruct: bool) -> Orbit:
+    """Return the flow from a checked start, with a pose where one is solved for, by the method that is the default."""
+    solver, posed = solver_of(system, None, float(time[0]), reconstruct=reconstruct)
     tolerances = rtol, 1.0
     solve = functools.partial(solver, tolerances=tolerances)
     reduced, pose = first.numbers
-    return _flowed(system, (reduced, pose), time, tolerances, solve, None, reconstruct=True)
+    begun = reduced, pose if posed else None
+    return _flowed(system, begun, time, tolerances, solve, None, reconstruct=reconstruct)
 
 
 def _opening(system: System, time: np.ndarray, first: tuple[np.ndarray, np.ndarray | None]) -> Orbit:

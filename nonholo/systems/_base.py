@@ -16,7 +16,7 @@ from nonholo.base.html import table
 from nonholo.base.kept import Keeper, kept
 from nonholo.base.limits import within_memory
 from nonholo.base.numerics import Factors, applied, factors_of, solved
-from nonholo.base.types import Array, Float, Inexact
+from nonholo.base.types import Array, Bool, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._equilibria import Equilibria, equilibria_of, transverse_rates
 from nonholo.systems._mass import inertia_form, inertia_from_mass_tensor
@@ -66,6 +66,24 @@ class AbstractSystem(Keeper, abc.ABC):
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
         """Rows span the subspace of the constraint; k runs from 0 to dim."""
 
+    def stacked(self, /, **numbers: Array) -> Any:
+        """Return the systems of many numbers in one: they have an axis in front; None where formulas do not allow it.
+
+        Args:
+            numbers: All `leaves` that are used.
+        """
+        del numbers
+
+    @property
+    def is_clear(self) -> Bool[np.ndarray, "..."]:
+        """Whether the class certainly does not refuse the numbers; of many systems in one for each."""
+        J = self.homogeneous_mass_tensor
+        if J is None or not self.group.is_rigid:
+            return np.asarray(False)
+        eigenvalues = np.linalg.eigvalsh(J)
+        is_symmetric = (J.swapaxes(-1, -2) == J).all(axis=(-2, -1))
+        return np.asarray(is_symmetric & (eigenvalues[..., 0] > 1e-12 * eigenvalues[..., -1]))
+
     @kept
     def annihilator(self) -> Float[np.ndarray, "s dim"]:
         """Rows span the covectors that vanish on the constraint subspace; multipliers refer to them.
@@ -93,16 +111,16 @@ class AbstractSystem(Keeper, abc.ABC):
         return self.group.identity
 
     @kept
-    def frame_map(self) -> Float[Array, "k k"]:
+    def frame_map(self) -> Float[Array, "... k k"]:
         """C with r_canonical = C r for momenta along the constraint subspace (and y = y_canonical C for charts)."""
         if self.canonical is self:
             within_memory("The frame map of a body", 8.0 * self.rank**2, "Take a smaller n.")
             return np.eye(self.rank)
-        images = self.canonical.constraint_subspace @ self.group.adjoint(self.frame).T
+        images = self.canonical.constraint_subspace @ self.group.adjoint(self.frame).swapaxes(-1, -2)
         return images @ np.linalg.pinv(self.constraint_subspace)
 
     @kept
-    def inverse_frame_map(self) -> Float[Array, "k k"]:
+    def inverse_frame_map(self) -> Float[Array, "... k k"]:
         """The inverse of `frame_map`."""
         return np.linalg.inv(self.frame_map)
 
@@ -117,7 +135,7 @@ class AbstractSystem(Keeper, abc.ABC):
         return reduced if self.canonical is self else applied(self.inverse_frame_map, reduced)
 
     @kept
-    def inertia_along(self) -> Float[Array, "k k"] | WideInertia:
+    def inertia_along(self) -> Float[Array, "... k k"] | WideInertia:
         r"""The inertia along the rows of the constraint subspace, $S\,\mathbb{I}\,S^T$; its parts if too large."""
         rows, mass_tensor = self.constraint_subspace, self.homogeneous_mass_tensor
         if mass_tensor is None:
@@ -271,7 +289,7 @@ class AbstractSystem(Keeper, abc.ABC):
         return trailing(f"{type(self).__name__} ({name}=...)", value, (self.rank,), remedy)
 
 
-def unchecked(system: SystemT, **numbers: Array) -> SystemT:
+def unchecked(system: SystemT, /, **numbers: Array) -> SystemT:
     """Return a system with other numbers, unchecked: they may have axes in front, where its formulas allow them."""
     other = object.__new__(type(system))
     for name in (*system.leaves, *system.structure):

@@ -31,6 +31,8 @@ _ROUNDING = 1e-13  # relative; what is left of a subspace that is spanned by pla
 class NormalForm(Keeper):
     r"""A top or a sleigh in the axes of its constraint.
 
+    Of many systems in one the numbers have an axis in front.
+
     The rows of the form are $e_i\wedge e_n$ for a top, $e_1\wedge e_j$ and then the velocity along $e_1$ for a sleigh.
 
     Attributes:
@@ -56,22 +58,23 @@ class NormalForm(Keeper):
         True
     """
 
-    across: Float[Array, "k k"] | Float[Array, "k"]
+    across: Float[Array, "... k k"] | Float[Array, "k"]
     along: Array
-    coupling: Float[Array, "k"]
+    coupling: Float[Array, "... k"]
     mass: Array = None
     arm: Array = 0.0
-    offset: Float[Array, "j"] = dataclasses.field(default_factory=lambda: np.zeros(0))
-    frame: Float[np.ndarray, "N N"] | None = None
-    frame_map: Float[np.ndarray, "m m"] | None = None
+    offset: Float[Array, "... j"] = dataclasses.field(default_factory=lambda: np.zeros(0))
+    frame: Float[np.ndarray, "... N N"] | None = None
+    frame_map: Float[np.ndarray, "... m m"] | None = None
 
     @functools.cached_property
-    def stiffness(self) -> Float[Array, "k k"] | Float[Array, "k"]:
+    def stiffness(self) -> Float[Array, "... k k"] | Float[Array, "k"]:
         r"""B, the mass tensor across the axis plus that along it times Id; its diagonal where that is all there is."""
         if self.is_diagonal:
             return self.across + self.along
         xp = self.across.__array_namespace__()
-        return self.across + self.along * xp.eye(self.across.shape[-1], dtype=self.across.dtype)
+        along = xp.asarray(self.along)[..., None, None]
+        return self.across + along * xp.eye(self.across.shape[-1], dtype=self.across.dtype)
 
     @property
     def is_sleigh(self) -> bool:
@@ -81,7 +84,7 @@ class NormalForm(Keeper):
     @property
     def is_planar(self) -> bool:
         """Whether two directions are admissible: tops in space and sleighs in the plane, known in closed form."""
-        return len(self.coupling) == (1 if self.is_sleigh else 2)
+        return self.coupling.shape[-1] == (1 if self.is_sleigh else 2)
 
     @property
     def is_diagonal(self) -> bool:
@@ -131,15 +134,15 @@ def _first_turned(vectors: np.ndarray, axes: np.ndarray) -> np.ndarray:
     return np.concatenate([applied(axes.T, vectors[..., :k]), vectors[..., k:]], axis=-1)
 
 
-def top_form(mass_tensor: Float[Array, "n n"]) -> NormalForm:
+def top_form(mass_tensor: Float[Array, "... n n"]) -> NormalForm:
     """Return the form of a top whose axis is the last one."""
-    return NormalForm(mass_tensor[:-1, :-1], mass_tensor[-1, -1], mass_tensor[:-1, -1])
+    return NormalForm(mass_tensor[..., :-1, :-1], mass_tensor[..., -1, -1], mass_tensor[..., :-1, -1])
 
 
-def sleigh_form(mass: Array, center_of_mass: Float[Array, "n"], mass_tensor: Float[Array, "n n"]) -> NormalForm:
+def sleigh_form(mass: Array, center_of_mass: Float[Array, "... n"], mass_tensor: Float[Array, "... n n"]) -> NormalForm:
     """Return the form of a sleigh that slides along the first axis, from its mass tensor about the center of mass."""
     J, a = (x if is_traced(x) else np.asarray(x) for x in (mass_tensor, center_of_mass))
-    return NormalForm(J[1:, 1:], J[0, 0], -J[0, 1:], mass, a[0], a[1:])
+    return NormalForm(J[..., 1:, 1:], J[..., 0, 0], -J[..., 0, 1:], mass, a[..., 0], a[..., 1:])
 
 
 def recognized_form(system: "AbstractLLSystem") -> NormalForm | None:
@@ -155,7 +158,7 @@ def recognized_form(system: "AbstractLLSystem") -> NormalForm | None:
 
 
 def _recognized_top(system: "AbstractLLSystem", tensor: np.ndarray) -> NormalForm | None:
-    n, rows = len(tensor), system.constraint_subspace
+    n, rows = tensor.shape[-1], system.constraint_subspace
     if len(rows) != n - 1:
         return None
     planes = system.group.hat(np.linalg.qr(rows.T)[0].T)
@@ -164,12 +167,12 @@ def _recognized_top(system: "AbstractLLSystem", tensor: np.ndarray) -> NormalFor
         return None
     turn = _rotation(np.eye(n)[-1], axis)
     seen = turn.T @ tensor @ turn
-    form = top_form((seen + seen.T) / 2)
+    form = top_form((seen + seen.swapaxes(-1, -2)) / 2)
     return _seen_from(system, form, turn, top_rows(system.group))
 
 
 def _recognized_sleigh(system: "AbstractLLSystem", tensor: np.ndarray) -> NormalForm | None:
-    n, rows = len(tensor) - 1, system.constraint_subspace
+    n, rows = tensor.shape[-1] - 1, system.constraint_subspace
     if len(rows) != n:
         return None
     velocities = system.group.hat(rows)
@@ -186,17 +189,17 @@ def _recognized_sleigh(system: "AbstractLLSystem", tensor: np.ndarray) -> Normal
     size = np.abs(sideways).max() + abs(shift)
     if not _pass_through(turning[:, :n, :n], axis) or np.abs(sideways - shift * across).max() > _ROUNDING * size:
         return None
-    mass, center = tensor[-1, -1], tensor[:-1, -1] / tensor[-1, -1]
-    arm = float(axis @ center + shift)
-    if abs(arm) <= _ROUNDING * (np.linalg.norm(center) + abs(shift)):
-        arm = 0.0
-    frame = np.eye(n + 1)
-    frame[:n, :n] = turn = _rotation(np.eye(n)[0], axis)
-    frame[:n, n] = center - arm * axis  # the contact point beside the center of mass
-    about = turn.T @ (tensor[:-1, :-1] - mass * np.outer(center, center)) @ turn
-    form = sleigh_form(mass, turn.T @ axis * arm, (about + about.T) / 2)
+    mass, center = tensor[..., -1, -1], tensor[..., :-1, -1] / tensor[..., -1:, -1]
+    arm = (axis * center).sum(-1) + shift
+    arm = np.where(np.abs(arm) <= _ROUNDING * (np.linalg.norm(center, axis=-1) + abs(shift)), 0.0, arm)[..., None]
+    frame = np.broadcast_to(np.eye(n + 1), tensor.shape).copy()
+    frame[..., :n, :n] = turn = _rotation(np.eye(n)[0], axis)
+    frame[..., :n, n] = center - arm * axis  # the contact point beside the center of mass
+    moments = mass[..., None, None] * center[..., :, None] * center[..., None, :]
+    about = turn.T @ (tensor[..., :-1, :-1] - moments) @ turn
+    form = sleigh_form(mass, turn.T @ axis * arm, (about + about.swapaxes(-1, -2)) / 2)
     if n == 2:  # in the plane the moment of inertia is all that counts
-        form = dataclasses.replace(form, coupling=np.zeros(1))
+        form = dataclasses.replace(form, coupling=np.zeros_like(form.coupling))
     return _seen_from(system, form, frame, sleigh_rows(system.group))
 
 
@@ -214,10 +217,11 @@ def _rotation(start: Float[np.ndarray, "n"], axis: Float[np.ndarray, "n"]) -> Fl
 
 
 def _seen_from(
-    system: "AbstractLLSystem", form: NormalForm, frame: Float[np.ndarray, "N N"], rows: Float[np.ndarray, "m dim"]
+    system: "AbstractLLSystem", form: NormalForm, frame: Float[np.ndarray, "... N N"], rows: Float[np.ndarray, "m dim"]
 ) -> NormalForm:
     """Return a form with its frame, and the map of momenta to its rows, as seen from the system."""
-    if np.array_equal(frame, system.group.identity) and np.array_equal(rows, system.constraint_subspace):
+    own = None if np.all(frame == system.group.identity) else frame
+    if own is None and np.array_equal(rows, system.constraint_subspace):
         return form
-    images = rows @ system.group.adjoint(frame).T
-    return dataclasses.replace(form, frame=frame, frame_map=images @ np.linalg.pinv(system.constraint_subspace))
+    images = rows @ system.group.adjoint(frame).swapaxes(-1, -2)
+    return dataclasses.replace(form, frame=own, frame_map=images @ np.linalg.pinv(system.constraint_subspace))

@@ -80,6 +80,12 @@ def _problems(text: str, *settings: str) -> list[str]:
     return [str(problem) for problem in caught.value.problems]
 
 
+def test_the_branch_rule_reaches_the_members() -> None:
+    """The scenario's key run.branch is the rule of the task."""
+    loaded = load_sweep_scenario(_written(GRID.replace("steps = 20", 'steps = 20\nbranch = "nearest"')), [])
+    assert loaded.scenario.task().branch == "nearest"
+
+
 def _design(text: str, *settings: str, members: int | None = None) -> nh.Grid | nh.RandomDesign:
     given = [] if members is None else [Setting(f"--members {members}", "design.members", members)]
     loaded = load_sweep_scenario(_written(text), given + [parse_setting(setting) for setting in settings])
@@ -254,7 +260,7 @@ def test_all_problems_at_once_are_refused() -> None:
         ("[0.3, 0.5]", "{from = 0.1, to = 1}", "Got a table without count"),
         ("[0.3, 0.5]", "{from = -1, to = 1, count = 3, spacing = 'logarithmic'}", "must have positive bounds"),
         ("[0.3, 0.5]", "{from = 0, to = 1, count = 3, spacing = 'log'}", 'must have spacing "linear"'),
-        ("steps = 20", 'steps = 20\nbranch = "nearest"', "run.branch: must be principal in sweeps. Got 'nearest'"),
+        ("steps = 20", 'steps = 20\nbranch = "next"', "run.branch: must be 'principal', 'nearest', "),
         ("steps = 20", "steps = 20\nsave_every = 2", "run.save_every: is not for sweeps"),
         ("[keep]", "[kep]", "kep: is not a known key. Did you mean keep?"),
     ],

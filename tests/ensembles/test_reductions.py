@@ -215,3 +215,23 @@ def test_limit_angle_without_poses_is_refused() -> None:
         _reduced("limit_angle", _batch(TOP, reconstruct=False))
     with_poses, without = (_batch(SLEIGH, reconstruct=posed) for posed in (True, False))
     assert np.array_equal(*(_reduced("limit_angle", batch)["heading_turn"] for batch in (with_poses, without)))
+
+
+@pytest.mark.parametrize("family", [SLEIGH, TOP], ids=["sleigh", "top"])
+def test_bodies_by_matrices_are_reduced_as_their_families(family: nh.Discretization) -> None:
+    """The numbers that are kept of a top or a sleigh do not depend on its class, nor on the rows of its constraint."""
+    system = family.system
+    rows = np.array([[1.0, 0.5], [-0.3, 2.0]]) @ system.constraint_subspace
+    same = nh.discretize(nh.LLSystem(system.group, system.homogeneous_mass_tensor, rows), family.time_step)
+    tensors = np.asarray(system.homogeneous_mass_tensor) * np.array([1.0, 1.3])[:, None, None]
+    bodies = {"mass": [1.2, 1.2 * 1.3], "inertia": [0.8, 0.8 * 1.3]} if family is SLEIGH else {"mass_tensor": tensors}
+    run = {"body_velocity": STARTS[:2] @ system.constraint_subspace, "steps": 60, "save_every": 1}
+    of_family = nh.ensemble(family, **run, parameters=bodies)
+    by_matrices = nh.ensemble(same, **run, parameters={"mass_tensor": tensors})
+    for name in ("limit_angle", *(["turning_deviation"] if family is SLEIGH else [])):
+        for quantity, wanted in _reduced(name, of_family).items():
+            np.testing.assert_allclose(_reduced(name, by_matrices)[quantity], wanted, 1e-11, err_msg=quantity)
+    found = tangents(by_matrices.members, by_matrices.reduced_momentum, by_matrices.cayley)
+    for member in range(2):
+        wanted = step_jacobians(by_matrices.members.of(member), by_matrices.orbit(member).displacement)
+        assert np.abs(found[member] - wanted).max() < 1e-12 * np.abs(wanted).max()

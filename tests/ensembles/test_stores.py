@@ -237,15 +237,17 @@ def test_functions_run_only_if_they_are_passed_or_trusted(tmp_path: Path) -> Non
         assert same(nh.resume(tmp_path / "noisy", **options).load(), whole)
 
 
-@pytest.mark.parametrize("reduction", [False, True])
-def test_stores_of_strangers_run_nothing(reduction: bool, tmp_path: Path) -> None:
-    """A store that names a command of the system as its task, or a reduction, is refused before that is imported."""
+@pytest.mark.parametrize("place", ["name", "reductions", "branch_function"])
+def test_stores_of_strangers_run_nothing(place: str, tmp_path: Path) -> None:
+    """A store that names a command of the system as its task, a reduction or a rule, is refused before the import."""
     path, design = tmp_path / "evil.zarr", nh.RandomDesign(3, {"a": nh.Uniform(0.1, 1.0)})
-    task = nh.EnsembleTask(SLEIGH, steps=3, restricted_velocity=(1.0, 0.5)) if reduction else lambda block: block["a"]
+    task = lambda block: block["a"]  # noqa: E731
+    if place != "name":
+        task = nh.EnsembleTask(SLEIGH, steps=3, restricted_velocity=(1.0, 0.5))
     nh.sweep(task, design, path, "synchronous")
     described = json.loads(json.loads((path / "zarr.json").read_text())["attributes"]["sweep"])
     name = f"{tmp_path.name}:call"
-    described["task"] |= {"reductions": [name]} if reduction else {"name": name}
+    described["task"] |= {place: [name] if place == "reductions" else name}
     edited = attributes_of(path) | {"sweep": json.dumps(described), "finished": False}
     edit_attributes(path, edited | {"checksum": checksum(edited)})
     (path / "run" / "blocks" / "0.json").unlink()

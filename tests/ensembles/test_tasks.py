@@ -103,6 +103,27 @@ def test_description_makes_the_task_again() -> None:
     }
 
 
+def largest(found: Any, _: np.ndarray) -> int:
+    """Choose the real value with the largest momentum, as the rule of that name."""
+    real = np.flatnonzero(found.is_real)
+    return int(real[np.argmax(np.linalg.norm(found.momentum[real], axis=1))])
+
+
+def test_members_take_a_branch_rule() -> None:
+    """A rule reaches the members, by name or as a function, and comes back from a description; blocks are small."""
+    design = nh.Grid({"time_step": [0.3, 0.4]})
+    top = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.3)
+    start = {"momentum": (0.2, 0.3)}
+    named, own = (_task(top, **start, branch=rule) for rule in ("largest", largest))
+    rows = {**start, "parameters": design.values(0, 2)}
+    batch, principal = (nh.ensemble(top, steps=50, **rows, branch=rule) for rule in ("largest", "principal"))
+    assert np.abs(batch.restricted_momentum - principal.restricted_momentum).max() > 0.1
+    for task in (named, own, ensemble_task_from(named.describe()), ensemble_task_from(own.describe())):
+        _assert_is_ensemble(_called(task, design), batch)
+    assert "branch" not in _task(top, **start).describe()  # as in stores of versions without rules
+    assert _task(top, **start, steps=2**10, branch="nearest").block == 2**10
+
+
 def test_systems_that_data_cannot_hold_are_refused() -> None:
     """A task with a function as its difference does not come back from its description, and says why."""
     described = _task(restricted_velocity=(1.0, 0.2)).describe()
@@ -187,6 +208,8 @@ def test_designs_without_a_meaning_are_refused(
         (lambda: _task(reductions=["final", "energy_drift"]), "Got 'final'. Choose among final_state,"),
         (lambda: _task(reductions=[["final_state"]]), "names or functions"),
         (lambda: _task(reductions=None), "names or functions. Got None"),
+        (lambda: _task(momentum=(1.0, 0.0), branch="next"), r"EnsembleTask\(branch=...\)` must be"),
+        (lambda: _task(momentum=(1.0, 0.0), branch="inner"), r"EnsembleTask\(branch=...\)` must be a rule without"),
         (lambda: _task(momentum=STARTS), r"EnsembleTask\(momentum=...\)` must have shape"),
         (lambda: _task(momentum="left"), "array of real numbers"),
         (lambda: _task(momentum=(1.0, 0.0), body_velocity=(1.0, 0.0, 0.0)), "exactly one of"),

@@ -82,8 +82,8 @@ def principal(p: FreeTopBody, m1: float, m2: float) -> tuple[int, float, float]:
 
 def body(form: NormalForm) -> Body:
     """Return the numbers of a top."""
-    inverse = np.linalg.inv(form.stiffness)
-    return FreeTopBody(*map(float, (inverse[0, 0], inverse[0, 1], inverse[1, 1])))
+    numbers = (np.linalg.inv(form.stiffness)[..., i, j] for i, j in ((0, 0), (0, 1), (1, 1)))
+    return FreeTopBody(*(x if np.ndim(x) else float(x) for x in numbers))
 
 
 FREE_TOP = _closed_forms.ClosedForm(lambda form: not form.is_sleigh and not form.is_coupled, body, 0.5, None)

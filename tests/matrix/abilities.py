@@ -240,6 +240,7 @@ def ensemble(c: Case, _: Path) -> None:
 
 
 def _assert_member(batch: Any, member: int, alone: Any) -> None:
+    assert batch.orbit(member).branch == alone.branch
     for name in _NUMBERS if alone.has_poses else _NUMBERS[2:]:
         np.testing.assert_allclose(getattr(batch, name)[member], getattr(alone, name), 1e-13, 1e-13, err_msg=name)
 

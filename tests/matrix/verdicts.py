@@ -53,14 +53,12 @@ RULES: tuple[Rule, ...] = (
     ),
     Rule("scenario file", "wide", "Scenario files hold matrices.", "cannot be run"),
     Rule(
-        "events|events in *|crossings",
+        "events|events in *|crossings|ensemble with events",
         "rule",
         "Parts of a step are known of the principal branch alone.",
         "parts of a step",
         is_broken=True,
     ),
-    Rule("ensemble*|sweep", "rule", "Members take the principal branch.", "unexpected keyword", is_broken=True),
-    Rule("flow ensemble", "wide", "Members of flows have poses.", "be left out for a flow", is_broken=True),
     Rule(
         "ensemble of time steps|sweep",
         "own difference",

@@ -1,6 +1,8 @@
 """Runs by a branch rule: the same orbit where the rule means the same value, and orbits off the principal branch."""
 
+import dataclasses
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -116,3 +118,72 @@ def test_stores_remember_the_rule(tmp_path: Path) -> None:
         loaded = nh.load_orbit(tmp_path / f"{name}.zarr")
         assert loaded.branch == name
         assert np.array_equal(loaded.displacement, orbit.displacement)
+
+
+def _chosen(found: Any, _: np.ndarray) -> int:
+    """Choose the real value that comes last."""
+    return int(np.flatnonzero(found.is_real)[-1])
+
+
+@pytest.mark.parametrize("branch", ["nearest", "largest", "outer", _chosen])
+def test_members_of_an_ensemble_take_the_rule(branch: Any) -> None:
+    """Off the principal branch, from displacements, members have the bits of their runs alone, decoded too."""
+    starts = {
+        "displacement": np.stack([_off_principal(), nh.simulate(TOP, momentum=[0.2, 0.3], steps=1).displacement[1]])
+    }
+    if branch == "outer":
+        starts = {"displacement": starts["displacement"][:1]}
+    batch = nh.ensemble(TOP, **starts, steps=6, save_every=1, branch=branch)
+    for member, W in enumerate(starts["displacement"]):
+        alone, orbit = nh.simulate(TOP, displacement=W, steps=6, branch=branch), batch.orbit(member)
+        assert orbit.branch == alone.branch == batch.branch
+        for name in ("time", "displacement", "momentum", "multipliers", "configuration", "energy", "body_velocity"):
+            assert np.array_equal(getattr(orbit, name), getattr(alone, name)), name
+            assert np.array_equal(getattr(batch, name)[member][: len(getattr(alone, name))], getattr(alone, name)), name
+    assert batch.to_dataset().attrs["branch"] == batch.branch
+    principal = nh.ensemble(TOP, momentum=batch.restricted_momentum[:, 0], steps=1, save_every=1)
+    assert np.abs(batch.displacement[0, 0] - principal.displacement[0, 0]).max() > 0.1
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_members_that_differ_take_the_rule(name: str) -> None:
+    """With parameters, from velocities, where nothing of the ensemble is computed side by side."""
+    discrete, steps = FAMILIES[name], [0.05, 0.1]
+    v = 0.3 * np.arange(1, len(discrete.system.constraint_subspace) + 1)
+    run = {"restricted_velocity": v, "branch": "nearest"}
+    batch = nh.ensemble(discrete, **run, steps=12, save_every=3, parameters={"time_step": steps})
+    for member, step in enumerate(steps):
+        alone = nh.simulate(dataclasses.replace(discrete, time_step=step), **run, steps=12, save_every=3)
+        for column in ("reduced_momentum", "cayley", "canonical_pose"):
+            assert np.array_equal(getattr(batch, column)[member], getattr(alone, column)), column
+
+
+@pytest.mark.parametrize(
+    ("given", "match"),
+    [
+        ({"branch": "next"}, r"`ensemble\(branch=\.\.\.\)` must be"),
+        ({"branch": "nearest", "backend": "numba"}, r"`ensemble\(backend=\.\.\.\)` must be 'auto' or 'jax'"),
+        ({"branch": "inner", "restricted_velocity": [[0.1, 0.1], [3.0, 0.0]]}, r"'inner' and an energy.*member 1\."),
+        ({"branch": lambda found, _: len(found)}, r"return the index of a real branch.*member 0\."),
+        ({"branch": "nearest", "events": [lambda orbit: orbit.energy]}, "parts of a step"),
+    ],
+)
+def test_rules_that_members_cannot_take_are_refused(given: dict[str, Any], match: str) -> None:
+    """In the words of a single run, with the number of the member where it is that member's."""
+    with pytest.raises(ValueError, match=match):
+        nh.ensemble(TOP, **{"restricted_velocity": [[0.1, 0.1]], "steps": 3, **given})
+
+
+@pytest.mark.parametrize("kind", ["composition", "forces", "coordinates", "flow"])
+def test_motions_without_rules_are_refused(kind: str) -> None:
+    """Compositions, forces, coordinates and flows have no branch rules, in ensembles as in runs alone."""
+    sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.5)
+    motion: Any = {
+        "composition": lambda: nh.discretize(sleigh, 0.1, order=4),
+        "forces": lambda: nh.discretize(nh.Forced(sleigh, nh.Gravity([0.2, -1.0], [0.5, 0.1])), 0.1),
+        "coordinates": lambda: nh.discretize(nh.examples.particle().system, 0.1),
+        "flow": lambda: sleigh,
+    }[kind]()
+    run: Any = {"times": (0.0, 1.0)} if kind == "flow" else {"steps": 3}
+    with pytest.raises(ValueError, match="branch"):
+        nh.ensemble(motion, body_velocity=[[1.0, 0.0, 0.0]], branch="nearest", **run)

@@ -11,7 +11,7 @@ import nonholo as nh
 from nonholo import kernels
 from nonholo.kernels import suslov_body
 from nonholo.simulation.members import _ensemble, _executors
-from nonholo.simulation.members._families import scalar_members
+from nonholo.simulation.members._families import ScalarMembers, in_lanes
 from nonholo.simulation.members._members import Members
 
 J = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
@@ -196,7 +196,7 @@ def test_parameters_vary_by_member(system: Any) -> None:
 def test_numbers_of_all_members_are_those_of_each(system: Any) -> None:
     """Inertia, map to the canonical frame, first pose and fields, made in one go, are those of the systems."""
     members = Members(nh.discretize(system, 0.1), _parameters(system, 5), 5)
-    scalar = scalar_members(members)
+    scalar = ScalarMembers(members)
     for member in range(5):
         own = members.of(member).system
         _assert_close(scalar.inertia[member], own.canonical.constrained_inertia, 1e-15)
@@ -209,6 +209,53 @@ def test_numbers_of_all_members_are_those_of_each(system: Any) -> None:
             assert np.allclose(scalar.fields[:, member], body, rtol=1e-14, atol=0)
         else:
             assert scalar.fields[:, member].tolist() == [own.mass, own.inertia, own.a]
+
+
+@pytest.mark.parametrize("name", ["top", "suslov 4", "any d on SE(3)", "flow", "rule"])
+def test_little_work_starts_no_threads(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Members that are soon done run in the calling thread, all others beside it, where Ctrl-C ends them."""
+    system, w = GENERAL.get(name, (TOP, np.ones(2)))
+    run: dict[str, Any] = {"restricted_velocity": 0.1 * w * np.ones((10, 1))}
+    motion: Any = system if name == "flow" else nh.discretize(system, 0.1)
+    little, much = (
+        ({"times": (0.0, 1.0)}, {"times": (0.0, 1e3)}) if name == "flow" else ({"steps": 10}, {"steps": 10**5})
+    )
+    run |= {"branch": "nearest"} if name == "rule" else {}
+
+    def refused(*_: Any) -> None:
+        raise RuntimeError
+
+    monkeypatch.setattr(_executors, "ThreadPoolExecutor", refused)
+    assert nh.ensemble(motion, **run, **little).outcome.tolist() == [0] * 10
+    if name != "rule":  # of which Ctrl-C is answered between its steps
+        with pytest.raises(RuntimeError):
+            nh.ensemble(motion, **run, **much)
+
+
+BY_MATRICES = {
+    "top": nh.LLSystem(nh.SO(3), J, annihilator=[[0.0, 0.0, 1.0]]),
+    "oblique top": nh.LLSystem(nh.SO(3), J, annihilator=[[0.6, -0.2, 0.8]]),
+    "plane blade": nh.LLSystem(nh.SE(2), SLEIGH.homogeneous_mass_tensor, np.eye(3)[:2]),
+    "oblique blade": nh.LLSystem(nh.SE(2), SLEIGH.homogeneous_mass_tensor, annihilator=[[0.2, 0.3, 1.0]]),
+}
+
+
+@pytest.mark.parametrize("name", BY_MATRICES)
+def test_bodies_by_matrices_run_side_by_side(name: str) -> None:
+    """Tops and sleighs are known by their closed form, whatever their class; members have the bits of `simulate`."""
+    system, rng = BY_MATRICES[name], np.random.default_rng(3)
+    tensors = np.asarray(system.mass_tensor) + 0.1 * np.array([x @ x.T for x in rng.normal(size=(5, 3, 3))])
+    own = {"mass_tensor": tensors, "time_step": [0.05, 0.1, 0.2, 0.1, 0.9]}
+    run = {"restricted_velocity": _velocities(5), "configuration": _poses(system, 1)[0]}
+    batch = nh.ensemble(nh.discretize(system, 0.1), **run, parameters=own, steps=40, save_every=8)
+    assert in_lanes(batch.members)
+    for member in range(5):
+        each = run | {"restricted_velocity": run["restricted_velocity"][member]}
+        orbit = nh.simulate(batch.members.of(member), **each, steps=40, save_every=8, throw=False)
+        for quantity in ("reduced_momentum", "cayley", "canonical_pose", *DECODED):
+            found = getattr(batch, quantity)[member, : len(orbit)]
+            assert np.array_equal(found, getattr(orbit, quantity)), quantity
+        assert batch.outcome[member] == orbit.outcome
 
 
 @pytest.mark.parametrize("name", ["suslov 4", "any d on SE(3)", "veselova 3"])

@@ -108,8 +108,6 @@ def _refusals(scenario: SweepScenario) -> list[tuple[str, str]]:
     for key in ("displacement", "configuration"):
         if getattr(scenario.start, key) is not None:
             found.append((f"start.{key}", f"is not for sweeps. Start by {', '.join(_STARTS)}"))
-    if scenario.run.branch != "principal":
-        found.append(("run.branch", f"must be principal in sweeps. Got {scenario.run.branch!r}"))
     if scenario.run.save_every != 1:
         found.append(("run.save_every", "is not for sweeps: [keep] says what is kept"))
     return found

@@ -122,7 +122,7 @@ class SweepScenario(AbstractScenario):
     def task(self) -> "EnsembleTask":
         """Return what is done with every member."""
         start: Any = self.start.model_dump(exclude_none=True)
-        options: Any = {"reductions": self.keep.reductions, "reconstruct": self.keep.poses}
+        options: Any = {"reductions": self.keep.reductions, "reconstruct": self.keep.poses, "branch": self.run.branch}
         return nonholo.EnsembleTask(self.discretization(), steps=self.run.steps, **start, **options)
 
 

@@ -333,8 +333,19 @@ class Axes:
     """
 
     group: AbstractMatrixGroup
-    frame: Float[np.ndarray, "N N"] | None
-    rows: Float[np.ndarray, "k k"] | None
+    frame: Float[np.ndarray, "... N N"] | None
+    rows: Float[np.ndarray, "... k k"] | None
+
+    def at(self, members: Any) -> "Axes":
+        """Return the axes of some members, by slice or numbers, where they differ: with an axis of members in front."""
+        own = (x if x is None or x.ndim == 2 else x[members] for x in (self.frame, self.rows))
+        return Axes(self.group, *own)
+
+    def beside(self, more: int) -> "Axes":
+        """Return the axes for numbers of members that have more axes behind that of members."""
+        shape = (slice(None), *(None,) * more)
+        own = (x if x is None or x.ndim == 2 else x[shape] for x in (self.frame, self.rows))
+        return Axes(self.group, *own)
 
     def momenta(self, canonical: np.ndarray) -> np.ndarray:
         """Return momenta along the kernel's rows."""
@@ -346,11 +357,11 @@ class Axes:
 
     def charts(self, canonical: np.ndarray) -> np.ndarray:
         """Return charts along the kernel's rows."""
-        return canonical if self.rows is None else applied(self._inverse.T, canonical)
+        return canonical if self.rows is None else applied(self._inverse.swapaxes(-1, -2), canonical)
 
     def canonical_charts(self, charts: np.ndarray) -> np.ndarray:
         """Return charts along the canonical rows."""
-        return charts if self.rows is None else applied(self.rows.T, charts)
+        return charts if self.rows is None else applied(self.rows.swapaxes(-1, -2), charts)
 
     def turned(self, g: np.ndarray) -> np.ndarray:
         """Return matrices of poses of the kernel's axes."""
@@ -359,6 +370,20 @@ class Axes:
     def turned_back(self, g: np.ndarray) -> np.ndarray:
         """Return matrices of poses of the canonical axes."""
         return g if self.frame is None else g @ self.group.inverse(self.frame)
+
+    def poses(self, canonical: np.ndarray) -> np.ndarray:
+        """Return compact poses of the kernel's axes."""
+        if self.frame is None:
+            return canonical
+        return self.group.pose_from_matrix(self.turned(self.group.matrix_from_pose(canonical)))
+
+    def canonical_poses(self, poses: np.ndarray) -> np.ndarray:
+        """Return compact poses of the canonical axes."""
+        return (
+            poses
+            if self.frame is None
+            else self.group.pose_from_matrix(self.turned_back(self.group.matrix_from_pose(poses)))
+        )
 
     @functools.cached_property
     def _inverse(self) -> np.ndarray:

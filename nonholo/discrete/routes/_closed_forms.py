@@ -16,7 +16,7 @@ class ClosedForm(NamedTuple):
 
     Attributes:
         covers: Tells whether a planar normal form is one of its bodies.
-        body: Makes the numbers of its body.
+        body: Makes its body; of many systems in one a body whose fields have an axis in front.
         share: The part of the time step in its momenta, m = share h r.
         rows: C with r_kernel = C r_form; None where its rows are those of the normal form.
     """
@@ -29,12 +29,12 @@ class ClosedForm(NamedTuple):
 
 def _slides_with_inertia(form: NormalForm) -> bool:
     """A plane sleigh needs a moment about its center of mass."""
-    return form.is_sleigh and (is_traced(form.stiffness) or bool(form.stiffness[0, 0] > 0))
+    return form.is_sleigh and (is_traced(form.stiffness) or bool(np.all(form.stiffness > 0)))
 
 
 def _sleigh(form: NormalForm) -> kernels.SleighBody:
-    numbers = (form.mass, form.stiffness[0, 0], form.arm)
-    return kernels.SleighBody(*(x if is_traced(x) else float(x) for x in numbers))
+    numbers = (form.mass, form.stiffness[..., 0, 0], form.arm)
+    return kernels.SleighBody(*(x if is_traced(x) or np.ndim(x) else float(x) for x in numbers))
 
 
 def _turns(form: NormalForm) -> bool:
@@ -43,6 +43,8 @@ def _turns(form: NormalForm) -> bool:
 
 
 def _top(form: NormalForm) -> kernels.SuslovBody:
+    if form.stiffness.ndim > 2:
+        return kernels.SuslovBody(*kernels.suslov_table(form.stiffness, form.coupling))
     return kernels.suslov_body(form.stiffness, form.coupling)
 
 

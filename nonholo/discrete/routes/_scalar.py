@@ -9,7 +9,7 @@ import numpy as np
 from nonholo import kernels
 from nonholo.base.types import Array, Float
 from nonholo.discrete.routes._base import AbstractCompiledRoute, Axes
-from nonholo.discrete.routes._closed_forms import ClosedForm
+from nonholo.discrete.routes._closed_forms import ClosedForm, closed_form
 from nonholo.systems import NormalForm, System
 
 
@@ -58,7 +58,7 @@ class ScalarRoute(AbstractCompiledRoute):
     @property
     def step(self) -> ScalarStep:
         """Its data for JAX."""
-        return ScalarStep(self.body, self.scale, self._axes.rows)
+        return ScalarStep(self.body, self.scale, self.axes.rows)
 
     def start(self, momenta: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray, np.ndarray]:
         """Return the outcome of the first root, its chart and the state of a run, in numbers of the kernel."""
@@ -67,38 +67,39 @@ class ScalarRoute(AbstractCompiledRoute):
 
     def encode(self, momenta: np.ndarray) -> np.ndarray:
         """Return the momenta of the kernel from canonical ones."""
-        return self.scale * self._axes.momenta(momenta)
+        return self.scale * self.axes.momenta(momenta)
 
     def decode(self, momenta: np.ndarray) -> np.ndarray:
         """Return canonical momenta from those of the kernel."""
-        return self._axes.canonical_momenta(momenta / self.scale)
+        return self.axes.canonical_momenta(momenta / self.scale)
 
     def to_kernel(self, charts: np.ndarray) -> np.ndarray:
         """Return the chart coordinates of the kernel from canonical ones."""
-        return self._axes.charts(charts)
+        return self.axes.charts(charts)
 
     def from_kernel(self, charts: np.ndarray) -> np.ndarray:
         """Return canonical chart coordinates from those of the kernel."""
-        return self._axes.canonical_charts(charts)
+        return self.axes.canonical_charts(charts)
 
     def encode_poses(self, poses: np.ndarray) -> np.ndarray:
         """Return the compact poses of the kernel's axes."""
-        if self._axes.frame is None:
-            return poses
-        group = self.system.group
-        return group.pose_from_matrix(self._axes.turned(group.matrix_from_pose(poses)))
+        return self.axes.poses(poses)
 
     def decode_poses(self, poses: np.ndarray) -> np.ndarray:
         """Return compact canonical poses from those of the kernel."""
-        if self._axes.frame is None:
-            return poses
-        group = self.system.group
-        return group.pose_from_matrix(self._axes.turned_back(group.matrix_from_pose(poses)))
+        return self.axes.canonical_poses(poses)
+
+    def of_many(self, system: System, time_step: Array) -> "ScalarRoute | None":
+        """Return the route of many systems in one, whose numbers have an axis in front; None of another closed form."""
+        form = system.normal_form
+        same = form is not None and closed_form(form) is self.closed
+        return dataclasses.replace(self, system=system, form=form, time_step=time_step) if same else None
 
     @functools.cached_property
-    def _axes(self) -> Axes:
+    def axes(self) -> Axes:
+        """The change from the canonical axes to those of the kernel."""
         rows, own = self.form.frame_map, self.closed.rows
         if own is not None:
             rows = own if rows is None else own @ rows
-        same = rows is None or np.array_equal(rows, np.eye(2))
+        same = rows is None or np.array_equal(rows, np.broadcast_to(np.eye(2), rows.shape))
         return Axes(self.system.group, self.form.frame, None if same else rows)

@@ -10,13 +10,13 @@ from nonholo.base.calls import called
 from nonholo.base.checks import count, error, flags, flow_times, flow_tolerances, function, refuse_given
 from nonholo.base.limits import within_memory
 from nonholo.base.progress import progress_bar
-from nonholo.continuous import ContinuousFlow
-from nonholo.discrete import PRINCIPAL, Discretization, as_discretization
+from nonholo.continuous import ContinuousFlow, solver_of
+from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretization
 from nonholo.simulation._options import check_forces, refuse_too_large, stepper_of
 from nonholo.simulation.events import watched
 from nonholo.simulation.members._events import joined_blocks
-from nonholo.simulation.members._executors import Plan, Report, counting, run_members
-from nonholo.simulation.members._families import check_systems, in_lanes
+from nonholo.simulation.members._executors import Plan, Report, are_side_by_side, counting, run_members
+from nonholo.simulation.members._families import check_systems
 from nonholo.simulation.members._members import Members, checked_parameters
 from nonholo.simulation.members._reduce import Reduced, joined
 from nonholo.simulation.members._result import Ensemble
@@ -30,7 +30,7 @@ from nonholo.systems import (
     refuse_in_coordinates,
 )
 
-_DEFAULTS = {"backend": "auto", "reconstruct": True}
+_DEFAULTS = {"branch": PRINCIPAL.name, "backend": "auto", "reconstruct": True}
 _BLOCK = 1 << 23  # numbers in a block of members that is reduced, 64 MiB
 
 
@@ -47,6 +47,7 @@ def ensemble(
     save_every: int | None = None,
     parameters: Mapping[str, Any] | None = None,
     reduce: Callable[[Ensemble], Reduced] | None = None,
+    branch: BranchRule = PRINCIPAL.name,
     reconstruct: bool = True,
     backend: str = "auto",
     events: Any = None,
@@ -55,9 +56,10 @@ def ensemble(
 ) -> Any:
     r"""Run or solve many members of one system, that differ in where they start, in parameters, or in both.
 
-    Each member takes the steps that `simulate` would take from its start, on the principal branch and verified; what
+    Each member takes the steps that `simulate` would take from its start, on the branch of its rule and verified; what
     becomes of it does not depend on the others. Tops with n = 3 and plane sleighs run in compiled blocks of 32 members,
-    other systems one after another. All cores are used (`NUMBA_NUM_THREADS` sets how many), with the same result.
+    other systems, and all by other rules than "principal", one after another. All cores are used (`NUMBA_NUM_THREADS`
+    sets how many), with the same result.
 
     Of a system in place of a discretization the flows are solved, by the series of `flow`: from one canonical momentum
     each has the bits of a flow alone.
@@ -78,7 +80,7 @@ def ensemble(
             W_0 that has the same momentum along the constraint.
         restricted_velocity: The same, in rows of the constraint subspace, (M, k).
         displacement: Start with these W_0, matrices (M, N, N), in coordinates (M, n). A member that would not be on the
-            principal branch has outcome `branch_unverified`. Flows have none.
+            principal branch has outcome `branch_unverified`, unless it runs by another rule. Flows have none.
         momentum: Start with these momenta, full ones (M, dim) on the momentum locus or those along the constraint
             subspace, (M, k). A member whose full momentum is not on it has outcome `off_momentum_locus`.
         save_every: Steps between saved states, the first one included; by default only the last state is kept.
@@ -87,7 +89,8 @@ def ensemble(
             coordinates "time_step" alone: compiled functions have their constants within.
         reduce: A function of an `Ensemble`, a block of the members in order, that returns an array or a dictionary of
             arrays with a leading member axis. It is called block by block, so that states are never all in memory.
-        reconstruct: Also compute poses.
+        branch: Which value of the map a step takes, a name or a function, as in `simulate`.
+        reconstruct: Also compute poses. Flows without them run one by one, as `flow` solves for momenta alone.
         backend: "numba" (closed forms, compiled), "jax", or "auto" to choose. By JAX tops with n = 3 and plane sleighs
             run in chunks on processors and all at once on accelerators, other systems by the definition.
         events: `Event`s, or functions, whose changes of sign are found at every single step of each member; see
@@ -119,7 +122,7 @@ def ensemble(
         reduce = functools.partial(called, "ensemble(reduce=...)", reduce)
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity}
     starts |= {"displacement": displacement, "momentum": momentum}
-    of_steps = {"steps": steps, "save_every": save_every, "events": events, "backend": backend}
+    of_steps = {"steps": steps, "save_every": save_every, "events": events, "branch": branch, "backend": backend}
     of_steps["reconstruct"], of_flow = reconstruct, {"times": times, "rtol": rtol}
     make: Any = _of_times if isinstance(discrete, AbstractSystem) else _of_steps
     motion, plan, widths = make(discrete, of_flow, of_steps, starts)
@@ -129,9 +132,8 @@ def ensemble(
     members = Members(motion, checked, several)
     _refuse_too_large(plan, widths, 1 if reduce is not None else several)
     check_systems(members)
-    begun = firsts(members, start, posed=widths[-1] > 0)
-    if plan.times is not None and begun.demanded is not None:
-        _check_momenta(begun.demanded, members, begun, plan._replace(steps=0, times=plan.times[:1]))
+    begun = firsts(members, start, posed=widths[-1] > 0, at_once=are_side_by_side(members, plan))
+    _check_momenta(members, begun, plan)
     with progress_bar("members", progress) as show:
         return _joined(members, begun, plan, sum(widths), reduce, counting(show, several))
 
@@ -146,10 +148,12 @@ def _of_times(
     system: System, of_flow: dict[str, Any], of_steps: dict[str, Any], starts: dict[str, Any]
 ) -> tuple[Any, Plan, tuple[int, ...]]:
     """Return the motion of flows, their plan, and how wide their columns are."""
+    reconstruct = bool(of_steps.pop("reconstruct"))
     _refuse("for a flow", displacement=starts.pop("displacement"), **of_steps)
     time, rtol = flow_times(of_flow["times"]), 1e-14 if of_flow["rtol"] is None else of_flow["rtol"]
-    plan = Plan(len(time) - 1, 1, times=time, rtol=flow_tolerances(rtol, 1.0)[0])
-    return ContinuousFlow(system), plan, (1, system.rank, system.group.pose_size)
+    plan = Plan(len(time) - 1, 1, reconstruct, times=time, rtol=flow_tolerances(rtol, 1.0)[0])
+    posed = solver_of(system, None, float(time[0]), reconstruct=reconstruct)[1]
+    return ContinuousFlow(system), plan, (1, system.rank, system.group.pose_size * posed)
 
 
 def _of_steps(
@@ -157,9 +161,9 @@ def _of_steps(
 ) -> tuple[Any, Plan, tuple[int, ...]]:
     """Return the motion of runs, their plan, and how wide their columns are."""
     del starts
-    steps, save_every, events, backend, reconstruct = of_steps.values()
+    steps, save_every, events, branch, backend, reconstruct = of_steps.values()
     if in_coordinates(discrete):
-        absent = {"backend": backend, "reconstruct": reconstruct, **of_flow}
+        absent = {"branch": branch, "backend": backend, "reconstruct": reconstruct, **of_flow}
         refuse_in_coordinates("ensemble", **{name: (value, _DEFAULTS.get(name)) for name, value in absent.items()})
     else:
         _refuse("for a discretization", **of_flow)
@@ -167,10 +171,11 @@ def _of_steps(
     steps = count("ensemble(steps=...)", steps, "Pass the number of steps.")
     if save_every is not None:
         save_every = count("ensemble(save_every=...)", save_every, "Pass the steps between saved states, or None.")
-    stepper = stepper_of(discrete, PRINCIPAL.name, backend, posed=bool(reconstruct), owner="ensemble")
+    stepper = stepper_of(discrete, branch, backend, posed=bool(reconstruct), owner="ensemble")
     check_forces("ensemble", discrete, steps)
     watch = None if events is None else watched("ensemble", stepper, events)
-    plan = Plan(steps, save_every, bool(reconstruct), backend, None if watch is None else watch.events)
+    sought = None if watch is None else watch.events
+    plan = Plan(steps, save_every, bool(reconstruct), branch, backend, sought)
     return discrete, plan, tuple(stepper.columns.values())
 
 
@@ -182,9 +187,12 @@ def _refuse_too_large(plan: Plan, widths: tuple[int, ...], members: int) -> None
     return within_memory("ensemble(times=...)", 16.0 * sum(widths) * members * plan.states, remedy)
 
 
-def _check_momenta(given: np.ndarray, members: Members, starts: Firsts, at_first: Plan) -> None:
-    """Refuse full momenta that no admissible velocity has."""
-    full = run_members(members, starts, at_first).momentum[:, 0]
+def _check_momenta(members: Members, starts: Firsts, plan: Plan) -> None:
+    """Refuse full momenta of flows that no admissible velocity has."""
+    given = starts.demanded
+    if plan.times is None or given is None:
+        return
+    full = run_members(members, starts, plan._replace(steps=0, times=plan.times[:1])).momentum[:, 0]
     wrong = are_others(given, full)
     if wrong.any():
         member = int(np.argmax(wrong))
@@ -202,7 +210,7 @@ def _joined(
     report: Report,
 ) -> Any:
     """Run all members, block by block where only what is found of them is kept, and join that."""
-    searched = plan.events is not None and in_lanes(members)  # in every step of a block
+    searched = plan.events is not None and are_side_by_side(members, plan)  # in every step of a block
     if reduce is None and not searched:
         return run_members(members, starts, plan, report=report)
     size = max(1, _BLOCK // (width * (1 + plan.steps if searched else plan.states)))

@@ -17,15 +17,15 @@ from nonholo.base.progress import until
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
 from nonholo.continuous import has_series, members_by_series
-from nonholo.discrete import PRINCIPAL
+from nonholo.discrete import PRINCIPAL, BranchRule
 from nonholo.orbit import AbstractStepper, First
 from nonholo.simulation._flow import flow_from
 from nonholo.simulation._options import stepper_of
 from nonholo.simulation._run import Run, ended
 from nonholo.simulation.events import Event, Watch
 from nonholo.simulation.members._events import log_of, watched_block
-from nonholo.simulation.members._families import ScalarMembers, body_of, in_lanes, inertias_of, scalar_members
-from nonholo.simulation.members._members import Members
+from nonholo.simulation.members._families import ScalarMembers, in_lanes, inertias_of
+from nonholo.simulation.members._members import Members, refused
 from nonholo.simulation.members._result import Ensemble, stacked
 from nonholo.simulation.members._start import Firsts, are_others
 
@@ -33,6 +33,9 @@ _PART = 8192  # members in a piece of work of one thread, a multiple of what a c
 _FLOWS = 1024  # flows in a piece of work,
 _BESIDE = 8  # those that are solved side by side,
 _NUMBERS = 1 << 20  # and the most numbers in their states
+_SOON = 1 << 16  # steps of the compiled loop over members that take a few milliseconds, less than threads,
+_SOON_ALONE = 1 << 12  # those of other compiled loops,
+_SOON_TURNED = 1 << 9  # and the units of time in which a body moves by one that its series take
 
 _THREADS: contextvars.ContextVar[int | None] = contextvars.ContextVar("threads", default=None)
 
@@ -79,6 +82,7 @@ class Plan(NamedTuple):
         steps: Number of steps; of a flow the number of times after the first.
         every: Steps between saved states; None for the last one alone.
         posed: Whether to compute poses.
+        branch: The branch rule.
         backend: "auto", "numba" or "jax".
         events: What the runs look for, by name; None if for nothing.
         times: Those of a flow.
@@ -88,6 +92,7 @@ class Plan(NamedTuple):
     steps: int
     every: int | None
     posed: bool = True
+    branch: BranchRule = PRINCIPAL.name
     backend: str = "auto"
     events: dict[str, Event] | None = None
     times: Float[np.ndarray, "K"] | None = None
@@ -114,8 +119,13 @@ def run_members(members: Members, starts: Firsts, plan: Plan, report: Report = l
 def executor_of(members: Members, plan: Plan) -> Callable[..., Ensemble]:
     """Return what runs members: side by side where their closed form or their series allows it, else one by one."""
     if plan.times is not None:
-        return run_by_series if has_series(members.discrete.system) else run_one_by_one
-    return run_in_lanes if in_lanes(members) else run_one_by_one
+        return run_by_series if plan.posed and has_series(members.discrete.system) else run_one_by_one
+    return run_in_lanes if are_side_by_side(members, plan) else run_one_by_one
+
+
+def are_side_by_side(members: Members, plan: Plan) -> bool:
+    """Tell whether members are computed side by side, in numbers of their closed form."""
+    return plan.branch == PRINCIPAL.name and in_lanes(members)
 
 
 def run_in_lanes(members: Members, starts: Firsts, plan: Plan, threads: int, report: Report) -> Ensemble:
@@ -127,26 +137,25 @@ def run_in_lanes(members: Members, starts: Firsts, plan: Plan, threads: int, rep
 
 def _in_lanes(members: Members, starts: Firsts, plan: Plan, threads: int, report: Report) -> Ensemble:
     """Run members of a closed form, 32 at a time, or by JAX."""
-    scalar, count, (momenta, first) = scalar_members(members), len(members), starts.numbers
+    scalar, count, (momenta, first) = ScalarMembers(members), len(members), starts.numbers
     rows = _rows(count, plan.states, posed=plan.posed)
     fields, run = scalar.fields, _advance_by_jax if plan.backend == "jax" else _advance
-    advance = functools.partial(run, body_of(members))
+    advance = functools.partial(run, scalar.body)
 
     def work(part: slice, stop: np.ndarray) -> None:
         pieces = _unfilled(kernels.MemberRows(*(array[part] for array in rows)))
         scale = np.broadcast_to(scalar.scale, (count,))[part, None]
-        own = first[part] if scalar.route is None else scalar.route.encode_poses(first[part])
-        poses = np.array(own, order="C")  # never read-only: compiled once
+        axes = scalar.axes.at(part)
+        poses = np.array(axes.poses(first[part]), order="C")  # never read-only: compiled once
         own = fields if fields.shape[1] == 1 else fields[:, part]
-        begun = momenta[part] * scale if scalar.route is None else scalar.route.encode(momenta[part])
-        advance(own, (begun, poses), plan, pieces, stop)
-        if scalar.route is None:
-            np.divide(pieces.momenta, scale[:, None], out=pieces.momenta)
-        else:
-            _decode(scalar, pieces)
+        advance(own, (scale * axes.momenta(momenta[part]), poses), plan, pieces, stop)
+        np.divide(pieces.momenta, scale[:, None], out=pieces.momenta)
+        _decode(axes, pieces)
 
     if plan.backend == "jax":
         threads = 1  # XLA has its own
+    elif count * plan.steps <= _SOON:
+        threads = 0
     in_threads(work, _parts(count, threads, plan.backend), threads, report)
     columns = {"reduced_momentum": rows.momenta, "cayley": rows.charts}
     columns |= {"canonical_pose": rows.poses} if plan.posed else {}
@@ -166,13 +175,15 @@ def _refuse_other_starts(batch: Ensemble, demanded: np.ndarray, probe: Ensemble)
         column[missed] = np.nan
 
 
-def _decode(scalar: ScalarMembers, pieces: kernels.MemberRows) -> None:
-    """Take rows of a kernel to canonical units and axes, in place."""
-    good, route = np.isfinite(pieces.momenta[..., 0]), scalar.route
-    pieces.momenta[good] = route.decode(pieces.momenta[good])
-    pieces.charts[good] = route.from_kernel(pieces.charts[good])
-    if pieces.poses.shape[1]:
-        pieces.poses[good] = route.decode_poses(pieces.poses[good])
+def _decode(axes: Any, pieces: kernels.MemberRows) -> None:
+    """Take rows of a kernel to canonical axes, in place."""
+    if axes.rows is not None:
+        beside = axes.beside(1)
+        pieces.momenta[:] = beside.canonical_momenta(pieces.momenta)
+        pieces.charts[:] = beside.canonical_charts(pieces.charts)
+    if axes.frame is not None and pieces.poses.shape[1]:
+        good = np.isfinite(pieces.momenta[..., 0])
+        pieces.poses[good] = axes.at(np.nonzero(good)[0]).canonical_poses(pieces.poses[good])
 
 
 def _rows(count: int, states: int, *, posed: bool) -> kernels.MemberRows:
@@ -219,22 +230,27 @@ def run_one_by_one(members: Members, starts: Firsts, plan: Plan, threads: int, r
     count, orbits, done = len(members), {}, np.zeros(len(members), dtype=np.int64)
     alone = _run_alone if plan.times is None else _flow_alone
 
-    def work(part: slice, stop: np.ndarray) -> None:
-        with until(lambda: bool(stop[0])):
-            for member in range(part.start, part.stop):
+    def work(part: slice, _: np.ndarray) -> None:
+        for member in range(part.start, part.stop):
+            try:
                 orbits[member], done[member] = alone(members.of(member), starts.of(member), plan)
+            except ValueError as failure:
+                raise refused(member, failure) from failure
 
-    together = plan.times is not None or _stepper_of(members.discrete, plan).in_threads
-    in_threads(work, [slice(i, i + 1) for i in range(count)], threads if together else 1, report)
+    stepper = None if plan.times is not None else _stepper_of(members.discrete, plan)
+    if stepper is not None and (not stepper.in_threads or count * plan.steps <= _SOON_ALONE):
+        threads = 0
+    in_threads(work, [slice(i, i + 1) for i in range(count)], threads, report)
     each = [orbits[member] for member in range(count)]
     codes = np.array([int(orbit.outcome) for orbit in each])
     columns = stacked(each, plan.states) | _times(plan, count)
-    batch = Ensemble(members, plan.steps, plan.every, columns, codes, done, *starts.places)
+    branch = PRINCIPAL.name if stepper is None else stepper.branch
+    batch = Ensemble(members, plan.steps, plan.every, columns, codes, done, *starts.places, branch=branch)
     return batch if plan.events is None else dataclasses.replace(batch, events=log_of(batch, each))
 
 
 def _stepper_of(motion: Any, plan: Plan) -> AbstractStepper[Any]:
-    return stepper_of(motion, PRINCIPAL.name, plan.backend, posed=plan.posed)
+    return stepper_of(motion, plan.branch, plan.backend, posed=plan.posed, owner="ensemble")
 
 
 def _run_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
@@ -251,7 +267,8 @@ def _run_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
 def _flow_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
     """Return the flow of one member up to its end, and the number of good times after the first."""
     try:
-        orbit = flow_from(motion.system, first, cast(np.ndarray, plan.times), plan.rtol)
+        times = cast(np.ndarray, plan.times)
+        orbit = flow_from(motion.system, first, times, plan.rtol, reconstruct=plan.posed)
     except OutcomeError as early:
         orbit = cast(Any, early.orbit)
     return orbit, len(orbit) - 1
@@ -268,6 +285,8 @@ def run_by_series(members: Members, starts: Firsts, plan: Plan, threads: int, re
 
     numbers = sum(x.shape[1] for x in starts.places) * len(time)
     size = max(1, min(_FLOWS, _NUMBERS // numbers, max(_BESIDE, -(-count // 8))))
+    if count <= _FLOWS and count * numbers <= _SOON and count * _turned(members, starts, time) <= _SOON_TURNED:
+        size, threads = count, 0
     parts = [slice(begin, min(begin + size, count)) for begin in range(0, count, size)]
     in_threads(work, parts, threads, report)
     states, reached = zip(*(pieces[part.start] for part in parts), strict=True)
@@ -280,6 +299,15 @@ def run_by_series(members: Members, starts: Firsts, plan: Plan, threads: int, re
     good = np.concatenate(reached)
     codes = np.where(good == len(time), int(Outcome.successful), int(Outcome.not_converged))
     return Ensemble(members, plan.steps, plan.every, columns | _times(plan, count), codes, good - 1, *starts.places)
+
+
+def _turned(members: Members, starts: Firsts, time: np.ndarray) -> float:
+    """Return by how much a body at most moves, in its algebra, and more where its inertia is uneven."""
+    inertia, S = inertias_of(members), members.discrete.system.canonical.constraint_subspace
+    velocity = np.linalg.solve(S @ inertia @ S.T, starts.numbers[0][..., None])[..., 0] @ S
+    return (
+        float(np.abs(velocity).max(initial=0.0)) * float(abs(time[-1] - time[0])) * float(np.linalg.cond(inertia).max())
+    )
 
 
 def _times(plan: Plan, count: int) -> dict[str, np.ndarray]:
@@ -296,21 +324,39 @@ def _parts(count: int, threads: int, backend: str) -> list[slice]:
         size = chunk() or count
     else:
         blocks = -(-count // kernels.LANES)
-        size = kernels.LANES * max(1, min(_PART // kernels.LANES, blocks // (4 * threads)))
+        size = kernels.LANES * max(1, min(_PART // kernels.LANES, blocks // (4 * threads) if threads else blocks))
     return [slice(begin, min(begin + size, count)) for begin in range(0, count, size)]
 
 
 def in_threads(work: Callable[[slice, np.ndarray], None], parts: list[slice], threads: int, report: Report) -> None:
-    """Do all pieces of work, which release the interpreter's lock, and report each."""
+    """Do all pieces of work and report each.
+
+    Args:
+        work: Does a piece; beside others it releases the interpreter's lock, and ends soon when the array becomes true.
+        parts: The pieces.
+        threads: How many; 0 for this one, which Ctrl-C reaches only between calls of compiled code.
+        report: Called with the number of members of a piece.
+    """
     for part in _finished(work, parts, threads):
         report(part.stop - part.start)
 
 
 def _finished(work: Callable[[slice, np.ndarray], None], parts: list[slice], threads: int) -> Iterator[slice]:
     """Give pieces of work as they are done; what ends this thread, Ctrl-C among it, soon ends the others."""
-    pool, stop = ThreadPoolExecutor(threads), np.zeros(1, dtype=np.bool_)
+    stop = np.zeros(1, dtype=np.bool_)
+    if not threads:
+        for part in parts:
+            work(part, stop)
+            yield part
+        return
+
+    def begun(part: slice) -> None:
+        with until(lambda: bool(stop[0])):
+            work(part, stop)
+
+    pool = ThreadPoolExecutor(threads)
     try:
-        waiting = {pool.submit(work, part, stop): part for part in parts}
+        waiting = {pool.submit(begun, part): part for part in parts}
         for future in as_completed(waiting):
             future.result()
             yield waiting[future]

@@ -11,7 +11,7 @@ from nonholo.base.checks import array, error, shown
 from nonholo.base.kept import Keeper
 from nonholo.base.types import Float
 from nonholo.discrete import discretize
-from nonholo.systems import System, in_coordinates, unchecked
+from nonholo.systems import System, in_coordinates
 
 STEP = "time_step"
 _ARGUMENTS = {"given_inertia": "inertia_operator"}  # fields that the constructor calls otherwise
@@ -63,14 +63,38 @@ class Members(Keeper):
         return dataclasses.replace(self.discrete, **changed) if changed else self.discrete
 
     @property
-    def stacked(self) -> System:
-        """The systems of all members in one, numbers with an axis of members in front: for formulas that allow it."""
-        system = self.discrete.system
+    def of_system(self) -> set[str]:
+        """The parameters that belong to the system."""
+        return self.parameters.keys() - {STEP}
+
+    @functools.cached_property
+    def stacked(self) -> System | None:
+        """The systems of all members in one, numbers with an axis of members in front where any of them differ.
+
+        None where formulas do not allow it.
+        """
+        if not self.of_system:
+            return self.discrete.system
+        system = _inside(self.discrete.system)
         values = {name: self.values(_ARGUMENTS.get(name, name)) for name in _numbers(system)}
-        return unchecked(system, **{name: np.broadcast_to(x, (len(self), *x.shape[1:])) for name, x in values.items()})
+        return system.stacked(**{name: np.broadcast_to(x, (len(self), *x.shape[1:])) for name, x in values.items()})
+
+    @functools.cached_property
+    def keep_frame(self) -> bool:
+        """Whether all members clearly have the canonical frame of the shared motion, whatever their parameters."""
+        return self.stacked is not None and bool(np.all(self.stacked.frame == self.discrete.system.frame))
+
+    @functools.cached_property
+    def lanes(self) -> Any:
+        """The route of all members in one, in closed form; None where they do not have the same."""
+        if self.route is None or not self.route.is_scalar or self.stacked is None:
+            return None
+        return self.route.of_many(self.stacked, self.time_step) if self.parameters else self.route
 
     def part(self, chosen: slice) -> "Members":
         """Return some of the members."""
+        if chosen.indices(self.count) == (0, self.count, 1):
+            return self
         kept = {name: values[chosen] for name, values in self.parameters.items()}
         return Members(self.discrete, kept, len(range(*chosen.indices(self.count))))
 

@@ -13,7 +13,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Bool, Float, Int
 from nonholo.groups import SE
 from nonholo.simulation.members._event_log import MemberEvents
-from nonholo.simulation.members._families import family_of, have_kernel, scalar_members
+from nonholo.simulation.members._families import ScalarMembers, in_lanes
 from nonholo.simulation.members._members import Members
 from nonholo.simulation.members._start import energies
 
@@ -27,7 +27,7 @@ class Ensemble:
 
     With `save_every=None` K = 1, and the state is the last good one of each member, after `steps_done` steps. Otherwise
     row j is the state after j `save_every` steps; of flows that at the j-th time. A member that ends early has NaN in
-    its later rows. A member whose start has no principal root has only NaN. `outcome` tells them apart.
+    its later rows. A member that cannot start has only NaN. `outcome` tells them apart.
 
     Attributes:
         members: What moves, and the parameters.
@@ -41,6 +41,7 @@ class Ensemble:
         first_pose: Compact poses of the starts of bodies, canonical frame, places in coordinates, shape (M, ...).
         events: What `events=` of the run found, a `MemberEvents`: by name or position how many crossings each member
             has, and the states at the first and the last. None without `events=`.
+        branch: The branch rule of the steps, as in `Orbit`.
 
     Example:
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
@@ -65,6 +66,7 @@ class Ensemble:
     first_momentum: Float[np.ndarray, "M k"]
     first_pose: Float[np.ndarray, "M ..."]
     events: MemberEvents | None = None
+    branch: str = "principal"
 
     def __len__(self) -> int:
         return len(self.members)
@@ -91,7 +93,7 @@ class Ensemble:
     def _states(self, motion: Any, rows: Any, **about: Any) -> Any:
         """Return some rows of the states as an orbit."""
         kept = {"time": self.time[rows]} | {name: column[rows] for name, column in self.columns.items()}
-        return motion.orbit(branch="principal", **{name: kept.get(name) for name in motion.columns}, **about)
+        return motion.orbit(branch=self.branch, **{name: kept.get(name) for name in motion.columns}, **about)
 
     @property
     def _good(self) -> Bool[np.ndarray, "M K"]:
@@ -154,22 +156,22 @@ class Ensemble:
 
         Spatial ones for a right-invariant constraint.
         """
-        if not have_kernel(self.members):
+        if not in_lanes(self.members):
             return self._decoded("restricted_momentum")
-        return applied(np.linalg.inv(scalar_members(self.members).frame_map)[:, None], self.reduced_momentum)
+        return applied(np.linalg.inv(ScalarMembers(self.members).frame_map)[:, None], self.reduced_momentum)
 
     @property
     def energy(self) -> Float[np.ndarray, "M K"]:
         """Energies; of bodies reduced constrained ones."""
-        if not have_kernel(self.members):
+        if not in_lanes(self.members):
             return self._decoded("energy")
-        return energies(scalar_members(self.members), self.reduced_momentum)
+        return energies(ScalarMembers(self.members), self.reduced_momentum)
 
     @property
     def first_energy(self) -> Float[np.ndarray, "M"]:
         """Reduced constrained energies of the starts of bodies."""
-        if have_kernel(self.members):
-            return energies(scalar_members(self.members), self.first_momentum)
+        if in_lanes(self.members):
+            return energies(ScalarMembers(self.members), self.first_momentum)
         if "reduced_momentum" not in self.columns:
             got, remedy = type(self.members.discrete.system).__name__, "Save every state, and take energy[:, 0]."
             raise error("Ensemble.first_energy", "be asked of bodies on a group", got, remedy)
@@ -213,10 +215,10 @@ class Ensemble:
     @property
     def pose(self) -> Float[np.ndarray, "M K size"] | None:
         """Compact poses of the group in the user's body frame; None if not reconstructed."""
-        if self.canonical_pose is None or not have_kernel(self.members) or self._is_shared("pose"):
+        if self.canonical_pose is None or not in_lanes(self.members) or self._is_shared("pose"):
             return None if self.canonical_pose is None else self._decoded("pose")
         group = self.members.discrete.system.group
-        frames = group.matrix_from_pose(scalar_members(self.members).pose)[:, None]
+        frames = group.matrix_from_pose(ScalarMembers(self.members).pose)[:, None]
         if np.array_equal(frames, np.broadcast_to(group.identity, frames.shape)):
             return self.canonical_pose
         sound = np.asarray(np.isfinite(self.canonical_pose).all(-1))
@@ -265,9 +267,9 @@ class Ensemble:
             return False
         composed = name == "displacement" and route is not None and route.order > 2
         same = set() if name == "momentum" or composed else {"time_step"}
-        family = family_of(motion.system)
-        if name in _OF_FRAME and not composed and family is not None:
-            same |= family.keeps_frame
+        varied = self.members.of_system
+        if varied and name in _OF_FRAME and not composed and self.members.keep_frame:
+            same |= varied
         return self.members.parameters.keys() <= same
 
 

@@ -10,7 +10,7 @@ from nonholo.base.checks import array, error, shape_of
 from nonholo.base.numerics import applied, factors_of, solved
 from nonholo.base.types import Bool, Float
 from nonholo.orbit import First
-from nonholo.simulation.members._families import ScalarMembers, in_lanes, scalar_members
+from nonholo.simulation.members._families import ScalarMembers
 from nonholo.simulation.members._members import Members, refused
 from nonholo.systems import Start, in_group
 
@@ -81,9 +81,12 @@ def _common(lengths: dict[str, int]) -> int:
     return next(iter(lengths.values()))
 
 
-def firsts(members: Members, start: Start, *, posed: bool) -> Firsts:
-    """Return the checked starts of all members, with poses or without, from one that has rows."""
-    if start.name == "displacement" or not in_lanes(members):
+def firsts(members: Members, start: Start, *, posed: bool, at_once: bool) -> Firsts:
+    """Return the checked starts of all members, with poses or without, from one that has rows.
+
+    Those that are computed side by side start at once.
+    """
+    if start.name == "displacement" or not at_once:
         return _one_by_one(members, start, posed=posed)
     momenta = np.empty((len(members), 2))
     for begin in range(0, len(members), _CHUNK):
@@ -114,7 +117,7 @@ def _of_one(members: Members, start: Start, member: int, *, posed: bool) -> Firs
 
 def _poses(members: Members, start: Start) -> Float[np.ndarray, "M 4"]:
     """Return the first poses of members in closed form, in the canonical frame."""
-    system, pose = members.discrete.system, scalar_members(members).pose
+    system, pose = members.discrete.system, ScalarMembers(members).pose
     if start.configuration is None:
         return np.broadcast_to(pose, (len(members), pose.shape[1]))
     for member, g in enumerate(start.configuration):
@@ -128,18 +131,18 @@ def _poses(members: Members, start: Start) -> Float[np.ndarray, "M 4"]:
 
 def _momenta_of_part(members: Members, name: str, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return canonical momenta, and which members may not start: the constraint is broken, the energy not finite."""
-    system, scalar = members.discrete.system, scalar_members(members)
-    S, bad = system.constraint_subspace, np.zeros(len(members), dtype=bool)
+    scalar, bad = ScalarMembers(members), np.zeros(len(members), dtype=bool)
+    system = scalar.route.system
+    S = system.constraint_subspace
     with np.errstate(over="ignore", invalid="ignore"):
+        if name == "body_velocity":
+            bad = np.abs(rows @ system.annihilator.T).max(axis=1) > _TOLERANCE * np.abs(rows).max(axis=1)
+            rows = applied(np.linalg.pinv(S).T, rows)
         if name == "momentum":
-            momenta = applied(scalar.frame_map, rows if rows.shape[1] == system.rank else applied(S, rows))
-        elif name == "restricted_velocity" and scalar.route is not None:  # one body, whose own formula it is
-            momenta = system.to_canonical(system.restricted_momentum(rows))
+            momenta = rows if rows.shape[1] == system.rank else applied(S, rows)
         else:
-            if name == "body_velocity":
-                bad = np.abs(rows @ system.annihilator.T).max(axis=1) > _TOLERANCE * np.abs(rows).max(axis=1)
-                rows = applied(np.linalg.pinv(S).T, rows)
-            momenta = applied(scalar.inertia @ np.linalg.inv(scalar.frame_map.swapaxes(1, 2)), rows)
+            momenta = system.restricted_momentum(rows)
+        momenta = system.to_canonical(momenta)
         return momenta, bad | ~np.isfinite(energies(scalar, momenta))
 
 

@@ -10,7 +10,7 @@ from nonholo.base.checks import array, error, is_traced, positive_definite, symm
 from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.systems._base import AbstractLLSystem
+from nonholo.systems._base import AbstractLLSystem, unchecked
 from nonholo.systems._body import lines_of, mass_tensor_of_body, tensors_shown
 from nonholo.systems._mass import checked_group, form_mass_tensor, group_mass_tensor
 from nonholo.systems._normal_form import NormalForm, recognized_form
@@ -79,6 +79,7 @@ class LLSystem(AbstractLLSystem):
     annihilator: Array = None
     leaves: ClassVar[tuple[str, ...]] = ("mass_tensor", "given_inertia")
     structure: ClassVar[tuple[str, ...]] = ("group", "constraint_subspace", "annihilator")
+    stacked = unchecked
 
     def __init__(
         self,

@@ -9,7 +9,7 @@ from nonholo.base.checks import positive_definite
 from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
-from nonholo.systems._base import AbstractLLSystem
+from nonholo.systems._base import AbstractLLSystem, unchecked
 from nonholo.systems._body import lines_of, mass_tensor_of_body, tensors_shown
 from nonholo.systems._mass import body_tensor, checked_group, group_mass_tensor
 
@@ -44,6 +44,7 @@ class RigidBody(AbstractLLSystem):
     group: Array = None
     leaves: ClassVar[tuple[str, ...]] = ("mass_tensor",)
     structure: ClassVar[tuple[str, ...]] = ("group",)
+    stacked = unchecked
 
     def __post_init__(self) -> None:
         where = "RigidBody(mass_tensor=...)"

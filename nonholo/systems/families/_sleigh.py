@@ -8,7 +8,7 @@ import numpy as np
 
 from nonholo.base.checks import is_traced, number, scale
 from nonholo.base.kept import kept
-from nonholo.base.types import Array, Float
+from nonholo.base.types import Array, Bool, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, unchecked
 from nonholo.systems._normal_form import NormalForm
@@ -46,6 +46,7 @@ class ChaplyginSleigh(AbstractLLSystem):
     group: ClassVar[AbstractMatrixGroup] = SE(2)
     leaves: ClassVar[tuple[str, ...]] = ("mass", "inertia", "a", "b")
     structure: ClassVar[tuple[str, ...]] = ()
+    stacked = unchecked
     has_blade: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
@@ -67,6 +68,11 @@ class ChaplyginSleigh(AbstractLLSystem):
         half = self.inertia / 2
         rows = ((half + m * a * a, m * a * b, m * a), (m * a * b, half + m * b * b, m * b), (m * a, m * b, m))
         return xp.stack([xp.stack(row, axis=-1) for row in rows], axis=-2)
+
+    @property
+    def is_clear(self) -> Bool[np.ndarray, "..."]:
+        """Whether mass and moment are positive."""
+        return np.asarray((self.mass > 0) & (self.inertia > 0))
 
     @kept
     def constraint_subspace(self) -> Float[np.ndarray, "2 3"]:
@@ -96,5 +102,5 @@ class ChaplyginSleigh(AbstractLLSystem):
     def normal_form(self) -> NormalForm:
         r"""J, m and a; the plane $e_1\wedge e_2$ turns against $\omega$."""
         xp = (self.inertia * self.mass * self.a).__array_namespace__()
-        inertia = xp.reshape(xp.asarray(self.inertia), (1, 1))
-        return NormalForm(inertia, 0.0, np.zeros(1), self.mass, self.a, np.zeros(1), frame_map=np.diag([-1.0, 1.0]))
+        inertia, none = xp.asarray(self.inertia)[..., None, None], np.zeros((*np.shape(self.inertia), 1))
+        return NormalForm(inertia, 0.0, none, self.mass, self.a, none, frame_map=np.diag([-1.0, 1.0]))

@@ -59,6 +59,7 @@ class SuslovTop(AbstractLLSystem):
     axis: Array = dataclasses.field(default=None, kw_only=True)
     leaves: ClassVar[tuple[str, ...]] = ("mass_tensor",)
     structure: ClassVar[tuple[str, ...]] = ("axis",)
+    stacked = unchecked
 
     def __post_init__(self) -> None:
         where = "SuslovTop(mass_tensor=...)"
@@ -122,7 +123,7 @@ class SuslovTop(AbstractLLSystem):
         return super().inertia_operator if self.axis is None else inertia_tensor(self.mass_tensor)
 
     @kept
-    def inertia_along(self) -> Float[Array, "k k"]:
+    def inertia_along(self) -> Float[Array, "... k k"]:
         r"""The matrix $B = A + d\,\mathrm{Id}$; for n = 3 in the rows of the constraint subspace."""
         return self.normal_form.stiffness
 
@@ -152,7 +153,7 @@ class SuslovTop(AbstractLLSystem):
         return unchecked(self, mass_tensor=halves / 2, axis=np.array(_E3))
 
     @property
-    def coupling(self) -> Float[Array, "k"]:
+    def coupling(self) -> Float[Array, "... k"]:
         """The vector c of the mass tensor in the canonical frame; zero for a balanced top."""
         return self.normal_form.coupling
 
