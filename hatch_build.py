@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, cast
 
@@ -32,20 +33,20 @@ class KernelsHook(BuildHookInterface):  # pyright: ignore[reportMissingTypeArgum
         if self.target_name != "wheel":
             return
         library = _library()
-        folder, cache, there = _ROOT / "nonholo" / "kernels", library.cache_folder(), library.place()
+        folder, there = _ROOT / "nonholo" / "kernels", library.place()
         if there is None:
             command = [sys.executable, "-m", "nonholo.base.compiled.build", str(folder)]
-            environment = {**os.environ, "PYTHONPATH": str(_ROOT)}
+            environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(_ROOT), *sys.path])}
             subprocess.run(command, env=environment, check=True, cwd=_ROOT)  # noqa: S603
         elif there.parent != folder:
-            _put(there, folder)
-        for file in folder.glob("kernels-*.so"):
-            if file.name != library.name_of_library():
+            _put(there.parent.glob(f"{library.prefix()}*"), folder)
+        for file in folder.glob("kernels-*"):
+            if not file.name.startswith(library.prefix()):
                 file.unlink()
         with contextlib.suppress(OSError):  # a home that cannot be written
-            _put(folder / library.name_of_library(), cache)
+            _put(folder.glob("kernels-*"), library.cache_folder())
         if version != "editable":
-            build_data["artifacts"].append("nonholo/kernels/kernels-*.so")
+            build_data["artifacts"].append("nonholo/kernels/kernels-*")
             build_data.update(pure_python=False, infer_tag=False, tag=f"py3-none-{_platform()}")
 
 
@@ -57,12 +58,13 @@ def _library() -> Any:
     return module
 
 
-def _put(file: Path, folder: Path) -> None:
-    """Copy a library into a folder in one go: runs from the old one continue."""
+def _put(files: Iterable[Path], folder: Path) -> None:
+    """Copy files into a folder, each in one go: what runs from an old one continues."""
     folder.mkdir(parents=True, exist_ok=True)
-    part = folder / f".{os.getpid()}.part"
-    shutil.copy(file, part)
-    part.replace(folder / file.name)
+    for file in files:
+        part = folder / f".{os.getpid()}.part"
+        shutil.copy(file, part)
+        part.replace(folder / file.name)
 
 
 def _platform() -> str:

@@ -21,7 +21,7 @@ _PYTEST = ("-m", "pytest", "-q", "-x", "--tb=short", "-n", "0")
 _COMPILED = (  # numba's cache does not notice callees in other files, nor the options of callers
     "nonholo/kernels/",
     "nonholo/base/numerics/",
-    "nonholo/explorer/_kernel.py",
+    "nonholo/base/compiled/",
 )
 _LIMIT = 600  # seconds
 _FIRST = re.compile(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", re.MULTILINE)

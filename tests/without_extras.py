@@ -30,7 +30,9 @@ ABSENT = {
     "jaxlib",
     "latex2mathml",
     "lineax",
+    "llvmlite",
     "mpmath",
+    "numba",
     "optimistix",
 }
 """The libraries of the extras that users run, and what those bring."""

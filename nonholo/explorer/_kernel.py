@@ -1,43 +1,13 @@
-r"""The compiled loops of `nonholo.kernels` as WebAssembly: the same functions for another processor.
+"""The compiled loops of `nonholo.kernels` for the page, as WebAssembly: compiled ahead, or now."""
 
-numba types and lowers them as it does for this one; llvmlite, which numba brings, turns the intermediate code into an
-object for wasm32, and `module_of` makes that a module that can be instantiated. Arithmetic is strict on both sides,
-and a module may import no function, so its numbers are those of Python to the last bit. Arrays are made in the first
-48 KiB of the memory (`_runtime.ll`).
-"""
+from nonholo.base.checks import needs
+from nonholo.base.compiled import library
+from nonholo.kernels import FLAT_RUNS
 
-import hashlib
-import re
-from pathlib import Path
-from typing import Any
-
-import llvmlite.binding as llvm
-import numba
-from numba import types
-
-from nonholo.base.compiled.by_numba import kept_bytes
-from nonholo.explorer._object import module_of
-from nonholo.kernels import SleighBody, SuslovBody, flat_arrowhead_run, flat_forced_run, flat_run, flat_secular_run
-
-KINDS = {
-    "top": flat_run(SuslovBody),
-    "sleigh": flat_run(SleighBody),
-    "forced_top": flat_forced_run(SuslovBody),
-    "forced_sleigh": flat_forced_run(SleighBody),
-    "top4": flat_secular_run(3),
-    "flow4": flat_arrowhead_run(3, 1e-14 / 64),
-}
+KINDS = tuple(FLAT_RUNS)
 """The runs of the bodies that have a kernel for the page; of a continuous motion where there is no closed form."""
 
 _WIDE = {"top4", "flow4"}
-_TRIPLE = "wasm32-unknown-unknown"
-_RUNTIME = Path(__file__).with_name("_runtime.ll")
-_OPTIONS: Any = {"nopython": True, "error_model": "numpy"}
-_ADDRESS = types.CPointer(types.float64)
-_SIGNATURE = types.int64(_ADDRESS, _ADDRESS, types.int64, _ADDRESS, _ADDRESS, _ADDRESS)
-_OF_THIS_MACHINE = r'(?m)"(?:target-cpu|target-features|probe-stack)"="[^"]*"|^target (?:triple|datalayout) = .*$'
-_COUNTS = r"(?ms)^define [^\n]*(@NRT_(?:in|de)cref)\(.*?^}$"  # of arrays, in instructions of this machine
-_RAISES = r"(?m)^ *store ptr @\.const\.picklebuf\..*$"
 
 
 def kinds_beside(kind: str) -> list[str]:
@@ -46,37 +16,21 @@ def kinds_beside(kind: str) -> list[str]:
 
 
 def kernel(body: str) -> bytes:
-    r"""Return the WebAssembly module that runs a body, one of `KINDS`: compiled once, then kept on disk.
+    r"""Return the WebAssembly module that runs a body, one of `KINDS`.
 
-    Its only export is `run`, with the arguments of `nonholo.kernels.flat_run`, `flat_forced_run` or `flat_secular_run`;
-    it imports a memory and the top of its stack.
+    Its only export is `run`, with the arguments that the functions of `nonholo.kernels.FLAT_RUNS` have; it imports a
+    memory and the top of its stack.
+
+    Raises:
+        MissingExtraError: It was not compiled ahead, and the extra `compile` is not installed.
 
     Example:
         >>> kernel("sleigh")[:4]
         b'\x00asm'
     """
-    own = hashlib.sha256()
-    for file in ("_kernel.py", "_object.py", "_runtime.ll"):
-        own.update(Path(__file__).with_name(file).read_bytes())
-    function = KINDS[body]
-    return kept_bytes(function, f"wasm32 {body} {own.hexdigest()}", lambda: module_of(_object(function)))
-
-
-def _object(function: Any) -> bytes:
-    """Return a relocatable object with one global function."""
-    made = numba.cfunc(_SIGNATURE, **_OPTIONS)(function)
-    text = re.sub(_OF_THIS_MACHINE, "", made.inspect_llvm())
-    text = re.sub(_COUNTS, r"declare void \1(ptr)", re.sub(_RAISES, "  call void @raise()", text))
-    llvm.initialize_all_targets()
-    llvm.initialize_all_asmprinters()
-    machine = llvm.Target.from_triple(_TRIPLE).create_target_machine(cpu="generic", opt=3, reloc="static")
-    code = llvm.parse_assembly(f"{text}\ndeclare void @raise() noreturn\n")
-    code.link_in(llvm.parse_assembly(_RUNTIME.read_text()))
-    # places in structures are numbers already, and those of 64 bits: addresses stand where they would there
-    code.triple, code.data_layout = _TRIPLE, str(machine.target_data).replace("p:32:32", "p:32:64")
-    for item in (*code.functions, *code.global_variables):
-        if not item.is_declaration and item.name != made.native_name:
-            item.linkage = "internal"
-    passes = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=2))
-    passes.getModulePassManager().run(code, passes)
-    return machine.emit_object(code)
+    file = library.place(library.name_of_module(body))
+    if file is not None:
+        return file.read_bytes()
+    with needs("compile", "nonholo.explore"):
+        from nonholo.base.compiled import wasm
+    return wasm.module(body)

@@ -8,12 +8,15 @@ import numpy as np
 from nonholo.kernels import _composition, _driver
 from nonholo.kernels._composition import ComposedBody
 from nonholo.kernels._interface import Body
-from nonholo.kernels.forced import ForcedBody
+from nonholo.kernels._sleigh import SleighBody
+from nonholo.kernels._suslov import SuslovBody
+from nonholo.kernels.forced import ForcedBody, flat_forced_run
 from nonholo.kernels.forced import run as forced_run
 from nonholo.kernels.general import GeneralBody
 from nonholo.kernels.general import run as general_run
-from nonholo.kernels.secular import SecularBody
+from nonholo.kernels.secular import SecularBody, flat_secular_run
 from nonholo.kernels.secular import run as secular_run
+from nonholo.kernels.taylor import flat_arrowhead_run
 
 PlainBody = Body | GeneralBody | SecularBody
 AnyBody = PlainBody | ComposedBody | ForcedBody
@@ -110,3 +113,13 @@ _RUNS: dict[type, Runs] = {
     ComposedBody: Runs(lambda body: sizes(body.body), _composition.start, _composed_chart, _composed_advance, None),
     ForcedBody: Runs(lambda body: sizes(body.body), _forced_start, _forced_chart, forced_run.advance, None),
 }
+
+FLAT_RUNS: dict[str, Callable[..., int]] = {
+    "top": _driver.flat_run(SuslovBody),
+    "sleigh": _driver.flat_run(SleighBody),
+    "forced_top": flat_forced_run(SuslovBody),
+    "forced_sleigh": flat_forced_run(SleighBody),
+    "top4": flat_secular_run(3),
+    "flow4": flat_arrowhead_run(3, 1e-14 / 64),
+}
+"""Runs on bare memory, for hosts without Python: what a page runs."""

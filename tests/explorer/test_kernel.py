@@ -6,9 +6,9 @@ from explorer.webassembly import Module
 
 import nonholo as nh
 from nonholo import kernels
+from nonholo.base.compiled.webassembly import module_of
 from nonholo.explorer import kernel
 from nonholo.explorer._kernel import KINDS
-from nonholo.explorer._object import module_of
 
 wasmtime = pytest.importorskip("wasmtime")
 _STEPS = 1000

@@ -8,6 +8,7 @@ import functools
 import hashlib
 import importlib
 import itertools
+import logging
 import operator
 import os
 import struct
@@ -105,7 +106,8 @@ class Kernel:
             return self.py_func
         try:
             from nonholo.base.compiled import by_numba
-        except ImportError:
+        except ModuleNotFoundError:
+            _say_that_it_is_slow()
             return self.py_func
         return by_numba.dispatcher_of(self.py_func, self.options)
 
@@ -117,6 +119,14 @@ class Kernel:
 
     def __reduce__(self) -> str:
         return self.__qualname__
+
+
+@functools.cache
+def _say_that_it_is_slow() -> None:
+    remedy = "Install the extra `compile`: pip install 'nonholo[compile]'."
+    logging.getLogger("nonholo").warning(
+        "Kernels that are not compiled ahead run as Python, about a hundred times slower. %s", remedy
+    )
 
 
 def spread(values: tuple[Any, ...], words: list[Any]) -> Any:

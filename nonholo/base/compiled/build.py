@@ -32,7 +32,8 @@ from numba.extending import intrinsic
 from numba.np.arrayobj import populate_array
 
 from nonholo.base import compiled
-from nonholo.base.compiled.library import name_of_library
+from nonholo.base.compiled import wasm
+from nonholo.base.compiled.library import name_of_library, name_of_module
 
 _KERNELS = Path(__file__).parents[2] / "kernels"
 _WORD, _INT, _ADDRESS = ir.IntType(64), ir.IntType(32), types.CPointer(types.int64)
@@ -278,6 +279,10 @@ def build(target: Path, triple: str = "") -> Path:
     triple = triple or llvm.get_process_triple()
     context = multiprocessing.get_context("spawn")
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ProcessPoolExecutor(mp_context=context) as pool:
+        target.mkdir(parents=True, exist_ok=True)
+        runs = importlib.import_module("nonholo.kernels").FLAT_RUNS
+        for run, content in zip(runs, pool.map(wasm.module, runs), strict=True):
+            (target / name_of_module(run)).write_bytes(content)
         files = [f"{folder}/release.o"]
         Path(files[0]).write_bytes(_object("", triple, "generic", "nonholo_release"))
         for done, made in enumerate(
@@ -286,7 +291,6 @@ def build(target: Path, triple: str = "") -> Path:
             files += made
             if sys.stderr.isatty():
                 print(f"\rkernels compiled: {done + 1} of {len(lines())}", end="", file=sys.stderr)  # noqa: T201
-        target.mkdir(parents=True, exist_ok=True)
         file, part = target / name_of_library(), target / f".{os.getpid()}.part"
         subprocess.run([*linker(), "-shared", "-o", str(part), *files], check=True)  # noqa: S603
         part.replace(file)  # in one go: runs from an old one continue

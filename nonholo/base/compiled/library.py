@@ -2,7 +2,6 @@
 
 import functools
 import hashlib
-import itertools
 import os
 import platform
 from pathlib import Path
@@ -11,9 +10,9 @@ _PACKAGE = Path(__file__).parents[2]
 _FOLDERS = ("kernels", "base/numerics", "base/compiled")
 
 
-def place() -> Path | None:
-    """Return the file of this machine's library: beside the kernels, or in the user's cache; None if there is none."""
-    files = (folder / name_of_library() for folder in (_PACKAGE / "kernels", cache_folder()))
+def place(name: str = "") -> Path | None:
+    """Return the file of this machine's library, or another one, beside the kernels or in the user's cache, if any."""
+    files = (folder / (name or name_of_library()) for folder in (_PACKAGE / "kernels", cache_folder()))
     return next((file for file in files if file.is_file()), None)
 
 
@@ -24,15 +23,25 @@ def cache_folder() -> Path:
 
 def name_of_library() -> str:
     """Return the name of the file with the compiled kernels of this text, for this machine."""
-    machine = f"{platform.system()}-{platform.machine()}".lower()
-    return f"kernels-{digest_of_kernels().hex()[:16]}-{machine}.so"
+    return f"{prefix()}{platform.system()}-{platform.machine()}.so".lower()
+
+
+def name_of_module(run: str) -> str:
+    """Return the name of the file with a run as WebAssembly."""
+    return f"{prefix()}{run}.wasm"
+
+
+def prefix() -> str:
+    """Return how all files of this text begin."""
+    return f"kernels-{digest_of_kernels().hex()[:16]}-"
 
 
 @functools.cache
 def digest_of_kernels() -> bytes:
     """Return a digest of the text of all kernels."""
     digest = hashlib.sha256()
-    files = (sorted((_PACKAGE / folder).rglob("*.py")) for folder in _FOLDERS)
-    for file in itertools.chain(*files, [_PACKAGE / "kernels" / "ahead.txt", Path(__file__).with_name("runtime.ll")]):
-        digest.update(file.read_bytes())
+    for folder in _FOLDERS:
+        for file in sorted((_PACKAGE / folder).rglob("*")):
+            if file.suffix in (".py", ".ll", ".txt"):
+                digest.update(file.read_bytes())
     return digest.digest()
