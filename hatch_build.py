@@ -13,7 +13,7 @@ from typing import Any, cast
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 _ROOT = Path(__file__).parent
-_NEEDS = ["jaxtyping>=0.3", "lazy-loader>=0.4", "numba>=0.62", "numpy>=2.1"]
+_NEEDS = ["jaxtyping>=0.3", "lazy-loader>=0.4", "numba>=0.62", "numpy>=2.1", "rich>=14"]
 
 
 class KernelsHook(BuildHookInterface):  # pyright: ignore[reportMissingTypeArgument]
@@ -36,7 +36,7 @@ class KernelsHook(BuildHookInterface):  # pyright: ignore[reportMissingTypeArgum
         folder, there = _ROOT / "nonholo" / "kernels", library.place()
         if there is None:
             command = [sys.executable, "-m", "nonholo.base.compiled.build", str(folder)]
-            environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(_ROOT), *sys.path])}
+            environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(_ROOT), *_places()])}
             subprocess.run(command, env=environment, check=True, cwd=_ROOT)  # noqa: S603
         elif there.parent != folder:
             _put(there.parent.glob(f"{library.prefix()}*"), folder)
@@ -56,6 +56,11 @@ def _library() -> Any:
     module = importlib.util.module_from_spec(cast(Any, spec))
     cast(Any, spec).loader.exec_module(module)
     return module
+
+
+def _places() -> list[str]:
+    """Return where the build finds packages, without what pip runs at the start of its own process."""
+    return [place for place in sys.path if place and not (Path(place) / "sitecustomize.py").exists()]
 
 
 def _put(files: Iterable[Path], folder: Path) -> None:

@@ -137,7 +137,6 @@ The paper's own formulas:
 # A new name is a line of its group above; `python docs/make_api_pages.py` writes what it is for, here and on the pages.
 
 import importlib
-from importlib.metadata import version
 from typing import Any
 
 import lazy_loader
@@ -149,10 +148,12 @@ _WITH_JAX |= {"allow_float32", "examples", "rollout", "step"}
 _public, _, _names = lazy_loader.attach_stub(__name__, __file__)
 _NAMES = {*_names, *_ROOMS} - {*_ROOMS.values()}
 
-__version__ = version("nonholo")
-
 
 def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return globals().setdefault(name, version("nonholo"))
     if name not in _NAMES:
         raise AttributeError(f"module 'nonholo' has no attribute {name!r}")
     return globals().setdefault(name, _with_jax(name) if name in _WITH_JAX else _loaded(name))

@@ -1,5 +1,6 @@
 """The compiled runs, whatever the body: what each kind of body has, in one table."""
 
+import functools
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -114,12 +115,12 @@ _RUNS: dict[type, Runs] = {
     ForcedBody: Runs(lambda body: sizes(body.body), _forced_start, _forced_chart, forced_run.advance, None),
 }
 
-FLAT_RUNS: dict[str, Callable[..., int]] = {
-    "top": _driver.flat_run(SuslovBody),
-    "sleigh": _driver.flat_run(SleighBody),
-    "forced_top": flat_forced_run(SuslovBody),
-    "forced_sleigh": flat_forced_run(SleighBody),
-    "top4": flat_secular_run(3),
-    "flow4": flat_arrowhead_run(3, 1e-14 / 64),
+FLAT_RUNS: dict[str, Callable[[], Callable[..., int]]] = {
+    "top": functools.partial(_driver.flat_run, SuslovBody),
+    "sleigh": functools.partial(_driver.flat_run, SleighBody),
+    "forced_top": functools.partial(flat_forced_run, SuslovBody),
+    "forced_sleigh": functools.partial(flat_forced_run, SleighBody),
+    "top4": functools.partial(flat_secular_run, 3),
+    "flow4": functools.partial(flat_arrowhead_run, 3, 1e-14 / 64),
 }
-"""Runs on bare memory, for hosts without Python: what a page runs."""
+"""What makes runs on bare memory, for hosts without Python: those of a page."""

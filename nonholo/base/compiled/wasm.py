@@ -30,7 +30,7 @@ _RAISES = r"(?m)^ *store ptr @\.const\.picklebuf\..*$"
 
 def module(run: str) -> bytes:
     """Return the module of one of `nonholo.kernels.FLAT_RUNS`, compiled once and then kept on disk."""
-    function = importlib.import_module("nonholo.kernels").FLAT_RUNS[run]
+    function = importlib.import_module("nonholo.kernels").FLAT_RUNS[run]()
     return kept_bytes(function, f"wasm32 {run}", lambda: module_of(_object(function)))
 
 
