@@ -1,6 +1,5 @@
 """The compiled runs, whatever the body: what each kind of body has, in one table."""
 
-import functools
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -9,15 +8,12 @@ import numpy as np
 from nonholo.kernels import _composition, _driver
 from nonholo.kernels._composition import ComposedBody
 from nonholo.kernels._interface import Body
-from nonholo.kernels._sleigh import SleighBody
-from nonholo.kernels._suslov import SuslovBody
-from nonholo.kernels.forced import ForcedBody, flat_forced_run
+from nonholo.kernels.forced import ForcedBody
 from nonholo.kernels.forced import run as forced_run
 from nonholo.kernels.general import GeneralBody
 from nonholo.kernels.general import run as general_run
-from nonholo.kernels.secular import SecularBody, flat_secular_run
+from nonholo.kernels.secular import SecularBody
 from nonholo.kernels.secular import run as secular_run
-from nonholo.kernels.taylor import flat_arrowhead_run
 
 PlainBody = Body | GeneralBody | SecularBody
 AnyBody = PlainBody | ComposedBody | ForcedBody
@@ -114,13 +110,3 @@ _RUNS: dict[type, Runs] = {
     ComposedBody: Runs(lambda body: sizes(body.body), _composition.start, _composed_chart, _composed_advance, None),
     ForcedBody: Runs(lambda body: sizes(body.body), _forced_start, _forced_chart, forced_run.advance, None),
 }
-
-FLAT_RUNS: dict[str, Callable[[], Callable[..., int]]] = {
-    "top": functools.partial(_driver.flat_run, SuslovBody),
-    "sleigh": functools.partial(_driver.flat_run, SleighBody),
-    "forced_top": functools.partial(flat_forced_run, SuslovBody),
-    "forced_sleigh": functools.partial(flat_forced_run, SleighBody),
-    "top4": functools.partial(flat_secular_run, 3),
-    "flow4": functools.partial(flat_arrowhead_run, 3, 1e-14 / 64),
-}
-"""What makes runs on bare memory, for hosts without Python: those of a page."""
