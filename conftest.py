@@ -23,7 +23,7 @@ collect_ignore_glob = ["tests/golden/*"]  # programs that write references, not 
 
 # drawn examples have no deadline: the first one compiles
 hypothesis.settings.register_profile(DEFAULT, deadline=None, max_examples=25)
-hypothesis.settings.register_profile("problems", deadline=None, max_examples=200)
+hypothesis.settings.register_profile("problems", deadline=None, max_examples=100)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -69,7 +69,7 @@ one process. What is long by nature belongs to a profile. A test is moved there 
 `@pytest.mark.profile(NAME, keep=PATTERNS)`; cases whose id matches a pattern stay (with `cases=`, go).
 `--profile routes,faults` runs two of them, `--profile all` every marked test; `.ci/run` the default run and the
 profiles whose rooms a change touches, `.ci/run --all` all but the soaks `long` and `fuzz`. Tests that draw their
-cases run in "problems" too, with eight times the examples.
+cases run in "problems" too, with four times the examples.
 
 {profiles}
 

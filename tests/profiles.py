@@ -48,7 +48,7 @@ PROFILES = {
         (*_RUNS, "cli"),
     ),
     "problems": Profile(
-        "many random problems, long orbits, and eight times the examples of tests that draw them",
+        "many random problems, long orbits, and four times the examples of tests that draw them",
         (*_MECHANICS, "lagrange_dalembert", "simulation", "analysis", "literature"),
     ),
     "paper": Profile(

@@ -53,6 +53,7 @@ from .blocks._groups import create_array as create_array
 from .blocks._groups import edit_attributes as edit_attributes
 from .blocks._groups import new_group as new_group
 from .blocks._groups import write_whole as write_whole
+from .datasets._dataset import Variable as Variable
 from .datasets._dataset import is_known as is_known
 from .datasets._dataset import labels_of as labels_of
 from .datasets._dataset import orbit_to_dataset as orbit_to_dataset

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import xarray
 import zarr
 
 from nonholo.base.checks import error
@@ -35,7 +34,7 @@ from nonholo.io.blocks import (
     new_blocks,
     said_of,
 )
-from nonholo.io.datasets import HEADED, stored_variables
+from nonholo.io.datasets import HEADED, Variable, stored_variables
 from nonholo.orbit import Plan
 
 
@@ -240,5 +239,5 @@ _NUMBERS, _MOST = 1 << 16, 1 << 10  # at most in a chunk: numbers, rows
 
 def create_log(group: zarr.Group, rows: np.ndarray) -> None:
     """Make the array, without rows yet, for crossings like these."""
-    log = xarray.Variable(("crossing", "entry"), rows)
+    log = Variable(("crossing", "entry"), rows, {})
     create_array(group, EVENTS, log, 0, max(1, min(_MOST, _NUMBERS // rows.shape[1])))

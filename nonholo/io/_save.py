@@ -8,8 +8,6 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import xarray
-
 from nonholo.base.checks import error, flags, instance
 from nonholo.base.checks import path as checked_path
 from nonholo.io._attributes import FORMAT, attributes, attributes_of_text
@@ -18,7 +16,7 @@ from nonholo.io._load import format_of
 from nonholo.io._lock import owner_of, remove_remains
 from nonholo.io._metadata import check_assertions
 from nonholo.io.blocks import new_blocks
-from nonholo.io.datasets import steps_apart, stored_variables
+from nonholo.io.datasets import Variable, steps_apart, stored_variables
 from nonholo.orbit import AbstractOrbit
 
 _ROWS = 100_000  # states in one chunk
@@ -68,8 +66,8 @@ def save_orbit(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fals
         put_in_place(part, target, overwrite=overwrite)
 
 
-def _write(variables: dict[str, xarray.Variable], metadata: dict[str, Any], path: Path) -> None:
-    rows = len(variables["time"])
+def _write(variables: dict[str, Variable], metadata: dict[str, Any], path: Path) -> None:
+    rows = len(variables["time"].values)
     store = new_blocks(path, metadata, variables, rows, max(1, min(_ROWS, rows)))
     for block in range(store.layout.blocks):
         (part,) = store.layout.piece(block).place

@@ -58,7 +58,7 @@ def test_bits_of_a_fresh_cache(names: tuple[str, ...], tmp_path: Path) -> None:
     assert loaded == compiled == library
 
 
-@pytest.mark.profile("routes", instead="test_bits_of_a_fresh_cache")
+@pytest.mark.profile("long", instead="test_bits_of_a_fresh_cache")
 def test_bits_of_the_library() -> None:
     """All live motions have the bits of numba in the library."""
     library, compiled = (_printed("bits", NONHOLO_KERNELS=way) for way in ("library", "numba"))

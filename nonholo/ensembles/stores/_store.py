@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
-import xarray
 import zarr
 from pydantic import Field, TypeAdapter, ValidationError
 from zarr.codecs import BloscCodec, Crc32cCodec
@@ -255,7 +254,7 @@ def attributes_of(path: str | Path) -> dict[str, Any]:
 
 def _create_arrays(group: zarr.Group, design: Design, layout: io.Layout, outputs: dict[str, Output]) -> None:
     for name, values in design.axes.items():
-        variable = xarray.Variable(axis_dimensions(name, values), values, _AXIS)
+        variable = io.Variable(axis_dimensions(name, values), values, dict(_AXIS))
         io.create_array(group, name, variable, len(values), len(values))[:] = values
     for name, output in outputs.items():
         group.create_array(

@@ -20,7 +20,6 @@ from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
-import xarray
 import zarr
 from pydantic import NonNegativeInt, TypeAdapter
 from zarr.core.sync import sync
@@ -37,10 +36,11 @@ from nonholo.io.blocks._groups import (
     remove_partials,
     write_whole,
 )
+from nonholo.io.datasets import Variable
 
 BEFORE = -1
 """The number of the mark of what the first block begins with."""
-Variables: TypeAlias = Mapping[str, xarray.Variable]
+Variables: TypeAlias = Mapping[str, Variable]
 _MARKS = Path("run", "blocks")
 _CRC, _BITS = 4, 48  # bytes at the end of a chunk; bits of a seal
 

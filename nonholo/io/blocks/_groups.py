@@ -9,14 +9,13 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-import xarray
 import zarr
 from pydantic import BaseModel
 from zarr.codecs import BloscCodec, Crc32cCodec
 
 from nonholo.io._beside import sibling
 from nonholo.io._metadata import check_metadata, checksum
-from nonholo.io.datasets import CANONICAL
+from nonholo.io.datasets import CANONICAL, Variable
 
 _FILTERS = threading.Lock()  # warning filters belong to the whole process
 
@@ -51,7 +50,7 @@ def consolidate(path: Path) -> None:
     settle(path.parent)
 
 
-def create_array(group: zarr.Group, name: str, variable: xarray.Variable, rows: int, chunk: int) -> zarr.Array:
+def create_array(group: zarr.Group, name: str, variable: Variable, rows: int, chunk: int) -> zarr.Array:
     """Make the array of a variable for this many rows, this many in a chunk; rows that are not written are NaN.
 
     Chunks are compressed, then get a checksum of what is on disk.
@@ -64,7 +63,7 @@ def create_array(group: zarr.Group, name: str, variable: xarray.Variable, rows: 
             chunks=(chunk, *(max(1, size) for size in variable.shape[1:])),
             compressors=(BloscCodec(cname="zstd", clevel=3, shuffle="shuffle"), Crc32cCodec()),
             fill_value=float("nan"),
-            dimension_names=[str(dimension) for dimension in variable.dims],
+            dimension_names=list(variable.dims),
             attributes=variable.attrs,
         )
 

@@ -1,9 +1,8 @@
 """An orbit as labeled data in the user's body frame, and the variables of its store, compact states beside it."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import xarray
 
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization
@@ -11,6 +10,29 @@ from nonholo.io._attributes import attributes
 from nonholo.io.datasets._pose_variables import pose_variables
 from nonholo.orbit import STATES, Orbit
 from nonholo.systems import System
+
+if TYPE_CHECKING:
+    import xarray
+
+
+class Variable(NamedTuple):
+    """An array with the names of its dimensions, and what is said of it: xarray takes it as it is.
+
+    Attributes:
+        dims: Names.
+        values: Numbers.
+        attrs: Texts by name.
+    """
+
+    dims: tuple[str, ...]
+    values: np.ndarray
+    attrs: dict[str, Any]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of the array."""
+        return self.values.shape
+
 
 CANONICAL = "canonical/"
 """The group of a store that holds compact states."""
@@ -50,7 +72,7 @@ _SPATIAL = {  # of a right-invariant constraint
 }
 
 
-def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> xarray.Dataset:
+def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> "xarray.Dataset":
     r"""Return an orbit as a labeled dataset in the user's body frame; attributes say how it was made.
 
     Variables along `step`, whose coordinate is the number of the step, with the coordinate `time`: `energy`,
@@ -77,6 +99,8 @@ def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> xarray.Dataset:
         >>> list(orbit.to_dataset().data_vars)
         ['energy', 'restricted_momentum', 'body_velocity', 'momentum', 'x', 'y', 'heading']
     """
+    import xarray
+
     wanted = (*_KNOWN, *_MATRICES) if decoded else tuple(_KNOWN)
     known = {name: _variable(orbit, name) for name in wanted if _is_known(orbit, name)}
     found = {"time": _variable(orbit, "time")} | known | _posed(orbit, None)
@@ -88,7 +112,7 @@ def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> xarray.Dataset:
     return xarray.Dataset(found, {"step": number}, attributes(orbit)).set_coords("time").copy(deep=True)
 
 
-def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None) -> dict[str, xarray.Variable]:
+def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None) -> dict[str, Variable]:
     """Return the arrays of a store by name: what a person knows, and compact states in a group of their own.
 
     Args:
@@ -108,20 +132,23 @@ def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None)
     return {"time": _variable(orbit, "time")} | known | compact
 
 
-def steps_apart(orbit: Any) -> dict[str, xarray.Variable]:
+def steps_apart(orbit: Any) -> dict[str, Variable]:
     """Return the array of the steps of an orbit that is not a whole run; empty of one that is."""
     if np.array_equal(orbit.step, orbit.save_every * np.arange(len(orbit))):
         return {}
-    return {STEP: xarray.Variable(("step",), orbit.step, {"long_name": "number of the step"})}
+    return {STEP: Variable(("step",), orbit.step, {"long_name": "number of the step"})}
 
 
-def _told(orbit: Any) -> dict[str, xarray.Variable]:
+def _told(orbit: Any) -> dict[str, Variable]:
     """Return what an orbit tells, but for empty rows; names along axes are texts, which are attributes of a store."""
     dataset = orbit.to_dataset()
     for variable in dataset.data_vars.values():
         named = {"components": list(orbit.coordinates)} if "coordinate" in variable.dims else {}
         variable.attrs |= {"coordinates": "time"} | named
-    variables = {str(name): each.variable for name, each in dataset.reset_coords("time").data_vars.items()}
+    variables = {
+        str(name): Variable(tuple(map(str, each.dims)), each.values, each.attrs)
+        for name, each in dataset.reset_coords("time").data_vars.items()
+    }
     return {name: each for name, each in variables.items() if 0 not in each.shape[1:]}
 
 
@@ -146,11 +173,11 @@ def _is_known(orbit: Orbit, name: str) -> bool:
     return is_known(orbit.system, name, posed=orbit.canonical_pose is not None, discrete=orbit.cayley is not None)
 
 
-def _posed(orbit: Orbit, before: np.ndarray | None) -> dict[str, xarray.Variable]:
+def _posed(orbit: Orbit, before: np.ndarray | None) -> dict[str, Variable]:
     if orbit.canonical_pose is None or orbit.canonical_pose.shape[1] > _MOST:
         return {}
     variables = pose_variables(orbit, before).items()
-    return {name: xarray.Variable(("step", *axes), values, labels) for name, (axes, values, labels) in variables}
+    return {name: Variable(("step", *axes), values, dict(labels)) for name, (axes, values, labels) in variables}
 
 
 def _has_multipliers(orbit: Orbit) -> bool:
@@ -160,6 +187,6 @@ def _has_multipliers(orbit: Orbit) -> bool:
     return single and not motion.is_measured and len(orbit) > 0 and _is_known(orbit, "momentum")
 
 
-def _variable(orbit: Orbit, name: str, values: np.ndarray | None = None) -> xarray.Variable:
+def _variable(orbit: Orbit, name: str, values: np.ndarray | None = None) -> Variable:
     axes, labels = labels_of(orbit.system, name)
-    return xarray.Variable(("step", *axes), getattr(orbit, name) if values is None else values, labels)
+    return Variable(("step", *axes), getattr(orbit, name) if values is None else values, labels)

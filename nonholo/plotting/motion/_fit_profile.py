@@ -3,7 +3,6 @@
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from nonholo.plotting import theme
 
@@ -23,6 +22,8 @@ def fit_profile(profile: "Profile") -> Any:
     Returns:
         The matplotlib figure.
     """
+    from scipy.interpolate import PchipInterpolator
+
     half, wide = profile.cut * profile.error, _WIDE * profile.error
     ends = np.array(profile.interval) - profile.value
     low, high = np.where(np.isfinite(ends), ends, (-wide, wide))

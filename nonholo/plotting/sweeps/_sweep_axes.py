@@ -1,10 +1,9 @@
 """Common parts of maps of sweeps: members that succeeded, how the others ended, scales, names. Nothing is run here."""
 
 import dataclasses
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PathCollection
@@ -14,6 +13,9 @@ from matplotlib.colors import BoundaryNorm, LogNorm, Normalize
 from nonholo.base.checks import choice, error
 from nonholo.base.types import Float
 from nonholo.plotting import theme
+
+if TYPE_CHECKING:
+    import xarray
 
 OUTCOME, DRAWN = "outcome", "value of the design"
 _SUCCESSFUL = "successful"
@@ -42,8 +44,8 @@ class Subject:
         whole: Whether the quantity consists of whole numbers.
     """
 
-    values: xarray.DataArray
-    codes: xarray.DataArray
+    values: "xarray.DataArray"
+    codes: "xarray.DataArray"
     whole: bool
 
     @property
@@ -60,6 +62,8 @@ class Subject:
 
 def subject_of(result: Any, quantity: str | None) -> Subject:
     """Return the quantity of that name, by default the first one of a task that is one number of each member."""
+    import xarray
+
     where = "plot.sweep_map"
     if not isinstance(result, xarray.Dataset) or OUTCOME not in result:
         remedy = "Pass what nh.sweep or nh.load_sweep returned."
@@ -77,19 +81,19 @@ def subject_of(result: Any, quantity: str | None) -> Subject:
     return Subject(kept.assign_attrs(values.attrs), codes, values.dtype.kind in "biu")
 
 
-def _first_of_the_task(result: xarray.Dataset, known: list[str]) -> str:
+def _first_of_the_task(result: "xarray.Dataset", known: list[str]) -> str:
     """Return the first name that is one number of each member and no draw; the outcome if there is none."""
     own = [name for name in known if result[name].attrs.get("long_name") != DRAWN and name != OUTCOME]
     return next((name for name in own if result[name].dims == result[OUTCOME].dims), OUTCOME)
 
 
-def label(values: xarray.DataArray) -> str:
+def label(values: "xarray.DataArray") -> str:
     """Return the name of a quantity with its units."""
     units = values.attrs.get("units", "1")
     return str(values.name).replace("_", " ") + ("" if units == "1" else f"  [{units}]")
 
 
-def ends(codes: xarray.DataArray, *, successful: bool = False) -> list[tuple[int, str, str]]:
+def ends(codes: "xarray.DataArray", *, successful: bool = False) -> list[tuple[int, str, str]]:
     """Return the outcomes that occur, but for success, with their names and colors."""
     flags = [int(flag) for flag in np.atleast_1d(codes.attrs.get("flag_values", []))]
     names = dict(zip(flags, str(codes.attrs.get("flag_meanings", "")).split(), strict=False))

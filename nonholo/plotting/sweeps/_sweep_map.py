@@ -1,10 +1,9 @@
 """The result of a sweep in one picture: a map over a grid, a curve along one axis, draws as dots or a histogram."""
 
 import dataclasses
-from typing import Any, Unpack
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
-import xarray
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.colorbar import Colorbar
@@ -16,6 +15,9 @@ from nonholo.base.types import Float
 from nonholo.plotting import theme
 from nonholo.plotting.sweeps import _sweep_axes as common
 
+if TYPE_CHECKING:
+    import xarray
+
 _MOST = 20_000  # dots
 _LARGE = 2000  # dots from which they are small
 _BARS = 60
@@ -24,7 +26,7 @@ _OPAQUE = 600  # dots up to which they are opaque
 _Drawn = tuple[Any, tuple[Any, ...], Colorbar | None]
 
 
-def _draw_draws(axes: Axes, result: xarray.Dataset, subject: common.Subject, x: str | None, y: str | None) -> _Drawn:
+def _draw_draws(axes: Axes, result: "xarray.Dataset", subject: common.Subject, x: str | None, y: str | None) -> _Drawn:
     """Draw the members of a random design."""
     if y is not None and x is None:
         raise error("plot.sweep_map(y=...)", "come with x", shown(y), "Pass x, or x and y.")
@@ -41,7 +43,7 @@ def _draw_draws(axes: Axes, result: xarray.Dataset, subject: common.Subject, x: 
     return drawn
 
 
-def _number(result: xarray.Dataset, argument: str, name: str) -> xarray.DataArray:
+def _number(result: "xarray.Dataset", argument: str, name: str) -> "xarray.DataArray":
     numbers = [str(known) for known, values in result.data_vars.items() if values.dims == ("member",)]
     if name not in numbers:
         known = ", ".join(numbers)
@@ -50,12 +52,12 @@ def _number(result: xarray.Dataset, argument: str, name: str) -> xarray.DataArra
     return result[name]
 
 
-def _thinned(*arrays: xarray.DataArray) -> list[np.ndarray]:
+def _thinned(*arrays: "xarray.DataArray") -> list[np.ndarray]:
     """Return the values of evenly spaced members, of at most this many."""
     return [array.values[:: -(-len(array) // _MOST)] for array in arrays]
 
 
-def _dots_over(axes: Axes, subject: common.Subject, x: xarray.DataArray) -> _Drawn:
+def _dots_over(axes: Axes, subject: common.Subject, x: "xarray.DataArray") -> _Drawn:
     """Draw the quantity of members that succeeded as dots over x; the others are marked along the bottom."""
     across, values, codes = _thinned(x, subject.values, subject.codes)
     good, ended = codes == 0, common.ends(subject.codes)
@@ -67,7 +69,7 @@ def _dots_over(axes: Axes, subject: common.Subject, x: xarray.DataArray) -> _Dra
     return drawn, shown, None
 
 
-def _colored_dots(axes: Axes, subject: common.Subject, x: xarray.DataArray, y: xarray.DataArray) -> _Drawn:
+def _colored_dots(axes: Axes, subject: common.Subject, x: "xarray.DataArray", y: "xarray.DataArray") -> _Drawn:
     """Draw members as dots over x and y, those that did not succeed below the others."""
     across, up, values, codes = _thinned(x, y, subject.values, subject.codes)
     of_outcome, look = subject.values.name == common.OUTCOME, _look(across, 0.5)
@@ -190,7 +192,7 @@ def sweep_map(
     return _curve(axes, subject, *along) if len(along) == 1 else _map(axes, subject, *along)
 
 
-def _along(values: xarray.DataArray, x: str | None, y: str | None) -> list[str]:
+def _along(values: "xarray.DataArray", x: str | None, y: str | None) -> list[str]:
     """Return the axes of the picture; others may only have one value."""
     known = [str(name) for name in values.dims]
     _check_named(known, x, y)
@@ -234,7 +236,9 @@ def _map(axes: Axes, subject: common.Subject, x: str, y: str) -> SweepMap:
     return SweepMap(axes, drawn, shown, bar)
 
 
-def _ended(axes: Axes, edges: Any, codes: xarray.DataArray, ended: list[tuple[int, str, str]]) -> tuple[QuadMesh, ...]:
+def _ended(
+    axes: Axes, edges: Any, codes: "xarray.DataArray", ended: list[tuple[int, str, str]]
+) -> tuple[QuadMesh, ...]:
     """Fill the cells of each outcome with its color."""
     cells = []
     for code, _, color in ended:
@@ -257,18 +261,18 @@ def _curve(axes: Axes, subject: common.Subject, x: str) -> SweepMap:
     return SweepMap(axes, line, shown, None)
 
 
-def _plane(array: xarray.DataArray, *names: str) -> xarray.DataArray:
+def _plane(array: "xarray.DataArray", *names: str) -> "xarray.DataArray":
     """Return an array along some axes, the first one last, ascending along all."""
     flat = array.squeeze([name for name in array.dims if name not in names])
     return flat.transpose(*reversed(names)).sortby(list(names))
 
 
-def _places(array: xarray.DataArray, name: str) -> np.ndarray:
+def _places(array: "xarray.DataArray", name: str) -> np.ndarray:
     """Return the values along an axis; vectors and matrices are numbered."""
     return np.asarray(array[name].values, dtype=float)
 
 
-def _dress_axis(axes: Axes, side: str, array: xarray.DataArray, name: str) -> None:
+def _dress_axis(axes: Axes, side: str, array: "xarray.DataArray", name: str) -> None:
     scale = "log" if common.is_geometric(_places(array, name)) else "linear"
     axes.set(**{f"{side}scale": scale, f"{side}label": common.label(array[name])})
 
