@@ -44,10 +44,10 @@ def problem_of(form: NormalForm, time_step: float, momentum: np.ndarray) -> Prob
     """Return the exact problem of a body, in its own doubles, for canonical restricted momenta."""
     h = _exact(time_step)
     p = [h * _exact(x) for x in (momentum if form.frame_map is None else form.frame_map @ momentum).tolist()]
-    B, c = _stiffness(_rows(form.across), _exact(form.along)), [_exact(x) for x in form.coupling]
+    B, c = _stiffness(_rows(form.across), _exact(float(form.along))), [_exact(x) for x in form.coupling]
     if not form.is_sleigh:
         return _problem(B, c, [x / 2 for x in p])
-    a, m, offset = _exact(form.arm), _exact(form.mass), [_exact(x) for x in form.offset]
+    a, m, offset = _exact(float(form.arm)), _exact(float(form.mass)), [_exact(x) for x in form.offset]
     r = [(x - o * p[-1]) / 2 for x, o in zip(p[:-1], offset, strict=True)]
     return _problem(B, c, r, a * p[-1] / 2 + m * a * a, (a, p[-1] / m, offset, m * a))
 
