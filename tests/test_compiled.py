@@ -170,7 +170,7 @@ def test_a_user_who_can_write_nowhere(temporary: bool, home_is: str | None, home
     scratch.mkdir(mode=0o777)
     scratch.chmod(0o777 if temporary else 0o555)
     own = {"PATH": os.environ["PATH"], "PYTHONPATH": os.environ.get("PYTHONPATH", ""), "TMPDIR": str(scratch)}
-    own |= {} if home_is is None else {"HOME": home_is}
+    own |= {"NONHOLO_KERNELS": "numba"} | ({} if home_is is None else {"HOME": home_is})
     run = [*STRANGER, sys.executable, "-B", "-c", USE]
     for _ in range(2):
         done = subprocess.run(run, cwd=home, env=own, capture_output=True, text=True, check=False)  # noqa: S603
@@ -186,7 +186,7 @@ def test_a_user_who_can_write_nowhere(temporary: bool, home_is: str | None, home
 @pytest.mark.profile("faults", instead="test_damaged_code_is_compiled_again")
 def test_runs_with_damaged_code(tmp_path: Path, home: Path) -> None:
     """A run of kernels of which every file is damaged, each in another way, gives the same bits and mends them."""
-    own = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+    own = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "NONHOLO_KERNELS": "numba"}
     run, seen = [sys.executable, "-c", USE], []
     for _ in range(2):
         done = subprocess.run(run, cwd=home, env=own, capture_output=True, text=True, check=True)  # noqa: S603
