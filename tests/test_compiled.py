@@ -119,7 +119,7 @@ def test_no_place_for_code(
     """Where nothing else can be written code lies in a private folder or nowhere, and that is said once."""
     monkeypatch.setattr(by_numba._Places, "_locator_classes", places)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    by_numba._say.cache_clear()
+    by_numba.say_once.cache_clear()
     assert not used_cache(times(3.0))
     kernel = times(3.0)
     assert kernel(2.0) == 6.0

@@ -69,7 +69,9 @@ def _own(body: type[Body]) -> Any:
 
 def _is_none(kind: Any) -> bool:
     """Tell whether a type of numba is that of None."""
-    return str(kind) == "none"
+    from numba import types
+
+    return isinstance(kind, types.NoneType)
 
 
 @overload(member, jit_options=COMPILED, strict=False)

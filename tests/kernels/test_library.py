@@ -1,5 +1,6 @@
 """The library of kernels that are compiled ahead: what it has, what it leaves to numba, and when it is not used."""
 
+import importlib
 import json
 import os
 import subprocess
@@ -11,8 +12,7 @@ import numpy as np
 import pytest
 
 from nonholo.base import compiled
-from nonholo.base.compiled import key_of, library, library_of_kernels, tokens
-from nonholo.base.compiled._kernel import way_of_kernels
+from nonholo.base.compiled import key_of, library, library_of_kernels, tokens, way_of_kernels
 from nonholo.kernels import SleighBody, _driver, _small
 from nonholo.kernels.secular import _step
 
@@ -50,7 +50,7 @@ def test_all_that_is_listed_is_there(known: compiled.Library) -> None:
     for line in LINES:
         name, key = line.split(" ")
         module, _, function = name.rpartition(".")
-        kernel = getattr(sys.modules.get(module) or __import__(module, fromlist=[function]), function)
+        kernel = getattr(importlib.import_module(module), function)
         absent += [] if known.entry(kernel, key) else [line]
     assert absent == []
 

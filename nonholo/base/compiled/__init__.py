@@ -19,7 +19,9 @@ from nonholo.base.compiled._kernel import (
     library_of_kernels,
     njit,
     overload,
+    say_once,
     symbol_of,
     tell_numba,
     tokens,
+    way_of_kernels,
 )

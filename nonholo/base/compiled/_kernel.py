@@ -34,6 +34,10 @@ _SCALARS = {
 }
 _FORMATS = {"f": "q", "d": "d", "q": "q", "?": "?7x", "n": ""}
 _REFUSED = object()
+_SLOW = (
+    "Kernels that are not compiled ahead run as Python, about a hundred times slower. "
+    "Install the extra `compile`: pip install 'nonholo[compile]'."
+)
 _OTHER = "o"  # what the library takes no argument of
 _DTYPES = {"d": np.float64, "q": np.int64, "?": np.bool_}
 NAMES = {"d": "d", "q": "lq", "?": "?"}
@@ -72,8 +76,8 @@ class Kernel:
 
     def __call__(self, *arguments: Any) -> Any:
         """Run it by the first way that there is."""
-        known = library_of_kernels()
-        if known is None:
+        code = library_of_kernels()
+        if code is None:
             return self.dispatcher(*arguments)
         classes, words = self._spread(arguments)
         entry = self._entries.get(classes)
@@ -82,7 +86,7 @@ class Kernel:
             return result
         key = key_of(arguments)
         if key not in self._entries:
-            self._entries[key] = known.entry(self, key)
+            self._entries[key] = code.entry(self, key)
         entry = self._entries[classes] = self._entries[key]
         return self.dispatcher(*arguments) if entry is None else entry(words)
 
@@ -107,7 +111,7 @@ class Kernel:
         try:
             from nonholo.base.compiled import by_numba
         except ModuleNotFoundError:
-            _say_that_it_is_slow()
+            say_once(_SLOW)
             return self.py_func
         return by_numba.dispatcher_of(self.py_func, self.options)
 
@@ -122,11 +126,9 @@ class Kernel:
 
 
 @functools.cache
-def _say_that_it_is_slow() -> None:
-    remedy = "Install the extra `compile`: pip install 'nonholo[compile]'."
-    logging.getLogger("nonholo").warning(
-        "Kernels that are not compiled ahead run as Python, about a hundred times slower. %s", remedy
-    )
+def say_once(text: str) -> None:
+    """Log a warning once in a process."""
+    logging.getLogger("nonholo").warning(text)
 
 
 def spread(values: tuple[Any, ...], words: list[Any]) -> Any:
@@ -179,7 +181,7 @@ class Entry:
     def __init__(self, function: Any, key: str, returns: str, release: Any) -> None:
         function.restype, function.argtypes = None, (ctypes.c_char_p, ctypes.c_void_p)
         shape = tokens(returns)
-        self._function, self._made = function, _made_by(shape, release)
+        self._function, self._result = function, _result_of(shape, release)
         self._arguments = struct.Struct("".join(_FORMATS.get(each, "q" * _is_array(each)) for each in tokens(key)))
         self._results = struct.Struct("q" + "".join(map(_result_format, shape)))
         self._room = ctypes.c_char * self._results.size
@@ -189,10 +191,10 @@ class Entry:
         room = self._room()
         self._function(self._arguments.pack(*words), room)
         values = self._results.unpack(room)
-        return self._made(values) if values[0] else _REFUSED
+        return self._result(values) if values[0] else _REFUSED
 
 
-def _made_by(shape: list[str], release: Any) -> Callable[[tuple[Any, ...]], Any]:
+def _result_of(shape: list[str], release: Any) -> Callable[[tuple[Any, ...]], Any]:
     """Return what makes a result of the words behind the first one."""
     if shape == ["n"]:
         return lambda _: None
@@ -205,18 +207,18 @@ def _made_by(shape: list[str], release: Any) -> Callable[[tuple[Any, ...]], Any]
 
 def _nested(kinds: Iterator[str], words: Iterator[Any], release: Any) -> list[Any]:
     """Return numbers, arrays and tuples up to the bracket that ends a tuple, or to the end."""
-    made: list[Any] = []
+    values: list[Any] = []
     for kind in kinds:
         if kind == ")":
             break
         if kind.endswith("("):
             parts = _nested(kinds, words, release)
-            made.append(tuple(parts) if kind == "(" else _class_of(kind[:-1])(*parts))
+            values.append(tuple(parts) if kind == "(" else _class_of(kind[:-1])(*parts))
         elif kind == "n":
-            made.append(None)
+            values.append(None)
         else:
-            made.append(next(words) if kind in _FORMATS else _array(kind, words, release))
-    return made
+            values.append(next(words) if kind in _FORMATS else _array(kind, words, release))
+    return values
 
 
 def _class_of(name: str) -> Any:
@@ -249,7 +251,7 @@ def tokens(key: str) -> list[str]:
         >>> tokens("Body(dd)d2q(?n)")
         ['Body(', 'd', 'd', ')', 'd2', 'q', '(', '?', 'n', ')']
     """
-    found: list[str] = []
+    kinds: list[str] = []
     at = 0
     while at < len(key):
         end = at + 1
@@ -257,9 +259,9 @@ def tokens(key: str) -> list[str]:
             end = key.index("(", at) + 1
         elif end < len(key) and key[end].isdigit():
             end += 1
-        found.append(key[at:end])
+        kinds.append(key[at:end])
         at = end
-    return found
+    return kinds
 
 
 class Library:
@@ -323,11 +325,11 @@ def _has_known_arrays() -> bool:
     """Tell whether arrays have their fields where the library looks for them; another Python may not."""
     array = np.zeros((2, 3))
     fields = ctypes.cast(id(array), ctypes.POINTER(ctypes.c_int64))
-    axes = ctypes.c_int32.from_address(id(array) + AXES).value
+    axes, flags = (ctypes.c_int32.from_address(id(array) + place).value for place in (AXES, FLAGS))
     about = fields[ABOUT // 8] == id(array.dtype)
     shape = ctypes.cast(fields[SHAPE // 8], ctypes.POINTER(ctypes.c_int64))
     letter = ctypes.c_char.from_address(id(array.dtype) + LETTER).value
-    same = (fields[DATA // 8], axes, letter) == (array.ctypes.data, 2, b"d")
+    same = (fields[DATA // 8], axes, flags & ORDERED, letter) == (array.ctypes.data, 2, ORDERED, b"d")
     return about and same and (shape[0], shape[1]) == array.shape
 
 

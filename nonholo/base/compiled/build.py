@@ -14,7 +14,6 @@ import itertools
 import multiprocessing
 import os
 import pkgutil
-import re
 import shutil
 import subprocess
 import sys
@@ -33,14 +32,16 @@ from numba.np.arrayobj import populate_array
 
 from nonholo.base import compiled
 from nonholo.base.compiled import wasm
+from nonholo.base.compiled.emission import emitted, for_any_machine, machine_for
 from nonholo.base.compiled.library import name_of_library, name_of_module
 
 _KERNELS = Path(__file__).parents[2] / "kernels"
 _WORD, _INT, _ADDRESS = ir.IntType(64), ir.IntType(32), types.CPointer(types.int64)
 _KINDS: dict[str, Any] = {"d": types.float64, "q": types.int64, "?": types.boolean, "n": types.none}
 _LETTERS = {kind: letter for letter, kind in _KINDS.items()}
-_OF_THIS_MACHINE = r'(?m)"(?:target-cpu|target-features|probe-stack)"="[^"]*"|^target (?:triple|datalayout) = .*$'
 _FUNCTION = compiled.FUNCTION(0)  # one of the kind that kernels call
+_IS_X86 = llvm.get_process_triple().startswith("x86")
+_PROCESSORS = {"": "x86-64", "_wide": "x86-64-v4"} if _IS_X86 else {"": "generic"}
 _WIDE = "ensemble"  # what is worth a second variant, for vectors of eight numbers
 _RUNTIME = Path(__file__).with_name("runtime.ll")
 _ENTRY = """
@@ -64,20 +65,20 @@ good:
 
 def kind_of(tokens: Iterator[str], classes: dict[str, Any]) -> list[Any]:
     """Return the types of numba for kinds, up to the bracket that ends a tuple or to their end."""
-    found = []
+    kinds: list[Any] = []
     for each in tokens:
         if each == ")":
             break
         if each.endswith("("):
             parts = kind_of(tokens, classes)
-            found.append(types.BaseTuple.from_types(parts, classes[each[:-1]] if each != "(" else None))
+            kinds.append(types.BaseTuple.from_types(parts, classes[each[:-1]] if each != "(" else None))
         elif each == "f":
-            found.append(typeof(_FUNCTION))
+            kinds.append(typeof(_FUNCTION))
         elif len(each) == 2:
-            found.append(types.Array(_KINDS[each[0]], int(each[1]), "C"))
+            kinds.append(types.Array(_KINDS[each[0]], int(each[1]), "C"))
         else:
-            found.append(_KINDS[each])
-    return found
+            kinds.append(_KINDS[each])
+    return kinds
 
 
 def letters(kind: Any) -> str:
@@ -207,59 +208,47 @@ def _results(context: Any, builder: Any, kind: Any, value: Any) -> Iterator[Any]
         yield builder.zext(value, _WORD) if kind == types.boolean else value
 
 
-def text_of(line: str, classes: dict[str, Any]) -> str:
+def text_of(line: str) -> str:
     """Return the LLVM text of a line of the list."""
     name, key = line.split(" ")
     module, _, function = name.rpartition(".")
     kernel = getattr(importlib.import_module(module), function)
-    run, returns = flat(kernel, kind_of(iter(compiled.tokens(key)), classes))
-    made: Any = numba.njit(nogil=True, error_model="numpy")(run)
-    made.compile((_ADDRESS, _ADDRESS))
-    (code,) = made.overloads.values()
-    text = re.sub(_OF_THIS_MACHINE, "", code.library.get_llvm_str())
-    symbol = compiled.symbol_of(name, key)
-    filled = {"symbol": symbol, "own": code.fndesc.llvm_func_name, "returns": returns[0], "length": len(returns[0]) + 1}
-    return text + _ENTRY.format(**filled)
+    run, returns = flat(kernel, kind_of(iter(compiled.tokens(key)), _classes()))
+    dispatcher: Any = numba.njit(nogil=True, error_model="numpy")(run)
+    dispatcher.compile((_ADDRESS, _ADDRESS))
+    (code,) = dispatcher.overloads.values()
+    text, symbol = for_any_machine(code.library.get_llvm_str()), compiled.symbol_of(name, key)
+    names = {"symbol": symbol, "own": code.fndesc.llvm_func_name, "returns": returns[0], "length": len(returns[0]) + 1}
+    return text + _ENTRY.format(**names)
 
 
-def objects_of(line: str, triple: str, folder: str) -> list[str]:
+def objects_of(line: str, folder: str) -> list[str]:
     """Compile a line of the list into objects in a folder; return their files."""
-    text, files = text_of(line, _classes()), []
-    symbol = compiled.symbol_of(*line.split(" "))
-    for variant, processor in (("", "x86-64" if triple.startswith("x86") else "generic"), ("_wide", "x86-64-v4")):
-        if variant and not (_WIDE in line and triple.startswith("x86")):
+    text, symbol, files = text_of(line), compiled.symbol_of(*line.split(" ")), []
+    for variant, processor in _PROCESSORS.items():
+        if variant and _WIDE not in line:
             continue
-        own = text.replace(symbol, symbol + variant) if variant else text
         file = Path(folder) / f"{symbol}{variant}.o"
-        file.write_bytes(_object(own, triple, processor, symbol))
+        file.write_bytes(_object(text.replace(symbol, symbol + variant), processor, symbol))
         files.append(str(file))
     return files
 
 
-def _object(text: str, triple: str, processor: str, public: str) -> bytes:
-    """Compile LLVM text with what it asks of numba's runtime; only names that begin as the public one are seen."""
-    llvm.initialize_all_targets()
-    llvm.initialize_all_asmprinters()
-    machine = llvm.Target.from_triple(triple).create_target_machine(cpu=processor, opt=3, reloc="pic")
-    code = llvm.parse_assembly(text)
-    code.link_in(llvm.parse_assembly(_RUNTIME.read_text(encoding="utf-8")))
-    code.triple, code.data_layout = triple, str(machine.target_data)
-    for item in (*code.functions, *code.global_variables):
-        if not item.is_declaration and not item.name.startswith(public):
-            item.linkage = "internal"
-    passes = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=2))
-    passes.getModulePassManager().run(code, passes)
-    return machine.emit_object(code)
+def _object(text: str, processor: str, public: str) -> bytes:
+    """Compile LLVM text for this machine; only names that begin as the public one are seen."""
+    machine = machine_for(llvm.get_process_triple(), processor, "pic")
+    return emitted(text, _RUNTIME, machine, str(machine.target_data), lambda name: name.startswith(public))
 
 
+@functools.cache
 def _classes() -> dict[str, Any]:
     """Return the named tuples of all kernels by their names."""
-    found: dict[str, Any] = {}
+    classes: dict[str, Any] = {}
     for about in pkgutil.walk_packages([str(_KERNELS)], "nonholo.kernels."):
         for name, each in vars(importlib.import_module(about.name)).items():
-            if isinstance(each, type) and issubclass(each, tuple) and found.setdefault(name, each) is not each:
+            if isinstance(each, type) and issubclass(each, tuple) and classes.setdefault(name, each) is not each:
                 raise NameError(f"Two named tuples of kernels are called {name}.")
-    return found
+    return classes
 
 
 def lines() -> list[str]:
@@ -273,28 +262,23 @@ def linker() -> list[str]:
     return [own] if own else [sys.executable, "-m", "ziglang", "cc", "-nostdlib"]
 
 
-def build(target: Path, triple: str = "") -> Path:
-    """Compile and link the library of a triple of LLVM, by default that of this machine, into a folder."""
+def build(target: Path) -> None:
+    """Compile and link the library of this machine, and the modules of pages, into a folder."""
     os.environ["NONHOLO_KERNELS"] = "numba"
-    triple = triple or llvm.get_process_triple()
-    context = multiprocessing.get_context("spawn")
+    target.mkdir(parents=True, exist_ok=True)
+    context, runs = multiprocessing.get_context("spawn"), importlib.import_module("nonholo.kernels").FLAT_RUNS
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ProcessPoolExecutor(mp_context=context) as pool:
-        target.mkdir(parents=True, exist_ok=True)
-        runs = importlib.import_module("nonholo.kernels").FLAT_RUNS
         for run, content in zip(runs, pool.map(wasm.module, runs), strict=True):
             (target / name_of_module(run)).write_bytes(content)
         files = [f"{folder}/release.o"]
-        Path(files[0]).write_bytes(_object("", triple, "generic", "nonholo_release"))
-        for done, made in enumerate(
-            pool.map(objects_of, *zip(*((line, triple, folder) for line in lines()), strict=True))
-        ):
-            files += made
+        Path(files[0]).write_bytes(_object("", _PROCESSORS[""], "nonholo_release"))
+        for count, objects in enumerate(pool.map(objects_of, lines(), itertools.repeat(folder)), 1):
+            files += objects
             if sys.stderr.isatty():
-                print(f"\rkernels compiled: {done + 1} of {len(lines())}", end="", file=sys.stderr)  # noqa: T201
-        file, part = target / name_of_library(), target / f".{os.getpid()}.part"
+                print(f"\rkernels compiled: {count} of {len(lines())}", end="", file=sys.stderr)  # noqa: T201
+        part = target / f".{os.getpid()}.part"
         subprocess.run([*linker(), "-shared", "-o", str(part), *files], check=True)  # noqa: S603
-        part.replace(file)  # in one go: runs from an old one continue
-    return file
+        part.replace(target / name_of_library())  # in one go: runs from an old one continue
 
 
 if __name__ == "__main__":

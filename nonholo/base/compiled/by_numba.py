@@ -8,7 +8,6 @@ kernels, is as good as none; what cannot be written stays in memory.
 import contextlib
 import functools
 import hashlib
-import logging
 import os
 import pickle
 import stat
@@ -23,7 +22,7 @@ from numba.core import caching, config, serialize, types
 from numba.extending import typeof_impl
 
 from nonholo.base import compiled
-from nonholo.base.compiled import library
+from nonholo.base.compiled import library, say_once
 
 _DIGEST = 32
 _REMEDY = "Set NUMBA_CACHE_DIR to a folder that can be written."
@@ -35,13 +34,8 @@ def dispatcher_of(function: Callable[..., Any], options: dict[str, Any]) -> Any:
     try:
         made._cache = _Cache(function)  # pyright: ignore
     except RuntimeError:  # numba has tried all places
-        _say(f"Compiled code is not kept on disk: each process compiles for itself. {_REMEDY}")
+        say_once(f"Compiled code is not kept on disk: each process compiles for itself. {_REMEDY}")
     return made
-
-
-@functools.cache
-def _say(text: str) -> None:
-    logging.getLogger("nonholo").warning(text)
 
 
 @functools.cache
@@ -108,7 +102,7 @@ class _Cache(caching.FunctionCache):
     def __init__(self, function: Callable[..., Any]) -> None:
         super().__init__(function)
         if isinstance(self._impl.locator, _Private):
-            _say(f"Compiled code is kept in {private_folder()}, as there is no other place for it. {_REMEDY}")
+            say_once(f"Compiled code is kept in {private_folder()}, as there is no other place for it. {_REMEDY}")
         self._cache_file = _Files(self.cache_path, self._impl.filename_base, text_of_kernels())
 
     def save_overload(self, sig: Any, data: Any) -> None:

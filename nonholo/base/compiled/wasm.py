@@ -11,19 +11,17 @@ import re
 from pathlib import Path
 from typing import Any
 
-import llvmlite.binding as llvm
 import numba
 from numba import types
 
 from nonholo.base.compiled.by_numba import kept_bytes
+from nonholo.base.compiled.emission import emitted, for_any_machine, machine_for
 from nonholo.base.compiled.webassembly import module_of
 
-_TRIPLE = "wasm32-unknown-unknown"
 _RUNTIME = Path(__file__).with_name("webassembly.ll")
 _OPTIONS: Any = {"nopython": True, "error_model": "numpy"}
 _ADDRESS = types.CPointer(types.float64)
 _SIGNATURE = types.int64(_ADDRESS, _ADDRESS, types.int64, _ADDRESS, _ADDRESS, _ADDRESS)
-_OF_THIS_MACHINE = r'(?m)"(?:target-cpu|target-features|probe-stack)"="[^"]*"|^target (?:triple|datalayout) = .*$'
 _COUNTS = r"(?ms)^define [^\n]*(@NRT_(?:in|de)cref)\(.*?^}$"  # of arrays, in instructions of this machine
 _RAISES = r"(?m)^ *store ptr @\.const\.picklebuf\..*$"
 
@@ -37,18 +35,10 @@ def module(run: str) -> bytes:
 def _object(function: Any) -> bytes:
     """Return a relocatable object with one global function."""
     made = numba.cfunc(_SIGNATURE, **_OPTIONS)(function)
-    text = re.sub(_OF_THIS_MACHINE, "", made.inspect_llvm())
+    text = for_any_machine(made.inspect_llvm())
     text = re.sub(_COUNTS, r"declare void \1(ptr)", re.sub(_RAISES, "  call void @raise()", text))
-    llvm.initialize_all_targets()
-    llvm.initialize_all_asmprinters()
-    machine = llvm.Target.from_triple(_TRIPLE).create_target_machine(cpu="generic", opt=3, reloc="static")
-    code = llvm.parse_assembly(f"{text}\ndeclare void @raise() noreturn\n")
-    code.link_in(llvm.parse_assembly(_RUNTIME.read_text()))
+    machine = machine_for("wasm32-unknown-unknown", "generic", "static")
     # places in structures are numbers already, and those of 64 bits: addresses stand where they would there
-    code.triple, code.data_layout = _TRIPLE, str(machine.target_data).replace("p:32:32", "p:32:64")
-    for item in (*code.functions, *code.global_variables):
-        if not item.is_declaration and item.name != made.native_name:
-            item.linkage = "internal"
-    passes = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=2))
-    passes.getModulePassManager().run(code, passes)
-    return machine.emit_object(code)
+    layout = str(machine.target_data).replace("p:32:32", "p:32:64")
+    text = f"{text}\ndeclare void @raise() noreturn\n"
+    return emitted(text, _RUNTIME, machine, layout, lambda name: name == made.native_name)

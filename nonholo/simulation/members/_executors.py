@@ -350,13 +350,13 @@ def _finished(work: Callable[[slice, np.ndarray], None], parts: list[slice], thr
             yield part
         return
 
-    def begun(part: slice) -> None:
+    def do(part: slice) -> None:
         with until(lambda: bool(stop[0])):
             work(part, stop)
 
     pool = ThreadPoolExecutor(threads)
     try:
-        waiting = {pool.submit(begun, part): part for part in parts}
+        waiting = {pool.submit(do, part): part for part in parts}
         for future in as_completed(waiting):
             future.result()
             yield waiting[future]

@@ -1,0 +1,36 @@
+"""Objects for processors, of the LLVM text that numba makes of kernels."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import llvmlite.binding as llvm
+
+_OF_THIS_MACHINE = r'(?m)"(?:target-cpu|target-features|probe-stack)"="[^"]*"|^target (?:triple|datalayout) = .*$'
+
+
+def for_any_machine(text: str) -> str:
+    """Return LLVM text without what it says of the processor that numba compiled it for."""
+    return re.sub(_OF_THIS_MACHINE, "", text)
+
+
+def machine_for(triple: str, processor: str, reloc: str) -> llvm.TargetMachine:
+    """Return what makes objects for a processor."""
+    llvm.initialize_all_targets()
+    llvm.initialize_all_asmprinters()
+    return llvm.Target.from_triple(triple).create_target_machine(cpu=processor, opt=3, reloc=reloc)
+
+
+def emitted(
+    text: str, runtime: Path, machine: llvm.TargetMachine, layout: str, is_public: Callable[[str], bool]
+) -> bytes:
+    """Return the object of LLVM text and the runtime that it asks; only public names are seen from outside."""
+    code = llvm.parse_assembly(text)
+    code.link_in(llvm.parse_assembly(runtime.read_text(encoding="utf-8")))
+    code.triple, code.data_layout = machine.triple, layout
+    for item in (*code.functions, *code.global_variables):
+        if not item.is_declaration and not is_public(item.name):
+            item.linkage = "internal"
+    passes = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=2))
+    passes.getModulePassManager().run(code, passes)
+    return machine.emit_object(code)
