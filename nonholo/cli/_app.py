@@ -1,10 +1,7 @@
 """The command `nonholo` itself: its help, its version, its subcommands."""
 
 import contextlib
-import functools
-import os
 import signal
-from collections.abc import Callable
 from typing import Annotated
 
 import typer
@@ -25,37 +22,6 @@ from nonholo.cli.commands.resume import resume
 from nonholo.cli.commands.simulate import simulate
 from nonholo.cli.commands.sweep import sweep
 
-
-def with_cache_folder(command: Callable[..., None]) -> Callable[..., None]:
-    """Return a command that gives JAX its folder first."""
-
-    @functools.wraps(command)
-    def run(**options: object) -> None:
-        use_cache_folder()
-        command(**options)
-
-    return run
-
-
-def use_cache_folder() -> None:
-    """Give JAX a folder in the user's cache, if there is one that can be written.
-
-    To be called before JAX is imported. What the user has set stays. Kernels have their own rule, whoever runs them.
-    """
-    import platformdirs
-
-    folder = platformdirs.user_cache_path("nonholo") / "jax"
-    if not folder.is_absolute():  # no home
-        return
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return
-    if os.access(folder, os.W_OK | os.X_OK):
-        os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(folder))
-        os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0.1")
-
-
 app = typer.Typer(
     name="nonholo",
     no_args_is_help=True,
@@ -66,9 +32,7 @@ app = typer.Typer(
 )
 _COMMANDS = (simulate, sweep, dataset, new, systems, examples, info, plot, explore, export, resume, extend, paper, cite)
 for _command in _COMMANDS:
-    app.command()(
-        _command if _command in (new, systems, cite) else with_cache_folder(_command)
-    )  # these compile nothing
+    app.command()(_command)
 
 
 def main() -> None:

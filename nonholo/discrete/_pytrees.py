@@ -5,6 +5,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
+from nonholo.base.numerics import keep_programs
 from nonholo.systems import SYSTEMS, Forced, Friction, Gravity
 
 _Class = TypeVar("_Class", bound=type)
@@ -29,6 +30,7 @@ def register() -> None:
     """Register all of them once; no check runs when a tree is rebuilt."""
     import jax
 
+    keep_programs()
     for kind in _TREES:
         jax.tree_util.register_pytree_node(
             kind,

@@ -15,8 +15,7 @@ from nonholo.cli._app import app
 def _empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / ".cache"))
-    for name in ("JAX_COMPILATION_CACHE_DIR", "JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "MPLBACKEND"):
-        monkeypatch.setenv(name, "agg" if name == "MPLBACKEND" else "0")
+    monkeypatch.setenv("MPLBACKEND", "agg")
 
 
 @pytest.fixture

@@ -1,7 +1,6 @@
 """The commands: what they keep, print and return."""
 
 import json
-import os
 import subprocess
 import sys
 from collections.abc import Callable
@@ -15,7 +14,6 @@ from matplotlib.figure import Figure
 from typer.testing import Result
 
 import nonholo as nh
-from nonholo.cli import _app
 from nonholo.cli.commands import _running
 from nonholo.cli.scenario.files import load_scenario
 from nonholo.simulation import _run
@@ -297,29 +295,6 @@ print("jax" in sys.modules)
 """
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)  # noqa: S603
     assert done.stdout.strip() == "False"
-
-
-@pytest.mark.parametrize("set_by_user", [True, False])
-def test_the_cache_of_jax(set_by_user: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """JAX keeps its code in the user's cache; a user's choice stays."""
-    monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", "/mine")
-    if not set_by_user:
-        monkeypatch.delenv("JAX_COMPILATION_CACHE_DIR")
-    monkeypatch.setenv("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "1")
-    _app.use_cache_folder()
-    there = os.environ["JAX_COMPILATION_CACHE_DIR"]
-    monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", there)
-    assert there == ("/mine" if set_by_user else str(tmp_path / ".cache" / "nonholo" / "jax"))
-
-
-@pytest.mark.parametrize("cache", ["/proc/nowhere", "~/.cache"], ids=["read-only", "no home"])
-def test_no_cache_of_jax(cache: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where there is no place for it nothing is set, and no folder of the name ~ is made."""
-    monkeypatch.delenv("JAX_COMPILATION_CACHE_DIR", raising=False)
-    monkeypatch.setattr("platformdirs.user_cache_path", lambda _: Path(cache))
-    _app.use_cache_folder()
-    assert "JAX_COMPILATION_CACHE_DIR" not in os.environ
-    assert not Path("~").exists()
 
 
 @pytest.mark.parametrize("steps", [10**13, 10**30])

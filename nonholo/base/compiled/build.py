@@ -244,8 +244,9 @@ def _object(text: str, processor: str, public: str) -> bytes:
 def _classes() -> dict[str, Any]:
     """Return the named tuples of all kernels by their names."""
     classes: dict[str, Any] = {}
-    for about in pkgutil.walk_packages([str(_KERNELS)], "nonholo.kernels."):
-        for name, each in vars(importlib.import_module(about.name)).items():
+    abouts = pkgutil.walk_packages([str(_KERNELS)], "nonholo.kernels.")
+    for module in (about.name for about in abouts if "-" not in about.name):  # a library of another text is none
+        for name, each in vars(importlib.import_module(module)).items():
             if isinstance(each, type) and issubclass(each, tuple) and classes.setdefault(name, each) is not each:
                 raise NameError(f"Two named tuples of kernels are called {name}.")
     return classes
