@@ -307,7 +307,7 @@ def _room(values: np.ndarray, bounds: tuple) -> float:
     return float(min((values - bounds[0]).min(), (bounds[1] - values).min()))
 
 
-@pytest.mark.profile("routes", instead="test_bounds_of_states_are_linear_in_their_numbers")
+@pytest.mark.profile("long", instead="test_bounds_hold")
 def test_wheels_are_kept_from_turning_over() -> None:
     """A snakeboard whose wheels may not pass 1.2 is steered to where it is not found without; too slow, nowhere."""
     pytest.importorskip("casadi")

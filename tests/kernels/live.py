@@ -25,7 +25,9 @@ Arrays: TypeAlias = list[np.ndarray]
 SIZE, STEP = 2.0, 0.5  # of velocities and of the time step: motions that turn far, and some that end
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5)
-MEMBERS, STEPS, SHARES = (40, 2, (1.0,)) if sys.argv[1:2] == ["calls"] else (4000, 100, (0.1, 0.5, 1.0))
+MEMBERS, STEPS, SHARES, WIDE = (
+    (40, 2, (1.0,), 0.2) if sys.argv[1:2] == ["calls"] else (4000, 100, (0.1, 0.5, 1.0), SIZE)
+)
 
 
 def members(system: Any, varied: tuple[str, ...] = ()) -> Arrays:
@@ -184,8 +186,8 @@ RUNS: dict[str, Callable[[], Arrays]] = {
     "slowly on SE(3)": lambda: orbits(GENERAL["any d on SE(3)"][0], size=0.1),
     "any d on SO(4) of order 4": lambda: orbits(GENERAL["any d on SO(4)"][0], 4),
     "right-invariant on SE(3)": lambda: orbits(GENERAL["right-invariant on SE(3)"][0]),
-    "any d on SO(8)": lambda: orbits(body(nh.SO(8), 4, 8)),
-    "any d on SO(5)": lambda: orbits(body(nh.SO(5), 3, 5)),
+    "any d on SO(8)": lambda: orbits(body(nh.SO(8), 4, 8), size=WIDE),
+    "any d on SO(5)": lambda: orbits(body(nh.SO(5), 3, 5), size=WIDE),
     "nearest values of a top": lambda: nearest(TOP),
     "nearest values of a sleigh": lambda: nearest(SLEIGH),
     "a top past angle pi": lambda: past_pi(),
