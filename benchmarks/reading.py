@@ -2,15 +2,18 @@
 
 Each quantity must first be what it is by its definition, from the poses, the masses and the momenta of the run. Ratios
 are medians of pairs: the first reading over the run of the same round. A second reading must give the same array.
+Then a run into a store, beside `zarr` alone that writes the arrays of the store.
 
     python benchmarks/reading.py [--steps 200000] [--rounds 15] [--smoke]
 """
 
 import statistics
+import tempfile
 import time
 from typing import Any
 
 import numpy as np
+import zarr
 from _command import SMOKE, options, small
 
 import nonholo as nh
@@ -27,6 +30,7 @@ MOST = {
     "tangent": 5.0,
 }
 """The readings, and the most that each may take of the time of the run."""
+MOST_OF_ZARR = 4.0
 
 
 def check(orbit: nh.Orbit) -> None:
@@ -67,11 +71,36 @@ def seconds(call: Any) -> tuple[float, Any]:
     return time.process_time() - begun, found
 
 
+def stored(body: str, steps: int, rounds: int) -> float:
+    """Return the time of a run into a store over that of `zarr` for the same arrays."""
+    system, velocity = BODIES[body]
+    discrete, ratios = nh.discretize(system, STEP), []
+    for _ in range(rounds + 1):
+        with tempfile.TemporaryDirectory() as folder:
+            ours, orbit = seconds(
+                lambda: nh.simulate(discrete, body_velocity=velocity, steps=steps, store=f"{folder}/a.zarr")
+            )
+            arrays = {
+                name: np.asarray(array[:]) for name, array in zarr.open_group(f"{folder}/a.zarr", mode="r").arrays()
+            }
+            if not np.array_equal(orbit.energy, arrays["energy"]):
+                raise RuntimeError(f"the store of the {body}")
+
+            def write() -> None:
+                group = zarr.open_group(f"{folder}/b.zarr", mode="w")
+                for name, values in arrays.items():  # noqa: B023
+                    group.create_array(name, data=values)
+
+            ratios.append(ours / seconds(write)[0])
+    return statistics.median(ratios[1:])
+
+
 def main() -> None:
     """Print nanoseconds of a state and ratios to the run."""
     parser = options(__doc__)
     parser.add_argument("--steps", type=int, default=small(200_000, 200))
     parser.add_argument("--rounds", type=int, default=small(15, 1))
+    parser.add_argument("--stored", type=int, default=small(1_000_000, 200), help="steps of the run into a store")
     given = parser.parse_args()
     print("| reading | most | top: ns, of the run | sleigh: ns, of the run |\n| --- | ---: | ---: | ---: |")
     taken: dict[str, dict[str, list[float]]] = {}
@@ -100,6 +129,10 @@ def main() -> None:
             texts.append(f"{statistics.median(times) / given.steps * 1e9:.1f}, {ratio:.2f}")
             too_long += [f"{name} of the {body}: {ratio:.2f}"] if ratio > MOST.get(name, 1.0) else []
         print(f"| {name} | {MOST.get(name, 1.0)} | {' | '.join(texts)} |")
+    for body in BODIES:
+        ratio = stored(body, given.stored, max(1, given.rounds // 3))
+        print(f"a store of {given.stored} steps of the {body}: {ratio:.2f} times zarr alone")
+        too_long += [f"the store of the {body}: {ratio:.2f}"] if ratio > MOST_OF_ZARR else []
     if too_long and not SMOKE:
         raise SystemExit("takes too long: " + "; ".join(too_long))
 

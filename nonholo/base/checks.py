@@ -118,14 +118,20 @@ def _too_large(where: str, value: np.ndarray, remedy: str) -> ValueError:
 
 def is_moderate(value: np.ndarray, most: float) -> bool:
     """Tell whether every number is finite and at most as large."""
-    if value.flags.c_contiguous and float(np.vdot(value, value).real) <= _LARGEST_SUM:
-        return True  # by one sum of squares, without copies
-    return bool((np.isfinite(value) & (np.abs(value) <= most)).all())
+    return _is_moderate(value) or bool((np.isfinite(value) & (np.abs(value) <= most)).all())
 
 
 def _is_moderate(value: np.ndarray) -> bool:
-    """Tell by one sum of squares that no number lies beyond the largest; False says nothing."""
-    return value.size < _FEW and float(np.vdot(value, value).real) <= _LARGEST_SUM
+    """Tell by one sum of squares, without copies, that no number lies beyond the largest; False says nothing.
+
+    Of many numbers it takes one thread: BLAS would wake all.
+    """
+    if value.size < _FEW:
+        return float(np.vdot(value, value).real) <= _LARGEST_SUM
+    if not value.flags.c_contiguous:  # one number that is repeated without end, among others
+        return False
+    numbers = value.reshape(-1)
+    return float(np.einsum("i,i->", numbers, numbers.conj()).real) <= _LARGEST_SUM
 
 
 def _check_finite(where: str, value: np.ndarray, remedy: str) -> None:

@@ -91,6 +91,10 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
         """Return the compact pose of the group that is nearest to one in which rounding errors have gathered."""
         return self.pose_from_matrix(self.matrix_from_pose(pose))
 
+    def pose_product(self, pose: Float[Array, "... size"], other: Float[Array, "... size"]) -> Float[Array, "... size"]:
+        """Return the compact pose of the product g k of the elements with two compact poses."""
+        return self.pose_from_matrix(self.matrix_from_pose(pose) @ self.matrix_from_pose(other))
+
     @abc.abstractmethod
     def pose_rate(self, pose: Float[Array, "... size"], x: Float[Array, "... dim"]) -> Float[Array, "... size"]:
         """Return the rate of change of a compact pose that moves with the body velocity `x`."""

@@ -34,3 +34,13 @@ def quaternion_from_matrix(R: Float[Array, "... 3 3"]) -> Float[Array, "... 4"]:
     best = xp.argmax(products[::5], axis=0)
     q = normalized(products.reshape(4, 4, -1)[best, :, xp.arange(len(best))])
     return xp.where(q[:, :1] < 0, -q, q).reshape(*R.shape[:-2], 4)
+
+
+def quaternion_product(p: Float[Array, "... 4"], q: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
+    """Return Hamilton's product, divided by its length, its scalar non-negative: first the rotation q, then p."""
+    xp = p.__array_namespace__()
+    (a, b, c, d), (w, x, y, z) = (tuple(each[..., i] for i in range(4)) for each in (p, q))
+    scalar = a * w - b * x - c * y - d * z
+    vector = a * x + b * w + c * z - d * y, a * y - b * z + c * w + d * x, a * z + b * y - c * x + d * w
+    product = normalized(xp.stack([scalar, *vector], axis=-1))
+    return xp.where(product[..., :1] < 0, -product, product)

@@ -85,6 +85,13 @@ class SpecialEuclidean2(AbstractRodriguesGroup):
         length = xp.sqrt(pose[..., :1] * pose[..., :1] + pose[..., 1:2] * pose[..., 1:2])
         return xp.concatenate([pose[..., :2] / length, pose[..., 2:]], axis=-1)
 
+    def pose_product(self, pose: Float[Array, "... 4"], other: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
+        """Return (cos, sin, x, y) of the product: headings add, and the first one turns the second position."""
+        poses = self.normalize_pose(pose), self.normalize_pose(other)
+        xp = pose.__array_namespace__()
+        (c, s, x, y), (d, t, u, v) = (tuple(each[..., i] for i in range(4)) for each in poses)
+        return xp.stack([c * d - s * t, s * d + c * t, c * u - s * v + x, s * u + c * v + y], axis=-1)
+
     def pose_rate(self, pose: Float[Array, "... 4"], x: Float[Array, "... 3"]) -> Float[Array, "... 4"]:
         """Return the rates of (cos, sin, x, y): the body velocity turned by the heading."""
         pose, x = self._pose(pose), self._vector(x)

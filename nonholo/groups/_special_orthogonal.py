@@ -8,7 +8,7 @@ import numpy as np
 from nonholo.base.types import Array, Float
 from nonholo.groups import _rotations
 from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of
-from nonholo.groups._quaternion import matrix_from_quaternion, normalized, quaternion_from_matrix
+from nonholo.groups._quaternion import matrix_from_quaternion, normalized, quaternion_from_matrix, quaternion_product
 from nonholo.groups._rodrigues import AbstractRodriguesGroup
 
 
@@ -75,6 +75,10 @@ class SpecialOrthogonal3(AbstractRodriguesGroup):
     def normalize_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
         """Return the unit quaternion."""
         return normalized(self._pose(pose))
+
+    def pose_product(self, pose: Float[Array, "... 4"], other: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
+        """Return Hamilton's product of two quaternions as a unit quaternion, its scalar non-negative."""
+        return quaternion_product(self._pose(pose), self._pose(other))
 
     def pose_rate(self, pose: Float[Array, "... 4"], x: Float[Array, "... 3"]) -> Float[Array, "... 4"]:
         """Return half the Hamilton product of the quaternion with the angular velocity."""

@@ -43,7 +43,8 @@ def poses(system: System, canonical_pose: Float[np.ndarray, "K size"]) -> Float[
     """
     if is_own_frame(system):
         return canonical_pose
-    return system.group.pose_from_matrix(configurations(system, canonical_pose))
+    group = system.group
+    return group.pose_product(canonical_pose, group.pose_from_matrix(group.inverse(system.frame)))
 
 
 def is_own_frame(system: System) -> bool:

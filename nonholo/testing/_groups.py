@@ -257,6 +257,12 @@ def _poses(s: GroupSamples) -> float:
     return gap(s.group.matrix_from_pose(s.group.pose_from_matrix(s.drawn)), s.drawn)
 
 
+def _pose_product(s: GroupSamples) -> float:
+    group, others = s.group, s.drawn[::-1]
+    product = group.pose_product(group.pose_from_matrix(s.drawn), group.pose_from_matrix(others))
+    return gap(group.matrix_from_pose(product), s.drawn @ others)
+
+
 def _normalize(s: GroupSamples) -> float:
     pose = s.group.pose_from_matrix(s.drawn)
     return gap(s.group.normalize_pose(pose), pose)
@@ -326,6 +332,12 @@ MAPS = (
     # eigenvalues of defective matrices are found to the root of rounding only
     Check("angle", "angle(x) = largest imaginary part of an eigenvalue of hat(x)", 1e-7, _angle),
     Check("poses", "matrix_from_pose(pose_from_matrix(g)) = g", 1e-13, _poses),
+    Check(
+        "pose_product",
+        "matrix_from_pose(pose_product(p, q)) = matrix_from_pose(p) matrix_from_pose(q)",
+        1e-12,
+        _pose_product,
+    ),
     Check("normalize_pose", "normalize_pose keeps poses of the group", 1e-13, _normalize),
     Check("pose_rate", "d/dt matrix_from_pose(pose + t pose_rate) = g hat(x)", 1e-8, _pose_rate),
     Check("broadcasting", "leading axes are mapped over", 1e-12, _broadcast),

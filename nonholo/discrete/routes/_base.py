@@ -373,17 +373,17 @@ class Axes:
 
     def poses(self, canonical: np.ndarray) -> np.ndarray:
         """Return compact poses of the kernel's axes."""
-        if self.frame is None:
-            return canonical
-        return self.group.pose_from_matrix(self.turned(self.group.matrix_from_pose(canonical)))
+        return canonical if self.frame is None else self.group.pose_product(canonical, self._turns[0])
 
     def canonical_poses(self, poses: np.ndarray) -> np.ndarray:
         """Return compact poses of the canonical axes."""
-        return (
-            poses
-            if self.frame is None
-            else self.group.pose_from_matrix(self.turned_back(self.group.matrix_from_pose(poses)))
-        )
+        return poses if self.frame is None else self.group.pose_product(poses, self._turns[1])
+
+    @functools.cached_property
+    def _turns(self) -> tuple[np.ndarray, np.ndarray]:
+        """The frame and its inverse as compact poses."""
+        frame = np.asarray(self.frame)
+        return self.group.pose_from_matrix(frame), self.group.pose_from_matrix(self.group.inverse(frame))
 
     @functools.cached_property
     def _inverse(self) -> np.ndarray:

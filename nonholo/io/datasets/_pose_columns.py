@@ -9,7 +9,7 @@ import numpy as np
 from nonholo.base.types import Float
 from nonholo.groups import AbstractMatrixGroup, quaternion_from_matrix
 from nonholo.io._descriptions import describe_group
-from nonholo.orbit import configurations, unwrapped
+from nonholo.orbit import configurations, poses, unwrapped
 
 HEADING = ["theta"]
 QUATERNION = ["qw", "qx", "qy", "qz"]
@@ -58,11 +58,16 @@ def rows_of(
     n, first = len(position), 0
     for time, pose, headings in _headed(stretches, before) if turn == HEADING else stretches:
         kept = slice(-first % every, None, every)
-        g = pose[kept] if pose.ndim == 3 else configurations(system, pose[kept])
-        turned = headings[kept, None] if headings is not None else _turned(g, turn)
+        compact = pose.shape[1:] == (4,) and turn in (HEADING, QUATERNION)  # a turn, then a position
+        if compact:
+            g = poses(system, pose[kept])
+        else:
+            g = pose[kept] if pose.ndim == 3 else configurations(system, pose[kept])
+        place = g[:, 4 - n :] if compact else g[:, :n, n]
+        turned = np.asarray(headings)[kept, None] if turn == HEADING else g if compact else _turned(g, turn)
         if turn == QUATERNION:
             turned = continued(turned, None if before is None else before[:, -4:])
-        rows = np.concatenate([time[kept, None], g[:, :n, n], turned], axis=1)
+        rows = np.concatenate([time[kept, None], place, turned], axis=1)
         first, before = first + len(time), rows[-1:] if len(rows) else before
         yield rows
 
