@@ -125,7 +125,7 @@ def is_moderate(value: np.ndarray, most: float) -> bool:
 
 def _is_moderate(value: np.ndarray) -> bool:
     """Tell by one sum of squares that no number lies beyond the largest; False says nothing."""
-    return value.size < _FEW and float(np.vdot(value, value).real) <= _LARGEST_SUM
+    return (value.size < _FEW or value.flags.c_contiguous) and float(np.vdot(value, value).real) <= _LARGEST_SUM
 
 
 def _check_finite(where: str, value: np.ndarray, remedy: str) -> None:

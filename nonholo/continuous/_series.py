@@ -79,7 +79,7 @@ class Series:
         """Return momenta, poses and headings."""
         group, end = self.group, rows.shape[1] - self.head
         pose_end = end - (group == PLANE)
-        found = rows[:, :pose_end]
+        found = np.ascontiguousarray(rows[:, :pose_end])
         matrices = found.reshape(-1, *group.identity.shape) if not self.compact else None
         poses = group.normalize_pose(found if matrices is None else group.pose_from_matrix(matrices))
         momenta = (

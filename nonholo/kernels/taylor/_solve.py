@@ -18,7 +18,7 @@ from nonholo.kernels.lanes import EIGHT, ONE, load, spread, store
 from nonholo.kernels.taylor._expansion import Quadratic, Room, expand, expansion_of, kept_room
 from nonholo.kernels.taylor._steps import order_for, write_steps
 
-_STEPS = 2048  # between two looks at the keyboard
+_FIRST, _STEPS = 64, 2048  # between two looks at the keyboard: at first, and at most
 _NUMBERS = 1 << 24  # in the nodes of a solve, 128 MiB
 _SMALLEST_STEP = 1e-13  # of an interval between requested times; below it a solve is given up
 
@@ -35,12 +35,12 @@ def solve_series(
     rows[0] = start
     state = np.zeros((2, len(start) + 1))
     state[0, :-1], state[0, -1] = start[f.order], times[0]
-    block = max(16, min(_STEPS, _NUMBERS // (8 * state.size)))
-    nodes: list[np.ndarray] = []
+    longest = max(16, min(_STEPS, _NUMBERS // (8 * state.size)))
+    block, nodes = min(_FIRST, longest), []
     reached, going, stride, taken, kept = 1, True, 1, 0, 0
     room, expansion = kept_room(f, order_for(tolerance)), expansion_of(f, ONE)
     while going and reached < len(times):
-        passed = np.empty((block, *state.shape))
+        passed, block = np.empty((block, *state.shape)), min(8 * block, longest)
         reached, steps, going = advance(f, times, tolerance, reached, state, rows, passed, room, expansion)
         nodes.append(passed[-taken % stride : steps : stride].copy())
         taken, kept = taken + steps, kept + len(nodes[-1])
@@ -49,7 +49,7 @@ def solve_series(
             kept = len(nodes[0])
         come = max(abs(state[0, -1] - times[0]), abs(times[reached - 1] - times[0]))
         tell(come, abs(times[-1] - times[0]))
-    return rows[:reached], np.concatenate(nodes) if nodes else state[None]
+    return rows[:reached], np.concatenate(nodes) if len(nodes) > 1 else nodes[0] if nodes else state[None]
 
 
 def revisit_series(
