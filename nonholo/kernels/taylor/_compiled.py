@@ -9,26 +9,36 @@ import numpy as np
 from nonholo.base.compiled import compiled_in, library_of_kernels, way_of_kernels
 
 EMITTER = "nonholo.kernels.taylor.emission.code_of"
-_EXPANSION = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 3, ctypes.c_int64)
+_EXPANSION = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 5, ctypes.c_int64)
+_MOST = 8  # velocities, if they take a division
 
 
-def call(address: int, velocities: np.ndarray, factors: np.ndarray, series: np.ndarray) -> None:
-    """Write the coefficients after those of the state at the beginning, by the code at an address."""
-    _EXPANSION(address)(velocities.ctypes.data, factors.ctypes.data, series.ctypes.data, len(series) - 1)
+def call(address: int, arrays: tuple[np.ndarray, ...], order: int) -> None:
+    """Write coefficients up to an order after those of order 0, by the code at an address.
+
+    Args:
+        address: Of the code.
+        arrays: V or the inverse of B_0; the factors of terms; the coefficients of z; those of B, if there is one, and
+            room for its columns.
+        order: The last one.
+    """
+    _EXPANSION(address)(*(each.ctypes.data for each in arrays), order)
 
 
 compiled_in("nonholo.kernels.taylor.addresses")
 
 
-def structure_of(lanes: int, velocities: int, *arrays: Iterable[int]) -> str:
-    """Return what code depends on: how many motions and velocities there are, and `rows`, `first` and `found`."""
-    return ";".join(",".join(map(str, part)) for part in ((lanes, velocities), *arrays))
+def structure_of(counts: tuple[int, int, int], *arrays: Iterable[int]) -> str:
+    """Return what code depends on: counts of motions, velocities and numbers of J; `rows`, `first` and `found`."""
+    return ";".join(",".join(map(str, part)) for part in (counts, *arrays))
 
 
 @functools.cache
-def address_of(lanes: int, velocities: int, *arrays: bytes) -> int:
+def address_of(counts: tuple[int, int, int], *arrays: bytes) -> int:
     """Return the address of the expansion of a structure, from the library or compiled now; 0 if there is none."""
-    structure = structure_of(lanes, velocities, *(np.frombuffer(each, dtype=np.int64) for each in arrays))
+    if counts[2] and counts[1] > _MOST:
+        return 0
+    structure = structure_of(counts, *(np.frombuffer(each, dtype=np.int64) for each in arrays))
     library, way = library_of_kernels(), way_of_kernels()
     address = library.address(EMITTER, structure) if library else 0
     if address or way == "python":

@@ -62,7 +62,7 @@ class Room(NamedTuple):
     Attributes:
         series: Coefficients of z, (order + 1, width).
         sums: Coefficients of the products, and of w behind them, (1, 8 R + k L).
-        inertia: Coefficients of B, (order, k, k).
+        inertia: Coefficients of B, column by column, (order + 1, k, at least eight).
         matrix: B, then right sides, (k, k).
         inverse: Of B, (k, k).
         change: A sum of a series, (1, width).
@@ -102,7 +102,7 @@ def _room(sizes: tuple[int, ...], L: int) -> Room:
     return Room(
         _aligned(order + 1, width),
         _aligned(1, len(EIGHT) * products + k * L),
-        np.zeros((order, forms, forms)),
+        np.zeros((order + 1, forms, max(forms, len(EIGHT)))),
         np.zeros((forms, forms)),
         np.zeros((forms, forms)),
         np.zeros((1, width)),
@@ -139,9 +139,8 @@ def sparse_products(
 
 def expansion_of(f: Quadratic, lanes: tuple[int, ...]) -> int:
     """Return the address of the code that is compiled for the structure of equations; 0 if there is none."""
-    if len(f.forms) > 0:
-        return 0
-    return address_of(len(lanes), len(f.velocities), f.rows.tobytes(), f.first.tobytes(), f.found.tobytes())
+    counts = len(lanes), len(f.velocities), f.forms.size and f.tensor.size
+    return address_of(counts, f.rows.tobytes(), f.first.tobytes(), f.found.tobytes())
 
 
 @scalar
@@ -153,7 +152,9 @@ def expand(f: Quadratic, expansion: int, state: np.ndarray, room: Room, lanes: t
     for m in range(len(f.blocks)):
         store(series, 0, before + m, lanes, load(state, 0, m, lanes))
     if expansion != 0:
-        call(expansion, f.velocities, f.factors, series)
+        _write_velocities(f, 0, room, lanes)
+        matrix = room.inverse if len(f.forms) > 0 else f.velocities
+        call(expansion, (matrix, f.factors, series, f.forms, room.inertia), len(series) - 1)
         return
     for j in range(len(series) - 1):
         _write_velocities(f, j, room, lanes)
@@ -206,9 +207,9 @@ def _divide(f: Any, order: Any, room: Any, lanes: Any) -> Any:
     before = k + len(f.blocks) - f.forms.shape[2]
     for a in range(k):
         for b in range(k):
-            inertia[order, a, b] = _entry(f.forms, a, b, series, order, before)
+            inertia[order, b, a] = _entry(f.forms, a, b, series, order, before)
             if order == 0:
-                matrix[a, b], inverse[a, b] = inertia[0, a, b], 1.0 if a == b else 0.0
+                matrix[a, b], inverse[a, b] = inertia[0, b, a], 1.0 if a == b else 0.0
     if order == 0:
         eliminate(matrix, inverse)
     for a in range(k):
@@ -235,10 +236,10 @@ def _earlier(inertia: np.ndarray, series: np.ndarray, a: int, order: int) -> flo
     even, odd = 0.0, 0.0
     for b in range(inertia.shape[1]):
         for i in range(1, order, 2):
-            odd += inertia[i, a, b] * series[order - i, b]
-            even += inertia[i + 1, a, b] * series[order - i - 1, b]
+            odd += inertia[i, b, a] * series[order - i, b]
+            even += inertia[i + 1, b, a] * series[order - i - 1, b]
         if order % 2 == 1:
-            odd += inertia[order, a, b] * series[0, b]
+            odd += inertia[order, b, a] * series[0, b]
     return odd + even
 
 

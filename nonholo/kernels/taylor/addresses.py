@@ -11,19 +11,20 @@ from nonholo.kernels.taylor._compiled import call
 
 
 @intrinsic
-def _call(_: Any, address: Any, velocities: Any, factors: Any, series: Any) -> Any:
+def _call(_: Any, address: Any, arrays: Any, order: Any) -> Any:
     def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        pairs = zip(signature.args[1:], arguments[1:], strict=True)
-        arrays = [context.make_array(kind)(context, builder, array) for kind, array in pairs]
-        rows, order = builder.extract_value(arrays[2].shape, 0), ir.IntType(64)
-        function = ir.FunctionType(ir.VoidType(), [arrays[0].data.type] * 3 + [order]).as_pointer()
-        data = [*(array.data for array in arrays), builder.sub(rows, ir.Constant(order, 1))]
+        parts = enumerate(signature.args[1].types)
+        arrays = (
+            context.make_array(kind)(context, builder, builder.extract_value(arguments[1], n)) for n, kind in parts
+        )
+        data = [*(array.data for array in arrays), arguments[2]]
+        function = ir.FunctionType(ir.VoidType(), [each.type for each in data]).as_pointer()
         builder.call(builder.inttoptr(arguments[0], function), data)
         return context.get_dummy_value()
 
-    return types.void(address, velocities, factors, series), code
+    return types.void(address, arrays, order), code
 
 
 @overload(call, jit_options=INLINED, strict=False)
-def _compiled_call(address: Any, velocities: Any, factors: Any, series: Any) -> Any:
-    return lambda address, velocities, factors, series: _call(address, velocities, factors, series)  # pyright: ignore
+def _compiled_call(address: Any, arrays: Any, order: Any) -> Any:
+    return lambda address, arrays, order: _call(address, arrays, order)  # pyright: ignore
