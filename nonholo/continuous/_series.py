@@ -79,7 +79,7 @@ class Series:
         """Return momenta, poses and headings."""
         group, end = self.group, rows.shape[1] - self.head
         pose_end = end - (group == PLANE)
-        found = rows[:, :pose_end]
+        found = np.ascontiguousarray(rows[:, :pose_end])
         matrices = found.reshape(-1, *group.identity.shape) if not self.compact else None
         poses = group.normalize_pose(found if matrices is None else group.pose_from_matrix(matrices))
         momenta = (
@@ -219,16 +219,16 @@ def assembled(velocities: np.ndarray, rates: Rates, torques: np.ndarray) -> Quad
     (c, i), (d, o, n) = np.nonzero(lone), np.nonzero(torques)
     places = np.arange(before) if not head else _side_by_side(k, before, a, b)
     b, m, i = (np.argsort(places)[x] for x in (b, m, i))
-    # places in z: 1, the velocities, the state
-    left, right = np.concatenate([c, a, d]) + 1, np.concatenate([np.zeros_like(c), b + k + 1, o + 1])
+    # places in z: the velocities, the state
+    products, found = sparse_products(np.concatenate([a, d]), np.concatenate([b + k, o]), 8)
+    found = np.concatenate([c + 8 * products.shape[1], found])
     targets, factors = np.concatenate([i, m, n + before]), np.concatenate([lone[c, i], values, torques[d, o, n]])
     rows = np.argsort(targets, kind="stable")
-    products, found = sparse_products(left[rows], right[rows], 8)
     first = np.searchsorted(targets[rows], np.arange(before + head + 1))
     momenta = np.arange(before, before + head)  # all in one block
     edges = np.stack([np.concatenate([momenta, b]), np.concatenate([np.roll(momenta, 1), m])])
     order = np.append(places, momenta)
-    sparse = products, first, found, factors[None, rows], order
+    sparse = products, first, found[rows], factors[None, rows], order
     nothing = np.zeros(0), np.zeros((0, 0)), np.zeros(0)
     return Quadratic(velocities, *sparse, *_blocks(before + head, edges, i), *nothing)
 

@@ -1,18 +1,13 @@
 """Unit quaternions, scalar first, Hamilton's product: the compact pose of a rotation of space."""
 
+from nonholo.base.numerics import of_length_one
 from nonholo.base.types import Array, Float
-
-
-def normalized(q: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
-    """Return a quaternion divided by its length."""
-    xp = q.__array_namespace__()
-    return q / xp.sqrt((q * q).sum(axis=-1, keepdims=True))
 
 
 def matrix_from_quaternion(q: Float[Array, "... 4"]) -> Float[Array, "... 3 3"]:
     """Return the active rotation matrix of a quaternion, which is normalized first."""
     xp = q.__array_namespace__()
-    unit = normalized(q)
+    unit = of_length_one(q, 4)
     w, x, y, z = (unit[..., i] for i in range(4))
     xx, yy, zz, xy, xz, yz, wx, wy, wz = x * x, y * y, z * z, x * y, x * z, y * z, w * x, w * y, w * z
     first = 1 - 2 * (yy + zz), 2 * (xy - wz), 2 * (xz + wy)
@@ -32,7 +27,7 @@ def quaternion_from_matrix(R: Float[Array, "... 3 3"]) -> Float[Array, "... 4"]:
     ww, xx, yy, zz = more + e + i, more - e - i, less + e - i, less - e + i
     products = xp.asarray([ww, wx, wy, wz, wx, xx, xy, xz, wy, xy, yy, yz, wz, xz, yz, zz])
     best = xp.argmax(products[::5], axis=0)
-    q = normalized(products.reshape(4, 4, -1)[best, :, xp.arange(len(best))])
+    q = of_length_one(products.reshape(4, 4, -1)[best, :, xp.arange(len(best))], 4)
     return xp.where(q[:, :1] < 0, -q, q).reshape(*R.shape[:-2], 4)
 
 
@@ -42,5 +37,5 @@ def quaternion_product(p: Float[Array, "... 4"], q: Float[Array, "... 4"]) -> Fl
     (a, b, c, d), (w, x, y, z) = (tuple(each[..., i] for i in range(4)) for each in (p, q))
     scalar = a * w - b * x - c * y - d * z
     vector = a * x + b * w + c * z - d * y, a * y - b * z + c * w + d * x, a * z + b * y - c * x + d * w
-    product = normalized(xp.stack([scalar, *vector], axis=-1))
+    product = of_length_one(xp.stack([scalar, *vector], axis=-1), 4)
     return xp.where(product[..., :1] < 0, -product, product)

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo.base.numerics import half_cotangent
+from nonholo.base.numerics import half_cotangent, of_length_one
 from nonholo.base.types import Array, Float
 from nonholo.groups import _rotations
 from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of
@@ -80,10 +80,7 @@ class SpecialEuclidean2(AbstractRodriguesGroup):
 
     def normalize_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
         """Return the pose with cos^2 + sin^2 = 1."""
-        pose = self._pose(pose)
-        xp = pose.__array_namespace__()
-        length = xp.sqrt(pose[..., :1] * pose[..., :1] + pose[..., 1:2] * pose[..., 1:2])
-        return xp.concatenate([pose[..., :2] / length, pose[..., 2:]], axis=-1)
+        return of_length_one(self._pose(pose), 2)
 
     def pose_product(self, pose: Float[Array, "... 4"], other: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
         """Return (cos, sin, x, y) of the product: headings add, and the first one turns the second position."""

@@ -5,10 +5,11 @@ from typing import ClassVar
 
 import numpy as np
 
+from nonholo.base.numerics import of_length_one
 from nonholo.base.types import Array, Float
 from nonholo.groups import _rotations
 from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of
-from nonholo.groups._quaternion import matrix_from_quaternion, normalized, quaternion_from_matrix, quaternion_product
+from nonholo.groups._quaternion import matrix_from_quaternion, quaternion_from_matrix, quaternion_product
 from nonholo.groups._rodrigues import AbstractRodriguesGroup
 
 
@@ -74,7 +75,7 @@ class SpecialOrthogonal3(AbstractRodriguesGroup):
 
     def normalize_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
         """Return the unit quaternion."""
-        return normalized(self._pose(pose))
+        return of_length_one(self._pose(pose), 4)
 
     def pose_product(self, pose: Float[Array, "... 4"], other: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
         """Return Hamilton's product of two quaternions as a unit quaternion, its scalar non-negative."""

@@ -49,9 +49,9 @@ def _rate(f: Quadratic, x: np.ndarray) -> np.ndarray:
         w = np.linalg.solve(f.forms @ x[-f.tensor.size :], f.momentum)
     else:
         w = f.velocities @ x[len(x) - len(f.velocities) :]
-    z = np.concatenate([[1.0], w, x[f.order]])
-    (left, eight), right = f.rows[:, f.found // 8], f.found % 8
-    terms = f.factors[0] * z[left] * z[8 * eight + right]
+    z = np.append(np.concatenate([w, x[f.order]]), np.zeros(7))
+    (left, eight), right = f.rows[:, :, None], np.arange(8)
+    terms = f.factors[0] * np.append(z[left] * z[np.minimum(8 * eight + right, len(z) - 1)], w)[f.found]
     rates = [terms[begin:end].sum() for begin, end in itertools.pairwise(f.first)]
     return np.array(rates)[np.argsort(f.order)]
 

@@ -276,14 +276,19 @@ class Library:
     def entry(self, kernel: Kernel, key: str) -> Entry | None:
         """Return what runs a kernel for arguments of a kind; None if the library does not have it."""
         name = symbol_of(f"{kernel.__module__}.{kernel.__qualname__}", key)
-        for variant in self._variants:
-            try:
-                function = self._code[name + variant]
-            except AttributeError:
-                continue
-            returns = ctypes.string_at(ctypes.addressof(ctypes.c_char.in_dll(self._code, f"{name}_returns")))
-            return Entry(function, key, returns.decode(), self._release)
-        return None
+        function = self._function(name)
+        if function is None:
+            return None
+        returns = ctypes.string_at(ctypes.addressof(ctypes.c_char.in_dll(self._code, f"{name}_returns")))
+        return Entry(function, key, returns.decode(), self._release)
+
+    def address(self, name: str, key: str) -> int:
+        """Return the address of what an emitter, named by its place, wrote for a key; 0 if the library has it not."""
+        return ctypes.cast(self._function(symbol_of(name, key)), ctypes.c_void_p).value or 0
+
+    def _function(self, symbol: str) -> Any:
+        """Return the variant of a function that is best here, if any."""
+        return next(filter(None, (getattr(self._code, symbol + variant, None) for variant in self._variants)), None)
 
 
 def symbol_of(name: str, key: str) -> str:

@@ -1,7 +1,8 @@
 r"""The kernels compiled ahead: a library for a processor, for arguments of known kinds.
 
 `ahead.txt` names them, a kernel and the kinds of its arguments a line, as `nonholo.base.compiled.spread` gives them.
-numba types and lowers each as it does for a process of its own; llvmlite makes objects of that, a linker a library.
+numba types and lowers each as it does for a process of its own. Or a line names a function that writes LLVM code, and
+what for. llvmlite makes objects of that, a linker a library.
 Arithmetic is strict everywhere, so the numbers are the same to the last bit.
 
     python -m nonholo.base.compiled.build FOLDER
@@ -42,7 +43,7 @@ _LETTERS = {kind: letter for letter, kind in _KINDS.items()}
 _FUNCTION = compiled.FUNCTION(0)  # one of the kind that kernels call
 _IS_X86 = llvm.get_process_triple().startswith("x86")
 _PROCESSORS = {"": "x86-64", "_wide": "x86-64-v4"} if _IS_X86 else {"": "generic"}
-_WIDE = "ensemble"  # what is worth a second variant, for vectors of eight numbers
+_WIDE = "ensemble", "taylor"  # what is worth a second variant, for vectors of eight numbers
 _RUNTIME = Path(__file__).with_name("runtime.ll")
 _ENTRY = """
 declare void @abort() noreturn
@@ -212,12 +213,14 @@ def text_of(line: str) -> str:
     """Return the LLVM text of a line of the list."""
     name, key = line.split(" ")
     module, _, function = name.rpartition(".")
-    kernel = getattr(importlib.import_module(module), function)
+    kernel, symbol = getattr(importlib.import_module(module), function), compiled.symbol_of(name, key)
+    if not isinstance(kernel, compiled.Kernel):
+        return kernel(key, symbol)
     run, returns = flat(kernel, kind_of(iter(compiled.tokens(key)), _classes()))
     dispatcher: Any = numba.njit(nogil=True, error_model="numpy")(run)
     dispatcher.compile((_ADDRESS, _ADDRESS))
     (code,) = dispatcher.overloads.values()
-    text, symbol = for_any_machine(code.library.get_llvm_str()), compiled.symbol_of(name, key)
+    text = for_any_machine(code.library.get_llvm_str())
     names = {"symbol": symbol, "own": code.fndesc.llvm_func_name, "returns": returns[0], "length": len(returns[0]) + 1}
     return text + _ENTRY.format(**names)
 
@@ -226,7 +229,7 @@ def objects_of(line: str, folder: str) -> list[str]:
     """Compile a line of the list into objects in a folder; return their files."""
     text, symbol, files = text_of(line), compiled.symbol_of(*line.split(" ")), []
     for variant, processor in _PROCESSORS.items():
-        if variant and _WIDE not in line:
+        if variant and not any(room in line for room in _WIDE):
             continue
         file = Path(folder) / f"{symbol}{variant}.o"
         file.write_bytes(_object(text.replace(symbol, symbol + variant), processor, symbol))

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import llvmlite.binding as llvm
 
@@ -21,6 +22,32 @@ def machine_for(triple: str, processor: str, reloc: str) -> llvm.TargetMachine:
     return llvm.Target.from_triple(triple).create_target_machine(cpu=processor, opt=3, reloc=reloc)
 
 
+def compiled(text: str, name: str) -> int:
+    """Return the address of a function of LLVM text, compiled for this processor, which stays as long as the process.
+
+    Nothing in it is reordered or fused: as with numba, arithmetic is strict.
+    """
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    about = {"cpu": llvm.get_host_cpu_name(), "features": llvm.get_host_cpu_features().flatten(), "jit": True}
+    machine = llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine(**about)
+    code = llvm.parse_assembly(text)
+    _optimize(code, machine, 1)
+    engine = llvm.create_mcjit_compiler(code, machine)
+    engine.finalize_object()
+    _KEPT.append(engine)
+    return engine.get_function_address(name)
+
+
+_KEPT: list[Any] = []
+"""What owns the compiled functions."""
+
+
+def _optimize(code: llvm.ModuleRef, machine: llvm.TargetMachine, level: int) -> None:
+    passes = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=level))
+    passes.getModulePassManager().run(code, passes)
+
+
 def emitted(
     text: str, runtime: Path, machine: llvm.TargetMachine, layout: str, is_public: Callable[[str], bool]
 ) -> bytes:
@@ -31,6 +58,5 @@ def emitted(
     for item in (*code.functions, *code.global_variables):
         if not item.is_declaration and not is_public(item.name):
             item.linkage = "internal"
-    passes = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=2))
-    passes.getModulePassManager().run(code, passes)
+    _optimize(code, machine, 2)
     return machine.emit_object(code)

@@ -5,6 +5,7 @@ from nonholo.base.numerics._cubic import real_cubic_roots
 from nonholo.base.numerics._double_precision import double_precision, keep_programs
 from nonholo.base.numerics._eigenspaces import real_eigenspaces
 from nonholo.base.numerics._even import half_cotangent, sinc, versine
+from nonholo.base.numerics._lengths import of_length_one
 from nonholo.base.numerics._matrix_functions import (
     block_diagonal,
     cayley_increment,

@@ -1,9 +1,9 @@
 r"""Quadratic equations and the Taylor coefficients of their solutions.
 
-With velocities w the state x obeys $x_m' = \sum_q C_{mq}\,z_{a(q)}\,z_{b(q)}$, where z is (1, w, x) and a(q) the place
-of a velocity. If the constraint is fixed in the body, x ends with momenta r, and w = V r. If it is fixed in space, x
-ends with the inertia tensor $\mathbb{J}_g = g\mathbb{J}g^T$, and $B(\mathbb{J}_g)\,w = r$ with a linear map B and
-constant r: a division of series. Taylor coefficients of products are Cauchy products.
+With velocities w the state x obeys $x_m' = \sum_a c_{ma}\,w_a + \sum_q C_{mq}\,z_{a(q)}\,z_{b(q)}$, where z is (w, x)
+and a(q) the place of a velocity. If the constraint is fixed in the body, x ends with momenta r, and w = V r. If it is
+fixed in space, x ends with the inertia tensor $\mathbb{J}_g = g\mathbb{J}g^T$, and $B(\mathbb{J}_g)\,w = r$ with a
+linear map B and constant r: a division of series. Taylor coefficients of products are Cauchy products.
 
 A single motion has eight places of z side by side, several motions have one place of all of them; in both, the terms
 of a sum are added in the same order.
@@ -20,6 +20,7 @@ from nonholo.base.types import Int
 from nonholo.kernels._scalar import COMPILED, scalar
 from nonholo.kernels._small import eliminate
 from nonholo.kernels.lanes import EIGHT, load, spread, store
+from nonholo.kernels.taylor._compiled import address_of, call
 
 _SMALL = 128  # components, below which rooms are kept
 
@@ -31,9 +32,9 @@ class Quadratic(NamedTuple):
         velocities: V, (k, k L), for each of L lanes.
         rows: Which products are taken: the place in z of a velocity, and which eight places of z, or, of several
             motions side by side, which place, (2, R).
-        first: Where the terms of each row of C begin, and the last one ends, (size + 1,).
-        found: Which of the products each term needs, (Q,).
-        factors: The value of C in each term, (1, Q L).
+        first: Where the terms of each row of C and c begin, and the last one ends, (size + 1,).
+        found: Which of the products, or of the velocities behind them, each term needs, (Q,).
+        factors: The value of C or c in each term, (1, Q L).
         order: The component of the state of a solution that each component of x is, (size,).
         blocks: The block of each component of x, whose errors are measured together, (size,).
         closed: Whether nothing outside moves a block, (blocks,).
@@ -60,8 +61,8 @@ class Room(NamedTuple):
 
     Attributes:
         series: Coefficients of z, (order + 1, width).
-        sums: Coefficients of the products, (1, 8 R).
-        inertia: Coefficients of B, (order, k, k).
+        sums: Coefficients of the products, and of w behind them, (1, 8 R + k L).
+        inertia: Coefficients of B, column by column, (order + 1, k, at least eight).
         matrix: B, then right sides, (k, k).
         inverse: Of B, (k, k).
         change: A sum of a series, (1, width).
@@ -96,14 +97,12 @@ def _sizes(f: Quadratic, order: int) -> tuple[int, ...]:
 
 def _room(sizes: tuple[int, ...], L: int) -> Room:
     k, size, products, forms, blocks, order = sizes
-    places = 1 + k + size
+    places = k + size
     width = L * (places if L > 1 else places + -places % len(EIGHT))
-    series = _aligned(order + 1, width)
-    series[0, :L] = 1.0
     return Room(
-        series,
-        _aligned(1, len(EIGHT) * products),
-        np.zeros((order, forms, forms)),
+        _aligned(order + 1, width),
+        _aligned(1, len(EIGHT) * products + k * L),
+        np.zeros((order + 1, forms, max(forms, len(EIGHT)))),
         np.zeros((forms, forms)),
         np.zeros((forms, forms)),
         np.zeros((1, width)),
@@ -138,18 +137,31 @@ def sparse_products(
     return np.ascontiguousarray(rows), found.reshape(-1) * width + right % width
 
 
+def expansion_of(f: Quadratic, lanes: tuple[int, ...]) -> int:
+    """Return the address of the code that is compiled for the structure of equations; 0 if there is none."""
+    counts = len(lanes), len(f.velocities), f.forms.size and f.tensor.size
+    return address_of(counts, f.rows.tobytes(), f.first.tobytes(), f.found.tobytes())
+
+
 @scalar
-def expand(f: Quadratic, state: np.ndarray, room: Room, lanes: tuple[int, ...]) -> None:
-    """Write the Taylor coefficients of the solution from a state."""
+def expand(f: Quadratic, expansion: int, state: np.ndarray, room: Room, lanes: tuple[int, ...]) -> None:
+    """Write the Taylor coefficients of the solution from a state, by compiled code at an address, or if that is 0."""
     if len(lanes) == 1 and len(f.forms) > 0:
         _see_tensor(f.tensor, len(f.blocks) - f.tensor.size, state)
-    series, before = room.series, len(f.velocities) + 1
+    series, before = room.series, len(f.velocities)
     for m in range(len(f.blocks)):
         store(series, 0, before + m, lanes, load(state, 0, m, lanes))
+    if expansion != 0:
+        _write_velocities(f, 0, room, lanes)
+        matrix = room.inverse if len(f.forms) > 0 else f.velocities
+        call(expansion, (matrix, f.factors, series, f.forms, room.inertia), len(series) - 1)
+        return
     for j in range(len(series) - 1):
         _write_velocities(f, j, room, lanes)
         for q in range(f.rows.shape[1]):
             _convolve(f.rows, q, series, j, lanes, room.sums)
+        for a in range(before):
+            store(room.sums, 0, room.sums.shape[1] // len(lanes) - before + a, lanes, load(series, j, a, lanes))
         _collect(f.first, f.found, f.factors, room.sums, j, before, series, lanes)
 
 
@@ -181,23 +193,23 @@ def _choose(f: Any, order: Any, room: Any, lanes: Any) -> Any:
 
 def _apply(f: Any, order: Any, room: Any, lanes: Any) -> Any:
     """Write the coefficient of w = V r."""
-    V, series, k, before = f.velocities, room.series, len(f.velocities), 1 + len(f.blocks)
+    V, series, k, before = f.velocities, room.series, len(f.velocities), len(f.blocks)
     for a in range(k):
         velocity = spread(0.0, lanes)
         for i in range(k):
             velocity = velocity + load(V, a, i, lanes) * load(series, order, before + i, lanes)
-        store(series, order, 1 + a, lanes, velocity)
+        store(series, order, a, lanes, velocity)
 
 
 def _divide(f: Any, order: Any, room: Any, lanes: Any) -> Any:
     """Write the coefficient of w in B w = r: B_0 w_j = r_j - B_1 w_(j-1) - ... - B_j w_0, with the inverse of B_0."""
     k, inertia, series, matrix, inverse = len(f.momentum), room.inertia, room.series, room.matrix, room.inverse
-    before = 1 + k + len(f.blocks) - f.forms.shape[2]
+    before = k + len(f.blocks) - f.forms.shape[2]
     for a in range(k):
         for b in range(k):
-            inertia[order, a, b] = _entry(f.forms, a, b, series, order, before)
+            inertia[order, b, a] = _entry(f.forms, a, b, series, order, before)
             if order == 0:
-                matrix[a, b], inverse[a, b] = inertia[0, a, b], 1.0 if a == b else 0.0
+                matrix[a, b], inverse[a, b] = inertia[0, b, a], 1.0 if a == b else 0.0
     if order == 0:
         eliminate(matrix, inverse)
     for a in range(k):
@@ -206,7 +218,7 @@ def _divide(f: Any, order: Any, room: Any, lanes: Any) -> Any:
         total = 0.0
         for b in range(k):
             total += inverse[a, b] * matrix[0, b]
-        series[order, 1 + a] = total
+        series[order, a] = total
 
 
 @scalar
@@ -224,10 +236,10 @@ def _earlier(inertia: np.ndarray, series: np.ndarray, a: int, order: int) -> flo
     even, odd = 0.0, 0.0
     for b in range(inertia.shape[1]):
         for i in range(1, order, 2):
-            odd += inertia[i, a, b] * series[order - i, 1 + b]
-            even += inertia[i + 1, a, b] * series[order - i - 1, 1 + b]
+            odd += inertia[i, b, a] * series[order - i, b]
+            even += inertia[i + 1, b, a] * series[order - i - 1, b]
         if order % 2 == 1:
-            odd += inertia[order, a, b] * series[0, 1 + b]
+            odd += inertia[order, b, a] * series[0, b]
     return odd + even
 
 

@@ -13,7 +13,7 @@ from nonholo.base.types import Bool, Float, Int
 from nonholo.kernels._scalar import COMPILED, scalar
 from nonholo.kernels._small import assign
 from nonholo.kernels.lanes import EIGHT
-from nonholo.kernels.taylor._expansion import Quadratic, Room, expand, make_room, sparse_products
+from nonholo.kernels.taylor._expansion import Quadratic, Room, expand, expansion_of, make_room, sparse_products
 from nonholo.kernels.taylor._solve import move, read
 from nonholo.kernels.taylor._steps import order_for, write_steps
 
@@ -41,14 +41,24 @@ def solve_members(
         stop: Ends the work when it becomes true.
     """
     reached, L = np.zeros(len(starts), dtype=np.int64), len(EIGHT)
-    velocity, eight = f.rows[:, f.found // L]
-    rows_found = sparse_products(velocity, eight * L + f.found % L, 1)
-    wide = f._replace(velocities=np.tile(f.velocities, L), factors=np.tile(f.factors, L))
-    wide, size = wide._replace(rows=rows_found[0], found=rows_found[1]), starts.shape[1]
+    wide, size = f._replace(velocities=np.tile(f.velocities, L), factors=np.tile(f.factors, L)), starts.shape[1]
+    wide = wide._replace(**one_by_one(f.rows, f.found))
     room, state, ends = make_room(wide, order_for(tolerance), EIGHT), np.zeros((2, (size + 1) * L)), np.zeros(L)
-    members = np.full(L, -1)
-    _advance_members(wide, *numbers, starts, *times, tolerance, rows, reached, stop, (state, ends, members), room)
+    members, expansion = np.full(L, -1), expansion_of(wide, EIGHT)
+    _advance_members(
+        wide, *numbers, starts, *times, tolerance, rows, reached, stop, (state, ends, members), room, expansion
+    )
     return reached
+
+
+def one_by_one(rows: Int[np.ndarray, "2 R"], found: Int[np.ndarray, "Q"]) -> dict[str, Int[np.ndarray, "..."]]:
+    """Return the products one by one, not eight at a time."""
+    L, products = len(EIGHT), found < len(EIGHT) * rows.shape[1]
+    velocity, eight = rows[:, found[products] // L]
+    ones, places = sparse_products(velocity, eight * L + found[products] % L, 1)
+    of_ones = found - L * rows.shape[1] + ones.shape[1]
+    of_ones[products] = places
+    return {"rows": ones, "found": of_ones}
 
 
 @njit(nogil=True, _nrt=False, **COMPILED)
@@ -65,6 +75,7 @@ def _advance_members(
     stop: np.ndarray,
     lanes: tuple[np.ndarray, np.ndarray, np.ndarray],
     room: Room,
+    expansion: int,
 ) -> None:
     state, ends, members = lanes
     L, following, busy, looked = len(EIGHT), 0, True, 0
@@ -81,7 +92,7 @@ def _advance_members(
                 assign(rows[following, 0], starts[following])
                 reached[following], members[lane] = 1, following
                 following += 1
-        expand(f, state, room, EIGHT)
+        expand(f, expansion, state, room, EIGHT)
         write_steps(f, state, ends, tolerance, room, EIGHT)
         busy = following < len(starts)
         for lane in range(L):

@@ -15,10 +15,10 @@ from nonholo.base.types import Float
 from nonholo.kernels._scalar import COMPILED, scalar
 from nonholo.kernels._small import assign_rows
 from nonholo.kernels.lanes import EIGHT, ONE, load, spread, store
-from nonholo.kernels.taylor._expansion import Quadratic, Room, expand, kept_room
+from nonholo.kernels.taylor._expansion import Quadratic, Room, expand, expansion_of, kept_room
 from nonholo.kernels.taylor._steps import order_for, write_steps
 
-_STEPS = 2048  # between two looks at the keyboard
+_FIRST, _STEPS = 64, 2048  # between two looks at the keyboard: at first, and at most
 _NUMBERS = 1 << 24  # in the nodes of a solve, 128 MiB
 _SMALLEST_STEP = 1e-13  # of an interval between requested times; below it a solve is given up
 
@@ -35,13 +35,13 @@ def solve_series(
     rows[0] = start
     state = np.zeros((2, len(start) + 1))
     state[0, :-1], state[0, -1] = start[f.order], times[0]
-    block = max(16, min(_STEPS, _NUMBERS // (8 * state.size)))
-    nodes: list[np.ndarray] = []
+    longest = max(16, min(_STEPS, _NUMBERS // (8 * state.size)))
+    block, nodes = min(_FIRST, longest), []
     reached, going, stride, taken, kept = 1, True, 1, 0, 0
-    room = kept_room(f, order_for(tolerance))
+    room, expansion = kept_room(f, order_for(tolerance)), expansion_of(f, ONE)
     while going and reached < len(times):
-        passed = np.empty((block, *state.shape))
-        reached, steps, going = advance(f, times, tolerance, reached, state, rows, passed, room)
+        passed, block = np.empty((block, *state.shape)), min(8 * block, longest)
+        reached, steps, going = advance(f, times, tolerance, reached, state, rows, passed, room, expansion)
         nodes.append(passed[-taken % stride : steps : stride].copy())
         taken, kept = taken + steps, kept + len(nodes[-1])
         if kept * state.size > max(_NUMBERS, 2 * state.size):
@@ -49,7 +49,7 @@ def solve_series(
             kept = len(nodes[0])
         come = max(abs(state[0, -1] - times[0]), abs(times[reached - 1] - times[0]))
         tell(come, abs(times[-1] - times[0]))
-    return rows[:reached], np.concatenate(nodes) if nodes else state[None]
+    return rows[:reached], np.concatenate(nodes) if len(nodes) > 1 else nodes[0] if nodes else state[None]
 
 
 def revisit_series(
@@ -61,7 +61,7 @@ def revisit_series(
 ) -> Float[np.ndarray, "K size"]:
     """Return the states at times in the order of the nodes, the bits as if they had been requested with `end`."""
     rows, room = np.empty((len(times), len(f.blocks))), kept_room(f, order_for(tolerance))
-    revisit(f, nodes, times, np.array([end]), tolerance, nodes[0].copy(), rows, room)
+    revisit(f, nodes, times, np.array([end]), tolerance, nodes[0].copy(), rows, room, expansion_of(f, ONE))
     return rows
 
 
@@ -75,6 +75,7 @@ def advance(
     rows: np.ndarray,
     nodes: np.ndarray,
     room: Room,
+    expansion: int,
 ) -> tuple[int, int, bool]:
     """Take a step from each node, which is written; return how many rows and nodes are filled and whether one failed.
 
@@ -84,7 +85,7 @@ def advance(
     while at < len(nodes) and going and reached < len(times):
         assign_rows(nodes[at], state)
         at += 1
-        expand(f, state, room, ONE)
+        expand(f, expansion, state, room, ONE)
         write_steps(f, state, times[-1:], tolerance, room, ONE)
         reached, going = read(f, room, state, times, 1.0, reached, rows, 0, ONE)
         if going and reached < len(times):
@@ -103,6 +104,7 @@ def revisit(
     state: np.ndarray,
     rows: np.ndarray,
     room: Room,
+    expansion: int,
 ) -> None:
     """Write the states at times in the order of the nodes."""
     at, direction = -1, math.copysign(1.0, ends[0] - nodes[0, 0, -1])
@@ -113,12 +115,12 @@ def revisit(
         if after != at:
             at = after
             assign_rows(state, nodes[at])
-            expand(f, state, room, ONE)
+            expand(f, expansion, state, room, ONE)
             write_steps(f, state, ends, tolerance, room, ONE)
         while abs(since(state, times[i], 0, ONE)) > room.steps[0, 0]:  # nodes between were left out
             room.steps[0, 0] *= direction
             move(f, room, state, ONE)
-            expand(f, state, room, ONE)
+            expand(f, expansion, state, room, ONE)
             write_steps(f, state, ends, tolerance, room, ONE)
         evaluate(f, room, since(state, times[i], 0, ONE), state, rows[i], 0, ONE)
 
@@ -168,7 +170,7 @@ def evaluate(
     f: Quadratic, room: Room, time: float, state: np.ndarray, out: np.ndarray, lane: int, lanes: tuple[int, ...]
 ) -> None:
     """Write the state of a lane some time after the beginning of its step."""
-    L, before, series, change = len(lanes), len(f.velocities) + 1, room.series, room.change
+    L, before, series, change = len(lanes), len(f.velocities), room.series, room.change
     order = len(series) - 1
     if L == 1:
         _sum(series, before // len(EIGHT), spread(time, EIGHT), change)
@@ -185,7 +187,7 @@ def evaluate(
 @scalar
 def move(f: Quadratic, room: Room, state: np.ndarray, lanes: tuple[int, ...]) -> None:
     """Carry states and times of all lanes to the ends of their steps."""
-    size, before, change, step = len(f.blocks), len(f.velocities) + 1, room.change, load(room.steps, 0, 0, lanes)
+    size, before, change, step = len(f.blocks), len(f.velocities), room.change, load(room.steps, 0, 0, lanes)
     _sum(room.series, before // len(EIGHT) if len(lanes) == 1 else before, spread(step, EIGHT), change)
     for m in range(size):
         _add(state, m, load(change, 0, before + m, lanes), lanes)

@@ -38,10 +38,10 @@ def write_steps(
     _measure(f, room, lanes)
     for lane in range(L):
         left = ends[lane] - state[0, len(f.blocks) * L + lane]
-        step = _limited(closed, sizes, tolerance, 2 * abs(left), lane, L)
+        step, power = _limited(closed, sizes, tolerance, 2 * abs(left), lane, L), 0.0
         for block in range(len(closed)):
             if not closed[block]:
-                step = _repaired(sizes, block * L + lane, tolerance, step)
+                step, power = _repaired(sizes, block * L + lane, tolerance, step, power)
         room.steps[0, lane] = step
 
 
@@ -62,16 +62,22 @@ def _limited(closed: np.ndarray, sizes: np.ndarray, tolerance: float, step: floa
 def _measure(f: Quadratic, room: Room, lanes: tuple[int, ...]) -> None:
     """Write the sizes of each block's coefficients: of all orders where it is driven, else of those that are needed."""
     sizes, series, blocks, closed = room.sizes, room.series, f.blocks, f.closed
-    before, order = len(f.velocities) + 1, len(series) - 1
+    before, order = len(f.velocities), len(series) - 1
     for block in range(len(closed)):
-        for j in range(order + 1):
+        store(sizes, 0, block, lanes, spread(0.0, lanes))
+        for j in range(order - 1 if closed[block] else 1, order + 1):
             store(sizes, j, block, lanes, spread(0.0, lanes))
     for m in range(len(blocks)):
         block = blocks[m]
-        for j in range(order + 1):
-            if j == 0 or j >= order - 1 or not closed[block]:
-                size = load(sizes, j, block, lanes) + abs(load(series, j, before + m, lanes))
-                store(sizes, j, block, lanes, size)
+        _add_size(sizes, 0, block, series, before + m, lanes)
+        for j in range(order - 1 if closed[block] else 1, order + 1):
+            _add_size(sizes, j, block, series, before + m, lanes)
+
+
+@scalar
+def _add_size(sizes: np.ndarray, j: int, block: int, series: np.ndarray, at: int, lanes: tuple[int, ...]) -> None:
+    """Add the size of a component's coefficient to that of its block."""
+    store(sizes, j, block, lanes, load(sizes, j, block, lanes) + abs(load(series, j, at, lanes)))
 
 
 @scalar
@@ -89,19 +95,33 @@ def _late_share(closed: np.ndarray, sizes: np.ndarray, late: int, lane: int, L: 
 
 
 @scalar
-def _repaired(sizes: np.ndarray, at: int, tolerance: float, step: float) -> float:
-    """Return a step, shortened until the last terms of a driven block are within the tolerance of its largest one."""
+def _repaired(sizes: np.ndarray, at: int, tolerance: float, step: float, high: float) -> tuple[float, float]:
+    """Return a step, shortened until the last terms of a driven block are within the tolerance of its largest one.
+
+    The largest term is often an early one. `high` is the power of the step in the last but one, or 0, and comes back.
+    """
     order = len(sizes) - 1
     for _ in range(_REPAIRS):
-        power, largest, late = 1.0, 0.0, 0.0
+        high = _power(step, order - 1) if high == 0 else high
+        late = max(max(0.0, sizes[order - 1, at] * high), sizes[order, at] * (high * step))
+        power, largest = 1.0, 0.0
         for j in range(order + 1):
             largest = max(largest, sizes[j, at] * power)
-            late = max(late, sizes[j, at] * power) if j >= order - 1 else late
+            if late <= tolerance * largest:
+                return step, high
             power *= step
-        if late <= tolerance * largest:
-            return step
         step *= _ENOUGH * root(tolerance * largest / late, order) if math.isfinite(late) else _FAR
-    return np.nan
+        high = 0.0
+    return np.nan, 0.0
+
+
+@scalar
+def _power(step: float, exponent: int) -> float:
+    """Return a power, by one product after another."""
+    power = 1.0
+    for _ in range(exponent):
+        power *= step
+    return power
 
 
 @scalar
