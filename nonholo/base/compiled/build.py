@@ -291,9 +291,10 @@ def build(target: Path, *names: str) -> None:
         for name, folder in folders.items():
             file = folder / "release.o"
             file.write_bytes(_object("", name, _PROCESSORS.get(name, {"": "generic"})[""], "nonholo_release"))
-            part = target / f".{os.getpid()}.part"
+            made, part = folder / "library", target / f".{os.getpid()}.part"
             objects = map(str, sorted(folder.glob("*.o")))
-            subprocess.run([*linker(name), "-shared", "-o", str(part), *objects], check=True)  # noqa: S603
+            subprocess.run([*linker(name), "-shared", "-s", "-o", str(made), *objects], check=True)  # noqa: S603
+            shutil.copy(made, part)
             part.replace(target / name_of_library(name))  # in one go: runs from an old one continue
 
 

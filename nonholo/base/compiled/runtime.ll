@@ -1,5 +1,6 @@
 ; What code that numba compiled asks of its runtime: arrays, which are counted, and other shapes of arrays in C order.
 
+declare double @llvm.sqrt.f64(double)
 declare ptr @malloc(i64)
 declare void @free(ptr)
 
@@ -99,4 +100,9 @@ end:
 define ptr @NRT_MemInfo_alloc_safe_aligned(i64 %size, i32 %align) {
   %block = call ptr @NRT_MemInfo_alloc_aligned(i64 %size, i32 %align)
   ret ptr %block
+}
+
+define double @sqrt(double %x) {
+  %root = call double @llvm.sqrt.f64(double %x)
+  ret double %root
 }
