@@ -14,28 +14,39 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 _ROOT = Path(__file__).parent
 _NEEDS = ["jaxtyping>=0.3", "lazy-loader>=0.4", "numba>=0.62", "numpy>=2.1", "rich>=14"]
+_TAGS = {
+    "linux-x86_64": "manylinux_2_17_x86_64",
+    "linux-aarch64": "manylinux_2_17_aarch64",
+    "darwin-arm64": "macosx_11_0_arm64",
+    "windows-amd64": "win_amd64",
+}
 
 
 class KernelsHook(BuildHookInterface):  # pyright: ignore[reportMissingTypeArgument]
-    """Compile the kernels once for each text of them; what was compiled is kept in the user's cache."""
+    """Compile the kernels once for each text of them; what was compiled is kept in the user's cache.
+
+    The variable NONHOLO_MACHINE names the machine of a wheel, by default this one.
+    """
 
     PLUGIN_NAME = "custom"
 
     def dependencies(self) -> list[str]:
         """Return what compiles: nothing where the library of this text is there."""
-        if self.target_name == "sdist" or _library().place():
+        library, machine = _library(), _machine()
+        if self.target_name == "sdist" or library.place(library.name_of_library(machine)):
             return []
-        has_linker = any(map(shutil.which, ("ld", "ld.lld")))
-        return _NEEDS if has_linker else [*_NEEDS, "ziglang>=0.13"]
+        is_here = machine == library.this_machine() and machine.startswith("linux")
+        return _NEEDS if is_here and any(map(shutil.which, ("ld", "ld.lld"))) else [*_NEEDS, "ziglang>=0.13"]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Put the library beside the kernels, compiled now unless there is one."""
         if self.target_name != "wheel":
             return
-        library = _library()
-        folder, there = _ROOT / "nonholo" / "kernels", library.place()
+        library, machine = _library(), _machine()
+        name = library.name_of_library(machine)
+        folder, there = _ROOT / "nonholo" / "kernels", library.place(name)
         if there is None:
-            command = [sys.executable, "-m", "nonholo.base.compiled.build", str(folder)]
+            command = [sys.executable, "-m", "nonholo.base.compiled.build", str(folder), machine]
             environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(_ROOT), *_places()])}
             subprocess.run(command, env=environment, check=True, cwd=_ROOT)  # noqa: S603
         elif there.parent != folder:
@@ -46,8 +57,8 @@ class KernelsHook(BuildHookInterface):  # pyright: ignore[reportMissingTypeArgum
         with contextlib.suppress(OSError):  # a home that cannot be written
             _put(folder.glob("kernels-*"), library.cache_folder())
         if version != "editable":
-            build_data["artifacts"].append("nonholo/kernels/kernels-*")
-            build_data.update(pure_python=False, infer_tag=False, tag=f"py3-none-{_platform()}")
+            build_data["artifacts"] += [f"nonholo/kernels/{name}", "nonholo/kernels/kernels-*.wasm"]
+            build_data.update(pure_python=False, infer_tag=False, tag=f"py3-none-{_TAGS.get(machine) or _platform()}")
 
 
 def _library() -> Any:
@@ -56,6 +67,10 @@ def _library() -> Any:
     module = importlib.util.module_from_spec(cast(Any, spec))
     cast(Any, spec).loader.exec_module(module)
     return module
+
+
+def _machine() -> str:
+    return os.environ.get("NONHOLO_MACHINE") or _library().this_machine()
 
 
 def _places() -> list[str]:

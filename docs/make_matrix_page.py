@@ -7,6 +7,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tests"))
 from matrix.abilities import ABILITIES  # noqa: E402
+from matrix.alone import ALONE  # noqa: E402
 from matrix.kinds import KINDS  # noqa: E402
 from matrix.verdicts import CELLS, RULES, Rule  # noqa: E402
 
@@ -26,6 +27,7 @@ def page() -> str:
         head=" | ".join(_LETTERS.values()),
         line="---|" * len(_LETTERS),
         rows="\n".join(map(_row, ABILITIES)),
+        alone="\n".join(f"| {kind} | {' | '.join(ways)} |" for kind, ways in ALONE.items()),
         reasons="\n".join(f"{_number(rule)}. {rule.reason}" for rule in RULES),
     )
 
@@ -57,6 +59,16 @@ mathematics. A number in the table says why, below it.
 {rows}
 
 {reasons}
+
+## How fast without the extra `compile`
+
+How the kernels run in an installation of the core alone, on a machine whose wheel has the library of kernels: all
+from the library, or some as Python, about a hundred times slower, with the same bits. What needs no kernels is NumPy
+and SciPy. A test runs each where neither numba nor any other extra can be imported (`tests/test_light_core.py`).
+
+| kind | `simulate` | `flow` | `ensemble` |
+|---|---|---|---|
+{alone}
 """
 
 

@@ -6,8 +6,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from matrix.alone import ALONE
 
 import nonholo as nh
+from nonholo.base.compiled import first_way
 
 PROGRAM = Path(__file__).parent / "without_extras.py"
 WITHOUT_HOME = {"GroupLagrangeDAlembert", "LagrangeDAlembert", "allow_float32", "examples", "mass_tensor_lagrangian"}
@@ -28,6 +30,13 @@ def _printed(*arguments: str) -> dict[str, str]:
 def test_names_that_need_an_extra() -> None:
     """Names that only JAX gives a meaning ask for it, by name and with how to install it; all others are there."""
     assert _printed("names") == dict.fromkeys(WITHOUT_HOME | {"rollout", "step"}, "jax")
+
+
+def test_kernels_of_each_kind_of_motion() -> None:
+    """They run from the library, or as the page "What works with what" says."""
+    if first_way() != "library":
+        pytest.skip("kernels run by another way")
+    assert _printed("ways") == ALONE
 
 
 @pytest.mark.profile("faults", keep=["quick"])

@@ -2,6 +2,7 @@
 
 python without_extras.py names               # of each public name that has no home without one
 python without_extras.py calls quick|all     # of each call of the table of the fuzzers
+python without_extras.py ways                # of each kind of motion, or how its kernels run
 python without_extras.py command ARGUMENT... # run a command of `nonholo`
 """
 
@@ -52,6 +53,7 @@ if __name__ == "__main__":  # not where pytest looks for examples
 
 import nonholo as nh  # noqa: E402
 from nonholo.base.checks import MissingExtraError  # noqa: E402
+from nonholo.base.compiled import Kernel  # noqa: E402
 
 
 def extra_of(missing: MissingExtraError) -> str:
@@ -115,6 +117,37 @@ def calls(which: str) -> dict[str, str]:
     return asked
 
 
+def ways() -> dict[str, list[str]]:
+    """Return for each kind of motion how the kernels of each task run: all from the library, or some as Python."""
+    from matrix.abilities import Case
+    from matrix.kinds import KINDS, STEPS
+
+    tasks = [
+        lambda case: case.orbit,
+        lambda case: case.flow,
+        lambda case: nh.ensemble(case.discrete, **case.rows, **case.run, steps=STEPS),
+    ]
+    run: Any = Kernel.__call__
+    ran: set[str] = set()
+    Kernel.__call__ = lambda kernel, *arguments: ran.add("library") or run(kernel, *arguments)
+    Kernel.dispatcher = property(lambda kernel: ran.add("Python") or kernel.py_func)
+    told: dict[str, list[str]] = {}
+    for kind in KINDS:
+        told[kind] = []
+        for task in tasks:
+            ran.clear()
+            try:
+                task(Case(kind))
+                told[kind].append(min(ran, default="no kernels"))  # "Python" comes first
+            except MissingExtraError as missing:
+                told[kind].append(f"extra `{extra_of(missing)}`")
+            except ModuleNotFoundError as missing:  # of the user's own import
+                told[kind].append(f"your own {missing.name}")
+            except ValueError:  # see the table of what works with what
+                told[kind].append("")
+    return told
+
+
 if __name__ == "__main__":
     kind, *arguments = sys.argv[1:]
     if kind == "command":
@@ -123,7 +156,7 @@ if __name__ == "__main__":
         sys.argv[1:] = arguments
         main()
     else:
-        found = names() if kind == "names" else calls(*arguments)
+        found = {"names": names, "calls": calls, "ways": ways}[kind](*arguments)
         sys.stdout.write(json.dumps(found))
         sys.stdout.flush()
         os._exit(0)

@@ -12,6 +12,7 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 from nonholo.base.checks import error, instance, text
+from nonholo.base.compiled import way_of_kernels
 from nonholo.continuous import ContinuousFlow
 from nonholo.discrete import MeasuredMotion, discretize
 from nonholo.io._descriptions import described_system, fields_of, restore_group, restore_system, unstored
@@ -65,6 +66,7 @@ def attributes(orbit: AbstractOrbit) -> dict[str, Any]:
         "precision": "float64",
         "conventions": _CONVENTIONS if orbit.is_compact else _IN_COORDINATES,
         "versions": versions_text() if orbit.is_compact else versions_text("jax", "jaxlib"),
+        "kernels": way_of_kernels(),
     }
 
 

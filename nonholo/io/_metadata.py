@@ -54,6 +54,7 @@ class _About(_Data):
     format: str
     schema_: Annotated[int, Field(alias="schema", strict=True)]
     versions: Json[dict[str, str]]
+    kernels: str | None = None
     made: str
     scenario: str | None = None
     scenario_sha256: str | None = None

@@ -230,6 +230,7 @@ def test_info(nonholo: Command) -> None:
     told = json.loads(nonholo("info", "a.zarr", "--json").stdout)
     assert told["provenance"]["motion"]["time_step"] == 0.1
     assert told["provenance"]["versions"]["numpy"] == np.__version__
+    assert f"kernels {told['provenance']['kernels']}" in " ".join(table.stdout.split())
     assert told["steps"] == 50
 
 

@@ -18,6 +18,7 @@ import zarr
 from problems import PROBLEMS
 
 import nonholo as nh
+from nonholo.base.compiled import way_of_kernels
 from nonholo.io import BlockStore, _save, checksum, locked, orbit_to_dataset, read_attributes
 from nonholo.io.datasets._dataset import stored_variables
 
@@ -172,6 +173,7 @@ def test_provenance(tmp_path: Path) -> None:
     assert json.loads(stored["parameters"]) == {"mass": 1.1, "inertia": 0.7, "a": 0.3, "b": 0.1}
     assert json.loads(stored["motion"])["time_step"] == 0.1
     assert json.loads(stored["versions"])["nonholo"] == nh.__version__
+    assert stored["kernels"] == way_of_kernels()
     assert stored["scenario_sha256"] == hashlib.sha256(b"title = 'x'\n").hexdigest()
 
 

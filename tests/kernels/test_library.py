@@ -10,20 +10,24 @@ from typing import Any
 
 import numpy as np
 import pytest
+from bodies import GENERAL
 
+import nonholo as nh
 from nonholo.base import compiled
-from nonholo.base.compiled import key_of, library, library_of_kernels, tokens, way_of_kernels
+from nonholo.base.compiled import first_way, key_of, library, library_of_kernels, tokens
+from nonholo.discrete.routes import make_route
 from nonholo.kernels import SleighBody, _driver, _small
+from nonholo.kernels.general import _step as general
 from nonholo.kernels.secular import _step
 
 LINES = Path(library.__file__).parents[2].joinpath("kernels", "ahead.txt").read_text(encoding="utf-8").splitlines()
 RUN = """
 import json, sys
 import nonholo as nh
-from nonholo.base.compiled import library_of_kernels
+from nonholo.base.compiled import way_of_kernels
 orbit = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), body_velocity=(1, 0.3, 0), steps=20)
 rows = orbit.momentum.tolist(), orbit.pose.tolist()
-print(json.dumps([library_of_kernels() is not None, "numba" in sys.modules, rows]))
+print(json.dumps([way_of_kernels(), "numba" in sys.modules, rows]))
 """
 
 
@@ -36,7 +40,7 @@ def _ran(**variables: str) -> Any:
 @pytest.fixture(scope="module")
 def known() -> compiled.Library:
     """Return the library of this text."""
-    if way_of_kernels() != "library":
+    if first_way() != "library":
         pytest.skip("kernels run by another way")
     found = library_of_kernels()
     assert found is not None, "Compile it: python -m nonholo.base.compiled.build nonholo/kernels"
@@ -59,10 +63,39 @@ def test_all_that_is_listed_is_there(known: compiled.Library) -> None:
 def test_three_ways_have_the_same_bits() -> None:
     """A sleigh runs from the library without numba, by numba, and as plain Python: the same numbers."""
     by_library, by_numba, by_python = (_ran(NONHOLO_KERNELS=way) for way in ("library", "numba", "python"))
-    assert by_library[:2] == [True, False]
-    assert by_numba[:2] == [False, True]
-    assert by_python[:2] == [False, False]
+    assert by_library[:2] == ["library", False]
+    assert by_numba[:2] == ["numba", True]
+    assert by_python[:2] == ["python", False]
     assert by_library[2] == by_numba[2] == by_python[2]
+
+
+@pytest.mark.parametrize("way", ["nmba", "", "Library"])
+def test_an_unknown_way_is_refused(way: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The variable has one of three values; another one is an error before any kernel runs."""
+    monkeypatch.setenv("NONHOLO_KERNELS", way)
+    with pytest.raises(ValueError, match=f"NONHOLO_KERNELS must be one of library, numba, python. Got '{way}'"):
+        first_way.__wrapped__()
+
+
+@pytest.mark.parametrize(("way", "said"), [("library", "from "), ("numba", "by numba"), ("python", "as Python")])
+def test_the_log_names_the_way(way: str, said: str, known: compiled.Library, caplog: pytest.LogCaptureFixture) -> None:
+    """What asks for the library says once how kernels run."""
+    with pytest.MonkeyPatch.context() as patch, caplog.at_level("INFO", "nonholo"):
+        patch.setattr(compiled._kernel, "first_way", lambda: way)
+        patch.setattr(compiled._kernel, "_by_numba", compiled._kernel._by_numba.__wrapped__)
+        found = library_of_kernels.__wrapped__()
+    assert caplog.messages == [f"Kernels run {said}{known.path if way == 'library' else ''}."]
+    assert (found is not None) == (way == "library")
+
+
+@pytest.mark.parametrize("size", [2**21, 2**40], ids=["no memory", "no number of bytes"])
+def test_a_kernel_that_fails_is_an_error(size: int, known: compiled.Library) -> None:
+    """An array that cannot be made, of a size from an argument, is an error of Python; the process continues."""
+    del known
+    body = make_route(nh.discretize(GENERAL["suslov 4"][0], 0.1), "matrix").body
+    with pytest.raises(RuntimeError, match=r"kernel nonholo.kernels.general._step.workspace failed.*=python"):
+        general.workspace(body._replace(tensor=np.empty((size, 0))))
+    assert general.workspace(body) is not None
 
 
 def test_a_library_of_another_text_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,7 +13,7 @@ import pytest
 import nonholo
 from nonholo.kernels import _scalar
 
-LIVE = Path(__file__).parent / "live.py"
+LIVE, REPLAY = (Path(__file__).parent / name for name in ("live.py", "replay.py"))
 ROUNDED_BY_IEEE = {
     "math": {"copysign", "inf", "isfinite", "nan", "sqrt"},
     "np": {
@@ -33,11 +33,11 @@ ROUNDED_BY_IEEE = {
 }
 
 
-def _printed(*arguments: str, **variables: str) -> Any:
-    command = [sys.executable, str(LIVE), *arguments]
+def _printed(*arguments: str, program: Path = LIVE, **variables: str) -> Any:
+    command = [sys.executable, str(program), *arguments]
     environment = {**os.environ, **variables}
     done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, check=True)  # noqa: S603
-    return json.loads(done.stdout)
+    return json.loads(done.stdout or "null")
 
 
 @pytest.mark.profile("long", keep=["sleighs"])
@@ -63,6 +63,22 @@ def test_bits_of_the_library() -> None:
     """All live motions have the bits of numba in the library."""
     library, compiled = (_printed("bits", NONHOLO_KERNELS=way) for way in ("library", "numba"))
     assert library == compiled
+
+
+@pytest.mark.profile("long", instead="test_bits_of_a_fresh_cache")
+def test_random_bodies_have_the_same_bits(tmp_path: Path) -> None:
+    """What 600 bodies of 15 kinds ask of the library, in 1 and in 2 threads, numba answers with the same bits."""
+    calls = str(tmp_path / "calls.pickle")
+    _printed("record", calls, "600", program=REPLAY, NONHOLO_KERNELS="library")
+    one, two, by_numba = (
+        _printed("bits", calls, threads, program=REPLAY, NONHOLO_KERNELS=way)
+        for threads, way in (("1", "library"), ("2", "library"), ("2", "numba"))
+    )
+    assert one[0] == two[0] == "library"
+    assert by_numba[0] == "numba"
+    assert len(one) > 1000
+    assert len({call.split()[0] for call in one[1:]}) >= 15
+    assert one[1:] == two[1:] == by_numba[1:]
 
 
 def _compiles(mark: ast.expr) -> bool:

@@ -5,7 +5,6 @@ import functools
 from collections.abc import Callable
 from typing import Any
 
-import numba
 import numpy as np
 from bodies import mass_tensor
 
@@ -41,7 +40,12 @@ def brake(time: float, g: np.ndarray, velocity: np.ndarray) -> np.ndarray:
     return -0.3 * np.cos(time) * velocity + 0.1 * g[0, :3]
 
 
-compiled_brake = numba.njit(brake)
+@functools.cache
+def compiled_brake() -> Callable[..., Any]:
+    """Return the same force, compiled."""
+    import numba
+
+    return numba.njit(brake)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -178,7 +182,7 @@ KINDS: dict[str, Kind] = {
         "`force=` a function", lambda sleigh: nh.Forced(sleigh, force=brake), "function", "opaque"
     ),
     "force in numba": _plane(
-        "`force=` a compiled function", lambda sleigh: nh.Forced(sleigh, force=compiled_brake), "function", "opaque"
+        "`force=` a compiled function", lambda sleigh: nh.Forced(sleigh, force=compiled_brake()), "function", "opaque"
     ),
     "particle": _ready("particle", "coordinates"),
     "rolling disk": _ready("rolling_disk", "coordinates"),

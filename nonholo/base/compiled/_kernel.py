@@ -39,12 +39,14 @@ _SLOW = (
     "Install the extra `compile`: pip install 'nonholo[compile]'."
 )
 _OTHER = "o"  # what the library takes no argument of
-_DTYPES = {"d": np.float64, "q": np.int64, "?": np.bool_}
-NAMES = {"d": "d", "q": "lq", "?": "?"}
-"""What NumPy calls the numbers of arrays, by their kind."""
+DTYPES = {letter: np.dtype(kind) for letter, kind in {"d": np.float64, "q": np.int64, "?": np.bool_}.items()}
+"""The numbers of arrays, by the letter of a key."""
+_LETTERS = {numbers.str: letter for letter, numbers in DTYPES.items()}
+_WAYS = ("library", "numba", "python")
+_FAILED = "The kernel {} failed: the memory is full, or a size is too large. NONHOLO_KERNELS=python says where."
 DATA, AXES, SHAPE, ABOUT, FLAGS = 16, 24, 32, 56, 64
 """Where an array, and what it says about its numbers, have their fields: part of NumPy's binary interface."""
-LETTER, ORDER = 25, 26
+LETTER, ORDER, SIZE = 24, 26, 40
 ORDERED = 0x101  # in C order, and aligned
 
 
@@ -66,6 +68,9 @@ class Kernel:
 
     Where the library has it for arguments of these kinds it runs from there. Else numba compiles it, and keeps the code
     on disk; without numba it runs as it is. Its bits are the same by all three ways.
+
+    Raises:
+        RuntimeError: The library has no memory for its arrays, or another error in compiled code.
     """
 
     def __init__(self, options: dict[str, Any], function: Callable[..., Any]) -> None:
@@ -106,14 +111,8 @@ class Kernel:
     @functools.cached_property
     def dispatcher(self) -> Any:
         """The same function by numba; without numba the function as it is."""
-        if way_of_kernels() == "python":
-            return self.py_func
-        try:
-            from nonholo.base.compiled import by_numba
-        except ModuleNotFoundError:
-            say_once(_SLOW)
-            return self.py_func
-        return by_numba.dispatcher_of(self.py_func, self.options)
+        by_numba = _by_numba()
+        return by_numba.dispatcher_of(self.py_func, self.options) if by_numba else self.py_func
 
     def __getattr__(self, name: str) -> Any:
         """Answer numba as its own dispatchers do."""
@@ -161,8 +160,7 @@ def key_of(values: tuple[Any, ...]) -> str:
 def _kind_of(value: Any) -> str:
     kind = type(value)
     if kind is np.ndarray:
-        names = (letter for letter, names in NAMES.items() if value.dtype.char in names and value.dtype.isnative)
-        return (next(names, _OTHER) if _is_readable(value) else _OTHER) + str(value.ndim)
+        return (_LETTERS.get(value.dtype.str, _OTHER) if _is_readable(value) else _OTHER) + str(value.ndim)
     if isinstance(value, tuple):
         return ("(" if kind is tuple else f"{kind.__name__}(") + key_of(value) + ")"
     return _SCALARS.get(kind, _OTHER)
@@ -175,13 +173,14 @@ def _is_readable(value: np.ndarray) -> bool:
 class Entry:
     """A function of the library for arguments of one kind.
 
-    It takes two addresses: of the words of its arguments, and of a word that becomes 1 with what it returns after it.
+    It takes two addresses: of the words of its arguments, and of a word that becomes 1 with what it returns after it,
+    -1 where it fails.
     """
 
-    def __init__(self, function: Any, key: str, returns: str, release: Any) -> None:
+    def __init__(self, function: Any, name: str, key: str, returns: str, release: Any) -> None:
         function.restype, function.argtypes = None, (ctypes.c_char_p, ctypes.c_void_p)
         shape = tokens(returns)
-        self._function, self._result = function, _result_of(shape, release)
+        self._function, self._name, self._result = function, name, _result_of(shape, release)
         self._arguments = struct.Struct("".join(_FORMATS.get(each, "q" * _is_array(each)) for each in tokens(key)))
         self._results = struct.Struct("q" + "".join(map(_result_format, shape)))
         self._room = ctypes.c_char * self._results.size
@@ -191,6 +190,8 @@ class Entry:
         room = self._room()
         self._function(self._arguments.pack(*words), room)
         values = self._results.unpack(room)
+        if values[0] < 0:
+            raise RuntimeError(_FAILED.format(self._name))
         return self._result(values) if values[0] else _REFUSED
 
 
@@ -230,7 +231,7 @@ def _class_of(name: str) -> Any:
 def _array(kind: str, words: Iterator[Any], release: Any) -> np.ndarray:
     """Return an array that a function made, copied out of its block."""
     block, address, *shape = itertools.islice(words, 2 + int(kind[1]))
-    array = np.empty(shape, _DTYPES[kind[0]])
+    array = np.empty(shape, DTYPES[kind[0]])
     ctypes.memmove(array.ctypes.data, address, array.nbytes)
     release(block)
     return array
@@ -275,12 +276,13 @@ class Library:
 
     def entry(self, kernel: Kernel, key: str) -> Entry | None:
         """Return what runs a kernel for arguments of a kind; None if the library does not have it."""
-        name = symbol_of(f"{kernel.__module__}.{kernel.__qualname__}", key)
-        function = self._function(name)
+        name = f"{kernel.__module__}.{kernel.__qualname__}"
+        symbol = symbol_of(name, key)
+        function = self._function(symbol)
         if function is None:
             return None
-        returns = ctypes.string_at(ctypes.addressof(ctypes.c_char.in_dll(self._code, f"{name}_returns")))
-        return Entry(function, key, returns.decode(), self._release)
+        returns = ctypes.string_at(ctypes.addressof(ctypes.c_char.in_dll(self._code, f"{symbol}_returns")))
+        return Entry(function, name, key, returns.decode(), self._release)
 
     def address(self, name: str, key: str) -> int:
         """Return the address of what an emitter, named by its place, wrote for a key; 0 if the library has it not."""
@@ -305,25 +307,51 @@ def _is_wide() -> bool:
 
 
 @functools.cache
-def way_of_kernels() -> str:
-    """Return the first way by which kernels run: "library", "numba" or "python", as `NONHOLO_KERNELS` says.
+def first_way() -> str:
+    """Return the first way to try, "library", "numba" or "python", as `NONHOLO_KERNELS` says.
 
     Settings of numba that ask for other code than that of the library leave the library out.
+
+    Raises:
+        ValueError: It says something else.
     """
+    way = os.environ.get("NONHOLO_KERNELS", "library")
+    if way not in _WAYS:
+        raise ValueError(
+            f"The variable NONHOLO_KERNELS must be one of {', '.join(_WAYS)}. Got {way!r}. Set or unset it."
+        )
     if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":
         return "python"
-    if os.environ.get("NUMBA_BOUNDSCHECK", "0") != "0":
-        return "numba"
-    return os.environ.get("NONHOLO_KERNELS", "library")
+    return "numba" if way == "library" and os.environ.get("NUMBA_BOUNDSCHECK", "0") != "0" else way
+
+
+def way_of_kernels() -> str:
+    """Return the way by which kernels run here: "library", "numba" or "python".
+
+    Kernels of other kinds than those of the library run by numba, or as Python without it.
+    """
+    return "library" if library_of_kernels() else "numba" if _by_numba() else "python"
 
 
 @functools.cache
 def library_of_kernels() -> Library | None:
     """Return the library of the kernels of this text, beside them or in the user's cache; None if there is none."""
-    if way_of_kernels() != "library":
+    file = library.place() if first_way() == "library" and _has_known_arrays() else None
+    way = f"from {file}" if file else "by numba" if _by_numba() else "as Python"
+    logging.getLogger("nonholo").info("Kernels run %s.", way)
+    return Library(file) if file else None
+
+
+@functools.cache
+def _by_numba() -> Any:
+    """Return the module of kernels by numba; None where they run as they are."""
+    if first_way() == "python":
         return None
-    file = library.place()
-    return Library(file) if file and _has_known_arrays() else None
+    try:
+        return importlib.import_module("nonholo.base.compiled.by_numba")
+    except ModuleNotFoundError:
+        say_once(_SLOW)
+        return None
 
 
 def _has_known_arrays() -> bool:
@@ -334,7 +362,8 @@ def _has_known_arrays() -> bool:
     about = fields[ABOUT // 8] == id(array.dtype)
     shape = ctypes.cast(fields[SHAPE // 8], ctypes.POINTER(ctypes.c_int64))
     letter = ctypes.c_char.from_address(id(array.dtype) + LETTER).value
-    same = (fields[DATA // 8], axes, flags & ORDERED, letter) == (array.ctypes.data, 2, ORDERED, b"d")
+    size = ctypes.c_int64.from_address(id(array.dtype) + SIZE).value
+    same = (fields[DATA // 8], axes, flags & ORDERED, letter, size) == (array.ctypes.data, 2, ORDERED, b"f", 8)
     return about and same and (shape[0], shape[1]) == array.shape
 
 

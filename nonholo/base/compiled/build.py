@@ -5,7 +5,9 @@ numba types and lowers each as it does for a process of its own. Or a line names
 what for. llvmlite makes objects of that, a linker a library.
 Arithmetic is strict everywhere, so the numbers are the same to the last bit.
 
-    python -m nonholo.base.compiled.build FOLDER
+    python -m nonholo.base.compiled.build FOLDER [MACHINE...]
+
+Machines are those of `MACHINES`, by default the one on which it runs.
 """
 
 import concurrent.futures
@@ -34,19 +36,25 @@ from numba.np.arrayobj import populate_array
 from nonholo.base import compiled
 from nonholo.base.compiled import wasm
 from nonholo.base.compiled.emission import emitted, for_any_machine, machine_for
-from nonholo.base.compiled.library import name_of_library, name_of_module
+from nonholo.base.compiled.library import name_of_library, name_of_module, this_machine
 
 _KERNELS = Path(__file__).parents[2] / "kernels"
 _WORD, _INT, _ADDRESS = ir.IntType(64), ir.IntType(32), types.CPointer(types.int64)
 _KINDS: dict[str, Any] = {"d": types.float64, "q": types.int64, "?": types.boolean, "n": types.none}
 _LETTERS = {kind: letter for letter, kind in _KINDS.items()}
 _FUNCTION = compiled.FUNCTION(0)  # one of the kind that kernels call
-_IS_X86 = llvm.get_process_triple().startswith("x86")
-_PROCESSORS = {"": "x86-64", "_wide": "x86-64-v4"} if _IS_X86 else {"": "generic"}
+_NAKED = ("-nostdlib",)  # whoever loads it has the few functions of C
+MACHINES: dict[str, tuple[str, tuple[str, ...]]] = {
+    "linux-x86_64": ("x86_64-unknown-linux-gnu", ("-target", "x86_64-linux-gnu.2.17", *_NAKED)),
+    "linux-aarch64": ("aarch64-unknown-linux-gnu", ("-target", "aarch64-linux-gnu.2.17", *_NAKED)),
+    "darwin-arm64": ("arm64-apple-macosx11.0", ("-target", "aarch64-macos.11.0")),
+    "windows-amd64": ("x86_64-pc-windows-gnu", ("-target", "x86_64-windows-gnu")),
+}
+"""For each machine the target of LLVM, and the options of a linker that knows all targets, `ziglang`."""
+_PROCESSORS = {"linux-x86_64": {"": "x86-64", "_wide": "x86-64-v4"}, "windows-amd64": {"": "x86-64"}}
 _WIDE = "ensemble", "taylor"  # what is worth a second variant, for vectors of eight numbers
 _RUNTIME = Path(__file__).with_name("runtime.ll")
 _ENTRY = """
-declare void @abort() noreturn
 define void @{symbol}(ptr %words, ptr %room) {{
   %result = alloca ptr
   %raised = alloca ptr
@@ -54,8 +62,8 @@ define void @{symbol}(ptr %words, ptr %room) {{
   %failed = icmp ne i32 %status, 0
   br i1 %failed, label %bad, label %good
 bad:
-  call void @abort()
-  unreachable
+  store i64 -1, ptr %room
+  br label %good
 good:
   ret void
 }}
@@ -159,15 +167,15 @@ def _fits(builder: Any, kind: Any, word: Callable[[], Any]) -> Any:
     if not isinstance(kind, types.Array):
         return ir.IntType(1)(1)
     flags = builder.and_(_field(builder, array, compiled.FLAGS, _INT), _INT(compiled.ORDERED))
-    about = _field(builder, array, compiled.ABOUT, _WORD)
+    about, numbers = _field(builder, array, compiled.ABOUT, _WORD), compiled.DTYPES[_LETTERS[kind.dtype]]
     letter, order = (_field(builder, about, at, ir.IntType(8)) for at in (compiled.LETTER, compiled.ORDER))
+    size = _field(builder, about, compiled.SIZE, _WORD)
     axes = builder.icmp_unsigned("==", _field(builder, array, compiled.AXES, _INT), _INT(kind.ndim))
     ordered = builder.icmp_unsigned("==", flags, _INT(compiled.ORDERED))
-    named = [
-        builder.icmp_unsigned("==", letter, letter.type(ord(each))) for each in compiled.NAMES[_LETTERS[kind.dtype]]
-    ]
+    named = builder.icmp_unsigned("==", letter, letter.type(ord(numbers.kind)))
+    sized = builder.icmp_unsigned("==", size, _WORD(numbers.itemsize))
     native = builder.icmp_unsigned("!=", order, order.type(ord(">")))
-    return functools.reduce(builder.and_, [axes, ordered, functools.reduce(builder.or_, named), native])
+    return functools.reduce(builder.and_, [axes, ordered, named, sized, native])
 
 
 def _value(context: Any, builder: Any, kind: Any, word: Callable[[], Any]) -> Any:
@@ -225,21 +233,19 @@ def text_of(line: str) -> str:
     return text + _ENTRY.format(**names)
 
 
-def objects_of(line: str, folder: str) -> list[str]:
-    """Compile a line of the list into objects in a folder; return their files."""
-    text, symbol, files = text_of(line), compiled.symbol_of(*line.split(" ")), []
-    for variant, processor in _PROCESSORS.items():
-        if variant and not any(room in line for room in _WIDE):
-            continue
-        file = Path(folder) / f"{symbol}{variant}.o"
-        file.write_bytes(_object(text.replace(symbol, symbol + variant), processor, symbol))
-        files.append(str(file))
-    return files
+def write_objects(line: str, folders: dict[str, Path]) -> None:
+    """Compile a line of the list into objects, in the folder of each machine."""
+    text, symbol = text_of(line), compiled.symbol_of(*line.split(" "))
+    for name, folder in folders.items():
+        for variant, processor in _PROCESSORS.get(name, {"": "generic"}).items():
+            if not variant or any(room in line for room in _WIDE):
+                own = text.replace(symbol, symbol + variant)
+                (folder / f"{symbol}{variant}.o").write_bytes(_object(own, name, processor, symbol))
 
 
-def _object(text: str, processor: str, public: str) -> bytes:
-    """Compile LLVM text for this machine; only names that begin as the public one are seen."""
-    machine = machine_for(llvm.get_process_triple(), processor, "pic")
+def _object(text: str, name: str, processor: str, public: str) -> bytes:
+    """Compile LLVM text for a machine; only names that begin as the public one are seen."""
+    machine = machine_for(MACHINES[name][0] if name in MACHINES else llvm.get_process_triple(), processor, "pic")
     return emitted(text, _RUNTIME, machine, str(machine.target_data), lambda name: name.startswith(public))
 
 
@@ -260,30 +266,40 @@ def lines() -> list[str]:
     return (_KERNELS / "ahead.txt").read_text(encoding="utf-8").split("\n")[:-1]
 
 
-def linker() -> list[str]:
-    """Return the command of a linker, that of the package `ziglang` where the machine has none."""
-    own = next(filter(None, map(shutil.which, ("ld", "ld.lld"))), None)
-    return [own] if own else [sys.executable, "-m", "ziglang", "cc", "-nostdlib"]
+def linker(name: str) -> list[str]:
+    """Return the command that links for a machine, by the package `ziglang` where that is not this Linux machine."""
+    is_here = name == this_machine() and name.startswith("linux")
+    own = next(filter(None, map(shutil.which, ("ld", "ld.lld"))), None) if is_here else None
+    return [own] if own else [sys.executable, "-m", "ziglang", "cc", *MACHINES.get(name, ("", _NAKED))[1]]
 
 
-def build(target: Path) -> None:
-    """Compile and link the library of this machine, and the modules of pages, into a folder."""
+def build(target: Path, *names: str) -> None:
+    """Compile and link the libraries of machines, and the modules of pages, into a folder.
+
+    Raises:
+        ValueError: A machine is neither this one nor one of `MACHINES`.
+    """
+    if unknown := {*names}.difference(MACHINES, (this_machine(),)):
+        raise ValueError(f"A machine must be one of {', '.join(MACHINES)}. Got {', '.join(unknown)}.")
     os.environ["NONHOLO_KERNELS"] = "numba"
     target.mkdir(parents=True, exist_ok=True)
     context, runs = multiprocessing.get_context("spawn"), importlib.import_module("nonholo.kernels").FLAT_RUNS
-    with tempfile.TemporaryDirectory() as folder, concurrent.futures.ProcessPoolExecutor(mp_context=context) as pool:
+    with tempfile.TemporaryDirectory() as scratch, concurrent.futures.ProcessPoolExecutor(mp_context=context) as pool:
         for run, content in zip(runs, pool.map(wasm.module, runs), strict=True):
             (target / name_of_module(run)).write_bytes(content)
-        files = [f"{folder}/release.o"]
-        Path(files[0]).write_bytes(_object("", _PROCESSORS[""], "nonholo_release"))
-        for count, objects in enumerate(pool.map(objects_of, lines(), itertools.repeat(folder)), 1):
-            files += objects
+        folders = {name: Path(tempfile.mkdtemp(dir=scratch)) for name in names or (this_machine(),)}
+        for count, _ in enumerate(pool.map(write_objects, lines(), itertools.repeat(folders)), 1):
             if sys.stderr.isatty():
                 print(f"\rkernels compiled: {count} of {len(lines())}", end="", file=sys.stderr)  # noqa: T201
-        part = target / f".{os.getpid()}.part"
-        subprocess.run([*linker(), "-shared", "-o", str(part), *files], check=True)  # noqa: S603
-        part.replace(target / name_of_library())  # in one go: runs from an old one continue
+        for name, folder in folders.items():
+            file = folder / "release.o"
+            file.write_bytes(_object("", name, _PROCESSORS.get(name, {"": "generic"})[""], "nonholo_release"))
+            made, part = folder / "library", target / f".{os.getpid()}.part"
+            objects = map(str, sorted(folder.glob("*.o")))
+            subprocess.run([*linker(name), "-shared", "-s", "-o", str(made), *objects], check=True)  # noqa: S603
+            shutil.copy(made, part)
+            part.replace(target / name_of_library(name))  # in one go: runs from an old one continue
 
 
 if __name__ == "__main__":
-    build(Path(sys.argv[1]))
+    build(Path(sys.argv[1]), *sys.argv[2:])

@@ -8,11 +8,12 @@ from typing import Any
 import llvmlite.binding as llvm
 
 _OF_THIS_MACHINE = r'(?m)"(?:target-cpu|target-features|probe-stack)"="[^"]*"|^target (?:triple|datalayout) = .*$'
+_COUNTS = r"(?ms)^define [^\n]*(@NRT_(?:in|de)cref)\(.*?^}$"  # of arrays, in instructions of this machine
 
 
 def for_any_machine(text: str) -> str:
     """Return LLVM text without what it says of the processor that numba compiled it for."""
-    return re.sub(_OF_THIS_MACHINE, "", text)
+    return re.sub(_COUNTS, r"declare void \1(ptr)", re.sub(_OF_THIS_MACHINE, "", text))
 
 
 def machine_for(triple: str, processor: str, reloc: str) -> llvm.TargetMachine:

@@ -21,9 +21,14 @@ def cache_folder() -> Path:
     return Path(os.path.expanduser(os.environ.get("XDG_CACHE_HOME") or "~/.cache")) / "nonholo"
 
 
-def name_of_library() -> str:
-    """Return the name of the file with the compiled kernels of this text, for this machine."""
-    return f"{prefix()}{platform.system()}-{platform.machine()}.so".lower()
+def this_machine() -> str:
+    """Return the name of the system and processor of this process."""
+    return f"{platform.system()}-{platform.machine()}".lower()
+
+
+def name_of_library(machine: str = "") -> str:
+    """Return the name of the file with the compiled kernels of this text, for this machine or another one."""
+    return f"{prefix()}{machine or this_machine()}.so"
 
 
 def name_of_module(run: str) -> str:

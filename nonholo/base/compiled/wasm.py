@@ -22,7 +22,6 @@ _RUNTIME = Path(__file__).with_name("webassembly.ll")
 _OPTIONS: Any = {"nopython": True, "error_model": "numpy"}
 _ADDRESS = types.CPointer(types.float64)
 _SIGNATURE = types.int64(_ADDRESS, _ADDRESS, types.int64, _ADDRESS, _ADDRESS, _ADDRESS)
-_COUNTS = r"(?ms)^define [^\n]*(@NRT_(?:in|de)cref)\(.*?^}$"  # of arrays, in instructions of this machine
 _RAISES = r"(?m)^ *store ptr @\.const\.picklebuf\..*$"
 
 
@@ -35,8 +34,7 @@ def module(run: str) -> bytes:
 def _object(function: Any) -> bytes:
     """Return a relocatable object with one global function."""
     made = numba.cfunc(_SIGNATURE, **_OPTIONS)(function)
-    text = for_any_machine(made.inspect_llvm())
-    text = re.sub(_COUNTS, r"declare void \1(ptr)", re.sub(_RAISES, "  call void @raise()", text))
+    text = re.sub(_RAISES, "  call void @raise()", for_any_machine(made.inspect_llvm()))
     machine = machine_for("wasm32-unknown-unknown", "generic", "static")
     # places in structures are numbers already, and those of 64 bits: addresses stand where they would there
     layout = str(machine.target_data).replace("p:32:32", "p:32:64")

@@ -6,6 +6,7 @@
 ; numbers: the count, k at byte 8, the next free block at byte 16, and the address of the numbers at byte 24, where
 ; compiled code looks for it.
 
+declare double @llvm.sqrt.f64(double)
 declare void @llvm.trap() cold noreturn nounwind
 declare i64 @llvm.ctlz.i64(i64, i1)
 declare i64 @llvm.umax.i64(i64, i64)
@@ -87,4 +88,9 @@ free:
   br label %done
 done:
   ret void
+}
+
+define double @sqrt(double %x) {
+  %root = call double @llvm.sqrt.f64(double %x)
+  ret double %root
 }

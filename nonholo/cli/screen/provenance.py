@@ -75,7 +75,7 @@ def _made(record: dict[str, Any]) -> dict[str, str]:
 
 def _scenario(record: dict[str, Any]) -> dict[str, str]:
     return {
-        "made with": _listed(record["versions"]),
+        "made with": _listed(record["versions"] | {"kernels": record.get("kernels", "not recorded")}),
         "scenario": f"sha256 {record['scenario_sha256'][:16]}" if "scenario" in record else "none",
     }
 

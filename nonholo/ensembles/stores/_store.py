@@ -19,6 +19,7 @@ from zarr.codecs import BloscCodec, Crc32cCodec
 
 from nonholo import io
 from nonholo.base.checks import error, printable
+from nonholo.base.compiled import way_of_kernels
 from nonholo.ensembles._describe import design_from
 from nonholo.ensembles.designs import Design, axis_dimensions
 from nonholo.ensembles.stores._results import Output, Results
@@ -226,7 +227,8 @@ def create_store(
     content = description | {"layout": layout, "outputs": {name: dataclasses.astuple(o) for name, o in outputs.items()}}
     about = {"format": FORMAT, "schema": SCHEMA, "made": made, "finished": False, "sweep": json.dumps(content)}
     with io.new_beside(path) as part:
-        group = io.new_group(part, about | {"versions": io.versions_text()} | extra, io.SweepMetadata)
+        made_with = {"versions": io.versions_text(), "kernels": way_of_kernels()}
+        group = io.new_group(part, about | made_with | extra, io.SweepMetadata)
         _create_arrays(group, design, layout, outputs)
         io.make_marks(group, part)
         try:
