@@ -19,7 +19,7 @@ from nonholo.ensembles._describe import function_from, function_name
 from nonholo.ensembles._names import OUTCOME, STARTS, start_component
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.io import unstored
-from nonholo.simulation import Ensemble, Members, check_forces, ensemble, run_in_lanes, stepper_of
+from nonholo.simulation import Ensemble, check_forces, ensemble, run_in_lanes, stepper_of
 from nonholo.systems import one_start, refuse_forces
 
 _MEMBER = re.compile(r"This is member (\d+)\.")
@@ -171,10 +171,6 @@ class EnsembleTask:
     def _parameters(self, block: MemberBlock) -> dict[str, Any]:
         """Return the parameters in which members differ."""
         return {name: block[name] for name in block if name in self._fields}
-
-    def members(self, block: MemberBlock) -> Members:
-        """Return the discretized systems of a block."""
-        return Members(self.discrete, self._parameters(block), block.count)
 
     def describe(self) -> dict[str, Any]:
         """Return the task as plain data."""

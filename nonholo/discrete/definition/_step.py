@@ -27,23 +27,6 @@ _SAMPLES = 16
 _EVEN = 1e-10  # relative difference of values that counts as rounding
 
 
-def reduced_discrete_lagrangian(discrete: Scheme) -> Callable[[Array], Array]:
-    """Return the function W -> l_d(W), which includes the factor time_step."""
-    system, h = discrete.system, discrete.time_step
-    if callable(discrete.difference):
-        return discrete.difference
-
-    def of_matrix(W: Array) -> Array:
-        X = W - jnp.eye(W.shape[-1])
-        return jnp.trace(X @ jnp.asarray(system.homogeneous_mass_tensor) @ system.group.form_adjoint(X)) / (2 * h)
-
-    def of_logarithm(W: Array) -> Array:
-        x = system.group.log(W)
-        return x @ jnp.asarray(system.inertia_operator) @ x / (2 * h)
-
-    return of_matrix if discrete.difference == "matrix" else of_logarithm
-
-
 def sample_displacements(discrete: Scheme, count: int) -> Float[np.ndarray, "count N N"]:
     """Draw displacements from the variety, the principal ones of velocities that turn by about 0.3 in a step."""
     system, rng = discrete.system, np.random.default_rng(0)
@@ -60,16 +43,6 @@ def sample_displacements(discrete: Scheme, count: int) -> Float[np.ndarray, "cou
 def _displacements(discrete: Scheme, momenta: Array, g: Array) -> tuple[Array, Array]:
     charts, codes = jax.vmap(lambda r: principal_displacement(discrete, r, g))(momenta)
     return jax.vmap(lambda y: displaced(discrete, y))(charts), codes
-
-
-def legendre_by_derivative(discrete: Scheme, W: Float[Array, "... N N"], side: str) -> Float[Array, "... dim"]:
-    """Return the momenta P(W) (left) or Ad*_W P(W) (right) by automatic differentiation."""
-    return in_double(functools.partial(_legendre, side=side), discrete, W)
-
-
-@equinox.filter_jit
-def _legendre(discrete: Scheme, W: Array, side: str) -> Array:
-    return momenta_along(reduced_discrete_lagrangian(discrete), discrete.system.group, W, side)
 
 
 def displaced(discrete: Scheme, y: Float[Array, "m"]) -> Float[Array, "N N"]:
