@@ -1,11 +1,11 @@
 from .animation._animation import animate as animate
 from .comparisons import comparison as comparison
 from .comparisons import convergence as convergence
-from .geometry._branch_counts import BranchCounts as BranchCounts
-from .geometry._branch_counts import branch_counts as branch_counts
 from .geometry._branch_tree import BranchTreePicture as BranchTreePicture
 from .geometry._branch_tree import branch_tree as branch_tree
+from .geometry._branches import BranchCounts as BranchCounts
 from .geometry._branches import BranchesPicture as BranchesPicture
+from .geometry._branches import branch_counts as branch_counts
 from .geometry._branches import branches as branches
 from .geometry._curvature import CurvaturePicture as CurvaturePicture
 from .geometry._curvature import curvature as curvature

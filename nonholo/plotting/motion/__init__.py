@@ -5,8 +5,7 @@ from nonholo.plotting.motion._bodies import Bodies, bodies_of
 from nonholo.plotting.motion._body_axis_track import body_axis_track, known_axes, rotation_axes
 from nonholo.plotting.motion._coordinates import Track, draw_path, draw_shape, draw_velocity, symbol, track_of
 from nonholo.plotting.motion._energy_error import draw_residual, energy_error
-from nonholo.plotting.motion._fit_profile import fit_profile
-from nonholo.plotting.motion._fit_residuals import fit_residuals
+from nonholo.plotting.motion._fit import fit_profile, fit_residuals
 from nonholo.plotting.motion._momentum_sphere import momentum_sphere
 from nonholo.plotting.motion._phase_portrait import phase_portrait
 from nonholo.plotting.motion._point_track import point_track

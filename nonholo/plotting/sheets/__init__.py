@@ -3,9 +3,9 @@
 What differs between tops and sleighs in pictures is in two classes of one interface, in `_chosen`.
 """
 
-from nonholo.plotting.sheets._base import AbstractSheet
 from nonholo.plotting.sheets._blade import Blade
 from nonholo.plotting.sheets._chosen import (
+    AbstractSheet,
     blade_of_system,
     ellipse,
     half_axes,
