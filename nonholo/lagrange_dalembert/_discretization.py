@@ -86,9 +86,20 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
         del posed
         return self._stepper
 
-    def after_parts(self, states: OrbitT, fractions: Any) -> OrbitT:
-        """Return what is reached from states of an orbit after fractions in (0, 1) of the steps that begin there."""
-        return after_parts(self, states, fractions)
+    def after_parts(self, states: Any, fractions: Float[np.ndarray, "K"]) -> Any:
+        """Return what is reached after fractions of the steps from states; NaN where there is no such step."""
+        system, h, count = self.system, np.float64(self.time_step), len(states)
+        x, v = places(system, states.configuration, states.time), states.body_velocity
+        given = [_padded(rows) for rows in (fractions, x, v, states.momentum)]
+        parts = [
+            in_double(_moved, system, h, np.int64(min(_PARTS, count - i)), *(rows[i : i + _PARTS] for rows in given))
+            for i in range(0, count, _PARTS)
+        ]
+        ends, ahead = (np.concatenate(column)[:count] for column in zip(*parts, strict=True)) if parts else (x, v)
+        none = np.empty((0, system.constraints))
+        reached = CoordinateStepper(self).states(ends, ahead, none, 0, 1, Outcome.successful)
+        step = states.step + fractions.astype(np.int64)
+        return dataclasses.replace(reached, time=states.time + fractions * h, step=step)
 
     def simulate(self, **run: Any) -> OrbitT:
         """Run the map: `nonholo.simulate(self, ...)`."""
@@ -325,22 +336,6 @@ def _decode(system: Any, h: Array, q: Array, v: Array, *node: Array) -> tuple[Ar
     residual = jnp.max(jnp.abs(equations.discrete_constraints(system, q, v, h)), initial=0.0)
     momentum, energy = equations.momenta(system, q, v, h)[0], equations.discrete_energy(system, q, v, h, *node)
     return *equations.displaced(system, v, h), momentum, energy, residual
-
-
-def after_parts(discrete: Any, states: Any, fractions: Float[np.ndarray, "K"]) -> Any:
-    """Return what is reached after fractions of the steps from states; NaN where there is no such step."""
-    system, h, count = discrete.system, np.float64(discrete.time_step), len(states)
-    x, v = places(system, states.configuration, states.time), states.body_velocity
-    given = [_padded(rows) for rows in (fractions, x, v, states.momentum)]
-    parts = [
-        in_double(_moved, system, h, np.int64(min(_PARTS, count - i)), *(rows[i : i + _PARTS] for rows in given))
-        for i in range(0, count, _PARTS)
-    ]
-    ends, ahead = (np.concatenate(column)[:count] for column in zip(*parts, strict=True)) if parts else (x, v)
-    none = np.empty((0, system.constraints))
-    reached = CoordinateStepper(discrete).states(ends, ahead, none, 0, 1, Outcome.successful)
-    step = states.step + fractions.astype(np.int64)
-    return dataclasses.replace(reached, time=states.time + fractions * h, step=step)
 
 
 def _padded(rows: np.ndarray) -> np.ndarray:

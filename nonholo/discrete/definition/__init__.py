@@ -1,7 +1,7 @@
 """The map by its definition, in JAX: derivatives of the discrete Lagrangian, roots, runs. Imported on first use."""
 
 from nonholo.discrete.definition._nodes import free_rows, step_residual
-from nonholo.discrete.definition._precision import allow_float32, in_double
+from nonholo.discrete.definition._precision import allow_float32, doubled, in_double
 from nonholo.discrete.definition._principal import ON_LOCUS, principal_of, traceable
 from nonholo.discrete.definition._rollout import Rollout, rolled
 from nonholo.discrete.definition._step import (
@@ -12,8 +12,6 @@ from nonholo.discrete.definition._step import (
     momentum_of,
     nearest_displacement,
     next_charts_by_definition,
-    principal_displacement,
-    restricted,
     sample_displacements,
     value_and_slope,
 )

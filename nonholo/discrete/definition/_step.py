@@ -18,7 +18,7 @@ from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
 from nonholo.discrete._legendre import legendre
 from nonholo.discrete._scheme import Scheme
-from nonholo.discrete.definition._precision import in_double
+from nonholo.discrete.definition._precision import doubled, in_double
 from nonholo.discrete.definition._root import followed_root, principal_root
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import Orbit
@@ -93,12 +93,9 @@ def equations_at(discrete: Scheme, g: Array) -> Callable[[Array, Array], Array]:
 
 def next_charts_by_definition(discrete: Scheme, states: Orbit) -> Float[np.ndarray, "K m"]:
     """Return the canonical chart coordinates that follow, one step from each state."""
-    poses = states.configuration if states.system.is_spatial else _identities(states)
+    eye = states.system.group.identity
+    poses = states.configuration if states.system.is_spatial else np.broadcast_to(eye, (len(states), *eye.shape))
     return in_double(_steps_from, discrete, states.canonical_chart, poses)[1]
-
-
-def _identities(states: Orbit) -> np.ndarray:
-    return np.broadcast_to(states.system.group.identity, (len(states), *states.system.group.identity.shape))
 
 
 def step_from(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array, Array, Array]:
@@ -145,22 +142,11 @@ def is_even(function: Callable[[Array], Array], group: AbstractMatrixGroup) -> b
     return bool(np.abs(there - back).max() <= _EVEN * np.abs(there).max())
 
 
+@doubled
 def momenta_by_derivative(
     lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup, W: Float[Array, "... N N"], side: str
 ) -> Float[Array, "... dim"]:
     """Return the momenta P(W) (left) or Ad*_W P(W) (right) of a discrete Lagrangian by automatic differentiation."""
-    return in_double(functools.partial(_momenta, lagrangian, group, side=side), W)
-
-
-@equinox.filter_jit
-def _momenta(lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup, W: Array, side: str) -> Array:
-    return momenta_along(lagrangian, group, W, side)
-
-
-def momenta_along(
-    lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup, W: Float[Array, "... N N"], side: str
-) -> Float[Array, "... dim"]:
-    """Return them as a JAX function of W."""
 
     def momentum(V: Array) -> Array:
         def varied(x: Array) -> Array:
