@@ -28,7 +28,7 @@ HOMES = {
     "in_double": "nonholo.discrete.definition",
     "in_one_thread": "nonholo.simulation",
     "kernels": "nonholo",
-    "loop_in_jax": "nonholo.lagrange_dalembert._stepper:_advance",
+    "loop_in_jax": "nonholo.lagrange_dalembert._discretization:_advance",
     "in_double_precision": "nonholo.lagrange_dalembert._room:in_double",
     "located": "nonholo.discrete.certificate._certificate",
     "Located": "nonholo.discrete.certificate._certificate",

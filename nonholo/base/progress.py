@@ -75,8 +75,8 @@ def go_on() -> None:
         raise CancelledError
 
 
-def interruptibly(work: Callable[[], Result], is_long: bool = True) -> Result:
-    """Return what a function returns; if it is long, Ctrl-C is answered at once, also while compiled code is at work.
+def interruptibly(work: Callable[[], Result]) -> Result:
+    """Return what a function returns; Ctrl-C is answered at once, also while compiled code is at work.
 
     The function runs in another thread. After Ctrl-C it is left alone, and ends where it next asks whether to `go_on`.
 
@@ -84,7 +84,7 @@ def interruptibly(work: Callable[[], Result], is_long: bool = True) -> Result:
         >>> interruptibly(lambda: 6 * 7)
         42
     """
-    if not is_long or threading.current_thread() is not threading.main_thread():
+    if threading.current_thread() is not threading.main_thread():
         return work()
     pool, left, context = ThreadPoolExecutor(1), threading.Event(), contextvars.copy_context()
     context.run(_over.set, left.is_set)

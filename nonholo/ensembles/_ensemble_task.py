@@ -3,7 +3,6 @@
 import copy
 import dataclasses
 import json
-import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeAlias
 
@@ -16,17 +15,17 @@ from nonholo.base.types import Float
 from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretization
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
-from nonholo.ensembles._names import OUTCOME, STARTS, start_component
+from nonholo.ensembles._names import OUTCOME, STARTS, checked_reductions, counted, start_component
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.io import unstored
-from nonholo.simulation import Ensemble, Members, check_forces, ensemble, run_in_lanes, stepper_of
+from nonholo.simulation import Ensemble, check_forces, ensemble, run_in_lanes, stepper_of
 from nonholo.systems import one_start, refuse_forces
 
-_MEMBER = re.compile(r"This is member (\d+)\.")
 _BLOCK, _NUMBERS = 1 << 16, 1 << 22  # most members of a block, and numbers of all their states
 _LANES, _STEPS = 32, 1 << 28  # members that the compiled loop takes at once, and most steps of a block: some seconds
 _STEPS_EACH = 1 << 20  # the same for systems that run one by one
 
+_KNOWN = f"Choose among {', '.join(REDUCTIONS)}, or pass a function of an Ensemble."
 RULE = "branch_function"
 """The key of a description for a branch rule that is a function."""
 
@@ -99,7 +98,7 @@ class EnsembleTask:
             "discrete": as_discretization("EnsembleTask(discrete=...)", discrete, composed=True, forced=True),
             "steps": count("EnsembleTask(steps=...)", steps, "Pass the number of steps."),
             "start": given[0] if given else None,
-            "reductions": _checked_reductions(reductions),
+            "reductions": checked_reductions("EnsembleTask(reductions=...)", reductions, REDUCTIONS, _KNOWN),
             "save_every": save_every,
             "branch": branch,
             "reconstruct": flag("EnsembleTask(reconstruct=...)", reconstruct),
@@ -116,13 +115,10 @@ class EnsembleTask:
         parameters = self._parameters(block)
         starts: dict[str, Any] = _rows_of_starts(self.start, block)
         run: Any = {"steps": self.steps, "save_every": self._every, "branch": self.branch}
-        try:
+        with counted(lambda member: block.first + member):
             batch = ensemble(
                 self.discrete, parameters=parameters or None, reconstruct=self.reconstruct, **run, **starts
             )
-        except ValueError as failure:  # its members are counted from the first one of the block
-            message = _MEMBER.sub(lambda number: f"This is member {block.first + int(number[1])}.", str(failure))
-            raise ValueError(message) from failure
         found: dict[str, Any] = {OUTCOME: batch.outcome}
         for reduction in self.reductions:
             more = (
@@ -172,10 +168,6 @@ class EnsembleTask:
         """Return the parameters in which members differ."""
         return {name: block[name] for name in block if name in self._fields}
 
-    def members(self, block: MemberBlock) -> Members:
-        """Return the discretized systems of a block."""
-        return Members(self.discrete, self._parameters(block), block.count)
-
     def describe(self) -> dict[str, Any]:
         """Return the task as plain data."""
         named = [r if isinstance(r, str) else function_name(r) for r in self.reductions]
@@ -216,15 +208,6 @@ def _described_rule(branch: BranchRule) -> dict[str, str]:
 def _start(name: str, value: Any) -> np.ndarray:
     remedy = "Pass the start of all members; what differs belongs to the design."
     return array(f"EnsembleTask({name}=...)", value, (None,), remedy)
-
-
-def _checked_reductions(reductions: Any) -> tuple[Any, ...]:
-    several = tuple(reductions) if isinstance(reductions, list | tuple) else (reductions,)
-    for reduction in several:
-        if not (callable(reduction) or (isinstance(reduction, str) and reduction in REDUCTIONS)):
-            remedy = f"Choose among {', '.join(REDUCTIONS)}, or pass a function of an Ensemble."
-            raise error("EnsembleTask(reductions=...)", "be names or functions", shown(reduction), remedy)
-    return several
 
 
 def _add(found: dict[str, Any], more: Any) -> None:

@@ -3,7 +3,6 @@
 import dataclasses
 import importlib
 import inspect
-import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -14,11 +13,10 @@ from nonholo.base.checks import count, error, function, instance, scale, shown
 from nonholo.discrete import discretize
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
-from nonholo.ensembles._names import OUTCOME, component_of
+from nonholo.ensembles._names import OUTCOME, checked_reductions, component_of, counted
 from nonholo.simulation import ensemble
 
 _LITERATURE, _READY, _FINAL = "nonholo.literature", "examples.", "final_state"
-_MEMBER = re.compile(r"This is member (\d+)\.")
 _STEP, _STARTS = "time_step", ("configuration", "body_velocity")
 _OWN = (*_STARTS, _STEP)
 _STEPS, _MEMBERS = 1 << 20, 1 << 12  # at most in a block
@@ -69,12 +67,12 @@ class FamilyTask:
     def __post_init__(self) -> None:
         function(_named("family"), self.family)
         parameters = instance(_named("parameters"), self.parameters, Mapping, "be a mapping of names", "Pass a dict.")
-        every = self.save_every
+        every, remedy = self.save_every, f"Pass {_FINAL!r} or functions of an ensemble."
         kept = {
             "time_step": float(scale(_named("time_step"), self.time_step, "Pass a positive time step.")),
             "steps": count(_named("steps"), self.steps, "Pass the number of steps."),
             "parameters": dict(parameters),
-            "reductions": _checked_reductions(self.reductions),
+            "reductions": checked_reductions(_named("reductions"), self.reductions, (_FINAL,), remedy),
             "save_every": every and count(_named("save_every"), every, "Pass the steps between states, or None."),
         }
         for name, value in kept.items():
@@ -130,11 +128,8 @@ class FamilyTask:
         discrete = discretize(system, self.time_step)
         step = starts.pop(_STEP, None)
         run = {"steps": self.steps, "save_every": self.save_every}
-        try:
+        with counted(numbers.__getitem__):
             return ensemble(discrete, parameters=None if step is None else {_STEP: step}, **starts, **run)
-        except ValueError as failure:
-            message = _MEMBER.sub(lambda found: f"This is member {numbers[int(found[1])]}.", str(failure))
-            raise ValueError(message) from failure
 
     def _reduced(self, batch: Any) -> dict[str, tuple[Any, np.ndarray, Any]]:
         """Return dimensions, rows and labels of what is kept of members, by name."""
@@ -209,15 +204,6 @@ def _valued(name: str, value: Any, own: dict[str, Any]) -> Any:
             raise error("sweep(design=...)", "vary components that there are", got, "They are counted from 0.")
         value[component] = own[key]
     return value
-
-
-def _checked_reductions(reductions: Any) -> tuple[Any, ...]:
-    several = tuple(reductions) if isinstance(reductions, list | tuple) else (reductions,)
-    for reduction in several:
-        if not callable(reduction) and reduction != _FINAL:
-            remedy = f"Pass {_FINAL!r} or functions of an ensemble."
-            raise error(_named("reductions"), "be names or functions", shown(reduction), remedy)
-    return several
 
 
 def _labeled(name: str, entry: Any) -> tuple[Any, np.ndarray, Any]:

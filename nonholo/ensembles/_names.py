@@ -1,7 +1,8 @@
 """Names of arrays and of dimensions in the store of a sweep: what file systems and xarray take."""
 
+import contextlib
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from nonholo.base.checks import error, shown
@@ -12,6 +13,7 @@ OUTCOME = "outcome"
 STARTS = ("body_velocity", "restricted_velocity", "momentum")
 _BRACKETS = re.compile(r"\[(\d+)\]")
 _LAST = re.compile(r"(\w+)_(\d+)")
+_MEMBER = re.compile(r"This is member (\d+)\.")
 
 
 class Axes(NamedTuple):
@@ -70,3 +72,22 @@ def check_dimensions(arrays: Mapping[str, Axes], coordinates: Mapping[str, Axes]
         if name in lengths or name in coordinates:
             where = f"task(...)[{name!r}]"
             raise error(where, "have a name that the design and dimensions do not have", shown(name), "Rename it.")
+
+
+@contextlib.contextmanager
+def counted(number: Callable[[int], int]) -> Iterator[None]:
+    """Let refusals call the members of a block by their numbers in the sweep."""
+    try:
+        yield
+    except ValueError as failure:
+        message = _MEMBER.sub(lambda member: f"This is member {number(int(member[1]))}.", str(failure))
+        raise ValueError(message) from failure
+
+
+def checked_reductions(where: str, reductions: Any, known: Collection[str], remedy: str) -> tuple[Any, ...]:
+    """Return reductions as a tuple; refuse what is neither a function nor one of the known names."""
+    several = tuple(reductions) if isinstance(reductions, list | tuple) else (reductions,)
+    for reduction in several:
+        if not (callable(reduction) or (isinstance(reduction, str) and reduction in known)):
+            raise error(where, "be names or functions", shown(reduction), remedy)
+    return several

@@ -12,7 +12,7 @@ from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.discrete import displacements_over, has_frame, step_jacobians
-from nonholo.simulation import Ensemble, in_lanes, scalar_members, tangents
+from nonholo.simulation import Ensemble, ScalarMembers, in_lanes, tangents
 from nonholo.systems import AbstractSystem
 
 Reduced = dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]
@@ -62,7 +62,7 @@ def _limit_angle(batch: Ensemble) -> Reduced:
 
 def _heading_turn(batch: Ensemble) -> Float[np.ndarray, "M"]:
     """Sum the angles of the steps, which know of full turns: the first chart coordinate is the tangent of the half."""
-    angles = 2 * np.arctan(scalar_members(batch.members).charts(batch.cayley[:, :-1])[..., 0])
+    angles = 2 * np.arctan(ScalarMembers(batch.members).charts(batch.cayley[:, :-1])[..., 0])
     taken = np.arange(angles.shape[1]) < batch.steps_done[:, None]
     turn = np.where(taken, angles, 0.0).sum(axis=1)
     return np.where(np.isfinite(batch.reduced_momentum[:, 0, 0]), turn, np.nan)
@@ -73,7 +73,7 @@ def _turning_deviation(batch: Ensemble) -> Reduced:
     if not (in_lanes(batch.members) and _is_plane_sleigh(batch.members.discrete.system)):
         got, remedy = shown(batch.members.discrete), "Keep another reduction."
         raise error("reduction 'turning_deviation'", "have a plane sleigh", got, remedy)
-    mass, inertia, a = scalar_members(batch.members).fields
+    mass, inertia, a = ScalarMembers(batch.members).fields
     with np.errstate(divide="ignore", invalid="ignore"):  # a balanced sleigh turns forever
         part = np.abs(_heading_turn(batch)) / np.where(a == 0, np.nan, turn_of_flow(mass, inertia, a))
     missing = np.where(batch.outcome == Outcome.successful, 1 - part, np.nan)
@@ -81,7 +81,7 @@ def _turning_deviation(batch: Ensemble) -> Reduced:
 
 
 def _axis_angle(batch: Ensemble) -> Float[np.ndarray, "M"]:
-    scalar, ended = scalar_members(batch.members), _ended(batch)
+    scalar, ended = ScalarMembers(batch.members), _ended(batch)
     if ended.canonical_pose is None:
         raise error("reduction 'limit_angle'", "have poses", "reconstruct=False", "Leave that out.")
     pose = np.stack([np.broadcast_to(scalar.pose, (len(batch), 4)), ended.canonical_pose[:, 0]], axis=1)

@@ -1,21 +1,40 @@
-"""The discrete maps: a system with a time step, and its run; what maps in coordinates and on groups share."""
+r"""The discrete maps: a system with a time step, and its run; what maps in coordinates and on groups share.
+
+Steps in coordinates and on groups by the definition: of a start, of blocks of rows, and parts of steps.
+
+After a fraction s of a step the motion is where the step of length s h from the same state leads. With momentum p at
+the place q the velocity w of the part solves $P_{sh}(q, w) = p + \sum_j\mu_j A^j(q)$, $F_{sh} = 0$, next to the
+velocity v of the whole step. The whole step from its end begins with the momentum $P^+_{sh}(q, w)$.
+"""
 
 import dataclasses
 import functools
 import importlib
+import math
 from collections.abc import Iterator
-from typing import Any, cast
+from typing import Any, ClassVar, cast
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.checks import error, is_traced, scale
-from nonholo.lagrange_dalembert._motion import CoordinateMotion
-from nonholo.lagrange_dalembert._orbit import CoordinateOrbit, GroupOrbit
-from nonholo.lagrange_dalembert._room import equations_of, in_double, room
-from nonholo.lagrange_dalembert._stepper import CoordinateStepper, after_parts
+from nonholo.base.results import Outcome
+from nonholo.base.types import Array, Float
+from nonholo.lagrange_dalembert import compiled
+from nonholo.lagrange_dalembert._motion import ORBITS, CoordinateMotion
+from nonholo.lagrange_dalembert._newton import orientation, solve
+from nonholo.lagrange_dalembert._orbit import AbstractCoordinateOrbit, CoordinateOrbit, GroupOrbit
+from nonholo.lagrange_dalembert._room import configurations, equations_of, in_double, places, room
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
-from nonholo.orbit import AbstractStepper, First
+from nonholo.lagrange_dalembert.compiled import ROWS
+from nonholo.orbit import AbstractStepper, First, Rows, State
 from nonholo.systems import AbstractCoordinateDiscretization, OrbitT, Start, one_start
+
+_PARTS = 32  # states of one call, one after another: the bits of each do not depend on the others
+
+Motion = tuple[Array, Array, Array]
+"""Place, velocity of its step, velocity of the step before."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -67,9 +86,20 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
         del posed
         return self._stepper
 
-    def after_parts(self, states: OrbitT, fractions: Any) -> OrbitT:
-        """Return what is reached from states of an orbit after fractions in (0, 1) of the steps that begin there."""
-        return after_parts(self, states, fractions)
+    def after_parts(self, states: Any, fractions: Float[np.ndarray, "K"]) -> Any:
+        """Return what is reached after fractions of the steps from states; NaN where there is no such step."""
+        system, h, count = self.system, np.float64(self.time_step), len(states)
+        x, v = places(system, states.configuration, states.time), states.body_velocity
+        given = [_padded(rows) for rows in (fractions, x, v, states.momentum)]
+        parts = [
+            in_double(_moved, system, h, np.int64(min(_PARTS, count - i)), *(rows[i : i + _PARTS] for rows in given))
+            for i in range(0, count, _PARTS)
+        ]
+        ends, ahead = (np.concatenate(column)[:count] for column in zip(*parts, strict=True)) if parts else (x, v)
+        none = np.empty((0, system.constraints))
+        reached = CoordinateStepper(self).states(ends, ahead, none, 0, 1, Outcome.successful)
+        step = states.step + fractions.astype(np.int64)
+        return dataclasses.replace(reached, time=states.time + fractions * h, step=step)
 
     def simulate(self, **run: Any) -> OrbitT:
         """Run the map: `nonholo.simulate(self, ...)`."""
@@ -153,3 +183,180 @@ def _fixed_time_step(value: Any) -> float:
         remedy = "Runs in coordinates are compiled by themselves: call them outside jax.jit and jax.grad."
         raise error(where, "be a number", "a traced value", remedy)
     return float(scale(where, value, "Pass a positive real time step."))
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class CoordinateStepper(AbstractStepper[AbstractCoordinateOrbit]):
+    """The steps of a discretized system in coordinates or on a group.
+
+    A row is a place (with the time, of a driven system), the velocity of the step from there and its impulse. The
+    velocity of the step before and the orientation to keep are its own numbers.
+
+    Attributes:
+        motion: The discretization.
+    """
+
+    motion: Any
+    branch = "nearest"
+    in_threads = False
+    lead: ClassVar[int] = 0
+    block = 1 << 18
+
+    def __post_init__(self) -> None:
+        equations_of(self.motion.system)  # refused by the system of a store without functions
+
+    @functools.cached_property
+    def columns(self) -> dict[str, int]:  # type: ignore[override]
+        """The names and sizes of what a row holds."""
+        (place, rate), system = map(math.prod, self.motion.system.shapes), self.motion.system
+        return {"place": place + system.is_driven, "body_velocity": rate, "multipliers": system.constraints}
+
+    @property
+    def part_refused(self) -> str | None:
+        """Why a step has no parts; None if it has."""
+        if self.motion.system.has_parts:
+            return None
+        return "a table of forces, or discrete functions without a time step"
+
+    def start(self, first: First) -> tuple[State, Outcome]:
+        """Return the state at the root next to a velocity."""
+        system, h, (p, q, v) = self.motion.system, np.float64(self.motion.time_step), first.numbers
+        definition = functools.partial(in_double, set_out, system, h)
+        motion, sign, code = compiled.set_out(definition, system, h, q, v, p)
+        return self._state(motion, np.ravel(sign)), Outcome(int(code))
+
+    def advance(self, state: State, steps: int, every: int, rows: Rows) -> tuple[int, int]:
+        """Take steps by compiled formulas, or by JAX."""
+        system, h, done, code = self.motion.system, np.float64(self.motion.time_step), 0, 0
+        by_jax = functools.partial(in_double, _advance, system, h)
+        motion, sign = self._motion(state), state[-1]
+        while code == 0 and done < steps:
+            table = tuple(column[done // every : steps // every] for column in rows)
+            good, motion, code = compiled.advance(by_jax, system, h, motion, sign, every, table)
+            done += good
+        for column, entries in zip(rows, (*motion[:2], np.nan), strict=True):
+            if done % every == 0:
+                column[done // every] = np.ravel(entries)
+        state[:] = self._state(motion, [sign])
+        return done, int(code)
+
+    def orbit(self, rows: Rows, step: int, every: int, outcome: Outcome) -> AbstractCoordinateOrbit:
+        """Return rows as an orbit."""
+        q, v, impulses = rows
+        return self.states(self._places(q), v, impulses, step, every, outcome)
+
+    def states(
+        self, q: np.ndarray, v: np.ndarray, impulses: np.ndarray, step: int, every: int, outcome: Outcome
+    ) -> Any:
+        """Return states that were reached, with all that they tell, as an orbit."""
+        system, h = self.motion.system, np.float64(self.motion.time_step)
+        *displaced, momentum, energy, residual = _decoded(system, h, q, v)
+        displacement, number = displaced[0] if displaced else h * v, step + every * np.arange(len(q))
+        arrays = h * number, configurations(system, q), displacement, v, momentum, impulses, energy, residual
+        return ORBITS[system.orbits](*arrays, outcome, system, float(h), every, step=number)
+
+    def _places(self, rows: np.ndarray) -> np.ndarray:
+        """Return places from flat ones."""
+        system = self.motion.system
+        return rows if system.is_driven else rows.reshape(-1, *system.shapes[0])
+
+    def _state(self, motion: Motion, sign: Any) -> State:
+        q, v, before = motion
+        impulse = np.zeros(self.motion.system.constraints)  # unknown; a store takes NaN for a chunk that is lost
+        return np.concatenate([np.ravel(q), v, impulse, before, sign])
+
+    def _motion(self, state: State) -> Motion:
+        place, rate, impulse = self.columns.values()
+        q, v, _, before, _ = np.split(state, np.cumsum([place, rate, impulse, rate]))
+        return self._places(q[None])[0], v, before
+
+
+def set_out(system: Any, h: Array, q: Array, v: Array, p: Array) -> tuple[Motion, Array, Array]:
+    """Return the start with a momentum, by the root next to the velocity v."""
+    sign, _ = orientation(system, q, v, h)
+    first, _, code = solve(system, h, q, p, v, v, sign)
+    return (q, first, first), sign, code
+
+
+def _step(system: Any, h: Array, state: Motion, sign: Array) -> tuple[Motion, Array, Array]:
+    """Return the next state, the impulses and the outcome."""
+    q, v, before = state
+    equations = equations_of(system)
+    _, arriving = equations.momenta(system, q, v, h)
+    ahead = equations.ahead(system, q, v, h)
+    following, multipliers, code = solve(system, h, ahead, arriving, v, 2 * v - before, sign)
+    return (ahead, following, v), multipliers, code
+
+
+def _advance(system: Any, h: Array, state: Motion, sign: Array, rows: Array, every: Array) -> tuple:
+    """Run `rows` times `every` steps; return the states before each row, the first impulse of each row, and the end."""
+    s = system.constraints
+
+    def one(carry: tuple) -> tuple:
+        done, current, impulse, _ = carry
+        following, multipliers, code = _step(system, h, current, sign)
+        kept = jax.tree.map(lambda new, old: jnp.where(code == 0, new, old), following, current)
+        return done + (code == 0), kept, jnp.where(done == 0, multipliers, impulse), code
+
+    def row(carry: tuple) -> tuple:
+        i, taken, current, _, (configurations, velocities, impulses) = carry
+        start = (jnp.asarray(0), current, jnp.zeros(s), jnp.asarray(0))
+        done, end, impulse, code = jax.lax.while_loop(lambda c: (c[0] < every) & (c[3] == 0), one, start)
+        table = (
+            configurations.at[i].set(current[0]),
+            velocities.at[i].set(current[1]),
+            impulses.at[i].set(impulse),
+        )
+        return i + 1, taken + done, end, code, table
+
+    tables = tuple(jnp.zeros((ROWS, *shape)) for shape in (state[0].shape, state[1].shape, (s,)))
+    start = (jnp.asarray(0), jnp.asarray(0), state, jnp.asarray(0), tables)
+    return jax.lax.while_loop(lambda c: (c[0] < rows) & (c[3] == 0), row, start)[1:]
+
+
+def _decoded(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> list[np.ndarray]:
+    """Return displacements, momenta, energies and residuals of all saved states, by JAX in blocks of one size."""
+    columns = compiled.decoded(_decode, system, h, q, v)
+    if columns is not None:
+        return columns
+    blocks = max(1, -(-len(q) // ROWS))
+    padded = [np.concatenate([x, np.zeros((blocks * ROWS - len(x), *x.shape[1:]))]) for x in (q, v)]
+    for x in padded:
+        x[len(q) :] = x[len(q) - 1] if len(q) else 0.0
+    parts = [in_double(_decode_all, system, h, *(x[i * ROWS : (i + 1) * ROWS] for x in padded)) for i in range(blocks)]
+    return [np.concatenate(column)[: len(q)] for column in zip(*parts, strict=True)]
+
+
+def _decode_all(system: Any, h: Array, q: Array, v: Array) -> tuple[Array, ...]:
+    return jax.vmap(functools.partial(_decode, system, h))(q, v)
+
+
+def _decode(system: Any, h: Array, q: Array, v: Array, *node: Array) -> tuple[Array, ...]:
+    equations = equations_of(system)
+    residual = jnp.max(jnp.abs(equations.discrete_constraints(system, q, v, h)), initial=0.0)
+    momentum, energy = equations.momenta(system, q, v, h)[0], equations.discrete_energy(system, q, v, h, *node)
+    return *equations.displaced(system, v, h), momentum, energy, residual
+
+
+def _padded(rows: np.ndarray) -> np.ndarray:
+    """Return rows up to a multiple of those of one call, the others zero."""
+    return np.concatenate([rows, np.zeros((-len(rows) % _PARTS, *rows.shape[1:]))])
+
+
+def _moved(system: Any, h: Array, count: Array, fractions: Array, x: Array, v: Array, p: Array) -> tuple[Array, Array]:
+    """Return the places after parts of steps, and the velocities of the whole steps that begin there."""
+    equations = equations_of(system)
+
+    def leg(carry: tuple[Array, Array, Array], length: Array) -> tuple[tuple[Array, Array, Array], tuple]:
+        begin, near, p = carry
+        (_, w, _), _, code = set_out(system, length, begin, near, p)
+        after = equations.ahead(system, begin, w, length), w, equations.momenta(system, begin, w, length)[1]
+        return after, (begin, w, code)
+
+    def one(carry: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
+        i, places, velocities = carry
+        _, (begins, w, codes) = jax.lax.scan(leg, (x[i], v[i], p[i]), jnp.stack([fractions[i] * h, h]))
+        end = jnp.where(codes[0] == 0, begins[1], jnp.nan)
+        return i + 1, places.at[i].set(end), velocities.at[i].set(jnp.where(jnp.all(codes == 0), w[1], jnp.nan))
+
+    return jax.lax.while_loop(lambda c: c[0] < count, one, (jnp.asarray(0), x, v))[1:]

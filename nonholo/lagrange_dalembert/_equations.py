@@ -209,20 +209,6 @@ def kinetic_matrix(system: LagrangeDAlembert, q: Array, v: Array, _h: Any = None
     return jax.hessian(lagrangian, argnums=2)(system, q, v)
 
 
-def newton_matrix(
-    system: LagrangeDAlembert, q: Array, v: Array, h: Array, kinetic: Array
-) -> tuple[Array, Scaled, tuple[Array, Array]]:
-    """Return the scaled regularity matrix of a step, its units, and P and F at the step."""
-
-    def values(w: Array) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-        both = momenta(system, q, w, h)[0], discrete_constraints(system, q, w, h)
-        return both, both
-
-    (mass, below), found = jax.jacfwd(values, has_aux=True)(v)
-    matrix, units = bordered(mass, forms(system, q), below, kinetic)
-    return matrix, units, found
-
-
 def acceleration_matrix(system: LagrangeDAlembert, q: Array, v: Array) -> tuple[Array, Scaled]:
     """Return the scaled matrix of the continuous equations: the regularity matrix for h -> 0."""
     kinetic, A = kinetic_matrix(system, q, v), forms(system, q)

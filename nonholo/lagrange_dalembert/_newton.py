@@ -13,7 +13,7 @@ import jax.numpy as jnp
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array
 from nonholo.kernels import CONTRACTION, ITERATIONS, SINGULAR, TOLERANCE
-from nonholo.lagrange_dalembert._equations import Scaled
+from nonholo.lagrange_dalembert._equations import Scaled, bordered
 from nonholo.lagrange_dalembert._room import equations_of
 
 _SMALLEST = 2.0**-20  # of the path; below it the continuation is given up
@@ -59,7 +59,7 @@ Correction = Callable[[Array, Array, Array], tuple[Array, Array, Array, Array, A
 def orientation(system: Any, q: Array, v: Array, h: Array) -> tuple[Array, Array]:
     """Return the sign of the determinant of the scaled regularity matrix and its least singular value."""
     equations = equations_of(system)
-    matrix, _, _ = equations.newton_matrix(system, q, v, h, equations.kinetic_matrix(system, q, v, h))
+    matrix, _, _ = newton_matrix(system, q, v, h, equations.kinetic_matrix(system, q, v, h))
     return jnp.sign(jnp.linalg.det(matrix)), jnp.linalg.svd(matrix, compute_uv=False)[-1]
 
 
@@ -73,7 +73,22 @@ def solve(
 def of_step(system: Any, q: Array, near: Array, h: Array) -> Matrix:
     """Return the equations of a step from q, in the units of the velocity `near`."""
     kinetic = equations_of(system).kinetic_matrix(system, q, near, h)
-    return lambda v: equations_of(system).newton_matrix(system, q, v, h, kinetic)
+    return lambda v: newton_matrix(system, q, v, h, kinetic)
+
+
+def newton_matrix(
+    system: Any, q: Array, v: Array, h: Array, kinetic: Array
+) -> tuple[Array, Scaled, tuple[Array, Array]]:
+    """Return the scaled regularity matrix of a step, its units, and P and F at the step."""
+    equations = equations_of(system)
+
+    def values(w: Array) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        both = equations.momenta(system, q, w, h)[0], equations.discrete_constraints(system, q, w, h)
+        return both, both
+
+    (mass, below), found = jax.jacfwd(values, has_aux=True)(v)
+    matrix, units = bordered(mass, equations.forms(system, q), below, kinetic)
+    return matrix, units, found
 
 
 def of_node(system: Any, q: Array, _near: Array, _h: Array) -> Matrix:

@@ -100,7 +100,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         """
         if not self.system.has_functions:
             return np.full(len(self), np.nan if self.system.is_driven else 0.0)
-        return room("_acceleration").work(self) if self.system.is_driven else np.zeros(len(self))
+        return room("_flow").work(self) if self.system.is_driven else np.zeros(len(self))
 
     @property
     def lacks_forces(self) -> bool:

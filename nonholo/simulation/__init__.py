@@ -10,10 +10,10 @@ from nonholo.simulation.events import Event, crossings, cusp
 from nonholo.simulation.members import (
     Ensemble,
     Members,
+    ScalarMembers,
     ensemble,
     in_lanes,
     in_one_thread,
     run_in_lanes,
-    scalar_members,
     tangents,
 )

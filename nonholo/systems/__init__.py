@@ -47,5 +47,5 @@ from nonholo.systems.families import (
 )
 from nonholo.systems.forces import Forced, Friction, Gravity, joined, parts_of
 
-SYSTEMS = tuple(vars(families)[name] for name in families.__all__)
+SYSTEMS = tuple(kind for kind in vars(families).values() if isinstance(kind, type))
 """Every final class of this room."""

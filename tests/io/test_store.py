@@ -19,7 +19,7 @@ from problems import PROBLEMS
 
 import nonholo as nh
 from nonholo.base.compiled import way_of_kernels
-from nonholo.io import BlockStore, _save, checksum, locked, orbit_to_dataset, read_attributes
+from nonholo.io import BlockStore, _orbit_store, checksum, locked, orbit_to_dataset, read_attributes
 from nonholo.io.datasets._dataset import stored_variables
 
 NAMES = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
@@ -101,7 +101,7 @@ def test_flows_round_trip(method: str | None, tmp_path: Path) -> None:
 
 def test_several_chunks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """An orbit longer than a chunk is cut and joined without loss."""
-    monkeypatch.setattr(_save, "_ROWS", 8)
+    monkeypatch.setattr(_orbit_store, "_ROWS", 8)
     nh.save_orbit(_orbit(), tmp_path / "o.zarr")
     assert zarr.open_array(tmp_path / "o.zarr" / "canonical" / "cayley", mode="r").nchunks == 3
     assert _same(_orbit(), nh.load_orbit(tmp_path / "o.zarr"))
@@ -313,7 +313,7 @@ def test_damaged_chunk_is_named(
     damage: Callable[[Path], None], name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A chunk that is missing, changed or cut is an error that names array and chunk, never data."""
-    monkeypatch.setattr(_save, "_ROWS", 8)
+    monkeypatch.setattr(_orbit_store, "_ROWS", 8)
     nh.save_orbit(_orbit(), tmp_path / "o.zarr")
     key = "c/1" if name in ("time", "energy", "x") else "c/1/0"
     damage(tmp_path / "o.zarr" / name / key)

@@ -8,7 +8,7 @@ from nonholo import kernels
 from nonholo.discrete.branching._equations import Equations, frame_of
 from nonholo.discrete.branching._path import followed, nearest_body
 from nonholo.discrete.branching._rules import branch_rule
-from nonholo.discrete.branching._steps import displacement_at, first_place, next_place
+from nonholo.discrete.branching._stepper import displacement_at, first_place, next_place
 from nonholo.kernels.secular import nearest as _nearest
 
 SHAPES = {"top 3": (2, None), "top 6": (5, None), "sleigh": (1, 0.6), "sleigh 4": (3, 0.4), "no lever": (3, 0.0)}

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.lagrange_dalembert import LagrangeDAlembert, _stepper
+from nonholo.lagrange_dalembert import LagrangeDAlembert, _discretization
 from nonholo.lagrange_dalembert._newton import solve
 from nonholo.lagrange_dalembert._room import in_double
 
@@ -66,7 +66,7 @@ def test_a_step_that_is_not_trusted_is_taken_by_continuation(monkeypatch: pytest
         steps.append(function.__name__)
         return in_double(function, *arguments)
 
-    monkeypatch.setattr(_stepper, "in_double", noted)
+    monkeypatch.setattr(_discretization, "in_double", noted)
     last = 1 - 1e-8
     how = {"configuration": [0.0], "displacement": [np.arcsin(last - 6 * FORCE)], "steps": 6}
     orbits = [FOLDING.discretize(1.0).simulate(**how, save_every=every) for every in (1, 2, 3)]

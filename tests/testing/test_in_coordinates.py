@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.lagrange_dalembert import _acceleration, _equations
+from nonholo.lagrange_dalembert import _equations, _flow
 from nonholo.testing import check_discretization, check_system
 
 READY = ["particle", "two_wheeled_robot", "roller_racer", "driven_sleigh", "rolling_disk", "knife_edge_on_incline"]
@@ -74,7 +74,7 @@ def test_a_body_that_is_pushed_passes() -> None:
     [
         (_equations, "force", {"equations of motion", "balance"}),
         (_equations, "energy", {"energy", "balance"}),
-        (_acceleration, "_power", {"balance"}),
+        (_flow, "_power", {"balance"}),
     ],
 )
 def test_errors_in_equations(monkeypatch: pytest.MonkeyPatch, home: Any, name: str, expected: set[str]) -> None:

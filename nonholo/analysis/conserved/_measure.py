@@ -1,6 +1,11 @@
 r"""Which densities of restricted momenta a motion keeps, and which it certainly does not.
 
-How a step changes volumes is in `_step_jacobian`. Theory: docs/theory/invariant-measure.md.
+Theory: docs/theory/invariant-measure.md.
+
+The change of volumes of restricted momenta by one step of the discrete map.
+
+With $F(W) = P(W)|_\mathfrak{d}$ a step takes $r = F(W)$ to $r' = -F(W^{-1})$, so that along the displacement variety
+$\det(\partial r'/\partial r) = \det F'(W^{-1})/\det F'(W)$. Theory: docs/theory/invariant-measure.md.
 """
 
 import dataclasses
@@ -9,11 +14,10 @@ from typing import Any
 import numpy as np
 
 from nonholo.analysis._equilibria import equilibria
-from nonholo.analysis.conserved._step_jacobian import step_determinants
 from nonholo.analysis.planar import planar_variety
 from nonholo.base.checks import array, error, instance, shape_of, shown, trailing
 from nonholo.base.types import Array, Float
-from nonholo.discrete import Discretization
+from nonholo.discrete import Discretization, momentum_slope
 from nonholo.orbit import Orbit
 from nonholo.systems import AbstractLLSystem, AbstractSystem, refuse_forces
 
@@ -158,3 +162,14 @@ def invariant_measure(motion: AbstractLLSystem | Discretization, energy: Array =
     factors = spectrum.multipliers
     witness = float(np.sum(spectrum.rates)) if factors is None else float(np.prod(factors))
     return InvariantMeasure(motion, False, spectrum.velocity, witness)
+
+
+def step_determinants(discrete: Discretization, W: Float[np.ndarray, "... N N"]) -> Float[Array, "..."]:
+    """Return the determinant of one step from each displacement; infinite at a fold."""
+    system, variety = discrete.system, planar_variety(discrete.system)
+    with np.errstate(divide="ignore"):
+        if variety is not None:
+            even, odd = variety.area_factor(variety.points(W))
+            return (even - odd) / (even + odd)
+        after, before = (np.linalg.det(momentum_slope(discrete, V)) for V in (system.group.inverse(W), W))
+        return after / before

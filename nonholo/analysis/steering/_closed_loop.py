@@ -1,35 +1,16 @@
 """Steps near a reference orbit, linearized and with forces that depend on the state: in JAX."""
 
-import equinox
 import jax
 import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
-from nonholo.discrete.definition import Rollout, in_double
+from nonholo.discrete.definition import Rollout, doubled
 from nonholo.simulation.traced import rollout
 
 State = tuple[Array, Array]
 """A velocity along the constraint and a pose, or those of many nodes."""
-
-
-def linearized(
-    discrete: Discretization, nodes: State, controls: Float[np.ndarray, "steps dim"]
-) -> tuple[Float[np.ndarray, "steps n n"], Float[np.ndarray, "steps n k"]]:
-    """Return the derivatives of the error after each step by the error before it and by the forces of the step."""
-    return in_double(_linearized, discrete, nodes, controls)
-
-
-def closed_loop(
-    discrete: Discretization,
-    nodes: State,
-    start: State,
-    tables: tuple[np.ndarray, ...],
-    limits: tuple[np.ndarray, np.ndarray],
-) -> tuple[Rollout, Float[np.ndarray, "steps k"], Float[np.ndarray, "K n"]]:
-    """Return the motion from a start, the forces, and the errors; tables are forces, gains, pushes, misreadings."""
-    return in_double(_closed_loop, discrete, nodes, start, tables, limits)
 
 
 def _error(discrete: Discretization, reference: State, state: State) -> Array:
@@ -44,8 +25,11 @@ def _stepped(discrete: Discretization, state: State, covector: Array) -> tuple[R
     return pair, (discrete.system.restricted_velocity(pair.restricted_momentum[1]), pair.configuration[1])
 
 
-@equinox.filter_jit
-def _linearized(discrete: Discretization, nodes: State, controls: Array) -> tuple[Array, Array]:
+@doubled
+def linearized(
+    discrete: Discretization, nodes: State, controls: Float[Array, "steps dim"]
+) -> tuple[Float[Array, "steps n n"], Float[Array, "steps n k"]]:
+    """Return the derivatives of the error after each step by the error before it and by the forces of the step."""
     system = discrete.system
     dim, covectors = system.group.dim, jnp.asarray(np.linalg.pinv(system.constraint_subspace).T)
 
@@ -61,10 +45,11 @@ def _linearized(discrete: Discretization, nodes: State, controls: Array) -> tupl
     return jax.vmap(at)(before, following, controls)
 
 
-@equinox.filter_jit
-def _closed_loop(
+@doubled
+def closed_loop(
     discrete: Discretization, nodes: State, start: State, tables: tuple[Array, ...], limits: tuple[Array, Array]
-) -> tuple[Rollout, Array, Array]:
+) -> tuple[Rollout, Float[Array, "steps k"], Float[Array, "K n"]]:
+    """Return the motion from a start, the forces, and the errors; tables are forces, gains, pushes, misreadings."""
     covectors = jnp.asarray(np.linalg.pinv(discrete.system.constraint_subspace).T)
 
     def step(state: State, row: tuple[State, tuple[Array, ...]]) -> tuple[State, tuple[Rollout, Array, Array]]:

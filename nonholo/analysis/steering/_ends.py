@@ -7,7 +7,7 @@ import numpy as np
 
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
-from nonholo.discrete.definition import Rollout, in_double
+from nonholo.discrete.definition import Rollout, doubled, in_double
 from nonholo.simulation.traced import rollout
 
 Ends = tuple[Array, Array, Array | None, Array | None]
@@ -46,13 +46,9 @@ def _missed(discrete: Discretization, forces: Array, ends: Ends) -> tuple[Array,
     return values, slopes
 
 
-def driven(discrete: Discretization, controls: np.ndarray, start: tuple[np.ndarray, np.ndarray]) -> Rollout:
+@doubled
+def driven(discrete: Discretization, controls: Array, start: tuple[Array, Array]) -> Rollout:
     """Return the orbits under body covectors from velocities and poses of members."""
-    return in_double(_driven, discrete, controls, start)
-
-
-@equinox.filter_jit
-def _driven(discrete: Discretization, controls: Array, start: tuple[Array, Array]) -> Rollout:
     return jax.vmap(lambda controls, start: _orbit(discrete, controls, start, 1))(controls, start)
 
 

@@ -16,7 +16,6 @@ from nonholo.discrete.branching._rules import (
     checked_rule,
     displacement_at,
 )
-from nonholo.discrete.branching._stepper import RuleStepper
-from nonholo.discrete.branching._steps import Place, first_place, next_place
+from nonholo.discrete.branching._stepper import Place, RuleStepper, first_place, next_place
 from nonholo.discrete.branching._tree import BranchTree, branch_tree
 from nonholo.discrete.branching._values import Branches

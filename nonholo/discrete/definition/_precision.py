@@ -2,9 +2,11 @@
 
 import contextlib
 import contextvars
+import functools
 from collections.abc import Callable, Iterator
 from typing import Any
 
+import equinox
 import jax
 import numpy as np
 
@@ -43,3 +45,8 @@ def in_double(function: Callable[..., Any], *arguments: Any) -> Any:
             "or accept single precision with `with nonholo.allow_float32():`."
         )
     return function(*arguments)
+
+
+def doubled(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Compile a JAX function, which is then called as `in_double` calls it."""
+    return functools.wraps(function)(functools.partial(in_double, equinox.filter_jit(function)))

@@ -2,6 +2,8 @@
 
 Written from the definitions for any group, any discrete Lagrangian and any displacement variety, in JAX; the compiled
 steps are tested against it. With a right-invariant constraint the unknown is U = g W g^-1; the equations depend on g.
+
+Functions of one matrix, the library's or the user's, in JAX: values, derivatives along the group, momenta.
 """
 
 import functools
@@ -16,27 +18,13 @@ from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
 from nonholo.discrete._legendre import legendre
 from nonholo.discrete._scheme import Scheme
-from nonholo.discrete.definition._functions import momenta_along
-from nonholo.discrete.definition._precision import in_double
+from nonholo.discrete.definition._precision import doubled, in_double
 from nonholo.discrete.definition._root import followed_root, principal_root
+from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import Orbit
 
-
-def reduced_discrete_lagrangian(discrete: Scheme) -> Callable[[Array], Array]:
-    """Return the function W -> l_d(W), which includes the factor time_step."""
-    system, h = discrete.system, discrete.time_step
-    if callable(discrete.difference):
-        return discrete.difference
-
-    def of_matrix(W: Array) -> Array:
-        X = W - jnp.eye(W.shape[-1])
-        return jnp.trace(X @ jnp.asarray(system.homogeneous_mass_tensor) @ system.group.form_adjoint(X)) / (2 * h)
-
-    def of_logarithm(W: Array) -> Array:
-        x = system.group.log(W)
-        return x @ jnp.asarray(system.inertia_operator) @ x / (2 * h)
-
-    return of_matrix if discrete.difference == "matrix" else of_logarithm
+_SAMPLES = 16
+_EVEN = 1e-10  # relative difference of values that counts as rounding
 
 
 def sample_displacements(discrete: Scheme, count: int) -> Float[np.ndarray, "count N N"]:
@@ -55,16 +43,6 @@ def sample_displacements(discrete: Scheme, count: int) -> Float[np.ndarray, "cou
 def _displacements(discrete: Scheme, momenta: Array, g: Array) -> tuple[Array, Array]:
     charts, codes = jax.vmap(lambda r: principal_displacement(discrete, r, g))(momenta)
     return jax.vmap(lambda y: displaced(discrete, y))(charts), codes
-
-
-def legendre_by_derivative(discrete: Scheme, W: Float[Array, "... N N"], side: str) -> Float[Array, "... dim"]:
-    """Return the momenta P(W) (left) or Ad*_W P(W) (right) by automatic differentiation."""
-    return in_double(functools.partial(_legendre, side=side), discrete, W)
-
-
-@equinox.filter_jit
-def _legendre(discrete: Scheme, W: Array, side: str) -> Array:
-    return momenta_along(reduced_discrete_lagrangian(discrete), discrete.system.group, W, side)
 
 
 def displaced(discrete: Scheme, y: Float[Array, "m"]) -> Float[Array, "N N"]:
@@ -115,12 +93,9 @@ def equations_at(discrete: Scheme, g: Array) -> Callable[[Array, Array], Array]:
 
 def next_charts_by_definition(discrete: Scheme, states: Orbit) -> Float[np.ndarray, "K m"]:
     """Return the canonical chart coordinates that follow, one step from each state."""
-    poses = states.configuration if states.system.is_spatial else _identities(states)
+    eye = states.system.group.identity
+    poses = states.configuration if states.system.is_spatial else np.broadcast_to(eye, (len(states), *eye.shape))
     return in_double(_steps_from, discrete, states.canonical_chart, poses)[1]
-
-
-def _identities(states: Orbit) -> np.ndarray:
-    return np.broadcast_to(states.system.group.identity, (len(states), *states.system.group.identity.shape))
 
 
 def step_from(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array, Array, Array]:
@@ -138,3 +113,47 @@ def pushed(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
 
 
 _steps_from = equinox.filter_jit(jax.vmap(step_from, in_axes=(None, 0, 0)))
+
+
+def value_and_slope(lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup) -> tuple[np.ndarray, np.ndarray]:
+    """Return a discrete Lagrangian and its derivative along the group at the identity."""
+    return in_double(_value_and_slope, lagrangian, group, np.zeros(group.dim))
+
+
+@functools.partial(jax.jit, static_argnums=(0, 1))
+def _value_and_slope(lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup, x: Array) -> tuple[Array, Array]:
+    return jax.value_and_grad(lambda x: lagrangian(group.exp(x)))(x)
+
+
+def map_each(function: Callable[[Array], Array], W: Float[np.ndarray, "K N N"]) -> np.ndarray:
+    """Return the values of a function of one matrix at each of several."""
+    return in_double(_map_each, function, W)
+
+
+@functools.partial(jax.jit, static_argnums=0)
+def _map_each(function: Callable[[Array], Array], W: Array) -> Array:
+    return jax.vmap(function)(W)
+
+
+def is_even(function: Callable[[Array], Array], group: AbstractMatrixGroup) -> bool:
+    """Tell whether a function takes the same value at W and its inverse, tried at random elements."""
+    W = group.exp(0.5 * np.random.default_rng(0).normal(size=(_SAMPLES, group.dim)) / np.sqrt(group.dim))
+    there, back = map_each(function, W), map_each(function, group.inverse(W))
+    return bool(np.abs(there - back).max() <= _EVEN * np.abs(there).max())
+
+
+@doubled
+def momenta_by_derivative(
+    lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup, W: Float[Array, "... N N"], side: str
+) -> Float[Array, "... dim"]:
+    """Return the momenta P(W) (left) or Ad*_W P(W) (right) of a discrete Lagrangian by automatic differentiation."""
+
+    def momentum(V: Array) -> Array:
+        def varied(x: Array) -> Array:
+            g = group.exp(x)
+            return lagrangian(g @ V if side == "left" else V @ g)
+
+        return jax.grad(varied)(jnp.zeros(group.dim, V.dtype))
+
+    flat = jnp.reshape(W, (-1, *W.shape[-2:]))
+    return jnp.reshape(jax.vmap(momentum)(flat), (*W.shape[:-2], group.dim))

@@ -1,19 +1,27 @@
-"""Poses as variables of a dataset in the user's body frame, each a thing that people know: x, heading, quaternion."""
+"""Poses as variables of a dataset in the user's body frame, each a thing that people know: x, heading, quaternion.
 
-from typing import TypeAlias
+Poses as columns of numbers in the user's body frame: what they are called, and how one row continues another.
+"""
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from nonholo.base.types import Float
-from nonholo.groups import AbstractMatrixGroup, ProductGroup, Translations
-from nonholo.io.datasets._pose_columns import HEADING, QUATERNION, Stretch, continued, layout, rows_of, separate_rows
-from nonholo.orbit import Orbit, configurations
+from nonholo.groups import AbstractMatrixGroup, ProductGroup, Translations, quaternion_from_matrix
+from nonholo.io._descriptions import describe_group
+from nonholo.orbit import Orbit, configurations, poses, unwrapped
 
 Variables: TypeAlias = dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]
 """Dimensions after those of the states, values and attributes, by name."""
 
 _AXIS = ("axis",)
 _ENTRIES = ("row", "column")
+
+HEADING = ["theta"]
+QUATERNION = ["qw", "qx", "qy", "qz"]
 
 
 def pose_variables(orbit: Orbit, before: Float[np.ndarray, "1 c"] | None = None) -> Variables:
@@ -100,3 +108,116 @@ def _turn(group: AbstractMatrixGroup, turn: list[str], turned: np.ndarray) -> Va
 
 def _labels(meaning: str, units: str) -> dict[str, str]:
     return {"long_name": meaning, "units": units}
+
+
+class Stretch(NamedTuple):
+    """Saved states that follow one another: times, places, and headings where the run knows them.
+
+    Places are compact poses, matrices, or the coordinates of a system that has them.
+    """
+
+    time: Float[np.ndarray, "K"]
+    pose: Float[np.ndarray, "K ..."]
+    headings: Float[np.ndarray, "K"] | None
+
+
+def column_names(group: AbstractMatrixGroup) -> list[str]:
+    """Return the names of the columns: time, position, and how the body is turned.
+
+    Example:
+        >>> column_names(nh.SE(2)), column_names(nh.SO(3))
+        (['t', 'x', 'y', 'theta'], ['t', 'qw', 'qx', 'qy', 'qz'])
+    """
+    position, turn = layout(group)
+    return ["t", *position, *turn]
+
+
+def separate_rows(group: AbstractMatrixGroup, g: Float[np.ndarray, "R N N"]) -> Float[np.ndarray, "R c"]:
+    """Return poses that do not follow one another as rows of the columns but for the time.
+
+    Angles are between -pi and pi, quaternions have a scalar that is not negative.
+    """
+    position, turn = layout(group)
+    turned = np.arctan2(g[:, 1, 0], g[:, 0, 0])[:, None] if turn == HEADING else _turned(g, turn)
+    return np.concatenate([g[:, : len(position), len(position)], turned], axis=1)
+
+
+def rows_of(
+    system: Any, stretches: Iterable[Stretch], every: int, before: Float[np.ndarray, "1 c"] | None = None
+) -> Iterator[Float[np.ndarray, "R c"]]:
+    """Return one in `every` of the states as rows of the columns; rows do not depend on how the motion is cut.
+
+    The first row continues from the one `before`, if there is one.
+    """
+    position, turn = layout(system.group)
+    n, first = len(position), 0
+    for time, pose, headings in _headed(stretches, before) if turn == HEADING else stretches:
+        kept = slice(-first % every, None, every)
+        compact = pose.shape[1:] == (4,) and turn in (HEADING, QUATERNION)  # a turn, then a position
+        if compact:
+            g = poses(system, pose[kept])
+        else:
+            g = pose[kept] if pose.ndim == 3 else configurations(system, pose[kept])
+        place = g[:, 4 - n :] if compact else g[:, :n, n]
+        turned = np.asarray(headings)[kept, None] if turn == HEADING else g if compact else _turned(g, turn)
+        if turn == QUATERNION:
+            turned = continued(turned, None if before is None else before[:, -4:])
+        rows = np.concatenate([time[kept, None], place, turned], axis=1)
+        first, before = first + len(time), rows[-1:] if len(rows) else before
+        yield rows
+
+
+def coordinate_rows(stretches: Iterable[Stretch], every: int) -> Iterator[Float[np.ndarray, "R c"]]:
+    """Return times and coordinates of one in `every` of the states."""
+    first = 0
+    for time, q, _ in stretches:
+        yield np.concatenate([time[:, None], q], axis=1)[-first % every :: every]
+        first += len(time)
+
+
+def layout(group: AbstractMatrixGroup) -> tuple[list[str], list[str]]:
+    """Return the columns of the position and of the turn; groups that are none of ours have all entries as turn."""
+    described = describe_group(group)
+    kind, n = described["group"], described.get("n", 0)
+    if kind == "Translations":
+        return _numbered(n), []
+    position = [] if kind != "SE" else list("xyz"[:n]) if n <= 3 else _numbered(n)
+    if (kind, n) == ("SE", 2):
+        return position, HEADING
+    return position, QUATERNION if n == 3 else _entries(n or group.size)
+
+
+def _numbered(n: int) -> list[str]:
+    return [f"x{i}" for i in range(1, n + 1)]
+
+
+def _entries(size: int) -> list[str]:
+    between = "" if size < 10 else "_"
+    return [f"r{i}{between}{j}" for i in range(1, size + 1) for j in range(1, size + 1)]
+
+
+def _headed(stretches: Iterable[Stretch], row: Float[np.ndarray, "1 c"] | None) -> Iterator[Stretch]:
+    """Give stretches on SE(2) headings, each continuing the one before, the first that at the end of a row."""
+    before = None if row is None else float(row[0, -1])
+    for stretch in stretches:
+        turned = stretch.pose[:, :2, 0] if stretch.pose.ndim == 3 else stretch.pose  # cosine and sine first
+        headings = unwrapped(turned, before) if stretch.headings is None else stretch.headings
+        before = headings[-1] if len(headings) else before
+        yield stretch._replace(headings=headings)
+
+
+def _turned(g: np.ndarray, names: list[str]) -> Float[np.ndarray, "R c"]:
+    """Return the rotations as quaternions or, row by row, as matrices."""
+    if names == QUATERNION:
+        return quaternion_from_matrix(g[:, :3, :3])
+    size = math.isqrt(len(names))
+    return g[:, :size, :size].reshape(len(g), len(names))
+
+
+def continued(
+    q: Float[np.ndarray, "... R 4"], before: Float[np.ndarray, "... 1 4"] | None = None
+) -> Float[np.ndarray, "... R 4"]:
+    """Return the quaternions, each with the sign that is nearer to the one before it."""
+    chain = np.concatenate([q[..., :1, :] if before is None else before, q], axis=-2)
+    signs = np.where(np.sum(chain[..., 1:, :] * chain[..., :-1, :], axis=-1) < 0, -1.0, 1.0)
+    return q * np.cumprod(signs, axis=-1)[..., : q.shape[-2], None]

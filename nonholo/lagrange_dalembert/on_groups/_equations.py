@@ -99,20 +99,6 @@ def force(system: GroupLagrangeDAlembert, g: Array, w: Array) -> Array:
     return system.group.coad(w, momentum(system, g, w))
 
 
-def newton_matrix(
-    system: GroupLagrangeDAlembert, g: Array, v: Array, h: Array, kinetic: Array
-) -> tuple[Array, Scaled, tuple[Array, Array]]:
-    """Return the scaled matrix of a step, its units, and P and F at the step."""
-
-    def values(w: Array) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-        both = momenta(system, g, w, h)[0], discrete_constraints(system, g, w, h)
-        return both, both
-
-    (mass, below), found = jax.jacfwd(values, has_aux=True)(v)
-    matrix, units = bordered(mass, forms(system, g), below, kinetic)
-    return matrix, units, found
-
-
 def acceleration_matrix(system: GroupLagrangeDAlembert, g: Array, w: Array) -> tuple[Array, Scaled]:
     """Return the scaled matrix of the continuous equations."""
     kinetic, A = jax.hessian(lagrangian, argnums=1)(system, w), forms(system, g)

@@ -1,3 +1,1 @@
 """Moving pictures of orbits."""
-
-from nonholo.plotting.animation._animation import animate

@@ -1,14 +1,12 @@
 """Pictures of an orbit: paths in space, momenta, the error of its energy, quantities in time."""
 
-from nonholo.plotting.motion._blade_track import BladeTrack, blade_track
+from nonholo.plotting.motion._blade_track import blade_track
 from nonholo.plotting.motion._bodies import Bodies, bodies_of
-from nonholo.plotting.motion._body_axis_track import BodyAxisTrack, body_axis_track, known_axes, rotation_axes
+from nonholo.plotting.motion._body_axis_track import body_axis_track, known_axes, rotation_axes
 from nonholo.plotting.motion._coordinates import Track, draw_path, draw_shape, draw_velocity, symbol, track_of
-from nonholo.plotting.motion._energy_error import EnergyError, draw_residual, energy_error
-from nonholo.plotting.motion._fit_profile import fit_profile
-from nonholo.plotting.motion._fit_residuals import fit_residuals
-from nonholo.plotting.motion._momentum_sphere import MomentumSphere, momentum_sphere
-from nonholo.plotting.motion._phase_portrait import PhasePortrait, phase_portrait
-from nonholo.plotting.motion._point_track import PointTrack, point_track
-from nonholo.plotting.motion._section import Section, section
+from nonholo.plotting.motion._energy_error import draw_residual, energy_error
+from nonholo.plotting.motion._fit import fit_profile, fit_residuals
+from nonholo.plotting.motion._momentum_sphere import momentum_sphere
+from nonholo.plotting.motion._phase_portrait import phase_portrait
+from nonholo.plotting.motion._point_track import point_track
 from nonholo.plotting.motion._time_series import heading_and_speed, momentum_components, velocity_components

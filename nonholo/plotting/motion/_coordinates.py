@@ -18,23 +18,8 @@ from nonholo.plotting.motion._path import dress_path, mark_path_ends
 from nonholo.plotting.motion._time_series import draw_components, velocity_names
 
 _GREEK = (
-    *(
-        "alpha",
-        "beta",
-        "gamma",
-        "delta",
-        "epsilon",
-        "zeta",
-        "eta",
-        "theta",
-        "iota",
-        "kappa",
-        "lambda",
-        "mu",
-        "nu",
-        "xi",
-    ),
-    *("pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega"),
+    *("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu"),
+    *("nu", "xi", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega"),
 )
 _PLACES = ("x", "y", "z")
 Drawn = tuple[Artist, tuple[Artist, ...], Artist | None]

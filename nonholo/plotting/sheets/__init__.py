@@ -1,11 +1,11 @@
 """Bodies with two admissible directions on paper: their displacements on a disc or a strip, and their momenta.
 
-What differs between tops and sleighs in pictures is in `_disc` and `_strip`, two files of one interface.
+What differs between tops and sleighs in pictures is in two classes of one interface, in `_chosen`.
 """
 
-from nonholo.plotting.sheets._base import AbstractSheet
 from nonholo.plotting.sheets._blade import Blade
 from nonholo.plotting.sheets._chosen import (
+    AbstractSheet,
     blade_of_system,
     ellipse,
     half_axes,

@@ -2,6 +2,6 @@
 
 from nonholo.simulation.members._ensemble import ensemble
 from nonholo.simulation.members._executors import in_one_thread
-from nonholo.simulation.members._families import in_lanes, run_in_lanes, scalar_members, tangents
+from nonholo.simulation.members._families import ScalarMembers, in_lanes, run_in_lanes, tangents
 from nonholo.simulation.members._members import Members
 from nonholo.simulation.members._result import Ensemble

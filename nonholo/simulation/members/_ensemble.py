@@ -1,8 +1,11 @@
-"""`ensemble`: many motions at once, from checked starts and parameters to decoded results or a user's reduction."""
+"""`ensemble`: many motions at once, from checked starts and parameters to decoded results or a user's reduction.
+
+Joining what a user's reduction made of blocks of members.
+"""
 
 import functools
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -18,7 +21,6 @@ from nonholo.simulation.members._events import joined_blocks
 from nonholo.simulation.members._executors import Plan, Report, are_side_by_side, counting, run_members
 from nonholo.simulation.members._families import check_systems
 from nonholo.simulation.members._members import Members, checked_parameters
-from nonholo.simulation.members._reduce import Reduced, joined
 from nonholo.simulation.members._result import Ensemble
 from nonholo.simulation.members._start import Firsts, are_others, firsts, in_rows
 from nonholo.systems import (
@@ -32,6 +34,11 @@ from nonholo.systems import (
 
 _DEFAULTS = {"branch": PRINCIPAL.name, "backend": "auto", "reconstruct": True}
 _BLOCK = 1 << 23  # numbers in a block of members that is reduced, 64 MiB
+
+Reduced: TypeAlias = np.ndarray | dict[str, np.ndarray]
+
+_WHERE = "ensemble(reduce=...)"
+_ONE = ""  # the name of an array that comes without one
 
 
 def ensemble(
@@ -219,3 +226,42 @@ def _joined(
     if reduce is None:
         return joined_blocks(members, list(blocks))
     return joined(len(members), ((len(block), reduce(block)) for block in blocks))
+
+
+def joined(members: int, blocks: Iterable[tuple[int, Reduced]]) -> Reduced:
+    """Join the results of blocks, which come with their numbers of members, along the member axis.
+
+    Each result is copied to its place when it comes, so that nothing else of its block is kept.
+
+    Example:
+        >>> joined(3, [(2, np.array([0.0, 1.0])), (1, np.array([2.0]))])
+        array([0., 1., 2.])
+    """
+    whole: dict[str, np.ndarray] = {}
+    begin = 0
+    for size, result in blocks:
+        named = result if isinstance(result, dict) else {_ONE: result}
+        rows = {name: _checked(size, value) for name, value in named.items()}
+        whole = whole or {name: np.empty((members, *value.shape[1:]), value.dtype) for name, value in rows.items()}
+        _check_same(whole, rows)
+        for name, value in rows.items():
+            whole[name] = whole[name].astype(np.result_type(whole[name], value), copy=False)
+            whole[name][begin : begin + size] = value
+        begin += size
+    return whole.get(_ONE, whole)
+
+
+def _check_same(whole: dict[str, np.ndarray], rows: dict[str, np.ndarray]) -> None:
+    """Refuse a block with other names or shapes than the first one."""
+    ours, first = ({name: value.shape[1:] for name, value in found.items()} for found in (rows, whole))
+    if ours != first:
+        raise error(_WHERE, "return one shape for all blocks", f"{ours} after {first}", "Pad with NaN.")
+
+
+def _checked(size: int, result: object) -> np.ndarray:
+    """Refuse what does not have one row for each member of the block."""
+    rows = np.asarray(result)
+    if rows.ndim == 0 or len(rows) != size:
+        got = f"shape {rows.shape} for {size} members"
+        raise error(_WHERE, "return arrays with a leading member axis", got, "Keep that axis.")
+    return rows

@@ -228,14 +228,9 @@ def _advance_by_jax(
 def run_one_by_one(members: Members, starts: Firsts, plan: Plan, threads: int, report: Report) -> Ensemble:
     """Run members alone, each as it runs by `simulate` or `flow`."""
     count, orbits, done = len(members), {}, np.zeros(len(members), dtype=np.int64)
-    alone = _run_alone if plan.times is None else _flow_alone
 
     def work(part: slice, _: np.ndarray) -> None:
-        for member in range(part.start, part.stop):
-            try:
-                orbits[member], done[member] = alone(members.of(member), starts.of(member), plan)
-            except ValueError as failure:
-                raise refused(member, failure) from failure
+        orbits[part.start], done[part.start] = _alone(members, starts, plan, part.start)
 
     stepper = None if plan.times is not None else _stepper_of(members.discrete, plan)
     if stepper is not None and (not stepper.in_threads or count * plan.steps <= _SOON_ALONE):
@@ -247,6 +242,14 @@ def run_one_by_one(members: Members, starts: Firsts, plan: Plan, threads: int, r
     branch = PRINCIPAL.name if stepper is None else stepper.branch
     batch = Ensemble(members, plan.steps, plan.every, columns, codes, done, *starts.places, branch=branch)
     return batch if plan.events is None else dataclasses.replace(batch, events=log_of(batch, each))
+
+
+def _alone(members: Members, starts: Firsts, plan: Plan, member: int) -> tuple[Any, int]:
+    run = _run_alone if plan.times is None else _flow_alone
+    try:
+        return run(members.of(member), starts.of(member), plan)
+    except ValueError as failure:
+        raise refused(member, failure) from failure
 
 
 def _stepper_of(motion: Any, plan: Plan) -> AbstractStepper[Any]:

@@ -61,11 +61,6 @@ class ScalarMembers:
         return self.axes.beside(1).charts(canonical)
 
 
-def scalar_members(members: Members) -> ScalarMembers:
-    """Return members that are computed side by side as their kernel sees them."""
-    return ScalarMembers(members)
-
-
 def run_in_lanes(discrete: Discretization) -> bool:
     """Tell whether the members of an ensemble of a discretization are computed side by side."""
     return in_lanes(Members(discrete, {}, 1))

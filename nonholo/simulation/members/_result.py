@@ -262,10 +262,10 @@ class Ensemble:
 
     def _is_shared(self, name: str) -> bool:
         """Tell whether a quantity is the same function of the state for all members."""
-        motion, route = self.members.discrete, self.members.route
+        motion = self.members.discrete
         if name == "multipliers" or motion.forces is not None:
             return False
-        composed = name == "displacement" and route is not None and route.order > 2
+        composed = name == "displacement" and getattr(self.members.route, "order", 2) > 2
         same = set() if name == "momentum" or composed else {"time_step"}
         varied = self.members.of_system
         if varied and name in _OF_FRAME and not composed and self.members.keep_frame:

@@ -7,15 +7,3 @@ from nonholo.systems.families._multidimensional_sleigh import MultidimensionalSl
 from nonholo.systems.families._rigid_body import RigidBody
 from nonholo.systems.families._sleigh import ChaplyginSleigh
 from nonholo.systems.families._suslov import SuslovTop
-
-__all__ = [
-    "ArrowheadSleigh",
-    "ArrowheadTop",
-    "ChaplyginSleigh",
-    "LLSystem",
-    "LRSystem",
-    "MultidimensionalSleigh",
-    "RigidBody",
-    "SuslovTop",
-    "VeselovaTop",
-]

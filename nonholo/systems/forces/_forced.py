@@ -1,6 +1,8 @@
-r"""A system with a potential and a force: again a system, with kinetic energy and constraint of the one inside.
+"""A system with a potential and a force: again a system, with kinetic energy and constraint of the one inside.
 
 Questions about free motions (equilibria, conserved momenta, closed forms) are refused; what serves forces says so.
+
+The implicit midpoint rule for half an impulse of a force that depends on the velocity.
 """
 
 import dataclasses
@@ -14,12 +16,12 @@ import numpy as np
 from nonholo.base.calls import name_of, noted, number_of, numbers_of
 from nonholo.base.checks import array, error, shown, trailing
 from nonholo.base.numerics import exponential_increment, inverted
+from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
 from nonholo.systems._base import AbstractSystem
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem
 from nonholo.systems.forces._friction import Friction
 from nonholo.systems.forces._gravity import Gravity
-from nonholo.systems.forces._midpoint import midpoint_impulse
 from nonholo.systems.forces._parts import joined, parts_of
 
 _OFFSET = 8e-3  # of a body direction, for central differences: its sixth power is at rounding
@@ -31,6 +33,13 @@ _SAME = """
     moved restrict_at restricted_velocity restricted_momentum constrained_energy
 """
 """What is that of the system inside."""
+
+_ITERATIONS = 30  # of Newton's method with one slope
+_MOST, _PARTS = 100, 0.5 ** np.arange(40)  # corrections with new slopes, and parts of one
+_ROUNDING = 1e-12  # relative, before the last correction
+_DIFFERENCE = 1e-7  # relative, of a momentum
+
+Function = Callable[[np.ndarray], np.ndarray]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -314,3 +323,55 @@ def _each(function: Callable[[np.ndarray], Any], g: np.ndarray) -> np.ndarray:
     """Return the values of a function of one matrix at all of them."""
     found = np.array([function(each) for each in g.reshape(-1, *g.shape[-2:])])
     return found.reshape((*g.shape[:-2], *found.shape[1:]))
+
+
+def midpoint_impulse(
+    impulse_at: Callable[[np.ndarray], np.ndarray],
+    r: Float[np.ndarray, "k"],
+    E: Float[np.ndarray, "dim k"],
+    to_velocity: Float[np.ndarray, "dim k"],
+) -> Float[np.ndarray, "dim"]:
+    """Return the impulse at the velocity of the mean of the momenta before and after it; NaN where there is none.
+
+    Raises:
+        OutcomeError: There is no such impulse nearby.
+    """
+
+    def impulse(after: np.ndarray) -> np.ndarray:
+        return impulse_at(to_velocity @ ((r + after) / 2))
+
+    def missed(after: np.ndarray) -> np.ndarray:
+        return r + E.T @ impulse(after) - after
+
+    def slope_at(after: np.ndarray) -> np.ndarray:
+        slopes = [E.T @ (impulse(after + x) - impulse(after - x)) / (2 * x.max()) for x in offsets]
+        return np.eye(len(r)) - np.nan_to_num(np.transpose(slopes))
+
+    first = E.T @ impulse(r)
+    offsets = _DIFFERENCE * (np.abs(np.append(r, first)).max() or 1.0) * np.eye(len(r))
+    slope = slope_at(r)
+    after = _root(missed, lambda _: slope, r, r + np.nan_to_num(first), _ITERATIONS, shortens=False)
+    if after is None:
+        after = _root(missed, slope_at, r, r, _MOST, shortens=True)
+    if after is None:
+        raise OutcomeError(Outcome.no_half_impulse, "Half impulse of a force that depends on the velocity")
+    return impulse(after)
+
+
+def _root(
+    missed: Function, slope_at: Function, r: np.ndarray, after: np.ndarray, most: int, *, shortens: bool
+) -> np.ndarray | None:
+    """Return the momenta after the impulse by Newton's method, which may halve corrections that miss more; or None."""
+    for _ in range(most):
+        gap = missed(after)
+        left = np.abs(gap).max()
+        if not left < np.inf:
+            return np.full_like(r, np.nan) if shortens else None
+        change, parts = np.linalg.lstsq(slope_at(after), gap)[0], _PARTS if shortens else _PARTS[:1]
+        if left <= _ROUNDING * np.abs(np.append(r, after)).max():
+            return after + change
+        better = (part for part in parts if not shortens or np.abs(missed(after + part * change)).max() < left)
+        if (part := next(better, None)) is None:
+            return None
+        after = after + part * change
+    return None
