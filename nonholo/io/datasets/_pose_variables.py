@@ -150,21 +150,26 @@ def rows_of(
     The first row continues from the one `before`, if there is one.
     """
     position, turn = layout(system.group)
-    n, first = len(position), 0
+    first = 0
     for time, pose, headings in _headed(stretches, before) if turn == HEADING else stretches:
         kept = slice(-first % every, None, every)
-        compact = pose.shape[1:] == (4,) and turn in (HEADING, QUATERNION)  # a turn, then a position
-        if compact:
-            g = poses(system, pose[kept])
-        else:
-            g = pose[kept] if pose.ndim == 3 else configurations(system, pose[kept])
-        place = g[:, 4 - n :] if compact else g[:, :n, n]
-        turned = np.asarray(headings)[kept, None] if turn == HEADING else g if compact else _turned(g, turn)
+        place, turned = _placed(system, pose[kept], len(position), turn)
+        if turn == HEADING:
+            turned = np.asarray(headings)[kept, None]
         if turn == QUATERNION:
             turned = continued(turned, None if before is None else before[:, -4:])
         rows = np.concatenate([time[kept, None], place, turned], axis=1)
         first, before = first + len(time), rows[-1:] if len(rows) else before
         yield rows
+
+
+def _placed(system: Any, pose: np.ndarray, n: int, turn: list[str]) -> tuple[np.ndarray, np.ndarray]:
+    """Return n numbers of the positions, and the turns, of poses: compact ones with the turn first, or matrices."""
+    if pose.shape[1:] == (4,) and turn in (HEADING, QUATERNION):
+        compact = poses(system, pose)
+        return compact[:, 4 - n :], compact
+    g = pose if pose.ndim == 3 else configurations(system, pose)
+    return g[:, :n, n], _turned(g, turn)
 
 
 def coordinate_rows(stretches: Iterable[Stretch], every: int) -> Iterator[Float[np.ndarray, "R c"]]:
