@@ -14,7 +14,7 @@ from bodies import GENERAL
 
 import nonholo as nh
 from nonholo.base import compiled
-from nonholo.base.compiled import first_way, key_of, library, library_of_kernels, tokens
+from nonholo.base.compiled import build, first_way, key_of, library, library_of_kernels, tokens
 from nonholo.discrete.routes import make_route
 from nonholo.kernels import SleighBody, _driver, _small
 from nonholo.kernels.general import _step as general
@@ -96,6 +96,28 @@ def test_a_kernel_that_fails_is_an_error(size: int, known: compiled.Library) -> 
     with pytest.raises(RuntimeError, match=r"kernel nonholo.kernels.general._step.workspace failed.*=python"):
         general.workspace(body._replace(tensor=np.empty((size, 0))))
     assert general.workspace(body) is not None
+
+
+def test_objects_for_every_machine(tmp_path: Path) -> None:
+    """A kernel that makes an array becomes an object in the format of each machine, which has its name."""
+    begin = {"linux": b"\x7fELF", "darwin": b"\xcf\xfa\xed\xfe", "windows": b"\x64\x86"}
+    folders = {name: tmp_path / name for name in build.MACHINES}
+    for folder in folders.values():
+        folder.mkdir()
+    line = f"{_step.__name__}.room_for_sums "
+    build.write_objects(line, folders)
+    for name, folder in folders.items():
+        (file,) = folder.iterdir()
+        content = file.read_bytes()
+        assert content.startswith(begin[name.split("-")[0]])
+        assert compiled.symbol_of(*line.split(" ")).encode() in content
+
+
+def test_an_unknown_machine_is_refused(tmp_path: Path) -> None:
+    """It is, before anything is compiled or written."""
+    with pytest.raises(ValueError, match=r"must be one of linux-x86_64, .*Got linux-arm\."):
+        build.build(tmp_path / "new", "linux-aarch64", "linux-arm")
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_library_of_another_text_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

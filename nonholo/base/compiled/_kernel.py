@@ -336,7 +336,8 @@ def way_of_kernels() -> str:
 @functools.cache
 def library_of_kernels() -> Library | None:
     """Return the library of the kernels of this text, beside them or in the user's cache; None if there is none."""
-    file = library.place() if first_way() == "library" and _has_known_arrays() else None
+    file = library.place() if first_way() == "library" else None
+    file = file if file and _has_known_arrays() else None  # which reads memory
     way = f"from {file}" if file else "by numba" if _by_numba() else "as Python"
     logging.getLogger("nonholo").info("Kernels run %s.", way)
     return Library(file) if file else None
