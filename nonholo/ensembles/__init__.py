@@ -9,16 +9,5 @@ from nonholo.ensembles._names import component_name
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.ensembles._sweep import load_sweep, resume, sweep
 from nonholo.ensembles.datasets import DEFINITIONS
-from nonholo.ensembles.designs import (
-    AbstractDesign,
-    AbstractDistribution,
-    Choice,
-    Direction,
-    Grid,
-    LogUniform,
-    MassTensor,
-    Normal,
-    RandomDesign,
-    Uniform,
-)
+from nonholo.ensembles.designs import AbstractDesign, AbstractDistribution
 from nonholo.ensembles.stores import SweepStanding, standing_of, sweep_to_csv

@@ -12,7 +12,8 @@ from nonholo.cli.scenario.motion import AbstractScenario
 from nonholo.cli.scenario.sections import Count, Section, checked_by
 
 if TYPE_CHECKING:
-    from nonholo.ensembles import EnsembleTask, Grid, RandomDesign
+    from nonholo.ensembles import EnsembleTask
+    from nonholo.ensembles.designs import Grid, RandomDesign
 
 Seed = Annotated[int, Field(ge=0, lt=2**63)]
 Given = TypeVar("Given")
