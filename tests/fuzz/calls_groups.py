@@ -49,6 +49,7 @@ def _methods(name: str, group: nh.groups.AbstractMatrixGroup) -> list[Call]:
         call(f"{name}.coadjoint", group.coadjoint, g=g, p=x),
         call(f"{name}.matrix_from_pose", group.matrix_from_pose, pose=pose),
         call(f"{name}.normalize_pose", group.normalize_pose, pose=pose),
+        call(f"{name}.pose_product", group.pose_product, pose=pose, other=pose),
         call(f"{name}.pose_rate", group.pose_rate, pose=pose, x=x),
         call(f"{name}.random", group.random, rng=anything(np.random.default_rng(0))),
     ]

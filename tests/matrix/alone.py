@@ -7,7 +7,6 @@ _COORDINATES = "particle", "rolling disk", "snakeboard", "driven sleigh", "Chapl
 ALONE: dict[str, list[str]] = {
     **{kind: [_JAX if kind in ("own difference", *_COORDINATES) else _LIBRARY] * 3 for kind in KINDS},
     **{kind: [_JAX, _LIBRARY, _JAX] for kind in ("own group", "logarithmic")},
-    **{kind: [_LIBRARY, "no kernels", _LIBRARY] for kind in ("gravity", "force in Python")},
     "friction, table": [_LIBRARY, "", _LIBRARY],
     "force in numba": ["your own numba", "your own numba", "your own numba"],
 }
