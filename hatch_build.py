@@ -1,6 +1,7 @@
 """The build hook: kernels that are compiled ahead go into wheels, and beside the kernels of a checkout."""
 
 import contextlib
+import functools
 import importlib.util
 import os
 import shutil
@@ -61,6 +62,7 @@ class KernelsHook(BuildHookInterface):  # pyright: ignore[reportMissingTypeArgum
             build_data.update(pure_python=False, infer_tag=False, tag=f"py3-none-{_TAGS.get(machine) or _platform()}")
 
 
+@functools.cache
 def _library() -> Any:
     """Return the module that says where the library lies; the package is not there yet."""
     spec = importlib.util.spec_from_file_location("library", _ROOT / "nonholo" / "base" / "compiled" / "library.py")

@@ -1,11 +1,7 @@
 r"""Which densities of restricted momenta a motion keeps, and which it certainly does not.
 
-Theory: docs/theory/invariant-measure.md.
-
-The change of volumes of restricted momenta by one step of the discrete map.
-
 With $F(W) = P(W)|_\mathfrak{d}$ a step takes $r = F(W)$ to $r' = -F(W^{-1})$, so that along the displacement variety
-$\det(\partial r'/\partial r) = \det F'(W^{-1})/\det F'(W)$. Theory: docs/theory/invariant-measure.md.
+volumes change by $\det(\partial r'/\partial r) = \det F'(W^{-1})/\det F'(W)$. Theory: docs/theory/invariant-measure.md.
 """
 
 import dataclasses

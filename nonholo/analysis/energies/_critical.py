@@ -1,12 +1,11 @@
 r"""Critical energies of the discrete Suslov top (n = 3): where the level curves on the displacement variety change.
 
 The variety is a projective plane, $W \leftrightarrow \pm(z_0, z)$; the energy on it is a quartic with isolated critical
-points. Branches and their regions live elsewhere. Theory: docs/theory/critical-energies-and-limits.md.
+points. Branches and their regions live elsewhere.
 
-Up to which energy the momenta of a discrete top (n = 3) determine the displacement around the identity.
-
-On a ray of displacements with one axis $\cot(\theta/2)$ of a fold is a root of a cubic; the least energy of all folds
-is found by a search along the circle of axes. Theory: docs/theory/critical-energies-and-limits.md, "The first fold".
+Up to the energy of the first fold momenta determine the displacement around the identity. On a ray of displacements
+with one axis $\cot(\theta/2)$ of a fold is a root of a cubic; the least energy of all folds is found by a search along
+the circle of axes. Theory: docs/theory/critical-energies-and-limits.md.
 """
 
 import dataclasses

@@ -237,10 +237,15 @@ def write_objects(line: str, folders: dict[str, Path]) -> None:
     """Compile a line of the list into objects, in the folder of each machine."""
     text, symbol = text_of(line), compiled.symbol_of(*line.split(" "))
     for name, folder in folders.items():
-        for variant, processor in _PROCESSORS.get(name, {"": "generic"}).items():
+        for variant, processor in _processors(name).items():
             if not variant or any(room in line for room in _WIDE):
                 own = text.replace(symbol, symbol + variant)
                 (folder / f"{symbol}{variant}.o").write_bytes(_object(own, name, processor, symbol))
+
+
+def _processors(name: str) -> dict[str, str]:
+    """Return the processors of a machine for which there is code, by the variant of its functions."""
+    return _PROCESSORS.get(name, {"": "generic"})
 
 
 def _object(text: str, name: str, processor: str, public: str) -> bytes:
@@ -293,11 +298,11 @@ def build(target: Path, *names: str) -> None:
                 print(f"\rkernels compiled: {count} of {len(lines())}", end="", file=sys.stderr)  # noqa: T201
         for name, folder in folders.items():
             file = folder / "release.o"
-            file.write_bytes(_object("", name, _PROCESSORS.get(name, {"": "generic"})[""], "nonholo_release"))
-            made, part = folder / "library", target / f".{os.getpid()}.part"
+            file.write_bytes(_object("", name, _processors(name)[""], "nonholo_release"))
+            linked, part = folder / "library", target / f".{os.getpid()}.part"
             objects = map(str, sorted(folder.glob("*.o")))
-            subprocess.run([*linker(name), "-shared", "-s", "-o", str(made), *objects], check=True)  # noqa: S603
-            shutil.copy(made, part)
+            subprocess.run([*linker(name), "-shared", "-s", "-o", str(linked), *objects], check=True)  # noqa: S603
+            shutil.copy(linked, part)
             part.replace(target / name_of_library(name))  # in one go: runs from an old one continue
 
 

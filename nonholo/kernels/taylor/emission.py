@@ -111,14 +111,14 @@ class _Expansion:
 
     def collected(self, sums: list[Any], divisor: Any) -> list[Any]:
         """Write the next coefficients of x: those of its rates, divided."""
-        b, found = self.builder, []
+        b, coefficients = self.builder, []
         for B, scales in enumerate(self.scales):
             rate = _ZERO
             for (q, at), scale in zip(self.slots(B), scales, strict=True):
                 places = [_SIDE if term is None else self.found[term] % self.side for term in at]
                 rate = b.fadd(rate, b.fmul(scale, self.shuffled(sums[q], _ZERO, places)))
-            found.append(b.fdiv(rate, divisor) if scales else rate)
-        return found
+            coefficients.append(b.fdiv(rate, divisor) if scales else rate)
+        return coefficients
 
     def moved(self, z: list[Any], j: Any) -> list[Any]:
         """Write z of an order with its velocities: V r, or what the inverse of B_0 makes of what earlier ones leave."""
