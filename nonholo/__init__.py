@@ -24,6 +24,8 @@ Groups:
 Forces:
     Forced: A system under a potential U and a force f, a body covector; both act along the constraint alone.
     Gravity: The potential of a constant spatial force F at the body point x, $U(g) = -F\cdot(g\,x)$.
+    Linear: The potential $U(g) = \mathrm{tr}(A^Tg) = \sum_{ij}A_{ij}g_{ij}$: a magnet, a field, weights at several ...
+    Spring: The potential of a spring between the body point x and the space point p, $U(g) = \tfrac k2(|gx - p| - ...
     Friction: The force $-C\omega$ against a body velocity, with $\omega\cdot C\omega \ge 0$: it never adds energy.
 
 Systems in coordinates, and ready ones:
