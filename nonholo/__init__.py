@@ -43,6 +43,7 @@ One step of the discrete map:
 Every value of the map:
     branches: Find every value of the discrete map: all $W'$ that may follow a displacement $W$.
     displacements_over: Find every displacement whose discrete momentum has given components along the constraint ...
+    branch_growth: Bound from below how fast the number of images of a plane sleigh under its three branches grows.
     branch_tree: Find all images of a displacement under the discrete map, all images of these, and so on.
     fold_distance: Return how regular the restricted Legendre map is at a displacement: 1 at the identity, 0 at a fold.
     single_valued_region: Return the energy below which the discrete sleigh is single-valued.
