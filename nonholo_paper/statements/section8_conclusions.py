@@ -130,9 +130,9 @@ def _outside(growth: BranchGrowth) -> float:
     """Count ends of the interval that a word takes out of its disc, by the cubic; they hold the interval's parts."""
     m, J, a = _SIZES
     turning, sliding = ctx.sqrt(2 * (J + m * a**2) * growth.energy), ctx.sqrt(2 * m * growth.energy)
-    outside, rho = 0, growth.discs[0, 1]
+    outside, (middle, half) = 0, growth.discs[0]
     for word, (center, radius) in zip(growth.words, growth.discs[1:], strict=True):
-        for x in (-rho, rho):
+        for x in (middle - half, middle + half):
             state = ctx.mpc(0, turning * ctx.sinh(x)), sliding * ctx.cosh(x)
             for letter in word:
                 roots = sorted(correspondences.sleigh_roots(state, _SIZES), key=lambda t: t.imag)

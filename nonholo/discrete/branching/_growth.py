@@ -16,10 +16,13 @@ from nonholo.base.checks import error, flags, needs, positive
 from nonholo.base.types import Float
 from nonholo.discrete._discretization import Discretization, as_discretization
 
-_LONGEST = 10_000  # steps of a word
+_LONGEST = 1000  # steps of a word
 _BITS = 128  # of the balls
 _BELOW = 1 - 2.0**-40  # of the highest energy, so that balls can tell
 _WIDER = 1 + 2.0**-40  # of radii in doubles
+_CLOSE = 1 - 2.0**-10  # how close to the image of the equilibrium an end is
+
+Words = tuple[tuple[int, ...], ...]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -29,14 +32,15 @@ class BranchGrowth:
     Attributes:
         words: Branches in the order of the steps, by $\tau = \tan(\Delta/2)/i$: 0 is the principal one with
             $|\tau| < 1$, 1 and -1 are those with $\tau > 1$ and $\tau < -1$.
-        discs: Center and radius, in x, of an interval and of the image of it under each word: disjoint parts of it, on
-            which words are one to one. Rounded to doubles.
-        rate: L with $\sum_w L^{-|w|} = 1$: general momenta have at least $cL^N$ different images after N steps.
+        discs: Center and radius, in x, of an interval and of its image under each word: the images are disjoint parts
+            of it, and words are one to one. Rounded to doubles.
+        rate: L with $\sum_w L^{-|w|} = 1$, |w| the steps of a word: general momenta have at least $cL^N$ different
+            images after N steps.
         energy: The level.
         certified: Whether ball arithmetic has proved it.
     """
 
-    words: tuple[tuple[int, ...], ...]
+    words: Words
     discs: Float[np.ndarray, "d 2"]
     rate: float
     energy: float
@@ -113,9 +117,10 @@ class Axis(NamedTuple):
 def branch_growth(discrete: Discretization, certify: bool = False, *, energy: float | None = None) -> BranchGrowth:
     r"""Bound from below how fast the number of images of a plane sleigh under its three branches grows.
 
-    A principal step $\varphi$ and words $\varphi^j\beta_\pm$, one step on another branch and j principal ones, map an
-    interval around the attracting equilibrium into disjoint parts of it, so there are at least $cL^N$ images after N
-    steps with $1/L + 2/L^{j+1} = 1$. Branches that are translations of a commutative group have polynomially many.
+    A principal step $\varphi$ and the word $\varphi^j\beta$, a step on another branch and j principal ones, map an
+    interval at the attracting equilibrium into disjoint parts of it; with the mirror image of the second word, where
+    that gives more, they are three. So there are at least $cL^N$ images after N steps, $1/L + 1/L^{j+1} = 1$ or
+    $1/L + 2/L^{j+1} = 1$. Branches that are translations of a commutative group have polynomially many.
 
     Of tops there is numerical evidence alone: `branch_tree` counts their images.
 
@@ -131,7 +136,7 @@ def branch_growth(discrete: Discretization, certify: bool = False, *, energy: fl
 
     Raises:
         ValueError: Another system or discretization; an energy that is too high, or so low that words have more than
-            10,000 steps; a body with so small a J or $ma^2$ that doubles do not show it; `certify=True` without
+            1000 steps; a body with so small a J or $ma^2$ that doubles do not show it; `certify=True` without
             python-flint.
 
     Example:
@@ -153,14 +158,16 @@ def branch_growth(discrete: Discretization, certify: bool = False, *, energy: fl
     level = highest * _BELOW if energy is None else float(positive(where, energy, "Pass a level of the energy."))
     body = (mass, inertia, arm, step, level)
     try:
-        count, discs = _certified(body) if certify else intervals(Axis.of(body, DOUBLES))
+        words, discs = _certified(body) if certify else best_words(Axis.of(body, DOUBLES))
     except ArithmeticError:
         got = f"{level:.6g}, with J = {inertia:.6g} and ma^2 = {moment:.6g}"
         requirement = f"be below {highest:.6g} and give words of at most {_LONGEST} steps"
         raise error(where, requirement, got, "Pass an energy between these, or a less extreme body.") from None
-    words = ((0,), (1, *[0] * count), (-1, *[0] * count))
-    rate = _root(lambda x: sum(x ** -len(word) for word in words) - 1, 1.0, 3.0)
-    return BranchGrowth(words, discs, rate, level, certify)
+    return BranchGrowth(words, discs, _rate(words), level, certify)
+
+
+def _rate(words: Words) -> float:
+    return _root(lambda x: sum(x ** -len(word) for word in words) - 1, 1.0, 3.0)
 
 
 def _sleigh(where: str, discrete: Discretization) -> tuple[float, float, float, float]:
@@ -176,40 +183,60 @@ def _sleigh(where: str, discrete: Discretization) -> tuple[float, float, float, 
     return float(form.mass), float(form.stiffness[0, 0]), abs(float(form.arm)), float(discrete.time_step)
 
 
-def _certified(body: tuple[float, ...]) -> tuple[int, Float[np.ndarray, "d 2"]]:
+def _certified(body: tuple[float, ...]) -> tuple[Words, Float[np.ndarray, "d 2"]]:
     with needs("certify", "branch_growth(certify=...)"):
         from flint import arb, ctx
     with ctx.workprec(_BITS):
-        return intervals(Axis.of(body, Numbers(arb, arb.sqrt, arb.asinh, arb.atanh)))
+        return best_words(Axis.of(body, Numbers(arb, arb.sqrt, arb.asinh, arb.atanh)))
 
 
-def intervals(axis: Axis) -> tuple[int, Float[np.ndarray, "d 2"]]:
-    r"""Return j and the discs: $\rho = \varphi^j(\rho_0)$ with $\beta([-\rho, \rho])$ in $(-\rho_0, -\varphi(\rho_0))$.
-
-    $\rho_0 + \varphi(\rho_0)$ is twice the distance of $\beta(0)$.
-    """
+def best_words(axis: Axis) -> tuple[Words, Float[np.ndarray, "d 2"]]:
+    """Return two words on an interval that ends at the equilibrium, or three around it if their rate is larger."""
     if not axis.lift > axis.turn:
         raise ArithmeticError
+    two = _words(axis, 0, _LONGEST)
+    longest = min(2 * len(two[0][1]), _LONGEST)  # longer ones would have the smaller rate
+    try:
+        three = _words(axis, 1, longest)
+    except ArithmeticError:
+        return two
+    return max(two, three, key=lambda found: _rate(found[0]))
+
+
+def _words(axis: Axis, mirrored: int, longest: int) -> tuple[Words, Float[np.ndarray, "d 2"]]:
+    r"""Return words and discs for $K = [-\rho, 0]$, or mirrored $[-\rho, \rho]$, with $\rho = \varphi^j(\rho_0)$.
+
+    $\beta(K)$ lies in $(-\rho_0, -\varphi(\rho_0))$, whose second end is close to $\beta(0)$; mirrored, both ends are
+    as far from it.
+    """
     rough = Axis(float(axis.turn), float(axis.lift), DOUBLES)
-    jump = rough.ends(rough.around(0.0, outer=True)[0])[1]
-    outside, inside = axis.ends(_root(lambda t: sum(rough.ends(t)) + 2 * jump, 0.0, 1 - 2.0**-50))
+    jump = -rough.ends(rough.around(0.0, outer=True)[0])[1]
+
+    def missed(tau: float) -> float:
+        before, after = rough.ends(tau)
+        return before + after - 2 * jump if mirrored else after - _CLOSE * jump
+
+    outside, inside = axis.ends(_root(missed, 0.0, 1 - 2.0**-50))
     rho = (outside, outside)
-    for count in range(1, _LONGEST + 1):
+    for count in range(1, longest + 1):
         rho = axis.onwards(rho)
-        first, last = axis.around(-rho[1], outer=True)[0], axis.around(rho[1], outer=True)[1]
+        first, last = axis.around(-rho[1], outer=True)[0], axis.around(mirrored * rho[1], outer=True)[1]
         image = -axis.ends(last)[1], -axis.ends(first)[1]
         if inside < image[0] and image[1] < outside and axis.rises(last):
-            return count, _discs(axis, rho, image, count)
+            words = ((0,), *((letter, *[0] * count) for letter in (1, -1)[: 1 + mirrored]))
+            return words, _discs(axis, rho, image, count, mirrored)
     raise ArithmeticError
 
 
-def _discs(axis: Axis, rho: tuple, image: tuple, count: int) -> Float[np.ndarray, "d 2"]:
-    """Return the interval and its three images."""
+def _discs(axis: Axis, rho: tuple, image: tuple, count: int, mirrored: int) -> Float[np.ndarray, "d 2"]:
+    """Return the interval and its images, the last one if there is a mirror."""
     inner = axis.onwards(rho)[1]
     for _ in range(count):
         image = axis.onwards(image)
-    center, radius = float(sum(image)) / 2, float(image[1] - image[0]) / 2 * _WIDER
-    return np.array([[0.0, float(rho[0])], [0.0, float(inner) * _WIDER], [-center, radius], [center, radius]])
+    ends = [(-rho[0], mirrored * rho[0]), (-inner, mirrored * inner), (-image[1], -image[0]), image][: 3 + mirrored]
+    discs = np.array([(float(x + y) / 2, float(y - x) / 2) for x, y in ends])
+    discs[1:, 1] *= _WIDER
+    return discs
 
 
 def _root(of: Callable[[float], float], low: float, high: float) -> float:
