@@ -27,6 +27,7 @@ from .base.results import Outcome as Outcome
 from .base.results import OutcomeError as OutcomeError
 from .continuous import vector_field as vector_field
 from .discrete import Discretization as Discretization
+from .discrete import branch_growth as branch_growth
 from .discrete import branch_tree as branch_tree
 from .discrete import branches as branches
 from .discrete import consistency_defect as consistency_defect
