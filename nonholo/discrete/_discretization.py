@@ -146,6 +146,9 @@ class Discretization(Scheme, AbstractMotion):
         if self.order == 2:
             return self.displaced(states.canonical_chart)
         group, moves = self.system.group, self.system.is_spatial
+        if self.forces is not None:
+            ahead = group.matrix_from_pose(self.route.parts(states, np.ones(len(states)))[2])
+            return group.inverse(states.configuration) @ ahead @ group.inverse(self.system.frame)
         g = states.configuration if moves else np.broadcast_to(group.identity, (len(states), group.size, group.size))
         after = self.route.whole_steps(states.reduced_momentum, g)[1]
         return after @ group.inverse(g) if moves else after

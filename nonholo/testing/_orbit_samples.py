@@ -237,7 +237,7 @@ def impulses_of(
     r"""Return the half impulses before and after each step of an orbit, from its own momenta.
 
     A kick takes r to $r + E^Tj$. Friction acts all the while, $\dot j = F(r + E^Tj)$; any other force with the
-    velocity of the mean of both momenta, if need be beside it.
+    velocity of the mean of both momenta, if need be beside it. Balanced forces give the same impulse twice.
 
     Args:
         forced: What moves.
@@ -246,6 +246,9 @@ def impulses_of(
         time_step: h.
     """
     group, g, W = forced.group, orbit.configuration, orbit.displacement
+    if orbit.motion.is_balanced:
+        half = time_step / 2 * forced.mean_force(g, W, time_step, forced.rows(orbit.step), orbit.time)
+        return half, half
     ends, arriving = np.concatenate([g[1:], g[-1:] @ W[-1:]]), group.coadjoint(W, leaving)
     time, nodes, half = orbit.time.tolist(), orbit.restricted_momentum, time_step / 2
     first, last = [], []

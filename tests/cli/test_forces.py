@@ -207,7 +207,7 @@ def test_forces_of_a_template(kind: str) -> None:
     assert (forces.gravity is not None, forces.friction is not None) == (True, True)
 
 
-@pytest.mark.parametrize("option", ["run.order=4", 'run.difference="logarithmic"'])
+@pytest.mark.parametrize("option", ['run.difference="logarithmic"'])
 def test_steps_that_take_no_forces(file: Path, option: str, nonholo: Callable[..., Result]) -> None:
     """Where there is no forced step the run is refused, with what there is."""
     result = nonholo("simulate", file, "--set", option)

@@ -78,7 +78,7 @@ def _forced(kind: str, rng: np.random.Generator, forces: str) -> tuple[kernels.F
     route = nh.discretize(nh.Forced(system, nh.Gravity(F, x) if has[0] else None, force), h).route.compiled
     assert route is not None
     free = getattr(route.body, "body", route.body)
-    none = kernels.Kick(np.zeros((0, 0)), np.zeros(0), np.zeros((2, 0)), np.zeros((1, 2)))
+    none = kernels.Pull(np.zeros(0), np.zeros((2, 0)), np.zeros((0, 0)), np.zeros((1, 2)))
     body = route.body if any(has) else kernels.ForcedBody(free, none)
     rows = np.vstack([table[: len(table) if has[2] else 0] @ _ROWS[kind].T, np.zeros(2)]).ravel()
     weight = [*np.resize([*F, 0.0], 3), *lever] if has[0] else [0.0] * 9

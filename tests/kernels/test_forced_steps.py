@@ -27,7 +27,8 @@ def _forced(system: AbstractSystem, kind: str) -> nh.Forced:
     n = system.group.size - bool(np.all(system.group.basis[:, -1] == 0))
     heavy, rub = nh.Gravity(rng.normal(size=n), rng.normal(size=n)), nh.Friction(rng.uniform(0, 1, system.group.dim))
     table = rng.normal(size=(STEPS - 3, system.group.dim))
-    return nh.Forced(system, heavy, {"weight": None, "friction": rub, "table": table, "both": (rub, table)}[kind])
+    force = {"weight": None, "friction": rub, "table": table, "both": (rub, table)}[kind]
+    return nh.Forced(system, heavy, force, "variational")
 
 
 def _kicked(kick: kernels.Kick, row: int, m: np.ndarray, force: np.ndarray) -> np.ndarray:

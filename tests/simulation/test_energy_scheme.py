@@ -64,8 +64,12 @@ FORCES: dict[str, Callable[[AbstractSystem], Any]] = {
     "drive": lambda _: _drive,
     "all": lambda s: (FORCES["friction"](s), FORCES["table"](s), _drive),
 }
-CASES = [("weight", "none"), ("magnet", "none"), ("spring", "none"), ("own", "none"), ("weight", "all"), ("all", "all"),
-         ("none", "friction"), ("none", "table"), ("none", "drive"), ("weight", "friction"), ("weight", "table")]  # fmt: skip
+CASES = [
+    *((potential, "none") for potential in ("weight", "magnet", "spring", "own")),
+    *(("none", force) for force in ("friction", "table", "drive")),
+    *(("weight", force) for force in ("friction", "table", "all")),
+    ("all", "all"),
+]
 
 
 def _start(system: AbstractSystem) -> dict[str, Any]:
@@ -112,7 +116,7 @@ def test_orbits_obey_the_equations_of_the_step(name: str, acting: tuple[str, str
 @pytest.mark.parametrize("name", SYSTEMS)
 @pytest.mark.parametrize("kind", ["weight", "magnet", "spring", "own", "all"])
 def test_slopes_do_the_work_and_are_the_same_from_both_ends(name: str, kind: str) -> None:
-    """(i) <G, X> = U(gW) - U(g) and (ii) G(gW, W^-1) = G(g, W), for displacements of all sizes, of the variety or not."""
+    """(i) <G, X> = U(gW) - U(g) and (ii) G(gW, W^-1) = G(g, W), for displacements of all sizes, on no variety."""
     system, rng = SYSTEMS[name], np.random.default_rng(7)
     group, forced = system.group, nh.Forced(system, POTENTIALS[kind](system))
     for size in (1e-9, 1e-5, 1e-2, 0.3, 1.0, 2.0):
@@ -198,3 +202,55 @@ def test_the_scheme_is_the_one_that_is_asked_for() -> None:
     body = nh.discretize(nh.Forced(free, heavy, scheme="energy"), 0.1)
     orbit = nh.simulate(body, body_velocity=(0.3, 0.4, 0.5), steps=200)
     assert np.ptp(orbit.energy) < 1e-14
+
+
+def _followed(system: AbstractSystem, forced: nh.Forced, h: float, r: np.ndarray, g: np.ndarray) -> np.ndarray | None:
+    """Follow the root of F(W) = t r + t^2 h f/2, in units of h, from t = 0 by small steps; None where its slope ends."""
+    group, S, y, pieces = system.group, np.asarray(system.constraint_subspace), np.zeros(2), 400
+
+    def at(y: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
+        W = group.cayley(2 * y @ S)
+        f = forced.mean_force(g[None], W[None], h * t, np.zeros((1, group.dim)))[0]
+        return W, h * _legendre(system, W[None], h)[0] - t * h * r - t * t * h * h / 2 * S @ f
+
+    def slope(y: np.ndarray, t: float) -> np.ndarray:
+        ends = [at(y + x, t)[1] - at(y - x, t)[1] for x in 1e-6 * np.eye(2)]
+        return np.transpose(ends) / 2e-6
+
+    begun = np.linalg.det(slope(y, 1e-9))
+    for k in range(1, pieces + 1):
+        t = k / pieces
+        for _ in range(8):
+            y = y - np.linalg.solve(slope(y, t), at(y, t)[1])
+        if not (
+            np.abs(at(y, t)[1]).max() < 1e-11 * (1 + np.abs(h * r).max()) and np.linalg.det(slope(y, t)) > 0.02 * begun
+        ):
+            return None
+    return at(y, 1.0)[0]
+
+
+@pytest.mark.profile("problems", keep=["30"])
+@pytest.mark.parametrize("bodies", [30, 400])
+def test_roots_are_those_of_a_path_of_our_own(bodies: int) -> None:
+    """Heavy tops and sleighs with friction, at angles up to half-turns: the first displacement is where the path leads."""
+    rng, ended, turned = np.random.default_rng(31), 0, 0.0
+    for case in range(bodies):
+        root, n = rng.normal(size=(3, 4)), 2 + case % 2
+        sleigh = nh.ChaplyginSleigh(*rng.uniform(0.3, 2, 2), *rng.normal(size=2))
+        system = nh.SuslovTop(root @ root.T) if n == 3 else sleigh
+        turning = rng.normal(size=(3, 3))
+        rub = nh.Friction(0.3 * np.outer(turning[0], turning[0]) + 0.1 * (turning - turning.T))
+        forced = nh.Forced(system, nh.Gravity(rng.normal(size=n), rng.normal(size=n)), rub)
+        h, g = 10 ** rng.uniform(-1.5, 0), system.group.random(rng)
+        velocity = rng.normal(size=2) * 10 ** rng.uniform(-1, 0)
+        r = system.restricted_momentum(velocity)
+        wanted = _followed(system, forced, h, r, g)
+        run = nh.simulate(nh.discretize(forced, h), restricted_velocity=velocity, configuration=g, steps=1, throw=False)
+        if wanted is None:
+            ended += 1
+            continue
+        assert len(run) > 0, (case, run.outcome)
+        turned = max(turned, float(system.group.angle(system.group.log(run.displacement[0]))))
+        assert np.abs(run.displacement[0] - wanted).max() < 1e-8, case
+    assert 0 < ended < bodies / 3
+    assert turned > 1.0

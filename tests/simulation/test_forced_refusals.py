@@ -47,7 +47,14 @@ _REFUSED: dict[str, Callable[[], Any]] = {
     "branch": lambda: nh.simulate(_MAP, restricted_velocity=[0.5, -0.3], steps=5, branch="nearest"),
     "backend": lambda: nh.simulate(_MAP, restricted_velocity=[0.5, -0.3], steps=5, backend="jax"),
     "displacement": lambda: nh.simulate(_MAP, displacement=np.eye(3), steps=5),
-    "order": lambda: nh.discretize(_FORCED, 0.1, order=4),
+    "order": lambda: nh.discretize(nh.Forced(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), HEAVY), 0.1, order=4),
+    "energy with another difference": lambda: nh.discretize(
+        nh.Forced(TOP, HEAVY, scheme="energy"), 0.1, difference="logarithmic"
+    ),
+    "a matrix of another size": lambda: nh.Forced(TOP, nh.Linear(np.eye(2))),
+    "a spring of another dimension": lambda: nh.Forced(TOP, nh.Spring([0.1, 0.2], [0.0, 0.0], 1.0)),
+    "two functions": lambda: nh.Forced(TOP, (lambda g: g[0, 0], lambda g: g[1, 1])),
+    "a scheme of coordinates": lambda: nh.Forced(nh.examples.particle().system, lambda q: q[0], scheme="energy"),
     "difference": lambda: nh.discretize(_FORCED, 0.1, difference="logarithmic"),
     "closed_form": lambda: nh.flow(_FORCED, restricted_velocity=[0.5, -0.3], times=(0.0, 1.0), method="closed_form"),
     "flow of a table": lambda: nh.flow(

@@ -39,7 +39,8 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
     discrete, system = orbit.motion, orbit.system
     if isinstance(discrete, ContinuousFlow) and not system.is_spatial and not system.is_forced:
         return flow_tangents(_WHERE, system, orbit.restricted_momentum, orbit.time)
-    if not isinstance(discrete, Discretization) or not discrete.conserves_energy or discrete.order > 2:
+    free = isinstance(discrete, Discretization) and discrete.forces is None
+    if not free or not discrete.conserves_energy or discrete.order > 2:
         remedy = "Differentiate `nh.rollout` by JAX, or run with the default difference and constraint."
         raise error(_WHERE, "be asked of a map with closed derivatives", shown(discrete), remedy)
     if not orbit.has_every_step:

@@ -22,13 +22,13 @@ from nonholo.discrete._composition import weights
 from nonholo.discrete._scheme import Scheme
 from nonholo.discrete.definition._principal import ON_LOCUS, closed_step_of, kernel_root, principal_of
 from nonholo.discrete.definition._root import ROOT
-from nonholo.discrete.definition._step import displaced, momentum_of, restricted
+from nonholo.discrete.definition._step import displaced, equations_at, momentum_of, restricted
 from nonholo.discrete.routes import ScalarStep
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import Forced
 
 _HUGE = 1e300
-_CLOSE, _MOST = 1e-9, 20  # relative, of the last correction before two that count; corrections
+_CLOSE, _MOST = 1e-9, 20  # of the last correction before two that count; corrections
 
 
 @jax.custom_jvp
@@ -256,35 +256,33 @@ def _balanced_step(discrete: Scheme, closed: ScalarStep | None, forced: Forced) 
 def _settled(part: Any, closed: ScalarStep | None, forced: Forced, state: tuple[Array, ...]) -> tuple[Array, ...]:
     """Return momenta s = r + j, half impulses j, the chart of the displacement over s, and the outcome.
 
-    Newton's method, which derivatives do not see; two corrections with its last slope give them up to the second.
+    Newton's method from the free displacement, which derivatives do not see; two corrections with its last slope give
+    them up to the second.
     """
 
-    def at(given: Any, s: Array) -> tuple[Array, tuple[Array, Array]]:
-        part, closed, forced, (_, g, row) = given
-        y, code = principal_of(part, closed, s, g)
-        return restricted(part, half_impulse(part, forced, y, g, row), g), (y, code)
+    def push(given: Any, y: Array) -> Array:
+        part, forced, (_, g, row) = given
+        return restricted(part, half_impulse(part, forced, y, g, row), g)
 
-    def corrected(given: Any, s: Array, slope: Array) -> Array:
-        return s - jnp.linalg.solve(slope, s - given[3][0] - at(given, s)[0])
-
-    def slope_of(given: Any, s: Array) -> Array:
-        return jnp.eye(len(s)) - jax.jacfwd(lambda s: at(given, s)[0])(s)
+    def missed(given: Any, y: Array) -> Array:
+        part, _, (r, g, _) = given
+        return equations_at(part, g)(y, r + push(given, y))
 
     def better(carry: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
-        s, _, count = carry
-        after = corrected(fixed, s, slope_of(fixed, s))
-        return after, jnp.max(jnp.abs(after - s)), count + 1
+        y, _, count = carry
+        change = jnp.linalg.solve(jax.jacfwd(lambda y: missed(fixed, y))(y), missed(fixed, y))
+        return y - change, jnp.max(jnp.abs(change)), count + 1
 
-    given = part, closed, forced, state
-    fixed = jax.tree.map(jax.lax.stop_gradient, given)
-    size = jnp.max(jnp.abs(fixed[3][0])) + jnp.max(jnp.abs(at(fixed, fixed[3][0])[0]))
-    begin = fixed[3][0], jnp.asarray(jnp.inf, size.dtype), 0
-    s, last, _ = jax.lax.while_loop(lambda c: (c[1] > _CLOSE * size) & (c[2] < _MOST), better, begin)
-    slope = jax.lax.stop_gradient(slope_of(fixed, s))
+    given = part, forced, state
+    fixed, still = jax.tree.map(jax.lax.stop_gradient, (given, closed))
+    free, code = principal_of(fixed[0], still, fixed[2][0], fixed[2][1])
+    begin = jnp.where(code == 0, free, 0 * free), jnp.asarray(jnp.inf, free.dtype), 0
+    y, last, _ = jax.lax.while_loop(lambda c: (c[1] > _CLOSE) & (c[2] < _MOST), better, begin)
+    slope = jax.lax.stop_gradient(jax.jacfwd(lambda y: missed(fixed, y))(y))
     for _ in range(2):
-        s = corrected(given, s, slope)
-    j, (y, code) = at(given, s)
-    return s, j, y, jnp.where((code == 0) & ~(last <= _CLOSE * size), int(Outcome.not_converged), code)
+        y = y - jnp.linalg.solve(slope, missed(given, y))
+    j, lost = push(given, y), ~(last <= _CLOSE)
+    return state[0] + j, j, y, jnp.where((code == 0) & lost, int(Outcome.not_converged), code)
 
 
 def _composed_step(discrete: Scheme, closed: ScalarStep | None) -> _Step:

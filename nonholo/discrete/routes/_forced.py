@@ -385,9 +385,7 @@ def _functions(forced: Forced, potential: Callable[..., Any] | None, said: dict[
     return force, 0 if potential is None else function_of(potential, shape, 1)
 
 
-def _in_python(
-    forced: Forced, own: Callable[..., Any] | None, said: dict[str, str]
-) -> tuple[Callable[..., None], Callable[..., None]]:
+def _in_python(forced: Forced, own: Any, said: dict[str, str]) -> tuple[Callable[..., None], Callable[..., None]]:
     """Return what writes force and potential by the definition: NaN where they are not finite, which is noted."""
 
     def force(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:

@@ -2,13 +2,13 @@ r"""Half impulses that keep T + U: those of a force at the displacement itself, 
 
 With momenta m of a node in the units of a kernel, and the free root W over s,
 
-$$ s = m + J(g, W), \qquad m' = m + 2J + \Delta(W), \qquad J = \tfrac h2\,N\,f, \qquad f = -G(g, W) + f_k + f(t, \bar g, X/h)
-   - C X/h, $$
+$$ s = m + J(g, W), \qquad m' = m + 2J + \Delta(W), \qquad J = \tfrac h2\,N\,f, $$
+$$ f = -G(g, W) + f_k + f(t, \bar g, X/h) - C X/h, $$
 
-where $\Delta$ is the change of the free step, X = (W - W^-1)/2 and $\bar g = g W^{1/2}$; G is exact for potentials that
-are linear in the entries of the pose and for springs, and the corrected midpoint slope for any other
-(docs/theory/forces.md). Momenta of the middle are $\bar m = s + \Delta/2$, and X/h is their velocity. A part $\tau$ of a
-step is the step of length $\tau h$.
+where $\Delta$ is the change of the free step, X = (W - W^-1)/2 and $\bar g = g W^{1/2}$; G is exact for potentials
+that are linear in the entries of the pose and for springs, and the corrected midpoint slope for any other
+(docs/theory/forces.md). Momenta of the middle are $\bar m = s + \Delta/2$, and X/h is their velocity. A part $\tau$ of
+a step is the step of length $\tau h$.
 """
 
 import math
@@ -406,9 +406,14 @@ def rub(c: Impulses, room: ImpulseRoom, part: float) -> None:
 
 @scalar
 def see_slope(
-    p: Any, f: Balanced, room: ImpulseRoom, when: tuple[float, float, int], s: np.ndarray, root: np.ndarray,
+    p: Any,
+    f: Balanced,
+    room: ImpulseRoom,
+    when: tuple[float, float, int],
+    s: np.ndarray,
+    root: np.ndarray,
     pose: np.ndarray,
-) -> None:  # fmt: skip
+) -> None:
     """Write the inverse slope of what is missed at momenta, by differences."""
     slope, H, place, guess, first = room.slope, room.slopes, s.copy(), root.copy(), s.copy()
     size = 0.0
@@ -476,10 +481,20 @@ def solve(
 
 @scalar
 def step(
-    p: Any, f: Balanced, room: ImpulseRoom, row: int, m: np.ndarray, lost: np.ndarray, pose: np.ndarray, past: np.ndarray,
-    pushes: np.ndarray, first: np.ndarray,
-) -> int:  # fmt: skip
-    """Take all stages of a step, in place; return the outcome. The chart of the first one is written."""
+    p: Any,
+    f: Balanced,
+    room: ImpulseRoom,
+    row: int,
+    now: tuple[np.ndarray, np.ndarray, np.ndarray],
+    past: np.ndarray,
+    pushes: np.ndarray,
+    first: np.ndarray,
+) -> int:
+    """Take all stages of a step from momenta, compensations and pose, in place; return the outcome.
+
+    The chart of the first stage is written.
+    """
+    m, lost, pose = now
     s, root, settled, begin, code = m.copy(), past[0, 0].copy(), 0.0, f.c.begin + row * f.c.time_step, 0
     at = min(row, len(f.c.rows) - 1)
     for x in m:
@@ -528,7 +543,7 @@ def advance_balanced(
     room, first, row, done, code = room_of(f.c, size), np.zeros(charts.shape[1]), int(state[len(state) - 1]), 0, 0
     while done < steps:
         after, left, moved = m.copy(), lost.copy(), pose.copy()
-        code = step(p, f, room, row, after, left, moved, roots, halves, first)
+        code = step(p, f, room, row, (after, left, moved), roots, halves, first)
         if code != 0:
             break
         done += 1

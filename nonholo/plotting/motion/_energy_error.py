@@ -79,7 +79,7 @@ def energy_error(orbit: AbstractOrbit, axes: Axes | None = None, **look: Unpack[
     work, is_known = np.nan_to_num(orbit.known_work), bool(np.isfinite(orbit.known_work).all())
     balanced = bool(work.any())
     energy, name = orbit.energy - work, "(E - W)" if balanced else "E"
-    size = np.abs(orbit.energy).max() if balanced else energy[0]
+    size = np.abs(orbit.energy).max()
     error = (energy - energy[0]) / (size or 1.0)
     unit = _unit(float(np.abs(error).max()))
     rounding, drawn = _over_rounding(orbit, axes, error / unit, unit)
@@ -117,7 +117,10 @@ def _over_rounding(
 def _expected(orbit: AbstractOrbit, balanced: bool) -> str:
     if orbit.is_measured:
         return "of given poses"
-    return "of order 2 in the time between states" if balanced else _EXPECTED[orbit.conserves_energy]
+    exact = getattr(orbit.motion, "is_balanced", False) and orbit.has_every_step and orbit.motion.order == 2
+    if not balanced or exact:
+        return _EXPECTED[exact or orbit.conserves_energy]
+    return "of order 2 in the time between states"
 
 
 def _unit(largest: float) -> float:

@@ -205,9 +205,7 @@ class Forced(AbstractSystem):
             ValueError: It is asked for where the free step does not keep its energy.
         """
         if self.scheme == "energy" and not exact:
-            got = (
-                "a step that does not keep T alone, for it has an inertia operator, a spatial constraint or no skew one"
-            )
+            got = "an inertia operator, a constraint fixed in space, or another difference or constraint"
             remedy = "Leave scheme out, or pass a mass tensor and the default difference and constraint."
             raise error("Forced(scheme='energy')", "stand around a free step that keeps its energy", got, remedy)
         if self.scheme is not None or not exact:

@@ -17,8 +17,9 @@ _ROUNDING = 1e-13  # relative, of an eigenvalue
 class Friction:
     r"""The force $-C\omega$ against a body velocity, with $\omega\cdot C\omega \ge 0$: it never adds energy.
 
-    Its half kicks are the exact exponentials of the linear equation $\dot r = -D r$ along the constraint, so that the
-    kinetic energy falls at any step size. The antisymmetric part of C, if there is one, does no work.
+    It never adds energy, at any step size. Under the scheme "energy" it is $-C X/h$ over a step, which takes
+    $X\cdot CX/h$ exactly; under "variational" half kicks are the exact exponentials of $\dot r = -D r$ along the
+    constraint, which stiff friction needs. The antisymmetric part of C, if there is one, does no work.
 
     Args:
         coefficients: C, a matrix (dim, dim), or its diagonal (dim,).

@@ -33,7 +33,7 @@ class AbstractLinear(abc.ABC):
     def mean_covector(
         self, group: AbstractMatrixGroup, g: Float[Array, "... N N"], W: Float[Array, "... N N"]
     ) -> Float[Array, "... dim"]:
-        r"""Return -G of steps W from poses, $\langle G, x\rangle = \mathrm{tr}(A^Tg(I + Y)x)$: what U loses, exactly."""
+        r"""Return -G of steps W from poses, $\langle G, x\rangle = \mathrm{tr}(A^Tg(I + Y)x)$: exactly what U loses."""
         return pulled(group, self.matrix_for(group), leaning(g, W))
 
 
@@ -77,6 +77,10 @@ class Linear(AbstractLinear):
         """Return A."""
         del group
         return self.matrix
+
+    def levers(self, group: AbstractMatrixGroup) -> tuple[Float[Array, "N N"], Float[Array, "dim N N"]]:
+        """Return vectors F_j and L: -dU is the sum of L_j g^T F_j, over the columns of A."""
+        return -self.matrix.T, group.basis.swapaxes(-1, -2)
 
 
 def pulled(group: AbstractMatrixGroup, A: Array, g: Float[Array, "... N N"]) -> Float[Array, "... dim"]:

@@ -16,7 +16,9 @@ class Spring:
     r"""The potential of a spring between the body point x and the space point p, $U(g) = \tfrac k2(|gx - p| - L)^2$.
 
     Under the scheme "energy" its covector of a step between ends at distances $d_0$, $d_1$ is exact:
-    $\langle G, \xi\rangle = k\bigl(1 - \tfrac{2L}{d_0 + d_1}\bigr)\bigl(\tfrac{gx + g'x}2 - p\bigr)\cdot g(I + Y)\xi x$.
+
+    $$ \langle G, \xi\rangle = k\Bigl(1 - \frac{2L}{d_0 + d_1}\Bigr)
+       \Bigl(\frac{gx + g'x}2 - p\Bigr)\cdot g(I + Y)\xi x. $$
 
     Args:
         body_point: x, n body coordinates.
