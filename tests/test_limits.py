@@ -261,7 +261,9 @@ FEW = {
         ),
         RESULT,
     ),
-    **dict.fromkeys(("ChaplyginSleigh", "Event", "cusp", "allow_float32", "discretize", "single_valued_region"), A_FEW),
+    **dict.fromkeys(
+        ("ChaplyginSleigh", "Event", "Impact", "cusp", "allow_float32", "discretize", "single_valued_region"), A_FEW
+    ),
     **dict.fromkeys(
         ("critical_energies", "half_planes"), "is of tops with n = 3 and of sleighs, and refuses all others"
     ),

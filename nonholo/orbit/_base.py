@@ -14,7 +14,7 @@ from nonholo.base.html import table
 from nonholo.base.kept import Keeper, remembered
 from nonholo.base.limits import within_memory
 from nonholo.base.results import Outcome
-from nonholo.base.types import Float, Int
+from nonholo.base.types import Bool, Float, Int
 
 _COLUMNS = {
     "time",
@@ -143,9 +143,18 @@ class AbstractOrbit(Keeper, abc.ABC):
 
     @remembered
     def has_every_step(self) -> bool:
-        """Whether each state but the first is one step after the one before."""
+        """Whether each state but the first is one step after the one before, without an impact between them."""
         h = self.time_step
-        return bool((np.diff(self.step) == 1).all()) and (h is None or np.allclose(np.diff(self.time), h))
+        return (
+            not self.has_impacts.any()
+            and bool((np.diff(self.step) == 1).all())
+            and (h is None or np.allclose(np.diff(self.time), h))
+        )
+
+    @remembered
+    def has_impacts(self) -> Bool[np.ndarray, "K"]:
+        """Whether there was an impact in the step from each state, after it and up to the end of the step."""
+        return np.isin(self.step, [] if self.events is None else self.events.impact_steps)
 
     @property
     @abc.abstractmethod
