@@ -69,7 +69,7 @@ _MESSAGES = {
     Outcome.lasting_contact: (
         "The body comes to stay at a wall: impacts follow each other faster and faster, infinitely many in finite "
         "time, or the motion after one leads back through the wall. How it slides or rests there is not modeled. "
-        "Try a larger restitution or a shorter run; a step with more than 200 impacts of another kind must be shorter."
+        "Try a larger restitution, a shorter run or, if a step has more than 200 impacts, a smaller time_step."
     ),
     Outcome.too_stiff: (
         "The steps of the solver became too short to come to an end: the force changes much faster than the motion, as "

@@ -40,27 +40,36 @@ def after_contact(
         there = dataclasses.replace(there.with_headings(watch.heading), step=np.array([number]))
         if (outcome := begin(there)[1]) != Outcome.successful:
             return None, watch, outcome
-        rest = max(1 - gone, _ROUNDING)
-        places, looks, inside = _looks(watch, there, rest)
-        if not np.isfinite(looks.reduced_momentum).all():
-            return None, watch, Outcome.not_converged
-        if inside.any():
-            watch = _struck_here(watch, there, max(gone, _ROUNDING), inside)
-        elif rest < _SHORT:
-            watch = dataclasses.replace(watch, reset_by=None).seen_at(looks.chosen(slice(-1, None)))
-        else:
-            watch = _searched(watch, there, places, looks, gone)
-        if watch.stopped_by is not None:
-            return None, watch, Outcome.successful
-        if watch.reset_by is not None:
-            hit = watch.impact
-            there, gone = hit.after, float(hit.fraction[0] + hit.step[0] - number)
-        elif inside.any():
-            return None, watch, Outcome.lasting_contact
-        else:
-            state, outcome = begin(looks.chosen(slice(-1, None)))
+        watch, end, outcome = _moved(watch, there, gone)
+        if outcome != Outcome.successful or watch.stopped_by is not None:
+            return None, watch, outcome
+        if watch.reset_by is None:
+            state, outcome = begin(end)
             return state if outcome == Outcome.successful else None, watch, outcome
+        hit = watch.impact
+        there, gone = hit.after, float(hit.fraction[0] + hit.step[0] - number)
     return None, watch, Outcome.lasting_contact
+
+
+def _moved(watch: Watch, there: Orbit, gone: float) -> tuple[Watch, Orbit, Outcome]:
+    """Continue to the next impact or to the end of the step; return what is known, the state at the end, the outcome.
+
+    A motion that the curve of the step alone leads through a wall, while its velocity turns away from it, is let go.
+    """
+    rest, grazes = max(1 - gone, _ROUNDING), watch.grazes
+    places, looks, inside = _looks(watch, there, rest)
+    end, watch = looks.chosen(slice(-1, None)), dataclasses.replace(watch, reset_by=None)
+    if not np.isfinite(looks.reduced_momentum).all():
+        return watch, end, Outcome.not_converged
+    if inside.any():
+        watch = _struck_here(watch, there, max(gone, _ROUNDING), inside)
+        if watch.reset_by is not None:
+            return watch, end, Outcome.successful
+        leaves = grazes and _struck_here(watch, end, 1.0, inside).reset_by is None
+        return watch.seen_at(end), end, Outcome.successful if leaves else Outcome.lasting_contact
+    if rest < _SHORT:
+        return watch.seen_at(end), end, Outcome.successful
+    return _searched(watch, there, places, looks, gone), end, Outcome.successful
 
 
 def _looks(watch: Watch, there: Orbit, rest: float) -> tuple[np.ndarray, Orbit, Bool[np.ndarray, "E 1"]]:
@@ -88,7 +97,7 @@ def _struck_here(watch: Watch, there: Orbit, gone: float, inside: Bool[np.ndarra
             found[position] = Crossings(there.step, np.array([gone]), -sides[position], there, after)
             known = dataclasses.replace(watch.after_stretch(tuple(found)), reset_by=name)
             return known.after_impact(watch.values)  # type: ignore[arg-type]
-    return dataclasses.replace(watch, reset_by=None)
+    return watch
 
 
 def _searched(watch: Watch, there: Orbit, places: np.ndarray, looks: Orbit, gone: float) -> Watch:

@@ -374,6 +374,36 @@ def test_other_events_see_the_parts_of_the_step() -> None:
     assert len(last.events["east"].after) == 1
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_random_bodies_in_random_polygons(seed: int) -> None:
+    """With any step, corners, contact point and a post: no wall is left behind, no energy gained, each hit is at it."""
+    rng = np.random.default_rng(seed)
+    point, corners, bounce = rng.uniform(-0.2, 0.2, 2), int(rng.integers(3, 7)), float(rng.choice([1.0, 0.8]))
+    body = nh.ChaplyginSleigh(1.0, rng.uniform(0.1, 1), rng.uniform(-0.5, 0.5), rng.uniform(-0.3, 0.3))
+    system = body if seed % 2 else nh.RigidBody.from_inertia(1.0, rng.uniform(0.1, 1), point, nh.SE(2))
+
+    def place(states: nh.Orbit) -> np.ndarray:
+        return states.configuration[:, :2] @ np.append(point, 1.0)
+
+    def side(angle: float, distance: float) -> Callable[[nh.Orbit], np.ndarray]:
+        return lambda states: distance - place(states) @ (np.cos(angle), np.sin(angle))
+
+    angles = np.arange(corners) * 2 * np.pi / corners + rng.uniform(-0.3, 0.3, corners)
+    gaps = [side(angle, rng.uniform(0.6, 1.0)) for angle in angles]
+    gaps.append(lambda states: ((place(states) - 0.35) ** 2).sum(axis=1) - 0.01)
+    walls = [nh.Event(gap, name=f"w{k}", reset=nh.Impact(restitution=bounce)) for k, gap in enumerate(gaps)]
+    discrete = nh.discretize(system, 10 ** rng.uniform(-1.5, -0.3))
+    velocity = rng.normal(size=system.rank)
+    orbit = nh.simulate(discrete, restricted_velocity=velocity, steps=60, events=walls, throw=False)
+    ways = np.abs(velocity).max() * discrete.time_step
+    assert min(gap(orbit).min() for gap in gaps) > -1e-11 * ways
+    assert np.diff(orbit.energy).max() < 1e-14 * orbit.energy[0]
+    assert bounce < 1 or np.abs(orbit.energy / orbit.energy[0] - 1).max() < 1e-13
+    for event in walls:
+        hits = orbit.events[event.name]
+        assert np.abs(event.function(hits.states)).max(initial=0) < 1e-14
+
+
 START: dict[str, Any] = {"restricted_velocity": (0.3, 1.0)}
 PLANE = nh.discretize(SLEIGH, 0.1)
 MOTOR = nh.discretize(nh.Forced(SLEIGH, force=np.ones((9, 3))), 0.1)

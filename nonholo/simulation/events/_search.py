@@ -75,6 +75,13 @@ class Watch:
         """The impact that is the last thing that was seen."""
         return self.parts[-1][tuple(self.events).index(self.reset_by or "")].chosen(slice(-1, None))
 
+    @property
+    def grazes(self) -> bool:
+        """Whether the last thing that was seen is the crossing of a wall that the motion was not toward."""
+        if self.reset_by is None:
+            return False
+        return np.array_equal(self.impact.states.reduced_momentum, self.impact.after.reduced_momentum)
+
     def begun_at(self, last: int) -> tuple[Any, int, float]:
         """Return the state after the impact, the step that is cut, and how much of it is gone; `last` came before it.
 
