@@ -5,7 +5,7 @@ import dataclasses
 import functools
 import importlib
 from collections.abc import Sequence
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
@@ -130,7 +130,9 @@ class AbstractOrbit(Keeper, abc.ABC):
     def joined(self: SelfT, others: Sequence[SelfT]) -> SelfT:
         """Return the states with those of other parts of the same motion after them."""
         parts = [part.rows() for part in (self, *others)]
-        return self.of_rows({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
+        first, *logs = {id(part.events): part.events for part in (self, *others)}.values()
+        whole = self.of_rows({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
+        return dataclasses.replace(cast(Any, whole), events=first.joined(logs)) if logs else whole
 
     def with_headings(self: SelfT, before: float | None) -> SelfT:
         """Return the states with headings that continue from the given one, where there are any."""

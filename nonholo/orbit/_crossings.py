@@ -105,6 +105,11 @@ class EventLog(AbstractEventLog[Crossings]):
         hits = [each.step - (each.fraction == 0) for each in self.found if each.after is not None]
         return np.unique(np.concatenate([np.empty(0, dtype=np.int64), *hits]))
 
+    def joined(self, others: "Sequence[EventLog]") -> "EventLog":
+        """Return the crossings with those of later parts of the same run."""
+        found = tuple(joined_crossings(column) for column in zip(*(log.found for log in (self, *others)), strict=True))
+        return EventLog(self.names, found, others[-1].stopped_by)
+
     def __repr__(self) -> str:
         counts = ", ".join(f"{name}: {len(found)}" for name, found in zip(self.names, self.found, strict=True))
         ended = f", stopped by {self.stopped_by}" if self.stopped_by else ""
