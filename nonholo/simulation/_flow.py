@@ -106,7 +106,8 @@ def flow(
         events: `Event`s, or functions of an orbit, whose changes of sign from one requested time or step of the series
             to the next are found, and located on the solution; see `Orbit.events`. Two of them between two such times
             are not seen: ask for more times. A stopping event ends the orbit with the last requested time before it. In
-            coordinates only the requested times are compared, and each guess is another solve from the one before.
+            coordinates only the requested times are compared, and each guess is another solve from the one before. One
+            with a `reset` changes the motion: the flow begins again at each `Impact`.
         progress: Show on standard error how far the time has come.
 
     Returns:

@@ -1,5 +1,6 @@
 """Impacts: the reflection, the parts of the steps around it, times and places that are known, and how a run ends."""
 
+import dataclasses
 import itertools
 import pathlib
 import re
@@ -124,6 +125,15 @@ def test_normals_of_all_kinds_are_one(name: str) -> None:
             assert np.abs(known - covector(state.configuration[0])).max() < 1e-14
             assert np.abs(known - nh.Impact(covector).covector(gap, state)).max() < 1e-14
             assert np.abs(known - nh.Impact().covector(gap, state)).max() < 2e-11
+
+
+def test_impacts_are_values() -> None:
+    """An impact with another restitution has the same normal, whatever kind that is."""
+    for given in (nh.Impact(), nh.Impact((0.0, 1.0), point=(0.3, 0.0)), nh.Impact(np.cos)):
+        other = dataclasses.replace(given, restitution=0.5)
+        assert other.restitution == 0.5
+        assert np.array_equal(other.normal, given.normal)
+        assert np.array_equal(other.point, given.point)
 
 
 @pytest.mark.parametrize("name", MOTIONS)

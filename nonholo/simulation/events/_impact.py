@@ -71,13 +71,19 @@ class Impact:
             raise error("Impact(normal=...)", "be no zero vector", shown(self.normal), remedy)
         given = np.zeros_like(normal) if self.point is None else self.point
         point = array("Impact(point=...)", given, normal.shape, "Pass as many numbers as the normal has.")
-        object.__setattr__(self, "normal", Gravity(normal, point))
+        object.__setattr__(self, "normal", normal)
+        object.__setattr__(self, "point", point)
+
+    @property
+    def has_plane(self) -> bool:
+        """Whether the normal is a spatial vector."""
+        return self.point is not None
 
     def check(self, where: str, system: Any) -> None:
         """Refuse a vector that is none of the space of a system, and differences for a body without matrices."""
         group = system.group
-        if isinstance(self.normal, Gravity) and len(self.normal.point) != group.size - group.is_affine:
-            got = f"{len(self.normal.point)} numbers for {group}"
+        if self.has_plane and len(self.point) != group.size - group.is_affine:
+            got = f"{len(self.point)} numbers for {group}"
             raise error(where, "have a normal of the space", got, "Pass a vector of the space that points move in.")
         if self.normal is None and system.is_wide:
             raise error(where, "have a normal", f"none for {type(system).__name__}", "Pass a function.")
@@ -85,8 +91,8 @@ class Impact:
     def covector(self, gap: Any, states: Orbit) -> Float[np.ndarray, "dim"]:
         """Return n at a state; `gap` gives the values of the event at states."""
         system, g = states.system, states.configuration[0]
-        if isinstance(self.normal, Gravity):
-            return self.normal.covector(system.group, g)
+        if self.has_plane:
+            return Gravity(self.normal, self.point).covector(system.group, g)
         if callable(self.normal):
             return numbers_of("Impact(normal=...)", self.normal, (system.group.dim,), "Return a body covector.", g)
         inside = system if system.forces is None else system.forces.system
