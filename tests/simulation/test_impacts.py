@@ -317,6 +317,19 @@ def test_thinned_iterated_and_stored_runs_have_the_same_bits(name: str, tmp_path
         nh.resume(tmp_path / "run.zarr", events=[nh.Event(event.function, name=event.name) for event in walls])
 
 
+def test_blocks_may_end_at_impacts(tmp_path: pathlib.Path) -> None:
+    """Two walls at once, at the node at which every block ends: iterated and extended runs have the same bits."""
+    disk, how = nh.discretize(DISK, 0.125), {"body_velocity": (0.0, 1.0, 1.0), "events": box()}
+    orbit = nh.simulate(disk, steps=80, **how)
+    first, *others = nh.iterate(disk, steps=80, block_steps=8, **how)
+    nh.simulate(disk, steps=40, store=tmp_path / "run.zarr", checkpoint_every=8, **how)
+    stored = nh.extend(tmp_path / "run.zarr", 40, events=box())
+    for other in first.joined(others), stored:
+        assert same(orbit, other)
+        assert same_log(orbit.events, other.events)
+    assert np.abs(orbit.position - folded(orbit.time)[:, None]).max() < 1e-15
+
+
 @pytest.mark.parametrize("name", MOTIONS)
 def test_nothing_changes_without_an_impact(name: str) -> None:
     """A motion that meets no wall has the bits of one without, maps and flows alike."""
@@ -347,7 +360,10 @@ def test_multipliers_of_cut_steps_are_unknown() -> None:
 def test_starts_at_a_wall(side: float) -> None:
     """With a direction a body that starts at a wall is before it: the motion toward it is reflected at once."""
     for speed, direction in itertools.product((1.0, -1.0), (-1, 0)):
-        start: dict[str, Any] = {"body_velocity": (0.1, speed, 0.0), "configuration": nh.SE(2).exp([0, side, 0])}
+        start: dict[str, Any] = {
+            "body_velocity": (0.1, speed, 0.0),
+            "configuration": nh.SE(2).exp(np.array([0.0, side, 0.0])),
+        }
         east = wall("east", (side, 0.0), direction=direction)
         orbit = nh.simulate(nh.discretize(SLEIGH, 0.05), steps=40, events=[east], **start)
         flow = nh.flow(SLEIGH, times=np.linspace(0, 2, 11), events=[east], **start)

@@ -52,7 +52,7 @@ class Watch:
         """The number of further crossings of every event that ends the motion, or breaks it; infinite if none does."""
         done = self.counts or (0,) * len(self.events)
         left = [event.last - count for event, count in zip(self.events.values(), done, strict=True)]
-        return [rest if event.reset is None else 1 for event, rest in zip(self.events.values(), left, strict=True)]
+        return [rest if event.reset is None else 1.0 for event, rest in zip(self.events.values(), left, strict=True)]
 
     @property
     def has_walls(self) -> bool:
