@@ -63,7 +63,7 @@ mathematics. A number in the table says why, below it.
 ## How fast without the extra `compile`
 
 How the kernels run in an installation of the core alone, on a machine whose wheel has the library of kernels: all
-from the library, or some as Python, about a hundred times slower, with the same bits. Flows under forces are solved
+from the library, or some as Python, about a hundred times slower, with the same bits. Flows under functions are solved
 by SciPy. A test runs each where neither numba nor any other extra can be imported (`tests/test_light_core.py`).
 
 | kind | `simulate` | `flow` | `ensemble` |

@@ -24,6 +24,8 @@ Groups:
 Forces:
     Forced: A system under a potential U and a force f, a body covector; both act along the constraint alone.
     Gravity: The potential of a constant spatial force F at the body point x, $U(g) = -F\cdot(g\,x)$.
+    Linear: The potential $U(g) = \mathrm{tr}(A^Tg) = \sum_{ij}A_{ij}g_{ij}$: a magnet, a field, weights at several ...
+    Spring: The potential of a spring between the body point x and the space point p, $U(g) = \tfrac k2(|gx - p| - ...
     Friction: The force $-C\omega$ against a body velocity, with $\omega\cdot C\omega \ge 0$: it never adds energy.
 
 Systems in coordinates, and ready ones:
@@ -43,6 +45,7 @@ One step of the discrete map:
 Every value of the map:
     branches: Find every value of the discrete map: all $W'$ that may follow a displacement $W$.
     displacements_over: Find every displacement whose discrete momentum has given components along the constraint ...
+    branch_growth: Bound from below how fast the number of images of a plane sleigh under its three branches grows.
     branch_tree: Find all images of a displacement under the discrete map, all images of these, and so on.
     fold_distance: Return how regular the restricted Legendre map is at a displacement: 1 at the identity, 0 at a fold.
     single_valued_region: Return the energy below which the discrete sleigh is single-valued.
@@ -104,7 +107,7 @@ What is kept, and how exactly:
 Where motions come from and go to:
     equilibria: Return the equilibria of a system or of its discrete map, with their transverse spectrum at an energy.
     asymptotics: Return where the motions of a system, or one orbit of a flow or of a discrete map, come from and go to.
-    critical_energies: Return the critical values of the energy on the displacement variety of a top in three ...
+    critical_energies: Return the critical values of the energy on the displacement variety of a top.
     heteroclinic: Trace an orbit of the discrete map from near the repelling to near the attracting equilibrium.
     half_planes: Tell in which half-planes displacements or momenta lie.
     flow_obstruction: Return the periodic function that would be constant if the map were that of a smooth flow.

@@ -27,6 +27,7 @@ from .base.results import Outcome as Outcome
 from .base.results import OutcomeError as OutcomeError
 from .continuous import vector_field as vector_field
 from .discrete import Discretization as Discretization
+from .discrete import branch_growth as branch_growth
 from .discrete import branch_tree as branch_tree
 from .discrete import branches as branches
 from .discrete import consistency_defect as consistency_defect
@@ -84,10 +85,12 @@ from .systems import Forced as Forced
 from .systems import Friction as Friction
 from .systems import Gravity as Gravity
 from .systems import ImpossibleBodyWarning as ImpossibleBodyWarning
+from .systems import Linear as Linear
 from .systems import LLSystem as LLSystem
 from .systems import LRSystem as LRSystem
 from .systems import MultidimensionalSleigh as MultidimensionalSleigh
 from .systems import RigidBody as RigidBody
+from .systems import Spring as Spring
 from .systems import SuslovTop as SuslovTop
 from .systems import VeselovaTop as VeselovaTop
 from .systems import euler_angle_discrete_lagrangian as euler_angle_discrete_lagrangian

@@ -43,10 +43,11 @@ def test_kernels_of_each_kind_of_motion() -> None:
 @pytest.mark.parametrize(
     ("which", "asked"),
     [
-        ("quick", {"branches [certified]": "certify"}),
+        ("quick", {"branch_growth [certified]": "certify", "branches [certified]": "certify"}),
         (
             "all",
             {
+                "branch_growth [certified]": "certify",
                 "branches [certified]": "certify",
                 "consistency_defect": "jax",
                 "fit": "jax",

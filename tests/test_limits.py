@@ -264,9 +264,9 @@ FEW = {
     **dict.fromkeys(
         ("ChaplyginSleigh", "Event", "Impact", "cusp", "allow_float32", "discretize", "single_valued_region"), A_FEW
     ),
-    **dict.fromkeys(
-        ("critical_energies", "half_planes"), "is of tops with n = 3 and of sleighs, and refuses all others"
-    ),
+    "branch_growth": "is of plane sleighs, and has words of at most 1000 steps",
+    "critical_energies": "is in O(n) beyond n = 3",
+    "half_planes": "is of tops with n = 3 and of sleighs, and refuses all others",
     **dict.fromkeys(("compare", "crossings", "invariants", "save_orbit"), GIVEN),
     **dict.fromkeys(("load_orbit", "load_sweep", "resume"), "reads a store; the fuzzer of stores edits their figures"),
     **dict.fromkeys(("GroupLagrangeDAlembert", "ShapedBody", "local_connection"), "keeps functions, and calls none"),

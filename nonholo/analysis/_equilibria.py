@@ -1,6 +1,6 @@
 r"""Motions with constant velocity and how they attract: rates of the flow, multipliers of the discrete map.
 
-Theory: docs/theory/critical-energies-and-limits.md. The equilibria themselves are a question to the system.
+Theory: docs/theory/limits.md. The equilibria themselves are a question to the system.
 """
 
 import dataclasses

@@ -1,4 +1,4 @@
-r"""The continuous motion under forces, by the Runge-Kutta method DOP853 of SciPy, and the reaction of the constraint.
+r"""The continuous motion under any forces, by Runge-Kutta methods of SciPy, and the reaction of the constraint.
 
 With E(g) the admissible body directions ($S^T$, or $\mathrm{Ad}_{g^{-1}}S^T$ of a constraint fixed in space) and
 $f = -dU + f(t, g, \omega)$
@@ -25,6 +25,7 @@ from nonholo.orbit import Orbit
 from nonholo.systems import Forced
 
 _LEAST_RTOL, _SHARE = 1e-13, 1e-3  # SciPy allows no less; absolute errors are that part of the relative ones
+_LEAST_IMPLICIT = 1e-9  # relative, for some hundred steps of order 5
 _FIRST, _FEW, _MOST = 1000, 10_000, 10_000_000  # steps tried before any judgment, and in total
 _STABLE = 3.0  # half of h |lambda| at the bound of stability; smooth motions have less than 1
 _PARTS = 1000  # of the time, for progress
@@ -37,15 +38,20 @@ def by_runge_kutta(
     pose: Float[np.ndarray, "size"],
     elapsed: Float[np.ndarray, "K"],
     tolerances: tuple[float, float],
+    *,
+    is_stiff: bool = False,
 ) -> Solved:
-    """Solve the equations of a system with forces, from canonical momenta and pose at the time `begins`."""
+    """Solve the equations of a system with forces, from canonical momenta and pose at the time `begins`.
+
+    By DOP853, or if they are known to be stiff by the implicit Radau.
+    """
     _refuse_table("flow", forced)
     group, k = forced.group, forced.rank
     r, g = forced.from_canonical(reduced_momentum), group.matrix_from_pose(pose) @ group.inverse(forced.frame)
     start = np.concatenate([r, g.ravel(), first_heading(group, pose)])
     said: dict[str, str] = {}
-    field, rtol = _field(forced, begins, k, said), max(_LEAST_RTOL, tolerances[0])
-    nodes, pieces, outcome = _steps(field, start, float(elapsed[-1]), rtol)
+    field, rtol = _field(forced, begins, k, said), max(_LEAST_IMPLICIT if is_stiff else _LEAST_RTOL, tolerances[0])
+    nodes, pieces, outcome = _steps(field, start, float(elapsed[-1]), rtol, is_stiff=is_stiff)
 
     def at(times: Float[np.ndarray, "K"]) -> States:
         whole = scipy.integrate.OdeSolution(nodes, pieces) if pieces else lambda t: np.tile(start[:, None], len(t))
@@ -57,7 +63,7 @@ def by_runge_kutta(
 
 
 def _steps(
-    field: Callable[[float, np.ndarray], np.ndarray], start: np.ndarray, end: float, rtol: float
+    field: Callable[[float, np.ndarray], np.ndarray], start: np.ndarray, end: float, rtol: float, *, is_stiff: bool
 ) -> tuple[list[float], list[Any], Outcome]:
     """Return the ends of the steps from time zero, what interpolates within them, and the outcome.
 
@@ -68,14 +74,16 @@ def _steps(
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"), late_bar("flow under forces") as report:
         if not np.isfinite(np.linalg.norm(first / (_SHARE + np.abs(start)) / rtol)):
             return nodes, pieces, Outcome.nonfinite
-        solver = scipy.integrate.DOP853(field, 0.0, start, end, rtol=rtol, atol=_SHARE * rtol) if end else None
+        method = scipy.integrate.Radau if is_stiff else scipy.integrate.DOP853
+        solver: Any = method(field, 0.0, start, end, rtol=rtol, atol=_SHARE * rtol) if end else None
         while solver is not None and solver.status == "running":
             asked = solver.nfev
             solver.step()
-            needed = (solver.nfev - asked) // solver.n_stages
+            needed = 1 if is_stiff else (solver.nfev - asked) // solver.n_stages
             if solver.status == "failed":
-                return nodes, pieces, Outcome.not_converged if np.isfinite(solver.K).all() else Outcome.nonfinite
-            tries, vain = tries + needed, vain + needed - 1 + _is_stiff(solver)
+                last = solver.f if is_stiff else solver.K
+                return nodes, pieces, Outcome.not_converged if np.isfinite(last).all() else Outcome.nonfinite
+            tries, vain = tries + needed, vain + needed - 1 + (not is_stiff and _is_short(solver))
             nodes.append(solver.t)
             pieces.append(solver.dense_output())
             report(int(_PARTS * solver.t / end), _PARTS)
@@ -84,7 +92,7 @@ def _steps(
     return nodes, pieces, Outcome.successful
 
 
-def _is_stiff(solver: Any) -> bool:
+def _is_short(solver: Any) -> bool:
     """Tell whether a step is about as long as is stable, by two derivatives at its end, as Hairer's DOP853 does."""
     last = solver.n_stages - 1
     other = solver.y_old + solver.step_size * (solver.K[:last].T @ solver.A[last, :last])

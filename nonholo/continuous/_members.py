@@ -1,22 +1,24 @@
-"""Flows of many motions: by series side by side, where the constraint is in the body and nothing acts."""
+"""Flows of many motions: by series side by side, where the constraint is in the body and forces are linear."""
 
 import numpy as np
 
 from nonholo.base.types import Bool, Float, Int
+from nonholo.continuous._linear_forces import has_series_under, heads, quadratic_under
 from nonholo.continuous._series import GUARD, body_equations, body_numbers, is_compact, power_of_two, quadratic
 from nonholo.continuous._solution import PLANE, States, first_heading, on_same_turn
 from nonholo.kernels import Quadratic, solve_members
 from nonholo.systems import AbstractSystem
 
 
-def has_series(system: AbstractSystem) -> bool:
-    """Tell whether flows of a system can be solved side by side.
+def has_series(system: AbstractSystem, span: float) -> bool:
+    """Tell whether flows of a system over a time can be solved side by side.
 
     Example:
-        >>> has_series(nh.ChaplyginSleigh(1.0, 1.0, 0.5)), has_series(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])))
-        (True, False)
+        >>> [has_series(each, 9.0) for each in (nh.ChaplyginSleigh(1.0, 1.0, 0.5), nh.VeselovaTop(np.eye(3)))]
+        [True, False]
     """
-    return not system.is_spatial and is_compact(system.group) and system.forces is None
+    served = system.forces is None or has_series_under(system.forces, span)
+    return not system.is_spatial and is_compact(system.group) and served
 
 
 def _equations(
@@ -24,8 +26,9 @@ def _equations(
 ) -> tuple[Quadratic, Float[np.ndarray, "m k k"], Float[np.ndarray, "m Q"]]:
     """Return the equations of members, and their velocities and factors; those of one body are known."""
     if len(inertias) == 1:
-        f = quadratic(system)
+        f = quadratic(system.canonical) if system.forces is None else quadratic_under(system.forces)
         return f, f.velocities[None], f.factors
+    system = system.canonical
     group, S = system.group, system.constraint_subspace
     velocities, torques = body_numbers(group, S, inertias)
     used = (torques != 0).any(axis=0)
@@ -47,7 +50,7 @@ def members_by_series(
 
     Args:
         system: A system that has series; those of the members differ from it in numbers only.
-        inertias: Their inertia operators, or with an axis of length 1 that of all.
+        inertias: Their inertia operators, or with an axis of length 1 that of all, as under forces.
         momenta: First momenta.
         poses: First poses.
         elapsed: Times since the start.
@@ -55,11 +58,16 @@ def members_by_series(
         stop: Ends the work when it becomes true.
     """
     group, k = system.group, momenta.shape[1]
-    f, velocities, factors = _equations(system.canonical, inertias)
-    units = np.array([power_of_two(w) for w in (velocities @ momenta[..., None])[..., 0]])
-    starts = np.hstack([poses, first_heading(group, poses), momenta / units[:, None]])
+    f, velocities, factors = _equations(system, inertias)
+    if system.forces is None:
+        units = np.array([power_of_two(w) for w in (velocities @ momenta[..., None])[..., 0]])
+        head = momenta / units[:, None]
+    else:
+        head, units = heads(system.forces, momenta, poses)
+    starts = np.hstack([poses, first_heading(group, poses), head])
     rows = np.full((len(momenta), len(elapsed), starts.shape[1]), np.nan)
     reached = solve_members(f, (velocities, factors), starts, (elapsed, units), tolerance * GUARD, rows, stop)
     found = group.normalize_pose(rows[..., : poses.shape[1]])
     turned = on_same_turn(rows[..., poses.shape[1]], found) if group == PLANE else None
-    return States(rows[..., starts.shape[1] - k :] * units[:, None, None], found, turned), reached
+    first = starts.shape[1] - head.shape[1]
+    return States(rows[..., first : first + k] * units[:, None, None], found, turned), reached

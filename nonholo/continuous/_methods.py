@@ -6,7 +6,7 @@ from collections.abc import Callable
 from nonholo.base.checks import choice, error, needs
 from nonholo.continuous._arrowhead import momenta_by_series
 from nonholo.continuous._closed_form import closed_form
-from nonholo.continuous._forced import by_runge_kutta
+from nonholo.continuous._linear_forces import under_forces
 from nonholo.continuous._series import by_series
 from nonholo.continuous._solution import Solved
 from nonholo.systems import System
@@ -19,9 +19,9 @@ def solver_of(
     choice("flow(method=...)", method, (None, "closed_form", "diffrax"))
     if system.forces is not None:
         if method is not None:
-            remedy = "Leave it out: forces are integrated by DOP853."
+            remedy = "Leave it out: the forces say which one it is."
             raise error("flow(method=...)", "be None under forces", repr(method), remedy)
-        return functools.partial(by_runge_kutta, system.forces, begins), True
+        return functools.partial(under_forces, system.forces, begins), True
     alone = not reconstruct and method is None and system.canonical.normal_form is not None
     return functools.partial(_named(method, alone=alone), system.canonical), not alone
 

@@ -47,6 +47,7 @@ class Series:
         group: Of the poses.
         equations: The quadratic equations.
         head: The number of components behind the pose.
+        rank: How many of them, the first, are the momenta; the others belong to forces.
         compact: Whether poses are integrated as compact ones, not as matrices.
         momentum: r, if the constraint is fixed in space, where it is constant; else None.
         unit: The unit of time, inverted: a power of two that brings the velocities near to one, so that no coefficient
@@ -59,6 +60,7 @@ class Series:
     group: AbstractMatrixGroup
     equations: Quadratic
     head: int
+    rank: int
     compact: bool
     momentum: Float[np.ndarray, "k"] | None
     unit: float
@@ -83,7 +85,7 @@ class Series:
         matrices = found.reshape(-1, *group.identity.shape) if not self.compact else None
         poses = group.normalize_pose(found if matrices is None else group.pose_from_matrix(matrices))
         momenta = (
-            rows[:, end:] * self.unit
+            rows[:, end : end + self.rank] * self.unit
             if self.momentum is None
             else np.broadcast_to(self.momentum, (len(rows), len(self.momentum))).copy()
         )
@@ -105,7 +107,7 @@ def by_series(
     else:
         unit = power_of_two(f.velocities @ reduced_momentum)
         head = reduced_momentum / unit
-    return _solved(system.group, f, head, constant, unit, pose, elapsed, tolerances)
+    return solved(system.group, f, head, len(reduced_momentum), constant, unit, pose, elapsed, tolerances)
 
 
 def pose_by_series(
@@ -128,7 +130,7 @@ def pose_by_series(
     decay = np.exp(-abs(motion.start))
     head = np.array([2 * decay / (1 + decay * decay), np.tanh(motion.start)])
     f = body_equations(group, velocities / unit, np.eye(2), torques)
-    return _solved(group, f, head, None, unit, pose, elapsed, tolerances)
+    return solved(group, f, head, len(head), None, unit, pose, elapsed, tolerances)
 
 
 def is_compact(group: AbstractMatrixGroup) -> bool:
@@ -141,20 +143,24 @@ def power_of_two(velocities: np.ndarray) -> float:
     return math.ldexp(1.0, math.frexp(np.abs(velocities).max(initial=0.0))[1])
 
 
-def _solved(
+def solved(
     group: AbstractMatrixGroup,
     f: Quadratic,
     head: np.ndarray,
+    rank: int,
     constant: np.ndarray | None,
     unit: float,
     pose: np.ndarray,
     elapsed: np.ndarray,
     tolerances: tuple[float, float],
+    most: float = math.inf,
 ) -> Solved:
+    """Solve equations from a head and a pose, in up to as many steps; see `Series` for the others."""
     compact, tolerance = is_compact(group) and not len(f.forms), tolerances[0] * GUARD
     g = pose if compact else group.matrix_from_pose(pose).ravel()
-    rows, nodes = solve_series(f, np.concatenate([g, first_heading(group, pose), head]), elapsed * unit, tolerance)
-    series = Series(group, f, len(head), compact, constant, unit, tolerance, float(elapsed[-1]), nodes)
+    start = np.concatenate([g, first_heading(group, pose), head])
+    rows, nodes = solve_series(f, start, elapsed * unit, tolerance, most)
+    series = Series(group, f, len(head), rank, compact, constant, unit, tolerance, float(elapsed[-1]), nodes)
     outcome = Outcome.successful if len(rows) == len(elapsed) else Outcome.not_converged
     return Solved(series.decoded(rows), outcome, series, series.looks)
 
@@ -189,12 +195,14 @@ def body_numbers(
     return np.linalg.inv(S @ inertia @ S.T), (torques + torques.swapaxes(-3, -2)) * upper
 
 
-def body_equations(group: AbstractMatrixGroup, S: np.ndarray, velocities: np.ndarray, torques: np.ndarray) -> Quadratic:
+def body_equations(
+    group: AbstractMatrixGroup, S: np.ndarray, velocities: np.ndarray, torques: np.ndarray, parts: Sequence[int] = ()
+) -> Quadratic:
     """Return equations of momenta with rates torques[a, b] w_a w_b, w = V r, and of a pose that moves along rows S."""
     rates = _compact_rates(group, S) if is_compact(group) else _matrix_rates(group.hat(S), False)
     if group == PLANE:
         rates = rates._replace(lone=np.concatenate([rates.lone, S[:, :1]], axis=1))
-    return assembled(velocities, rates, torques)
+    return assembled(velocities, rates, torques, parts)
 
 
 def _space_equations(group: AbstractMatrixGroup, S: np.ndarray, tensor: np.ndarray) -> Quadratic:
@@ -213,8 +221,11 @@ def _space_equations(group: AbstractMatrixGroup, S: np.ndarray, tensor: np.ndarr
     return made._replace(forms=forms, tensor=np.ascontiguousarray(tensor))
 
 
-def assembled(velocities: np.ndarray, rates: Rates, torques: np.ndarray) -> Quadratic:
-    """Return equations of what moves by `rates` and of momenta behind it, with rates torques[a, b] w_a w_b."""
+def assembled(velocities: np.ndarray, rates: Rates, torques: np.ndarray, parts: Sequence[int] = ()) -> Quadratic:
+    """Return equations of what moves by `rates` and of momenta behind it, with rates torques[a, b] w_a w_b.
+
+    `parts` has the numbers of momenta that V mixes, and whose errors are measured together: by default that of all.
+    """
     k, before, head, ((a, b, m), values, lone) = len(velocities), rates.lone.shape[1], len(torques), rates
     (c, i), (d, o, n) = np.nonzero(lone), np.nonzero(torques)
     places = np.arange(before) if not head else _side_by_side(k, before, a, b)
@@ -225,8 +236,10 @@ def assembled(velocities: np.ndarray, rates: Rates, torques: np.ndarray) -> Quad
     targets, factors = np.concatenate([i, m, n + before]), np.concatenate([lone[c, i], values, torques[d, o, n]])
     rows = np.argsort(targets, kind="stable")
     first = np.searchsorted(targets[rows], np.arange(before + head + 1))
-    momenta = np.arange(before, before + head)  # all in one block
-    edges = np.stack([np.concatenate([momenta, b]), np.concatenate([np.roll(momenta, 1), m])])
+    momenta, ends = np.arange(before, before + head), np.cumsum(parts, dtype=np.int64)[:-1]  # each part in one block
+    part, turned = np.searchsorted(ends, np.arange(head), "right"), [np.roll(x, 1) for x in np.split(momenta, ends)]
+    o, n = (x[part[o] != part[n]] + before for x in (o, n))
+    edges = np.stack([np.concatenate([momenta, b, o]), np.concatenate([*turned, m, n])])
     order = np.append(places, momenta)
     sparse = products, first, found[rows], factors[None, rows], order
     nothing = np.zeros(0), np.zeros((0, 0)), np.zeros(0)

@@ -83,6 +83,14 @@ class Discretization(Scheme, AbstractMotion):
         """The system with its forces; None of a free one."""
         return self.system.forces
 
+    @functools.cached_property
+    def is_balanced(self) -> bool:
+        """Whether forces act by equal half impulses at the displacement, so that T + U and every balance is exact."""
+        if self.forces is None:
+            return False
+        free = dataclasses.replace(self, system=self.forces.system)
+        return self.forces.is_balanced(free.conserves_energy, self.order > 2)
+
     @property
     def step_needs_pose(self) -> bool:
         """Whether momenta after a step depend on the pose: with right-invariant constraints, and under some forces."""
@@ -104,7 +112,9 @@ class Discretization(Scheme, AbstractMotion):
             >>> discretize(ChaplyginSleigh(1.0, 1.0, 0.5), 0.1, difference="logarithmic").conserves_energy
             False
         """
-        if self.difference != "matrix" or self.system.is_spatial or self.forces is not None:
+        if self.forces is not None:
+            return self.is_balanced and not self.forces.parts
+        if self.difference != "matrix" or self.system.is_spatial:
             return False
         if self.constraint != "exponential":
             return self.constraint == "skew"
@@ -185,11 +195,30 @@ class Discretization(Scheme, AbstractMotion):
 
     def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
         """Return the discrete momenta at the displacements, of a composition at those of first substeps."""
-        first = self
-        if self.order > 2:
-            first = dataclasses.replace(self, time_step=weights(self.order)[0] * self.time_step, order=2)
+        first = self if self.order == 2 else self._first
         momentum = first._momentum(states, states.canonical_chart, "left")
-        return momentum if self.forces is None else momentum - self._impulses(states, 0)
+        return momentum if self.forces is None else momentum - first._impulses(states, 0)
+
+    @functools.cached_property
+    def _first(self) -> "Discretization":
+        """The first step of order 2 of a composition."""
+        return dataclasses.replace(self, time_step=weights(self.order)[0] * self.time_step, order=2)
+
+    def mean_force(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
+        """Return the covectors f that act over single steps from states, where forces are balanced."""
+        forced, W = cast(Forced, self.forces), self.displaced(states.canonical_chart)
+        h, rows = float(self.time_step), forced.rows(states.step)
+        return forced.mean_force(states.configuration, W, h, rows, states.time)
+
+    def work(self, states: Orbit) -> Float[np.ndarray, "K"]:
+        """Return the work of the force along states since the first: exact of balanced steps of order 2."""
+        if self.order > 2 or not (self.is_balanced and states.has_every_step):
+            return super().work(states)
+        before, forced = states.chosen(slice(None, -1)), cast(Forced, self.forces)
+        group, W = self.system.group, self.displaced(before.canonical_chart)
+        X = group.vee((W - group.inverse(W)) / 2)
+        gain = (self.mean_force(before) * X).sum(axis=1) + np.diff(forced.potential_energy(states.configuration))
+        return np.concatenate([np.zeros(min(1, len(states))), np.cumsum(gain)])
 
     def multipliers(self, states: Orbit) -> Float[np.ndarray, "L s"]:
         r"""Return the impulses $\lambda$ in $P_{k+1} - \mathrm{Ad}^*_{W_k} P_k = \sum_j \lambda_j a^j$.
@@ -205,7 +234,7 @@ class Discretization(Scheme, AbstractMotion):
             return self.displacement_decoder.multipliers(before.canonical_chart, after.canonical_chart)
         arriving = self._momentum(before, before.canonical_chart, "right")
         if self.forces is not None:
-            arriving = arriving + self._impulses(after, 0) + self._impulses(after, -1)
+            arriving = arriving + self._impulses(after, 0) + self._impulses(before if self.is_balanced else after, -1)
         group, to_multipliers = self.system.group, np.linalg.pinv(self.system.annihilator).T
         if not self.system.is_spatial:
             return applied(to_multipliers, self.displacement_decoder.momentum(after.canonical_chart, "left") - arriving)
@@ -225,6 +254,8 @@ class Discretization(Scheme, AbstractMotion):
     def _impulses(self, states: Orbit, shift: int) -> Float[np.ndarray, "K dim"]:
         """Return the half impulses at nodes of the steps that begin there, or with shift -1 of those that end there."""
         forced, half = cast(Forced, self.forces), float(self.time_step) * (0.5 + shift)
+        if self.is_balanced:
+            return abs(half) * self.mean_force(states)
         steps, momenta = states.step + shift, states.restricted_momentum
         found = forced.impulses(momenta, states.configuration, states.time, steps, half)
         return found if shift == 0 else -found

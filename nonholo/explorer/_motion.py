@@ -336,7 +336,8 @@ def force_numbers(forced: Forced) -> dict[str, float] | None:
     gravity = forced.gravity or Gravity(np.zeros(n), np.zeros(n))
     coefficients = np.zeros(2) if friction is None else friction.coefficients
     turned = not np.array_equal(inside.frame, np.eye(len(inside.frame)))
-    if forced.needs_function or coefficients.ndim > 1 or turned:
+    others = forced.scheme == "variational" or (forced.terms and forced.gravity is None)
+    if forced.needs_function or others or coefficients.ndim > 1 or turned:
         return None
     numbered = {"F": gravity.force, "x": gravity.point, "c": coefficients[:2]}
     numbers = {f"{name}{i}": float(x) for name, row in numbered.items() for i, x in enumerate(row, 1)}

@@ -7,10 +7,20 @@ from nonholo.kernels._composition import ComposedBody, whole_steps
 from nonholo.kernels._driver import CHART, CORRECTIONS, SETTLED, STATE_SIZE, converged, flat_run, start
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
 from nonholo.kernels._entry import AnyBody, runs_of, sizes, step_each
-from nonholo.kernels._interface import Body, certified, correction, increment, inertia, move, residual, tangent
+from nonholo.kernels._interface import (
+    Body,
+    certified,
+    correction,
+    increment,
+    inertia,
+    move,
+    quadratic,
+    residual,
+    tangent,
+)
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table
-from nonholo.kernels.forced import Drive, ForcedBody, Kick, flat_forced_run, rubbed
+from nonholo.kernels.forced import Balanced, Drive, ForcedBody, Impulses, Kick, Pull, flat_forced_run, rubbed
 from nonholo.kernels.general import GeneralBody
 from nonholo.kernels.general.coordinates import (
     CONTRACTION,

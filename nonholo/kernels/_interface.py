@@ -44,6 +44,11 @@ def inertia(p: Body) -> tuple[Any, Any, Any]:
     return _file_of(type(p)).inertia(p)
 
 
+def quadratic(p: Body) -> tuple[Any, Any, Any, Any, Any, Any]:
+    """Return B11, B12, B22, c and e: roots y obey w m = B y + (c . y') y', y' = (-y2, y1), w = 1 + y1^2 + e y2^2."""
+    return _file_of(type(p)).quadratic(p)
+
+
 def increment(p: Body, m1: Any, m2: Any, y1: Any, y2: Any) -> tuple[Any, Any]:
     """Return the change of the scaled momenta in one step."""
     return _file_of(type(p)).increment(p, m1, m2, y1, y2)
@@ -76,7 +81,7 @@ def _compile(function: Callable[..., Any]) -> None:
     overload(function, jit_options=COMPILED, strict=False)(choose)
 
 
-for _function in (inertia, residual, correction, corrections, certified, increment, move):
+for _function in (inertia, quadratic, residual, correction, corrections, certified, increment, move):
     _compile(_function)
 
 

@@ -25,6 +25,9 @@ scalar = jitable(**COMPILED)
 """Mark a scalar function: numba inlines it, plain Python and JAX call it as it is."""
 
 
+borrowing = jitable(**BORROWING)
+"""Mark a function that writes to arrays of its callers, with the options BORROWING."""
+
 inlined = jitable(**INLINED)
 """Mark a function that writes to arrays of its callers likewise, with the options INLINED."""
 

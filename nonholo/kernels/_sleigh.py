@@ -31,6 +31,12 @@ def inertia(p: SleighBody) -> tuple[float, float, float]:
 
 
 @scalar
+def quadratic(p: SleighBody) -> tuple[float, float, float, float, float, float]:
+    """Return twice the inertia along the constraint, c = (0, -2 m a) and 0: both equations of a displacement."""
+    return 2 * (p.inertia + p.mass * p.a * p.a), 0.0, 2 * p.mass, 0.0, -2 * p.mass * p.a, 0.0
+
+
+@scalar
 def p_hat(p: SleighBody, m2: float) -> float:
     """Return the shifted momentum along the blade, the first coefficient of the cubic."""
     return p.a * (m2 + 2 * p.mass * p.a)

@@ -74,6 +74,12 @@ def inertia(p: SuslovBody) -> tuple[float, float, float]:
 
 
 @scalar
+def quadratic(p: SuslovBody) -> tuple[float, float, float, float, float, float]:
+    """Return B, c and 1: the quadratics of all momenta."""
+    return p.b11, p.b12, p.b22, p.c1, p.c2, 1.0
+
+
+@scalar
 def c_perp(p: SuslovBody, y1: float, y2: float) -> float:
     """Return c . y_perp, which drives the momentum."""
     return p.c2 * y1 - p.c1 * y2

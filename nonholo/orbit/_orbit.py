@@ -71,6 +71,10 @@ class AbstractMotion(Keeper, abc.ABC):
         got = f"a discrete orbit with {len(states)} states; not {shown(times)}"
         raise error("Orbit.at(...)", "be asked of a flow", got, "Slice the orbit, or run with another time step.")
 
+    def work(self, states: "Orbit") -> Float[np.ndarray, "K"]:
+        """Return the work of the force along states since the first, by the trapezoidal rule."""
+        return self.system.forces.work(states.time, states.configuration, states.body_velocity, states.step)
+
     def after_parts(self, states: Any, fractions: Float[np.ndarray, "K"]) -> Any:
         """Return what is reached from states after parts of the steps that begin there; refused where none do."""
         del fractions
@@ -388,10 +392,13 @@ class Orbit(AbstractOrbit):
 
     @remembered
     def work(self) -> Float[np.ndarray, "K"]:
-        r"""Work of the force on the motion since the first state, by the trapezoidal rule; zero without one.
+        r"""Work of the force on the motion since the first state; zero without one.
 
-        Of friction it is minus the dissipated energy. The energy less this work is constant up to an error of order 2
-        in the time between states. Under a table it is that of every step, also of those between the states.
+        Of friction it is minus the dissipated energy. Of steps of order 2 under the scheme "energy" it is the sum of
+        $\langle f_k, X_k\rangle$, and the energy less this work is constant to rounding. Of other motions, and between
+        states with some left out, it is that of the trapezoidal rule, and the energy less this work is constant up to
+        an error of order 2 in the time between states. Under a table it is that of every step, also of those between
+        the states.
 
         Raises:
             ValueError: Poses that are not reconstructed; under a table given poses with some left out, or states that
@@ -402,7 +409,7 @@ class Orbit(AbstractOrbit):
             return np.zeros(len(self))
         if self.lacks_forces:
             return self.with_every_step().work[self.step - self.step[0]]
-        return forced.work(self.time, self.configuration, self.body_velocity, self.step)
+        return self.motion.work(self)
 
     @property
     def lacks_forces(self) -> bool:

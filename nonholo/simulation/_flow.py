@@ -81,8 +81,9 @@ def flow(
     momentum along the constraint is $r_\perp\,\mathrm{sech}\,s + r_\parallel\tanh s$, $s = s_0 + \nu t$, exact.
     Exact are also heading and path of the sleigh (a hypergeometric function); the pose of the top is a quadrature.
 
-    Of a `Forced` system the force -dU + f stands beside ad*; it is solved by DOP853 of SciPy, with `rtol` of 1e-13 and
-    more, which also gives the states between.
+    Of a `Forced` system the force -dU + f stands beside ad*. Under `Gravity` and `Friction`, of a constraint fixed in
+    the body, the series solve it too, or if friction is much faster than the motion Radau of SciPy, with `rtol` of 1e-9
+    and more; else DOP853, with `rtol` of 1e-13 and more. These two also give the states between.
 
     For a `LagrangeDAlembert` these are the equations of its `flow`, with q in place of the pose: it starts at a
     `configuration`, and takes neither `restricted_velocity` nor `method`.

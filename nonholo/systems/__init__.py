@@ -45,7 +45,7 @@ from nonholo.systems.families import (
     SuslovTop,
     VeselovaTop,
 )
-from nonholo.systems.forces import Forced, Friction, Gravity, joined, parts_of
+from nonholo.systems.forces import Forced, Friction, Gravity, Linear, Spring, joined, parts_of
 
 SYSTEMS = tuple(kind for kind in vars(families).values() if isinstance(kind, type))
 """Every final class of this room."""

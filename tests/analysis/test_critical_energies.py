@@ -207,7 +207,6 @@ def test_the_forbidden_axis_does_not_matter() -> None:
     ("discrete", "text"),
     [
         (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), "single_valued_region"),
-        (nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0])), 0.1), "n = 3"),
         (nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), "discretized Suslov top"),
         (nh.discretize(nh.SuslovTop(BODIES["generic"]), 0.1, difference="logarithmic"), "conserve the energy"),
     ],

@@ -1,5 +1,7 @@
 """The map is not that of a smooth flow: its conjugacy invariant, against 50 digits and under changes of the orbit."""
 
+from typing import Any
+
 import mpmath
 import numpy as np
 import pytest
@@ -14,7 +16,7 @@ def _sleigh(J: float, M: float, g: float) -> tuple[nh.Discretization, float]:
     return nh.discretize(nh.ChaplyginSleigh(1.0, J, np.sqrt(M)), 1.0), g / (2 * M)
 
 
-def _following(J: mpmath.mpf, a: mpmath.mpf, r: tuple) -> tuple:
+def _following(J: Any, a: Any, r: tuple) -> tuple:
     """Return the momenta (pi, p_1) after a step, m = h = 1, by Newton's method on the cubic."""
     pi, p = r
     hat, t = a * p + 2 * a * a, pi / (2 * J + a * p + 2 * a * a)
@@ -27,13 +29,13 @@ def _following(J: mpmath.mpf, a: mpmath.mpf, r: tuple) -> tuple:
     return pi - 2 * a * t * (p + a * versine), p + 2 * a * versine
 
 
-def _difference(J: float, M: float, r: np.ndarray) -> mpmath.mpf:
+def _difference(inertia: float, moment: float, r: Any) -> Any:
     """Return s_+ - s_- from the logarithms of far momenta, backwards through T^-1(r) = -T(-r)."""
-    J, a = mpmath.mpf(J), mpmath.sqrt(mpmath.mpf(M))
-    now = tuple(mpmath.mpf(float(x)) for x in r)
-    inertia = J + a * a
-    speed = mpmath.sqrt(now[0] ** 2 / inertia + now[1] ** 2)
-    rate = mpmath.log((2 * inertia - a * speed) / (2 * inertia + a * speed))
+    J, a = mpmath.mpf(inertia), mpmath.sqrt(mpmath.mpf(moment))
+    now = tuple(map(mpmath.mpf, r))
+    whole = J + a * a
+    speed = mpmath.sqrt(now[0] ** 2 / whole + now[1] ** 2)
+    rate = mpmath.log((2 * whole - a * speed) / (2 * whole + a * speed))
     ends = []
     for sign in (1, -1):
         ahead, steps = (sign * now[0], sign * now[1]), 0
@@ -73,6 +75,7 @@ def test_the_map_of_the_top_is_not_that_of_a_flow() -> None:
     discrete = nh.discretize(nh.SuslovTop([[1.0, 0.0, 0.6], [0.0, 0.5, 0.0], [0.6, 0.0, 0.6]]), 1.0)
     found = nh.critical_energies(discrete)
     assert found.regular
+    assert found.saddle is not None
     assert nh.flow_obstruction(discrete, 0.95 * found.saddle).amplitude > 2e-3
 
 
@@ -86,6 +89,48 @@ def test_it_is_beyond_all_orders() -> None:
     assert slopes[0] > 25
     assert slopes[1] > slopes[0] + 5
     assert amplitudes[-1] <= 1e-12
+
+
+def _spread(h: float) -> Any:
+    """Return how far s_+ - s_- varies over eight starts within a step of the light sleigh, time step h; 60 digits."""
+    J, M, g = CASES["light"]
+    speed, inertia = mpmath.sqrt(g / mpmath.mpf(M)) * h, mpmath.mpf(J) + mpmath.mpf(M)
+    a = mpmath.sqrt(mpmath.mpf(M))
+
+    def along(t: mpmath.mpf) -> tuple:
+        return mpmath.sqrt(inertia) * speed * mpmath.sech(t), speed * mpmath.tanh(t)
+
+    first = mpmath.mpf("0.1")
+    pi, p = _following(mpmath.mpf(J), a, along(first))
+    period = mpmath.asinh(p * mpmath.sqrt(inertia) / pi) - first
+    found = [_difference(J, M, along(first + period * k / 8)) for k in range(8)]
+    return max(found) - min(found)
+
+
+@pytest.mark.profile("problems", keep=["0.6-0.5"])
+@pytest.mark.parametrize(("h", "shorter"), [(0.6, 0.5), (0.5, 0.4), (0.4, 0.3)])
+def test_it_falls_as_an_exponential_of_the_inverse_step(h: float, shorter: float) -> None:
+    """Its logarithm falls as -pi^2/(nu h), up to five parts in a hundred that become less with h."""
+    rate = np.sqrt(CASES["light"][2]) / 1.3  # nu = M u/(a I) with a u = sqrt(g), m = 1
+    with mpmath.workdps(60):
+        fall = float(mpmath.log(_spread(h) / _spread(shorter)))
+    ratio = fall / (np.pi**2 / rate * (1 / shorter - 1 / h))
+    assert 1 < ratio < 1 + 0.13 * h * h
+
+
+@pytest.mark.parametrize("angle", [-0.9, 0.2, 1.1])
+def test_time_that_a_step_takes(angle: float) -> None:
+    """A step takes h (1 + (h^2/12)(nu^2 + 3 (J/I) omega^2)) of the flow's time, to six digits of the second term."""
+    with mpmath.workdps(40):
+        J, a, h = mpmath.mpf(1), mpmath.sqrt(mpmath.mpf("0.3")), mpmath.mpf("1e-3")
+        inertia, speed = J + a * a, mpmath.mpf("1.1")
+        rate = a * speed / inertia
+        before = mpmath.sqrt(inertia) * speed * mpmath.cos(angle), speed * mpmath.sin(angle)
+        after = tuple(x / h for x in _following(J, a, (h * before[0], h * before[1])))
+        first, last = (mpmath.asinh(mpmath.sqrt(inertia) * p / pi) / rate for pi, p in (before, after))
+        turning = (before[0] + after[0]) / 2 / inertia
+        expected = (rate**2 + 3 * J / inertia * turning**2) / 12
+        assert abs((last - first - h) / h**3 / expected - 1) <= 1e-6
 
 
 @pytest.mark.parametrize("name", CASES)

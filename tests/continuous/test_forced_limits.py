@@ -18,14 +18,18 @@ def _switch(*state: Any) -> np.ndarray:
     return np.array([np.sign(np.sin(1e3 * state[0])), 0.0, 0.0])
 
 
+def _drag(*state: Any) -> np.ndarray:
+    return -1e8 * state[2]
+
+
 def _flow(potential: Any, force: Any, times: Any = TIMES) -> nh.Orbit:
     return nh.flow(nh.Forced(SLEIGH, potential, force), times=times, restricted_velocity=(0.3, -0.7))
 
 
 ENDLESS: dict[str, tuple[Any, Any, str, str]] = {
-    "friction": (None, nh.Friction([1e8] * 3), "too_stiff", "Friction"),
+    "drag": (None, _drag, "too_stiff", "_drag"),
     "switch": (None, _switch, "too_stiff", "_switch"),
-    "weight": (nh.Gravity([1e149, 0.0], [0.1, 0.2]), None, "nonfinite", "Gravity"),
+    "weight": (nh.Gravity([1e149, 0.0], [0.1, 0.2]), None, "too_stiff", "Gravity"),
     "fast": (nh.Gravity([1e60, 0.0], [0.1, 0.2]), None, "too_stiff", "Gravity"),
     "at once": (None, lambda *_: np.array([1e200, 0.0, 0.0]), "nonfinite", "<lambda>"),
 }

@@ -71,7 +71,13 @@ def _branches() -> list[Call]:
             call(f"branch_tree [{name}]", nh.branch_tree, **given, displacement=array(W), depth=integer(2)),
         ]
     certified = {"discrete": thing(SLEIGH), "momentum": array([0.3, 0.4]), "certify": flag(True)}
-    return [*found, call("branches [certified]", nh.branches, **certified)]
+    grown = {"discrete": thing(SLEIGH), "energy": positive(500.0)}
+    return [
+        *found,
+        call("branches [certified]", nh.branches, **certified),
+        call("branch_growth", nh.branch_growth, **grown),
+        call("branch_growth [certified]", nh.branch_growth, **grown, certify=flag(True)),
+    ]
 
 
 def _matrices(W: np.ndarray) -> list[Call]:

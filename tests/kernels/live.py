@@ -25,6 +25,7 @@ Arrays: TypeAlias = list[np.ndarray]
 SIZE, STEP = 2.0, 0.5  # of velocities and of the time step: motions that turn far, and some that end
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5)
+SLOPE = nh.Gravity([1.0, -0.5], [0.5, 0.25])
 MEMBERS, STEPS, SHARES, WIDE = (
     (40, 2, (1.0,), 0.2) if sys.argv[1:2] == ["calls"] else (4000, 100, (0.1, 0.5, 1.0), SIZE)
 )
@@ -200,6 +201,9 @@ RUNS: dict[str, Callable[[], Arrays]] = {
     ),
     "flows of tops": lambda: members_of_flows(TOP),
     "flows of sleighs": lambda: members_of_flows(SLEIGH),
+    "flow of a heavy top": lambda: flows(nh.Forced(TOP, nh.Gravity([0.1, -0.2, -2.0], [0.2, 0.1, 0.5]))),
+    "flow of a sleigh on a slope": lambda: flows(nh.Forced(SLEIGH, SLOPE, nh.Friction([0.1, 0.3, 0.2]))),
+    "flows of sleighs on a slope": lambda: members_of_flows(nh.Forced(SLEIGH, SLOPE, nh.Friction([0.1, 0.3, 0.2]))),
     "right-invariant flow on SE(3)": lambda: flows(GENERAL["right-invariant on SE(3)"][0]),
     "pose of a top in closed form": lambda: flows(TOP, "closed_form"),
     "top with forces": lambda: forced(TOP),

@@ -13,7 +13,7 @@ from problems import PROBLEMS
 
 import nonholo as nh
 from nonholo.base.compiled import emission, library_of_kernels, njit, way_of_kernels
-from nonholo.continuous import _series
+from nonholo.continuous import _linear_forces, _series
 from nonholo.kernels import Quadratic
 from nonholo.kernels._scalar import COMPILED
 from nonholo.kernels.lanes import EIGHT, ONE
@@ -47,6 +47,9 @@ OTHERS = {
     "nothing moves": nh.LLSystem(
         nh.SO(3), constraint_subspace=np.empty((0, 3)), inertia_operator=np.diag([1.0, 2.0, 2.5])
     ),
+    "heavy top": nh.Forced(USUAL["top"], nh.Gravity([0.0, 0.0, -2.0], [0.2, 0.1, 0.5])),
+    "sleigh with friction": nh.Forced(USUAL["sleigh"], nh.Gravity([1.0, -0.5], [0.5, 0.0]), nh.Friction([0.1] * 3)),
+    "heavy body on SO(4)": nh.Forced(nh.RigidBody(mass_tensor(nh.SO(4), RNG), nh.SO(4)), nh.Gravity(*np.eye(4)[:2])),
 }
 BODIES = {**OTHERS, **USUAL}
 
@@ -58,7 +61,7 @@ def cases(systems: dict[str, AbstractSystem]) -> list[tuple[str, tuple[int, ...]
 
 def equations(system: AbstractSystem, lanes: tuple[int, ...]) -> Quadratic:
     """Return the equations of one motion, or of eight with factors of their own."""
-    f = _series.quadratic(system.canonical)
+    f = _linear_forces.quadratic_under(system.forces) if system.forces else _series.quadratic(system.canonical)
     if lanes == ONE:
         return f._replace(momentum=RNG.normal(size=len(f.velocities))) if len(f.forms) else f
     wide = f._replace(**_members.one_by_one(f.rows, f.found))

@@ -26,7 +26,9 @@ import json, sys
 import nonholo as nh
 from nonholo.base.compiled import way_of_kernels
 orbit = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), body_velocity=(1, 0.3, 0), steps=20)
-rows = orbit.momentum.tolist(), orbit.pose.tolist()
+heavy = nh.Forced(orbit.system, nh.Gravity([1.0, -0.5], [0.5, 0.25]), nh.Friction([0.1, 0.3, 0.2]))
+flow = nh.flow(heavy, body_velocity=(1, 0.3, 0), times=(0.0, 1.0, 3.0))
+rows = [x.tolist() for x in (orbit.momentum, orbit.pose, flow.momentum, flow.pose)]
 print(json.dumps([way_of_kernels(), "numba" in sys.modules, rows]))
 """
 
@@ -61,7 +63,7 @@ def test_all_that_is_listed_is_there(known: compiled.Library) -> None:
 
 
 def test_three_ways_have_the_same_bits() -> None:
-    """A sleigh runs from the library without numba, by numba, and as plain Python: the same numbers."""
+    """A sleigh, free and on a slope, by the library without numba, by numba, and by plain Python: the same numbers."""
     by_library, by_numba, by_python = (_ran(NONHOLO_KERNELS=way) for way in ("library", "numba", "python"))
     assert by_library[:2] == ["library", False]
     assert by_numba[:2] == ["numba", True]

@@ -245,6 +245,17 @@ def test_forced_flows_and_maps_bounce() -> None:
         assert np.abs(found.position[:, 0] - 0.1 * found.time).max() < 1e-11
 
 
+@pytest.mark.parametrize(
+    "potential", [nh.Gravity([0.3, -1.0], [0.3, 0.1]), lambda g: ((g[:2, 2] - 0.1) ** 2).sum() / 4]
+)
+def test_energy_with_a_potential_is_kept_over_impacts(potential: Any) -> None:
+    """Under the scheme that keeps T + U both parts of a step keep it, and so does the reflection."""
+    heavy = nh.discretize(nh.Forced(SLEIGH, potential, scheme="energy"), 0.1)
+    orbit = nh.simulate(heavy, restricted_velocity=(0.3, 1.4), steps=300, events=box())
+    assert sum(len(orbit.events[side]) for side in SIDES) > 5
+    assert np.ptp(orbit.energy) < 1e-13 * np.abs(orbit.energy).max()
+
+
 @pytest.mark.parametrize("bounce", [0.5, 0.9])
 def test_restitution_scales_the_normal_velocity(bounce: float) -> None:
     """Each impact leaves that share of the velocity toward the wall, and of the energy its square."""

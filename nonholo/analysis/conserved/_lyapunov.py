@@ -1,6 +1,6 @@
 r"""The quantity that only falls: along the flow, and along every branch of the discrete map, in any dimension.
 
-Theory: docs/theory/critical-energies-and-limits.md. The limits that follow from it live in `_asymptotics`.
+Theory: docs/theory/limits.md. The limits that follow from it live in `_asymptotics`.
 """
 
 import dataclasses

@@ -1,11 +1,11 @@
-r"""Critical energies of the discrete Suslov top (n = 3): where the level curves on the displacement variety change.
+r"""Critical energies of the discrete Suslov top: where the level curves on the displacement variety change (n = 3).
 
 The variety is a projective plane, $W \leftrightarrow \pm(z_0, z)$; the energy on it is a quartic with isolated critical
 points. Branches and their regions live elsewhere.
 
 Up to the energy of the first fold momenta determine the displacement around the identity. On a ray of displacements
 with one axis $\cot(\theta/2)$ of a fold is a root of a cubic; the least energy of all folds is found by a search along
-the circle of axes. Theory: docs/theory/critical-energies-and-limits.md.
+the circle of axes. For n > 3 it has a lower bound. Theory: docs/theory/critical-energies.md.
 """
 
 import dataclasses
@@ -53,19 +53,25 @@ class CriticalPoint:
 class CriticalEnergies:
     r"""Critical values of the energy of a discrete top, in physical units; None where there is no such point.
 
+    For n > 3 only `fold`, `line` and `regular` are known; no point is listed.
+
     Attributes:
         saddle: $h^*$: two opposite saddles off the equator. Below it, in the regular regime, the component of the
             level curve around the identity is separate, and each momentum has a displacement on it.
         center: $h^{**}$: two opposite maxima off the equator. Equal to `saddle` if a closed curve of maxima replaces
             the four points.
         equatorial_saddle: $h_e$: the highest saddle among half-turns.
-        fold: $h_f$: the least energy of a fold that can be reached from the identity through lower energies, always
-            defined. Below it each momentum has exactly one displacement in the part of the level around the identity,
-            the principal one, and no principal orbit ends. In the regular regime
-            $\tfrac{125}{128}h^* < h_f \le h^*$, and $h_f = h^*$ if $\det B \ge 3|c|^2$.
+        fold: Below it each momentum has exactly one displacement in the part of the level around the identity, the
+            principal one, and no principal orbit ends. For n = 3 it is $h_f$, always defined: the least energy of a
+            fold that can be reached from the identity through lower energies. In the regular regime
+            $\tfrac{125}{128}h^* < h_f \le h^*$, and $h_f = h^*$ if $\det B \ge 3|c|^2$. For n > 3 it is a proved
+            lower bound of $h_f$, more than $\tfrac{125}{128}(1 - \sigma)h_f$: $b_1/(2h^2)$ if
+            $\sigma = |c|^2/(b_1b_2) \le \tfrac13$ with the two least eigenvalues of B, and
+            $1 - (3\sigma - 1)^3(1 + \sigma)/(16\sigma)$ of that for $\sigma < \tfrac12$. Beyond nothing is known,
+            and it is 0.
         line: The highest energy of an equilibrium, $q_c/(2h^2|c|^2)$, which turns by 90 degrees in a step. Above it
             every real orbit ends, on whatever branches. None for a balanced body, all of whose states are equilibria.
-        regular: $\det B > 2|c|^2$.
+        regular: $\det B > 2|c|^2$, for n > 3 $b_1b_2 > 2|c|^2$.
         points: All isolated critical points, the two (on the equator: one) opposite ones once, from low to high.
     """
 
@@ -84,9 +90,10 @@ class CriticalEnergies:
 
 
 def critical_energies(discrete: Discretization) -> CriticalEnergies:
-    r"""Return the critical values of the energy on the displacement variety of a top in three dimensions.
+    r"""Return the critical values of the energy on the displacement variety of a top.
 
-    With $z = \sqrt\varrho\,u$, $|u| = 1$, $D = \det B$ and $\kappa(u) = 1 - (c\cdot u^\perp)^2/D$
+    In three dimensions, with $z = \sqrt\varrho\,u$, $|u| = 1$, $D = \det B$ and
+    $\kappa(u) = 1 - (c\cdot u^\perp)^2/D$
 
     $$ E = \tfrac{2}{h^2}\,(u\cdot Bu)\,(\varrho - \kappa\varrho^2), \qquad 0 \le \varrho \le 1 . $$
 
@@ -96,7 +103,7 @@ def critical_energies(discrete: Discretization) -> CriticalEnergies:
     Reference: [fedorov-zenkov-2004], section 6, "Invariant curves", which lacks $h_e$ and the regular regime.
 
     Args:
-        discrete: A `SuslovTop` with n = 3, difference "matrix" and constraint "skew" or "exponential".
+        discrete: A `SuslovTop`, difference "matrix" and constraint "skew" or "exponential".
 
     Raises:
         ValueError: Another system or discretization.
@@ -108,8 +115,16 @@ def critical_energies(discrete: Discretization) -> CriticalEnergies:
         0.347449 0.930510 1.262473
         >>> energies.regular, energies.fold == energies.saddle, round(energies.line, 6)
         (True, True, 1.008824)
+
+        A top on SO(5), whose first fold has no less energy than this:
+
+        >>> top = nh.SuslovTop.arrowhead([1.0, 2.0, 3.0, 4.0, 5.0], [0.3, 0.2, 0.1, 0.2])
+        >>> critical_energies(nh.discretize(top, 0.5)).fold
+        12.0
     """
     form = _checked("critical_energies(discrete=...)", discrete)
+    if not form.is_planar:
+        return _in_more_dimensions(form, float(discrete.time_step))
     land = landscape(form)
     unit = 2 / float(discrete.time_step) ** 2
     off = _off_equator(land, unit)
@@ -130,18 +145,36 @@ def critical_energies(discrete: Discretization) -> CriticalEnergies:
 
 
 def _checked(where: str, discrete: Any) -> NormalForm:
-    remedy = "Pass `discretize(SuslovTop(J), time_step)` with n = 3."
+    remedy = "Pass `discretize(SuslovTop(J), time_step)`."
     instance(where, discrete, Discretization, "be a discretized Suslov top", remedy)
     form = discrete.system.normal_form
-    if form is None or form.is_sleigh or not form.is_planar:
-        if form is not None and form.is_sleigh:
+    if form is None or form.is_sleigh:
+        if form is not None:
             remedy = "Its level curves are ellipses; `single_valued_region` gives the energy where branches merge."
-        raise error(where, "be a discretized Suslov top with n = 3", f"{type(discrete.system).__name__}", remedy)
+        raise error(where, "be a discretized Suslov top", f"{type(discrete.system).__name__}", remedy)
     refuse_composition(where, discrete, "Pass the discretization of order 2 that is composed.")
     if not discrete.conserves_energy:
         got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"
         raise error(where, "conserve the energy", got, "Use the defaults of `discretize`.")
     return form
+
+
+def _in_more_dimensions(form: NormalForm, step: float) -> CriticalEnergies:
+    r"""Return what is known for n > 3, by the planes through a displacement."""
+    b, c = form.principal[0], form.to_principal(np.asarray(form.coupling))
+    least, next_least = np.partition(b, 1)[:2]
+    sharpness, unit = float(c @ c / least / next_least), 1 / (2 * step * step)
+    missing = max(3 * sharpness - 1, 0.0) ** 3 * (1 + sharpness) / (16 * sharpness) if sharpness > 0 else 0.0
+    regular = 2 * sharpness < 1
+    return CriticalEnergies(
+        saddle=None,
+        center=None,
+        equatorial_saddle=None,
+        fold=float((1 - missing) * least * unit) if regular else 0.0,
+        line=float((b * c) @ c / (c @ c) * unit) if form.is_coupled else None,
+        regular=regular,
+        points=(),
+    )
 
 
 def _fold(form: NormalForm, land: Landscape, unit: float, saddle: float | None) -> float:

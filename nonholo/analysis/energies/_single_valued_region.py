@@ -1,7 +1,7 @@
 r"""Up to which energies the discrete Chaplygin sleigh has exactly one real branch, and a principal one everywhere.
 
 The branches at scaled momenta $(\pi, \hat p)$ are the tangents of a deltoid; energy levels are ellipses. Theory:
-docs/theory/critical-energies-and-limits.md and docs/theory/chaplygin-sleigh.md.
+docs/theory/chaplygin-sleigh.md.
 """
 
 import dataclasses

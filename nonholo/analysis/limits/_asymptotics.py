@@ -1,6 +1,6 @@
 r"""Limits that a motion comes from and tends to: velocities, axes in body and in space, how far a sleigh turns.
 
-Theory: docs/theory/critical-energies-and-limits.md. Orbits are followed to their limits by `_followed`.
+Theory: docs/theory/limits.md. Orbits are followed to their limits by `_followed`.
 """
 
 import dataclasses
@@ -36,7 +36,7 @@ class Asymptotics:
         heading_turn: How far a sleigh turns in total; its size alone for a system, with its sign for an orbit.
         motion_turn: The same for its direction of motion, modulo full turns: the sleigh starts out backwards.
         persists: Whether the orbit is known to continue forever. It is for a flow, for a principal orbit of a plane
-            sleigh below its `principal_energy` of `single_valued_region` and of a top (n = 3) below its `fold` of
+            sleigh below its `principal_energy` of `single_valued_region` and of a top below its `fold` of
             `critical_energies`. Elsewhere the limits are those of an orbit that does, on whatever branches.
     """
 
@@ -168,11 +168,11 @@ def _known_to_persist(form: NormalForm, orbit: Orbit, energy: float) -> bool:
     discrete = orbit.motion
     if not isinstance(discrete, Discretization):
         return True
-    if orbit.branch != "principal" or discrete.order > 2 or not form.is_planar:
+    if orbit.branch != "principal" or discrete.order > 2:
         return False
-    if form.is_sleigh:
-        return energy < single_valued_region(discrete).principal_energy
-    return energy < critical_energies(discrete).fold
+    if not form.is_sleigh:
+        return energy < critical_energies(discrete).fold
+    return form.is_planar and energy < single_valued_region(discrete).principal_energy
 
 
 def _ends(orbit: Orbit, found: Approach) -> Ends | None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Tag, model_validator
 
@@ -54,6 +54,9 @@ class Forces(Section):
     table: Matrix | None = None
     """A force for each step, in body axes: rows, or the path of a CSV file of them, from the folder of the scenario."""
 
+    scheme: Literal["energy", "variational"] | None = None
+    """Where forces act: "energy" keeps T + U and every balance exactly, "variational" kicks at the nodes."""
+
     def on(self, system: "System") -> "System":
         """Return the system under these forces, the system itself without any."""
         parts = {
@@ -62,7 +65,7 @@ class Forces(Section):
         gravity, force = parts.pop("gravity", None), tuple(parts.values())
         if gravity is None and not force:
             return system
-        return nonholo.Forced(system, gravity, force[0] if len(force) == 1 else force or None)
+        return nonholo.Forced(system, gravity, force[0] if len(force) == 1 else force or None, self.scheme)
 
     def check(self, system: "System", steps: int) -> None:
         """Refuse forces that cannot act on a system, or that end before a run does."""

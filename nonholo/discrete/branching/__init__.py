@@ -7,6 +7,7 @@ from nonholo.discrete.branching._branches import (
     inverse_discrete_legendre,
 )
 from nonholo.discrete.branching._equations import Frame, frame_of, has_frame
+from nonholo.discrete.branching._growth import BranchGrowth, branch_growth
 from nonholo.discrete.branching._regions import Landscape, landscape
 from nonholo.discrete.branching._rules import (
     PRINCIPAL,

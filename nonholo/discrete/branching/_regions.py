@@ -1,7 +1,7 @@
 r"""Regions of the displacements of a top in three dimensions, between the critical points of its energy.
 
 The energy landscape is shared with `analysis`, which names all its critical points. Reference:
-[fedorov-zenkov-2004], section 6, "Invariant curves", as corrected in docs/theory/critical-energies-and-limits.md.
+[fedorov-zenkov-2004], section 6, "Invariant curves", as corrected in docs/theory/critical-energies.md.
 """
 
 import dataclasses

@@ -28,6 +28,7 @@ from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import Forced
 
 _HUGE = 1e300
+_CLOSE, _MOST = 1e-9, 20  # relative, of the last correction before two that count; corrections
 
 
 @jax.custom_jvp
@@ -116,7 +117,10 @@ def rolled(
     (name, value, g), (steps, every), system = start, sizes, discrete.system
     r, g = _along(discrete, name, jnp.asarray(value), jnp.asarray(g)), jnp.asarray(g)
     impulse, rows = impulse_of(discrete, forced, controls, steps)
-    if closed is not None and discrete.order == 2:
+    balance = is_balanced(discrete, forced)
+    if balance:
+        step, start, at = _balanced_step(discrete, closed, forced), (r, g, len(discrete.variety.chart)), _as_it_is
+    elif closed is not None and discrete.order == 2:
         step, C, at = _closed_step(discrete, closed, g, impulse)
         start = C @ r, jnp.asarray([1.0, 0.0, 0.0, 0.0], r.dtype), 2
     else:
@@ -127,7 +131,10 @@ def rolled(
     time = discrete.time_step * every * jnp.arange(1 + steps // every)
     states = jax.vmap(at)(nodes)
     forces = jnp.zeros(()), jnp.zeros(())
-    if impulse is not None:
+    if balance:
+        first = _part(discrete, weights(discrete.order)[0])
+        forces = jax.vmap(lambda y, g, row: half_impulse(first, forced, y, g, row))(*states[1:3], rows[::every]), 0.0
+    elif impulse is not None:
         forces = jax.vmap(impulse)(states[0], states[2], rows[::every]), forces[1]
     if forced is not None:
         forces = forces[0], forced.potential_energy(states[2])
@@ -151,6 +158,22 @@ def impulse_of(discrete: Scheme, forced: Forced | None, controls: Array | None, 
         return forced.impulse(r, g, forced.potential_force(g) + row, half, fixed)
 
     return impulse, rows + forced.rows(np.arange(steps + 1))
+
+
+def is_balanced(discrete: Scheme, forced: Forced | None) -> bool:
+    """Whether forces act by equal half impulses at the displacement around steps of a free discretization."""
+    return forced is not None and forced.is_balanced(cast(Any, discrete).conserves_energy, discrete.order > 2)
+
+
+def half_impulse(discrete: Scheme, forced: Forced, y: Array, g: Array, row: Array) -> Float[Array, "dim"]:
+    """Return half the impulse of a balanced step by the chart of its displacement, a body covector."""
+    h = discrete.time_step
+    return h / 2 * forced.mean_force(g, displaced(discrete, y), h, row)
+
+
+def _part(discrete: Scheme, weight: Array) -> Any:
+    """Return the step of order 2 whose length is a part of that of a discretization."""
+    return dataclasses.replace(cast(Any, discrete), time_step=weight * discrete.time_step, order=2)
 
 
 def _as_it_is(node: _Node) -> tuple[Array, ...]:
@@ -210,12 +233,66 @@ def _matrix_step(discrete: Scheme, impulse: _Impulse | None) -> _Step:
     return step
 
 
+def _balanced_step(discrete: Scheme, closed: ScalarStep | None, forced: Forced) -> _Step:
+    """Return the step whose half impulses are those at its displacement, in one or several stages."""
+
+    def stage(carry: tuple[Array, Array, Array, Array], weight: Array) -> tuple[tuple[Array, ...], Array]:
+        r, g, code, row = carry
+        part, scaled = _part(discrete, weight), closed and closed._replace(scale=weight * closed.scale)
+        s, j, y, found = _settled(part, scaled, forced, (r, g, row))
+        good, code = (code == 0) & (found == 0), jnp.where(code == 0, found, code)
+        ahead, after = _moved(part, s, y, g)
+        return (jnp.where(good, ahead + j, r), jnp.where(good, after, g), code, row), y
+
+    def step(r: Array, g: Array, guess: Array | None, row: Array | None) -> _Node:
+        del guess
+        begun, stages = (r, g, jnp.zeros((), jnp.result_type(int)), row), weights(discrete.order)
+        (r_next, after, code, _), charts = jax.lax.scan(stage, begun, jnp.asarray(stages, r.dtype))
+        return _Node(r, g, charts[0], (r_next, after), code, jnp.sum(charts))
+
+    return step
+
+
+def _settled(part: Any, closed: ScalarStep | None, forced: Forced, state: tuple[Array, ...]) -> tuple[Array, ...]:
+    """Return momenta s = r + j, half impulses j, the chart of the displacement over s, and the outcome.
+
+    Newton's method, which derivatives do not see; two corrections with its last slope give them up to the second.
+    """
+
+    def at(given: Any, s: Array) -> tuple[Array, tuple[Array, Array]]:
+        part, closed, forced, (_, g, row) = given
+        y, code = principal_of(part, closed, s, g)
+        return restricted(part, half_impulse(part, forced, y, g, row), g), (y, code)
+
+    def corrected(given: Any, s: Array, slope: Array) -> Array:
+        return s - jnp.linalg.solve(slope, s - given[3][0] - at(given, s)[0])
+
+    def slope_of(given: Any, s: Array) -> Array:
+        return jnp.eye(len(s)) - jax.jacfwd(lambda s: at(given, s)[0])(s)
+
+    def better(carry: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
+        s, _, count = carry
+        after = corrected(fixed, s, slope_of(fixed, s))
+        return after, jnp.max(jnp.abs(after - s)), count + 1
+
+    given = part, closed, forced, state
+    fixed = jax.tree.map(jax.lax.stop_gradient, given)
+    size = jnp.max(jnp.abs(fixed[3][0])) + jnp.max(jnp.abs(at(fixed, fixed[3][0])[0]))
+    begin = fixed[3][0], jnp.asarray(jnp.inf, size.dtype), 0
+    s, last, _ = jax.lax.while_loop(lambda c: (c[1] > _CLOSE * size) & (c[2] < _MOST), better, begin)
+    slope = jax.lax.stop_gradient(slope_of(fixed, s))
+    for _ in range(2):
+        s = corrected(given, s, slope)
+    j, (y, code) = at(given, s)
+    return s, j, y, jnp.where((code == 0) & ~(last <= _CLOSE * size), int(Outcome.not_converged), code)
+
+
 def _composed_step(discrete: Scheme, closed: ScalarStep | None) -> _Step:
     """Return a step of higher order: the step of order 2 of several lengths, one after the other."""
 
     def substep(carry: tuple[Array, Array, Array], weight: Array) -> tuple[tuple[Array, Array, Array], Array]:
         r, g, code = carry
-        part: Any = dataclasses.replace(cast(Any, discrete), time_step=weight * discrete.time_step, order=2)
+        part = _part(discrete, weight)
         y, found = principal_of(part, closed and closed._replace(scale=weight * closed.scale), r, g)
         good, code = (code == 0) & (found == 0), jnp.where(code == 0, found, code)
         ahead, after = _moved(part, r, y, g)

@@ -1,6 +1,7 @@
 """Which route a discretization takes: the first of its system that computes what is asked for."""
 
 import dataclasses
+import functools
 from typing import Any, cast
 
 from nonholo.discrete._scheme import Scheme
@@ -9,7 +10,7 @@ from nonholo.discrete.routes._base import AbstractRoute
 from nonholo.discrete.routes._closed_forms import closed_form
 from nonholo.discrete.routes._composed import ComposedRoute
 from nonholo.discrete.routes._definition import DefinitionRoute
-from nonholo.discrete.routes._forced import forced_route
+from nonholo.discrete.routes._forced import balanced_route, forced_route
 from nonholo.discrete.routes._matrix import MatrixRoute
 from nonholo.discrete.routes._scalar import ScalarRoute
 from nonholo.discrete.routes._secular import SecularRoute
@@ -30,7 +31,12 @@ def make_route(scheme: Scheme, wanted: str | None = None) -> AbstractRoute:
     """
     if scheme.system.is_forced:
         forced = cast(Forced, scheme.system)
-        return forced_route(make_route(dataclasses.replace(cast(Any, scheme), system=forced.system), wanted), forced)
+        free = dataclasses.replace(cast(Any, scheme), system=forced.system)
+        if forced.forces is not None and forced.is_balanced(free.conserves_energy, scheme.order > 2):
+            system, variety = forced.system.canonical, variety_of(forced.system, "skew")
+            matrix = functools.partial(MatrixRoute, system, variety, scheme.time_step)
+            return balanced_route(_single(free, wanted), matrix, forced, scheme.order)
+        return forced_route(make_route(free, wanted), forced)
     single = _single(scheme, wanted)
     compiled = single.compiled
     return single if compiled is None or scheme.order == 2 else ComposedRoute(compiled, scheme.order)

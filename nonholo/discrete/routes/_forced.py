@@ -4,24 +4,26 @@ import contextlib
 import dataclasses
 import functools
 from collections.abc import Callable
-from typing import Any, ClassVar, NoReturn
+from typing import Any, ClassVar, NoReturn, cast
 
 import numpy as np
 
 from nonholo import kernels
-from nonholo.base.calls import FunctionError, UndefinedError, noted
+from nonholo.base.calls import FunctionError, UndefinedError, noted, number_of
 from nonholo.base.checks import error
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
+from nonholo.discrete._composition import weights
+from nonholo.discrete._variety import variety_of
 from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute, Compact, parts_by, posed
 from nonholo.discrete.routes._composed import AbstractOuterRoute
-from nonholo.groups import SE
+from nonholo.groups import SE, SO
 from nonholo.orbit import Orbit
 from nonholo.systems import Forced
 
 
 def forced_route(free: AbstractRoute, forced: Forced) -> AbstractRoute:
-    """Return the route of a system with forces around that of the free one."""
+    """Return the route of a system with forces, by kicks at the nodes, around that of the free one."""
     if forced.forces is None:
         return free
     inside = free.compiled
@@ -34,6 +36,12 @@ def forced_route(free: AbstractRoute, forced: Forced) -> AbstractRoute:
     return ForcedRoute(inside, forced)
 
 
+def balanced_route(free: Any, matrix: Callable[[], Any], forced: Forced, order: int) -> "BalancedRoute":
+    """Return the route of balanced half impulses around a free step, or for any force around that on matrices."""
+    plain = forced.function is None and (forced.gravity is not None or not forced.terms)
+    return BalancedRoute(free if free.is_scalar and plain and order == 2 else matrix(), forced, order, matrix)
+
+
 class AbstractForcedRoute(AbstractRoute):
     """A route whose steps depend on their numbers: there is none from a state alone.
 
@@ -43,13 +51,23 @@ class AbstractForcedRoute(AbstractRoute):
     free: AbstractCompiledRoute
     said: Any
     forced: Forced
-    order: ClassVar[int] = 2
+    order: Any = 2
     is_scalar: ClassVar[bool] = False
 
     @property
     def name(self) -> str:
         """The name of the route inside."""
         return self.free.name
+
+    @property
+    def single(self) -> AbstractCompiledRoute:
+        """The route of the free step."""
+        return self.free
+
+    @property
+    def needs_pose(self) -> bool:
+        """Whether it carries a pose along even where none is kept."""
+        return self.free.needs_pose or self.forced.potential is not None or self.forced.function is not None
 
     def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Compact:
         r"""Return momenta, charts and poses after fractions s of the steps from states; NaN where none starts.
@@ -100,26 +118,77 @@ class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
     said: dict[str, str] = dataclasses.field(default_factory=dict, repr=False)
 
     @property
-    def single(self) -> AbstractCompiledRoute:
-        """The route of the free step."""
-        return self.free
-
-    @property
-    def needs_pose(self) -> bool:
-        """Whether it carries a pose along even where none is kept."""
-        return self.free.needs_pose or self.forced.potential is not None or self.forced.function is not None
-
-    @property
     def compiled(self) -> "ForcedRoute | None":  # type: ignore[override]
         """The route itself, if numba compiled all functions that it calls."""
-        return self if self.forced.is_jitted else None
+        return self if self.forced.is_jitted and _drives(self.forced) in (None, self.forced.own_potential) else None
 
     @functools.cached_property
     def body(self) -> kernels.ForcedBody:
         """The body and its half impulse."""
         free, forced = self.free, self.forced
-        half = half_drive(free, forced, self.said) if forced.needs_function else half_kick(free, forced)
+        has_function = forced.function is not None or _drives(forced) is not None
+        half = half_drive(free, forced, self.said) if has_function else half_kick(free, forced)
         return kernels.ForcedBody(free.body, half)
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class BalancedRoute(AbstractForcedRoute, AbstractOuterRoute):
+    """Equal half impulses at the displacement, by which T + U and every balance is exact; in one or several stages.
+
+    Attributes:
+        free: The route of the free step of order 2.
+        forced: The system with its forces.
+        order: 2, 4, 6 or 8.
+        matrix: Makes the route of the free step on matrices.
+    """
+
+    free: AbstractCompiledRoute
+    forced: Forced
+    order: int = 2
+    matrix: Any = dataclasses.field(default=None, repr=False)
+    said: dict[str, str] = dataclasses.field(default_factory=dict, repr=False)
+
+    @property
+    def compiled(self) -> "BalancedRoute | None":  # type: ignore[override]
+        """The route itself, if numba compiled all functions that it calls."""
+        return self if self.forced.is_jitted else None
+
+    @functools.cached_property
+    def body(self) -> kernels.ForcedBody:
+        """The body and its half impulses."""
+        forced, free = self.forced, self.free
+        kick = pull(free, forced) if free.is_scalar else balanced(free, forced, self.order, self.said)
+        return kernels.ForcedBody(free.body, kick)
+
+    @functools.cached_property
+    def general(self) -> "BalancedRoute":
+        """The route of any force, whose step has parts."""
+        return dataclasses.replace(self, free=self.matrix()) if self.free.is_scalar else self
+
+    def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Compact:
+        """Return momenta, charts and poses after fractions of the steps from states; NaN where none starts."""
+        if self.general is self:
+            return super().parts(states, fractions)
+        momenta, charts, poses = self.general.parts(states, fractions)
+        if self.forced.group == SO(3):  # of both quaternions of a pose that of a turn by less than a half
+            ahead = (poses * posed(states, needed=True)).sum(axis=1, keepdims=True)
+            poses = np.where(ahead < 0, -poses, poses)
+        return momenta, charts, poses
+
+    def _part(self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> Compact | None:
+        half, k = self.body.kick, len(m)
+
+        def taken(m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> tuple[int, np.ndarray]:
+            rows = half.c.rows[[min(step, len(half.c.rows) - 1), -1]]
+            c = half.c._replace(stages=fraction * half.c.stages, begin=float(time), rows=rows)
+            return self.runs.start(self.body._replace(kick=half._replace(c=c)), m, pose)
+
+        code, state = taken(np.array(m), np.array(pose), time, step, fraction)
+        if code != 0:
+            return None
+        after, moved = state[:k].copy(), state[2 * k : 2 * k + len(pose)].copy()
+        _, ahead = taken(after, moved, time + fraction * float(self.free.time_step), step + int(fraction), 1.0)
+        return after, self.runs.chart_of(self.body, ahead), moved
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -138,11 +207,6 @@ class FunctionRoute(AbstractForcedRoute, AbstractOuterRoute):
     said: dict[str, str] = dataclasses.field(default_factory=dict, repr=False)
     needs_pose: ClassVar[bool] = True
     compiled: ClassVar[None] = None
-
-    @property
-    def single(self) -> AbstractCompiledRoute:
-        """The route of the free step."""
-        return self.free
 
     @functools.cached_property
     def body(self) -> kernels.ForcedBody:
@@ -227,19 +291,12 @@ def half_drive(free: AbstractCompiledRoute, forced: Forced, said: dict[str, str]
     group, S, has = (
         forced.group,
         np.asarray(forced.constraint_subspace),
-        (forced.function is not None, callable(forced.potential)),
+        (forced.function is not None, _drives(forced) is not None),
     )
     momenta = forced.from_canonical(free.decode(np.eye(forced.rank)))
     velocity = S.T @ np.linalg.solve(S @ np.asarray(forced.inertia_operator) @ S.T, momenta.T)
     moves, weights = forced.differences
-    force, potential = _in_python(forced, said)
-    if forced.is_jitted:
-        from nonholo.kernels.forced.addresses import function_of
-
-        shape = (group.size, group.dim)
-        _check_compiled(forced)
-        force = function_of(forced.function, shape, 3) if has[0] else 0
-        potential = function_of(forced.potential, shape, 1) if has[1] else 0
+    force, potential = _functions(forced, _drives(forced), said)
     return kernels.Drive(
         kick=kick,
         planar=(2 if group == SE(2) else 3) if free.is_scalar else 0,
@@ -255,7 +312,82 @@ def half_drive(free: AbstractCompiledRoute, forced: Forced, said: dict[str, str]
     )
 
 
-def _in_python(forced: Forced, said: dict[str, str]) -> tuple[Callable[..., None], Callable[..., None]]:
+def pull(free: AbstractCompiledRoute, forced: Forced) -> kernels.Pull:
+    """Return the same of a weight, friction and a table, for tops in space and sleighs in the plane."""
+    half, inside = float(free.time_step) / 2, 2 if forced.group == SE(2) else 3
+    rows = (free.encode(forced.to_canonical(np.eye(2))) / free.scale).T @ np.asarray(forced.constraint_subspace)
+    weight, arms, friction = np.zeros(0), np.zeros((2, 0)), np.zeros((0, 0))
+    if forced.gravity is not None:
+        weight, levers = forced.gravity.levers(forced.group)
+        arms = half * free.scale * (_summed(rows.T, levers) @ _kernel_frame(free, forced).T)
+        weight, arms = weight[:inside], arms[:, :inside]
+    if forced.friction is not None:
+        stiff = kernels.quadratic(free.body)[0] / kernels.inertia(free.body)[0]
+        friction = half * stiff * (rows @ forced.friction.matrix @ rows.T)
+    table = forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table))))
+    return kernels.Pull(*map(_plain, (weight, arms, friction, half * free.scale * _summed(table.T, rows.T))))
+
+
+def balanced(free: AbstractCompiledRoute, forced: Forced, order: int, said: dict[str, str]) -> kernels.Balanced:
+    """Return half the impulses at displacements in the units and axes of a kernel."""
+    group, S, half = forced.group, np.asarray(forced.constraint_subspace), float(free.time_step) / 2
+    to_kernel = free.encode(forced.to_canonical(np.eye(forced.rank)))
+    momenta = forced.from_canonical(free.decode(np.eye(forced.rank)))
+    velocity = S.T @ np.linalg.solve(S @ np.asarray(forced.inertia_operator) @ S.T, momenta.T)
+    along, variety = half * to_kernel.T @ S, variety_of(forced.system, "skew")
+    frame, charts = forced.frame, free.from_kernel(np.eye(free.sizes[1]))
+    exact = [each for each in forced.terms if hasattr(each, "matrix_for")]
+    springs = [each.numbers_for(group) for each in forced.terms if hasattr(each, "numbers_for")]
+    linear = sum((each.matrix_for(group) for each in exact), np.zeros((group.size,) * 2 if exact else (0, 0)))
+    C = np.zeros((0, 0)) if forced.friction is None else along @ forced.friction.matrix @ velocity
+    rows = forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table)))) @ along.T
+    moves, parts = forced.differences
+    force, potential = _functions(forced, forced.own_potential, said)
+    numbers = kernels.Impulses(
+        planar=(2 if group == SE(2) else 3) if free.is_scalar else 0,
+        turn=_plain(_kernel_frame(free, forced)),
+        directions=_plain(frame @ group.hat(charts @ variety.chart) @ group.inverse(frame)),
+        velocity=_plain(velocity),
+        along=_plain(along),
+        levers=_plain(np.einsum("kd,dab->kab", along, group.basis)),
+        metric=_plain(velocity.T @ np.asarray(forced.inertia_operator) @ velocity),
+        linear=_plain(linear),
+        springs=_plain(np.reshape(springs, (len(springs), 2 + 2 * group.size))),
+        friction=_plain(C),
+        rows=_plain(rows),
+        moves=_plain(moves),
+        weights=_plain(parts),
+        time_step=float(free.time_step),
+        begin=0.0,
+        stages=_plain(weights(order)),
+    )
+    has = forced.function is not None, forced.own_potential is not None
+    return kernels.Balanced(numbers, has, force, potential)
+
+
+def _drives(forced: Forced) -> Callable[..., Any] | None:
+    """Return U as kicks at nodes take it: a function of whatever is no single weight."""
+    whole = len(forced.terms) > 1 or (forced.terms and forced.gravity is None and forced.own_potential is None)
+    return forced.potential_energy if whole else forced.own_potential
+
+
+def _functions(forced: Forced, potential: Callable[..., Any] | None, said: dict[str, str]) -> tuple[Any, Any]:
+    """Return force and potential as kernels call them: addresses if numba compiled all of them, else in Python."""
+    if not forced.is_jitted or potential not in (None, forced.own_potential):
+        return _in_python(forced, potential, said)
+    shape = (forced.group.size, forced.group.dim)
+    if not forced.needs_function:
+        return 0, 0
+    from nonholo.kernels.forced.addresses import function_of
+
+    _check_compiled(forced)
+    force = 0 if forced.function is None else function_of(forced.function, shape, 3)
+    return force, 0 if potential is None else function_of(potential, shape, 1)
+
+
+def _in_python(
+    forced: Forced, own: Callable[..., Any] | None, said: dict[str, str]
+) -> tuple[Callable[..., None], Callable[..., None]]:
     """Return what writes force and potential by the definition: NaN where they are not finite, which is noted."""
 
     def force(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:
@@ -267,7 +399,7 @@ def _in_python(forced: Forced, said: dict[str, str]) -> tuple[Callable[..., None
         del time, velocity
         out[0] = np.nan
         with noted(said, "potential"):
-            out[0] = forced.potential_energy(g)
+            out[0] = number_of("Forced(potential=...)", cast(Any, own), "Return U of a configuration.", g)
 
     return force, potential
 

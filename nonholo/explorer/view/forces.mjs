@@ -14,7 +14,6 @@ const OWN = {
     coefficients: ({ c1, c2 }) => [c2, c1],
     along: ([f1, f2]) => [f2, -f1],
     lever: ([x1, x2, x3]) => [x3, 0, -x1, 0, x3, -x2],
-    inertia: (p) => [p.J11 + p.J33, p.J12, p.J22 + p.J33],
     point: ([x1, x2, x3]) => [x1, x2, x3],
   },
   sleigh: {
@@ -23,7 +22,6 @@ const OWN = {
     coefficients: ({ c1, c2 }) => [c1, c2],
     along: ([f1, f2]) => [f1, f2],
     lever: ([x1, x2]) => [-x2, x1, 0, 1, 0, 0],
-    inertia: (p) => [p.inertia + p.mass * p.a * p.a, 0, p.mass],
     point: ([x1, x2]) => [x1, x2, 1],
     /** The momentum along the blade of a displacement: half an impulse stands between it and that of the node. */
     onLocus: (body) => (p, h, r1, r2, y1, y2) =>
@@ -44,11 +42,11 @@ export function underForces(body, given) {
     const place = placed(p), force = of(p, "F");
     return (pose) => place(pose).reduce((sum, x, i) => sum - force[i] * x, 0);
   };
-  const velocity = (p, r1, r2) => {
-    const [b11, b12, b22] = own.inertia(p), det = b11 * b22 - b12 * b12;
-    return [(b22 * r1 - b12 * r2) / det, (b11 * r2 - b12 * r1) / det];
+  /** The work of friction and of a row of the table over a step with X = 2 y / w. */
+  const done = (p, h, [y1, y2], [f1, f2]) => {
+    const share = 2 / (1 + y1 * y1 + (own.n === 3 ? y2 * y2 : 0)), [x1, x2] = [share * y1, share * y2], [c1, c2] = own.coefficients(p);
+    return f1 * x1 + f2 * x2 - (c1 * x1 ** 2 + c2 * x2 ** 2) / h;
   };
-  const power = (p, [v1, v2]) => -own.coefficients(p)[0] * v1 ** 2 - own.coefficients(p)[1] * v2 ** 2;
   /** Forces of the rows along those of the kernel, and after them nothing. */
   const rowsOf = (p) => {
     const rows = Array.from({ length: acting.count }, (_, k) => own.along(acting.at(p, k)));
@@ -88,14 +86,12 @@ export function underForces(body, given) {
     /** Where the force acts, and the force, both in space. */
     weight: (p, pose) => [placed(p)(pose), of(p, "F")].map((vector) => [...vector, 0].slice(0, 3)),
     /** Kinetic and whole energy of the states, the work of friction and table up to them, what is missing in the sum. */
-    balance({ parameters: p, time_step: h }, { count, r, g }) {
+    balance({ parameters: p, time_step: h }, { count, r, y, g }) {
       const potential = potentialOf(p), [kinetic, energy, work, error] = Array.from({ length: 4 }, () => new Float64Array(count));
-      for (let k = 0, last = 0, before = [0, 0]; k < count; k++) {
-        const v = velocity(p, r[2 * k], r[2 * k + 1]), [f1, f2] = own.along(acting.at(p, k - 1)), now = power(p, v);
+      for (let k = 0; k < count; k++) {
         kinetic[k] = body.energy(p, r[2 * k], r[2 * k + 1]);
         energy[k] = kinetic[k] + potential(g.subarray(4 * k, 4 * k + 4));
-        work[k] = k ? work[k - 1] + (h * (last + now + f1 * (before[0] + v[0]) + f2 * (before[1] + v[1]))) / 2 : 0;
-        [last, before] = [now, v];
+        if (k + 1 < count) work[k + 1] = work[k] + done(p, h, y.subarray(2 * k), own.along(acting.at(p, k)));
       }
       const most = kinetic.reduce((a, b) => Math.max(a, b), 0);
       energy.forEach((e, k) => (error[k] = most ? Math.abs(e - energy[0] - work[k]) / most : 0));

@@ -1,5 +1,7 @@
 """Steps under forces: half impulses, linear or of functions, and the loops over steps."""
 
+from nonholo.kernels.forced._balanced import Balanced, Impulses
+from nonholo.kernels.forced._cubic import Pull
 from nonholo.kernels.forced._driven import Drive
 from nonholo.kernels.forced._flat import flat_forced_run
 from nonholo.kernels.forced._kick import Kick, rubbed

@@ -4,9 +4,8 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from nonholo.kernels._interface import Body
-from nonholo.kernels.forced._kick import rubbed
-from nonholo.kernels.forced._two import Numbers, advance_numbers
+from nonholo.kernels._interface import Body, inertia, quadratic
+from nonholo.kernels.forced._cubic import advance_cubic, cubic_of
 
 FORCES = 8  # where they begin: after the numbers of a body
 TABLE = 26  # where rows begin
@@ -14,7 +13,7 @@ STATE_SIZE = 22
 
 
 def flat_forced_run(kind: type[Body]) -> Callable[..., int]:
-    """Return the run of a kind of body under linear forces on bare memory: a plain function, as `flat_run` does.
+    """Return the run of a kind of body under balanced forces on bare memory: a plain function, as `flat_run` does.
 
     Arguments and result are those of `flat_run` but for the numbers of the body and the state. From place FORCES on
     stand: how many numbers F has (2 or 3; 0 without a weight), whether there is friction, half the time step, the
@@ -33,17 +32,13 @@ def flat_forced_run(kind: type[Body]) -> Callable[..., int]:
         f = carray(body, TABLE)
         p = kind(*to_fixed_tuple(f[:count], count))  # pyright: ignore
         n, half, scale, rows = int(f[8]), f[10], f[11], abs(int(f[25]))
-        A, V = (1.0, 0.0, 0.0, 1.0), (half, 0.0, 0.0, half)
-        if f[9] != 0:
-            A, V = rubbed(p, (f[12], f[13], f[14], f[15]), half)
-        a, b, c, d = scale * V[0], scale * V[1], scale * V[2], scale * V[3]
-        x, y, z, u, v, w = f[19], f[20], f[21], f[22], f[23], f[24]
-        L = a * x + b * u, a * y + b * v, a * z + b * w, c * x + d * u, c * y + d * v, c * z + d * w
-        kick = Numbers(n, f[9] != 0, (f[16], f[17], f[18]), L, A)
+        stiff, unit, none = half * (quadratic(p)[0] / inertia(p)[0]), half * scale, f[9] == 0
+        K = (0.0, 0.0, 0.0, 0.0) if none else (stiff * f[12], stiff * f[13], stiff * f[14], stiff * f[15])
+        L = unit * f[19], unit * f[20], unit * f[21], unit * f[22], unit * f[23], unit * f[24]
+        cubic = cubic_of(p, n, (f[16], f[17], f[18]), L, K)
         table = carray(body, (TABLE // 2 + rows, 2))[TABLE // 2 :]
         for i in range(int(f[25])):  # not once they are half impulses
-            x, y = table[i, 0], table[i, 1]
-            table[i, 0], table[i, 1] = a * x + b * y, c * x + d * y
+            table[i, 0], table[i, 1] = unit * table[i, 0], unit * table[i, 1]
         f[25] = -rows
         s = carray(state, STATE_SIZE + 1)
         done, code, first = 0, 0, 0 if math.isnan(s[8]) else 1
@@ -51,7 +46,7 @@ def flat_forced_run(kind: type[Body]) -> Callable[..., int]:
         for at in range(first, 2):
             size = steps if at else 1
             into = carray(momenta, (size, 2)), carray(charts, (size, 2)), carray(poses, (size, 4))
-            done, code = advance_numbers(p, kick, table, s, size, 1, into)
+            done, code = advance_cubic(p, cubic, table, s, size, 1, into)
             done = done * at
             for i in range(10, 10 if at else 16):
                 s[i] = s[i - 2]  # the first root is the guess of those after it

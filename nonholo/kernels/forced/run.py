@@ -21,6 +21,8 @@ from nonholo.kernels._driver import SETTLED, _compensated
 from nonholo.kernels._scalar import COMPILED, INLINED
 from nonholo.kernels._small import assign
 from nonholo.kernels._substeps import at_rest, charted, prepared, pushed, solved
+from nonholo.kernels.forced._balanced import Balanced, advance_balanced
+from nonholo.kernels.forced._cubic import Pull, advance_pulled
 from nonholo.kernels.forced._driven import Drive, driven, pulled_by_functions, room_for_drive
 from nonholo.kernels.forced._kick import Kick, linear, pulled_by_weight, room_for_kick
 from nonholo.kernels.forced._two import Rows, advance_two
@@ -32,7 +34,7 @@ class ForcedBody(NamedTuple):
     """A body of an order-2 step and its half impulse."""
 
     body: Any
-    kick: Kick | Drive
+    kick: Kick | Drive | Balanced | Pull
 
 
 def _either(of_kick: Any, of_drive: Any, options: Any = INLINED) -> Callable[..., Any]:
@@ -107,13 +109,19 @@ def add_compensated(s: np.ndarray, lost: np.ndarray, change: np.ndarray) -> None
 
 def start(forced: ForcedBody, momentum: np.ndarray, pose: np.ndarray, sizes: Any) -> tuple[int, np.ndarray]:
     """Return the outcome of the first root and the state of a run; `sizes` are those of a row of the body."""
-    rest = np.tile(at_rest(forced.body), 4)
-    state = np.concatenate((momentum, np.zeros_like(momentum), pose, rest, np.zeros(6 + sizes[1])))
-    momenta, chart, poses = np.empty((1, len(momentum))), np.empty((1, sizes[1])), np.empty((1, len(pose)))
+    rest, k, begin = at_rest(forced.body), len(momentum), 2 * len(momentum) + len(pose)
+    stages = len(forced.kick.stages) if type(forced.kick) is Balanced else 0
+    past = np.concatenate((np.tile(rest, 3 * stages), np.zeros(3 * k * stages + 1)))
+    past = past if stages else np.concatenate((np.tile(rest, 4), np.zeros(6)))
+    state = np.concatenate((momentum, np.zeros_like(momentum), pose, past, np.zeros(sizes[1])))
+    momenta, chart, poses = np.empty((1, k)), np.empty((1, sizes[1])), np.empty((1, len(pose)))
     _, code = advance(forced, state, 1, 1, momenta, chart, poses)
     state[len(state) - sizes[1] :] = chart[0] if code == 0 else np.nan
-    begin, width = 2 * len(momentum) + len(pose), len(rest) // 4
-    state[begin + width : begin + 4 * width] = np.tile(state[begin : begin + width], 3)
+    histories = ((stages, len(rest)), (stages, k)) if stages else ((1, len(rest)),)
+    for count, width in histories:  # what is known of it so far stands for all of the past
+        many = state[begin : begin + (3 if stages else 4) * count * width].reshape(count, -1, width)
+        many[:, 1:] = many[:, :1]
+        begin += many.size
     return code, state
 
 
@@ -123,6 +131,10 @@ def advance(forced: ForcedBody, state: np.ndarray, steps: int, every: int, *rows
     After a failure the state is that of the last good step.
     """
     few = type(forced.kick) is Kick and not isinstance(forced.body, SecularBody | GeneralBody)
-    run = advance_two if few else advance_many
+    run = _LOOPS.get(type(forced.kick), advance_two if few else advance_many)
     run = getattr(run, "py_func", run) if forced.kick.is_python else run
     return run(*forced, state[: len(state) - rows[1].shape[1]], steps, every, rows)
+
+
+_LOOPS: dict[type, Any] = {Balanced: advance_balanced, Pull: advance_pulled}
+"""The loops of half impulses at the displacement."""

@@ -24,12 +24,17 @@ _SMALLEST_STEP = 1e-13  # of an interval between requested times; below it a sol
 
 
 def solve_series(
-    f: Quadratic, start: Float[np.ndarray, "size"], times: Float[np.ndarray, "K"], tolerance: float
+    f: Quadratic,
+    start: Float[np.ndarray, "size"],
+    times: Float[np.ndarray, "K"],
+    tolerance: float,
+    most: float = math.inf,
 ) -> tuple[Float[np.ndarray, "reached size"], Float[np.ndarray, "steps 2 state"]]:
     """Return the states at the times, which rise or fall, up to the first that cannot be reached, and the nodes.
 
     Nodes are the beginnings of steps: the state and its time, above what rounding took from them. When they fill much
-    memory every second one is left out.
+    memory every second one is left out. The solve ends early if at the rate of the steps so far it needs more than
+    `most` of them.
     """
     rows = np.empty((len(times), len(start)))
     rows[0] = start
@@ -49,6 +54,8 @@ def solve_series(
             kept = len(nodes[0])
         come = max(abs(state[0, -1] - times[0]), abs(times[reached - 1] - times[0]))
         tell(come, abs(times[-1] - times[0]))
+        if taken * abs(times[-1] - times[0]) / most > come:
+            break
     return rows[:reached], np.concatenate(nodes) if len(nodes) > 1 else nodes[0] if nodes else state[None]
 
 

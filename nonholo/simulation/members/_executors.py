@@ -119,8 +119,15 @@ def run_members(members: Members, starts: Firsts, plan: Plan, report: Report = l
 def executor_of(members: Members, plan: Plan) -> Callable[..., Ensemble]:
     """Return what runs members: side by side where their closed form or their series allows it, else one by one."""
     if plan.times is not None:
-        return run_by_series if plan.posed and has_series(members.discrete.system) else run_one_by_one
+        return run_by_series if _has_series(members, plan) else run_one_by_one
     return run_in_lanes if are_side_by_side(members, plan) else run_one_by_one
+
+
+def _has_series(members: Members, plan: Plan) -> bool:
+    """Tell whether flows are solved side by side; under forces those of one body are."""
+    system, times = members.discrete.system, cast(np.ndarray, plan.times)
+    alike = system.forces is None or not members.of_system
+    return plan.posed and alike and has_series(system, times[-1] - times[0])
 
 
 def are_side_by_side(members: Members, plan: Plan) -> bool:
@@ -288,7 +295,8 @@ def run_by_series(members: Members, starts: Firsts, plan: Plan, threads: int, re
 
     numbers = sum(x.shape[1] for x in starts.places) * len(time)
     size = max(1, min(_FLOWS, _NUMBERS // numbers, max(_BESIDE, -(-count // 8))))
-    if count <= _FLOWS and count * numbers <= _SOON and count * _turned(members, starts, time) <= _SOON_TURNED:
+    free = members.discrete.system.forces is None
+    if free and count <= _FLOWS and count * numbers <= _SOON and count * _turned(members, starts, time) <= _SOON_TURNED:
         size, threads = count, 0
     parts = [slice(begin, min(begin + size, count)) for begin in range(0, count, size)]
     in_threads(work, parts, threads, report)
@@ -300,7 +308,8 @@ def run_by_series(members: Members, starts: Firsts, plan: Plan, threads: int, re
         if getattr(states[0], own) is not None
     }
     good = np.concatenate(reached)
-    codes = np.where(good == len(time), int(Outcome.successful), int(Outcome.not_converged))
+    early = Outcome.not_converged if free else Outcome.too_stiff
+    codes = np.where(good == len(time), int(Outcome.successful), int(early))
     return Ensemble(members, plan.steps, plan.every, columns | _times(plan, count), codes, good - 1, *starts.places)
 
 

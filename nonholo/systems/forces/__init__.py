@@ -3,4 +3,6 @@
 from nonholo.systems.forces._forced import Forced
 from nonholo.systems.forces._friction import Friction
 from nonholo.systems.forces._gravity import Gravity
+from nonholo.systems.forces._linear import Linear
 from nonholo.systems.forces._parts import joined, parts_of
+from nonholo.systems.forces._spring import Spring

@@ -14,15 +14,15 @@ from typing import Any, ClassVar, cast
 import numpy as np
 
 from nonholo.base.calls import name_of, noted, number_of, numbers_of
-from nonholo.base.checks import array, error, shown, trailing
-from nonholo.base.numerics import exponential_increment, inverted
+from nonholo.base.checks import array, choice, error, shown, trailing
+from nonholo.base.numerics import applied, exponential_increment, inverted
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
 from nonholo.systems._base import AbstractSystem
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem
 from nonholo.systems.forces._friction import Friction
 from nonholo.systems.forces._gravity import Gravity
-from nonholo.systems.forces._parts import joined, parts_of
+from nonholo.systems.forces._parts import joined, parts_of, terms_of
 
 _OFFSET = 8e-3  # of a body direction, for central differences: its sixth power is at rounding
 _DIFFERENCES = np.array([45.0, -9.0, 1.0]) / (60 * _OFFSET)  # of order 6, at one, two and three offsets
@@ -36,9 +36,11 @@ _SAME = """
 
 _ITERATIONS = 30  # of Newton's method with one slope
 _MOST, _PARTS = 100, 0.5 ** np.arange(40)  # corrections with new slopes, and parts of one
+_UNSEEN = 2e-15  # relative, of differences of U
 _ROUNDING = 1e-12  # relative, before the last correction
 _DIFFERENCE = 1e-7  # relative, of a momentum
 
+SCHEMES = "energy", "variational"
 Function = Callable[[np.ndarray], np.ndarray]
 
 
@@ -48,23 +50,29 @@ class Forced(AbstractSystem):
 
     $$ \dot p = \mathrm{ad}^*_\omega p - dU + f(t, g, \omega) + \sum_j\lambda_ja^j, \qquad \omega\in\mathfrak{d}. $$
 
-    `discretize` gives the forced discrete map: half the impulse of a step at each of its ends, and the free map
-    between them (docs/theory/forces.md). It is of order 2, symmetric in time, explicit where f does not depend on the
-    velocity, and keeps group and constraint as the free map does. Momenta and energies of its orbits are those at the
-    nodes. Nothing is conserved exactly. Under a potential alone the error of T + U is of order 2; it stays bounded for
-    a body without constraint, whose map is symplectic, and on orbits that are their own time reversal; on others it may
-    grow in proportion to time, at a rate of order 2. Under friction alone T never grows. In general $E_k - E_0$ is the
-    work of f (`Orbit.work`) up to an error of order 2.
+    `discretize` gives the forced discrete map, symmetric in time and of order 2 or, composed, 4, 6, 8, with group and
+    constraint kept as by the free map (docs/theory/forces.md). Two schemes say where forces act:
+
+    - "energy": equal half impulses $\tfrac h2f$ at both ends of a step, taken at the displacement itself. T + U is
+      exact on every branch and at every step size (Theorem 18.1), and T changes by $\langle f, X\rangle$ exactly,
+      X = (W - W^-1)/2 (Theorem 18.2). It needs a free map that keeps its energy: a mass tensor, the difference
+      "matrix", the constraint "skew", fixed in the body.
+    - "variational": kicks at the nodes, with the trapezoidal rule for U in the action. The map of a body without
+      constraint is symplectic; T + U has an error of order 2, which may grow on constrained bodies.
+
+    Momenta and energies of orbits are those at the nodes. Under friction alone T never grows.
 
     Args:
         system: A system on a group, `LLSystem` or `LRSystem` or one of their kinds; or a `LagrangeDAlembert`, which is
             returned with U(q) and f(time, q, v), of q.size components.
-        potential: U, a function from a configuration (N, N) to a number, or `Gravity`. The derivative of a function is
-            taken by central differences of order 6 along the body directions; their error is about 1e-13 of what U
-            changes by over one radian or one unit of length.
+        potential: `Gravity`, `Linear`, `Spring`, or U, a function from a configuration (N, N) to a number; several are
+            a tuple. The derivative of a function is taken by central differences of order 6 along the body directions;
+            their error is about 1e-13 of what U changes by over one radian or one unit of length.
         force: f, a function (time, configuration, body_velocity) -> (dim,); or `Friction`; or an array (steps, dim),
             whose row k acts constantly over step k: for maps only. Time is that of the orbit, from zero. Several forces
-            are a tuple of them, such as `(Friction(...), table)`, with at most one of each of these kinds.
+            are a tuple of them, such as `(Friction(...), table)`, with at most one of each of these kinds. Under
+            "energy" f is asked in the middle of the step, at its mean velocity X / h.
+        scheme: "energy" or "variational"; by default "energy" wherever it is defined and the body is constrained.
 
     Functions marked `numba.njit` run in the compiled step of a constraint that is fixed in the body, in a fraction of a
     microsecond beside their own time; they may return a tuple, and must not write to their arguments. What they raise
@@ -73,7 +81,7 @@ class Forced(AbstractSystem):
 
     Raises:
         ValueError: A system that is forced already or that has no matrices; a potential or force
-            of another kind or shape.
+            of another kind or shape; `discretize` refuses the scheme "energy" where it is not defined.
 
     Example:
         A heavy top that is not let spin about its own axis:
@@ -81,7 +89,7 @@ class Forced(AbstractSystem):
         >>> top = nh.SuslovTop(np.diag([1.0, 1.2, 0.6]))
         >>> heavy = nh.Forced(top, nh.Gravity(force=[0.0, 0.0, -9.81], point=[0.0, 0.0, 0.3]))
         >>> orbit = nh.simulate(nh.discretize(heavy, 0.01), body_velocity=(0.2, 0.1, 0.0), steps=1000)
-        >>> float(np.ptp(orbit.energy) / abs(orbit.energy[0])) < 1e-3
+        >>> float(np.ptp(orbit.energy) / abs(orbit.energy[0])) < 1e-13
         True
 
         Your own torque about the first axis, compiled:
@@ -99,28 +107,33 @@ class Forced(AbstractSystem):
     system: AbstractSystem
     potential: Any = None
     force: Any = None
+    scheme: str | None = None
     leaves: ClassVar[tuple[str, ...]] = ("system", "potential", "force")
-    structure: ClassVar[tuple[str, ...]] = ()
+    structure: ClassVar[tuple[str, ...]] = ("scheme",)
     normal_form: ClassVar[None] = None
     is_forced: ClassVar[bool] = True
     homogeneous_mass_tensor = constraint_subspace = carried = moved = cast(Any, None)  # seen by type checkers
     restrict_at = restricted_velocity = restricted_momentum = cast(Any, None)
     locals().update((name, property(operator.attrgetter(f"system.{name}"))) for name in _SAME.split())
 
-    def __new__(cls, system: Any = None, potential: Any = None, force: Any = None) -> Any:
+    def __new__(cls, system: Any = None, potential: Any = None, force: Any = None, scheme: str | None = None) -> Any:
         """Return the system with forces; one in coordinates has its own way to take them."""
-        return system.forced(potential, force) if isinstance(system, AbstractCoordinateSystem) else super().__new__(cls)
+        if not isinstance(system, AbstractCoordinateSystem):
+            return super().__new__(cls)
+        choice("Forced(scheme=...)", scheme, (None, "variational"), "In coordinates no other scheme is known.")
+        return system.forced(potential, force)
 
     def __post_init__(self) -> None:
         inside = self.system
         if not isinstance(inside, AbstractSystem) or inside.is_forced or inside.is_wide:
             remedy = "Pass a SuslovTop, a sleigh or an LLSystem, with all forces at once."
             raise error("Forced(system=...)", "be a system on a group, with matrices", shown(inside), remedy)
-        if self.gravity is not None:
-            self.gravity.check(inside.group)
-        elif self.potential is not None and not callable(self.potential):
-            remedy = "Pass a function of a configuration, or Gravity; Friction and other forces as force=."
-            raise error("Forced(potential=...)", "be a potential", shown(self.potential), remedy)
+        choice("Forced(scheme=...)", self.scheme, (None, *SCHEMES), "Leave it out for the one that keeps most.")
+        terms = terms_of(self.potential)
+        for each in terms:
+            if not callable(each):
+                each.check(inside.group)
+        object.__setattr__(self, "potential", terms if len(terms) > 1 else terms[0] if terms else None)
         parts = parts_of(self.force)
         if "friction" in parts:
             parts["friction"].check(inside.group.dim)
@@ -129,10 +142,20 @@ class Forced(AbstractSystem):
             parts["table"] = array("Forced(force=...)", parts["table"], (None, inside.group.dim), remedy)
         object.__setattr__(self, "force", joined(parts))
 
+    @functools.cached_property
+    def terms(self) -> tuple[Any, ...]:
+        """The potentials, one by one."""
+        return terms_of(self.potential)
+
     @property
     def gravity(self) -> Gravity | None:
-        """The potential, where it is that of a constant force."""
+        """The potential, where it is that of one constant force."""
         return self.potential if isinstance(self.potential, Gravity) else None
+
+    @property
+    def own_potential(self) -> Callable[[np.ndarray], Any] | None:
+        """The potential that is a function, where there is one."""
+        return next(filter(callable, self.terms), None)
 
     @functools.cached_property
     def parts(self) -> dict[str, Any]:
@@ -162,18 +185,34 @@ class Forced(AbstractSystem):
     @property
     def names(self) -> str:
         """What acts, as errors call it."""
-        given = [each for each in (self.potential, *self.parts.values()) if each is not None]
+        given = [*self.terms, *self.parts.values()]
         return " and ".join(map(name_of, given))
 
     @property
     def needs_function(self) -> bool:
         """Whether a function has to be called, which no store holds."""
-        return callable(self.potential) or callable(self.function)
+        return any(map(callable, (self.own_potential, self.function)))
 
     @property
     def is_jitted(self) -> bool:
         """Whether numba compiled every function, so that a kernel can call it."""
-        return all(hasattr(each, "py_func") for each in (self.potential, self.function) if callable(each))
+        return all(hasattr(each, "py_func") for each in (self.own_potential, self.function) if callable(each))
+
+    def is_balanced(self, exact: bool, composed: bool = False) -> bool:
+        """Whether forces act by equal half impulses at the displacement, the scheme "energy", around a free step.
+
+        Raises:
+            ValueError: It is asked for where the free step does not keep its energy.
+        """
+        if self.scheme == "energy" and not exact:
+            got = (
+                "a step that does not keep T alone, for it has an inertia operator, a spatial constraint or no skew one"
+            )
+            remedy = "Leave scheme out, or pass a mass tensor and the default difference and constraint."
+            raise error("Forced(scheme='energy')", "stand around a free step that keeps its energy", got, remedy)
+        if self.scheme is not None or not exact:
+            return self.scheme == "energy"
+        return composed or self.rank < self.group.dim
 
     @functools.cached_property
     def differences(self) -> tuple[Float[np.ndarray, "dim orders 2 N N"], Float[np.ndarray, "orders"]]:
@@ -191,20 +230,60 @@ class Forced(AbstractSystem):
             6.0
         """
         g = self._at(configuration)
-        if self.gravity is not None:
-            return self.gravity.energy(self.group, g)
-        if self.potential is None:
+        if not self.terms:
             return np.zeros(g.shape[:-2])
-        return _each(self._value, g)
+        given = (_each(self._value, g) if callable(each) else each.energy(self.group, g) for each in self.terms)
+        return functools.reduce(operator.add, given)
 
     def potential_force(self, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
-        """Return -dU, body covectors at configurations: exact of `Gravity`, by differences of a function."""
+        """Return -dU, body covectors at configurations: by differences of a function, else exact."""
         g = self._at(configuration)
-        if self.gravity is not None:
-            return self.gravity.covector(self.group, g)
-        if self.potential is None:
+        if not self.terms:
             return np.zeros((*g.shape[:-2], self.group.dim))
-        return _each(self._slope, g)
+        given = (_each(self._slope, g) if callable(each) else each.covector(self.group, g) for each in self.terms)
+        return functools.reduce(operator.add, given)
+
+    def mean_force(
+        self,
+        g: Float[Array, "K N N"],
+        W: Float[Array, "K N N"],
+        h: Array,
+        constant: Float[Array, "K dim"],
+        time: Float[Array, "K"] | None = None,
+    ) -> Float[Array, "K dim"]:
+        r"""Return the covectors f whose impulse $\tfrac h2f$ acts at both ends of a step under the scheme "energy".
+
+        $$ f = -G(g, W) + f_k - C\,X/h + f(t + \tfrac h2, g\,W^{1/2}, X/h), \qquad X = \tfrac12(W - W^{-1}), $$
+
+        with $\langle G, X\rangle = U(gW) - U(g)$: exact of `Gravity`, `Linear` and `Spring`; of a function dU in the
+        middle and what it lacks along X. Then $T' - T = \langle f, X\rangle$ (Theorem 18.2).
+
+        Args:
+            g: Poses.
+            W: Displacements.
+            h: Time step.
+            constant: Rows of a table.
+            time: Times at the beginning of steps, for functions.
+        """
+        group = self.group
+        X = group.vee((W - group.inverse(W)) / 2)
+        terms = (each.mean_covector(group, g, W) for each in self.terms if not callable(each))
+        f = functools.reduce(operator.add, terms, constant)
+        f = f if self.friction is None else f + self.friction.covector(X / h)
+        if not self.needs_function:
+            return f
+        middle = g @ group.exp(group.log(W) / 2)
+        if self.own_potential is not None:
+            f = f + self._mean_slope(g, W, X, _each(self._slope, middle))
+        return f + np.array([self.driving_force(*row) for row in zip(time + h / 2, middle, X / h, strict=True)])
+
+    def _mean_slope(self, g: np.ndarray, W: np.ndarray, X: np.ndarray, pull: np.ndarray) -> np.ndarray:
+        """Return -G of the function, from -dU in the middle."""
+        before, after = _each(self._value, g), _each(self._value, g @ W)
+        along = applied(np.asarray(self.inertia_operator), X)
+        change, twice = after - before + (pull * X).sum(axis=1), (along * X).sum(axis=1)
+        seen = np.abs(change) > _UNSEEN * (np.abs(before) + np.abs(after))
+        return pull - np.divide(change, twice, out=np.zeros_like(change), where=seen & (twice > 0))[:, None] * along
 
     def applied_force(self, time: float, configuration: np.ndarray, body_velocity: np.ndarray) -> np.ndarray:
         """Return f, one body covector, of `Friction` and a function; nothing of a table, which belongs to steps."""
@@ -311,7 +390,7 @@ class Forced(AbstractSystem):
         return trailing(where, configuration, shape, "Pass the matrix of a pose.", real=True)
 
     def _value(self, g: np.ndarray) -> np.float64:
-        return number_of("Forced(potential=...)", cast(Any, self.potential), "Return U of a configuration.", g)
+        return number_of("Forced(potential=...)", cast(Any, self.own_potential), "Return U of a configuration.", g)
 
     def _slope(self, g: np.ndarray) -> np.ndarray:
         moves, weights = self.differences

@@ -3,16 +3,15 @@ r"""A constant force in space that acts at a point of the body, such as the weig
 import dataclasses
 from typing import ClassVar
 
-import numpy as np
-
-from nonholo.base.checks import array, error
+from nonholo.base.checks import array
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
+from nonholo.systems.forces._linear import AbstractLinear, check_point, homogeneous
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Gravity:
+class Gravity(AbstractLinear):
     r"""The potential of a constant spatial force F at the body point x, $U(g) = -F\cdot(g\,x)$.
 
     Its body covector is exact, $\langle -dU, \xi\rangle = (R^TF)\cdot(\hat\xi\,x)$, R the rotation of g: zero along
@@ -45,12 +44,12 @@ class Gravity:
 
     def check(self, group: AbstractMatrixGroup) -> None:
         """Refuse a group whose matrices move points of another dimension."""
-        n = group.size - group.is_affine
-        if self.point.shape != (n,):
-            remedy = f"Pass force and point with {n} numbers each, or a function of the configuration."
-            raise error(
-                "Forced(potential=Gravity(...))", f"have points of {group}", f"{len(self.point)} numbers", remedy
-            )
+        check_point("Forced(potential=Gravity(...))", group, self.point)
+
+    def matrix_for(self, group: AbstractMatrixGroup) -> Float[Array, "N N"]:
+        """Return -F x^T for matrices of the group."""
+        weight, place = self._homogeneous(group)
+        return -weight[:, None] * place
 
     def energy(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "..."]:
         """Return U at configurations."""
@@ -68,7 +67,4 @@ class Gravity:
         return weight, group.basis @ place
 
     def _homogeneous(self, group: AbstractMatrixGroup) -> tuple[Array, Array]:
-        if not group.is_affine:
-            return self.force, self.point
-        last = np.eye(len(self.point) + 1)
-        return self.force @ last[:-1], self.point @ last[:-1] + last[-1]
+        return homogeneous(group, self.force, 0.0), homogeneous(group, self.point, 1.0)

@@ -1,4 +1,4 @@
-"""What a force is made of: friction, a table and a function, each at most once."""
+"""What a force is made of: friction, a table and a function, each at most once; and what a potential is."""
 
 from typing import Any
 
@@ -18,6 +18,19 @@ def parts_of(force: Any) -> dict[str, Any]:
         remedy = "Add coefficients, rows or functions of one kind together."
         raise error("Forced(force=...)", "have at most one force of each kind", shown(force), remedy)
     return parts
+
+
+def terms_of(potential: Any) -> tuple[Any, ...]:
+    """Return the potentials of one, or of a tuple or list of them, with at most one function; of None nothing."""
+    terms = tuple(potential) if isinstance(potential, tuple | list) else () if potential is None else (potential,)
+    where = "Forced(potential=...)"
+    remedy = "Pass a function of a configuration, Gravity, Linear or Spring; Friction and other forces as force=."
+    for each in terms:
+        if not (callable(each) or hasattr(each, "mean_covector")):
+            raise error(where, "be a potential", shown(each), remedy)
+    if sum(map(callable, terms)) > 1:
+        raise error(where, "have at most one function", shown(potential), "Add them together in one function.")
+    return terms
 
 
 def joined(parts: dict[str, Any]) -> Any:

@@ -1,0 +1,553 @@
+r"""Half impulses that keep T + U: those of a force at the displacement itself, equal at both ends of a step.
+
+With momenta m of a node in the units of a kernel, and the free root W over s,
+
+$$ s = m + J(g, W), \qquad m' = m + 2J + \Delta(W), \qquad J = \tfrac h2\,N\,f, \qquad f = -G(g, W) + f_k + f(t, \bar g, X/h)
+   - C X/h, $$
+
+where $\Delta$ is the change of the free step, X = (W - W^-1)/2 and $\bar g = g W^{1/2}$; G is exact for potentials that
+are linear in the entries of the pose and for springs, and the corrected midpoint slope for any other
+(docs/theory/forces.md). Momenta of the middle are $\bar m = s + \Delta/2$, and X/h is their velocity. A part $\tau$ of a
+step is the step of length $\tau h$.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from nonholo.base.compiled import njit
+from nonholo.kernels._driver import SETTLED, _compensated
+from nonholo.kernels._scalar import BORROWING, COMPILED, borrowing, scalar
+from nonholo.kernels._small import assign, eliminate, multiply
+from nonholo.kernels._substeps import charted, prepared, pushed, solved
+from nonholo.kernels.forced._driven import function_at, largest, place
+
+_CORRECTIONS = 30  # of momenta between two half impulses
+_EXACT = 4e-16  # relative
+_SETTLED = 1e-11  # relative, below which corrections that do not fall any more are rounding
+_UNSEEN = 2e-15  # relative, of differences of U
+_FALL = 0.5  # most that a correction leaves of what is missed, by which the root is certain
+_PIECES = 1000  # most of a path
+_FOLDED = 100.0  # of the inverse slope
+_DIFFERENCE = 1e-7  # relative, of momenta
+_SMALLEST = 1e-6  # part of a step by which its path goes on
+
+
+class Impulses(NamedTuple):
+    """Half impulses at the displacement, but for functions of users.
+
+    Attributes:
+        planar: 2 or 3 where poses of the kernel are headings or quaternions, 0 where they are matrices.
+        turn: T, the pose of the user is that of the kernel times T, (N, N).
+        directions: What each chart coordinate adds to the Cayley matrix Y of the user, (m, N, N).
+        velocity: V, (dim, k).
+        along: h/2 N, (k, dim).
+        levers: What the rows of it make of the basis of the algebra, (k, N, N).
+        metric: The kinetic energy of momenta, twice, (k, k).
+        linear: A of potentials tr(A^T g), (N, N); (0, 0) without any.
+        springs: Stiffness, length, body point and space point, (S, 2 + 2 N).
+        friction: K of half impulses -K m, (k, k); (0, 0) without any.
+        rows: Half impulses of a table, (steps + 1, k), the last one zero.
+        moves: Displacements to and fro for differences of U, (dim, orders, 2, N, N).
+        weights: Weights of the differences, (orders,).
+        time_step: h.
+        begin: The time at which step 0 begins.
+        stages: Parts of the step, taken one after the other, (S,).
+    """
+
+    planar: int
+    turn: np.ndarray
+    directions: np.ndarray
+    velocity: np.ndarray
+    along: np.ndarray
+    levers: np.ndarray
+    metric: np.ndarray
+    linear: np.ndarray
+    springs: np.ndarray
+    friction: np.ndarray
+    rows: np.ndarray
+    moves: np.ndarray
+    weights: np.ndarray
+    time_step: float
+    begin: float
+    stages: np.ndarray
+
+
+class Balanced(NamedTuple):
+    """Half impulses at the displacement.
+
+    Attributes:
+        c: What is numbers.
+        has: Whether there is a force, and whether there is a potential, that are functions.
+        force: Writes f to its last argument, of (time, pose, body velocity, f).
+        potential: Writes U to the first number of its last argument, of the same arguments.
+    """
+
+    is_python = property(lambda self: callable(self.force))
+    stages = property(lambda self: self.c.stages)
+    c: Impulses
+    has: tuple[bool, bool]
+    force: Any
+    potential: Any
+
+
+class ImpulseRoom(NamedTuple):
+    """What half impulses write to.
+
+    Attributes:
+        poses: The user's pose before and after, in the middle, and others, (8, N, N).
+        rows: The same numbers, (8, N N).
+        covectors: A body velocity, what a function writes, and dU, (3, dim).
+        momenta: In the middle, half impulses, what is missed, before, the change, others, (8, k).
+        noise: Rounding of half impulses, (1,).
+        slopes: The inverse slope of what is missed, (k, k).
+        slope: The slope, to be destroyed, (k, k).
+        chart: Chart coordinates, (m,).
+        pose: The kernel's pose after the displacement.
+    """
+
+    poses: np.ndarray
+    rows: np.ndarray
+    covectors: np.ndarray
+    momenta: np.ndarray
+    noise: np.ndarray
+    slopes: np.ndarray
+    slope: np.ndarray
+    chart: np.ndarray
+    pose: np.ndarray
+
+
+@scalar
+def room_of(c: Impulses, size: int) -> ImpulseRoom:
+    """Return room for the half impulses of one run."""
+    (k, dim), n = c.along.shape, len(c.turn)
+    poses = np.zeros((8, n, n))
+    chart, pose = np.zeros(len(c.directions)), np.zeros(size)
+    rows, covectors, momenta = poses.reshape(8, n * n), np.zeros((3, dim)), np.zeros((8, k))
+    return ImpulseRoom(poses, rows, covectors, momenta, np.zeros(1), np.zeros((k, k)), np.zeros((k, k)), chart, pose)
+
+
+@njit(**BORROWING)
+def lean(c: Impulses, room: ImpulseRoom) -> None:
+    """Write g (I + Y) from the chart and the pose before."""
+    Y, n = room.poses[3], len(c.turn)
+    for i in range(n):
+        for j in range(n):
+            Y[i, j] = 1.0 if i == j else 0.0
+            for a in range(len(c.directions)):
+                Y[i, j] += room.chart[a] * c.directions[a, i, j]
+    multiply(room.poses[0], Y, room.poses[4])
+
+
+@njit(**BORROWING)
+def pull(c: Impulses, room: ImpulseRoom, out: np.ndarray) -> None:
+    """Add half impulses of potentials that are linear and of springs, which are linear in the leaning pose."""
+    A, leaning, seen, n = room.poses[3], room.poses[4], room.poses[5], len(c.turn)
+    lean(c, room)
+    for i in range(n):
+        for j in range(n):
+            A[i, j] = c.linear[j, i] if len(c.linear) else 0.0
+    for s in range(len(c.springs)):
+        stretch(c.springs[s], room, A)
+    multiply(A, leaning, seen)
+    for r in range(len(out)):
+        for i in range(n):
+            for j in range(n):
+                out[r] -= seen[i, j] * c.levers[r, j, i]
+
+
+@njit(**BORROWING)
+def stretch(spring: np.ndarray, room: ImpulseRoom, A: np.ndarray) -> None:
+    """Add x v^T of a spring: U = k/2 (d - L)^2 changes by v . (g' x - g x), v along the mean of both ends."""
+    n = len(A)
+    before, after, mean = 0.0, 0.0, room.poses[6, 0]
+    for i in range(n):
+        start = end = 0.0
+        for j in range(n):
+            start += room.poses[0, i, j] * spring[2 + j]
+            end += room.poses[1, i, j] * spring[2 + j]
+        start, end = start - spring[2 + n + i], end - spring[2 + n + i]
+        before, after, mean[i] = before + start * start, after + end * end, (start + end) / 2
+    sizes = math.sqrt(before) + math.sqrt(after)
+    stiff = spring[0] * (1.0 - (2 * spring[1] / sizes if spring[1] != 0.0 else 0.0))
+    for i in range(n):
+        for j in range(n):
+            A[i, j] += stiff * mean[j] * spring[2 + i]
+
+
+@njit(**BORROWING)
+def halve(room: ImpulseRoom, n: int) -> None:
+    """Write the pose in the middle, g W^(1/2), by the iteration of Denman and Beavers."""
+    g, after, middle, root = room.poses[0], room.poses[1], room.poses[2], room.poses[3]
+    other, held, scratch = room.poses[5], room.poses[6], room.poses[7]
+    assign(scratch.reshape(-1), g.reshape(-1))
+    assign(root.reshape(-1), after.reshape(-1))
+    eliminate(scratch, root)
+    other[:] = 0.0
+    for i in range(n):
+        other[i, i] = 1.0
+    for _ in range(50):
+        moved = 0.0
+        inverse_mean(root, other, held, middle, scratch)
+        for i in range(n):
+            for j in range(n):
+                moved = max(moved, abs(middle[i, j] - root[i, j]))
+        assign(root.reshape(-1), middle.reshape(-1))
+        assign(other.reshape(-1), held.reshape(-1))
+        if not moved > 1e-15:
+            break
+    multiply(g, root, middle)
+
+
+@njit(**BORROWING)
+def inverse_mean(P: np.ndarray, Q: np.ndarray, out: np.ndarray, other: np.ndarray, scratch: np.ndarray) -> None:
+    """Write (Q + P^-1)/2 to `out` and (P + Q^-1)/2 to `other`."""
+    for A, B, into in ((P, Q, out), (Q, P, other)):
+        assign(scratch.reshape(-1), A.reshape(-1))
+        into[:] = 0.0
+        for i in range(len(A)):
+            into[i, i] = 1.0
+        eliminate(scratch, into)
+        for i in range(len(A)):
+            for j in range(len(A)):
+                into[i, j] = (B[i, j] + into[i, j]) / 2
+
+
+@borrowing
+def value_at(f: Balanced, room: ImpulseRoom, g: np.ndarray) -> float:
+    """Return U of a function at a pose."""
+    function_at(f.potential, 0.0, g, room.covectors[0], room.covectors[1])
+    return room.covectors[1, 0]
+
+
+@borrowing
+def sloped(f: Balanced, room: ImpulseRoom, part: float, out: np.ndarray) -> None:
+    """Add half impulses of a potential that is a function, h/2 times -dU - (U' - U - <dU, X>)/<BX, X> BX.
+
+    A difference below rounding is none; above it its rounding is that of half impulses, however short the step is.
+    """
+    mean, dU, velocity, bent = room.momenta[0], room.covectors[2], room.covectors[0], room.poses[3]
+    before, after = value_at(f, room, room.poses[0]), value_at(f, room, room.poses[1])
+    rounding, change, twice = _UNSEEN * (abs(before) + abs(after)), after - before, 0.0
+    for i in range(len(dU)):
+        dU[i] = 0.0
+        for j in range(len(f.c.weights)):
+            for k in range(2):
+                multiply(room.poses[2], f.c.moves[i, j, k], bent)
+                dU[i] += (1 - 2 * k) * f.c.weights[j] * value_at(f, room, bent)
+    see_velocity(f.c, mean, velocity)
+    for i in range(len(dU)):
+        change -= part * f.c.time_step * dU[i] * velocity[i]
+    for i in range(len(mean)):
+        for j in range(len(mean)):
+            twice += mean[i] * f.c.metric[i, j] * mean[j]
+    share = 1 / (2 * twice) if twice > 0.0 else 0.0
+    left = 0.0 if abs(change) <= rounding else change * share
+    room.noise[0] = rounding * share * largest(mean, mean)
+    for i in range(len(out)):
+        out[i] -= left * mean[i]
+        for j in range(len(dU)):
+            out[i] -= part * f.c.along[i, j] * dU[j]
+
+
+@njit(**BORROWING)
+def see_velocity(c: Impulses, mean: np.ndarray, velocity: np.ndarray) -> None:
+    """Write the body velocity of momenta."""
+    for i in range(len(velocity)):
+        velocity[i] = 0.0
+        for j in range(len(mean)):
+            velocity[i] += c.velocity[i, j] * mean[j]
+
+
+@borrowing
+def driven(f: Balanced, room: ImpulseRoom, part: float, time: float, out: np.ndarray) -> None:
+    """Add half impulses of a force that is a function, in the middle of the step."""
+    velocity, value = room.covectors[0], room.covectors[1]
+    see_velocity(f.c, room.momenta[0], velocity)
+    function_at(f.force, time, room.poses[2], velocity, value)
+    for i in range(len(out)):
+        for j in range(len(value)):
+            out[i] += part * f.c.along[i, j] * value[j]
+
+
+@borrowing
+def half_impulse(f: Balanced, room: ImpulseRoom, part: float, time: float, row: int) -> None:
+    """Write the half impulse of a part of a step from what stands in the room: poses, chart, momenta of the middle."""
+    mean, out = room.momenta[0], room.momenta[1]
+    out[:] = 0.0
+    if len(f.c.linear) > 0 or len(f.c.springs) > 0:
+        pull(f.c, room, out)
+    for i in range(len(out)):
+        out[i] += f.c.rows[min(row, len(f.c.rows) - 1), i]
+        for j in range(len(f.c.friction)):
+            out[i] -= f.c.friction[i, j] * mean[j]
+        out[i] *= part
+    if f.has[0] or f.has[1]:
+        halve(room, len(f.c.turn))
+    if f.has[1]:
+        sloped(f, room, part, out)
+    if f.has[0]:
+        driven(f, room, part, time, out)
+
+
+@scalar
+def displace(
+    p: Any,
+    f: Balanced,
+    room: ImpulseRoom,
+    when: tuple[float, float, int],
+    s: np.ndarray,
+    guess: np.ndarray,
+    pose: np.ndarray,
+) -> int:
+    """Write the displacement over momenta, the change of the free step, and the half impulse; return the outcome.
+
+    A part of a step, its time in the middle, and the row of a table say when; the guess becomes the root.
+    """
+    part, scaled, change, mean = when[0], room.momenta[6], room.momenta[4], room.momenta[0]
+    one, root = np.zeros(1), guess.copy()
+    one[0] = 1.0
+    for i in range(len(s)):
+        scaled[i] = part * s[i]
+    w = prepared(p, scaled, one)
+    assign(room.pose, pose)
+    code = solved(p, w, 0, scaled, root, room.pose, guess)
+    if code != 0:
+        return code
+    charted(p, scaled, guess, room.chart)
+    pushed(p, w, scaled, guess, change, room.pose)
+    for i in range(len(s)):
+        change[i] /= part
+        mean[i] = s[i] + change[i] / 2
+    place(f.c, room.pose, room.poses[7], room.rows[7], room.poses[1])
+    half_impulse(f, room, part, when[1], when[2])
+    return 0
+
+
+@njit(**BORROWING)
+def missed(room: ImpulseRoom, m: np.ndarray, s: np.ndarray) -> float:
+    """Write what momenta miss, m + J - s; return the largest of it."""
+    gap = room.momenta[2]
+    for i in range(len(m)):
+        gap[i] = m[i] + room.momenta[1, i] - s[i]
+    return largest(gap, gap)
+
+
+@scalar
+def settle(
+    p: Any,
+    f: Balanced,
+    room: ImpulseRoom,
+    when: tuple[float, float, int],
+    m: np.ndarray,
+    s: np.ndarray,
+    root: np.ndarray,
+    pose: np.ndarray,
+) -> int:
+    """Correct momenta s until s = m + J, by Broyden's method from the inverse slope in the room; return the outcome.
+
+    It is 7 if a correction leaves more than half of what is missed. If none does, the slopes of all that was met differ
+    by less than half, and the root is that of the path from where the slope was taken.
+    """
+    begun, last, H, before = room.momenta[3], room.momenta[5], room.slopes, math.inf
+    for _ in range(_CORRECTIONS):
+        code = displace(p, f, room, when, s, root, pose)
+        if code != 0:
+            return code
+        left, size = missed(room, m, s), largest(m, s)
+        if not left < math.inf:
+            return 5
+        if left <= _EXACT * size or (left <= _SETTLED * size + room.noise[0] and not left < before / 2):
+            return 0
+        if not left <= _FALL * before:
+            return 7
+        if before < math.inf:
+            renew(room, s)
+        before = left
+        assign(begun, s)
+        assign(last, room.momenta[2])
+        for i in range(len(m)):
+            for j in range(len(m)):
+                s[i] += H[i, j] * last[j]
+    return 7
+
+
+@njit(**BORROWING)
+def renew(room: ImpulseRoom, s: np.ndarray) -> None:
+    """Let the inverse slope know the last correction, and what it changed: H y = s for both."""
+    gap, begun, last, H, scratch = room.momenta[2], room.momenta[3], room.momenta[5], room.slopes, room.momenta[7]
+    below = 0.0
+    for i in range(len(s)):
+        scratch[i] = 0.0
+        for j in range(len(s)):
+            scratch[i] += H[i, j] * (last[j] - gap[j])
+        below += (s[i] - begun[i]) * scratch[i]
+    if not abs(below) > 0.0:
+        return
+    for j in range(len(s)):
+        along = 0.0
+        for i in range(len(s)):
+            along += (s[i] - begun[i]) * H[i, j]
+        for i in range(len(s)):
+            H[i, j] += (s[i] - begun[i] - scratch[i]) * along / below
+
+
+@njit(**BORROWING)
+def rub(c: Impulses, room: ImpulseRoom, part: float) -> None:
+    """Write the inverse slope of what is missed that friction alone has, (I + K)^-1."""
+    slope, H = room.slope, room.slopes
+    for i in range(len(H)):
+        for j in range(len(H)):
+            H[i, j] = 1.0 if i == j else 0.0
+            slope[i, j] = H[i, j] + (part * c.friction[i, j] if len(c.friction) else 0.0)
+    eliminate(slope, H)
+
+
+@scalar
+def see_slope(
+    p: Any, f: Balanced, room: ImpulseRoom, when: tuple[float, float, int], s: np.ndarray, root: np.ndarray,
+    pose: np.ndarray,
+) -> None:  # fmt: skip
+    """Write the inverse slope of what is missed at momenta, by differences."""
+    slope, H, place, guess, first = room.slope, room.slopes, s.copy(), root.copy(), s.copy()
+    size = 0.0
+    for j in range(len(s) + 1):
+        if j > 0:
+            place[j - 1] += size
+        displace(p, f, room, when, place, guess, pose)
+        if j == 0:
+            assign(first, room.momenta[1])
+            size = largest(s, first)
+            size = _DIFFERENCE * (size if size > 0.0 else 1.0)
+            continue
+        place[j - 1] = s[j - 1]
+        for i in range(len(s)):
+            H[i, j - 1] = 1.0 if i == j - 1 else 0.0
+            slope[i, j - 1] = H[i, j - 1] - (room.momenta[1, i] - first[i]) / size
+    eliminate(slope, H)
+
+
+@njit(**BORROWING)
+def is_folded(room: ImpulseRoom) -> bool:
+    """Tell whether what is missed hardly depends on momenta in some direction, by the inverse slope."""
+    rows = room.slopes.reshape(-1)
+    return not largest(rows, rows) < _FOLDED
+
+
+@scalar
+def solve(
+    p: Any,
+    f: Balanced,
+    room: ImpulseRoom,
+    when: tuple[float, float, int],
+    m: np.ndarray,
+    s: np.ndarray,
+    root: np.ndarray,
+    pose: np.ndarray,
+) -> int:
+    """Correct momenta and root; where that is not certain, follow them over growing parts; return the outcome."""
+    part, middle, row = when
+    done, size, at, guess, tried = 0.0, 0.25, m.copy(), np.zeros_like(root), False
+    begin = middle - part * f.c.time_step / 2
+    for _ in range(_PIECES):
+        goal = min(1.0, done + size) if tried else 1.0
+        if tried:
+            assign(s, at)
+            assign(root, guess)
+        if done > 0.0:
+            see_slope(p, f, room, (part * done, begin + part * done * f.c.time_step / 2, row), at, guess, pose)
+        else:
+            rub(f.c, room, 0.0 if tried else part)
+        code = settle(p, f, room, (part * goal, begin + part * goal * f.c.time_step / 2, row), m, s, root, pose)
+        if code == 5 or (code == 0 and goal == 1.0):
+            return code
+        if code == 0:
+            assign(at, s)
+            assign(guess, root)
+            done, size = goal, 2 * size
+        elif tried:
+            size /= 4
+        if size < _SMALLEST:
+            return 1 if code == 7 and (done == 0.0 or is_folded(room)) else code
+        tried = True
+    return 3
+
+
+@scalar
+def step(
+    p: Any, f: Balanced, room: ImpulseRoom, row: int, m: np.ndarray, lost: np.ndarray, pose: np.ndarray, past: np.ndarray,
+    pushes: np.ndarray, first: np.ndarray,
+) -> int:  # fmt: skip
+    """Take all stages of a step, in place; return the outcome. The chart of the first one is written."""
+    s, root, settled, begin, code = m.copy(), past[0, 0].copy(), 0.0, f.c.begin + row * f.c.time_step, 0
+    at = min(row, len(f.c.rows) - 1)
+    for x in m:
+        settled = max(settled, SETTLED * abs(x))
+    for i in range(len(f.c.stages)):
+        part = f.c.stages[i]
+        when = part, begin + part * f.c.time_step / 2, row
+        place(f.c, pose, room.poses[7], room.rows[7], room.poses[0])
+        for j in range(len(root)):
+            root[j] = 3 * (past[i, 0, j] - past[i, 1, j]) + past[i, 2, j]
+        for j in range(len(m)):
+            known = part * f.c.rows[at, j]
+            s[j] = m[j] + (known + (3 * (pushes[i, 0, j] - pushes[i, 1, j]) + pushes[i, 2, j]))
+        code = solve(p, f, room, when, m, s, root, pose)
+        if code != 0:
+            return code
+        if i == 0:
+            assign(first, room.chart)
+        for j in range(len(root)):
+            past[i, 2, j], past[i, 1, j], past[i, 0, j] = past[i, 1, j], past[i, 0, j], root[j]
+        for j in range(len(m)):
+            push = room.momenta[1, j]
+            rest = push - part * f.c.rows[at, j]
+            pushes[i, 2, j], pushes[i, 1, j], pushes[i, 0, j] = pushes[i, 1, j], pushes[i, 0, j], rest
+            m[j], lost[j] = _compensated(m[j], lost[j], room.momenta[4, j] + 2 * push, settled)
+        assign(pose, room.pose)
+        begin += part * f.c.time_step
+    return 0
+
+
+@njit(nogil=True, **COMPILED)
+def advance_balanced(
+    p: Any, f: Balanced, state: np.ndarray, steps: int, every: int, rows: tuple[np.ndarray, np.ndarray, np.ndarray]
+) -> tuple[int, int]:
+    """Advance any body under any force.
+
+    The state holds momenta, compensations, the pose, the last three roots and half impulses of each stage, the number
+    of the step.
+    """
+    momenta, charts, poses = rows
+    k, size, stages = momenta.shape[1], poses.shape[1], len(f.c.stages)
+    m, lost, pose = state[:k].copy(), state[k : 2 * k].copy(), state[2 * k : 2 * k + size].copy()
+    rest = state[2 * k + size : len(state) - 1]
+    past, pushes = rest[: len(rest) - 3 * k * stages].copy(), rest[len(rest) - 3 * k * stages :].copy()
+    roots, halves = past.reshape(stages, 3, -1), pushes.reshape(stages, 3, k)
+    room, first, row, done, code = room_of(f.c, size), np.zeros(charts.shape[1]), int(state[len(state) - 1]), 0, 0
+    while done < steps:
+        after, left, moved = m.copy(), lost.copy(), pose.copy()
+        code = step(p, f, room, row, after, left, moved, roots, halves, first)
+        if code != 0:
+            break
+        done += 1
+        row += 1
+        if done % every == 0:
+            at = done // every - 1
+            assign(momenta[at], m)
+            assign(poses[at], pose)
+            assign(charts[at], first)
+        assign(m, after)
+        assign(lost, left)
+        assign(pose, moved)
+    for begin, part in (
+        (0, m),
+        (k, lost),
+        (2 * k, pose),
+        (2 * k + size, past),
+        (len(state) - 1 - 3 * k * stages, pushes),
+    ):
+        assign(state[begin:], part)
+    state[len(state) - 1] = row
+    return done, code

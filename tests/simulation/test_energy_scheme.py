@@ -1,0 +1,200 @@
+"""The scheme "energy": the equations of Theorems 18.1 and 18.2 hold on orbits of every kind, whatever computed them."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numba
+import numpy as np
+import pytest
+from bodies import GENERAL
+
+import nonholo as nh
+from nonholo.systems import AbstractSystem
+
+RNG = np.random.default_rng(21)
+TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+SYSTEMS: dict[str, AbstractSystem] = {
+    "top": TOP,
+    "tilted top": nh.SuslovTop.from_inertia(np.diag([2.0, 3.0, 4.0]), (0.6, 0.8, 0)),
+    "sleigh": nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3),
+    "sleigh with its mass behind": nh.ChaplyginSleigh(1.0, 1.0, -0.4, -0.2),
+    "top on SO(4)": GENERAL["suslov 4"][0],
+    "sleigh on SE(3)": GENERAL["sleigh 3"][0],
+    "any d on SE(3)": GENERAL["any d on SE(3)"][0],
+}
+
+
+def _own(g: np.ndarray) -> float:
+    """A potential that is neither linear nor a spring."""
+    return float(np.cos(g[0, 1]) + g[1, 0] ** 3 + 0.3 * g[-1, 0] * g[0, 0] + np.sin(g[0, -1]))
+
+
+def _drive(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
+    return np.cos(3 * time + np.arange(len(w))) - 0.4 * w * np.roll(w, 1) + 0.3 * g[0, 1] - 0.2 * w
+
+
+def _n(system: AbstractSystem) -> int:
+    return system.group.size - system.group.is_affine
+
+
+def _weight(system: AbstractSystem) -> nh.Gravity:
+    return nh.Gravity(np.linspace(0.2, -1.0, n := _n(system)), np.linspace(0.1, 0.5, n))
+
+
+def _spring(system: AbstractSystem) -> nh.Spring:
+    return nh.Spring(np.linspace(0.2, 0.4, n := _n(system)), np.linspace(1.0, -0.5, n), 1.5, 0.3)
+
+
+def _magnet(system: AbstractSystem) -> nh.Linear:
+    return nh.Linear(np.random.default_rng(3).normal(size=(system.group.size,) * 2))
+
+
+POTENTIALS: dict[str, Callable[[AbstractSystem], Any]] = {
+    "none": lambda _: None,
+    "weight": _weight,
+    "magnet": _magnet,
+    "spring": _spring,
+    "own": lambda _: _own,
+    "all": lambda system: (_weight(system), _spring(system), _magnet(system), _own),
+}
+FORCES: dict[str, Callable[[AbstractSystem], Any]] = {
+    "none": lambda _: None,
+    "friction": lambda s: nh.Friction(np.linspace(0.1, 0.4, s.group.dim)),
+    "table": lambda s: np.random.default_rng(4).normal(size=(60, s.group.dim)),
+    "drive": lambda _: _drive,
+    "all": lambda s: (FORCES["friction"](s), FORCES["table"](s), _drive),
+}
+CASES = [("weight", "none"), ("magnet", "none"), ("spring", "none"), ("own", "none"), ("weight", "all"), ("all", "all"),
+         ("none", "friction"), ("none", "table"), ("none", "drive"), ("weight", "friction"), ("weight", "table")]  # fmt: skip
+
+
+def _start(system: AbstractSystem) -> dict[str, Any]:
+    g = system.group.random(np.random.default_rng(5))
+    return {"restricted_velocity": [0.5, -0.3, 0.4, 0.2][: system.rank], "configuration": g}
+
+
+def _legendre(system: AbstractSystem, W: np.ndarray, h: float) -> np.ndarray:
+    """F(W): what exp(s x) W adds to tr((W - 1) J (W - 1)*)/(2h), for each row x, by the trace."""
+    group, J = system.group, np.asarray(system.homogeneous_mass_tensor)
+    X = group.hat(np.asarray(system.constraint_subspace))
+    return np.einsum("iab,kbc,cd,kad->ki", X, W, J, W - group.identity) / h
+
+
+@pytest.mark.profile("routes", cases=["*any d*", "*SO(4)*"])
+@pytest.mark.parametrize("acting", CASES, ids="-".join)
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_orbits_obey_the_equations_of_the_step(name: str, acting: tuple[str, str]) -> None:
+    """F(W) = r + h/2 f and r' = -F(W^-1) + h/2 f with the f of its definition, and T' - T = <f, X>."""
+    system, h = SYSTEMS[name], 0.1
+    forced = nh.Forced(system, POTENTIALS[acting[0]](system), FORCES[acting[1]](system))
+    orbit = nh.simulate(nh.discretize(forced, h), **_start(system), steps=20)
+    g, W, r, group, S = orbit.configuration, orbit.displacement, orbit.restricted_momentum, system.group, (
+        np.asarray(system.constraint_subspace)
+    )  # fmt: skip
+    f = forced.mean_force(g, W, h, forced.rows(orbit.step), orbit.time)
+    back = group.inverse(W)
+    np.testing.assert_allclose(_legendre(system, W, h), r + h / 2 * f @ S.T, atol=2e-14)
+    np.testing.assert_allclose((-_legendre(system, back, h) + h / 2 * f @ S.T)[:-1], r[1:], atol=2e-14)
+    np.testing.assert_allclose(g[:-1] @ W[:-1], g[1:], atol=2e-15)
+    X = group.vee((W - back) / 2)
+    B = S @ np.asarray(system.inertia_operator) @ S.T
+    T = np.sum(r * np.linalg.solve(B, r.T).T, axis=1) / 2
+    np.testing.assert_allclose(np.diff(T), (f * X).sum(axis=1)[:-1], atol=1e-14)
+    np.testing.assert_allclose(orbit.energy, T + forced.potential_energy(g), atol=1e-14)
+    np.testing.assert_allclose(orbit.energy - orbit.energy[0], orbit.work, atol=3e-14)
+    np.testing.assert_allclose(orbit.momentum @ S.T, r, atol=1e-14)
+    jump = orbit.multipliers @ np.asarray(system.annihilator)
+    p = nh.discrete_legendre(nh.discretize(system, h), W[0])
+    after = nh.discrete_legendre(nh.discretize(system, h), W[1])
+    np.testing.assert_allclose(after - group.coadjoint(W[0], p) - h / 2 * (f[0] + f[1]), jump[0], atol=2e-14)
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+@pytest.mark.parametrize("kind", ["weight", "magnet", "spring", "own", "all"])
+def test_slopes_do_the_work_and_are_the_same_from_both_ends(name: str, kind: str) -> None:
+    """(i) <G, X> = U(gW) - U(g) and (ii) G(gW, W^-1) = G(g, W), for displacements of all sizes, of the variety or not."""
+    system, rng = SYSTEMS[name], np.random.default_rng(7)
+    group, forced = system.group, nh.Forced(system, POTENTIALS[kind](system))
+    for size in (1e-9, 1e-5, 1e-2, 0.3, 1.0, 2.0):
+        for _ in range(3):
+            g, W = group.random(rng)[None], group.exp(size * rng.normal(size=(1, group.dim)) / np.sqrt(group.dim))
+            G = -forced.mean_force(g, W, 0.1, np.zeros((1, group.dim)), np.zeros(1))
+            X, back = group.vee((W - group.inverse(W)) / 2), group.inverse(W)
+            change = forced.potential_energy(g @ W) - forced.potential_energy(g)
+            reverse = -forced.mean_force(g @ W, back, 0.1, np.zeros((1, group.dim)), np.zeros(1))
+            scale = 1 + np.abs(forced.potential_energy(g)).max()
+            assert np.abs((G * X).sum() - change).max() < 3e-14 * scale
+            least = 1e-14 if kind not in ("own", "all") else 1e-11 + 1e-15 / size
+            assert (
+                np.abs(G - reverse).max()
+                < least * scale * (1 + np.abs(np.linalg.inv(np.eye(len(W[0])) + W[0])).max()) ** 2
+            )
+            if size < 1e-4:
+                assert np.abs(G + forced.potential_force(g)).max() < 30 * size * scale + 1e-6
+
+
+@pytest.mark.profile("routes", cases=["*any d*", "*SO(4)*"])
+@pytest.mark.parametrize("order", [2, 4])
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_compositions_keep_the_energy_and_have_their_order(name: str, order: int) -> None:
+    """Weight, spring and magnet together: T + U to rounding, pose and momentum of the order of the map."""
+    system, errors = SYSTEMS[name], []
+    forced = nh.Forced(system, (_weight(system), _spring(system), _magnet(system)))
+    flow = nh.flow(forced, **_start(system), times=(0.0, 0.8))
+    for steps in (8, 16) if order == 2 else (4, 8):
+        orbit = nh.simulate(nh.discretize(forced, 0.8 / steps, order=order), **_start(system), steps=steps)
+        assert np.ptp(orbit.energy) < 2e-14
+        pose = np.abs(orbit.configuration[-1] - flow.configuration[-1]).max()
+        errors.append(max(pose, np.abs(orbit.restricted_momentum[-1] - flow.restricted_momentum[-1]).max()))
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.2 if order == 2 else 0.5)
+
+
+def test_functions_by_numba_have_the_bits_of_python() -> None:
+    """A force and a potential that numba compiled run in the compiled loop, with the bits of the same in Python."""
+
+    def own(g: np.ndarray) -> float:
+        return g[0, 1] * g[2, 2] + 0.5 * g[1, 0] ** 2
+
+    def drive(time: float, g: np.ndarray, w: np.ndarray) -> tuple[float, float, float]:
+        return time - w[0], 0.2 * g[0, 0] - w[1] * w[1], 0.1
+
+    orbits = [
+        nh.simulate(nh.discretize(nh.Forced(TOP, *acting), 0.1), **_start(TOP), steps=20)
+        for acting in ((own, drive), (numba.njit(own), numba.njit(drive)))
+    ]
+    for name in ("restricted_momentum", "configuration", "displacement"):
+        assert np.array_equal(*(getattr(orbit, name) for orbit in orbits))
+
+
+def test_a_reversed_motion_comes_back() -> None:
+    """From the last pose with the opposite momentum the steps lead back to the start."""
+    for name, system in SYSTEMS.items():
+        discrete = nh.discretize(nh.Forced(system, (_weight(system), _spring(system))), 0.1)
+        there = nh.simulate(discrete, **_start(system), steps=30)
+        start = {"momentum": -there.restricted_momentum[-1], "configuration": there.configuration[-1]}
+        back = nh.simulate(discrete, **start, steps=30)
+        assert np.abs(back.restricted_momentum[-1] + there.restricted_momentum[0]).max() < 1e-12, name
+        assert np.abs(back.configuration[-1] - there.configuration[0]).max() < 1e-12, name
+
+
+def test_the_scheme_is_the_one_that_is_asked_for() -> None:
+    """By default it is "energy" where it is defined and the body is constrained; elsewhere it is refused."""
+    heavy = nh.Gravity([0.0, 0.0, -1.0], [0.1, 0.2, 0.3])
+    free = nh.RigidBody(np.diag([1.0, 1.2, 0.7]))
+    veselova, tilted = nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), nh.LLSystem(
+        nh.SO(3), inertia_operator=np.diag([1.0, 2.0, 3.0]), constraint_subspace=np.eye(3)[:2]
+    )  # fmt: skip
+    default = {"energy": TOP, "variational": free}
+    for scheme, system in default.items():
+        assert nh.discretize(nh.Forced(system, heavy), 0.1).is_balanced == (scheme == "energy")
+        other = {"energy": "variational", "variational": "energy"}[scheme]
+        assert nh.discretize(nh.Forced(system, heavy, scheme=other), 0.1).is_balanced == (other == "energy")
+    assert not nh.discretize(nh.Forced(veselova, heavy), 0.1).is_balanced
+    for system in (veselova, tilted):
+        with pytest.raises(ValueError, match="keeps its energy"):
+            nh.discretize(nh.Forced(system, heavy, scheme="energy"), 0.1)
+    with pytest.raises(ValueError, match="scheme"):
+        nh.Forced(TOP, heavy, scheme="exact")
+    body = nh.discretize(nh.Forced(free, heavy, scheme="energy"), 0.1)
+    orbit = nh.simulate(body, body_velocity=(0.3, 0.4, 0.5), steps=200)
+    assert np.ptp(orbit.energy) < 1e-14
