@@ -28,6 +28,7 @@ SECTIONS = {
         "tumbling_body",
         "twenty_dimensions",
         "hanging_with_friction",
+        "sleigh_billiard",
     ),
     "Ready systems, one each": (
         "particle",

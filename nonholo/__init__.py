@@ -65,6 +65,7 @@ Events:
     Crossings: The crossings of one event, in order of time.
     Event: A function of the state whose changes of sign along a motion are of interest.
     EventLog: The crossings of all events of a run, by name or position.
+    Impact: The reset of an `Event` whose function is a gap: where it becomes zero the body hits a wall without ...
     cusp: The event of a sleigh whose velocity $v_1$ along the blade changes sign: its path in the plane has a cusp ...
 
 Pictures and the live page:

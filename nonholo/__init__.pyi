@@ -71,6 +71,7 @@ from .simulation import Crossings as Crossings
 from .simulation import Ensemble as Ensemble
 from .simulation import Event as Event
 from .simulation import EventLog as EventLog
+from .simulation import Impact as Impact
 from .simulation import crossings as crossings
 from .simulation import cusp as cusp
 from .simulation import ensemble as ensemble

@@ -261,7 +261,9 @@ FEW = {
         ),
         RESULT,
     ),
-    **dict.fromkeys(("ChaplyginSleigh", "Event", "cusp", "allow_float32", "discretize", "single_valued_region"), A_FEW),
+    **dict.fromkeys(
+        ("ChaplyginSleigh", "Event", "Impact", "cusp", "allow_float32", "discretize", "single_valued_region"), A_FEW
+    ),
     "branch_growth": "is of plane sleighs, and has words of at most 1000 steps",
     "critical_energies": "is in O(n) beyond n = 3",
     "half_planes": "is of tops with n = 3 and of sleighs, and refuses all others",

@@ -28,6 +28,7 @@ WITH_A_FUNCTION = {  # of the user's, which the examples define where they stand
     "Event: east",
     "GroupLagrangeDAlembert: orbit",
     "GroupLagrangeDAlembert: sleigh",
+    "Impact: wall",
     "LagrangeDAlembert: discrete",
     "LagrangeDAlembert: orbit",
     "LagrangeDAlembert: particle",

@@ -25,6 +25,7 @@ class Outcome(enum.IntEnum):
     nonfinite = 5
     too_stiff = 6
     no_half_impulse = 7
+    lasting_contact = 8
 
     def __str__(self) -> str:
         return self.name
@@ -64,6 +65,11 @@ _MESSAGES = {
         "No half impulse of the force was found: at the velocity in the middle of it the force has to give that same "
         "impulse. A force that grows faster than the velocity, or jumps, may have none over half a step. "
         "Try a smaller time_step, or a force that is continuous."
+    ),
+    Outcome.lasting_contact: (
+        "The body comes to stay at a wall: impacts follow each other faster and faster, infinitely many in finite "
+        "time, or the motion after one leads back through the wall. How it slides or rests there is not modeled. "
+        "Try a larger restitution, a shorter run or, if a step has more than 200 impacts, a smaller time_step."
     ),
     Outcome.too_stiff: (
         "The steps of the solver became too short to come to an end: the force changes much faster than the motion, as "

@@ -127,6 +127,8 @@ def _live(orbit: Orbit) -> Shown | None:
     discrete = orbit.motion
     if not isinstance(discrete, Discretization) or orbit.branch != "principal" or orbit.canonical_pose is None:
         return None
+    if orbit.has_impacts.any():
+        return None
     kind, wanted = _kind(discrete), int(orbit.step[-1] - orbit.step[0])
     if kind is None or wanted < 1:
         return None

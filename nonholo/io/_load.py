@@ -109,11 +109,11 @@ def stored_names(arrays: Container[str], columns: Iterable[str] = STATES) -> dic
 def _events(root: Path, stored: dict[str, Any], orbit: Orbit, begin: int) -> EventLog:
     """Return the crossings of a stored run after the state of a step."""
     array = opened_array(root, EVENTS, None)
-    names, counts = [event["name"] for event in json.loads(stored["events"])], json.loads(stored["crossings"])
+    events, counts = json.loads(stored["events"]), json.loads(stored["crossings"])
     parts = [np.empty((0, array.shape[1]))]
     for chunk in range(array.cdata_shape[0]):
         parts.append(known(checked_block(root, EVENTS, array, (chunk, 0), with_nan=True), begin))
-    log = log_of(np.concatenate(parts), tuple(names), orbit, stored.get("stopped_by"))
+    log = log_of(np.concatenate(parts), events, orbit, stored.get("stopped_by"))
     found = [len(crossings) for crossings in log.found]
     if begin == 0 and found != counts:
         raise error(WHERE, f"hold {counts} crossings in {EVENTS}", str(found), AGAIN)

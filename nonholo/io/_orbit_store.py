@@ -285,6 +285,9 @@ def save_orbit(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fals
     """
     remedy = "Pass what `simulate` or `flow` returned."
     instance("save_orbit(orbit=...)", orbit, AbstractOrbit, "be an orbit", remedy)
+    if orbit.is_discrete and orbit.has_impacts.any():
+        got, remedy = "one with impacts, which its events tell", "Run with store=..., which keeps them, or save a part."
+        raise error("save_orbit(orbit=...)", "be an orbit whose events are not needed", got, remedy)
     flags("save_orbit", overwrite=overwrite)
     path = checked_path("save_orbit(path=...)", path)
     target = path.resolve()

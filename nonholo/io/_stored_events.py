@@ -1,6 +1,7 @@
 """Crossings as rows of numbers, and checkpoints: the state of a run between two blocks, with what its events saw.
 
-A row of `run/events` is the position of the event, the step, the fraction, the direction, then the state there. The
+A row of `run/events` is the position of the event, the step, the fraction, the direction, then the state there; that
+after an impact has a row of its own, of the position -1 - p for the event p. The
 rows of a block begin with a chunk of their own; what is left of its last chunk is NaN. The functions are not stored.
 """
 
@@ -56,6 +57,11 @@ class Checkpoint(NamedTuple):
 def rows_of(log: EventLog) -> Float[np.ndarray, "C width"]:
     """Return the crossings of a block as rows, one event after another."""
     parts = [_rows(event, found) for event, found in enumerate(log.found)]
+    parts += [
+        _rows(-1 - event, Crossings(found.step, found.fraction, found.direction, found.after))
+        for event, found in enumerate(log.found)
+        if found.after is not None
+    ]
     return np.concatenate(parts) if parts else np.empty((0, _PLACE))
 
 
@@ -66,10 +72,15 @@ def _rows(event: int, found: Crossings) -> np.ndarray:
 
 
 def log_of(
-    rows: Float[np.ndarray, "C width"], names: tuple[str, ...], orbit: AbstractOrbit, by: str | None
+    rows: Float[np.ndarray, "C width"], events: list[dict[str, Any]], orbit: AbstractOrbit, by: str | None
 ) -> EventLog:
-    """Return the crossings in rows of an orbit's run, and which event ended it."""
-    return EventLog(names, tuple(_found(rows[rows[:, 0] == event], orbit) for event in range(len(names))), by)
+    """Return the crossings in rows of an orbit's run of described events, and which event ended it."""
+    found = [_found(rows[rows[:, 0] == event], orbit) for event in range(len(events))]
+    for event, about in enumerate(events):
+        if "restitution" in about:
+            after = _found(rows[rows[:, 0] == -1 - event], orbit).states
+            found[event] = dataclasses.replace(found[event], after=after)
+    return EventLog(tuple(about["name"] for about in events), tuple(found), by)
 
 
 def _found(rows: np.ndarray, orbit: AbstractOrbit) -> Crossings:
@@ -103,5 +114,5 @@ def described(events: list[dict[str, Any]]) -> str:
 
 
 def _described(event: dict[str, Any]) -> str:
-    options = ", ".join(f"{name}={event[name]}" for name in ("direction", "stop") if event[name])
+    options = ", ".join(f"{name}={event[name]}" for name in ("direction", "stop", "restitution") if event.get(name))
     return f"{event['name']!r}" + (f" ({options})" if options else "")

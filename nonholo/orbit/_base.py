@@ -5,7 +5,7 @@ import dataclasses
 import functools
 import importlib
 from collections.abc import Sequence
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from nonholo.base.html import table
 from nonholo.base.kept import Keeper, remembered
 from nonholo.base.limits import within_memory
 from nonholo.base.results import Outcome
-from nonholo.base.types import Float, Int
+from nonholo.base.types import Bool, Float, Int
 
 _COLUMNS = {
     "time",
@@ -130,7 +130,9 @@ class AbstractOrbit(Keeper, abc.ABC):
     def joined(self: SelfT, others: Sequence[SelfT]) -> SelfT:
         """Return the states with those of other parts of the same motion after them."""
         parts = [part.rows() for part in (self, *others)]
-        return self.of_rows({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
+        first, *logs = {id(part.events): part.events for part in (self, *others)}.values()
+        whole = self.of_rows({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
+        return dataclasses.replace(cast(Any, whole), events=first.joined(logs)) if logs else whole
 
     def with_headings(self: SelfT, before: float | None) -> SelfT:
         """Return the states with headings that continue from the given one, where there are any."""
@@ -143,9 +145,18 @@ class AbstractOrbit(Keeper, abc.ABC):
 
     @remembered
     def has_every_step(self) -> bool:
-        """Whether each state but the first is one step after the one before."""
+        """Whether each state but the first is one step after the one before, without an impact between them."""
         h = self.time_step
-        return bool((np.diff(self.step) == 1).all()) and (h is None or np.allclose(np.diff(self.time), h))
+        return (
+            not self.has_impacts.any()
+            and bool((np.diff(self.step) == 1).all())
+            and (h is None or np.allclose(np.diff(self.time), h))
+        )
+
+    @remembered
+    def has_impacts(self) -> Bool[np.ndarray, "K"]:
+        """Whether there was an impact in the step from each state, after it and up to the end of the step."""
+        return np.isin(self.step, [] if self.events is None else self.events.impact_steps)
 
     @property
     @abc.abstractmethod

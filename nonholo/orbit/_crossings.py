@@ -19,7 +19,8 @@ class Crossings:
         step: Numbers k of the states before the crossings; of a flow, of the requested times before them. Shape (C,).
         fraction: Which part of the way to state k + 1 is gone, from 0 to 1. Shape (C,).
         direction: 1 for crossings from below, -1 from above. Shape (C,).
-        states: The states at the crossings, an orbit of C states.
+        states: The states at the crossings, an orbit of C states. At an impact they are those before it.
+        after: The states after the impacts of an event with a reset, likewise; None without.
 
     Example:
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
@@ -33,6 +34,7 @@ class Crossings:
     fraction: Float[np.ndarray, "C"]
     direction: Int[np.ndarray, "C"]
     states: Any
+    after: Any = None
 
     def __len__(self) -> int:
         return len(self.step)
@@ -45,10 +47,11 @@ class Crossings:
         """Times of the crossings."""
         return self.states.time
 
-    def chosen(self, which: np.ndarray) -> "Crossings":
+    def chosen(self, which: slice | np.ndarray) -> "Crossings":
         """Return some of the crossings."""
         at = selection("Crossings.chosen(which=...)", which)
-        return Crossings(self.step[at], self.fraction[at], self.direction[at], self.states.chosen(at))
+        after = None if self.after is None else self.after.chosen(at)
+        return Crossings(self.step[at], self.fraction[at], self.direction[at], self.states.chosen(at), after)
 
 
 FoundT = TypeVar("FoundT")
@@ -96,6 +99,17 @@ class EventLog(AbstractEventLog[Crossings]):
     found: tuple[Crossings, ...]
     stopped_by: str | None = None
 
+    @property
+    def impact_steps(self) -> Int[np.ndarray, "I"]:
+        """The numbers of the steps with an impact within them or at their end."""
+        hits = [each.step - (each.fraction == 0) for each in self.found if each.after is not None]
+        return np.unique(np.concatenate([np.empty(0, dtype=np.int64), *hits]))
+
+    def joined(self, others: "Sequence[EventLog]") -> "EventLog":
+        """Return the crossings with those of later parts of the same run."""
+        found = tuple(joined_crossings(column) for column in zip(*(log.found for log in (self, *others)), strict=True))
+        return EventLog(self.names, found, others[-1].stopped_by)
+
     def __repr__(self) -> str:
         counts = ", ".join(f"{name}: {len(found)}" for name, found in zip(self.names, self.found, strict=True))
         ended = f", stopped by {self.stopped_by}" if self.stopped_by else ""
@@ -107,5 +121,6 @@ def joined_crossings(parts: Sequence[Crossings]) -> Crossings:
     step, fraction, direction = (
         np.concatenate([getattr(part, name) for part in parts]) for name in ("step", "fraction", "direction")
     )
-    first, *others = (part.states for part in parts)
-    return Crossings(step, fraction, direction, first.joined(others))
+    states, after = ([getattr(part, name) for part in parts] for name in ("states", "after"))
+    joined = None if after[0] is None else after[0].joined(after[1:])
+    return Crossings(step, fraction, direction, states[0].joined(states[1:]), joined)

@@ -109,7 +109,8 @@ class Orbit(AbstractOrbit):
     What an orbit tells is in the user's body frame, momenta in physical units, and remembered: its arrays are
     read-only. The compact states that it is made of are in the canonical frame of the system, where it says so. In a
     discrete orbit $W_k = g_k^{-1} g_{k+1}$ is the displacement and $P_k$ the momentum at $W_k$; with `save_every` > 1
-    displacements and multipliers are those of the single steps at the saved k. Of a composition (order > 2) the
+    displacements and multipliers are those of the single steps at the saved k. In a step with impacts the displacement
+    and the momentum are those of the step that there would be without a wall. Of a composition (order > 2) the
     momentum is that at the first substep, the displacement that of the whole step.
 
     Attributes:
@@ -311,8 +312,12 @@ class Orbit(AbstractOrbit):
 
     @remembered
     def multipliers(self) -> Float[np.ndarray, "L s"]:
-        """Impulses between the states of a discrete orbit, (K - 1, s), or forces at the times of a flow, (K, s)."""
-        return self.motion.multipliers(self)
+        """Impulses between the states of a discrete orbit, (K - 1, s), or forces at the times of a flow, (K, s).
+
+        Those of steps with impacts are NaN.
+        """
+        found = self.motion.multipliers(self)
+        return found if not self.is_discrete else np.where(self.has_impacts[:-1, None], np.nan, found)
 
     @remembered
     def displacement(self) -> Float[np.ndarray, "K N N"]:

@@ -6,7 +6,7 @@ from nonholo.simulation._options import check_forces, refuse_many_matrices, step
 from nonholo.simulation._resume import extend, resume_run
 from nonholo.simulation._simulate import iterate, simulate
 from nonholo.simulation._stored import size_in_blocks
-from nonholo.simulation.events import Event, crossings, cusp
+from nonholo.simulation.events import Event, Impact, crossings, cusp
 from nonholo.simulation.members import (
     Ensemble,
     Members,

@@ -12,7 +12,17 @@ from nonholo.base.progress import telling
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.continuous import ContinuousFlow, Solved, solver_of
 from nonholo.orbit import First, Orbit
-from nonholo.simulation.events import Event, check_functions, checked_events, flow_in_coordinates, flow_with_events
+from nonholo.simulation._flow_impacts import flow_through_impacts
+from nonholo.simulation.events import (
+    Event,
+    check_functions,
+    check_resets,
+    checked_events,
+    flow_in_coordinates,
+    flow_with_events,
+    has_resets,
+    refuse_resets,
+)
 from nonholo.systems import AbstractCoordinateSystem, OrbitT, Start, System, as_system, refuse_in_coordinates
 
 _TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
@@ -97,7 +107,8 @@ def flow(
         events: `Event`s, or functions of an orbit, whose changes of sign from one requested time or step of the series
             to the next are found, and located on the solution; see `Orbit.events`. Two of them between two such times
             are not seen: ask for more times. A stopping event ends the orbit with the last requested time before it. In
-            coordinates only the requested times are compared, and each guess is another solve from the one before.
+            coordinates only the requested times are compared, and each guess is another solve from the one before. One
+            with a `reset` changes the motion: the flow begins again at each `Impact`.
         progress: Show on standard error how far the time has come.
 
     Returns:
@@ -135,6 +146,8 @@ def flow(
     first = _first_state(system, time, start, posed=posed)
     found = None if events is None else checked_events("flow", events)
     with telling("time", progress):
+        if found is not None and has_resets(found):
+            return _flowed_between_walls(system, first, time, tolerances, method, found, reconstruct=reconstruct)
         return _flowed(system, first, time, tolerances, solve, found, reconstruct=reconstruct)
 
 
@@ -187,11 +200,45 @@ def _flowed(
     orbit = Orbit(motion, time[:reached], states.momenta, None, states.poses, outcome, turned=states.turned)
     if events is not None:
         orbit = flow_with_events(events, orbit, time[0] + solved.steps())
+    return _successful(orbit, solved.said, time, tolerances)
+
+
+def _flowed_between_walls(
+    system: System,
+    first: tuple[np.ndarray, np.ndarray | None],
+    time: np.ndarray,
+    tolerances: tuple[float, float],
+    method: str | None,
+    events: dict[str, Event],
+    *,
+    reconstruct: bool,
+) -> Orbit:
+    """Return the orbit from a first state, with impacts."""
+    if not reconstruct:
+        refuse_resets("flow", events, "those of a flow without poses: reconstruct=False")
+    if time[-1] < time[0]:
+        refuse_resets("flow", events, "those of a flow back in time, which has other impacts")
+    opening = _opening(system, time, first)
+    check_functions(events, opening)
+    check_resets(events, opening)
+    solver_at = functools.partial(_solver_at, system, method, tolerances)
+    return _successful(*flow_through_impacts(opening, time, solver_at, events), time, tolerances)
+
+
+def _solver_at(
+    system: System, method: str | None, tolerances: tuple[float, float], begins: float
+) -> Callable[..., Solved]:
+    """Return what solves the equations with poses from a time on."""
+    return functools.partial(solver_of(system, method, begins, reconstruct=True)[0], tolerances=tolerances)
+
+
+def _successful(orbit: Orbit, said: str, time: np.ndarray, tolerances: tuple[float, float]) -> Orbit:
+    """Return a flow, or raise if it ended early."""
     if orbit.outcome != Outcome.successful:
-        rtol, atol = tolerances
+        (rtol, atol), reached, system = tolerances, len(orbit), orbit.system
         acting = "" if system.forces is None else f" under {system.forces.names}"
         where = f"Flow from time {time[reached - 1]:g} to {time[reached]:g}{acting} (rtol {rtol:g}, atol {atol:g})"
-        raise OutcomeError(orbit.outcome, where, orbit, solved.said)
+        raise OutcomeError(orbit.outcome, where, orbit, said)
     return orbit
 
 

@@ -13,7 +13,7 @@ from nonholo.base.results import Outcome
 from nonholo.orbit import AbstractStepper
 from nonholo.simulation._options import check_forces, stepper_of
 from nonholo.simulation._run import Reached, Run, computed, orbit_at
-from nonholo.simulation._stored import continued, descriptions, seen_by
+from nonholo.simulation._stored import continued, descriptions, reached_at, seen_by
 from nonholo.simulation.events import Watch, checked_events, search, watched
 
 if TYPE_CHECKING:
@@ -65,9 +65,10 @@ def refuse_other_functions(owner: str, stream: "Stream", run: Run) -> None:
         return
     begin, reached = stream.checkpoint(block), stream.sound(block)
     plan = stream.plan._replace(steps=min(begin.done + run.every, reached.done))
-    orbit, again = computed(
-        run.stepper, plan, block, Reached(begin.done, Outcome.successful, begin.vector, None), lambda *_: None
-    )
+    reached_then = reached_at(run, begin)
+    if reached_then.watch is None or not reached_then.watch.has_walls:
+        reached_then = Reached(begin.done, Outcome.successful, begin.vector, None)
+    orbit, again = computed(run.stepper, plan, block, reached_then, lambda *_: None)
     tolerance = _SAME if io.other_versions(io.read_attributes(stream.path)) else 0.0
     pairs = {
         name: (rows, stream.rows(name, block * plan.rows, len(orbit)))

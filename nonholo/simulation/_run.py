@@ -1,6 +1,7 @@
 """The one loop over the steps of a run, whatever steps, in blocks; and the sinks that keep its orbit in memory."""
 
 import dataclasses
+import functools
 import time
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
@@ -13,9 +14,11 @@ from nonholo.base.progress import progress_bar
 from nonholo.base.results import OUTCOMES, Outcome, OutcomeError, finished
 from nonholo.discrete import check_first_state
 from nonholo.orbit import AbstractOrbit, AbstractStepper, First, Plan, Rows, State, keep_row, write_first
-from nonholo.simulation.events import Watch, piece_of, search
+from nonholo.simulation._contact import after_contact
+from nonholo.simulation.events import Watch, begun_at, check_resets, piece_of, search
 
 _PIECE, _SHORT = 1 << 20, 256  # steps of a call at most; of the first searched call, which an event may soon end
+_AGAIN = 32  # steps of the first searched call after an impact
 _ROWS, _NUMBERS = 1 << 16, 1 << 22  # at most in a block: saved states, numbers in an array
 _SOON, _LATE = 0.1, 0.3  # seconds: Ctrl-C waits for a call, whose steps are doubled and halved
 
@@ -81,6 +84,7 @@ def opened(run: Run, first: First) -> tuple[Reached, AbstractOrbit | None]:
         there = dataclasses.replace(there.chosen(slice(0, 0)), outcome=outcome)
     if run.watch is not None:
         watch, _ = search(run.watch, there)
+        check_resets(run.watch.events, there)
         begun, there = begun._replace(watch=watch), dataclasses.replace(there, events=watch.log())
     if outcome == Outcome.successful and first.demanded is not None:
         check_first_state(first.demanded, there)
@@ -117,6 +121,7 @@ class _Table:
         self.number, self.begun, self.stop, self.ends = number, *plan.stretch(number)
         self.places = 1 + (self.stop - self.begun) // self.every
         self.rows = empty_rows(stepper, 1 if fine else self.places)  # an event may stop the run long before
+        self.fresh, self.least = 0, _SHORT  # where steps of searched calls begin to double, and from how many on
 
     def room(self, done: int, pace: int) -> tuple[int, int, Rows]:
         """Return how many steps to take from a step, after how many of them a row is written, and where.
@@ -124,7 +129,10 @@ class _Table:
         Whole rows are written in place. A part of a row is written beside them, and so are the single steps that are
         searched for events.
         """
-        past, most = (done - self.begun) % self.every, min(max(done, _SHORT) if self.fine else pace, self.stop - done)
+        past, most = (
+            (done - self.begun) % self.every,
+            min(max(done - self.fresh, self.least) if self.fine else pace, self.stop - done),
+        )
         if self.fine:
             each, count = 1, min(most, piece_of(self.stepper.columns.values()))
             self._reserve(1 + (done - self.begun + count) // self.every)
@@ -186,19 +194,54 @@ def computed(
     while code == 0 and done < table.stop and not over:
         since = time.monotonic()
         steps, each, room = table.room(done, pace)
-        state, good, code = _advanced(stepper, state, steps, each, room)
-        if watch is not None:
-            rows = _ended(stepper, part_of(room, 0, 1 + good))
-            watch, states = search(watch, stepper.orbit(rows, done, 1, Outcome.successful))
-            good, over = states - 1, watch.stopped_by is not None
-            if over:
-                keep_row(state, room, good)
+        if watch is None:
+            state, good, code = _advanced(stepper, state, steps, each, room)
+        else:
+            state, good, code, watch = _watched(stepper, watch, state, (done, steps), room)
+            over = watch.stopped_by is not None
+            if good < steps:  # up to an impact
+                table.fresh, table.least = done + good, _AGAIN
         if each != plan.every:
             table.take(room, done, good, each)
         done, pace = done + good, _paced(pace, time.monotonic() - since)
         report(done, plan.steps)
     reached = Reached(done, Outcome.successful if over else OUTCOMES[code], state, watch)
     return _orbit_of(stepper, table, plan, reached), reached
+
+
+def _watched(
+    stepper: AbstractStepper[Any], watch: Watch, state: State, stretch: tuple[int, int], room: Rows
+) -> tuple[State, int, int, Watch]:
+    """Take single steps up to an event that ends the motion, or through the step with an impact; search them."""
+    done, steps = stretch
+    if watch.is_at_wall:
+        write_first(state, room)
+        return _through(stepper, watch, state, (done, 0), room)
+    state, good, code = _advanced(stepper, state, steps, 1, room)
+    rows = _ended(stepper, part_of(room, 0, 1 + good))
+    watch, states = search(watch, stepper.orbit(rows, done, 1, Outcome.successful))
+    if watch.reset_by is not None:
+        return _through(stepper, watch, state, (done, states - 1), room)
+    if watch.stopped_by is not None:
+        keep_row(state, room, states - 1)
+    return state, states - 1, code, watch
+
+
+def _through(
+    stepper: AbstractStepper[Any], watch: Watch, state: State, place: tuple[int, int], room: Rows
+) -> tuple[State, int, int, Watch]:
+    """Take the step from a node at a wall, or the part that is left of the step with the impact that was seen last."""
+    done, good = place
+    if watch.reset_by is None:
+        there, gone = orbit_at(stepper, state, done), 0.0
+    else:
+        there, good, gone = watch.begun_at(good)
+    after, watch, outcome = after_contact(functools.partial(begun_at, stepper), watch, there, done + good, gone)
+    keep_row(state, room, good)
+    if after is None:
+        return state, good, outcome, watch
+    write_first(after, part_of(room, good + 1, good + 2))
+    return after, good + 1, outcome, watch
 
 
 def _advanced(stepper: AbstractStepper[Any], state: State, steps: int, each: int, room: Rows) -> tuple[State, int, int]:

@@ -68,7 +68,8 @@ def simulate(
         reconstruct: Also compute poses.
         backend: "numba" (closed forms, compiled), "jax" (the definition), or "auto" to choose.
         events: `Event`s, or functions of an orbit, whose changes of sign are found at every single step and located
-            to rounding; see `Orbit.events`. A stopping event ends the run with the last saved state before it.
+            to rounding; see `Orbit.events`. A stopping event ends the run with the last saved state before it. One with
+            a `reset` changes the motion (`Impact`).
         throw: Raise if the run cannot continue; otherwise return the good steps and the outcome.
         progress: Show a progress bar on standard error.
         store: A new path. The saved states of the run and the crossings of its events go there block by block, in

@@ -74,9 +74,9 @@ def _completed(run: Run, stream: "Stream") -> Checkpoint:
     @functools.cache
     def known(number: int) -> Reached | None:
         sound = _sound(stream, number) if number <= marked else None
-        return None if sound is None else _reached(run, sound)
+        return None if sound is None else reached_at(run, sound)
 
-    begin, end, number = known(0) or _reached(run, _first(stream)), None, 0
+    begin, end, number = known(0) or reached_at(run, _first(stream)), None, 0
     with progress_bar("steps", run.progress) as report:
         for number, orbit, reached in blocks(run, stream.plan, begin, report, known):
             if orbit is None:
@@ -124,7 +124,9 @@ def _loaded(run: Run, stream: "Stream", reached: Checkpoint) -> Any:
 def descriptions(events: dict[str, Event]) -> list[dict[str, Any]]:
     """Return what a store can hold of events: everything but their functions."""
     return [
-        {"name": name, "direction": int(event.direction), "stop": int(event.stop)} for name, event in events.items()
+        {"name": name, "direction": int(event.direction), "stop": int(event.stop)}
+        | ({} if event.reset is None else {"restitution": event.reset.restitution})
+        for name, event in events.items()
     ]
 
 
@@ -141,7 +143,7 @@ def seen_by(watch: Watch) -> Seen:
     return Seen(np.array(watch.counts, dtype=np.int64), values, watch.heading or 0.0, stopped)
 
 
-def _reached(run: Run, kept: Checkpoint) -> Reached:
+def reached_at(run: Run, kept: Checkpoint) -> Reached:
     """Return the state of a run at a checkpoint of its store."""
     watch, seen = run.watch, kept.seen
     if watch is not None and seen is not None:

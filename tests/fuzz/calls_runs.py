@@ -153,6 +153,9 @@ def _events() -> list[Call]:
     named = {"direction": integer(1), "stop": stop, "name": text("here", none=True)}
     return [
         call("Event", nh.Event, function=function(moving), **named),
+        call(
+            "Impact", nh.Impact, normal=array([0.0, 1.0]), restitution=number(0.5), point=array([0.0, 0.0], none=True)
+        ),
         call("crossings", nh.crossings, orbit=thing(orbit), event=thing(event)),
         call("crossings [cusp]", nh.crossings, orbit=thing(sliding), event=thing(nh.cusp)),
         call("Crossings.chosen", crossing.chosen, which=anything(np.arange(0))),

@@ -109,7 +109,7 @@ class InvariantMeasure:
             remedy = "Pass an orbit of the same discretization to the measure of `orbit.motion`."
             raise error(where, "be an orbit of the measure's motion", shown(orbit), remedy)
         if not orbit.has_every_step:
-            got = f"{len(orbit)} states with others between"
+            got = f"{len(orbit)} states with others, or impacts, between"
             raise error(where, "hold every step", got, "Run it with save_every=1.")
         steps = np.log(np.abs(step_determinants(discrete, orbit.displacement[:-1])))
         return np.concatenate([np.zeros(min(1, len(orbit))), np.cumsum(steps)])

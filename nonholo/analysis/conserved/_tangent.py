@@ -37,6 +37,8 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
     """
     as_orbit(_WHERE, orbit, _REMEDY)
     discrete, system = orbit.motion, orbit.system
+    if orbit.has_impacts.any():
+        raise error(_WHERE, "have no impacts", "some", "Ask it of the part of the orbit before the first one.")
     if isinstance(discrete, ContinuousFlow) and not system.is_spatial and not system.is_forced:
         return flow_tangents(_WHERE, system, orbit.restricted_momentum, orbit.time)
     free = isinstance(discrete, Discretization) and discrete.forces is None

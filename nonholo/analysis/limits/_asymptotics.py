@@ -83,6 +83,8 @@ def asymptotics(subject: AbstractLLSystem | Orbit) -> Asymptotics:
     orbit = subject if isinstance(subject, Orbit) else None
     system = subject if orbit is None else orbit.system
     refuse_forces("asymptotics(subject=...)", system)
+    if isinstance(subject, Orbit) and subject.has_impacts.any():
+        raise error("asymptotics(subject=...)", "be an orbit without impacts", "some", "Ask it of the system.")
     form = system.normal_form if isinstance(system, AbstractSystem) else None
     if form is None:
         remedy = "Pass a SuslovTop, a sleigh, or an orbit of one."

@@ -1,13 +1,16 @@
 """Events of a motion that is already there, and ready events."""
 
+import dataclasses
+import functools
 from typing import Any
 
 import numpy as np
 
 from nonholo.base.checks import error, instance
+from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.orbit import AbstractOrbit, AbstractStepper, Crossings, Orbit
-from nonholo.simulation.events._event import Event, checked_events
+from nonholo.orbit import AbstractOrbit, AbstractStepper, Crossings, First, Orbit, State
+from nonholo.simulation.events._event import Event, checked_events, has_resets, values_at
 from nonholo.simulation.events._search import Watch, piece_of, search
 
 
@@ -17,7 +20,56 @@ def watched(owner: str, stepper: AbstractStepper[Any], events: Any) -> Watch:
     if stepper.part_refused is not None:
         remedy = "Look for changes of sign in the states yourself."
         raise error(f"{owner}(events=...)", "have parts of a step", stepper.part_refused, remedy)
-    return Watch(named, stepper.motion.after_parts)
+    watch = Watch(named, stepper.motion.after_parts, functools.partial(_with_displacement, stepper))
+    if watch.has_walls:
+        _check_walls(owner, stepper, named)
+    return watch
+
+
+def refuse_resets(owner: str, events: dict[str, Event], got: str) -> None:
+    """Refuse events with resets."""
+    if has_resets(events):
+        remedy = "Leave the reset out, or run one body by `simulate`, `iterate` or `flow`."
+        raise error(f"{owner}(events=...)", "have no reset", got, remedy)
+
+
+def _check_walls(owner: str, stepper: AbstractStepper[Any], events: dict[str, Event]) -> None:
+    """Refuse impacts of motions whose steps cannot begin at an impact."""
+    posed, motion = getattr(stepper, "posed", None), stepper.motion
+    if posed is None:
+        refuse_resets(owner, events, "those of a system in coordinates")
+    if not posed:
+        refuse_resets(owner, events, "those of a run without poses: reconstruct=False")
+    if (forced := motion.forces) is not None and (forced.table is not None or forced.function is not None):
+        refuse_resets(owner, events, f"those under {forced.names}: a force of the time, whose steps begin at nodes")
+
+
+def check_resets(events: dict[str, Event], there: Any) -> None:
+    """Refuse normals of another space, and gaps that differ at another momentum and time: not of the pose alone."""
+    if not has_resets(events) or not len(there):
+        return
+    other = dataclasses.replace(there, time=there.time + 1, reduced_momentum=1 - 0.6 * there.reduced_momentum)
+    for name, event in events.items():
+        if event.reset is not None:
+            event.reset.check(f"Event(reset=...) of {name!r}", there.system)
+            now, then = (values_at(name, event, states) for states in (there, other))
+            if now[0] != then[0]:
+                got = f"{now[0]:.17g}, and {then[0]:.17g} at another velocity and time"
+                remedy = "Write the gap of the configuration."
+                raise error(f"Event(reset=...) of {name!r}", "depend on the pose alone", got, remedy)
+
+
+def begun_at(stepper: AbstractStepper[Any], states: Any) -> tuple[State, Outcome]:
+    """Return the state of a run that begins at a state of an orbit with poses, and the outcome."""
+    return stepper.start(First((states.reduced_momentum[0], states.canonical_pose[0])))
+
+
+def _with_displacement(stepper: AbstractStepper[Any], states: Any) -> Any:
+    """Return a state with the displacement of the step that begins there; NaN if none does."""
+    state, outcome = begun_at(stepper, states)
+    split = np.split(state[: stepper.width], np.cumsum(list(stepper.columns.values()))[:-1])
+    chart = stepper.orbit(tuple(row[None] for row in split), 0, 1, Outcome.successful).canonical_chart
+    return dataclasses.replace(states, cayley=chart if outcome == Outcome.successful else np.full_like(chart, np.nan))
 
 
 def crossings(orbit: AbstractOrbit, event: Any) -> Crossings:
@@ -45,12 +97,13 @@ def crossings(orbit: AbstractOrbit, event: Any) -> Crossings:
     """
     orbit = instance("crossings(orbit=...)", orbit, AbstractOrbit, "be an orbit", "Pass what `simulate` returned.")
     if not orbit.is_discrete or orbit.is_measured or not orbit.has_every_step:
-        got = "a flow or given poses" if orbit.has_every_step else "one with steps left out"
+        got = "a flow or given poses" if orbit.has_every_step else "one with steps left out, or with impacts"
         raise error("crossings(orbit=...)", "have every single step of a discrete run", got, "Pass events= to the run.")
     stepper = orbit.motion.stepper(posed=orbit.has_poses)
     if orbit.branch != stepper.branch:
         got, remedy = f"branch {orbit.branch!r}", "Look for changes of sign in the states yourself."
         raise error("crossings(orbit=...)", "have parts of a step", got, remedy)
+    refuse_resets("crossings", checked_events("crossings", [event]), "one for an orbit that is there")
     watch, piece = watched("crossings", stepper, [event]), piece_of(stepper.columns.values())
     for begun in range(0, max(1, len(orbit) - 1), piece):
         watch, _ = search(watch, orbit.chosen(slice(begun, begun + piece + 1)))

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.calls import called, checked
-from nonholo.base.checks import choice, error, is_name, natural, shown
+from nonholo.base.checks import choice, error, instance, is_name, natural, shown
 from nonholo.base.checks import name as checked_name
 from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit
+from nonholo.simulation.events._impact import Impact
 
 
 @dataclasses.dataclass(frozen=True)
@@ -21,7 +22,7 @@ class Event:
     With $f_k$ its value at state k, the motion crosses in the step from k to k + 1 if $f_k \ne 0$ and $f_{k+1}$ has
     another sign. So a zero exactly at a state counts once, when it is reached; a motion that stays at zero or starts
     there does not cross, and one that only touches zero at a state does. Two crossings in one step cannot be seen. A
-    jump counts too: write sin(angle), not the angle modulo 2 pi.
+    jump counts too: write sin(angle), not the angle modulo 2 pi; one of an impact does not.
 
     Attributes:
         function: Takes an `Orbit` with any number of states, with all its quantities, and returns one real number for
@@ -30,9 +31,12 @@ class Event:
         stop: Whether the motion ends at the first crossing, or at which one: stop=10 ends it at the tenth.
         name: What to call it; a letter, then letters, digits and underscores, all ASCII. By default that of the
             function, or "event 2" for a lambda at position 2.
+        reset: An `Impact`: the function is the gap to a wall, of the pose alone, and at each crossing the momentum is
+            reflected. A body that starts at the wall is on the side from which `direction` leads through it, if it is
+            not 0. None leaves the motion as it is.
 
     Raises:
-        ValueError: A function that is none, another direction, or a stop that is no count.
+        ValueError: A function that is none, another direction, a stop that is no count, or a reset that is none.
 
     Example:
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1)
@@ -46,6 +50,7 @@ class Event:
     direction: int = 0
     stop: bool | int = False
     name: str | None = None
+    reset: Impact | None = None
 
     def __post_init__(self) -> None:
         if not callable(self.function):
@@ -55,6 +60,8 @@ class Event:
             checked_name("Event(name=...)", self.name)
         if not isinstance(self.stop, bool):
             natural("Event(stop=...)", self.stop, "Pass True for the first crossing, or which one.")
+        if self.reset is not None:
+            instance("Event(reset=...)", self.reset, Impact, "be an impact", "Pass Impact(), or leave it out.")
 
     @property
     def last(self) -> float:
@@ -75,6 +82,11 @@ def checked_events(owner: str, events: Any) -> dict[str, Event]:
             raise error(where, "have different names", f"{name!r} twice", "Pass Event(function, name=...).")
         named[name] = event
     return named
+
+
+def has_resets(events: dict[str, Event]) -> bool:
+    """Tell whether an event changes the motion."""
+    return any(event.reset is not None for event in events.values())
 
 
 def _name_of(function: Callable[..., Any], position: int) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit, Crossings, EventLog, Orbit
+from nonholo.simulation.events._crossings import refuse_resets
 from nonholo.simulation.events._event import Event, checked_events
 from nonholo.simulation.events._search import Part, Watch, search, values_of
 
@@ -16,6 +17,7 @@ def flow_in_coordinates(system: Any, events: Any, **flow: Any) -> Any:
     """Solve the equations of a system in coordinates; return the orbit with what was found, if there are events."""
     if events is None:
         return system.flow(**flow)
+    refuse_resets("flow", checked_events("flow", events), "those of a system in coordinates")
     named, errors = checked_events("flow", events), {name: flow[name] for name in ("rtol", "atol")}
     try:
         orbit, failure = system.flow(**flow), None
@@ -48,7 +50,7 @@ def flow_with_events(events: dict[str, Event], orbit: Orbit, steps: Float[np.nda
     inside = steps[(forward * steps > requested[0]) & (forward * steps < requested[-1])]
     times = np.unique(np.concatenate([requested, forward * inside]))
     seen = orbit.at(forward * times) if len(inside) else orbit
-    return _searched(orbit, seen, Watch(events, _between_times(seen, forward)))
+    return _searched(orbit, seen, Watch(events, between_times(seen, forward)))
 
 
 def _direction(orbit: AbstractOrbit) -> float:
@@ -63,7 +65,7 @@ def _searched(orbit: Any, seen: Any, watch: Watch) -> Any:
     outcome = Outcome.successful if watch.stopped_by else orbit.outcome
     count = int(np.searchsorted(requested, times[kept - 1], "right"))
     log = watch.log()
-    found = tuple(_of_requested(part, requested, forward) for part in log.found)
+    found = tuple(of_requested(part, requested, forward) for part in log.found)
     return dataclasses.replace(
         orbit.chosen(slice(0, count)), outcome=outcome, events=EventLog(log.names, found, log.stopped_by)
     )
@@ -74,7 +76,7 @@ def check_functions(events: dict[str, Event], first: Orbit) -> None:
     values_of(events, first)
 
 
-def _between_times(seen: Orbit, forward: float) -> Part:
+def between_times(seen: Orbit, forward: float) -> Part:
     """Return the function of states and fractions that gives those on a part of the way to the next."""
     times, spans = forward * seen.time, np.diff(seen.time)
 
@@ -87,10 +89,12 @@ def _between_times(seen: Orbit, forward: float) -> Part:
     return between
 
 
-def _of_requested(crossings: Crossings, requested: np.ndarray, forward: float) -> Crossings:
+def of_requested(crossings: Crossings, requested: np.ndarray, forward: float) -> Crossings:
     """Return crossings with the numbers of the requested times before them."""
     times = forward * crossings.time
     step = np.searchsorted(requested, times, "right") - 1
     gaps = np.append(np.diff(requested), np.inf)
+    fraction, after = (times - requested[step]) / gaps[step], crossings.after
     states = dataclasses.replace(crossings.states, step=step)
-    return dataclasses.replace(crossings, step=step, fraction=(times - requested[step]) / gaps[step], states=states)
+    after = None if after is None else dataclasses.replace(after, step=step)
+    return Crossings(step, fraction, crossings.direction, states, after)

@@ -16,7 +16,7 @@ from nonholo.base.progress import progress_bar
 from nonholo.continuous import ContinuousFlow, solver_of
 from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretization
 from nonholo.simulation._options import check_forces, refuse_too_large, stepper_of
-from nonholo.simulation.events import watched
+from nonholo.simulation.events import refuse_resets, watched
 from nonholo.simulation.members._events import joined_blocks
 from nonholo.simulation.members._executors import Plan, Report, are_side_by_side, counting, run_members
 from nonholo.simulation.members._families import check_systems
@@ -182,6 +182,7 @@ def _of_steps(
     check_forces("ensemble", discrete, steps)
     watch = None if events is None else watched("ensemble", stepper, events)
     sought = None if watch is None else watch.events
+    refuse_resets("ensemble", sought or {}, "those of many members, whose steps are taken side by side")
     plan = Plan(steps, save_every, bool(reconstruct), branch, backend, sought)
     return discrete, plan, tuple(stepper.columns.values())
 

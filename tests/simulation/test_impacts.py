@@ -1,0 +1,507 @@
+"""Impacts: the reflection, the parts of the steps around it, times and places that are known, and how a run ends."""
+
+import dataclasses
+import itertools
+import pathlib
+import re
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import nonholo as nh
+
+BALANCED = nh.ChaplyginSleigh(1.0, 0.5, 0.0)
+SLEIGH = nh.ChaplyginSleigh(1.0, 0.5, 0.3, 0.1)
+DISK = nh.RigidBody.from_inertia(1.0, 0.5, (0.0, 0.0), nh.SE(2))
+TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+BODY = nh.RigidBody.from_inertia(1.0, np.diag([0.5, 0.4, 0.3]), (0.1, 0.0, 0.2), nh.SE(3))
+FALLING = nh.Forced(DISK, nh.Gravity([0.0, -1.0], [0.0, 0.0]))
+SIDES = {"east": (1.0, 0.0), "west": (-1.0, 0.0), "north": (0.0, 1.0), "south": (0.0, -1.0)}
+STATE = ("time", "reduced_momentum", "cayley", "canonical_pose")
+
+
+def wall(
+    name: str, outward: Any, distance: float = 1.0, *, direction: int = 0, stop: Any = False, **impact: Any
+) -> Any:
+    """A wall that stops the reference point, at a distance from the origin."""
+    n = np.array(outward)
+    reset = nh.Impact(**{"normal": -n, **impact})
+    return nh.Event(
+        lambda states: distance - states.position @ n, direction=direction, stop=stop, name=name, reset=reset
+    )
+
+
+def box(**impact: Any) -> list[nh.Event]:
+    """A square of side 2 about the origin."""
+    return [wall(name, n, **impact) for name, n in SIDES.items()]
+
+
+ROUND = nh.Event(lambda states: 1 - (states.position**2).sum(axis=1), name="round", reset=nh.Impact())
+SPACE = [wall(f"w{k}", n) for k, n in enumerate(np.concatenate([np.eye(3), -np.eye(3)]))]
+
+
+def tip(**impact: Any) -> nh.Event:
+    """A floor for the tip of the third axis of a top."""
+    return nh.Event(lambda states: states.configuration[:, 2, 2] - 0.3, name="tip", reset=nh.Impact(**impact))
+
+
+def folded(way: np.ndarray) -> np.ndarray:
+    """Where a point is that has gone a way from the origin, to and fro between -1 and 1."""
+    return 1 - abs((way + 1) % 4 - 2)
+
+
+Motions = dict[str, tuple[Any, dict[str, Any], list[nh.Event]]]
+MOTIONS: Motions = {
+    "sleigh in a square": (SLEIGH, {"restricted_velocity": (0.3, 1.0)}, box()),
+    "sleigh in a circle": (SLEIGH, {"restricted_velocity": (0.3, 1.0)}, [ROUND]),
+    "top": (TOP, {"body_velocity": (0.4, 0.9, 0.0)}, [tip()]),
+    "body in a cube": (BODY, {"body_velocity": (0.3, 0.5, 1.0, 0.4, 1.0, 0.2)}, SPACE),
+    "sleigh in space": (
+        nh.MultidimensionalSleigh(1.0, (0.3, 0.1, -0.2), np.eye(3)), {"restricted_velocity": (0.3, 0.5, 1.0)}, SPACE
+    ),
+}  # fmt: skip
+FIXED: Motions = {"right-invariant": (nh.VeselovaTop(TOP.mass_tensor), {"momentum": (0.4, 0.9)}, [tip()])}
+
+
+def same(one: nh.Orbit, other: nh.Orbit) -> bool:
+    """Tell whether two orbits have the same bits."""
+    return all(np.array_equal(getattr(one, name), getattr(other, name)) for name in STATE)
+
+
+def same_log(one: Any, other: Any) -> bool:
+    """Tell whether two logs have the same bits, after impacts too."""
+    pairs = [(one[name], other[name]) for name in one]
+    return all(
+        np.array_equal(a.step, b.step) and np.array_equal(a.fraction, b.fraction)
+        and same(a.states, b.states) and same(a.after, b.after) for a, b in pairs
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("bounce", [1.0, 0.6, 0.0])
+@pytest.mark.parametrize("name", [*MOTIONS, *FIXED])
+def test_reflection_is_that_of_the_impulses(name: str, bounce: float) -> None:
+    """That of impulses of wall and constraint at full inertia: I(w' - w) = jn + A'l, Aw' = 0, nw' = -e nw."""
+    system, start, _ = (MOTIONS | FIXED)[name]
+    rng = np.random.default_rng(7)
+    orbit = nh.simulate(nh.discretize(system, 0.05), steps=3, **start)[3:]
+    n = rng.normal(size=system.group.dim) * np.sign(rng.normal())
+    reset = nh.Impact(lambda _: n, bounce)
+    inertia, A = system.inertia_operator, system.annihilator @ system.carried(orbit.configuration[0])
+    before = orbit.body_velocity[0]
+    after = reset.struck("", None, orbit, int(np.sign(n @ before)))
+    assert after is not None
+    s, dim = len(A), len(n)
+    matrix = np.block([
+        [inertia, -n[:, None], -A.T], [A, np.zeros((s, 1 + s))], [n[None], np.zeros((1, 1 + s))]
+    ])  # fmt: skip
+    wanted = np.linalg.solve(matrix, np.concatenate([inertia @ before, np.zeros(s), [-bounce * (n @ before)]]))[:dim]
+    assert np.abs(after.body_velocity[0] - wanted).max() < 1e-13 * np.linalg.cond(matrix)
+    if bounce == 1:
+        assert abs(after.energy[0] / orbit.energy[0] - 1) < 4e-15
+
+
+@pytest.mark.parametrize("name", [*MOTIONS, *FIXED])
+def test_normals_of_all_kinds_are_one(name: str) -> None:
+    """The derivative by differences is that of a spatial vector at a body point, and of a function."""
+    system, start, _ = (MOTIONS | FIXED)[name]
+    size = system.group.size - system.group.is_affine
+    rng = np.random.default_rng(3)
+    normal, point = rng.normal(size=(2, size))
+    lifted = np.append(point, [1.0] * system.group.is_affine)
+
+    def gap(states: nh.Orbit) -> np.ndarray:
+        return 0.3 + (states.configuration @ lifted)[:, :size] @ normal
+
+    def covector(g: np.ndarray) -> np.ndarray:
+        return (g @ system.group.basis @ lifted)[:, :size] @ normal
+
+    for states in nh.simulate(nh.discretize(system, 0.3), steps=5, **start), nh.flow(system, times=(0, 1), **start):
+        for k in range(len(states)):
+            state = states.chosen(slice(k, k + 1))
+            known = nh.Impact(normal, point=point).covector(gap, state)
+            assert np.abs(known - covector(state.configuration[0])).max() < 1e-14
+            assert np.abs(known - nh.Impact(covector).covector(gap, state)).max() < 1e-14
+            assert np.abs(known - nh.Impact().covector(gap, state)).max() < 2e-11
+
+
+def test_impacts_are_values() -> None:
+    """An impact with another restitution has the same normal, whatever kind that is."""
+    for given in (nh.Impact(), nh.Impact((0.0, 1.0), point=(0.3, 0.0)), nh.Impact(np.cos)):
+        other = dataclasses.replace(given, restitution=0.5)
+        assert other.restitution == 0.5
+        assert np.array_equal(other.normal, given.normal)
+        assert np.array_equal(other.point, given.point)
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+@pytest.mark.parametrize("order", [2, 4])
+def test_energy_is_kept_over_impacts(name: str, order: int) -> None:
+    """The kinetic energy of an elastic billiard is the same to 1e-13, and the body stays inside."""
+    system, start, walls = MOTIONS[name]
+    orbit = nh.simulate(nh.discretize(system, 0.1, order=order), steps=1000, events=walls, **start)
+    hits = [orbit.events[event] for event in orbit.events]
+    assert sum(map(len, hits)) > 20
+    assert np.abs(orbit.energy / orbit.energy[0] - 1).max() < 1e-13
+    assert all(np.abs(hit.after.energy / orbit.energy[0] - 1).max(initial=0) < 1e-13 for hit in hits)
+    assert min(event.function(orbit).min() for event in walls) > -1e-14
+
+
+@pytest.mark.parametrize("name", [*MOTIONS, *FIXED])
+def test_impacts_are_roots_of_the_parts_of_steps(name: str) -> None:
+    """Times are those of another root finder; the state after the step is the other part of it, from the reflection."""
+    system, start, walls = (MOTIONS | FIXED)[name]
+    discrete = nh.discretize(system, 0.1)
+    orbit = nh.simulate(discrete, steps=400, events=walls, **start)
+    steps = np.concatenate([orbit.events[event].step for event in orbit.events])
+    count = 0
+    for wall in walls:
+        for k, found in enumerate(orbit.events[wall.name].step):
+            hit, node = orbit.events[wall.name].chosen(slice(k, k + 1)), orbit.chosen(slice(found, found + 1))
+            if (steps == found).sum() > 1:
+                continue
+            count += 1
+            gap = lambda s: wall.function(discrete.after_parts(node, np.array([s])))[0]  # noqa: B023, E731
+            assert abs(brentq(gap, 1e-9, 1.0, xtol=1e-16) - hit.fraction[0]) < 1e-13
+            assert abs(wall.function(hit.states)[0]) < 1e-15
+            assert abs(wall.function(hit.after)[0]) < 1e-15
+            ahead, after = discrete.after_parts(hit.after, 1 - hit.fraction), orbit.chosen(slice(found + 1, found + 2))
+            assert np.abs(ahead.reduced_momentum - after.reduced_momentum).max() < 1e-15
+            assert np.abs(ahead.configuration - after.configuration).max() < 1e-15
+    assert count > 5
+
+
+def test_straight_motions_are_the_known_ones() -> None:
+    """A knife edge across a box and a turning disk on a slant: to and fro, to rounding of the way that was gone."""
+    orbit = nh.simulate(nh.discretize(BALANCED, 0.1), body_velocity=(0, 0.73, 0), steps=1000, events=box())
+    assert np.abs(orbit.position - np.stack([folded(0.73 * orbit.time), 0 * orbit.time], axis=1)).max() < 1e-13
+    hits = orbit.events["east"]
+    assert np.abs(hits.time - (1 + 4 * np.arange(len(hits))) / 0.73).max() < 1e-13
+    assert np.array_equal(hits.after.body_velocity, -hits.states.body_velocity)
+    orbit = nh.simulate(nh.discretize(DISK, 0.1), body_velocity=(0.4, 0.73, 0.31), steps=1000, events=box())
+    assert np.abs(orbit.position - folded(orbit.time[:, None] * [0.73, 0.31])).max() < 4e-13
+    assert [len(orbit.events[side]) for side in SIDES] == [18, 18, 8, 8]
+
+
+@pytest.mark.parametrize(
+    ("step", "speed"), [(0.1, (0.7, 0.7)), (0.125, (1.0, 1.0)), (0.25, (1.0, -2.0)), (1.7, (5.1, 3.3))]
+)
+def test_corners_nodes_and_many_impacts_in_a_step(step: float, speed: tuple[float, float]) -> None:
+    """Two walls at once, at a node or in a step; walls at nodes; 7 impacts in a step: places are the known ones."""
+    disk = nh.discretize(DISK, step)
+    orbit = nh.simulate(disk, body_velocity=(0.0, *speed), steps=25, events=box())
+    way = orbit.time[:, None] * speed
+    assert np.abs(orbit.position - folded(way)).max() < 1e-14 * np.abs(way).max()
+    assert np.abs(orbit.energy / orbit.energy[0] - 1).max() < 2e-14
+
+
+def test_impacts_converge_to_those_of_the_flow() -> None:
+    """Times of impacts and places of the map differ from those of the flow by an error of order 2."""
+    start: dict[str, Any] = {"restricted_velocity": (0.3, 1.0), "events": box()}
+    flow = nh.flow(SLEIGH, times=np.linspace(0, 8, 41), **start)
+    errors = []
+    for every in (8, 16, 32):
+        orbit = nh.simulate(nh.discretize(SLEIGH, 0.2 / every), steps=40 * every, save_every=every, **start)
+        assert [len(orbit.events[side]) for side in SIDES] == [len(flow.events[side]) for side in SIDES]
+        moments = [np.abs(orbit.events[side].time - flow.events[side].time).max(initial=0) for side in SIDES]
+        errors.append((np.abs(orbit.position - flow.position).max(), max(moments)))
+    assert sum(len(flow.events[side]) for side in SIDES) == 4
+    assert np.abs(np.log2(np.divide(errors[:-1], errors[1:])) - 2).max() < 0.02
+    assert np.ptp(flow.energy) < 1e-13
+
+
+@pytest.mark.parametrize("method", [None, "closed_form"])
+def test_flows_go_on_at_impacts(method: Any) -> None:
+    """Between impacts a flow is the one from the reflected state; `at` knows it; times asked for make no difference."""
+    start: dict[str, Any] = {"restricted_velocity": (0.3, 1.0), "events": [ROUND], "method": method}
+    flow, fine = (nh.flow(SLEIGH, times=np.linspace(0, 10, count), **start) for count in (6, 101))
+    hits = flow.events["round"]
+    assert len(hits) == 5
+    assert np.abs(hits.time - fine.events["round"].time).max() < 1e-12
+    assert np.abs(flow.position - fine.position[::20]).max() < 1e-12
+    assert np.abs(flow.at(fine.time).heading - fine.heading).max() < 1e-12
+    assert np.array_equal(hits.step, np.searchsorted(flow.time, hits.time, "right") - 1)
+    for k, (begin, end) in enumerate(itertools.pairwise([*hits.time, 10.0])):
+        times = np.linspace(begin, end, 5)[:-1]
+        after = hits.after.chosen(slice(k, k + 1))
+        alone = nh.flow(
+            SLEIGH, momentum=after.restricted_momentum[0], configuration=after.configuration[0], times=times
+        )
+        assert np.abs(alone.position - flow.at(times).position).max() < 1e-12
+        assert np.abs(ROUND.function(after)).max() < 1e-14
+
+
+def test_forced_flows_and_maps_bounce() -> None:
+    """A falling disk bounces on the floor at the known times, in the map and in the flow, and its energy is kept."""
+    start: dict[str, Any] = {"body_velocity": (0, 0.1, 0), "events": [wall("floor", (0, -1))]}
+    orbit = nh.simulate(nh.discretize(FALLING, 0.1), steps=200, **start)
+    flow = nh.flow(FALLING, times=np.linspace(0, 20, 21), **start)
+    moments = np.sqrt(2) * np.arange(1, 15, 2)
+    for found in orbit, flow:
+        assert np.abs(found.events["floor"].time - moments).max() < 1e-11
+        assert np.ptp(found.energy) < 1e-11
+        assert np.abs(found.position[:, 0] - 0.1 * found.time).max() < 1e-11
+
+
+@pytest.mark.parametrize(
+    "potential", [nh.Gravity([0.3, -1.0], [0.3, 0.1]), lambda g: ((g[:2, 2] - 0.1) ** 2).sum() / 4]
+)
+def test_energy_with_a_potential_is_kept_over_impacts(potential: Any) -> None:
+    """Under the scheme that keeps T + U both parts of a step keep it, and so does the reflection."""
+    heavy = nh.discretize(nh.Forced(SLEIGH, potential, scheme="energy"), 0.1)
+    orbit = nh.simulate(heavy, restricted_velocity=(0.3, 1.4), steps=300, events=box())
+    assert sum(len(orbit.events[side]) for side in SIDES) > 5
+    assert np.ptp(orbit.energy) < 1e-13 * np.abs(orbit.energy).max()
+
+
+@pytest.mark.parametrize("bounce", [0.5, 0.9])
+def test_restitution_scales_the_normal_velocity(bounce: float) -> None:
+    """Each impact leaves that share of the velocity toward the wall, and of the energy its square."""
+    hits = nh.simulate(
+        nh.discretize(BALANCED, 0.1), body_velocity=(0, 1.0, 0), steps=400, events=box(restitution=bounce)
+    ).events["east"]
+    assert len(hits) > 1
+    assert np.abs(hits.after.body_velocity + bounce * hits.states.body_velocity).max() < 1e-15
+    disk = nh.simulate(
+        nh.discretize(DISK, 0.1), body_velocity=(0, 1.0, 0.4), steps=60, events=box(restitution=bounce)
+    ).events
+    for side, across in (("east", 0), ("north", 1)):
+        before, after = (states.configuration[:, :2, :2] @ states.body_velocity[:, 1:, None]
+                         for states in (disk[side].states, disk[side].after))  # fmt: skip
+        assert np.abs(after[:, across] + bounce * before[:, across]).max() < 1e-15
+        assert np.abs(after[:, 1 - across] - before[:, 1 - across]).max() < 1e-15
+
+
+@pytest.mark.parametrize("bounce", [0.0, 0.5, 0.9])
+def test_chattering_ends(bounce: float) -> None:
+    """A ball that comes to rest ends the run within a step of the limit of its impacts, after few of them."""
+    floor = wall("floor", (0, -1), restitution=bounce)
+    limit = np.sqrt(2) * (1 + bounce) / (1 - bounce)
+    start: dict[str, Any] = {"body_velocity": (0, 0.1, 0), "events": [floor]}
+    orbit = nh.simulate(nh.discretize(FALLING, 0.05), steps=1000, throw=False, **start)
+    assert orbit.outcome == nh.Outcome.lasting_contact
+    assert limit - 0.05 <= orbit.time[-1] <= limit
+    assert np.all(np.diff(orbit.events["floor"].time) >= 0)
+    assert len(orbit.events["floor"]) < 350
+    if bounce > 0.5:
+        return
+    with pytest.raises(nh.OutcomeError, match=r"lasting_contact\. The body comes to stay at a wall") as failure:
+        nh.flow(FALLING, times=np.linspace(0, 40, 81), **start)
+    assert limit - 0.5 <= failure.value.orbit.time[-1] <= limit  # type: ignore[attr-defined]
+
+
+def test_motion_is_reversed() -> None:
+    """From the reversed momentum an elastic billiard leads back to its start, through the same impacts."""
+    sleigh = nh.discretize(SLEIGH, 0.1)
+    there = nh.simulate(sleigh, restricted_velocity=(0.3, 1.0), steps=80, events=box())
+    end = {"momentum": -there.restricted_momentum[-1], "configuration": there.configuration[-1]}
+    back = nh.simulate(sleigh, steps=80, events=box(), **end)
+    assert sum(len(there.events[side]) for side in SIDES) == 4
+    assert np.abs(back.configuration[::-1] - there.configuration).max() < 1e-12
+    assert np.abs(back.restricted_momentum[::-1] + there.restricted_momentum).max() < 1e-12
+
+
+@pytest.mark.parametrize("name", ["sleigh in a square", "top", "body in a cube"])
+def test_thinned_iterated_and_stored_runs_have_the_same_bits(name: str, tmp_path: pathlib.Path) -> None:
+    """Saved states, crossings and states after impacts do not depend on how a run is cut, kept and continued."""
+    system, start, walls = MOTIONS[name]
+    discrete, how = nh.discretize(system, 0.1), {"events": walls, **start}
+    orbit = nh.simulate(discrete, steps=300, **how)
+    thinned = nh.simulate(discrete, steps=300, save_every=7, **how)
+    assert same(orbit[::7], thinned)
+    assert same_log(orbit.events, thinned.events)
+    assert np.array_equal(orbit.multipliers[::7][:42], thinned.multipliers[:42], equal_nan=True)
+    first, *others = nh.iterate(discrete, steps=300, block_steps=23, **how)
+    joined = first.joined(others)
+    assert same(orbit, joined)
+    assert same_log(orbit.events, joined.events)
+    assert np.array_equal(orbit.multipliers, joined.multipliers, equal_nan=True)
+    nh.simulate(discrete, steps=200, store=tmp_path / "run.zarr", checkpoint_every=23, **how)
+    stored = nh.extend(tmp_path / "run.zarr", 100, discrete=discrete, events=walls)
+    assert same(orbit, stored)
+    assert same_log(orbit.events, stored.events)
+    loaded = nh.load_orbit(tmp_path / "run.zarr")
+    assert np.array_equal(loaded.multipliers, orbit.multipliers, equal_nan=True)
+    with pytest.raises(ValueError, match=r"be the events of the store, '\w+' \(restitution=1\.0\)"):
+        nh.resume(tmp_path / "run.zarr", events=[nh.Event(event.function, name=event.name) for event in walls])
+
+
+def test_blocks_may_end_at_impacts(tmp_path: pathlib.Path) -> None:
+    """Two walls at once, at the node at which every block ends: iterated and extended runs have the same bits."""
+    disk, how = nh.discretize(DISK, 0.125), {"body_velocity": (0.0, 1.0, 1.0), "events": box()}
+    orbit = nh.simulate(disk, steps=80, **how)
+    first, *others = nh.iterate(disk, steps=80, block_steps=8, **how)
+    nh.simulate(disk, steps=40, store=tmp_path / "run.zarr", checkpoint_every=8, **how)
+    stored = nh.extend(tmp_path / "run.zarr", 40, events=box())
+    for other in first.joined(others), stored:
+        assert same(orbit, other)
+        assert same_log(orbit.events, other.events)
+    assert np.abs(orbit.position - folded(orbit.time)[:, None]).max() < 1e-15
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_nothing_changes_without_an_impact(name: str) -> None:
+    """A motion that meets no wall has the bits of one without, maps and flows alike."""
+    system, start, walls = MOTIONS[name]
+    times = np.linspace(0, 0.3, 7)
+    free, near = (nh.simulate(nh.discretize(system, 0.05), steps=6, events=each, **start) for each in (None, walls))
+    assert same(free, near)
+    assert all(len(near.events[event]) == len(near.events[event].after) == 0 for event in near.events)
+    free, near = (nh.flow(system, times=times, events=each, **start) for each in (None, walls))
+    assert all(
+        np.array_equal(getattr(free, rows), getattr(near, rows)) for rows in ("reduced_momentum", "canonical_pose")
+    )
+
+
+def test_multipliers_of_cut_steps_are_unknown() -> None:
+    """Impulses of the constraint are those of whole steps, and NaN where a wall gave one too; displacements stay."""
+    orbit = nh.simulate(nh.discretize(SLEIGH, 0.1), restricted_velocity=(0.3, 1.0), steps=300, events=box())
+    cut = np.isin(np.arange(300), orbit.events.impact_steps)
+    assert 5 < cut.sum() < 100
+    assert np.array_equal(np.isnan(orbit.multipliers[:, 0]), cut)
+    assert np.array_equal(orbit.has_impacts[:-1], cut)
+    assert not orbit.has_every_step
+    moved = orbit.configuration[:-1] @ orbit.displacement[:-1] - orbit.configuration[1:]
+    assert np.array_equal(np.abs(moved).max(axis=(1, 2)) > 1e-14, cut)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_starts_at_a_wall(side: float) -> None:
+    """With a direction a body that starts at a wall is before it: the motion toward it is reflected at once."""
+    for speed, direction in itertools.product((1.0, -1.0), (-1, 0)):
+        start: dict[str, Any] = {
+            "body_velocity": (0.1, speed, 0.0),
+            "configuration": nh.SE(2).exp(np.array([0.0, side, 0.0])),
+        }
+        east = wall("east", (side, 0.0), direction=direction)
+        orbit = nh.simulate(nh.discretize(SLEIGH, 0.05), steps=40, events=[east], **start)
+        flow = nh.flow(SLEIGH, times=np.linspace(0, 2, 11), events=[east], **start)
+        for found in orbit, flow:
+            toward = speed * side > 0
+            assert len(found.events["east"]) == (toward and direction == -1)
+            assert (east.function(found).min() > -1e-14) == (not toward or direction == -1)
+
+
+def test_one_way_walls() -> None:
+    """A body passes a wall with a direction from behind, and is held on the other side."""
+    gate = nh.Event(lambda states: states.position[:, 0] - 0.5, direction=-1, name="gate", reset=nh.Impact((1.0, 0.0)))
+    orbit = nh.simulate(nh.discretize(BALANCED, 0.1), body_velocity=(0, 1.0, 0), steps=100, events=[gate, box()[0]])
+    assert np.abs(orbit.events["gate"].time - np.arange(1.5, 10, 1)).max() < 1e-14
+    assert np.all(orbit.position[orbit.time > 0.5, 0] > 0.5 - 1e-14)
+
+
+def test_other_events_see_the_parts_of_the_step() -> None:
+    """An event that is no wall is found before and after an impact in a step, and may stop the motion there."""
+    line = nh.Event(lambda states: states.position[:, 0] - 0.9, name="line", stop=2)
+    orbit = nh.simulate(nh.discretize(BALANCED, 0.5), body_velocity=(0, 1.0, 0), steps=10, events=[line, *box()])
+    assert np.abs(orbit.events["line"].time - [0.9, 1.1]).max() < 1e-15
+    assert orbit.events.stopped_by == "line"
+    line = nh.Event(line.function, name="line")
+    orbit = nh.simulate(nh.discretize(BALANCED, 0.7), body_velocity=(0, 1.0, 0), steps=10, events=[line, *box()])
+    lines, hits = orbit.events["line"], orbit.events["east"]
+    assert np.array_equal(lines.step[:2], [1, 1])
+    assert np.abs(lines.fraction[:2] * 0.7 + 0.7 - [0.9, 1.1]).max() < 1e-15
+    assert np.array_equal(lines.direction[:2], [1, -1])
+    assert lines.fraction[0] < hits.fraction[0] < lines.fraction[1]
+    last = nh.simulate(nh.discretize(BALANCED, 0.7), body_velocity=(0, 1.0, 0), steps=10,
+                       events=[wall("east", (1, 0), stop=1)])  # fmt: skip
+    assert last.time[-1] == 0.7
+    assert last.events.stopped_by == "east"
+    assert len(last.events["east"].after) == 1
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_random_bodies_in_random_polygons(seed: int) -> None:
+    """With any step, corners, contact point and a post: no wall is left behind, no energy gained, each hit is at it."""
+    rng = np.random.default_rng(seed)
+    point, corners, bounce = rng.uniform(-0.2, 0.2, 2), int(rng.integers(3, 7)), float(rng.choice([1.0, 0.8]))
+    body = nh.ChaplyginSleigh(1.0, rng.uniform(0.1, 1), rng.uniform(-0.5, 0.5), rng.uniform(-0.3, 0.3))
+    system = body if seed % 2 else nh.RigidBody.from_inertia(1.0, rng.uniform(0.1, 1), point, nh.SE(2))
+
+    def place(states: nh.Orbit) -> np.ndarray:
+        return states.configuration[:, :2] @ np.append(point, 1.0)
+
+    def side(angle: float, distance: float) -> Callable[[nh.Orbit], np.ndarray]:
+        return lambda states: distance - place(states) @ (np.cos(angle), np.sin(angle))
+
+    angles = np.arange(corners) * 2 * np.pi / corners + rng.uniform(-0.3, 0.3, corners)
+    gaps = [side(angle, rng.uniform(0.6, 1.0)) for angle in angles]
+    gaps.append(lambda states: ((place(states) - 0.35) ** 2).sum(axis=1) - 0.01)
+    walls = [nh.Event(gap, name=f"w{k}", reset=nh.Impact(restitution=bounce)) for k, gap in enumerate(gaps)]
+    discrete = nh.discretize(system, 10 ** rng.uniform(-1.5, -0.3))
+    velocity = rng.normal(size=system.rank)
+    orbit = nh.simulate(discrete, restricted_velocity=velocity, steps=60, events=walls, throw=False)
+    ways = np.abs(velocity).max() * discrete.time_step
+    assert min(gap(orbit).min() for gap in gaps) > -1e-11 * ways
+    assert np.diff(orbit.energy).max() < 1e-14 * orbit.energy[0]
+    assert bounce < 1 or np.abs(orbit.energy / orbit.energy[0] - 1).max() < 1e-13
+    for event in walls:
+        hits = orbit.events[event.name]
+        assert np.abs(event.function(hits.states)).max(initial=0) < 1e-14
+
+
+START: dict[str, Any] = {"restricted_velocity": (0.3, 1.0)}
+PLANE = nh.discretize(SLEIGH, 0.1)
+MOTOR = nh.discretize(nh.Forced(SLEIGH, force=np.ones((9, 3))), 0.1)
+SPEED = nh.Event(lambda states: states.body_velocity[:, 1], reset=nh.Impact())
+
+
+def bounced(discrete: Any = PLANE, events: Any = None, steps: int = 9, **options: Any) -> nh.Orbit:
+    """Run in a box."""
+    return nh.simulate(discrete, steps=steps, events=box() if events is None else events, **START, **options)
+
+
+def flowed(*times: float, **options: Any) -> nh.Orbit:
+    """Flow in a box."""
+    return nh.flow(SLEIGH, times=times, events=box(), **START, **options)
+
+
+REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
+    "restitution": (lambda: nh.Impact(restitution=1.1), "be from 0 to 1"),
+    "normal": (lambda: nh.Impact("up"), "Impact(normal=...)"),
+    "zero": (lambda: nh.Impact((0.0, 0.0)), "be no zero vector"),
+    "point": (lambda: nh.Impact(point=(0.0, 0.0)), "come with a spatial vector"),
+    "reset": (lambda: nh.Event(len, reset=1.0), "be an impact"),  # type: ignore[arg-type]
+    "no poses": (lambda: bounced(reconstruct=False), "reconstruct=False"),
+    "flow without poses": (lambda: flowed(0.0, 1.0, reconstruct=False), "without poses"),
+    "back in time": (lambda: flowed(1.0, 0.0), "back in time"),
+    "velocities": (lambda: bounced(events=[SPEED]), "depend on the pose alone"),
+    "space": (lambda: bounced(events=box(normal=(1.0, 0.0, 0.0))), "have a normal of the space"),
+    "opposite": (
+        lambda: bounced(steps=99, events=[wall("east", (1, 0), normal=(1.0, 0.0))]),
+        "in whose direction the function grows",
+    ),
+    "members": (
+        lambda: nh.ensemble(PLANE, restricted_velocity=np.ones((2, 2)), steps=9, events=box()),
+        "have no reset",
+    ),
+    "force of time": (lambda: bounced(MOTOR), "a force of the time"),
+    "branch": (lambda: bounced(branch="nearest"), "have parts of a step"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_refused(name: str) -> None:
+    """What impacts do not have is refused, with the reason."""
+    call, words = REFUSED[name]
+    with pytest.raises(ValueError, match=re.escape(words)):
+        call()
+
+
+def test_what_follows_from_whole_steps_is_refused(tmp_path: pathlib.Path) -> None:
+    """Derivatives, crossings afterwards and files without events do not know of impacts; parts before them do."""
+    orbit = nh.simulate(PLANE, steps=100, events=box(), **START)
+    first = int(orbit.events.impact_steps[0])
+    for ask in (
+        nh.asymptotics,
+        lambda o: o.tangent,
+        lambda o: nh.crossings(o, nh.cusp),
+        lambda o: nh.save_orbit(o, tmp_path / "o.zarr"),
+    ):
+        with pytest.raises(ValueError, match="impacts"):
+            ask(orbit)
+        ask(orbit[:first])
+    with pytest.raises(ValueError, match="impacts"):
+        _ = nh.flow(SLEIGH, times=np.linspace(0, 5, 9), events=box(), **START).tangent
