@@ -156,6 +156,8 @@ TOO_MUCH: dict[str, tuple[Callable[[], Any], str]] = {
         lambda: nh.mass_tensor_lagrangian(nh.SO(10**6), _many(10**6, 10**6)),
         "fit into memory",
     ),
+    "Linear": (lambda: nh.Linear(_many(10**6, 10**6)), "Linear(matrix=...)` must fit into memory"),
+    "Spring": (lambda: nh.Spring(_many(10**12), _many(10**12), 1.0), "Spring(body_point=...)` must fit into memory"),
     "Friction": (lambda: nh.Friction(np.ones(10**6)), "Friction(coefficients=...)` must fit into memory"),
     "Forced": (lambda: nh.Forced(SLEIGH.system, None, _many(10**12, 3)), "Forced(force=...)` must fit into memory"),
     "Gravity": (lambda: nh.Gravity(_many(10**12), _many(10**12)), "Gravity(point=...)` must fit into memory"),

@@ -84,8 +84,8 @@ class Discretization(Scheme, AbstractMotion):
         return self.system.forces
 
     @functools.cached_property
-    def is_balanced(self) -> bool:
-        """Whether forces act by equal half impulses at the displacement, so that T + U and every balance is exact."""
+    def is_balanced(self) -> bool:  # type: ignore[override]
+        """Whether the scheme is "energy"."""
         if self.forces is None:
             return False
         free = dataclasses.replace(self, system=self.forces.system)

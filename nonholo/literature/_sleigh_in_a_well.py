@@ -43,7 +43,7 @@ def sleigh_in_a_well(
     Example:
         >>> ready = nh.examples.sleigh_in_a_well()
         >>> orbit = nh.simulate(nh.discretize(ready.system, 0.05), body_velocity=ready.body_velocity, steps=400)
-        >>> bool(np.ptp(orbit.body_velocity[:, 0]) < 1e-12)
+        >>> bool(np.ptp(orbit.energy) < 1e-12)
         True
     """
     name = "sleigh_in_a_well"

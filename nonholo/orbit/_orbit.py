@@ -42,6 +42,8 @@ class AbstractMotion(Keeper, abc.ABC):
     system: System
     span: tuple[float, float] | None = None
     """The first and the last time between which `at` knows all states; None if saved states are all there is."""
+    is_balanced: bool = False
+    """Whether forces act by equal half impulses at the displacement, so that T + U and every balance is exact."""
     is_measured: bool = False
     """Whether poses were given, and everything else follows from them."""
     columns: ClassVar[tuple[str, ...]] = STATES

@@ -83,6 +83,15 @@ def _forces() -> list[Call]:
     point = {"force": array([0.0, 0.1, -1.0]), "point": array([0.1, 0.0, 0.3])}
     return [
         call("Gravity", nh.Gravity, **point),
+        call("Linear", nh.Linear, matrix=array(np.diag([0.1, 0.2, 0.3]), "any")),
+        call(
+            "Spring",
+            nh.Spring,
+            body_point=array([0.1, 0.0, 0.3]),
+            space_point=array([1.0, 0.0, 0.0]),
+            stiffness=number(2.0),
+            length=number(0.1),
+        ),
         call("Friction", nh.Friction, coefficients=array(np.diag([0.1, 0.2, 0.3]), "any")),
         call("Forced", nh.Forced, system=thing(top), **acting),
         call("forced.potential_energy", forced.potential_energy, configuration=pose),

@@ -51,7 +51,7 @@ def _end(name: str, x: jax.Array) -> jax.Array:
     controls = x[cut + 1 + k :][:many].reshape(case["steps"], -1) if many else None
     if "friction" in case:
         friction, force, point = jnp.split(x[cut + 1 + k + many :], [3, 5])
-        system = nh.Forced(system, nh.Gravity(force, point), nh.Friction(friction))
+        system = nh.Forced(system, nh.Gravity(force, point), nh.Friction(friction), "variational")
     discrete = nh.discretize(system, x[cut])
     orbit = nh.rollout(discrete, restricted_velocity=x[cut + 1 : cut + 1 + k], controls=controls, steps=case["steps"])
     return jnp.concatenate([orbit.restricted_momentum[-1], orbit.configuration[-1].ravel()])

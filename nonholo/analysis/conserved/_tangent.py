@@ -41,8 +41,8 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
         raise error(_WHERE, "have no impacts", "some", "Ask it of the part of the orbit before the first one.")
     if isinstance(discrete, ContinuousFlow) and not system.is_spatial and not system.is_forced:
         return flow_tangents(_WHERE, system, orbit.restricted_momentum, orbit.time)
-    free = isinstance(discrete, Discretization) and discrete.forces is None
-    if not free or not discrete.conserves_energy or discrete.order > 2:
+    closed = isinstance(discrete, Discretization) and discrete.conserves_energy and discrete.order == 2
+    if not (closed and isinstance(discrete, Discretization) and discrete.forces is None):
         remedy = "Differentiate `nh.rollout` by JAX, or run with the default difference and constraint."
         raise error(_WHERE, "be asked of a map with closed derivatives", shown(discrete), remedy)
     if not orbit.has_every_step:

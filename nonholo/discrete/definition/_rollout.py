@@ -5,6 +5,7 @@ the scalars of their kernel, from the identity; other ones in momenta along the 
 """
 
 import dataclasses
+import functools
 import math
 from collections.abc import Callable
 from typing import Any, NamedTuple, cast
@@ -117,9 +118,9 @@ def rolled(
     (name, value, g), (steps, every), system = start, sizes, discrete.system
     r, g = _along(discrete, name, jnp.asarray(value), jnp.asarray(g)), jnp.asarray(g)
     impulse, rows = impulse_of(discrete, forced, controls, steps)
-    balance = is_balanced(discrete, forced)
-    if balance:
-        step, start, at = _balanced_step(discrete, closed, forced), (r, g, len(discrete.variety.chart)), _as_it_is
+    balanced = forced if is_balanced(discrete, forced) else None
+    if balanced is not None:
+        step, start, at = _balanced_step(discrete, closed, balanced), (r, g, len(discrete.variety.chart)), _as_it_is
     elif closed is not None and discrete.order == 2:
         step, C, at = _closed_step(discrete, closed, g, impulse)
         start = C @ r, jnp.asarray([1.0, 0.0, 0.0, 0.0], r.dtype), 2
@@ -131,9 +132,10 @@ def rolled(
     time = discrete.time_step * every * jnp.arange(1 + steps // every)
     states = jax.vmap(at)(nodes)
     forces = jnp.zeros(()), jnp.zeros(())
-    if balance:
+    if balanced is not None:
         first = _part(discrete, weights(discrete.order)[0])
-        forces = jax.vmap(lambda y, g, row: half_impulse(first, forced, y, g, row))(*states[1:3], rows[::every]), 0.0
+        push = jax.vmap(functools.partial(half_impulse, first, balanced))
+        forces = push(states[1], states[2], rows[::every]), forces[1]
     elif impulse is not None:
         forces = jax.vmap(impulse)(states[0], states[2], rows[::every]), forces[1]
     if forced is not None:

@@ -176,7 +176,7 @@ class BalancedRoute(AbstractForcedRoute, AbstractOuterRoute):
         return momenta, charts, poses
 
     def _part(self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> Compact | None:
-        half, k = self.body.kick, len(m)
+        half, k = cast(kernels.Balanced, self.body.kick), len(m)
 
         def taken(m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> tuple[int, np.ndarray]:
             rows = half.c.rows[[min(step, len(half.c.rows) - 1), -1]]

@@ -31,7 +31,7 @@ _FALL = 0.5  # most that a correction leaves of what is missed, by which the roo
 _PIECES = 1000  # most of a path
 _FOLDED = 100.0  # of the inverse slope
 _DIFFERENCE = 1e-7  # relative, of momenta
-_SMALLEST = 1e-6  # part of a step by which its path goes on
+_SMALLEST = 1e-6  # part of a step by which its path is followed
 
 
 class Impulses(NamedTuple):
@@ -463,7 +463,7 @@ def solve(
         if done > 0.0:
             see_slope(p, f, room, (part * done, begin + part * done * f.c.time_step / 2, row), at, guess, pose)
         else:
-            rub(f.c, room, 0.0 if tried else part)
+            rub(f.c, room, part * goal)
         code = settle(p, f, room, (part * goal, begin + part * goal * f.c.time_step / 2, row), m, s, root, pose)
         if code == 5 or (code == 0 and goal == 1.0):
             return code

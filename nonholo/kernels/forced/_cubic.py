@@ -127,12 +127,15 @@ def refine(q: Cubic, A: Any, a: Any, N: Any, y1: float, y2: float) -> tuple[bool
 
 @njit(**COMPILED)
 def follow(q: Cubic, m: Any, r: Any, N: Any) -> tuple[int, float, float]:
-    """Follow the root over growing parts of a step, of momenta m and half impulses r + N y; return the outcome too."""
-    B, y1, y2, t, size = q.B, 0.0, 0.0, 0.0, 0.25
-    J, begun, det = (B[0], B[1], B[1], B[2]), B[0] * B[2] - B[1] * B[1], 1.0
+    """Follow the root over growing parts of a step, of momenta m and half impulses r + N y; return the outcome too.
+
+    Friction, which bends nothing, acts in full at all parts.
+    """
+    A, y1, y2, t, size = q.A, 0.0, 0.0, 0.0, 0.25
+    J, begun = A, A[0] * A[3] - A[1] * A[2]
+    det = begun
     for _ in range(PIECES):
         goal = t + size if t + size < 1.0 else 1.0
-        A = (B[0] + goal * q.K[0], B[1] + goal * q.K[1], B[1] + goal * q.K[2], B[2] + goal * q.K[3])
         square = goal * goal
         a = (goal * m[0] + square * r[0], goal * m[1] + square * r[1])
         M = (square * N[0], square * N[1], square * N[2], square * N[3])

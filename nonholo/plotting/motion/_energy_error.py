@@ -12,6 +12,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 
 from nonholo.base.types import Float
+from nonholo.discrete import Discretization
 from nonholo.orbit import AbstractOrbit
 from nonholo.plotting import theme
 from nonholo.plotting.parts import drawable_in_time, evenly_in_box, posed
@@ -117,7 +118,8 @@ def _over_rounding(
 def _expected(orbit: AbstractOrbit, balanced: bool) -> str:
     if orbit.is_measured:
         return "of given poses"
-    exact = getattr(orbit.motion, "is_balanced", False) and orbit.has_every_step and orbit.motion.order == 2
+    motion = orbit.motion
+    exact = isinstance(motion, Discretization) and motion.is_balanced and motion.order == 2 and orbit.has_every_step
     if not balanced or exact:
         return _EXPECTED[exact or orbit.conserves_energy]
     return "of order 2 in the time between states"
