@@ -1,4 +1,4 @@
-r"""Pictures of the theory pages: the mirror image, a path that meets a fold, the deltoid with three roots, a substep.
+r"""Pictures of the theory pages: the mirror image, a path that meets a fold, the deltoid with three roots, a substep, kicks.
 
 Run it to print the numbers that the pages quote and to draw the files of docs/images/theory/.
 """
@@ -204,11 +204,31 @@ def draw_substep() -> Figure:
     return figure
 
 
+def draw_kicks(steps: int = 1_000_000) -> Figure:
+    """Draw the largest error of T + U up to each time, of kicks and of balanced half impulses."""
+    figure = Figure(figsize=(6.4, 3.0), layout="constrained")
+    axes, tensor = figure.subplots(), np.diag([1.0, 1.2, 0.7])
+    heavy = {
+        "weight beside the axis": (nh.SuslovTop(tensor), nh.Gravity([0, 0, -1], [0, 0.1, 0.4]), (0.3, 0.2, 0.0), "-"),
+        "knife edge on a slope": (nh.ChaplyginSleigh(1, 1, 0), nh.Gravity([0.4, 0], [0, 0]), (0.7, 0.2, 0.0), "--"),
+    }
+    for name, (system, weight, velocity, line) in heavy.items():
+        for scheme, color in (("variational", theme.CONTINUOUS), ("energy", theme.DISCRETE)):
+            discrete = nh.discretize(nh.Forced(system, weight, scheme=scheme), 0.05)
+            orbit = nh.simulate(discrete, body_velocity=velocity, steps=steps, save_every=max(1, steps // 10_000))
+            error = np.maximum.accumulate(np.abs(orbit.energy - orbit.energy[0]))[1:]
+            axes.loglog(orbit.step[1:], error, line, color=color, label=f"{scheme}, {name}")
+    axes.set(xlabel="steps", ylabel="largest error of T + U", ylim=(1e-16, 1.0))
+    axes.legend(fontsize="small", loc="center right", bbox_to_anchor=(1.0, 0.47))
+    return figure
+
+
 DRAWN: dict[str, Callable[[], Figure]] = {
     "mirror": draw_mirror,
     "fold": draw_fold,
     "deltoid": draw_deltoid,
     "substep": draw_substep,
+    "kicks": draw_kicks,
 }
 
 if __name__ == "__main__":

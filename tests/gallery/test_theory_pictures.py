@@ -15,10 +15,11 @@ def gallery_script() -> ModuleType:
     return scripts.script("docs/gallery/theory_pictures.py")
 
 
-@pytest.mark.parametrize(("name", "panels"), [("mirror", 1), ("fold", 2), ("deltoid", 1), ("substep", 1)])
+@pytest.mark.parametrize(("name", "panels"), [("mirror", 1), ("fold", 2), ("deltoid", 1), ("substep", 1), ("kicks", 1)])
 def test_pictures_are_drawn_and_small(script: ModuleType, name: str, panels: int) -> None:
     """Each is drawn, lies where a page shows it, and has less than 150 kB."""
-    figure = script.draw_fold(6) if name == "fold" else script.DRAWN[name]()
+    short = {"fold": lambda: script.draw_fold(6), "kicks": lambda: script.draw_kicks(2000)}
+    figure = short.get(name, script.DRAWN[name])()
     assert len(figure.axes) == panels
     figure.canvas.draw()
     assert (script.PICTURES / f"{name}.png").stat().st_size < 150_000

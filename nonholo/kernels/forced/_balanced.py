@@ -222,20 +222,27 @@ def value_at(f: Balanced, room: ImpulseRoom, g: np.ndarray) -> float:
 
 
 @borrowing
-def sloped(f: Balanced, room: ImpulseRoom, part: float, out: np.ndarray) -> None:
-    """Add half impulses of a potential that is a function, h/2 times -dU - (U' - U - <dU, X>)/<BX, X> BX.
-
-    A difference below rounding is none; above it its rounding is that of half impulses, however short the step is.
-    """
-    mean, dU, velocity, bent = room.momenta[0], room.covectors[2], room.covectors[0], room.poses[3]
-    before, after = value_at(f, room, room.poses[0]), value_at(f, room, room.poses[1])
-    rounding, change, twice = _UNSEEN * (abs(before) + abs(after)), after - before, 0.0
+def differentiate(f: Balanced, room: ImpulseRoom) -> None:
+    """Write dU of a function in the middle, by differences."""
+    dU, bent = room.covectors[2], room.poses[3]
     for i in range(len(dU)):
         dU[i] = 0.0
         for j in range(len(f.c.weights)):
             for k in range(2):
                 multiply(room.poses[2], f.c.moves[i, j, k], bent)
                 dU[i] += (1 - 2 * k) * f.c.weights[j] * value_at(f, room, bent)
+
+
+@borrowing
+def sloped(f: Balanced, room: ImpulseRoom, part: float, out: np.ndarray) -> None:
+    """Add half impulses of a potential that is a function, h/2 times -dU - (U' - U - <dU, X>)/<BX, X> BX.
+
+    A difference below rounding is none; above it its rounding is that of half impulses, however short the step is.
+    """
+    mean, dU, velocity = room.momenta[0], room.covectors[2], room.covectors[0]
+    before, after = value_at(f, room, room.poses[0]), value_at(f, room, room.poses[1])
+    rounding, change, twice = _UNSEEN * (abs(before) + abs(after)), after - before, 0.0
+    differentiate(f, room)
     see_velocity(f.c, mean, velocity)
     for i in range(len(dU)):
         change -= part * f.c.time_step * dU[i] * velocity[i]
@@ -350,7 +357,7 @@ def settle(
     It is 7 if a correction leaves more than half of what is missed. If none does, the slopes of all that was met differ
     by less than half, and the root is that of the path from where the slope was taken.
     """
-    begun, last, H, before = room.momenta[3], room.momenta[5], room.slopes, math.inf
+    before = math.inf
     for _ in range(_CORRECTIONS):
         code = displace(p, f, room, when, s, root, pose)
         if code != 0:
@@ -365,12 +372,19 @@ def settle(
         if before < math.inf:
             renew(room, s)
         before = left
-        assign(begun, s)
-        assign(last, room.momenta[2])
-        for i in range(len(m)):
-            for j in range(len(m)):
-                s[i] += H[i, j] * last[j]
+        correct(room, s)
     return 7
+
+
+@njit(**BORROWING)
+def correct(room: ImpulseRoom, s: np.ndarray) -> None:
+    """Correct momenta by what they miss, and keep both."""
+    begun, last, H = room.momenta[3], room.momenta[5], room.slopes
+    assign(begun, s)
+    assign(last, room.momenta[2])
+    for i in range(len(s)):
+        for j in range(len(s)):
+            s[i] += H[i, j] * last[j]
 
 
 @njit(**BORROWING)

@@ -49,11 +49,16 @@ def certain_disc(B: Any, c: float, sizes: tuple[float, float, float, float]) -> 
 
 @scalar
 def is_in_strip(B: Any, c: float, K: Any, m: Any, r: Any, N: Any) -> bool:
-    """Tell whether all parts of the step of a sleigh have one root each in the strip: of momenta m and r + N y_1."""
+    """Tell whether all parts of the step of a sleigh have one root each in the strip: of momenta m and r + N y_1.
+
+    What the second equation gives to y_2 is put into the first one, whose least slope in the strip is bounded; a slide
+    that adds to it does no harm.
+    """
     T, W = STRIP, 1 + STRIP * STRIP
     a1, a2, n1, n2, size = abs(m[0]) + abs(r[0]), abs(m[1]) + abs(r[1]), abs(N[0]), abs(N[2]), abs(c)
     rate = (2 * T * (a2 + n2 * T) + W * n2 + abs(K[2]) + 2 * size * T) / B[2]
     against = m[1] if c > 0 else -m[1]
-    slide = (W * ((against if against > 0 else 0.0) + abs(r[1]) + n2 * T) + abs(K[2]) * T) / B[2]
-    growth = B[0] - abs(K[1]) * rate - size * (slide + T * rate) - 2 * T * (a1 + n1 * T) - W * n1
+    slide = ((against if against > 0 else 0.0) + abs(r[1])) * (1 + 3 * T * T)
+    bent = size * (slide + 2 * T * (W + T * T) * n2 + 2 * T * abs(K[2])) / B[2]
+    growth = B[0] - abs(K[1]) * rate - bent - 2 * T * (a1 + n1 * T) - W * n1
     return growth > 0 and T * growth > a1 + abs(K[1]) * a2 / B[2]
