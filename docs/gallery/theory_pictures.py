@@ -1,4 +1,4 @@
-r"""Pictures of the theory pages: the mirror image, a path that meets a fold, the deltoid with three roots, a substep, kicks.
+r"""Pictures of the theory pages: the mirror image, a path that meets a fold, the deltoid, a substep, kicks.
 
 Run it to print the numbers that the pages quote and to draw the files of docs/images/theory/.
 """

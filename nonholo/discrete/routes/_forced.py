@@ -314,12 +314,15 @@ def half_drive(free: AbstractCompiledRoute, forced: Forced, said: dict[str, str]
 
 def pull(free: AbstractCompiledRoute, forced: Forced) -> kernels.Pull:
     """Return the same of a weight, friction and a table, for tops in space and sleighs in the plane."""
-    half, inside = float(free.time_step) / 2, 2 if forced.group == SE(2) else 3
+    half, inside, flat = float(free.time_step) / 2, 2 if forced.group == SE(2) else 3, np.eye(3)[:2]
     rows = (free.encode(forced.to_canonical(np.eye(2))) / free.scale).T @ np.asarray(forced.constraint_subspace)
     weight, arms, friction = np.zeros(0), np.zeros((2, 0)), np.zeros((0, 0))
-    if forced.gravity is not None:
-        weight, levers = forced.gravity.levers(forced.group)
-        arms = half * free.scale * (_summed(rows.T, levers) @ _kernel_frame(free, forced).T)
+    if forced.gravity is not None:  # levers of the point in the kernel's own axes: rounded ones would do work on loops
+        turn = _kernel_frame(free, forced)
+        weight, _ = forced.gravity.levers(forced.group)
+        point = turn @ forced.gravity.place(forced.group)
+        own = flat if inside == 2 else np.array([flat[1], -flat[0]])
+        arms = half * free.scale * (own @ (forced.group.basis @ point))
         weight, arms = weight[:inside], arms[:, :inside]
     if forced.friction is not None:
         stiff = kernels.quadratic(free.body)[0] / kernels.inertia(free.body)[0]

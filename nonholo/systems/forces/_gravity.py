@@ -66,5 +66,9 @@ class Gravity(AbstractLinear):
         weight, place = self._homogeneous(group)
         return weight, group.basis @ place
 
+    def place(self, group: AbstractMatrixGroup) -> Float[Array, "N"]:
+        """Return x as matrices of the group take it."""
+        return self._homogeneous(group)[1]
+
     def _homogeneous(self, group: AbstractMatrixGroup) -> tuple[Array, Array]:
         return homogeneous(group, self.force, 0.0), homogeneous(group, self.point, 1.0)
