@@ -3,6 +3,7 @@
 import copy
 import dataclasses
 import functools
+import importlib
 import inspect
 import json
 from collections.abc import Callable, Mapping
@@ -13,8 +14,12 @@ import numpy as np
 from nonholo.base.checks import array, scale
 from nonholo.base.kept import Keeper
 from nonholo.base.types import Array, Float
+from nonholo.discrete import discretize
 from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, LagrangeDAlembert
+from nonholo.simulation import flow, simulate
 from nonholo.systems import AbstractSystem
+
+_STEP, _TIMES = 0.05, tuple(np.linspace(0.0, 20.0, 401))
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -48,6 +53,36 @@ class Example(Keeper):
     def coordinates(self) -> tuple[str, ...]:
         """Names of the coordinates; on a group ("pose",)."""
         return getattr(self.system, "coordinates", ()) or ("pose",)
+
+    def discretize(self, time_step: float = _STEP) -> Any:
+        """Return the discretized system, `nh.discretize(example.system, time_step)`."""
+        return discretize(self.system, time_step)
+
+    def simulate(self, *, steps: int = 400, time_step: float = _STEP, **options: Any) -> Any:
+        """Run the discrete map from the start of the example; options are those of `nh.simulate`.
+
+        Example:
+            >>> orbit = nh.examples.rolling_disk().simulate(steps=100)
+            >>> len(orbit), str(orbit.outcome)
+            (101, 'successful')
+        """
+        return simulate(self.discretize(time_step), **(self._start | options), steps=steps)
+
+    def flow(self, *, times: Any = _TIMES, **options: Any) -> Any:
+        """Solve for the continuous motion from the start of the example; options are those of `nh.flow`."""
+        return flow(self.system, **(self._start | options), times=times)
+
+    def explore(self) -> Any:
+        """Return the live page of the motion, see `nh.explore`."""
+        return importlib.import_module("nonholo.explorer").explore(self.simulate())
+
+    def plot(self, path: str | None = None, *, overwrite: bool = False) -> Any:
+        """Draw the overview picture of the motion; return the figure, saved to a new `path` if given."""
+        return self.simulate().plot(path, overwrite=overwrite)
+
+    @property
+    def _start(self) -> dict[str, Any]:
+        return {"body_velocity": self.body_velocity, "configuration": self.configuration}
 
     def __repr__(self) -> str:
         return f"<Example {self.name}: {', '.join(self.coordinates)}>"

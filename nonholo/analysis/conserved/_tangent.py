@@ -41,13 +41,16 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
         raise error(_WHERE, "have no impacts", "some", "Ask it of the part of the orbit before the first one.")
     if isinstance(discrete, ContinuousFlow) and not system.is_spatial and not system.is_forced:
         return flow_tangents(_WHERE, system, orbit.restricted_momentum, orbit.time)
-    closed = isinstance(discrete, Discretization) and discrete.conserves_energy and discrete.order == 2
-    if not (closed and isinstance(discrete, Discretization) and discrete.forces is None):
+    if not isinstance(discrete, Discretization) or not _has_closed_derivatives(discrete):
         remedy = "Differentiate `nh.rollout` by JAX, or run with the default difference and constraint."
         raise error(_WHERE, "be asked of a map with closed derivatives", shown(discrete), remedy)
     if not orbit.has_every_step:
         raise error(_WHERE, "have every step", f"{len(orbit)} states with others between", "Run with save_every=1.")
     return discrete.displacement_decoder.tangent(orbit.canonical_chart[:-1])
+
+
+def _has_closed_derivatives(discrete: Discretization) -> bool:
+    return discrete.conserves_energy and discrete.order == 2 and discrete.forces is None
 
 
 def lyapunov_exponents(orbit: Orbit) -> Float[np.ndarray, "k"]:

@@ -131,16 +131,13 @@ def rolled(
     given = value if name == "momentum" and value.shape == (system.group.dim,) else None
     time = discrete.time_step * every * jnp.arange(1 + steps // every)
     states = jax.vmap(at)(nodes)
-    forces = jnp.zeros(()), jnp.zeros(())
+    pushes, potential = jnp.zeros(()), jnp.zeros(()) if forced is None else forced.potential_energy(states[2])
     if balanced is not None:
         first = _part(discrete, weights(discrete.order)[0])
-        push = jax.vmap(functools.partial(half_impulse, first, balanced))
-        forces = push(states[1], states[2], rows[::every]), forces[1]
+        pushes = jax.vmap(functools.partial(half_impulse, first, balanced))(states[1], states[2], rows[::every])
     elif impulse is not None:
-        forces = jax.vmap(impulse)(states[0], states[2], rows[::every]), forces[1]
-    if forced is not None:
-        forces = forces[0], forced.potential_energy(states[2])
-    return _decoded(discrete, nodes, states, given, forces, time)
+        pushes = jax.vmap(impulse)(states[0], states[2], rows[::every])
+    return _decoded(discrete, nodes, states, given, (pushes, potential), time)
 
 
 def impulse_of(discrete: Scheme, forced: Forced | None, controls: Array | None, steps: int) -> tuple[Any, Any]:
