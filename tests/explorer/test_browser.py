@@ -42,10 +42,10 @@ def _sent(name: str, body: Any) -> nh.Orbit:
     return nh.simulate(nh.discretize(body, 0.1), body_velocity=VELOCITY[name.rpartition("_")[2]], steps=300)
 
 
-def _same(page: Any, orbit: nh.Orbit) -> None:
-    """The page has the momenta, charts and poses of an orbit, to the last bit."""
+def _same(page: Any, orbit: nh.Orbit, rounding: float = 0.0) -> None:
+    """The page has the momenta, charts and poses of an orbit, to the last bit or to some rounding."""
     for name, rows in (("r", orbit.reduced_momentum), ("y", orbit.cayley), ("g", orbit.canonical_pose)):
-        np.testing.assert_array_equal(page.numbers(name), rows.ravel())
+        np.testing.assert_allclose(page.numbers(name), rows.ravel(), rtol=0, atol=rounding)
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
@@ -152,7 +152,8 @@ def test_forces_at_zero(visit: Callable, files: dict, name: str) -> None:
         state = page.page.evaluate("nonholo.state")
         assert state["steps"] == 300
         body = _pushed(BODIES[name.removeprefix("forced_")], state["parameters"])
-        _same(page, nh.simulate(nh.discretize(body, 0.1), momentum=state["momentum"], steps=300))
+        orbit = nh.simulate(nh.discretize(body, 0.1), momentum=state["momentum"], steps=300)
+        _same(page, orbit, 1e-12 if part == "Fc" else 0.0)  # the page solves the cubic, whose weight is zero
     page.page.fill("#number-c1", "-1")
     page.page.press("#number-c1", "Enter")
     page.settle()
