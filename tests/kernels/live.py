@@ -5,6 +5,7 @@ NUMBA_DISABLE_JIT=1 python live.py calls   # the functions that are called
 """
 
 import hashlib
+import itertools
 import json
 import sys
 import threading
@@ -66,6 +67,27 @@ def forced(system: Any) -> Arrays:
     return found
 
 
+def balanced(system: Any) -> Arrays:
+    """Run single orbits under springs, by kicks, and in steps so long that roots are followed, some to their end."""
+    n = system.group.size - system.group.is_affine
+    heavy, spring = nh.Gravity(np.ones(n), np.ones(n)), nh.Spring(np.ones(n), np.zeros(n), 2.0, 0.3)
+    runs = []
+    for potential, scheme, step in (
+        (spring, None, 0.1),
+        (heavy, "variational", 0.05),
+        (heavy, None, 0.8),
+        (heavy, None, 3.0),
+        (spring, None, 0.8),
+        (spring, None, 3.0),
+    ):
+        discrete = nh.discretize(nh.Forced(system, potential, scheme=scheme), step)
+        for size in (0.3, 1.5):
+            start = {"restricted_velocity": size * np.linspace(1.0, -0.7, system.rank)}
+            orbit = nh.simulate(discrete, **start, steps=80, throw=False)
+            runs += [orbit.restricted_momentum, orbit.cayley, orbit.canonical_pose]
+    return runs
+
+
 @numba.njit
 def _pushed(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
     return (0.3 - 0.1 * time) * g[0, 0] - w * w
@@ -84,8 +106,9 @@ def _well(g: np.ndarray) -> float:
 def driven(system: Any) -> Arrays:
     """Run single orbits under functions that are compiled, where compilation is not turned off."""
     found = []
-    for force in (_pushed, nh.Friction(np.linspace(0.1, 0.2, system.group.dim)), _drag):
-        discrete = nh.discretize(nh.Forced(system, _well, force), STEP / 10)
+    forces = _pushed, nh.Friction(np.linspace(0.1, 0.2, system.group.dim)), _drag
+    for force, scheme in itertools.product(forces, (None, "variational")):
+        discrete = nh.discretize(nh.Forced(system, _well, force, scheme), STEP / 10)
         velocity = np.linspace(0.5, -0.3, system.rank)
         orbit = nh.simulate(discrete, restricted_velocity=velocity, steps=STEPS, throw=False)
         found += [orbit.reduced_momentum, orbit.cayley, orbit.pose]
@@ -201,6 +224,8 @@ RUNS: dict[str, Callable[[], Arrays]] = {
     ),
     "flows of tops": lambda: members_of_flows(TOP),
     "flows of sleighs": lambda: members_of_flows(SLEIGH),
+    "top under springs and kicks": lambda: balanced(TOP),
+    "sleigh under springs and kicks": lambda: balanced(SLEIGH),
     "flow of a heavy top": lambda: flows(nh.Forced(TOP, nh.Gravity([0.1, -0.2, -2.0], [0.2, 0.1, 0.5]))),
     "flow of a sleigh on a slope": lambda: flows(nh.Forced(SLEIGH, SLOPE, nh.Friction([0.1, 0.3, 0.2]))),
     "flows of sleighs on a slope": lambda: members_of_flows(nh.Forced(SLEIGH, SLOPE, nh.Friction([0.1, 0.3, 0.2]))),
