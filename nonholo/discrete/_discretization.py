@@ -236,8 +236,10 @@ class Discretization(Scheme, AbstractMotion):
         if self.forces is None and not self.system.is_spatial:
             return self.displacement_decoder.multipliers(before.canonical_chart, after.canonical_chart)
         arriving = self._momentum(before, before.canonical_chart, "right")
-        if self.forces is not None:
-            arriving = arriving + self._impulses(after, 0) + self._impulses(before if self.is_balanced else after, -1)
+        if self.is_balanced:
+            arriving = arriving + self._impulses(before, 0) + self._impulses(after, 0)
+        elif self.forces is not None:
+            arriving = arriving + self._impulses(after, 0) + self._impulses(after, -1)
         group, to_multipliers = self.system.group, np.linalg.pinv(self.system.annihilator).T
         if not self.system.is_spatial:
             return applied(to_multipliers, self.displacement_decoder.momentum(after.canonical_chart, "left") - arriving)
@@ -257,8 +259,8 @@ class Discretization(Scheme, AbstractMotion):
     def _impulses(self, states: Orbit, shift: int) -> Float[np.ndarray, "K dim"]:
         """Return the half impulses at nodes of the steps that begin there, or with shift -1 of those that end there."""
         forced, half = cast(Forced, self.forces), float(self.time_step) * (0.5 + shift)
-        if self.is_balanced:
-            return abs(half) * self.mean_force(states)
+        if self.is_balanced:  # the same at both ends
+            return half * self.mean_force(states)
         steps, momenta = states.step + shift, states.restricted_momentum
         found = forced.impulses(momenta, states.configuration, states.time, steps, half)
         return found if shift == 0 else -found

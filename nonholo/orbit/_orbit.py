@@ -319,7 +319,9 @@ class Orbit(AbstractOrbit):
         Those of steps with impacts are NaN.
         """
         found = self.motion.multipliers(self)
-        return found if not self.is_discrete else np.where(self.has_impacts[:-1, None], np.nan, found)
+        if not self.is_discrete or not self.has_impacts.any():
+            return found
+        return np.where(self.has_impacts[:-1, None], np.nan, found)
 
     @remembered
     def displacement(self) -> Float[np.ndarray, "K N N"]:

@@ -226,6 +226,7 @@ RUNS: dict[str, Callable[[], Arrays]] = {
     "flows of sleighs": lambda: members_of_flows(SLEIGH),
     "top under springs and kicks": lambda: balanced(TOP),
     "sleigh under springs and kicks": lambda: balanced(SLEIGH),
+    "heavy free body": lambda: forced(nh.RigidBody(np.diag([1.0, 1.2, 0.7]))),
     "flow of a heavy top": lambda: flows(nh.Forced(TOP, nh.Gravity([0.1, -0.2, -2.0], [0.2, 0.1, 0.5]))),
     "flow of a sleigh on a slope": lambda: flows(nh.Forced(SLEIGH, SLOPE, nh.Friction([0.1, 0.3, 0.2]))),
     "flows of sleighs on a slope": lambda: members_of_flows(nh.Forced(SLEIGH, SLOPE, nh.Friction([0.1, 0.3, 0.2]))),

@@ -141,7 +141,7 @@ def rolled(
 
 
 def impulse_of(discrete: Scheme, forced: Forced | None, controls: Array | None, steps: int) -> tuple[Any, Any]:
-    """Return the function that gives half the impulse of a step, and the body covectors of steps; None where free.
+    """Return the function of kicks, half the impulse of a step, and the body covectors of steps; None where free.
 
     Nothing of them acts over what follows the last step.
     """
@@ -149,6 +149,9 @@ def impulse_of(discrete: Scheme, forced: Forced | None, controls: Array | None, 
     rows = jnp.zeros((steps + 1, dim)) if controls is None else jnp.pad(controls, ((0, 1), (0, 0)))
     if forced is None:
         return (None, None) if controls is None else (lambda _r, _g, row: half * row, rows)
+    rows = rows + forced.rows(np.arange(steps + 1))
+    if is_balanced(discrete, forced):
+        return None, rows
     fixed = None
     if forced.friction is not None and not forced.is_spatial:
         fixed = forced.propagator(jnp.asarray(forced.constraint_subspace.T), half)
@@ -156,7 +159,7 @@ def impulse_of(discrete: Scheme, forced: Forced | None, controls: Array | None, 
     def impulse(r: Array, g: Array, row: Array) -> Array:
         return forced.impulse(r, g, forced.potential_force(g) + row, half, fixed)
 
-    return impulse, rows + forced.rows(np.arange(steps + 1))
+    return impulse, rows
 
 
 def is_balanced(discrete: Scheme, forced: Forced | None) -> bool:

@@ -6,11 +6,12 @@ from typing import Any, cast
 
 from nonholo.discrete._scheme import Scheme
 from nonholo.discrete._variety import variety_of
+from nonholo.discrete.routes._balanced import balanced_route
 from nonholo.discrete.routes._base import AbstractRoute
 from nonholo.discrete.routes._closed_forms import closed_form
 from nonholo.discrete.routes._composed import ComposedRoute
 from nonholo.discrete.routes._definition import DefinitionRoute
-from nonholo.discrete.routes._forced import balanced_route, forced_route
+from nonholo.discrete.routes._forced import forced_route
 from nonholo.discrete.routes._matrix import MatrixRoute
 from nonholo.discrete.routes._scalar import ScalarRoute
 from nonholo.discrete.routes._secular import SecularRoute

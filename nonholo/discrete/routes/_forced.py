@@ -13,11 +13,9 @@ from nonholo.base.calls import FunctionError, UndefinedError, noted, number_of
 from nonholo.base.checks import error
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
-from nonholo.discrete._composition import weights
-from nonholo.discrete._variety import variety_of
 from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute, Compact, parts_by, posed
 from nonholo.discrete.routes._composed import AbstractOuterRoute
-from nonholo.groups import SE, SO
+from nonholo.groups import SE
 from nonholo.orbit import Orbit
 from nonholo.systems import Forced
 
@@ -34,12 +32,6 @@ def forced_route(free: AbstractRoute, forced: Forced) -> AbstractRoute:
     if forced.is_spatial:
         return FunctionRoute(inside, forced)
     return ForcedRoute(inside, forced)
-
-
-def balanced_route(free: Any, matrix: Callable[[], Any], forced: Forced, order: int) -> "BalancedRoute":
-    """Return the route of balanced half impulses around a free step, or for any force around that on matrices."""
-    plain = forced.function is None and (forced.gravity is not None or not forced.terms)
-    return BalancedRoute(free if free.is_scalar and plain and order == 2 else matrix(), forced, order, matrix)
 
 
 class AbstractForcedRoute(AbstractRoute):
@@ -120,75 +112,19 @@ class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
     @property
     def compiled(self) -> "ForcedRoute | None":  # type: ignore[override]
         """The route itself, if numba compiled all functions that it calls."""
-        return self if self.forced.is_jitted and _drives(self.forced) in (None, self.forced.own_potential) else None
+        return (
+            self
+            if self.forced.is_jitted and driven_potential(self.forced) in (None, self.forced.own_potential)
+            else None
+        )
 
     @functools.cached_property
     def body(self) -> kernels.ForcedBody:
         """The body and its half impulse."""
         free, forced = self.free, self.forced
-        has_function = forced.function is not None or _drives(forced) is not None
+        has_function = forced.function is not None or driven_potential(forced) is not None
         half = half_drive(free, forced, self.said) if has_function else half_kick(free, forced)
         return kernels.ForcedBody(free.body, half)
-
-
-@dataclasses.dataclass(frozen=True, eq=False)
-class BalancedRoute(AbstractForcedRoute, AbstractOuterRoute):
-    """Equal half impulses at the displacement, by which T + U and every balance is exact; in one or several stages.
-
-    Attributes:
-        free: The route of the free step of order 2.
-        forced: The system with its forces.
-        order: 2, 4, 6 or 8.
-        matrix: Makes the route of the free step on matrices.
-    """
-
-    free: AbstractCompiledRoute
-    forced: Forced
-    order: int = 2
-    matrix: Any = dataclasses.field(default=None, repr=False)
-    said: dict[str, str] = dataclasses.field(default_factory=dict, repr=False)
-
-    @property
-    def compiled(self) -> "BalancedRoute | None":  # type: ignore[override]
-        """The route itself, if numba compiled all functions that it calls."""
-        return self if self.forced.is_jitted else None
-
-    @functools.cached_property
-    def body(self) -> kernels.ForcedBody:
-        """The body and its half impulses."""
-        forced, free = self.forced, self.free
-        kick = pull(free, forced) if free.is_scalar else balanced(free, forced, self.order, self.said)
-        return kernels.ForcedBody(free.body, kick)
-
-    @functools.cached_property
-    def general(self) -> "BalancedRoute":
-        """The route of any force, whose step has parts."""
-        return dataclasses.replace(self, free=self.matrix()) if self.free.is_scalar else self
-
-    def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Compact:
-        """Return momenta, charts and poses after fractions of the steps from states; NaN where none starts."""
-        if self.general is self:
-            return super().parts(states, fractions)
-        momenta, charts, poses = self.general.parts(states, fractions)
-        if self.forced.group == SO(3):  # of both quaternions of a pose that of a turn by less than a half
-            ahead = (poses * posed(states, needed=True)).sum(axis=1, keepdims=True)
-            poses = np.where(ahead < 0, -poses, poses)
-        return momenta, charts, poses
-
-    def _part(self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> Compact | None:
-        half, k = cast(kernels.Balanced, self.body.kick), len(m)
-
-        def taken(m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> tuple[int, np.ndarray]:
-            rows = half.c.rows[[min(step, len(half.c.rows) - 1), -1]]
-            c = half.c._replace(stages=fraction * half.c.stages, begin=float(time), rows=rows)
-            return self.runs.start(self.body._replace(kick=half._replace(c=c)), m, pose)
-
-        code, state = taken(np.array(m), np.array(pose), time, step, fraction)
-        if code != 0:
-            return None
-        after, moved = state[:k].copy(), state[2 * k : 2 * k + len(pose)].copy()
-        _, ahead = taken(after, moved, time + fraction * float(self.free.time_step), step + int(fraction), 1.0)
-        return after, self.runs.chart_of(self.body, ahead), moved
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -279,10 +215,10 @@ def half_kick(free: AbstractCompiledRoute, forced: Forced) -> kernels.Kick:
     kick, _ = _linear_part(free, forced)
     weight, arms = kick.weight, kick.arms
     if len(weight):
-        arms = arms @ _kernel_frame(free, forced).T
+        arms = arms @ kernel_frame(free, forced).T
     if free.is_scalar and forced.group == SE(2):
         weight, arms = weight[:2], arms[:, :2]
-    return kick._replace(weight=_plain(weight), arms=_plain(arms))
+    return kick._replace(weight=plain(weight), arms=plain(arms))
 
 
 def half_drive(free: AbstractCompiledRoute, forced: Forced, said: dict[str, str]) -> kernels.Drive:
@@ -291,20 +227,20 @@ def half_drive(free: AbstractCompiledRoute, forced: Forced, said: dict[str, str]
     group, S, has = (
         forced.group,
         np.asarray(forced.constraint_subspace),
-        (forced.function is not None, _drives(forced) is not None),
+        (forced.function is not None, driven_potential(forced) is not None),
     )
     momenta = forced.from_canonical(free.decode(np.eye(forced.rank)))
     velocity = S.T @ np.linalg.solve(S @ np.asarray(forced.inertia_operator) @ S.T, momenta.T)
     moves, weights = forced.differences
-    force, potential = _functions(forced, _drives(forced), said)
+    force, potential = functions_of(forced, driven_potential(forced), said)
     return kernels.Drive(
         kick=kick,
         planar=(2 if group == SE(2) else 3) if free.is_scalar else 0,
-        turn=_plain(_kernel_frame(free, forced)),
-        velocity=_plain(velocity),
-        along=_plain(along.T),
-        moves=_plain(moves),
-        weights=_plain(weights),
+        turn=plain(kernel_frame(free, forced)),
+        velocity=plain(velocity),
+        along=plain(along.T),
+        moves=plain(moves),
+        weights=plain(weights),
         time_step=float(free.time_step),
         has=has,
         force=force,
@@ -312,69 +248,13 @@ def half_drive(free: AbstractCompiledRoute, forced: Forced, said: dict[str, str]
     )
 
 
-def pull(free: AbstractCompiledRoute, forced: Forced) -> kernels.Pull:
-    """Return the same of a weight, friction and a table, for tops in space and sleighs in the plane."""
-    half, inside, flat = float(free.time_step) / 2, 2 if forced.group == SE(2) else 3, np.eye(3)[:2]
-    rows = (free.encode(forced.to_canonical(np.eye(2))) / free.scale).T @ np.asarray(forced.constraint_subspace)
-    weight, arms, friction = np.zeros(0), np.zeros((2, 0)), np.zeros((0, 0))
-    if forced.gravity is not None:  # levers of the point in the kernel's own axes: rounded ones would do work on loops
-        turn = _kernel_frame(free, forced)
-        weight, _ = forced.gravity.levers(forced.group)
-        point = turn @ forced.gravity.place(forced.group)
-        own = flat if inside == 2 else np.array([flat[1], -flat[0]])
-        arms = half * free.scale * (own @ (forced.group.basis @ point))
-        weight, arms = weight[:inside], arms[:, :inside]
-    if forced.friction is not None:
-        stiff = kernels.quadratic(free.body)[0] / kernels.inertia(free.body)[0]
-        friction = half * stiff * (rows @ forced.friction.matrix @ rows.T)
-    table = forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table))))
-    return kernels.Pull(*map(_plain, (weight, arms, friction, half * free.scale * _summed(table.T, rows.T))))
-
-
-def balanced(free: AbstractCompiledRoute, forced: Forced, order: int, said: dict[str, str]) -> kernels.Balanced:
-    """Return half the impulses at displacements in the units and axes of a kernel."""
-    group, S, half = forced.group, np.asarray(forced.constraint_subspace), float(free.time_step) / 2
-    to_kernel = free.encode(forced.to_canonical(np.eye(forced.rank)))
-    momenta = forced.from_canonical(free.decode(np.eye(forced.rank)))
-    velocity = S.T @ np.linalg.solve(S @ np.asarray(forced.inertia_operator) @ S.T, momenta.T)
-    along, variety = half * to_kernel.T @ S, variety_of(forced.system, "skew")
-    frame, charts = forced.frame, free.from_kernel(np.eye(free.sizes[1]))
-    exact = [each for each in forced.terms if hasattr(each, "matrix_for")]
-    springs = [each.numbers_for(group) for each in forced.terms if hasattr(each, "numbers_for")]
-    linear = sum((each.matrix_for(group) for each in exact), np.zeros((group.size,) * 2 if exact else (0, 0)))
-    C = np.zeros((0, 0)) if forced.friction is None else along @ forced.friction.matrix @ velocity
-    rows = forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table)))) @ along.T
-    moves, parts = forced.differences
-    force, potential = _functions(forced, forced.own_potential, said)
-    numbers = kernels.Impulses(
-        planar=(2 if group == SE(2) else 3) if free.is_scalar else 0,
-        turn=_plain(_kernel_frame(free, forced)),
-        directions=_plain(frame @ group.hat(charts @ variety.chart) @ group.inverse(frame)),
-        velocity=_plain(velocity),
-        along=_plain(along),
-        levers=_plain(np.einsum("kd,dab->kab", along, group.basis)),
-        metric=_plain(velocity.T @ np.asarray(forced.inertia_operator) @ velocity),
-        linear=_plain(linear),
-        springs=_plain(np.reshape(springs, (len(springs), 2 + 2 * group.size))),
-        friction=_plain(C),
-        rows=_plain(rows),
-        moves=_plain(moves),
-        weights=_plain(parts),
-        time_step=float(free.time_step),
-        begin=0.0,
-        stages=_plain(weights(order)),
-    )
-    has = forced.function is not None, forced.own_potential is not None
-    return kernels.Balanced(numbers, has, force, potential)
-
-
-def _drives(forced: Forced) -> Callable[..., Any] | None:
+def driven_potential(forced: Forced) -> Callable[..., Any] | None:
     """Return U as kicks at nodes take it: a function of whatever is no single weight."""
     whole = len(forced.terms) > 1 or (forced.terms and forced.gravity is None and forced.own_potential is None)
     return forced.potential_energy if whole else forced.own_potential
 
 
-def _functions(forced: Forced, potential: Callable[..., Any] | None, said: dict[str, str]) -> tuple[Any, Any]:
+def functions_of(forced: Forced, potential: Callable[..., Any] | None, said: dict[str, str]) -> tuple[Any, Any]:
     """Return force and potential as kernels call them: addresses if numba compiled all of them, else in Python."""
     if not forced.is_jitted or potential not in (None, forced.own_potential):
         return _in_python(forced, potential, said)
@@ -429,12 +309,12 @@ def _linear_part(free: AbstractCompiledRoute, forced: Forced) -> tuple[kernels.K
     weight, arms = np.zeros(0), np.zeros((forced.rank, 0))
     if forced.gravity is not None:
         weight, levers = forced.gravity.levers(forced.group)
-        arms = _summed(along, levers)
-    rows = _summed(forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table)))).T, along)
-    return kernels.Kick(*map(_plain, (keep, weight, arms, rows))), along
+        arms = summed(along, levers)
+    rows = summed(forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table)))).T, along)
+    return kernels.Kick(*map(plain, (keep, weight, arms, rows))), along
 
 
-def _summed(columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
+def summed(columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """Return the sum of outer products in their order, as by the kernel of a page."""
     return functools.reduce(np.add, map(np.multiply.outer, columns, rows))
 
@@ -453,13 +333,13 @@ def _half_step(free: AbstractCompiledRoute, forced: Forced) -> tuple[np.ndarray,
     return kept, S.T @ push.T @ to_kernel
 
 
-def _kernel_frame(free: AbstractCompiledRoute, forced: Forced) -> Float[np.ndarray, "N N"]:
+def kernel_frame(free: AbstractCompiledRoute, forced: Forced) -> Float[np.ndarray, "N N"]:
     """Return T: a pose of the user is that of the kernel times T."""
     frame, group = free.encode_poses(forced.frame_pose[None]), forced.group
     matrix = group.matrix_from_pose(frame) if free.is_scalar else frame.reshape(-1, group.size, group.size)
     return np.linalg.inv(matrix[0])
 
 
-def _plain(array: np.ndarray) -> np.ndarray:
+def plain(array: np.ndarray) -> np.ndarray:
     """Return a writable copy row by row: every other layout would be compiled for itself."""
     return np.array(array, order="C")

@@ -21,7 +21,7 @@ from nonholo.kernels._driver import SETTLED, _compensated
 from nonholo.kernels._scalar import BORROWING, COMPILED, borrowing, scalar
 from nonholo.kernels._small import assign, eliminate, multiply
 from nonholo.kernels._substeps import charted, prepared, pushed, solved
-from nonholo.kernels.forced._driven import function_at, largest, place
+from nonholo.kernels.forced._driven import function_at, largest
 
 _CORRECTIONS = 30  # of momenta between two half impulses
 _EXACT = 4e-16  # relative
@@ -38,7 +38,6 @@ class Impulses(NamedTuple):
     """Half impulses at the displacement, but for functions of users.
 
     Attributes:
-        planar: 2 or 3 where poses of the kernel are headings or quaternions, 0 where they are matrices.
         turn: T, the pose of the user is that of the kernel times T, (N, N).
         directions: What each chart coordinate adds to the Cayley matrix Y of the user, (m, N, N).
         velocity: V, (dim, k).
@@ -56,7 +55,6 @@ class Impulses(NamedTuple):
         stages: Parts of the step, taken one after the other, (S,).
     """
 
-    planar: int
     turn: np.ndarray
     directions: np.ndarray
     velocity: np.ndarray
@@ -97,7 +95,6 @@ class ImpulseRoom(NamedTuple):
 
     Attributes:
         poses: The user's pose before and after, in the middle, and others, (8, N, N).
-        rows: The same numbers, (8, N N).
         covectors: A body velocity, what a function writes, and dU, (3, dim).
         momenta: In the middle, half impulses, what is missed, before, the change, others, (8, k).
         noise: Rounding of half impulses, (1,).
@@ -108,7 +105,6 @@ class ImpulseRoom(NamedTuple):
     """
 
     poses: np.ndarray
-    rows: np.ndarray
     covectors: np.ndarray
     momenta: np.ndarray
     noise: np.ndarray
@@ -122,10 +118,16 @@ class ImpulseRoom(NamedTuple):
 def room_of(c: Impulses, size: int) -> ImpulseRoom:
     """Return room for the half impulses of one run."""
     (k, dim), n = c.along.shape, len(c.turn)
-    poses = np.zeros((8, n, n))
+    poses, covectors, momenta = np.zeros((8, n, n)), np.zeros((3, dim)), np.zeros((8, k))
     chart, pose = np.zeros(len(c.directions)), np.zeros(size)
-    rows, covectors, momenta = poses.reshape(8, n * n), np.zeros((3, dim)), np.zeros((8, k))
-    return ImpulseRoom(poses, rows, covectors, momenta, np.zeros(1), np.zeros((k, k)), np.zeros((k, k)), chart, pose)
+    return ImpulseRoom(poses, covectors, momenta, np.zeros(1), np.zeros((k, k)), np.zeros((k, k)), chart, pose)
+
+
+@njit(**BORROWING)
+def see_pose(c: Impulses, room: ImpulseRoom, pose: np.ndarray, out: np.ndarray) -> None:
+    """Write the user's pose from that of the kernel."""
+    assign(room.poses[7].reshape(-1), pose)
+    multiply(room.poses[7], c.turn, out)
 
 
 @njit(**BORROWING)
@@ -143,18 +145,18 @@ def lean(c: Impulses, room: ImpulseRoom) -> None:
 @njit(**BORROWING)
 def pull(c: Impulses, room: ImpulseRoom, out: np.ndarray) -> None:
     """Add half impulses of potentials that are linear and of springs, which are linear in the leaning pose."""
-    A, leaning, seen, n = room.poses[3], room.poses[4], room.poses[5], len(c.turn)
+    A, leaning, product, n = room.poses[3], room.poses[4], room.poses[5], len(c.turn)
     lean(c, room)
     for i in range(n):
         for j in range(n):
             A[i, j] = c.linear[j, i] if len(c.linear) else 0.0
     for s in range(len(c.springs)):
         stretch(c.springs[s], room, A)
-    multiply(A, leaning, seen)
+    multiply(A, leaning, product)
     for r in range(len(out)):
         for i in range(n):
             for j in range(n):
-                out[r] -= seen[i, j] * c.levers[r, j, i]
+                out[r] -= product[i, j] * c.levers[r, j, i]
 
 
 @njit(**BORROWING)
@@ -327,7 +329,7 @@ def displace(
     for i in range(len(s)):
         change[i] /= part
         mean[i] = s[i] + change[i] / 2
-    place(f.c, room.pose, room.poses[7], room.rows[7], room.poses[1])
+    see_pose(f.c, room, room.pose, room.poses[1])
     half_impulse(f, room, part, when[1], when[2])
     return 0
 
@@ -516,12 +518,12 @@ def step(
     for i in range(len(f.c.stages)):
         part = f.c.stages[i]
         when = part, begin + part * f.c.time_step / 2, row
-        place(f.c, pose, room.poses[7], room.rows[7], room.poses[0])
+        see_pose(f.c, room, pose, room.poses[0])
         for j in range(len(root)):
             root[j] = 3 * (past[i, 0, j] - past[i, 1, j]) + past[i, 2, j]
         for j in range(len(m)):
-            known = part * f.c.rows[at, j]
-            s[j] = m[j] + (known + (3 * (pushes[i, 0, j] - pushes[i, 1, j]) + pushes[i, 2, j]))
+            table = part * f.c.rows[at, j]
+            s[j] = m[j] + (table + (3 * (pushes[i, 0, j] - pushes[i, 1, j]) + pushes[i, 2, j]))
         code = solve(p, f, room, when, m, s, root, pose)
         if code != 0:
             return code

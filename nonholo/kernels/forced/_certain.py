@@ -4,10 +4,10 @@ It is the only one in a region that no part of the step leads out of. Tops: the 
 
 $$ 1 - \frac{|c|R}{b^{3/2}} - \frac{2R}{b}\Bigl((1 + \tfrac{|K|}b)R + \frac{|c|R^2}{b^{3/2}}\Bigr)
    - \Bigl(1 + \frac{R^2}b\Bigr)\frac\nu b > 0, \qquad
-   |m| < \frac R{1 + R^2/b} - \frac1{\sqrt b}\Bigl(\ell + \rho + \frac{\nu R}{\sqrt b}\Bigr), $$
+   |m|,\ |m + a| < \frac R{1 + R^2/b} - \frac{\nu R}b, $$
 
-b the least eigenvalue of B, |L F| <= l, |N| <= nu, rows of at most rho, m in the dual norm. Sleighs: the strip |y_1| <=
-T, in which the second equation gives y_2 and the first one grows with y_1.
+b the least eigenvalue of B, |N| <= nu, half impulses a + N y, momenta in the dual norm. Sleighs: the strip |y_1| <= T,
+in which the second equation gives y_2 and the first one grows with y_1.
 """
 
 from typing import Any
@@ -27,23 +27,21 @@ def is_alone(b: float, c: float, K: float, nu: float, R: float) -> bool:
 
 
 @scalar
-def certain_disc(B: Any, c: float, sizes: tuple[float, float, float, float]) -> tuple[float, float]:
+def certain_disc(B: Any, c: float, K: float, nu: float) -> tuple[float, float]:
     """Return R^2, and the square of the dual norm of momenta up to which a root in it is certain, -1 if there is none.
 
-    B is given by its three numbers, the sizes are |K|, l, nu and rho.
+    B is given by its three numbers, c and K by their sizes.
     """
-    K, ell, nu, rho = sizes
     half = (B[0] - B[2]) / 2
     least = (B[0] + B[2]) / 2 - sqrt(half * half + B[1] * B[1])
-    root = sqrt(least)
-    low, high = 0.0, root
+    low, high = 0.0, sqrt(least)
     for _ in range(_HALVINGS):
         R = (low + high) / 2
         if is_alone(least, c, K, nu, R):
             low = R
         else:
             high = R
-    level = low / (1 + low * low / least) - (ell + rho + nu * low / root) / root
+    level = low / (1 + low * low / least) - nu * low / least
     return low * low, (level * level if level > 0 else -1.0)
 
 

@@ -20,8 +20,8 @@ from nonholo.kernels._interface import Body, move, quadratic
 from nonholo.kernels._scalar import BORROWING, COMPILED, PIECES, scalar, sqrt
 from nonholo.kernels._small import assign
 from nonholo.kernels.forced._certain import STRIP, certain_disc, is_in_strip
-from nonholo.kernels.forced._kick import seen
-from nonholo.kernels.forced._two import RENEWED, Rows, leaned, swept
+from nonholo.kernels.forced._kick import Kick, seen
+from nonholo.kernels.forced._two import RENEWED, Rows, _numbers, leaned, swept
 
 _BENT = 0.25  # most change of a Jacobian in one piece of a path, squared
 _SHORTEST = 1e-7  # piece
@@ -196,19 +196,20 @@ def is_certain(q: Cubic, disc: tuple[float, float], m: Any, r: Any, N: Any, y1: 
     if q.e == 0.0:
         return y1 * y1 <= STRIP * STRIP and is_in_strip(B, q.c[1], q.K, m, r, N)
     within = B[0] * y1 * y1 + 2 * B[1] * y1 * y2 + B[2] * y2 * y2 <= disc[0]
-    return within and (B[2] * m[0] - 2 * B[1] * m[1]) * m[0] + B[0] * m[1] * m[1] <= disc[1]
+    return within and level_of(B, m[0], m[1]) <= disc[1] and level_of(B, m[0] + r[0], m[1] + r[1]) <= disc[1]
+
+
+@scalar
+def level_of(B: Any, m1: float, m2: float) -> float:
+    """Return the square of the dual norm of momenta, times the determinant of B."""
+    return (B[2] * m1 - 2 * B[1] * m2) * m1 + B[0] * m2 * m2
 
 
 @njit(**COMPILED)
 def numbers_of(p: Body, pull: Pull) -> Cubic:
-    """Return the numbers of half impulses: arrays would be counted at every step of a loop."""
-    F, L, K, n = np.zeros(3), np.zeros(6), np.zeros(4), len(pull.weight)
-    for j in range(n):
-        F[j], L[j], L[3 + j] = pull.weight[j], pull.arms[0, j], pull.arms[1, j]
-    for j in range(2 * len(pull.friction)):
-        K[j] = pull.friction[j // 2, j % 2]
-    F3, L6, K4 = (F[0], F[1], F[2]), (L[0], L[1], L[2], L[3], L[4], L[5]), (K[0], K[1], K[2], K[3])
-    return cubic_of(p, n, F3, L6, K4)
+    """Return the numbers of half impulses, whose friction stands where a kick has what friction leaves."""
+    kick = _numbers(Kick(pull.friction, pull.weight, pull.arms, pull.rows))
+    return cubic_of(p, kick.n, kick.F, kick.L, kick.A)
 
 
 @scalar
@@ -220,14 +221,10 @@ def size_of(row: Any) -> float:
     return sqrt(total)
 
 
-@njit(**COMPILED)
-def disc_of(q: Cubic, table: np.ndarray) -> tuple[float, float]:
+@scalar
+def disc_of(q: Cubic) -> tuple[float, float]:
     """Return the disc of a top, and the level of its momenta times the determinant of B."""
-    rho = 0.0
-    for i in range(len(table)):
-        rho = max(rho, table[i, 0] * table[i, 0] + table[i, 1] * table[i, 1])
-    ell = size_of(q.L) * size_of(q.F)
-    radius, level = certain_disc(q.B, size_of(q.c), (size_of(q.K), ell, sqrt(2.0) * ell, sqrt(rho)))
+    radius, level = certain_disc(q.B, size_of(q.c), size_of(q.K), sqrt(2.0) * size_of(q.L) * size_of(q.F))
     return radius, level * (q.B[0] * q.B[2] - q.B[1] * q.B[1])
 
 
@@ -246,7 +243,7 @@ def advance_cubic(
     m1, m2, l1, l2, q0, q1, q2, q3, y1, y2, u1, u2, v1, v2 = _unpack(state)
     t1, t2, weight = state[14], state[15], (state[18], state[19], state[20])
     last, row, code, done, pose = len(table) - 1, int(state[21]), 0, 0, (q0, q1, q2, q3)
-    disc = disc_of(q, table)
+    disc = disc_of(q)
     while done < steps:
         if q.n > 0 and row % RENEWED == 0:
             weight = seen(q.n, q.F, *pose)

@@ -100,11 +100,11 @@ compiled_in("nonholo.kernels.forced.addresses")
 
 
 @inlined
-def place(drive: Any, pose: np.ndarray, P: np.ndarray, row: np.ndarray, out: np.ndarray) -> None:
-    """Write the user's pose from that of the kernel; a matrix, whose numbers are the row, is written to as well."""
-    n = drive.planar
+def place(drive: Drive, room: DriveRoom, pose: np.ndarray) -> None:
+    """Write the user's pose from that of the kernel."""
+    P, n = room.poses[1], drive.planar
     if n == 0:
-        assign(row, pose)
+        assign(room.rows[1], pose)
     else:
         q0, q1, q2, q3 = pose[0], pose[1], pose[2], pose[3]
         P[0, 0], P[0, 1], P[0, 2] = seen(n, (1.0, 0.0, 0.0), q0, q1, q2, q3)
@@ -112,13 +112,13 @@ def place(drive: Any, pose: np.ndarray, P: np.ndarray, row: np.ndarray, out: np.
         P[2, 0], P[2, 1], P[2, 2] = seen(n, (0.0, 0.0, 1.0), q0, q1, q2, q3)
         if n == 2:
             P[0, 2], P[1, 2], P[2, 0], P[2, 1], P[2, 2] = q2, q3, 0.0, 0.0, 1.0
-    multiply(P, drive.turn, out)
+    multiply(P, drive.turn, room.poses[0])
 
 
 @inlined
 def pulled_by_functions(drive: Drive, room: DriveRoom, pose: np.ndarray) -> None:
     """Write what the weight and the potential add to momenta at a pose."""
-    place(drive, pose, room.poses[1], room.rows[1], room.poses[0])
+    place(drive, room, pose)
     g, other, force = room.poses[0], room.poses[1], room.force
     pulled_by_weight(drive.kick, force, room.rows[0])
     if not drive.has[1]:

@@ -111,17 +111,18 @@ def start(forced: ForcedBody, momentum: np.ndarray, pose: np.ndarray, sizes: Any
     """Return the outcome of the first root and the state of a run; `sizes` are those of a row of the body."""
     rest, k, begin = at_rest(forced.body), len(momentum), 2 * len(momentum) + len(pose)
     stages = len(forced.kick.stages) if type(forced.kick) is Balanced else 0
-    past = np.concatenate((np.tile(rest, 3 * stages), np.zeros(3 * k * stages + 1)))
-    past = past if stages else np.concatenate((np.tile(rest, 4), np.zeros(6)))
-    state = np.concatenate((momentum, np.zeros_like(momentum), pose, past, np.zeros(sizes[1])))
+    histories = ((stages, 3, len(rest)), (stages, 3, k)) if stages else ((1, 4, len(rest)),)
+    past = [np.zeros(shape) for shape in histories]
+    past[0][:] = rest
+    more = np.zeros((1 if stages else 6) + sizes[1])
+    state = np.concatenate((momentum, np.zeros_like(momentum), pose, *map(np.ravel, past), more))
     momenta, chart, poses = np.empty((1, k)), np.empty((1, sizes[1])), np.empty((1, len(pose)))
     _, code = advance(forced, state, 1, 1, momenta, chart, poses)
     state[len(state) - sizes[1] :] = chart[0] if code == 0 else np.nan
-    histories = ((stages, len(rest)), (stages, k)) if stages else ((1, len(rest)),)
-    for count, width in histories:  # what is known of it so far stands for all of the past
-        many = state[begin : begin + (3 if stages else 4) * count * width].reshape(count, -1, width)
-        many[:, 1:] = many[:, :1]
-        begin += many.size
+    for each in past:  # what is known so far stands for all that came before
+        history = state[begin : begin + each.size].reshape(each.shape)
+        history[:, 1:] = history[:, :1]
+        begin += each.size
     return code, state
 
 

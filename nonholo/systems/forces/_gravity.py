@@ -48,12 +48,12 @@ class Gravity(AbstractLinear):
 
     def matrix_for(self, group: AbstractMatrixGroup) -> Float[Array, "N N"]:
         """Return -F x^T for matrices of the group."""
-        weight, place = self._homogeneous(group)
+        weight, place = self.homogeneous(group)
         return -weight[:, None] * place
 
     def energy(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "..."]:
         """Return U at configurations."""
-        weight, place = self._homogeneous(group)
+        weight, place = self.homogeneous(group)
         return -applied(weight[None], configuration @ place)[..., 0]
 
     def covector(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
@@ -63,12 +63,9 @@ class Gravity(AbstractLinear):
 
     def levers(self, group: AbstractMatrixGroup) -> tuple[Float[Array, "N"], Float[Array, "dim N"]]:
         """Return F and L for matrices of the group, homogeneous on SE(n): -dU is L g^T F."""
-        weight, place = self._homogeneous(group)
+        weight, place = self.homogeneous(group)
         return weight, group.basis @ place
 
-    def place(self, group: AbstractMatrixGroup) -> Float[Array, "N"]:
-        """Return x as matrices of the group take it."""
-        return self._homogeneous(group)[1]
-
-    def _homogeneous(self, group: AbstractMatrixGroup) -> tuple[Array, Array]:
+    def homogeneous(self, group: AbstractMatrixGroup) -> tuple[Float[Array, "N"], Float[Array, "N"]]:
+        """Return F and x as matrices of the group take them."""
         return homogeneous(group, self.force, 0.0), homogeneous(group, self.point, 1.0)
