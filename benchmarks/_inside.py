@@ -24,6 +24,8 @@ HOMES = {
     "correction": "nonholo.kernels._interface",
     "each_row": "nonholo.kernels",
     "enclosures": "nonholo.discrete.certificate._certificate",
+    "flow_by_diffrax": "nonholo.lagrange_dalembert._integration:flow",
+    "flow_by_series": "nonholo.lagrange_dalembert.compiled._flow:flow",
     "frame_of": "nonholo.discrete.branching._equations",
     "in_double": "nonholo.discrete.definition",
     "in_one_thread": "nonholo.simulation",

@@ -209,6 +209,9 @@ def kinetic_matrix(system: LagrangeDAlembert, q: Array, v: Array, _h: Any = None
     return jax.hessian(lagrangian, argnums=2)(system, q, v)
 
 
+mass_matrix = kinetic_matrix
+
+
 def acceleration_matrix(system: LagrangeDAlembert, q: Array, v: Array) -> tuple[Array, Scaled]:
     """Return the scaled matrix of the continuous equations: the regularity matrix for h -> 0."""
     kinetic, A = kinetic_matrix(system, q, v), forms(system, q)

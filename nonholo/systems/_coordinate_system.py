@@ -67,7 +67,7 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
         times: Any,
         body_velocity: Any = None,
         momentum: Any = None,
-        rtol: float = 1e-10,
+        rtol: float | None = None,
         atol: float = 1e-12,
     ) -> OrbitT:
         """Solve the continuous equations."""

@@ -113,7 +113,7 @@ def test_blocks_together_are_the_run(name: str) -> None:
 def test_the_errors_against_the_flow_are_of_order_two(name: str) -> None:
     """Of configurations and of momenta along admissible directions, where they are not only rounding."""
     study = nh.compare([run(name), run(name, 80)], flow(name))
-    assert len(study.comparisons[0]) == 9
+    assert len(study.comparisons[0]) == 41
     assert abs(study.order.pose - 2.0) <= 0.1
     assert np.isnan(study.order.momentum) or abs(study.order.momentum - 2.0) <= 0.1
 
@@ -160,7 +160,18 @@ def test_a_flow_has_a_picture_of_lines_and_may_be_drawn_over_a_run() -> None:
         )
 
 
-def test_what_only_saved_states_tell_is_not_asked_between() -> None:
-    """Flows in coordinates have no series, and say what to do."""
-    with pytest.raises(ValueError, match="Ask `flow` for these times"):
-        flow("particle").at(0.1)
+def test_a_flow_is_known_between_its_times() -> None:
+    """Its numbers at a time are those that a flow has that is asked for it; a discrete orbit has none."""
+    orbit = flow("particle")
+    start = {name: getattr(orbit, name)[0] for name in ("configuration", "body_velocity")}
+    middle = (orbit.time[2] + orbit.time[3]) / 2
+    asked = nh.flow(orbit.system, **start, times=[orbit.time[0], middle, orbit.time[-1]], rtol=1e-13)
+    there = orbit.at([orbit.time[3], middle])
+    for name in ("configuration", "body_velocity", "momentum", "energy", "multipliers"):
+        rows = getattr(there, name)
+        assert np.array_equal(rows[1], getattr(asked, name)[1])
+        assert np.array_equal(rows[0], getattr(orbit, name)[3])
+    with pytest.raises(ValueError, match="lie between"):
+        orbit.at(orbit.time[-1] + 1)
+    with pytest.raises(ValueError, match="be asked of a flow"):
+        run("particle").at(0.1)
