@@ -58,6 +58,12 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
         del numbers
         return self
 
+    def with_parameters(self, **numbers: Any) -> Self:
+        """Return the same system with other numbers of its parameters; refused where there are none."""
+        del numbers
+        remedy = "Pass parameters= to a LagrangeDAlembert."
+        raise error("with_parameters(...)", "be asked of a system that has parameters", type(self).__name__, remedy)
+
     @property
     def has_parts(self) -> bool:
         """Whether parts of a step are defined."""

@@ -265,3 +265,44 @@ def test_bad_numbers_are_refused(given: dict[str, Any], words: str) -> None:
         made("midpoint").with_parameters(**given)
     with pytest.raises(ValueError, match="It has none: pass LagrangeDAlembert"):
         made("midpoint", NUMBERS).with_parameters(mass=1.0)
+
+
+def test_members_with_parameters_are_runs_alone() -> None:
+    """Members of an ensemble have the bits of their runs by `simulate`, numbers and arrays alike."""
+    rng, discrete = np.random.default_rng(4), nh.discretize(made("force"), 0.05)
+    varied = {"mass": rng.uniform(0.5, 2.0, 4), "pull": rng.normal(size=(4, 3)), "time_step": rng.uniform(0.02, 0.1, 4)}
+    batch = nh.ensemble(discrete, **START, parameters=varied, steps=30, save_every=10)
+    for member in range(4):
+        own = {name: values[member] for name, values in varied.items()}
+        alone = nh.discretize(made("force").with_parameters(mass=own["mass"], pull=own["pull"]), own["time_step"])
+        orbit = alone.simulate(**START, steps=30, save_every=10)
+        for row in ("configuration", "momentum", "energy", "body_velocity", "restricted_momentum"):
+            assert np.array_equal(getattr(batch, row)[member], getattr(orbit, row)), row
+        assert batch.orbit(member).system == alone.system
+    assert np.array_equal(batch.to_dataset()["pull"], varied["pull"])
+
+
+def test_members_with_parameters_are_compiled_once() -> None:
+    """A hundred masses trace no function more than one does."""
+    discrete = nh.discretize(made("force"), 0.05)
+    nh.ensemble(discrete, **START, parameters={"mass": [1.0]}, steps=3)
+    before = len(CALLS)
+    nh.ensemble(discrete, **START, parameters={"mass": np.linspace(0.5, 2.0, 100)}, steps=3)
+    assert len(CALLS) == before
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (
+            {"mas": [1.0]},
+            r"name fields of the system. Got 'mas'. LagrangeDAlembert has mass, inertia, arm, pull, time_step",
+        ),
+        ({"pull": [1.0, 2.0]}, r"'pull': \.\.\.\}\)` must have shape \(any, 3\)"),
+        ({"mass": [1.0, np.nan]}, "must be finite"),
+    ],
+)
+def test_bad_members_are_refused(given: dict[str, Any], words: str) -> None:
+    """Members differ by known names and fitting shapes."""
+    with pytest.raises(ValueError, match=words):
+        nh.ensemble(nh.discretize(made("midpoint"), 0.05), **START, parameters=given, steps=3)
