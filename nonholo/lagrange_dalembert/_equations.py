@@ -12,7 +12,7 @@ import numpy as np
 
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
-from nonholo.lagrange_dalembert._tracing import TwoPoint, takes_time
+from nonholo.lagrange_dalembert._tracing import takes_time
 
 _CORRECTIONS = 8  # of a velocity that belongs to a momentum: Newton's, one where L is quadratic
 
@@ -125,7 +125,7 @@ def discrete_energy(system: LagrangeDAlembert, x: Array, v: Array, h: Array, nod
         w = inverse_legendre(system, x, momenta(system, x, v, h)[0]) if node is None else node
         return energy(system, x, w)
     d = h * v
-    if isinstance(system.discrete_lagrangian, TwoPoint):
+    if getattr(system.discrete_lagrangian, "is_of_one_step", False):
         return energy(system, x + d / 2, v)
     return -jax.grad(lambda step: discrete_lagrangian(system, x, d / step, step))(h)
 

@@ -33,7 +33,7 @@ def point(owner: str, system: LagrangeDAlembert, configuration: Any, time: float
     if configuration is None:
         raise error(where, "be given for a system in coordinates", "none", f"Pass the {n} coordinates of the start.")
     q = array(where, configuration, (n,), f"Pass the {n} coordinates.")
-    for index, motion in system.prescribed:
+    for index, motion in system.plain.prescribed:
         with double_precision():
             given = float(motion(np.float64(time)))
         if not abs(q[index] - given) <= _TOLERANCE * (1 + abs(given)):

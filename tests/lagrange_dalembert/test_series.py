@@ -14,6 +14,7 @@ from nonholo.base.compiled.emission import compiled
 from nonholo.kernels.taylor._compiled import call
 from nonholo.lagrange_dalembert.compiled._derivatives import Elimination
 from nonholo.lagrange_dalembert.compiled._expansion import Expansion
+from nonholo.lagrange_dalembert.compiled._flow import formulation
 from nonholo.lagrange_dalembert.compiled._run import machine_code
 from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError
 
@@ -133,3 +134,26 @@ def test_a_flow_with_kinks_is_solved_otherwise() -> None:
     assert "diffrax" in sys.modules
     assert np.abs(orbit.events[0].time - 1.0).max() < 1e-9
     assert np.abs(orbit.at([0.7, 0.2]).configuration[:, 0] - [0.255, 0.48]).max() < 1e-10
+
+
+def test_parameters_are_numbers_of_the_series() -> None:
+    """Numbers and arrays, compiled once for all values; each flow is that of the same numbers as constants."""
+    swinging = nh.LagrangeDAlembert(
+        lambda q, v, p: p["mass"] * (v @ v) / 2 + p["weights"][1] * jnp.cos(q[0]),
+        None,
+        dimension=1,
+        parameters={"mass": 1.0, "weights": [3.0, 1.0]},
+    )
+    run: dict[str, Any] = {"configuration": [0.1], "body_velocity": [1.2], "times": np.linspace(0.0, 10.0, 7)}
+    nh.flow(swinging, **run)
+    compiled_before = formulation.cache_info().misses
+    for mass, weight in ((2.0, 1.0), (0.5, 3.0)):
+        orbit = nh.flow(swinging.with_parameters(mass=mass, weights=[7.0, weight]), **run)
+        assert formulation.cache_info().misses == compiled_before
+        constant = nh.LagrangeDAlembert(
+            lambda q, v, m=mass, w=weight: m * (v @ v) / 2 + w * jnp.cos(q[0]), None, dimension=1
+        )
+        wanted = nh.flow(constant, **run)
+        compiled_before = formulation.cache_info().misses
+        for name in ("configuration", "body_velocity", "momentum", "energy"):
+            assert np.abs(getattr(orbit, name) - getattr(wanted, name)).max() < 1e-13

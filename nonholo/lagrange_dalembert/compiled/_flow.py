@@ -43,11 +43,15 @@ class Formulation(NamedTuple):
 
 
 @functools.lru_cache(maxsize=64)  # as the programs of steps
-def formulation(system: Any, place: tuple[int, ...], n: int) -> Formulation | None:
-    """Return the continuous equations of a system; None if they are no formulas, or none that are smooth."""
-    equations, size = equations_of(system), math.prod(place)
+def formulation(family: Any, place: tuple[int, ...], n: int) -> Formulation | None:
+    """Return the continuous equations of a family of systems; None if they are no formulas, or none that are smooth.
 
-    def at(x: Array, v: Array) -> tuple[Array, ...]:
+    Parameters are numbers of the state that stay as they are.
+    """
+    equations, size = equations_of(family), math.prod(place)
+
+    def at(x: Array, v: Array, *numbers: Array) -> tuple[Array, ...]:
+        system = family.bound(*numbers)
         rate = equations.rate(system, x, v)
         missed, turned = jax.jvp(lambda y: equations.constraint(system, y, v), (x,), (rate,))
         columns = equations.momentum(system, x, v), equations.energy(system, x, v), missed
@@ -55,19 +59,20 @@ def formulation(system: Any, place: tuple[int, ...], n: int) -> Formulation | No
         return *matrices, equations.force(system, x, v), -turned, rate, *columns
 
     try:
-        whole = program(at, place, (n,))
+        whole = program(at, place, (n,), *map(np.shape, family.parameters.values()))
         f, parts = whole.formulas, iter(whole.results)
         mass, A, force, off, rate, momentum, energy, missed = (
             array_of(list(itertools.islice(parts, math.prod(shape))), shape) for shape in whole.shapes
         )
         matrix = bordered(f, mass, A)
         moved, settled = matrix.solution([*force, *off]), matrix.solution([*[f.constant(0.0)] * n, *missed])
-        expansion = Expansion(f, whole.inputs, [*rate.ravel(), *moved[:n]])
+        still = [f.constant(0.0)] * (len(whole.inputs) - size - n)
+        expansion = Expansion(f, whole.inputs, [*rate.ravel(), *moved[:n], *still])
     except UntranslatableError:
         return None
     module = ir.Module()
-    expansion.write(module, "expansion", -(-(size + n) // _SIDE) * _SIDE)
-    velocity = [f("sub", *each) for each in zip(whole.inputs[size:], settled[:n], strict=True)]
+    expansion.write(module, "expansion", -(-len(whole.inputs) // _SIDE) * _SIDE)
+    velocity = [f("sub", *each) for each in zip(whole.inputs[size : size + n], settled[:n], strict=True)]
     forces, pivots = (f("neg", each) for each in moved[n:]), matrix.pivots[:n]
     told = [*momentum, *forces, energy.item(), *missed, *pivots, *np.diagonal(mass)]
     shapes = [(n,), (len(A),), (), (len(A),), (n,), (n,)]
@@ -101,18 +106,19 @@ class Series(NamedTuple):
     def code(self) -> Formulation:
         """The equations."""
         place, (n,) = self.shapes
-        return cast(Formulation, formulation(self.system, place, n))
+        return cast(Formulation, formulation(self.system.family, place, n))
 
     def __call__(self, times: np.ndarray) -> list[np.ndarray]:
         """Return places and velocities at times in the order in which the motion was solved."""
-        f, code = _equations(self.code, self.shapes), self.code
+        f, code = _equations(self.code, self.shapes, self.nodes.shape[2] - 1), self.code
         return self.settled(revisit_series(f, self.nodes, times, self.end, self.tolerance, code.expansion))
 
     def settled(self, rows: np.ndarray) -> list[np.ndarray]:
         """Return places and admissible velocities of states of the series."""
         place, (n,) = self.shapes
-        x = equations_of(self.system).normalized(self.system, rows[:, :-n].reshape(-1, *place))
-        return [x, *cast(Any, evaluated(self.code.settle, x, rows[:, -n:]))]
+        size = math.prod(place)
+        x = equations_of(self.system).normalized(self.system, rows[:, :size].reshape(-1, *place))
+        return [x, *cast(Any, _evaluated(self.code.settle, self.system, x, rows[:, size : size + n]))]
 
     @property
     def span(self) -> tuple[float, float]:
@@ -129,36 +135,42 @@ def flow(system: Any, first: tuple[Any, Any], times: np.ndarray, rtol: float) ->
     """Return places and velocities at times, and the motion between; None if series do not reach them all."""
     x, v = map(np.asarray, first)
     with compiling(system):
-        code = formulation(system, x.shape, len(v))
-    start = code and evaluated(code.decode, x[None], v[None])
+        code = formulation(system.family, x.shape, len(v))
+    start = code and _evaluated(code.decode, system, x[None], v[None])
     if not code or start is None or not np.all(start[-2] > _SMALLEST * start[-1]):
         return None
     shapes, tolerance = (x.shape, v.shape), rtol * _GUARD
-    state = np.concatenate([x.ravel(), v])
-    rows, nodes = solve_series(_equations(code, shapes), state, times, tolerance, _MOST, code.expansion)
+    state = np.concatenate([np.ravel(each) for each in (x, v, *system.parameters.values())])
+    f = _equations(code, shapes, len(state))
+    rows, nodes = solve_series(f, state, times, tolerance, _MOST, code.expansion)
     if len(rows) < len(times):
         return None
     series = Series(system, shapes, nodes, float(times[-1]), tolerance)
     return series.settled(rows), series
 
 
-def _equations(code: Formulation, shapes: tuple[tuple[int, ...], tuple[int, ...]]) -> Quadratic:
+def _equations(code: Formulation, shapes: tuple[tuple[int, ...], tuple[int, ...]], size: int) -> Quadratic:
     """Return equations without quadratic terms, whose numbers are the room of the code.
 
-    What moves is measured apart from how it moves.
+    What moves is measured apart from how it moves, and from what does not.
     """
-    blocks = np.repeat([0, 1], [math.prod(shape) for shape in shapes])
-    size, none = len(blocks), np.zeros(0, dtype=np.int64)
+    places, rates = map(math.prod, shapes)
+    blocks, none = np.repeat([0, 1, 2], [places, rates, size - places - rates]), np.zeros(0, dtype=np.int64)
     sparse = np.zeros((2, 0), dtype=np.int64), np.zeros(size + 1, dtype=np.int64), none, np.zeros((1, code.room))
     ends = np.zeros(0), np.zeros((0, 0)), np.zeros(0)
-    return Quadratic(np.zeros((0, 0)), *sparse, np.arange(size), blocks, np.zeros(2, dtype=np.bool_), *ends)
+    return Quadratic(np.zeros((0, 0)), *sparse, np.arange(size), blocks, np.zeros(3, dtype=np.bool_), *ends)
 
 
 def flow_rows(system: Any, x: np.ndarray, v: np.ndarray) -> list[np.ndarray] | None:
     """Return momenta, forces of constraint, energies and residuals of states; None if JAX must compute them."""
-    code = formulation(system, x.shape[1:], v.shape[1])
-    columns = evaluated(code.decode, x, v) if code else None
+    code = formulation(system.family, x.shape[1:], v.shape[1])
+    columns = _evaluated(code.decode, system, x, v) if code else None
     if columns is None:
         return None
     momentum, force, energy, missed, *_ = columns
     return [momentum, force, energy, np.abs(missed).max(axis=1, initial=0.0)]
+
+
+def _evaluated(code: Values, system: Any, x: np.ndarray, v: np.ndarray) -> list[np.ndarray] | None:
+    shared = (np.broadcast_to(number, (len(x), *np.shape(number))) for number in system.parameters.values())
+    return evaluated(code, x, v, *shared)
