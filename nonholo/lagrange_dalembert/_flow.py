@@ -1,8 +1,6 @@
-r"""The continuous motion: accelerations and forces of constraint, their solve, and the orbit of it.
+r"""The continuous motion: the solve, the orbit of it, and the work that changes the energy.
 
 Equations that are smooth formulas are solved by Taylor series, any other by diffrax.
-
-Accelerations and forces of constraint of the continuous equations, and the work that changes the energy.
 
 Along a motion $\dot E = f\cdot v + \lambda\cdot b - \partial L/\partial t$: the power of the force, that of moving
 constraints $A v = b$ (of driven joints what their motors give), and what a Lagrangian of the time adds.
@@ -18,10 +16,10 @@ from nonholo.base.checks import error, flow_times, flow_tolerances
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations, compiled
+from nonholo.lagrange_dalembert._accelerations import acceleration, refuse_table
 from nonholo.lagrange_dalembert._discretization import checked_state
-from nonholo.lagrange_dalembert._equations import solve_bordered
 from nonholo.lagrange_dalembert._motion import ORBITS
-from nonholo.lagrange_dalembert._room import configurations, equations_of, in_double, places, room
+from nonholo.lagrange_dalembert._room import configurations, in_double, places, room
 from nonholo.orbit import times_within
 
 State = tuple[Array, Array]
@@ -40,6 +38,7 @@ def flow(
     atol: float,
 ) -> Any:
     """Check the arguments, solve the equations and return the orbit."""
+    refuse_table("flow", system)
     time, errors = flow_times(times), flow_tolerances(_COARSE if rtol is None else rtol, atol)
     first = checked_state(system, configuration, starts, time[0])
     solved = compiled.flow(system, first, time, _FINE if rtol is None else errors[0])
@@ -66,26 +65,6 @@ def _orbit(system: Any, time: np.ndarray, rows: list[np.ndarray], outcome: Outco
         columns = room("_integration").columns(system, rows)
     place = configurations(system, rows[0])
     return ORBITS[system.orbits](time, place, None, rows[1], *columns, outcome, system, solution=solution)
-
-
-def acceleration(system: Any, q: Array, v: Array, extra: Any = 0.0) -> tuple[Array, Array]:
-    r"""Return the rate of v and the forces $\lambda$, from the equations and $\tfrac{d}{dt}(A v - b) = 0$.
-
-    Args:
-        system: What moves.
-        q: Where it is.
-        v: Its velocity.
-        extra: A force beside those of the system: of a table the row that acts.
-    """
-    equations = equations_of(system)
-    _, turned = jax.jvp(lambda x: equations.constraint(system, x, v), (q,), (equations.rate(system, q, v),))
-    return bordered_solution(system, q, v, equations.force(system, q, v) + extra, -turned)
-
-
-def bordered_solution(system: Any, q: Array, v: Array, force: Array, off: Array) -> tuple[Array, Array]:
-    r"""Solve $M x - A^T\lambda$ = force, A x = off."""
-    matrix, units = equations_of(system).acceleration_matrix(system, q, v)
-    return solve_bordered(matrix, units, force, off)
 
 
 def work(orbit: Any) -> Float[np.ndarray, "K"]:

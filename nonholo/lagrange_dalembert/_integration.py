@@ -9,7 +9,8 @@ import numpy as np
 from nonholo.base.numerics.time_sweep import padded, reached, sweep
 from nonholo.base.progress import interruptibly
 from nonholo.base.types import Array
-from nonholo.lagrange_dalembert._flow import State, acceleration, bordered_solution
+from nonholo.lagrange_dalembert._accelerations import acceleration, bordered_solution
+from nonholo.lagrange_dalembert._flow import State
 from nonholo.lagrange_dalembert._room import equations_of, in_double
 
 

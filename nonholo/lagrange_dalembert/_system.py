@@ -363,9 +363,6 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             >>> print(orbit.configuration[-1].round(9))
             [-1.]
         """
-        if self.table is not None:
-            remedy = "Discretize the system, or pass a function of time."
-            raise error("flow(system=...)", "have forces at times", "one force for each step", remedy)
         starts = {"body_velocity": body_velocity, "momentum": momentum}
         return room("_flow").flow(self, configuration, starts, times, rtol, atol)
 

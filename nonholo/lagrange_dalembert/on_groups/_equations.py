@@ -104,6 +104,26 @@ def rate(system: GroupLagrangeDAlembert, g: Array, w: Array) -> Array:
     return g @ system.group.hat(w)
 
 
+def beside(system: GroupLagrangeDAlembert, g: Array, xi: Array) -> Array:
+    r"""Return the pose $g e^\xi$."""
+    return g @ system.group.exp(xi)
+
+
+def frame(system: GroupLagrangeDAlembert, g: Array, v: Array, time: Array) -> Array:
+    """Return from where poses are seen after a time: from a body that moves steadily."""
+    return g @ _displacement(system, v, time)
+
+
+def departure(system: GroupLagrangeDAlembert, g: Array, after: Array) -> Array:
+    r"""Return the $\xi$ of a pose $g e^\xi$."""
+    return system.group.log(system.group.inverse(g) @ after)
+
+
+def departure_rate(system: GroupLagrangeDAlembert, v: Array, xi: Array, w: Array) -> Array:
+    r"""Return the rate of a small $\xi$ between poses that move with the body velocities v and w."""
+    return w - v + system.group.bracket(xi, v)
+
+
 def force(system: GroupLagrangeDAlembert, g: Array, w: Array) -> Array:
     r"""Return $\mathrm{ad}^*_\omega p$, what accelerates a free body."""
     return system.group.coad(w, momentum(system, g, w))
