@@ -139,14 +139,15 @@ def test_invariants_are_measured(name: str) -> None:
 def test_restricted_momenta_act_on_admissible_velocities_alone(name: str) -> None:
     """They agree with the momentum on every admissible velocity, and vanish across: they lie in their span."""
     orbit, system = run(name), ready(name).system
+    rounding = 1e-13 * max(1.0, np.abs(orbit.momentum).max() / 100)  # hundreds of a bicycle
     for k in (0, 17, 40):
         with double_precision():
             A = np.asarray(system.constraint_forms(orbit.configuration[k]))
         prescribed = [index for index, _ in getattr(system, "prescribed", ())]
         A = np.concatenate([A, np.eye(A.shape[1])[prescribed]])
         free = np.linalg.svd(A)[2][len(A) :]
-        assert np.abs(free @ (orbit.restricted_momentum - orbit.momentum)[k]).max() <= 1e-13
-        assert np.abs(A @ orbit.restricted_momentum[k]).max() <= 1e-13
+        assert np.abs(free @ (orbit.restricted_momentum - orbit.momentum)[k]).max() <= rounding
+        assert np.abs(A @ orbit.restricted_momentum[k]).max() <= rounding
 
 
 def test_a_flow_has_a_picture_of_lines_and_may_be_drawn_over_a_run() -> None:
