@@ -18,6 +18,7 @@ HOMES = {
     "Branches": "nonholo.discrete",
     "Missed": "nonholo.analysis.steering._least_effort",
     "REDUCTIONS": "nonholo.ensembles",
+    "accelerations": "",  # of the tests
     "advance": "nonholo.lagrange_dalembert.compiled",
     "best": "nonholo.analysis.steering._shooting",
     "continuation": "",  # of the tests
@@ -35,6 +36,7 @@ HOMES = {
     "located": "nonholo.discrete.certificate._certificate",
     "Located": "nonholo.discrete.certificate._certificate",
     "problem_of": "nonholo.discrete.certificate._roots",
+    "published": "",  # of the tests
     "programs": "nonholo.lagrange_dalembert.compiled._run",
     "transcription": "nonholo.analysis.steering:_transcription",
 }
