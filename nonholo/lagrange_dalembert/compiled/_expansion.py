@@ -58,95 +58,98 @@ class Expansion:
         return self._ordered(f, [*results, *(slope for slope in slopes if slope.value is None)])
 
     def write(self, module: Any, name: str, width: int) -> None:
-        """Write the function to a module; `width` numbers stand in a row of its series."""
-        kind = ir.FunctionType(ir.VoidType(), [DOUBLE.as_pointer()] * 5 + [_WORD])
+        """Write the function to a module; `width` numbers stand in a row of its series.
+
+        An order is a function of its own: in a loop LLVM would look for what stays the same, for seconds.
+        """
+        pointer, self.width = DOUBLE.as_pointer(), width
+        kind = ir.FunctionType(ir.VoidType(), [pointer] * 5 + [_WORD])
         function = ir.Function(module, kind, name)
         _, self.coefficients, self.series, _, _, last = function.args
-        self.dot, self.width = _dot(module, f"{name}.dot"), width
+        arguments = [self.coefficients, self.series]
         self.builder = b = ir.IRBuilder(function.append_basic_block())
         self._write_values()
         entry, loop, end = b.block, b.append_basic_block(), b.append_basic_block()
         b.branch(loop)
         b.position_at_end(loop)
-        self.k = b.phi(_WORD)
-        self.k.add_incoming(_word(1), entry)
-        self._write_order()
-        following = b.add(self.k, _word(1))
-        self.k.add_incoming(following, b.block)
+        order, k = _internal(module, f"{name}.order", ir.VoidType(), [pointer, pointer, _WORD]), b.phi(_WORD)
+        b.call(order, [*arguments, k])
+        following = b.add(k, _word(1))
+        for value, block in ((_word(1), entry), (following, loop)):
+            k.add_incoming(value, block)
         b.cbranch(b.icmp_signed("<=", following, last), loop, end)
         b.position_at_end(end)
         b.ret_void()
+        self.dot, self.builder = _dot(module, f"{name}.dot"), ir.IRBuilder(order.append_basic_block())
+        self.coefficients, self.series, self.k = order.args
+        self._write_order()
+        self.builder.ret_void()
 
     def _write_values(self) -> None:
         """Write the coefficients of order 0: the values."""
-        b, values = self.builder, {}
-
-        def value(x: Scalar) -> Any:
-            return values[x] if x.value is None else _number(x.value)
-
+        b, none = self.builder, _word(0)
         for m, x in enumerate(self.inputs):
-            values[x] = b.load(b.gep(self.series, [_word(m)]))
+            b.store(b.load(b.gep(self.series, [_word(m)])), self._at(self.places[x], none))
         for x in self.order:
-            values[x] = OPERATIONS[x.operation].emit(b, *map(value, x.arguments))
-        for x, number in values.items():
-            b.store(number, self._at(self.places[x], _word(0)))
+            values = (self._of(y, none) if y.value is None else _number(y.value) for y in x.arguments)
+            b.store(OPERATIONS[x.operation].emit(b, *values), self._at(self.places[x], none))
 
     def _write_order(self) -> None:
         """Write the coefficients of order k."""
         b, before, divisor = self.builder, self.builder.sub(self.k, _word(1)), self.builder.sitofp(self.k, DOUBLE)
-        latest: dict[Scalar, Any] = {}
         for m, (x, rate) in enumerate(zip(self.inputs, self.rates, strict=True)):
             if rate.value is None:
-                coefficient = b.fdiv(b.load(self._at(self.places[rate], before)), divisor)
+                coefficient = b.fdiv(self._of(rate, before), divisor)
             else:
                 coefficient = b.select(b.icmp_signed("==", before, _word(0)), _number(rate.value), _number(0.0))
             row = b.add(b.mul(self.k, _word(self.width)), _word(m))
             b.store(coefficient, b.gep(self.series, [row]))
-            self._keep(latest, x, coefficient, divisor)
+            self._keep(x, coefficient, divisor)
         for x in self.order:
             write = self._integral if x in self.functions else getattr(self, f"_{x.operation}")
-            self._keep(latest, x, write(latest, x, divisor), divisor)
+            self._keep(x, write(x, divisor), divisor)
 
-    def _keep(self, latest: dict[Scalar, Any], x: Scalar, coefficient: Any, divisor: Any) -> None:
+    def _keep(self, x: Scalar, coefficient: Any, divisor: Any) -> None:
         """Store a coefficient, and k times it where a function needs that."""
-        b, latest[x] = self.builder, coefficient
+        b = self.builder
         b.store(coefficient, self._at(self.places[x], self.k))
         if x in self.moves:
             b.store(b.fmul(divisor, coefficient), self._at(self.moves[x], b.sub(self.k, _word(1))))
 
-    def _add(self, latest: dict[Scalar, Any], x: Scalar, _: Any) -> Any:
-        terms = [latest[each] for each in x.arguments if each.value is None]
+    def _of(self, x: Scalar, order: Any) -> Any:
+        """Load a coefficient: kept in registers, so many numbers would take LLVM seconds."""
+        return self.builder.load(self._at(self.places[x], order))
+
+    def _add(self, x: Scalar, _: Any) -> Any:
+        terms = [self._of(each, self.k) for each in x.arguments if each.value is None]
         return self.builder.fadd(*terms) if len(terms) > 1 else terms[0]
 
-    def _sub(self, latest: dict[Scalar, Any], x: Scalar, _: Any) -> Any:
+    def _sub(self, x: Scalar, _: Any) -> Any:
         first, last = x.arguments
         if last.value is not None:
-            return latest[first]
-        return (
-            self.builder.fneg(latest[last])
-            if first.value is not None
-            else self.builder.fsub(latest[first], latest[last])
-        )
+            return self._of(first, self.k)
+        if first.value is not None:
+            return self.builder.fneg(self._of(last, self.k))
+        return self.builder.fsub(self._of(first, self.k), self._of(last, self.k))
 
-    def _neg(self, latest: dict[Scalar, Any], x: Scalar, _: Any) -> Any:
-        return self.builder.fneg(latest[x.arguments[0]])
+    def _neg(self, x: Scalar, _: Any) -> Any:
+        return self.builder.fneg(self._of(x.arguments[0], self.k))
 
-    def _mul(self, latest: dict[Scalar, Any], x: Scalar, _: Any) -> Any:
+    def _mul(self, x: Scalar, _: Any) -> Any:
         first, last = sorted(x.arguments, key=lambda each: each.value is None)
         if first.value is not None:
-            return self.builder.fmul(_number(first.value), latest[last])
+            return self.builder.fmul(_number(first.value), self._of(last, self.k))
         return self._sum(self.places[first], self.places[last], self.builder.add(self.k, _word(1)))
 
-    def _div(self, latest: dict[Scalar, Any], x: Scalar, _: Any) -> Any:
+    def _div(self, x: Scalar, _: Any) -> Any:
         b, (above, below) = self.builder, x.arguments
         if below.value is not None:
-            return b.fdiv(latest[above], _number(below.value))
-        over = self._at(self.places[below], _word(1)), self._at(self.places[x], _word(0))
-        earlier = b.call(self.dot, [*over, self.k])
-        left = b.fneg(earlier) if above.value is not None else b.fsub(latest[above], earlier)
-        return b.fdiv(left, b.load(self._at(self.places[below], _word(0))))
+            return b.fdiv(self._of(above, self.k), _number(below.value))
+        earlier = self._sum(self.places[below], self.places[x], self.k, skipped=1)
+        left = b.fneg(earlier) if above.value is not None else b.fsub(self._of(above, self.k), earlier)
+        return b.fdiv(left, self._of(below, _word(0)))
 
-    def _integral(self, _: dict[Scalar, Any], x: Scalar, divisor: Any) -> Any:
+    def _integral(self, x: Scalar, divisor: Any) -> Any:
         b, total = self.builder, _number(0.0)
         for a, slope in self.functions[x]:
             if slope.value is None:
@@ -156,9 +159,10 @@ class Expansion:
             total = b.fadd(total, term)
         return b.fdiv(total, divisor)
 
-    def _sum(self, first: int, last: int, terms: Any) -> Any:
+    def _sum(self, first: int, last: int, terms: Any, skipped: int = 0) -> Any:
         """Write a sum of products of coefficients, the first ones of one number with the last ones of another."""
-        return self.builder.call(self.dot, [self._at(first, _word(0)), self._at(last, _word(0)), terms])
+        places = _word(ORDERS * first + skipped), _word(ORDERS * last)
+        return self.builder.call(self.dot, [self.coefficients, *places, terms])
 
     def _at(self, place: int, order: Any) -> Any:
         """Return where a coefficient stands."""
@@ -166,13 +170,14 @@ class Expansion:
 
 
 def _dot(module: Any, name: str) -> Any:
-    """Write a function of (a, b, n): the sum of a[i] b[n - 1 - i], four products at once."""
-    kind = ir.FunctionType(DOUBLE, [DOUBLE.as_pointer()] * 2 + [_WORD])
-    function = ir.Function(module, kind, name)
-    function.linkage = "internal"
-    function.attributes.add("noinline")
-    a, other, n = function.args
+    """Write a function of an array, two places and n: the sum of a[i] b[n - 1 - i], four products at once.
+
+    Places are numbers: as addresses, which stay the same in all orders, LLVM would keep thousands of them at hand.
+    """
+    function = _internal(module, name, DOUBLE, [DOUBLE.as_pointer(), *[_WORD] * 3])
+    array, *places, n = function.args
     b, zero = ir.IRBuilder(function.append_basic_block()), ir.Constant(_VECTOR, [0.0] * _SIDE)
+    a, other = (b.gep(array, [place]) for place in places)
     entry, wide, middle, narrow, end = b.block, *(b.append_basic_block() for _ in range(4))
     full = b.and_(n, _word(-_SIDE))
     b.cbranch(b.icmp_signed(">", full, _word(0)), wide, middle)
@@ -200,6 +205,14 @@ def _dot(module: Any, name: str) -> Any:
     b.cbranch(b.icmp_signed("<", after, n), narrow, end)
     b.position_at_end(end)
     b.ret(_joined(b, {middle: begun, narrow: longer}))
+    return function
+
+
+def _internal(module: Any, name: str, result: Any, arguments: list[Any]) -> Any:
+    """Return a function that is called and never copied into its callers."""
+    function = ir.Function(module, ir.FunctionType(result, arguments), name)
+    function.linkage = "internal"
+    function.attributes.add("noinline")
     return function
 
 

@@ -81,7 +81,7 @@ def formulation(family: Any, place: tuple[int, ...], n: int) -> Formulation | No
         doubt = functools.reduce(functools.partial(f, "add"), f.doubts, f.constant(0.0))
         return Values(machine_code(whole.inputs, [*results, doubt]), shapes)
 
-    address = compiled(str(module), "expansion")
+    address = compiled(str(module), "expansion", is_long=True)
     return Formulation(address, expansion.room, values(velocity, [(n,)]), values(told, shapes))
 
 
