@@ -154,8 +154,8 @@ def fit(
             trials start at the identity. A CSV file has at most 256 MB.
         guess: The parameters to begin with, numbers or arrays.
         time_step: h; by default the smallest time between two samples. Samples lie on multiples of it.
-        noise: Standard deviations that are known, by kind ("position", "turn", "rate", a coordinate), or one for all; the
-            levels of other kinds are estimated.
+        noise: Standard deviations that are known, by kind ("position", "turn", "rate", a coordinate), or one for all;
+            the levels of other kinds are estimated.
         bounds: Least and largest value of parameters by name, for an array of all its entries. A parameter between 0
             and infinity is searched by its logarithm, which finds it from guesses that are far off.
         loss: "linear", $\rho(z) = z^2$, or "soft_l1", $2\sqrt{1 + z^2} - 2$, under which outliers count little. With
