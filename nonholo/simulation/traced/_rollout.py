@@ -92,12 +92,16 @@ def rollout(
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
     if in_coordinates(discrete):
         refuse_in_coordinates("rollout", restricted_velocity=(starts.pop("restricted_velocity"), None))
-        start = Start.of("rollout", configuration, **starts)
-        return _called(
-            rolled_in_coordinates, *_in_coordinates(discrete, start, sizes, controls), many=sizes[0] >= _MANY
-        )
-    as_discretization("rollout(discrete=...)", discrete, composed=True, forced=True)
-    start = Start.of("rollout", configuration, **starts)
+        run, arguments = rolled_in_coordinates, _in_coordinates
+    else:
+        as_discretization("rollout(discrete=...)", discrete, composed=True, forced=True)
+        run, arguments = _rolled, _on_group
+    given = arguments(discrete, Start.of("rollout", configuration, **starts), sizes, controls)
+    return _called(run, *given, many=sizes[0] >= _MANY)
+
+
+def _on_group(discrete: Any, start: Start, sizes: tuple[int, ...], controls: Any) -> tuple[Any, ...]:
+    """Return the arguments of a rollout on a group; of traced starts the shapes are checked."""
     if discrete.system.is_wide:
         raise error("rollout(discrete=...)", "have matrices", "a system without", "Discretize `system.dense`.")
     refuse_many_matrices("rollout(steps=...)", discrete, 1 + sizes[0] // sizes[1], "Raise save_every.")
@@ -114,7 +118,7 @@ def rollout(
         free = dataclasses.replace(discrete, system=cast(Forced, discrete.system).system)
     route = dataclasses.replace(free, order=2).route
     closed = jax.tree.map(traceable, route.step) if isinstance(route, ScalarRoute) else None
-    return _called(_rolled, free, closed, (start.name, value, g), controls, sizes, forced, many=sizes[0] >= _MANY)
+    return free, closed, (start.name, value, g), controls, sizes, forced
 
 
 def _called(run: Callable[..., Any], *arguments: Any, many: bool) -> Any:
