@@ -21,6 +21,9 @@ from nonholo.systems import AbstractSystem
 
 _STEP, _TIMES = 0.05, tuple(np.linspace(0.0, 20.0, 401))
 
+Numbers = Mapping[str, Any]
+"""Parameters of a system by name."""
+
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Example(Keeper):
@@ -127,6 +130,12 @@ def _named(system: Any, make: Callable[..., Example], parameters: str) -> Any:
 
 def _system_of(make: Callable[..., Example], given: dict[str, Any]) -> Any:
     return make(**given).system
+
+
+def sized(make: Callable[[], LagrangeDAlembert], *numbers: float) -> LagrangeDAlembert:
+    """Return a system that is made once, with these parameters in its order."""
+    system = make()
+    return system.with_parameters(**dict(zip(system.parameters, numbers, strict=True)))
 
 
 def rate(index: int) -> Callable[[Array, Array], Array]:
