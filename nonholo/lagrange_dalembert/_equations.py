@@ -150,6 +150,26 @@ def rate(system: LagrangeDAlembert, _x: Array, v: Array) -> Array:
     return jnp.append(v, 1.0) if system.is_driven else v
 
 
+def beside(_: LagrangeDAlembert, x: Array, xi: Array) -> Array:
+    """Return the place with the coordinates xi as seen from x."""
+    return x + xi
+
+
+def frame(_system: LagrangeDAlembert, x: Array, _v: Array, _time: Array) -> Array:
+    """Return from where places are seen after a time: it stays."""
+    return x
+
+
+def departure(_: LagrangeDAlembert, x: Array, after: Array) -> Array:
+    """Return the coordinates of a place as seen from x."""
+    return after - x
+
+
+def departure_rate(system: LagrangeDAlembert, _v: Array, xi: Array, w: Array) -> Array:
+    """Return the rate of the coordinates xi of a place that moves with the velocity w, from a frame with velocity v."""
+    return rate(system, xi, w)
+
+
 def normalized(_: LagrangeDAlembert, x: Array) -> Array:
     """Return the place as it is: rounding errors lead to another one."""
     return x
@@ -207,6 +227,9 @@ def solve_bordered(matrix: Array, units: Scaled, force: Array, off: Array) -> tu
 def kinetic_matrix(system: LagrangeDAlembert, q: Array, v: Array, _h: Any = None) -> Array:
     r"""Return $\partial^2 L/\partial v^2$."""
     return jax.hessian(lagrangian, argnums=2)(system, q, v)
+
+
+mass_matrix = kinetic_matrix
 
 
 def acceleration_matrix(system: LagrangeDAlembert, q: Array, v: Array) -> tuple[Array, Scaled]:

@@ -337,7 +337,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         times: Any,
         body_velocity: Any = None,
         momentum: Any = None,
-        rtol: float = 1e-10,
+        rtol: float | None = None,
         atol: float = 1e-12,
     ) -> "CoordinateOrbit":
         r"""Solve the continuous Lagrange-d'Alembert equations.
@@ -354,8 +354,8 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             times: The times of the states, at least one, increasing or decreasing; the start is at the first.
             body_velocity: Start with this velocity, which must satisfy the constraint.
             momentum: Start with this momentum; only its action on admissible velocities counts.
-            rtol: Relative error of a step, at least 1e-14.
-            atol: Absolute error of a step.
+            rtol: Relative error of a step, at least 1e-14, which is the default of series; of diffrax 1e-10.
+            atol: Absolute error of a step of diffrax.
 
         Returns:
             The orbit. It has no displacements, and its multipliers are the forces at its times.
@@ -371,17 +371,8 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             >>> print(orbit.configuration[-1].round(9))
             [-1.]
         """
-        if self.table is not None:
-            remedy = "Discretize the system, or pass a function of time."
-            raise error("flow(system=...)", "have forces at times", "one force for each step", remedy)
         starts = {"body_velocity": body_velocity, "momentum": momentum}
         return room("_flow").flow(self, configuration, starts, times, rtol, atol)
-
-    def flowed(
-        self, states: "CoordinateOrbit", times: Float[np.ndarray, "K"], *, rtol: float, atol: float
-    ) -> "CoordinateOrbit":
-        """Return states of a flow carried on, each to a later time of its own; NaN where the solver fails."""
-        return room("_flow").flowed(self, states, times, rtol, atol)
 
 
 def _with_potential(lagrangian: Callable[..., Array], potential: Any, *, last: bool) -> Callable[..., Array]:

@@ -1,6 +1,7 @@
 """The interface of systems in coordinates, which discretize and flow by themselves."""
 
 import abc
+import importlib
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar
@@ -75,6 +76,10 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
         remedy = "Put them into a LagrangeDAlembert or an LLSystem."
         raise error("Forced(system=...)", "be a system that forces act on", type(self).__name__, remedy)
 
+    def vector_field(self) -> Any:
+        """Return the equations of motion, see `nonholo.vector_field`."""
+        return importlib.import_module("nonholo.lagrange_dalembert").vector_field(self)
+
     @abc.abstractmethod
     def discretize(self, time_step: Any) -> DiscretizationT:
         """Return the discretized system."""
@@ -87,7 +92,7 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
         times: Any,
         body_velocity: Any = None,
         momentum: Any = None,
-        rtol: float = 1e-10,
+        rtol: float | None = None,
         atol: float = 1e-12,
     ) -> OrbitT:
         """Solve the continuous equations."""

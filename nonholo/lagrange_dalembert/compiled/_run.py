@@ -269,13 +269,19 @@ def decoded(function: Callable[..., Any], system: Any, h: Any, q: np.ndarray, v:
     code = values(function, system.family, *(column.shape[1:] for column in columns))
     if code is None:
         return None
-    sizes = [math.prod(shape) for shape in code.shapes]
-    table = np.empty((len(q), sum(sizes) + 1))
-    each_row(code.function, np.column_stack([x.reshape(len(q), math.prod(x.shape[1:])) for x in columns]), table)
+    return evaluated(code, *columns)
+
+
+def evaluated(code: Values, *columns: np.ndarray) -> list[Any] | None:
+    """Return the values of each row of columns; None where they may not be trusted."""
+    sizes, count = [math.prod(shape) for shape in code.shapes], len(columns[0])
+    table = np.empty((count, sum(sizes) + 1))
+    given = np.column_stack([x.reshape(count, math.prod(x.shape[1:])) for x in columns])
+    each_row(code.function, np.ascontiguousarray(given), table)  # of repeated rows the stack has another layout
     if np.any(table[:, -1] != 0):
         return None
     parts = np.split(table[:, :-1], np.cumsum(sizes)[:-1], axis=1)
-    return [part.reshape(len(q), *shape) for part, shape in zip(parts, code.shapes, strict=True)]
+    return [part.reshape(count, *shape) for part, shape in zip(parts, code.shapes, strict=True)]
 
 
 def _nodes(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray] | None:
