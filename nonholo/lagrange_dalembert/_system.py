@@ -14,10 +14,11 @@ from nonholo.base.kept import kept
 from nonholo.base.limits import within_memory
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert._parameters import Bound, Parameters
 from nonholo.lagrange_dalembert._room import room
-from nonholo.lagrange_dalembert._tracing import (
+from nonholo.lagrange_dalembert.functions import (
+    Bound,
     ForceTable,
+    Parameters,
     check_forms,
     check_value,
     count_of,
