@@ -77,7 +77,6 @@ RULES: tuple[Rule, ...] = (
         "Systems on groups by functions have constants inside them: no parameters, no derivatives.",
         "must (name|be)",
     ),
-    Rule("flow at other times", "coordinates", "States between come later.", "must (name|be)"),
 )
 
 
