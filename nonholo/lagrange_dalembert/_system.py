@@ -14,14 +14,16 @@ from nonholo.base.kept import kept
 from nonholo.base.limits import within_memory
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert._parameters import Bound, Parameters
 from nonholo.lagrange_dalembert._room import room
-from nonholo.lagrange_dalembert._tracing import (
+from nonholo.lagrange_dalembert.functions import (
+    Bound,
     ForceTable,
+    Parameters,
     check_forms,
     check_value,
     count_of,
     takes_time,
+    with_parameters,
     with_time_step,
 )
 from nonholo.systems import AbstractCoordinateSystem, joined, parts_of
@@ -268,11 +270,18 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         return not any(getattr(each, "is_of_one_step", False) for each in given)
 
     def forced(self, potential: Any, force: Any) -> "LagrangeDAlembert":
-        """Return the system with a potential U(q) and a force; itself with neither. `nonholo.Forced` calls it."""
+        """Return the system with a potential U(q) and a force; itself with neither. `nonholo.Forced` calls it.
+
+        Both may take the parameters of the system last, or do without.
+        """
         if potential is None and force is None:
             return self
         if self.force is not None:
             raise error("Forced(system=...)", "have no force yet", repr(self), "Pass all forces at once.")
+        if self.parameters:
+            potential, parts = with_parameters(potential, 1), parts_of(force)
+            parts |= {"function": with_parameters(parts["function"], 3)} if "function" in parts else {}
+            force = joined(parts)
         if potential is not None:
             q = jax.ShapeDtypeStruct((self.dimension,), float)
             with double_precision():

@@ -8,8 +8,10 @@ import numpy as np
 from nonholo.base.checks import number
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
-from nonholo.literature._example import Example, numbers, positives, ready
+from nonholo.literature._example import Example, Numbers, numbers, positives, ready, sized
 from nonholo.literature._outlines import wheel
+
+_SIZES = ("mass", "inertia", "moving_mass", "frequency", "a", "ahead", "amplitude")
 
 
 @ready("configuration", "speed", "turning")
@@ -72,32 +74,36 @@ def driven_sleigh(
         "The speed grows without bound if the moving mass is on the right side of the contact.",
         "With the line of the moving mass through the contact the speed settles.",
     )
-    return Example(name, _system(*body, a, d, A), np.append(q, 0.0), v, facts, {})
+    return Example(name, sized(_system, *body, a, d, A), np.append(q, 0.0), v, facts, {})
 
 
 @functools.cache
-def _system(m: float, J: float, mu: float, Omega: float, a: float, d: float, A: float) -> LagrangeDAlembert:
-    def lagrangian(q: Array, v: Array) -> Array:
+def _system() -> LagrangeDAlembert:
+    def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
+        m, J, mu, _, a, d, _ = map(p.__getitem__, _SIZES)
         cos, sin, omega, s = jnp.cos(q[2]), jnp.sin(q[2]), v[2], q[3]
         u, w = cos * v[0] + sin * v[1], cos * v[1] - sin * v[0]
         platform = m * (u**2 + (w + a * omega) ** 2) + J * omega**2
         return (platform + mu * ((u - s * omega) ** 2 + (w + d * omega + v[3]) ** 2)) / 2
 
-    def blade(q: Array) -> Array:
+    def blade(q: Array, p: Numbers) -> Array:
+        del p
         return jnp.array([[-jnp.sin(q[2]), jnp.cos(q[2]), 0.0, 0.0]])
 
-    size = np.sqrt(J / m)
-    platform = [a, 0.0] + size * np.array([[-1.0, -0.6], [0.8, -0.6], [1.2, 0.0], [0.8, 0.6], [-1.0, 0.6]])
-    contact = size * np.array([[-0.4, 0.0], [0.4, 0.0]])
+    platform = np.array([[-1.0, -0.6], [0.8, -0.6], [1.2, 0.0], [0.8, 0.6], [-1.0, 0.6]])
+    contact = np.array([[-0.4, 0.0], [0.4, 0.0]])
 
-    def outline(q: Array) -> list[Array]:
-        return [platform, contact, wheel((d, q[3]), 0.25 * size)]
+    def outline(q: Array, p: Numbers) -> list[Array]:
+        size = np.sqrt(p["inertia"] / p["mass"])
+        return [[p["a"], 0.0] + size * platform, size * contact, wheel((p["ahead"], q[3]), 0.25 * size)]
 
-    names, prescribed = ("x", "y", "theta", "s"), {3: lambda time: A * jnp.sin(Omega * time)}
+    names = ("x", "y", "theta", "s")
+    prescribed = {3: lambda time, p: p["amplitude"] * jnp.sin(p["frequency"] * time)}
     return LagrangeDAlembert(
         lagrangian,
         blade,
         dimension=4,
+        parameters=dict.fromkeys(_SIZES, 1.0),
         prescribed=prescribed,
         coordinates=names,
         heading="theta",

@@ -22,6 +22,9 @@ from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, LagrangeDAlembert
 from nonholo.simulation import flow, simulate
 from nonholo.systems import AbstractSystem
 
+Numbers = Mapping[str, Any]
+"""Parameters of a system by name."""
+
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Example(Keeper):
@@ -134,6 +137,12 @@ def _named(system: Any, make: Callable[..., Example], parameters: str) -> Any:
 
 def _system_of(make: Callable[..., Example], given: dict[str, Any]) -> Any:
     return make(**given).system
+
+
+def sized(make: Callable[[], LagrangeDAlembert], *numbers: float) -> LagrangeDAlembert:
+    """Return a system that is made once, with these parameters in its order."""
+    system = make()
+    return system.with_parameters(**dict(zip(system.parameters, numbers, strict=True)))
 
 
 def rate(index: int) -> Callable[[Array, Array], Array]:

@@ -8,8 +8,10 @@ import numpy as np
 from nonholo.base.checks import error
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
-from nonholo.literature._example import Example, numbers, positives, rate, ready
+from nonholo.literature._example import Example, Numbers, numbers, positives, rate, ready, sized
 from nonholo.literature._outlines import pair, wheel
+
+_SIZES = ("mass", "inertia", "wheelbase", "wheel_radius", "wheel_inertia", "steering_inertia")
 
 
 @ready("configuration", "speed", "steering_rate")
@@ -88,27 +90,29 @@ def kinematic_car(
         "With the steering at rest it drives on a circle of radius wheelbase / tan phi.",
         "Rolling and steering bring it to every pose: growth (2, 3, 4, 5).",
     )
-    return Example(name, _system(m, J, ell, R, Jw, Js), q, v, facts, conserved, None if turn else circle)
+    return Example(name, sized(_system, m, J, ell, R, Jw, Js), q, v, facts, conserved, None if turn else circle)
 
 
 @functools.cache
-def _system(m: float, J: float, ell: float, R: float, Jw: float, Js: float) -> LagrangeDAlembert:
-    def lagrangian(q: Array, v: Array) -> Array:
+def _system() -> LagrangeDAlembert:
+    def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         del q
+        m, J, _, _, Jw, Js = map(p.__getitem__, _SIZES)
         return jnp.array([m, m, J, Jw, Js]) @ v**2 / 2
 
-    def forms(q: Array) -> Array:
-        cos, sin, turned = jnp.cos(q[2]), jnp.sin(q[2]), q[2] + q[4]
+    def forms(q: Array, p: Numbers) -> Array:
+        cos, sin, turned, ell, R = jnp.cos(q[2]), jnp.sin(q[2]), q[2] + q[4], p["wheelbase"], p["wheel_radius"]
         front = jnp.array([-jnp.sin(turned), jnp.cos(turned), ell * jnp.cos(q[4]), 0.0, 0.0])
         return jnp.stack([jnp.array([-sin, cos, 0.0, 0.0, 0.0]), front, jnp.array([cos, sin, 0.0, -R, 0.0])])
 
     names = ("x", "y", "theta", "psi", "phi")
-    board = np.array([[-0.2, -0.22], [1.2, -0.22], [1.2, 0.22], [-0.2, 0.22]]) * ell
+    board = np.array([[-0.2, -0.22], [1.2, -0.22], [1.2, 0.22], [-0.2, 0.22]])
 
-    def outline(q: Array) -> list[Array]:
+    def outline(q: Array, p: Numbers) -> list[Array]:
+        ell, R = p["wheelbase"], p["wheel_radius"]
         cos, sin, places = np.cos(q[4]), np.sin(q[4]), ((ell, -0.3 * ell), (ell, 0.3 * ell))
         front = [wheel(at, 2 * R, np.arctan2(at[0] * sin, at[0] * cos - at[1] * sin)) for at in places]
-        return [board, *pair((0.0, 0.0), 0.3 * ell, 2 * R), *front]
+        return [ell * board, *pair((0.0, 0.0), 0.3 * ell, 2 * R), *front]
 
     looks = {"coordinates": names, "heading": "theta", "outline": outline, "name": "Kinematic car"}
-    return LagrangeDAlembert(lagrangian, forms, dimension=5, **looks)
+    return LagrangeDAlembert(lagrangian, forms, dimension=5, parameters=dict.fromkeys(_SIZES, 1.0), **looks)

@@ -8,7 +8,9 @@ import numpy as np
 from nonholo.base.checks import error, number, scale
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
-from nonholo.literature._example import Example, numbers, rate, ready
+from nonholo.literature._example import Example, Numbers, numbers, rate, ready, sized
+
+_SIZES = ("mass", "inertia", "slope_acceleration")
 
 
 @ready("configuration", "speed", "turning")
@@ -88,25 +90,28 @@ def knife_edge_on_incline(
         "From rest the blade draws a cycloid.",
     )
     v = np.array([u0 * np.cos(q[2]), u0 * np.sin(q[2]), omega])
-    return Example("knife_edge_on_incline", _system(m, J, G), q, v, facts, conserved, exact)
+    return Example("knife_edge_on_incline", sized(_system, m, J, G), q, v, facts, conserved, exact)
 
 
 @functools.cache
-def _system(m: float, J: float, G: float) -> LagrangeDAlembert:
-    def lagrangian(q: Array, v: Array) -> Array:
+def _system() -> LagrangeDAlembert:
+    def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
+        m, J, G = map(p.__getitem__, _SIZES)
         return jnp.array([m, m, J]) @ v**2 / 2 + m * G * q[0]
 
-    def forms(q: Array) -> Array:
+    def forms(q: Array, p: Numbers) -> Array:
+        del p
         return jnp.array([[jnp.sin(q[2]), -jnp.cos(q[2]), 0.0]])
 
     names = ("x", "y", "phi")
-    blade = np.sqrt(J / m) * np.array([[-1.0, 0.0], [1.0, 0.0]])
+    blade = np.array([[-1.0, 0.0], [1.0, 0.0]])
     return LagrangeDAlembert(
         lagrangian,
         forms,
         dimension=3,
         coordinates=names,
         heading="phi",
-        outline=[blade],
+        outline=lambda _, p: [np.sqrt(p["inertia"] / p["mass"]) * blade],
+        parameters=dict.fromkeys(_SIZES, 1.0),
         name="Knife edge on an incline",
     )

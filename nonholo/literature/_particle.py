@@ -8,7 +8,7 @@ import numpy as np
 from nonholo.base.checks import scale
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
-from nonholo.literature._example import Example, numbers, rate, ready
+from nonholo.literature._example import Example, Numbers, numbers, rate, ready, sized
 
 
 @ready("configuration", "planar_velocity")
@@ -62,17 +62,18 @@ def particle(
     conserved = {"y'": rate(1), "x' sqrt(1 + y^2)": lambda q, v: v[..., 0] * np.sqrt(1 + q[..., 1] ** 2)}
     facts = ("y' and x' sqrt(1 + y^2) are constant.", "The discrete energy settles to a constant; it does not drift.")
     v = np.array([a, b, y0 * a])
-    return Example("particle", _system(m), q, v, facts, conserved, exact)
+    return Example("particle", sized(_system, m), q, v, facts, conserved, exact)
 
 
 @functools.cache
-def _system(m: float) -> LagrangeDAlembert:
-    def lagrangian(q: Array, v: Array) -> Array:
+def _system() -> LagrangeDAlembert:
+    def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         del q
-        return m * (v @ v) / 2
+        return p["mass"] * (v @ v) / 2
 
-    def forms(q: Array) -> Array:
+    def forms(q: Array, p: Numbers) -> Array:
+        del p
         return jnp.array([[-q[1], 0.0, 1.0]])
 
-    names = ("x", "y", "z")
-    return LagrangeDAlembert(lagrangian, forms, dimension=3, coordinates=names, name="Nonholonomic particle")
+    about = {"coordinates": ("x", "y", "z"), "name": "Nonholonomic particle"}
+    return LagrangeDAlembert(lagrangian, forms, dimension=3, parameters={"mass": 1.0}, **about)

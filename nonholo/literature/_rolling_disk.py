@@ -7,7 +7,7 @@ import numpy as np
 
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
-from nonholo.literature._example import Example, numbers, positives, rate, ready
+from nonholo.literature._example import Example, Numbers, numbers, positives, rate, ready, sized
 from nonholo.literature._outlines import wheel
 
 
@@ -66,16 +66,17 @@ def rolling_disk(
     conserved = {"theta'": rate(2), "phi'": rate(3)}
     facts = ("theta' and phi' are constant, also in the midpoint rule.", "The contact point moves on a circle.")
     v = np.array([R * np.cos(q[3]) * roll, R * np.sin(q[3]) * roll, roll, turn])
-    return Example("rolling_disk", _system(*body), q, v, facts, conserved, exact)
+    return Example("rolling_disk", sized(_system, *body), q, v, facts, conserved, exact)
 
 
 @functools.cache
-def _system(m: float, R: float, rolling: float, turning: float) -> LagrangeDAlembert:
-    def lagrangian(q: Array, v: Array) -> Array:
+def _system() -> LagrangeDAlembert:
+    def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         del q
-        return jnp.array([m, m, rolling, turning]) @ v**2 / 2
+        return jnp.array([p["mass"], p["mass"], p["rolling_inertia"], p["turning_inertia"]]) @ v**2 / 2
 
-    def forms(q: Array) -> Array:
+    def forms(q: Array, p: Numbers) -> Array:
+        R = p["radius"]
         return jnp.array([[1.0, 0.0, -R * jnp.cos(q[3]), 0.0], [0.0, 1.0, -R * jnp.sin(q[3]), 0.0]])
 
     names = ("x", "y", "theta", "phi")
@@ -85,6 +86,7 @@ def _system(m: float, R: float, rolling: float, turning: float) -> LagrangeDAlem
         dimension=4,
         coordinates=names,
         heading="phi",
-        outline=[wheel((0.0, 0.0), 2 * R, width=0.1)],
+        outline=lambda _, p: [wheel((0.0, 0.0), 2 * p["radius"], width=0.1)],
+        parameters=dict.fromkeys(("mass", "radius", "rolling_inertia", "turning_inertia"), 1.0),
         name="Rolling disk",
     )

@@ -8,8 +8,10 @@ import numpy as np
 from nonholo.base.checks import error
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import LagrangeDAlembert
-from nonholo.literature._example import Example, numbers, positives, rate, ready
+from nonholo.literature._example import Example, Numbers, numbers, positives, rate, ready, sized
 from nonholo.literature._outlines import pair, turn
+
+_SIZES = ("mass", "half_length", "rotor_inertia", "wheel_inertia")
 
 
 @ready("configuration", "speed", "rotor_rate", "wheel_rate")
@@ -82,17 +84,18 @@ def snakeboard(
         "The momentum along the constraint is constant.",
         "The motion ends where the wheels are crossed, at |phi| = pi/2.",
     )
-    return Example("snakeboard", _system(m, r, J0, J1), q, v, facts, conserved)
+    return Example("snakeboard", sized(_system, m, r, J0, J1), q, v, facts, conserved)
 
 
 @functools.cache
-def _system(m: float, r: float, J0: float, J1: float) -> LagrangeDAlembert:
-    def lagrangian(q: Array, v: Array) -> Array:
+def _system() -> LagrangeDAlembert:
+    def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         del q
+        m, r, J0, J1 = map(p.__getitem__, _SIZES)
         return jnp.array([m, m, m * r * r, J0, 2 * J1]) @ v**2 / 2 + J0 * v[2] * v[3]
 
-    def forms(q: Array) -> Array:
-        theta, phi = q[2], q[4]
+    def forms(q: Array, p: Numbers) -> Array:
+        theta, phi, r = q[2], q[4], p["half_length"]
 
         def row(side: float) -> Array:
             turned = theta + side * phi
@@ -101,16 +104,18 @@ def _system(m: float, r: float, J0: float, J1: float) -> LagrangeDAlembert:
         return jnp.stack([row(1.0), row(-1.0)])
 
     names = ("x", "y", "theta", "psi", "phi")
-    board = r * np.array([[-1.15, -0.12], [1.15, -0.12], [1.15, 0.12], [-1.15, 0.12]])
+    board = np.array([[-1.15, -0.12], [1.15, -0.12], [1.15, 0.12], [-1.15, 0.12]])
 
-    def outline(q: Array) -> list[Array]:
+    def outline(q: Array, p: Numbers) -> list[Array]:
+        r = p["half_length"]
         rotor = 0.45 * r * np.array([[-1.0, 0.0], [1.0, 0.0]]) @ turn(q[3])
-        return [board, rotor, *pair((r, 0.0), 0.35 * r, 0.3 * r, q[4]), *pair((-r, 0.0), 0.35 * r, 0.3 * r, -q[4])]
+        return [r * board, rotor, *pair((r, 0.0), 0.35 * r, 0.3 * r, q[4]), *pair((-r, 0.0), 0.35 * r, 0.3 * r, -q[4])]
 
     return LagrangeDAlembert(
         lagrangian,
         forms,
         dimension=5,
+        parameters=dict.fromkeys(_SIZES, 1.0),
         coordinates=names,
         heading="theta",
         outline=outline,

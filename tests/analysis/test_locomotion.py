@@ -190,7 +190,7 @@ def test_without_constraints_the_momentum_is_that_of_the_body() -> None:
 def test_names_say_where_pose_and_shape_are() -> None:
     """The car with its coordinates in another order and by other names has the same connection."""
     order = [3, 2, 4, 1, 0]
-    system: Any = nh.examples.kinematic_car(wheel_radius=RADIUS, wheelbase=BASE).system
+    system: Any = nh.examples.kinematic_car(wheel_radius=RADIUS, wheelbase=BASE).system.plain
     back = np.argsort(order)
 
     def forms(q: Array) -> Array:

@@ -306,3 +306,16 @@ def test_bad_members_are_refused(given: dict[str, Any], words: str) -> None:
     """Members differ by known names and fitting shapes."""
     with pytest.raises(ValueError, match=words):
         nh.ensemble(nh.discretize(made("midpoint"), 0.05), **START, parameters=given, steps=3)
+
+
+def test_forces_need_not_take_the_parameters() -> None:
+    """`Forced` takes a potential and a force with the parameters of the system, and without."""
+    system = made("midpoint")
+    runs = [
+        nh.discretize(nh.Forced(system, potential=potential, force=force), 0.05).simulate(**START, steps=9)
+        for potential, force in (
+            (lambda q: q @ q, lambda time, q, v: -0.1 * v + 0 * q * time),
+            (lambda q, p: q @ q + 0 * p["mass"], lambda time, q, v, p: -0.1 * v + 0 * q * time * p["mass"]),
+        )
+    ]
+    assert np.abs(runs[0].configuration - runs[1].configuration).max() <= 1e-14

@@ -186,7 +186,7 @@ def test_bad_parameters_are_refused(make: object, words: str) -> None:
 def test_the_rotor_turns_with_the_board() -> None:
     """The kinetic energy of the snakeboard is that of its parts, each with its velocity in space."""
     m, r, J0, J1 = 1.3, 0.7, 0.2, 0.05
-    board = nh.examples.snakeboard(mass=m, half_length=r, rotor_inertia=J0, wheel_inertia=J1).system
+    board = nh.examples.snakeboard(mass=m, half_length=r, rotor_inertia=J0, wheel_inertia=J1).system.plain
     v = np.array([0.3, -0.2, 0.5, 1.1, -0.4])
     parts = m * (v[0] ** 2 + v[1] ** 2) + (m * r * r - J0) * v[2] ** 2 + J0 * (v[2] + v[3]) ** 2 + 2 * J1 * v[4] ** 2
     assert float(board.lagrangian(np.zeros(5), v)) == pytest.approx(parts / 2, rel=1e-6)
@@ -194,5 +194,5 @@ def test_the_rotor_turns_with_the_board() -> None:
 
 def test_gravity_pulls_the_blade_down_the_slope() -> None:
     """The Lagrangian of the knife edge grows along the first axis, which points downhill."""
-    blade, v = ready("knife_edge_on_incline").system, np.zeros(3)
+    blade, v = ready("knife_edge_on_incline").system.plain, np.zeros(3)
     assert float(blade.lagrangian(np.array([1.0, 0.0, 0.0]), v)) > float(blade.lagrangian(np.zeros(3), v))

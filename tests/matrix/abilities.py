@@ -456,6 +456,8 @@ def gradient(c: Case, _: Path) -> None:
 
     name, start = next(iter(c.start.items())) if c.ready is None else ("body_velocity", c.start["body_velocity"])
     rest = {key: value for key, value in c.start.items() if key != name}
+    if "coordinates" in c.kind.traits:  # whose velocities have to be admissible
+        name, start = "momentum", c.orbit.momentum[0]
 
     def end(run: Callable[..., Any], value: Any) -> Any:
         return run(c.discrete, **{name: value}, **rest, steps=3).configuration[-1].ravel()[-2]

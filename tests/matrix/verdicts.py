@@ -72,10 +72,9 @@ RULES: tuple[Rule, ...] = (
     Rule("scenario file", "function", "A file holds numbers, not the functions of a user.", "cannot be run"),
     Rule("scenario file", "ready system", "Ready systems have no scenario files yet.", "cannot be run"),
     Rule(
-        "ensemble of parameters|flow at other times|gradient",
-        "coordinates",
-        "Systems in coordinates have constants inside their functions; parameters, states between and derivatives"
-        " come later.",
+        "ensemble of parameters|gradient",
+        "on a group",
+        "Systems on groups by functions have constants inside them: no parameters, no derivatives.",
         "must (name|be)",
     ),
 )

@@ -4,12 +4,11 @@ import dataclasses
 import functools
 import importlib
 from collections.abc import Callable, Mapping
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from scipy.special import stdtrit
 
-from nonholo.analysis.inverse._first import first
 from nonholo.analysis.inverse._likelihood import LOSSES, Estimate
 from nonholo.analysis.inverse._measurements import WHERE, kinds_of
 from nonholo.analysis.inverse._problem import Problem, Shapes, named
@@ -17,14 +16,11 @@ from nonholo.analysis.inverse._profile import Minimum, Profile, profile_of
 from nonholo.analysis.inverse._search import Found, Ranges, Search, outcome_of
 from nonholo.base.checks import array, choice, error, function, instance, needs, number, pair, scale, shown
 from nonholo.base.types import Array, Float
-from nonholo.discrete import discretize
 from nonholo.orbit import Orbit
-from nonholo.simulation import simulate
-from nonholo.systems import AbstractSystem, System
+from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, System
 
 _FLAT = 1e-10  # least singular value of scaled derivatives, relative to the largest
 _LEAST_FREE = 0.1  # numbers of a kind that tell its noise
-_COPIES = 8  # of matrices at a node, and their derivatives
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -37,7 +33,7 @@ class Fit:
             somewhat wider than that of known noise, by Kenward and Roger, where noise levels are estimated.
         system: `system_of(parameters)`.
         orbit: The fitted motion, a discrete orbit; of several trials a tuple of them. Time 0 is the first sample's.
-        residuals: Measured minus fitted numbers of each trial by kind, "position", "turn" and "rate", (K, ...); NaN
+        residuals: Measured minus fitted numbers of each trial by kind, as "position", "turn" and "rate", (K, ...); NaN
             where nothing was measured. A turn in space is the vector of the rotation from the fitted pose.
         noise: Standard deviation of the noise of each kind, estimated or given.
         outcome: "converged": the loss is least nearby, and the noise levels have settled. "lost": residuals are many
@@ -141,19 +137,25 @@ def fit(
 
     A free motion does not know its unit of mass: fix one mass, or the fit is refused as undetermined.
 
+    In coordinates the positions x and y, and z, are one kind, each other coordinate is one by its name, and the heading
+    counts up to full turns. What is not measured may be anything, and its first value is fitted; coordinates that the
+    equations do not contain, and nobody measured, begin at 0. A start is a first configuration and a first momentum;
+    forces and prescribed motions see time 0 at the first sample.
+
     Args:
         system_of: Makes the system, with a left-invariant constraint on SE(2), SO(3) or SE(3), from the parameters by
-            name, which JAX traces. The same function is compiled once, whatever the data.
+            name, which JAX traces; or returns `system.with_parameters(**p)` of a `LagrangeDAlembert`. The same function
+            is compiled once, whatever the data, in coordinates once for each time step.
         measurements: A pandas DataFrame, an xarray Dataset, a dictionary of columns, the path of a CSV file with a
             header, or a list of such trials. Columns: `t`; `x`, `y`, (`z`); `theta` or `heading` in the plane, `qw`,
             `qx`, `qy`, `qz` or `quaternion` in space; angular velocities in the body `omega`, or `omega_x`, `omega_y`,
-            `omega_z`. NaN marks what was not measured, and kinds may have rates of their own. Positions alone tell the
-            pose of a body in the plane that moves forward; without poses, trials start at the identity. A CSV file has
-            at most 256 MB.
+            `omega_z`; in coordinates the names of the coordinates. NaN marks what was not measured, and kinds may have
+            rates of their own. Positions alone tell the pose of a body in the plane that moves forward; without poses,
+            trials start at the identity. A CSV file has at most 256 MB.
         guess: The parameters to begin with, numbers or arrays.
         time_step: h; by default the smallest time between two samples. Samples lie on multiples of it.
-        noise: Standard deviations that are known, by kind ("position", "turn", "rate"), or one for all; the levels of
-            other kinds are estimated.
+        noise: Standard deviations that are known, by kind ("position", "turn", "rate", a coordinate), or one for all;
+            the levels of other kinds are estimated.
         bounds: Least and largest value of parameters by name, for an array of all its entries. A parameter between 0
             and infinity is searched by its logarithm, which finds it from guesses that are far off.
         loss: "linear", $\rho(z) = z^2$, or "soft_l1", $2\sqrt{1 + z^2} - 2$, under which outliers count little. With
@@ -184,26 +186,21 @@ def fit(
     """
     function("fit(system_of=...)", system_of)
     choice("fit(loss=...)", loss, LOSSES)
-    with needs("jax", "fit"):
-        from nonholo.analysis.inverse._residuals import missed
-
     numbers, shapes = _vector(guess)
     ranges = _ranges(bounds, shapes, numbers)
-    system = _system(system_of, numbers, shapes)
+    model = _model(system_of, numbers, shapes)
     step = None if time_step is None else float(scale("fit(time_step=...)", time_step, "Pass the time step."))
-    group = system.group
-    each = _COPIES * 8.0 * (1 + len(numbers) + system.rank + group.dim) * group.size**2
-    kinds, h = kinds_of(group, measurements, step, each)
-    trials = [{kind: rows[i] for kind, rows in kinds.items()} for i in range(len(kinds["turn"]))]
-    starting = functools.partial(first, system, h, is_robust=loss != LOSSES[0])
+    kinds, h = kinds_of(model.names, measurements, step, model.each(len(numbers)))
+    trials = [{kind: rows[i] for kind, rows in kinds.items()} for i in range(len(next(iter(kinds.values()))))]
+    starting = functools.partial(model.first, h, is_robust=loss != LOSSES[0])
     poses, starts = map(np.array, zip(*map(starting, trials), strict=True))
-    problem = Problem(functools.partial(missed, system_of, shapes, h), poses, kinds, len(numbers), starts.shape)
+    problem = Problem(functools.partial(model.missed, system_of, shapes, h), poses, kinds, len(numbers), starts.shape)
     search = Search(
         problem, ranges, lambda point: system_of(named(shapes, point[: len(numbers)])), loss, _known(noise, problem)
     )
     begin = np.concatenate([numbers, starts.ravel()])
     _check_begin(problem, begin)
-    return _result(search, search.run(begin), begin, shapes, h)
+    return _result(search, search.run(begin), begin, shapes, functools.partial(model.orbit, h=h))
 
 
 def _check_begin(problem: Problem, point: np.ndarray) -> None:
@@ -241,7 +238,7 @@ def _ranges(bounds: Any, shapes: Shapes, numbers: np.ndarray) -> Ranges:
     return Ranges(low, high)
 
 
-def _result(search: Search, found: Found, begin: np.ndarray, shapes: Shapes, h: float) -> Fit:
+def _result(search: Search, found: Found, begin: np.ndarray, shapes: Shapes, orbit_of: Callable[..., Any]) -> Fit:
     problem, point, P = search.problem, found.point, search.problem.count
     _check_determined(found.estimate, shapes, P)
     _check_levels(search, found)
@@ -251,8 +248,9 @@ def _result(search: Search, found: Found, begin: np.ndarray, shapes: Shapes, h: 
     parameters = {name: x if np.ndim(x) else float(x) for name, x in parameters.items()}
     rows = {kind: np.where(there, problem.at(point)[kind][0], np.nan) for kind, there in problem.there.items()}
     residuals = tuple({kind: part[i] for kind, part in rows.items()} for i in range(len(problem.poses)))
-    starts, steps = point[P:].reshape(problem.shape), problem.kinds["turn"].shape[1] - 1
-    orbits = [_orbit(system, h, *row, steps) for row in zip(starts, problem.poses, strict=True)]
+    starts, steps = point[P:].reshape(problem.shape), next(iter(problem.kinds.values())).shape[1] - 1
+    rows_of = zip(starts, problem.poses, strict=True)
+    orbits = [orbit_of(system, start=start, pose=pose, steps=steps) for start, pose in rows_of]
     levels = {kind: float(x) for kind, x in zip(rows, found.noise, strict=True)}
     minimum = search.minimum(found, degrees, np.sqrt(plain), np.sqrt(covariance.diagonal() / plain))
     outcome = outcome_of(search, found, begin[:P], np.sqrt(covariance.diagonal()))
@@ -280,13 +278,6 @@ def _check_levels(search: Search, found: Found) -> None:
         raise error(WHERE, "tell the noise of each kind", got, f"Pass noise={{{kind!r}: ...}}, or measure longer.")
 
 
-def _orbit(system: System, h: float, start: np.ndarray, pose: np.ndarray, steps: int) -> Orbit:
-    """Return the motion of a trial."""
-    k = system.rank
-    g = pose @ system.group.exp(np.pad(start[k:], (0, k + system.group.dim - len(start)))) if len(start) > k else pose
-    return simulate(discretize(system, h), restricted_velocity=start[:k], configuration=g, steps=steps)
-
-
 def _vector(guess: Any) -> tuple[np.ndarray, Any]:
     """Return the numbers of a guess one after the other, and their names with shapes."""
     where, remedy = "fit(guess=...)", "Pass a dictionary of numbers or arrays."
@@ -301,9 +292,16 @@ def _names(shapes: Any) -> list[str]:
     return [f"{name}[{i}]" if shape else name for name, shape in shapes for i in range(int(np.prod(shape)))]
 
 
-def _system(system_of: Callable[..., Any], numbers: np.ndarray, shapes: Any) -> System:
+def _model(system_of: Callable[..., Any], numbers: np.ndarray, shapes: Any) -> Any:
+    """Return the motions of the system of the guess."""
+    with needs("jax", "fit"):
+        from nonholo.analysis.inverse._in_coordinates import coordinate_model
+        from nonholo.analysis.inverse._residuals import GroupModel
+
     system = system_of(named(shapes, numbers))
+    if isinstance(system, AbstractCoordinateSystem):
+        return coordinate_model(system, system_of(named(shapes, numbers)))
     if not isinstance(system, AbstractSystem) or system.is_spatial:
-        remedy = "Return a SuslovTop, a sleigh or an LLSystem."
+        remedy = "Return a SuslovTop, a sleigh, an LLSystem or a LagrangeDAlembert."
         raise error("fit(system_of=...)", "return a system with a left-invariant constraint", shown(system), remedy)
-    return cast(System, system)
+    return GroupModel(system)

@@ -22,7 +22,9 @@ _HUGE = 1e300  # nodes
 _TABLES = "Pass a DataFrame, a Dataset, a dictionary of columns, the path of a CSV file, or a list of them."
 _COLUMN = "Pass real numbers, times in the unit of the velocities; NaN marks what was not measured."
 
-_NAMES: dict[AbstractMatrixGroup, dict[str, tuple[tuple[str, ...], ...]]] = {
+Names = dict[str, tuple[tuple[str, ...], ...]]
+"""Names of columns by kind, with those that may stand instead."""
+_NAMES: dict[AbstractMatrixGroup, Names] = {
     SE(2): {"position": (("x", "y"),), "turn": (("theta",), ("heading",)), "rate": (("omega",),)},
     SO(3): {
         "turn": (("qw", "qx", "qy", "qz"), ("quaternion",)),
@@ -32,13 +34,18 @@ _NAMES: dict[AbstractMatrixGroup, dict[str, tuple[tuple[str, ...], ...]]] = {
 _NAMES[SE(3)] = {"position": (("x", "y", "z"),), **_NAMES[SO(3)]}
 
 
-def kinds_of(group: AbstractMatrixGroup, given: Any, time_step: float | None, each: float) -> tuple[Kinds, float]:
-    """Return what all trials measured, with as many nodes as the longest one has, and the time step.
-
-    A node takes `each` bytes.
-    """
+def names_of(group: AbstractMatrixGroup) -> Names:
+    """Return the names of columns of motions in a group."""
     if group not in _NAMES:
         raise error(WHERE, "be of a motion in SE(2), SO(3) or SE(3)", repr(group), "Fit its numbers by `nh.rollout`.")
+    return _NAMES[group]
+
+
+def kinds_of(known: Names, given: Any, time_step: float | None, each: float) -> tuple[Kinds, float]:
+    """Return what all trials measured, with as many nodes as the longest one has, and the time step.
+
+    A node takes `each` bytes; `known` are the names of columns by kind.
+    """
     tables = [_columns(one) for one in (given if isinstance(given, list | tuple) else [given])]
     if not tables:
         raise error(WHERE, "hold at least one trial", "none", "Pass a table, or a list of them.")
@@ -46,24 +53,24 @@ def kinds_of(group: AbstractMatrixGroup, given: Any, time_step: float | None, ea
     h = min(float(np.diff(time).min()) for time in times) if time_step is None else time_step
     most = 1 + min(max(float(time[-1] - time[0]) for time in times) / h, _HUGE)
     within_memory(WHERE, len(tables) * most * each, f"Pass a time_step larger than {h:g}, or other times.")
-    kinds = _on_nodes(group, tables, [_nodes(time, h) for time in times])
-    _refuse_other_columns(group, tables, kinds)
+    kinds = _on_nodes(known, tables, [_nodes(time, h) for time in times])
+    _refuse_other_columns(known, tables, kinds)
     return kinds, h
 
 
-def _refuse_other_columns(group: AbstractMatrixGroup, tables: list[dict[str, Any]], kinds: Kinds) -> None:
+def _refuse_other_columns(known: Names, tables: list[dict[str, Any]], kinds: Kinds) -> None:
     """Refuse trials without numbers of any kind, or with numbers of different kinds."""
     seen = np.array([np.isfinite(rows).any(axis=(1, 2)) for rows in kinds.values()])
     if not (seen.any() and (seen == seen[:, :1]).all()):
-        remedy = f"Name them {'; '.join(', '.join(choices[0]) for choices in _NAMES[group].values())}."
+        remedy = f"Name them {'; '.join(', '.join(choices[0]) for choices in known.values())}."
         got = "different ones" if seen.any() else ", ".join(tables[0])
-        raise error(WHERE, f"have the same columns of a motion in {group} in every trial", got, remedy)
+        raise error(WHERE, "have the same columns of a motion in every trial", got, remedy)
 
 
-def _on_nodes(group: AbstractMatrixGroup, tables: list[dict[str, Any]], nodes: list[np.ndarray]) -> Kinds:
+def _on_nodes(known: Names, tables: list[dict[str, Any]], nodes: list[np.ndarray]) -> Kinds:
     """Return the numbers of tables on the nodes, by kind."""
     size, kinds = 1 + max(int(each[-1]) for each in nodes), {}
-    for kind, choices in _NAMES[group].items():
+    for kind, choices in known.items():
         kinds[kind] = np.full((len(tables), size, len(choices[0])), np.nan)
         for target, table, at in zip(kinds[kind], tables, nodes, strict=True):
             names = next((names for names in choices if all(name in table for name in names)), ())

@@ -1,5 +1,6 @@
 """What measurements miss of a motion, with exact derivatives, compiled once: in JAX."""
 
+import dataclasses
 import functools
 from collections.abc import Callable
 from typing import Any
@@ -8,19 +9,59 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from nonholo.analysis.inverse._first import first
+from nonholo.analysis.inverse._measurements import Names, names_of
 from nonholo.analysis.inverse._problem import Shapes, named
 from nonholo.base.types import Array
 from nonholo.discrete import discretize
 from nonholo.discrete.definition import in_double
 from nonholo.groups import SE
+from nonholo.orbit import Orbit
+from nonholo.simulation import simulate
 from nonholo.simulation.traced import rollout
 
+_COPIES = 8  # of matrices at a node, and their derivatives
 
-def missed(
-    system_of: Callable[..., Any], shapes: Shapes, time_step: float, numbers: Array, starts: Array, *data: Any
-) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Return by kind residuals (T, K, c), measured minus computed, and their derivatives by numbers and by starts."""
-    return in_double(_compiled(system_of, shapes), time_step, numbers, starts, *data)
+
+@dataclasses.dataclass(frozen=True)
+class GroupModel:
+    """Motions of a body on a group: what can be measured of them, and where they begin.
+
+    Attributes:
+        system: The body of the guess.
+    """
+
+    system: Any
+
+    @property
+    def names(self) -> Names:
+        """The names of columns by kind."""
+        return names_of(self.system.group)
+
+    def each(self, count: int) -> float:
+        """Return the bytes of a node under a number of parameters."""
+        group = self.system.group
+        return _COPIES * 8.0 * (1 + count + self.system.rank + group.dim) * group.size**2
+
+    def first(self, h: float, kinds: dict[str, np.ndarray], *, is_robust: bool) -> tuple[np.ndarray, np.ndarray]:
+        """Return a first pose and a first start."""
+        return first(self.system, h, kinds, is_robust=is_robust)
+
+    def missed(
+        self, system_of: Callable[..., Any], shapes: Shapes, time_step: float, numbers: Array, starts: Array, *data: Any
+    ) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        """Return by kind residuals (T, K, c), measured minus computed, with derivatives by numbers and by starts."""
+        return in_double(_compiled(system_of, shapes), time_step, numbers, starts, *data)
+
+    def orbit(self, system: Any, h: float, start: np.ndarray, pose: np.ndarray, steps: int) -> Orbit:
+        """Return the motion of a trial."""
+        k = system.rank
+        g = (
+            pose @ system.group.exp(np.pad(start[k:], (0, k + system.group.dim - len(start))))
+            if len(start) > k
+            else pose
+        )
+        return simulate(discretize(system, h), restricted_velocity=start[:k], configuration=g, steps=steps)
 
 
 @functools.lru_cache(maxsize=8)

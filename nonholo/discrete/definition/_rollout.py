@@ -6,54 +6,26 @@ the scalars of their kernel, from the identity; other ones in momenta along the 
 
 import dataclasses
 import functools
-import math
 from collections.abc import Callable
 from typing import Any, NamedTuple, cast
 
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jax.experimental import io_callback
 
 from nonholo import kernels
-from nonholo.base.progress import number_is_over
 from nonholo.base.results import Outcome
+from nonholo.base.traced import marked_rows, run_nodes
 from nonholo.base.types import Array, Float
 from nonholo.discrete._composition import weights
 from nonholo.discrete._scheme import Scheme
 from nonholo.discrete.definition._principal import ON_LOCUS, closed_step_of, kernel_root, principal_of
-from nonholo.discrete.definition._root import ROOT
 from nonholo.discrete.definition._step import displaced, equations_at, momentum_of, restricted
 from nonholo.discrete.routes import ScalarStep
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import Forced
 
-_HUGE = 1e300
 _CLOSE, _MOST = 1e-9, 20  # of the last correction before two that count; corrections
-
-
-@jax.custom_jvp
-def marked(value: Array, cause: Array, good: Array) -> Array:
-    """Return a finite value where it is good, and NaN elsewhere.
-
-    There the derivative is NaN along whatever moves the value or the cause of the failure; cotangents that are zero
-    stay zero, since what comes later depends on nothing there.
-    """
-    del cause
-    return jnp.where(good, value, jnp.nan)
-
-
-@marked.defjvp
-def _tangent(primals: tuple[Array, ...], tangents: tuple[Array, ...]) -> tuple[Array, Array]:
-    (value, cause, good), (moved, caused, _) = primals, tangents
-    many, none = jnp.where(good, 1.0, _HUGE).astype(value.dtype), jnp.where(good, 1.0, 0.0).astype(value.dtype)
-    moved = moved + jnp.where(good, 0.0, 1.0).astype(value.dtype) * caused
-    overflown = moved * many * many  # zero or infinite where it is not good, and so is the transpose
-    return marked(value, cause, good), overflown * none * many * many
-
-
-_MANY = 2048  # steps that take much longer than the question whether they are wanted
-_SHORT = 64  # steps between saved states from which on reverse mode keeps checkpoints alone
 
 
 class Rollout(NamedTuple):
@@ -95,8 +67,6 @@ class _Node(NamedTuple):
 
 _Step = Callable[[Array, Array, Array | None, Array | None], _Node]
 """From momenta, pose, a guess of the chart and the control of the step to the node."""
-_Advance = Callable[[_Node, tuple[Array | None, Array | None]], tuple[_Node, None]]
-"""From a node, a control and whether the step is taken at all to the node after it."""
 _Impulse = Callable[[Array, Array, Array], Array]
 """From momenta along the constraint, pose and control to half the impulse of a step, a body covector."""
 
@@ -127,7 +97,9 @@ def rolled(
     else:
         step = _composed_step(discrete, closed) if discrete.order > 2 else _matrix_step(discrete, impulse)
         start, at = (r, g, len(discrete.variety.chart)), _as_it_is
-    nodes = _run(step, start, rows, sizes, work)
+    (m, pose, size), code = cast(Any, start), jnp.zeros((), jnp.result_type(int))
+    nothing = jnp.zeros(size, m.dtype)
+    nodes = run_nodes(step, _Node(m, pose, nothing, (m, pose), code, jnp.sum(nothing)), rows, sizes, work)
     given = value if name == "momentum" and value.shape == (system.group.dim,) else None
     time = discrete.time_step * every * jnp.arange(1 + steps // every)
     states = jax.vmap(at)(nodes)
@@ -328,74 +300,6 @@ def _rectified(group: AbstractMatrixGroup, g: Array) -> Array:
     return g.at[:n, :n].set(R @ (3 * jnp.eye(n, dtype=g.dtype) - square) / 2)
 
 
-def _run(
-    step: _Step,
-    start: tuple[Array, Array, int],
-    controls: Array | None,
-    sizes: tuple[int, int],
-    work: Array | None,
-) -> _Node:
-    """Return the saved nodes from momenta, a pose and the size of a chart."""
-    (m, g, size), (steps, every), advance = start, sizes, _advance_of(step)
-    nothing = jnp.zeros(size, m.dtype)
-    begin = _Node(m, g, nothing, (m, g), jnp.zeros((), jnp.result_type(int)), jnp.sum(nothing))
-
-    def stretch(node: _Node, rows: Array | None) -> tuple[_Node, _Node]:
-        node = advance(node, (rows, None))[0] if every == 1 else _advanced(advance, node, rows, every, work)
-        return node, node
-
-    if every == 1:
-        return jax.lax.scan(stretch, begin, controls, length=steps + 1)[1]
-    first, _ = advance(begin, (None if controls is None else controls[0], None))
-    saved = steps // every
-    rows = None if controls is None else controls[1 : 1 + saved * every].reshape(saved, every, -1)
-    _, later = jax.lax.scan(stretch, first, rows, length=saved)
-    return jax.tree.map(lambda one, more: jnp.concatenate([one[None], more]), first, later)
-
-
-def _advance_of(step: _Step) -> _Advance:
-    """Return the step from node to node, which reverse mode computes once more but for its root."""
-
-    def advance(node: _Node, row: tuple[Array | None, Array | None]) -> tuple[_Node, None]:
-        control, acts = row
-        found = step(*node.after, node.y, control)
-        acts = jnp.asarray(True) if acts is None else acts
-        code = jnp.where((node.code == 0) & acts, found.code, node.code)
-        kept = jax.tree.map(lambda new, old: jnp.where((code == 0) & acts, new, old), found, node)
-        cause = jnp.where(node.code == code, node.cause, found.cause)
-        return kept._replace(code=code, cause=cause), None
-
-    kept = jax.checkpoint_policies.save_only_these_names(ROOT)
-    return jax.checkpoint(advance, prevent_cse=False, policy=kept)
-
-
-def _advanced(advance: _Advance, node: _Node, controls: Array | None, steps: int, work: Array | None) -> _Node:
-    """Take steps; many of them in stretches whose insides reverse mode computes once more."""
-    if steps <= _SHORT:
-        return jax.lax.scan(advance, node, (controls, None), length=steps)[0]
-    each = math.isqrt(steps - 1) + 1
-    number = -(-steps // each)
-    acts = (jnp.arange(number * each) < steps).reshape(number, each)
-    if controls is not None:
-        controls = jnp.pad(controls, ((0, number * each - steps), (0, 0))).reshape(number, each, -1)
-    stretch = jax.checkpoint(lambda node, rows: jax.lax.scan(advance, node, rows), prevent_cse=False)
-    inner = _wanted(stretch, work, each)
-    whole = _wanted(lambda node, rows: jax.lax.scan(lambda *part: (inner(*part)[0], None), node, rows), work, steps)
-    return whole(node, (controls, acts))[0]
-
-
-def _wanted(take: _Advance, work: Array | None, steps: int) -> _Advance:
-    """Return a function that takes many steps, or none where nobody wants them any more."""
-    if work is None or steps < _MANY:
-        return take
-
-    def if_wanted(node: _Node, rows: Any) -> tuple[_Node, None]:
-        over = io_callback(lambda number: np.bool_(number_is_over(number)), jax.ShapeDtypeStruct((), bool), work)
-        return jax.lax.cond(over, lambda: (node, None), lambda: take(node, rows))
-
-    return if_wanted
-
-
 def _decoded(
     discrete: Scheme,
     nodes: _Node,
@@ -423,9 +327,5 @@ def _decoded(
         missed = jnp.sum((P[0] - momentum) ** 2) > ON_LOCUS**2 * jnp.sum(momentum**2)
         code = jnp.where((code == 0) & missed, int(Outcome.off_momentum_locus), code)
 
-    def marked_rows(rows: Array) -> Array:
-        return jax.vmap(marked)(
-            rows, jnp.broadcast_to(nodes.cause.reshape(-1, *[1] * (rows.ndim - 1)), rows.shape), code == 0
-        )
-
-    return Rollout(time, *map(marked_rows, (r, P, W, g, energy)), outcome=code[-1])
+    rows = (marked_rows(each, nodes.cause, code == 0) for each in (r, P, W, g, energy))
+    return Rollout(time, *rows, outcome=code[-1])

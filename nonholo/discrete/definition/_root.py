@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jax.ad_checkpoint import checkpoint_name
 
 from nonholo.base.results import Outcome
+from nonholo.base.traced import implicit
 from nonholo.base.types import Array, Float
 
 _FIRST = 0.25  # first continuation step, in s
@@ -23,7 +23,6 @@ _FAR = 1e3  # size of y where a chart of the displacements ends: an angle of 179
 
 Residual = Callable[[Array, Array], Array]
 Certificate = Callable[[Array, Array], Array]
-ROOT = "root of a step"  # what a checkpoint keeps, so that no root is searched for twice
 
 
 def principal_root(
@@ -107,13 +106,11 @@ def _found(
 def _implicit(residual: Any, certified: Any, primals: Any, tangents: Any) -> tuple[Any, Any]:
     """Return the derivative of the implicit function at the root, which says nothing of the search."""
     y, code = _found(residual, certified, *primals)
-    y = checkpoint_name(y, ROOT)
     numbers, _, start, target, _ = primals
     finite = jnp.all(jnp.isfinite(target))
     at, moved = jnp.where(finite, target, start[1]), jnp.where(finite, tangents[3], 0.0)
-    _, change = jax.jvp(lambda m, n: residual(y, m, *n), (at, numbers), (moved, tangents[0]))
-    slope = jax.jacfwd(residual)(y, at, *numbers)
-    return (y, code), (-_solved(slope, change[:, None])[1][:, 0], np.zeros(code.shape, jax.dtypes.float0))
+    y, change = implicit(residual, y, (at, *numbers), (moved, *tangents[0]), lambda *given: _solved(*given)[1])
+    return (y, code), (change, np.zeros(code.shape, jax.dtypes.float0))
 
 
 def _solved(matrix: Float[Array, "m m"], values: Float[Array, "m j"]) -> tuple[Array, Float[Array, "m j"]]:

@@ -1,6 +1,7 @@
 """`rollout`: an orbit of the discrete map as a pure JAX function, differentiable in everything that has numbers."""
 
 import dataclasses
+from collections.abc import Callable
 from typing import Any, cast
 
 import equinox
@@ -11,16 +12,17 @@ from nonholo.base.checks import array, count, error, is_traced, shape_of
 from nonholo.base.progress import interruptibly, numbered
 from nonholo.base.types import Array
 from nonholo.discrete import Discretization, ScalarRoute, as_discretization
-from nonholo.discrete.definition import Rollout, in_double, rolled, traceable
+from nonholo.discrete.definition import in_double, rolled, traceable
+from nonholo.lagrange_dalembert import rolled_in_coordinates
 from nonholo.simulation._options import check_forces, refuse_many_matrices
-from nonholo.systems import Forced, Start
+from nonholo.systems import AbstractCoordinateDiscretization, Forced, Start, in_coordinates, refuse_in_coordinates
 
 _rolled = equinox.filter_jit(rolled)
 _MANY = 10_000  # steps, which may take longer than a user waits for an answer to Ctrl-C
 
 
 def rollout(
-    discrete: Discretization,
+    discrete: Discretization | AbstractCoordinateDiscretization,
     *,
     steps: int,
     body_velocity: Any = None,
@@ -29,13 +31,17 @@ def rollout(
     configuration: Any = None,
     controls: Any = None,
     save_every: int = 1,
-) -> Rollout:
+) -> Any:
     r"""Run the discrete map as `simulate` does, as a pure JAX function of body, start and controls.
 
     $$ P(W_k)|_{\mathfrak d} = r_k + \tfrac h2 u_k|_{\mathfrak d}, \qquad
        r_{k+1} = (\mathrm{Ad}^*_{W_k}P(W_k) + \tfrac h2 u_k)|_{\mathfrak d}, \qquad g_{k+1} = g_kW_k. $$
 
     `Gravity`, `Friction` and the table of a `Forced` system act as in `simulate`, with derivatives by their numbers.
+
+    In coordinates the numbers are the `parameters` of a `LagrangeDAlembert`, and controls are forces u_k, half of whose
+    impulse acts at each end of a step as the rows of a table do. A policy is a force that has its weights as
+    parameters.
 
     It works under `jax.jit`, `jax.vmap`, `jax.jvp`, `jax.vjp`, `jax.jacfwd`, `jax.grad` and repeated ones, and never
     raises there. Derivatives are those of the implicit function of a step, to rounding, never of the iteration that
@@ -55,13 +61,13 @@ def rollout(
         body_velocity: Start with the principal W_0 that has the same momentum along the constraint.
         restricted_velocity: The same, in rows of the constraint subspace.
         momentum: Start with this momentum, full (on the momentum locus) or along the constraint subspace.
-        configuration: First pose, a matrix of the group; the identity by default.
-        controls: Body covectors u_k, (steps, dim), constant over a step: half of the impulse h u_k acts at each end of
-            step k, along the constraint, beside the forces of the system; none by default.
+        configuration: First pose, a matrix of the group; the identity by default. In coordinates the first ones.
+        controls: Body covectors u_k, (steps, dim), in coordinates forces, constant over a step: half of the impulse
+            h u_k acts at each end of step k, along the constraint, beside the forces of the system; none by default.
         save_every: Steps between saved states.
 
     Returns:
-        The states. Values are those of `simulate` to rounding.
+        The states, in coordinates a `CoordinateRollout`. Values are those of `simulate` to rounding.
 
     Raises:
         ValueError: A bad argument, before any work; of traced ones the shape alone is known.
@@ -79,13 +85,23 @@ def rollout(
         [[-0.228  1.864 -0.091]
          [ 1.719  0.543  0.688]]
     """
-    as_discretization("rollout(discrete=...)", discrete, composed=True, forced=True)
     sizes = tuple(
         count(f"rollout({name}=...)", value, "Pass a number of steps.")
         for name, value in (("steps", steps), ("save_every", save_every))
     )
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
-    start = Start.of("rollout", configuration, **starts)
+    if in_coordinates(discrete):
+        refuse_in_coordinates("rollout", restricted_velocity=(starts.pop("restricted_velocity"), None))
+        run, arguments = rolled_in_coordinates, _in_coordinates
+    else:
+        as_discretization("rollout(discrete=...)", discrete, composed=True, forced=True)
+        run, arguments = _rolled, _on_group
+    given = arguments(discrete, Start.of("rollout", configuration, **starts), sizes, controls)
+    return _called(run, *given, many=sizes[0] >= _MANY)
+
+
+def _on_group(discrete: Any, start: Start, sizes: tuple[int, ...], controls: Any) -> tuple[Any, ...]:
+    """Return the arguments of a rollout on a group; of traced starts the shapes are checked."""
     if discrete.system.is_wide:
         raise error("rollout(discrete=...)", "have matrices", "a system without", "Discretize `system.dense`.")
     refuse_many_matrices("rollout(steps=...)", discrete, 1 + sizes[0] // sizes[1], "Raise save_every.")
@@ -102,15 +118,35 @@ def rollout(
         free = dataclasses.replace(discrete, system=cast(Forced, discrete.system).system)
     route = dataclasses.replace(free, order=2).route
     closed = jax.tree.map(traceable, route.step) if isinstance(route, ScalarRoute) else None
-    arguments = free, closed, (start.name, value, g), controls, sizes, forced
-    is_long = sizes[0] >= _MANY and not any(map(is_traced, jax.tree.leaves(arguments)))
-    return interruptibly(lambda: _asking(arguments)) if is_long else in_double(_rolled, *arguments)
+    return free, closed, (start.name, value, g), controls, sizes, forced
 
 
-def _asking(arguments: tuple[Any, ...]) -> Rollout:
-    """Return the states; many steps end where nobody wants them any more."""
-    with numbered() as number:
-        return jax.block_until_ready(in_double(_rolled, *arguments, np.asarray(number)))
+def _called(run: Callable[..., Any], *arguments: Any, many: bool) -> Any:
+    """Return the states; many steps that are not traced end where nobody wants them any more."""
+    if not many or any(map(is_traced, jax.tree.leaves(arguments))):
+        return in_double(run, *arguments)
+
+    def asking() -> Any:
+        with numbered() as number:
+            return jax.block_until_ready(in_double(run, *arguments, np.asarray(number)))
+
+    return interruptibly(asking)
+
+
+def _in_coordinates(discrete: Any, start: Start, sizes: tuple[int, ...], controls: Any) -> tuple[Any, ...]:
+    """Return the arguments of a rollout in coordinates; of traced starts the shapes are checked."""
+    system, numbers = discrete.system, tuple(discrete.system.parameters.values())
+    if not system.coordinates:
+        got, remedy = type(system).__name__, "Use `LLSystem`, `LRSystem` or `LagrangeDAlembert`."
+        raise error("rollout(discrete=...)", "be a body on a group, or in coordinates", got, remedy)
+    if not any(map(is_traced, (start.value, start.configuration, *numbers))):
+        discrete.first(start, posed=True)
+    n = system.dimension
+    value = array(start.where, start.value, (n,))
+    q = array("rollout(configuration=...)", start.configuration, (n,), f"Pass the {n} coordinates of the start.")
+    if controls is not None:
+        controls = array("rollout(controls=...)", controls, (sizes[0], n), "Pass a force for each step.")
+    return system.family, start.name, sizes, numbers, np.float64(discrete.time_step), (q, value), controls
 
 
 def _checked_start(discrete: Discretization, start: Start) -> tuple[Array, Array]:

@@ -139,6 +139,13 @@ def with_time_step(function: Any, others: int) -> Any:
     return TwoPoint(function) if is_shorter else function
 
 
+def with_parameters(function: Any, others: int) -> Any:
+    """Return a function of others and parameters: itself, or one that does without them wrapped."""
+    if not callable(function) or _binds(function, others + 1):
+        return function
+    return lambda *arguments: function(*arguments[:-1])
+
+
 def _binds(function: Callable[..., Any], count: int) -> bool:
     """Tell whether a function takes this many arguments; a builtin need not tell, and takes all."""
     try:

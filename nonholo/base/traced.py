@@ -1,0 +1,138 @@
+"""Runs as JAX functions: from node to node, with checkpoints, values that stop being there, and implicit derivatives.
+
+A node is what is known of a state and of the step from it, as a named tuple of the caller's. It has `after`, what the
+next step begins with, `y`, by which its root is guessed, the outcome `code`, and `cause`, a number that what made a
+step fail has moved. A node stays at the last good one.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax.ad_checkpoint import checkpoint_name
+from jax.experimental import io_callback
+
+from nonholo.base.progress import number_is_over
+from nonholo.base.types import Array, Float
+
+_HUGE = 1e300
+_MANY = 2048  # steps that take much longer than the question whether they are wanted
+_SHORT = 64  # steps between saved states from which on reverse mode keeps checkpoints alone
+_ROOT = "root of a step"  # what a checkpoint keeps, so that no root is searched for twice
+
+Step = Callable[..., Any]
+"""From what a step begins with, a guess of its root and its control to the node."""
+_Advance = Callable[[Any, tuple[Array | None, Array | None]], tuple[Any, None]]
+"""From a node, a control and whether the step is taken at all to the node after it."""
+
+
+@jax.custom_jvp
+def marked(value: Array, cause: Array, good: Array) -> Array:
+    """Return a finite value where it is good, and NaN elsewhere.
+
+    There the derivative is NaN along whatever moves the value or the cause of the failure; cotangents that are zero
+    stay zero, since what comes later depends on nothing there.
+    """
+    del cause
+    return jnp.where(good, value, jnp.nan)
+
+
+@marked.defjvp
+def _tangent(primals: tuple[Array, ...], tangents: tuple[Array, ...]) -> tuple[Array, Array]:
+    (value, cause, good), (moved, caused, _) = primals, tangents
+    many, none = jnp.where(good, 1.0, _HUGE).astype(value.dtype), jnp.where(good, 1.0, 0.0).astype(value.dtype)
+    moved = moved + jnp.where(good, 0.0, 1.0).astype(value.dtype) * caused
+    overflown = moved * many * many  # zero or infinite where it is not good, and so is the transpose
+    return marked(value, cause, good), overflown * none * many * many
+
+
+def marked_rows(rows: Array, cause: Array, good: Array) -> Array:
+    """Return the rows that are good, each with a cause, and NaN in the others."""
+    return jax.vmap(marked)(rows, jnp.broadcast_to(cause.reshape(-1, *[1] * (rows.ndim - 1)), rows.shape), good)
+
+
+def implicit(
+    residual: Callable[..., Array],
+    root: Float[Array, "m"],
+    at: tuple[Any, ...],
+    moved: tuple[Any, ...],
+    solve: Callable[[Array, Array], Array] = jnp.linalg.solve,
+) -> tuple[Float[Array, "m"], Float[Array, "m"]]:
+    """Return a root of residual(y, *at) as checkpoints keep it, and how it moves with all that the residual depends on.
+
+    It is the derivative of the implicit function, which says nothing of the search.
+    """
+    y = checkpoint_name(root, _ROOT)
+    _, change = jax.jvp(lambda *given: residual(y, *given), at, moved)
+    return y, -solve(jax.jacfwd(residual)(y, *at), change[:, None])[:, 0]
+
+
+def run_nodes(step: Step, begin: Any, controls: Array | None, sizes: tuple[int, int], work: Array | None) -> Any:
+    """Return the saved nodes after one whose `after` is the start.
+
+    Args:
+        step: What takes a step.
+        begin: A node with the start.
+        controls: A row for each step and one for what follows the last; None without.
+        sizes: Number of steps, and of those between saved nodes.
+        work: The number by which many steps ask whether they are still wanted; None where they are differentiated.
+    """
+    (steps, every), advance = sizes, _advance_of(step)
+
+    def stretch(node: Any, rows: Array | None) -> tuple[Any, Any]:
+        node = advance(node, (rows, None))[0] if every == 1 else _advanced(advance, node, rows, every, work)
+        return node, node
+
+    if every == 1:
+        return jax.lax.scan(stretch, begin, controls, length=steps + 1)[1]
+    first, _ = advance(begin, (None if controls is None else controls[0], None))
+    saved = steps // every
+    rows = None if controls is None else controls[1 : 1 + saved * every].reshape(saved, every, -1)
+    _, later = jax.lax.scan(stretch, first, rows, length=saved)
+    return jax.tree.map(lambda one, more: jnp.concatenate([one[None], more]), first, later)
+
+
+def _advance_of(step: Step) -> _Advance:
+    """Return the step from node to node, which reverse mode computes once more but for its root."""
+
+    def advance(node: Any, row: tuple[Array | None, Array | None]) -> tuple[Any, None]:
+        control, acts = row
+        found = step(*node.after, node.y, control)
+        acts = jnp.asarray(True) if acts is None else acts
+        code = jnp.where((node.code == 0) & acts, found.code, node.code)
+        kept = jax.tree.map(lambda new, old: jnp.where((code == 0) & acts, new, old), found, node)
+        cause = jnp.where(node.code == code, node.cause, found.cause)
+        return kept._replace(code=code, cause=cause), None
+
+    kept = jax.checkpoint_policies.save_only_these_names(_ROOT)
+    return jax.checkpoint(advance, prevent_cse=False, policy=kept)
+
+
+def _advanced(advance: _Advance, node: Any, controls: Array | None, steps: int, work: Array | None) -> Any:
+    """Take steps; many of them in stretches whose insides reverse mode computes once more."""
+    if steps <= _SHORT:
+        return jax.lax.scan(advance, node, (controls, None), length=steps)[0]
+    each = math.isqrt(steps - 1) + 1
+    number = -(-steps // each)
+    acts = (jnp.arange(number * each) < steps).reshape(number, each)
+    if controls is not None:
+        controls = jnp.pad(controls, ((0, number * each - steps), (0, 0))).reshape(number, each, -1)
+    stretch = jax.checkpoint(lambda node, rows: jax.lax.scan(advance, node, rows), prevent_cse=False)
+    inner = _wanted(stretch, work, each)
+    whole = _wanted(lambda node, rows: jax.lax.scan(lambda *part: (inner(*part)[0], None), node, rows), work, steps)
+    return whole(node, (controls, acts))[0]
+
+
+def _wanted(take: _Advance, work: Array | None, steps: int) -> _Advance:
+    """Return a function that takes many steps, or none where nobody wants them any more."""
+    if work is None or steps < _MANY:
+        return take
+
+    def if_wanted(node: Any, rows: Any) -> tuple[Any, None]:
+        over = io_callback(lambda number: np.bool_(number_is_over(number)), jax.ShapeDtypeStruct((), bool), work)
+        return jax.lax.cond(over, lambda: (node, None), lambda: take(node, rows))
+
+    return if_wanted

@@ -1,0 +1,119 @@
+"""Orbits in coordinates as JAX functions of parameters, start and controls; derivatives of the implicit function."""
+
+import functools
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from nonholo.base.traced import implicit, marked_rows, run_nodes
+from nonholo.base.types import Array, Float
+from nonholo.lagrange_dalembert._newton import orientation, solve
+from nonholo.lagrange_dalembert._room import equations_of
+
+
+class CoordinateRollout(NamedTuple):
+    """The states of a rollout in coordinates; arrays as those of a `CoordinateOrbit`, K = 1 + steps // save_every.
+
+    Attributes:
+        time: Times of the states, shape (K,).
+        configuration: q_k, shape (K, n).
+        body_velocity: (q_{k+1} - q_k) / time_step, shape (K, n).
+        momentum: P_k, shape (K, n).
+        energy: Energies, shape (K,).
+        outcome: An `Outcome` as an integer array: the first one that is not successful. From that state on all other
+            fields are NaN, and so are their derivatives.
+    """
+
+    time: Float[Array, "K"]
+    configuration: Float[Array, "K n"]
+    body_velocity: Float[Array, "K n"]
+    momentum: Float[Array, "K n"]
+    energy: Float[Array, "K"]
+    outcome: Array
+
+
+class _Node(NamedTuple):
+    """A place, the velocity of its step with that of the step before, what follows, outcome and cause of a failure."""
+
+    x: Array
+    y: tuple[Array, Array]
+    after: tuple[Array, Array]
+    code: Array
+    cause: Array
+
+
+@functools.partial(jax.jit, static_argnums=(0, 1, 2))
+def rolled(
+    family: Any,
+    name: str,
+    sizes: tuple[int, int],
+    numbers: tuple[Array, ...],
+    h: Array,
+    start: tuple[Array, Array],
+    controls: Array | None,
+    work: Array | None = None,
+) -> CoordinateRollout:
+    """Return the orbit from a start, which has a name, coordinates and a value; `sizes` are `steps` and `save_every`.
+
+    `work` is the number by which many steps ask whether they are still wanted; None where they are differentiated.
+    """
+    system, (q, value), (steps, every) = family.bound(*numbers), start, sizes
+    equations, n = equations_of(system), family.dimension
+    x, value = jnp.append(q, 0.0) if family.is_driven else jnp.asarray(q), jnp.asarray(value)
+    p = equations.momentum(system, x, value) if name == "body_velocity" else value
+    still, x_still, given = jax.lax.stop_gradient((numbers, x, value))
+    fixed = family.bound(*still)
+    near = given if name == "body_velocity" else equations.inverse_legendre(fixed, x_still, given)
+    sign, _ = orientation(fixed, x_still, near, h)
+
+    def step(x: Array, p: Array, before: tuple[Array, Array], row: Array | None) -> _Node:
+        push = 0.0 if row is None else h / 2 * row
+        near, last = before
+        z, code = _root(family, (numbers, h, x, p + push), (near, 2 * near - last, sign))
+        v = z[:n]
+        after = equations.ahead(system, x, v, h), equations.momenta(system, x, v, h)[1] + push
+        return _Node(x, (v, near), after, code, jnp.sum(z))
+
+    rows = None if controls is None else jnp.pad(controls, ((0, 1), (0, 0)))
+    begin = _Node(x, (near, near), (x, p), jnp.zeros((), jnp.result_type(int)), jnp.sum(near))
+    nodes = run_nodes(step, begin, rows, sizes, work)
+
+    def decoded(x: Array, v: Array, row: Array | None) -> tuple[Array, Array, Array, Array]:
+        p = equations.momenta(system, x, v, h)[0] - (0.0 if row is None else h / 2 * row)
+        if not family.is_driven and row is None:
+            return x, v, p, equations.discrete_energy(system, x, v, h)
+        return x[:n], v, p, equations.energy(system, x, equations.inverse_legendre(system, x, p))
+
+    saved = jax.vmap(decoded)(nodes.x, nodes.y[0], None if rows is None else rows[::every])
+    good = (marked_rows(each, nodes.cause, nodes.code == 0) for each in saved)
+    return CoordinateRollout(h * every * jnp.arange(1 + steps // every), *good, outcome=nodes.code[-1])
+
+
+@functools.partial(jax.custom_jvp, nondiff_argnums=(0,))
+def _root(
+    family: Any, given: tuple[tuple[Array, ...], Array, Array, Array], search: tuple[Array, Array, Array]
+) -> tuple[Array, Array]:
+    """Return velocity with multipliers of the step from a place with a momentum, and the outcome.
+
+    The search begins near a velocity, with a guess, and keeps an orientation; derivatives do not see it.
+    """
+    numbers, h, x, p = given
+    v, multipliers, code = solve(family.bound(*numbers), h, x, p, *search)
+    return jnp.concatenate([v, multipliers]), code
+
+
+@_root.defjvp
+def _implicit(family: Any, primals: Any, tangents: Any) -> tuple[Any, Any]:
+    n = family.dimension
+
+    def residual(z: Array, numbers: tuple[Array, ...], h: Array, x: Array, p: Array) -> Array:
+        system, v = family.bound(*numbers), z[:n]
+        equations = equations_of(system)
+        missed = equations.momenta(system, x, v, h)[0] - p - z[n:] @ equations.forms(system, x)
+        return jnp.concatenate([missed, equations.discrete_constraints(system, x, v, h)])
+
+    z, code = _root(family, *primals)
+    z, change = implicit(residual, z, primals[0], tangents[0])
+    return (z, code), (change, np.zeros(code.shape, jax.dtypes.float0))

@@ -1,0 +1,119 @@
+"""Fits of systems in coordinates: recovered numbers, honest intervals, what is not measured, and what is refused."""
+
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import nonholo as nh
+
+H, STEPS, NOISE = 0.05, 60, 1e-3
+TRUTH = {"inertia": 0.7, "arm": 0.4}
+
+
+def body(q, v, p):  # noqa: ANN001, ANN201
+    """Return the energy of a robot, whose center of mass is ahead of its axle, and of its wheel."""
+    across = jnp.cos(q[2]) * v[1] - jnp.sin(q[2]) * v[0] + p["arm"] * v[2]
+    along = jnp.cos(q[2]) * v[0] + jnp.sin(q[2]) * v[1]
+    return (along**2 + across**2 + p["inertia"] * v[2] ** 2 + 0.1 * v[3] ** 2) / 2
+
+
+def rolling(q, p):  # noqa: ANN001, ANN201, ARG001
+    """Return the constraints: no slip sideways, and a wheel that rolls."""
+    c, s = jnp.cos(q[2]), jnp.sin(q[2])
+    return jnp.array([[-s, c, 0.0, 0.0], [c, s, 0.0, -0.1]])
+
+
+ROBOT = nh.LagrangeDAlembert(
+    body, rolling, dimension=4, parameters=TRUTH, coordinates=("x", "y", "theta", "wheel"), heading="theta"
+)
+
+
+def robot(p: dict[str, Any]) -> nh.LagrangeDAlembert:
+    """Return a robot of these numbers."""
+    return ROBOT.with_parameters(**p)
+
+
+def recorded(seed: int, *names: str, noise: float = NOISE) -> dict[str, np.ndarray]:
+    """Return a noisy record of some coordinates."""
+    c, s = np.cos(0.3), np.sin(0.3)
+    velocity = (0.8 * c, 0.8 * s, 1.0, 8.0)
+    orbit = nh.discretize(ROBOT, H).simulate(configuration=(0.5, -0.2, 0.3, 0.0), body_velocity=velocity, steps=STEPS)
+    rows = orbit.configuration + np.random.default_rng(seed).normal(scale=noise, size=orbit.configuration.shape)
+    return {"t": orbit.time} | {name: rows[:, ROBOT.coordinates.index(name)] for name in names}
+
+
+def test_a_clean_record_is_fitted_closely() -> None:
+    """With noise of a millionth the numbers of positions alone are those of the truth, and so is the motion."""
+    found = nh.fit(robot, recorded(0, "x", "y", noise=1e-6), {"inertia": 1.0, "arm": 0.3})
+    assert {name: pytest.approx(value, abs=1e-4) for name, value in TRUTH.items()} == found.parameters
+    assert found.system == robot(found.parameters)
+    assert np.abs(found.residuals[0]["position"]).max() <= 5e-6
+    assert found.orbit.configuration[0, 2] == pytest.approx(0.3, abs=1e-4)
+    assert found.outcome == "converged"
+
+
+def deviations(seeds: int) -> np.ndarray:
+    """Return the errors of both numbers in units of their standard deviations."""
+    found = [nh.fit(robot, recorded(seed, "x", "y"), {"inertia": 1.0, "arm": 0.3}) for seed in range(seeds)]
+    errors = [[fit.parameters[name] - value for name, value in TRUTH.items()] for fit in found]
+    return np.array(errors) / np.array([np.sqrt(fit.covariance.diagonal()) for fit in found])
+
+
+def test_noisy_positions_tell_two_numbers() -> None:
+    """In eight records no error is beyond three deviations, and they are not all small: 16 normal numbers."""
+    off = deviations(8)
+    assert np.abs(off).max() <= 3.0
+    assert 0.3 <= np.sqrt(np.mean(off**2)) <= 1.7  # 16 numbers: 1 with a deviation of 0.18
+
+
+@pytest.mark.profile("long", instead="test_noisy_positions_tell_two_numbers")
+def test_intervals_hold_in_many_records() -> None:
+    """Of 200 records the errors have the deviations that the covariance says: 1 within 0.05."""
+    off = deviations(200)
+    assert np.sqrt(np.mean(off**2)) == pytest.approx(1.0, abs=0.15)
+    assert np.mean(np.abs(off) <= 3.0) >= 0.98
+
+
+def test_each_coordinate_has_a_noise_of_its_own() -> None:
+    """Positions, headings, beyond half a turn, and a wheel angle are kinds by their names."""
+    record = recorded(1, "x", "y", "theta", "wheel")
+    record["theta"] = np.angle(np.exp(1j * (record["theta"] + 5 * NOISE * np.sin(7 * np.arange(STEPS + 1)))))
+    found = nh.fit(robot, record, {"inertia": 1.0, "arm": 0.3})
+    assert list(found.noise) == ["position", "theta", "wheel"]
+    assert 0.5 * NOISE <= found.noise["position"] <= 2 * NOISE
+    assert 2 * NOISE <= found.noise["theta"] <= 6 * NOISE
+    again = nh.fit(
+        robot, {("heading" if key == "theta" else key): x for key, x in record.items()}, {"inertia": 1.0, "arm": 0.3}
+    )
+    assert again.parameters == found.parameters
+
+
+def test_several_trials_have_one_body() -> None:
+    """Two records, each with a start of its own, tell more than one."""
+    records = [recorded(seed, "x", "y") for seed in (0, 1)]
+    alone, both = (nh.fit(robot, given, {"inertia": 1.0, "arm": 0.3}) for given in (records[0], records))
+    assert (np.sqrt(both.covariance.diagonal()) < 0.85 * np.sqrt(alone.covariance.diagonal())).all()
+    assert len(both.orbit) == 2
+
+
+def constants(p: dict[str, Any]) -> nh.LagrangeDAlembert:
+    """Return a system that has the numbers within."""
+    return nh.LagrangeDAlembert(lambda q, v: p["inertia"] * v @ v + 0 * q[0], None, dimension=2)
+
+
+REFUSED: dict[str, tuple[Any, Any, str]] = {
+    "constants": (constants, ("x", "y"), "vary the parameters of one system"),
+    "no columns": (robot, (), "columns of a motion in every trial"),
+    "one of two": (robot, ("x",), "columns of a motion in every trial"),
+    "unknown": (robot, ("wheel",), "must determine all parameters"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_bad_fits_are_refused(name: str) -> None:
+    """Each bad argument says what is missing."""
+    system_of, columns, words = REFUSED[name]
+    with pytest.raises(ValueError, match=words):
+        nh.fit(system_of, recorded(0, *columns), {"inertia": 1.0, "arm": 0.3})
