@@ -15,6 +15,7 @@ from .analysis import heteroclinic as heteroclinic
 from .analysis import invariant_curve as invariant_curve
 from .analysis import invariant_measure as invariant_measure
 from .analysis import invariants as invariants
+from .analysis import linearize as linearize
 from .analysis import local_connection as local_connection
 from .analysis import lyapunov_exponents as lyapunov_exponents
 from .analysis import lyapunov_function as lyapunov_function

@@ -11,14 +11,14 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from nonholo.base.checks import array, error, number, shape_of, trailing
+from nonholo.base.checks import error, number, trailing
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
 from nonholo.continuous._forced import forced_field, forced_reaction
 from nonholo.continuous._solution import States
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.orbit import AbstractMotion, First, Orbit
-from nonholo.systems import AbstractSystem, Start, as_system, inertia_form, refuse_slip
+from nonholo.orbit import AbstractMotion, First, Orbit, times_within
+from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, Start, as_system, inertia_form, refuse_slip
 
 Body = tuple[Array, Array, Array]
 r"""Constraint subspace $S$, inertia operator $\mathbb{I}$ and $(S\mathbb{I}S^T)^{-1}S$, which takes r to $\omega$."""
@@ -87,18 +87,11 @@ class ContinuousFlow(AbstractMotion):
 
     def at(self, states: Orbit, times: Any) -> Orbit:
         """Return the states at any times of the span."""
-        where = "Orbit.at(times=...)"
         if self.span is None or self.solution is None:
             remedy = "Solve it again: flow(orbit.system, ...)."
             raise error("Orbit.at(...)", "know more than its states", "a flow from a file", remedy)
-        time = array(where, times, (None,) if shape_of(times) else (), "Pass times.").reshape(-1)
-        first, last = self.span
-        outside = ~((time >= min(self.span)) & (time <= max(self.span)))
-        if outside.any():
-            got = f"{time[np.argmax(outside)]:.17g}"
-            raise error(where, f"lie between {first:.17g} and {last:.17g}", got, "Ask the flow for later times.")
-        order = np.argsort(time if last >= first else -time, kind="stable")
-        found = self.solution(time[order] - first).chosen(np.argsort(order))
+        time, order = times_within(self.span, times)
+        found = self.solution(time[order] - self.span[0]).chosen(np.argsort(order))
         rows: dict[str, Any] = {"reduced_momentum": found.momenta}
         if states.canonical_pose is not None:
             rows |= {"canonical_pose": found.poses, "turned": found.turned}
@@ -166,7 +159,9 @@ def spatial_reaction(
     return group.coadjoint(back, applied(inertia, acceleration)) - torque
 
 
-def vector_field(system: AbstractSystem) -> Callable[[Array, Float[Array, "size"]], Float[Array, "size"]]:
+def vector_field(
+    system: AbstractSystem | AbstractCoordinateSystem,
+) -> Callable[[Array, Float[Array, "size"]], Float[Array, "size"]]:
     r"""Return the equations of motion as a function (time, state) -> derivative, for your own solver.
 
     $$ r' = (\mathrm{ad}^*_\omega p)|_{\mathfrak{d}}, \qquad g' = g\,\hat\omega, \qquad
@@ -175,7 +170,14 @@ def vector_field(system: AbstractSystem) -> Callable[[Array, Float[Array, "size"
     The state is flat: the k components of the momentum along the rows of `constraint_subspace`, then the N x N entries
     of the configuration, row by row, all in the user's body frame. For a right-invariant constraint the momenta are
     spatial, and constant. It may be a NumPy array or, inside `jax.jit` or
-    diffrax, a traced one; leading axes broadcast. Of a `Forced` it is a NumPy array, and the forces are added.
+    diffrax, a traced one; leading axes broadcast. Of a `Forced` the forces are added; functions in Python or numba are
+    not traced.
+
+    Of a system in coordinates the state is the configuration (on a group row by row), then the velocity,
+
+    $$ \dot q = v, \qquad M\dot v = F(t, q, v) + A^T\lambda, \qquad \tfrac{d}{dt}(A v - b) = 0; $$
+
+    start with $A v = b$, which then stays, as prescribed motions do. There is no projection.
 
     Reference: [fedorov-zenkov-2004], section 2, the Euler-Poincare-Suslov equations.
 
@@ -193,7 +195,16 @@ def vector_field(system: AbstractSystem) -> Callable[[Array, Float[Array, "size"
         >>> orbit = nh.flow(sleigh, momentum=(1.0, 0.0), times=(0.0, 2.0), method="closed_form")
         >>> bool(np.allclose(end[2:].reshape(3, 3), orbit.configuration[-1], atol=1e-8))
         True
+
+        A knife edge on a slope, in coordinates:
+
+        >>> edge = nh.examples.knife_edge_on_incline()
+        >>> field = nh.vector_field(edge.system)
+        >>> field(0.0, np.concatenate([edge.configuration, edge.body_velocity])).shape
+        (6,)
     """
+    if isinstance(system, AbstractCoordinateSystem):
+        return system.vector_field()
     as_system("vector_field(system=...)", system)
     refuse_slip("vector_field(system=...)", system)
     if system.forces is not None:

@@ -15,7 +15,7 @@ import numpy as np
 import scipy  # its parts load on first use
 
 from nonholo.base.calls import noted
-from nonholo.base.checks import error, number, trailing
+from nonholo.base.checks import error, is_traced, number, trailing
 from nonholo.base.numerics import applied
 from nonholo.base.progress import late_bar
 from nonholo.base.results import Outcome
@@ -110,6 +110,8 @@ def forced_field(forced: Forced) -> Callable[[float, np.ndarray], np.ndarray]:
         now = number("vector_field(...)(time=...)", time)
         remedy = "Pass momenta along the subspace, then the pose row by row."
         rows = trailing("vector_field(...)(state=...)", state, (size,), remedy, real=True)
+        if is_traced(rows):
+            return rows.__array_namespace__().vectorize(lambda row: field(now, row), signature="(n)->(n)")(rows)
         return np.apply_along_axis(lambda row: field(now, row), -1, rows)
 
     return derivative
@@ -129,21 +131,22 @@ def _field(
 
     Given a place to note it, what is not finite is NaN, so that the solver comes as near to it as it can.
     """
-    group, inertia, N = forced.group, np.asarray(forced.inertia_operator), forced.group.size
+    group, inertia, N = forced.group, forced.inertia_operator, forced.group.size
 
     def derivative(time: float, state: np.ndarray) -> np.ndarray:
+        xp = state.__array_namespace__()
         if said is not None and not np.isfinite(state).all():
             return np.full_like(state, np.nan)
         g = state[k : k + N * N].reshape(N, N)
         E = forced.directions(g)
-        velocity = E @ np.linalg.solve(E.T @ inertia @ E, state[:k])
+        velocity = E @ xp.linalg.solve(E.T @ inertia @ E, state[:k])
         force = np.full(group.dim, np.nan)
         with contextlib.nullcontext() if said is None else noted(said, "force"):
             force = forced.potential_force(g) + forced.applied_force(begins + time, g, velocity)
         if not forced.is_spatial:
             force = force + group.coad(velocity, inertia @ velocity)
         moved = g @ group.hat(velocity)
-        return np.concatenate([E.T @ force, moved.ravel(), velocity[: len(state) - k - N * N]])
+        return xp.concatenate([E.T @ force, moved.ravel(), velocity[: len(state) - k - N * N]])
 
     return derivative
 

@@ -234,10 +234,9 @@ class Discretization(Scheme, AbstractMotion):
     def _work_of_slip(self, states: Orbit, slip: Float[np.ndarray, "L s"]) -> Float[np.ndarray, "L"]:
         """Return the work of friction on slips x over steps, or what is lost where a slip ends."""
         forced, h = cast(Forced, self.forces), float(self.time_step)
-        rows, body, size = cast(Slip, forced.slip), cast(Widened, forced.free), np.linalg.norm(slip, axis=1)
-        momenta = states.restricted_momentum[:, -len(rows.rows) :]
-        velocity = np.linalg.solve(body.slip_inertia, momenta.T).T
-        lost = (momenta * velocity).sum(axis=1)[:-1] / 2
+        rows, size, momenta = cast(Slip, forced.slip), np.linalg.norm(slip, axis=1), states.restricted_momentum.copy()
+        momenta[:, : -len(rows.rows)] = 0.0
+        lost = forced.constrained_energy(momenta)[:-1]
         turns = (momenta[1:] == -momenta[:-1]).all(axis=1)
         slid = np.where(size > 0, rows.grip, 0.0) * size + rows.viscous * size**2 / h
         return -np.where((momenta[1:] == 0).all(axis=1), lost, np.where(turns, 0.0, slid))

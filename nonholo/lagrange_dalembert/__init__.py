@@ -4,6 +4,8 @@ from nonholo.base.checks import needs
 
 with needs("jax", "nonholo.lagrange_dalembert"):
     from nonholo.lagrange_dalembert import _equations as equations
+    from nonholo.lagrange_dalembert import _tangents as tangents
+    from nonholo.lagrange_dalembert._accelerations import vector_field
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization, GroupDiscretization, checked_state
     from nonholo.lagrange_dalembert._motion import CoordinateFlow, RecordedSystem
     from nonholo.lagrange_dalembert._orbit import AbstractCoordinateOrbit, CoordinateOrbit

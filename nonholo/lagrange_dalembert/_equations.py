@@ -12,7 +12,7 @@ import numpy as np
 
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
-from nonholo.lagrange_dalembert._tracing import TwoPoint, takes_time
+from nonholo.lagrange_dalembert._tracing import takes_time
 
 _CORRECTIONS = 8  # of a velocity that belongs to a momentum: Newton's, one where L is quadratic
 
@@ -125,7 +125,7 @@ def discrete_energy(system: LagrangeDAlembert, x: Array, v: Array, h: Array, nod
         w = inverse_legendre(system, x, momenta(system, x, v, h)[0]) if node is None else node
         return energy(system, x, w)
     d = h * v
-    if isinstance(system.discrete_lagrangian, TwoPoint):
+    if getattr(system.discrete_lagrangian, "is_of_one_step", False):
         return energy(system, x + d / 2, v)
     return -jax.grad(lambda step: discrete_lagrangian(system, x, d / step, step))(h)
 
@@ -148,6 +148,26 @@ def displaced(*_: object) -> tuple[()]:
 def rate(system: LagrangeDAlembert, _x: Array, v: Array) -> Array:
     """Return the rate of change of a place."""
     return jnp.append(v, 1.0) if system.is_driven else v
+
+
+def beside(_: LagrangeDAlembert, x: Array, xi: Array) -> Array:
+    """Return the place with the coordinates xi as seen from x."""
+    return x + xi
+
+
+def frame(_system: LagrangeDAlembert, x: Array, _v: Array, _time: Array) -> Array:
+    """Return from where places are seen after a time: it stays."""
+    return x
+
+
+def departure(_: LagrangeDAlembert, x: Array, after: Array) -> Array:
+    """Return the coordinates of a place as seen from x."""
+    return after - x
+
+
+def departure_rate(system: LagrangeDAlembert, _v: Array, xi: Array, w: Array) -> Array:
+    """Return the rate of the coordinates xi of a place that moves with the velocity w, from a frame with velocity v."""
+    return rate(system, xi, w)
 
 
 def normalized(_: LagrangeDAlembert, x: Array) -> Array:
@@ -207,6 +227,9 @@ def solve_bordered(matrix: Array, units: Scaled, force: Array, off: Array) -> tu
 def kinetic_matrix(system: LagrangeDAlembert, q: Array, v: Array, _h: Any = None) -> Array:
     r"""Return $\partial^2 L/\partial v^2$."""
     return jax.hessian(lagrangian, argnums=2)(system, q, v)
+
+
+mass_matrix = kinetic_matrix
 
 
 def acceleration_matrix(system: LagrangeDAlembert, q: Array, v: Array) -> tuple[Array, Scaled]:

@@ -37,6 +37,14 @@ def _of_systems() -> list[Call]:
         call("equilibria [discrete]", nh.equilibria, system=thing(TOP), energy=positive(1.0)),
         call("invariant_measure", nh.invariant_measure, motion=thing(TOP), energy=positive(1.0)),
         call("invariants", nh.invariants, orbit=thing(orbit)),
+        call(
+            "linearize",
+            nh.linearize,
+            system=thing(SLEIGH),
+            configuration=array(np.eye(3)),
+            body_velocity=array([0.0, 0.4, 0.0]),
+            slow=True,
+        ),
         call("lyapunov_exponents", nh.lyapunov_exponents, orbit=thing(orbit)),
         call("lyapunov_function", nh.lyapunov_function, system=thing(system)),
     ]

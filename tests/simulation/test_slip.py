@@ -329,6 +329,11 @@ _REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
     "flow": (lambda: nh.flow(CASES["sleigh"][0], body_velocity=FAST, times=(0, 1)), "never yields"),
     "flows": (lambda: nh.ensemble(CASES["sleigh"][0], body_velocity=[FAST], times=(0, 1)), "never yields"),
     "vector_field": (lambda: nh.vector_field(CASES["sleigh"][0]), "never yields"),
+    "linearize": (lambda: nh.linearize(CASES["sleigh"][0], body_velocity=FAST), "never yields"),
+    "linearize a map": (
+        lambda: nh.linearize(nh.discretize(CASES["sleigh"][0], 0.1), body_velocity=(0.0, 1.0, 0.0)),
+        "never yields",
+    ),
     "rollout": (
         lambda: nh.rollout(nh.discretize(CASES["sleigh"][0], 0.1), body_velocity=FAST, steps=3),
         "never yields",

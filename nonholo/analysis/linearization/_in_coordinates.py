@@ -1,0 +1,30 @@
+"""Motions in coordinates, and on groups by functions of the pose, beside a state. Needs JAX."""
+
+from typing import Any
+
+import numpy as np
+
+from nonholo.analysis.linearization._reduction import Local
+from nonholo.lagrange_dalembert import CoordinateFlow, tangents
+from nonholo.systems import in_coordinates
+
+_OTHERS, _SPREAD = 3, 0.3
+
+
+def beside_state(subject: Any, configuration: Any, velocity: Any) -> Local:
+    """Return the changes beside a state of a system or of its map."""
+    motion = subject if in_coordinates(subject) else CoordinateFlow(subject)
+    x, v = tangents.begun(motion, "linearize", configuration, velocity)
+    later = tangents.following(motion, x, v)
+    rng, size = np.random.default_rng(0), len(v) + motion.system.is_driven
+    xi, w = _SPREAD * rng.uniform(-1, 1, (_OTHERS, size)), _SPREAD * rng.uniform(-1, 1, (_OTHERS, len(v)))
+    places, velocities = tangents.beside(motion, x, v, xi, (np.abs(v).max() or 1.0) * w)
+    velocities = np.concatenate([np.tile(v, (1 + len(later), 1)), velocities])
+    found = tangents.slopes(motion, np.concatenate([x[None], later, places]), velocities)
+    return Local(_names(motion.system, size), size, np.append(np.zeros(size), v), *found, len(later))
+
+
+def _names(system: Any, size: int) -> tuple[str, ...]:
+    if not system.coordinates:
+        return *(f"xi{i}" for i in range(1, 1 + size)), *(f"v{i}" for i in range(1, 1 + size))
+    return *system.coordinates, *("time",) * system.is_driven, *(f"{name}'" for name in system.coordinates)

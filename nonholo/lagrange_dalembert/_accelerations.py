@@ -1,0 +1,69 @@
+"""Accelerations and forces of constraint of the continuous equations, and the vector field."""
+
+from collections.abc import Callable
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from nonholo.base.checks import error, is_traced, number, trailing
+from nonholo.base.types import Array, Float
+from nonholo.lagrange_dalembert._equations import solve_bordered
+from nonholo.lagrange_dalembert._room import equations_of, in_double
+
+_REMEDY = "Pass the configuration, row by row, then the velocity."
+
+
+def acceleration(system: Any, q: Array, v: Array, extra: Any = 0.0) -> tuple[Array, Array]:
+    r"""Return the rate of v and the forces $\lambda$, from the equations and $\tfrac{d}{dt}(A v - b) = 0$.
+
+    Args:
+        system: What moves.
+        q: Where it is.
+        v: Its velocity.
+        extra: A force beside those of the system: of a table the row that acts.
+    """
+    equations = equations_of(system)
+    _, turned = jax.jvp(lambda x: equations.constraint(system, x, v), (q,), (equations.rate(system, q, v),))
+    return bordered_solution(system, q, v, equations.force(system, q, v) + extra, -turned)
+
+
+def bordered_solution(system: Any, q: Array, v: Array, force: Array, off: Array) -> tuple[Array, Array]:
+    r"""Solve $M x - A^T\lambda$ = force, A x = off."""
+    matrix, units = equations_of(system).acceleration_matrix(system, q, v)
+    return solve_bordered(matrix, units, force, off)
+
+
+def refuse_table(owner: str, system: Any) -> None:
+    """Refuse forces that belong to steps."""
+    if system.is_driven and system.table is not None:
+        remedy = "Discretize the system, or pass a function of time."
+        raise error(f"{owner}(system=...)", "have forces at times", "one force for each step", remedy)
+
+
+def vector_field(system: Any) -> Callable[[Array, Float[Array, "size"]], Float[Array, "size"]]:
+    """Return the equations of motion as a function (time, state) -> derivative; `nonholo.vector_field` says of what."""
+    equations_of(system)  # refused by the system of a store without functions
+    refuse_table("vector_field", system)
+    size = int(np.prod(system.shapes[0]) + np.prod(system.shapes[1]))
+
+    def derivative(time: Array, state: Float[Array, "size"]) -> Float[Array, "size"]:
+        now = number("vector_field(...)(time=...)", time)
+        rows = trailing("vector_field(...)(state=...)", state, (size,), _REMEDY, real=True)
+        traced = is_traced(now) or is_traced(rows)
+        return _derivative(system, now, rows) if traced else in_double(_derivative, system, now, rows)
+
+    return derivative
+
+
+def _derivative(system: Any, time: Array, state: Float[Array, "... size"]) -> Float[Array, "... size"]:
+    equations, (pose, _) = equations_of(system), system.shapes
+
+    def one(row: Array) -> Array:
+        q, v = jnp.split(row, [int(np.prod(pose))])
+        x = jnp.append(q, time) if system.is_driven else q.reshape(pose)
+        moved = jnp.ravel(equations.rate(system, x, v))[: len(q)]
+        return jnp.concatenate([moved, acceleration(system, x, v)[0]])
+
+    return one(state) if state.ndim == 1 else jax.vmap(one)(state.reshape(-1, state.shape[-1])).reshape(state.shape)

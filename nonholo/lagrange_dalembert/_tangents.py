@@ -1,0 +1,136 @@
+r"""How states near a state move: derivatives of the rates of the flow and of the changes in a step.
+
+A state is a place with a velocity. Coordinates are seen from where the state is; a pose from a frame that moves along,
+as $g\,e^\xi$.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from nonholo.base.types import Array, Float
+from nonholo.lagrange_dalembert._accelerations import acceleration, refuse_table
+from nonholo.lagrange_dalembert._discretization import checked_state, set_out
+from nonholo.lagrange_dalembert._equations import solve_bordered
+from nonholo.lagrange_dalembert._newton import newton_matrix, orientation, solve
+from nonholo.lagrange_dalembert._room import equations_of, in_double
+
+_CORRECTIONS = 8  # of a velocity beside another one
+LATER = np.array([0.3719, 0.9173])  # times, not in a ratio that a rotation may have
+
+Slopes = tuple[Array, Array, Array]
+"""Changes of a state, their derivatives by place and velocity, and those of the constraint."""
+
+
+def begun(motion: Any, owner: str, configuration: Any, velocity: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return the checked place and velocity of a flow, or of the step that a map begins with."""
+    system = motion.system
+    refuse_table(owner, system)
+    still = np.zeros(system.shapes[1])
+    x, v = checked_state(system, configuration, {"body_velocity": still if velocity is None else velocity}, 0.0, owner)
+    if motion.time_step is None:
+        return x, v
+    h = np.float64(motion.time_step)
+    p = in_double(equations_of(system).momentum, system, x, v)
+    (_, v, _), _, code = in_double(set_out, system, h, x, v, p)
+    return x, np.where(code == 0, v, np.nan)
+
+
+def beside(motion: Any, x: np.ndarray, v: np.ndarray, xi: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the states at places beside x, with the admissible velocities next to v + w."""
+    return in_double(_beside, motion.system, *_step_of(motion), x, v, xi, w)
+
+
+def following(motion: Any, x: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Return where the frame of a steady motion is at later times, of a map after steps."""
+    h = motion.time_step
+    times = LATER if h is None else h * np.arange(1.0, 1 + len(LATER))
+    return np.stack([in_double(equations_of(motion.system).frame, motion.system, x, v, t) for t in times])
+
+
+def slopes(
+    motion: Any, x: Float[np.ndarray, "K ..."], v: Float[np.ndarray, "K n"]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return how states change beside given ones; NaN where there is no next step."""
+    h = _step_of(motion)
+    return in_double(_step_slopes if h else _flow_slopes, motion.system, *h, x, v)
+
+
+def _step_of(motion: Any) -> tuple[np.float64, ...]:
+    return () if motion.time_step is None else (np.float64(motion.time_step),)
+
+
+def _constraint(system: Any, x: Array, v: Array, *h: Array) -> Array:
+    equations = equations_of(system)
+    return equations.discrete_constraints(system, x, v, *h) if h else equations.constraint(system, x, v)
+
+
+def _beside(system: Any, *given: Array) -> tuple[Array, Array]:
+    *h, x, v, xis, ws = given
+
+    def one(xi: Array, w: Array) -> tuple[Array, Array]:
+        place = equations_of(system).beside(system, x, xi)
+
+        def correct(_: Array, w: Array) -> Array:
+            slope = jax.jacfwd(lambda w: _constraint(system, place, w, *h))(w)
+            return w - jnp.linalg.pinv(slope) @ _constraint(system, place, w, *h)
+
+        return place, jax.lax.fori_loop(0, _CORRECTIONS, correct, v + w)
+
+    return jax.vmap(one)(xis, ws)
+
+
+def _flow_slopes(system: Any, xs: Array, vs: Array) -> Slopes:
+    equations = equations_of(system)
+
+    def change(x: Array, v: Array, xi: Array, w: Array) -> Array:
+        beside = equations.beside(system, x, xi)
+        return jnp.concatenate([equations.departure_rate(system, v, xi, w), acceleration(system, beside, w)[0]])
+
+    return _differentiated(system, change, xs, vs)
+
+
+def _step_slopes(system: Any, h: Array, xs: Array, vs: Array) -> Slopes:
+    equations = equations_of(system)
+
+    def change(x: Array, v: Array, xi: Array, w: Array) -> Array:
+        after, arrived = _stepped(system, h, equations.beside(system, x, xi), w)
+        departed = equations.departure(system, equations.frame(system, x, v, h), after)
+        return jnp.concatenate([departed - xi, arrived - w])
+
+    return _differentiated(system, change, xs, vs, h)
+
+
+def _differentiated(system: Any, change: Callable[..., Array], xs: Array, vs: Array, *h: Array) -> Slopes:
+    n = vs.shape[-1]
+    size = n + system.is_driven
+
+    def at(x: Array, v: Array) -> Slopes:
+        def both(z: Array) -> tuple[tuple[Array, Array], Array]:
+            xi, w = z[:size], z[size:]
+            value = change(x, v, xi, w)
+            return (value, _constraint(system, equations_of(system).beside(system, x, xi), w, *h)), value
+
+        (slope, rows), value = jax.jacfwd(both, has_aux=True)(jnp.append(jnp.zeros(size), v))
+        return value, slope, rows
+
+    return jax.vmap(at)(xs, vs)
+
+
+def _stepped(system: Any, h: Array, x: Array, v: Array) -> tuple[Array, Array]:
+    """Return the state after a step, with the derivatives of the implicit function: those of a correction of Newton."""
+    equations, n = equations_of(system), v.shape[0]
+    _, p = equations.momenta(system, x, v, h)
+    after = equations.ahead(system, x, v, h)
+    fixed = jax.lax.stop_gradient((x, after, p, v))
+    w, impulses, code = solve(system, h, fixed[1], fixed[2], fixed[3], fixed[3], orientation(system, fixed[0], v, h)[0])
+    w, impulses = jax.lax.stop_gradient((w, impulses))
+    kinetic = equations.kinetic_matrix(system, fixed[1], fixed[3], h)
+    matrix, units, _ = jax.lax.stop_gradient(newton_matrix(system, fixed[1], w, h, kinetic))
+    leaving, missed = equations.momenta(system, after, w, h)[0], equations.discrete_constraints(system, after, w, h)
+    force = p + impulses @ equations.forms(system, after) - leaving
+    correction = solve_bordered(matrix, units, force, -missed)[0][:n]
+    return after, jnp.where(code == 0, w + correction, jnp.nan)

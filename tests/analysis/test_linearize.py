@@ -1,0 +1,291 @@
+"""Linear equations beside steady motions, against closed forms, differences of the equations, and one another."""
+
+from collections.abc import Callable
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.base.types import Array
+
+M, R, AXIS, DIAMETER, G = 1.3, 0.4, 0.12, 0.07, 9.81  # of a disk
+OFFSET = 8e-3
+WEIGHTS = np.array([45.0, -9.0, 1.0]) / (60 * OFFSET)
+
+
+def leaning_disk() -> nh.LagrangeDAlembert:
+    """Return a disk that rolls and may lean: center (x, y), yaw, lean and roll."""
+
+    def lagrangian(q: Array, v: Array) -> Array:
+        lean, (x, y, yaw, leaning, roll) = q[3], v
+        height = -R * jnp.sin(lean) * leaning
+        turning = DIAMETER * (leaning**2 + (yaw * jnp.cos(lean)) ** 2) + AXIS * (roll + yaw * jnp.sin(lean)) ** 2
+        return (M * (x**2 + y**2 + height**2) + turning) / 2 - M * G * R * jnp.cos(lean)
+
+    def forms(q: Array) -> Array:
+        c, s, lean = jnp.cos(q[2]), jnp.sin(q[2]), q[3]
+        along, across = R * jnp.sin(lean), R * jnp.cos(lean)
+        return jnp.array([[1, 0, -along * c, -across * s, -R * c], [0, 1, -along * s, across * c, -R * s]])
+
+    return nh.LagrangeDAlembert(lagrangian, forms, dimension=5, coordinates=("x", "y", "yaw", "lean", "roll"))
+
+
+DISK = leaning_disk()
+
+
+def rolling(lean: float, yaw: float, roll: float, heading: float = 0.3) -> dict[str, np.ndarray]:
+    """Return a state of the disk that does not lean further."""
+    ahead = R * (roll + yaw * np.sin(lean))
+    velocity = np.array([ahead * np.cos(heading), ahead * np.sin(heading), yaw, 0.0, roll])
+    return {"configuration": np.array([0.2, -0.1, heading, lean, 0.5]), "body_velocity": velocity}
+
+
+def steady_roll(lean: float, yaw: float) -> float:
+    """Return the roll rate of a disk that leans steadily, from the equation of the lean."""
+    c, s = np.cos(lean), np.sin(lean)
+    # (C + m R^2) yaw c (roll + yaw s) - A yaw^2 c s + m g R s = 0: moments about the contact
+    return (DIAMETER * yaw**2 * c * s - M * G * R * s) / ((AXIS + M * R**2) * yaw * c) - yaw * s
+
+
+@pytest.mark.parametrize("roll", [0.5, 3.0, 12.0])
+def test_an_upright_disk_is_stable_above_its_critical_speed(roll: float) -> None:
+    r"""$\lambda^2 (A + mR^2) = mgR - C(C + mR^2)\Omega^2/A$: the thin disk of textbooks, $\Omega^2 > g/3R$."""
+    found = nh.linearize(DISK, **rolling(0.0, 0.0, roll))
+    square = (M * G * R - AXIS * (AXIS + M * R**2) * roll**2 / DIAMETER) / (DIAMETER + M * R**2)
+    assert found.names == ("lean", "yaw'", "lean'", "roll'")
+    assert found.ignorable == ("x", "y", "yaw", "roll")
+    wanted = np.array([np.sqrt(square + 0j), 0, 0, -np.sqrt(square + 0j)])
+    distances = np.abs(found.eigenvalues[:, None] - wanted)
+    assert max(distances.min(axis=0).max(), distances.min(axis=1).max()) < 1e-12  # a difference of 22 and 22 at 3
+
+
+def by_differences(function: Callable[[np.ndarray], np.ndarray], z: np.ndarray) -> np.ndarray:
+    """Return derivatives by central differences of order 6."""
+    offsets = OFFSET * np.arange(1, 4)
+    columns = [WEIGHTS @ [function(z + x * e) - function(z - x * e) for x in offsets] for e in np.eye(len(z))]
+    return np.transpose(columns)
+
+
+CASES = {
+    "upright disk": (DISK, rolling(0.0, 0.0, 3.0)),
+    "disk on a circle": (DISK, rolling(0.4, 1.5, steady_roll(0.4, 1.5))),
+    "snakeboard on a circle": (
+        nh.examples.snakeboard().system,
+        {"configuration": [0, 0, 0.7, 0, 0.4], "body_velocity": [np.cos(0.7), np.sin(0.7), np.tan(0.4), 0.3, 0.0]},
+    ),
+    "oscillators": (
+        nh.examples.chaotic_quartic_oscillator().system,
+        {"configuration": np.zeros(7), "body_velocity": np.zeros(7)},
+    ),
+}
+
+
+def place_of(system: Any, names: tuple[str, ...]) -> tuple[list[int], list[int]]:
+    """Return the numbers of coordinates and of velocities with these names."""
+    coordinates = system.coordinates
+    return (
+        [coordinates.index(name) for name in names if not name.endswith("'")],
+        [coordinates.index(name[:-1]) for name in names if name.endswith("'")],
+    )
+
+
+def forms_at(system: Any, q: np.ndarray) -> np.ndarray:
+    """Return the constraint forms in 64 bits."""
+    with jax.enable_x64(True):
+        return np.asarray(system.constraint_forms(jnp.asarray(q)))
+
+
+@pytest.mark.parametrize(("system", "start"), CASES.values(), ids=CASES)
+def test_the_matrix_is_that_of_differences_of_the_equations(system: Any, start: dict[str, Any]) -> None:
+    """From the definition: vary kept states, find the other velocities from the constraint, difference the rates."""
+    found, field, n = nh.linearize(system, **start), nh.vector_field(system), system.dimension
+    kept, free = place_of(system, found.names)
+    tied = np.setdiff1d(np.arange(n), free)
+    q, v = np.asarray(start["configuration"], float), np.asarray(start["body_velocity"], float)
+
+    def rates(z: np.ndarray) -> np.ndarray:
+        at, moving = q.copy(), v.copy()
+        at[kept], moving[free] = z[: len(kept)], z[len(kept) :]
+        rows = forms_at(system, at)
+        moving[tied] = -np.linalg.solve(rows[:, tied], rows[:, free] @ moving[free])
+        change = field(0.0, np.concatenate([at, moving]))
+        return np.concatenate([change[kept], change[n:][free]])
+
+    wanted = by_differences(rates, np.concatenate([q[kept], v[free]]))
+    np.testing.assert_allclose(found.matrix, wanted, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["upright disk", "snakeboard on a circle", "oscillators"])
+def test_the_matrix_of_a_map_is_that_of_differences_of_steps(name: str) -> None:
+    """From the definition: vary kept states, find displacements on the discrete constraint, difference a step."""
+    (system, start), h = CASES[name], 0.05
+    discrete = nh.discretize(system, h)
+    found, n = nh.linearize(discrete, **start), system.dimension
+    kept, free = place_of(system, found.names)
+    tied = np.setdiff1d(np.arange(n), free)
+    first = nh.simulate(discrete, steps=1, **start)
+    q, v = first.configuration[0], first.body_velocity[0]
+
+    def after(z: np.ndarray) -> np.ndarray:
+        at, moving = q.copy(), v.copy()
+        at[kept], moving[free] = z[: len(kept)], z[len(kept) :]
+        for _ in range(30):  # the midpoint depends on what is found
+            rows = forms_at(system, at + h / 2 * moving)
+            moving[tied] = -np.linalg.solve(rows[:, tied], rows[:, free] @ moving[free])
+        orbit = nh.simulate(discrete, configuration=at, displacement=h * moving, steps=1)
+        return np.concatenate([orbit.configuration[1][kept], orbit.body_velocity[1][free]])
+
+    wanted = by_differences(after, np.concatenate([q[kept], v[free]]))
+    np.testing.assert_allclose(found.matrix, wanted, rtol=0, atol=1e-9)
+
+
+def test_multipliers_tend_to_rates() -> None:
+    """The logarithm of a multiplier over the step is the rate, with an error that falls by four with half the step."""
+    start = rolling(0.0, 0.0, 12.0)
+    rate = nh.linearize(DISK, **start).eigenvalues[0]
+    errors = [
+        abs(np.log(nh.linearize(nh.discretize(DISK, h), **start).eigenvalues.astype(complex)) / h - rate).min()
+        for h in (0.02, 0.01)
+    ]
+    assert abs(errors[0] / errors[1] - 4) < 0.1
+
+
+@pytest.mark.parametrize("heading", [0.0, 1.0, np.pi / 2])
+def test_a_sleigh_in_coordinates_is_that_on_the_group(heading: float) -> None:
+    """The rate -a m u/(J + m a^2) is found in both, of the flow and of the map."""
+    m, J, a, u = 2.0, 1.0, 0.5, 0.8
+
+    def lagrangian(q: Array, v: Array) -> Array:
+        c, s = jnp.cos(q[2]), jnp.sin(q[2])
+        return m * ((v[0] - a * s * v[2]) ** 2 + (v[1] + a * c * v[2]) ** 2) / 2 + J * v[2] ** 2 / 2
+
+    forms = lambda q: jnp.array([[-jnp.sin(q[2]), jnp.cos(q[2]), 0.0]])  # noqa: E731
+    plane = nh.LagrangeDAlembert(lagrangian, forms, dimension=3, coordinates=("x", "y", "theta"))
+    velocity = u * np.array([np.cos(heading), np.sin(heading), 0.0])
+    start = {"configuration": (0.1, 0.2, heading), "body_velocity": velocity}
+    sleigh, rate = nh.ChaplyginSleigh(m, J, a), -a * m * u / (J + m * a * a)
+    assert abs(nh.linearize(plane, **start).eigenvalues[-1] - rate) < 1e-12
+    assert abs(nh.linearize(sleigh, body_velocity=(0.0, u, 0.0)).eigenvalues[-1] - rate) < 1e-14
+    step = nh.linearize(nh.discretize(sleigh, 0.1), body_velocity=(0.0, u, 0.0)).eigenvalues
+    wanted = np.asarray(nh.equilibria(nh.discretize(sleigh, 0.1), energy=m * u * u / 2).multipliers)
+    np.testing.assert_allclose(step[-1:], wanted, rtol=0, atol=1e-13)
+
+
+def test_transverse_rates_of_tops_of_any_dimension() -> None:
+    """Eigenvalues beside an equilibrium of a top on SO(4) are the rates and multipliers of `equilibria`, and a zero."""
+    top = nh.SuslovTop(np.diag([1.0, 2.0, 1.5, 1.0]) + 0.1)
+    for subject in (top, nh.discretize(top, 0.2)):
+        states = nh.equilibria(subject, energy=0.7)
+        found = nh.linearize(subject, body_velocity=states.velocity).eigenvalues
+        known, still = (states.rates, 0.0) if states.multipliers is None else (states.multipliers, 1.0)
+        np.testing.assert_allclose(np.sort(np.real(found)), np.sort(np.append(known, still)), rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("spin", [3.0, 3.7, 5.0])
+def test_a_sleeping_top(spin: float) -> None:
+    r"""A top that spins upright: $A s^2 - C\Omega s + mgl = 0$, seen from the body $\lambda = i(s - \Omega)$."""
+    A, C, weight = 1.2, 1.0, 2.943
+    top = nh.Forced(nh.RigidBody(np.diag([0.5, 0.5, 0.7])), nh.Gravity([0.0, 0.0, -9.81], [0.0, 0.0, 0.3]))
+    s = np.roots([A, -C * spin, weight])
+    found = nh.linearize(top, body_velocity=(0.0, 0.0, spin))
+    assert found.names == ("xi1", "xi2", "xi3", "r1", "r2", "r3")
+    for wanted in np.concatenate([1j * (s - spin), -1j * (np.conj(s) - spin), [0]]):
+        assert np.abs(found.eigenvalues - wanted).min() < 1e-12
+    assert bool(np.real(found.eigenvalues[0]) > 0.1) == bool((C * spin) ** 2 < 4 * A * weight)
+
+
+def test_functions_of_users_are_differenced() -> None:
+    """A weight as a function of the pose gives the matrix of `Gravity`, of the flow and of the map."""
+    weight, point = np.array([0.0, 0.0, -9.81]), np.array([0.1, 0.0, 0.3])
+    top = nh.SuslovTop(np.diag([1.0, 1.2, 0.6]))
+    exact, own = (nh.Forced(top, load) for load in (nh.Gravity(weight, point), lambda g: float(-weight @ g @ point)))
+    pose = {"configuration": nh.SO(3).exp([0.0, np.arctan2(-0.1, 0.3), 0.0])}
+    for one, other in ((exact, own), (nh.discretize(exact, 0.05), nh.discretize(own, 0.05))):
+        first, second = nh.linearize(one, **pose), nh.linearize(other, **pose)
+        assert first.names == second.names
+        np.testing.assert_allclose(first.matrix, second.matrix, rtol=0, atol=1e-10)
+
+
+def hoop(angle: Callable[[Array], Array]) -> nh.LagrangeDAlembert:
+    """Return a bead on a hoop of radius 1 that turns about its vertical diameter as prescribed."""
+
+    def lagrangian(q: Array, v: Array) -> Array:
+        return (v[0] ** 2 + (v[1] * jnp.sin(q[0])) ** 2) / 2 + G * jnp.cos(q[0])
+
+    return nh.LagrangeDAlembert(lagrangian, None, dimension=2, prescribed={1: angle}, coordinates=("bead", "hoop"))
+
+
+def test_a_bead_on_a_turning_hoop() -> None:
+    r"""At the bottom $\lambda^2 = \Omega^2 - g$, beside it $-\Omega^2\sin^2\theta$: a driven system may be steady."""
+    speed = 4.0
+    system, still = hoop(lambda t: speed * t), np.array([0.0, speed])
+    bottom = nh.linearize(system, configuration=(0.0, 0.0), body_velocity=still)
+    assert bottom.names == ("bead", "bead'")
+    np.testing.assert_allclose(bottom.eigenvalues[0] ** 2, speed**2 - G, rtol=1e-13)
+    aside = np.arccos(G / speed**2)
+    found = nh.linearize(system, configuration=(aside, 0.0), body_velocity=still).eigenvalues
+    np.testing.assert_allclose(found[0] ** 2, -((speed * np.sin(aside)) ** 2), rtol=1e-12)
+    with pytest.raises(ValueError, match=r"must be that of a steady motion\. Got rates .*time: 1"):
+        nh.linearize(hoop(jnp.sin), configuration=(0.0, 0.0), body_velocity=(0.0, 1.0))
+
+
+def test_modes_and_the_table() -> None:
+    """Modes have length one and are multiplied by their eigenvalues; the table has them by name, by their growth."""
+    found = nh.linearize(DISK, **rolling(0.0, 0.0, 0.5))
+    np.testing.assert_allclose(found.matrix @ found.modes, found.modes * found.eigenvalues, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(np.linalg.norm(found.modes, axis=0), 1, rtol=1e-14)
+    assert np.all(np.diff(np.real(found.eigenvalues)) <= 0)
+    table = found.to_pandas()
+    assert tuple(table.columns) == ("eigenvalue", *found.names)
+    np.testing.assert_array_equal(table["lean"], found.modes[0])
+    step = nh.linearize(nh.discretize(DISK, 0.05), **rolling(0.0, 0.0, 0.5))
+    assert np.all(np.diff(np.abs(step.eigenvalues)) <= 0)
+    assert (found.time_step, step.time_step) == (None, 0.05)
+
+
+TOP = nh.SuslovTop(np.diag([1.0, 1.2, 0.6]))
+EDGE = nh.examples.knife_edge_on_incline()
+REFUSED = {
+    "a motion that turns": (DISK, rolling(0.4, 1.5, 1.0), "must be that of a steady motion. Got rates lean: 0"),
+    "a knife edge that slides": (
+        EDGE.system,
+        {"configuration": EDGE.configuration, "body_velocity": EDGE.body_velocity},
+        "must be that of a steady motion",
+    ),
+    "a top that tumbles": (nh.RigidBody(np.diag([1.0, 2.0, 3.0])), {"body_velocity": (1.0, 1.0, 0.0)}, "steady motion"),
+    "a tilted top": (
+        nh.discretize(nh.Forced(TOP, nh.Gravity([0.0, 0.0, -1.0], [0.0, 0.0, 1.0])), 0.1),
+        {"configuration": nh.SO(3).exp([0.3, 0.0, 0.0])},
+        "steady motion",
+    ),
+    "a force of time": (
+        nh.Forced(TOP, force=lambda t, *_: np.array([np.sin(t), 0.0, 0.0])),
+        {},
+        "must be that of a steady motion",
+    ),
+    "a force of time, by steps": (
+        nh.discretize(nh.Forced(TOP, force=lambda t, *_: np.array([0.0, float(t > 0.1), 0.0])), 0.05),
+        {},
+        "must be that of a steady motion",
+    ),
+    "a velocity that slips": (DISK, rolling(0.0, 0.0, 1.0) | {"body_velocity": np.ones(5)}, "satisfy the constraint"),
+    "no place": (DISK, {}, r"`linearize\(configuration=...\)` must be given"),
+    "a table": (nh.Forced(TOP, force=np.zeros((3, 3))), {}, "must have forces that stay"),
+    "a table in coordinates": (
+        DISK.forced(None, np.zeros((3, 5))),
+        rolling(0.0, 0.0, 1.0),
+        "must have forces at times",
+    ),
+    "a wide top": (nh.SuslovTop.arrowhead(np.linspace(1, 2, 3000), np.full(2999, 0.01)), {}, "must have matrices"),
+    "an orbit": (nh.examples.particle(), {}, "must be a system or its map"),
+}
+
+
+@pytest.mark.parametrize(("subject", "state", "words"), REFUSED.values(), ids=REFUSED)
+def test_refusals(subject: Any, state: dict[str, Any], words: str) -> None:
+    """What is not steady is refused with its rates, what has no linearization with the reason."""
+    with pytest.raises(ValueError, match=words):
+        nh.linearize(subject, **state)
