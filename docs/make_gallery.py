@@ -46,6 +46,7 @@ SECTIONS = {
         "driven_sleigh",
         "chaplygin_ball",
         "ball_on_turntable",
+        "ball_in_bowl",
         "rattleback",
         "heavy_suslov_top",
         "sleigh_in_a_well",

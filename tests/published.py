@@ -55,6 +55,18 @@ def reduced(speed: float) -> tuple[Array, Array]:
         return np.asarray(by_state), np.asarray(by_torque)
 
 
+def rolling_disk(gravity: float, rates: Array, lean: float) -> Array:
+    """Return accelerations of heading, lean and rolling of a uniform thin disk of radius one, as sympy#27631 has them.
+
+    The issue is about the page "A rolling disk using the Lagrange method", whose three equations leave out the rolling.
+    """
+    turning, falling, rolling = rates
+    sin, cos = np.sin(lean), np.cos(lean)
+    turned = -2 * falling * rolling / cos
+    fallen = 4 * gravity * sin / 5 + np.sin(2 * lean) * turning**2 / 2 + 6 * cos * turning * rolling / 5
+    return np.array([turned, fallen, -(10 * cos * turning - 12 * sin / cos * rolling) * falling / 6])
+
+
 SPEEDS = 4.29238253634111, 6.02426201538837
 """Above the first weave, below the second capsize is damped."""
 

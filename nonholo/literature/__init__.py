@@ -16,11 +16,12 @@ with needs("jax", "nonholo.examples"):
     from nonholo.literature._rolling_disk import rolling_disk
     from nonholo.literature._sleigh_in_a_well import sleigh_in_a_well
     from nonholo.literature._snakeboard import snakeboard
-    from nonholo.literature.rolling import ball_on_turntable, rattleback, tilting_disk
+    from nonholo.literature.rolling import ball_in_bowl, ball_on_turntable, rattleback, tilting_disk
     from nonholo.literature.vehicles import bicycle, snake, trailers
 
 __all__ = [
     "Example",
+    "ball_in_bowl",
     "ball_on_turntable",
     "bicycle",
     "chaotic_quartic_oscillator",

@@ -232,6 +232,7 @@ def _examples() -> list[Call]:
         call("examples.snake", made.snake, half_length=positive(0.5), place=place, joint_rates=velocity, slow=True),
         call("examples.tilting_disk", made.tilting_disk, gravity=positive(1.0), turning=number(0.5), slow=True),
         call("examples.trailers", made.trailers, hitches=array([1.0, 0.5], "any"), speed=number(0.5), slow=True),
+        call("examples.ball_in_bowl", made.ball_in_bowl, reach=positive(1.0), spin=number(3.0), slow=True),
         call("examples.chaplygin_ball", made.chaplygin_ball, mass=positive(1.0), radius=positive(1.0), slow=True),
         call("examples.heavy_suslov_top", made.heavy_suslov_top, velocity=array([0.6, 0.4]), slow=True),
         call("examples.sleigh_in_a_well", made.sleigh_in_a_well, **common, stiffness=number(0.3), slow=True),

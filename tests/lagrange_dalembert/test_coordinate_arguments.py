@@ -199,3 +199,13 @@ def test_what_has_no_derivative_in_jax_is_refused_at_the_door(argument: str) -> 
 
     with pytest.raises(ValueError, match=rf"{argument}=...\)` must be traceable by JAX .*while_loop"):
         made(given)
+
+
+def test_rounding_of_a_form_refuses_no_start() -> None:
+    """Where all terms of a row vanish but for its rounding, a start counts; one that misses by more does not."""
+    rounding = 0.1 + 0.2 - 0.3
+    system = nh.LagrangeDAlembert(lambda _, v: v @ v / 2, lambda _: jnp.array([[rounding, 1.0]]), dimension=2)
+    discrete = system.discretize(0.1)
+    assert len(discrete.simulate(configuration=(0.0, 0.0), body_velocity=(1.0, 0.0), steps=1)) == 2
+    with pytest.raises(ValueError, match="nearest admissible"):
+        discrete.simulate(configuration=(0.0, 0.0), body_velocity=(1.0, 1e-14), steps=1)

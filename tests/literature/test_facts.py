@@ -53,6 +53,7 @@ def test_every_public_example_is_tested() -> None:
         "chaplygin_ball",
         "heavy_suslov_top",
         "sleigh_in_a_well",  # test_driven.py
+        "ball_in_bowl",
         "ball_on_turntable",
         "bicycle",
         "rattleback",

@@ -1,12 +1,18 @@
 """Disk, rattleback, ball on a turntable, trailers and snake: flows against equations derived another way."""
 
+import functools
 from collections.abc import Callable
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
+from accelerations import acceleration
+from published import rolling_disk
 from scipy.integrate import solve_ivp
 
 import nonholo as nh
+from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array
 
 X = nh.examples
@@ -47,11 +53,29 @@ def test_the_disk_moves_as_balances_of_momentum_say() -> None:
     assert abs(np.log2(errors[0] / errors[1]) - 2.0) <= 0.1
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_the_disk_has_the_equations_that_a_page_of_sympy_lacks(seed: int) -> None:
+    """Of a uniform disk, at random leans and rates: those of sympy#27631, which corrects that page."""
+    rng = np.random.default_rng(seed)
+    lean, rates, gravity = rng.uniform(-1.3, 1.3), rng.normal(size=3) * 2, 3.0
+    q, v = np.array([0.0, 0.0, 0.4, lean, 0.0]), np.array([np.cos(0.4) * rates[2], np.sin(0.4) * rates[2], *rates])
+    with double_precision():
+        found = np.asarray(of_the_disk(gravity)(jnp.asarray(q), jnp.asarray(v)))
+    published = rolling_disk(gravity, rates, lean)
+    assert np.abs(found[2:] - published).max() <= 1e-13 * np.abs(published).max()
+
+
+@functools.cache
+def of_the_disk(gravity: float) -> Callable:
+    """Return the accelerations of a uniform disk, compiled once."""
+    return jax.jit(functools.partial(acceleration, X.tilting_disk(gravity=gravity).system))
+
+
 @ROUTES
 @pytest.mark.parametrize("lean", [-0.6, 0.05, 0.9])
 @pytest.mark.parametrize("turning", [-2.0, 0.4, 1.5])
 def test_steady_circles_are_the_closed_form(lean: float, turning: float) -> None:
-    """Whatever lean and turning, also those for which the equations of a page of SymPy are wrong (sympy#27631)."""
+    """Whatever lean and turning."""
     ready = X.tilting_disk(configuration=(0.2, -0.1, 0.7, lean, 0.3), turning=turning, gravity=2.0)
     orbit = ready.flow(times=np.linspace(0.0, 1.0, 5), **ACCURATE)
     assert np.abs(orbit.configuration - ready.exact(orbit.time)).max() <= 1e-11
@@ -134,6 +158,33 @@ def test_the_ball_on_the_turntable_runs_on_circles() -> None:
         assert np.abs(np.angle(chord[1:] / chord[:-1]) - 2 * np.arctan(0.1 * 2 / 7 * table_rate)).max() <= 1e-12
     with pytest.raises(ValueError, match="nearest admissible"):
         ready.simulate(steps=1, body_velocity=np.zeros(4))
+
+
+@pytest.mark.parametrize("spin", [0.0, -4.0])
+def test_the_ball_in_the_bowl_is_a_spherical_pendulum_in_a_magnetic_field(spin: float) -> None:
+    """The equation of its normal, solved alone, to 1e-10; what is said to be constant is; the map is of order two."""
+    m, r, J, rho, g = 0.7, 0.3, 0.05, 1.4, 2.0
+    body = {"mass": m, "radius": r, "inertia": J, "reach": rho, "gravity": g}
+    ready = X.ball_in_bowl(**body, place=(0.5, -0.8), velocity=(0.7, 0.3), spin=spin)
+    kappa, share = J * r / (rho * (J + m * r**2)), m * r**2 / (J + m * r**2)
+
+    def rates(_time: float, z: Array) -> Array:
+        n, dn = z[:3], z[3:]
+        torque = kappa * spin * dn + share / rho * np.cross(n, [0.0, 0.0, -g])
+        return np.concatenate([dn, np.cross(torque, n) - (dn @ dn) * n])  # n x n'' known, n.n'' = -|n'|^2
+
+    depth = np.sqrt(rho**2 - 0.25 - 0.64)
+    first = np.array([0.5, -0.8, -depth, 0.7, 0.3, (0.5 * 0.7 - 0.8 * 0.3) / depth]) / rho
+    times = np.linspace(0.0, 4.0, 9)
+    found = ready.flow(times=times, **ACCURATE)
+    assert np.abs(found.configuration[:, :2] - rho * solved(rates, first, times)[:, :2]).max() <= 1e-10
+    constants = [f(found.configuration, found.body_velocity) for f in ready.conserved.values()]
+    assert np.ptp(constants, axis=1).max() <= 1e-10
+    errors = [
+        np.abs(ready.simulate(steps=k, time_step=4 / k).configuration[-1] - found.configuration[-1]).max()
+        for k in (200, 400)
+    ]
+    assert abs(np.log2(errors[0] / errors[1]) - 2.0) <= 0.1
 
 
 @pytest.mark.parametrize("hitches", [(1.0,), (0.7, 1.2, 0.5)], ids=["one", "three"])
@@ -231,12 +282,13 @@ def test_the_snake_passes_where_it_is_an_arc() -> None:
         (lambda: X.tilting_disk(turning=0.0), "not be zero on a circle"),
         (lambda: X.rattleback(semi_axes=(1.0, -2.0, 3.0)), r"semi_axes\[1\]=...\)` must be positive"),
         (lambda: X.ball_on_turntable(inertia=0.0), r"inertia=...\)` must be positive"),
+        (lambda: X.ball_in_bowl(place=(0.8, 0.7)), "be less than 1 from the axis"),
         (lambda: X.trailers(hitches=()), "at least one length"),
         (lambda: X.trailers(angles=(0.0,)), r"angles=...\)` must have shape \(4,\)"),
         (lambda: X.snake(joints=(0.5, 0.5)), "differ and be between"),
         (lambda: X.bicycle(rear_wheel=(0.3, 2.0, 0.0, 0.1)), r"rear_wheel\[2\]=...\)` must be positive"),
     ],
-    ids=["lies", "straight circle", "axes", "inertia", "alone", "headings", "arc", "wheel"],
+    ids=["lies", "straight circle", "axes", "inertia", "rim", "alone", "headings", "arc", "wheel"],
 )
 def test_bad_parameters_are_refused(make: object, words: str) -> None:
     """Each refusal names the argument and what it must be."""

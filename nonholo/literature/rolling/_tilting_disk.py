@@ -46,6 +46,8 @@ def tilting_disk(
     the contact runs on a circle of radius $R|\dot\rho/\Omega|$. Upright it rolls straight on without falling if
     $I(I + mR^2)\,\omega^2 > mgRJ$: a uniform disk faster than $\sqrt{gR/3}$.
 
+    Lagrange's equations of the three angles alone, without the rolling as a constraint, are others (sympy#27631).
+
     Reference: [neimark-fufaev-1972]; [bloch-2003], section 1.4.
 
     Args:
