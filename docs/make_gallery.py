@@ -29,6 +29,7 @@ SECTIONS = {
         "twenty_dimensions",
         "hanging_with_friction",
         "sleigh_billiard",
+        "drifting_sleigh",
     ),
     "Ready systems, one each": (
         "particle",

@@ -27,6 +27,7 @@ Forces:
     Linear: The potential $U(g) = \mathrm{tr}(A^Tg) = \sum_{ij}A_{ij}g_{ij}$: a magnet, a field, weights at several ...
     Spring: The potential of a spring between the body point x and the space point p, $U(g) = \tfrac k2(|gx - p| - ...
     Friction: The force $-C\omega$ against a body velocity, with $\omega\cdot C\omega \ge 0$: it never adds energy.
+    Slip: Rows of a constraint that may yield: one contact with dry and viscous friction.
 
 Systems in coordinates, and ready ones:
     examples: Ready systems of the literature, each with a start and with what is known about its motion.

@@ -91,6 +91,7 @@ from .systems import LLSystem as LLSystem
 from .systems import LRSystem as LRSystem
 from .systems import MultidimensionalSleigh as MultidimensionalSleigh
 from .systems import RigidBody as RigidBody
+from .systems import Slip as Slip
 from .systems import Spring as Spring
 from .systems import SuslovTop as SuslovTop
 from .systems import VeselovaTop as VeselovaTop

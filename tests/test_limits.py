@@ -158,6 +158,7 @@ TOO_MUCH: dict[str, tuple[Callable[[], Any], str]] = {
     ),
     "Linear": (lambda: nh.Linear(_many(10**6, 10**6)), "Linear(matrix=...)` must fit into memory"),
     "Spring": (lambda: nh.Spring(_many(10**12), _many(10**12), 1.0), "Spring(body_point=...)` must fit into memory"),
+    "Slip": (lambda: nh.Slip(_many(10**6, 10**6), 1.0), "Slip(rows=...)` must fit into memory"),
     "Friction": (lambda: nh.Friction(np.ones(10**6)), "Friction(coefficients=...)` must fit into memory"),
     "Forced": (lambda: nh.Forced(SLEIGH.system, None, _many(10**12, 3)), "Forced(force=...)` must fit into memory"),
     "Gravity": (lambda: nh.Gravity(_many(10**12), _many(10**12)), "Gravity(point=...)` must fit into memory"),

@@ -18,7 +18,7 @@ from nonholo.continuous._forced import forced_field, forced_reaction
 from nonholo.continuous._solution import States
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractMotion, First, Orbit, times_within
-from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, Start, as_system, inertia_form
+from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, Start, as_system, inertia_form, refuse_slip
 
 Body = tuple[Array, Array, Array]
 r"""Constraint subspace $S$, inertia operator $\mathbb{I}$ and $(S\mathbb{I}S^T)^{-1}S$, which takes r to $\omega$."""
@@ -206,6 +206,7 @@ def vector_field(
     if isinstance(system, AbstractCoordinateSystem):
         return system.vector_field()
     as_system("vector_field(system=...)", system)
+    refuse_slip("vector_field(system=...)", system)
     if system.forces is not None:
         return forced_field(system.forces)
     group, S = system.group, system.constraint_subspace

@@ -9,13 +9,14 @@ from nonholo.continuous._closed_form import closed_form
 from nonholo.continuous._linear_forces import under_forces
 from nonholo.continuous._series import by_series
 from nonholo.continuous._solution import Solved
-from nonholo.systems import System
+from nonholo.systems import System, refuse_slip
 
 
 def solver_of(
     system: System, method: str | None, begins: float, *, reconstruct: bool
 ) -> tuple[Callable[..., Solved], bool]:
     """Return what solves the equations from a time on, and whether with poses; refuse an unknown method."""
+    refuse_slip("flow(system=...)", system)
     choice("flow(method=...)", method, (None, "closed_form", "diffrax"))
     if system.forces is not None:
         if method is not None:

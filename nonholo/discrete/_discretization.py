@@ -18,7 +18,7 @@ from nonholo.discrete._scheme import Difference, Scheme
 from nonholo.discrete._variety import Constraint, equations_of
 from nonholo.discrete.routes import AbstractBodyStepper, AbstractRoute, make_route
 from nonholo.orbit import AbstractMotion, First, Orbit, turned_near
-from nonholo.systems import Forced, Start, System, in_group, of_finite_energy, refuse_forces
+from nonholo.systems import Forced, Slip, Start, System, Widened, in_group, of_finite_energy, refuse_forces
 
 _TOLERANCE = 1e-9  # relative, for matrices and momenta that a user computed in floating point
 
@@ -200,7 +200,13 @@ class Discretization(Scheme, AbstractMotion):
         """Return the discrete momenta at the displacements, of a composition at those of first substeps."""
         first = self if self.order == 2 else self._first
         momentum = first._momentum(states, states.canonical_chart, "left")
-        return momentum if self.forces is None else momentum - first._impulses(states, 0)
+        if self.forces is None:
+            return momentum
+        momentum = momentum - first._impulses(states, 0)
+        if self.forces.slip is None:
+            return momentum
+        body, slip = cast(Widened, self.forces.free), states.restricted_momentum[:, -len(self.forces.slip.rows) :]
+        return momentum - (applied(body.duals, momentum) - slip) @ body.rows
 
     @functools.cached_property
     def _first(self) -> "Discretization":
@@ -221,12 +227,25 @@ class Discretization(Scheme, AbstractMotion):
         group, W = self.system.group, self.displaced(before.canonical_chart)
         X = group.vee((W - group.inverse(W)) / 2)
         gain = (self.mean_force(before) * X).sum(axis=1) + np.diff(forced.potential_energy(states.configuration))
+        if forced.slip is not None:
+            gain = gain + self._work_of_slip(states, applied(forced.slip.rows, X))
         return np.concatenate([np.zeros(min(1, len(states))), np.cumsum(gain)])
+
+    def _work_of_slip(self, states: Orbit, slip: Float[np.ndarray, "L s"]) -> Float[np.ndarray, "L"]:
+        """Return the work of friction on slips x over steps, or what is lost where a slip ends."""
+        forced, h = cast(Forced, self.forces), float(self.time_step)
+        rows, size, momenta = cast(Slip, forced.slip), np.linalg.norm(slip, axis=1), states.restricted_momentum.copy()
+        momenta[:, : -len(rows.rows)] = 0.0
+        lost = forced.constrained_energy(momenta)[:-1]
+        turns = (momenta[1:] == -momenta[:-1]).all(axis=1)
+        slid = np.where(size > 0, rows.grip, 0.0) * size + rows.viscous * size**2 / h
+        return -np.where((momenta[1:] == 0).all(axis=1), lost, np.where(turns, 0.0, slid))
 
     def multipliers(self, states: Orbit) -> Float[np.ndarray, "L s"]:
         r"""Return the impulses $\lambda$ in $P_{k+1} - \mathrm{Ad}^*_{W_k} P_k = \sum_j \lambda_j a^j$.
 
-        For a right-invariant constraint the right-hand side is $\sum_j \lambda_j \mathrm{Ad}^*_{g_{k+1}} a^j$.
+        For a right-invariant constraint the right-hand side is $\sum_j \lambda_j \mathrm{Ad}^*_{g_{k+1}} a^j$. Where
+        rows may yield, the $a^j$ are all rows of the system inside, and the friction of those that slide counts.
         """
         remedy = "Impulses of substeps at different poses do not add up to one of the step: run with order=2."
         refuse_composition("Orbit.multipliers", self, remedy)
@@ -240,7 +259,8 @@ class Discretization(Scheme, AbstractMotion):
             arriving = arriving + self._impulses(before, 0) + self._impulses(after, 0)
         elif self.forces is not None:
             arriving = arriving + self._impulses(after, 0) + self._impulses(after, -1)
-        group, to_multipliers = self.system.group, np.linalg.pinv(self.system.annihilator).T
+        whole = self.system if self.forces is None else self.forces.system
+        group, to_multipliers = self.system.group, np.linalg.pinv(whole.annihilator).T
         if not self.system.is_spatial:
             return applied(to_multipliers, self.displacement_decoder.momentum(after.canonical_chart, "left") - arriving)
         g = self.displaced(before.canonical_chart) @ before.configuration

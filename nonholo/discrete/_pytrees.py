@@ -6,10 +6,10 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from nonholo.base.numerics import keep_programs
-from nonholo.systems import SYSTEMS, Forced, Friction, Gravity, Linear, Spring
+from nonholo.systems import SYSTEMS, Forced, Friction, Gravity, Linear, Slip, Spring, Widened
 
 _Class = TypeVar("_Class", bound=type)
-_TREES: list[Any] = [*SYSTEMS, Forced, Friction, Gravity, Linear, Spring]
+_TREES: list[Any] = [*SYSTEMS, Forced, Friction, Gravity, Linear, Slip, Spring, Widened]
 
 
 class _FixedArray(NamedTuple):

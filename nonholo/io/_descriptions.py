@@ -10,12 +10,12 @@ from nonholo import systems
 from nonholo.base.checks import error
 from nonholo.groups import SE, SO, AbstractMatrixGroup, MatrixGroup, ProductGroup, Translations
 from nonholo.io._in_coordinates import READY, restore_ready
-from nonholo.systems import AbstractSystem, Friction, Gravity, Linear, Spring
+from nonholo.systems import AbstractSystem, Friction, Gravity, Linear, Slip, Spring
 
 _CALLABLE = "callable"
 _OWN = "of your own"
 _ARGUMENTS = {"given_inertia": "inertia_operator"}  # fields that the constructor calls otherwise
-_FORCES = {kind.__name__: kind for kind in (Gravity, Linear, Spring, Friction)}
+_FORCES = {kind.__name__: kind for kind in (Gravity, Linear, Spring, Friction, Slip)}
 _FAMILIES = {"SO": SO, "SE": SE, "Translations": Translations}
 
 

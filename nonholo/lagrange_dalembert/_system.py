@@ -404,6 +404,8 @@ def _motions(given: Any, dimension: int, last: tuple[Any, ...]) -> tuple[tuple[i
 def _force(given: Any, dimension: int) -> Any:
     """Return a force as a function, with that of `Friction`, a table, both, or None."""
     parts = parts_of(given)
+    if "slip" in parts:
+        raise error(_named("force"), "be no Slip", "one", "Rows that may yield need a body on a group: nh.LLSystem.")
     if (friction := parts.pop("friction", None)) is not None:
         friction.check(dimension)
         matrix, other = friction.matrix, parts.get("function")

@@ -417,9 +417,10 @@ class Orbit(AbstractOrbit):
 
     @property
     def lacks_forces(self) -> bool:
-        """Whether a table has forces of steps between the states."""
+        """Whether forces of steps between the states are needed: those of a table, or of slips."""
         forced = self.system.forces
-        return forced is not None and forced.table is not None and not self.has_every_step
+        own = forced is not None and not (forced.table is None and forced.slip is None)
+        return own and not self.has_every_step
 
     @remembered
     def tangent(self) -> Float[np.ndarray, "L k k"]:

@@ -17,7 +17,7 @@ from nonholo.discrete import (
 from nonholo.orbit import AbstractStepper
 from nonholo.simulation._run import Run
 from nonholo.simulation.events import watched
-from nonholo.systems import AbstractCoordinateDiscretization, refuse_in_coordinates
+from nonholo.systems import AbstractCoordinateDiscretization, refuse_in_coordinates, refuse_slip
 
 FEW = 1 << 16  # numbers that fit into any memory
 
@@ -31,6 +31,8 @@ def check_forces(owner: str, discrete: Any, steps: int, *, free: str | None = No
         return
     if free is not None:
         raise error(f"{owner}(discrete=...)", "have the principal branch under forces", free, "Leave both out.")
+    if traced:
+        refuse_slip(f"{owner}(discrete=...)", discrete.system)
     if traced and forced.needs_function:
         remedy = "Use Gravity, Friction or a table: what a function does is not traced."
         raise error(f"{owner}(discrete=...)", "have forces that are numbers", "a Python function", remedy)

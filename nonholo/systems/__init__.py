@@ -9,6 +9,7 @@ from nonholo.systems._base import (
     System,
     as_system,
     refuse_forces,
+    refuse_slip,
     unchecked,
 )
 from nonholo.systems._body import ImpossibleBodyWarning
@@ -45,7 +46,7 @@ from nonholo.systems.families import (
     SuslovTop,
     VeselovaTop,
 )
-from nonholo.systems.forces import Forced, Friction, Gravity, Linear, Spring, joined, parts_of
+from nonholo.systems.forces import Forced, Friction, Gravity, Linear, Slip, Spring, Widened, joined, parts_of
 
 SYSTEMS = tuple(kind for kind in vars(families).values() if isinstance(kind, type))
 """Every final class of this room."""

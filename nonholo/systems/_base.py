@@ -477,6 +477,13 @@ def refuse_forces(where: str, system: Any) -> None:
         raise error(where, "be a system without forces", "Forced", remedy)
 
 
+def refuse_slip(where: str, system: Any) -> None:
+    """Refuse rows of a constraint that may yield, which steps of the discrete map alone decide."""
+    if system.forces is not None and system.forces.slip is not None:
+        remedy = "Run it by `simulate`, `iterate` or `ensemble` of what `discretize` returned, or leave the slip out."
+        raise error(where, "have a constraint that never yields", "Slip", remedy)
+
+
 def _solve(matrix: Float[Array, "... k k"], vector: Float[Array, "... k"]) -> Float[Array, "... k"]:
     xp = (vector if is_traced(vector) else matrix).__array_namespace__()
     return xp.linalg.solve(xp.asarray(matrix), xp.asarray(vector)[..., None])[..., 0]

@@ -9,7 +9,7 @@ from nonholo.analysis import invariants
 from nonholo.base.checks import count, error, flags, refuse_given
 from nonholo.discrete import Discretization, discrete_legendre, refuse_composition
 from nonholo.simulation import refuse_many_matrices, simulate
-from nonholo.systems import AbstractCoordinateDiscretization, Forced
+from nonholo.systems import AbstractCoordinateDiscretization, Forced, refuse_slip
 from nonholo.testing._coordinates import MAP, CoordinateSamples
 from nonholo.testing._measures import derivative, gap, largest, relative, seeded
 from nonholo.testing._orbit_samples import COUNTS, EXACT, STEP, OrbitSamples, off_two, raised, slope
@@ -76,6 +76,7 @@ def check_discretization(
         remedy = "Pass `discretize(system, time_step)`."
         raise error(where, "be a discretization", type(discrete).__name__, remedy)
     refuse_composition(where, discrete, "Check the discretization of order 2.")
+    refuse_slip(where, discrete.system)
     refuse_many_matrices(f"{owner}(steps=...)", discrete, number, "Pass fewer steps.")
     samples = OrbitSamples(discrete, seeded(rng), number)
     forced = FORCED if discrete.system.is_forced else []

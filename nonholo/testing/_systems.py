@@ -10,7 +10,7 @@ from nonholo.analysis import ConservedMomenta, conserved_momenta
 from nonholo.base.checks import error, flags, refuse_given
 from nonholo.base.types import Float
 from nonholo.continuous import vector_field
-from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, Equilibria, Forced
+from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, Equilibria, Forced, refuse_slip
 from nonholo.testing._coordinates import SYSTEM, CoordinateSamples
 from nonholo.testing._measures import derivative, gap, largest, relative, seeded
 from nonholo.testing._report import Check, NotApplicableError, Report, measures, need, run_checks
@@ -282,6 +282,7 @@ def check_system(
     refuse_given("check_system", "be left out on a group", "Leave it out.", configuration=(configuration, None))
     if not isinstance(system, AbstractSystem):
         raise error("check_system(system=...)", "be a system", _named(system), "Pass an LLSystem or your own class.")
+    refuse_slip("check_system(system=...)", system)
     samples = SystemSamples(system, seeded(rng))
     owner = f"check_system({_named(system)} on {system.group!r})"
     return run_checks(owner, CHECKS, samples, tolerance_factor, throw)

@@ -77,6 +77,20 @@ def test_the_motion_is_that_of_python(file: Path, kept: tuple[str, ...], expecte
         np.testing.assert_array_equal(getattr(orbit, name), getattr(other, name))
 
 
+def test_a_blade_of_a_scenario_yields(file: Path) -> None:
+    """`forces.slip` is `nh.Slip`, also beside other forces; a store of it has the bits of Python."""
+    settings = ["slip={rows=[[0, 0, 1]], grip=0.1, viscous=0.2}", "gravity={force=[0.1, -1], point=[0.5, 0.1]}"]
+    given = [parse_setting("forces={}"), *(parse_setting(f"forces.{each}") for each in settings)]
+    given.append(parse_setting("start={body_velocity=[0.3, 0.4, 0.0]}"))
+    scenario = load_scenario(str(file), given).scenario
+    orbit = nh.simulate(scenario.discretization(), steps=9, **scenario.options())
+    forced = _forced(potential=GRAVITY, force=nh.Slip([[0.0, 0.0, 1.0]], 0.1, 0.2))
+    other = nh.simulate(nh.discretize(forced, 0.05), body_velocity=(0.3, 0.4, 0.0), steps=9)
+    assert orbit.body_velocity[:, 2].any()
+    for name in ("momentum", "configuration", "energy"):
+        np.testing.assert_array_equal(getattr(orbit, name), getattr(other, name))
+
+
 def test_the_text_kept_repeats_the_run(file: Path, nonholo: Callable[..., Result]) -> None:
     """A store holds the rows of the table, not its path; its scenario alone gives the run again."""
     assert nonholo("simulate", file, "-o", "a.zarr", "--no-plot", "-q").exit_code == 0
@@ -121,6 +135,9 @@ REFUSED = {
     "rows of a matrix": ("forces.friction=[[1, 0], [0]]", "forces.friction: must"),
     "nan": ("forces.friction=[[1,0,0],[0,nan,0],[0,0,1]]", "forces.friction[1][1]: must be a finite number. Got nan"),
     "infinite": ("forces.gravity.point=[inf, 0]", "forces.gravity.point[0]: must be a finite number. Got inf"),
+    "a slip without a grip": ("forces.slip={rows=[[0, 0, 1]]}", "forces.slip.grip: is missing"),
+    "a slip along the blade": ("forces.slip={rows=[[0, 1, 0]], grip=1}", "forces.slip: must vanish on the constraint"),
+    "a slip that drives": ("forces.slip={rows=[[0, 0, 1]], grip=-1}", "forces.slip.grip: must never add energy"),
     "no row": ("forces.table=[]", "forces.table: must have shape (any, 3)"),
     "short rows": ("forces.table=[[1,2],[1,2],[1,2]]", "forces.table: must have shape (any, 3). Got shape (3, 2)"),
     "uneven rows": ("forces.table=[[1,2],[1]]", "forces.table: must"),

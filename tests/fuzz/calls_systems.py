@@ -93,6 +93,7 @@ def _forces() -> list[Call]:
             length=number(0.1),
         ),
         call("Friction", nh.Friction, coefficients=array(np.diag([0.1, 0.2, 0.3]), "any")),
+        call("Slip", nh.Slip, rows=array([[0.0, 0.0, 1.0]], "any"), grip=number(0.3), viscous=number(0.1)),
         call("Forced", nh.Forced, system=thing(top), **acting),
         call("forced.potential_energy", forced.potential_energy, configuration=pose),
         call("forced.potential_force", forced.potential_force, configuration=pose),

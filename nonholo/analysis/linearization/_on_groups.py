@@ -19,7 +19,7 @@ from nonholo.discrete import Discretization
 from nonholo.discrete.definition import doubled
 from nonholo.simulation import refuse_many_matrices, simulate
 from nonholo.simulation.traced import rollout
-from nonholo.systems import Start
+from nonholo.systems import Start, refuse_slip
 
 _TIMES = np.array([0.0, 0.3719, 0.9173])  # not in a ratio that a rotation may have
 _OTHERS, _SPREAD = 3, 0.3
@@ -72,6 +72,7 @@ def _refuse(system: Any) -> None:
     where = "linearize(system=...)"
     if system.is_wide:
         raise error(where, "have matrices", "a system without", "Linearize `system.dense`.")
+    refuse_slip(where, system)
     if system.forces is not None and system.forces.table is not None:
         got, remedy = "one force for each step", "Linearize it without the table."
         raise error(where, "have forces that stay", got, remedy)

@@ -1,4 +1,4 @@
-"""Forces in a scenario, as data: a weight, friction, a table; what `Forced` calls them too."""
+"""Forces in a scenario, as data: a weight, friction, a slip, a table; what `Forced` calls them too."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -10,7 +10,7 @@ import nonholo
 from nonholo.base.checks import shown
 from nonholo.base.limits import read_text
 from nonholo.cli.scenario.bodies import BODIES
-from nonholo.cli.scenario.sections import Matrix, Section, Vector
+from nonholo.cli.scenario.sections import Matrix, Number, Section, Vector
 from nonholo.groups import components_of
 
 if TYPE_CHECKING:
@@ -44,6 +44,22 @@ class Weight(Section):
         return self
 
 
+class Yielding(Section):
+    """Rows of the constraint that may yield: one contact."""
+
+    rows: Matrix
+    """Rows of the annihilator, in body axes: `[[0, 0, 1]]` for the blade of a sleigh in the plane."""
+    grip: Number
+    """The largest reaction that holds."""
+    viscous: Number = 0.0
+    """The coefficient of viscous friction while the rows slide."""
+
+    @model_validator(mode="after")
+    def _is_one(self) -> Self:
+        nonholo.Slip(self.rows, self.grip, self.viscous)
+        return self
+
+
 class Forces(Section):
     """What acts on the body beside its constraint; several add up."""
 
@@ -51,6 +67,8 @@ class Forces(Section):
     """A force F that is constant in space, at a body point: `{force = [0, 0, -9.81], point = [0, 0, 0.3]}`."""
     friction: Coefficients | None = None
     """Against the body velocity: a coefficient for each of its components, or a matrix."""
+    slip: Yielding | None = None
+    """Rows of the constraint that slide beyond a grip: `{rows = [[0, 0, 1]], grip = 0.8}`."""
     table: Matrix | None = None
     """A force for each step, in body axes: rows, or the path of a CSV file of them, from the folder of the scenario."""
 
@@ -90,12 +108,16 @@ class Forces(Section):
 _PARTS: "dict[str, Callable[[System, Any], Any]]" = {
     "gravity": lambda system, w: nonholo.Forced(system, nonholo.Gravity(w.force, w.point)).potential,
     "friction": lambda system, given: nonholo.Forced(system, force=nonholo.Friction(given)).force,
+    "slip": lambda system, given: (
+        nonholo.Forced(system, force=nonholo.Slip(given.rows, given.grip, given.viscous)).force
+    ),
     "table": lambda system, rows: nonholo.Forced(system, force=rows).force,
 }
 """How each acts on a system."""
 _REMEDIES = {
     "gravity": "Give force and point as many numbers as space has directions",
     "friction": "Give each direction of the group a coefficient that is not negative, or a matrix",
+    "slip": "Give rows that span the same as rows of the annihilator",
     "table": "Give each row one number for each direction of the group",
 }
 

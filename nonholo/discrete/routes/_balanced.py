@@ -70,21 +70,33 @@ class BalancedRoute(AbstractForcedRoute, AbstractOuterRoute):
         return momenta, charts, poses
 
     def _part(self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> Compact | None:
-        half, k = cast(kernels.Balanced, self.body.kick), len(m)
-
-        def state_after(
-            m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float
-        ) -> tuple[int, np.ndarray]:
-            rows = half.c.rows[[min(step, len(half.c.rows) - 1), -1]]
-            c = half.c._replace(stages=fraction * half.c.stages, begin=float(time), rows=rows)
-            return self.runs.start(self.body._replace(kick=half._replace(c=c)), m, pose)
-
-        code, state = state_after(np.array(m), np.array(pose), time, step, fraction)
+        k = len(m)
+        code, state = self.after(np.array(m), np.array(pose), time, step, fraction)
         if code != 0:
             return None
         after, moved = state[:k].copy(), state[2 * k : 2 * k + len(pose)].copy()
-        _, ahead = state_after(after, moved, time + fraction * float(self.free.time_step), step + int(fraction), 1.0)
+        _, ahead = self.after(after, moved, time + fraction * float(self.free.time_step), step + int(fraction), 1.0)
         return after, self.runs.chart_of(self.body, ahead), moved
+
+    def after(
+        self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float, force: Any = None
+    ) -> tuple[int, np.ndarray]:
+        """Return the outcome of a fraction of a step, and the kernel's state after it; a constant force may act too."""
+        half = cast(kernels.Balanced, self.body.kick)
+        rows = half.c.rows[[min(step, len(half.c.rows) - 1), -1]]
+        if force is not None:
+            rows = rows + half.c.along @ force
+        c = half.c._replace(stages=fraction * half.c.stages, begin=float(time), rows=rows)
+        return self.runs.start(self.body._replace(kick=half._replace(c=c)), m, pose)
+
+    def body_from(self, step: int) -> kernels.ForcedBody:
+        """Return the body of a run that begins at a step."""
+        kick = self.body.kick
+        if isinstance(kick, kernels.Pull):
+            return self.body._replace(kick=kick._replace(rows=kick.rows[min(step, len(kick.rows) - 1) :]))
+        c = cast(kernels.Balanced, kick).c
+        c = c._replace(rows=c.rows[min(step, len(c.rows) - 1) :], begin=step * float(self.free.time_step))
+        return self.body._replace(kick=cast(kernels.Balanced, kick)._replace(c=c))
 
 
 def pull(free: AbstractCompiledRoute, forced: Forced) -> kernels.Pull:

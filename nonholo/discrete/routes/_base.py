@@ -214,6 +214,11 @@ class AbstractCompiledRoute(AbstractRoute):
         """The functions of the kernel, `kernels.runs_of`."""
         return kernels.runs_of(self.body)
 
+    def body_from(self, step: int) -> Any:
+        """Return the body of a run that begins at a step."""
+        del step  # a free body is the same at all times
+        return self.body
+
     @property
     def sizes(self) -> tuple[int, int, int]:
         """Numbers of momenta, chart coordinates and pose entries of the kernel."""

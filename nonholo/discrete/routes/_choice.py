@@ -15,6 +15,7 @@ from nonholo.discrete.routes._forced import forced_route
 from nonholo.discrete.routes._matrix import MatrixRoute
 from nonholo.discrete.routes._scalar import ScalarRoute
 from nonholo.discrete.routes._secular import SecularRoute
+from nonholo.discrete.routes._slipping import slip_route
 from nonholo.systems import Forced
 
 _SCALAR = (None, "scalar")
@@ -33,7 +34,10 @@ def make_route(scheme: Scheme, wanted: str | None = None) -> AbstractRoute:
     if scheme.system.is_forced:
         forced = cast(Forced, scheme.system)
         free = dataclasses.replace(cast(Any, scheme), system=forced.system)
-        if forced.forces is not None and forced.is_balanced(free.conserves_energy, scheme.order > 2):
+        is_balanced = forced.forces is not None and forced.is_balanced(free.conserves_energy, scheme.order > 2)
+        if forced.slip is not None:
+            return slip_route(scheme, forced, functools.partial(make_route, wanted=wanted))
+        if is_balanced:
             system, variety = forced.system.canonical, variety_of(forced.system, "skew")
             matrix = functools.partial(MatrixRoute, system, variety, scheme.time_step)
             return balanced_route(_single(free, wanted), matrix, forced, scheme.order)

@@ -23,6 +23,8 @@ from nonholo.systems._coordinate_system import AbstractCoordinateSystem
 from nonholo.systems.forces._friction import Friction
 from nonholo.systems.forces._gravity import Gravity
 from nonholo.systems.forces._parts import joined, parts_of, terms_of
+from nonholo.systems.forces._slip import Slip
+from nonholo.systems.forces._widened import Widened
 
 _OFFSET = 8e-3  # of a body direction, for central differences: its sixth power is at rounding
 _DIFFERENCES = np.array([45.0, -9.0, 1.0]) / (60 * _OFFSET)  # of order 6, at one, two and three offsets
@@ -32,7 +34,7 @@ _SAME = """
     rank canonical frame frame_map inverse_frame_map frame_pose to_canonical from_canonical carried
     moved restrict_at restricted_velocity restricted_momentum constrained_energy
 """
-"""What is that of the system inside."""
+"""What is that of the body that moves."""
 
 _ITERATIONS = 30  # of Newton's method with one slope
 _MOST, _PARTS = 100, 0.5 ** np.arange(40)  # corrections with new slopes, and parts of one
@@ -69,9 +71,10 @@ class Forced(AbstractSystem):
             a tuple. The derivative of a function is taken by central differences of order 6 along the body directions;
             their error is about 1e-13 of what U changes by over one radian or one unit of length.
         force: f, a function (time, configuration, body_velocity) -> (dim,); or `Friction`; or an array (steps, dim),
-            whose row k acts constantly over step k: for maps only. Time is that of the orbit, from zero. Several forces
-            are a tuple of them, such as `(Friction(...), table)`, with at most one of each of these kinds. Under
-            "energy" f is asked in the middle of the step, at its mean velocity X / h.
+            whose row k acts constantly over step k: for maps only; or `Slip`, rows of the constraint that may yield:
+            for maps of the scheme "energy" only. Time is that of the orbit, from zero. Several forces are a tuple of
+            them, such as `(Friction(...), table)`, with at most one of each of these kinds. Under "energy" f is asked
+            in the middle of the step, at its mean velocity X / h.
         scheme: "energy" or "variational"; by default "energy" wherever it is defined and the body is constrained.
 
     Functions marked `numba.njit` run in the compiled step of a constraint that is fixed in the body, in a fraction of a
@@ -114,7 +117,7 @@ class Forced(AbstractSystem):
     is_forced: ClassVar[bool] = True
     homogeneous_mass_tensor = constraint_subspace = carried = moved = cast(Any, None)  # seen by type checkers
     restrict_at = restricted_velocity = restricted_momentum = cast(Any, None)
-    locals().update((name, property(operator.attrgetter(f"system.{name}"))) for name in _SAME.split())
+    locals().update((name, property(operator.attrgetter(f"free.{name}"))) for name in _SAME.split())
 
     def __new__(cls, system: Any = None, potential: Any = None, force: Any = None, scheme: str | None = None) -> Any:
         """Return the system with forces; one in coordinates has its own way to take them."""
@@ -137,6 +140,8 @@ class Forced(AbstractSystem):
         parts = parts_of(self.force)
         if "friction" in parts:
             parts["friction"].check(inside.group.dim)
+        if "slip" in parts:
+            parts["slip"].check(inside)
         if "table" in parts:
             remedy = "Pass a function of time, configuration and body velocity, Friction, or one body covector a step."
             parts["table"] = array("Forced(force=...)", parts["table"], (None, inside.group.dim), remedy)
@@ -166,6 +171,31 @@ class Forced(AbstractSystem):
     def friction(self) -> Friction | None:
         """The viscous friction, where there is one."""
         return self.parts.get("friction")
+
+    @property
+    def slip(self) -> Slip | None:
+        """The rows that may yield, where there are any."""
+        return self.parts.get("slip")
+
+    @functools.cached_property
+    def free(self) -> AbstractSystem:
+        """The body that moves without forces: the system inside, without the rows of its constraint that may yield."""
+        slip, inside = parts_of(self.force).get("slip"), self.system
+        return inside if slip is None else Widened(inside, slip.rows, slip.remaining(inside))
+
+    @functools.cached_property
+    def holding(self) -> AbstractSystem:
+        """The system while no row yields."""
+        rest = joined({name: each for name, each in self.parts.items() if name != "slip"})
+        held = Forced(self.system, self.potential, rest, self.scheme)
+        return self.system if held.forces is None else held
+
+    @functools.cached_property
+    def sliding(self) -> "Forced":
+        """The system while rows slide, without the friction of these."""
+        rest = {"friction": Friction(np.zeros(self.group.dim))} | self.parts
+        del rest["slip"]
+        return Forced(self.free, self.potential, joined(rest), "energy")
 
     @property
     def table(self) -> Array | None:
@@ -204,6 +234,12 @@ class Forced(AbstractSystem):
         Raises:
             ValueError: It is asked for where the free step does not keep its energy.
         """
+        if self.slip is not None and (composed or not exact or self.scheme == "variational"):
+            got = "another order, scheme, difference or constraint, or an inertia operator"
+            remedy = "Pass a mass tensor, order=2, and leave scheme, difference and constraint out."
+            raise error("Forced(force=Slip(...))", "stand in steps of order 2 that keep their energy", got, remedy)
+        if self.slip is not None:
+            return True
         if self.scheme == "energy" and not exact:
             got = "an inertia operator, a constraint fixed in space, or another difference or constraint"
             remedy = "Leave scheme out, or pass a mass tensor and the default difference and constraint."

@@ -1,13 +1,14 @@
-"""What a force is made of: friction, a table and a function, each at most once; and what a potential is."""
+"""What a force is made of: friction, slip, a table, a function, each at most once; and what a potential is."""
 
 from typing import Any
 
 from nonholo.base.checks import error, shown
 from nonholo.systems.forces._friction import Friction
+from nonholo.systems.forces._slip import Slip
 
 
 def parts_of(force: Any) -> dict[str, Any]:
-    """Return friction, table and function of a force, or of a tuple or list of them; of None nothing.
+    """Return friction, slip, table and function of a force, or of a tuple or list of them; of None nothing.
 
     Rows in a tuple or list are a table, unless friction or a function stands beside them.
     """
@@ -40,4 +41,5 @@ def joined(parts: dict[str, Any]) -> Any:
 
 
 def _kind(force: Any) -> str:
-    return "friction" if isinstance(force, Friction) else "function" if callable(force) else "table"
+    known = {Friction: "friction", Slip: "slip"}
+    return known.get(type(force)) or ("function" if callable(force) else "table")

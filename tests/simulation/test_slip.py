@@ -1,0 +1,388 @@
+"""Rows of a constraint that may yield: the continuous equations, the definition of a step, the limits."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.optimize import least_squares
+from simulation.slipping import Continuous, random_case, space_body
+
+import nonholo as nh
+
+SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.2)
+TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+TILTED = nh.SuslovTop.from_inertia(np.diag([1.0, 1.3, 0.9]), axis=(0.36, -0.48, 0.8))
+TOP4 = nh.SuslovTop(np.diag([1.0, 2.0, 1.5, 0.7]) + 0.1)
+BODY = space_body()
+BLADE, AXIS = [[0.0, 0.0, 1.0]], [[0.0, 0.0, 1.0]]
+FAST, SPIN, ALONG = (2.0, 1.0, 0.0), (0.9, -0.8, 0.0), np.array([0.9, -0.7, 0.8]) @ BODY.constraint_subspace
+CASES: dict[str, tuple[nh.Forced, Any]] = {
+    "sleigh": (nh.Forced(SLEIGH, force=nh.Slip(BLADE, 0.8)), FAST),
+    "top": (nh.Forced(TOP, force=nh.Slip(AXIS, 0.15)), SPIN),
+    "body in space": (nh.Forced(BODY, force=nh.Slip(BODY.annihilator[1:2], 0.3)), ALONG),
+    "weight": (nh.Forced(TOP, nh.Gravity([0.0, 0.0, -2.0], [0.1, 0.2, 0.4]), nh.Slip(AXIS, 0.3)), SPIN),
+    "cone": (nh.Forced(BODY, force=nh.Slip(BODY.annihilator[1:], 0.4)), ALONG),
+    "viscous": (nh.Forced(SLEIGH, nh.Gravity([0.5, -0.7], [0.3, 0.1]), nh.Slip(BLADE, 0.8, 0.5)), FAST),
+}
+KINDS = {
+    "sleigh": ["slide", "hold"],
+    "top": ["slide", "hold", "slide"],
+    "body in space": ["slide"],
+    "weight": ["hold", "slide"],
+    "cone": ["slide", "hold"],
+    "viscous": ["slide", "hold", "slide", "hold", "slide"],
+}
+TIME = 5.0
+
+
+def _run(name: str, steps: int, **more: Any) -> nh.Orbit:
+    forced, velocity = CASES[name]
+    return nh.simulate(nh.discretize(forced, TIME / steps), body_velocity=velocity, steps=steps, **more)
+
+
+def _momenta_of_slip(orbit: nh.Orbit) -> np.ndarray:
+    return orbit.restricted_momentum[:, orbit.system.forces.system.rank :]
+
+
+def _drive(time: float, g: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+    return np.array([0.4 * np.sin(3 * time), 0.1, 0.3 * g[0, 0] - 0.1 * velocity[2]])
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_orbits_converge_to_the_continuous_motion(name: str) -> None:
+    """Velocity and pose have order 2, also across the places where rows yield and come to rest."""
+    forced, velocity = CASES[name]
+    omega, g, kinds = Continuous(forced).run(velocity, TIME)
+    ends = [_run(name, steps, save_every=steps)[-1:] for steps in (200, 400, 800)]
+    errors = [max(abs(x.body_velocity[0] - omega).max(), abs(x.configuration[0] - g).max()) for x in ends]
+    rates = np.log2(np.divide(errors[:-1], errors[1:]))
+    assert kinds == KINDS[name]
+    assert errors[-1] < 2e-4
+    assert (rates > 1.7).all()
+
+
+def test_a_slip_that_turns_over_at_once_is_of_order_one() -> None:
+    """Where friction is far below what drives the slip back, it turns over within a step; the error falls with h."""
+    forced = nh.Forced(SLEIGH, nh.Gravity([0.5, -2.7], [0.3, 0.1]), nh.Slip(BLADE, 0.05))
+    start = (1.5, 0.5, 0.4)
+    omega, g, kinds = Continuous(forced).run(start, 4.0)
+    assert kinds.count("slide") > 1
+    errors = []
+    for steps in (100, 400, 1600):
+        end = nh.simulate(nh.discretize(forced, 4.0 / steps), body_velocity=start, steps=steps)[-1:]
+        errors.append(max(abs(end.body_velocity[0] - omega).max(), abs(end.configuration[0] - g).max()))
+    assert (np.multiply(errors, (100, 400, 1600)) < 4).all()
+    assert errors[0] / errors[2] > 10
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_every_step_satisfies_its_equations(name: str) -> None:
+    """From the definition: rows hold or their friction opposes the slip of the step, in equal halves at both ends."""
+    forced, _ = CASES[name]
+    orbit, inside, slip = _run(name, 60), forced.system, forced.slip
+    h, group, W = TIME / 60, forced.group, orbit.displacement
+    assert slip is not None
+    inertia, S = np.asarray(inside.inertia_operator), np.asarray(inside.constraint_subspace)
+    remaining = [a for a in inside.annihilator if np.linalg.matrix_rank([*slip.rows, a]) > len(slip.rows)]
+    equations = np.concatenate([S @ inertia, np.reshape(remaining, (-1, group.dim)), slip.rows])
+    V = np.linalg.inv(equations)[:, -len(slip.rows) :].T
+    one = nh.discretize(nh.LLSystem(group, inside.homogeneous_mass_tensor, np.eye(group.dim)), h)
+    free = nh.Forced(inside, forced.potential)
+    pi, kinds = _momenta_of_slip(orbit), set()
+    for k in range(60):
+        P, g = nh.discrete_legendre(one, W[k]), orbit.configuration[k : k + 1]
+        f = free.mean_force(g, W[k : k + 1], h, np.zeros((1, group.dim)), orbit.time[k : k + 1])[0]
+        arriving, X = group.coadjoint(W[k], P), group.vee((W[k] - np.linalg.inv(W[k])) / 2)
+        np.testing.assert_allclose(S @ (P - h / 2 * f), orbit.restricted_momentum[k, : len(S)], atol=2e-14)
+        np.testing.assert_allclose(S @ (arriving + h / 2 * f), orbit.restricted_momentum[k + 1, : len(S)], atol=2e-14)
+        first, last = V @ (P - h / 2 * f) - pi[k], pi[k + 1] - V @ (arriving + h / 2 * f)
+        x, size = slip.rows @ X, np.linalg.norm(slip.rows @ X)
+        np.testing.assert_allclose(np.reshape(remaining, (-1, group.dim)) @ X, 0, atol=2e-15)
+        if not pi[k + 1].any():
+            speed = np.linalg.norm(np.linalg.solve(V @ inertia @ V.T, pi[k]))
+            assert np.linalg.norm(first + last) <= h * slip.grip + h / 2 * slip.viscous * speed
+            assert size < 1e-15
+            kinds.add("hold")
+        else:
+            j = -h * slip.grip * x / size - slip.viscous * x
+            np.testing.assert_allclose(first, j / 2, atol=5e-15)
+            np.testing.assert_allclose(last, j / 2, atol=5e-15)
+            kinds.add("slide")
+    assert kinds == set(KINDS[name])
+
+
+def _lawful(forced: nh.Forced, h: float, velocity: np.ndarray, steps: int) -> tuple[float, float, int]:
+    """Return the largest growth of T + U without its work, the largest gap of the balance, and how many states."""
+    orbit = nh.simulate(nh.discretize(forced, h), restricted_velocity=velocity, steps=steps, throw=False)
+    if len(orbit) < 2:
+        return 0.0, 0.0, len(orbit)
+    energy, potential = orbit.energy, forced.potential_energy(orbit.configuration)
+    turned = abs(energy).max() + abs(energy - potential).max() + abs(potential).max() or 1.0
+    gap = abs(energy - energy[0] - orbit.work).max()
+    return np.diff(energy).max() / turned, gap / turned, len(orbit)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_no_slip_adds_energy(seed: int) -> None:
+    """T + U never grows and the balance closes to rounding: any body, rows, step, grip and coefficient."""
+    growth, gap, _ = _lawful(*random_case(np.random.default_rng(seed)), 6)
+    assert growth < 1e-13
+    assert gap < 1e-13
+
+
+@pytest.mark.profile("long", instead="test_no_slip_adds_energy")
+def test_no_slip_adds_energy_in_ten_thousand_cases() -> None:
+    """The same of 10,000 cases, most of which have steps."""
+    rng, long = np.random.default_rng(18), 0
+    for _ in range(10_000):
+        growth, gap, states = _lawful(*random_case(rng), 4)
+        assert growth < 1e-13
+        assert gap < 1e-13
+        long += states == 5
+    assert long > 8500
+
+
+_IDEAL: dict[str, Callable[[], tuple[Any, Any, Any, Any]]] = {
+    "sleigh": lambda: (SLEIGH, None, None, BLADE),
+    "top": lambda: (TOP, None, None, AXIS),
+    "tilted top": lambda: (TILTED, None, None, TILTED.annihilator),
+    "top in four dimensions": lambda: (TOP4, None, None, TOP4.annihilator),
+    "body in space": lambda: (BODY, None, None, BODY.annihilator[1:]),
+    "weight": lambda: (TOP, nh.Gravity([0.0, 0.0, -2.0], [0.1, 0.2, 0.4]), None, AXIS),
+    "friction and table": lambda: (
+        SLEIGH,
+        None,
+        (nh.Friction([0.1, 0.2, 0.3]), np.random.default_rng(1).normal(size=(100, 3))),
+        BLADE,
+    ),
+    "function": lambda: (SLEIGH, lambda g: 0.3 * g[0, 2] ** 2, _drive, BLADE),
+}
+
+
+@pytest.mark.parametrize("name", _IDEAL)
+def test_an_infinite_grip_has_the_bits_of_the_ideal_map(name: str) -> None:
+    """Rows that never yield: momenta along the constraint and poses bit for bit, and no slip at all."""
+    system, potential, force, rows = _IDEAL[name]()
+    others = force if isinstance(force, tuple) else () if force is None else (force,)
+    slip = nh.Slip(rows, np.inf)
+    ideal = system if potential is None and force is None else nh.Forced(system, potential, force, "energy")
+    start = np.linspace(0.9, -0.6, system.rank)
+    orbit = nh.simulate(nh.discretize(ideal, 0.05), momentum=start, steps=100)
+    yielding = nh.discretize(nh.Forced(system, potential, (slip, *others)), 0.05)
+    yielding = nh.simulate(yielding, momentum=np.append(start, np.zeros(len(slip.rows))), steps=100)
+    assert np.array_equal(yielding.restricted_momentum[:, : system.rank], orbit.restricted_momentum)
+    assert np.array_equal(yielding.canonical_pose, orbit.canonical_pose)
+    assert not _momenta_of_slip(yielding).any()
+
+
+def test_without_grip_the_slip_is_free() -> None:
+    """A grip of zero is the map without the rows: the energy is constant, and so is the momentum in space."""
+    forced = nh.Forced(SLEIGH, force=nh.Slip(BLADE, 0.0))
+    orbit = nh.simulate(nh.discretize(forced, 0.05), body_velocity=FAST, steps=400)
+    body = nh.Forced(
+        nh.RigidBody(SLEIGH.homogeneous_mass_tensor, nh.SE(2)), nh.Linear(np.zeros((3, 3))), None, "energy"
+    )
+    free = nh.simulate(nh.discretize(body, 0.05), body_velocity=FAST, steps=400)
+    assert np.ptp(orbit.energy) < 1e-13
+    np.testing.assert_allclose(orbit.configuration, free.configuration, atol=1e-12)
+    assert np.ptp(orbit.spatial_momentum, axis=0).max() < 1e-12
+
+
+def test_stiff_viscous_friction_tends_to_the_ideal_map() -> None:
+    """With c to infinity and no grip the errors of momenta and poses fall like 1 / c."""
+    ideal = nh.simulate(nh.discretize(SLEIGH, 0.05), body_velocity=FAST, steps=80)
+    errors = []
+    for viscous in (1e2, 1e4, 1e6):
+        forced = nh.Forced(SLEIGH, force=nh.Slip(BLADE, 0.0, viscous))
+        orbit = nh.simulate(nh.discretize(forced, 0.05), body_velocity=FAST, steps=80)
+        gap = abs(orbit.restricted_momentum[:, :2] - ideal.restricted_momentum).max()
+        errors.append(max(gap, abs(orbit.configuration - ideal.configuration).max()))
+    assert 70 < errors[0] / errors[1] < 130
+    assert 95 < errors[1] / errors[2] < 105
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_one_motion_however_it_is_run(name: str, tmp_path: Path) -> None:
+    """Blocks, thinned rows, ensembles and stores that are extended have the bits of one run."""
+    forced, velocity = CASES[name]
+    discrete, whole = nh.discretize(forced, TIME / 120), _run(name, 120)
+    blocks = list(nh.iterate(discrete, body_velocity=velocity, steps=120, block_steps=17))
+    thinned = _run(name, 120, save_every=7)
+    nh.simulate(discrete, body_velocity=velocity, steps=50, store=tmp_path / "run.zarr", checkpoint_every=20)
+    nh.extend(tmp_path / "run.zarr", 70)
+    members = nh.ensemble(discrete, body_velocity=[velocity, velocity], steps=120, save_every=1)
+    stored = nh.load_orbit(tmp_path / "run.zarr")
+    for column in ("restricted_momentum", "configuration", "chart"):
+        expected = getattr(whole, column)
+        assert np.array_equal(np.concatenate([getattr(block, column) for block in blocks]), expected)
+        assert np.array_equal(getattr(thinned, column), expected[::7])
+        assert np.array_equal(getattr(stored, column), expected)
+    assert np.array_equal(members.restricted_momentum[1], whole.restricted_momentum)
+    np.testing.assert_allclose(thinned.work, whole.work[::7], atol=1e-14)
+    assert isinstance(stored.system.forces.slip, nh.Slip)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_parts_of_steps_lead_to_the_next_state(name: str) -> None:
+    """Events have parts of steps of both kinds: they begin at the state, end at the next one, and are continuous."""
+    discrete, orbit = nh.discretize(CASES[name][0], TIME / 60), _run(name, 60)
+    before = orbit[:-1]
+    ends = discrete.after_parts(before, np.ones(60))
+    np.testing.assert_allclose(ends.restricted_momentum, orbit.restricted_momentum[1:], atol=2e-14)
+    np.testing.assert_allclose(ends.configuration, orbit.configuration[1:], atol=2e-14)
+    np.testing.assert_allclose(ends.canonical_chart, orbit.canonical_chart[1:], atol=2e-14)
+    near = discrete.after_parts(before, np.full(60, 1 - 1e-7))
+    assert abs(near.configuration - ends.configuration).max() < 1e-6
+    first = discrete.after_parts(before, np.full(60, 1e-7))
+    assert abs(first.configuration - before.configuration).max() < 1e-6
+
+
+def test_events_and_walls_are_found_while_rows_slide() -> None:
+    """A crossing is located to rounding, and an impact of a body that slides keeps its energy."""
+    discrete = nh.discretize(CASES["sleigh"][0], 0.02)
+    wall = nh.Event(
+        lambda orbit: 1.2 - orbit.position[:, 0], reset=nh.Impact([-1.0, 0.0], point=[0.0, 0.0]), name="wall"
+    )
+    line = nh.Event(lambda orbit: orbit.position[:, 0] - 1.0, name="line")
+    orbit = nh.simulate(discrete, body_velocity=FAST, steps=300, events=[wall, line])
+    assert len(orbit.events["wall"]) > 0
+    assert abs(orbit.events["line"].states.position[:, 0] - 1).max() < 1e-13
+    assert orbit.position[:, 0].max() < 1.2 + 1e-13
+    assert np.diff(orbit.energy).max() < 1e-13
+
+
+def test_multipliers_are_reactions_and_friction() -> None:
+    """Of rows that hold the impulse is at most the grip; of rows that slide it is the grip against the slip."""
+    orbit, h = _run("sleigh", 400), TIME / 400
+    slip, force = orbit.body_velocity[:-1, 2], orbit.multipliers[:, 0] / h
+    sliding = (abs(slip[1:]) > 0.02) & (abs(slip[:-1]) > 0.02)
+    np.testing.assert_allclose(force[:-1][sliding], -0.8 * np.sign(slip[1:][sliding]), atol=1e-12)
+    held = (slip[1:] == 0) & (slip[:-1] == 0)
+    assert held.any()
+    assert (abs(force[:-1][held]) < 0.8).all()
+    np.testing.assert_allclose(
+        orbit.momentum @ orbit.system.constraint_subspace.T, orbit.restricted_momentum, atol=1e-14
+    )
+
+
+def test_friction_of_a_model_is_its_only_root() -> None:
+    """The impulse of friction solves A x = b + j, -j in m d|x| + c x, for matrices that are monotone."""
+    from nonholo.discrete.routes._slipping import friction
+
+    rng = np.random.default_rng(5)
+    for _ in range(300):
+        s = int(rng.integers(1, 4))
+        root, turning = rng.normal(size=(s, s)), rng.normal(size=(s, s))
+        A = root @ root.T + 0.05 * np.eye(s) + turning - turning.T
+        b, m, c = rng.normal(size=s), 10.0 ** rng.uniform(-3, 0.5), (0.0, 10.0 ** rng.uniform(-3, 6))[rng.integers(2)]
+        j = friction(A, b, m, c)
+        x = np.linalg.solve(A, b + j)
+        if np.linalg.norm(b) <= m:
+            assert np.array_equal(j, -b)
+        else:
+            np.testing.assert_allclose(j, -m * x / np.linalg.norm(x) - c * x, rtol=1e-9, atol=1e-9 * (1 + c * 1e-6))
+
+
+_REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
+    "no row of the constraint": (
+        lambda: nh.Forced(SLEIGH, force=nh.Slip([[0, 1, 1]], 1.0)),
+        "vanish on the constraint",
+    ),
+    "rows of another group": (lambda: nh.Forced(SLEIGH, force=nh.Slip([[0, 1]], 1.0)), "have rows of 3 numbers"),
+    "a mixture of rows": (
+        lambda: nh.Forced(BODY, force=nh.Slip([BODY.annihilator[1] + BODY.annihilator[2]], 1.0)),
+        "span the same as rows",
+    ),
+    "a free body": (
+        lambda: nh.Forced(nh.RigidBody(np.eye(3)), force=nh.Slip(AXIS, 1.0)),
+        "a constraint that can yield",
+    ),
+    "fixed in space": (lambda: nh.Forced(nh.VeselovaTop(np.eye(3)), force=nh.Slip(AXIS, 1.0)), "fixed in the body"),
+    "in coordinates": (
+        lambda: nh.Forced(nh.examples.knife_edge_on_incline().system, force=nh.Slip(AXIS, 1.0)),
+        "be no Slip",
+    ),
+    "two contacts": (lambda: nh.Forced(SLEIGH, force=(nh.Slip(BLADE, 1.0), nh.Slip(BLADE, 1.0))), "at most one force"),
+    "a negative grip": (lambda: nh.Slip(BLADE, -1.0), "never add energy"),
+    "a negative coefficient": (lambda: nh.Slip(BLADE, 1.0, -1.0), "never add energy"),
+    "an endless coefficient": (lambda: nh.Slip(BLADE, 1.0, np.inf), "be finite"),
+    "no number": (lambda: nh.Slip(BLADE, np.nan), "be finite"),
+    "rows that are not finite": (lambda: nh.Slip([[0.0, 0.0, np.nan]], 1.0), "be finite"),
+    "dependent rows": (lambda: nh.Slip([[0, 0, 1], [0, 0, 2]], 1.0), "independent rows"),
+    "one row alone": (lambda: nh.Slip([0.0, 0.0, 1.0], 1.0), "have shape"),
+    "no rows": (lambda: nh.Slip(np.zeros((0, 3)), 1.0), "have a row"),
+    "order": (lambda: nh.discretize(CASES["sleigh"][0], 0.1, order=4), "steps of order 2"),
+    "difference": (lambda: nh.discretize(CASES["sleigh"][0], 0.1, "logarithmic"), "keep their energy"),
+    "scheme": (
+        lambda: nh.discretize(nh.Forced(SLEIGH, force=nh.Slip(BLADE, 1.0), scheme="variational"), 0.1),
+        "keep their energy",
+    ),
+    "inertia operator": (
+        lambda: nh.discretize(
+            nh.Forced(nh.LLSystem(nh.SO(3), annihilator=AXIS, inertia_operator=np.eye(3)), force=nh.Slip(AXIS, 1.0)),
+            0.1,
+        ),
+        "keep their energy",
+    ),
+    "flow": (lambda: nh.flow(CASES["sleigh"][0], body_velocity=FAST, times=(0, 1)), "never yields"),
+    "flows": (lambda: nh.ensemble(CASES["sleigh"][0], body_velocity=[FAST], times=(0, 1)), "never yields"),
+    "vector_field": (lambda: nh.vector_field(CASES["sleigh"][0]), "never yields"),
+    "linearize": (lambda: nh.linearize(CASES["sleigh"][0], body_velocity=FAST), "never yields"),
+    "linearize a map": (
+        lambda: nh.linearize(nh.discretize(CASES["sleigh"][0], 0.1), body_velocity=(0.0, 1.0, 0.0)),
+        "never yields",
+    ),
+    "rollout": (
+        lambda: nh.rollout(nh.discretize(CASES["sleigh"][0], 0.1), body_velocity=FAST, steps=3),
+        "never yields",
+    ),
+    "check_system": (lambda: nh.testing.check_system(CASES["sleigh"][0]), "never yields"),
+    "check_discretization": (
+        lambda: nh.testing.check_discretization(nh.discretize(CASES["sleigh"][0], 0.1)),
+        "never yields",
+    ),
+    "branches": (lambda: nh.branches(nh.discretize(CASES["sleigh"][0], 0.1), momentum=FAST), "without forces"),
+}
+
+
+@pytest.mark.parametrize("question", _REFUSED)
+def test_what_has_no_slip_is_refused(question: str) -> None:
+    """One clear error that names the demand, before any work."""
+    ask, words = _REFUSED[question]
+    with pytest.raises(ValueError, match=words):
+        ask()
+
+
+def test_a_slip_may_turn_over_without_a_way() -> None:
+    """Where the grip cannot stop a slip, nor push through, it turns over: no slip of the step, and no work."""
+    push = np.tile([0.0, 0.0, -15.0], (1, 1))
+    forced = nh.Forced(nh.ChaplyginSleigh(1.0, 1.0, 0.0), force=(nh.Slip(BLADE, 5.0), push))
+    orbit = nh.simulate(nh.discretize(forced, 0.1), body_velocity=(0.0, 0.0, 0.7), steps=1)
+    np.testing.assert_allclose(orbit.body_velocity[:, 2], [0.7, -0.7], rtol=1e-14)
+    np.testing.assert_allclose(orbit.position[1], 0.0, atol=1e-15)
+    assert abs(np.ptp(orbit.energy)) < 1e-15
+    np.testing.assert_allclose(orbit.work, 0.0, atol=1e-15)
+
+
+def test_a_step_without_a_root_is_an_outcome() -> None:
+    """A step that is too long ends the run with the reason, whether rows hold or slide."""
+    for grip in (np.inf, 1e-3):
+        discrete = nh.discretize(
+            nh.Forced(TOP, nh.Gravity([0.0, 0.0, -9.0], [0.1, 0.2, 0.4]), nh.Slip(AXIS, grip)), 2.0
+        )
+        orbit = nh.simulate(discrete, body_velocity=(2.0, -1.0, 0.0), steps=5, throw=False)
+        assert orbit.outcome in (nh.Outcome.no_real_branch, nh.Outcome.branch_unverified, nh.Outcome.not_converged)
+
+
+def test_the_grip_of_a_record_is_found_by_least_squares() -> None:
+    """`fit` needs derivatives by JAX and refuses a slip; SciPy finds grip and friction from differences of orbits."""
+
+    def poses(numbers: np.ndarray) -> np.ndarray:
+        forced = nh.Forced(SLEIGH, force=nh.Slip(BLADE, *numbers))
+        return nh.simulate(nh.discretize(forced, 0.02), body_velocity=FAST, steps=100).configuration[::10, :2].ravel()
+
+    record = poses(np.array([0.8, 0.3]))
+    found = least_squares(lambda numbers: poses(numbers) - record, [0.5, 0.1], bounds=(0, np.inf), diff_step=1e-5)
+    np.testing.assert_allclose(found.x, [0.8, 0.3], rtol=1e-6)
