@@ -66,4 +66,4 @@ def _derivative(system: Any, time: Array, state: Float[Array, "... size"]) -> Fl
         moved = jnp.ravel(equations.rate(system, x, v))[: len(q)]
         return jnp.concatenate([moved, acceleration(system, x, v)[0]])
 
-    return one(state) if state.ndim == 1 else jax.vmap(one)(state.reshape(-1, state.shape[-1])).reshape(state.shape)
+    return one(state) if state.ndim == 1 else jax.lax.map(one, state.reshape(-1, state.shape[-1])).reshape(state.shape)

@@ -22,10 +22,12 @@ from nonholo.lagrange_dalembert._accelerations import acceleration, bordered_sol
 from nonholo.lagrange_dalembert._discretization import checked_state
 from nonholo.lagrange_dalembert._motion import ORBITS
 from nonholo.lagrange_dalembert._room import configurations, equations_of, in_double, places
+from nonholo.lagrange_dalembert._tangents import flow_slopes
 
 State = tuple[Array, Array]
 """Configuration and velocity."""
 
+_RTOL, _ATOL = 1e-12, 1e-13  # of the equations of variation
 _ROWS = 1024  # states whose powers are computed at once: one size, one compilation
 
 
@@ -81,6 +83,30 @@ def _sweep(system: Any, state: State, times: Array, errors: tuple[Array, Array])
         return equations.rate(system, *current), acceleration(system, *current)[0]
 
     return sweep(lambda _, current: rate(settled(current)), settled, state, times, errors)
+
+
+def transitions(system: Any, x: np.ndarray, v: np.ndarray, time: Float[np.ndarray, "K"]) -> Float[np.ndarray, "L m m"]:
+    """Return the derivatives of states by those before them, by the equations of variation; NaN where these fail."""
+    count, spans = len(time) - 1, np.stack([time[:-1], time[1:]], axis=1)
+    if not count:
+        return np.empty((0, *2 * (2 * v.shape[1] + system.is_driven,)))
+    x, v, spans = padded(x[:-1]), padded(v[:-1]), padded(spans)
+    spans[count:] = time[-1]
+    return in_double(_transitions, system, x, v, spans)[:count]
+
+
+def _transitions(system: Any, xs: Array, vs: Array, spans: Array) -> Array:
+    def rate(_: Array, current: tuple[Array, ...]) -> tuple[Array, ...]:
+        x, v, D = current
+        return equations_of(system).rate(system, x, v), acceleration(system, x, v)[0], flow_slopes(system, x, v)[1] @ D
+
+    def one(state: tuple[Array, Array, Array]) -> Array:
+        x, v, span = state
+        begin = x, v, jnp.eye(2 * len(v) + system.is_driven)
+        rest, good = sweep(rate, lambda current: current, begin, span, (jnp.asarray(_RTOL), jnp.asarray(_ATOL)))
+        return jnp.where(good[0], rest[2][0], jnp.nan)
+
+    return jax.lax.map(one, (xs, vs, spans))
 
 
 def _decode(system: Any, q: Array, v: Array) -> tuple[Array, ...]:

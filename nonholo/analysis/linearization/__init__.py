@@ -1,3 +1,3 @@
 """Motions beside a steady one: the linear equations, their eigenvalues and modes."""
 
-from nonholo.analysis.linearization._linearize import Linearization, linearize
+from nonholo.analysis.linearization._linearize import Linearization, linearize, step_tangents

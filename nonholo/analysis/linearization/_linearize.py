@@ -114,6 +114,13 @@ def linearize(system: Any, *, configuration: Any = None, body_velocity: Any = No
     return Linearization(matrix, names, ignorable, _time_step(system))
 
 
+def step_tangents(orbit: Any) -> Float[np.ndarray, "L d d"]:
+    """Return the derivative of each state of a discrete orbit on a group by the one before."""
+    with needs("jax", "Orbit.tangent"):
+        from nonholo.analysis.linearization import _on_groups
+    return _on_groups.along(orbit)
+
+
 def _local(system: Any, configuration: Any, velocity: Any) -> Local:
     with needs("jax", "linearize"):
         from nonholo.analysis.linearization import _in_coordinates, _on_groups

@@ -68,6 +68,15 @@ def _by_steps(discrete: Discretization, g: np.ndarray, r: np.ndarray) -> tuple[n
     return orbit.configuration, orbit.restricted_momentum
 
 
+def along(orbit: Any) -> Float[np.ndarray, "L d d"]:
+    """Return the derivative of each state of a discrete orbit by the one before; momenta alone if they decide."""
+    discrete, system, r = orbit.motion, orbit.motion.system, orbit.restricted_momentum[:-1]
+    poses = orbit.configuration[:-1] if orbit.has_poses else np.tile(system.group.identity, (len(r), 1, 1))
+    _, slope = _by_jax(discrete, orbit.time[:-1], poses, r)
+    matters = slice(0 if system.forces is not None or system.is_spatial else system.group.dim, None)
+    return (slope + np.eye(slope.shape[-1]))[:, matters, matters]
+
+
 def _refuse(system: Any) -> None:
     where = "linearize(system=...)"
     if system.is_wide:
