@@ -18,12 +18,15 @@ HOMES = {
     "Branches": "nonholo.discrete",
     "Missed": "nonholo.analysis.steering._least_effort",
     "REDUCTIONS": "nonholo.ensembles",
+    "accelerations": "",  # of the tests
     "advance": "nonholo.lagrange_dalembert.compiled",
     "best": "nonholo.analysis.steering._shooting",
     "continuation": "",  # of the tests
     "correction": "nonholo.kernels._interface",
     "each_row": "nonholo.kernels",
     "enclosures": "nonholo.discrete.certificate._certificate",
+    "flow_by_diffrax": "nonholo.lagrange_dalembert._integration:flow",
+    "flow_by_series": "nonholo.lagrange_dalembert.compiled._flow:flow",
     "frame_of": "nonholo.discrete.branching._equations",
     "in_double": "nonholo.discrete.definition",
     "in_one_thread": "nonholo.simulation",
@@ -33,6 +36,7 @@ HOMES = {
     "located": "nonholo.discrete.certificate._certificate",
     "Located": "nonholo.discrete.certificate._certificate",
     "problem_of": "nonholo.discrete.certificate._roots",
+    "published": "",  # of the tests
     "programs": "nonholo.lagrange_dalembert.compiled._run",
     "transcription": "nonholo.analysis.steering:_transcription",
 }

@@ -1,11 +1,14 @@
 """Steps in coordinates by compiled formulas beside the loop in JAX: process time of runs of ready systems, in turns.
 
 Both must end at the same place. The first call is that of a process: it traces and compiles, for each system anew; the
-kernels are loaded. "Equations" is one evaluation of the scaled equations, of which a step takes two or three.
+kernels are loaded. "Equations" is one evaluation of the scaled equations, of which a step takes two or three. Then
+flows over 20 units of time: Taylor series of the formulas to rounding, beside diffrax with a relative error of 1e-10,
+and how far each ends from diffrax with 1e-13.
 
     python benchmarks/coordinates.py [--steps 20000] [--rounds 7] [--smoke]
 """
 
+import functools
 import statistics
 import time
 from typing import Any
@@ -13,7 +16,7 @@ from typing import Any
 import numpy as np
 from _command import options as command
 from _command import small
-from _inside import advance, each_row, in_double_precision, loop_in_jax, programs
+from _inside import advance, each_row, flow_by_diffrax, flow_by_series, in_double_precision, loop_in_jax, programs
 
 import nonholo as nh
 
@@ -74,6 +77,36 @@ def main() -> None:
         ratio = statistics.median(a / b for a, b in zip(*times, strict=True))
         cells = f"{jax:.2f} | {ours:.2f} | {ratio:.1f} | {equations_time(system, len(q)):.2f} | {first:.2f}"
         print(f"| {name} | {system.dimension} | {cells} |", flush=True)
+    flows(options.rounds)
+
+
+def flows(rounds: int) -> None:
+    """Print a table of flows."""
+    print("| system | diffrax, ms | series, ms | ratio | error of diffrax | of series | first flow, s |")
+    print("| --- | ---: | ---: | ---: | ---: | ---: | ---: |")
+    times = np.linspace(0.0, small(20.0, 1.0), 201)
+    for name in small(NAMES, NAMES[:2]):
+        ready = getattr(nh.examples, name)()
+        begin = time.process_time()
+        orbit = ready.flow(times=times)
+        first = time.process_time() - begin
+        q = np.append(ready.configuration, 0.0) if ready.system.is_driven else ready.configuration
+        start = ready.system, (q, orbit.body_velocity[0]), times
+        ways = (
+            functools.partial(flow_by_diffrax, *start, (1e-10, 1e-12)),
+            functools.partial(flow_by_series, *start, 1e-14),
+        )
+        exact, spent = flow_by_diffrax(*start, (1e-13, 1e-15))[0], np.empty((rounds, 2))
+        errors = [max(np.abs(a - b).max() for a, b in zip(way()[0], exact, strict=True)) for way in ways]
+        assert errors[1] < 1e-9
+        for row in spent:
+            for i, way in enumerate(ways):
+                begin = time.process_time()
+                way()
+                row[i] = (time.process_time() - begin) * 1e3
+        (jax, ours), ratio = np.median(spent, axis=0), np.median(spent[:, 0] / spent[:, 1])
+        cells = f"{jax:.2f} | {ours:.2f} | {ratio:.1f} | {errors[0]:.1e} | {errors[1]:.1e} | {first:.2f}"
+        print(f"| {name} | {cells} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -11,13 +11,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from nonholo.base.checks import array, error, number, shape_of, trailing
+from nonholo.base.checks import error, number, trailing
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
 from nonholo.continuous._forced import forced_field, forced_reaction
 from nonholo.continuous._solution import States
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.orbit import AbstractMotion, First, Orbit
+from nonholo.orbit import AbstractMotion, First, Orbit, times_within
 from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, Start, as_system, inertia_form
 
 Body = tuple[Array, Array, Array]
@@ -87,18 +87,11 @@ class ContinuousFlow(AbstractMotion):
 
     def at(self, states: Orbit, times: Any) -> Orbit:
         """Return the states at any times of the span."""
-        where = "Orbit.at(times=...)"
         if self.span is None or self.solution is None:
             remedy = "Solve it again: flow(orbit.system, ...)."
             raise error("Orbit.at(...)", "know more than its states", "a flow from a file", remedy)
-        time = array(where, times, (None,) if shape_of(times) else (), "Pass times.").reshape(-1)
-        first, last = self.span
-        outside = ~((time >= min(self.span)) & (time <= max(self.span)))
-        if outside.any():
-            got = f"{time[np.argmax(outside)]:.17g}"
-            raise error(where, f"lie between {first:.17g} and {last:.17g}", got, "Ask the flow for later times.")
-        order = np.argsort(time if last >= first else -time, kind="stable")
-        found = self.solution(time[order] - first).chosen(np.argsort(order))
+        time, order = times_within(self.span, times)
+        found = self.solution(time[order] - self.span[0]).chosen(np.argsort(order))
         rows: dict[str, Any] = {"reduced_momentum": found.momenta}
         if states.canonical_pose is not None:
             rows |= {"canonical_pose": found.poses, "turned": found.turned}

@@ -28,11 +28,11 @@ class FamilyTask:
 
     Names of a design are parameters of the function, "time_step", "configuration" and "body_velocity", or a component
     of one that is an array, such as "body_velocity_0". What it does not name is as given here, or the default of the
-    function. Members with one system run as one `ensemble`; each other system in coordinates is compiled, which takes
-    seconds: vary a few values of its constants, and starts at will.
+    function. Members with one system, or with one but for its `parameters`, run as one `ensemble`; each other system in
+    coordinates is compiled: of constants that are no parameters vary a few values, and all else at will.
 
     The reduction "final_state" keeps time, configuration, velocity and energy of the last good state, and the number
-    of good steps. A custom function gets the `Ensemble` of members with one system, and returns arrays as for
+    of good steps. A custom function gets the `Ensemble` of such members, and returns arrays as for
     `EnsembleTask`.
 
     Attributes:
@@ -105,10 +105,11 @@ class FamilyTask:
         """Run a block of members, those with one system together, and reduce it."""
         made = [self._made({name: values[member] for name, values in block.items()}) for member in range(block.count)]
         found: dict[str, tuple[Any, np.ndarray, Any]] = {}
-        for system in dict.fromkeys(system for system, _ in made):
-            members = [member for member, (other, _) in enumerate(made) if other == system]
+        families = [getattr(system, "family", system) for system, _ in made]
+        for family in dict.fromkeys(families):
+            members = [member for member, other in enumerate(families) if other == family]
             starts = {name: np.stack([made[member][1][name] for member in members]) for name in made[0][1]}
-            batch = self._ensemble(system, starts, [block.first + member for member in members])
+            batch = self._ensemble([made[member][0] for member in members], starts, [block.first + m for m in members])
             for name, (dimensions, rows, labels) in self._reduced(batch).items():
                 whole = np.empty((block.count, *rows.shape[1:]), rows.dtype)
                 found.setdefault(name, (dimensions, whole, labels))[1][members] = rows
@@ -123,13 +124,15 @@ class FamilyTask:
         starts = {name: np.asarray(_valued(name, getattr(example, name), rest)) for name in _STARTS}
         return example.system, starts | ({_STEP: np.asarray(own[_STEP])} if _STEP in own else {})
 
-    def _ensemble(self, system: Any, starts: dict[str, np.ndarray], numbers: list[int]) -> Any:
-        """Run members with one system."""
-        discrete = discretize(system, self.time_step)
-        step = starts.pop(_STEP, None)
+    def _ensemble(self, systems: list[Any], starts: dict[str, np.ndarray], numbers: list[int]) -> Any:
+        """Run members with systems of one family."""
+        discrete = discretize(systems[0], self.time_step)
+        varied = {_STEP: starts.pop(_STEP)} if _STEP in starts else {}
+        for name in getattr(systems[0], "parameters", ()):
+            varied[name] = np.stack([system.parameters[name] for system in systems])
         run = {"steps": self.steps, "save_every": self.save_every}
         with counted(numbers.__getitem__):
-            return ensemble(discrete, parameters=None if step is None else {_STEP: step}, **starts, **run)
+            return ensemble(discrete, parameters=varied or None, **starts, **run)
 
     def _reduced(self, batch: Any) -> dict[str, tuple[Any, np.ndarray, Any]]:
         """Return dimensions, rows and labels of what is kept of members, by name."""

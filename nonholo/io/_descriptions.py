@@ -1,6 +1,7 @@
 """Systems and motions as plain JSON data and back; what data cannot hold is named by a marker instead."""
 
 import dataclasses
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -26,7 +27,8 @@ def described_system(system: Any) -> tuple[str, dict[str, Any]]:
 def fields_of(owner: Any) -> dict[str, Any]:
     """Return the fields of a dataclass as plain data, floating-point numbers such that they are read back exactly."""
     stored = (field.name for field in dataclasses.fields(owner) if field.metadata.get("stored", True))
-    plain = {name: _plain(getattr(owner, name)) for name in stored}
+    given = {name: getattr(owner, name) for name in stored}
+    plain = {name: _plain(value) for name, value in given.items() if not isinstance(value, Mapping) or value}
     plain |= {name: getattr(owner, name) for name in getattr(owner, "recorded", ())}
     if getattr(owner, "is_forced", False):
         plain["system"] = {"kind": type(owner.system).__name__, "parameters": fields_of(owner.system)}
@@ -90,6 +92,8 @@ def restore_group(described: dict[str, Any]) -> AbstractMatrixGroup:
 def _plain(value: Any) -> Any:
     if isinstance(value, AbstractMatrixGroup):
         return describe_group(value)
+    if isinstance(value, Mapping):
+        return {name: _plain(each) for name, each in value.items()}
     several = value if isinstance(value, tuple) else (value,)
     if any(map(callable, several)):
         return _CALLABLE

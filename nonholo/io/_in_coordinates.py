@@ -34,6 +34,7 @@ class _Recorded(BaseModel):
     constraints: NonNegativeInt
     is_driven: bool
     heading: str | None = None
+    parameters: dict[str, Any] = {}
 
     @model_validator(mode="after")
     def _fit(self) -> "_Recorded":

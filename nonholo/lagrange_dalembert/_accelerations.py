@@ -51,8 +51,9 @@ def vector_field(system: Any) -> Callable[[Array, Float[Array, "size"]], Float[A
     def derivative(time: Array, state: Float[Array, "size"]) -> Float[Array, "size"]:
         now = number("vector_field(...)(time=...)", time)
         rows = trailing("vector_field(...)(state=...)", state, (size,), _REMEDY, real=True)
-        traced = is_traced(now) or is_traced(rows)
-        return _derivative(system, now, rows) if traced else in_double(_derivative, system, now, rows)
+        if is_traced(now) or is_traced(rows):
+            return _derivative(system.bound(*system.parameters.values()), now, rows)
+        return in_double(_derivative, system, now, rows)
 
     return derivative
 

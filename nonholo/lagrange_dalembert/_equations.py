@@ -12,7 +12,7 @@ import numpy as np
 
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
-from nonholo.lagrange_dalembert._tracing import TwoPoint, takes_time
+from nonholo.lagrange_dalembert._tracing import takes_time
 
 _CORRECTIONS = 8  # of a velocity that belongs to a momentum: Newton's, one where L is quadratic
 
@@ -125,7 +125,7 @@ def discrete_energy(system: LagrangeDAlembert, x: Array, v: Array, h: Array, nod
         w = inverse_legendre(system, x, momenta(system, x, v, h)[0]) if node is None else node
         return energy(system, x, w)
     d = h * v
-    if isinstance(system.discrete_lagrangian, TwoPoint):
+    if getattr(system.discrete_lagrangian, "is_of_one_step", False):
         return energy(system, x + d / 2, v)
     return -jax.grad(lambda step: discrete_lagrangian(system, x, d / step, step))(h)
 
@@ -227,6 +227,9 @@ def solve_bordered(matrix: Array, units: Scaled, force: Array, off: Array) -> tu
 def kinetic_matrix(system: LagrangeDAlembert, q: Array, v: Array, _h: Any = None) -> Array:
     r"""Return $\partial^2 L/\partial v^2$."""
     return jax.hessian(lagrangian, argnums=2)(system, q, v)
+
+
+mass_matrix = kinetic_matrix
 
 
 def acceleration_matrix(system: LagrangeDAlembert, q: Array, v: Array) -> tuple[Array, Scaled]:

@@ -1,6 +1,6 @@
 r"""The continuous motion: the solve, the orbit of it, and the work that changes the energy.
 
-Imported on first use: diffrax loads slowly.
+Equations that are smooth formulas are solved by Taylor series, any other by diffrax.
 
 Along a motion $\dot E = f\cdot v + \lambda\cdot b - \partial L/\partial t$: the power of the force, that of moving
 constraints $A v = b$ (of driven joints what their motors give), and what a Lagrangian of the time adds.
@@ -13,21 +13,19 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.checks import error, flow_times, flow_tolerances
-from nonholo.base.numerics.time_sweep import padded, reached, sweep
-from nonholo.base.progress import interruptibly
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert import _equations
-from nonholo.lagrange_dalembert._accelerations import acceleration, bordered_solution, refuse_table
+from nonholo.lagrange_dalembert import _equations, compiled
+from nonholo.lagrange_dalembert._accelerations import acceleration, refuse_table
 from nonholo.lagrange_dalembert._discretization import checked_state
 from nonholo.lagrange_dalembert._motion import ORBITS
-from nonholo.lagrange_dalembert._room import configurations, equations_of, in_double, places
-from nonholo.lagrange_dalembert._tangents import flow_slopes
+from nonholo.lagrange_dalembert._room import configurations, in_double, places, room
+from nonholo.orbit import times_within
 
 State = tuple[Array, Array]
 """Configuration and velocity."""
 
-_RTOL, _ATOL = 1e-12, 1e-13  # of the equations of variation
+_FINE, _COARSE = 1e-14, 1e-10  # relative errors of a step, by series and by diffrax
 _ROWS = 1024  # states whose powers are computed at once: one size, one compilation
 
 
@@ -36,89 +34,37 @@ def flow(
     configuration: Any,
     starts: dict[str, Any],
     times: Any,
-    rtol: float,
+    rtol: float | None,
     atol: float,
 ) -> Any:
     """Check the arguments, solve the equations and return the orbit."""
     refuse_table("flow", system)
-    time, errors = flow_times(times), flow_tolerances(rtol, atol)
+    time, errors = flow_times(times), flow_tolerances(_COARSE if rtol is None else rtol, atol)
     first = checked_state(system, configuration, starts, time[0])
-    rest, good = interruptibly(lambda: in_double(_sweep, system, first, padded(time), errors))
-    rows = reached(first, rest, good, len(time))
+    solved = compiled.flow(system, first, time, _FINE if rtol is None else errors[0])
+    rows, solution = solved or room("_integration").flow(system, first, time, errors)
     count = len(rows[0])
     outcome = Outcome.successful if count == len(time) else Outcome.not_converged
-    orbit = _orbit(system, time[:count], rows, outcome)
+    orbit = _orbit(system, time[:count], rows, outcome, solution)
     if outcome != Outcome.successful:
-        rtol, atol = errors
-        where = f"Flow from time {time[count - 1]:g} to {time[count]:g} (rtol {rtol:g}, atol {atol:g})"
+        where = f"Flow from time {time[count - 1]:g} to {time[count]:g} (rtol {errors[0]:g}, atol {errors[1]:g})"
         raise OutcomeError(outcome, where, orbit)
     return orbit
 
 
-def flowed(system: Any, states: Any, times: np.ndarray, rtol: float, atol: float) -> Any:
-    """Return states of a flow carried on, each to a later time of its own."""
-    x, spans = places(system, states.configuration, states.time), np.stack([states.time, times], axis=1)
-    ends = [
-        in_double(_sweep, system, tuple(first), padded(span), flow_tolerances(rtol, atol))
-        for *first, span in zip(x, states.body_velocity, spans, strict=True)
-    ]
-    rows = [np.stack([np.where(good[0], rest[which][0], np.nan) for rest, good in ends]) for which in (0, 1)]
-    return _orbit(system, times, rows, Outcome.successful)
+def at(orbit: Any, times: Any) -> Any:
+    """Return the states of a flow at any of its times."""
+    time, order = times_within(orbit.span, times)
+    rows = [column[np.argsort(order)] for column in orbit.solution(time[order])]
+    return _orbit(orbit.system, time, rows, orbit.outcome, orbit.solution)
 
 
-def _orbit(system: Any, time: np.ndarray, rows: list[np.ndarray], outcome: Outcome) -> Any:
-    columns = (x[: len(time)] for x in in_double(_decode, system, *map(padded, rows)))
-    return ORBITS[system.orbits](time, configurations(system, rows[0]), None, rows[1], *columns, outcome, system)
-
-
-def _sweep(system: Any, state: State, times: Array, errors: tuple[Array, Array]) -> tuple[State, Array]:
-    equations = equations_of(system)
-
-    def settled(current: State) -> State:
-        """Return the state with the admissible velocity next to its own in the kinetic energy."""
-        q, v = equations.normalized(system, current[0]), current[1]
-        return q, v - bordered_solution(system, q, v, jnp.zeros_like(v), equations.constraint(system, q, v))[0]
-
-    def rate(current: State) -> State:
-        return equations.rate(system, *current), acceleration(system, *current)[0]
-
-    return sweep(lambda _, current: rate(settled(current)), settled, state, times, errors)
-
-
-def transitions(system: Any, x: np.ndarray, v: np.ndarray, time: Float[np.ndarray, "K"]) -> Float[np.ndarray, "L m m"]:
-    """Return the derivatives of states by those before them, by the equations of variation; NaN where these fail."""
-    count, spans = len(time) - 1, np.stack([time[:-1], time[1:]], axis=1)
-    if not count:
-        return np.empty((0, *2 * (2 * v.shape[1] + system.is_driven,)))
-    x, v, spans = padded(x[:-1]), padded(v[:-1]), padded(spans)
-    spans[count:] = time[-1]
-    return in_double(_transitions, system, x, v, spans)[:count]
-
-
-def _transitions(system: Any, xs: Array, vs: Array, spans: Array) -> Array:
-    def rate(_: Array, current: tuple[Array, ...]) -> tuple[Array, ...]:
-        x, v, D = current
-        return equations_of(system).rate(system, x, v), acceleration(system, x, v)[0], flow_slopes(system, x, v)[1] @ D
-
-    def one(state: tuple[Array, Array, Array]) -> Array:
-        x, v, span = state
-        begin = x, v, jnp.eye(2 * len(v) + system.is_driven)
-        rest, good = sweep(rate, lambda current: current, begin, span, (jnp.asarray(_RTOL), jnp.asarray(_ATOL)))
-        return jnp.where(good[0], rest[2][0], jnp.nan)
-
-    return jax.lax.map(one, (xs, vs, spans))
-
-
-def _decode(system: Any, q: Array, v: Array) -> tuple[Array, ...]:
-    """Return momenta, forces of constraint, energies and residuals of many states."""
-    equations = equations_of(system)
-
-    def one(q: Array, v: Array) -> tuple[Array, ...]:
-        residual = jnp.max(jnp.abs(equations.constraint(system, q, v)), initial=0.0)
-        momentum, force = equations.momentum(system, q, v), acceleration(system, q, v)[1]
-        return momentum, force, equations.energy(system, q, v), residual
-
-    return jax.vmap(one)(q, v)
+def _orbit(system: Any, time: np.ndarray, rows: list[np.ndarray], outcome: Outcome, solution: Any) -> Any:
+    columns = compiled.flow_rows(system, *rows)
+    if columns is None:
+        columns = room("_integration").columns(system, rows)
+    place = configurations(system, rows[0])
+    return ORBITS[system.orbits](time, place, None, rows[1], *columns, outcome, system, solution=solution)
 
 
 def work(orbit: Any) -> Float[np.ndarray, "K"]:

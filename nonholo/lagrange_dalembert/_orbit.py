@@ -44,8 +44,8 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     save_every: int = 1
     events: Any = None
     step: Int[np.ndarray, "K"] = None  # type: ignore[assignment]
+    solution: Any = dataclasses.field(default=None, repr=False)
     branch: ClassVar[str] = "nearest"
-    span: ClassVar[None] = None
     has_poses: ClassVar[bool] = True
     is_compact: ClassVar[bool] = False
     is_measured: ClassVar[bool] = False
@@ -64,6 +64,11 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         """The discretization or the flow."""
         flow = room("_motion").CoordinateFlow
         return flow(self.system) if self.time_step is None else self.system.discretize(self.time_step)
+
+    @property
+    def span(self) -> tuple[float, float] | None:  # type: ignore[override]
+        """The first and the last time between which `at` knows all states; None if saved states are all there is."""
+        return None if self.solution is None else self.solution.span
 
     @property
     def is_discrete(self) -> bool:
@@ -125,9 +130,19 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         return room("_tangents").tangent_map(self)
 
     def at(self, times: Any) -> "AbstractCoordinateOrbit":
-        """Refuse: only saved states are known."""
-        got = f"an orbit in coordinates with {len(self)} states; not {shown(times)}"
-        raise error("Orbit.at(...)", "be asked of a flow of a body on a group", got, "Ask `flow` for these times.")
+        """Return the states of a flow at any of its times, from its Taylor series, without a new run.
+
+        Args:
+            times: One or many, in any order, between the first and the last time of the flow.
+
+        Raises:
+            ValueError: Times outside, a discrete orbit, or a flow from a file, whose states alone are known.
+        """
+        if self.solution is None:
+            got = f"an orbit in coordinates with {len(self)} states; not {shown(times)}"
+            remedy = "Slice it; solve a flow from a file again."
+            raise error("Orbit.at(...)", "be asked of a flow", got, remedy)
+        return room("_flow").at(self, times)
 
     def to_dataset(self) -> Any:
         """Return the orbit as a labeled `xarray.Dataset`; rows that do not exist, of multipliers, are NaN.

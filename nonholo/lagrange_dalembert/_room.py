@@ -34,7 +34,10 @@ def _options() -> dict[str, Any] | None:
 
 @functools.cache
 def _compiled(function: Callable[..., Any]) -> Callable[..., Any]:
-    return jax.jit(function, static_argnums=0, compiler_options=_options())
+    def called(family: Any, numbers: tuple[Any, ...], *arguments: Any) -> Any:
+        return function(family.bound(*numbers), *arguments)
+
+    return jax.jit(called, static_argnums=0, compiler_options=_options())
 
 
 def room(name: str) -> Any:
@@ -63,10 +66,11 @@ def place(system: Any, q: Any, time: Any) -> Any:
 
 
 def in_double(function: Callable[..., Any], system: Any, *arguments: Any) -> Any:
-    """Call a JAX function of a system, for which it is compiled, with 64-bit numbers; return NumPy arrays."""
-    with double_precision(), contextlib.nullcontext() if (function, system) in _called else compiling(system):
-        found = jax.tree.map(np.asarray, _compiled(function)(system, *arguments))
-    _called.add((function, system))
+    """Call a JAX function of a system, compiled once for all of its numbers, in 64 bits; return NumPy arrays."""
+    family, numbers = system.family, tuple(system.parameters.values())
+    with double_precision(), contextlib.nullcontext() if (function, family) in _called else compiling(family):
+        found = jax.tree.map(np.asarray, _compiled(function)(family, numbers, *arguments))
+    _called.add((function, family))
     return found
 
 

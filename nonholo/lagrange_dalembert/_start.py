@@ -33,7 +33,7 @@ def point(owner: str, system: LagrangeDAlembert, configuration: Any, time: float
     if configuration is None:
         raise error(where, "be given for a system in coordinates", "none", f"Pass the {n} coordinates of the start.")
     q = array(where, configuration, (n,), f"Pass the {n} coordinates.")
-    for index, motion in system.prescribed:
+    for index, motion in system.plain.prescribed:
         with double_precision():
             given = float(motion(np.float64(time)))
         if not abs(q[index] - given) <= _TOLERANCE * (1 + abs(given)):
@@ -94,7 +94,8 @@ def admissible(
     where: str, A: Float[np.ndarray, "s n"], v: Float[np.ndarray, "n"], missed: Float[np.ndarray, "s"]
 ) -> Float[np.ndarray, "n"]:
     """Return a velocity that misses A v = b by nothing, refused with its residual and the nearest one that does."""
-    if np.any(np.abs(missed) > _TOLERANCE * (np.abs(A) @ np.abs(v) + np.abs(A @ v - missed))):
+    rounding = np.finfo(float).eps * np.linalg.norm(A, axis=1) * np.linalg.norm(v)  # of forms where their terms vanish
+    if np.any(np.abs(missed) > _TOLERANCE * (np.abs(A) @ np.abs(v) + np.abs(A @ v - missed)) + rounding):
         raise inadmissible(where, missed, v - np.linalg.pinv(A) @ missed)
     return v
 

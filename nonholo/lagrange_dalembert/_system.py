@@ -3,7 +3,7 @@
 import dataclasses
 import functools
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import jax
 import numpy as np
@@ -14,6 +14,7 @@ from nonholo.base.kept import kept
 from nonholo.base.limits import within_memory
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
+from nonholo.lagrange_dalembert._parameters import Bound, Parameters
 from nonholo.lagrange_dalembert._room import room
 from nonholo.lagrange_dalembert._tracing import (
     ForceTable,
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
 
 Parts = tuple[Float[np.ndarray, "P 2"], ...]
+_FUNCTIONS = ("lagrangian", "constraint_forms", "discrete_lagrangian", "discrete_constraints", "constraint_velocities")
 _REMEDY = "Pass the corners of each part in body axes: [[(-0.1, -0.1), (0.2, 0.0), (-0.1, 0.1)], ...]."
 
 
@@ -68,6 +70,11 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         force: `force(time, q, v)` -> (n,); or `nonholo.Friction`; or an array (steps, n), whose row k acts over step k;
             or a tuple with at most one of each.
             `nonholo.Forced(system, potential, force)` adds one.
+        parameters: Numbers or arrays by name, p. Where there are any, every function takes them as its last argument, a
+            dictionary with these names: `lagrangian(q, v, p)` or `(q, v, time, p)`, `constraint_forms(q, p)` or
+            `(q, time, p)`, `discrete_lagrangian(q, q_next, time_step, p)`, `constraint_velocities(q, time, p)`,
+            `force(time, q, v, p)`, prescribed motions `s(time, p)`, `outline(q, p)`. They are compiled once for all
+            numbers: see `with_parameters`.
         coordinates: Names of the coordinates, for tables and pictures, such as ("x", "y", "theta"); by default "q1",
             "q2" and so on.
         name: What pictures call the system.
@@ -76,9 +83,9 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             first, then what it carries, such as wheels; or a function of q that returns them.
 
     Raises:
-        ValueError: A function that JAX cannot trace, or whose result is not real or has the wrong shape; an unknown
-            rule; a driven system with discrete functions of its own; names that are not n different words; a heading
-            that is not among them, an outline that is no drawing.
+        ValueError: A function that JAX cannot trace, that does not take the parameters there are, or whose result is
+            not real or has the wrong shape; an unknown rule; a driven system with discrete functions of its own; names
+            that are not n different words; a heading that is not among them, an outline that is no drawing.
 
     Example:
         A particle in space with the constraint z' = y x':
@@ -94,15 +101,16 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         ((101, 3), True)
     """
 
-    lagrangian: Callable[[Array, Array], Array]
-    constraint_forms: Callable[[Array], Array] | None
+    lagrangian: Callable[..., Array]
+    constraint_forms: Callable[..., Array] | None
     dimension: int = dataclasses.field(kw_only=True)
     rule: str = dataclasses.field(default="midpoint", kw_only=True)
-    discrete_lagrangian: Callable[[Array, Array, Array], Array] | None = dataclasses.field(default=None, kw_only=True)
-    discrete_constraints: Callable[[Array, Array, Array], Array] | None = dataclasses.field(default=None, kw_only=True)
-    constraint_velocities: Callable[[Array, Array], Array] | None = dataclasses.field(default=None, kw_only=True)
+    discrete_lagrangian: Callable[..., Array] | None = dataclasses.field(default=None, kw_only=True)
+    discrete_constraints: Callable[..., Array] | None = dataclasses.field(default=None, kw_only=True)
+    constraint_velocities: Callable[..., Array] | None = dataclasses.field(default=None, kw_only=True)
     prescribed: Any = dataclasses.field(default=(), kw_only=True)
     force: Any = dataclasses.field(default=None, kw_only=True)
+    parameters: Any = dataclasses.field(default_factory=dict, kw_only=True)
     coordinates: tuple[str, ...] = dataclasses.field(default=(), kw_only=True)
     name: str = dataclasses.field(default="System in coordinates", kw_only=True)
     orbits: ClassVar[str] = "CoordinateOrbit"
@@ -116,54 +124,117 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         dimension = count(_named("dimension"), self.dimension, "Pass the number of coordinates.")
         within_memory(_named("dimension"), 8.0 * dimension**2, "Pass the number of coordinates.")  # the mass matrix
         object.__setattr__(self, "dimension", dimension)
+        object.__setattr__(self, "parameters", Parameters(self.parameters))
         object.__setattr__(self, "coordinates", _names(self.coordinates, dimension))
         text(_named("name"), self.name)
         _check_heading(_named("heading"), self.heading, self.coordinates)
         object.__setattr__(self, "outline", _checked_outline(_named("outline"), self.outline))
         choice(_named("rule"), self.rule, ("midpoint", "trapezoidal"))
-        object.__setattr__(self, "discrete_lagrangian", with_time_step(self.discrete_lagrangian))
-        object.__setattr__(self, "discrete_constraints", with_time_step(self.discrete_constraints))
-        object.__setattr__(self, "prescribed", _motions(self.prescribed, dimension))
+        for name in ("discrete_lagrangian", "discrete_constraints"):
+            object.__setattr__(self, name, with_time_step(getattr(self, name), len(self._shapes_given)))
+        object.__setattr__(self, "prescribed", _motions(self.prescribed, dimension, self._shapes_given))
         object.__setattr__(self, "force", _force(self.force, dimension))
         self._check_functions()
 
     def _check_functions(self) -> None:
         n = self.dimension
-        q, time = jax.ShapeDtypeStruct((n,), float), jax.ShapeDtypeStruct((), float)
+        q, time, last = jax.ShapeDtypeStruct((n,), float), jax.ShapeDtypeStruct((), float), self._shapes_given
         with double_precision():
             self._check("lagrangian", (), q, q, *self._time("lagrangian", 2))
             if self.constraint_forms is not None:
                 where, remedy = _named("constraint_forms"), "Stack one row per constraint; pass None for no constraint."
-                arguments = (q, *self._time("constraint_forms", 1))
+                arguments = (q, *self._time("constraint_forms", 1), *last)
                 check_forms(where, self.constraint_forms, n, arguments, f"{n} coordinates", remedy)
             self._check("discrete_lagrangian", (), q, q, time)
             self._check("discrete_constraints", (self.constraints,), q, q, time)
             self._check("constraint_velocities", (self.constraints - len(self.prescribed),), q, time)
             if self.applied is not None:
-                check_value(_named("force"), self.applied, (n,), (time, q, q), *2 * (f"{n} coordinates",))
+                check_value(_named("force"), self.applied, (n,), (time, q, q, *last), *2 * (f"{n} coordinates",))
         if self.is_driven and (self.discrete_lagrangian or self.discrete_constraints):
             remedy = 'Use rule="midpoint" or "trapezoidal".'
             raise error(_named("discrete_lagrangian"), "be left out of a driven system", "discrete functions", remedy)
 
     def _time(self, name: str, others: int) -> tuple[Any, ...]:
-        return (jax.ShapeDtypeStruct((), float),) if takes_time(getattr(self, name), others) else ()
+        count = others + len(self._shapes_given)
+        return (jax.ShapeDtypeStruct((), float),) if takes_time(getattr(self, name), count) else ()
+
+    @property
+    def _shapes_given(self) -> tuple[dict[str, jax.ShapeDtypeStruct], ...]:
+        """The last argument of all functions, the shapes of the parameters, if there are any."""
+        return (self.parameters.structure,) if self.parameters else ()
 
     def _check(self, name: str, shape: tuple[int, ...], *arguments: Any) -> None:
         function, of = getattr(self, name), f"{self.dimension} coordinates"
         if function is not None or name == "lagrangian":
-            check_value(_named(name), function, shape, arguments, of, of)
+            check_value(_named(name), function, shape, (*arguments, *self._shapes_given), of, of)
 
     @functools.cached_property
     def is_driven(self) -> bool:
         """Whether a force acts, or anything depends on time or moves by itself."""
         given = self.force is not None or self.constraint_velocities is not None or bool(self.prescribed)
-        return given or takes_time(self.lagrangian, 2) or takes_time(self.constraint_forms, 1)
+        return given or self.takes_time("lagrangian") or self.takes_time("constraint_forms")
+
+    def with_parameters(self, **numbers: Any) -> Self:
+        r"""Return the same system with other numbers of some of its parameters; nothing is compiled anew.
+
+        Args:
+            numbers: Numbers or arrays by name, as in `parameters`; JAX may trace them (`nonholo.rollout`).
+
+        Raises:
+            ValueError: A name that is none of its parameters, another shape, a value that is not finite.
+
+        Example:
+            >>> def energy(q, v, p):
+            ...     return (p["mass"] * v @ v - p["stiffness"] * q @ q) / 2
+            >>> spring = nh.LagrangeDAlembert(energy, None, dimension=1, parameters={"mass": 1.0, "stiffness": 4.0})
+            >>> heavy = spring.with_parameters(mass=4.0)
+            >>> heavy.parameters, heavy == spring
+            ({'mass': 4.0, 'stiffness': 4.0}, False)
+            >>> orbit = heavy.flow(configuration=[1], body_velocity=[0], times=[0, np.pi])
+            >>> print(orbit.configuration[-1].round(9))
+            [-1.]
+        """
+        changed = self.parameters.changed("with_parameters(...)", numbers)
+        return self._changed(parameters=changed, family=self.family)
+
+    def _changed(self, **fields: Any) -> Self:
+        """Return a system with other fields, which need no check; it does not have a name for stores."""
+        changed = object.__new__(type(self))
+        vars(changed).update(vars(self), **fields)
+        for name in {"described", "family", "plain", "recipe"} - fields.keys():
+            vars(changed).pop(name, None)
+        return changed
+
+    @functools.cached_property
+    def family(self) -> Self:
+        """What is the same for all numbers of the parameters: the system with zeros."""
+        if not self.parameters:
+            return self
+        family = self._changed(parameters=self.parameters.nothing)
+        vars(family)["family"] = family
+        return family
+
+    def bound(self, *numbers: Any) -> Self:
+        """Return the system without parameters whose functions have these numbers within."""
+        if not self.parameters:
+            return self
+        p = dict(zip(self.parameters, numbers, strict=True))
+        given = {name: getattr(self, name) for name in _FUNCTIONS}
+        functions = {name: each and Bound(each, p) for name, each in given.items()}
+        parts = parts_of(self.force)
+        parts |= {"function": Bound(parts["function"], p)} if "function" in parts else {}
+        motions = tuple((index, Bound(motion, p)) for index, motion in self.prescribed)
+        return self._changed(parameters=Parameters({}), force=joined(parts), prescribed=motions, **functions)
+
+    @functools.cached_property
+    def plain(self) -> Self:
+        """The same system without parameters: its functions have them within."""
+        return self.bound(*self.parameters.values())
 
     def parts(self, q: Any) -> tuple[Float[np.ndarray, "P 2"], ...]:
         """Return the parts of the outline at a configuration, in body axes."""
-        return _as_parts(
-            _named("outline"), called(_named("outline"), self.outline, q) if callable(self.outline) else self.outline
-        )
+        where, last = _named("outline"), (self.parameters,) if self.parameters else ()
+        return _as_parts(where, called(where, self.outline, q, *last) if callable(self.outline) else self.outline)
 
     def takes_time(self, function: str) -> bool:
         """Return whether the Lagrangian or the constraint forms are called with the time."""
@@ -183,7 +254,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     def constraints(self) -> int:
         """The number s of constraints, those of prescribed coordinates with them."""
         arguments = ((self.dimension,), *(() for _ in self._time("constraint_forms", 1)))
-        return count_of(self.constraint_forms, *arguments) + len(self.prescribed)
+        return count_of(self.plain.constraint_forms, *arguments) + len(self.prescribed)
 
     @kept
     def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
@@ -205,8 +276,10 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         if potential is not None:
             q = jax.ShapeDtypeStruct((self.dimension,), float)
             with double_precision():
-                check_value("Forced(potential=...)", potential, (), (q,), *2 * (f"{self.dimension} coordinates",))
-        return dataclasses.replace(self, lagrangian=_with_potential(self.lagrangian, potential), force=force)
+                of = f"{self.dimension} coordinates"
+                check_value("Forced(potential=...)", potential, (), (q, *self._shapes_given), of, of)
+        lagrangian = _with_potential(self.lagrangian, potential, last=bool(self.parameters))
+        return dataclasses.replace(self, lagrangian=lagrangian, force=force)
 
     def regularity(self, q: Any, q_next: Any, *, time_step: float = 1.0) -> float:
         r"""Return the smallest singular value of the scaled regularity matrix; zero at a fold of the map.
@@ -256,7 +329,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         times: Any,
         body_velocity: Any = None,
         momentum: Any = None,
-        rtol: float = 1e-10,
+        rtol: float | None = None,
         atol: float = 1e-12,
     ) -> "CoordinateOrbit":
         r"""Solve the continuous Lagrange-d'Alembert equations.
@@ -273,8 +346,8 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             times: The times of the states, at least one, increasing or decreasing; the start is at the first.
             body_velocity: Start with this velocity, which must satisfy the constraint.
             momentum: Start with this momentum; only its action on admissible velocities counts.
-            rtol: Relative error of a step, at least 1e-14.
-            atol: Absolute error of a step.
+            rtol: Relative error of a step, at least 1e-14, which is the default of series; of diffrax 1e-10.
+            atol: Absolute error of a step of diffrax.
 
         Returns:
             The orbit. It has no displacements, and its multipliers are the forces at its times.
@@ -293,22 +366,21 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         starts = {"body_velocity": body_velocity, "momentum": momentum}
         return room("_flow").flow(self, configuration, starts, times, rtol, atol)
 
-    def flowed(
-        self, states: "CoordinateOrbit", times: Float[np.ndarray, "K"], *, rtol: float, atol: float
-    ) -> "CoordinateOrbit":
-        """Return states of a flow carried on, each to a later time of its own; NaN where the solver fails."""
-        return room("_flow").flowed(self, states, times, rtol, atol)
 
-
-def _with_potential(lagrangian: Callable[..., Array], potential: Any) -> Callable[..., Array]:
+def _with_potential(lagrangian: Callable[..., Array], potential: Any, *, last: bool) -> Callable[..., Array]:
+    """Return a Lagrangian less a potential; both may take parameters last."""
     if potential is None:
         return lagrangian
+    if last and takes_time(lagrangian, 3):
+        return lambda q, v, time, p: lagrangian(q, v, time, p) - potential(q, p)
+    if last:
+        return lambda q, v, p: lagrangian(q, v, p) - potential(q, p)
     if takes_time(lagrangian, 2):
         return lambda q, v, time: lagrangian(q, v, time) - potential(q)
     return lambda q, v: lagrangian(q, v) - potential(q)
 
 
-def _motions(given: Any, dimension: int) -> tuple[tuple[int, Callable[[Array], Array]], ...]:
+def _motions(given: Any, dimension: int, last: tuple[Any, ...]) -> tuple[tuple[int, Callable[[Array], Array]], ...]:
     """Return prescribed motions as pairs of index and function, in the order of the coordinates."""
     where = _named("prescribed")
     pairs = sorted(dict(given).items(), key=lambda pair: pair[0])
@@ -316,7 +388,7 @@ def _motions(given: Any, dimension: int) -> tuple[tuple[int, Callable[[Array], A
         if not isinstance(index, int) or not 0 <= index < dimension:
             raise error(where, f"have indices from 0 to {dimension - 1}", shown(index), "Name coordinates by index.")
         with double_precision():
-            check_value(where, motion, (), (jax.ShapeDtypeStruct((), float),), "the time", "the time")
+            check_value(where, motion, (), (jax.ShapeDtypeStruct((), float), *last), "the time", "the time")
     return tuple(pairs)
 
 
@@ -326,7 +398,7 @@ def _force(given: Any, dimension: int) -> Any:
     if (friction := parts.pop("friction", None)) is not None:
         friction.check(dimension)
         matrix, other = friction.matrix, parts.get("function")
-        parts["function"] = lambda time, q, v: (0 if other is None else other(time, q, v)) - matrix @ v
+        parts["function"] = lambda time, q, v, *p: (0 if other is None else other(time, q, v, *p)) - matrix @ v
     if "table" in parts and not isinstance(parts["table"], ForceTable):
         remedy = "Pass a function of time, configuration and velocity, Friction, or one force a step."
         parts["table"] = ForceTable(array(_named("force"), parts["table"], (None, dimension), remedy))

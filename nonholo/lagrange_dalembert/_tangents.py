@@ -72,7 +72,11 @@ def tangent_map(orbit: Any) -> Float[np.ndarray, "L d d"]:
         raise error(where, "have a state", "none", "Run longer.")
     x, v = places(system, orbit.configuration, time), orbit.body_velocity
     _, slope, rows = slopes(motion, x, v)
-    moved = slope[:-1] + np.eye(slope.shape[-1]) if orbit.is_discrete else room("_flow").transitions(system, x, v, time)
+    moved = (
+        slope[:-1] + np.eye(slope.shape[-1])
+        if orbit.is_discrete
+        else room("_integration").transitions(system, x, v, time)
+    )
     matters = np.r_[:n, n + system.is_driven : slope.shape[-1]]  # all but the time
     bases = np.linalg.svd(rows[..., matters])[2][:, rows.shape[1] :].swapaxes(1, 2)
     return bases[1:].swapaxes(1, 2) @ moved[:, matters][:, :, matters] @ bases[:-1]

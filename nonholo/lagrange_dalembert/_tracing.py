@@ -20,6 +20,8 @@ def traced_shape(where: str, function: Any, arguments: tuple[Any, ...], of: str)
     """Return the shape of a function's value; `of` says in words what it is called with."""
     if not callable(function):
         raise error(where, "be a function", shown(function), "Pass a function of jax.numpy arrays.")
+    if arguments and isinstance(arguments[-1], dict):
+        _check_parameters(where, function, len(arguments))
     traced = _traced(where, lambda *x: _array(function(*x)), arguments, of)
     if any(getattr(constant, "dtype", None) == jnp.float32 for constant in traced.consts):
         remedy = "Keep parameters as Python numbers or NumPy arrays, not as jax.numpy arrays made outside."
@@ -29,6 +31,13 @@ def traced_shape(where: str, function: Any, arguments: tuple[Any, ...], of: str)
         got = "complex numbers" if kind == "c" else "an integer"
         raise error(where, "return real numbers that it computes from its arguments", got, "Return a smooth formula.")
     return shape
+
+
+def _check_parameters(where: str, function: Callable[..., Any], count: int) -> None:
+    """Refuse a function that does not take the parameters of its system, last."""
+    if not _binds(function, count):
+        got, remedy = f"{inspect.signature(function)}", f"Let it take {count} arguments, the last a dict of parameters."
+        raise error(where, "take the parameters of the system as its last argument", got, remedy)
 
 
 def _traced(where: str, function: Callable[..., Any], arguments: tuple[Any, ...], of: str) -> Any:
@@ -118,23 +127,24 @@ class TwoPoint:
     function: Callable[[Array, Array], Array]
     is_of_one_step: ClassVar[bool] = True
 
-    def __call__(self, q: Array, q_next: Array, time_step: Array) -> Array:
+    def __call__(self, q: Array, q_next: Array, time_step: Array, *parameters: Any) -> Array:
         """Return the value, whatever the time step."""
         del time_step
-        return self.function(q, q_next)
+        return self.function(q, q_next, *parameters)
 
 
-def with_time_step(function: Any) -> Any:
-    """Return a function of (q, q_next, time_step): itself, or one of two arguments wrapped."""
-    if not callable(function):
-        return function
+def with_time_step(function: Any, others: int) -> Any:
+    """Return a function of (q, q_next, time_step) and others: itself, or one without the time step wrapped."""
+    is_shorter = callable(function) and _binds(function, 2 + others) and not _binds(function, 3 + others)
+    return TwoPoint(function) if is_shorter else function
+
+
+def _binds(function: Callable[..., Any], count: int) -> bool:
+    """Tell whether a function takes this many arguments; a builtin need not tell, and takes all."""
     try:
-        signature = inspect.signature(function)
-        signature.bind(0, 0)
-    except (TypeError, ValueError):  # not of two arguments, or a builtin that does not tell
-        return function
-    try:
-        signature.bind(0, 0, 0)
+        inspect.signature(function).bind(*range(count))
     except TypeError:
-        return TwoPoint(function)
-    return function
+        return False
+    except ValueError:
+        return True
+    return True

@@ -16,9 +16,13 @@ with needs("jax", "nonholo.examples"):
     from nonholo.literature._rolling_disk import rolling_disk
     from nonholo.literature._sleigh_in_a_well import sleigh_in_a_well
     from nonholo.literature._snakeboard import snakeboard
+    from nonholo.literature.rolling import ball_on_turntable, rattleback, tilting_disk
+    from nonholo.literature.vehicles import bicycle, snake, trailers
 
 __all__ = [
     "Example",
+    "ball_on_turntable",
+    "bicycle",
     "chaotic_quartic_oscillator",
     "chaplygin_ball",
     "driven_sleigh",
@@ -27,9 +31,13 @@ __all__ = [
     "knife_edge_on_incline",
     "non_reversible",
     "particle",
+    "rattleback",
     "roller_racer",
     "rolling_disk",
     "sleigh_in_a_well",
+    "snake",
     "snakeboard",
+    "tilting_disk",
+    "trailers",
     "two_wheeled_robot",
 ]

@@ -9,17 +9,18 @@ import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.checks import array, scale
 from nonholo.base.kept import Keeper
+from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.discrete import discretize
 from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, LagrangeDAlembert
 from nonholo.simulation import flow, simulate
 from nonholo.systems import AbstractSystem
-
-_STEP, _TIMES = 0.05, tuple(np.linspace(0.0, 20.0, 401))
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -35,6 +36,8 @@ class Example(Keeper):
         conserved: Functions (configuration, velocity) -> number, constant along the continuous motion. On a discrete
             orbit the velocity is that of a step: take the middle of the step, configuration + displacement / 2.
         exact: The configurations at given times, (K,) -> (K, n), from this start; None where no formula is known.
+        time_step: A step that resolves the motion, of `simulate` by default.
+        steps: How many of them show it, by default; the flow is as long.
 
     Example:
         >>> nh.examples.particle().coordinates
@@ -48,17 +51,19 @@ class Example(Keeper):
     facts: tuple[str, ...]
     conserved: Mapping[str, Callable[[Array, Array], Array]]
     exact: Callable[[Array], Array] | None = None
+    time_step: float = 0.05
+    steps: int = 400
 
     @property
     def coordinates(self) -> tuple[str, ...]:
         """Names of the coordinates; on a group ("pose",)."""
         return getattr(self.system, "coordinates", ()) or ("pose",)
 
-    def discretize(self, time_step: float = _STEP) -> Any:
+    def discretize(self, time_step: float | None = None) -> Any:
         """Return the discretized system, `nh.discretize(example.system, time_step)`."""
-        return discretize(self.system, time_step)
+        return discretize(self.system, self.time_step if time_step is None else time_step)
 
-    def simulate(self, *, steps: int = 400, time_step: float = _STEP, **options: Any) -> Any:
+    def simulate(self, *, steps: int | None = None, time_step: float | None = None, **options: Any) -> Any:
         """Run the discrete map from the start of the example; options are those of `nh.simulate`.
 
         Example:
@@ -66,10 +71,12 @@ class Example(Keeper):
             >>> len(orbit), str(orbit.outcome)
             (101, 'successful')
         """
+        steps = self.steps if steps is None else steps
         return simulate(self.discretize(time_step), **(self._start | options), steps=steps)
 
-    def flow(self, *, times: Any = _TIMES, **options: Any) -> Any:
+    def flow(self, *, times: Any = None, **options: Any) -> Any:
         """Solve for the continuous motion from the start of the example; options are those of `nh.flow`."""
+        times = self.time_step * self.steps * np.linspace(0.0, 1.0, 401) if times is None else times
         return flow(self.system, **(self._start | options), times=times)
 
     def explore(self) -> Any:
@@ -137,6 +144,27 @@ def rate(index: int) -> Callable[[Array, Array], Array]:
         return v[..., index]
 
     return component
+
+
+def of_states(function: Callable[[Array, Array], Array]) -> Callable[[Array, Array], Array]:
+    """Return a function of JAX of one configuration and velocity as one of many, in double precision."""
+    many = jax.jit(jnp.vectorize(function, signature="(n),(m)->()"))
+
+    def values(q: Array, v: Array) -> Array:
+        with double_precision():
+            return np.asarray(many(q, v))
+
+    return values
+
+
+def energy_of(lagrangian: Callable[[Array, Array], Array]) -> Callable[[Array, Array], Array]:
+    r"""Return the energy $v\cdot\partial L/\partial v - L$ of many states."""
+
+    def energy(q: Array, v: Array) -> Array:
+        value, along = jax.jvp(lambda u: lagrangian(q, u), (v,), (v,))
+        return along - value
+
+    return of_states(energy)
 
 
 def positives(owner: str, **values: Any) -> list[float]:

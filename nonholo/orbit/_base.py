@@ -9,7 +9,7 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 
-from nonholo.base.checks import LARGEST, error, is_moderate, selection
+from nonholo.base.checks import LARGEST, array, error, is_moderate, selection, shape_of
 from nonholo.base.html import table
 from nonholo.base.kept import Keeper, remembered
 from nonholo.base.limits import within_memory
@@ -34,6 +34,17 @@ def _bounds(kind: Any) -> tuple[tuple[str, float], ...]:
     """Return the columns of a class of orbits that have to be finite, and the largest numbers they may hold."""
     names = (field.name for field in dataclasses.fields(kind) if field.name in _COLUMNS)
     return tuple((name, LARGEST if "momentum" in name else np.inf) for name in names)
+
+
+def times_within(span: tuple[float, float], times: Any) -> tuple[Float[np.ndarray, "K"], Int[np.ndarray, "K"]]:
+    """Return checked times of a span, and the order in which the motion comes to them."""
+    where, (first, last) = "Orbit.at(times=...)", span
+    time = array(where, times, (None,) if shape_of(times) else (), "Pass times.").reshape(-1)
+    outside = ~((time >= min(span)) & (time <= max(span)))
+    if outside.any():
+        got = f"{time[np.argmax(outside)]:.17g}"
+        raise error(where, f"lie between {first:.17g} and {last:.17g}", got, "Ask the flow for later times.")
+    return time, np.argsort(time if last >= first else -time, kind="stable")
 
 
 class AbstractOrbit(Keeper, abc.ABC):

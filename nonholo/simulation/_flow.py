@@ -86,7 +86,8 @@ def flow(
     and more; else DOP853, with `rtol` of 1e-13 and more. These two also give the states between.
 
     For a `LagrangeDAlembert` these are the equations of its `flow`, with q in place of the pose: it starts at a
-    `configuration`, and takes neither `restricted_velocity` nor `method`.
+    `configuration`, and takes neither `restricted_velocity` nor `method`. Smooth formulas have Taylor series too; with
+    kinks, as an absolute value has, diffrax solves them.
 
     References: [fedorov-zenkov-2004], sections 2, 4 and 5; [jorba-zou-2005] for order and step of the series.
 
@@ -106,9 +107,8 @@ def flow(
             coefficient, and nothing of size n x n is made.
         events: `Event`s, or functions of an orbit, whose changes of sign from one requested time or step of the series
             to the next are found, and located on the solution; see `Orbit.events`. Two of them between two such times
-            are not seen: ask for more times. A stopping event ends the orbit with the last requested time before it. In
-            coordinates only the requested times are compared, and each guess is another solve from the one before. One
-            with a `reset` changes the motion: the flow begins again at each `Impact`.
+            are not seen: ask for more times. A stopping event ends the orbit with the last requested time before it.
+            One with a `reset` changes the motion: the flow begins again at each `Impact`.
         progress: Show on standard error how far the time has come.
 
     Returns:
@@ -134,7 +134,7 @@ def flow(
         refused = {"restricted_velocity": restricted_velocity, "method": method}
         no_pose = {"reconstruct": (reconstruct, True)}
         refuse_in_coordinates("flow", **{name: (value, None) for name, value in refused.items()}, **no_pose)
-        errors = {"rtol": 1e-10 if rtol is None else rtol, "atol": atol}
+        errors = {"rtol": rtol, "atol": atol}
         with telling("time", progress):
             return flow_in_coordinates(system, events, configuration=configuration, times=times, **starts, **errors)
     as_system("flow(system=...)", system)

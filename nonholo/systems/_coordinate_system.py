@@ -2,7 +2,9 @@
 
 import abc
 import importlib
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar
 
 from nonholo.base.checks import error
 from nonholo.base.kept import Keeper
@@ -37,6 +39,7 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
 
     Attributes:
         described: What stores say of it in place of its fields: a name and parameters.
+        parameters: Numbers that its functions take.
     """
 
     leaves: ClassVar[tuple[str, ...]] = ()
@@ -44,6 +47,23 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
     """Whether it has its Lagrangian: one from a store need not."""
 
     described: tuple[str, dict[str, Any]] | None = None
+    parameters: Mapping[str, Any] = MappingProxyType({})
+
+    @property
+    def family(self) -> Self:
+        """What is the same for all numbers of the parameters: one system for them all."""
+        return self
+
+    def bound(self, *numbers: Any) -> Self:
+        """Return the system whose functions have numbers of its parameters within."""
+        del numbers
+        return self
+
+    def with_parameters(self, **numbers: Any) -> Self:
+        """Return the same system with other numbers of its parameters; refused where there are none."""
+        del numbers
+        remedy = "Pass parameters= to a LagrangeDAlembert."
+        raise error("with_parameters(...)", "be asked of a system that has parameters", type(self).__name__, remedy)
 
     @property
     def has_parts(self) -> bool:
@@ -72,7 +92,7 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
         times: Any,
         body_velocity: Any = None,
         momentum: Any = None,
-        rtol: float = 1e-10,
+        rtol: float | None = None,
         atol: float = 1e-12,
     ) -> OrbitT:
         """Solve the continuous equations."""

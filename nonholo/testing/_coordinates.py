@@ -48,7 +48,7 @@ class CoordinateSamples:
         self.q = rng.normal(size=n) if configuration is None else configuration
         self._drawn = rng.normal(size=n)
         if configuration is None:
-            for index, motion in system.prescribed:
+            for index, motion in system.plain.prescribed:
                 self.q[index] = self._value(motion, 0.0)
 
     def _value(self, function: Callable[..., Any], *arguments: Any) -> np.ndarray:
@@ -59,11 +59,11 @@ class CoordinateSamples:
 
     def lagrangian(self, q: np.ndarray, v: np.ndarray, t: float) -> np.ndarray:
         """Return L."""
-        return self._value(self.system.lagrangian, q, v, *([t] if self.system.takes_time("lagrangian") else []))
+        return self._value(self.system.plain.lagrangian, q, v, *([t] if self.system.takes_time("lagrangian") else []))
 
     def forms(self, q: np.ndarray, t: float) -> Float[np.ndarray, "s n"]:
         """Return the rows of the constraint, those of prescribed coordinates last."""
-        system, fixed = self.system, [i for i, _ in self.system.prescribed]
+        system, fixed = self.system.plain, [i for i, _ in self.system.prescribed]
         rows = np.zeros((0, system.dimension))
         if system.constraint_forms is not None:
             rows = self._value(system.constraint_forms, q, *([t] if system.takes_time("constraint_forms") else []))
@@ -72,7 +72,7 @@ class CoordinateSamples:
     def force(self, t: float, q: np.ndarray, v: np.ndarray, step: int) -> np.ndarray:
         """Return the force, of a table that of a step."""
         row = np.zeros_like(v) if self.system.table is None else self.system.table.acting(np.array([step]))[0]
-        return row if self.system.applied is None else row + self._value(self.system.applied, t, q, v)
+        return row if self.system.applied is None else row + self._value(self.system.plain.applied, t, q, v)
 
     def gradient(self, function: Callable[[np.ndarray], Any], at: np.ndarray) -> Float[np.ndarray, "n"]:
         """Return the derivatives of a function of n numbers."""
@@ -186,7 +186,7 @@ def _discrete_constraint(s: CoordinateSamples) -> float:
 @measures(MAP, "prescribed", "prescribed coordinates are where they have to be", 1e-12)
 def _prescribed(s: CoordinateSamples) -> float:
     need(s.system.prescribed, "nothing is prescribed")
-    pairs = ((s.orbit.configuration[:, i], motion) for i, motion in s.system.prescribed)
+    pairs = ((s.orbit.configuration[:, i], motion) for i, motion in s.system.plain.prescribed)
     return max(gap(rows, [s._value(motion, t) for t in s.orbit.time]) for rows, motion in pairs)
 
 

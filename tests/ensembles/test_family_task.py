@@ -11,6 +11,12 @@ import nonholo as nh
 from nonholo.ensembles import functions_of
 
 GRID = nh.Grid({"a": [0.2, 0.6], "speed": [0.5, 1.0, 2.0]})
+SPRING = nh.LagrangeDAlembert(
+    lambda q, v, p: (p["mass"] * v @ v - p["stiffness"] * q @ q) / 2,
+    None,
+    dimension=1,
+    parameters={"mass": 1.0, "stiffness": 1.0},
+)
 
 
 def sleigh(*, a: float = 0.5, speed: float = 1.0, velocity: tuple[float, float] = (0.3, 0.0)) -> types.SimpleNamespace:
@@ -120,3 +126,27 @@ def test_bad_designs_are_refused(axis: str, words: str, tmp_path: Path) -> None:
     """Names that the family does not have, components beyond the last."""
     with pytest.raises(ValueError, match=words):
         nh.sweep(nh.FamilyTask(sleigh, 0.1, 3), nh.Grid({axis: [1.0]}), tmp_path / "bad.zarr")
+
+
+def springs(*, stiffness: float = 1.0, mass: float = 1.0) -> types.SimpleNamespace:
+    """Return one system in coordinates for all numbers."""
+    system = SPRING.with_parameters(stiffness=stiffness, mass=mass)
+    return types.SimpleNamespace(system=system, configuration=np.ones(1), body_velocity=np.zeros(1))
+
+
+def test_systems_that_differ_by_parameters_run_as_one_ensemble(tmp_path: Path) -> None:
+    """Each member has the bits of its run alone, and the reduction sees all of them at once."""
+    sizes: list[int] = []
+
+    def counted(batch: nh.Ensemble) -> dict:
+        sizes.append(len(batch))
+        return {"weight": batch.parameters["mass"]}
+
+    task = nh.FamilyTask(springs, 0.1, 20, reductions=["final_state", counted])
+    found = nh.sweep(task, nh.Grid({"mass": [0.5, 2.0], "stiffness": [1.0, 2.0, 3.0]}), tmp_path / "springs.zarr")
+    assert max(sizes) == 6
+    for mass in (0.5, 2.0):
+        alone = nh.discretize(SPRING.with_parameters(mass=mass, stiffness=3.0), 0.1)
+        orbit = nh.simulate(alone, configuration=[1.0], body_velocity=[0.0], steps=20)
+        member = found.sel(mass=mass, stiffness=3.0)
+        assert np.array_equal(member.final_configuration.values, orbit.configuration[-1])

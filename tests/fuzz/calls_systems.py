@@ -223,6 +223,14 @@ def _examples() -> list[Call]:
     racer = {"mass": positive(1.0), "inertia": positive(0.2), "joint": positive(1.0), "amplitude": number(0.5)}
     driven = {**common, "moving_mass": positive(0.3), "ahead": number(-0.3), "frequency": positive(1.0)}
     return [
+        call(
+            "examples.ball_on_turntable", made.ball_on_turntable, table_rate=number(1.0), velocity=velocity, slow=True
+        ),
+        call("examples.bicycle", made.bicycle, wheelbase=positive(1.0), speed=number(4.6), place=place, slow=True),
+        call("examples.rattleback", made.rattleback, center=number(1.0), tilt=array([0.01, 0.02]), slow=True),
+        call("examples.snake", made.snake, half_length=positive(0.5), place=place, joint_rates=velocity, slow=True),
+        call("examples.tilting_disk", made.tilting_disk, gravity=positive(1.0), turning=number(0.5), slow=True),
+        call("examples.trailers", made.trailers, hitches=array([1.0, 0.5], "any"), speed=number(0.5), slow=True),
         call("examples.chaplygin_ball", made.chaplygin_ball, mass=positive(1.0), radius=positive(1.0), slow=True),
         call("examples.heavy_suslov_top", made.heavy_suslov_top, velocity=array([0.6, 0.4]), slow=True),
         call("examples.sleigh_in_a_well", made.sleigh_in_a_well, **common, stiffness=number(0.3), slow=True),

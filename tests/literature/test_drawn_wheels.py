@@ -12,13 +12,17 @@ from nonholo.literature import Example
 from nonholo.plotting.animation import _in_plane
 
 ROLLING = {
+    "bicycle": [3, 4],
     "driven_sleigh": [1],
     "kinematic_car": [2, 3, 4, 5],
     "knife_edge_on_incline": [0],
     "roller_racer": [2, 3, 6, 7],
     "rolling_disk": [0],
     "sleigh_in_a_well": [-1],
+    "snake": [2, 3, 6, 7, 10, 11],
     "snakeboard": [3, 4, 6, 7],
+    "tilting_disk": [1],
+    "trailers": [2, 3, 7, 8, 12, 13, 17, 18],
     "two_wheeled_robot": [1, 2],
 }
 """Which parts of the outline of an example are on the ground: blades, and wheels that roll along their first edge."""
@@ -65,7 +69,7 @@ def on_group(name: str, g: Array, v: Array) -> Callable[[float], list[tuple[Arra
 def test_every_outline_is_tested() -> None:
     """The table above names every example that pictures draw as a body on the ground."""
     drawn = {name for name in set(nh.examples.__all__) - {"Example"} if _is_drawn(ready(name).system)}
-    assert drawn == set(ROLLING)
+    assert drawn - {"rattleback"} == set(ROLLING)  # which has no wheel
 
 
 def _is_drawn(system: object) -> bool:

@@ -52,8 +52,14 @@ def test_every_public_example_is_tested() -> None:
         "roller_racer",
         "chaplygin_ball",
         "heavy_suslov_top",
-        "sleigh_in_a_well",
-    }  # test_driven.py
+        "sleigh_in_a_well",  # test_driven.py
+        "ball_on_turntable",
+        "bicycle",
+        "rattleback",
+        "snake",
+        "tilting_disk",
+        "trailers",  # test_bicycle.py, test_rolling_bodies.py
+    }
     assert set(EXAMPLES) == set(nh.examples.__all__) - {"Example"} - by_hand
 
 

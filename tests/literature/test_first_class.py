@@ -9,9 +9,10 @@ import nonholo as nh
 from nonholo.literature import Example
 
 NAMES = sorted(set(nh.examples.__all__) - {"Example"})
-DRIVEN = {"driven_sleigh", "roller_racer"}  # their velocities are not to be scaled: some are prescribed
+DRIVEN = {"driven_sleigh": 0, "roller_racer": 0, "ball_on_turntable": 2}
+"""Their velocities are not to be scaled: some are prescribed. They are moved along a coordinate without influence."""
 BODIES = {"heavy_suslov_top", "sleigh_in_a_well"}  # on groups, under potentials
-STEP, STEPS, MEMBERS = 0.1, 30, 1000
+STEPS, MEMBERS = 30, 1000
 ROWS = ("time", "configuration", "displacement", "body_velocity", "momentum", "energy")
 
 
@@ -20,7 +21,7 @@ ROWS = ("time", "configuration", "displacement", "body_velocity", "momentum", "e
 def test_a_ready_system_is_first_class(name: str, tmp_path) -> None:  # noqa: ANN001
     """Its orbit is drawn and written, its crossings are steps of the map, members are runs alone, a sweep has both."""
     ready: Example = getattr(nh.examples, name)()
-    discrete = nh.discretize(ready.system, STEP)
+    discrete = ready.discretize(2 * ready.time_step)
     start = {"configuration": ready.configuration, "body_velocity": ready.body_velocity}
     orbit = nh.simulate(discrete, **start, steps=STEPS)
     _drawn_and_written(orbit, tmp_path)
@@ -54,7 +55,7 @@ def _crosses_by_steps_of_the_map(orbit, discrete, start, name: str) -> None:  # 
     assert np.abs(event.function(found.states)).max() <= 4 * np.spacing(np.abs(flat[:, place]).max())
     assert len(nh.plot.section(found, lambda states: states.time, lambda states: states.energy).points) == len(found)
     if name not in DRIVEN:  # whose runs begin at time 0
-        part = dataclasses.replace(discrete, time_step=found.fraction[at] * STEP)
+        part = dataclasses.replace(discrete, time_step=found.fraction[at] * float(discrete.time_step))
         momentum = (orbit.restricted_momentum if name in BODIES else orbit.momentum)[17]
         reached = nh.simulate(part, configuration=orbit.configuration[17], momentum=momentum, steps=1)
         # starts from a momentum solve the same equations; their roots are exact to 1e-10 squared
@@ -64,7 +65,7 @@ def _crosses_by_steps_of_the_map(orbit, discrete, start, name: str) -> None:  # 
 def _members_are_runs_alone(name: str, discrete, start: dict) -> None:  # noqa: ANN001
     along = np.linspace(0.5, 1.5, MEMBERS)
     if name in DRIVEN:
-        rows = start | {"configuration": start["configuration"] + along[:, None] * np.eye(4)[0]}
+        rows = start | {"configuration": start["configuration"] + along[:, None] * np.eye(4)[DRIVEN[name]]}
     else:
         rows = start | {"body_velocity": along[:, None] * start["body_velocity"]}
     if name in BODIES:  # whose members start at the identity
@@ -84,9 +85,10 @@ def _members_are_runs_alone(name: str, discrete, start: dict) -> None:  # noqa: 
 
 
 def _is_swept(name: str, discrete, start: dict, folder) -> None:  # noqa: ANN001
-    task = nh.FamilyTask(getattr(nh.examples, name), time_step=STEP, steps=4)
-    found = nh.sweep(task, nh.Grid({"time_step": [STEP, STEP / 2]}), folder / "steps.zarr")
+    step = float(discrete.time_step)
+    task = nh.FamilyTask(getattr(nh.examples, name), time_step=step, steps=4)
+    found = nh.sweep(task, nh.Grid({"time_step": [step, step / 2]}), folder / "steps.zarr")
     end = nh.simulate(discrete, **start, steps=4)
     assert np.abs(found.final_configuration.values[0] - end.configuration[-1]).max() <= 1e-14
-    assert found.final_time.values.tolist() == [4 * STEP, 2 * STEP]
+    assert found.final_time.values.tolist() == [4 * step, 2 * step]
     assert nh.resume(folder / "steps.zarr").equals(found)  # by the name of the ready system, which is data

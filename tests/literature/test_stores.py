@@ -37,7 +37,7 @@ def ready(name: str) -> Example:
 
 def discrete(name: str = "particle") -> Any:
     """Return its map."""
-    return nh.discretize(ready(name).system, 0.1)
+    return ready(name).discretize(2 * ready(name).time_step)
 
 
 def own() -> Any:

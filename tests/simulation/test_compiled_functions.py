@@ -41,7 +41,8 @@ def _push(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
 
 def _well(g: np.ndarray) -> float:
     """A potential."""
-    return 0.5 * (g[0, 1] - 0.3) ** 2 + math.sin(g[1, 0]) + 0.2 * g[1, 2]
+    off = g[0, 1] - 0.3
+    return 0.5 * off * off + math.sin(g[1, 0]) + 0.2 * g[1, 2]
 
 
 DRIVE, PUSH, WELL = numba.njit(_drive), numba.njit(_push), numba.njit(_well)

@@ -178,7 +178,7 @@ REFUSED = {
     "lengths": ({"configuration": np.zeros((2, 2)), "body_velocity": np.zeros((3, 2))}, "Got 2 of configuration, 3 of"),
     "shape": ({"body_velocity": np.zeros((3, 4))}, r"must have shape \(any, 2\)"),
     "two starts": ({"body_velocity": np.zeros((3, 2)), "momentum": np.zeros((3, 2))}, "exactly one of"),
-    "parameters": ({"parameters": {"mass": [1.0, 2.0]}, "body_velocity": (1, 0)}, "whose constants cannot be varied"),
+    "parameters": ({"parameters": {"mass": [1.0, 2.0]}, "body_velocity": (1, 0)}, "coordinates that has no parameters"),
     "member": ({"body_velocity": [(1.0, 0.0), (np.inf, 0.0)]}, "must be finite"),
     "times": ({"body_velocity": [(1.0, 0.0)], "times": (0.0, 1.0)}, r"ensemble\(times=...\)` must keep its default"),
     "rows of bodies": ({"restricted_velocity": [(1.0, 0.0)]}, r"ensemble\(restricted_velocity=...\)` must keep"),

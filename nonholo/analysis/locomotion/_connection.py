@@ -211,7 +211,7 @@ def local_connection(system: Any, *, pose: tuple[str, str, str] = ("x", "y", "th
     if not shape:
         raise error(where, "have a shape beside its pose", shown(names), "A rigid body has no connection.")
     x, y, theta = (names.index(name) for name in pose)
-    return _connection(_door().Planar(system, (x, y, theta), shape), system, tuple(names[i] for i in shape))
+    return _connection(_door().Planar(system.plain, (x, y, theta), shape), system, tuple(names[i] for i in shape))
 
 
 def _connection(reduction: Any, system: Any, shape: tuple[str, ...]) -> LocalConnection:

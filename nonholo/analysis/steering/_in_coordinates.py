@@ -114,7 +114,7 @@ def coordinate_problem(
 
 def _nodes(discrete: CoordinateDiscretization, way: Way, last: np.ndarray, velocity: np.ndarray | None) -> Any:
     """Return the unknowns of steps to a place, where the system is to have a velocity or none."""
-    system, h = discrete.system, np.float64(discrete.time_step)
+    system, h = discrete.system.plain, np.float64(discrete.time_step)
     if velocity is None:
         return CoordinateNodes(system, h, way.outline, np.zeros((0, system.dimension)), np.zeros(system.dimension))
     directions = np.linalg.svd(in_double(equations.forms, system, last))[2][system.constraints :]

@@ -29,12 +29,13 @@ def solve_series(
     times: Float[np.ndarray, "K"],
     tolerance: float,
     most: float = math.inf,
+    expansion: int = 0,
 ) -> tuple[Float[np.ndarray, "reached size"], Float[np.ndarray, "steps 2 state"]]:
     """Return the states at the times, which rise or fall, up to the first that cannot be reached, and the nodes.
 
     Nodes are the beginnings of steps: the state and its time, above what rounding took from them. When they fill much
     memory every second one is left out. The solve ends early if at the rate of the steps so far it needs more than
-    `most` of them.
+    `most` of them. The coefficients are written by the code at an address: by default that of the structure.
     """
     rows = np.empty((len(times), len(start)))
     rows[0] = start
@@ -43,7 +44,7 @@ def solve_series(
     longest = max(16, min(_STEPS, _NUMBERS // (8 * state.size)))
     block, nodes = min(_FIRST, longest), []
     reached, going, stride, taken, kept = 1, True, 1, 0, 0
-    room, expansion = kept_room(f, order_for(tolerance)), expansion_of(f, ONE)
+    room, expansion = kept_room(f, order_for(tolerance)), expansion or expansion_of(f, ONE)
     while going and reached < len(times):
         passed, block = np.empty((block, *state.shape)), min(8 * block, longest)
         reached, steps, going = advance(f, times, tolerance, reached, state, rows, passed, room, expansion)
@@ -65,10 +66,12 @@ def revisit_series(
     times: Float[np.ndarray, "K"],
     end: float,
     tolerance: float,
+    expansion: int = 0,
 ) -> Float[np.ndarray, "K size"]:
     """Return the states at times in the order of the nodes, the bits as if they had been requested with `end`."""
     rows, room = np.empty((len(times), len(f.blocks))), kept_room(f, order_for(tolerance))
-    revisit(f, nodes, times, np.array([end]), tolerance, nodes[0].copy(), rows, room, expansion_of(f, ONE))
+    expansion = expansion or expansion_of(f, ONE)
+    revisit(f, nodes, times, np.array([end]), tolerance, nodes[0].copy(), rows, room, expansion)
     return rows
 
 

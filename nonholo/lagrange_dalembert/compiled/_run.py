@@ -92,29 +92,33 @@ def program(function: Callable[..., Any], *shapes: tuple[int, ...], varying: int
 
 
 @functools.lru_cache(maxsize=64)  # a sweep makes a system for each member
-def programs(system: Any, place: tuple[int, ...], n: int, *, at_node: bool = False) -> Programs | None:
-    """Return the compiled equations of a step of a system, with places of a shape and n velocities.
+def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = False) -> Programs | None:
+    """Return the compiled equations of a step of a family of systems, with places of a shape and n velocities.
 
     Or, at a node, those of the velocity that belongs to a momentum: then nothing moves on arrival.
 
     Returns:
         None if JAX must solve them.
     """
-    equations, s = equations_of(system), system.constraints
+    equations, s = equations_of(family), family.constraints
     matrix_of = _newton.of_node if at_node else _newton.of_step
 
-    def arrive(x: Array, v: Array, h: Array) -> tuple[Array, Array]:
+    def arrive(x: Array, v: Array, h: Array, *numbers: Array) -> tuple[Array, Array]:
+        system = family.bound(*numbers)
         leaving, arriving = equations.momenta(system, x, v, h)
         return (x, leaving) if at_node else (equations.ahead(system, x, v, h), arriving)
 
-    def correct(x: Array, p: Array, doubt: Array, near: Array, h: Array, v: Array, multipliers: Array) -> Any:
+    def correct(x: Array, p: Array, doubt: Array, near: Array, h: Array, *rest: Array) -> Any:
+        *numbers, v, multipliers = rest
+        system = family.bound(*numbers)
         matrix_at, rows = matrix_of(system, x, near, h), equations.forms(system, x)
         matrix, missed, units, size = _newton.equations(matrix_at, rows, p, v, multipliers, jnp.zeros(n + s))
         return matrix, missed, units.velocity, units.forms, size, doubt
 
     try:
-        first = program(arrive, place, (n,), ())
-        whole = program(correct, place, (n,), (), (n,), (), (n,), (s,), varying=2)
+        own = [np.shape(number) for number in family.parameters.values()]
+        first = program(arrive, place, (n,), (), *own)
+        whole = program(correct, place, (n,), (), (n,), (), *own, (n,), (s,), varying=2)
     except UntranslatableError:
         return None
     *results, doubt = whole.results
@@ -126,10 +130,15 @@ def programs(system: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
 
 
 @functools.lru_cache(maxsize=64)  # a sweep makes a system for each member
-def values(function: Callable[..., Any], system: Any, *shapes: tuple[int, ...]) -> Values | None:
-    """Return the compiled function(system, ...) of arrays with these shapes; None if JAX must do it."""
+def values(function: Callable[..., Any], family: Any, *shapes: tuple[int, ...]) -> Values | None:
+    """Return the compiled function(system, ...) of parameters and arrays with these shapes; None if JAX must do it."""
+    count = len(family.parameters)
+
+    def of_numbers(*arguments: Array) -> Any:
+        return function(family.bound(*arguments[:count]), *arguments[count:])
+
     try:
-        whole = program(functools.partial(function, system), *shapes)
+        whole = program(of_numbers, *shapes)
     except UntranslatableError:
         return None
     return Values(machine_code(whole.inputs, [*whole.results, whole.doubt]), whole.shapes)
@@ -183,11 +192,11 @@ def _write(builder: ir.IRBuilder, arrays: Any, inputs: list[Scalar], results: li
 
 def _body(system: Any, h: Any, q: Any, v: Any, *, at_node: bool = False) -> CoordinateBody | None:
     """Return a system at a time step, with room for its numbers; None if JAX must solve its equations."""
-    code, place, n = programs(system, np.shape(q), len(v), at_node=at_node), np.size(q), len(v)
+    code, place, n = programs(system.family, np.shape(q), len(v), at_node=at_node), np.size(q), len(v)
     if code is None:
         return None
-    size = n + system.constraints
-    departure, arrival = np.full(place + n + 1, float(h)), np.full(place + 2 * n + 2, float(h))
+    size, fixed = n + system.constraints, [np.ravel(x) for x in (float(h), *system.parameters.values())]
+    departure, arrival = (np.concatenate([np.zeros(room), *fixed]) for room in (place + n, place + 2 * n + 1))
     given, equations = np.zeros(code.settled + size), np.zeros(size * size + 2 * size + 2)
     matrix, missed, units, _ = np.split(equations, np.cumsum([size * size, size, size]))
     parts = given[code.settled :], equations, matrix.reshape(size, size), missed, units, np.zeros((size, size + 1))
@@ -255,17 +264,24 @@ def decoded(function: Callable[..., Any], system: Any, h: Any, q: np.ndarray, v:
     nodes = _nodes(system, h, q, v) if system.is_driven and len(q) else ()
     if nodes is None:
         return None
-    columns = [np.full(len(q), float(h)), q, v, *nodes]
-    code = values(function, system, *(column.shape[1:] for column in columns))
+    shared = [np.broadcast_to(x, (len(q), *np.shape(x))) for x in (*system.parameters.values(), float(h))]
+    columns = [*shared, q, v, *nodes]
+    code = values(function, system.family, *(column.shape[1:] for column in columns))
     if code is None:
         return None
-    sizes = [math.prod(shape) for shape in code.shapes]
-    table = np.empty((len(q), sum(sizes) + 1))
-    each_row(code.function, np.column_stack([x.reshape(len(q), math.prod(x.shape[1:])) for x in columns]), table)
+    return evaluated(code, *columns)
+
+
+def evaluated(code: Values, *columns: np.ndarray) -> list[Any] | None:
+    """Return the values of each row of columns; None where they may not be trusted."""
+    sizes, count = [math.prod(shape) for shape in code.shapes], len(columns[0])
+    table = np.empty((count, sum(sizes) + 1))
+    given = np.column_stack([x.reshape(count, math.prod(x.shape[1:])) for x in columns])
+    each_row(code.function, np.ascontiguousarray(given), table)  # of repeated rows the stack has another layout
     if np.any(table[:, -1] != 0):
         return None
     parts = np.split(table[:, :-1], np.cumsum(sizes)[:-1], axis=1)
-    return [part.reshape(len(q), *shape) for part, shape in zip(parts, code.shapes, strict=True)]
+    return [part.reshape(count, *shape) for part, shape in zip(parts, code.shapes, strict=True)]
 
 
 def _nodes(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray] | None:

@@ -189,7 +189,7 @@ _TABLE: dict[str, Rule] = {
     "is_finite": _numberwise(lambda f, x: f("eq", f("sub", x, x), f.constant(0.0))),
     "sign": _numberwise(_sign),
     "logistic": _numberwise(_logistic),
-    "copy": _numberwise(lambda _f, x: x),
+    **dict.fromkeys(("copy", "stop_gradient"), _numberwise(lambda _f, x: x)),
     "integer_pow": _power,
     "round": _rounded,
     "select_n": _chosen,

@@ -4,11 +4,14 @@ A displacement is described by v with $W = e^{hv}$, not by the matrix, so that t
 log W and continues beyond angles of pi.
 """
 
+import functools
 from typing import Any
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 
+from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._equations import Scaled, bordered
 from nonholo.lagrange_dalembert.on_groups._system import GroupLagrangeDAlembert
@@ -76,7 +79,14 @@ def lagrangian(system: GroupLagrangeDAlembert, w: Array) -> Array:
     r"""Return $l(\omega)$: the given one, or the quadratic form that belongs to l_d."""
     if system.lagrangian is not None:
         return system.lagrangian(w)
-    return w @ kinetic_matrix(system, None, None, jnp.ones(())) @ w / 2
+    return w @ _inertia(system) @ w / 2
+
+
+@functools.lru_cache(maxsize=64)
+def _inertia(system: GroupLagrangeDAlembert) -> Any:
+    """Return the inertia operator of the quadratic form, as numbers."""
+    with jax.ensure_compile_time_eval(), double_precision():
+        return np.asarray(jax.jit(functools.partial(kinetic_matrix, system, None, None))(1.0))
 
 
 def momentum(system: GroupLagrangeDAlembert, _g: Array, w: Array) -> Array:
@@ -121,8 +131,13 @@ def force(system: GroupLagrangeDAlembert, g: Array, w: Array) -> Array:
 
 def acceleration_matrix(system: GroupLagrangeDAlembert, g: Array, w: Array) -> tuple[Array, Scaled]:
     """Return the scaled matrix of the continuous equations."""
-    kinetic, A = jax.hessian(lagrangian, argnums=1)(system, w), forms(system, g)
+    kinetic, A = mass_matrix(system, g, w), forms(system, g)
     return bordered(kinetic, A, A, kinetic)
+
+
+def mass_matrix(system: GroupLagrangeDAlembert, _g: Array, w: Array) -> Array:
+    r"""Return $\partial^2 l/\partial\omega^2$."""
+    return jax.hessian(lagrangian, argnums=1)(system, w)
 
 
 def normalized(system: GroupLagrangeDAlembert, g: Array) -> Array:

@@ -135,7 +135,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
         times: Any,
         body_velocity: Any = None,
         momentum: Any = None,
-        rtol: float = 1e-10,
+        rtol: float | None = None,
         atol: float = 1e-12,
     ) -> "GroupOrbit":
         r"""Solve the continuous equations.
@@ -149,8 +149,8 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
             times: The times of the states, at least one, increasing or decreasing; the start is at the first.
             body_velocity: The first velocity, which must satisfy the constraint.
             momentum: Start with this momentum instead; only its action on admissible velocities counts.
-            rtol: Relative error of a step, at least 1e-14.
-            atol: Absolute error of a step.
+            rtol: Relative error of a step, at least 1e-14, which is the default of series; of diffrax 1e-10.
+            atol: Absolute error of a step of diffrax.
 
         Returns:
             The orbit. It has no displacements, and its multipliers are the forces at its times.
@@ -169,10 +169,6 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
         """
         starts = {"body_velocity": body_velocity, "momentum": momentum}
         return room("_flow").flow(self, configuration, starts, times, rtol, atol)
-
-    def flowed(self, states: "GroupOrbit", times: Float[np.ndarray, "K"], *, rtol: float, atol: float) -> "GroupOrbit":
-        """Return states of a flow carried on, each to a later time of its own; NaN where the solver fails."""
-        return room("_flow").flowed(self, states, times, rtol, atol)
 
 
 def _named(argument: str) -> str:

@@ -18,26 +18,18 @@ def flow_in_coordinates(system: Any, events: Any, **flow: Any) -> Any:
     if events is None:
         return system.flow(**flow)
     refuse_resets("flow", checked_events("flow", events), "those of a system in coordinates")
-    named, errors = checked_events("flow", events), {name: flow[name] for name in ("rtol", "atol")}
+    named = checked_events("flow", events)
     try:
         orbit, failure = system.flow(**flow), None
     except OutcomeError as early:
         orbit, failure = cast(AbstractOrbit, early.orbit), early
-    forward = _direction(orbit)
-
-    def between(states: Any, fractions: Float[np.ndarray, "K"]) -> Any:
-        if not len(states):
-            return states
-        begin = np.searchsorted(forward * orbit.time, forward * states.time)
-        return system.flowed(states, states.time + fractions * np.diff(orbit.time)[begin], **errors)
-
-    found = _searched(orbit, orbit, Watch(named, between))
+    found = flow_with_events(named, orbit, cast(Any, orbit).solution.looks())
     if failure is not None and found.events.stopped_by is None:
         raise OutcomeError(failure.outcome, failure.where, found)
     return found
 
 
-def flow_with_events(events: dict[str, Event], orbit: Orbit, steps: Float[np.ndarray, "steps"]) -> Orbit:
+def flow_with_events(events: dict[str, Event], orbit: Any, steps: Float[np.ndarray, "steps"]) -> Any:
     """Return the states of a flow up to the event that ends it, with what was found.
 
     Args:

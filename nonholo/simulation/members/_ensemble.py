@@ -92,8 +92,8 @@ def ensemble(
             subspace, (M, k). A member whose full momentum is not on it has outcome `off_momentum_locus`.
         save_every: Steps between saved states, the first one included; by default only the last state is kept.
         parameters: Arrays with a leading member axis by name: fields of the system that are numbers or tensors (mass,
-            inertia, a, b, mass_tensor, ...), of a `Forced` one those of the system inside, and "time_step". In
-            coordinates "time_step" alone: compiled functions have their constants within.
+            inertia, a, b, mass_tensor, ...), of a `Forced` one those of the system inside, in coordinates the
+            `parameters` of a `LagrangeDAlembert`, which is compiled once for all members; and "time_step".
         reduce: A function of an `Ensemble`, a block of the members in order, that returns an array or a dictionary of
             arrays with a leading member axis. It is called block by block, so that states are never all in memory.
         branch: Which value of the map a step takes, a name or a function, as in `simulate`.

@@ -11,7 +11,7 @@ from nonholo.base.checks import array, error, shown
 from nonholo.base.kept import Keeper
 from nonholo.base.types import Float
 from nonholo.discrete import discretize
-from nonholo.systems import System, in_coordinates
+from nonholo.systems import AbstractCoordinateSystem, System, in_coordinates
 
 STEP = "time_step"
 _ARGUMENTS = {"given_inertia": "inertia_operator"}  # fields that the constructor calls otherwise
@@ -52,7 +52,7 @@ class Members(Keeper):
             return self.parameters[name]
         if name == STEP:
             return np.array([self.discrete.time_step], dtype=np.float64)
-        return np.asarray(getattr(_inside(self.discrete.system), name))[None]
+        return np.asarray(_numbers(self.discrete)[name])[None]
 
     def of(self, member: int) -> Any:
         """Return the motion of one member."""
@@ -75,8 +75,10 @@ class Members(Keeper):
         """
         if not self.of_system:
             return self.discrete.system
+        if in_coordinates(self.discrete):
+            return None
         system = _inside(self.discrete.system)
-        values = {name: self.values(_ARGUMENTS.get(name, name)) for name in _numbers(system)}
+        values = {name: self.values(_ARGUMENTS.get(name, name)) for name in _leaves(system)}
         return system.stacked(**{name: np.broadcast_to(x, (len(self), *x.shape[1:])) for name, x in values.items()})
 
     @functools.cached_property
@@ -105,29 +107,38 @@ def _inside(system: Any) -> Any:
 
 
 def _rebuilt(system: Any, own: dict[str, Any]) -> Any:
+    if isinstance(system, AbstractCoordinateSystem):
+        return system.with_parameters(**own)
     if system.is_forced:
         return dataclasses.replace(system, system=_rebuilt(system.system, own))
     kept = {_ARGUMENTS.get(field.name, field.name): getattr(system, field.name) for field in dataclasses.fields(system)}
     return type(system)(**{**kept, **own})
 
 
-def _numbers(system: System) -> list[str]:
+def _leaves(system: System) -> list[str]:
     return [name for name in system.leaves if getattr(system, name) is not None]
+
+
+def _numbers(motion: Any) -> Mapping[str, Any]:
+    """Return what may differ from member to member, by the name that its constructor has for it."""
+    if in_coordinates(motion):
+        return motion.system.parameters
+    system = _inside(motion.system)
+    return {_ARGUMENTS.get(name, name): getattr(system, name) for name in _leaves(system)}
 
 
 def checked_parameters(motion: Any, parameters: Any) -> dict[str, Any]:
     """Return the parameters of an ensemble as arrays, refused with names that the motion does not have."""
     if parameters is None:
         return {}
-    system = motion.system if in_coordinates(motion) else _inside(motion.system)
     if not isinstance(parameters, Mapping):
         raise error("ensemble(parameters=...)", "be a mapping of names to arrays", shown(parameters), "Pass a dict.")
-    fields = [] if in_coordinates(motion) else [_ARGUMENTS.get(name, name) for name in _numbers(system)]
-    known, checked = fields if motion.time_step is None else [*fields, STEP], {}
+    numbers = dict(_numbers(motion)) | ({} if motion.time_step is None else {STEP: motion.time_step})
+    kind, checked = type(motion.system if in_coordinates(motion) else _inside(motion.system)).__name__, {}
     for name, value in parameters.items():
-        if name not in known:
-            raise _unknown(name, type(system).__name__, known)
-        shape = () if name == STEP else np.shape(getattr(system, name))
+        if name not in numbers:
+            raise _unknown(name, kind, [*numbers])
+        shape = np.shape(numbers[name])
         where = f"ensemble(parameters={{{name!r}: ...}})"
         checked[name] = array(where, value, (None, *shape), "Pass one value for each member.")
     return checked
@@ -137,8 +148,8 @@ def _unknown(name: str, kind: str, known: list[str]) -> ValueError:
     """Return the error of a parameter that is none."""
     requirement, remedy = "name fields of the system", f"{kind} has {', '.join(known)}."
     if known == [STEP]:
-        requirement = f"name {STEP!r} alone for a system in coordinates"
-        remedy = "A Lagrangian is a function, whose constants cannot be varied: run an ensemble for each, or a sweep."
+        requirement = f"name {STEP!r} alone for a system in coordinates that has no parameters"
+        remedy = "Give it some: LagrangeDAlembert(lagrangian, forms, dimension=n, parameters={'mass': 1.0})."
     elif name == STEP:
         remedy = "A flow has no time step."
     return error("ensemble(parameters=...)", requirement, shown(name), remedy)

@@ -1,0 +1,120 @@
+"""Flows by diffrax, for equations that are no smooth formulas. Imported on first use: diffrax loads slowly."""
+
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from nonholo.base.numerics.time_sweep import padded, reached, sweep
+from nonholo.base.progress import interruptibly
+from nonholo.base.types import Array, Float
+from nonholo.lagrange_dalembert._accelerations import acceleration, bordered_solution
+from nonholo.lagrange_dalembert._flow import State
+from nonholo.lagrange_dalembert._room import equations_of, in_double
+from nonholo.lagrange_dalembert._tangents import flow_slopes
+
+_RTOL, _ATOL = 1e-12, 1e-13  # of the equations of variation
+
+
+def flow(
+    system: Any, first: State, times: np.ndarray, errors: tuple[float, float]
+) -> tuple[list[np.ndarray], "Pieces"]:
+    """Return places and velocities at the times, up to the first that cannot be reached, and the motion between."""
+    rest, good = interruptibly(lambda: in_double(_sweep, system, first, padded(times), errors))
+    rows = reached(first, rest, good, len(times))
+    return rows, Pieces(system, times[: len(rows[0])], rows, errors)
+
+
+class Pieces(NamedTuple):
+    """A solved motion: its states, from each of which it can be solved for a piece of time.
+
+    Attributes:
+        system: What moves.
+        times: Of the states.
+        rows: Places and velocities.
+        errors: Relative and absolute.
+    """
+
+    system: Any
+    times: np.ndarray
+    rows: list[np.ndarray]
+    errors: tuple[float, float]
+
+    def __call__(self, times: np.ndarray) -> list[np.ndarray]:
+        """Return places and velocities at times; NaN where the solver fails."""
+        forward = 1.0 if self.times[-1] >= self.times[0] else -1.0
+        begin = np.maximum(np.searchsorted(forward * self.times, forward * times, "right") - 1, 0)
+        found = [np.full((len(times), *column.shape[1:]), np.nan) for column in self.rows]
+        for i, (at, time) in enumerate(zip(begin, times, strict=True)):
+            first = self.rows[0][at], self.rows[1][at]
+            span = padded(np.array([self.times[at], time]))
+            rest, good = in_double(_sweep, self.system, first, span, self.errors)
+            ends = reached(first, rest, good, 2)
+            for column, end in zip(found, ends, strict=True):
+                column[i : i + len(end) - 1] = end[1:]
+        return found
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """The first and the last time."""
+        return float(self.times[0]), float(self.times[-1])
+
+    def looks(self) -> np.ndarray:
+        """Return no times beside those of the states, at which the motion is looked at for events."""
+        return self.times
+
+
+def _sweep(system: Any, state: State, times: Array, errors: tuple[Array, Array]) -> tuple[State, Array]:
+    equations = equations_of(system)
+
+    def settled(current: State) -> State:
+        """Return the state with the admissible velocity next to its own in the kinetic energy."""
+        q, v = equations.normalized(system, current[0]), current[1]
+        return q, v - bordered_solution(system, q, v, jnp.zeros_like(v), equations.constraint(system, q, v))[0]
+
+    def rate(current: State) -> State:
+        return equations.rate(system, *current), acceleration(system, *current)[0]
+
+    return sweep(lambda _, current: rate(settled(current)), settled, state, times, errors)
+
+
+def columns(system: Any, rows: list[np.ndarray]) -> list[np.ndarray]:
+    """Return momenta, forces of constraint, energies and residuals of places and velocities."""
+    return [x[: len(rows[0])] for x in in_double(_decode, system, *map(padded, rows))]
+
+
+def _decode(system: Any, q: Array, v: Array) -> tuple[Array, ...]:
+    """Return momenta, forces of constraint, energies and residuals of many states."""
+    equations = equations_of(system)
+
+    def one(q: Array, v: Array) -> tuple[Array, ...]:
+        residual = jnp.max(jnp.abs(equations.constraint(system, q, v)), initial=0.0)
+        momentum, force = equations.momentum(system, q, v), acceleration(system, q, v)[1]
+        return momentum, force, equations.energy(system, q, v), residual
+
+    return jax.vmap(one)(q, v)
+
+
+def transitions(system: Any, x: np.ndarray, v: np.ndarray, time: Float[np.ndarray, "K"]) -> Float[np.ndarray, "L m m"]:
+    """Return the derivatives of states by those before them, by the equations of variation; NaN where these fail."""
+    count, spans = len(time) - 1, np.stack([time[:-1], time[1:]], axis=1)
+    if not count:
+        return np.empty((0, *2 * (2 * v.shape[1] + system.is_driven,)))
+    x, v, spans = padded(x[:-1]), padded(v[:-1]), padded(spans)
+    spans[count:] = time[-1]
+    return in_double(_transitions, system, x, v, spans)[:count]
+
+
+def _transitions(system: Any, xs: Array, vs: Array, spans: Array) -> Array:
+    def rate(_: Array, current: tuple[Array, ...]) -> tuple[Array, ...]:
+        x, v, D = current
+        return equations_of(system).rate(system, x, v), acceleration(system, x, v)[0], flow_slopes(system, x, v)[1] @ D
+
+    def one(state: tuple[Array, Array, Array]) -> Array:
+        x, v, span = state
+        begin = x, v, jnp.eye(2 * len(v) + system.is_driven)
+        rest, good = sweep(rate, lambda current: current, begin, span, (jnp.asarray(_RTOL), jnp.asarray(_ATOL)))
+        return jnp.where(good[0], rest[2][0], jnp.nan)
+
+    return jax.lax.map(one, (xs, vs, spans))

@@ -1,0 +1,176 @@
+"""The flow of formulas by Taylor series, in the loop of all series of the kernels, and what its states say."""
+
+import functools
+import itertools
+import math
+from typing import Any, NamedTuple, cast
+
+import jax
+import numpy as np
+from llvmlite import ir
+
+from nonholo.base.compiled.emission import compiled
+from nonholo.base.types import Array
+from nonholo.kernels import Quadratic, revisit_series, solve_series
+from nonholo.lagrange_dalembert._room import compiling, equations_of
+from nonholo.lagrange_dalembert.compiled._derivatives import bordered
+from nonholo.lagrange_dalembert.compiled._expansion import Expansion
+from nonholo.lagrange_dalembert.compiled._run import Values, evaluated, machine_code, program
+from nonholo.lagrange_dalembert.compiled._scalars import Scalar, UntranslatableError
+from nonholo.lagrange_dalembert.compiled._windows import array_of
+
+_MOST = 100_000  # steps; what needs more is stiff
+_GUARD = 1 / 64  # the error of a step as a share of what was asked for
+_SMALLEST = 1e-12  # of a pivot beside its diagonal
+_LOOKS = 8  # in a step, for events
+_SIDE = 8  # numbers of a row of series come in eights
+
+
+class Formulation(NamedTuple):
+    """The equations of a system as formulas that are compiled.
+
+    Attributes:
+        expansion: The address of what writes Taylor coefficients.
+        room: How many numbers that needs.
+        settle: Maps places and velocities to the admissible velocity next to them in the kinetic energy.
+        decode: Maps them to momentum, forces of constraint, energy and residual; pivots and diagonal of the mass.
+    """
+
+    expansion: int
+    room: int
+    settle: Values
+    decode: Values
+
+
+@functools.lru_cache(maxsize=64)  # as the programs of steps
+def formulation(family: Any, place: tuple[int, ...], n: int) -> Formulation | None:
+    """Return the continuous equations of a family of systems; None if they are no formulas, or none that are smooth.
+
+    Parameters are numbers of the state that stay as they are.
+    """
+    equations, size = equations_of(family), math.prod(place)
+
+    def at(x: Array, v: Array, *numbers: Array) -> tuple[Array, ...]:
+        system = family.bound(*numbers)
+        rate = equations.rate(system, x, v)
+        missed, turned = jax.jvp(lambda y: equations.constraint(system, y, v), (x,), (rate,))
+        columns = equations.momentum(system, x, v), equations.energy(system, x, v), missed
+        matrices = equations.mass_matrix(system, x, v), equations.forms(system, x)
+        return *matrices, equations.force(system, x, v), -turned, rate, *columns
+
+    try:
+        whole = program(at, place, (n,), *map(np.shape, family.parameters.values()))
+        f, parts = whole.formulas, iter(whole.results)
+        mass, A, force, off, rate, momentum, energy, missed = (
+            array_of(list(itertools.islice(parts, math.prod(shape))), shape) for shape in whole.shapes
+        )
+        matrix = bordered(f, mass, A)
+        moved, settled = matrix.solution([*force, *off]), matrix.solution([*[f.constant(0.0)] * n, *missed])
+        still = [f.constant(0.0)] * (len(whole.inputs) - size - n)
+        expansion = Expansion(f, whole.inputs, [*rate.ravel(), *moved[:n], *still])
+    except UntranslatableError:
+        return None
+    module = ir.Module()
+    expansion.write(module, "expansion", -(-len(whole.inputs) // _SIDE) * _SIDE)
+    velocity = [f("sub", *each) for each in zip(whole.inputs[size : size + n], settled[:n], strict=True)]
+    forces, pivots = (f("neg", each) for each in moved[n:]), matrix.pivots[:n]
+    told = [*momentum, *forces, energy.item(), *missed, *pivots, *np.diagonal(mass)]
+    shapes = [(n,), (len(A),), (), (len(A),), (n,), (n,)]
+
+    def values(results: list[Scalar], shapes: list[tuple[int, ...]]) -> Values:
+        doubt = functools.reduce(functools.partial(f, "add"), f.doubts, f.constant(0.0))
+        return Values(machine_code(whole.inputs, [*results, doubt]), shapes)
+
+    address = compiled(str(module), "expansion")
+    return Formulation(address, expansion.room, values(velocity, [(n,)]), values(told, shapes))
+
+
+class Series(NamedTuple):
+    """A solved motion: its equations, and from where their series can be expanded again.
+
+    Attributes:
+        system: What moves.
+        shapes: Of a place and of a velocity.
+        nodes: Beginnings of steps.
+        end: The last time that was asked for.
+        tolerance: Of a step.
+    """
+
+    system: Any
+    shapes: tuple[tuple[int, ...], tuple[int, ...]]
+    nodes: np.ndarray
+    end: float
+    tolerance: float
+
+    @property
+    def code(self) -> Formulation:
+        """The equations."""
+        place, (n,) = self.shapes
+        return cast(Formulation, formulation(self.system.family, place, n))
+
+    def __call__(self, times: np.ndarray) -> list[np.ndarray]:
+        """Return places and velocities at times in the order in which the motion was solved."""
+        f, code = _equations(self.code, self.shapes, self.nodes.shape[2] - 1), self.code
+        return self.settled(revisit_series(f, self.nodes, times, self.end, self.tolerance, code.expansion))
+
+    def settled(self, rows: np.ndarray) -> list[np.ndarray]:
+        """Return places and admissible velocities of states of the series."""
+        place, (n,) = self.shapes
+        size = math.prod(place)
+        x = equations_of(self.system).normalized(self.system, rows[:, :size].reshape(-1, *place))
+        return [x, *cast(Any, _evaluated(self.code.settle, self.system, x, rows[:, size : size + n]))]
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """The first and the last time."""
+        return float(self.nodes[0, 0, -1]), self.end
+
+    def looks(self) -> np.ndarray:
+        """Return times at which the state is looked at for events: steps are long, so within them too."""
+        ends = [*self.nodes[:, 0, -1], self.end]
+        return np.interp(np.arange(_LOOKS * len(ends) - _LOOKS + 1) / _LOOKS, np.arange(len(ends)), ends)
+
+
+def flow(system: Any, first: tuple[Any, Any], times: np.ndarray, rtol: float) -> tuple[list[np.ndarray], Series] | None:
+    """Return places and velocities at times, and the motion between; None if series do not reach them all."""
+    x, v = map(np.asarray, first)
+    with compiling(system):
+        code = formulation(system.family, x.shape, len(v))
+    start = code and _evaluated(code.decode, system, x[None], v[None])
+    if not code or start is None or not np.all(start[-2] > _SMALLEST * start[-1]):
+        return None
+    shapes, tolerance = (x.shape, v.shape), rtol * _GUARD
+    state = np.concatenate([np.ravel(each) for each in (x, v, *system.parameters.values())])
+    f = _equations(code, shapes, len(state))
+    rows, nodes = solve_series(f, state, times, tolerance, _MOST, code.expansion)
+    if len(rows) < len(times):
+        return None
+    series = Series(system, shapes, nodes, float(times[-1]), tolerance)
+    return series.settled(rows), series
+
+
+def _equations(code: Formulation, shapes: tuple[tuple[int, ...], tuple[int, ...]], size: int) -> Quadratic:
+    """Return equations without quadratic terms, whose numbers are the room of the code.
+
+    What moves is measured apart from how it moves, and from what does not.
+    """
+    places, rates = map(math.prod, shapes)
+    blocks, none = np.repeat([0, 1, 2], [places, rates, size - places - rates]), np.zeros(0, dtype=np.int64)
+    sparse = np.zeros((2, 0), dtype=np.int64), np.zeros(size + 1, dtype=np.int64), none, np.zeros((1, code.room))
+    ends = np.zeros(0), np.zeros((0, 0)), np.zeros(0)
+    return Quadratic(np.zeros((0, 0)), *sparse, np.arange(size), blocks, np.zeros(3, dtype=np.bool_), *ends)
+
+
+def flow_rows(system: Any, x: np.ndarray, v: np.ndarray) -> list[np.ndarray] | None:
+    """Return momenta, forces of constraint, energies and residuals of states; None if JAX must compute them."""
+    code = formulation(system.family, x.shape[1:], v.shape[1])
+    columns = _evaluated(code.decode, system, x, v) if code else None
+    if columns is None:
+        return None
+    momentum, force, energy, missed, *_ = columns
+    return [momentum, force, energy, np.abs(missed).max(axis=1, initial=0.0)]
+
+
+def _evaluated(code: Values, system: Any, x: np.ndarray, v: np.ndarray) -> list[np.ndarray] | None:
+    shared = (np.broadcast_to(number, (len(x), *np.shape(number))) for number in system.parameters.values())
+    return evaluated(code, x, v, *shared)
