@@ -103,7 +103,7 @@ What is kept, and how exactly:
     conserved_momenta: Return the components of body and spatial momentum that every motion of a system conserves.
     invariant_measure: Tell which densities of restricted momenta the flow of a system, or its discrete map, keeps.
     lyapunov_function: Return the function of the momentum that falls along every motion that is not an equilibrium.
-    lyapunov_exponents: Return the finite-time Lyapunov exponents of the momenta along an orbit, largest first.
+    lyapunov_exponents: Return the finite-time Lyapunov exponents along an orbit, largest first.
 
 Where motions come from and go to:
     equilibria: Return the equilibria of a system or of its discrete map, with their transverse spectrum at an energy.

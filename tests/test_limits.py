@@ -196,6 +196,7 @@ TOO_MUCH: dict[str, tuple[Callable[[], Any], str]] = {
     "vector_field": (lambda: nh.vector_field(WIDEST), "A dense mass tensor of SuslovTop.arrowhead` must have at most"),
     "conserved_momenta": (lambda: nh.conserved_momenta(WIDEST), "A dense mass tensor of SuslovTop.arrowhead` must"),
     "consistency_defect": (lambda: nh.consistency_defect(BROAD), "A dense mass tensor of SuslovTop.arrowhead` must"),
+    "linearize": (lambda: nh.linearize(BROAD), "must have matrices"),
     "lyapunov_exponents": (lambda: nh.lyapunov_exponents(_wide_orbit()), "fit into memory"),
     "lyapunov_function": (lambda: nh.lyapunov_function(WIDEST), "fit into memory"),
     "invariant_measure": (lambda: nh.invariant_measure(WIDEST), "fit into memory"),

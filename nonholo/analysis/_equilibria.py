@@ -4,11 +4,12 @@ Theory: docs/theory/limits.md. The equilibria themselves are a question to the s
 """
 
 import dataclasses
-from typing import Any, cast
+from typing import Any, cast, overload
 
 import numpy as np
 
-from nonholo.base.checks import error, positive
+from nonholo.analysis.linearization import SteadyMotion, steady_motion
+from nonholo.base.checks import error, positive, refuse_given
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.discrete import Discretization, weights
 from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, NormalForm, refuse_forces
@@ -41,7 +42,13 @@ class EquilibriumSpectrum:
     others: tuple["EquilibriumSpectrum", ...] = ()
 
 
-def equilibria(system: AbstractLLSystem | Discretization, energy: Array = 1.0) -> EquilibriumSpectrum:
+@overload
+def equilibria(system: AbstractLLSystem | Discretization, energy: Array = 1.0) -> EquilibriumSpectrum: ...
+@overload
+def equilibria(system: Any, *, configuration: Any, body_velocity: Any = None) -> SteadyMotion: ...
+def equilibria(
+    system: Any, energy: Array = 1.0, *, configuration: Any = None, body_velocity: Any = None
+) -> EquilibriumSpectrum | SteadyMotion:
     r"""Return the equilibria of a system or of its discrete map, with their transverse spectrum at an energy.
 
     Rates are $-\zeta|c|^2\,\mathrm{eig}(N^TB^{-1}N)$ for a top turning with $w = -\zeta c$ (N: orthonormal, across c),
@@ -54,23 +61,41 @@ def equilibria(system: AbstractLLSystem | Discretization, energy: Array = 1.0) -
     of the rate $\sigma$, where $\theta$ is the angle of the step ($\varkappa = 1$ for sleighs with $a_1 \ne 0$). So
     $|\mu| < 1$ for every step; $\mu < 0$, an alternating approach, for large ones.
 
+    With `configuration`, of any system, or its map: the state of rest near it, or the steady motion near a velocity, by
+    Newton's method. Such states come in families, of as many directions as there are constraints, ignorable coordinates
+    and conserved momenta; each correction is the shortest one. Of a body on a group, states of rest under forces.
+
     Reference: [fedorov-zenkov-2004], sections 6 and 7, "stationary solutions".
 
     Args:
         system: A left-invariant system, of three admissible directions at most if it is neither a top nor a sleigh, or
             a discretization with difference "matrix", constraint "skew" of a top or a sleigh.
         energy: Reduced constrained energy of the equilibrium that is looked at; rates grow as its square root.
+        configuration: A configuration near which an equilibrium is looked for; then the energy is left out.
+        body_velocity: A velocity near that of a steady motion; by default states of rest are looked for.
 
     Raises:
         ValueError: Another system or discretization, an energy that is not positive, one that no multiple of an
-            equilibrium has, one at which no step with an angle up to 90 degrees has the momenta of the equilibrium.
+            equilibrium has, one at which no step with an angle up to 90 degrees has the momenta of the equilibrium;
+            a configuration near which Newton's method finds nothing.
 
     Example:
+        A pendulum hangs:
+
+        >>> import jax.numpy as jnp
+        >>> pendulum = nh.LagrangeDAlembert(lambda q, v: v @ v / 2 + jnp.cos(q[0]), None, dimension=1)
+        >>> hanging = equilibria(pendulum, configuration=[0.3])
+        >>> abs(hanging.configuration.round(12)), hanging.rates.round(12), hanging.is_stable
+        (array([0.]), array([0.+1.j, 0.-1.j]), True)
+
         >>> sleigh = nh.ChaplyginSleigh(mass=2.0, inertia=1.5, a=0.5)
         >>> states = equilibria(nh.discretize(sleigh, time_step=0.5), energy=1.0)
         >>> states.velocity, states.rates, states.multipliers
         (array([0., 1., 0.]), array([-0.5]), array([0.77777778]))
     """
+    if configuration is not None or body_velocity is not None:
+        refuse_given("equilibria", "be left out beside a configuration", "Pass one of them.", energy=(energy, 1.0))
+        return steady_motion(system, configuration, body_velocity)
     body, step = _checked("equilibria(system=...)", system)
     level = float(positive("equilibria(energy=...)", energy, "Pass the energy of the equilibrium."))
     if body.normal_form is None:
@@ -140,7 +165,7 @@ def _steps(discrete: Discretization) -> Float[np.ndarray, "S"]:
 
 def _checked(where: str, value: Any) -> tuple[AbstractLLSystem, Float[np.ndarray, "S"] | None]:
     """Return the body and the time steps of the substeps, one for order 2."""
-    remedy = "Pass a left-invariant system, or a discretization of a top or a sleigh."
+    remedy = "Pass a left-invariant system, a discretization of a top or a sleigh, or configuration= to look near."
     body = value.system if isinstance(value, Discretization) else value
     refuse_forces(where, body)
     if not isinstance(body, AbstractSystem) or body.is_spatial:

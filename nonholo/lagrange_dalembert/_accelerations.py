@@ -51,8 +51,9 @@ def vector_field(system: Any) -> Callable[[Array, Float[Array, "size"]], Float[A
     def derivative(time: Array, state: Float[Array, "size"]) -> Float[Array, "size"]:
         now = number("vector_field(...)(time=...)", time)
         rows = trailing("vector_field(...)(state=...)", state, (size,), _REMEDY, real=True)
-        traced = is_traced(now) or is_traced(rows)
-        return _derivative(system, now, rows) if traced else in_double(_derivative, system, now, rows)
+        if is_traced(now) or is_traced(rows):
+            return _derivative(system.bound(*system.parameters.values()), now, rows)
+        return in_double(_derivative, system, now, rows)
 
     return derivative
 
@@ -66,4 +67,4 @@ def _derivative(system: Any, time: Array, state: Float[Array, "... size"]) -> Fl
         moved = jnp.ravel(equations.rate(system, x, v))[: len(q)]
         return jnp.concatenate([moved, acceleration(system, x, v)[0]])
 
-    return one(state) if state.ndim == 1 else jax.vmap(one)(state.reshape(-1, state.shape[-1])).reshape(state.shape)
+    return one(state) if state.ndim == 1 else jax.lax.map(one, state.reshape(-1, state.shape[-1])).reshape(state.shape)

@@ -8,10 +8,13 @@ import numpy as np
 
 from nonholo.base.numerics.time_sweep import padded, reached, sweep
 from nonholo.base.progress import interruptibly
-from nonholo.base.types import Array
+from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._accelerations import acceleration, bordered_solution
 from nonholo.lagrange_dalembert._flow import State
 from nonholo.lagrange_dalembert._room import equations_of, in_double
+from nonholo.lagrange_dalembert._tangents import flow_slopes
+
+_RTOL, _ATOL = 1e-12, 1e-13  # of the equations of variation
 
 
 def flow(
@@ -91,3 +94,27 @@ def _decode(system: Any, q: Array, v: Array) -> tuple[Array, ...]:
         return momentum, force, equations.energy(system, q, v), residual
 
     return jax.vmap(one)(q, v)
+
+
+def transitions(system: Any, x: np.ndarray, v: np.ndarray, time: Float[np.ndarray, "K"]) -> Float[np.ndarray, "L m m"]:
+    """Return the derivatives of states by those before them, by the equations of variation; NaN where these fail."""
+    count, spans = len(time) - 1, np.stack([time[:-1], time[1:]], axis=1)
+    if not count:
+        return np.empty((0, *2 * (2 * v.shape[1] + system.is_driven,)))
+    x, v, spans = padded(x[:-1]), padded(v[:-1]), padded(spans)
+    spans[count:] = time[-1]
+    return in_double(_transitions, system, x, v, spans)[:count]
+
+
+def _transitions(system: Any, xs: Array, vs: Array, spans: Array) -> Array:
+    def rate(_: Array, current: tuple[Array, ...]) -> tuple[Array, ...]:
+        x, v, D = current
+        return equations_of(system).rate(system, x, v), acceleration(system, x, v)[0], flow_slopes(system, x, v)[1] @ D
+
+    def one(state: tuple[Array, Array, Array]) -> Array:
+        x, v, span = state
+        begin = x, v, jnp.eye(2 * len(v) + system.is_driven)
+        rest, good = sweep(rate, lambda current: current, begin, span, (jnp.asarray(_RTOL), jnp.asarray(_ATOL)))
+        return jnp.where(good[0], rest[2][0], jnp.nan)
+
+    return jax.lax.map(one, (xs, vs, spans))

@@ -120,6 +120,15 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         p = self.momentum[..., None]
         return (p - np.linalg.pinv(A) @ (A @ p))[..., 0]
 
+    @remembered
+    def tangent(self) -> Float[np.ndarray, "L d d"]:
+        r"""Derivative of each state by the one before, in orthonormal bases of the admissible changes of (q, v).
+
+        Those of (q, v) that keep $A(q)v = b$, of a map the discrete constraint, d = 2 n - s; on a group $\xi$ of
+        $g\,e^\xi$ stands for q. Of a map by the implicit function of the step, of a flow by its equation of variation.
+        """
+        return room("_tangents").tangent_map(self)
+
     def at(self, times: Any) -> "AbstractCoordinateOrbit":
         """Return the states of a flow at any of its times, from its Taylor series, without a new run.
 

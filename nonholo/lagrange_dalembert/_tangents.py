@@ -11,12 +11,13 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from nonholo.base.checks import error
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._accelerations import acceleration, refuse_table
 from nonholo.lagrange_dalembert._discretization import checked_state, set_out
 from nonholo.lagrange_dalembert._equations import solve_bordered
 from nonholo.lagrange_dalembert._newton import newton_matrix, orientation, solve
-from nonholo.lagrange_dalembert._room import equations_of, in_double
+from nonholo.lagrange_dalembert._room import equations_of, in_double, places, room
 
 _CORRECTIONS = 8  # of a velocity beside another one
 LATER = np.array([0.3719, 0.9173])  # times, not in a ratio that a rotation may have
@@ -55,8 +56,30 @@ def slopes(
     motion: Any, x: Float[np.ndarray, "K ..."], v: Float[np.ndarray, "K n"]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return how states change beside given ones; NaN where there is no next step."""
-    h = _step_of(motion)
-    return in_double(_step_slopes if h else _flow_slopes, motion.system, *h, x, v)
+    h, missing = _step_of(motion), (1 << (len(x) - 1).bit_length()) - len(x)  # few sizes are compiled
+    states = (np.concatenate([rows, np.repeat(rows[-1:], missing, axis=0)]) for rows in (x, v))
+    change, slope, rows = in_double(_each, motion.system, *h, *states)
+    return change[: len(x)], slope[: len(x)], rows[: len(x)]
+
+
+def tangent_map(orbit: Any) -> Float[np.ndarray, "L d d"]:
+    """Return the derivative of each state of an orbit by the one before, in orthonormal bases of admissible changes."""
+    motion, system, time = orbit.motion, orbit.system, orbit.time
+    where, n = "Orbit.tangent", orbit.body_velocity.shape[1]
+    if orbit.is_discrete and not orbit.has_every_step:
+        raise error(where, "have every step", f"{len(orbit)} states with others between", "Run with save_every=1.")
+    if not len(orbit):
+        raise error(where, "have a state", "none", "Run longer.")
+    x, v = places(system, orbit.configuration, time), orbit.body_velocity
+    _, slope, rows = slopes(motion, x, v)
+    moved = (
+        slope[:-1] + np.eye(slope.shape[-1])
+        if orbit.is_discrete
+        else room("_integration").transitions(system, x, v, time)
+    )
+    matters = np.r_[:n, n + system.is_driven : slope.shape[-1]]  # all but the time
+    bases = np.linalg.svd(rows[..., matters])[2][:, rows.shape[1] :].swapaxes(1, 2)
+    return bases[1:].swapaxes(1, 2) @ moved[:, matters][:, :, matters] @ bases[:-1]
 
 
 def _step_of(motion: Any) -> tuple[np.float64, ...]:
@@ -71,7 +94,8 @@ def _constraint(system: Any, x: Array, v: Array, *h: Array) -> Array:
 def _beside(system: Any, *given: Array) -> tuple[Array, Array]:
     *h, x, v, xis, ws = given
 
-    def one(xi: Array, w: Array) -> tuple[Array, Array]:
+    def one(offset: tuple[Array, Array]) -> tuple[Array, Array]:
+        xi, w = offset
         place = equations_of(system).beside(system, x, xi)
 
         def correct(_: Array, w: Array) -> Array:
@@ -80,44 +104,51 @@ def _beside(system: Any, *given: Array) -> tuple[Array, Array]:
 
         return place, jax.lax.fori_loop(0, _CORRECTIONS, correct, v + w)
 
-    return jax.vmap(one)(xis, ws)
+    return jax.lax.map(one, (xis, ws))
 
 
-def _flow_slopes(system: Any, xs: Array, vs: Array) -> Slopes:
+def flow_slopes(system: Any, x: Array, v: Array) -> Slopes:
+    """Return the rates beside a state of the flow, their derivatives, and those of the constraint."""
     equations = equations_of(system)
 
-    def change(x: Array, v: Array, xi: Array, w: Array) -> Array:
+    def change(xi: Array, w: Array) -> Array:
         beside = equations.beside(system, x, xi)
         return jnp.concatenate([equations.departure_rate(system, v, xi, w), acceleration(system, beside, w)[0]])
 
-    return _differentiated(system, change, xs, vs)
+    return _differentiated(system, change, x, v)
 
 
-def _step_slopes(system: Any, h: Array, xs: Array, vs: Array) -> Slopes:
+def _step_slopes(system: Any, h: Array, x: Array, v: Array) -> Slopes:
     equations = equations_of(system)
 
-    def change(x: Array, v: Array, xi: Array, w: Array) -> Array:
+    def change(xi: Array, w: Array) -> Array:
         after, arrived = _stepped(system, h, equations.beside(system, x, xi), w)
         departed = equations.departure(system, equations.frame(system, x, v, h), after)
         return jnp.concatenate([departed - xi, arrived - w])
 
-    return _differentiated(system, change, xs, vs, h)
+    return _differentiated(system, change, x, v, h)
 
 
-def _differentiated(system: Any, change: Callable[..., Array], xs: Array, vs: Array, *h: Array) -> Slopes:
-    n = vs.shape[-1]
-    size = n + system.is_driven
+def _each(system: Any, *given: Array) -> Slopes:
+    """Return the slopes at states, one after another: the bits of each do not depend on the others."""
+    *h, xs, vs = given
 
-    def at(x: Array, v: Array) -> Slopes:
-        def both(z: Array) -> tuple[tuple[Array, Array], Array]:
-            xi, w = z[:size], z[size:]
-            value = change(x, v, xi, w)
-            return (value, _constraint(system, equations_of(system).beside(system, x, xi), w, *h)), value
+    def one(state: tuple[Array, Array]) -> Slopes:
+        return _step_slopes(system, h[0], *state) if h else flow_slopes(system, *state)
 
-        (slope, rows), value = jax.jacfwd(both, has_aux=True)(jnp.append(jnp.zeros(size), v))
-        return value, slope, rows
+    return jax.lax.map(one, (xs, vs))
 
-    return jax.vmap(at)(xs, vs)
+
+def _differentiated(system: Any, change: Callable[[Array, Array], Array], x: Array, v: Array, *h: Array) -> Slopes:
+    size = len(v) + system.is_driven
+
+    def both(z: Array) -> tuple[tuple[Array, Array], Array]:
+        xi, w = z[:size], z[size:]
+        value = change(xi, w)
+        return (value, _constraint(system, equations_of(system).beside(system, x, xi), w, *h)), value
+
+    (slope, rows), value = jax.jacfwd(both, has_aux=True)(jnp.append(jnp.zeros(size), v))
+    return value, slope, rows
 
 
 def _stepped(system: Any, h: Array, x: Array, v: Array) -> tuple[Array, Array]:

@@ -59,6 +59,7 @@ class AbstractOrbit(Keeper, abc.ABC):
         body_velocity: Velocities.
         momentum: Momenta.
         restricted_momentum: Momenta along admissible directions, which follow the flow to second order.
+        tangent: Derivatives of the states by those before them.
         energy: Energies, shape (K,).
         work: Work of forces, and of what drives it, on the motion since the first state, shape (K,).
         multipliers: Impulses or forces of constraint.
@@ -85,6 +86,7 @@ class AbstractOrbit(Keeper, abc.ABC):
     body_velocity: Float[np.ndarray, "K n"]
     momentum: Float[np.ndarray, "K n"]
     restricted_momentum: Float[np.ndarray, "K k"]
+    tangent: Float[np.ndarray, "L d d"]
     energy: Float[np.ndarray, "K"]
     work: Float[np.ndarray, "K"]
     multipliers: Float[np.ndarray, "L s"]

@@ -424,9 +424,9 @@ class Orbit(AbstractOrbit):
 
     @remembered
     def tangent(self) -> Float[np.ndarray, "L k k"]:
-        """Derivatives of restricted momenta after each step of a discrete orbit by those before it, (K - 1, k, k).
+        """Derivatives of restricted momenta after each step of an orbit by those before it, (K - 1, k, k).
 
-        `nonholo.analysis.tangent` says of which maps; `lyapunov_exponents` multiplies them.
+        `nonholo.analysis.tangent` says how, and where poses count too; `lyapunov_exponents` multiplies them.
         """
         return importlib.import_module("nonholo.analysis").tangent(self)
 

@@ -1,5 +1,9 @@
 """The tangent map along orbits against differences of orbits, and Lyapunov exponents where they are known."""
 
+from collections.abc import Callable
+from typing import Any
+
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -71,13 +75,109 @@ def test_exponents_of_a_straight_motion() -> None:
     np.testing.assert_allclose(nh.lyapunov_exponents(orbit), [0.0, np.log(factor) / h], rtol=1e-12, atol=1e-14)
 
 
+TOP = nh.SuslovTop(np.diag([1.0, 2.0, 1.5]) + 0.1)
+MAPS = {
+    "composition": nh.discretize(BODIES["offset sleigh"], 0.1, order=4),
+    "logarithmic": nh.discretize(TOP, 0.1, difference="logarithmic"),
+    "under gravity": nh.discretize(nh.Forced(TOP, nh.Gravity([0.0, 0.3, -1.0], [0.1, 0.2, 0.5])), 0.1),
+    "fixed in space": nh.discretize(nh.VeselovaTop(np.diag([1.0, 2.0, 1.5])), 0.1),
+}
+
+
+def sixth(function: Callable[[np.ndarray], np.ndarray], size: int) -> np.ndarray:
+    """Return derivatives at zero by central differences of order 6."""
+    offsets = 4e-3 * np.arange(1, 4)
+    weights = np.array([45.0, -9.0, 1.0]) / (60 * 4e-3)
+    columns = [weights @ [function(x * e) - function(-x * e) for x in offsets] for e in np.eye(size)]
+    return np.transpose(columns)
+
+
+@pytest.mark.parametrize("discrete", MAPS.values(), ids=MAPS)
+def test_tangent_maps_by_jax(discrete: nh.Discretization) -> None:
+    """Maps without closed derivatives, with poses where they count: the product is that of differences of orbits."""
+    group, k = discrete.system.group, discrete.system.rank
+    start, g = np.linspace(0.3, 0.5, k), discrete.system.group.exp(np.linspace(0.1, 0.3, group.dim))
+    orbit = nh.simulate(discrete, momentum=start, configuration=g, steps=4)
+    product = np.linalg.multi_dot(orbit.tangent[::-1])
+    posed = len(product) - k
+    assert posed == (group.dim if discrete.system.is_spatial or discrete.forces else 0)
+
+    def last(z: np.ndarray) -> np.ndarray:
+        there = g @ group.exp(z[:posed]) if posed else g
+        end = nh.simulate(discrete, momentum=start + z[posed:], configuration=there, steps=4)
+        away = group.log(group.inverse(orbit.configuration[-1]) @ end.configuration[-1])
+        return np.append(away[:posed], end.restricted_momentum[-1])
+
+    np.testing.assert_allclose(product, sixth(last, posed + k), rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize("is_map", [True, False])
+def test_tangent_maps_in_coordinates(is_map: bool) -> None:
+    """On the particle with z' = y x' the product has the singular values of differences of orbits from all starts."""
+    system: Any = nh.examples.particle().system
+    h = 0.1 * is_map
+    swung = nh.Forced(system, potential=lambda q: q @ q / 2 + q[0] ** 3 / 3)
+
+    def state(z: np.ndarray) -> np.ndarray:
+        q, u = np.array([0.1, 0.2, 0.3]) + z[:3], np.array([0.5, 0.4]) + z[3:]
+        return np.array([*q, *u, (q[1] + h * u[1] / 2) * u[0]])
+
+    def run(z: np.ndarray) -> Any:
+        q, v = np.split(state(z), 2)
+        if is_map:
+            return nh.simulate(nh.discretize(swung, h), configuration=q, displacement=h * v, steps=6)
+        return nh.flow(swung, configuration=q, body_velocity=v, times=[0.0, 0.2, 0.6], rtol=1e-13, atol=1e-14)
+
+    def last(z: np.ndarray) -> np.ndarray:
+        orbit = run(z)
+        return np.append(orbit.configuration[-1], orbit.body_velocity[-1])
+
+    carried = sixth(last, 5) @ np.linalg.pinv(sixth(state, 5))
+    product = np.linalg.multi_dot(run(np.zeros(5)).tangent[::-1])
+    wanted = np.linalg.svd(carried, compute_uv=False)[:5]
+    np.testing.assert_allclose(np.linalg.svd(product, compute_uv=False), wanted, rtol=0, atol=1e-9)
+
+
+def test_exponents_in_coordinates_are_those_of_the_linear_equations() -> None:
+    """A pendulum upside down: plus and minus one, of the map logarithms of the multipliers over the step."""
+    pendulum = nh.LagrangeDAlembert(lambda q, v: v @ v / 2 + jnp.cos(q[0]), None, dimension=1)
+    rest: dict[str, Any] = {"configuration": [np.pi], "body_velocity": [0.0]}
+    discrete = nh.discretize(pendulum, 0.1)
+    multipliers = nh.linearize(discrete, configuration=[np.pi]).eigenvalues
+    found = nh.lyapunov_exponents(nh.simulate(discrete, steps=60, **rest))
+    np.testing.assert_allclose(found, np.log(multipliers) / 0.1, rtol=0, atol=np.log(2) / 6)  # the first frame
+    flow = nh.flow(pendulum, times=np.linspace(0.0, 20.0, 81), **rest)
+    np.testing.assert_allclose(nh.lyapunov_exponents(flow), [1.0, -1.0], rtol=0, atol=0.05)
+    values = np.linalg.eigvals(flow.tangent[0])
+    np.testing.assert_allclose(np.sort(np.real(values)), np.exp([-0.25, 0.25]), rtol=1e-11)
+
+
+def test_tangent_maps_by_functions_on_a_group() -> None:
+    """By functions of the pose on a group: a free top has the tangent map of `RigidBody`, and carries its pose."""
+    J, h = np.diag([1.0, 2.0, 3.0]), 0.1
+    top = nh.GroupLagrangeDAlembert(nh.SO(3), nh.mass_tensor_lagrangian(nh.SO(3), J), None)
+    body = nh.discretize(nh.RigidBody(J), h)
+    start: dict[str, Any] = {"body_velocity": (0.3, 0.4, 0.2)}
+    orbit, known = nh.simulate(nh.discretize(top, h), steps=1, **start), nh.simulate(body, steps=1, **start)
+
+    def momentum(v: np.ndarray) -> np.ndarray:
+        return nh.discrete_legendre(body, nh.SO(3).exp(h * v))
+
+    before, after = (sixth(lambda x, v=v: momentum(v + x), 3) for v in orbit.body_velocity)
+    wanted = np.linalg.solve(after, known.tangent[0] @ before)
+    np.testing.assert_allclose(orbit.tangent[0][3:], np.hstack([np.zeros((3, 3)), wanted]), rtol=0, atol=1e-11)
+    np.testing.assert_allclose(orbit.tangent[0][:3, :3], orbit.displacement[0].T, rtol=0, atol=1e-14)
+
+
 def test_other_orbits_are_refused() -> None:
-    """A flow with a constraint in space, a thinned orbit and a composition have no tangent map, and say what has."""
+    """Orbits without a tangent map say what has one: thinned ones, of functions, and flows with forces."""
     sleigh = BODIES["offset sleigh"]
     thinned = nh.simulate(nh.discretize(sleigh, 0.1), restricted_velocity=(0.1, 0.2), steps=4, save_every=2)
-    composed = nh.simulate(nh.discretize(sleigh, 0.1, order=4), restricted_velocity=(0.1, 0.2), steps=4)
+    own = nh.discretize(nh.Forced(sleigh, force=lambda *_: np.zeros(3)), 0.1)
+    pushed = nh.simulate(own, restricted_velocity=(0.1, 0.2), steps=4)
+    ready = nh.examples.particle().simulate(steps=4, save_every=2)
     flow = nh.flow(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), momentum=(0.1, 0.2), times=(0.0, 1.0))
-    for orbit, words in ((thinned, "every step"), (composed, "rollout"), (flow, "rollout")):
+    for orbit, words in ((thinned, "every step"), (pushed, "rollout"), (flow, "rollout"), (ready, "every step")):
         with pytest.raises(ValueError, match=words):
             _ = orbit.tangent
     with pytest.raises(ValueError, match="have a step"):

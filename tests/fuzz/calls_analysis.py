@@ -12,6 +12,9 @@ _RUN = nh.simulate(SLEIGH, body_velocity=(1.0, 0.3, 0.0), steps=8)
 _RECORD = {"t": _RUN.time, "x": _RUN.position[:, 0], "y": _RUN.position[:, 1], "theta": _RUN.heading}
 
 
+_HEAVY = nh.Forced(SLEIGH.system, nh.Gravity([0.0, -1.0], [0.5, 0.1]))
+
+
 def _slide(numbers: dict) -> nh.ChaplyginSleigh:
     return nh.ChaplyginSleigh(1.0, 1.0, numbers["a"])
 
@@ -35,6 +38,7 @@ def _of_systems() -> list[Call]:
             "equilibria [free]", nh.equilibria, system=thing(nh.RigidBody(np.diag([1.0, 2, 3]))), energy=positive(1.0)
         ),
         call("equilibria [discrete]", nh.equilibria, system=thing(TOP), energy=positive(1.0)),
+        call("equilibria [near]", nh.equilibria, system=thing(_HEAVY), configuration=array(np.eye(3)), slow=True),
         call("invariant_measure", nh.invariant_measure, motion=thing(TOP), energy=positive(1.0)),
         call("invariants", nh.invariants, orbit=thing(orbit)),
         call(

@@ -51,6 +51,17 @@ def test_traced_and_stacked_states_are_those_of_numpy() -> None:
         np.testing.assert_allclose(jax.jit(jax.vmap(lambda x: field(0.0, x)))(states), single, rtol=0, atol=1e-14)
 
 
+def test_parameters_are_those_of_the_system() -> None:
+    """Of a system with parameters NumPy and traced states have its numbers, not those it was made with."""
+    swing: Any = lambda q, v, p: v @ v / 2 + p["g"] * jnp.cos(q[0])  # noqa: E731
+    pendulum = nh.LagrangeDAlembert(swing, None, dimension=1, parameters={"g": 1.0}).with_parameters(g=4.0)
+    field, state, wanted = nh.vector_field(pendulum), np.array([0.5, 0.1]), [0.1, -4 * np.sin(0.5)]
+    np.testing.assert_allclose(field(0.0, state), wanted, rtol=1e-15)
+    with jax.enable_x64(True):
+        np.testing.assert_allclose(jax.jit(lambda x: field(0.0, x))(state), wanted, rtol=1e-15)
+    np.testing.assert_allclose(nh.linearize(pendulum, configuration=[np.pi]).eigenvalues, [2, -2], rtol=1e-14)
+
+
 def test_forces_on_groups_are_traced() -> None:
     """The derivative by JAX of the field of a body under weight and friction is that of differences."""
     sleigh = nh.ChaplyginSleigh(2.0, 1.0, 0.5, 0.3)

@@ -2,6 +2,7 @@
 
 import dataclasses
 import functools
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,9 @@ from nonholo.base.checks import error, needs, shown
 from nonholo.base.types import Float, Inexact
 from nonholo.discrete import Discretization
 from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, in_coordinates
+
+Shifted = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+"""Takes changes of coordinates and of velocities to a configuration and a body velocity."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -98,7 +102,7 @@ def linearize(system: Any, *, configuration: Any = None, body_velocity: Any = No
         >>> found.names, found.eigenvalues.round(12)
         (('q1', "q1'"), array([ 1., -1.]))
     """
-    local = _local(system, configuration, body_velocity)
+    local, _ = local_motion("linearize", system, configuration, body_velocity)
     where = "linearize(body_velocity=...)"
     if not np.isfinite(local.slope[0]).all():
         remedy = "Take a smaller time step, or another state."
@@ -114,15 +118,23 @@ def linearize(system: Any, *, configuration: Any = None, body_velocity: Any = No
     return Linearization(matrix, names, ignorable, _time_step(system))
 
 
-def _local(system: Any, configuration: Any, velocity: Any) -> Local:
-    with needs("jax", "linearize"):
+def step_tangents(orbit: Any) -> Float[np.ndarray, "L d d"]:
+    """Return the derivative of each state of a discrete orbit on a group by the one before."""
+    with needs("jax", "Orbit.tangent"):
+        from nonholo.analysis.linearization import _on_groups
+    return _on_groups.along(orbit)
+
+
+def local_motion(owner: str, system: Any, configuration: Any, velocity: Any) -> tuple[Local, Shifted]:
+    """Return the changes beside a state, and the function that gives the states beside it."""
+    with needs("jax", owner):
         from nonholo.analysis.linearization import _in_coordinates, _on_groups
     if isinstance(system, AbstractCoordinateSystem) or in_coordinates(system):
-        return _in_coordinates.beside_state(system, configuration, velocity)
+        return _in_coordinates.beside_state(owner, system, configuration, velocity)
     if not isinstance(system, AbstractSystem | Discretization):
         remedy = "Pass a system, on a group or in coordinates, or what `discretize` returned."
-        raise error("linearize(system=...)", "be a system or its map", shown(system), remedy)
-    return _on_groups.on_group(system, configuration, velocity)
+        raise error(f"{owner}(system=...)", "be a system or its map", shown(system), remedy)
+    return _on_groups.on_group(owner, system, configuration, velocity)
 
 
 def _time_step(system: Any) -> float | None:

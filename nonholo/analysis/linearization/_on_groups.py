@@ -30,13 +30,13 @@ Moved = Callable[[Array, Array, Array], tuple[Array, Array]]
 """Takes time, pose and momentum to velocity and rate; of a map to the next pose and the change of momentum."""
 
 
-def on_group(subject: Any, configuration: Any, velocity: Any) -> Local:
-    """Return the changes beside a state of a system on a group, or of its map."""
+def on_group(owner: str, subject: Any, configuration: Any, velocity: Any) -> tuple[Local, Any]:
+    """Return the changes beside a state of a system on a group, or of its map, and what gives states beside it."""
     is_map = isinstance(subject, Discretization)
     system: Any = subject.system if is_map else subject
-    _refuse(system)
+    _refuse(f"{owner}(system=...)", system)
     still = np.zeros(system.group.dim)
-    start = Start.of("linearize", configuration, body_velocity=still if velocity is None else velocity)
+    start = Start.of(owner, configuration, body_velocity=still if velocity is None else velocity)
     g = start.pose(system.group)
     r = system.from_canonical(start.momentum(system, g))
     poses, momenta = _by_steps(subject, g, r) if is_map else _by_flow(system, g, r)
@@ -52,7 +52,13 @@ def on_group(subject: Any, configuration: Any, velocity: Any) -> Local:
         change[:known, dim:] = np.diff(momenta, axis=0)
     rows = np.zeros((len(slope), 0, slope.shape[-1]))
     names = *(f"xi{i}" for i in range(1, 1 + dim)), *(f"r{i}" for i in range(1, 1 + len(r)))
-    return Local(names, dim, np.append(np.zeros(dim), r), change, slope, rows, known - 1)
+    local = Local(names, dim, np.append(np.zeros(dim), r), change, slope, rows, known - 1)
+    return local, functools.partial(_shifted, system, g, r)
+
+
+def _shifted(system: Any, g: np.ndarray, r: np.ndarray, xi: np.ndarray, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    after = g @ system.group.exp(xi)
+    return after, _flowing(system)(np.float64(0), after, r + s)[0]
 
 
 def _by_flow(system: Any, g: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -68,8 +74,16 @@ def _by_steps(discrete: Discretization, g: np.ndarray, r: np.ndarray) -> tuple[n
     return orbit.configuration, orbit.restricted_momentum
 
 
-def _refuse(system: Any) -> None:
-    where = "linearize(system=...)"
+def along(orbit: Any) -> Float[np.ndarray, "L d d"]:
+    """Return the derivative of each state of a discrete orbit by the one before; momenta alone if they decide."""
+    discrete, system, r = orbit.motion, orbit.motion.system, orbit.restricted_momentum[:-1]
+    poses = orbit.configuration[:-1] if orbit.has_poses else np.tile(system.group.identity, (len(r), 1, 1))
+    _, slope = _by_jax(discrete, orbit.time[:-1], poses, r)
+    matters = slice(0 if system.forces is not None or system.is_spatial else system.group.dim, None)
+    return (slope + np.eye(slope.shape[-1]))[:, matters, matters]
+
+
+def _refuse(where: str, system: Any) -> None:
     if system.is_wide:
         raise error(where, "have matrices", "a system without", "Linearize `system.dense`.")
     refuse_slip(where, system)

@@ -49,6 +49,7 @@ class Reduced(NamedTuple):
         states: Numbers of these states.
         matrix: Derivatives of their changes.
         missed: Their changes, which vanish in a steady motion.
+        directions: Changes of the whole state, a column for each of these states.
         is_steady: Whether they do, and the derivatives stay the same.
         ignorable: Numbers of the coordinates that are left out.
     """
@@ -56,6 +57,7 @@ class Reduced(NamedTuple):
     states: Int[np.ndarray, "d"]
     matrix: Float[np.ndarray, "d d"]
     missed: Float[np.ndarray, "d"]
+    directions: Float[np.ndarray, "m d"]
     is_steady: bool
     ignorable: Int[np.ndarray, "_"]
 
@@ -91,7 +93,9 @@ def _without(local: Local, dependent: list[int]) -> Reduced:
     same = np.abs(matrix - matrix[0]).max(initial=0.0) <= _STEADY * largest
     is_steady = bool(same and np.all(np.abs(missed) <= bound))
     worst = missed[np.argmax(np.abs(missed).max(axis=1, initial=0.0))]
-    return Reduced(states, matrix[0], worst, is_steady, np.setdiff1d(np.arange(places), states))
+    directions = np.eye(len(local.state))[:, independent]
+    directions[dependent] = tied[0]
+    return Reduced(states, matrix[0], worst, directions[:, matters], is_steady, np.setdiff1d(np.arange(places), states))
 
 
 def _depends(slope: Float[np.ndarray, "K d d"]) -> Bool[np.ndarray, "d d"]:
