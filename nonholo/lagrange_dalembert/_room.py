@@ -17,19 +17,8 @@ import numpy as np
 from nonholo.base.numerics import double_precision
 
 _PATIENCE = 1.0  # seconds of silence
-_LEAN = {"xla_cpu_use_fusion_emitters": False}  # half the time to compile, and no slower
 _called: set[tuple[Any, Any]] = set()
 _told: set[Any] = set()
-
-
-@functools.cache
-def _options() -> dict[str, Any] | None:
-    """Return options of the compiler, where this one has them."""
-    try:
-        jax.jit(lambda: 0, compiler_options=_LEAN).lower().compile()
-    except jax.errors.JaxRuntimeError:
-        return None
-    return _LEAN
 
 
 @functools.cache
@@ -37,7 +26,7 @@ def _compiled(function: Callable[..., Any]) -> Callable[..., Any]:
     def called(family: Any, numbers: tuple[Any, ...], *arguments: Any) -> Any:
         return function(family.bound(*numbers), *arguments)
 
-    return jax.jit(called, static_argnums=0, compiler_options=_options())
+    return jax.jit(called, static_argnums=0)
 
 
 def room(name: str) -> Any:
