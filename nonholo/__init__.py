@@ -109,6 +109,7 @@ Where motions come from and go to:
     equilibria: Return the equilibria of a system or of its discrete map, with their transverse spectrum at an energy.
     linearize: Linearize a system, or its discrete map, beside a steady motion or at rest.
     asymptotics: Return where the motions of a system, or one orbit of a flow or of a discrete map, come from and go to.
+    critical_values: Return the values of a parameter at which eigenvalues begin or cease to grow.
     critical_energies: Return the critical values of the energy on the displacement variety of a top.
     heteroclinic: Trace an orbit of the discrete map from near the repelling to near the attracting equilibrium.
     half_planes: Tell in which half-planes displacements or momenta lie.

@@ -7,6 +7,7 @@ from .analysis import asymptotics as asymptotics
 from .analysis import compare as compare
 from .analysis import conserved_momenta as conserved_momenta
 from .analysis import critical_energies as critical_energies
+from .analysis import critical_values as critical_values
 from .analysis import equilibria as equilibria
 from .analysis import flow_obstruction as flow_obstruction
 from .analysis import geometric_phase as geometric_phase

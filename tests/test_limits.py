@@ -270,6 +270,7 @@ FEW = {
     ),
     "branch_growth": "is of plane sleighs, and has words of at most 1000 steps",
     "critical_energies": "is in O(n) beyond n = 3",
+    "critical_values": "asks the linearizations that are passed to it",
     "half_planes": "is of tops with n = 3 and of sleighs, and refuses all others",
     **dict.fromkeys(("compare", "crossings", "invariants", "save_orbit"), GIVEN),
     **dict.fromkeys(("load_orbit", "load_sweep", "resume"), "reads a store; the fuzzer of stores edits their figures"),

@@ -34,7 +34,7 @@ from nonholo.analysis.limits import (
     half_planes,
     heteroclinic,
 )
-from nonholo.analysis.linearization import Linearization, SteadyMotion, linearize
+from nonholo.analysis.linearization import Linearization, SteadyMotion, critical_values, linearize
 from nonholo.analysis.locomotion import (
     Accessibility,
     GeometricPhase,

@@ -44,6 +44,7 @@ def recorded(seed: int, *names: str, noise: float = NOISE) -> dict[str, np.ndarr
     return {"t": orbit.time} | {name: rows[:, ROBOT.coordinates.index(name)] for name in names}
 
 
+@pytest.mark.profile("routes", instead="test_noisy_positions_tell_two_numbers")
 def test_a_clean_record_is_fitted_closely() -> None:
     """With noise of a millionth the numbers of positions alone are those of the truth, and so is the motion."""
     found = nh.fit(robot, recorded(0, "x", "y", noise=1e-6), {"inertia": 1.0, "arm": 0.3})
@@ -76,6 +77,7 @@ def test_intervals_hold_in_many_records() -> None:
     assert np.mean(np.abs(off) <= 3.0) >= 0.98
 
 
+@pytest.mark.profile("routes", instead="test_noisy_positions_tell_two_numbers")
 def test_each_coordinate_has_a_noise_of_its_own() -> None:
     """Positions, headings, beyond half a turn, and a wheel angle are kinds by their names."""
     record = recorded(1, "x", "y", "theta", "wheel")
@@ -90,6 +92,7 @@ def test_each_coordinate_has_a_noise_of_its_own() -> None:
     assert again.parameters == found.parameters
 
 
+@pytest.mark.profile("routes", instead="test_noisy_positions_tell_two_numbers")
 def test_several_trials_have_one_body() -> None:
     """Two records, each with a start of its own, tell more than one."""
     records = [recorded(seed, "x", "y") for seed in (0, 1)]

@@ -95,7 +95,7 @@ def place_of(system: Any, names: tuple[str, ...]) -> tuple[list[int], list[int]]
 def forms_at(system: Any, q: np.ndarray) -> np.ndarray:
     """Return the constraint forms in 64 bits."""
     with jax.enable_x64(True):
-        return np.asarray(system.constraint_forms(jnp.asarray(q)))
+        return np.asarray(system.plain.constraint_forms(jnp.asarray(q)))
 
 
 @pytest.mark.parametrize(("system", "start"), CASES.values(), ids=CASES)
@@ -118,6 +118,7 @@ def test_the_matrix_is_that_of_differences_of_the_equations(system: Any, start: 
     np.testing.assert_allclose(found.matrix, wanted, rtol=0, atol=1e-9)
 
 
+@pytest.mark.profile("routes", keep=["oscillators"])
 @pytest.mark.parametrize("name", ["upright disk", "snakeboard on a circle", "oscillators"])
 def test_the_matrix_of_a_map_is_that_of_differences_of_steps(name: str) -> None:
     """From the definition: vary kept states, find displacements on the discrete constraint, difference a step."""
@@ -153,6 +154,7 @@ def test_multipliers_tend_to_rates() -> None:
     assert abs(errors[0] / errors[1] - 4) < 0.1
 
 
+@pytest.mark.profile("routes", keep=["1.0"])
 @pytest.mark.parametrize("heading", [0.0, 1.0, np.pi / 2])
 def test_a_sleigh_in_coordinates_is_that_on_the_group(heading: float) -> None:
     """The rate -a m u/(J + m a^2) is found in both, of the flow and of the map."""
@@ -174,6 +176,7 @@ def test_a_sleigh_in_coordinates_is_that_on_the_group(heading: float) -> None:
     np.testing.assert_allclose(step[-1:], wanted, rtol=0, atol=1e-13)
 
 
+@pytest.mark.profile("routes", instead="test_a_sleeping_top")
 def test_transverse_rates_of_tops_of_any_dimension() -> None:
     """Eigenvalues beside an equilibrium of a top on SO(4) are the rates and multipliers of `equilibria`, and a zero."""
     top = nh.SuslovTop(np.diag([1.0, 2.0, 1.5, 1.0]) + 0.1)
@@ -197,6 +200,7 @@ def test_a_sleeping_top(spin: float) -> None:
     assert bool(np.real(found.eigenvalues[0]) > 0.1) == bool((C * spin) ** 2 < 4 * A * weight)
 
 
+@pytest.mark.profile("routes", instead="test_a_sleeping_top")
 def test_functions_of_users_are_differenced() -> None:
     """A weight as a function of the pose gives the matrix of `Gravity`, of the flow and of the map."""
     weight, point = np.array([0.0, 0.0, -9.81]), np.array([0.1, 0.0, 0.3])
@@ -289,3 +293,27 @@ def test_refusals(subject: Any, state: dict[str, Any], words: str) -> None:
     """What is not steady is refused with its rates, what has no linearization with the reason."""
     with pytest.raises(ValueError, match=words):
         nh.linearize(subject, **state)
+
+
+def test_critical_values_of_a_disk_and_a_bead() -> None:
+    """Where eigenvalues meet on the axis, and where one crosses it: a bead on a hoop with friction, and its map."""
+    disk = nh.critical_values(lambda roll: nh.linearize(DISK, **rolling(0.0, 0.0, roll)), (0.5, 6.0), samples=4)
+    assert np.abs(disk - np.sqrt(M * G * R * DIAMETER / (AXIS * (AXIS + M * R**2)))).max() < 1e-9
+    hoop = nh.LagrangeDAlembert(
+        lambda q, v, p: (v @ v + p["spin"] ** 2 * jnp.sin(q[0]) ** 2) / 2 + jnp.cos(q[0]),
+        None,
+        dimension=1,
+        force=nh.Friction([0.3]),
+        parameters={"spin": 1.0},
+    )
+    for made, error in ((lambda system: system, 1e-12), (lambda system: nh.discretize(system, 0.01), 1e-9)):
+        found = nh.critical_values(
+            lambda spin, made=made: nh.linearize(made(hoop.with_parameters(spin=spin)), configuration=[0.0]),
+            (0.5, 1.6),
+            samples=3,
+        )
+        assert np.abs(found - 1.0).max() < error
+    with pytest.raises(ValueError, match="return a Linearization"):
+        nh.critical_values(lambda spin: spin, (0.0, 1.0))
+    with pytest.raises(ValueError, match="must rise"):
+        nh.critical_values(lambda spin: spin, (1.0, 1.0))

@@ -57,6 +57,7 @@ def test_the_shortest_correction_is_taken() -> None:
     assert found.is_stable
 
 
+@pytest.mark.profile("routes", instead="test_rest_under_a_constraint")
 def test_a_heavy_top_hangs() -> None:
     """Under weight a top is at rest with its center of mass below or above, of the flow and the map."""
     point = np.array([0.1, 0.05, -0.3])

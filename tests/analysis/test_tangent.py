@@ -92,6 +92,7 @@ def sixth(function: Callable[[np.ndarray], np.ndarray], size: int) -> np.ndarray
     return np.transpose(columns)
 
 
+@pytest.mark.profile("routes", keep=["composition"])
 @pytest.mark.parametrize("discrete", MAPS.values(), ids=MAPS)
 def test_tangent_maps_by_jax(discrete: nh.Discretization) -> None:
     """Maps without closed derivatives, with poses where they count: the product is that of differences of orbits."""
@@ -152,6 +153,7 @@ def test_exponents_in_coordinates_are_those_of_the_linear_equations() -> None:
     np.testing.assert_allclose(np.sort(np.real(values)), np.exp([-0.25, 0.25]), rtol=1e-11)
 
 
+@pytest.mark.profile("routes", instead="test_tangent_maps_in_coordinates")
 def test_tangent_maps_by_functions_on_a_group() -> None:
     """By functions of the pose on a group: a free top has the tangent map of `RigidBody`, and carries its pose."""
     J, h = np.diag([1.0, 2.0, 3.0]), 0.1

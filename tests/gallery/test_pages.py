@@ -20,6 +20,7 @@ PAGES = (
     "how-to/drive-a-robot.md",
     "how-to/explore.md",
     "how-to/gaits.md",
+    "how-to/linearize.md",
     "how-to/make-a-dataset.md",
     "how-to/run-an-ensemble.md",
     "how-to/steer.md",
@@ -38,6 +39,7 @@ LONG = [
     "how-to/choose-a-discretisation.md",
     "how-to/d*.md",
     "how-to/gaits.md",
+    "how-to/linearize.md",
     "how-to/make-a-dataset.md",
     "how-to/steer.md",
 ]

@@ -84,6 +84,7 @@ def exactly(numbers: dict[str, Any], q: Any, v: Any, controls: Any) -> list[Any]
     return [*started, *leaving, energy]
 
 
+@pytest.mark.profile("routes", instead="test_many_numbers_at_once")
 def test_derivatives_have_nine_digits_of_fifty() -> None:
     """Forward and reverse derivatives by numbers, start and controls are those of differences of 50-digit runs."""
     given = {"mass": NUMBERS["mass"], "arm": NUMBERS["arm"], "pull": NUMBERS["pull"]}
@@ -125,6 +126,7 @@ def test_derivatives_have_nine_digits_of_fifty() -> None:
                 assert np.abs(ours - slope).max() <= 1e-9 * (1 + np.abs(slope).max()), (which, name, index)
 
 
+@pytest.mark.profile("routes", keep=["forced"])
 @pytest.mark.parametrize("system", [SYSTEM, FORCED], ids=["free", "forced"])
 def test_values_are_those_of_simulate(system: LagrangeDAlembert) -> None:
     """All that a rollout tells is what an orbit tells, to rounding; a table of controls acts as that of a force."""

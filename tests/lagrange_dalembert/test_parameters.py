@@ -113,6 +113,7 @@ def made(name: str, numbers: dict[str, Any] | None = None) -> LagrangeDAlembert:
     return LagrangeDAlembert(**plain, dimension=3)
 
 
+@pytest.mark.profile("routes", keep=["midpoint", "force", "moving"])
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_parameters_are_numbers_within_the_functions(name: str) -> None:
     """A run has what it has with the numbers within, but for constants that were computed before: to rounding."""
@@ -132,6 +133,7 @@ def test_flows_and_work_have_the_parameters(name: str) -> None:
         assert np.abs(getattr(orbit, row) - getattr(plain, row)).max() <= 1e-9, row
 
 
+@pytest.mark.profile("routes", keep=["midpoint"])
 @pytest.mark.parametrize("name", ["midpoint", "without formulas", "force"])
 def test_other_numbers_are_not_compiled(name: str) -> None:
     """What was run with one set of numbers traces no function for another: not of a run, its parts or a flow."""
@@ -150,6 +152,7 @@ def test_other_numbers_are_not_compiled(name: str) -> None:
     assert len(CALLS) == before
 
 
+@pytest.mark.profile("routes", instead="test_a_force_of_the_time_goes_with_parameters")
 def test_a_force_and_friction_go_with_parameters() -> None:
     """`Forced` adds a potential and a force that take the parameters, friction and a table that do not."""
     table, friction = np.full((40, 3), 0.1), nh.Friction((0.1, 0.2, 0.3))

@@ -13,6 +13,7 @@ import nonholo as nh
 READY = ["snakeboard", "knife_edge_on_incline", "driven_sleigh", "non_reversible", "chaplygin_ball"]
 
 
+@pytest.mark.profile("routes", keep=["snakeboard"])
 @pytest.mark.parametrize("name", READY)
 def test_a_solver_reaches_the_end_of_the_flow(name: str) -> None:
     """SciPy, given the vector field, ends where `flow` ends: with driven joints and constraints of the pose, too."""

@@ -7,6 +7,7 @@ from published import C1, EIGENVALUES, K0, K2, SPEEDS, M, growth, linear_equatio
 import nonholo as nh
 
 
+@pytest.mark.profile("routes", instead="test_accelerations_far_from_upright_are_published")
 def test_the_linear_equations_are_those_of_the_benchmark() -> None:
     """M from torques, C1, K0 and K2 from derivatives at two speeds: 14 digits of the largest entry of each."""
     for matrix, published in zip(linear_equations(), (M, C1, K0, K2), strict=True):
@@ -35,6 +36,7 @@ def test_accelerations_far_from_upright_are_published() -> None:
     assert np.abs(found - published).max() <= 2e-12
 
 
+@pytest.mark.profile("routes", instead="test_accelerations_far_from_upright_are_published")
 def test_the_front_wheel_stays_on_the_ground() -> None:
     """The height of its lowest point is zero to rounding, as it turns by a tenth: the midpoint rule would lift it."""
     ready = nh.examples.bicycle()
@@ -56,3 +58,14 @@ def test_the_map_rides_as_the_flow() -> None:
     assert abs(np.log2(errors[0] / errors[1]) - 2.0) <= 0.1
     energy = ready.conserved["energy"](exact.configuration, exact.body_velocity)
     assert np.ptp(energy) <= 1e-11 * energy[0]
+
+
+@pytest.mark.profile("routes", instead="test_critical_values_of_a_disk_and_a_bead")
+def test_one_call_gives_the_weave_and_the_capsize_speed() -> None:
+    """To the nine decimals that are published."""
+
+    def riding(speed: float) -> nh.analysis.Linearization:
+        ready = nh.examples.bicycle(speed=speed, lean_rate=0.0, steer_rate=0.0)
+        return nh.linearize(ready.system, configuration=ready.configuration, body_velocity=ready.body_velocity)
+
+    assert np.abs(nh.critical_values(riding, (3.0, 8.0), samples=5) - SPEEDS).max() < 1e-9

@@ -124,6 +124,7 @@ def _lawful(forced: nh.Forced, h: float, velocity: np.ndarray, steps: int) -> tu
     return np.diff(energy).max() / turned, gap / turned, len(orbit)
 
 
+@pytest.mark.profile("problems", keep=["0", "1", "2", "3", "4", "5", "6", "7"])
 @pytest.mark.parametrize("seed", range(40))
 def test_no_slip_adds_energy(seed: int) -> None:
     """T + U never grows and the balance closes to rounding: any body, rows, step, grip and coefficient."""

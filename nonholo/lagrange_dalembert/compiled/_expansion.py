@@ -117,7 +117,7 @@ class Expansion:
             b.store(b.fmul(divisor, coefficient), self._at(self.moves[x], b.sub(self.k, _word(1))))
 
     def _of(self, x: Scalar, order: Any) -> Any:
-        """Load a coefficient: kept in registers, so many numbers would take LLVM seconds."""
+        """Load a coefficient: LLVM takes seconds for thousands of numbers that it keeps in registers."""
         return self.builder.load(self._at(self.places[x], order))
 
     def _add(self, x: Scalar, _: Any) -> Any:
