@@ -118,7 +118,7 @@ def test_the_matrix_is_that_of_differences_of_the_equations(system: Any, start: 
     np.testing.assert_allclose(found.matrix, wanted, rtol=0, atol=1e-9)
 
 
-@pytest.mark.profile("routes", keep=["oscillators"])
+@pytest.mark.profile("routes", instead="test_multipliers_tend_to_rates")
 @pytest.mark.parametrize("name", ["upright disk", "snakeboard on a circle", "oscillators"])
 def test_the_matrix_of_a_map_is_that_of_differences_of_steps(name: str) -> None:
     """From the definition: vary kept states, find displacements on the discrete constraint, difference a step."""
@@ -154,7 +154,7 @@ def test_multipliers_tend_to_rates() -> None:
     assert abs(errors[0] / errors[1] - 4) < 0.1
 
 
-@pytest.mark.profile("routes", keep=["1.0"])
+@pytest.mark.profile("routes", instead="test_a_sleeping_top")
 @pytest.mark.parametrize("heading", [0.0, 1.0, np.pi / 2])
 def test_a_sleigh_in_coordinates_is_that_on_the_group(heading: float) -> None:
     """The rate -a m u/(J + m a^2) is found in both, of the flow and of the map."""
@@ -288,6 +288,7 @@ REFUSED = {
 }
 
 
+@pytest.mark.profile("routes", cases=["a tilted top"])
 @pytest.mark.parametrize(("subject", "state", "words"), REFUSED.values(), ids=REFUSED)
 def test_refusals(subject: Any, state: dict[str, Any], words: str) -> None:
     """What is not steady is refused with its rates, what has no linearization with the reason."""

@@ -22,6 +22,7 @@ def hoop() -> nh.LagrangeDAlembert:
     return nh.LagrangeDAlembert(lagrangian, None, dimension=2, prescribed={1: lambda t: SPEED * t})
 
 
+@pytest.mark.profile("routes", instead="test_rest_under_a_constraint")
 def test_a_bead_finds_its_place_on_a_turning_hoop() -> None:
     r"""$\cos\theta = g/\Omega^2$, stable; the bottom is not; the map has the same places."""
     still, aside = [0.0, SPEED], np.arccos(G / SPEED**2)

@@ -112,6 +112,7 @@ def test_tangent_maps_by_jax(discrete: nh.Discretization) -> None:
     np.testing.assert_allclose(product, sixth(last, posed + k), rtol=0, atol=1e-10)
 
 
+@pytest.mark.profile("routes", keep=["True"])
 @pytest.mark.parametrize("is_map", [True, False])
 def test_tangent_maps_in_coordinates(is_map: bool) -> None:
     """On the particle with z' = y x' the product has the singular values of differences of orbits from all starts."""
@@ -139,6 +140,7 @@ def test_tangent_maps_in_coordinates(is_map: bool) -> None:
     np.testing.assert_allclose(np.linalg.svd(product, compute_uv=False), wanted, rtol=0, atol=1e-9)
 
 
+@pytest.mark.profile("routes", instead="test_tangent_maps_in_coordinates")
 def test_exponents_in_coordinates_are_those_of_the_linear_equations() -> None:
     """A pendulum upside down: plus and minus one, of the map logarithms of the multipliers over the step."""
     pendulum = nh.LagrangeDAlembert(lambda q, v: v @ v / 2 + jnp.cos(q[0]), None, dimension=1)

@@ -128,6 +128,7 @@ def _around() -> Steering:
     return nh.steer(SLEIGH, {}, GOAL, steps=STEPS, obstacles=DISC)
 
 
+@pytest.mark.profile("routes", instead="test_derivatives_are_those_of_differences")
 def test_a_disc_is_kept_clear_of() -> None:
     """Run again by the compiled map under a table, the controls meet the goal and the clearance, which is used up."""
     found = _around()

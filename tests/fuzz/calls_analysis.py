@@ -54,11 +54,23 @@ def _of_systems() -> list[Call]:
     ]
 
 
+def _ahead(speed: float) -> nh.analysis.Linearization:
+    return nh.linearize(SLEIGH, body_velocity=(0.0, speed, 0.0))
+
+
 def _of_maps() -> list[Call]:
     top, sleigh, W = {"discrete": thing(TOP)}, {"discrete": thing(SLEIGH)}, nh.SO(3).exp(BENT)
     start = {"energy": positive(0.5), "side": integer(1)}
     return [
         call("critical_energies", nh.critical_energies, **top),
+        call(
+            "critical_values",
+            nh.critical_values,
+            linearization=thing(_ahead),
+            interval=array([1.0, 2.0]),
+            samples=count(1),
+            slow=True,
+        ),
         call("flow_obstruction", nh.flow_obstruction, **sleigh, energy=positive(0.5), samples=count(4)),
         call("half_planes", nh.half_planes, **top, displacement=array(W, "batch")),
         call("half_planes [momentum]", nh.half_planes, **top, momentum=array([0.1, 0.2, 0.05], "batch")),

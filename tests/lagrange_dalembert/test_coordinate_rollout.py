@@ -84,7 +84,7 @@ def exactly(numbers: dict[str, Any], q: Any, v: Any, controls: Any) -> list[Any]
     return [*started, *leaving, energy]
 
 
-@pytest.mark.profile("routes", instead="test_many_numbers_at_once")
+@pytest.mark.profile("routes", instead="test_values_are_those_of_simulate")
 def test_derivatives_have_nine_digits_of_fifty() -> None:
     """Forward and reverse derivatives by numbers, start and controls are those of differences of 50-digit runs."""
     given = {"mass": NUMBERS["mass"], "arm": NUMBERS["arm"], "pull": NUMBERS["pull"]}
@@ -143,6 +143,7 @@ def test_values_are_those_of_simulate(system: LagrangeDAlembert) -> None:
             assert np.abs(getattr(driven, row) - getattr(table, row)).max() <= 1e-13, row
 
 
+@pytest.mark.profile("routes", instead="test_values_are_those_of_simulate")
 def test_a_long_rollout_goes_between_saved_states() -> None:
     """Ten thousand steps, in stretches, end where those of `simulate` do."""
     discrete, start = (
@@ -154,6 +155,7 @@ def test_a_long_rollout_goes_between_saved_states() -> None:
     assert np.array_equal(states.time, orbit.time)
 
 
+@pytest.mark.profile("routes", instead="test_values_are_those_of_simulate")
 def test_many_numbers_at_once() -> None:
     """`jax.vmap` over a parameter gives the rollouts one by one."""
 
@@ -166,6 +168,7 @@ def test_many_numbers_at_once() -> None:
     assert np.abs(many - each).max() <= 1e-14
 
 
+@pytest.mark.profile("routes", instead="test_values_are_those_of_simulate")
 def test_beyond_a_fold_there_is_nothing() -> None:
     """States and derivatives are NaN from the step that is not there, which the outcome says; those before stay."""
 

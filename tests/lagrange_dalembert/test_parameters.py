@@ -124,6 +124,7 @@ def test_parameters_are_numbers_within_the_functions(name: str) -> None:
         assert np.abs(ours - theirs).max(initial=0.0) <= 1e-13 * (1 + np.abs(theirs).max(initial=0.0)), row
 
 
+@pytest.mark.profile("routes", keep=["midpoint", "force"])
 @pytest.mark.parametrize("name", ["midpoint", "of time", "force", "moving", "joint"])
 def test_flows_and_work_have_the_parameters(name: str) -> None:
     """A flow, and the work along it, agree with those of numbers within, to the errors of its steps."""

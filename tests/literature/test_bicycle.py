@@ -14,6 +14,7 @@ def test_the_linear_equations_are_those_of_the_benchmark() -> None:
         assert np.abs(matrix - published).max() <= 1e-14 * np.abs(published).max()
 
 
+@pytest.mark.profile("routes", instead="test_accelerations_far_from_upright_are_published")
 @pytest.mark.parametrize("speed", EIGENVALUES)
 def test_eigenvalues_are_those_of_the_table(speed: int) -> None:
     """To the last of its 14 decimals but one."""
@@ -21,6 +22,7 @@ def test_eigenvalues_are_those_of_the_table(speed: int) -> None:
     assert max(min(abs(x - y) for y in spectrum(float(speed))) for x in listed) <= 2e-12
 
 
+@pytest.mark.profile("routes", instead="test_accelerations_far_from_upright_are_published")
 def test_it_rides_upright_between_weave_and_capsize() -> None:
     """The largest real part of an eigenvalue changes sign at the two published speeds."""
     weave, capsize = SPEEDS

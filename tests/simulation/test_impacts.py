@@ -274,6 +274,7 @@ def test_restitution_scales_the_normal_velocity(bounce: float) -> None:
         assert np.abs(after[:, 1 - across] - before[:, 1 - across]).max() < 1e-15
 
 
+@pytest.mark.profile("problems", cases=["0.9"])
 @pytest.mark.parametrize("bounce", [0.0, 0.5, 0.9])
 def test_chattering_ends(bounce: float) -> None:
     """A ball that comes to rest ends the run within a step of the limit of its impacts, after few of them."""

@@ -240,8 +240,8 @@ def _ranges(bounds: Any, shapes: Shapes, numbers: np.ndarray) -> Ranges:
 
 def _result(search: Search, found: Found, begin: np.ndarray, shapes: Shapes, orbit_of: Callable[..., Any]) -> Fit:
     problem, point, P = search.problem, found.point, search.problem.count
-    _check_determined(found.estimate, shapes, P)
     _check_levels(search, found)
+    _check_determined(found.estimate, shapes, P)
     covariance, plain, degrees = (x[..., :P] for x in found.estimate.covariance(~np.isfinite(search.known)))
     covariance, plain = covariance[:P], plain[:P].diagonal()
     system, parameters = search.system_at(point), named(shapes, point[:P])
@@ -261,17 +261,26 @@ def _result(search: Search, found: Found, begin: np.ndarray, shapes: Shapes, orb
 
 def _check_determined(found: Estimate, shapes: Any, count: int) -> None:
     """Refuse a record where a combination of numbers changes nothing."""
-    _, sizes, directions = np.linalg.svd(found.triangle)
-    if not found.lengths.all() or sizes[-1] < _FLAT * sizes[0]:
+    if _is_flat(found):
+        directions = np.linalg.svd(found.triangle)[2]
         flat = np.abs(directions[-1] if found.lengths.all() else found.lengths == 0)[:count]
         got = ", ".join(np.array(_names(shapes))[flat > 0.1 * flat.max()]) or "a start"
         remedy = "Fix one of them in system_of, such as a mass: a free motion does not know its unit."
         raise error(WHERE, "determine all parameters", f"none of {got} alone", remedy)
 
 
+def _is_flat(found: Estimate) -> bool:
+    sizes = np.linalg.svd(found.triangle, compute_uv=False)
+    return not found.lengths.all() or bool(sizes[-1] < _FLAT * sizes[0])
+
+
 def _check_levels(search: Search, found: Found) -> None:
-    """Refuse a kind of which all numbers are used up by the fit: its noise cannot be seen."""
-    free = np.where(np.isfinite(search.known), np.inf, found.estimate.free)
+    """Refuse a kind of which all numbers are used up by the fit: its noise cannot be seen.
+
+    The search for such a noise may end anywhere, also where nothing is determined.
+    """
+    used = _is_flat(found.estimate) & (found.estimate.counts <= len(found.point))
+    free = np.where(np.isfinite(search.known), np.inf, np.where(used, 0.0, found.estimate.free))
     if free.min() < _LEAST_FREE:
         kind = list(search.problem.there)[int(free.argmin())]
         got = f"{found.estimate.counts[free.argmin()]} numbers of {kind}, of which {free.min():.2g} are left by the fit"
