@@ -159,7 +159,7 @@ def test_residuals_and_noise_are_those_of_their_kind() -> None:
         assert noise[kind] / 3 < level < 3 * noise[kind]
 
 
-@pytest.mark.profile("problems", instead="test_levels_have_the_largest_restricted_likelihood")
+@pytest.mark.profile("long", instead="test_levels_have_the_largest_restricted_likelihood")
 def test_intervals_hold_for_every_combination_of_kinds() -> None:
     """Of 40 records of each combination intervals of 95 % hold every parameter 32 times, and 93 % of all of them.
 
@@ -293,7 +293,7 @@ def test_residuals_and_profiles_are_drawn() -> None:
     ("records", "least"),
     [
         pytest.param(100, 88, marks=pytest.mark.profile("long", instead="test_profile_of_a_line_is_its_parabola")),
-        pytest.param(25, 20, marks=pytest.mark.profile("problems", instead="test_profile_of_a_line_is_its_parabola")),
+        pytest.param(25, 20, marks=pytest.mark.profile("long", instead="test_profile_of_a_line_is_its_parabola")),
     ],
 )
 def test_profiles_hold_more_often_than_the_covariance(records: int, least: int) -> None:

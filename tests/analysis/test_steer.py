@@ -13,7 +13,7 @@ ASIDE = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]])
 REST = {"restricted_velocity": (0.0, 0.0)}
 
 
-@pytest.mark.profile("routes", instead="test_bounds_hold")
+@pytest.mark.profile("long", instead="test_bounds_hold")
 def test_thousand_sleighs_are_parked() -> None:
     """From random poses and velocities to rest: at least 999 of 1000 meet pose and velocity to 1e-8, as rollouts do."""
     found = nh.steer(SLEIGH, _starts(1000), {"configuration": np.eye(3), **REST}, steps=40)

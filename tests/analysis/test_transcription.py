@@ -37,7 +37,7 @@ def _program(discrete: Any, steps: int) -> Program:
 
 def _snakeboard() -> Program:
     rng = np.random.default_rng(3)
-    system = nh.examples.snakeboard().system
+    system = nh.examples.snakeboard().system.plain
     nodes = CoordinateNodes(system, np.float64(0.1), rng.normal(size=(1, 2)), rng.normal(size=(3, 5)), np.zeros(5))
     bounds = StateBounds(rng.normal(size=(2, 10)), np.zeros(2), np.ones(2))
     steps = Steps(nodes, rng.normal(size=(1, 2)), np.array([0.2]), nodes.time_step, bounds)
@@ -214,7 +214,7 @@ def test_places_on_the_way_and_the_goal_of_an_outline() -> None:
     np.testing.assert_allclose(poses[-1], np.eye(3), rtol=0, atol=1e-8)
 
 
-@pytest.mark.profile("routes", instead="test_a_disc_is_kept_clear_of")
+@pytest.mark.profile("long", instead="test_derivatives_are_those_of_differences")
 @pytest.mark.parametrize("name", ["top", "space", "forced"])
 def test_bodies_meet_goals(name: str) -> None:
     """A top about the axis that it must not turn about, a body in space, a sleigh under gravity and friction."""

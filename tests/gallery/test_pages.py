@@ -35,18 +35,23 @@ ELSEWHERE = {  # pages whose blocks run with what stands around them, and where
     "how-to/run-a-sweep.md": "cli/test_sweep.py",
     "how-to/run-for-days.md": "simulation/test_stored_runs.py",
 }
-LONG = [
+NOTEBOOKS = {"how-to/steer.md", "how-to/differentiate-and-fit.md", "how-to/gaits.md"}
+LONG = {
     "how-to/choose-a-discretisation.md",
-    "how-to/d*.md",
-    "how-to/gaits.md",
+    "how-to/drive-a-robot.md",
     "how-to/linearize.md",
     "how-to/make-a-dataset.md",
-    "how-to/steer.md",
-]
+}
 
 
-@pytest.mark.profile("paper", cases=LONG)
-@pytest.mark.parametrize("page", PAGES)
+def _profile(page: str) -> list[pytest.MarkDecorator]:
+    """Return where a page runs: that of the default run has no mark; those that are notebooks, too, run as these."""
+    if page in NOTEBOOKS:
+        return [pytest.mark.profile("long", instead="test_notebooks_run")]
+    return [pytest.mark.profile("paper", instead="test_every_page_with_blocks_is_run")] if page in LONG else []
+
+
+@pytest.mark.parametrize("page", [pytest.param(page, marks=_profile(page), id=page) for page in PAGES])
 def test_the_blocks_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The blocks of a page, one after another in one namespace, raise nothing."""
     blocks = re.findall(r"```python\n(.*?)```", (DOCS / page).read_text(), re.DOTALL)

@@ -16,8 +16,14 @@ STEPS, MEMBERS = 30, 1000
 ROWS = ("time", "configuration", "displacement", "body_velocity", "momentum", "energy")
 
 
-@pytest.mark.profile("routes", keep=["particle"])
-@pytest.mark.parametrize("name", NAMES)
+def _profile(name: str) -> list[pytest.MarkDecorator]:
+    """Return where a system runs: the particle by default; what takes half a minute and more before a release."""
+    profile = "long" if name in {"chaplygin_ball", "bicycle", "rattleback"} else "routes"
+    guard = "test_a_ready_system_is_first_class"
+    return [] if name == "particle" else [pytest.mark.profile(profile, instead=guard)]
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=_profile(name), id=name) for name in NAMES])
 def test_a_ready_system_is_first_class(name: str, tmp_path) -> None:  # noqa: ANN001
     """Its orbit is drawn and written, its crossings are steps of the map, members are runs alone, a sweep has both."""
     ready: Example = getattr(nh.examples, name)()

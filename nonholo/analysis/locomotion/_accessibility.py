@@ -60,8 +60,7 @@ def accessibility(system: Any, configuration: Any, *, depth: int | None = None) 
     shaped = hasattr(system, "shape_coordinates")
     names = system.shape_coordinates if shaped else checked_names("accessibility", system)
     q = array("accessibility(configuration=...)", configuration, (len(names),), f"Pass {len(names)} coordinates.")
-    if shaped:
-        system, q = _reduction.Reduced(system), np.append(np.zeros(system.group.dim), q)
+    system, q = (_reduction.Reduced(system), np.append(np.zeros(system.group.dim), q)) if shaped else (system.plain, q)
     n = len(q)
     forms = _brackets.forms_at(system, q)
     rank = np.linalg.matrix_rank(forms) if np.isfinite(forms).all() else -1

@@ -86,7 +86,7 @@ def _product(a: Polynomial, b: Polynomial, order: int) -> Polynomial:
 @double_precision()
 def _taylor(system: Any, q: Float[np.ndarray, "n"], order: int) -> Polynomial:
     """Return the constraint forms as a polynomial about q."""
-    derivatives = [np.asarray(tensor) for tensor in _derivatives(system.plain, order)(jnp.asarray(q))]
+    derivatives = [np.asarray(tensor) for tensor in _derivatives(system, order)(jnp.asarray(q))]
     return {
         power: derivatives[degree][(..., *power)] / math.prod(map(math.factorial, Counter(power).values()))
         for degree in range(order + 1)
