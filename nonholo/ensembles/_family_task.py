@@ -110,10 +110,14 @@ class FamilyTask:
             members = [member for member, other in enumerate(families) if other == family]
             starts = {name: np.stack([made[member][1][name] for member in members]) for name in made[0][1]}
             batch = self._ensemble([made[member][0] for member in members], starts, [block.first + m for m in members])
-            for name, (dimensions, rows, labels) in self._reduced(batch).items():
-                whole = np.empty((block.count, *rows.shape[1:]), rows.dtype)
-                found.setdefault(name, (dimensions, whole, labels))[1][members] = rows
+            self._place(self._reduced(batch), members, block.count, found)
         return found
+
+    def _place(self, reduced: dict[str, Any], members: list[int], count: int, found: dict[str, Any]) -> None:
+        """Write the rows of some members."""
+        for name, (dimensions, rows, labels) in reduced.items():
+            whole = np.empty((count, *rows.shape[1:]), rows.dtype)
+            found.setdefault(name, (dimensions, whole, labels))[1][members] = rows
 
     def _made(self, own: dict[str, Any]) -> tuple[Any, dict[str, np.ndarray]]:
         """Return the system of a member, and what it starts with."""

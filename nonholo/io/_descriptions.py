@@ -94,16 +94,18 @@ def _plain(value: Any) -> Any:
         return describe_group(value)
     if isinstance(value, Mapping):
         return {name: _plain(each) for name, each in value.items()}
+    if value is None or isinstance(value, str | AbstractSystem):
+        return value
     several = value if isinstance(value, tuple) else (value,)
     if any(map(callable, several)):
         return _CALLABLE
-    if type(value).__name__ in _FORCES:
-        return {"kind": type(value).__name__, "parameters": fields_of(value)}
     if any(type(each).__name__ in _FORCES for each in several):
-        return [_plain(each) for each in several]
-    if value is None or isinstance(value, str | AbstractSystem):
-        return value
+        return [_plain(each) for each in several] if several is value else _plain_force(value)
     return _plain_array(np.asarray(value))
+
+
+def _plain_force(force: Any) -> dict[str, Any]:
+    return {"kind": type(force).__name__, "parameters": fields_of(force)}
 
 
 def _plain_array(array: np.ndarray) -> Any:

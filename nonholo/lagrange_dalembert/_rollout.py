@@ -80,15 +80,19 @@ def rolled(
     begin = _Node(x, (near, near), (x, p), jnp.zeros((), jnp.result_type(int)), jnp.sum(near))
     nodes = run_nodes(step, begin, rows, sizes, work)
 
-    def decoded(x: Array, v: Array, row: Array | None) -> tuple[Array, Array, Array, Array]:
-        p = equations.momenta(system, x, v, h)[0] - (0.0 if row is None else h / 2 * row)
-        if not family.is_driven and row is None:
-            return x, v, p, equations.discrete_energy(system, x, v, h)
-        return x[:n], v, p, equations.energy(system, x, equations.inverse_legendre(system, x, p))
-
+    decoded = functools.partial(_decoded, system, h)
     saved = jax.vmap(decoded)(nodes.x, nodes.y[0], None if rows is None else rows[::every])
     good = (marked_rows(each, nodes.cause, nodes.code == 0) for each in saved)
     return CoordinateRollout(h * every * jnp.arange(1 + steps // every), *good, outcome=nodes.code[-1])
+
+
+def _decoded(system: Any, h: Array, x: Array, v: Array, row: Array | None) -> tuple[Array, Array, Array, Array]:
+    """Return configuration, velocity, momentum and energy of a node."""
+    equations = equations_of(system)
+    p = equations.momenta(system, x, v, h)[0] - (0.0 if row is None else h / 2 * row)
+    if not system.is_driven and row is None:
+        return x, v, p, equations.discrete_energy(system, x, v, h)
+    return x[: system.dimension], v, p, equations.energy(system, x, equations.inverse_legendre(system, x, p))
 
 
 @functools.partial(jax.custom_jvp, nondiff_argnums=(0,))

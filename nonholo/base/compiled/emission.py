@@ -26,8 +26,8 @@ def machine_for(triple: str, processor: str, reloc: str) -> llvm.TargetMachine:
 def compiled(text: str, name: str, *, is_long: bool = False) -> int:
     """Return the address of a function of LLVM text, compiled for this processor, which stays as long as the process.
 
-    Nothing in it is reordered or fused: as with numba, arithmetic is strict. Long code is taken as it is, with less
-    search for a better one, which takes seconds and gains nothing.
+    Nothing in it is reordered or fused: as with numba, arithmetic is strict. For long code there is less search for
+    better instructions, which takes seconds and gains nothing.
     """
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
@@ -35,8 +35,7 @@ def compiled(text: str, name: str, *, is_long: bool = False) -> int:
     about |= {"opt": 1} if is_long else {}
     machine = llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine(**about)
     code = llvm.parse_assembly(text)
-    if not is_long:
-        _optimize(code, machine, 1)
+    _optimize(code, machine, 1)
     engine = llvm.create_mcjit_compiler(code, machine)
     engine.finalize_object()
     _KEPT.append(engine)

@@ -137,15 +137,18 @@ class Forced(AbstractSystem):
             if not callable(each):
                 each.check(inside.group)
         object.__setattr__(self, "potential", terms if len(terms) > 1 else terms[0] if terms else None)
-        parts = parts_of(self.force)
-        if "friction" in parts:
-            parts["friction"].check(inside.group.dim)
-        if "slip" in parts:
-            parts["slip"].check(inside)
+        object.__setattr__(self, "force", joined(self._checked_parts()))
+
+    def _checked_parts(self) -> dict[str, Any]:
+        """Return what the force is made of, checked against the system."""
+        parts, inside = parts_of(self.force), self.system
+        for name, where in (("friction", inside.group.dim), ("slip", inside)):
+            if name in parts:
+                parts[name].check(where)
         if "table" in parts:
             remedy = "Pass a function of time, configuration and body velocity, Friction, or one body covector a step."
             parts["table"] = array("Forced(force=...)", parts["table"], (None, inside.group.dim), remedy)
-        object.__setattr__(self, "force", joined(parts))
+        return parts
 
     @functools.cached_property
     def terms(self) -> tuple[Any, ...]:
@@ -234,12 +237,8 @@ class Forced(AbstractSystem):
         Raises:
             ValueError: It is asked for where the free step does not keep its energy.
         """
-        if self.slip is not None and (composed or not exact or self.scheme == "variational"):
-            got = "another order, scheme, difference or constraint, or an inertia operator"
-            remedy = "Pass a mass tensor, order=2, and leave scheme, difference and constraint out."
-            raise error("Forced(force=Slip(...))", "stand in steps of order 2 that keep their energy", got, remedy)
         if self.slip is not None:
-            return True
+            return self._slips(exact and not composed)
         if self.scheme == "energy" and not exact:
             got = "an inertia operator, a constraint fixed in space, or another difference or constraint"
             remedy = "Leave scheme out, or pass a mass tensor and the default difference and constraint."
@@ -247,6 +246,14 @@ class Forced(AbstractSystem):
         if self.scheme is not None or not exact:
             return self.scheme == "energy"
         return composed or self.rank < self.group.dim
+
+    def _slips(self, exact: bool) -> bool:
+        """Refuse steps of rows that yield beside those of order 2 that keep their energy."""
+        if not exact or self.scheme == "variational":
+            got = "another order, scheme, difference or constraint, or an inertia operator"
+            remedy = "Pass a mass tensor, order=2, and leave scheme, difference and constraint out."
+            raise error("Forced(force=Slip(...))", "stand in steps of order 2 that keep their energy", got, remedy)
+        return True
 
     @functools.cached_property
     def differences(self) -> tuple[Float[np.ndarray, "dim orders 2 N N"], Float[np.ndarray, "orders"]]:
