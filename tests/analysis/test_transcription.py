@@ -102,7 +102,7 @@ def test_only_windows_of_unknowns_are_coupled() -> None:
     assert len(rows) < 0.2 * len(program.limits[0]) * program.unknowns
 
 
-@pytest.mark.profile("routes", instead="test_a_disc_is_kept_clear_of")
+@pytest.mark.profile("routes", instead="test_derivatives_are_those_of_differences")
 def test_an_orbit_satisfies_all_equations() -> None:
     """States, charts and forces of a rollout leave nothing over: the equations are those of the exact step."""
     table, forces = np.random.default_rng(1).normal(size=(2, 6, 3))
@@ -142,7 +142,7 @@ def test_a_disc_is_kept_clear_of() -> None:
     np.testing.assert_allclose(found.cost, 0.125 * (found.controls**2).sum(), rtol=1e-12)
 
 
-@pytest.mark.profile("routes", instead="test_a_disc_is_kept_clear_of")
+@pytest.mark.profile("routes", instead="test_derivatives_are_those_of_differences")
 def test_without_obstacles_both_methods_find_the_same() -> None:
     """IPOPT from the controls of shooting stays there: the same cost and the same controls."""
     pytest.importorskip("casadi")
@@ -180,7 +180,7 @@ def test_words_of_outcomes(status: str, gap: float, word: str) -> None:
     assert transcription.outcome_of(status, gap) == word
 
 
-@pytest.mark.profile("routes", instead="test_a_disc_is_kept_clear_of")
+@pytest.mark.profile("routes", instead="test_derivatives_are_those_of_differences")
 def test_members_go_one_after_the_other() -> None:
     """Of two starts, with their own goals, each is what it is alone; bounds hold."""
     starts = {"restricted_velocity": np.array([(0.0, 0.0), (0.2, 0.3)])}
@@ -196,7 +196,7 @@ def test_members_go_one_after_the_other() -> None:
     assert both.cost[0] > _around().cost
 
 
-@pytest.mark.profile("routes", instead="test_a_disc_is_kept_clear_of")
+@pytest.mark.profile("routes", instead="test_derivatives_are_those_of_differences")
 def test_places_on_the_way_and_the_goal_of_an_outline() -> None:
     """A motion through two places back to its start, with both ends of a rod clear of a disc."""
     pytest.importorskip("casadi")
@@ -234,7 +234,7 @@ def test_bodies_meet_goals(name: str) -> None:
     np.testing.assert_allclose(guided.cost, shot.cost, rtol=1e-6)
 
 
-@pytest.mark.profile("routes", instead="test_a_disc_is_kept_clear_of")
+@pytest.mark.profile("routes", instead="test_derivatives_are_those_of_differences")
 def test_a_snakeboard_moves_by_its_rotor_and_wheels() -> None:
     """Motors of the shape alone bring it aside, from rest to rest; simulated under a table it is there."""
     pytest.importorskip("casadi")
