@@ -35,6 +35,7 @@ WITH_A_FUNCTION = {  # of the user's, which the examples define where they stand
     "LagrangeDAlembert.flow: orbit",
     "LagrangeDAlembert.flow: spring",
     "LagrangeDAlembert.regularity: free",
+    "LagrangeDAlembert.with_parameters: spring",
     "ShapedBody: body",
     "plot.section: level",
 }

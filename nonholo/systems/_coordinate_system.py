@@ -4,7 +4,7 @@ import abc
 import importlib
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 from nonholo.base.checks import error
 from nonholo.base.kept import Keeper
@@ -50,16 +50,16 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
     parameters: Mapping[str, Any] = MappingProxyType({})
 
     @property
-    def family(self) -> Self:
+    def family(self) -> Any:
         """What is the same for all numbers of the parameters: one system for them all."""
         return self
 
-    def bound(self, *numbers: Any) -> Self:
+    def bound(self, *numbers: Any) -> Any:
         """Return the system whose functions have numbers of its parameters within."""
         del numbers
         return self
 
-    def with_parameters(self, **numbers: Any) -> Self:
+    def with_parameters(self, **numbers: Any) -> Any:
         """Return the same system with other numbers of its parameters; refused where there are none."""
         del numbers
         remedy = "Pass parameters= to a LagrangeDAlembert."

@@ -334,7 +334,7 @@ class SlipStepper(AbstractBodyStepper):
         kernel[:], places[0] = run, number + good
         return found, code
 
-    def _row(self, r: np.ndarray, pose: np.ndarray, begun: Beginning) -> Rows:
+    def _row(self, r: np.ndarray, pose: np.ndarray, begun: Beginning) -> tuple[np.ndarray, ...]:
         """Return the row of a step; of one that holds as the kernel has it."""
         if begun.kernel is None:
             return r.copy(), begun.chart, pose.copy()
