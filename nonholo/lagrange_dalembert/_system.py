@@ -196,8 +196,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             >>> print(orbit.configuration[-1].round(9))
             [-1.]
         """
-        changed = self.parameters.changed("with_parameters(...)", numbers)
-        return self._changed(parameters=changed, family=self.family)
+        return _of_numbers(self, self.parameters.changed("with_parameters(...)", numbers), family=self.family)
 
     def _changed(self, **fields: Any) -> Self:
         """Return a system with other fields, which need no check; it does not have a name for stores."""
@@ -231,7 +230,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     @functools.cached_property
     def plain(self) -> Self:
         """The same system without parameters: its functions have them within."""
-        return self.bound(*self.parameters.values())
+        return _plain(self)
 
     def parts(self, q: Any) -> tuple[Float[np.ndarray, "P 2"], ...]:
         """Return the parts of the outline at a configuration, in body axes."""
@@ -374,6 +373,23 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         """
         starts = {"body_velocity": body_velocity, "momentum": momentum}
         return room("_flow").flow(self, configuration, starts, times, rtol, atol)
+
+
+def _of_numbers(system: Any, parameters: Parameters, **fields: Any) -> Any:
+    """Return a system with other numbers, which is pickled as such where it is made by a call that has a name."""
+    changed, recipe = system._changed(parameters=parameters, **fields), vars(system).get("recipe")
+    if recipe:
+        named = recipe[1][0] if recipe[0] is _of_numbers else system
+        vars(changed)["recipe"] = (_of_numbers, (named, parameters))
+    return changed
+
+
+def _plain(system: Any) -> Any:
+    """Return a system whose numbers stand within its functions, pickled as such."""
+    plain, recipe = system.bound(*system.parameters.values()), vars(system).get("recipe")
+    if recipe and plain is not system:
+        vars(plain)["recipe"] = (_plain, (system,))
+    return plain
 
 
 def _with_potential(lagrangian: Callable[..., Array], potential: Any, *, last: bool) -> Callable[..., Array]:

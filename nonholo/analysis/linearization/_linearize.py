@@ -9,6 +9,7 @@ import numpy as np
 
 from nonholo.analysis.linearization._reduction import Local, reduced
 from nonholo.base.checks import error, needs, shown
+from nonholo.base.kept import Keeper
 from nonholo.base.types import Float, Inexact
 from nonholo.discrete import Discretization
 from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, in_coordinates
@@ -18,7 +19,7 @@ Shifted = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Linearization:
+class Linearization(Keeper):
     r"""The linear equations beside a steady motion, $\delta\dot z = A\,\delta z$, of a map $\delta z' = A\,\delta z$.
 
     Attributes:

@@ -2,7 +2,6 @@
 
 import dataclasses
 import difflib
-import functools
 import inspect
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
@@ -25,7 +24,14 @@ class Parameters(Mapping[str, Any]):
 
     def __init__(self, given: Any) -> None:
         instance(_WHERE, given, Mapping, "be a mapping of names to numbers", "Pass a dict.")
-        self._numbers = {name(_WHERE, key, ("time_step",)): _checked(_WHERE, key, x) for key, x in given.items()}
+        self._hold({name(_WHERE, key, ("time_step",)): _checked(_WHERE, key, x) for key, x in given.items()})
+
+    def _hold(self, numbers: dict[str, Any]) -> None:
+        self._numbers = numbers
+        self._key = tuple(
+            (key, np.shape(value), id(value) if is_traced(value) else np.asarray(value).tobytes())
+            for key, value in numbers.items()
+        )
 
     def __getitem__(self, name: str) -> Any:
         return self._numbers[name]
@@ -38,13 +44,6 @@ class Parameters(Mapping[str, Any]):
 
     def __repr__(self) -> str:
         return f"{{{', '.join(f'{key!r}: {_brief(value)}' for key, value in self.items())}}}"
-
-    @functools.cached_property
-    def _key(self) -> tuple[Any, ...]:
-        return tuple(
-            (key, np.shape(value), id(value) if is_traced(value) else np.asarray(value).tobytes())
-            for key, value in self.items()
-        )
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Parameters) and self._key == other._key
@@ -71,9 +70,9 @@ class Parameters(Mapping[str, Any]):
                 where, "name parameters of the system", shown(key), f"Did you mean {near[0]}?" if near else known
             )
         changed = object.__new__(Parameters)
-        changed._numbers = self._numbers | {
-            key: _checked(where, key, value, np.shape(self[key])) for key, value in given.items()
-        }
+        changed._hold(
+            self._numbers | {key: _checked(where, key, value, np.shape(self[key])) for key, value in given.items()}
+        )
         return changed
 
 
