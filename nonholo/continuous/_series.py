@@ -22,11 +22,11 @@ from nonholo.continuous._heteroclinic import Heteroclinic
 from nonholo.continuous._solution import PLANE, Solved, States, first_heading, on_same_turn
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.kernels import Quadratic, revisit_series, solve_series, sparse_products
+from nonholo.orbit import looked_at
 from nonholo.systems import AbstractSystem
 
 _COMPACT = 40
 """Poses of more numbers are integrated as matrices, whose rates need not be tried."""
-_LOOKS = 8  # in a step, for events
 GUARD = 1 / 64
 """The error of a step as a share of what was asked for, so that rounding is all that is left at the default."""
 
@@ -163,15 +163,6 @@ def solved(
     series = Series(group, f, len(head), rank, compact, constant, unit, tolerance, float(elapsed[-1]), nodes)
     outcome = Outcome.successful if len(rows) == len(elapsed) else Outcome.not_converged
     return Solved(series.decoded(rows), outcome, series, series.looks)
-
-
-def looked_at(ends: Sequence[float], unit: float) -> Float[np.ndarray, "looks"]:
-    """Return times at which the state is looked at for events: steps are long, so within them too.
-
-    Ends of steps are in another unit of time.
-    """
-    looks = np.arange(_LOOKS * len(ends) - _LOOKS + 1) / _LOOKS
-    return np.interp(looks, np.arange(len(ends)), ends) / unit
 
 
 @functools.lru_cache(maxsize=16)

@@ -1,6 +1,6 @@
 """The orbit: compact states of a motion and their decoding by the group. Nothing is simulated here."""
 
-from nonholo.orbit._base import AbstractOrbit, OrbitT, times_within
+from nonholo.orbit._base import AbstractOrbit, OrbitT, looked_at, times_within
 from nonholo.orbit._crossings import AbstractEventLog, Crossings, EventLog, joined_crossings
 from nonholo.orbit._decoder import Decoder
 from nonholo.orbit._orbit import STATES, AbstractMotion, Orbit, as_orbit

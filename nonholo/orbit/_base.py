@@ -25,6 +25,8 @@ _COLUMNS = {
 }  # in coordinates; multipliers may be unknown
 _COLUMNS |= {"reduced_momentum", "cayley", "canonical_pose"}  # compact
 
+_LOOKS = 8  # in a step of a flow, for events
+
 OrbitT = TypeVar("OrbitT")
 SelfT = TypeVar("SelfT", bound="AbstractOrbit")
 
@@ -45,6 +47,15 @@ def times_within(span: tuple[float, float], times: Any) -> tuple[Float[np.ndarra
         got = f"{time[np.argmax(outside)]:.17g}"
         raise error(where, f"lie between {first:.17g} and {last:.17g}", got, "Ask the flow for later times.")
     return time, np.argsort(time if last >= first else -time, kind="stable")
+
+
+def looked_at(ends: Sequence[float], unit: float = 1.0) -> Float[np.ndarray, "looks"]:
+    """Return times at which the state is looked at for events: steps are long, so within them too.
+
+    Ends of steps are in another unit of time.
+    """
+    looks = np.arange(_LOOKS * len(ends) - _LOOKS + 1) / _LOOKS
+    return np.interp(looks, np.arange(len(ends)), ends) / unit
 
 
 class AbstractOrbit(Keeper, abc.ABC):

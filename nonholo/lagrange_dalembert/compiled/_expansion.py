@@ -60,7 +60,7 @@ class Expansion:
     def write(self, module: Any, name: str, width: int) -> None:
         """Write the function to a module; `width` numbers stand in a row of its series.
 
-        An order is a function of its own: in a loop LLVM would look for what stays the same, for seconds.
+        An order is a function of its own, which a loop calls.
         """
         pointer, self.width = DOUBLE.as_pointer(), width
         kind = ir.FunctionType(ir.VoidType(), [pointer] * 5 + [_WORD])
@@ -117,7 +117,7 @@ class Expansion:
             b.store(b.fmul(divisor, coefficient), self._at(self.moves[x], b.sub(self.k, _word(1))))
 
     def _of(self, x: Scalar, order: Any) -> Any:
-        """Load a coefficient: LLVM takes seconds for thousands of numbers that it keeps in registers."""
+        """Load a coefficient."""
         return self.builder.load(self._at(self.places[x], order))
 
     def _add(self, x: Scalar, _: Any) -> Any:
@@ -170,10 +170,7 @@ class Expansion:
 
 
 def _dot(module: Any, name: str) -> Any:
-    """Write a function of an array, two places and n: the sum of a[i] b[n - 1 - i], four products at once.
-
-    Places are numbers: as addresses, which stay the same in all orders, LLVM would keep thousands of them at hand.
-    """
+    """Write a function of an array, two places and n: the sum of a[i] b[n - 1 - i], four products at once."""
     function = _internal(module, name, DOUBLE, [DOUBLE.as_pointer(), *[_WORD] * 3])
     array, *places, n = function.args
     b, zero = ir.IRBuilder(function.append_basic_block()), ir.Constant(_VECTOR, [0.0] * _SIDE)

@@ -18,11 +18,11 @@ from nonholo.lagrange_dalembert.compiled._expansion import Expansion
 from nonholo.lagrange_dalembert.compiled._run import Values, evaluated, machine_code, program
 from nonholo.lagrange_dalembert.compiled._scalars import Scalar, UntranslatableError
 from nonholo.lagrange_dalembert.compiled._windows import array_of
+from nonholo.orbit import looked_at
 
 _MOST = 100_000  # steps; what needs more is stiff
 _GUARD = 1 / 64  # the error of a step as a share of what was asked for
 _SMALLEST = 1e-12  # of a pivot beside its diagonal
-_LOOKS = 8  # in a step, for events
 _SIDE = 8  # numbers of a row of series come in eights
 
 
@@ -126,9 +126,8 @@ class Series(NamedTuple):
         return float(self.nodes[0, 0, -1]), self.end
 
     def looks(self) -> np.ndarray:
-        """Return times at which the state is looked at for events: steps are long, so within them too."""
-        ends = [*self.nodes[:, 0, -1], self.end]
-        return np.interp(np.arange(_LOOKS * len(ends) - _LOOKS + 1) / _LOOKS, np.arange(len(ends)), ends)
+        """Return times at which the state is looked at for events."""
+        return looked_at([*self.nodes[:, 0, -1], self.end])
 
 
 def flow(system: Any, first: tuple[Any, Any], times: np.ndarray, rtol: float) -> tuple[list[np.ndarray], Series] | None:
