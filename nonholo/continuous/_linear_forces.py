@@ -97,7 +97,7 @@ def heads(
 
 def has_series_under(forced: Forced, span: float) -> bool:
     """Tell whether the flow over a time is solved by series: not where friction is much faster."""
-    return _are_linear(forced) and abs(span) * _linear_forces(forced).fastest <= _STIFF
+    return _are_linear(forced) and bool(abs(span) * _linear_forces(forced).fastest <= _STIFF)
 
 
 def under_forces(

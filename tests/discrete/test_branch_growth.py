@@ -203,7 +203,7 @@ SLEIGH, TOP = nh.ChaplyginSleigh(1.0, 1.0, 0.5), nh.SuslovTop([[1.4, 0.2, 0.5], 
         (nh.discretize(nh.ChaplyginSleigh(1.0, 1e-30, 0.5), 0.1), {}, "less extreme body"),
     ],
 )
-def test_refusals(discrete: nh.Discretization, options: dict, text: str) -> None:
+def test_what_has_no_such_words_is_refused(discrete: nh.Discretization, options: dict, text: str) -> None:
     """What has no such words is refused, with the reason."""
     with pytest.raises((ValueError, TypeError), match=re.escape(text)):
         nh.branch_growth(discrete, **options)

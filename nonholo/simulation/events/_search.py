@@ -178,7 +178,7 @@ def struck(watch: Watch, name: str, states: Any, direction: Int[np.ndarray, "1"]
     return None if after is None else watch.begin(after)
 
 
-def _begun(events: dict[str, Event], values: np.ndarray) -> Float[np.ndarray, "E 1"]:
+def _begun(events: dict[str, Event], values: Float[np.ndarray, "E K"]) -> Float[np.ndarray, "E K"]:
     """Return values at the first state: one at a wall with a direction is on the side that leads through it."""
     side = [[-event.direction * (event.reset is not None)] for event in events.values()]
     return np.where(values == 0, _TOUCH * np.reshape(side, (-1, 1)), values)

@@ -1,0 +1,58 @@
+"""`python tests/participles.py [FOLDER ...]`: functions, arguments and variables that are named by a bare participle.
+
+A value is named by a noun and a function by a verb. What stays is in `ARGUED`, with the reason.
+"""
+
+import ast
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+ARGUED = {
+    "forced": "a system under forces, as in `nh.Forced`",
+    "reduced": "the reduced momentum, of the theory",
+    "restricted": "the restricted momentum, of the theory",
+    "conserved": "conserved momenta, of the theory",
+    "converged": "a public attribute of results, as in optimizers",
+    "elapsed": "the elapsed time, since a start",
+}
+MOST = 40
+_IRREGULAR = set(
+    "begun broken brought built caught chosen done drawn felt found given gone grown held hidden kept known lost made "
+    "meant met said seen sent shaken shown sought spent stood stuck swept taken taught thought thrown told torn won "
+    "worn written".split()
+)
+_NOUNS = {"bleed", "bound", "breed", "feed", "need", "seed", "speed"}
+
+
+def is_participle(name: str) -> bool:
+    """Tell whether a name is one bare participle, whatever underscores stand around it."""
+    bare = name.strip("_")
+    return bare in _IRREGULAR or (bool(re.fullmatch(r"[a-z]{2,}ed", bare)) and bare not in _NOUNS)
+
+
+def names(tree: ast.AST) -> Iterator[tuple[int, str]]:
+    """Yield the names that a module defines: its functions, their arguments, its variables; each with its line."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef):
+            yield node.lineno, node.name
+        elif isinstance(node, ast.arg):
+            yield node.lineno, node.arg
+        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            yield node.lineno, node.id
+
+
+def participles(folder: Path) -> Iterator[tuple[str, str]]:
+    """Yield each participle below a folder that nobody argues for, with its place."""
+    for path in sorted(folder.rglob("*.py")):
+        for line, name in names(ast.parse(path.read_text())):
+            if is_participle(name) and name.strip("_") not in ARGUED:
+                yield f"{path}:{line}", name
+
+
+if __name__ == "__main__":
+    lines = [" ".join(each) for folder in sys.argv[1:] or [ROOT / "nonholo"] for each in participles(Path(folder))]
+    print("\n".join(lines))  # noqa: T201
+    sys.exit(bool(lines))
