@@ -20,9 +20,48 @@ ARGUED = {
 }
 MOST = 40
 _IRREGULAR = set(
-    "begun broken brought built caught chosen done drawn felt found given gone grown held hidden kept known lost made "
-    "meant met said seen sent shaken shown sought spent stood stuck swept taken taught thought thrown told torn won "
-    "worn written".split()
+    [
+        "begun",
+        "broken",
+        "brought",
+        "built",
+        "caught",
+        "chosen",
+        "done",
+        "drawn",
+        "felt",
+        "found",
+        "given",
+        "gone",
+        "grown",
+        "held",
+        "hidden",
+        "kept",
+        "known",
+        "lost",
+        "made",
+        "meant",
+        "met",
+        "said",
+        "seen",
+        "sent",
+        "shaken",
+        "shown",
+        "sought",
+        "spent",
+        "stood",
+        "stuck",
+        "swept",
+        "taken",
+        "taught",
+        "thought",
+        "thrown",
+        "told",
+        "torn",
+        "won",
+        "worn",
+        "written",
+    ]
 )
 _NOUNS = {"bleed", "bound", "breed", "feed", "need", "seed", "speed"}
 
