@@ -19,57 +19,19 @@ ARGUED = {
     "elapsed": "the elapsed time, since a start",
 }
 MOST = 40
-_IRREGULAR = set(
-    [
-        "begun",
-        "broken",
-        "brought",
-        "built",
-        "caught",
-        "chosen",
-        "done",
-        "drawn",
-        "felt",
-        "found",
-        "given",
-        "gone",
-        "grown",
-        "held",
-        "hidden",
-        "kept",
-        "known",
-        "lost",
-        "made",
-        "meant",
-        "met",
-        "said",
-        "seen",
-        "sent",
-        "shaken",
-        "shown",
-        "sought",
-        "spent",
-        "stood",
-        "stuck",
-        "swept",
-        "taken",
-        "taught",
-        "thought",
-        "thrown",
-        "told",
-        "torn",
-        "won",
-        "worn",
-        "written",
-    ]
+_IRREGULAR = re.compile(
+    "begun|broken|brought|built|caught|chosen|done|drawn|felt|found|given|gone|grown|held|hidden|kept|known|lost|made|"
+    "meant|met|said|seen|sent|shaken|shown|sought|spent|stood|stuck|swept|taken|taught|thought|thrown|told|torn|won|"
+    "worn|written"
 )
+_REGULAR = re.compile("[a-z]{2,}ed")
 _NOUNS = {"bleed", "bound", "breed", "feed", "need", "seed", "speed"}
 
 
 def is_participle(name: str) -> bool:
     """Tell whether a name is one bare participle, whatever underscores stand around it."""
     bare = name.strip("_")
-    return bare in _IRREGULAR or (bool(re.fullmatch(r"[a-z]{2,}ed", bare)) and bare not in _NOUNS)
+    return bare not in _NOUNS and bool(_IRREGULAR.fullmatch(bare) or _REGULAR.fullmatch(bare))
 
 
 def names(tree: ast.AST) -> Iterator[tuple[int, str]]:
