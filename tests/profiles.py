@@ -56,10 +56,10 @@ PROFILES = {
         ("paper", "plotting", "analysis", "literature"),
     ),
     "shapes": Profile(
-        "annotations of shapes and types, checked at run time by jaxtyping and beartype",
+        "annotations of shapes and types, checked at run time by jaxtyping and beartype, in three cases of each test",
         (*_MECHANICS, "orbit", "simulation"),
         f"{PYTHON} -m pytest -q tests/groups tests/systems tests/discrete tests/simulation "
-        "-k 'not refused and not warned_of' "
+        "-k 'not refused and not warned_of' --cases-each 3 "
         "--jaxtyping-packages=nonholo.groups,nonholo.systems,nonholo.orbit,nonholo.discrete,nonholo.simulation,"
         "beartype.beartype",
     ),
@@ -70,7 +70,7 @@ PROFILES = {
         "tests/simulation/test_ensemble.py tests/simulation/test_flow_ensemble.py",
     ),
     "browser": Profile(
-        "the live page in Chromium, its bundle, made anew by npm; films by ffmpeg; the site: links, and its requests",
+        "the live page in Chromium, its bundle, made anew by npm; films by ffmpeg",
         ("explorer", "kernels", "plotting"),
     ),
     "benchmarks": Profile(
@@ -78,9 +78,8 @@ PROFILES = {
         (*_MECHANICS[1:], *_RUNS[1:], *_QUESTIONS[:1], "lagrange_dalembert", "explorer", "benchmarks"),
     ),
     "site": Profile(
-        "the pages and the docstrings of public names as a site; broken links and unknown names are errors",
+        "the pages and the docstrings of public names as a site: unknown names, broken links, requests to elsewhere",
         (*_MECHANICS[2:], *_RUNS[1:], *_QUESTIONS, "lagrange_dalembert", "base", "docs"),
-        ".venv/bin/pip install -q -c constraints.txt -e '.[all,docs]' && .venv/bin/sphinx-build -W docs build/site",
     ),
     "long": Profile(
         "the same problems in thousands, and a hundred bodies for 100,000 steps: half an hour",
@@ -154,6 +153,16 @@ def profile_of(item: pytest.Item) -> str:
 
     stays = not matches(mark.kwargs["cases"]) if "cases" in mark.kwargs else matches(mark.kwargs.get("keep", []))
     return DEFAULT if stays else mark.args[0]
+
+
+def some_cases(items: list[pytest.Item], count: int) -> list[pytest.Item]:
+    """Return a number of cases of each test, the first, the last and others evenly between; all where that is 0."""
+    tests: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        tests.setdefault(item.nodeid.split("[")[0], []).append(item)
+    places = [place / max(count - 1, 1) for place in range(count)]
+    chosen = {cases[round(place * (len(cases) - 1))].nodeid for cases in tests.values() for place in places}
+    return [item for item in items if item.nodeid in chosen or not count]
 
 
 def runs(item: pytest.Item, chosen: set[str]) -> bool:
