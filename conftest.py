@@ -68,7 +68,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         items.sort(key=_turn({item.path: None for item in items}))
 
 
-_WITHOUT_KERNELS = {"docs", "groups", "lagrange_dalembert", "literature", "nonholo", "paper", "plotting", "testing"}
+_WITHOUT_KERNELS = {"docs", "examples", "groups", "lagrange_dalembert", "nonholo", "paper", "plot", "testing"}
 
 
 def _turn(files: Iterable[Path]) -> Callable[[pytest.Item], int]:

@@ -37,11 +37,11 @@ class Profile:
 
 _MECHANICS = ("base", "kernels", "groups", "systems", "discrete", "continuous")
 _RUNS = ("kernels", "orbit", "simulation", "io", "ensembles")
-_QUESTIONS = ("analysis", "plotting", "literature", "testing")
+_QUESTIONS = ("analysis", "plot", "examples", "testing")
 PROFILES = {
     "routes": Profile(
         "every body by every route: the definition in JAX, which compiles a program for each",
-        (*_MECHANICS, "lagrange_dalembert", "orbit", "simulation", "analysis", "testing", "literature"),
+        (*_MECHANICS, "lagrange_dalembert", "orbit", "simulation", "analysis", "testing", "examples"),
     ),
     "faults": Profile(
         "processes and clusters that are killed, disks that are full, blocks that are damaged",
@@ -49,11 +49,11 @@ PROFILES = {
     ),
     "problems": Profile(
         "many random problems, long orbits, and four times the examples of tests that draw them",
-        (*_MECHANICS, "lagrange_dalembert", "simulation", "analysis", "literature"),
+        (*_MECHANICS, "lagrange_dalembert", "simulation", "analysis", "examples"),
     ),
     "paper": Profile(
         "changed formulas of the paper that findings must notice, and the pages of the docs, executed",
-        ("paper", "plotting", "analysis", "literature"),
+        ("paper", "plot", "analysis", "examples"),
     ),
     "shapes": Profile(
         "annotations of shapes and types, checked at run time by jaxtyping and beartype, in three cases of each test",
@@ -71,7 +71,7 @@ PROFILES = {
     ),
     "browser": Profile(
         "the live page in Chromium, its bundle, made anew by npm; films by ffmpeg",
-        ("explorer", "kernels", "plotting"),
+        ("explorer", "kernels", "plot"),
     ),
     "benchmarks": Profile(
         "every script of `benchmarks/` on small numbers, which compiles what it compares with",
@@ -105,10 +105,10 @@ DOCTESTS = {  # examples that compile for long
     f"{_DALEMBERT}on_groups._system.GroupLagrangeDAlembert.flow": "routes",
     f"{_DALEMBERT}_system.LagrangeDAlembert.flow": "routes",
     f"{_DALEMBERT}_orbit.CoordinateOrbit": "routes",
-    "nonholo.literature._particle.particle": "routes",
+    "nonholo.examples._particle.particle": "routes",
     "nonholo.ensembles._family_task.FamilyTask": "routes",
     "nonholo.discrete._consistency.consistency_defect": "routes",
-    "nonholo.literature._robot.two_wheeled_robot": "routes",
+    "nonholo.examples._robot.two_wheeled_robot": "routes",
     "nonholo.analysis.steering._feedback.tracking_feedback": "routes",
     "nonholo.analysis.steering._steer.steer": "routes",
     "nonholo.analysis.locomotion._accessibility.accessibility": "routes",
@@ -117,7 +117,7 @@ DOCTESTS = {  # examples that compile for long
     "nonholo.analysis.locomotion._connection.local_connection": "routes",
     "nonholo.analysis.locomotion._phase.geometric_phase": "routes",
     "nonholo.analysis.locomotion._shaped_body.ShapedBody": "routes",
-    "nonholo.plotting.geometry._curvature.curvature": "routes",
+    "nonholo.plot.geometry._curvature.curvature": "routes",
 }
 
 
