@@ -49,17 +49,17 @@ def by_runge_kutta(
     group, k = forced.group, forced.rank
     r, g = forced.from_canonical(reduced_momentum), group.matrix_from_pose(pose) @ group.inverse(forced.frame)
     start = np.concatenate([r, g.ravel(), first_heading(group, pose)])
-    said: dict[str, str] = {}
-    field, rtol = _field(forced, begins, k, said), max(_LEAST_IMPLICIT if is_stiff else _LEAST_RTOL, tolerances[0])
+    faults: dict[str, str] = {}
+    field, rtol = _field(forced, begins, k, faults), max(_LEAST_IMPLICIT if is_stiff else _LEAST_RTOL, tolerances[0])
     nodes, pieces, outcome = _steps(field, start, float(elapsed[-1]), rtol, is_stiff=is_stiff)
 
     def at(times: Float[np.ndarray, "K"]) -> States:
         whole = scipy.integrate.OdeSolution(nodes, pieces) if pieces else lambda t: np.tile(start[:, None], len(t))
         return _states(forced, whole(times).T)
 
-    reached = elapsed[np.abs(elapsed) <= abs(nodes[-1])]
-    why = " ".join(said.values()) if outcome == Outcome.nonfinite else ""
-    return Solved(at(reached), outcome, at, lambda: np.array(nodes[:-1]), why)
+    good_times = elapsed[np.abs(elapsed) <= abs(nodes[-1])]
+    why = " ".join(faults.values()) if outcome == Outcome.nonfinite else ""
+    return Solved(at(good_times), outcome, at, lambda: np.array(nodes[:-1]), why)
 
 
 def _steps(
@@ -77,19 +77,28 @@ def _steps(
         method = scipy.integrate.Radau if is_stiff else scipy.integrate.DOP853
         solver: Any = method(field, 0.0, start, end, rtol=rtol, atol=_SHARE * rtol) if end else None
         while solver is not None and solver.status == "running":
-            asked = solver.nfev
+            before = solver.nfev
             solver.step()
-            needed = 1 if is_stiff else (solver.nfev - asked) // solver.n_stages
+            attempts = 1 if is_stiff else (solver.nfev - before) // solver.n_stages
             if solver.status == "failed":
-                last = solver.f if is_stiff else solver.K
-                return nodes, pieces, Outcome.not_converged if np.isfinite(last).all() else Outcome.nonfinite
-            tries, vain = tries + needed, vain + needed - 1 + (not is_stiff and _is_short(solver))
+                return nodes, pieces, _failure(solver.f if is_stiff else solver.K)
+            tries, vain = tries + attempts, vain + attempts - 1 + (not is_stiff and _is_short(solver))
             nodes.append(solver.t)
             pieces.append(solver.dense_output())
             report(int(_PARTS * solver.t / end), _PARTS)
-            if tries > _FIRST and tries * end / solver.t > (_FEW if vain > tries / 3 else _MOST):
+            if tries > _FIRST and tries * end / solver.t > _most(tries, vain):
                 return nodes, pieces, Outcome.too_stiff
     return nodes, pieces, Outcome.successful
+
+
+def _failure(rates: np.ndarray) -> Outcome:
+    """Return why a step with these last rates failed."""
+    return Outcome.not_converged if np.isfinite(rates).all() else Outcome.nonfinite
+
+
+def _most(tries: int, vain: int) -> int:
+    """Return how many steps are too many, by those so far and those of them in vain."""
+    return _FEW if vain > tries / 3 else _MOST
 
 
 def _is_short(solver: Any) -> bool:
@@ -125,7 +134,7 @@ def _refuse_table(owner: str, forced: Forced) -> None:
 
 
 def _field(
-    forced: Forced, begins: float, k: int, said: dict[str, str] | None
+    forced: Forced, begins: float, k: int, faults: dict[str, str] | None
 ) -> Callable[[float, np.ndarray], np.ndarray]:
     """Return the right-hand side: momenta along the rows of the user, the pose row by row, the heading in the plane.
 
@@ -135,18 +144,18 @@ def _field(
 
     def derivative(time: float, state: np.ndarray) -> np.ndarray:
         xp = state.__array_namespace__()
-        if said is not None and not np.isfinite(state).all():
+        if faults is not None and not np.isfinite(state).all():
             return np.full_like(state, np.nan)
         g = state[k : k + N * N].reshape(N, N)
         E = forced.directions(g)
         velocity = E @ xp.linalg.solve(E.T @ inertia @ E, state[:k])
         force = np.full(group.dim, np.nan)
-        with contextlib.nullcontext() if said is None else noted(said, "force"):
+        with contextlib.nullcontext() if faults is None else noted(faults, "force"):
             force = forced.potential_force(g) + forced.applied_force(begins + time, g, velocity)
         if not forced.is_spatial:
             force = force + group.coad(velocity, inertia @ velocity)
-        moved = g @ group.hat(velocity)
-        return xp.concatenate([E.T @ force, moved.ravel(), velocity[: len(state) - k - N * N]])
+        pose_rate = g @ group.hat(velocity)
+        return xp.concatenate([E.T @ force, pose_rate.ravel(), velocity[: len(state) - k - N * N]])
 
     return derivative
 
@@ -155,8 +164,8 @@ def _states(forced: Forced, rows: Float[np.ndarray, "K size"]) -> States:
     group, k, N = forced.group, forced.rank, forced.group.size
     g = rows[:, k : k + N * N].reshape(-1, N, N)
     poses = group.normalize_pose(group.pose_from_matrix(g @ forced.frame))
-    turned = on_same_turn(rows[:, -1], poses) if group == PLANE else None
-    return States(forced.to_canonical(rows[:, :k]), poses, turned)
+    headings = on_same_turn(rows[:, -1], poses) if group == PLANE else None
+    return States(forced.to_canonical(rows[:, :k]), poses, headings)
 
 
 def forced_reaction(forced: Forced, states: Orbit) -> Float[np.ndarray, "K dim"]:

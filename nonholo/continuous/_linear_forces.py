@@ -18,7 +18,7 @@ from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.continuous._forced import by_runge_kutta
-from nonholo.continuous._series import body_equations, body_numbers, solved
+from nonholo.continuous._series import body_equations, body_numbers, solve
 from nonholo.continuous._solution import Solved
 from nonholo.kernels import Quadratic
 from nonholo.systems import Forced
@@ -62,12 +62,14 @@ def _linear_forces(forced: Forced) -> LinearForces:
     if forced.potential is not None:
         vectors, levers = forced.potential.levers(group)
         vectors, levers = vectors.reshape(-1, group.size), levers.reshape(group.dim, -1, group.size)
-    seen = np.tensordot(rows, levers, 1) @ np.linalg.inv(forced.frame).T
+    body_levers = np.tensordot(rows, levers, 1) @ np.linalg.inv(forced.frame).T
     C = np.zeros((group.dim, group.dim)) if forced.friction is None else forced.friction.matrix
     V, _ = body_numbers(group, body.constraint_subspace, body.inertia_operator)
     friction, turns = rows @ C @ rows.T, group.hat(body.constraint_subspace).swapaxes(-1, -2)[:, :n, :n]
     fastest = np.linalg.eigvals(V @ friction).real.max(initial=0.0)
-    return LinearForces(vectors, turns, seen[..., :n].reshape(len(rows), n * len(vectors)), friction, V, float(fastest))
+    return LinearForces(
+        vectors, turns, body_levers[..., :n].reshape(len(rows), n * len(vectors)), friction, V, float(fastest)
+    )
 
 
 @functools.lru_cache(maxsize=16)
@@ -88,11 +90,11 @@ def heads(
     """Return momenta, vectors seen from the body and the constant at starts, divided by the unit of time, and this."""
     acting, one = _linear_forces(forced), np.ones((len(momenta), 1))
     V, n = acting.velocities, acting.turns.shape[-1]
-    seen = (acting.vectors @ forced.group.matrix_from_pose(poses))[..., :n].reshape(len(momenta), -1)
+    body_vectors = (acting.vectors @ forced.group.matrix_from_pose(poses))[..., :n].reshape(len(momenta), -1)
     pull, rub = (np.abs(V @ acts).max(initial=0.0) for acts in (acting.levers, acting.friction))
-    rates = np.concatenate([applied(V, momenta), np.sqrt(pull * np.abs(seen)), rub * one], axis=1)
+    rates = np.concatenate([applied(V, momenta), np.sqrt(pull * np.abs(body_vectors)), rub * one], axis=1)
     units = np.ldexp(1.0, np.frexp(np.abs(rates).max(axis=1))[1])  # as `power_of_two` of each
-    return np.concatenate([momenta, seen, one], axis=1) / units[:, None], units
+    return np.concatenate([momenta, body_vectors, one], axis=1) / units[:, None], units
 
 
 def has_series_under(forced: Forced, span: float) -> bool:
@@ -114,5 +116,5 @@ def under_forces(
         return by_runge_kutta(*start, elapsed, tolerances, is_stiff=_are_linear(forced))
     (head,), (unit,) = heads(forced, reduced_momentum[None], pose[None])
     f, rank = quadratic_under(forced), forced.rank
-    found = solved(forced.group, f, head, rank, None, float(unit), pose, elapsed, tolerances, _MOST)
-    return found if found.outcome == Outcome.successful else found._replace(outcome=Outcome.too_stiff)
+    solution = solve(forced.group, f, head, rank, None, float(unit), pose, elapsed, tolerances, _MOST)
+    return solution if solution.outcome == Outcome.successful else solution._replace(outcome=Outcome.too_stiff)

@@ -201,8 +201,8 @@ class AbstractOrbit(Keeper, abc.ABC):
         size = sum(each.nbytes for each in self.rows().values()) / len(self)
         within_memory(where, 2.0 * size * gaps.sum(), "Ask it of a part of the orbit.")
         last, parts = self.chosen(slice(0, -1)), []
-        for taken in range(1, gaps.max(initial=1)):
-            last, gaps = last.chosen(gaps > taken), gaps[gaps > taken]
+        for count in range(1, gaps.max(initial=1)):
+            last, gaps = last.chosen(gaps > count), gaps[gaps > count]
             last = self.motion.after_parts(last, np.ones(len(last)))
             parts.append(last)
         whole = self.joined(parts)

@@ -20,8 +20,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Float, Int
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.orbit._base import AbstractOrbit
-from nonholo.orbit._decoder import Decoder, decoder_of
-from nonholo.orbit._poses import poses, unwrapped
+from nonholo.orbit._decoder import Decoder, decoder_of, poses, unwrap
 from nonholo.systems import System
 
 STATES = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
@@ -215,7 +214,7 @@ class Orbit(AbstractOrbit):
         pose = self.canonical_pose
         if self.space != SE(2) or pose is None or self.turned is not None or not len(self):
             return self
-        return dataclasses.replace(self, turned=unwrapped(pose, before=before))
+        return dataclasses.replace(self, turned=unwrap(pose, before=before))
 
     def at(self, times: Any) -> "Orbit":
         """Return the states of a flow at any of its times, from its Taylor series or closed form, without a new run.
@@ -318,10 +317,10 @@ class Orbit(AbstractOrbit):
 
         Those of steps with impacts are NaN.
         """
-        found = self.motion.multipliers(self)
+        rows = self.motion.multipliers(self)
         if not self.is_discrete or not self.has_impacts.any():
-            return found
-        return np.where(self.has_impacts[:-1, None], np.nan, found)
+            return rows
+        return np.where(self.has_impacts[:-1, None], np.nan, rows)
 
     @remembered
     def displacement(self) -> Float[np.ndarray, "K N N"]:
@@ -353,7 +352,7 @@ class Orbit(AbstractOrbit):
     @remembered
     def configuration(self) -> Float[np.ndarray, "K N N"]:
         """Poses as matrices."""
-        self._posed()
+        self._pose_rows()
         return self.motion.decoder.configuration(self)
 
     @remembered
@@ -373,7 +372,7 @@ class Orbit(AbstractOrbit):
         group = self.system.group
         if not group.is_affine:
             raise ValueError(f"`Orbit.position` needs a group of motions. Got {group}. Use configuration.")
-        self._posed()
+        self._pose_rows()
         return self.motion.decoder.position(self)
 
     @remembered
@@ -381,10 +380,10 @@ class Orbit(AbstractOrbit):
         """Unwrapped angle of the body on SE(2); between saved states the shorter turn is assumed unless it is known."""
         if self.turned is not None:
             return self.turned
-        pose = self._posed()
+        pose = self._pose_rows()
         if self.system.group != SE(2):
             raise ValueError(f"`Orbit.heading` needs motions of the plane. Got {self.system.group}.")
-        return unwrapped(pose)
+        return unwrap(pose)
 
     @remembered
     def energy(self) -> Float[np.ndarray, "K"]:
@@ -437,7 +436,7 @@ class Orbit(AbstractOrbit):
         """
         return importlib.import_module("nonholo.io").orbit_to_dataset(self, decoded=decoded)
 
-    def _posed(self) -> np.ndarray:
+    def _pose_rows(self) -> np.ndarray:
         if self.canonical_pose is None:
             raise ValueError("`Orbit.configuration` needs poses. Got reconstruct=False. Run with reconstruct=True.")
         return self.canonical_pose
