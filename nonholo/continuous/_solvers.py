@@ -12,7 +12,7 @@ from nonholo.base.checks import choice, error, needs
 from nonholo.base.types import Bool, Float, Int
 from nonholo.continuous._arrowhead import momenta_by_series
 from nonholo.continuous._closed_form import closed_form
-from nonholo.continuous._linear_forces import has_series_under, heads, quadratic_under, under_forces
+from nonholo.continuous._forced import has_series_under, heads, quadratic_under, under_forces
 from nonholo.continuous._series import (
     GUARD,
     body_equations,

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.checks import generator, trailing
-from nonholo.base.kept import Keeper
 from nonholo.base.limits import within_memory
+from nonholo.base.memo import Keeper
 from nonholo.base.numerics import identity_like, integrated_exponential, inverted
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.groups._coordinates import AbstractCoordinates

@@ -22,7 +22,7 @@ from nonholo.base.types import Array, Float
 from nonholo.groups import _rotations
 from nonholo.groups._base import AbstractMatrixGroup
 from nonholo.groups._coordinates import AbstractCoordinates, SeparatedCoordinates, coordinates_of
-from nonholo.groups._rodrigues import AbstractRodriguesGroup
+from nonholo.groups._special_orthogonal import AbstractRodriguesGroup
 
 
 @dataclasses.dataclass(frozen=True, repr=False)

@@ -14,7 +14,7 @@ from typing import Any, ClassVar, cast
 import numpy as np
 
 from nonholo.base.checks import error, instance, shown
-from nonholo.base.kept import Keeper, remembered
+from nonholo.base.memo import Keeper, memo
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float, Int
@@ -277,7 +277,7 @@ class Orbit(AbstractOrbit):
         """Whether poses were reconstructed."""
         return self.canonical_pose is not None
 
-    @remembered
+    @memo
     def restricted_momentum(self) -> Float[np.ndarray, "K k"]:
         """Momenta along the rows of the constraint subspace; spatial ones for a right-invariant constraint."""
         return self.system.from_canonical(self.reduced_momentum)
@@ -292,7 +292,7 @@ class Orbit(AbstractOrbit):
             raise ValueError("`Orbit.displacement` needs a discrete orbit. Got a continuous flow. Use `simulate`.")
         return self.cayley
 
-    @remembered
+    @memo
     def chart(self) -> Float[np.ndarray, "K k"]:
         """Coordinates of the displacements in rows S of the constraint subspace.
 
@@ -306,12 +306,12 @@ class Orbit(AbstractOrbit):
         back = np.linalg.pinv(system.constraint_subspace)
         return applied(back.T, system.group.vee((D - system.group.inverse(D)) / 2))
 
-    @remembered
+    @memo
     def momentum(self) -> Float[np.ndarray, "K dim"]:
         """Body momenta."""
         return self.motion.full_momentum(self)
 
-    @remembered
+    @memo
     def multipliers(self) -> Float[np.ndarray, "L s"]:
         """Impulses between the states of a discrete orbit, (K - 1, s), or forces at the times of a flow, (K, s).
 
@@ -322,7 +322,7 @@ class Orbit(AbstractOrbit):
             return rows
         return np.where(self.has_impacts[:-1, None], np.nan, rows)
 
-    @remembered
+    @memo
     def displacement(self) -> Float[np.ndarray, "K N N"]:
         """Displacements W_k = g_k^-1 g_(k+1) of single steps at the saved states."""
         D = self.motion.displacements(self)
@@ -331,7 +331,7 @@ class Orbit(AbstractOrbit):
         g = self.configuration
         return self.system.group.inverse(g) @ D @ g
 
-    @remembered
+    @memo
     def spatial_displacement(self) -> Float[np.ndarray, "K N N"]:
         """Displacements U_k = g_(k+1) g_k^-1 seen from space; on the variety for a right-invariant constraint."""
         D = self.motion.displacements(self)
@@ -340,7 +340,7 @@ class Orbit(AbstractOrbit):
         g = self.configuration
         return g @ D @ self.system.group.inverse(g)
 
-    @remembered
+    @memo
     def pose(self) -> Float[np.ndarray, "K size"] | None:
         """Compact poses of the group in the user's body frame; None if not reconstructed.
 
@@ -349,24 +349,24 @@ class Orbit(AbstractOrbit):
         """
         return None if self.canonical_pose is None else poses(self.system, self.canonical_pose)
 
-    @remembered
+    @memo
     def configuration(self) -> Float[np.ndarray, "K N N"]:
         """Poses as matrices."""
         self._pose_rows()
         return self.motion.decoder.configuration(self)
 
-    @remembered
+    @memo
     def body_velocity(self) -> Float[np.ndarray, "K dim"]:
         """Admissible body velocities whose momenta along the constraint are those of the states."""
         return self.motion.decoder.body_velocity(self)
 
-    @remembered
+    @memo
     def spatial_momentum(self) -> Float[np.ndarray, "K dim"]:
         """Momenta carried to space, the plain transpose of Ad at the inverse pose."""
         group = self.system.group
         return group.coadjoint(group.inverse(self.configuration), self.momentum)
 
-    @remembered
+    @memo
     def position(self) -> Float[np.ndarray, "K n"]:
         """Translation parts of the poses; for groups of motions."""
         group = self.system.group
@@ -375,7 +375,7 @@ class Orbit(AbstractOrbit):
         self._pose_rows()
         return self.motion.decoder.position(self)
 
-    @remembered
+    @memo
     def heading(self) -> Float[np.ndarray, "K"]:
         """Unwrapped angle of the body on SE(2); between saved states the shorter turn is assumed unless it is known."""
         if self.turned is not None:
@@ -385,7 +385,7 @@ class Orbit(AbstractOrbit):
             raise ValueError(f"`Orbit.heading` needs motions of the plane. Got {self.system.group}.")
         return unwrap(pose)
 
-    @remembered
+    @memo
     def energy(self) -> Float[np.ndarray, "K"]:
         """Reduced constrained energy; with the potential energy under forces, that of the nodes."""
         forced = self.system.forces
@@ -393,7 +393,7 @@ class Orbit(AbstractOrbit):
         kinetic = self.motion.decoder.kinetic_energy(self)
         return kinetic if potential is None else kinetic + potential
 
-    @remembered
+    @memo
     def work(self) -> Float[np.ndarray, "K"]:
         r"""Work of the force on the motion since the first state; zero without one.
 
@@ -421,7 +421,7 @@ class Orbit(AbstractOrbit):
         own = forced is not None and not (forced.table is None and forced.slip is None)
         return own and not self.has_every_step
 
-    @remembered
+    @memo
     def tangent(self) -> Float[np.ndarray, "L k k"]:
         """Derivatives of restricted momenta after each step of an orbit by those before it, (K - 1, k, k).
 

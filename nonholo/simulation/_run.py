@@ -11,7 +11,7 @@ import numpy as np
 from nonholo.base.checks import count, error
 from nonholo.base.limits import within_memory
 from nonholo.base.progress import progress_bar
-from nonholo.base.results import OUTCOMES, Outcome, OutcomeError, finished
+from nonholo.base.results import OUTCOMES, Outcome, OutcomeError, conclude
 from nonholo.discrete import check_first_state
 from nonholo.orbit import AbstractOrbit, AbstractStepper, First, Plan, Rows, State, keep_row, write_first
 from nonholo.simulation._contact import after_contact
@@ -48,7 +48,7 @@ class Run(NamedTuple):
 
     def finished(self, orbit: Any, done: int) -> Any:
         """Return the orbit of the run, or raise if it ended early."""
-        return finished(orbit, float(self.stepper.motion.time_step), done, self.steps, self.throw)
+        return conclude(orbit, float(self.stepper.motion.time_step), done, self.steps, self.throw)
 
 
 class Reached(NamedTuple):
