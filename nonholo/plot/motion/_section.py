@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
 
-from nonholo.base.calls import called, checked
+from nonholo.base.calls import call, check_result
 from nonholo.base.checks import error, function, pair, shown, text
 from nonholo.base.types import Float
 from nonholo.orbit import Orbit
@@ -97,5 +97,5 @@ def _values(name: str, quantity: Quantity, crossings: Crossings) -> Float[np.nda
         f"section({name}=...)",
         "It gets an `Orbit`: return an array with one number for each of its states.",
     )
-    found, words = called(where, quantity, crossings.states), ("one number for each crossing", remedy)
-    return checked(where, quantity, found, (len(crossings),), words, lambda at: f"time {crossings.time[at]:.17g}")
+    found, words = call(where, quantity, crossings.states), ("one number for each crossing", remedy)
+    return check_result(where, quantity, found, (len(crossings),), words, lambda at: f"time {crossings.time[at]:.17g}")
