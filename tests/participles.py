@@ -17,15 +17,17 @@ ARGUED = {
     "conserved": "conserved momenta, of the theory",
     "converged": "a public attribute of results, as in optimizers",
     "elapsed": "the elapsed time, since a start",
-    "LocusSection.isolated": "isolated points of a curve; public",
-    **dict.fromkeys(
-        ("BladeTrack.enlarged", "BranchesPicture.found", "EnergyError.expected", "SweepMap.drawn", "SweepMap.ended"),
-        "a public attribute of a picture",
-    ),
-    **dict.fromkeys(("Report.failed", "Report.passed", "Result.passed"), "a public attribute, as in test runners"),
-    "Steering.missed": "a public attribute: by what the goal is missed",
-    "check_group.compiled": "a public argument",
+    "applied": "a matrix applied to vectors: their product",
+    "shown": "what was got, shown in an error; all rooms ask for it",
+    "posed": "a public option of motions: with poses",
+    "decoded": "a public option of `to_dataset`",
+    "compiled": "a public option of `check_group`",
 }
+MEMBERS = {
+    *("chosen", "displaced", "drawn", "ended", "enlarged", "expected", "failed", "found", "isolated", "joined"),
+    *("missed", "passed", "turned"),
+}
+"""Public attributes and methods of orbits, motions, logs of events, pictures and reports."""
 MOST = 40
 _IRREGULAR = re.compile(
     "begun|broken|brought|built|caught|chosen|done|drawn|felt|found|given|gone|grown|held|hidden|kept|known|lost|made|"
@@ -42,31 +44,34 @@ def is_participle(name: str) -> bool:
     return bare not in _NOUNS and bool(_IRREGULAR.fullmatch(bare) or _REGULAR.fullmatch(bare))
 
 
-def names(tree: ast.AST, owner: str = "") -> Iterator[tuple[int, str]]:
-    """Yield the names that a module defines, each with its line: functions, variables; arguments, what a class has.
-
-    The latter have the name of their owner before them.
-    """
-    for node in ast.iter_child_nodes(tree):
-        inside = owner
-        if isinstance(node, ast.FunctionDef | ast.ClassDef):
-            inside = f"{node.name}."
-            if isinstance(node, ast.FunctionDef):
-                yield node.lineno, f"{owner if isinstance(tree, ast.ClassDef) else ''}{node.name}"
+def names(tree: ast.AST) -> Iterator[tuple[int, str]]:
+    """Yield the names that a module defines: its functions, their arguments, its variables; each with its line."""
+    members = {id(part) for node in ast.walk(tree) if isinstance(node, ast.ClassDef) for part in _members(node)}
+    for node in ast.walk(tree):
+        if id(node) in members:
+            continue
+        if isinstance(node, ast.FunctionDef):
+            yield node.lineno, node.name
         elif isinstance(node, ast.arg):
-            yield node.lineno, owner + node.arg
+            yield node.lineno, node.arg
         elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
-            yield node.lineno, (owner if isinstance(tree, ast.AnnAssign) else "") + node.id
-        yield from names(node, inside)
+            yield node.lineno, node.id
+
+
+def _members(owner: ast.ClassDef) -> Iterator[ast.AST]:
+    """Yield what defines public members of a class."""
+    for node in owner.body:
+        target = node.target if isinstance(node, ast.AnnAssign) else node
+        if getattr(target, "name", getattr(target, "id", None)) in MEMBERS:
+            yield target
 
 
 def participles(folder: Path) -> Iterator[tuple[str, str]]:
     """Yield each participle below a folder that nobody argues for, with its place."""
     for path in sorted(folder.rglob("*.py")):
         for line, name in names(ast.parse(path.read_text())):
-            bare = name.rpartition(".")[2]
-            if is_participle(bare) and not {name, bare.strip("_")} & ARGUED.keys():
-                yield f"{path}:{line}", bare
+            if is_participle(name) and name.strip("_") not in ARGUED:
+                yield f"{path}:{line}", name
 
 
 if __name__ == "__main__":

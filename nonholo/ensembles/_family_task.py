@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.calls import called
+from nonholo.base.calls import call
 from nonholo.base.checks import count, error, function, instance, scale, shown
 from nonholo.discrete import discretize
 from nonholo.ensembles._block import MemberBlock
@@ -143,7 +143,7 @@ class FamilyTask:
         found: dict[str, Any] = {OUTCOME: batch.outcome}
         for reduction in self.reductions:
             found |= (
-                _final_state(batch) if reduction == _FINAL else called("FamilyTask(reductions=...)", reduction, batch)
+                _final_state(batch) if reduction == _FINAL else call("FamilyTask(reductions=...)", reduction, batch)
             )
         return {name: _labeled(name, entry) for name, entry in found.items()}
 

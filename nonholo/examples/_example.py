@@ -14,7 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.checks import array, number, scale
-from nonholo.base.kept import Keeper
+from nonholo.base.memo import Keeper
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.discrete import discretize

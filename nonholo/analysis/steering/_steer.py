@@ -22,8 +22,8 @@ from nonholo.analysis.steering._arguments import (
     limits_of_steps,
 )
 from nonholo.base.checks import choice, count, error, flag, needs, refuse_given
-from nonholo.base.kept import Keeper
 from nonholo.base.limits import within_memory
+from nonholo.base.memo import Keeper
 from nonholo.base.progress import interruptibly, progress_bar
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, as_discretization

@@ -12,7 +12,7 @@ from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch
 
-from nonholo.base.calls import called, checked
+from nonholo.base.calls import call, check_result
 from nonholo.base.checks import choice, error, function, instance, pair, shown, text
 from nonholo.base.checks import energies as checked_energies
 from nonholo.base.types import Float
@@ -291,5 +291,5 @@ def _values(name: str, quantity: Quantity, crossings: Crossings) -> Float[np.nda
         f"section({name}=...)",
         "It gets an `Orbit`: return an array with one number for each of its states.",
     )
-    values, words = called(where, quantity, crossings.states), ("one number for each crossing", remedy)
-    return checked(where, quantity, values, (len(crossings),), words, lambda at: f"time {crossings.time[at]:.17g}")
+    values, words = call(where, quantity, crossings.states), ("one number for each crossing", remedy)
+    return check_result(where, quantity, values, (len(crossings),), words, lambda at: f"time {crossings.time[at]:.17g}")

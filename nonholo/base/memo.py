@@ -21,20 +21,20 @@ class Keeper:
 
     def __getstate__(self) -> dict[str, Any]:
         kind, own = type(self), vars(self)
-        computed = {x for x in own if "." in x or isinstance(getattr(kind, x, None), functools.cached_property)}
-        return {name: own[name] for name in own if name not in computed}
+        properties = {x for x in own if "." in x or isinstance(getattr(kind, x, None), functools.cached_property)}
+        return {name: own[name] for name in own if name not in properties}
 
 
 if TYPE_CHECKING:
-    kept = remembered = property
+    memo = system_memo = property
 else:
 
-    class remembered(functools.cached_property):  # noqa: N801
+    class memo(functools.cached_property):  # noqa: N801
         """A property of a `Keeper` that is computed once, whatever its size; its array is read-only.
 
         Example:
             >>> class Row(Keeper):
-            ...     @remembered
+            ...     @memo
             ...     def squares(self) -> np.ndarray:
             ...         return np.arange(3.0) ** 2
             >>> row = Row()
@@ -45,7 +45,7 @@ else:
         def __init__(self, compute: Callable[[Any], Any]) -> None:
             super().__init__(functools.wraps(compute)(lambda owner: read_only(compute(owner))))
 
-    class kept(property):  # noqa: N801
+    class system_memo(property):  # noqa: N801
         """A property of a system, computed once; small arrays are kept, and given as copies.
 
         What is traced belongs to its trace: nothing is kept by a system one of whose `leaves` is.
