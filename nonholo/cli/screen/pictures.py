@@ -43,9 +43,9 @@ _OTHER = ("animate",)  # drawn by --gif
 
 def kinds() -> dict[str, Callable[..., Any]]:
     """Return the pictures of a run, by the names of the command line, the overview first."""
-    from nonholo import plotting
+    from nonholo import plot
 
-    functions = {name: getattr(plotting, name) for name in dir(plotting) if name.islower() and name not in _OTHER}
+    functions = {name: getattr(plot, name) for name in dir(plot) if name.islower() and name not in _OTHER}
     of_orbits = [name for name, make in functions.items() if _needed(make) <= {*_GIVEN, *_ASKED}]
     return {name.replace("_", "-"): functions[name] for name in sorted(of_orbits, key=lambda name: name != OVERVIEW)}
 
@@ -102,7 +102,7 @@ def draw(
         return paths
     os.environ.setdefault("MPLBACKEND", "agg")
     try:
-        from nonholo import plotting
+        from nonholo import plot
 
         if picture is not None:
             with complete_file(picture) as part, waiting("drawing", progress):
@@ -110,7 +110,7 @@ def draw(
             paths["picture"] = str(picture)
         if animation is not None:
             with progress_bar("frames", progress) as report:
-                plotting.animate(orbit, animation, progress=report, overwrite=True, **look)
+                plot.animate(orbit, animation, progress=report, overwrite=True, **look)
             paths["animation"] = str(animation)
     except Exception as failure:
         warn(f"no picture: {type(failure).__name__}: {failure}")
@@ -170,9 +170,9 @@ def draw_sweep(
     os.environ.setdefault("MPLBACKEND", "agg")
     quantity, across, up = (None if name is None else _name_of(name) for name in names)
     try:
-        from nonholo import plotting
+        from nonholo import plot
 
-        figure: Any = plotting.sweep_map(result, quantity, across, up, **look).axes.figure
+        figure: Any = plot.sweep_map(result, quantity, across, up, **look).axes.figure
         with complete_file(picture) as part, waiting("drawing", sys.stderr.isatty()):
             figure.savefig(part, dpi=dpi)
     except Exception as failure:
