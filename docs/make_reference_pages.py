@@ -158,23 +158,23 @@ Ready: [scenarios/hanging_top.toml](../../scenarios/hanging_top.toml),
 
 ## Bodies
 
-`[body]` is one of these: a system of the library by the name of its class or a shorter one. Keys are the arguments of the
-class, so that what is said of them is what its documentation says.
+`[body]` is one of these: a system of the library by the name of its class or a shorter one. Keys are the arguments of
+the class, with the meanings that its documentation has.
 
 {bodies}
 
 ## Ready examples
 
 Or a system of the literature, of [`nonholo.examples`](../api/examples.md), whose name alone is a scenario:
-`nonholo simulate snakeboard`. It has a start, a time step and a number of steps of its own, so `[start]` and `[run]` may be
-left out. `nonholo new snakeboard` prints its keys with their meanings, `nonholo examples snakeboard` what is known of it.
+`nonholo simulate snakeboard`. It has a start, a time step and a number of steps, so `[start]` and `[run]` may be left
+out. `nonholo new snakeboard` prints its keys with their meanings, `nonholo examples snakeboard` what is known of it.
 
 {ready}
 
-## Bodies of your own
+## Your own bodies
 
-`--module my_robot.py` imports a Python file of yours, and no other; each public function in it is a kind of body, with its
-arguments as keys. It returns a system, or something with a `system`, a `configuration` and a `body_velocity` (as the
+`--module my_robot.py` imports your own Python file, and no other; each public function in it is a kind of body, with
+its arguments as keys. It returns a system, or something with a `system`, a `configuration` and a `body_velocity` (as the
 examples have, with `time_step` and `steps` if you like), which then needs no `[start]`; sweeps take the second sort.
 Commands that run the file are `simulate`, `explore`, `sweep`, `resume`, `extend`, `new` and `systems`.
 
@@ -182,7 +182,7 @@ Commands that run the file are `simulate`, `explore`, `sweep`, `resume`, `extend
 
 What a design varies are keys of `[body]`, starts or one of their components ("start.restricted_velocity_0"),
 "run.time_step", and numbers of `[forces]`: "forces.gravity.force", "forces.gravity.force_2", "forces.friction_0",
-"forces.slip.grip". Of an example, and of a body of your own, it varies every argument, or a component of one
+"forces.slip.grip". Of an example, and of your own body, it varies every argument, or a component of one
 ("body.planar_velocity_0").
 
 {sweep}
