@@ -174,15 +174,15 @@ out. `nonholo new snakeboard` prints its keys with their meanings, `nonholo exam
 ## Your own bodies
 
 `--module my_robot.py` imports your own Python file, and no other; each public function in it is a kind of body, with
-its arguments as keys. It returns a system, or something with a `system`, a `configuration` and a `body_velocity` (as the
-examples have, with `time_step` and `steps` if you like), which then needs no `[start]`; sweeps take the second sort.
+its arguments as keys. It returns a system, or something with a `system`, a `configuration` and a `body_velocity` (as
+the examples have, with `time_step` and `steps` if you like), which then needs no `[start]`; sweeps take the second sort.
 Commands that run the file are `simulate`, `explore`, `sweep`, `resume`, `extend`, `new` and `systems`.
 
 ## Sweeps
 
 What a design varies are keys of `[body]`, starts or one of their components ("start.restricted_velocity_0"),
 "run.time_step", and numbers of `[forces]`: "forces.gravity.force", "forces.gravity.force_2", "forces.friction_0",
-"forces.slip.grip". Of an example, and of your own body, it varies every argument, or a component of one
+"forces.slip.grip". Of an example, and of what your own file makes, it varies every argument, or a component of one
 ("body.planar_velocity_0").
 
 {sweep}

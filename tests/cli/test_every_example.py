@@ -13,7 +13,7 @@ from typer.testing import Result
 
 import nonholo as nh
 from nonholo.cli.scenario.bodies import examples
-from nonholo.cli.scenario.files import load_scenario
+from nonholo.cli.scenario.files import load_scenario, parse_setting
 
 Command = Callable[..., Result]
 NAMES = sorted(name for name in nh.examples.__all__ if name.islower())
@@ -66,6 +66,17 @@ def test_every_example(name: str, nonholo: Command) -> None:
     _done(nonholo("sweep", "many.toml", "-o", "s.zarr", "-q"))
     swept = nh.load_sweep("s.zarr")
     assert (swept["steps_done"].values == 6).all()
+
+
+def test_another_speed_keeps_the_pose_of_the_example() -> None:
+    """A start that says how fast alone begins at the configuration of the example; one that says where, at its speed."""
+    ready = nh.examples.snakeboard()
+    for name in ("momentum", "body_velocity"):
+        start = load_scenario("snakeboard", [parse_setting(f"start.{name}=[1.0, 0.0, 0.0, 0.0, 0.0]")]).scenario.start
+        assert start.configuration == ready.configuration.tolist()
+        assert start.model_dump(exclude_none=True).keys() == {name, "configuration"}
+    start = load_scenario("snakeboard", [parse_setting("start.configuration=[0.0, 0.0, 0.0, 0.0, 0.5]")]).scenario.start
+    assert (start.configuration[-1], start.body_velocity) == (0.5, ready.body_velocity.tolist())
 
 
 @pytest.mark.profile("routes", keep=[f"*{name}*" for name in QUICK])
