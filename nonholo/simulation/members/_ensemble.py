@@ -132,14 +132,12 @@ def ensemble(
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity}
     starts |= {"displacement": displacement, "momentum": momentum}
     of_steps = {"steps": steps, "save_every": save_every, "events": events, "branch": branch, "backend": backend}
+    of_steps["reconstruct"] = reconstruct
     make: Any = _of_times if isinstance(discrete, AbstractSystem) else _of_steps
-    motion, plan, widths = make(
-        discrete, {"times": times, "rtol": rtol}, of_steps | {"reconstruct": reconstruct}, starts
-    )
+    motion, plan, widths = make(discrete, {"times": times, "rtol": rtol}, of_steps, starts)
     start = Start.of("ensemble", configuration, allowed=motion.starts, project=project, **starts)
-    checked = checked_parameters(motion, parameters)
-    start, several = in_rows(motion, start, checked)
-    members = Members(motion, checked, several)
+    start, several = in_rows(motion, start, numbers := checked_parameters(motion, parameters))
+    members = Members(motion, numbers, several)
     _refuse_too_large(plan, widths, 1 if reduce is not None else several)
     check_systems(members)
     begun = firsts(members, start, posed=widths[-1] > 0, at_once=not project and are_side_by_side(members, plan))
