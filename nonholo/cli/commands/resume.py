@@ -19,6 +19,7 @@ def resume(
     store: Store,
     scheduler: Scheduler = None,
     workers: Workers = None,
+    members: Annotated[int | None, typer.Option(metavar="N", help="So many members: a random design grows.")] = None,
     module: Module = None,
     trust: Trust = False,
     json: Json = False,
@@ -33,14 +34,15 @@ def resume(
 
     nonholo resume run.zarr
     nonholo resume sweep.zarr --workers 4
+    nonholo resume sweep.zarr --members 10000
     """
     from nonholo import ensembles, io
     from nonholo.cli.commands._sweeps import continue_and_report, resume_sweep
 
+    how = {"scheduler": scheduler, "workers": workers, "members": members, "trust": trust}
     if io.format_of(store) == io.SWEEP_FORMAT:
-        resume_sweep(store, module, scheduler, workers, trust=trust, json=json)
+        resume_sweep(store, module, how, json=json)
         return
-    how = {"scheduler": scheduler, "workers": workers, "trust": trust}
     continue_and_report(store, module, functools.partial(ensembles.resume, store, **how), json=json)
 
 

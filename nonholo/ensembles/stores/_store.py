@@ -158,6 +158,16 @@ class SweepStore:
         """Say that the sweep came to its end, and consolidate the metadata."""
         self._blocks.finish({"finished": True})
 
+    def grown(self, members: int) -> "SweepStore":
+        """Return the store with more members to do; a last block that was not full is computed again."""
+        _ = self._blocks  # whose arrays have the length of an earlier growth
+        content, before = self._content, list(self.layout.sizes)
+        changes = {"design": content["design"] | {"members": members}, "before": before}
+        changes["layout"] = [[members], list(self.layout.chunk)]
+        made = uuid.uuid4().hex  # whoever still writes the smaller one is refused
+        io.edit_attributes(self.path, {"made": made, "sweep": json.dumps(content | changes), "finished": False})
+        return SweepStore(self.path, made)
+
     def _axis(self, name: str) -> np.ndarray:
         array = io.writable_array(self.path, name)
         try:
@@ -177,6 +187,9 @@ class SweepStore:
     @functools.cached_property
     def _blocks(self) -> io.BlockStore:
         arrays = {name: io.writable_array(self.path, name) for name in self.outputs}
+        for array in arrays.values():
+            if [*array.shape[:1]] == self._content.get("before"):  # a sweep that has grown since it was made
+                array.resize((*self.layout.sizes, *array.shape[1:]))
         for name, array in arrays.items():
             self._check_described(name, array)
         return io.BlockStore(self.path, self.made, self.layout, arrays, holds_nan=True)
