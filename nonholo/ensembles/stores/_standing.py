@@ -63,4 +63,14 @@ def opened_result(store: SweepStore) -> xarray.Dataset:
     except Exception as failure:
         got = f"'{store.path}', where xarray cannot read them: {failure}"
         raise error("load_sweep(store=...)", "hold sound metadata", got, "Copy it again from its source.") from failure
-    return dataset[sorted(map(str, dataset.data_vars))]  # a disk lists files in any order
+    return _labeled(dataset[sorted(map(str, dataset.data_vars))])  # a disk lists files in any order
+
+
+def _labeled(dataset: xarray.Dataset) -> xarray.Dataset:
+    """Return a result whose components have names along their dimension, where all of a dimension have the same."""
+    names: dict[str, set[tuple[str, ...]]] = {}
+    for variable in dataset.data_vars.values():
+        if components := variable.attrs.get("components"):
+            names.setdefault(str(variable.dims[-1]), set()).add(tuple(components))
+    own = {dim: list(*each) for dim, each in names.items() if len(each) == 1 and len(*each) == dataset.sizes[dim]}
+    return dataset.assign_coords(own)
