@@ -11,9 +11,8 @@ from typing import Any, Generic, NamedTuple, TypeVar
 from pydantic import ValidationError
 
 from nonholo.base.limits import read_text
-from nonholo.cli.scenario.bodies import body_table, import_own, is_example, kinds
+from nonholo.cli.scenario.bodies import body_table, import_own, is_example, kinds, summary
 from nonholo.cli.scenario.forces import read_table
-from nonholo.cli.scenario.makers import summary
 from nonholo.cli.scenario.motion import Scenario, complete_ready, moving
 from nonholo.cli.scenario.problems import Problem, ScenarioError, problem, problems_of
 from nonholo.cli.scenario.sections import Section, suggestion

@@ -8,7 +8,7 @@ from pydantic import Field, create_model
 import nonholo
 from nonholo.base.checks import shown
 from nonholo.base.limits import read_text
-from nonholo.cli.scenario.makers import Maker, arguments, summary, table_of
+from nonholo.cli.scenario.bodies import Maker, arguments, summary, table_of
 from nonholo.cli.scenario.sections import Numbers, Section, checked_by
 from nonholo.groups import components_of
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.cli.scenario.bodies import is_example
+from nonholo.cli.scenario.bodies import arguments, is_example
 from nonholo.cli.scenario.files import (
     Loaded,
     Setting,
@@ -21,7 +21,6 @@ from nonholo.cli.scenario.files import (
     toml_text,
     validated,
 )
-from nonholo.cli.scenario.makers import arguments
 from nonholo.cli.scenario.problems import ScenarioError, problem
 from nonholo.cli.scenario.sections import suggestion
 from nonholo.cli.scenario.sweeps import TABLES, SweepScenario, along, drawn, library_name, needs_size

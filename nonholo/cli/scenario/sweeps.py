@@ -14,7 +14,7 @@ from pydantic import Field, model_validator
 import nonholo
 from nonholo.base.checks import is_integer, shown
 from nonholo.base.limits import bounded_count
-from nonholo.cli.scenario.makers import arguments
+from nonholo.cli.scenario.bodies import arguments
 from nonholo.cli.scenario.motion import AbstractScenario, Start, is_ready
 from nonholo.cli.scenario.sections import Count, Section, by_kind, checked_by, is_finite
 from nonholo.ensembles import REDUCTIONS

@@ -1,11 +1,105 @@
-"""`nonholo plot`: draw a run or a sweep that was kept."""
+"""`nonholo info`, `export` and `plot`: what a store holds, in figures, as a table of poses, as a picture."""
 
+import contextlib
+import os
 import sys
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+
+
+def info(
+    store: Annotated[Path, typer.Argument(metavar="STORE", help="A store made by simulate, sweep or save_orbit.")],
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    scenario: Annotated[bool, typer.Option("--scenario", help="Print the scenario that was run, as TOML.")] = False,
+) -> None:
+    """Show the provenance of a run and measure again what it should keep.
+
+    Of a sweep: how far it came, how members ended, the first errors, its ranges.
+
+    nonholo info runs/suslov-001.zarr
+    nonholo info runs/suslov-001.zarr --scenario > again.toml
+    """
+    from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
+    from nonholo.cli.screen.stores import show_provenance, show_standing, show_sweep_standing
+    from nonholo.ensembles.stores import attributes_of
+    from nonholo.io import SWEEP_FORMAT, format_of, load_orbit, read_attributes, standing
+
+    is_sweep = format_of(store) == SWEEP_FORMAT
+    with store_errors(USAGE):
+        stored = attributes_of(store) if is_sweep else read_attributes(store)
+    if scenario:
+        if "scenario" not in stored:
+            leave("This store was not made from a scenario.", FAILED)
+        typer.echo(stored["scenario"], nl=False)
+        return
+    if is_sweep:
+        show_sweep_standing(store, stored, json=json)
+        return
+    if unfinished := standing(store):
+        show_standing(store, stored, unfinished, json=json)
+        return
+    try:
+        orbit, failure = load_orbit(store), None
+    except (OSError, ValueError) as caught:
+        orbit, failure = None, caught
+    show_provenance(store, stored, orbit, json=json)
+    if failure:
+        leave(f"Its orbit cannot be loaded. {failure}", FAILED)
+
+
+def export(
+    store: Annotated[Path, typer.Argument(metavar="STORE", help="A store of a run or a sweep, finished or not.")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="CSV", help="A new file; by default standard output.")
+    ] = None,
+    every: Annotated[int, typer.Option(metavar="N", min=1, help="Write one in N of the saved states.")] = 1,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace an older file at CSV.")] = False,
+) -> None:
+    """Write the poses of a run as CSV, read back exactly, in the body frame of the scenario.
+
+    Columns: t,x,y,theta in the plane; t,qw,qx,qy,qz for rotations of space;
+    t,x,y,z,qw,qx,qy,qz for motions of space; else the entries of the matrix.
+    Of a run that is not finished, what is there. Of a sweep the last pose of
+    each member, with its number, values, outcome and time.
+
+    nonholo export runs/sleigh-001.zarr -o sleigh.csv
+    nonholo export run.zarr --every 100 | head
+    """
+    from nonholo.cli.screen.errors import FAILED, USAGE, reporting_warnings, store_errors
+    from nonholo.io import SWEEP_FORMAT, check_file, format_of, read_attributes, store_to_csv
+
+    is_sweep = format_of(store) == SWEEP_FORMAT
+    with store_errors(USAGE):
+        if is_sweep and every != 1:
+            raise ValueError("`--every` thins the states of a run. Got it for a sweep. Leave it out.")
+        if not is_sweep:
+            read_attributes(store)
+        if output:
+            check_file(output, overwrite=overwrite)
+    with store_errors(FAILED), reporting_warnings(), _ending_with_the_reader():
+        if is_sweep:
+            from nonholo.ensembles import sweep_to_csv
+
+            sweep_to_csv(store, output or sys.stdout, overwrite=overwrite)
+        else:
+            shown = output is not None and sys.stderr.isatty()
+            store_to_csv(store, output or sys.stdout, every=every, overwrite=overwrite, progress=shown)
+    if output:
+        typer.echo(output)
+
+
+@contextlib.contextmanager
+def _ending_with_the_reader() -> Iterator[None]:
+    """Write to the standard output until its reader has seen enough, as `head` does."""
+    try:
+        yield
+        sys.stdout.flush()
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
 
 Store = Annotated[Path, typer.Argument(metavar="STORE", help="A store made by simulate, sweep or save_orbit.")]
 Output = Annotated[

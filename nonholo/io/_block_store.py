@@ -25,9 +25,7 @@ from pydantic import NonNegativeInt, TypeAdapter
 from zarr.core.sync import sync
 
 from nonholo.io._chunks import DamagedError, chunk_name, chunk_path, read_chunk
-from nonholo.io._metadata import OrbitMetadata, require_identity
-from nonholo.io._stored_events import EVENTS
-from nonholo.io.blocks._groups import (
+from nonholo.io._groups import (
     consolidate,
     create_array,
     create_groups,
@@ -36,6 +34,8 @@ from nonholo.io.blocks._groups import (
     remove_partials,
     write_whole,
 )
+from nonholo.io._metadata import OrbitMetadata, require_identity
+from nonholo.io._stored_events import EVENTS
 from nonholo.io.datasets import Variable
 
 BEFORE = -1

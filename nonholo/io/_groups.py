@@ -13,8 +13,8 @@ import zarr
 from pydantic import BaseModel
 from zarr.codecs import BloscCodec, Crc32cCodec
 
-from nonholo.io._beside import sibling
 from nonholo.io._metadata import check_metadata, checksum
+from nonholo.io._places import sibling
 from nonholo.io.datasets import CANONICAL, Variable
 
 _FILTERS = threading.Lock()  # warning filters belong to the whole process
