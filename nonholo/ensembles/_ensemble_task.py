@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from nonholo import io
-from nonholo.base.calls import called
+from nonholo.base.calls import call
 from nonholo.base.checks import array, count, error, flag, shown
 from nonholo.base.types import Float
 from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretization
@@ -124,7 +124,7 @@ class EnsembleTask:
             more = (
                 REDUCTIONS[reduction].function(batch)
                 if isinstance(reduction, str)
-                else called("EnsembleTask(reductions=...)", reduction, batch)
+                else call("EnsembleTask(reductions=...)", reduction, batch)
             )
             _add(found, more)
         return found

@@ -8,7 +8,7 @@ import jax
 import numpy as np
 
 from nonholo.base.checks import error, shown
-from nonholo.base.kept import remembered
+from nonholo.base.memo import memo
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float, Int
 from nonholo.groups import AbstractMatrixGroup
@@ -92,7 +92,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         known = len(impulses) - int(len(impulses) > 0 and bool(np.isnan(impulses[-1]).any()))
         return dataclasses.replace(self, **{**rows, "multipliers": impulses[:known]})
 
-    @remembered
+    @memo
     def work(self) -> Float[np.ndarray, "K"]:
         r"""Work on a driven system since the first state, by the trapezoidal rule; zero of one that is not driven.
 
@@ -113,14 +113,14 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         system = self.system
         return bool(system.is_driven and system.has_functions and system.table is not None and not self.has_every_step)
 
-    @remembered
+    @memo
     def restricted_momentum(self) -> Float[np.ndarray, "K n"]:
         r"""Momenta less their parts $A^T\mu$ across the constraint: those along admissible directions."""
         A = in_double(_forms_at, self.system, places(self.system, self.configuration, self.time))
         p = self.momentum[..., None]
         return (p - np.linalg.pinv(A) @ (A @ p))[..., 0]
 
-    @remembered
+    @memo
     def tangent(self) -> Float[np.ndarray, "L d d"]:
         r"""Derivative of each state by the one before, in orthonormal bases of the admissible changes of (q, v).
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import jax
 import numpy as np
 
-from nonholo.base.calls import called
+from nonholo.base.calls import call
 from nonholo.base.checks import array, choice, count, error, names, shown, text
-from nonholo.base.kept import kept
 from nonholo.base.limits import within_memory
+from nonholo.base.memo import system_memo
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._room import room
@@ -260,7 +260,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     def parts(self, q: Any) -> tuple[Float[np.ndarray, "P 2"], ...]:
         """Return the parts of the outline at a configuration, in body axes."""
         where, last = _named("outline"), (self.parameters,) if self.parameters else ()
-        return _as_parts(where, called(where, self.outline, q, *last) if callable(self.outline) else self.outline)
+        return _as_parts(where, call(where, self.outline, q, *last) if callable(self.outline) else self.outline)
 
     def takes_time(self, function: str) -> bool:
         """Return whether the Lagrangian, the constraint forms or the holonomic constraints are called with the time."""
@@ -289,7 +289,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     def _rows_of(self, name: str) -> int:
         return count_of(getattr(self.plain, name), (self.dimension,), *(() for _ in self._time(name)))
 
-    @kept
+    @system_memo
     def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
         """Shapes of a configuration and of a velocity."""
         return (self.dimension,), (self.dimension,)

@@ -164,8 +164,8 @@ def _first_state(
     within_memory("flow(times=...)", 32.0 * len(time) * numbers, remedy)
     first = ContinuousFlow(system).first(start, posed=posed)
     reduced, pose = first.numbers[0], first.numbers[1] if posed else None
-    if first.demanded is not None:
-        _check_momentum(first.demanded, _opening(system, time, (reduced, pose)).momentum[0])
+    if first.demand is not None:
+        _check_momentum(first.demand, _opening(system, time, (reduced, pose)).momentum[0])
     return reduced, pose
 
 
@@ -204,7 +204,7 @@ def _flowed(
     orbit = Orbit(motion, time[:reached], states.momenta, None, states.poses, outcome, turned=states.turned)
     if events is not None:
         orbit = flow_with_events(events, orbit, time[0] + solved.steps())
-    return _successful(orbit, solved.said, time, tolerances)
+    return _successful(orbit, solved.fault, time, tolerances)
 
 
 def _flowed_between_walls(

@@ -11,7 +11,7 @@ import numpy as np
 from nonholo.base.checks import count, error
 from nonholo.base.limits import within_memory
 from nonholo.base.progress import progress_bar
-from nonholo.base.results import OUTCOMES, Outcome, OutcomeError, finished
+from nonholo.base.results import OUTCOMES, Outcome, OutcomeError, conclude
 from nonholo.discrete import check_first_state
 from nonholo.orbit import AbstractOrbit, AbstractStepper, First, Plan, Rows, State, keep_row, write_first
 from nonholo.simulation._contact import after_contact
@@ -48,7 +48,7 @@ class Run(NamedTuple):
 
     def finished(self, orbit: Any, done: int) -> Any:
         """Return the orbit of the run, or raise if it ended early."""
-        return finished(orbit, float(self.stepper.motion.time_step), done, self.steps, self.throw)
+        return conclude(orbit, float(self.stepper.motion.time_step), done, self.steps, self.throw)
 
 
 class Reached(NamedTuple):
@@ -77,7 +77,7 @@ def opened(run: Run, first: First) -> tuple[Reached, AbstractOrbit | None]:
     """Begin a run; return how it stands at its start, and the empty orbit of one that cannot continue from there."""
     state, outcome = run.stepper.start(first)
     begun = Reached(0, outcome, state, run.watch)
-    if outcome == Outcome.successful and first.demanded is None and run.watch is None:
+    if outcome == Outcome.successful and first.demand is None and run.watch is None:
         return begun, None
     there = orbit_at(run.stepper, state, 0)
     if outcome != Outcome.successful:
@@ -86,8 +86,8 @@ def opened(run: Run, first: First) -> tuple[Reached, AbstractOrbit | None]:
         watch, _ = search(run.watch, there)
         check_resets(run.watch.events, there)
         begun, there = begun._replace(watch=watch), dataclasses.replace(there, events=watch.log())
-    if outcome == Outcome.successful and first.demanded is not None:
-        check_first_state(first.demanded, there)
+    if outcome == Outcome.successful and first.demand is not None:
+        check_first_state(first.demand, there)
     return begun, None if outcome == Outcome.successful else run.finished(there, 0)
 
 

@@ -26,14 +26,14 @@ KINDS = tuple(_ARGUMENTS)
 
 def figure_of(kind: str, orbit: "Orbit", flow: Callable[["Orbit"], Any], look: dict[str, Any], **names: Any) -> Any:
     """Return the figure of one kind: with the flow beside the orbit, of the first displacement, of named quantities."""
-    from nonholo import plotting
+    from nonholo import plot
 
     if kind in ("overview", "blade-track"):
         look = look | {"flow": flow(orbit)}
     elif kind == "branches":
         look = look | {"displacement": orbit.displacement[0]}
     named = {side: _quantity(side, name) for side, name in names.items()}
-    drawn = getattr(plotting, kind.replace("-", "_"))(*_ARGUMENTS[kind](orbit), **named, **look)
+    drawn = getattr(plot, kind.replace("-", "_"))(*_ARGUMENTS[kind](orbit), **named, **look)
     return drawn if kind == "overview" else (drawn.plane if kind == "branch-tree" else drawn.axes).figure
 
 

@@ -38,7 +38,7 @@ def draw(
         return drawn
     os.environ.setdefault("MPLBACKEND", "agg")
     try:
-        from nonholo import plotting
+        from nonholo import plot
 
         if picture is not None:
             with complete_file(picture) as part, waiting("drawing", progress):
@@ -46,7 +46,7 @@ def draw(
             drawn["picture"] = str(picture)
         if animation is not None:
             with progress_bar("frames", progress) as report:
-                plotting.animate(orbit, animation, progress=report, overwrite=True, **look)
+                plot.animate(orbit, animation, progress=report, overwrite=True, **look)
             drawn["animation"] = str(animation)
     except Exception as failure:
         warn(f"no picture: {type(failure).__name__}: {failure}")

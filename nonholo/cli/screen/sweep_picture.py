@@ -22,9 +22,9 @@ def draw_sweep(
     os.environ.setdefault("MPLBACKEND", "agg")
     quantity, across, up = (None if name is None else _named(name) for name in names)
     try:
-        from nonholo import plotting
+        from nonholo import plot
 
-        figure: Any = plotting.sweep_map(result, quantity, across, up, **look).axes.figure
+        figure: Any = plot.sweep_map(result, quantity, across, up, **look).axes.figure
         with complete_file(picture) as part, waiting("drawing", sys.stderr.isatty()):
             figure.savefig(part, dpi=dpi)
     except Exception as failure:

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, NoReturn, cast
 import numpy as np
 
 from nonholo import kernels
-from nonholo.base.calls import FunctionError, UndefinedError, noted, number_of
+from nonholo.base.calls import FunctionError, UndefinedError, note_fault, number_of
 from nonholo.base.checks import error
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
@@ -203,7 +203,7 @@ def kick_of(
     group = forced.group
     g = group.matrix_from_pose(free.decode_poses(poses)) @ group.inverse(forced.frame)
     j, said = np.array(np.nan), {} if said is None else said
-    with noted(said, "potential"):
+    with note_fault(said, "potential"):
         j = forced.impulses(forced.from_canonical(free.decode(momenta.copy())), g, time, steps, half, said)
     if not np.isfinite(j).all():
         return np.full_like(momenta, np.nan)
@@ -273,13 +273,13 @@ def _in_python(forced: Forced, own: Any, said: dict[str, str]) -> tuple[Callable
 
     def force(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:
         out[:] = np.nan
-        with noted(said, "force"):
+        with note_fault(said, "force"):
             out[:] = forced.driving_force(time, g, velocity)
 
     def potential(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:
         del time, velocity
         out[0] = np.nan
-        with noted(said, "potential"):
+        with note_fault(said, "potential"):
             out[0] = number_of("Forced(potential=...)", cast(Any, own), "Return U of a configuration.", g)
 
     return force, potential

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.calls import called, checked
+from nonholo.base.calls import call, check_result
 from nonholo.base.checks import choice, error, instance, is_name, natural, shown
 from nonholo.base.checks import name as checked_name
 from nonholo.base.types import Float
@@ -99,9 +99,9 @@ def values_at(name: str, event: Event, states: AbstractOrbit) -> Float[np.ndarra
     where, count = f"Event(function=...) of {name!r}", len(states)
     remedy = "It gets an `Orbit`: return an array with one number for each of its states."
     try:
-        found = called(where, event.function, states)
+        found = call(where, event.function, states)
     except Exception as failure:
         got = f"{type(failure).__name__}: {failure}"
         raise error(where, f"take an orbit of {count} states", got, remedy) from failure
     words = f"one real number for each of {count} states", remedy
-    return checked(where, event.function, found, (count,), words, lambda at: f"time {states.time[at]:.17g}")
+    return check_result(where, event.function, found, (count,), words, lambda at: f"time {states.time[at]:.17g}")

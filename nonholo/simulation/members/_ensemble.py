@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from nonholo.base.calls import called
+from nonholo.base.calls import call
 from nonholo.base.checks import count, error, flags, flow_times, flow_tolerances, function, refuse_given
 from nonholo.base.limits import within_memory
 from nonholo.base.progress import progress_bar
@@ -128,7 +128,7 @@ def ensemble(
     flags("ensemble", reconstruct=reconstruct, progress=progress)
     if reduce is not None:
         function("ensemble(reduce=...)", reduce)
-        reduce = functools.partial(called, "ensemble(reduce=...)", reduce)
+        reduce = functools.partial(call, "ensemble(reduce=...)", reduce)
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity}
     starts |= {"displacement": displacement, "momentum": momentum}
     of_steps = {"steps": steps, "save_every": save_every, "events": events, "branch": branch, "backend": backend}

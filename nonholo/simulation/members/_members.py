@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.checks import array, error, shown
-from nonholo.base.kept import Keeper
+from nonholo.base.memo import Keeper
 from nonholo.base.types import Float
 from nonholo.discrete import discretize
 from nonholo.systems import AbstractCoordinateSystem, System, in_coordinates

@@ -101,7 +101,7 @@ def firsts(members: Members, start: Start, *, posed: bool, at_once: bool) -> Fir
 def _one_by_one(members: Members, start: Start, *, posed: bool) -> Firsts:
     each = [_of_one(members, start, member, posed=posed) for member in range(len(members))]
     numbers = tuple(np.stack(column) for column in zip(*(first.numbers for first in each), strict=True))
-    demanded = None if each[0].demanded is None else np.stack([np.asarray(first.demanded) for first in each])
+    demanded = None if each[0].demand is None else np.stack([np.asarray(first.demand) for first in each])
     return Firsts(numbers, demanded)
 
 

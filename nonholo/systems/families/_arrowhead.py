@@ -11,7 +11,7 @@ from typing import ClassVar
 import numpy as np
 
 from nonholo.base.checks import array, check_scale, error, scale
-from nonholo.base.kept import kept
+from nonholo.base.memo import system_memo
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem
@@ -62,12 +62,12 @@ class ArrowheadTop(AbstractLLSystem):
         """The same top with its mass tensor as a matrix."""
         return SuslovTop(self.homogeneous_mass_tensor)
 
-    @kept
+    @system_memo
     def group(self) -> AbstractMatrixGroup:
         """The rotation group SO(n)."""
         return SO(len(self.diagonal))
 
-    @kept
+    @system_memo
     def homogeneous_mass_tensor(self) -> Float[np.ndarray, "n n"]:
         """The mass tensor as a matrix."""
         narrow("A dense mass tensor of SuslovTop.arrowhead", self.group.dim)
@@ -75,12 +75,12 @@ class ArrowheadTop(AbstractLLSystem):
         J[-1, :-1] = J[:-1, -1] = self.coupling
         return J
 
-    @kept
+    @system_memo
     def inertia_along(self) -> WideInertia:
         """The diagonal of B."""
         return WideInertia(self.diagonal[:-1] + self.diagonal[-1], None, np.zeros_like(self.coupling))
 
-    @kept
+    @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
         r"""Rows $e_i\wedge e_n$."""
         return self.dense.constraint_subspace
@@ -141,23 +141,23 @@ class ArrowheadSleigh(AbstractLLSystem):
         J[0, 1:] = J[1:, 0] = self.coupling
         return MultidimensionalSleigh(self.mass, self.center_of_mass, J)
 
-    @kept
+    @system_memo
     def group(self) -> AbstractMatrixGroup:
         """The group of rigid motions SE(n)."""
         return SE(len(self.diagonal))
 
-    @kept
+    @system_memo
     def homogeneous_mass_tensor(self) -> Float[np.ndarray, "N N"]:
         """The mass tensor about the reference point as a matrix."""
         return self.dense.homogeneous_mass_tensor
 
-    @kept
+    @system_memo
     def inertia_along(self) -> WideInertia:
         r"""The diagonal of $B_1$, the mass, and the offset of the center of mass across the blade."""
         a = self.center_of_mass
         return WideInertia(self.diagonal[1:] + self.diagonal[0] + self.mass * a[0] ** 2, self.mass, a[1:])
 
-    @kept
+    @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "n dim"]:
         r"""Rows $e_1\wedge e_j$, then the velocity along body axis 1."""
         return self.dense.constraint_subspace

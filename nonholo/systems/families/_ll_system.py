@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from nonholo.base.checks import array, error, is_traced, positive_definite, symmetric
-from nonholo.base.kept import kept
+from nonholo.base.memo import system_memo
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, unchecked
@@ -158,12 +158,12 @@ class LLSystem(AbstractLLSystem):
         subspace = {"constraint subspace": np.asarray(self.constraint_subspace)}
         return f"LLSystem({self.group!r},\n  {lines_of(shown | subspace)})"
 
-    @kept
+    @system_memo
     def homogeneous_mass_tensor(self) -> Float[Array, "... N N"] | None:
         """The mass tensor; None if the inertia operator was given."""
         return self.mass_tensor
 
-    @kept
+    @system_memo
     def inertia_operator(self) -> Float[Array, "... dim dim"]:
         """The inertia operator, that of the mass tensor if there is one."""
         if self.mass_tensor is None:

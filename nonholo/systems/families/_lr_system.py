@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from nonholo.base.checks import positive_definite
-from nonholo.base.kept import kept
+from nonholo.base.memo import system_memo
 from nonholo.base.types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLRSystem
@@ -67,7 +67,7 @@ class LRSystem(AbstractLRSystem):
         subspace = {"constraint subspace": np.asarray(self.constraint_subspace)}
         return f"LRSystem({self.group!r},\n  {lines_of(shown | subspace)})"
 
-    @kept
+    @system_memo
     def homogeneous_mass_tensor(self) -> Float[Array, "N N"]:
         """The mass tensor itself."""
         return self.mass_tensor
@@ -110,17 +110,17 @@ class VeselovaTop(AbstractLRSystem):
     def __repr__(self) -> str:
         return f"VeselovaTop({self.group!r},\n  {lines_of(tensors_shown(self.group, self.mass_tensor))})"
 
-    @kept
+    @system_memo
     def group(self) -> AbstractMatrixGroup:
         """The rotation group SO(n)."""
         return SO(self.mass_tensor.shape[-1])
 
-    @kept
+    @system_memo
     def homogeneous_mass_tensor(self) -> Float[Array, "n n"]:
         """The mass tensor itself."""
         return self.mass_tensor
 
-    @kept
+    @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
         r"""Rows $e_i\wedge e_n$, fixed in space."""
         return top_rows(self.group)

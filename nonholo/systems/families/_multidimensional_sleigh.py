@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from nonholo.base.checks import array, error, positive_definite, scale, symmetric
-from nonholo.base.kept import kept
+from nonholo.base.memo import system_memo
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem
@@ -99,12 +99,12 @@ class MultidimensionalSleigh(AbstractLLSystem):
         head = f"mass={self.mass}, center_of_mass={np.asarray(self.center_of_mass).tolist()}"
         return f"MultidimensionalSleigh({head},\n  mass tensor about the center of mass = {tensor})"
 
-    @kept
+    @system_memo
     def group(self) -> AbstractMatrixGroup:
         """The group of rigid motions SE(n)."""
         return SE(self.center_of_mass.shape[-1])
 
-    @kept
+    @system_memo
     def homogeneous_mass_tensor(self) -> Float[Array, "N N"]:
         """The mass tensor about the reference point in homogeneous coordinates."""
         xp = (self.mass * self.center_of_mass @ self.mass_tensor).__array_namespace__()
@@ -112,7 +112,7 @@ class MultidimensionalSleigh(AbstractLLSystem):
         lever = xp.concatenate([a, xp.ones_like(a[:1])])
         return xp.pad(xp.asarray(self.mass_tensor), ((0, 1), (0, 1))) + self.mass * lever[:, None] * lever
 
-    @kept
+    @system_memo
     def inertia_along(self) -> Float[Array, "n n"]:
         r"""The matrix of $w\cdot Bw + m\,a_1^2|w|^2 + m(v_1 + \alpha\cdot w)^2$ in (w, v_1), twice the energy."""
         J, a, m = self.mass_tensor, self.center_of_mass, self.mass
@@ -122,7 +122,7 @@ class MultidimensionalSleigh(AbstractLLSystem):
         turning = J[1:, 1:] + (J[0, 0] + m * a[0] ** 2) * xp.eye(J.shape[-1] - 1, dtype=J.dtype)
         return xp.pad(turning, ((0, 1), (0, 1))) + m * lever[:, None] * lever
 
-    @kept
+    @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "n dim"]:
         r"""Rows $e_1\wedge e_j$, j = 2..n, then the velocity along body axis 1."""
         return sleigh_rows(self.group)

@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from nonholo.base.checks import positive_definite
-from nonholo.base.kept import kept
+from nonholo.base.memo import system_memo
 from nonholo.base.types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, unchecked
@@ -90,17 +90,17 @@ class RigidBody(AbstractLLSystem):
     def __repr__(self) -> str:
         return f"RigidBody({self.group!r},\n  {lines_of(tensors_shown(self.group, self.mass_tensor))})"
 
-    @kept
+    @system_memo
     def homogeneous_mass_tensor(self) -> Float[Array, "... N N"]:
         """The mass tensor itself."""
         return self.mass_tensor
 
-    @kept
+    @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "dim dim"]:
         """All coordinate rows."""
         return np.eye(self.group.dim)
 
-    @kept
+    @system_memo
     def annihilator(self) -> Float[np.ndarray, "0 dim"]:
         """No rows."""
         return np.empty((0, self.group.dim))

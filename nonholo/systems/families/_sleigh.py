@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from nonholo.base.checks import is_traced, number, scale
-from nonholo.base.kept import kept
+from nonholo.base.memo import system_memo
 from nonholo.base.types import Array, Bool, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, unchecked
@@ -60,7 +60,7 @@ class ChaplyginSleigh(AbstractLLSystem):
         shown = (f"{name}={getattr(self, name)}" for name in ("mass", "inertia", "a", "b"))
         return f"ChaplyginSleigh({', '.join(shown)})"
 
-    @kept
+    @system_memo
     def homogeneous_mass_tensor(self) -> Float[Array, "... 3 3"]:
         """The mass tensor about the contact point in homogeneous coordinates; the moment J is shared by both axes."""
         m, a, b = self.mass, self.a, self.b
@@ -74,17 +74,17 @@ class ChaplyginSleigh(AbstractLLSystem):
         """Whether mass and moment are positive."""
         return np.asarray((self.mass > 0) & (self.inertia > 0))
 
-    @kept
+    @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "2 3"]:
         """Rows (omega) and (v1)."""
         return np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 
-    @kept
+    @system_memo
     def annihilator(self) -> Float[np.ndarray, "1 3"]:
         """The velocity across the blade."""
         return np.array([[0.0, 0.0, 1.0]])
 
-    @kept
+    @system_memo
     def frame(self) -> Float[Array, "... 3 3"]:
         """The translation to the foot of the center of mass on the line through the contact point across the blade."""
         xp = (self.b * self.mass).__array_namespace__()

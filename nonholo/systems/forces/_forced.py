@@ -13,7 +13,7 @@ from typing import Any, ClassVar, cast
 
 import numpy as np
 
-from nonholo.base.calls import name_of, noted, number_of, numbers_of
+from nonholo.base.calls import name_of, note_fault, number_of, numbers_of
 from nonholo.base.checks import array, choice, error, shown, trailing
 from nonholo.base.numerics import applied, exponential_increment, inverted
 from nonholo.base.results import Outcome, OutcomeError
@@ -409,7 +409,7 @@ class Forced(AbstractSystem):
 
             def impulse(velocity: np.ndarray, k: int = k) -> np.ndarray:
                 force = np.full(self.group.dim, np.nan)
-                with noted(said, "force"):
+                with note_fault(said, "force"):
                     force = self.driving_force(time[k], g[k], velocity)
                 return self.impulse(r[k], g[k], constant[k] + force, tau)
 

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo.base.kept import kept
+from nonholo.base.memo import system_memo
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, AbstractSystem
@@ -41,17 +41,17 @@ class Widened(AbstractLLSystem):
         """That of the system inside."""
         return self.system.homogeneous_mass_tensor
 
-    @kept
+    @system_memo
     def inertia_operator(self) -> Float[Array, "dim dim"]:
         """That of the system inside."""
         return self.system.inertia_operator
 
-    @kept
+    @system_memo
     def annihilator(self) -> Float[np.ndarray, "j dim"]:
         """The rows that never yield."""
         return self.remaining
 
-    @kept
+    @system_memo
     def duals(self) -> Float[np.ndarray, "s dim"]:
         """V, the velocities of unit slips."""
         system, s = self.system, len(self.rows)
@@ -59,18 +59,18 @@ class Widened(AbstractLLSystem):
         equations = np.concatenate([S @ np.asarray(system.inertia_operator), self.remaining, self.rows])
         return np.linalg.solve(equations, np.eye(len(equations))[:, -s:]).T
 
-    @kept
+    @system_memo
     def slip_inertia(self) -> Float[np.ndarray, "s s"]:
         """M, by which momenta of slips are their velocities."""
         inertia = self.duals @ np.asarray(self.inertia_operator) @ self.duals.T
         return (inertia + inertia.T) / 2
 
-    @kept
+    @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
         """The rows of the system inside, and V."""
         return np.concatenate([self.system.constraint_subspace, self.duals])
 
-    @kept
+    @system_memo
     def inertia_along(self) -> Float[np.ndarray, "k k"]:
         """That of the system inside beside M: nothing couples them, not even a rounding error."""
         return beside(np.asarray(self.system.constrained_inertia), self.slip_inertia)
@@ -83,12 +83,12 @@ class Widened(AbstractLLSystem):
         seen = self.group.adjoint(self.frame)
         return Widened(self.system.canonical, self.rows @ seen, self.remaining @ seen)
 
-    @kept
+    @system_memo
     def frame(self) -> Float[Array, "N N"]:
         """That of the system inside."""
         return self.system.frame
 
-    @kept
+    @system_memo
     def frame_map(self) -> Float[Array, "k k"]:
         """That of the system inside; the slip is the same in every frame."""
         return beside(np.asarray(self.system.frame_map), np.eye(len(self.rows)))

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from nonholo.literature import Example
+    from nonholo.examples import Example
 
 
 def examples(
@@ -33,9 +33,9 @@ def examples(
         )
         return
     with store_errors(USAGE), needs("jax", "nonholo examples"):
-        from nonholo import literature
+        import nonholo.examples as library
 
-    ready = {each: getattr(literature, each) for each in literature.__all__ if each != "Example"}
+    ready = {each: getattr(library, each) for each in library.__all__ if each != "Example"}
     if name is None:
         _show_all({each: (make.__doc__ or "").split("\n")[0] for each, make in ready.items()}, scenarios)
     elif name in ready:
@@ -59,9 +59,9 @@ def _show(example: "Example") -> None:
     """Print the start, the facts and the conserved quantities of a system, and how to run it."""
     import inspect
 
-    from nonholo import literature
+    import nonholo.examples as library
 
-    about = inspect.getdoc(getattr(literature, example.name)) or ""
+    about = inspect.getdoc(getattr(library, example.name)) or ""
     parts: dict[str, list[Any]] = {
         "Start": [
             f"coordinates: {', '.join(example.coordinates)}",
