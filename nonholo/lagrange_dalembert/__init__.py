@@ -10,7 +10,7 @@ with needs("jax", "nonholo.lagrange_dalembert"):
     from nonholo.lagrange_dalembert._motion import CoordinateFlow, RecordedSystem
     from nonholo.lagrange_dalembert._orbit import AbstractCoordinateOrbit, CoordinateOrbit
     from nonholo.lagrange_dalembert._rollout import CoordinateRollout
-    from nonholo.lagrange_dalembert._rollout import rolled as rolled_in_coordinates
+    from nonholo.lagrange_dalembert._rollout import roll as rolled_in_coordinates
     from nonholo.lagrange_dalembert._room import in_double, place
     from nonholo.lagrange_dalembert._system import LagrangeDAlembert
     from nonholo.lagrange_dalembert.functions import check_forms, check_value

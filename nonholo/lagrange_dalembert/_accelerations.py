@@ -26,8 +26,8 @@ def acceleration(system: Any, q: Array, v: Array, extra: Any = 0.0) -> tuple[Arr
         extra: A force beside those of the system: of a table the row that acts.
     """
     equations = equations_of(system)
-    _, turned = jax.jvp(lambda x: equations.constraint(system, x, v), (q,), (equations.rate(system, q, v),))
-    return bordered_solution(system, q, v, equations.force(system, q, v) + extra, -turned)
+    _, constraint_rate = jax.jvp(lambda x: equations.constraint(system, x, v), (q,), (equations.rate(system, q, v),))
+    return bordered_solution(system, q, v, equations.force(system, q, v) + extra, -constraint_rate)
 
 
 def bordered_solution(system: Any, q: Array, v: Array, force: Array, off: Array) -> tuple[Array, Array]:
@@ -49,14 +49,14 @@ def nearest_place(system: Any, x: Array) -> Array:
     equations, n, first = equations_of(system), system.dimension, system.velocity_constraints
     M = equations.kinetic_matrix(system, x, jnp.zeros(n))
 
-    def missed(z: Array) -> Array:
+    def residual(z: Array) -> Array:
         y = x.at[:n].add(z[:n])
         across = z[n:] @ equations.forms(system, y)[first:]
         return jnp.concatenate([M @ z[:n] - across, equations.place_residual(system, y)])
 
     def correct(carry: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
         count, z, _ = carry
-        step = jnp.linalg.solve(jax.jacfwd(missed)(z), -missed(z))
+        step = jnp.linalg.solve(jax.jacfwd(residual)(z), -residual(z))
         after = z + step
         return count + 1, after, jnp.linalg.norm(step[:n]) / (jnp.linalg.norm(x) + jnp.linalg.norm(after[:n]))
 
@@ -97,7 +97,7 @@ def _derivative(system: Any, time: Array, state: Float[Array, "... size"]) -> Fl
     def one(row: Array) -> Array:
         q, v = jnp.split(row, [int(np.prod(pose))])
         x = jnp.append(q, time) if system.is_driven else q.reshape(pose)
-        moved = jnp.ravel(equations.rate(system, x, v))[: len(q)]
-        return jnp.concatenate([moved, acceleration(system, x, v)[0]])
+        place_rate = jnp.ravel(equations.rate(system, x, v))[: len(q)]
+        return jnp.concatenate([place_rate, acceleration(system, x, v)[0]])
 
     return one(state) if state.ndim == 1 else jax.lax.map(one, state.reshape(-1, state.shape[-1])).reshape(state.shape)

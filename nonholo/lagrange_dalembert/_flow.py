@@ -43,8 +43,8 @@ def flow(
     refuse_table("flow", system)
     time, errors = flow_times(times), flow_tolerances(_COARSE if rtol is None else rtol, atol)
     first = checked_state(system, configuration, starts, time[0], project=project)
-    solved = compiled.flow(system, first, time, _FINE if rtol is None else errors[0])
-    rows, solution = solved or room("_integration").flow(system, first, time, errors)
+    motion = compiled.flow(system, first, time, _FINE if rtol is None else errors[0])
+    rows, solution = motion or room("_integration").flow(system, first, time, errors)
     count = len(rows[0])
     outcome = Outcome.successful if count == len(time) else Outcome.not_converged
     orbit = _orbit(system, time[:count], rows, outcome, solution)
@@ -87,8 +87,8 @@ def work(orbit: Any) -> Float[np.ndarray, "K"]:
 def _powers(system: Any, *columns: Float[np.ndarray, "K n"]) -> Float[np.ndarray, "K"]:
     """Return the power on each state: of places, momenta and rows of a table."""
     missing = -len(columns[0]) % _ROWS
-    padded = [np.concatenate([rows, np.repeat(rows[-1:], missing, axis=0)]) for rows in columns]
-    blocks = zip(*(rows.reshape(-1, _ROWS, rows.shape[1]) for rows in padded), strict=True)
+    full_columns = [np.concatenate([rows, np.repeat(rows[-1:], missing, axis=0)]) for rows in columns]
+    blocks = zip(*(rows.reshape(-1, _ROWS, rows.shape[1]) for rows in full_columns), strict=True)
     return np.concatenate([np.empty(0), *(in_double(_power, system, *block) for block in blocks)])[: len(columns[0])]
 
 
@@ -96,8 +96,8 @@ def _power(system: Any, x: Array, p: Array, row: Array) -> Array:
     def one(x: Array, p: Array, row: Array) -> Array:
         v = _equations.inverse_legendre(system, x, p)
         force = row + _equations.applied(system, x, v)
-        moved = _equations.forms(system, x) @ v - _equations.constraint(system, x, v)
-        changed = jax.grad(_equations.lagrangian, argnums=1)(system, x, v)[-1]
-        return force @ v + acceleration(system, x, v, row)[1] @ moved - changed
+        rates = _equations.forms(system, x) @ v - _equations.constraint(system, x, v)
+        time_slope = jax.grad(_equations.lagrangian, argnums=1)(system, x, v)[-1]
+        return force @ v + acceleration(system, x, v, row)[1] @ rates - time_slope
 
     return jax.vmap(one)(x, p, jnp.asarray(row))

@@ -45,15 +45,15 @@ class Pieces(NamedTuple):
         """Return places and velocities at times; NaN where the solver fails."""
         forward = 1.0 if self.times[-1] >= self.times[0] else -1.0
         begin = np.maximum(np.searchsorted(forward * self.times, forward * times, "right") - 1, 0)
-        found = [np.full((len(times), *column.shape[1:]), np.nan) for column in self.rows]
+        columns = [np.full((len(times), *column.shape[1:]), np.nan) for column in self.rows]
         for i, (at, time) in enumerate(zip(begin, times, strict=True)):
             first = self.rows[0][at], self.rows[1][at]
             span = padded(np.array([self.times[at], time]))
             rest, good = in_double(_sweep, self.system, first, span, self.errors)
             ends = reached(first, rest, good, 2)
-            for column, end in zip(found, ends, strict=True):
+            for column, end in zip(columns, ends, strict=True):
                 column[i : i + len(end) - 1] = end[1:]
-        return found
+        return columns
 
     @property
     def span(self) -> tuple[float, float]:
@@ -68,9 +68,9 @@ class Pieces(NamedTuple):
 def _sweep(system: Any, state: State, times: Array, errors: tuple[Array, Array]) -> tuple[State, Array]:
     equations = equations_of(system)
 
-    def settled(current: State) -> State:
+    def settle(current: State) -> State:
         """Return the admissible state next to one in the kinetic energy."""
-        q, v = equations.normalized(system, current[0]), current[1]
+        q, v = equations.normalize(system, current[0]), current[1]
         if system.holonomic is not None:
             back = bordered_solution(system, q, v, jnp.zeros_like(v), equations.holonomic_residual(system, q))[0]
             q = q - jnp.pad(back, (0, system.is_driven))
@@ -79,7 +79,7 @@ def _sweep(system: Any, state: State, times: Array, errors: tuple[Array, Array])
     def rate(current: State) -> State:
         return equations.rate(system, *current), acceleration(system, *current)[0]
 
-    return sweep(lambda _, current: rate(settled(current)), settled, state, times, errors)
+    return sweep(lambda _, current: rate(settle(current)), settle, state, times, errors)
 
 
 def columns(system: Any, rows: list[np.ndarray]) -> list[np.ndarray]:

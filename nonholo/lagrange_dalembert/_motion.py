@@ -70,8 +70,8 @@ class RecordedSystem(AbstractCoordinateSystem):
     """What a store says of a system whose functions it does not hold: enough for pictures and tables.
 
     Attributes:
-        known: Fields that could be restored, with what else was recorded.
-        described: The class of the system and all of its fields, as in the store.
+        record: Fields that could be restored, with what else was recorded.
+        description: The class of the system and all of its fields, as in the store.
 
     Example:
         >>> from nonholo.lagrange_dalembert import RecordedSystem
@@ -84,22 +84,22 @@ class RecordedSystem(AbstractCoordinateSystem):
     """
 
     has_functions: ClassVar[bool] = False
-    known: Mapping[str, Any]
-    described: tuple[str, dict[str, Any]]  # pyright: ignore[reportGeneralTypeIssues]
+    record: Mapping[str, Any]
+    description: tuple[str, dict[str, Any]]  # pyright: ignore[reportGeneralTypeIssues]
 
     def __getattr__(self, name: str) -> Any:
         """Return what was recorded; functions were not."""
-        if name.startswith("__") or name == "known":  # asked by copies before there are fields
+        if name.startswith("__") or name == "record":  # asked by copies before there are fields
             raise AttributeError(name)
-        if name not in self.known:
+        if name not in self.record:
             remedy = "Pass the one that made the store to load_orbit, resume or extend: discrete=..."
             raise error("load_orbit(discrete=...)", "be the discretization", "None: stores hold no functions", remedy)
-        return self.known[name]
+        return self.record[name]
 
     @property
     def parameters(self) -> Mapping[str, Any]:  # pyright: ignore[reportIncompatibleVariableOverride]
         """Numbers that its functions take."""
-        return self.known["parameters"]
+        return self.record["parameters"]
 
     def parts(self, q: Any) -> tuple[()]:
         """Return no outline: it may be a function."""
@@ -108,10 +108,10 @@ class RecordedSystem(AbstractCoordinateSystem):
 
     def discretize(self, time_step: Any) -> Any:
         """Return the map of the store, which cannot run."""
-        kind = "GroupDiscretization" if "group" in self.known else "CoordinateDiscretization"
+        kind = "GroupDiscretization" if "group" in self.record else "CoordinateDiscretization"
         return getattr(room("_discretization"), kind)(self, time_step)
 
-    def flow(self, **given: Any) -> Any:
+    def flow(self, **arguments: Any) -> Any:
         """Refuse: there are no functions."""
-        del given
+        del arguments
         return self.lagrangian

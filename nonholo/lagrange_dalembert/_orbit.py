@@ -83,14 +83,14 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     def rows(self) -> dict[str, np.ndarray]:
         """Return the arrays with a row for each state; impulses that are not known are NaN."""
         missing = np.full((len(self) - len(self.multipliers), self.multipliers.shape[1]), np.nan)
-        known = {name: rows for name in _ROWS if (rows := getattr(self, name)) is not None}
-        return known | {"multipliers": np.concatenate([self.multipliers, missing])}
+        arrays = {name: rows for name in _ROWS if (rows := getattr(self, name)) is not None}
+        return arrays | {"multipliers": np.concatenate([self.multipliers, missing])}
 
     def of_rows(self, rows: dict[str, np.ndarray]) -> Self:
         """Return the orbit of such arrays, without the impulse of the last state if it is not known."""
         impulses = rows["multipliers"]
-        known = len(impulses) - int(len(impulses) > 0 and bool(np.isnan(impulses[-1]).any()))
-        return dataclasses.replace(self, **{**rows, "multipliers": impulses[:known]})
+        count = len(impulses) - int(len(impulses) > 0 and bool(np.isnan(impulses[-1]).any()))
+        return dataclasses.replace(self, **{**rows, "multipliers": impulses[:count]})
 
     @memo
     def work(self) -> Float[np.ndarray, "K"]:

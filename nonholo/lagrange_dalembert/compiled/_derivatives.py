@@ -80,16 +80,16 @@ class Elimination:
         self.f, self.lower, self.pivots = f, [], []
         for j, row in enumerate(matrix):
             lower: list[Scalar] = []
-            scaled: list[Scalar] = []
+            products: list[Scalar] = []
             for i in range(j + 1):
                 before = self.lower[i] if i < j else lower
-                scaled.append(self._less(row[i], scaled, before))
+                products.append(self._less(row[i], products, before))
                 if i < j:
-                    lower.append(self._divided(scaled[i], self.pivots[i]))
-            if scaled[j].value == 0:
+                    lower.append(self._quotient(products[i], self.pivots[i]))
+            if products[j].value == 0:
                 raise UntranslatableError("a pivot is zero")
             self.lower.append(lower)
-            self.pivots.append(scaled[j])
+            self.pivots.append(products[j])
 
     def _less(self, x: Scalar, left: Sequence[Scalar], right: Sequence[Scalar]) -> Scalar:
         """Return x less a sum of products; those with zero are left out."""
@@ -97,7 +97,7 @@ class Elimination:
             x = x if a.value == 0 or b.value == 0 else self.f("sub", x, self.f("mul", a, b))
         return x
 
-    def _divided(self, x: Scalar, pivot: Scalar) -> Scalar:
+    def _quotient(self, x: Scalar, pivot: Scalar) -> Scalar:
         return x if x.value == 0 else self.f("div", x, pivot)
 
     def solution(self, b: Sequence[Scalar]) -> list[Scalar]:
@@ -105,14 +105,14 @@ class Elimination:
         ahead: list[Scalar] = []
         for i, x in enumerate(b):
             ahead.append(self._less(x, self.lower[i], ahead))
-        x = [self._divided(each, pivot) for each, pivot in zip(ahead, self.pivots, strict=True)]
+        x = [self._quotient(each, pivot) for each, pivot in zip(ahead, self.pivots, strict=True)]
         for i in reversed(range(len(x))):
             below = range(i + 1, len(x))
             x[i] = self._less(x[i], [self.lower[k][i] for k in below], [x[k] for k in below])
         return x
 
 
-def bordered(f: Formulas, mass: Any, rows: Any) -> Elimination:
+def bordered_elimination(f: Formulas, mass: Any, rows: Any) -> Elimination:
     """Return the elimination of the matrix of kinetic energy bordered by rows of constraints."""
     below = [[*row, *[f.constant(0.0)] * len(rows)] for row in rows]
     above = [[*row, *(each[i] for each in rows)] for i, row in enumerate(mass)]

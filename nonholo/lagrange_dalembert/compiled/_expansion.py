@@ -12,7 +12,7 @@ from llvmlite import ir
 
 from nonholo.lagrange_dalembert.compiled._derivatives import BILINEAR, LINEAR, Rates, rates_of
 from nonholo.lagrange_dalembert.compiled._operations import DOUBLE, OPERATIONS
-from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, needed
+from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, operations_between
 
 ORDERS = 48
 """Room for coefficients of a number."""
@@ -41,21 +41,21 @@ class Expansion:
 
     def __init__(self, f: Formulas, inputs: list[Scalar], rates: list[Scalar]) -> None:
         self.inputs, self.rates, self.functions = inputs, rates, dict[Scalar, Rates]()
-        self.order = self._ordered(f, [each for each in rates if each.value is None])
+        self.order = self._order_of(f, [each for each in rates if each.value is None])
         moving = [a for pairs in self.functions.values() for a, _ in pairs]
         self.places = {each: i for i, each in enumerate([*inputs, *self.order])}
         self.moves = {a: len(self.places) + i for i, a in enumerate(dict.fromkeys(moving))}
         self.room = ORDERS * (len(self.places) + len(self.moves))
 
-    def _ordered(self, f: Formulas, results: list[Scalar]) -> list[Scalar]:
+    def _order_of(self, f: Formulas, results: list[Scalar]) -> list[Scalar]:
         """Return the operations that results need, and note the rates of functions among them."""
-        order = needed(results, self.inputs)
+        order = operations_between(results, self.inputs)
         new = [x for x in order if x.operation not in LINEAR | BILINEAR and x not in self.functions]
         if not new:
             return order
         self.functions |= {each: rates_of(f, each) for each in new}
         slopes = [slope for each in new for _, slope in self.functions[each]]
-        return self._ordered(f, [*results, *(slope for slope in slopes if slope.value is None)])
+        return self._order_of(f, [*results, *(slope for slope in slopes if slope.value is None)])
 
     def write(self, module: Any, name: str, width: int) -> None:
         """Write the function to a module; `width` numbers stand in a row of its series.
@@ -145,7 +145,7 @@ class Expansion:
         b, (above, below) = self.builder, x.arguments
         if below.value is not None:
             return b.fdiv(self._of(above, self.k), _number(below.value))
-        earlier = self._sum(self.places[below], self.places[x], self.k, skipped=1)
+        earlier = self._sum(self.places[below], self.places[x], self.k, skip=1)
         left = b.fneg(earlier) if above.value is not None else b.fsub(self._of(above, self.k), earlier)
         return b.fdiv(left, self._of(below, _word(0)))
 
@@ -159,9 +159,9 @@ class Expansion:
             total = b.fadd(total, term)
         return b.fdiv(total, divisor)
 
-    def _sum(self, first: int, last: int, terms: Any, skipped: int = 0) -> Any:
+    def _sum(self, first: int, last: int, terms: Any, skip: int = 0) -> Any:
         """Write a sum of products of coefficients, the first ones of one number with the last ones of another."""
-        places = _word(ORDERS * first + skipped), _word(ORDERS * last)
+        places = _word(ORDERS * first + skip), _word(ORDERS * last)
         return self.builder.call(self.dot, [self.coefficients, *places, terms])
 
     def _at(self, place: int, order: Any) -> Any:
@@ -179,7 +179,7 @@ def _dot(module: Any, name: str) -> Any:
     full = b.and_(n, _word(-_SIDE))
     b.cbranch(b.icmp_signed(">", full, _word(0)), wide, middle)
     b.position_at_end(wide)
-    i, sums = _joined(b, {entry: _word(0)}), _joined(b, {entry: zero})
+    i, sums = _phi(b, {entry: _word(0)}), _phi(b, {entry: zero})
     left = b.load(b.bitcast(b.gep(a, [i]), _VECTOR.as_pointer()), align=8)
     right = b.load(b.bitcast(b.gep(other, [b.sub(b.sub(n, i), _word(_SIDE))]), _VECTOR.as_pointer()), align=8)
     backward = ir.Constant(ir.VectorType(_LANE, _SIDE), list(range(_SIDE))[::-1])
@@ -189,19 +189,19 @@ def _dot(module: Any, name: str) -> Any:
     sums.add_incoming(total, wide)
     b.cbranch(b.icmp_signed("<", following, full), wide, middle)
     b.position_at_end(middle)
-    lanes = _joined(b, {entry: zero, wide: total})
+    lanes = _phi(b, {entry: zero, wide: total})
     each: list[Any] = [b.extract_element(lanes, _LANE(at)) for at in range(_SIDE)]
-    begun: Any = b.fadd(b.fadd(each[0], each[2]), b.fadd(each[1], each[3]))
+    lane_sum: Any = b.fadd(b.fadd(each[0], each[2]), b.fadd(each[1], each[3]))
     b.cbranch(b.icmp_signed("<", full, n), narrow, end)
     b.position_at_end(narrow)
-    j, sofar = _joined(b, {middle: full}), _joined(b, {middle: begun})
+    j, sofar = _phi(b, {middle: full}), _phi(b, {middle: lane_sum})
     product = b.fmul(b.load(b.gep(a, [j])), b.load(b.gep(other, [b.sub(b.sub(n, j), _word(1))])))
     longer, after = b.fadd(sofar, product), b.add(j, _word(1))
     j.add_incoming(after, narrow)
     sofar.add_incoming(longer, narrow)
     b.cbranch(b.icmp_signed("<", after, n), narrow, end)
     b.position_at_end(end)
-    b.ret(_joined(b, {middle: begun, narrow: longer}))
+    b.ret(_phi(b, {middle: lane_sum, narrow: longer}))
     return function
 
 
@@ -213,7 +213,7 @@ def _internal(module: Any, name: str, result: Any, arguments: list[Any]) -> Any:
     return function
 
 
-def _joined(builder: Any, values: dict[Any, Any]) -> Any:
+def _phi(builder: Any, values: dict[Any, Any]) -> Any:
     """Return a value that depends on the block before."""
     phi = builder.phi(next(iter(values.values())).type)
     for block, value in values.items():

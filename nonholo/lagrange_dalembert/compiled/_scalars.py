@@ -36,8 +36,8 @@ class Scalar:
         self.is_total = operation not in OPERATIONS or (
             OPERATIONS[operation].is_total and all(each.is_total for each in arguments)
         )
-        chosen = operation == "select" and arguments[1].is_truth
-        self.is_truth = chosen or operation in TRUTHS or value is True or value is False
+        chooses_truth = operation == "select" and arguments[1].is_truth
+        self.is_truth = chooses_truth or operation in TRUTHS or value is True or value is False
 
 
 class Formulas:
@@ -98,16 +98,16 @@ _IF_LAST: dict[Any, Any] = {
 }
 
 
-def needed(results: Collection[Scalar], given: Collection[Scalar]) -> list[Scalar]:
+def operations_between(results: Collection[Scalar], inputs: Collection[Scalar]) -> list[Scalar]:
     """Return the operations between given numbers and results, each after those that it acts on."""
     order: dict[Scalar, None] = {}
-    known, stack = set(given), list(results)
+    start, stack = set(inputs), list(results)
     while stack:
         each = stack[-1]
-        waiting = [] if each in known else [other for other in each.arguments if other not in order]
-        waiting = [other for other in waiting if other not in known]
+        waiting = [] if each in start else [other for other in each.arguments if other not in order]
+        waiting = [other for other in waiting if other not in start]
         if waiting:
             stack += waiting
         else:
             order.setdefault(stack.pop())
-    return [each for each in order if each.arguments and each not in known]
+    return [each for each in order if each.arguments and each not in start]

@@ -18,7 +18,7 @@ def array_of(numbers: list[Any], shape: tuple[int, ...]) -> np.ndarray:
     return result.reshape(shape)
 
 
-def fixed(array: np.ndarray) -> Any:
+def constants_of(array: np.ndarray) -> Any:
     """Return the values of an array of constants."""
     values = [each.value for each in array.ravel()]
     if None in values:
@@ -26,19 +26,19 @@ def fixed(array: np.ndarray) -> Any:
     return np.array(values).reshape(array.shape)
 
 
-def gathered(
+def gather(
     _f: Formulas, x: np.ndarray, indices: np.ndarray, *, dimension_numbers: Any, slice_sizes: Any, mode: Any, **_: Any
 ) -> np.ndarray:
     """Return the numbers of windows of an array."""
     d, batch = dimension_numbers, indices.ndim - 1
     batching = d.operand_batching_dims, d.start_indices_batching_dims
-    places = _places(x.shape, fixed(indices), d.start_index_map, batching, slice_sizes, mode)
-    dropped = (*d.collapsed_slice_dims, *d.operand_batching_dims)
-    result = np.squeeze(x.ravel()[places], tuple(batch + axis for axis in dropped))
+    places = _places(x.shape, constants_of(indices), d.start_index_map, batching, slice_sizes, mode)
+    unit_axes = (*d.collapsed_slice_dims, *d.operand_batching_dims)
+    result = np.squeeze(x.ravel()[places], tuple(batch + axis for axis in unit_axes))
     return np.moveaxis(result, range(batch, result.ndim), d.offset_dims)
 
 
-def scattered(
+def scatter(
     f: Formulas,
     x: np.ndarray,
     indices: np.ndarray,
@@ -51,12 +51,12 @@ def scattered(
 ) -> np.ndarray:
     """Return an array with windows replaced, or with numbers added to them."""
     d, batch, numbers = dimension_numbers, indices.ndim - 1, x.ravel().tolist()
-    dropped, windows = (*d.inserted_window_dims, *d.operand_batching_dims), iter(d.update_window_dims)
-    sizes = [1 if axis in dropped else updates.shape[next(windows)] for axis in range(x.ndim)]
+    unit_axes, windows = (*d.inserted_window_dims, *d.operand_batching_dims), iter(d.update_window_dims)
+    sizes = [1 if axis in unit_axes else updates.shape[next(windows)] for axis in range(x.ndim)]
     batching = d.operand_batching_dims, d.scatter_indices_batching_dims
-    places = _places(x.shape, fixed(indices), d.scatter_dims_to_operand_dims, batching, sizes, mode)
-    ordered = np.moveaxis(updates, d.update_window_dims, range(batch, updates.ndim))
-    for place, number in zip(places.ravel().tolist(), ordered.ravel().tolist(), strict=True):
+    places = _places(x.shape, constants_of(indices), d.scatter_dims_to_operand_dims, batching, sizes, mode)
+    rows = np.moveaxis(updates, d.update_window_dims, range(batch, updates.ndim))
+    for place, number in zip(places.ravel().tolist(), rows.ravel().tolist(), strict=True):
         numbers[place] = f("add", numbers[place], number) if adds else number
     return array_of(numbers, x.shape)
 

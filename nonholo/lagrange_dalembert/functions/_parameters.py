@@ -22,9 +22,9 @@ class Parameters(Mapping[str, Any]):
         (True, {'mass': 1.0})
     """
 
-    def __init__(self, given: Any) -> None:
-        instance(_WHERE, given, Mapping, "be a mapping of names to numbers", "Pass a dict.")
-        self._hold({name(_WHERE, key, ("time_step",)): _checked(_WHERE, key, x) for key, x in given.items()})
+    def __init__(self, numbers: Any) -> None:
+        instance(_WHERE, numbers, Mapping, "be a mapping of names to numbers", "Pass a dict.")
+        self._hold({name(_WHERE, key, ("time_step",)): _valid_number(_WHERE, key, x) for key, x in numbers.items()})
 
     def _hold(self, numbers: dict[str, Any]) -> None:
         self._numbers = numbers
@@ -61,26 +61,25 @@ class Parameters(Mapping[str, Any]):
         """Zeros of the same names and shapes."""
         return Parameters({key: np.zeros(np.shape(value)) for key, value in self.items()})
 
-    def changed(self, where: str, given: Mapping[str, Any]) -> "Parameters":
+    def replace(self, where: str, numbers: Mapping[str, Any]) -> "Parameters":
         """Return them with other numbers of the same names and shapes."""
-        for key in given.keys() - self.keys():
+        for key in numbers.keys() - self.keys():
             near = difflib.get_close_matches(key, self, n=1)
-            known = f"It has {', '.join(self)}." if self else "It has none: pass LagrangeDAlembert(parameters=...)."
+            remedy = f"It has {', '.join(self)}." if self else "It has none: pass LagrangeDAlembert(parameters=...)."
             raise error(
-                where, "name parameters of the system", shown(key), f"Did you mean {near[0]}?" if near else known
+                where, "name parameters of the system", shown(key), f"Did you mean {near[0]}?" if near else remedy
             )
-        changed = object.__new__(Parameters)
-        changed._hold(
-            self._numbers | {key: _checked(where, key, value, np.shape(self[key])) for key, value in given.items()}
-        )
-        return changed
+        other, own = object.__new__(Parameters), self._numbers
+        changes = {key: _valid_number(where, key, value, np.shape(own[key])) for key, value in numbers.items()}
+        other._hold(own | changes)
+        return other
 
 
 def _brief(value: Any) -> str:
     return f"shape {np.shape(value)}" if is_traced(value) or np.ndim(value) else repr(float(value))
 
 
-def _checked(where: str, key: str, value: Any, shape: tuple[int, ...] | None = None) -> Any:
+def _valid_number(where: str, key: str, value: Any, shape: tuple[int, ...] | None = None) -> Any:
     """Return a number, or an array of the given shape or any."""
     where, shape = where.replace("...", f"{{{key!r}: ...}}"), shape_of(value) if shape is None else shape
     return array(where, value, shape, "Pass real numbers.") if shape else number(where, value)

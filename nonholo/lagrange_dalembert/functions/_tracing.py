@@ -22,11 +22,11 @@ def traced_shape(where: str, function: Any, arguments: tuple[Any, ...], of: str)
         raise error(where, "be a function", shown(function), "Pass a function of jax.numpy arrays.")
     if arguments and isinstance(arguments[-1], dict):
         _check_parameters(where, function, len(arguments))
-    traced = _traced(where, lambda *x: _array(function(*x)), arguments, of)
-    if any(getattr(constant, "dtype", None) == jnp.float32 for constant in traced.consts):
+    program = _trace(where, lambda *x: _array(function(*x)), arguments, of)
+    if any(getattr(constant, "dtype", None) == jnp.float32 for constant in program.consts):
         remedy = "Keep parameters as Python numbers or NumPy arrays, not as jax.numpy arrays made outside."
         raise error(where, "use 64-bit numbers", "a captured 32-bit array", remedy)
-    shape, kind = traced.out_avals[0].shape, traced.out_avals[0].dtype.kind
+    shape, kind = program.out_avals[0].shape, program.out_avals[0].dtype.kind
     if kind == "c" or (kind != "f" and shape == ()):
         got = "complex numbers" if kind == "c" else "an integer"
         raise error(where, "return real numbers that it computes from its arguments", got, "Return a smooth formula.")
@@ -40,46 +40,46 @@ def _check_parameters(where: str, function: Callable[..., Any], count: int) -> N
         raise error(where, "take the parameters of the system as its last argument", got, remedy)
 
 
-def _traced(where: str, function: Callable[..., Any], arguments: tuple[Any, ...], of: str) -> Any:
+def _trace(where: str, function: Callable[..., Any], arguments: tuple[Any, ...], of: str) -> Any:
     """Return the program of a function, refused where JAX cannot trace it."""
     try:
         return jax.make_jaxpr(function)(*arguments)
     except Exception as failure:
         words = " ".join(str(failure).split()).rstrip(".")
-        said = words if len(words) <= 2 * _END else f"{words[:_END]} ... {words[-_END:]}"
-        got, columns = f"{type(failure).__name__}: {said}", "`.to_numpy()` of columns of pandas"
+        message = words if len(words) <= 2 * _END else f"{words[:_END]} ... {words[-_END:]}"
+        got, columns = f"{type(failure).__name__}: {message}", "`.to_numpy()` of columns of pandas"
         remedy = f"Write it with jax.numpy, for arrays of {of}; use jnp.where, not `if`, and {columns}."
         raise error(where, f"be traceable by JAX on {of}", got, remedy) from failure
 
 
 def check_value(
-    where: str, function: Any, shape: tuple[int, ...], arguments: tuple[Any, ...], of: str, called: str
+    where: str, function: Any, shape: tuple[int, ...], arguments: tuple[Any, ...], of: str, arrays: str
 ) -> None:
     """Refuse a function whose value has another shape, or that is to be differentiated, as a scalar is, and cannot be.
 
     `called` says what arrays it is called with.
     """
-    found = traced_shape(where, function, arguments, of)
-    if found != shape:
-        wanted = "a scalar" if shape == () else f"an array of shape {shape}"
-        raise error(where, f"return {wanted}", f"shape {found}", f"It is called with arrays of {called}.")
+    result_shape = traced_shape(where, function, arguments, of)
+    if result_shape != shape:
+        demand = "a scalar" if shape == () else f"an array of shape {shape}"
+        raise error(where, f"return {demand}", f"shape {result_shape}", f"It is called with arrays of {arrays}.")
     if shape == ():
-        _traced(where, jax.grad(lambda *x: _array(function(*x)), tuple(range(len(arguments)))), arguments, of)
+        _trace(where, jax.grad(lambda *x: _array(function(*x)), tuple(range(len(arguments)))), arguments, of)
 
 
 def check_forms(where: str, forms: Any, n: int, arguments: tuple[Any, ...], of: str, remedy: str) -> None:
     """Refuse constraint forms that are not s rows of n numbers."""
-    found = traced_shape(where, forms, arguments, of)
-    if len(found) != 2 or found[1] != n or not 0 < found[0] < n:
-        raise error(where, f"return an array of shape (s, {n}) with 0 < s < {n}", f"shape {found}", remedy)
+    result_shape = traced_shape(where, forms, arguments, of)
+    if len(result_shape) != 2 or result_shape[1] != n or not 0 < result_shape[0] < n:
+        raise error(where, f"return an array of shape (s, {n}) with 0 < s < {n}", f"shape {result_shape}", remedy)
 
 
 def check_rows_of_places(where: str, function: Any, n: int, arguments: tuple[Any, ...]) -> None:
     """Refuse holonomic constraints that are not m numbers of n coordinates."""
-    found = traced_shape(where, function, arguments, f"{n} coordinates")
-    if len(found) != 1 or not 0 < found[0] <= n:
+    result_shape = traced_shape(where, function, arguments, f"{n} coordinates")
+    if len(result_shape) != 1 or not 0 < result_shape[0] <= n:
         remedy = "Return one number per constraint, jnp.array([...]); pass None for no constraint."
-        raise error(where, f"return an array of shape (m,) with 0 < m <= {n}", f"shape {found}", remedy)
+        raise error(where, f"return an array of shape (m,) with 0 < m <= {n}", f"shape {result_shape}", remedy)
 
 
 def count_of(forms: Any, *shapes: tuple[int, ...]) -> int:
@@ -116,14 +116,14 @@ class ForceTable:
 
     def row(self, step: Array) -> Array:
         """Return the force of a step, whose number may carry rounding errors."""
-        return jnp.asarray(self._padded)[jnp.clip(jnp.rint(step).astype(int), -1, len(self.rows))]
+        return jnp.asarray(self._rows_and_zero)[jnp.clip(jnp.rint(step).astype(int), -1, len(self.rows))]
 
     def acting(self, steps: Int[np.ndarray, "K"]) -> Float[np.ndarray, "K n"]:
         """Return the forces of steps with these numbers."""
-        return self._padded[np.clip(steps, -1, len(self.rows))]
+        return self._rows_and_zero[np.clip(steps, -1, len(self.rows))]
 
     @property
-    def _padded(self) -> Float[np.ndarray, "rows n"]:
+    def _rows_and_zero(self) -> Float[np.ndarray, "rows n"]:
         """The rows with one of zeros, which is the first after them and the last one."""
         return np.concatenate([self.rows, np.zeros((1, self.rows.shape[1]))])
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array
-from nonholo.lagrange_dalembert._equations import Scaled, bordered
+from nonholo.lagrange_dalembert._equations import Scaled, bordered_matrix
 from nonholo.lagrange_dalembert.on_groups._system import GroupLagrangeDAlembert
 
 
@@ -39,7 +39,7 @@ def holonomic_residual(system: GroupLagrangeDAlembert, _g: Array) -> Array:
     return jnp.zeros(system.constraints)
 
 
-def displaced(system: GroupLagrangeDAlembert, v: Array, h: Array) -> tuple[Array]:
+def displacements(system: GroupLagrangeDAlembert, v: Array, h: Array) -> tuple[Array]:
     """Return the displacement W."""
     return (_displacement(system, v, h),)
 
@@ -50,7 +50,7 @@ def _displacement(system: GroupLagrangeDAlembert, v: Array, h: Array) -> Array:
 
 def ahead(system: GroupLagrangeDAlembert, g: Array, v: Array, h: Array) -> Array:
     """Return the pose after a step."""
-    return normalized(system, g @ _displacement(system, v, h))
+    return normalize(system, g @ _displacement(system, v, h))
 
 
 def discrete_constraints(system: GroupLagrangeDAlembert, g: Array, v: Array, h: Array) -> Array:
@@ -142,7 +142,7 @@ def force(system: GroupLagrangeDAlembert, g: Array, w: Array) -> Array:
 def acceleration_matrix(system: GroupLagrangeDAlembert, g: Array, w: Array) -> tuple[Array, Scaled]:
     """Return the scaled matrix of the continuous equations."""
     kinetic, A = mass_matrix(system, g, w), forms(system, g)
-    return bordered(kinetic, A, A, kinetic)
+    return bordered_matrix(kinetic, A, A, kinetic)
 
 
 def mass_matrix(system: GroupLagrangeDAlembert, _g: Array, w: Array) -> Array:
@@ -150,7 +150,7 @@ def mass_matrix(system: GroupLagrangeDAlembert, _g: Array, w: Array) -> Array:
     return jax.hessian(lagrangian, argnums=1)(system, w)
 
 
-def normalized(system: GroupLagrangeDAlembert, g: Array) -> Array:
+def normalize(system: GroupLagrangeDAlembert, g: Array) -> Array:
     """Return the element of the group next to a matrix in which rounding errors have gathered."""
     group = system.group
     return group.matrix_from_pose(group.normalize_pose(group.pose_from_matrix(g)))

@@ -39,11 +39,11 @@ def point(
 
 
 def velocity(
-    owner: str, system: GroupLagrangeDAlembert, g: np.ndarray, given: Any, *, project: bool
+    owner: str, system: GroupLagrangeDAlembert, g: np.ndarray, value: Any, *, project: bool
 ) -> Float[np.ndarray, "dim"]:
     """Return a velocity that satisfies the constraint, at which the Lagrangian is regular."""
     where = f"{owner}(body_velocity=...)"
-    w = array(where, given, (system.group.dim,), "Use `vee` to turn a matrix into coordinates.")
+    w = array(where, value, (system.group.dim,), "Use `vee` to turn a matrix into coordinates.")
     regular(system, g, w)
     if project:
         return in_double(admissible_velocity, system, g, w)
@@ -65,13 +65,13 @@ def of_momentum(
     return p, g, w
 
 
-def velocity_of_displacement(system: GroupLagrangeDAlembert, g: np.ndarray, given: Any, h: float) -> np.ndarray:
+def velocity_of_displacement(system: GroupLagrangeDAlembert, g: np.ndarray, value: Any, h: float) -> np.ndarray:
     """Return log(W)/h of a displacement that satisfies the discrete constraint."""
     where = "simulate(displacement=...)"
-    v = system.group.log(in_group(where, system.group, given)) / h
-    missed, slope = in_double(constraint_slope, system, g, v, h)
-    if not np.all(np.abs(missed) <= _TOLERANCE * (np.abs(slope) @ np.abs(v))):
-        got = f"residual {np.array2string(missed, precision=6)}"
+    v = system.group.log(in_group(where, system.group, value)) / h
+    residual, slope = in_double(constraint_slope, system, g, v, h)
+    if not np.all(np.abs(residual) <= _TOLERANCE * (np.abs(slope) @ np.abs(v))):
+        got = f"residual {np.array2string(residual, precision=6)}"
         raise error(where, "satisfy the discrete constraint", got, "Start with body_velocity= instead.")
     return v
 
@@ -94,10 +94,10 @@ def regular(system: GroupLagrangeDAlembert, g: np.ndarray, w: np.ndarray) -> Non
 
 def _tends(system: GroupLagrangeDAlembert, g: np.ndarray, w: np.ndarray, p: np.ndarray) -> None:
     h = _SMALL / np.linalg.norm(w)
-    found = np.mean(in_double(equations.momenta, system, g, w, h), axis=0)
-    if not np.linalg.norm(found - p) <= _CLOSE * np.linalg.norm(p):
+    momentum = np.mean(in_double(equations.momenta, system, g, w, h), axis=0)
+    if not np.linalg.norm(momentum - p) <= _CLOSE * np.linalg.norm(p):
         where = "GroupLagrangeDAlembert(discrete_lagrangian=...)"
-        got = f"momentum {found.tolist()} at the small step {h:.3g}, in the limit {p.tolist()}"
+        got = f"momentum {momentum.tolist()} at the small step {h:.3g}, in the limit {p.tolist()}"
         remedy = "Include the factor time_step; pass lagrangian= if it is not a quadratic form."
         raise error(where, "tend to time_step times the Lagrangian", got, remedy)
 
