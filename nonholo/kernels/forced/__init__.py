@@ -3,6 +3,5 @@
 from nonholo.kernels.forced._balanced import Balanced, Impulses
 from nonholo.kernels.forced._cubic import Pull
 from nonholo.kernels.forced._driven import Drive
-from nonholo.kernels.forced._flat import flat_forced_run
-from nonholo.kernels.forced._kick import Kick, rubbed
+from nonholo.kernels.forced._kick import Kick, friction_flow
 from nonholo.kernels.forced.run import ForcedBody
