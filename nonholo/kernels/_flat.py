@@ -10,10 +10,10 @@ from nonholo.kernels._scalar import Body, inertia, quadratic
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._small import assign
 from nonholo.kernels._suslov import SuslovBody
-from nonholo.kernels.forced._cubic import advance_cubic, cubic_of
+from nonholo.kernels.forced import advance_cubic, cubic_of
+from nonholo.kernels.secular import SecularBody
 from nonholo.kernels.secular import run as secular
-from nonholo.kernels.secular._step import SecularBody
-from nonholo.kernels.taylor._arrowhead import Arrowhead, room_for_steps, take_step, terms_for
+from nonholo.kernels.taylor import Arrowhead, room_for_steps, take_step, terms_for
 
 FORCES = 8  # where they begin: after the numbers of a body
 TABLE = 26  # where rows begin

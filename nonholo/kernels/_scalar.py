@@ -4,6 +4,7 @@ These functions are those of the file that defines a body: plain Python (and so 
 it compiles.
 """
 
+import ctypes
 import math
 import sys
 from collections.abc import Callable
@@ -12,7 +13,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from nonholo.base.compiled import jitable, overload
+from nonholo.base.compiled import compiled_in, jitable, overload
 
 COMPILED: Any = {"error_model": "numpy"}
 """Options of the scalar kernels: no exceptions on division; arithmetic is strict (docs/conventions.md, "Bits")."""
@@ -50,6 +51,28 @@ def sqrt(x: Any) -> Any:
 def _compiled_sqrt(x: Any) -> Any:
     return lambda x: math.sqrt(x)
 
+
+_EXPANSION = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 5, ctypes.c_int64)
+
+
+def function_at(address: Callable[..., None], time: float, g: np.ndarray, w: np.ndarray, out: np.ndarray) -> None:
+    """Call a function of a user, which compiled code has the address of."""
+    address(time, g, w, out)
+
+
+def expand_at(address: int, arrays: tuple[np.ndarray, ...], order: int) -> None:
+    """Write coefficients up to an order after those of order 0, by the code at an address.
+
+    Args:
+        address: Of the code.
+        arrays: V or the inverse of B_0; the factors of terms; the coefficients of z; those of B, if there is one, and
+            room for its columns.
+        order: The last one.
+    """
+    _EXPANSION(address)(*(each.ctypes.data for each in arrays), order)
+
+
+compiled_in("nonholo.kernels.addresses")
 
 Rows: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Momenta, charts and poses, into which a run takes its steps."""

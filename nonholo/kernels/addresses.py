@@ -11,9 +11,7 @@ from numba import types
 from numba.extending import intrinsic, overload
 from numba.np.numpy_support import carray
 
-from nonholo.kernels._scalar import INLINED
-from nonholo.kernels.forced._driven import function_at
-from nonholo.kernels.taylor._expansion import call
+from nonholo.kernels._scalar import INLINED, expand_at, function_at
 
 _ROW = types.CPointer(types.float64)
 _SIGNATURE = types.void(types.float64, _ROW, _ROW, _ROW)
@@ -52,8 +50,8 @@ def _call_expansion(_: Any, address: Any, arrays: Any, order: Any) -> Any:
     return types.void(address, arrays, order), code
 
 
-@overload(call, jit_options=INLINED, strict=False)
-def _compiled_call(address: Any, arrays: Any, order: Any) -> Any:
+@overload(expand_at, jit_options=INLINED, strict=False)
+def _compiled_expand_at(address: Any, arrays: Any, order: Any) -> Any:
     return lambda address, arrays, order: _call_expansion(address, arrays, order)  # pyright: ignore
 
 

@@ -97,7 +97,7 @@ def _bits(f: Quadratic, lanes: tuple[int, ...], expansion: int, state: np.ndarra
 def test_emitted_code_has_the_bits_of_the_general_kernel(name: str, lanes: tuple[int, ...]) -> None:
     """At random states, with zeros of both signs, tiny and huge numbers, and at any order."""
     f = equations(BODIES[name], lanes)
-    expansion = emission.compiled(code_of(structure_of(f, lanes), "expansion"), "expansion")
+    expansion = emission.compile_text(code_of(structure_of(f, lanes), "expansion"), "expansion")
     for order in (1, 2, 3, 8, 29, 30):
         for scale in (1.0, 1e-200, 1e30):
             state = scale * RNG.normal(size=(2, (len(f.blocks) + 1) * len(lanes)))
@@ -119,7 +119,7 @@ def test_emitted_code_of_random_structures(seed: int) -> None:
         velocities=rng.normal(size=(k, k)), rows=rows, first=np.append(0, np.cumsum(counts)), sources=found,
         factors=rng.normal(size=(1, terms)), blocks=np.zeros(size, dtype=np.int64),
     )  # fmt: skip
-    expansion = emission.compiled(code_of(structure_of(f, ONE), "expansion"), "expansion")
+    expansion = emission.compile_text(code_of(structure_of(f, ONE), "expansion"), "expansion")
     state = rng.normal(size=(2, size + 1))
     general, emitted = (_bits(f, ONE, code, state, 20) for code in (0, expansion))
     assert np.array_equal(general, emitted)
@@ -145,7 +145,7 @@ def test_python_calls_compiled_code_too() -> None:
     """The function at an address is the same for plain Python."""
     f, order = equations(USUAL["top"], ONE), 12
     state = RNG.normal(size=(2, len(f.blocks) + 1))
-    expansion = emission.compiled(code_of(structure_of(f, ONE), "expansion"), "expansion")
+    expansion = emission.compile_text(code_of(structure_of(f, ONE), "expansion"), "expansion")
     rooms = [_expansion.make_room(f, order, ONE) for _ in range(2)]
     _expansion.expand(f, 0, state, rooms[0], ONE)
     _expansion.expand(f, expansion, state, rooms[1], ONE)

@@ -120,7 +120,7 @@ def test_the_loop_has_the_bits_of_plain_python(name: str, kind: str) -> None:
         found, done = tuple(np.empty((STEPS, width)) for width in route.sizes), 0
         for piece in pieces:
             room = (found[0][done:], found[1][done:], found[2][done:])
-            assert kernels.runs_of(route.body).advance(route.body, state, piece, 1, *room) == (piece, 0)
+            assert kernels.runs_of(route.body).advance(route.body, state, piece, 1, room) == (piece, 0)
             done += piece
         for mine, theirs in zip(found, wanted, strict=True):
             assert np.array_equal(mine, theirs[1:])

@@ -19,9 +19,9 @@ import numpy as np
 from nonholo.base.compiled import njit
 from nonholo.kernels._composition import find_root, prepare, push_and_move, write_chart
 from nonholo.kernels._driver import floor_of, kahan_sum
-from nonholo.kernels._scalar import BORROWING, COMPILED, Rows, borrowing, scalar
+from nonholo.kernels._scalar import BORROWING, COMPILED, Rows, borrowing, function_at, scalar
 from nonholo.kernels._small import assign, eliminate, multiply
-from nonholo.kernels.forced._driven import function_at, largest
+from nonholo.kernels.forced._driven import largest
 
 _CORRECTIONS = 30  # of momenta between two half impulses
 _EXACT = 4e-16  # relative

@@ -11,13 +11,11 @@ whose loop is the same.
 """
 
 import math
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from nonholo.base.compiled import compiled_in
-from nonholo.kernels._scalar import inlining, scalar
+from nonholo.kernels._scalar import function_at, inlining, scalar
 from nonholo.kernels._small import assign, eliminate, multiply
 from nonholo.kernels.forced._kick import Kick, after_friction, linear, pulled_by_weight, to_body
 
@@ -89,14 +87,6 @@ def room_for_drive(drive: Drive) -> DriveRoom:
     return DriveRoom(
         np.zeros(k), poses, rows, np.zeros((3, dim)), np.zeros((5, k)), np.zeros((k, 1)), np.zeros((2, k, k))
     )
-
-
-def function_at(address: Callable[..., None], time: float, g: np.ndarray, w: np.ndarray, out: np.ndarray) -> None:
-    """Call a function of a drive."""
-    address(time, g, w, out)
-
-
-compiled_in("nonholo.kernels.addresses")
 
 
 @inlining

@@ -10,7 +10,6 @@ of a sum are added in the same order. Code may be compiled for the structure of 
 one.
 """
 
-import ctypes
 import functools
 import threading
 from collections.abc import Iterable
@@ -18,30 +17,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from nonholo.base.compiled import compiled_in, library_of_kernels, overload, way_of_kernels
+from nonholo.base.compiled import library_of_kernels, overload, way_of_kernels
 from nonholo.base.types import Int
-from nonholo.kernels._scalar import COMPILED, scalar
+from nonholo.kernels._scalar import COMPILED, expand_at, scalar
 from nonholo.kernels._small import eliminate
 from nonholo.kernels.lanes import EIGHT, load, spread, store
 
 EMITTER = "nonholo.kernels.taylor.emission.code_of"
-_EXPANSION = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 5, ctypes.c_int64)
 _MOST = 8  # velocities, if they take a division
-
-
-def call(address: int, arrays: tuple[np.ndarray, ...], order: int) -> None:
-    """Write coefficients up to an order after those of order 0, by the code at an address.
-
-    Args:
-        address: Of the code.
-        arrays: V or the inverse of B_0; the factors of terms; the coefficients of z; those of B, if there is one, and
-            room for its columns.
-        order: The last one.
-    """
-    _EXPANSION(address)(*(each.ctypes.data for each in arrays), order)
-
-
-compiled_in("nonholo.kernels.addresses")
 
 
 def structure_of(counts: tuple[int, int, int], *arrays: Iterable[int]) -> str:
@@ -199,7 +182,7 @@ def expand(f: Quadratic, expansion: int, state: np.ndarray, room: Room, lanes: t
     if expansion != 0:
         _write_velocities(f, 0, room, lanes)
         matrix = room.inverse if len(f.forms) > 0 else f.velocities
-        call(expansion, (matrix, f.factors, series, f.forms, room.inertia), len(series) - 1)
+        expand_at(expansion, (matrix, f.factors, series, f.forms, room.inertia), len(series) - 1)
         return
     for j in range(len(series) - 1):
         _write_velocities(f, j, room, lanes)

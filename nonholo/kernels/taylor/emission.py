@@ -19,7 +19,7 @@ _ZERO = ir.Constant(_VECTOR, [0.0] * _SIDE)
 
 
 def code_of(structure: str, name: str) -> str:
-    """Return LLVM code of a function: of addresses, and of the order; see `nonholo.kernels.taylor._expansion.call`."""
+    """Return LLVM code of a function: of addresses, and of the order; see `nonholo.kernels._scalar.expand_at`."""
     module = ir.Module()
     kind = ir.FunctionType(ir.VoidType(), [_NUMBER.as_pointer()] * 5 + [_WORD])
     function = ir.Function(module, kind, name)
