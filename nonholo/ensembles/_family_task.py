@@ -14,6 +14,7 @@ from nonholo.discrete import discretize
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
 from nonholo.ensembles._names import OUTCOME, checked_reductions, component_of, counted
+from nonholo.groups import components_of
 from nonholo.simulation import ensemble
 
 _EXAMPLES, _READY, _FINAL = "nonholo.examples", "examples.", "final_state"
@@ -226,11 +227,18 @@ def _final_state(batch: Any) -> dict[str, Any]:
     every, members = batch.save_every, np.arange(len(batch))
     last = np.zeros_like(members) if every is None else batch.steps_done // every
     configuration = batch.configuration[members, last]
-    axes = ("coordinate",) if configuration.ndim == 2 else ("row", "column")
+    system = batch.members.discrete.system
+    names = list(getattr(system, "coordinates", ()))
+    axes, of_places = (("coordinate",), {"components": names}) if configuration.ndim == 2 else (("row", "column"), {})
+    of_rates = {"components": names or list(components_of(system.group))}
     return {
         "final_time": ((), batch.time[members, last], {"long_name": "time of the last good state"}),
-        "final_configuration": (axes, configuration, {"long_name": "configuration of the last good state"}),
-        "final_velocity": (("component",), batch.body_velocity[members, last], {"long_name": "velocity there"}),
+        "final_configuration": (axes, configuration, of_places | {"long_name": "configuration of the last good state"}),
+        "final_velocity": (
+            ("component",),
+            batch.body_velocity[members, last],
+            of_rates | {"long_name": "velocity there"},
+        ),
         "final_energy": ((), batch.energy[members, last], {"long_name": "energy there"}),
         "steps_done": ((), batch.steps_done, {"long_name": "good steps"}),
     }
