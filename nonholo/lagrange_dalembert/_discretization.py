@@ -22,9 +22,14 @@ from nonholo.base.checks import error, is_traced, scale
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import compiled
-from nonholo.lagrange_dalembert._motion import ORBITS, CoordinateMotion
 from nonholo.lagrange_dalembert._newton import orientation, solve
-from nonholo.lagrange_dalembert._orbit import AbstractCoordinateOrbit, CoordinateOrbit, GroupOrbit
+from nonholo.lagrange_dalembert._orbit import (
+    ORBITS,
+    AbstractCoordinateOrbit,
+    CoordinateMotion,
+    CoordinateOrbit,
+    GroupOrbit,
+)
 from nonholo.lagrange_dalembert._room import configurations, equations_of, in_double, places, room
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
 from nonholo.lagrange_dalembert.compiled import ROWS

@@ -9,8 +9,7 @@ import numpy as np
 from nonholo.base.numerics.time_sweep import good_rows, pad, sweep
 from nonholo.base.progress import interruptibly
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert._accelerations import acceleration, admissible_velocity, bordered_solution
-from nonholo.lagrange_dalembert._flow import State
+from nonholo.lagrange_dalembert._flow import State, acceleration, admissible_velocity, bordered_solution
 from nonholo.lagrange_dalembert._room import equations_of, in_double
 from nonholo.lagrange_dalembert._tangents import flow_slopes
 

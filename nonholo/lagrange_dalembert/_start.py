@@ -9,7 +9,6 @@ import numpy as np
 from nonholo.base.checks import array, error, scale
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert._accelerations import admissible_velocity, nearest_place
 from nonholo.lagrange_dalembert._equations import (
     acceleration_matrix,
     constraint,
@@ -19,6 +18,7 @@ from nonholo.lagrange_dalembert._equations import (
     inverse_legendre,
     lagrangian,
 )
+from nonholo.lagrange_dalembert._flow import admissible_velocity, nearest_place
 from nonholo.lagrange_dalembert._newton import orientation
 from nonholo.lagrange_dalembert._room import equations_of, in_double, place
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert

@@ -14,8 +14,7 @@ from nonholo.base.limits import within_memory
 from nonholo.base.memo import system_memo
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert._room import room
-from nonholo.lagrange_dalembert.functions import (
+from nonholo.lagrange_dalembert._functions import (
     Bound,
     ForceTable,
     Parameters,
@@ -27,6 +26,7 @@ from nonholo.lagrange_dalembert.functions import (
     with_parameters,
     with_time_step,
 )
+from nonholo.lagrange_dalembert._room import room
 from nonholo.systems import AbstractCoordinateSystem, joined, parts_of
 
 if TYPE_CHECKING:

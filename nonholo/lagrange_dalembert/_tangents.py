@@ -13,8 +13,8 @@ import numpy as np
 
 from nonholo.base.checks import error
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert._accelerations import acceleration, nearest_place, refuse_table
 from nonholo.lagrange_dalembert._discretization import checked_state, set_out
+from nonholo.lagrange_dalembert._flow import acceleration, nearest_place, refuse_table
 from nonholo.lagrange_dalembert._newton import orientation
 from nonholo.lagrange_dalembert._rollout import step_root
 from nonholo.lagrange_dalembert._room import equations_of, in_double, places, room

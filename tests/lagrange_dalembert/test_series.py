@@ -12,8 +12,7 @@ from llvmlite import ir
 import nonholo as nh
 from nonholo.base.compiled.emission import compile_text
 from nonholo.kernels.taylor._expansion import call
-from nonholo.lagrange_dalembert.compiled._derivatives import Elimination
-from nonholo.lagrange_dalembert.compiled._expansion import Expansion
+from nonholo.lagrange_dalembert.compiled._expansion import Elimination, Expansion
 from nonholo.lagrange_dalembert.compiled._flow import formulation
 from nonholo.lagrange_dalembert.compiled._run import machine_code
 from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError

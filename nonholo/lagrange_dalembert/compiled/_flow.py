@@ -14,11 +14,10 @@ from nonholo.base.compiled.emission import compile_text
 from nonholo.base.types import Array
 from nonholo.kernels import Quadratic, revisit_series, solve_series
 from nonholo.lagrange_dalembert._room import compiling, equations_of
-from nonholo.lagrange_dalembert.compiled._derivatives import bordered_elimination
-from nonholo.lagrange_dalembert.compiled._expansion import Expansion
+from nonholo.lagrange_dalembert.compiled._expansion import Expansion, bordered_elimination
 from nonholo.lagrange_dalembert.compiled._run import Values, evaluate, machine_code, program
 from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError
-from nonholo.lagrange_dalembert.compiled._windows import array_of
+from nonholo.lagrange_dalembert.compiled._translation import array_of
 from nonholo.orbit import looked_at
 
 _MOST = 100_000  # steps; what needs more is stiff

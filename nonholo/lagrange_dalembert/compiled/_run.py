@@ -27,10 +27,16 @@ from nonholo.kernels import (
 )
 from nonholo.lagrange_dalembert import _newton
 from nonholo.lagrange_dalembert._room import compiling, equations_of
-from nonholo.lagrange_dalembert.compiled._operations import DOUBLE, OPERATIONS, TRUTH
-from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError, operations_between
-from nonholo.lagrange_dalembert.compiled._translation import translate
-from nonholo.lagrange_dalembert.compiled._windows import array_of
+from nonholo.lagrange_dalembert.compiled._scalars import (
+    DOUBLE,
+    OPERATIONS,
+    TRUTH,
+    Formulas,
+    Scalar,
+    UntranslatableError,
+    operations_between,
+)
+from nonholo.lagrange_dalembert.compiled._translation import array_of, translate
 
 State = tuple[Any, Any, Any]
 ROWS = 1024

@@ -12,8 +12,8 @@ from nonholo.base.checks import instance
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
+from nonholo.lagrange_dalembert._functions import check_forms, check_value, count_of
 from nonholo.lagrange_dalembert._room import room
-from nonholo.lagrange_dalembert.functions import check_forms, check_value, count_of
 from nonholo.systems import AbstractCoordinateSystem, checked_group, group_mass_tensor, inertia_form
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
     orbits: ClassVar[str] = "GroupOrbit"
     in_stores: ClassVar[tuple[str, ...]] = ("constraints", "coordinates", "is_driven", "name", "orbits", "shapes")
     _equations: ClassVar[str] = "on_groups._equations"
-    _start: ClassVar[str] = "on_groups._start"
+    _start: ClassVar[str] = "on_groups._equations"
 
     def __post_init__(self) -> None:
         remedy = "Pass nonholo.SO(n), SE(n), MatrixGroup or a product."
