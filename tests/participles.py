@@ -21,6 +21,11 @@ ARGUED = {
     "shown": "what was got, shown in an error; all rooms ask for it",
     "posed": "a public option of motions: with poses",
     "decoded": "a public option of `to_dataset`",
+    "made": "the number that a store was made with, a key of its attributes",
+    "finished": "whether or when a sweep came to its end, a key of its attributes and of marks",
+    "added": "the steps that `extend` was asked for, a key of stores",
+    "done": "the steps or members behind us, a key of marks and of what `nonholo info --json` prints",
+    "drawn": "a public attribute of designs",
 }
 MEMBERS = {"chosen", "displaced", "found", "joined", "turned"}
 """Public attributes and methods of orbits, motions and logs of events."""

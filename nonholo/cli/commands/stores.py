@@ -29,23 +29,23 @@ def info(
 
     is_sweep = format_of(store) == SWEEP_FORMAT
     with store_errors(USAGE):
-        stored = attributes_of(store) if is_sweep else read_attributes(store)
+        attributes = attributes_of(store) if is_sweep else read_attributes(store)
     if scenario:
-        if "scenario" not in stored:
+        if "scenario" not in attributes:
             leave("This store was not made from a scenario.", FAILED)
-        typer.echo(stored["scenario"], nl=False)
+        typer.echo(attributes["scenario"], nl=False)
         return
     if is_sweep:
-        show_sweep_standing(store, stored, json=json)
+        show_sweep_standing(store, attributes, json=json)
         return
-    if unfinished := standing(store):
-        show_standing(store, stored, unfinished, json=json)
+    if partly := standing(store):
+        show_standing(store, attributes, partly, json=json)
         return
     try:
         orbit, failure = load_orbit(store), None
     except (OSError, ValueError) as caught:
         orbit, failure = None, caught
-    show_provenance(store, stored, orbit, json=json)
+    show_provenance(store, attributes, orbit, json=json)
     if failure:
         leave(f"Its orbit cannot be loaded. {failure}", FAILED)
 

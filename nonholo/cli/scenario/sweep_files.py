@@ -19,11 +19,11 @@ from nonholo.cli.scenario.files import (
     table_in,
     take_module,
     toml_text,
-    validated,
+    validate,
 )
 from nonholo.cli.scenario.problems import ScenarioError, problem
 from nonholo.cli.scenario.sections import suggestion
-from nonholo.cli.scenario.sweeps import TABLES, SweepScenario, along, drawn, library_name, needs_size
+from nonholo.cli.scenario.sweeps import TABLES, SweepScenario, along, distribution_of, library_name, needs_size
 from nonholo.ensembles import component_of, force_numbers
 
 _STARTS = ("body_velocity", "restricted_velocity", "momentum")
@@ -42,11 +42,11 @@ def load_sweep_scenario(name: str, settings: list[Setting], module: Path | None 
     if not (isinstance(body, str) and is_example(body)):
         _complete(document)
     complete(document, name, source, settings, start=False)
-    request = validated(document, SweepScenario, Path(name).stem, source, settings)
+    request = validate(document, SweepScenario, Path(name).stem, source, settings)
     if flaws := [problem(*flaw, source, request.options) for flaw in _refusals(request.scenario)]:
         raise ScenarioError(flaws)
     try:
-        design = request.scenario.design.scaled()
+        design = request.scenario.design.with_members()
     except ValueError as failure:
         raise ScenarioError([problem("design.members", str(failure), source, request.options)]) from None
     return request._replace(scenario=request.scenario.model_copy(update={"design": design}))
@@ -100,7 +100,7 @@ def _complete_start(own: dict[str, Any], values: dict[str, Any]) -> None:
 def _typical(value: Any) -> Any:
     if isinstance(value, list) or "count" in value:
         return along(value)[0].tolist()
-    distribution = drawn(value)
+    distribution = distribution_of(value)
     return distribution.draw(np.random.default_rng(0).random((1, distribution.width)))[0].tolist()
 
 
