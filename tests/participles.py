@@ -21,14 +21,14 @@ ARGUED = {
     "shown": "what was got, shown in an error; all rooms ask for it",
     "posed": "a public option of motions: with poses",
     "decoded": "a public option of `to_dataset`",
-    "made": "the number that a store was made with, a key of its attributes",
-    "finished": "whether or when a sweep came to its end, a key of its attributes and of marks",
-    "added": "the steps that `extend` was asked for, a key of stores",
-    "done": "the steps or members behind us, a key of marks and of what `nonholo info --json` prints",
-    "drawn": "a public attribute of designs",
+    "compiled": "a public option of `check_group`",
 }
-MEMBERS = {"chosen", "displaced", "found", "joined", "turned"}
-"""Public attributes and methods of orbits, motions and logs of events."""
+MEMBERS = {
+    *("chosen", "displaced", "drawn", "ended", "enlarged", "expected", "failed", "found", "isolated", "joined"),
+    *("missed", "passed", "turned"),
+    *("added", "done", "finished", "made"),
+}
+"""Public attributes and methods of orbits, motions, logs of events, pictures and reports; keys of stores."""
 MOST = 40
 _IRREGULAR = re.compile(
     "begun|broken|brought|built|caught|chosen|done|drawn|felt|found|given|gone|grown|held|hidden|kept|known|lost|made|"
