@@ -115,12 +115,8 @@ class EnsembleTask:
 
     def __call__(self, block: MemberBlock) -> dict[str, Any]:
         """Run a block of members and reduce it; under forces that differ one by one."""
-        system = self.discrete.system
-        if of_forces := [name for name in block if is_force_number(system, name)]:
-            rest = {name: values for name, values in block.items() if name not in of_forces}
-            members = [dataclasses.replace(block, arrays=rest).part(i, i + 1) for i in range(block.count)]
-            systems = (with_force_numbers(system, {n: block[n][i] for n in of_forces}) for i in range(block.count))
-            return _join([self._on(own)(member) for own, member in zip(systems, members, strict=True)])
+        if of_forces := [name for name in block if is_force_number(self.discrete.system, name)]:
+            return _join([self._member(block, member, of_forces) for member in range(block.count)])
         parameters = self._parameters(block)
         starts: dict[str, Any] = _rows_of_starts(self.start, block)
         run: Any = {"steps": self.steps, "save_every": self._every, "branch": self.branch}
@@ -169,8 +165,12 @@ class EnsembleTask:
         """Return the task by the route that began a store, from the description of that one's task."""
         return self._with(io.on_route_of(attributes, self.discrete))
 
-    def _on(self, system: Any) -> "EnsembleTask":
-        return self._with(dataclasses.replace(self.discrete, system=system))
+    def _member(self, block: MemberBlock, member: int, of_forces: list[str]) -> dict[str, Any]:
+        """Run one member under forces of its own."""
+        system = with_force_numbers(self.discrete.system, {name: block[name][member] for name in of_forces})
+        rest = {name: values for name, values in block.items() if name not in of_forces}
+        task = self._with(dataclasses.replace(self.discrete, system=system))
+        return task(dataclasses.replace(block, arrays=rest).part(member, member + 1))
 
     def _with(self, discrete: Discretization) -> "EnsembleTask":
         task = copy.copy(self)

@@ -97,7 +97,11 @@ def _plain(value: Any) -> Any:
         return {name: _plain(each) for name, each in value.items()}
     if value is None or isinstance(value, str | AbstractSystem):
         return value
-    several = value if isinstance(value, tuple) else (value,)
+    return _plain_parts(value, value if isinstance(value, tuple) else (value,))
+
+
+def _plain_parts(value: Any, several: tuple[Any, ...]) -> Any:
+    """Return a function by its marker, a force or several by their numbers, else an array."""
     if any(map(callable, several)):
         return _CALLABLE
     if any(type(each).__name__ in _FORCES for each in several):

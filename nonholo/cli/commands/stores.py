@@ -152,8 +152,7 @@ def plot(
     if output is not None:
         with store_errors(USAGE):
             io.check_file(output, overwrite=overwrite, where="nonholo plot -o")
-    path = output or beside(store, "gif" if gif else "png")
-    look = _look(title, size, dark)
+    path, look = output or beside(store, "gif" if gif else "png"), _look(title, size, dark)
     if io.format_of(store) == io.SWEEP_FORMAT:
         if gif or kind != OVERVIEW:
             leave("A sweep has one kind of picture, its map. Leave --kind and --gif out.", USAGE)
@@ -162,10 +161,9 @@ def plot(
         _check_kind(kind, gif, color, x or y)
         names = {"across": x, "up": y} if kind == "section" else {}
         paths = _draw_run(store, path, look, gif=gif, kind=kind, dpi=dpi, **names)
-    files = [each for each in paths if each]
-    if not files:
+    if not any(paths):
         raise typer.Exit(FAILED)
-    typer.echo("\n".join(files))
+    typer.echo("\n".join(filter(None, paths)))
 
 
 def _check_kind(kind: str, gif: bool, color: str | None, axis: str | None) -> None:

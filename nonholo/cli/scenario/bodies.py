@@ -134,20 +134,22 @@ def table_of(word: str, make: Maker, kind: bool = False, plain: bool = True) -> 
     """
     others = tuple(getattr(make, name) for name in ("from_inertia",) if hasattr(make, name))
     fields: dict[str, Any] = {"kind": (str, ...)} if kind else {}
+    shared = set.intersection(*({*arguments(way)} for way in (make, *others)))
     for way in (make, *others):
         about = meanings(way)
         for name, each in arguments(way).items():
-            is_shared = all(name in arguments(other) for other in (make, *others))
-            default = each.default if is_shared else None
-            if default is each.empty:
-                default = ...
-            elif isinstance(default, tuple):
-                default = list(default)
+            default = _default_of(each) if name in shared else None
             shape = Group if name == "group" else Numbers if plain else Any
             fields.setdefault(name, (shape, Field(default, description=about.get(name))))
     table = create_model(word, __base__=MadeTable, __doc__=summary(make), **fields)
     table.make, table.others = make, others
     return table
+
+
+def _default_of(argument: inspect.Parameter) -> Any:
+    """Return the default of an argument as TOML writes it; `...` for one that must be given."""
+    default = argument.default
+    return ... if default is argument.empty else [*default] if isinstance(default, tuple) else default
 
 
 SHORT = {

@@ -1,5 +1,6 @@
 """The contents of a scenario: a body, its start, a run, forces, its output. The file itself is read in `files`."""
 
+import contextlib
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
@@ -123,15 +124,15 @@ def complete_ready(document: dict[str, Any], *, start: bool = True) -> None:
     Raises:
         ValidationError: The body is none.
     """
-    body = document.get("body")
-    if not (isinstance(body, dict) and isinstance(body.get("kind"), str) and is_example(body["kind"])):
-        return
-    try:
-        example = body_table(body["kind"]).model_validate(body).product
-    except KeyError:
-        return  # reported with the rest
-    if not is_ready(example):
-        return
+    match document:
+        case {"body": {"kind": str(kind)} as body} if is_example(kind):
+            with contextlib.suppress(KeyError):  # of an unknown kind, which is reported with the rest
+                product = body_table(kind).model_validate(body).product
+                if is_ready(product):
+                    _complete_by(product, document, start=start)
+
+
+def _complete_by(example: Any, document: dict[str, Any], *, start: bool) -> None:
     run, own = document.setdefault("run", {}), document.setdefault("start", {}) if start else None
     if isinstance(run, dict):
         own_run = {name: getattr(example, name, None) for name in ("time_step", "steps")}

@@ -124,16 +124,26 @@ def _refused_values(scenario: SweepScenario) -> list[tuple[str, str]]:
     entries = [(table, name) for table in TABLES for name in getattr(values, table)]
     if not entries:
         return [("design.values", 'must name what is varied, for example "body.a" = [0.1, 0.2]')]
-    names, flaws = _varied_names(scenario), []
-    for table, name in entries:
-        own = library_name(f"{table}.{name}")
-        part = component_of(own)
-        whole = part[0] if part and own not in names[table] else own
-        if whole not in names[table] or (whole != own and table == "body" and not scenario.is_family):
-            flaws.append((f"design.values.{table}.{name}", f"cannot be varied. {suggestion(own, names[table])}"))
-        elif scenario.start and whole != own and table == "start" and getattr(scenario.start, whole) is None:
-            flaws.append((f"start.{whole}", f"is missing: {name} is varied, the other components are given here"))
-    return flaws
+    names = _varied_names(scenario)
+    return [flaw for table, name in entries if (flaw := _flaw(scenario, table, name, names[table]))]
+
+
+def _flaw(scenario: SweepScenario, table: str, name: str, names: tuple[str, ...]) -> tuple[str, str] | None:
+    """Return what is wrong with a value that is varied, and where; None of one that can be."""
+    own = library_name(f"{table}.{name}")
+    whole = _whole(own, names)
+    is_part = whole != own
+    if whole not in names or (is_part and table == "body" and not scenario.is_family):
+        return f"design.values.{table}.{name}", f"cannot be varied. {suggestion(own, names)}"
+    if is_part and table == "start" and scenario.start and getattr(scenario.start, whole) is None:
+        return f"start.{whole}", f"is missing: {name} is varied, the other components are given here"
+    return None
+
+
+def _whole(name: str, names: tuple[str, ...]) -> str:
+    """Return what a name is a component of, where it is none of its own."""
+    part = component_of(name)
+    return part[0] if part and name not in names else name
 
 
 def _varied_names(scenario: SweepScenario) -> dict[str, tuple[str, ...]]:

@@ -97,10 +97,7 @@ def distribution_of(table: Any) -> "AbstractDistribution":
         >>> distribution_of({"direction": 0.3, "size": 2})
         Direction(size=2, length=0.3)
     """
-    words = [word for word in table if word in _WORDS] if isinstance(table, dict) else []
-    if len(words) != 1:
-        raise ValueError(f"must hold one of {', '.join(_WORDS)}, as in {{uniform = [0.1, 1.0]}}. Got {table!r}")
-    word, make = words[0], _WORDS[words[0]]
+    word = _word_in(table)
     own, sizes = _arguments(word)
     _check_keys(table, [word, "size"] if sizes else [word], [word], f"{{{word} = ...}}")
     values = [table[word]] if len(own) == 1 else table[word]
@@ -110,9 +107,16 @@ def distribution_of(table: Any) -> "AbstractDistribution":
         raise ValueError(f"needs size = ..., the length of the {_SIZES[sizes[0]]}, or a value in its own table")
     size = {name: table["size"] for name in sizes if "size" in table}
     try:
-        return make(**dict(zip(own, values, strict=True)), **size)
+        return _WORDS[word](**dict(zip(own, values, strict=True)), **size)
     except ValueError as failure:
         raise ValueError(f"{word}: {str(failure).partition('` ')[2] or failure}") from None
+
+
+def _word_in(table: Any) -> str:
+    words = [word for word in table if word in _WORDS] if isinstance(table, dict) else []
+    if len(words) != 1:
+        raise ValueError(f"must hold one of {', '.join(_WORDS)}, as in {{uniform = [0.1, 1.0]}}. Got {table!r}")
+    return words[0]
 
 
 def _arguments(word: str) -> tuple[list[str], list[str]]:
