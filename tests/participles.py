@@ -21,9 +21,13 @@ ARGUED = {
     "shown": "what was got, shown in an error; all rooms ask for it",
     "posed": "a public option of motions: with poses",
     "decoded": "a public option of `to_dataset`",
+    "compiled": "a public option of `check_group`",
 }
-MEMBERS = {"chosen", "displaced", "found", "joined", "turned"}
-"""Public attributes and methods of orbits, motions and logs of events."""
+MEMBERS = {
+    *("chosen", "displaced", "drawn", "ended", "enlarged", "expected", "failed", "found", "isolated", "joined"),
+    *("missed", "passed", "turned"),
+}
+"""Public attributes and methods of orbits, motions, logs of events, pictures and reports."""
 MOST = 40
 _IRREGULAR = re.compile(
     "begun|broken|brought|built|caught|chosen|done|drawn|felt|found|given|gone|grown|held|hidden|kept|known|lost|made|"

@@ -26,9 +26,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import nonholo as nh
+from nonholo.examples import Example
 from nonholo.lagrange_dalembert import CoordinateOrbit
-from nonholo.literature import Example
-from nonholo.plotting import theme
+from nonholo.plot import theme
 
 STEPS = {0.2: "#9ecae1", 0.1: theme.DISCRETE}
 """Time steps, and the color of their energy."""
@@ -112,7 +112,7 @@ def draw_energies(axes: Axes, orbits: dict[float, CoordinateOrbit]) -> None:
         axes.text(0.03, 0.78, "below 1e-9", transform=axes.transAxes, fontsize=9, color="#555a62")
 
 
-@theme.styled
+@theme.in_style
 def draw() -> Figure:
     """Run all systems, print their residuals and energies, and return the picture."""
     figure = Figure(figsize=(13.0, 9.4), layout="constrained")

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 
 PICTURE = Path(__file__).parents[1] / "images" / "gallery" / "loci.png"
 
@@ -46,7 +46,7 @@ def numbers() -> dict[str, float]:
     }
 
 
-@theme.styled
+@theme.in_style
 def draw(resolution: int = 70) -> Figure:
     """Draw surfaces, foliations, a section and the deltoid."""
     of_top, of_sleigh = orbits()

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 
 PICTURE = Path(__file__).parents[1] / "images" / "gallery" / "multivalued_map_3_levels.png"
 REGULAR = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 1.0)
@@ -61,7 +61,7 @@ def disc(z: np.ndarray) -> np.ndarray:
     return z * 2 * np.arcsin(min(size, 1.0)) / np.pi / size if size else z
 
 
-@theme.styled
+@theme.in_style
 def draw() -> Figure:
     """Draw both discs."""
     figure = Figure(figsize=(13.0, 5.6), layout="constrained")

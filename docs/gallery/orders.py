@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 
 SLEIGH = nh.ChaplyginSleigh(mass=1.0, inertia=0.75, a=0.5)
 START = {"body_velocity": (1.0, 0.5, 0.0)}
@@ -28,7 +28,7 @@ def numbers() -> dict[str, tuple[float, float, float]]:
     return {f"slope of order {order}": (float(slope), float(order), order / 10) for order, slope in slopes.items()}
 
 
-@theme.styled
+@theme.in_style
 def draw() -> Figure:
     """Draw the errors over the time step."""
     figure = Figure(figsize=(6.0, 4.6), layout="constrained")

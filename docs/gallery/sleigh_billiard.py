@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 
 SLEIGH = nh.ChaplyginSleigh(mass=1.0, inertia=0.5, a=0.3)
 CENTER, HULL = np.array([0.3, 0.0, 1.0]), 0.4  # a round hull about the center of mass, in a circle of radius 1.4
@@ -49,7 +49,7 @@ def velocity(states: nh.Orbit) -> np.ndarray:
     return (states.configuration[:, :2, :2] @ np.stack([v, 0.3 * omega], axis=1)[..., None])[..., 0]
 
 
-@theme.styled
+@theme.in_style
 def draw() -> Figure:
     """Draw the path of one, with the sleigh at its impacts, and the impacts of all."""
     figure = Figure(figsize=(10.0, 4.8), layout="constrained")

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 
 SLEIGH = nh.ChaplyginSleigh(mass=1.0, inertia=0.75, a=0.5)  # J = 3 m a^2: once round
 
@@ -15,7 +15,7 @@ def numbers() -> dict[str, tuple[float, float, float]]:
     return {"whole turn, degrees": (float(np.degrees(np.ptp(flow.heading))), 360.0, 1e-3)}
 
 
-@theme.styled
+@theme.in_style
 def draw() -> Figure:
     """Draw the track with its cusp."""
     orbit = nh.simulate(nh.discretize(SLEIGH, 0.1), body_velocity=(0.05, -1.0, 0.0), steps=260)

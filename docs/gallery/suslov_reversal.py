@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 
@@ -22,7 +22,7 @@ def numbers() -> dict[str, tuple[float, float, float]]:
     return {"angle between the rotations, degrees": (float(np.degrees(np.arccos(cosine))), 180.0, 1.0)}
 
 
-@theme.styled
+@theme.in_style
 def draw() -> Figure:
     """Draw the momenta with all energy levels, and the forbidden axis in space."""
     figure = Figure(figsize=(10.0, 4.8), layout="constrained")

@@ -82,6 +82,21 @@ def _check_names(design: Design, drawn: dict[str, Output], returned: dict[str, O
     check_dimensions({n: Axes(members + o.dimensions, lengths + o.shape) for n, o in outputs}, coordinates)
 
 
+def grown(store: SweepStore, members: Any) -> SweepStore:
+    """Return the store of a random design that is to have more members."""
+    where, remedy = "resume(members=...)", "Pass a larger number, or leave it out."
+    size, design = count(where, members, "Pass how many."), store.design
+    if not isinstance(design, RandomDesign):
+        raise error(where, "come with a random design", "a grid, which has no more members", "Run another grid.")
+    if size < design.members:
+        raise error(where, f"not be below the {design.members} members that there are", shown(size), remedy)
+    if size == design.members:
+        return store
+    _refuse_too_large(io.Layout((size,), store.layout.chunk), store.outputs, store.path)
+    with io.locked(store.path):
+        return store.grown(size)
+
+
 def check_same(store: SweepStore, task: Any, design: Design) -> None:
     """Refuse another task or design than that of a store, with the differences."""
     theirs = store.description

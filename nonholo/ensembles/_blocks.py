@@ -35,9 +35,9 @@ def do_block(work: Work, block: int) -> Done:
     """Make sure that a block is in the store."""
     store = store_of(work.store)
     mark, damaged = _standing(store, block)
-    if mark is not None:
-        return Done(block, mark, None, _versions())
     piece, begun = store.layout.piece(block), time.perf_counter()
+    if mark is not None and mark.members == piece.count:  # or the sweep has grown
+        return Done(block, mark, None, _versions())
     members, drawn = block_of(store.design, piece.first, piece.count), store.design.drawn
     returned = {name: output for name, output in store.outputs.items() if name not in drawn}
     with in_one_thread():

@@ -1,6 +1,7 @@
 """All blocks of a sweep by the workers of a Dask cluster; the only file that loads `distributed`."""
 
 import asyncio
+import contextlib
 import errno
 import functools
 import itertools
@@ -44,12 +45,33 @@ def check_cluster(address: str) -> None:
         raise _no_scheduler(f"{address}, a {kind.lower()}")
 
 
-def do_on_cluster(work: Work, blocks: Iterator[int], address: str, take: Callable[[Done], None]) -> None:
-    """Do every block; a loss of the scheduler, or of workers again and again, is reported as what it is."""
+def is_client(scheduler: Any) -> bool:
+    """Tell whether a scheduler is the client of one, of the user's own."""
+    return hasattr(scheduler, "scheduler_info") and hasattr(scheduler, "map")
+
+
+def check_client(client: Any) -> None:
+    """Refuse a client that is closed, or one of `async` code."""
+    if client.status != "running" or client.asynchronous:
+        got, remedy = f"one that is {client.status}", "Pass distributed.Client(...), or the address tcp://host:port."
+        raise error(_WHERE, "be a client that is connected, and not asynchronous", got, remedy)
+
+
+def do_on_cluster(work: Work, blocks: Iterator[int], scheduler: Any, take: Callable[[Done], None]) -> None:
+    """Do every block by the scheduler at an address, or by that of a client, which stays open.
+
+    A loss of the scheduler, or of workers again and again, is reported as what it is.
+    """
     from distributed.comm.core import CommClosedError
     from distributed.scheduler import KilledWorker
 
-    with _distributed().Client(address, timeout=_CONNECT, set_as_default=False) as client:
+    own = is_client(scheduler)
+    connect = _distributed().Client
+    with (
+        contextlib.nullcontext(scheduler)
+        if own
+        else connect(scheduler, timeout=_CONNECT, set_as_default=False) as client
+    ):
         try:
             _do_blocks(work, blocks, client, take)
         except KilledWorker as failure:
@@ -58,6 +80,7 @@ def do_on_cluster(work: Work, blocks: Iterator[int], address: str, take: Callabl
         except Exception as failure:
             if client.status == "running" and not isinstance(failure, CommClosedError | CancelledError):
                 raise
+            address = client.scheduler.address if own else scheduler
             raise ConnectionError(f"The connection to the scheduler at {address} was lost") from None
 
 

@@ -14,9 +14,10 @@ from nonholo.discrete import discretize
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
 from nonholo.ensembles._names import OUTCOME, checked_reductions, component_of, counted
+from nonholo.groups import components_of
 from nonholo.simulation import ensemble
 
-_LITERATURE, _READY, _FINAL = "nonholo.literature", "examples.", "final_state"
+_EXAMPLES, _READY, _FINAL = "nonholo.examples", "examples.", "final_state"
 _STEP, _STARTS = "time_step", ("configuration", "body_velocity")
 _OWN = (*_STARTS, _STEP)
 _STEPS, _MEMBERS = 1 << 20, 1 << 12  # at most in a block
@@ -168,7 +169,7 @@ def family_task_from(entry: dict[str, Any]) -> FamilyTask:
     own = name.removeprefix(_READY)
     if own != name and own not in _ready_names():
         raise ValueError(f"one of {name!r}, which is no ready system of this version")
-    family = function_from(name) if own == name else getattr(importlib.import_module(_LITERATURE), own)
+    family = function_from(name) if own == name else getattr(importlib.import_module(_EXAMPLES), own)
     reductions = [each if each == _FINAL else function_from(each) for each in entry["reductions"]]
     run = {name: entry[name] for name in ("time_step", "steps", "parameters", "save_every")}
     return FamilyTask(family, reductions=reductions, **run)
@@ -180,13 +181,13 @@ def imported_functions(entry: dict[str, Any]) -> list[str]:
 
 
 def _ready_names() -> set[str]:
-    return {*importlib.import_module(_LITERATURE).__all__} - {"Example"}
+    return {*importlib.import_module(_EXAMPLES).__all__} - {"Example"}
 
 
 def _family_name(family: Callable[..., Any]) -> str:
     name = function_name(family)
     own = name.partition(":")[2]
-    return f"{_READY}{own}" if name.startswith(f"{_LITERATURE}.") and own in _ready_names() else name
+    return f"{_READY}{own}" if name.startswith(f"{_EXAMPLES}.") and own in _ready_names() else name
 
 
 def _named(argument: str) -> str:
@@ -226,11 +227,18 @@ def _final_state(batch: Any) -> dict[str, Any]:
     every, members = batch.save_every, np.arange(len(batch))
     last = np.zeros_like(members) if every is None else batch.steps_done // every
     configuration = batch.configuration[members, last]
-    axes = ("coordinate",) if configuration.ndim == 2 else ("row", "column")
+    system = batch.members.discrete.system
+    names = list(getattr(system, "coordinates", ()))
+    axes, of_places = (("coordinate",), {"components": names}) if configuration.ndim == 2 else (("row", "column"), {})
+    of_rates = {"components": names or list(components_of(system.group))}
     return {
         "final_time": ((), batch.time[members, last], {"long_name": "time of the last good state"}),
-        "final_configuration": (axes, configuration, {"long_name": "configuration of the last good state"}),
-        "final_velocity": (("component",), batch.body_velocity[members, last], {"long_name": "velocity there"}),
+        "final_configuration": (axes, configuration, of_places | {"long_name": "configuration of the last good state"}),
+        "final_velocity": (
+            ("component",),
+            batch.body_velocity[members, last],
+            of_rates | {"long_name": "velocity there"},
+        ),
         "final_energy": ((), batch.energy[members, last], {"long_name": "energy there"}),
         "steps_done": ((), batch.steps_done, {"long_name": "good steps"}),
     }

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nonholo.analysis.limits import turn_of_flow
+from nonholo.analysis import turn_of_flow
 from nonholo.base.checks import error, shown
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome

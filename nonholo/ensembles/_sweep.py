@@ -12,7 +12,7 @@ import xarray
 from nonholo import io, simulation
 from nonholo.base.checks import error, flags, path, shown
 from nonholo.base.progress import progress_bar
-from nonholo.ensembles._begin import begun, check_same, check_task, restored_task
+from nonholo.ensembles._begin import begun, check_same, check_task, grown, restored_task
 from nonholo.ensembles._blocks import Done, Work
 from nonholo.ensembles._scheduling import checked_scheduler, do_all
 from nonholo.ensembles.designs import Design
@@ -23,7 +23,7 @@ def sweep(
     task: Any,
     design: Design,
     store: str | Path,
-    scheduler: str | None = None,
+    scheduler: Any = None,
     *,
     workers: int | None = None,
     block: int | None = None,
@@ -43,7 +43,8 @@ def sweep(
         design: A `Grid` or a `RandomDesign`.
         store: A new path, usually named `*.zarr`; for a cluster one that all workers see.
         scheduler: "threads" (the default: embedded, nothing to start), "processes" for functions that hold the
-            interpreter's lock, or the address `tcp://host:port` of a Dask scheduler.
+            interpreter's lock, the address `tcp://host:port` of a Dask scheduler, or a `distributed.Client`, which
+            stays open.
         workers: How many threads or processes; by default one for each core.
         block: Most members in a block, which is one chunk on disk and one piece of work; a store that is there keeps
             its own.
@@ -113,8 +114,9 @@ def resume(
     discrete: Any = None,
     events: Any = None,
     task: Any = None,
+    members: int | None = None,
     trust: bool = False,
-    scheduler: str | None = None,
+    scheduler: Any = None,
     workers: int | None = None,
     throw: bool = True,
     progress: bool = False,
@@ -132,6 +134,8 @@ def resume(
         events: The events of an orbit that looks for some: a store holds their names, directions and stops, but no
             functions. Others than those of the store are refused. To read a finished orbit `load_orbit` needs none.
         task: The task of a sweep; needed if it is, or holds, a custom function, which a store only names.
+        members: How many members a random design is to have, more than it has: it grows by those that are missing, in
+            blocks as large as before. Those that are there stay; the result has the bits of a sweep of all of them.
         trust: Import those functions by the names that the store gives. They run with your rights, whatever they are,
             so only for a store whose maker you trust; without it nothing runs that you did not pass.
         scheduler: As in `sweep`.
@@ -162,7 +166,7 @@ def resume(
     if stored == io.SWEEP_FORMAT:
         given, owner, remedy = {"discrete": discrete, "events": events}, "an orbit", "Pass task=..., or nothing."
     else:
-        given, owner = {"task": task, "scheduler": scheduler, "workers": workers}, "a sweep"
+        given, owner = {"task": task, "members": members, "scheduler": scheduler, "workers": workers}, "a sweep"
         remedy = "Leave it out for an orbit."
     for name, value in given.items():
         if value is not None:
@@ -172,10 +176,13 @@ def resume(
         return simulation.resume_run(store, discrete=discrete, events=events, throw=throw, progress=progress)
     name, workers = checked_scheduler(scheduler, workers)
     opened = open_store(store)
-    return continue_sweep(Work(opened, restored_task(opened, task, trust=trust)), name, workers, progress)
+    work = Work(opened, restored_task(opened, task, trust=trust))
+    if members is not None:
+        work = work._replace(store=grown(opened, members))
+    return continue_sweep(work, name, workers, progress)
 
 
-def continue_sweep(work: Work, scheduler: str, workers: int | None, progress: bool) -> xarray.Dataset:
+def continue_sweep(work: Work, scheduler: Any, workers: int | None, progress: bool) -> xarray.Dataset:
     """Do every block that a store lacks, and open the result."""
     store = work.store
     with io.locked(store.path):
@@ -185,7 +192,7 @@ def continue_sweep(work: Work, scheduler: str, workers: int | None, progress: bo
     return opened_result(store)
 
 
-def _complete(work: Work, scheduler: str, workers: int | None, progress: bool) -> None:
+def _complete(work: Work, scheduler: Any, workers: int | None, progress: bool) -> None:
     """Do every block, tell what was damaged and who works with other versions."""
     store = work.store
     total, done, versions = store.design.members, 0, {attributes_of(store.path)["versions"]}

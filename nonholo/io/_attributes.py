@@ -15,8 +15,14 @@ from nonholo.base.checks import error, instance, text
 from nonholo.base.compiled import way_of_kernels
 from nonholo.continuous import ContinuousFlow
 from nonholo.discrete import MeasuredMotion, discretize
-from nonholo.io._descriptions import described_system, fields_of, restore_group, restore_system, unstored
-from nonholo.io._in_coordinates import recorded_system
+from nonholo.io._descriptions import (
+    described_system,
+    fields_of,
+    recorded_system,
+    restore_group,
+    restore_system,
+    unstored,
+)
 from nonholo.orbit import AbstractMotion, AbstractOrbit
 from nonholo.systems import AbstractCoordinateDiscretization
 

@@ -12,7 +12,7 @@ from nonholo.base.checks import count, error, flags, instance
 from nonholo.base.checks import path as checked_path
 from nonholo.base.progress import progress_bar
 from nonholo.base.types import Float
-from nonholo.io._beside import check_file, new_file
+from nonholo.io._places import check_file, new_file
 from nonholo.io.datasets import Stretch, column_names, coordinate_rows, rows_of
 from nonholo.orbit import AbstractOrbit
 

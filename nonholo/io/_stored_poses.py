@@ -13,8 +13,8 @@ from nonholo.base.checks import error
 from nonholo.io._attributes import system_of
 from nonholo.io._chunks import DamagedError, checked_block, opened_array
 from nonholo.io._load import check_seals, read_attributes, stored_names
-from nonholo.io._lock import owner_of
 from nonholo.io._orbit_store import Stream, open_stream
+from nonholo.io._places import owner_of
 from nonholo.io.datasets import Stretch
 
 _WHERE = "store_to_csv(store=...)"

@@ -124,8 +124,9 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     def tangent(self) -> Float[np.ndarray, "L d d"]:
         r"""Derivative of each state by the one before, in orthonormal bases of the admissible changes of (q, v).
 
-        Those of (q, v) that keep $A(q)v = b$, of a map the discrete constraint, d = 2 n - s; on a group $\xi$ of
-        $g\,e^\xi$ stands for q. Of a map by the implicit function of the step, of a flow by its equation of variation.
+        Those of (q, v) that keep $A(q)v = b$, of a map the discrete constraint, and m holonomic ones, d = 2 n - s - m;
+        on a group $\xi$ of $g\,e^\xi$ stands for q. Of a map by the implicit function of the step, of a flow by its
+        equation of variation.
         """
         return room("_tangents").tangent_map(self)
 
@@ -183,7 +184,8 @@ class CoordinateOrbit(AbstractCoordinateOrbit):
         multipliers: Impulses $\lambda$ in $P_{k+1} - P^+_k = \sum_j \lambda_j A^j(q_{k+1})$ of the steps from the saved
             states but the last, shape (K - 1, s); for a flow the forces at its times, shape (K, s).
         energy: $-\partial L_d/\partial h$, for a flow $v\cdot\partial L/\partial v - L$, shape (K,).
-        constraint_residual: Largest $|F_j(q_k, q_{k+1})|$, for a flow $|A^j(q) v|$, shape (K,).
+        constraint_residual: Largest $|F_j(q_k, q_{k+1})|$, of holonomic constraints $|\Phi_j(q_{k+1})|/h$; for a flow
+            $|A^j(q) v|$, shape (K,).
         outcome: How the run ended.
         system: What moves.
         time_step: h; None for a flow.

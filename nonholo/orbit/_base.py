@@ -230,7 +230,7 @@ class AbstractOrbit(Keeper, abc.ABC):
 
     def plot(self, path: str | None = None, *, overwrite: bool = False) -> Any:
         """Draw the overview picture of the orbit; return the matplotlib figure, saved to a new `path` if given."""
-        return importlib.import_module("nonholo.plotting").overview(self, path, overwrite=overwrite)
+        return importlib.import_module("nonholo.plot").overview(self, path, overwrite=overwrite)
 
     def to_html(self, path: Any, *, overwrite: bool = False) -> None:
         """Write the live page of the orbit to a new HTML file, which runs in any browser; see `nh.explore`."""

@@ -37,6 +37,7 @@ def flow(
     restricted_velocity: Any = None,
     momentum: Any = None,
     configuration: Any = None,
+    project: bool = False,
     rtol: float | None = None,
     atol: float = 1e-12,
     method: str | None = None,
@@ -52,6 +53,7 @@ def flow(
     configuration: Any,
     body_velocity: Any = None,
     momentum: Any = None,
+    project: bool = False,
     rtol: float | None = None,
     atol: float = 1e-12,
     progress: bool = False,
@@ -64,6 +66,7 @@ def flow(
     restricted_velocity: Any = None,
     momentum: Any = None,
     configuration: Any = None,
+    project: bool = False,
     rtol: float | None = None,
     atol: float = 1e-12,
     method: str | None = None,
@@ -98,6 +101,7 @@ def flow(
         restricted_velocity: The same, in rows of the constraint subspace.
         momentum: Start with this momentum, full or along the constraint subspace.
         configuration: First pose, a matrix of the group; the identity by default.
+        project: Start at the admissible configuration and `body_velocity` next to the given ones in the kinetic energy.
         rtol: Relative error of a step, at least 1e-14, which is the default; with "diffrax" 1e-10.
         atol: Absolute error of a step with "diffrax". Smaller components are not resolved there: a solution that starts
             so near a repelling equilibrium leaves it at the wrong time.
@@ -128,13 +132,13 @@ def flow(
         >>> print(orbit.body_velocity[:, 1].round(6), (np.ptp(orbit.heading) / np.pi).round(6))
         [-2.  2.] 2.0
     """
-    flags("flow", reconstruct=reconstruct, progress=progress)
+    flags("flow", project=project, reconstruct=reconstruct, progress=progress)
     starts = {"body_velocity": body_velocity, "momentum": momentum}
     if isinstance(system, AbstractCoordinateSystem):
         refused = {"restricted_velocity": restricted_velocity, "method": method}
         no_pose = {"reconstruct": (reconstruct, True)}
         refuse_in_coordinates("flow", **{name: (value, None) for name, value in refused.items()}, **no_pose)
-        errors = {"rtol": rtol, "atol": atol}
+        errors = {"rtol": rtol, "atol": atol, "project": project}
         with telling("time", progress):
             return flow_in_coordinates(system, events, configuration=configuration, times=times, **starts, **errors)
     as_system("flow(system=...)", system)
@@ -142,7 +146,7 @@ def flow(
     solver, posed = solver_of(system, method, float(time[0]), reconstruct=reconstruct)
     tolerances = flow_tolerances((1e-10 if method == "diffrax" else 1e-14) if rtol is None else rtol, atol)
     solve = functools.partial(solver, tolerances=tolerances)
-    start = Start.of("flow", configuration, restricted_velocity=restricted_velocity, **starts)
+    start = Start.of("flow", configuration, project=project, restricted_velocity=restricted_velocity, **starts)
     first = _first_state(system, time, start, posed=posed)
     found = None if events is None else checked_events("flow", events)
     with telling("time", progress):

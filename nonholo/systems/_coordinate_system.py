@@ -92,6 +92,7 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
         times: Any,
         body_velocity: Any = None,
         momentum: Any = None,
+        project: bool = False,
         rtol: float | None = None,
         atol: float = 1e-12,
     ) -> OrbitT:

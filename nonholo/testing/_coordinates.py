@@ -10,9 +10,8 @@ import numpy as np
 from nonholo.base.checks import error, shown
 from nonholo.base.types import Float
 from nonholo.simulation import flow, simulate
-from nonholo.testing._measures import derivative, gap, largest, relative
-from nonholo.testing._orbit_samples import COUNTS, made, off_two, raised
-from nonholo.testing._report import Check, measures, need
+from nonholo.testing._orbit_samples import COUNTS, off_two, result_of, result_or_raise
+from nonholo.testing._report import Check, derivative, gap, largest, measures, need, relative
 
 SYSTEM: list[Check] = []
 MAP: list[Check] = []
@@ -27,7 +26,7 @@ class CoordinateSamples:
         owner: The check.
         system: The system.
         rng: Where the start comes from.
-        configuration: Where it starts; random by default, with what is prescribed.
+        configuration: Where it starts; by default what is admissible next to a random place, with what is prescribed.
         time_step: h, of a discretization.
         steps: Number of steps of the orbit.
     """
@@ -45,11 +44,11 @@ class CoordinateSamples:
             remedy = "Pass a LagrangeDAlembert, or a body on a group as an LLSystem or LRSystem."
             raise error(f"{owner}(...)", "be in coordinates or an LL or LR system", shown(system), remedy)
         self.system, self.time_step, self.steps, n = system, float(time_step), steps, system.dimension
-        self.q = rng.normal(size=n) if configuration is None else configuration
-        self._drawn = rng.normal(size=n)
+        self._place = rng.normal(size=n) if configuration is None else configuration
+        self._drawn, self._is_random = rng.normal(size=n), configuration is None
         if configuration is None:
             for index, motion in system.plain.prescribed:
-                self.q[index] = self._value(motion, 0.0)
+                self._place[index] = self._value(motion, 0.0)
 
     def _value(self, function: Callable[..., Any], *arguments: Any) -> np.ndarray:
         from nonholo.base.numerics import double_precision
@@ -62,12 +61,19 @@ class CoordinateSamples:
         return self._value(self.system.plain.lagrangian, q, v, *([t] if self.system.takes_time("lagrangian") else []))
 
     def forms(self, q: np.ndarray, t: float) -> Float[np.ndarray, "s n"]:
-        """Return the rows of the constraint, those of prescribed coordinates last."""
-        system, fixed = self.system.plain, [i for i, _ in self.system.prescribed]
+        """Return the rows of the constraint, before the last ones of prescribed coordinates those of holonomic ones."""
+        system, driven = self.system.plain, [i for i, _ in self.system.prescribed]
         rows = np.zeros((0, system.dimension))
         if system.constraint_forms is not None:
             rows = self._value(system.constraint_forms, q, *([t] if system.takes_time("constraint_forms") else []))
-        return np.concatenate([rows, np.eye(system.dimension)[fixed]])
+        if system.holonomic is not None:
+            rows = np.concatenate([rows, self.gradient(lambda x: self.holonomic(x, t), q).T])
+        return np.concatenate([rows, np.eye(system.dimension)[driven]])
+
+    def holonomic(self, q: np.ndarray, t: float) -> Float[np.ndarray, "m"]:
+        """Return what holonomic constraints leave."""
+        system = self.system.plain
+        return self._value(system.holonomic, q, *([t] if system.takes_time("holonomic") else []))
 
     def force(self, t: float, q: np.ndarray, v: np.ndarray, step: int) -> np.ndarray:
         """Return the force, of a table that of a step."""
@@ -75,14 +81,24 @@ class CoordinateSamples:
         return row if self.system.applied is None else row + self._value(self.system.plain.applied, t, q, v)
 
     def gradient(self, function: Callable[[np.ndarray], Any], at: np.ndarray) -> Float[np.ndarray, "n"]:
-        """Return the derivatives of a function of n numbers."""
+        """Return the derivatives of a function of n numbers, a row for each."""
         return np.array([derivative(lambda t, x=x: function(at + t * x)) for x in np.eye(len(at))])
+
+    @functools.cached_property
+    def _opening(self) -> Any:
+        free = dataclasses.replace(self.system, force=None)  # a table has no flow
+        start = {"configuration": self._place, "momentum": self._drawn, "project": self._is_random}
+        return flow(free, times=[0.0], **start)
+
+    @property
+    def q(self) -> Float[np.ndarray, "n"]:
+        """Where the motions start."""
+        return self._opening.configuration[0]
 
     @functools.cached_property
     def momentum(self) -> Float[np.ndarray, "n"]:
         """A momentum at the start, of velocities of about norm one."""
-        free = dataclasses.replace(self.system, force=None)  # a table has no flow
-        speed = np.linalg.norm(flow(free, configuration=self.q, momentum=self._drawn, times=[0.0]).body_velocity)
+        speed = np.linalg.norm(self._opening.body_velocity)
         return self._drawn / max(1.0, float(speed))
 
     @functools.cached_property
@@ -105,7 +121,7 @@ class CoordinateSamples:
     @property
     def orbit(self) -> Any:
         """The orbit."""
-        return made(self.run, "the orbit failed")
+        return result_of(self.run, "the orbit failed")
 
     def _run(self, time_step: float, steps: int, **start: Any) -> Any:
         start = start or {"configuration": self.q, "momentum": self.momentum}
@@ -119,7 +135,7 @@ class CoordinateSamples:
     @functools.cached_property
     def paths(self) -> list[Any]:
         """One path in more and more steps."""
-        made(self.run, "the orbit failed")
+        result_of(self.run, "the orbit failed")
         need(not getattr(self.system.discrete_lagrangian, "is_of_one_step", False), "made for one time step")
         return [self._run(self.span / n, n) for n in COUNTS]
 
@@ -138,8 +154,8 @@ def _momentum(s: CoordinateSamples) -> float:
 @measures(SYSTEM, "energy", "E = v p - L", 1e-11)
 def _energy(s: CoordinateSamples) -> float:
     q, v, t, p = _middle(s)
-    expected = v @ p - s.lagrangian(q, v, t)
-    return abs(s.near.energy[2] - expected) / (abs(expected) + abs(v @ p))
+    energy = v @ p - s.lagrangian(q, v, t)
+    return abs(s.near.energy[2] - energy) / (abs(energy) + abs(v @ p))
 
 
 @measures(SYSTEM, "velocity", "the flow moves with its velocity", 1e-8)
@@ -175,7 +191,7 @@ def _slope(rows: Float[np.ndarray, "5 n"]) -> Float[np.ndarray, "n"]:
 
 @measures(MAP, "orbit", "a run goes through: steps that are missing", 0.0)
 def _orbit(s: CoordinateSamples) -> float:
-    return float(s.steps + 1 - len(raised(s.run)))
+    return float(s.steps + 1 - len(result_or_raise(s.run)))
 
 
 @measures(MAP, "discrete constraint", "F(q_k, q_(k+1)) = 0", 1e-11)
@@ -184,18 +200,25 @@ def _discrete_constraint(s: CoordinateSamples) -> float:
 
 
 @measures(MAP, "prescribed", "prescribed coordinates are where they have to be", 1e-12)
-def _prescribed(s: CoordinateSamples) -> float:
+def _drivers(s: CoordinateSamples) -> float:
     need(s.system.prescribed, "nothing is prescribed")
     pairs = ((s.orbit.configuration[:, i], motion) for i, motion in s.system.plain.prescribed)
     return max(gap(rows, [s._value(motion, t) for t in s.orbit.time]) for rows, motion in pairs)
 
 
+@measures(MAP, "holonomic", "Phi(q_k, t_k) = 0 at each state", 1e-12)
+def _holonomic(s: CoordinateSamples) -> float:
+    need(s.system.holonomic, "no constraint is holonomic")
+    states = zip(s.orbit.configuration, s.orbit.time, strict=True)
+    return max(largest(s.holonomic(q, t)) / (1 + largest(q)) for q, t in states)
+
+
 @measures(MAP, "start", "the first momentum along the constraint is that of the start", 1e-11)
 def _start(s: CoordinateSamples) -> float:
     rows = s.forms(s.orbit.configuration[0], 0.0)
-    missed = s.orbit.momentum[0] - s.momentum
-    across = np.linalg.lstsq(rows.T, missed)[0] @ rows
-    return largest(missed - across) / (1 + largest(s.momentum))
+    gap_of_momenta = s.orbit.momentum[0] - s.momentum
+    across = np.linalg.lstsq(rows.T, gap_of_momenta)[0] @ rows
+    return largest(gap_of_momenta - across) / (1 + largest(s.momentum))
 
 
 @measures(MAP, "discrete principle", "P_(k+1) - P+_k = sum lambda_j A^j, by differences of the Lagrangian", 1e-7)

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Arc, Polygon
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 from nonholo_paper._finding import Measured, finding
 from nonholo_paper.figures._figure import Figure
 from nonholo_paper.formulas import sleigh_continuous as formulas
@@ -44,7 +44,7 @@ class Sketch:
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> Sketch:
     """Draw it; points of the body are moved by a matrix of SE(2)."""
     axes = MatplotlibFigure(figsize=(7.2, 5.4), layout="constrained").add_subplot()

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 import nonholo as nh
-from nonholo.plotting import BranchCounts, branch_counts, theme
+from nonholo.plot import BranchCounts, branch_counts, theme
 from nonholo_paper._finding import Measured, finding
 from nonholo_paper.figures._figure import Figure
 from nonholo_paper.formulas import sleigh_discrete as formulas
@@ -17,7 +17,7 @@ _SHIFT = 2 * BODY[0] * BODY[2] ** 2  # of p_hat, a p_1 + 2 m a^2
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> BranchCounts:
     """Draw it, with the scale of p_hat at the right."""
     drawn = branch_counts(SLEIGH)

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 import nonholo as nh
-from nonholo.plotting import BranchesPicture, theme
-from nonholo.plotting import branches as draw_branches
+from nonholo.plot import BranchesPicture, theme
+from nonholo.plot import branches as draw_branches
 from nonholo_paper import _suslov_twin as data
 from nonholo_paper._finding import Measured, finding
 from nonholo_paper._verdict import Verdict
@@ -17,7 +17,7 @@ START = (-0.25, -0.375)  # the half-angle tangents of an equilibrium
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> BranchesPicture:
     """Draw it."""
     top = nh.discretize(nh.SuslovTop(data.BODIES["four branches"]), 1.0)

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure as MatplotlibFigure
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 from nonholo_paper._finding import Measured, finding
 from nonholo_paper.figures._figure import Figure
 from nonholo_paper.figures._portrait import Portrait, portrait
@@ -20,7 +20,7 @@ TITLES = (r"$a \neq 0$, $b \neq 0$", r"$a \neq 0$, $b = 0$")
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> tuple[MatplotlibFigure, tuple[Portrait, ...]]:
     """Draw both panels."""
     figure = MatplotlibFigure(figsize=(10.0, 4.9), layout="constrained")

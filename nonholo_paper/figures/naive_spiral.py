@@ -11,7 +11,7 @@ from matplotlib.figure import Figure as MatplotlibFigure
 from matplotlib.lines import Line2D
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 from nonholo_paper._finding import Measured, finding
 from nonholo_paper.figures._figure import Figure
 from nonholo_paper.formulas import sleigh_discrete as formulas
@@ -32,7 +32,7 @@ def positions(constraint: str) -> Float[np.ndarray, "K 2"]:
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> tuple[Axes, PathCollection, Line2D]:
     """Draw points of both constraints, and the spiral through those of the naive one."""
     axes = MatplotlibFigure(figsize=(6.4, 6.2), layout="constrained").add_subplot()

@@ -7,8 +7,8 @@ import numpy as np
 from jaxtyping import Float
 
 import nonholo as nh
-from nonholo.plotting import theme
-from nonholo.plotting.elements import draw_surface
+from nonholo.plot import theme
+from nonholo.plot.elements import draw_surface
 from nonholo_paper._finding import Measured, finding
 from nonholo_paper._suslov_twin import BODIES
 from nonholo_paper.figures._figure import Figure
@@ -33,7 +33,7 @@ def momenta() -> Float[np.ndarray, "R C 3"]:
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> tuple[Any, list[Any]]:
     """Draw it, on the axes of the whole surface, with its two rims."""
     axes = space("Circular section of the momentum surface", ("$M_1$", "$M_2$", "$M_3$"), (32.0, -60.0))

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as MatplotlibFigure
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 from nonholo_paper._finding import Measured, finding
 from nonholo_paper._suslov_twin import BODIES
 from nonholo_paper.figures._figure import Figure
@@ -23,7 +23,7 @@ _SETTLED = 300.0  # time after which a motion of these energies has come to roun
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> tuple[Axes, Portrait]:
     """Draw it."""
     axes = MatplotlibFigure(figsize=(6.2, 5.6), layout="constrained").add_subplot()

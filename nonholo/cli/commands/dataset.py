@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from nonholo.cli.commands.simulate import Quiet
+from nonholo.cli.commands.run import Quiet
 
 
 def dataset(

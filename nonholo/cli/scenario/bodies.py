@@ -1,179 +1,238 @@
-"""The bodies that a scenario can hold, one class for each kind; each checks itself by building its system."""
+"""What a scenario can let move: systems of the library, its ready examples, what a module of the user's own makes.
 
-import abc
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, get_args
+A table is of a class or a function, whose arguments are the keys; its docstring says what they mean.
+"""
 
-from pydantic import model_validator
+import functools
+import importlib.util
+import inspect
+import re
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+from pydantic import Field, WithJsonSchema, create_model, model_validator
 
 import nonholo
-from nonholo.cli.scenario._groups import Group, group_of
-from nonholo.cli.scenario.sections import Matrix, Number, Positive, Section, Vector, exactly_one
+from nonholo.base.checks import needs
+from nonholo.cli.scenario.sections import Numbers, Section, checked_by
 
 if TYPE_CHECKING:
-    from nonholo.systems import System
+    from nonholo.groups import AbstractMatrixGroup
 
-Keys = tuple[tuple[str, ...], ...]
+Maker = Callable[..., Any]
+_NAME = re.compile(r"(SO|SE|Translations)\((\d{1,4})\)")
+_HOW = 'must be a name such as "SO(4)", "SE(3)" or "SE(2) x Translations(2)", or a table with a basis'
+_ENTRY = re.compile(r"^    (\w+): (.*(?:\n {8,}.*)*)", re.MULTILINE)
 
 
-class AbstractBody(Section, abc.ABC):
-    """A body of any kind: its system is built once when it is read, so that the library's refusals are reported."""
+def arguments(make: Maker) -> dict[str, inspect.Parameter]:
+    """Return the arguments of a class or a function by name."""
+    return dict(inspect.signature(make).parameters)
 
-    one_of: ClassVar[Keys] = ()
-    """Groups of keys of which exactly one must be there."""
 
-    @abc.abstractmethod
-    def system(self) -> "System":
-        """Return what moves."""
+def meanings(make: Maker) -> dict[str, str]:
+    """Return what a docstring says of each argument.
+
+    Example:
+        >>> import nonholo
+        >>> meanings(nonholo.Gravity)["point"]
+        'x, n body coordinates.'
+    """
+    _, _, entries = (inspect.getdoc(make) or "").partition("Args:\n")
+    entries, *_ = entries.split("\n\n")
+    return {name: " ".join(text.split()) for name, text in _ENTRY.findall(entries)}
+
+
+def summary(make: Maker) -> str:
+    """Return the first line of a docstring."""
+    return (inspect.getdoc(make) or "").partition("\n")[0]
+
+
+class GroupTable(Section):
+    """A group of the user's own: matrices that span its Lie algebra, and the form that it preserves, if any."""
+
+    basis: Numbers
+    form: Numbers | None = None
+
+
+def group_of(text: Any) -> "AbstractMatrixGroup":
+    """Return the group that a scenario names or spans.
+
+    Example:
+        >>> group_of("SE(2) x Translations(2)")
+        ProductGroup(SE(2), Translations(2))
+    """
+    if isinstance(text, dict):
+        table = GroupTable.model_validate(text)
+        return nonholo.MatrixGroup(table.basis, table.form)
+    factors = [_factor(name.strip()) for name in str(text).split(" x ")]
+    return factors[0] if len(factors) == 1 else nonholo.ProductGroup(*factors)
+
+
+def _factor(name: str) -> "AbstractMatrixGroup":
+    try:
+        if named := _NAME.fullmatch(name):
+            return getattr(nonholo, named[1])(int(named[2]))
+    except ValueError:
+        pass
+    raise ValueError(f"{_HOW}. Got {name!r}")
+
+
+Group = Annotated[Any, checked_by(group_of), WithJsonSchema({"type": "group"})]
+
+
+class MadeTable(Section):
+    """A table of which something is made, once when it is read, so that the library's refusals are reported."""
+
+    make: ClassVar[Maker]
+    others: ClassVar[tuple[Maker, ...]] = ()
+    """Other ways to make the same, of other keys."""
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """What is given, by the names of the arguments."""
+        return self.model_dump(exclude_none=True, exclude={"kind"})
+
+    @functools.cached_property
+    def made(self) -> Any:
+        """What the table makes."""
+        values = self.values
+        ways = (type(self).make, *type(self).others)
+        for make in ways:
+            known = arguments(make)
+            needed = {name for name, each in known.items() if each.default is each.empty}
+            if needed <= values.keys() <= known.keys():
+                return _called(make, {name: group_of(x) if name == "group" else x for name, x in values.items()})
+        words = " or ".join(", ".join(arguments(make)) for make in ways)
+        raise ValueError(f"must hold the keys {words}. Got {', '.join(values) or 'none'}")
 
     @model_validator(mode="after")
-    def _is_a_body(self) -> Self:
-        for names in self.one_of:
-            exactly_one(self, names)
-        self.system()
+    def _can_be_made(self) -> Any:
+        _ = self.made
         return self
 
 
-class SuslovBody(AbstractBody):
-    """A body about a fixed point, in n dimensions, that may only turn in planes containing one of its axes."""
-
-    kind: Literal["suslov"]
-    mass_tensor: Matrix | None = None
-    """J, symmetric; not the inertia tensor."""
-    inertia: Matrix | None = None
-    """Inertia tensor, instead of the mass tensor; n = 3."""
-    axis: Vector | None = None
-    """The body axis without spin; by default e_n."""
-    one_of: ClassVar[Keys] = (("mass_tensor", "inertia"),)
-
-    def system(self) -> "System":
-        """Return the top."""
-        if self.inertia is not None:
-            return nonholo.SuslovTop.from_inertia(
-                self.inertia, axis=(0.0, 0.0, 1.0) if self.axis is None else self.axis
-            )
-        return nonholo.SuslovTop(self.mass_tensor, axis=self.axis)
+def _called(make: Maker, values: dict[str, Any]) -> Any:
+    try:
+        return make(**values)
+    except ValueError:
+        raise
+    except Exception as failure:  # of a function of the user's own
+        raise ValueError(f"cannot be made of this: {type(failure).__name__}: {failure}") from failure
 
 
-class SleighBody(AbstractBody):
-    """A rigid body in the plane on a blade that cannot slip sideways; it turns round until its mass leads."""
+def table_of(word: str, make: Maker, kind: bool = False, plain: bool = True) -> type[MadeTable]:
+    """Return the table whose keys are the arguments of a class or a function.
 
-    kind: Literal["sleigh"]
-    mass: Positive
-    """Of the whole body."""
-    inertia: Positive
-    """About the center of mass, not about the blade."""
-    a: Number
-    """Center of mass along the blade, from the contact point."""
-    b: Number = 0.0
-    """Center of mass across the blade."""
-
-    def system(self) -> "System":
-        """Return the sleigh."""
-        return nonholo.ChaplyginSleigh(self.mass, self.inertia, self.a, self.b)
-
-
-class MultidimensionalSleighBody(AbstractBody):
-    """A sleigh in n dimensions: its reference point moves along body axis 1, which may turn but not twist."""
-
-    kind: Literal["multidimensional_sleigh"]
-    mass: Positive
-    """Of the whole body."""
-    center_of_mass: Vector
-    """From the reference point, in body axes."""
-    mass_tensor: Matrix
-    """J about the center of mass, symmetric."""
-
-    def system(self) -> "System":
-        """Return the sleigh."""
-        return nonholo.MultidimensionalSleigh(self.mass, self.center_of_mass, self.mass_tensor)
+    Args:
+        word: What it is called in a scenario.
+        make: The class or function; other constructors of a class, `from_inertia`, give more keys.
+        kind: Whether the table says what it is by a key.
+        plain: Whether values are numbers, lists of them or groups, as everywhere in the library.
+    """
+    others = tuple(getattr(make, name) for name in ("from_inertia",) if hasattr(make, name))
+    fields: dict[str, Any] = {"kind": (str, ...)} if kind else {}
+    for way in (make, *others):
+        about = meanings(way)
+        for name, each in arguments(way).items():
+            is_shared = all(name in arguments(other) for other in (make, *others))
+            default = each.default if is_shared else None
+            if default is each.empty:
+                default = ...
+            elif isinstance(default, tuple):
+                default = list(default)
+            shape = Group if name == "group" else Numbers if plain else Any
+            fields.setdefault(name, (shape, Field(default, description=about.get(name))))
+    table = create_model(word, __base__=MadeTable, __doc__=summary(make), **fields)
+    table.make, table.others = make, others
+    return table
 
 
-class RigidBodyBody(AbstractBody):
-    """A free body: about a fixed point in n dimensions, or with group = "SE(n)" moving about in them."""
-
-    kind: Literal["rigid_body"]
-    mass_tensor: Matrix
-    """J, symmetric; not the inertia tensor."""
-    group: Group | None = None
-    """SO(n) by default, or SE(n)."""
-
-    def system(self) -> "System":
-        """Return the body."""
-        return nonholo.RigidBody(self.mass_tensor, None if self.group is None else group_of(self.group))
-
-
-class VeselovaBody(AbstractBody):
-    """A body about a fixed point, in n dimensions, that may only turn in planes containing an axis fixed in space."""
-
-    kind: Literal["veselova"]
-    mass_tensor: Matrix
-    """J, symmetric; not the inertia tensor."""
-
-    def system(self) -> "System":
-        """Return the top."""
-        return nonholo.VeselovaTop(self.mass_tensor)
-
-
-class LeftInvariantBody(AbstractBody):
-    """Anything on a matrix group whose velocity, seen from the body, stays in a subspace fixed in the body."""
-
-    kind: Literal["left_invariant"]
-    group: Group
-    """SO(n), SE(n), Translations(m), products with x between them, or {basis = [matrices]}."""
-    mass_tensor: Matrix | None = None
-    """J, symmetric; not the inertia tensor."""
-    inertia_operator: Matrix | None = None
-    """Instead of a mass tensor: the kinetic energy in coordinates of the algebra."""
-    constraint_subspace: Matrix | None = None
-    """Rows span the velocities that are allowed."""
-    annihilator: Matrix | None = None
-    """Instead: rows vanish on those velocities."""
-    one_of: ClassVar[Keys] = (
-        ("mass_tensor", "inertia_operator"),
-        ("constraint_subspace", "annihilator"),
-    )
-
-    def system(self) -> "System":
-        """Return the system."""
-        return nonholo.LLSystem(
-            group_of(self.group),
-            self.mass_tensor,
-            self.constraint_subspace,
-            annihilator=self.annihilator,
-            inertia_operator=self.inertia_operator,
-        )
-
-
-class RightInvariantBody(AbstractBody):
-    """A body on SO(n) or SE(n) whose velocity, seen from space, stays in a subspace fixed in space."""
-
-    kind: Literal["right_invariant"]
-    group: Group
-    """SO(n), SE(n), Translations(m), products with x between them, or {basis = [matrices]}."""
-    mass_tensor: Matrix
-    """J, symmetric; not the inertia tensor."""
-    constraint_subspace: Matrix | None = None
-    """Rows span the velocities that are allowed."""
-    annihilator: Matrix | None = None
-    """Instead: rows vanish on those velocities."""
-    one_of: ClassVar[Keys] = (("constraint_subspace", "annihilator"),)
-
-    def system(self) -> "System":
-        """Return the system."""
-        given: Any = (self.mass_tensor, self.constraint_subspace)
-        return nonholo.LRSystem(group_of(self.group), *given, annihilator=self.annihilator)
-
-
-AnyBody = (
-    SuslovBody
-    | SleighBody
-    | MultidimensionalSleighBody
-    | RigidBodyBody
-    | VeselovaBody
-    | LeftInvariantBody
-    | RightInvariantBody
-)
-BODIES: dict[str, type[AbstractBody]] = {
-    get_args(body.model_fields["kind"].annotation)[0]: body for body in get_args(AnyBody)
+SHORT = {
+    "suslov": "SuslovTop",
+    "sleigh": "ChaplyginSleigh",
+    "multidimensional_sleigh": "MultidimensionalSleigh",
+    "rigid_body": "RigidBody",
+    "veselova": "VeselovaTop",
+    "left_invariant": "LLSystem",
+    "right_invariant": "LRSystem",
 }
-"""The class of each kind."""
+"""Kinds that are called by another word than their class."""
+_OWN: dict[str, Maker] = {}
+
+
+def kinds() -> list[str]:
+    """Return every kind of body that there is; those of the examples load JAX."""
+    return [*_OWN, *SHORT, *_systems(), *examples()]
+
+
+def own_kinds() -> list[str]:
+    """Return the kinds of a module of the user's own, and those of systems: a class by one word."""
+    return [*_OWN, *SHORT, *(name for name in _systems() if name not in SHORT.values())]
+
+
+def body_table(kind: str) -> type[MadeTable]:
+    """Return the table of a kind of body.
+
+    Raises:
+        KeyError: There is none of this name.
+    """
+    if kind in _OWN:
+        return table_of(kind, _OWN[kind], kind=True, plain=False)
+    return _library_table(kind)
+
+
+@functools.cache
+def _library_table(kind: str) -> type[MadeTable]:
+    systems = _systems()
+    name = SHORT.get(kind, kind)
+    return table_of(kind, systems[name] if name in systems else examples()[kind], kind=True)
+
+
+@functools.cache
+def _systems() -> dict[str, Maker]:
+    from nonholo.systems import SYSTEMS
+
+    return {each.__name__: each for each in SYSTEMS}
+
+
+@functools.cache
+def examples() -> dict[str, Maker]:
+    """Return the functions of the ready examples by name."""
+    with needs("jax", "nonholo.examples"):
+        ready = nonholo.examples
+        return {name: getattr(ready, name) for name in ready.__all__ if name.islower()}
+
+
+def is_example(name: str) -> bool:
+    """Tell whether a kind starts by itself: an example, or what a user's own function makes."""
+    return name in _OWN or name not in (*SHORT, *_systems())
+
+
+def import_own(path: Path | None) -> None:
+    """Run a module of the user's own, asked for by its path: each public function and class in it is a kind of body."""
+    _OWN.clear()
+    if path is None:
+        return
+    _OWN.update(_public(_module_at(path)))
+
+
+def _module_at(path: Path) -> Any:
+    name = path.stem
+    if not (path.suffix == ".py" and name.isidentifier() and path.is_file()):
+        raise ValueError(f"`--module` must be the path of a Python file. Got '{path}'. Pass one such as my_robot.py.")
+    known = importlib.util.find_spec(name)
+    if known is None:
+        sys.path.insert(0, str(path.resolve().parent))  # where other processes find it too
+    elif known.origin != str(path.resolve()):
+        got = f"'{path}', but there is a module {name} at {known.origin}"
+        raise ValueError(f"`--module` must have a name of its own. Got {got}. Rename it.")
+    return importlib.import_module(name)
+
+
+def _public(module: Any) -> Iterator[tuple[str, Maker]]:
+    for name, value in vars(module).items():
+        if callable(value) and not name.startswith("_") and value.__module__ == module.__name__:
+            yield name, value

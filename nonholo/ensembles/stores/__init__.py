@@ -2,14 +2,16 @@
 
 from nonholo.ensembles.stores._poses_csv import sweep_to_csv
 from nonholo.ensembles.stores._results import OUTCOME, RAISED, Output, Results, Task, attempted, probed
-from nonholo.ensembles.stores._standing import SweepStanding, opened_result, standing_of
 from nonholo.ensembles.stores._store import (
     SCHEMA,
     Mark,
+    SweepStanding,
     SweepStore,
     attributes_of,
     create_store,
     layout_of,
     open_store,
+    opened_result,
+    standing_of,
     store_of,
 )

@@ -11,8 +11,7 @@ from nonholo import io
 from nonholo.base.checks import error, path
 from nonholo.ensembles._block import MemberBlock, block_of
 from nonholo.ensembles._ensemble_task import EnsembleTask, ensemble_task_from
-from nonholo.ensembles.stores._standing import standing_of
-from nonholo.ensembles.stores._store import SweepStore, open_store
+from nonholo.ensembles.stores._store import SweepStore, open_store, standing_of
 
 _WHERE = "sweep_to_csv(store=...)"
 _WANTED = ("outcome", "final_time", "final_pose")

@@ -4,15 +4,18 @@ Writes are atomic, so whoever writes can be killed at any moment. What a block h
 the design, so two writers of one block write the same.
 """
 
+import collections
 import dataclasses
 import functools
 import json
+import math
 import uuid
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
+import xarray
 import zarr
 from pydantic import Field, TypeAdapter, ValidationError
 from zarr.codecs import BloscCodec, Crc32cCodec
@@ -23,6 +26,7 @@ from nonholo.base.compiled import way_of_kernels
 from nonholo.ensembles._describe import design_from
 from nonholo.ensembles.designs import Design, axis_dimensions
 from nonholo.ensembles.stores._results import Output, Results
+from nonholo.io import owner_of
 
 
 def layout_of(sizes: tuple[int, ...], block: int) -> io.Layout:
@@ -158,6 +162,16 @@ class SweepStore:
         """Say that the sweep came to its end, and consolidate the metadata."""
         self._blocks.finish({"finished": True})
 
+    def grown(self, members: int) -> "SweepStore":
+        """Return the store with more members to do; a last block that was not full is computed again."""
+        _ = self._blocks  # whose arrays have the length of an earlier growth
+        content, before = self._content, list(self.layout.sizes)
+        changes = {"design": content["design"] | {"members": members}, "before": before}
+        changes["layout"] = [[members], list(self.layout.chunk)]
+        made = uuid.uuid4().hex  # whoever still writes the smaller one is refused
+        io.edit_attributes(self.path, {"made": made, "sweep": json.dumps(content | changes), "finished": False})
+        return SweepStore(self.path, made)
+
     def _axis(self, name: str) -> np.ndarray:
         array = io.writable_array(self.path, name)
         try:
@@ -177,6 +191,9 @@ class SweepStore:
     @functools.cached_property
     def _blocks(self) -> io.BlockStore:
         arrays = {name: io.writable_array(self.path, name) for name in self.outputs}
+        for array in arrays.values():
+            if [*array.shape[:1]] == self._content.get("before"):  # a sweep that has grown since it was made
+                array.resize((*self.layout.sizes, *array.shape[1:]))
         for name, array in arrays.items():
             self._check_described(name, array)
         return io.BlockStore(self.path, self.made, self.layout, arrays, holds_nan=True)
@@ -269,3 +286,67 @@ def _create_arrays(group: zarr.Group, design: Design, layout: io.Layout, outputs
             dimension_names=[*design.sizes, *output.dimensions],
             attributes=output.attributes,
         )
+
+
+class SweepStanding(NamedTuple):
+    """The progress of a sweep.
+
+    Attributes:
+        done: Members of finished blocks.
+        members: Members in total.
+        outcomes: How many ended how, by name.
+        rate: Members in a second of work of one worker; NaN before the first block.
+        messages: Some of those for which the task raised, with what it said.
+        owner: Who is writing the store, if anybody.
+        finished: Whether the sweep came to its end.
+    """
+
+    done: int
+    members: int
+    outcomes: dict[str, int]
+    rate: float
+    messages: list[list[Any]]
+    owner: str | None
+    finished: bool
+
+    @property
+    def failed(self) -> int:
+        """Members that did not succeed."""
+        return self.done - self.outcomes.get("successful", 0)
+
+    def __str__(self) -> str:
+        return f"{self.done} of {self.members} members, {self.failed} of them failed"
+
+
+def standing_of(path: str | Path) -> SweepStanding:
+    """Say how far the sweep of a store came."""
+    store = open_store(path)
+    marks = [mark for _, mark in store.marks()]
+    outcomes: collections.Counter[str] = collections.Counter()
+    for mark in marks:
+        outcomes.update(mark.outcomes)
+    done, seconds = sum(mark.members for mark in marks), sum(mark.seconds for mark in marks)
+    messages = [message for mark in marks for message in mark.messages]
+    rate = done / seconds if seconds else math.nan
+    owner = owner_of(store.path)
+    return SweepStanding(done, math.prod(store.layout.sizes), dict(outcomes), rate, messages, owner, store.is_finished)
+
+
+def opened_result(store: SweepStore) -> xarray.Dataset:
+    """Return the result as a dataset that is loaded lazily, by the metadata of its arrays, which were checked."""
+    try:
+        dataset = xarray.open_zarr(store.path, chunks=None, consolidated=False)
+    except Exception as failure:
+        got = f"'{store.path}', where xarray cannot read them: {failure}"
+        raise error("load_sweep(store=...)", "hold sound metadata", got, "Copy it again from its source.") from failure
+    return _labeled(dataset[sorted(map(str, dataset.data_vars))])  # a disk lists files in any order
+
+
+def _labeled(dataset: xarray.Dataset) -> xarray.Dataset:
+    """Return a result whose components have names along their dimension, where all of a dimension have the same."""
+    names: dict[str, set[tuple[str, ...]]] = {}
+    for variable in dataset.data_vars.values():
+        if components := variable.attrs.get("components"):
+            names.setdefault(str(variable.dims[-1]), set()).add(tuple(components))
+    own = {dim: list(*each) for dim, each in names.items() if len(each) == 1 and len(*each) == dataset.sizes[dim]}
+    return dataset.assign_coords(own)

@@ -3,12 +3,14 @@
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+import xarray
 
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization
+from nonholo.groups import AbstractMatrixGroup
 from nonholo.io._attributes import attributes
-from nonholo.io.datasets._pose_variables import pose_variables
-from nonholo.orbit import STATES, Orbit
+from nonholo.io.datasets._pose_variables import pose_variables, separate_variables
+from nonholo.orbit import STATES, AbstractOrbit, Orbit
 from nonholo.systems import System
 
 if TYPE_CHECKING:
@@ -190,3 +192,43 @@ def _has_multipliers(orbit: Orbit) -> bool:
 def _variable(orbit: Orbit, name: str, values: np.ndarray | None = None) -> Variable:
     axes, labels = labels_of(orbit.system, name)
     return Variable(("step", *axes), getattr(orbit, name) if values is None else values, labels)
+
+
+_PARTS = {"quaternion": tuple("wxyz")}
+
+
+def orbit_to_pandas(orbit: AbstractOrbit) -> Any:
+    """Return an orbit as a `pandas.DataFrame` in the user's body frame, indexed by time.
+
+    Columns are the variables of `orbit_to_dataset`; those of several numbers have their numbers in the name, from 0 on,
+    quaternions the letters w, x, y, z. Coordinates of a Lagrange-d'Alembert system have their names, such as `x`; what
+    belongs to one has its name too, such as `momentum_x`.
+
+    Example:
+        >>> orbit = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), body_velocity=(1, 0, 0), steps=3)
+        >>> table = orbit.to_pandas()
+        >>> table.shape, list(table.columns[-5:])
+        ((4, 12), ['momentum_1', 'momentum_2', 'x', 'y', 'heading'])
+    """
+    columns: dict[str, tuple[str, np.ndarray]] = {}
+    dataset = orbit.to_dataset()
+    if not orbit.coordinates and "configuration" in dataset:
+        dataset = _with_named_poses(dataset, orbit.space, orbit.configuration)
+    for name, variable in dataset.data_vars.items():
+        labels = [_labels(dataset, str(name), axis) for axis in variable.dims[1:]]
+        for place in np.ndindex(variable.shape[1:]):
+            parts = [str(words[i]) for words, i in zip(labels, place, strict=True)]
+            whole = parts if name == "configuration" and "coordinate" in variable.dims else [str(name), *parts]
+            columns["_".join(whole)] = "time", variable.values[:, *place]
+    return xarray.Dataset(columns, coords={"time": orbit.time}).to_dataframe()
+
+
+def _labels(dataset: xarray.Dataset, name: str, axis: Any) -> Any:
+    """Return what the numbers along an axis are called: their names, or from 0 on."""
+    return dataset.coords[axis].values if axis in dataset.coords else _PARTS.get(name, range(dataset.sizes[axis]))
+
+
+def _with_named_poses(dataset: xarray.Dataset, group: AbstractMatrixGroup, g: np.ndarray) -> xarray.Dataset:
+    """Replace matrices by what people know: positions, headings, quaternions."""
+    posed = {name: (("step", *axes), rows) for name, (axes, rows, _) in separate_variables(group, g).items()}
+    return dataset.drop_vars(["configuration", "displacement"], errors="ignore").assign(posed)

@@ -47,6 +47,7 @@ def ensemble(
     steps: int | None = None,
     times: Any = None,
     configuration: Any = None,
+    project: bool = False,
     body_velocity: Any = None,
     restricted_velocity: Any = None,
     displacement: Any = None,
@@ -83,6 +84,7 @@ def ensemble(
         times: Of a system instead: the times of the states, as in `flow`.
         configuration: First poses, matrices (M, N, N), in coordinates (M, n); one alone is that of all members. Bodies
             start at the identity by default.
+        project: Start at the admissible configurations and velocities next to the given ones, as in `simulate`.
         body_velocity: One row for each member, (M, dim), or one for all. Of bodies members start with the principal
             W_0 that has the same momentum along the constraint.
         restricted_velocity: The same, in rows of the constraint subspace, (M, k).
@@ -130,16 +132,15 @@ def ensemble(
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity}
     starts |= {"displacement": displacement, "momentum": momentum}
     of_steps = {"steps": steps, "save_every": save_every, "events": events, "branch": branch, "backend": backend}
-    of_steps["reconstruct"], of_flow = reconstruct, {"times": times, "rtol": rtol}
+    of_steps["reconstruct"] = reconstruct
     make: Any = _of_times if isinstance(discrete, AbstractSystem) else _of_steps
-    motion, plan, widths = make(discrete, of_flow, of_steps, starts)
-    start = Start.of("ensemble", configuration, allowed=motion.starts, **starts)
-    checked = checked_parameters(motion, parameters)
-    start, several = in_rows(motion, start, checked)
-    members = Members(motion, checked, several)
+    motion, plan, widths = make(discrete, {"times": times, "rtol": rtol}, of_steps, starts)
+    start = Start.of("ensemble", configuration, allowed=motion.starts, project=project, **starts)
+    start, several = in_rows(motion, start, numbers := checked_parameters(motion, parameters))
+    members = Members(motion, numbers, several)
     _refuse_too_large(plan, widths, 1 if reduce is not None else several)
     check_systems(members)
-    begun = firsts(members, start, posed=widths[-1] > 0, at_once=are_side_by_side(members, plan))
+    begun = firsts(members, start, posed=widths[-1] > 0, at_once=not project and are_side_by_side(members, plan))
     _check_momenta(members, begun, plan)
     with progress_bar("members", progress) as show:
         return _joined(members, begun, plan, sum(widths), reduce, counting(show, several))

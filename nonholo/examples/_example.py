@@ -1,0 +1,221 @@
+"""The form of an example: a system, a start, and what is known; parts of bodies as they look from above."""
+
+import copy
+import dataclasses
+import functools
+import importlib
+import inspect
+import json
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from nonholo.base.checks import array, number, scale
+from nonholo.base.memo import Keeper
+from nonholo.base.numerics import double_precision
+from nonholo.base.types import Array, Float
+from nonholo.discrete import discretize
+from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, LagrangeDAlembert
+from nonholo.simulation import flow, simulate
+from nonholo.systems import AbstractSystem
+
+
+def wheel(
+    place: tuple[float, float], diameter: float, angle: Array | float = 0.0, width: float = 0.3
+) -> Float[np.ndarray, "4 2"]:
+    """Return a wheel at a place that rolls along a direction, its width in parts of its diameter."""
+    corners = diameter / 2 * np.array([[-1.0, -width], [1.0, -width], [1.0, width], [-1.0, width]])
+    return np.array(place) + corners @ turn(angle)
+
+
+def pair(
+    place: tuple[float, float], half_width: float, diameter: float, angle: Array | float = 0.0
+) -> list[Float[np.ndarray, "P 2"]]:
+    """Return an axle and its two wheels, turned together."""
+    ends = np.array(place) + np.array([[0.0, -half_width], [0.0, half_width]]) @ turn(angle)
+    return [ends, *(wheel(end, diameter, angle) for end in ends)]
+
+
+def turn(angle: Array | float) -> Float[np.ndarray, "2 2"]:
+    """Return the matrix that turns rows."""
+    return np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+
+
+Numbers = Mapping[str, Any]
+"""Parameters of a system by name."""
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Example(Keeper):
+    """A system of the literature with a start and with known facts.
+
+    Attributes:
+        name: The name of the function that makes it.
+        system: The system.
+        configuration: Where it starts.
+        body_velocity: How it starts; it satisfies the constraint.
+        facts: What is known, a sentence each.
+        conserved: Functions (configuration, velocity) -> number, constant along the continuous motion. On a discrete
+            orbit the velocity is that of a step: take the middle of the step, configuration + displacement / 2.
+        exact: The configurations at given times, (K,) -> (K, n), from this start; None where no formula is known.
+        time_step: A step that resolves the motion, of `simulate` by default.
+        steps: How many of them show it, by default; the flow is as long.
+
+    Example:
+        >>> nh.examples.particle().coordinates
+        ('x', 'y', 'z')
+    """
+
+    name: str
+    system: LagrangeDAlembert | GroupLagrangeDAlembert | AbstractSystem
+    configuration: Float[np.ndarray, "n"]
+    body_velocity: Float[np.ndarray, "n"]
+    facts: tuple[str, ...]
+    conserved: Mapping[str, Callable[[Array, Array], Array]]
+    exact: Callable[[Array], Array] | None = None
+    time_step: float = 0.05
+    steps: int = 400
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of the coordinates; on a group ("pose",)."""
+        return getattr(self.system, "coordinates", ()) or ("pose",)
+
+    def discretize(self, time_step: float | None = None) -> Any:
+        """Return the discretized system, `nh.discretize(example.system, time_step)`."""
+        return discretize(self.system, self.time_step if time_step is None else time_step)
+
+    def simulate(self, *, steps: int | None = None, time_step: float | None = None, **options: Any) -> Any:
+        """Run the discrete map from the start of the example; options are those of `nh.simulate`.
+
+        Example:
+            >>> orbit = nh.examples.rolling_disk().simulate(steps=100)
+            >>> len(orbit), str(orbit.outcome)
+            (101, 'successful')
+        """
+        steps = self.steps if steps is None else steps
+        return simulate(self.discretize(time_step), **(self._start | options), steps=steps)
+
+    def flow(self, *, times: Any = None, **options: Any) -> Any:
+        """Solve for the continuous motion from the start of the example; options are those of `nh.flow`."""
+        times = self.time_step * self.steps * np.linspace(0.0, 1.0, 401) if times is None else times
+        return flow(self.system, **(self._start | options), times=times)
+
+    def explore(self) -> Any:
+        """Return the live page of the motion, see `nh.explore`."""
+        return importlib.import_module("nonholo.explorer").explore(self.simulate())
+
+    def plot(self, path: str | None = None, *, overwrite: bool = False) -> Any:
+        """Draw the overview picture of the motion; return the figure, saved to a new `path` if given."""
+        return self.simulate().plot(path, overwrite=overwrite)
+
+    @property
+    def _start(self) -> dict[str, Any]:
+        return {"body_velocity": self.body_velocity, "configuration": self.configuration}
+
+    def __repr__(self) -> str:
+        return f"<Example {self.name}: {', '.join(self.coordinates)}>"
+
+
+def ready(*start: str) -> Callable[[Callable[..., Example]], Callable[..., Example]]:
+    """Let the system of what a function makes tell stores the function and its arguments but for those of the start."""
+
+    def decorator(make: Callable[..., Example]) -> Callable[..., Example]:
+        defaults = {name: each.default for name, each in inspect.signature(make).parameters.items()}
+
+        @functools.wraps(make)
+        def make_ready(**arguments: Any) -> Example:
+            example = make(**arguments)
+            if any(map(callable, arguments.values())):
+                return example  # which no data describes
+            body = {name: _plain(arguments.get(name, default), default) for name, default in defaults.items()}
+            parameters = {name: value for name, value in body.items() if name not in start}
+            system = _with_recipe(example.system, make_ready, json.dumps(parameters))
+            example = dataclasses.replace(example, system=system)
+            object.__setattr__(example, "recipe", (functools.partial(make_ready, **arguments), ()))
+            return example
+
+        return make_ready
+
+    return decorator
+
+
+def _plain(value: Any, default: Any) -> Any:
+    """Return an argument as plain data, numbers of the kind of its default: 1 and 1.0 are one mass."""
+    return value if value is None else np.asarray(value, dtype=np.asarray(default).dtype).tolist()
+
+
+@functools.lru_cache(maxsize=64)  # one with a new function each time is another one
+def _with_recipe(system: Any, make: Callable[..., Example], parameters: str) -> Any:
+    """Return a system that can be described; changes of it, by `Forced` or `dataclasses.replace`, are not."""
+    own = copy.copy(system)
+    arguments = json.loads(parameters)
+    object.__setattr__(own, "described", (f"examples.{make.__name__}", arguments))
+    object.__setattr__(own, "recipe", (_system_of, (make, arguments)))
+    return own
+
+
+def _system_of(make: Callable[..., Example], arguments: dict[str, Any]) -> Any:
+    return make(**arguments).system
+
+
+def system_in(coordinates: str, name: str, *functions: Any, **options: Any) -> LagrangeDAlembert:
+    """Return the system of a Lagrangian and constraint forms, its coordinates named by words."""
+    names = tuple(coordinates.split())
+    return LagrangeDAlembert(*functions, dimension=len(names), coordinates=names, name=name, **options)
+
+
+def with_numbers(make: Callable[[], LagrangeDAlembert], *numbers: float) -> LagrangeDAlembert:
+    """Return a system that is made once, with these parameters in its order."""
+    system = make()
+    return system.with_parameters(**dict(zip(system.parameters, numbers, strict=True)))
+
+
+def rate(index: int) -> Callable[[Array, Array], Array]:
+    """Return the function (configuration, velocity) -> one component of the velocity."""
+
+    def component(q: Array, v: Array) -> Array:
+        del q
+        return v[..., index]
+
+    return component
+
+
+def of_states(function: Callable[[Array, Array], Array]) -> Callable[[Array, Array], Array]:
+    """Return a function of JAX of one configuration and velocity as one of many, in double precision."""
+    many = jax.jit(jnp.vectorize(function, signature="(n),(m)->()"))
+
+    def values(q: Array, v: Array) -> Array:
+        with double_precision():
+            return np.asarray(many(q, v))
+
+    return values
+
+
+def energy_of(lagrangian: Callable[[Array, Array], Array]) -> Callable[[Array, Array], Array]:
+    r"""Return the energy $v\cdot\partial L/\partial v - L$ of many states."""
+
+    def energy(q: Array, v: Array) -> Array:
+        value, along = jax.jvp(lambda u: lagrangian(q, u), (v,), (v,))
+        return along - value
+
+    return of_states(energy)
+
+
+def positives(owner: str, **values: Any) -> list[float]:
+    """Return the parameters of a body, all positive."""
+    remedy = "Pass a positive number."
+    return [float(scale(f"examples.{owner}({name}=...)", value, remedy)) for name, value in values.items()]
+
+
+def reals(owner: str, **values: Any) -> list[float]:
+    """Return the parameters of a body or of a start, finite numbers."""
+    return [float(number(f"examples.{owner}({name}=...)", value)) for name, value in values.items()]
+
+
+def numbers(owner: str, name: str, value: Any, size: int, what: str) -> Float[np.ndarray, "size"]:
+    """Return the numbers of a start."""
+    return array(f"examples.{owner}({name}=...)", value, (size,), f"Pass {what}.")
