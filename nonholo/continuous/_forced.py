@@ -164,8 +164,10 @@ def _steps(
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"), late_bar("flow under forces") as report:
         if not np.isfinite(np.linalg.norm(first / (_SHARE + np.abs(start)) / rtol)):
             return nodes, pieces, Outcome.nonfinite
-        solver = _solver(field, start, end, rtol, is_stiff=is_stiff) if end else None
-        while solver is not None and solver.status == "running":
+        if not end:
+            return nodes, pieces, Outcome.successful
+        solver = _solver(field, start, end, rtol, is_stiff=is_stiff)
+        while solver.status == "running":
             before = solver.nfev
             solver.step()
             attempts = 1 if is_stiff else (solver.nfev - before) // solver.n_stages
