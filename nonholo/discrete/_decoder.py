@@ -12,8 +12,7 @@ import numpy as np
 
 from nonholo.base.numerics import applied
 from nonholo.base.types import Float
-from nonholo.discrete._legendre import legendre, matrix_legendre
-from nonholo.discrete._scheme import Scheme
+from nonholo.discrete._scheme import Scheme, legendre, matrix_legendre
 from nonholo.kernels import decoding
 from nonholo.orbit import Decoder
 

@@ -10,11 +10,9 @@ from nonholo.base.checks import error, needs, shape_of, shown, trailing
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
-from nonholo.discrete._composition import refuse_composition, weights
 from nonholo.discrete._decoder import AnyDisplacementDecoder, displacement_decoder
-from nonholo.discrete._legendre import legendre
 from nonholo.discrete._pytrees import pytree
-from nonholo.discrete._scheme import Difference, Scheme
+from nonholo.discrete._scheme import Difference, Scheme, legendre, refuse_composition, weights
 from nonholo.discrete._variety import Constraint, equations_of
 from nonholo.discrete.routes import AbstractBodyStepper, AbstractRoute, make_route
 from nonholo.orbit import AbstractMotion, First, Orbit, turned_near

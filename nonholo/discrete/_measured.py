@@ -14,7 +14,7 @@ from nonholo.base.checks import array, error, instance
 from nonholo.base.numerics import applied
 from nonholo.base.types import Float
 from nonholo.discrete._discretize import discretize
-from nonholo.discrete._legendre import legendre
+from nonholo.discrete._scheme import legendre
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractMotion, AliasingWarning, Orbit, configurations
 from nonholo.systems import AbstractSystem, System

@@ -11,7 +11,7 @@ from nonholo.base.checks import array, error, is_traced, shape_of, shown
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.discrete._discretization import Discretization, as_discretization
-from nonholo.discrete._legendre import legendre
+from nonholo.discrete._scheme import legendre
 from nonholo.discrete.branching import (
     AbstractBranchRule,
     BranchRule,

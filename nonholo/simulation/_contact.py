@@ -1,10 +1,12 @@
-"""Steps with impacts: the part to the wall, the reflection, the part that is left, in which there may be more impacts.
+"""Steps and flows with impacts: up to the wall, the reflection, and the rest, in which there may be more impacts.
 
-At a wall nothing is known of a gap but rounding. So the part that is left is looked at in its halves, down to where the
-body has left the wall; from there on the sign of the gap can be trusted.
+At a wall nothing is known of a gap but rounding. So the part of a step that is left is looked at in its halves, down to
+where the body has left the wall; from there on the sign of the gap can be trusted. A flow begins again with the
+reflected momentum.
 """
 
 import dataclasses
+import functools
 from collections.abc import Callable
 from typing import Any
 
@@ -12,8 +14,9 @@ import numpy as np
 
 from nonholo.base.results import Outcome
 from nonholo.base.types import Bool, Float
-from nonholo.orbit import Crossings, Orbit
-from nonholo.simulation.events import Watch, search, struck, values_of
+from nonholo.continuous import ContinuousFlow, Solved, States
+from nonholo.orbit import Crossings, EventLog, Orbit
+from nonholo.simulation.events import Event, Watch, between_times, of_requested, search, struck, values_of
 
 _MOST = 200  # impacts in a step
 _LEAST = 2.0**-52  # of the part that is left, where the body is looked at
@@ -123,3 +126,111 @@ def _searched(watch: Watch, there: Orbit, places: np.ndarray, looks: Orbit, gone
     found = tuple(map(placed, known.parts[0]))
     parts = (*watch.parts, found) if any(map(len, found)) else watch.parts
     return dataclasses.replace(known, part=watch.part, parts=parts)
+
+
+SolverAt = Callable[[float], Callable[..., Solved]]
+"""Gives what solves the equations with poses from a time on."""
+
+_TURN = 2 * np.pi
+_SPAN = 2.0  # times that from one impact to the next are solved for at first after it
+
+
+def flow_through_impacts(
+    first: Orbit, time: Float[np.ndarray, "K"], solver_at: SolverAt, events: dict[str, Event]
+) -> tuple[Orbit, str]:
+    """Return the flow from its first state at requested times, and what a function said that ended it."""
+    there, span, since, end = first.with_headings(None), np.inf, float(time[0]), float(time[-1])
+    watch, _ = search(Watch(events, between_times(there, 1.0)), there)
+    outcome, said = Outcome.successful, ""
+    while outcome == Outcome.successful and watch.stopped_by is None and there.time[0] < end:
+        begun, before = float(there.time[0]), len(watch.impacts)
+        until = min(begun + span, end)
+        looks, solved = _flow(solver_at, there, np.append(time[(time > begun) & (time < until)], until) - begun)
+        there, watch, outcome = _passed(solver_at, watch, looks)
+        if len(watch.impacts) > before:
+            span, since = _SPAN * float(there.time[0] - since), float(watch.impacts[-1].time[0])
+        elif there.time[0] == looks.time[-1]:
+            outcome, said, span = max(outcome, solved.outcome), solved.said, 2 * span
+    return _whole(first, time, solver_at, watch, float(there.time[0]), outcome), said
+
+
+def _flow(solver_at: SolverAt, there: Orbit, elapsed: np.ndarray) -> tuple[Orbit, Solved]:
+    """Return the flow from a state, with headings that continue from its own, where its solver or its caller looks."""
+    begun, pose = float(there.time[0]), there.canonical_pose[0]  # type: ignore[index]
+    elapsed = np.union1d(0.0, elapsed)
+    solved = solver_at(begun)(there.reduced_momentum[0], pose, elapsed)
+    turns = 0.0 if there.turned is None else _TURN * np.rint((there.turned[0] - np.arctan2(pose[1], pose[0])) / _TURN)
+
+    def turned(states: States) -> States:
+        return states if states.turned is None else states._replace(turned=states.turned + turns)
+
+    reached, steps = elapsed[: len(solved.states.momenta)], solved.steps()
+    inside = np.union1d(reached, steps[(steps > 0) & (steps < reached[-1])])
+    motion = ContinuousFlow(there.system, (begun, begun + reached[-1]), lambda times: turned(solved.at(times)))
+    return dataclasses.replace(there, motion=motion).at(begun + inside), solved._replace(states=turned(solved.states))
+
+
+def _places(elapsed: np.ndarray) -> np.ndarray:
+    """Return where times are among those of a flow that was asked for them: it begins at zero."""
+    return np.searchsorted(np.union1d(0.0, elapsed), elapsed)
+
+
+def _passed(solver_at: SolverAt, watch: Watch, looks: Orbit) -> tuple[Orbit, Watch, Outcome]:
+    """Return the state after the first step between two looks with an impact, or the last one; what is known there."""
+    there, at, gone = looks.chosen(slice(0, 1)), 0, 0.0
+    if not watch.is_at_wall:
+        watch, kept = search(dataclasses.replace(watch, part=between_times(looks, 1.0)), looks)
+        if watch.reset_by is None:
+            return looks.chosen(slice(kept - 1, kept)), watch, Outcome.successful
+        there, at, gone = watch.begun_at(kept - 1)
+    ends = looks.time[at + 1 : at + 2]
+    part = functools.partial(_part, solver_at, float(ends[0] - looks.time[at]), {})
+    after, watch, outcome = after_contact(
+        lambda states: (states, Outcome.successful), dataclasses.replace(watch, part=part), there, at, gone
+    )
+    return there if after is None else dataclasses.replace(after, time=ends), watch, outcome
+
+
+def _part(
+    solver_at: SolverAt, length: float, flows: dict[bytes, Any], states: Orbit, fractions: Float[np.ndarray, "K"]
+) -> Orbit:
+    """Return what is reached from one state, in all rows, after fractions of a time; NaN if that is not solved for."""
+    if not len(states):
+        return states
+    first, place = states.chosen(slice(0, 1)), states.reduced_momentum[0].tobytes()
+    if place not in flows:
+        flows[place] = _flow(solver_at, first, np.array(length))
+    flow, solved = flows[place]
+    if solved.outcome != Outcome.successful:
+        return dataclasses.replace(states, reduced_momentum=np.full_like(states.reduced_momentum, np.nan))
+    return flow.at(np.minimum(first.time + length * fractions, flow.time[-1]))
+
+
+def _whole(first: Orbit, time: np.ndarray, solver_at: SolverAt, watch: Watch, until: float, outcome: Outcome) -> Orbit:
+    """Return the flow at requested times up to one, each from the last impact before it."""
+    log = watch.log()
+    if log.stopped_by is not None:
+        until = float(log[log.stopped_by].time[-1])
+    begins = [dataclasses.replace(each, motion=first.motion) for each in (first.with_headings(None), *watch.impacts)]
+    motion = ContinuousFlow(first.system, (float(time[0]), until), functools.partial(_states, solver_at, begins))
+    orbit = dataclasses.replace(first, motion=motion).at(time[time <= until])
+    found = tuple(of_requested(_of_motion(part, motion), time, 1.0) for part in log.found)
+    return dataclasses.replace(orbit, outcome=outcome, events=EventLog(log.names, found, log.stopped_by))
+
+
+def _of_motion(found: Crossings, motion: ContinuousFlow) -> Crossings:
+    """Return crossings with states of the whole flow."""
+    states = dataclasses.replace(found.states, motion=motion)
+    after = None if found.after is None else dataclasses.replace(found.after, motion=motion)
+    return dataclasses.replace(found, states=states, after=after)
+
+
+def _states(solver_at: SolverAt, begins: list[Orbit], elapsed: Float[np.ndarray, "K"]) -> States:
+    """Return the states at times since the first of several states, each from the last one before it."""
+    times = np.concatenate([each.time for each in begins])
+    at = times[0] + elapsed
+    owner = np.searchsorted(times, at, "right") - 1
+    each = [(begins[k], at[owner == k] - times[k]) for k in np.unique(owner)]
+    flows = [_flow(solver_at, there, since)[1].states.chosen(_places(since)) for there, since in each]
+    rows: Any = [None if column[0] is None else np.concatenate(column) for column in zip(*flows, strict=True)]
+    return States(*rows)

@@ -12,7 +12,7 @@ from nonholo.base.progress import telling
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.continuous import ContinuousFlow, Solved, solver_of
 from nonholo.orbit import First, Orbit
-from nonholo.simulation._flow_impacts import flow_through_impacts
+from nonholo.simulation._contact import flow_through_impacts
 from nonholo.simulation.events import (
     Event,
     check_functions,

@@ -12,7 +12,6 @@ from nonholo.systems._base import (
     refuse_slip,
     unchecked,
 )
-from nonholo.systems._body import ImpossibleBodyWarning
 from nonholo.systems._coordinate_system import (
     AbstractCoordinateDiscretization,
     AbstractCoordinateSystem,
@@ -20,10 +19,10 @@ from nonholo.systems._coordinate_system import (
     OrbitT,
     in_coordinates,
 )
-from nonholo.systems._displacements import in_exp_d, trace_constraints
-from nonholo.systems._drift import gyroscopic_form
-from nonholo.systems._euler_angles import euler_angle_discrete_lagrangian
+from nonholo.systems._displacements import euler_angle_discrete_lagrangian, in_exp_d, trace_constraints
+from nonholo.systems._equilibria import gyroscopic_form
 from nonholo.systems._mass import (
+    ImpossibleBodyWarning,
     checked_group,
     group_mass_tensor,
     inertia_form,
@@ -33,8 +32,13 @@ from nonholo.systems._mass import (
 )
 from nonholo.systems._normal_form import NormalForm
 from nonholo.systems._start import Start, in_group, inadmissible, of_finite_energy, one_start, refuse_in_coordinates
-from nonholo.systems._subspace import null_space, reference_point_subspace, spanned
-from nonholo.systems._symmetric_pair import is_symmetric_pair, symmetric_complement
+from nonholo.systems._subspace import (
+    is_symmetric_pair,
+    null_space,
+    reference_point_subspace,
+    spanned,
+    symmetric_complement,
+)
 from nonholo.systems.families import (
     ArrowheadSleigh,
     ArrowheadTop,

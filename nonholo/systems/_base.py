@@ -19,10 +19,9 @@ from nonholo.base.numerics import Factors, applied, factors_of, solved
 from nonholo.base.types import Array, Bool, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._equilibria import Equilibria, equilibria_of, transverse_rates
-from nonholo.systems._mass import inertia_form, inertia_from_mass_tensor
+from nonholo.systems._mass import WideInertia, inertia_form, inertia_from_mass_tensor
 from nonholo.systems._normal_form import NormalForm
 from nonholo.systems._subspace import complement
-from nonholo.systems._wide import WideInertia
 
 SystemT = TypeVar("SystemT", bound="AbstractSystem")
 

@@ -16,7 +16,7 @@ import numpy as np
 
 import nonholo as nh
 from nonholo.base.compiled import njit
-from nonholo.discrete.routes import _closed_forms
+from nonholo.discrete.routes import _normal_forms
 from nonholo.kernels._interface import Body
 from nonholo.kernels._scalar import COMPILED, scalar, sqrt
 from nonholo.kernels._suslov import move as moved
@@ -86,7 +86,7 @@ def body(form: NormalForm) -> Body:
     return FreeTopBody(*(x if np.ndim(x) else float(x) for x in numbers))
 
 
-FREE_TOP = _closed_forms.ClosedForm(lambda form: not form.is_sleigh and not form.is_coupled, body, 0.5, None)
+FREE_TOP = _normal_forms.ClosedForm(lambda form: not form.is_sleigh and not form.is_coupled, body, 0.5, None)
 VELOCITY, STEPS = (0.7, -0.4), 12
 
 
@@ -118,5 +118,5 @@ def motions(system: nh.SuslovTop) -> dict[str, Any]:
 if __name__ == "__main__":
     top = nh.SuslovTop([[1.4, 0.2, 0.0], [0.2, 1.0, 0.0], [0.0, 0.0, 0.9]])
     given = motions(top)
-    _closed_forms._CLOSED_FORMS = (FREE_TOP, *_closed_forms._CLOSED_FORMS)
+    _normal_forms._CLOSED_FORMS = (FREE_TOP, *_normal_forms._CLOSED_FORMS)
     sys.stdout.write(json.dumps({"given": given, "added": motions(top)}))

@@ -5,8 +5,7 @@ import pytest
 
 import nonholo as nh
 from nonholo import kernels
-from nonholo.discrete.branching._equations import Equations, frame_of
-from nonholo.discrete.branching._path import followed, nearest_body
+from nonholo.discrete.branching._equations import Equations, followed, frame_of, nearest_body
 from nonholo.discrete.branching._rules import branch_rule
 from nonholo.discrete.branching._stepper import displacement_at, first_place, next_place
 from nonholo.kernels.secular import nearest as _nearest

@@ -1,7 +1,7 @@
 r"""All values of the multivalued discrete map, complex ones included, and what tells them apart.
 
-Reference: [fedorov-zenkov-2004], section 3; docs/theory/branches.md. The equations are in `_branch_equations`, their
-roots in `_branch_roots`; which value a run takes is not decided here.
+Reference: [fedorov-zenkov-2004], section 3; docs/theory/branches.md. The equations are in `_equations`, their
+roots in `_roots`; which value a run takes is not decided here.
 """
 
 import dataclasses
@@ -13,7 +13,7 @@ import numpy as np
 from nonholo.base.checks import array, error, flags, needs, shape_of
 from nonholo.base.types import Array, Float
 from nonholo.discrete._discretization import Discretization, as_discretization
-from nonholo.discrete._legendre import legendre
+from nonholo.discrete._scheme import legendre
 from nonholo.discrete.branching._equations import Frame, frame_of
 from nonholo.discrete.branching._roots import Root, place
 from nonholo.discrete.branching._values import SAME, Branches, Roots, branches_of, point_over, values_over

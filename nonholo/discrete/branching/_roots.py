@@ -1,4 +1,4 @@
-r"""All complex roots of the equations of `_branch_equations`, with multiplicity.
+r"""All complex roots of the equations of `_equations`, with multiplicity.
 
 First the secular polynomial: companion eigenvalues, then Newton's method. Where the body or the momentum is special and
 roots are missing, the roots of a generic problem close by are followed to the given one.

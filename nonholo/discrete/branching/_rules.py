@@ -1,6 +1,6 @@
 r"""Branch rules: which of the values of the discrete map a run takes. One class a rule; what a rule needs, it says.
 
-The values themselves come from `_branch_values`, following one of them from `_branch_path`. Compiled and traced runs of
+The values themselves come from `_values`, following one of them from `_equations`. Compiled and traced runs of
 "principal" and "nearest" solve their steps where they are; all others ask `following`.
 """
 
@@ -16,10 +16,17 @@ from nonholo.base.checks import choice, error, is_integer, shown
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.discrete._discretization import Discretization
-from nonholo.discrete.branching._equations import Equations, Frame, has_frame
-from nonholo.discrete.branching._path import followed
-from nonholo.discrete.branching._regions import is_regular, regions
-from nonholo.discrete.branching._values import SAME, Branches, Roots, branches_of, principal_increment, roots_over
+from nonholo.discrete.branching._equations import Equations, Frame, followed, has_frame
+from nonholo.discrete.branching._values import (
+    SAME,
+    Branches,
+    Roots,
+    branches_of,
+    is_regular,
+    principal_increment,
+    regions,
+    roots_over,
+)
 
 Chooser: TypeAlias = Callable[[Branches, np.ndarray], int | None]
 BranchRule: TypeAlias = str | Chooser

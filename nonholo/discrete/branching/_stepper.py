@@ -16,8 +16,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete.branching._branches import inverse_discrete_legendre
-from nonholo.discrete.branching._equations import Frame, frame_of
-from nonholo.discrete.branching._path import nearest_body
+from nonholo.discrete.branching._equations import Frame, frame_of, nearest_body
 from nonholo.discrete.branching._rules import AbstractBranchRule, Kick, displacement_at, principal_point
 from nonholo.discrete.routes import AbstractBodyStepper, Compact
 from nonholo.orbit import First, Rows, State, keep_row, write_first

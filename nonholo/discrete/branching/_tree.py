@@ -1,6 +1,6 @@
 r"""The tree of all values of the discrete map: images, images of images, over real and complex displacements.
 
-Reference: docs/theory/branches.md. The values over one momentum come from `_branch_values`.
+Reference: docs/theory/branches.md. The values over one momentum come from `_values`.
 """
 
 import dataclasses
@@ -11,7 +11,7 @@ import numpy as np
 from nonholo.base.checks import array, error, natural
 from nonholo.base.types import Array, Bool, Int
 from nonholo.discrete._discretization import Discretization, as_discretization
-from nonholo.discrete._legendre import legendre
+from nonholo.discrete._scheme import legendre
 from nonholo.discrete.branching._equations import Frame, frame_of
 from nonholo.discrete.branching._values import point_over, roots_over
 

@@ -1,10 +1,9 @@
 """The map by its definition, in JAX: derivatives of the discrete Lagrangian, roots, runs. Imported on first use."""
 
-from nonholo.discrete.definition._nodes import free_rows, step_residual
 from nonholo.discrete.definition._precision import allow_float32, doubled, in_double
-from nonholo.discrete.definition._principal import ON_LOCUS, principal_of, traceable
-from nonholo.discrete.definition._rollout import Rollout, rolled
+from nonholo.discrete.definition._rollout import Rollout, free_rows, rolled, step_residual
 from nonholo.discrete.definition._step import (
+    ON_LOCUS,
     displaced,
     is_even,
     map_each,
@@ -12,7 +11,9 @@ from nonholo.discrete.definition._step import (
     momentum_of,
     nearest_displacement,
     next_charts_by_definition,
+    principal_of,
     sample_displacements,
+    traceable,
     value_and_slope,
 )
 from nonholo.discrete.definition._stepper import DefinitionStepper, parts_by_definition, whole_steps_by_definition

@@ -1,7 +1,8 @@
-"""Orbits as JAX functions: steps between nodes, long runs with checkpoints, and what saved nodes are.
+"""Orbits as JAX functions: steps between nodes, long runs with checkpoints, and the equations of a step.
 
 A node is the state before a step, with the chart of the step and the state after it. Bodies with a closed form run in
-the scalars of their kernel, from the identity; other ones in momenta along the constraint and matrices of poses.
+the scalars of their kernel, from the identity; other ones in momenta along the constraint and matrices of poses. In
+`step_residual` nothing is solved for: momenta, chart, pose and force are unknown at once.
 """
 
 import dataclasses
@@ -17,10 +18,17 @@ from nonholo import kernels
 from nonholo.base.results import Outcome
 from nonholo.base.traced import marked_rows, run_nodes
 from nonholo.base.types import Array, Float
-from nonholo.discrete._composition import weights
-from nonholo.discrete._scheme import Scheme
-from nonholo.discrete.definition._principal import ON_LOCUS, closed_step_of, kernel_root, principal_of
-from nonholo.discrete.definition._step import displaced, equations_at, momentum_of, restricted
+from nonholo.discrete._scheme import Scheme, weights
+from nonholo.discrete.definition._step import (
+    ON_LOCUS,
+    closed_step_of,
+    displaced,
+    equations_at,
+    kernel_root,
+    momentum_of,
+    principal_of,
+    restricted,
+)
 from nonholo.discrete.routes import ScalarStep
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import Forced
@@ -329,3 +337,35 @@ def _decoded(
 
     rows = (marked_rows(each, nodes.cause, code == 0) for each in (r, P, W, g, energy))
     return Rollout(time, *rows, outcome=code[-1])
+
+
+def step_residual(
+    discrete: Scheme,
+    forced: Forced | None,
+    state: tuple[Array, Array],
+    y: Array,
+    after: tuple[Array, Array],
+    force: Array,
+) -> Array:
+    """Return what vanishes if y is the chart of a step between two states under a constant body covector.
+
+    A state is a pose and the momenta of its node along the constraint; the discretization is that of the free system.
+    Poses may be any matrices whose constant rows are those of the group: it is kept by the equations.
+    """
+    (g, r), (ahead, following), system = state, after, discrete.system
+    arriving = restricted(discrete, momentum_of(discrete, y, g, "right"), ahead)
+    if is_balanced(discrete, forced):
+        push = restricted(discrete, half_impulse(discrete, cast(Forced, forced), y, g, force), g)
+        pushed, arriving = r + push, arriving + push
+    else:
+        impulse, _ = impulse_of(discrete, forced, jnp.zeros((0, system.group.dim)), 0)
+        pushed = r + restricted(discrete, impulse(r, g, force), g)
+        arriving = arriving + restricted(discrete, impulse(arriving, ahead, force), ahead)
+    moved = system.moved(g, displaced(discrete, y)) - ahead
+    root = equations_at(discrete, g)(y, pushed)
+    return jnp.concatenate([root, arriving - following, moved[: free_rows(system.group)].ravel()])
+
+
+def free_rows(group: AbstractMatrixGroup) -> int:
+    """Return how many rows of the matrices of a group are not the same for all."""
+    return group.size if group.form is not None or np.any(group.basis[:, -1]) else group.size - 1

@@ -12,8 +12,7 @@ import numpy as np
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
-from nonholo.discrete._composition import weights
-from nonholo.discrete._scheme import Scheme
+from nonholo.discrete._scheme import Scheme, weights
 from nonholo.discrete.definition._precision import in_double
 from nonholo.discrete.definition._step import (
     displaced,

@@ -18,11 +18,8 @@ from nonholo.discrete.routes._base import (
     Compact,
     CompiledStepper,
 )
-from nonholo.discrete.routes._choice import make_route
-from nonholo.discrete.routes._composed import ComposedRoute
-from nonholo.discrete.routes._definition import DefinitionRoute
-from nonholo.discrete.routes._forced import ForcedRoute, FunctionRoute
+from nonholo.discrete.routes._choice import DefinitionRoute, make_route
+from nonholo.discrete.routes._forced import ComposedRoute, ForcedRoute, FunctionRoute
 from nonholo.discrete.routes._matrix import MatrixRoute
+from nonholo.discrete.routes._normal_forms import ScalarRoute, ScalarStep, SecularRoute
 from nonholo.discrete.routes._reversal import reversal_defects
-from nonholo.discrete.routes._scalar import ScalarRoute, ScalarStep
-from nonholo.discrete.routes._secular import SecularRoute

@@ -9,11 +9,17 @@ import numpy as np
 
 from nonholo import kernels
 from nonholo.base.types import Float
-from nonholo.discrete._composition import weights
+from nonholo.discrete._scheme import weights
 from nonholo.discrete._variety import variety_of
 from nonholo.discrete.routes._base import AbstractCompiledRoute, Compact, posed
-from nonholo.discrete.routes._composed import AbstractOuterRoute
-from nonholo.discrete.routes._forced import AbstractForcedRoute, functions_of, kernel_frame, plain, summed
+from nonholo.discrete.routes._forced import (
+    AbstractForcedRoute,
+    AbstractOuterRoute,
+    functions_of,
+    kernel_frame,
+    plain,
+    summed,
+)
 from nonholo.groups import SE, SO
 from nonholo.orbit import Orbit
 from nonholo.systems import Forced

@@ -12,7 +12,7 @@ from nonholo import kernels
 from nonholo.base.numerics import applied
 from nonholo.base.results import OUTCOMES, Outcome, OutcomeError
 from nonholo.base.types import Array, Float
-from nonholo.discrete._composition import weights
+from nonholo.discrete._scheme import weights
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractStepper, First, Orbit, Rows, State
 from nonholo.systems import System

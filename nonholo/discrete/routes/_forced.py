@@ -1,9 +1,10 @@
-"""The routes of forced steps: another route with half an impulse at each end of its steps, compiled or in Python."""
+"""Routes around another one, whose units, axes and poses they have: over substeps, or with half impulses at nodes."""
 
 import contextlib
 import dataclasses
 import functools
 from collections.abc import Callable
+from operator import attrgetter
 from typing import Any, ClassVar, NoReturn, cast
 
 import numpy as np
@@ -13,11 +14,51 @@ from nonholo.base.calls import FunctionError, UndefinedError, noted, number_of
 from nonholo.base.checks import error
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
+from nonholo.discrete._scheme import weights
 from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute, Compact, parts_by, posed
-from nonholo.discrete.routes._composed import AbstractOuterRoute
 from nonholo.groups import SE
 from nonholo.orbit import Orbit
 from nonholo.systems import Forced
+
+
+class AbstractOuterRoute(AbstractCompiledRoute):
+    """A route that runs the kernel of another one, its `single`, and has its units, axes and poses."""
+
+    name = property(attrgetter("single.name"))
+    needs_pose: Any = property(attrgetter("single.needs_pose"))
+    system: Any = property(attrgetter("single.system"))
+    time_step = property(attrgetter("single.time_step"))
+    scale = property(attrgetter("single.scale"))
+    encode: Any = property(attrgetter("single.encode"))
+    decode: Any = property(attrgetter("single.decode"))
+    to_kernel: Any = property(attrgetter("single.to_kernel"))
+    from_kernel: Any = property(attrgetter("single.from_kernel"))
+    encode_poses: Any = property(attrgetter("single.encode_poses"))
+    decode_poses: Any = property(attrgetter("single.decode_poses"))
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class ComposedRoute(AbstractOuterRoute):
+    """Momenta, charts and poses are those of the route that is composed.
+
+    Attributes:
+        composed: The route of a step of order 2 with the same time step.
+        order: 4, 6 or 8.
+    """
+
+    composed: AbstractCompiledRoute
+    order: int
+    is_scalar: ClassVar[bool] = False
+
+    @functools.cached_property
+    def body(self) -> kernels.ComposedBody:
+        """The body and the weights of the substeps."""
+        return kernels.ComposedBody(self.single.body, weights(self.order).copy())
+
+    @property
+    def single(self) -> AbstractCompiledRoute:
+        """The discretization that is composed."""
+        return self.composed
 
 
 def forced_route(free: AbstractRoute, forced: Forced) -> AbstractRoute:

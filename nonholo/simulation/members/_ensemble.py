@@ -19,8 +19,7 @@ from nonholo.simulation._options import check_forces, refuse_too_large, stepper_
 from nonholo.simulation.events import refuse_resets, watched
 from nonholo.simulation.members._events import joined_blocks
 from nonholo.simulation.members._executors import Plan, Report, are_side_by_side, counting, run_members
-from nonholo.simulation.members._families import check_systems
-from nonholo.simulation.members._members import Members, checked_parameters
+from nonholo.simulation.members._members import Members, check_systems, checked_parameters
 from nonholo.simulation.members._result import Ensemble
 from nonholo.simulation.members._start import Firsts, are_others, firsts, in_rows
 from nonholo.systems import (

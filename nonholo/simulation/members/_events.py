@@ -11,9 +11,8 @@ from nonholo.base.types import Int
 from nonholo.groups import SE
 from nonholo.orbit import Crossings
 from nonholo.simulation.events import Event, crossed, located, values_of
-from nonholo.simulation.members._event_log import MemberCrossings, MemberEvents
 from nonholo.simulation.members._members import Members
-from nonholo.simulation.members._result import Ensemble, stacked
+from nonholo.simulation.members._result import Ensemble, MemberCrossings, MemberEvents, stacked
 
 
 def watched_block(events: dict[str, Event], block: Ensemble, every: int | None) -> Ensemble:

@@ -24,8 +24,7 @@ from nonholo.simulation._options import stepper_of
 from nonholo.simulation._run import Run, ended
 from nonholo.simulation.events import Event, Watch
 from nonholo.simulation.members._events import log_of, watched_block
-from nonholo.simulation.members._families import ScalarMembers, in_lanes, inertias_of
-from nonholo.simulation.members._members import Members, refused
+from nonholo.simulation.members._members import Members, ScalarMembers, in_lanes, inertias_of, refused
 from nonholo.simulation.members._result import Ensemble, stacked
 from nonholo.simulation.members._start import Firsts, are_others
 

@@ -10,8 +10,7 @@ from nonholo.base.checks import array, error, shape_of
 from nonholo.base.numerics import applied, factors_of, solved
 from nonholo.base.types import Bool, Float
 from nonholo.orbit import First
-from nonholo.simulation.members._families import ScalarMembers
-from nonholo.simulation.members._members import Members, refused
+from nonholo.simulation.members._members import Members, ScalarMembers, refused
 from nonholo.systems import Start, in_group
 
 _CHUNK = 1 << 16  # members whose starts are made at once: what it takes between is not kept

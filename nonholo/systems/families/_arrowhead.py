@@ -15,10 +15,10 @@ from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem
+from nonholo.systems._mass import WideInertia, narrow
 from nonholo.systems._normal_form import NormalForm
-from nonholo.systems._wide import WideInertia, narrow
-from nonholo.systems.families._multidimensional_sleigh import MultidimensionalSleigh
-from nonholo.systems.families._suslov import SuslovTop
+from nonholo.systems.families._sleighs import MultidimensionalSleigh
+from nonholo.systems.families._tops import SuslovTop
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)

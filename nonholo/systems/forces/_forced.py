@@ -20,11 +20,8 @@ from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
 from nonholo.systems._base import AbstractSystem
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem
-from nonholo.systems.forces._friction import Friction
-from nonholo.systems.forces._gravity import Gravity
-from nonholo.systems.forces._parts import joined, parts_of, terms_of
-from nonholo.systems.forces._slip import Slip
-from nonholo.systems.forces._widened import Widened
+from nonholo.systems.forces._friction import Friction, Slip, Widened, joined, parts_of, terms_of
+from nonholo.systems.forces._potentials import Gravity
 
 _OFFSET = 8e-3  # of a body direction, for central differences: its sixth power is at rounding
 _DIFFERENCES = np.array([45.0, -9.0, 1.0]) / (60 * _OFFSET)  # of order 6, at one, two and three offsets
