@@ -17,6 +17,11 @@ ARGUED = {
     "conserved": "conserved momenta, of the theory",
     "converged": "a public attribute of results, as in optimizers",
     "elapsed": "the elapsed time, since a start",
+    "certified": "a public attribute of results: proved in ball arithmetic",
+    "uncertified": "a public attribute of branches: why they are not certified",
+    "carried": "a public method of systems",
+    "moved": "a public method of systems: the pose after a displacement",
+    "displaced": "a public method of discretizations: the elements of the variety",
 }
 MOST = 40
 _IRREGULAR = re.compile(

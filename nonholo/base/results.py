@@ -104,6 +104,6 @@ def finished(orbit: Any, time_step: float, done: int, steps: int, throw: bool) -
     """Return the orbit of a run; with `throw`, raise if it ended early, naming the step."""
     if throw and orbit.outcome != Outcome.successful:
         where = f"Step {done + 1} of {steps}" if len(orbit) else "Start of the run"
-        said = getattr(getattr(orbit.motion, "route", None), "said", {}) if orbit.outcome == Outcome.nonfinite else {}
+        said = getattr(getattr(orbit.motion, "route", None), "notes", {}) if orbit.outcome == Outcome.nonfinite else {}
         raise OutcomeError(orbit.outcome, f"{where} (time_step {time_step:g})", orbit, " ".join(said.values()))
     return orbit

@@ -81,22 +81,22 @@ def discretize(
         return system.discretize(time_step)
     as_system("discretize(system=...)", system)
     step = scale("discretize(time_step=...)", time_step, "Pass a positive real time step.")
-    chosen = _difference(system, difference)
+    lagrangian = _difference(system, difference)
     variety = _constraint(system, constraint)
-    made = Discretization(system, step, chosen, variety, checked_order(order, chosen, variety))
-    if made.forces is not None:
-        _ = made.route  # refused here where there is none
-    return made
+    discrete = Discretization(system, step, lagrangian, variety, checked_order(order, lagrangian, variety))
+    if discrete.forces is not None:
+        _ = discrete.route  # refused here where there is none
+    return discrete
 
 
 def _difference(system: AbstractSystem, difference: Difference | None) -> Difference:
-    where, defined = "discretize(difference=...)", system.is_wide or system.homogeneous_mass_tensor is not None
+    where, is_defined = "discretize(difference=...)", system.is_wide or system.homogeneous_mass_tensor is not None
     if difference is None:
-        return "matrix" if defined else "logarithmic"
+        return "matrix" if is_defined else "logarithmic"
     if callable(difference):
         return _scalar(where, system, difference)
     choice(where, difference, ("matrix", "logarithmic"), "Or pass a callable L_d(W).")
-    if difference == "matrix" and not defined:
+    if difference == "matrix" and not is_defined:
         got = "a kinetic energy given by an inertia operator, which says nothing of W - I outside the algebra"
         remedy = "Pass 'logarithmic', or build the system of a mass tensor, on SO(n), SE(n) or MatrixGroup(form=...)."
         raise error(where, "be defined for the system", got, remedy)
@@ -120,16 +120,16 @@ def _scalar(where: str, system: AbstractSystem, difference: Callable[[Array], Ar
 
 
 def _constraint(system: AbstractSystem, constraint: object) -> Constraint:
-    defined = system.group.has_skew_part
+    is_defined = system.group.has_skew_part
     if constraint is None:
-        return "skew" if defined else "exponential"
+        return "skew" if is_defined else "exponential"
     where = "discretize(constraint=...)"
-    checked = checked_constraint(where, system, constraint)
-    if checked == "skew" and not defined:
+    kind = checked_constraint(where, system, constraint)
+    if kind == "skew" and not is_defined:
         got = f"{system.group}, where (W - W^-1)/2 need not lie in the algebra"
         remedy = "Pass 'exponential' or, if the group preserves a form G, build it as MatrixGroup(basis, form=G)."
         raise error(where, "be defined on the group", got, remedy)
-    return checked
+    return kind
 
 
 _SAMPLES = 16

@@ -69,8 +69,8 @@ class MeasuredMotion(AbstractMotion):
         """Return the forbidden velocities: parts of (W - W^-1)/2h, or of log W/h where the group has no skew part."""
         system, chart = self.system, states.canonical_chart
         group, D = system.group, self.displaced(chart)
-        moved = group.vee(D - group.inverse(D)) / 2 if group.has_skew_part else group.log(D)
-        return applied(system.annihilator, moved) / chart[:, -1:]
+        coordinates = group.vee(D - group.inverse(D)) / 2 if group.has_skew_part else group.log(D)
+        return applied(system.annihilator, coordinates) / chart[:, -1:]
 
     def _increments(self, chart: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
         """Return displacements less the identity, without cancellation."""

@@ -82,8 +82,8 @@ def matrix_legendre(
     r"""Return $\mathrm{tr}(E_i W\mathbb{J}X^*)$ (left) or $\mathrm{tr}(W E_i\mathbb{J}X^*)$ (right), $W = I + X$."""
     xp = X.__array_namespace__()
     arm = xp.asarray(tensor, dtype=X.dtype) @ group.form_adjoint(X)
-    carried = arm + X @ arm if side == "left" else arm + arm @ X
-    return group.coordinates.dual_vector(xp.swapaxes(carried, -1, -2))
+    product = arm + X @ arm if side == "left" else arm + arm @ X
+    return group.coordinates.dual_vector(xp.swapaxes(product, -1, -2))
 
 
 WEIGHTS = {

@@ -21,7 +21,7 @@ _FAMILIES = {"SO": SO, "SE": SE, "Translations": Translations}
 
 def described_system(system: Any) -> tuple[str, dict[str, Any]]:
     """Return the name of a system, that of its class or of what makes it, and its parameters as plain data."""
-    return getattr(system, "described", None) or (type(system).__name__, fields_of(system))
+    return getattr(system, "description", None) or (type(system).__name__, fields_of(system))
 
 
 def fields_of(owner: Any) -> dict[str, Any]:

@@ -71,7 +71,7 @@ class RecordedSystem(AbstractCoordinateSystem):
 
     Attributes:
         known: Fields that could be restored, with what else was recorded.
-        described: The class of the system and all of its fields, as in the store.
+        description: The class of the system and all of its fields, as in the store.
 
     Example:
         >>> from nonholo.lagrange_dalembert import RecordedSystem
@@ -85,7 +85,7 @@ class RecordedSystem(AbstractCoordinateSystem):
 
     has_functions: ClassVar[bool] = False
     known: Mapping[str, Any]
-    described: tuple[str, dict[str, Any]]  # pyright: ignore[reportGeneralTypeIssues]
+    description: tuple[str, dict[str, Any]]  # pyright: ignore[reportGeneralTypeIssues]
 
     def __getattr__(self, name: str) -> Any:
         """Return what was recorded; functions were not."""

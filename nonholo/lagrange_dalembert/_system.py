@@ -26,7 +26,8 @@ from nonholo.lagrange_dalembert.functions import (
     with_parameters,
     with_time_step,
 )
-from nonholo.systems import AbstractCoordinateSystem, joined, parts_of
+from nonholo.systems import AbstractCoordinateSystem, parts_of
+from nonholo.systems import force_of as joined
 
 if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization
@@ -202,7 +203,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         """Return a system with other fields, which need no check; it does not have a name for stores."""
         changed = object.__new__(type(self))
         vars(changed).update(vars(self), **fields)
-        for name in {"described", "family", "plain", "recipe"} - fields.keys():
+        for name in {"description", "family", "plain", "recipe"} - fields.keys():
             vars(changed).pop(name, None)
         return changed
 

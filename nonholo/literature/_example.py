@@ -130,7 +130,7 @@ def _named(system: Any, make: Callable[..., Example], parameters: str) -> Any:
     """Return a system that can be described; changes of it, by `Forced` or `dataclasses.replace`, are not."""
     named = copy.copy(system)
     given = json.loads(parameters)
-    object.__setattr__(named, "described", (f"examples.{make.__name__}", given))
+    object.__setattr__(named, "description", (f"examples.{make.__name__}", given))
     object.__setattr__(named, "recipe", (_system_of, (make, given)))
     return named
 

@@ -131,35 +131,35 @@ def flow(
     flags("flow", reconstruct=reconstruct, progress=progress)
     starts = {"body_velocity": body_velocity, "momentum": momentum}
     if isinstance(system, AbstractCoordinateSystem):
-        refused = {"restricted_velocity": restricted_velocity, "method": method}
+        others = {"restricted_velocity": restricted_velocity, "method": method}
         no_pose = {"reconstruct": (reconstruct, True)}
-        refuse_in_coordinates("flow", **{name: (value, None) for name, value in refused.items()}, **no_pose)
+        refuse_in_coordinates("flow", **{name: (value, None) for name, value in others.items()}, **no_pose)
         errors = {"rtol": rtol, "atol": atol}
         with telling("time", progress):
             return flow_in_coordinates(system, events, configuration=configuration, times=times, **starts, **errors)
     as_system("flow(system=...)", system)
     time = flow_times(times)
-    solver, posed = solver_of(system, method, float(time[0]), reconstruct=reconstruct)
+    solver, with_poses = solver_of(system, method, float(time[0]), reconstruct=reconstruct)
     tolerances = flow_tolerances((1e-10 if method == "diffrax" else 1e-14) if rtol is None else rtol, atol)
     solve = functools.partial(solver, tolerances=tolerances)
     start = Start.of("flow", configuration, restricted_velocity=restricted_velocity, **starts)
-    first = _first_state(system, time, start, posed=posed)
-    found = None if events is None else checked_events("flow", events)
+    first = _first_state(system, time, start, with_poses=with_poses)
+    by_name = None if events is None else checked_events("flow", events)
     with telling("time", progress):
-        if found is not None and has_resets(found):
-            return _flowed_between_walls(system, first, time, tolerances, method, found, reconstruct=reconstruct)
-        return _flowed(system, first, time, tolerances, solve, found, reconstruct=reconstruct)
+        if by_name is not None and has_resets(by_name):
+            return _flowed_between_walls(system, first, time, tolerances, method, by_name, reconstruct=reconstruct)
+        return _solve_flow(system, first, time, tolerances, solve, by_name, reconstruct=reconstruct)
 
 
 def _first_state(
-    system: System, time: np.ndarray, start: Start, *, posed: bool
+    system: System, time: np.ndarray, start: Start, *, with_poses: bool
 ) -> tuple[np.ndarray, np.ndarray | None]:
     """Return the checked momentum at the first time and the pose, where one is solved for."""
-    numbers = system.rank + posed * system.group.pose_size
+    numbers = system.rank + with_poses * system.group.pose_size
     remedy = "Ask for fewer times, or for momenta alone: reconstruct=False without a method."
     within_memory("flow(times=...)", 32.0 * len(time) * numbers, remedy)
-    first = ContinuousFlow(system).first(start, posed=posed)
-    reduced, pose = first.numbers[0], first.numbers[1] if posed else None
+    first = ContinuousFlow(system).first(start, with_poses=with_poses)
+    reduced, pose = first.numbers[0], first.numbers[1] if with_poses else None
     if first.demanded is not None:
         _check_momentum(first.demanded, _opening(system, time, (reduced, pose)).momentum[0])
     return reduced, pose
@@ -167,12 +167,12 @@ def _first_state(
 
 def flow_from(system: System, first: First, time: np.ndarray, rtol: float, *, reconstruct: bool) -> Orbit:
     """Return the flow from a checked start, with a pose where one is solved for, by the method that is the default."""
-    solver, posed = solver_of(system, None, float(time[0]), reconstruct=reconstruct)
+    solver, with_poses = solver_of(system, None, float(time[0]), reconstruct=reconstruct)
     tolerances = rtol, 1.0
     solve = functools.partial(solver, tolerances=tolerances)
     reduced, pose = first.numbers
-    begun = reduced, pose if posed else None
-    return _flowed(system, begun, time, tolerances, solve, None, reconstruct=reconstruct)
+    begin = reduced, pose if with_poses else None
+    return _solve_flow(system, begin, time, tolerances, solve, None, reconstruct=reconstruct)
 
 
 def _opening(system: System, time: np.ndarray, first: tuple[np.ndarray, np.ndarray | None]) -> Orbit:
@@ -180,7 +180,7 @@ def _opening(system: System, time: np.ndarray, first: tuple[np.ndarray, np.ndarr
     return Orbit(ContinuousFlow(system), time[:1], first[0][None], None, None if first[1] is None else first[1][None])
 
 
-def _flowed(
+def _solve_flow(
     system: System,
     first: tuple[np.ndarray, np.ndarray | None],
     time: np.ndarray,
@@ -193,14 +193,14 @@ def _flowed(
     """Return the orbit from a first state, with what events found."""
     if events is not None:
         check_functions(events, _opening(system, time, first if reconstruct else (first[0], None)))
-    solved = solve(*first, time - time[0])
-    states = solved.states if reconstruct else solved.states._replace(poses=None, turned=None)
-    outcome, reached = solved.outcome, len(states.momenta)
-    motion = ContinuousFlow(system, (time[0], time[reached - 1]), solved.at)
-    orbit = Orbit(motion, time[:reached], states.momenta, None, states.poses, outcome, turned=states.turned)
+    solution = solve(*first, time - time[0])
+    states = solution.states if reconstruct else solution.states._replace(poses=None, turned=None)
+    outcome, count = solution.outcome, len(states.momenta)
+    motion = ContinuousFlow(system, (time[0], time[count - 1]), solution.at)
+    orbit = Orbit(motion, time[:count], states.momenta, None, states.poses, outcome, turned=states.turned)
     if events is not None:
-        orbit = flow_with_events(events, orbit, time[0] + solved.steps())
-    return _successful(orbit, solved.said, time, tolerances)
+        orbit = flow_with_events(events, orbit, time[0] + solution.steps())
+    return _successful(orbit, solution.said, time, tolerances)
 
 
 def _flowed_between_walls(
@@ -232,19 +232,19 @@ def _solver_at(
     return functools.partial(solver_of(system, method, begins, reconstruct=True)[0], tolerances=tolerances)
 
 
-def _successful(orbit: Orbit, said: str, time: np.ndarray, tolerances: tuple[float, float]) -> Orbit:
+def _successful(orbit: Orbit, message: str, time: np.ndarray, tolerances: tuple[float, float]) -> Orbit:
     """Return a flow, or raise if it ended early."""
     if orbit.outcome != Outcome.successful:
-        (rtol, atol), reached, system = tolerances, len(orbit), orbit.system
+        (rtol, atol), count, system = tolerances, len(orbit), orbit.system
         acting = "" if system.forces is None else f" under {system.forces.names}"
-        where = f"Flow from time {time[reached - 1]:g} to {time[reached]:g}{acting} (rtol {rtol:g}, atol {atol:g})"
-        raise OutcomeError(orbit.outcome, where, orbit, said)
+        where = f"Flow from time {time[count - 1]:g} to {time[count]:g}{acting} (rtol {rtol:g}, atol {atol:g})"
+        raise OutcomeError(orbit.outcome, where, orbit, message)
     return orbit
 
 
-def _check_momentum(given: Any, found: np.ndarray) -> None:
+def _check_momentum(momentum: Any, nearest: np.ndarray) -> None:
     """Refuse a full momentum that no admissible velocity has."""
-    missed = np.linalg.norm(np.asarray(given) - found) if np.shape(given) == found.shape else 0.0
-    if missed > _TOLERANCE * np.linalg.norm(found):
-        remedy = f"With the same components along the constraint it is {found.tolist()}."
-        raise error("flow(momentum=...)", "belong to an admissible velocity", f"a distance {missed:.3g}", remedy)
+    distance = np.linalg.norm(np.asarray(momentum) - nearest) if np.shape(momentum) == nearest.shape else 0.0
+    if distance > _TOLERANCE * np.linalg.norm(nearest):
+        remedy = f"With the same components along the constraint it is {nearest.tolist()}."
+        raise error("flow(momentum=...)", "belong to an admissible velocity", f"a distance {distance:.3g}", remedy)

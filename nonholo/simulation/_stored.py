@@ -1,4 +1,4 @@
-"""Runs that are written to a store block by block, in bounded memory: they can stop at any moment, and go on later."""
+"""Runs that are written to a store block by block, in bounded memory: they can stop at any moment, and are resumed."""
 
 import dataclasses
 import functools
@@ -18,8 +18,8 @@ from nonholo.discrete import BranchRule
 from nonholo.io import Checkpoint, Seen
 from nonholo.orbit import AbstractStepper, First
 from nonholo.simulation._options import check_forces, stepper_of
-from nonholo.simulation._run import Reached, Run, blocks, computed, opened, orbit_at, rows_of_block
-from nonholo.simulation.events import Event, Watch, checked_events, search, watched
+from nonholo.simulation._run import Reached, Run, blocks, compute_block, open_run, orbit_at, rows_of_block
+from nonholo.simulation.events import Event, Watch, checked_events, search, watch_for
 
 if TYPE_CHECKING:
     from nonholo.io import Stream
@@ -34,27 +34,27 @@ def into_store(run: Run, first: First, path: Path, checkpoint_every: int | None,
         raise error("simulate(branch=...)", "be a rule that a store can name", "a function", remedy)
     io.check_target(path, new="simulate(store=...)")
     plan = run.plan(rows_of_block("simulate(checkpoint_every=...)", run, checkpoint_every))
-    begun, empty = opened(run, first)
+    start, empty = open_run(run, first)
     if empty is not None:
         return empty
-    there, events = dataclasses.replace(orbit_at(run.stepper, begun.state, 0), save_every=run.every), None
-    if begun.watch is not None:
-        there, events = dataclasses.replace(there, events=begun.watch.log()), descriptions(begun.watch.events)
+    there, events = dataclasses.replace(orbit_at(run.stepper, start.state, 0), save_every=run.every), None
+    if start.watch is not None:
+        there, events = dataclasses.replace(there, events=start.watch.log()), descriptions(start.watch.events)
     remedy = "Raise save_every to keep fewer states."
     numbers = 1 + run.stepper.width
     within_disk("simulate(store=...)", 8.0 * (1 + run.steps // run.every) * numbers, path, remedy)
-    stream = io.create_stream(path, there, plan, _checkpoint(begun), events, scenario)
+    stream = io.create_stream(path, there, plan, _checkpoint(start), events, scenario)
     with io.locked(stream.path):
-        return continued(run, stream)
+        return continue_run(run, stream)
 
 
-def continued(run: Run, stream: "Stream") -> Any:
+def continue_run(run: Run, stream: "Stream") -> Any:
     """Compute what a locked store lacks, block after block, and return the orbit."""
     stream.prepare()
     _warn_of_other_versions(stream)
     with io.reporting_how_to_resume(stream.path, "The run", lambda: f"step {_standing(stream)}"):
-        reached = _completed(run, stream)
-    return run.finished(_loaded(run, stream, reached), reached.done)
+        end = _complete(run, stream)
+    return run.finish(_load(run, stream, end), end.done)
 
 
 def _warn_of_other_versions(stream: "Stream") -> None:
@@ -69,22 +69,22 @@ def _standing(stream: "Stream") -> str:
     return f"{stream.reached()} of {stream.plan.steps}"
 
 
-def _completed(run: Run, stream: "Stream") -> Checkpoint:
+def _complete(run: Run, stream: "Stream") -> Checkpoint:
     """Compute every block that is missing or damaged; return the end of the run."""
-    marked, is_computed = max(stream.marked(), default=-1), not stream.is_finished
+    last_mark, is_computed = max(stream.marked(), default=-1), not stream.is_finished
 
     @functools.cache
-    def known(number: int) -> Reached | None:
-        sound = _sound(stream, number) if number <= marked else None
+    def look_up(number: int) -> Reached | None:
+        sound = _sound(stream, number) if number <= last_mark else None
         return None if sound is None else reached_at(run, sound)
 
-    begin, end, number = known(0) or reached_at(run, _first(stream)), None, 0
+    begin, end, number = look_up(0) or reached_at(run, _first(stream)), None, 0
     with progress_bar("steps", run.progress) as report:
-        for number, orbit, reached in blocks(run, stream.plan, begin, report, known):
+        for number, orbit, standing in blocks(run, stream.plan, begin, report, look_up):
             if orbit is None:
                 end = stream.checkpoint(number + 1)
                 continue
-            is_computed, end = True, _checkpoint(reached)
+            is_computed, end = True, _checkpoint(standing)
             stream.write(number, orbit, end)
     end = end or _first(stream)
     if is_computed:
@@ -102,9 +102,9 @@ def _sound(stream: "Stream", block: int) -> Checkpoint | None:
         return None
 
 
-def _is_final(stream: "Stream", block: int, reached: Checkpoint) -> bool:
+def _is_final(stream: "Stream", block: int, end: Checkpoint) -> bool:
     """Tell whether a block needs no more rows: not so if the run was extended, or ended and was not yet cut."""
-    return reached.done == stream.plan.stop(block) or (reached.is_last and stream.is_finished)
+    return end.done == stream.plan.stop(block) or (end.is_last and stream.is_finished)
 
 
 def _first(stream: "Stream") -> Checkpoint:
@@ -115,9 +115,9 @@ def _first(stream: "Stream") -> Checkpoint:
         raise error("resume(store=...)", "hold the start of the run", str(flaw), remedy) from None
 
 
-def _loaded(run: Run, stream: "Stream", reached: Checkpoint) -> Any:
+def _load(run: Run, stream: "Stream", end: Checkpoint) -> Any:
     """Return the orbit, of one that would fill the memory the last block."""
-    states = 1 + reached.done // run.every + (0 if reached.seen is None else int(reached.seen.counts.sum()))
+    states = 1 + end.done // run.every + (0 if end.seen is None else int(end.seen.counts.sum()))
     if states * (2 + run.stepper.width) <= _LOADED:
         return io.load_orbit(stream.path, discrete=run.stepper.motion)
     return io.load_last_block(stream.path, run.stepper.motion)
@@ -132,32 +132,32 @@ def descriptions(events: dict[str, Event]) -> list[dict[str, Any]]:
     ]
 
 
-def _checkpoint(reached: Reached) -> Checkpoint:
+def _checkpoint(standing: Reached) -> Checkpoint:
     """Return what a store keeps of a run between two blocks."""
-    seen = None if reached.watch is None else seen_by(reached.watch)
-    return Checkpoint(reached.done, reached.outcome, reached.state, seen)
+    memory = None if standing.watch is None else seen_by(standing.watch)
+    return Checkpoint(standing.step, standing.outcome, standing.state, memory)
 
 
 def seen_by(watch: Watch) -> Seen:
     """Return what a checkpoint keeps of what is known of a motion."""
     values = np.empty(0) if watch.values is None else watch.values[:, 0]
-    stopped = -1 if watch.stopped_by is None else tuple(watch.events).index(watch.stopped_by)
-    return Seen(np.array(watch.counts, dtype=np.int64), values, watch.heading or 0.0, stopped)
+    stop = -1 if watch.stopped_by is None else tuple(watch.events).index(watch.stopped_by)
+    return Seen(np.array(watch.counts, dtype=np.int64), values, watch.heading or 0.0, stop)
 
 
-def reached_at(run: Run, kept: Checkpoint) -> Reached:
+def reached_at(run: Run, checkpoint: Checkpoint) -> Reached:
     """Return the state of a run at a checkpoint of its store."""
-    watch, seen = run.watch, kept.seen
-    if watch is not None and seen is not None:
-        stopped = tuple(watch.events)[seen.stopped] if kept.is_stopped else None
-        known = {"counts": tuple(map(int, seen.counts)), "values": seen.values[:, None], "heading": seen.heading}
-        watch = dataclasses.replace(watch, stopped_by=stopped, **known)
-    return Reached(kept.done, kept.outcome, kept.vector, watch)
+    watch, memory = run.watch, checkpoint.seen
+    if watch is not None and memory is not None:
+        stopper = tuple(watch.events)[memory.stopped] if checkpoint.is_stopped else None
+        facts = {"counts": tuple(map(int, memory.counts)), "values": memory.values[:, None], "heading": memory.heading}
+        watch = dataclasses.replace(watch, stopped_by=stopper, **facts)
+    return Reached(checkpoint.done, checkpoint.outcome, checkpoint.vector, watch)
 
 
 def size_in_blocks(discrete: Any, branch: BranchRule, steps: int, every: int) -> int:
     """Return the bytes of all states of a run if it can go into a store block by block and takes several, else 0."""
-    run = Run(stepper_of(discrete, branch, "auto", posed=True), steps, every, None, throw=False, progress=False)
+    run = Run(stepper_of(discrete, branch, "auto", with_poses=True), steps, every, None, throw=False, progress=False)
     states = 1 + steps // every
     numbers = 8 * states * run.stepper.width
     return numbers if states > rows_of_block("", run, None) else 0
@@ -169,17 +169,17 @@ _SAME = 1e-9  # of 1 + the largest number: rounding of other versions and proces
 def watch_of_store(owner: str, stream: "Stream", stepper: AbstractStepper[Any], events: Any) -> Watch | None:
     """Return what the run of a store looks for; refused if it is not what the store says."""
     text, where = io.read_attributes(stream.path).get("events"), f"{owner}(events=...)"
-    chosen, stored = [] if events is None else events, json.loads(text or "[]")
-    if text is None and not checked_events(owner, chosen):
+    request, record = [] if events is None else events, json.loads(text or "[]")
+    if text is None and not checked_events(owner, request):
         return None
-    wanted = f"be the events of the store, {io.described(stored)}"
-    if events is None and stored:
+    requirement = f"be the events of the store, {io.described(record)}"
+    if events is None and record:
         remedy = "Pass events=[...] again, in that order with these directions and stops: a store holds no functions."
-        raise error(where, wanted, f"None for '{stream.path}'", remedy)
-    watch = watched(owner, stepper, chosen)
-    passed = descriptions(watch.events)
-    if passed != stored:
-        raise error(where, wanted, io.described(passed), "Pass the ones it was run with.")
+        raise error(where, requirement, f"None for '{stream.path}'", remedy)
+    watch = watch_for(owner, stepper, request)
+    own = descriptions(watch.events)
+    if own != record:
+        raise error(where, requirement, io.described(own), "Pass the ones it was run with.")
     _refuse_other_values(where, stream, stepper, watch)
     return watch
 
@@ -192,8 +192,8 @@ def _refuse_other_values(where: str, stream: "Stream", stepper: AbstractStepper[
         return  # whoever needs it to continue says so
     if first.seen is None:
         return
-    seen, _ = search(watch, orbit_at(stepper, first.vector, 0))
-    for name, now, then in zip(watch.events, seen_by(seen).values, first.seen.values, strict=True):
+    first_watch, _ = search(watch, orbit_at(stepper, first.vector, 0))
+    for name, now, then in zip(watch.events, seen_by(first_watch).values, first.seen.values, strict=True):
         if abs(now - then) > _SAME * (1 + abs(then)):
             got = f"another one of {name!r}: {now:.17g} instead of {then:.17g} at the first state"
             raise error(where, "be the functions of the store", got, "Pass those it was run with.")
@@ -207,21 +207,21 @@ def refuse_other_functions(owner: str, stream: "Stream", run: Run) -> None:
     block = _last_sound(stream)
     if block is None:
         return
-    begin, reached = stream.checkpoint(block), stream.sound(block)
-    plan = stream.plan._replace(steps=min(begin.done + run.every, reached.done))
+    begin, end = stream.checkpoint(block), stream.sound(block)
+    plan = stream.plan._replace(steps=min(begin.done + run.every, end.done))
     reached_then = reached_at(run, begin)
     if reached_then.watch is None or not reached_then.watch.has_walls:
         reached_then = Reached(begin.done, Outcome.successful, begin.vector, None)
-    orbit, again = computed(run.stepper, plan, block, reached_then, lambda *_: None)
+    orbit, again = compute_block(run.stepper, plan, block, reached_then, lambda *_: None)
     tolerance = _SAME if io.other_versions(io.read_attributes(stream.path)) else 0.0
     pairs = {
         name: (rows, stream.rows(name, block * plan.rows, len(orbit)))
         for name, rows in stream.columns(orbit, block * plan.rows).items()
     }
-    pairs["the last step"] = np.array(again.done), np.array(plan.steps)
-    if again.done == reached.done:  # of the row, which is among the variables, nothing is asked
+    pairs["the last step"] = np.array(again.step), np.array(plan.steps)
+    if again.step == end.done:  # of the row, which is among the variables, nothing is asked
         own = slice(run.stepper.width, None)
-        pairs["the state"] = again.state[own], reached.vector[own]
+        pairs["the state"] = again.state[own], end.vector[own]
     off, name = max((_difference(now, then), name) for name, (now, then) in pairs.items())
     if off > tolerance:
         got = f"{name} other by {off:.3g} of its size after step {begin.done}, which was computed again"
@@ -247,9 +247,9 @@ def _last_sound(stream: "Stream") -> int | None:
 
 def resume_run(store: str | Path, *, discrete: Any, events: Any, throw: bool, progress: bool) -> Any:
     """Resume the run of a store: what `resume` does once it has asked the store, and found no sweep."""
-    stream, run = _opened("resume", store, discrete, events, throw=throw, progress=progress)
+    stream, run = _open("resume", store, discrete, events, throw=throw, progress=progress)
     with io.locked(stream.path):
-        return continued(run, io.open_stream(stream.path))
+        return continue_run(run, io.open_stream(stream.path))
 
 
 def extend(
@@ -296,7 +296,7 @@ def extend(
     if task is not None:
         raise error("extend(task=...)", "come with the store of a sweep", shown(task), "Leave it out for an orbit.")
     steps = count("extend(steps=...)", steps, "Pass how many steps more.")
-    stream, run = _opened("extend", store, discrete, events, throw=throw, progress=progress)
+    stream, run = _open("extend", store, discrete, events, throw=throw, progress=progress)
     with io.locked(stream.path):
         _refuse_ended(io.read_attributes(stream.path))
         numbers, remedy = 1 + sum(run.stepper.columns.values()), "Pass fewer steps."
@@ -305,12 +305,12 @@ def extend(
         longer = io.open_stream(stream.path).lengthened(steps)
         check_forces("extend", run.stepper.motion, longer.plan.steps)
         longer.announce(steps)
-        return continued(run._replace(steps=longer.plan.steps), longer)
+        return continue_run(run._replace(steps=longer.plan.steps), longer)
 
 
-def _refuse_ended(stored: dict[str, Any]) -> None:
+def _refuse_ended(attributes: dict[str, Any]) -> None:
     """Refuse a run that came to its end before its last step."""
-    outcome, event = stored.get("outcome", Outcome.successful.name), stored.get("stopped_by")
+    outcome, event = attributes.get("outcome", Outcome.successful.name), attributes.get("stopped_by")
     if event is not None:
         remedy = "Run it again without `stop`, or with a later one, to go past it."
         raise error("extend(store=...)", "be a run that can continue", f"one that the event {event!r} ended", remedy)
@@ -319,13 +319,13 @@ def _refuse_ended(stored: dict[str, Any]) -> None:
         raise error("extend(store=...)", "be a run that can continue", f"outcome {outcome}", remedy)
 
 
-def _opened(
+def _open(
     owner: str, store: str | Path, discrete: Any, events: Any, *, throw: bool, progress: bool
 ) -> tuple["Stream", Run]:
-    stream, stored = io.open_stream(store), io.read_attributes(store)
-    motion = io.restore_motion(stored, discrete)
+    stream, attributes = io.open_stream(store), io.read_attributes(store)
+    motion = io.restore_motion(attributes, discrete)
     backend = "jax" if motion.route_name == "definition" else "auto"
-    stepper = stepper_of(motion, stored.get("branch", "principal"), backend, posed=stream.reconstruct)
+    stepper = stepper_of(motion, attributes.get("branch", "principal"), backend, with_poses=stream.reconstruct)
     watch = watch_of_store(owner, stream, stepper, events)
     run = Run(stepper, stream.plan.steps, stream.plan.every, watch, throw, progress)
     if discrete is not None:

@@ -10,7 +10,7 @@ from nonholo.systems._base import (
     as_system,
     refuse_forces,
     refuse_slip,
-    unchecked,
+    replace_numbers,
 )
 from nonholo.systems._coordinate_system import (
     AbstractCoordinateDiscretization,
@@ -36,7 +36,7 @@ from nonholo.systems._subspace import (
     is_symmetric_pair,
     null_space,
     reference_point_subspace,
-    spanned,
+    row_space,
     symmetric_complement,
 )
 from nonholo.systems.families import (
@@ -50,7 +50,7 @@ from nonholo.systems.families import (
     SuslovTop,
     VeselovaTop,
 )
-from nonholo.systems.forces import Forced, Friction, Gravity, Linear, Slip, Spring, Widened, joined, parts_of
+from nonholo.systems.forces import Forced, Friction, Gravity, Linear, Slip, Spring, Widened, force_of, parts_of
 
 SYSTEMS = tuple(kind for kind in vars(families).values() if isinstance(kind, type))
 """Every final class of this room."""

@@ -65,7 +65,7 @@ class AbstractSystem(Keeper, abc.ABC):
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
         """Rows span the subspace of the constraint; k runs from 0 to dim."""
 
-    def stacked(self, /, **numbers: Array) -> Any:
+    def stack(self, /, **numbers: Array) -> Any:
         """Return the systems of many numbers in one: they have an axis in front; None where formulas do not allow it.
 
         Args:
@@ -288,7 +288,7 @@ class AbstractSystem(Keeper, abc.ABC):
         return trailing(f"{type(self).__name__} ({name}=...)", value, (self.rank,), remedy)
 
 
-def unchecked(system: SystemT, /, **numbers: Array) -> SystemT:
+def replace_numbers(system: SystemT, /, **numbers: Array) -> SystemT:
     """Return a system with other numbers, unchecked: they may have axes in front, where its formulas allow them."""
     other = object.__new__(type(system))
     for name in (*system.leaves, *system.structure):

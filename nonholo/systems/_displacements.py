@@ -72,11 +72,11 @@ def in_exp_d(displacement: Float[np.ndarray, "... n n"], tolerance: float = 1e-9
     if n < 2 or W.shape[-2] != n:
         raise error(where, "be a square matrix", f"shape {W.shape}", "Pass W of SO(n).")
     tolerance = positive("in_exp_d(tolerance=...)", tolerance, "Pass a positive error.")
-    reflected = np.append(np.ones(n - 1), -1.0)[:, None] * W
-    turned = np.swapaxes(reflected, -1, -2)
-    asymmetry = np.abs(reflected - turned).max(axis=(-2, -1))
-    defect = np.abs(reflected @ turned - np.eye(n)).max(axis=(-2, -1))
-    trace = np.abs(np.trace(reflected, axis1=-2, axis2=-1) - (n - 2))
+    reflection = np.append(np.ones(n - 1), -1.0)[:, None] * W
+    transpose = np.swapaxes(reflection, -1, -2)
+    asymmetry = np.abs(reflection - transpose).max(axis=(-2, -1))
+    defect = np.abs(reflection @ transpose - np.eye(n)).max(axis=(-2, -1))
+    trace = np.abs(np.trace(reflection, axis1=-2, axis2=-1) - (n - 2))
     return (asymmetry <= tolerance) & (defect <= tolerance) & (trace <= n * tolerance)
 
 
@@ -118,8 +118,8 @@ def euler_angle_discrete_lagrangian(principal_moments: Any, angles: Any, angles_
     cos, sin = xp.cos(turn), xp.sin(turn)
 
     def across(along: Array, beside: Array) -> Array:
-        lifted = c * c_next * (1 + cos * along) + s * (along + cos)
-        return lifted - cos * along + (c_next - c) * sin * beside
+        tilt = c * c_next * (1 + cos * along) + s * (along + cos)
+        return tilt - cos * along + (c_next - c) * sin * beside
 
     axial = (1 + c * c_next) * cos * xp.cos(spin) - c * c_next + s * (xp.cos(spin) - cos)
     axial = axial - (c + c_next) * sin * xp.sin(spin)

@@ -264,17 +264,17 @@ def tensors_shown(group: AbstractMatrixGroup, mass_tensor: Float[Array, "N N"]) 
         return {"mass tensor J": J}
     if not space[1]:
         return {"mass tensor J": J, "inertia tensor tr(J) I - J": _inertia(J)}
-    found = {"homogeneous mass tensor J": J}
+    facts = {"homogeneous mass tensor J": J}
     if J[-1, -1] > 0:
         m, a = J[-1, -1], J[:-1, -1] / J[-1, -1]
         inertia = _inertia(J[:-1, :-1] - m * np.outer(a, a))
-        found |= {"mass": np.asarray(m), "center of mass": a, "inertia about the center of mass": inertia}
-    return found
+        facts |= {"mass": np.asarray(m), "center of mass": a, "inertia about the center of mass": inertia}
+    return facts
 
 
-def lines_of(shown: dict[str, Float[np.ndarray, "..."]]) -> str:
+def lines_of(arrays: dict[str, Float[np.ndarray, "..."]]) -> str:
     """Return named arrays as the lines of a `repr`."""
-    lines = (f"{name} = {np.array2string(value, prefix=' ' * (len(name) + 5))}" for name, value in shown.items())
+    lines = (f"{name} = {np.array2string(value, prefix=' ' * (len(name) + 5))}" for name, value in arrays.items())
     return ",\n  ".join(lines)
 
 

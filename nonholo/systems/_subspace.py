@@ -45,7 +45,7 @@ def _refuse_too_wide(dim: int) -> None:
     within_memory(f"The complement of a subspace in {dim} dimensions", 8.0 * dim**2, "Use a smaller group.")
 
 
-def spanned(rows: Float[np.ndarray, "m dim"], tolerance: float = _ROUNDING) -> Float[np.ndarray, "k dim"]:
+def row_space(rows: Float[np.ndarray, "m dim"], tolerance: float = _ROUNDING) -> Float[np.ndarray, "k dim"]:
     """Return orthonormal rows that span the same space as the given rows."""
     return null_space(null_space(rows, tolerance))
 
@@ -149,13 +149,13 @@ def _from_axes(rows: Float[np.ndarray, "k dim"]) -> Float[np.ndarray, "k dim"]:
     rows. The squared residuals of the axes add up to the number of missing rows, so some axis always passes the bound.
     """
     dim = rows.shape[1]
-    chosen = np.empty((0, dim))
-    for projected in rows.T @ rows:
-        residual = projected - chosen.T @ (chosen @ projected)
+    basis = np.empty((0, dim))
+    for projection in rows.T @ rows:
+        residual = projection - basis.T @ (basis @ projection)
         if residual @ residual > 1 / (2 * dim):
-            residual = residual - chosen.T @ (chosen @ residual)
-            chosen = np.concatenate([chosen, residual[None, :] / np.linalg.norm(residual)])
-    return chosen
+            residual = residual - basis.T @ (basis @ residual)
+            basis = np.concatenate([basis, residual[None, :] / np.linalg.norm(residual)])
+    return basis
 
 
 _RANK = 1e-12  # relative size below which a singular value or a residual counts as zero
@@ -212,49 +212,49 @@ def symmetric_complement(group: AbstractMatrixGroup, constraint_subspace: Any) -
     checked_group("is_symmetric_pair(group=...)", group)
     within_memory("is_symmetric_pair(group=...)", 8.0 * group.dim**3, "Use a smaller group.")
     where = "is_symmetric_pair(constraint_subspace=...)"
-    d = spanned(independent_rows(where, constraint_subspace, group.dim))
+    d = row_space(independent_rows(where, constraint_subspace, group.dim))
     constants, everything = _structure_constants(group), np.eye(group.dim)
     escape = _significant(_brackets(constants, everything, d) @ null_space(d).T)
     normalizer = null_space(escape.reshape(group.dim, escape[0].size).T, _RANK)
-    derived = spanned(_significant(_brackets(constants, d, d)).reshape(-1, group.dim), _RANK)
-    shared = _intersection(normalizer, d)
+    commutators = row_space(_significant(_brackets(constants, d, d)).reshape(-1, group.dim), _RANK)
+    overlap = _intersection(normalizer, d)
     fits = (
-        len(normalizer) + len(d) - len(shared) == group.dim
-        and len(spanned(np.concatenate([normalizer, derived]), _RANK)) == len(normalizer)
-        and len(_intersection(derived, d)) == 0
-        and not _significant(_brackets(constants, shared, d)).any()
+        len(normalizer) + len(d) - len(overlap) == group.dim
+        and len(row_space(np.concatenate([normalizer, commutators]), _RANK)) == len(normalizer)
+        and len(_intersection(commutators, d)) == 0
+        and not _significant(_brackets(constants, overlap, d)).any()
     )
-    return _subalgebra(constants, normalizer, shared, derived) if fits else None
+    return _subalgebra(constants, normalizer, overlap, commutators) if fits else None
 
 
 def _subalgebra(
-    constants: np.ndarray, normalizer: np.ndarray, shared: np.ndarray, derived: np.ndarray
+    constants: np.ndarray, normalizer: np.ndarray, overlap: np.ndarray, commutators: np.ndarray
 ) -> np.ndarray | None:
-    """Solve for the graph of phi over a complement of `shared` in `normalizer`; None if there is none."""
-    rest = _intersection(normalizer, null_space(np.concatenate([derived, shared])))
-    start = np.concatenate([derived, rest])
-    if len(shared) == 0:
+    """Solve for the graph of phi over a complement of `overlap` in `normalizer`; None if there is none."""
+    rest = _intersection(normalizer, null_space(np.concatenate([commutators, overlap])))
+    start = np.concatenate([commutators, rest])
+    if len(overlap) == 0:
         return start
-    coordinates = np.linalg.pinv(np.concatenate([start, shared]))
+    coordinates = np.linalg.pinv(np.concatenate([start, overlap]))
     parts = _significant(_brackets(constants, start, start) @ coordinates)
     along, omega = parts[..., : len(start)], parts[..., len(start) :]
-    action = _significant(_brackets(constants, start, shared) @ coordinates)[..., len(start) :]  # [x_i, e_a] in e
-    matrix, target = _conditions(along, omega, action, len(derived))
+    action = _significant(_brackets(constants, start, overlap) @ coordinates)[..., len(start) :]  # [x_i, e_a] in e
+    matrix, target = _conditions(along, omega, action, len(commutators))
     phi = np.linalg.lstsq(matrix, target, rcond=_RANK)[0]
     residual = np.abs(matrix @ phi - target).max(initial=0.0)
-    graph = start + phi.reshape(len(start), len(shared)) @ shared
+    graph = start + phi.reshape(len(start), len(overlap)) @ overlap
     return graph if residual <= 1e3 * _RANK * (1 + np.abs(phi).max(initial=0.0)) else None
 
 
-def _conditions(along: np.ndarray, omega: np.ndarray, action: np.ndarray, fixed: int) -> tuple[np.ndarray, np.ndarray]:
+def _conditions(along: np.ndarray, omega: np.ndarray, action: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the linear system of phi (h rows, e columns, flattened) and its right-hand side."""
     h, e = action.shape[:2]
     unit_h, unit_e = np.eye(h), np.eye(e)
     system = np.einsum("ijl,ac->ijcla", along, unit_e)
     system = system - np.einsum("jl,iac->ijcla", unit_h, action) + np.einsum("il,jac->ijcla", unit_h, action)
-    zero = np.einsum("fl,ac->fcla", unit_h[:fixed], unit_e)
+    zero = np.einsum("fl,ac->fcla", unit_h[:count], unit_e)
     matrix = np.concatenate([system.reshape(-1, h * e), zero.reshape(-1, h * e)])
-    return matrix, np.concatenate([omega.ravel(), np.zeros(fixed * e)])
+    return matrix, np.concatenate([omega.ravel(), np.zeros(count * e)])
 
 
 def _structure_constants(group: AbstractMatrixGroup) -> Float[np.ndarray, "dim dim dim"]:

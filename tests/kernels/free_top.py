@@ -103,7 +103,7 @@ def motions(system: nh.SuslovTop) -> dict[str, Any]:
         nh.simulate(two, restricted_velocity=VELOCITY, steps=STEPS // 2, store=store)
         stored = nh.extend(store, steps=STEPS // 2)
     return {
-        "body": type(two.route.compiled.body).__name__,
+        "body": type(two.route.compiled_route.body).__name__,
         "is_scalar": two.route.is_scalar,
         "pose": run.pose.tolist(),
         "composed": composed.pose.tolist(),

@@ -131,7 +131,7 @@ def _group_residual(orbit: Orbit) -> float:
 
 
 def _reversal_defect(discrete: Discretization, orbit: Orbit) -> float | None:
-    route = discrete.route.compiled if discrete.forces is None else None
+    route = discrete.route.compiled_route if discrete.forces is None else None
     if route is None:
         return None
     moving = np.asarray(orbit.canonical_chart.any(axis=1))

@@ -10,7 +10,7 @@ import numpy as np
 from nonholo.base.checks import instance
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.systems import AbstractSystem, gyroscopic_form, null_space, refuse_forces, spanned
+from nonholo.systems import AbstractSystem, gyroscopic_form, null_space, refuse_forces, row_space
 
 _RANK = 1e-11  # relative size below which a rate of change counts as zero
 
@@ -71,7 +71,7 @@ def conserved_momenta(system: AbstractSystem) -> ConservedMomenta:
 
 
 def _left(system: AbstractSystem) -> ConservedMomenta:
-    group, rows = system.group, spanned(system.constraint_subspace)
+    group, rows = system.group, row_space(system.constraint_subspace)
     inertia, everything = np.asarray(system.inertia_operator), np.eye(group.dim)
     form = gyroscopic_form(inertia, _brackets(group, rows, rows), rows)
     coefficients = _vanishing(form.reshape(len(rows) ** 2, len(rows)), _scale(group, inertia))
@@ -80,7 +80,7 @@ def _left(system: AbstractSystem) -> ConservedMomenta:
 
 
 def _right(system: AbstractSystem) -> ConservedMomenta:
-    group, rows, everything = system.group, spanned(system.constraint_subspace), np.eye(system.group.dim)
+    group, rows, everything = system.group, row_space(system.constraint_subspace), np.eye(system.group.dim)
     inertia, rng = np.asarray(system.inertia_operator), np.random.default_rng(0)
     brackets, rates, reactions = _brackets(group, rows, everything), [], []
     for _ in range(group.dim + 1):

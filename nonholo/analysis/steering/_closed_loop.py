@@ -6,7 +6,7 @@ import numpy as np
 
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
-from nonholo.discrete.definition import Rollout, doubled
+from nonholo.discrete.definition import Rollout, compile_double
 from nonholo.simulation.traced import rollout
 
 State = tuple[Array, Array]
@@ -25,7 +25,7 @@ def _stepped(discrete: Discretization, state: State, covector: Array) -> tuple[R
     return pair, (discrete.system.restricted_velocity(pair.restricted_momentum[1]), pair.configuration[1])
 
 
-@doubled
+@compile_double
 def linearized(
     discrete: Discretization, nodes: State, controls: Float[Array, "steps dim"]
 ) -> tuple[Float[Array, "steps n n"], Float[Array, "steps n k"]]:
@@ -45,7 +45,7 @@ def linearized(
     return jax.vmap(at)(before, following, controls)
 
 
-@doubled
+@compile_double
 def closed_loop(
     discrete: Discretization, nodes: State, start: State, tables: tuple[Array, ...], limits: tuple[Array, Array]
 ) -> tuple[Rollout, Float[Array, "steps k"], Float[Array, "K n"]]:

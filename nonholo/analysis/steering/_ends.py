@@ -7,7 +7,7 @@ import numpy as np
 
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
-from nonholo.discrete.definition import Rollout, doubled, in_double
+from nonholo.discrete.definition import Rollout, compile_double, in_double
 from nonholo.simulation.traced import rollout
 
 Ends = tuple[Array, Array, Array | None, Array | None]
@@ -46,7 +46,7 @@ def _missed(discrete: Discretization, forces: Array, ends: Ends) -> tuple[Array,
     return values, slopes
 
 
-@doubled
+@compile_double
 def driven(discrete: Discretization, controls: Array, start: tuple[Array, Array]) -> Rollout:
     """Return the orbits under body covectors from velocities and poses of members."""
     return jax.vmap(lambda controls, start: _orbit(discrete, controls, start, 1))(controls, start)

@@ -208,8 +208,8 @@ class Frame:
 
 def has_frame(discrete: "Discretization") -> bool:
     """Tell whether all branches of a discretization are known."""
-    known = discrete.system.normal_form is not None
-    return known and discrete.difference == "matrix" and discrete.constraint in ("skew", "exponential")
+    has_form = discrete.system.normal_form is not None
+    return has_form and discrete.difference == "matrix" and discrete.constraint in ("skew", "exponential")
 
 
 def frame_of(where: str, discrete: "Discretization") -> Frame:
@@ -247,7 +247,7 @@ _TRANSVERSAL = 1e-6  # part of the momentum's motion across a fold below which t
 _FAR = 1e5  # length of a displacement that counts as infinite
 
 
-def followed(start: Equations, end: Equations, x: Float[np.ndarray, "m"]) -> tuple[Outcome, Float[np.ndarray, "m"]]:
+def follow(start: Equations, end: Equations, x: Float[np.ndarray, "m"]) -> tuple[Outcome, Float[np.ndarray, "m"]]:
     """Follow a real root of the first equations to the second ones, which differ in target and push alone.
 
     Returns:
@@ -263,9 +263,9 @@ def followed(start: Equations, end: Equations, x: Float[np.ndarray, "m"]) -> tup
         pace = _length(tangent, x)
         size = min(size, 1.0 - s, _LONGEST / pace if pace > 0 else 1.0)
         ahead = 1.0 if size == 1.0 - s else s + size
-        found = _corrected(_between(start, end, ahead), x + size * tangent, size * pace)
-        if found is not None and np.sign(np.linalg.det(end.slope(found))) == side:
-            x, s, size, slope = found, ahead, 2 * size, end.slope(found)
+        next_point = _correct(_between(start, end, ahead), x + size * tangent, size * pace)
+        if next_point is not None and np.sign(np.linalg.det(end.slope(next_point))) == side:
+            x, s, size, slope = next_point, ahead, 2 * size, end.slope(next_point)
         elif size > _SHORTEST:
             size /= 4
         else:
@@ -282,8 +282,8 @@ def nearest_body(equations: Equations) -> kernels.NearestBody:
 
 def _motion(start: Equations, end: Equations) -> Float[np.ndarray, "m"]:
     """Return how the right-hand sides move, in the order of the residual."""
-    pushed = [] if start.lever is None else [end.push - start.push]
-    return np.array([*(end.target - start.target), *pushed, 0.0])
+    push = [] if start.lever is None else [end.push - start.push]
+    return np.array([*(end.target - start.target), *push, 0.0])
 
 
 def _between(start: Equations, end: Equations, s: float) -> Equations:
@@ -298,16 +298,16 @@ def _length(move: np.ndarray, x: np.ndarray) -> float:
     return float(np.linalg.norm(move / np.maximum(1.0, np.abs(x))))
 
 
-def _corrected(equations: Equations, guess: np.ndarray, predicted: float) -> Float[np.ndarray, "m"] | None:
+def _correct(equations: Equations, guess: np.ndarray, reach: float) -> Float[np.ndarray, "m"] | None:
     """Return the root next to a guess by Newton's method; None if it is further away than the prediction allows."""
-    x, allowed = guess, max(_CLOSE * predicted, min(_SMALL, predicted))
+    x, limit = guess, max(_CLOSE * reach, min(_SMALL, reach))
     for _ in range(_CORRECTIONS):
         try:
             correction = np.linalg.solve(equations.slope(x), equations.residual(x)[0])
         except np.linalg.LinAlgError:
             return None
         x = x - correction
-        if not _length(x - guess, guess) <= allowed + _CONVERGED:
+        if not _length(x - guess, guess) <= limit + _CONVERGED:
             return None
         if _length(correction, x) <= _CONVERGED:
             return x

@@ -16,7 +16,7 @@ from nonholo.base.checks import choice, error, is_integer, shown
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.discrete._discretization import Discretization
-from nonholo.discrete.branching._equations import Equations, Frame, followed, has_frame
+from nonholo.discrete.branching._equations import Equations, Frame, follow, has_frame
 from nonholo.discrete.branching._values import (
     SAME,
     Branches,
@@ -126,7 +126,7 @@ class Nearest(AbstractBranchRule):
 
     def following(self, kick: Kick) -> Following:
         """Follow the present point."""
-        return followed(kick.now, kick.ahead, kick.point)
+        return follow(kick.now, kick.ahead, kick.point)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -145,13 +145,13 @@ class Extreme(AbstractBranchRule):
 
     def following(self, kick: Kick) -> Following:
         """Choose by the norm; a tie is not decided."""
-        roots, found = _values(kick)
-        real = np.flatnonzero(found.is_real)
+        roots, values = _values(kick)
+        real = np.flatnonzero(values.is_real)
         if len(real) == 0:
-            return _only(kick, roots, found, [])
-        norms = self.sign * np.linalg.norm(found.momentum[real], axis=1)
-        tied = real[norms <= norms.min() + _TIED * np.abs(norms).max()]
-        return _only(kick, roots, found, tied.tolist())
+            return _only(kick, roots, values, [])
+        norms = self.sign * np.linalg.norm(values.momentum[real], axis=1)
+        ties = real[norms <= norms.min() + _TIED * np.abs(norms).max()]
+        return _only(kick, roots, values, ties.tolist())
 
 
 @dataclasses.dataclass(frozen=True)
@@ -178,12 +178,12 @@ class Region(AbstractBranchRule):
 
     def following(self, kick: Kick) -> Following:
         """Choose by the region, then by continuation."""
-        roots, found = _values(kick)
-        inside = np.flatnonzero(found.is_real & (found.region == self.name)).tolist()
+        roots, values = _values(kick)
+        inside = np.flatnonzero(values.is_real & (values.region == self.name)).tolist()
         if len(inside) > 1:
             nearest = _nearest_of(kick, roots)
             inside = [nearest] if nearest in inside else inside
-        return _only(kick, roots, found, inside)
+        return _only(kick, roots, values, inside)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -202,14 +202,14 @@ class Chosen(AbstractBranchRule):
 
     def following(self, kick: Kick) -> Following:
         """Ask the function, and refuse an answer that is no real value."""
-        roots, found = _values(kick)
-        index = called("branch(found, present)", self.function, found, kick.present)
+        roots, values = _values(kick)
+        index = called("branch(found, present)", self.function, values, kick.present)
         if index is None:
-            return _only(kick, roots, found, [])
-        if not is_integer(index) or not 0 <= index < len(found) or not found.is_real[index]:
+            return _only(kick, roots, values, [])
+        if not is_integer(index) or not 0 <= index < len(values) or not values.is_real[index]:
             remedy = "Choose among np.flatnonzero(found.is_real), or return None."
             raise error("branch(found, present)", "return the index of a real branch or None", shown(index), remedy)
-        return _only(kick, roots, found, [int(index)])
+        return _only(kick, roots, values, [int(index)])
 
 
 PRINCIPAL = Principal()
@@ -268,18 +268,18 @@ def _values(kick: Kick) -> tuple[Roots, Branches]:
     return roots, branches_of(kick.discrete, kick.momentum, roots)
 
 
-def _only(kick: Kick, roots: Roots, found: Branches, taken: list[int]) -> Following:
+def _only(kick: Kick, roots: Roots, values: Branches, choices: list[int]) -> Following:
     """Return the one value that is left, or why there is none."""
-    if not taken:
+    if not choices:
         return Outcome.no_real_branch, kick.point
-    if len(taken) > 1 or found.multiplicity[taken[0]] > 1:
+    if len(choices) > 1 or values.multiplicity[choices[0]] > 1:
         return Outcome.branch_unverified, kick.point
-    return Outcome.successful, roots.found[taken[0]].point.real
+    return Outcome.successful, roots.zeros[choices[0]].point.real
 
 
 def _nearest_of(kick: Kick, roots: Roots) -> int | None:
     """Return the index of the root that the present point is followed to; None if it is lost."""
-    code, end = followed(kick.now, roots.equations, kick.point)
-    missed = [min(np.linalg.norm(end - root.point), np.linalg.norm(end + root.point)) for root in roots.found]
-    best = int(np.argmin(missed))
-    return best if code == 0 and missed[best] <= SAME * np.linalg.norm(end) else None
+    code, end = follow(kick.now, roots.equations, kick.point)
+    distances = [min(np.linalg.norm(end - root.point), np.linalg.norm(end + root.point)) for root in roots.zeros]
+    best = int(np.argmin(distances))
+    return best if code == 0 and distances[best] <= SAME * np.linalg.norm(end) else None

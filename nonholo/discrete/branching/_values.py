@@ -50,11 +50,11 @@ class Landscape:
 
 def landscape(form: NormalForm) -> Landscape:
     """Return the energy landscape of a top with n = 3."""
-    c, balanced = np.asarray(form.coupling), not form.is_coupled
-    along = np.array([1.0, 0.0]) if balanced else c / np.hypot(*c)
+    c, is_balanced = np.asarray(form.coupling), not form.is_coupled
+    along = np.array([1.0, 0.0]) if is_balanced else c / np.hypot(*c)
     axes = np.stack([along, [-along[1], along[0]]], axis=1)
     inertia = axes.T @ form.stiffness_matrix @ axes
-    sharpness = 0.0 if balanced else float(c @ c / np.linalg.det(inertia))
+    sharpness = 0.0 if is_balanced else float(c @ c / np.linalg.det(inertia))
     inverses, vectors = scipy.linalg.eigh(np.diag([1.0, 1.0 - sharpness]), inertia)
     return Landscape(axes, inertia, sharpness, inverses, vectors)
 
@@ -75,8 +75,8 @@ def regions(discrete: Discretization, displacement: Inexact[np.ndarray, "B N N"]
     if land is None:
         return np.full(len(displacement), "", dtype="<U7")
     frame = discrete.system.form_frame
-    seen = frame.T @ np.real(displacement) @ frame
-    square = land.axes.T @ (np.eye(2) - seen[:, :2, :2]) @ land.axes / 2  # z z^T
+    in_axes = frame.T @ np.real(displacement) @ frame
+    square = land.axes.T @ (np.eye(2) - in_axes[:, :2, :2]) @ land.axes / 2  # z z^T
     height = np.einsum("bij,ij->b", square, land.inertia)
     ascent = np.einsum("bii->b", square) - land.sharpness * square[:, 1, 1]  # kappa rho, one half on the ridge
     energy, (center, saddle) = height * (1 - ascent), 1 / (4 * land.inverses)
@@ -137,18 +137,18 @@ class Branches:
     def __repr__(self) -> str:
         real = np.count_nonzero(self.is_real)
         principal = "none is principal" if self.principal is None else f"number {self.principal} is principal"
-        certified = ", certified" if self.certified else ""
-        return f"<Branches: {len(self)} values, {real} real, {principal}{certified}, energy {self.energy:.6g}>"
+        mark = ", certified" if self.certified else ""
+        return f"<Branches: {len(self)} values, {real} real, {principal}{mark}, energy {self.energy:.6g}>"
 
     def _repr_html_(self) -> str:
         head = ("", "real", "multiplicity", "to the fold", "momentum")
         rows = []
         for k, momentum in enumerate(self.momentum):
             components = momentum.real if self.is_real[k] else momentum
-            shown = np.array2string(components, precision=6, threshold=12, suppress_small=True)
+            text = np.array2string(components, precision=6, threshold=12, suppress_small=True)
             number = f"{k}, principal" if k == self.principal else k
             is_real = "yes" if self.is_real[k] else "no"
-            rows.append((number, is_real, self.multiplicity[k], f"{self.fold_distance[k]:.3g}", shown))
+            rows.append((number, is_real, self.multiplicity[k], f"{self.fold_distance[k]:.3g}", text))
         return table(repr(self), rows, head)
 
 
@@ -162,7 +162,7 @@ class Roots(NamedTuple):
     """The roots of the equations of a restricted momentum, and the displacements minus the identity over them."""
 
     equations: Equations
-    found: list[Root]
+    zeros: list[Root]
     increments: Inexact[np.ndarray, "B N N"]
 
 
@@ -170,23 +170,23 @@ def roots_over(discrete: Discretization, frame: Frame, canonical: Inexact[np.nda
     """Return the roots over a canonical restricted momentum, real or complex."""
     system = discrete.system
     equations = frame.equations(discrete.time_step * canonical)
-    found = roots_of(equations)
+    zeros = roots_of(equations)
     back = system.group.inverse(system.frame)
-    increments = [system.frame @ frame.increment(root.point.astype(complex)) @ back for root in found]
-    return Roots(equations, found, np.array(increments).reshape(-1, *system.group.identity.shape))
+    increments = [system.frame @ frame.increment(root.point.astype(complex)) @ back for root in zeros]
+    return Roots(equations, zeros, np.array(increments).reshape(-1, *system.group.identity.shape))
 
 
 def branches_of(discrete: Discretization, canonical: Inexact[np.ndarray, "k"], roots: Roots) -> Branches:
     """Return what is known of the displacements over a canonical restricted momentum."""
     system = cast(AbstractLLSystem, discrete.system)
-    equations, found, X = roots
-    is_real = np.array([root.is_real for root in found])
+    equations, zeros, X = roots
+    is_real = np.array([root.is_real for root in zeros])
     return Branches(
         displacement=X + system.group.identity,
         momentum=legendre(discrete, X, "left"),
         is_real=is_real,
-        multiplicity=np.array([root.multiplicity for root in found]),
-        fold_distance=equations.regularity(equations.points([root.point for root in found])),
+        multiplicity=np.array([root.multiplicity for root in zeros]),
+        fold_distance=equations.regularity(equations.points([root.point for root in zeros])),
         energy=float(system.canonical.constrained_energy(canonical)),
         region=np.where(is_real, regions(discrete, X + system.group.identity), ""),
         principal=_principal(discrete, canonical, X, is_real),
@@ -198,16 +198,16 @@ def point_over(where: str, discrete: Discretization, frame: Frame, W: np.ndarray
     system = discrete.system
     canonical = system.group.inverse(system.frame) @ W @ system.frame
     x = frame.point(canonical)
-    missed = float(np.linalg.norm(frame.increment(x) + np.eye(len(W)) - canonical))
-    if not missed <= _ON_VARIETY * np.linalg.norm(W):
+    distance = float(np.linalg.norm(frame.increment(x) + np.eye(len(W)) - canonical))
+    if not distance <= _ON_VARIETY * np.linalg.norm(W):
         remedy = "Build it as `group.exp(x)` with x admissible."
-        raise error(where, "lie on the displacement variety", f"a matrix at distance {missed:.3g}", remedy)
+        raise error(where, "lie on the displacement variety", f"a matrix at distance {distance:.3g}", remedy)
     return x
 
 
 def principal_increment(discrete: Discretization, canonical: Float[np.ndarray, "k"]) -> tuple[Outcome, Array]:
     """Return the outcome and the verified principal displacement, canonical, minus the identity."""
-    route = discrete.route.compiled
+    route = discrete.route.compiled_route
     if route is None:
         return Outcome.branch_unverified, None
     outcome, chart = route.first_root(canonical)
@@ -216,11 +216,11 @@ def principal_increment(discrete: Discretization, canonical: Float[np.ndarray, "
 
 def _principal(discrete: Discretization, canonical: np.ndarray, X: np.ndarray, is_real: np.ndarray) -> int | None:
     """Return the index of the verified principal root among displacements minus the identity."""
-    code, reached = principal_increment(discrete, canonical)
+    code, increment = principal_increment(discrete, canonical)
     if code != 0:
         return None
     frame = discrete.system.frame
-    found = frame @ reached @ discrete.system.group.inverse(frame)
-    missed = np.where(is_real, np.linalg.norm(X - found, axis=(1, 2)), np.inf)
-    best = int(np.argmin(missed))
-    return best if missed[best] <= SAME * max(1.0, float(np.linalg.norm(found))) else None
+    principal = frame @ increment @ discrete.system.group.inverse(frame)
+    distances = np.where(is_real, np.linalg.norm(X - principal, axis=(1, 2)), np.inf)
+    best = int(np.argmin(distances))
+    return best if distances[best] <= SAME * max(1.0, float(np.linalg.norm(principal))) else None

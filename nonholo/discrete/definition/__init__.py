@@ -1,10 +1,10 @@
 """The map by its definition, in JAX: derivatives of the discrete Lagrangian, roots, runs. Imported on first use."""
 
-from nonholo.discrete.definition._precision import allow_float32, doubled, in_double
-from nonholo.discrete.definition._rollout import Rollout, free_rows, rolled, step_residual
+from nonholo.discrete.definition._precision import allow_float32, compile_double, in_double
+from nonholo.discrete.definition._rollout import Rollout, free_rows, roll_out, step_residual
 from nonholo.discrete.definition._step import (
     ON_LOCUS,
-    displaced,
+    displacement_of,
     is_even,
     map_each,
     momenta_by_derivative,

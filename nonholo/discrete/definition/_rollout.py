@@ -22,7 +22,7 @@ from nonholo.discrete._scheme import Scheme, weights
 from nonholo.discrete.definition._step import (
     ON_LOCUS,
     closed_step_of,
-    displaced,
+    displacement_of,
     equations_at,
     kernel_root,
     momentum_of,
@@ -79,9 +79,9 @@ _Impulse = Callable[[Array, Array, Array], Array]
 """From momenta along the constraint, pose and control to half the impulse of a step, a body covector."""
 
 
-def rolled(
+def roll_out(
     discrete: Scheme,
-    closed: ScalarStep | None,
+    scalar: ScalarStep | None,
     start: tuple[str, Array, Array],
     controls: Array | None,
     sizes: tuple[int, int],
@@ -96,28 +96,32 @@ def rolled(
     (name, value, g), (steps, every), system = start, sizes, discrete.system
     r, g = _along(discrete, name, jnp.asarray(value), jnp.asarray(g)), jnp.asarray(g)
     impulse, rows = impulse_of(discrete, forced, controls, steps)
-    balanced = forced if is_balanced(discrete, forced) else None
-    if balanced is not None:
-        step, start, at = _balanced_step(discrete, closed, balanced), (r, g, len(discrete.variety.chart)), _as_it_is
-    elif closed is not None and discrete.order == 2:
-        step, C, at = _closed_step(discrete, closed, g, impulse)
+    at_displacement = forced if is_balanced(discrete, forced) else None
+    if at_displacement is not None:
+        step, start, at = (
+            _balanced_step(discrete, scalar, at_displacement),
+            (r, g, len(discrete.variety.chart)),
+            _as_it_is,
+        )
+    elif scalar is not None and discrete.order == 2:
+        step, C, at = _closed_step(discrete, scalar, g, impulse)
         start = C @ r, jnp.asarray([1.0, 0.0, 0.0, 0.0], r.dtype), 2
     else:
-        step = _composed_step(discrete, closed) if discrete.order > 2 else _matrix_step(discrete, impulse)
+        step = _composed_step(discrete, scalar) if discrete.order > 2 else _matrix_step(discrete, impulse)
         start, at = (r, g, len(discrete.variety.chart)), _as_it_is
     (m, pose, size), code = cast(Any, start), jnp.zeros((), jnp.result_type(int))
     nothing = jnp.zeros(size, m.dtype)
     nodes = run_nodes(step, _Node(m, pose, nothing, (m, pose), code, jnp.sum(nothing)), rows, sizes, work)
-    given = value if name == "momentum" and value.shape == (system.group.dim,) else None
+    demand = value if name == "momentum" and value.shape == (system.group.dim,) else None
     time = discrete.time_step * every * jnp.arange(1 + steps // every)
     states = jax.vmap(at)(nodes)
     pushes, potential = jnp.zeros(()), jnp.zeros(()) if forced is None else forced.potential_energy(states[2])
-    if balanced is not None:
+    if at_displacement is not None:
         first = _part(discrete, weights(discrete.order)[0])
-        pushes = jax.vmap(functools.partial(half_impulse, first, balanced))(states[1], states[2], rows[::every])
+        pushes = jax.vmap(functools.partial(half_impulse, first, at_displacement))(states[1], states[2], rows[::every])
     elif impulse is not None:
         pushes = jax.vmap(impulse)(states[0], states[2], rows[::every])
-    return _decoded(discrete, nodes, states, given, (pushes, potential), time)
+    return _decode(discrete, nodes, states, demand, (pushes, potential), time)
 
 
 def impulse_of(discrete: Scheme, forced: Forced | None, controls: Array | None, steps: int) -> tuple[Any, Any]:
@@ -132,12 +136,12 @@ def impulse_of(discrete: Scheme, forced: Forced | None, controls: Array | None, 
     rows = rows + forced.rows(np.arange(steps + 1))
     if is_balanced(discrete, forced):
         return None, rows
-    fixed = None
+    propagator = None
     if forced.friction is not None and not forced.is_spatial:
-        fixed = forced.propagator(jnp.asarray(forced.constraint_subspace.T), half)
+        propagator = forced.propagator(jnp.asarray(forced.constraint_subspace.T), half)
 
     def impulse(r: Array, g: Array, row: Array) -> Array:
-        return forced.impulse(r, g, forced.potential_force(g) + row, half, fixed)
+        return forced.impulse(r, g, forced.potential_force(g) + row, half, propagator)
 
     return impulse, rows
 
@@ -150,7 +154,7 @@ def is_balanced(discrete: Scheme, forced: Forced | None) -> bool:
 def half_impulse(discrete: Scheme, forced: Forced, y: Array, g: Array, row: Array) -> Float[Array, "dim"]:
     """Return half the impulse of a balanced step by the chart of its displacement, a body covector."""
     h = discrete.time_step
-    return h / 2 * forced.mean_force(g, displaced(discrete, y), h, row)
+    return h / 2 * forced.mean_force(g, displacement_of(discrete, y), h, row)
 
 
 def _part(discrete: Scheme, weight: Array) -> Any:
@@ -173,23 +177,23 @@ def _along(discrete: Scheme, name: str, value: Array, g: Array) -> Array:
 
 
 def _closed_step(
-    discrete: Scheme, closed: ScalarStep, g: Array, impulse: _Impulse | None
+    discrete: Scheme, scalar: ScalarStep, g: Array, impulse: _Impulse | None
 ) -> tuple[_Step, Array, Callable[[_Node], Any]]:
     """Return the step of a kernel, the matrix of its momenta, and what its nodes are in the user's frame."""
-    (body, C, rows), system = closed_step_of(discrete, closed), discrete.system
+    (body, C, rows), system = closed_step_of(discrete, scalar), discrete.system
     group, frame, inverse = system.group, jnp.asarray(system.form_frame), jnp.linalg.inv(C)
 
     def pose(q: Array) -> Array:
         return g @ frame @ group.matrix_from_pose(q) @ group.inverse(frame)
 
-    def kicked(m: Array, q: Array, row: Array | None) -> Array:
+    def kick(m: Array, q: Array, row: Array | None) -> Array:
         return m if impulse is None else m + C @ (system.constraint_subspace @ impulse(inverse @ m, pose(q), row))
 
     def step(m: Array, q: Array, guess: Array | None, row: Array | None) -> _Node:
-        pushed = kicked(m, q, row)
-        y, code = kernel_root(body, pushed, guess)
+        m_half = kick(m, q, row)
+        y, code = kernel_root(body, m_half, guess)
         after = jnp.stack(kernels.move(body, *y, *q))
-        arriving = kicked(pushed + jnp.stack(kernels.increment(body, *pushed, *y)), after, row)
+        arriving = kick(m_half + jnp.stack(kernels.increment(body, *m_half, *y)), after, row)
         return _Node(m, q, y, (arriving, after), code, jnp.sum(y))
 
     def at(node: _Node) -> tuple[Array, ...]:
@@ -202,103 +206,103 @@ def _closed_step(
 def _matrix_step(discrete: Scheme, impulse: _Impulse | None) -> _Step:
     """Return the step by the matrix equations."""
 
-    def kicked(r: Array, g: Array, row: Array | None) -> Array:
+    def kick(r: Array, g: Array, row: Array | None) -> Array:
         return r if impulse is None else r + restricted(discrete, impulse(r, g, row), g)
 
     def step(r: Array, g: Array, guess: Array | None, row: Array | None) -> _Node:
         del guess  # there is no certificate
-        pushed = kicked(r, g, row)
-        y, code = principal_of(discrete, None, pushed, g)
-        following, after = _moved(discrete, pushed, y, g)
-        return _Node(r, g, y, (kicked(following, after, row), after), code, jnp.sum(y))
+        r_half = kick(r, g, row)
+        y, code = principal_of(discrete, None, r_half, g)
+        following, after = _move(discrete, r_half, y, g)
+        return _Node(r, g, y, (kick(following, after, row), after), code, jnp.sum(y))
 
     return step
 
 
-def _balanced_step(discrete: Scheme, closed: ScalarStep | None, forced: Forced) -> _Step:
+def _balanced_step(discrete: Scheme, scalar: ScalarStep | None, forced: Forced) -> _Step:
     """Return the step whose half impulses are those at its displacement, in one or several stages."""
 
     def stage(carry: tuple[Array, Array, Array, Array], weight: Array) -> tuple[tuple[Array, ...], Array]:
         r, g, code, row = carry
-        part, scaled = _part(discrete, weight), closed and closed._replace(scale=weight * closed.scale)
-        s, j, y, found = _settled(part, scaled, forced, (r, g, row))
-        good, code = (code == 0) & (found == 0), jnp.where(code == 0, found, code)
-        ahead, after = _moved(part, s, y, g)
+        part, own = _part(discrete, weight), scalar and scalar._replace(scale=weight * scalar.scale)
+        s, j, y, outcome = _balance(part, own, forced, (r, g, row))
+        good, code = (code == 0) & (outcome == 0), jnp.where(code == 0, outcome, code)
+        ahead, after = _move(part, s, y, g)
         return (jnp.where(good, ahead + j, r), jnp.where(good, after, g), code, row), y
 
     def step(r: Array, g: Array, guess: Array | None, row: Array | None) -> _Node:
         del guess
-        begun, stages = (r, g, jnp.zeros((), jnp.result_type(int)), row), weights(discrete.order)
-        (r_next, after, code, _), charts = jax.lax.scan(stage, begun, jnp.asarray(stages, r.dtype))
+        carry0, stages = (r, g, jnp.zeros((), jnp.result_type(int)), row), weights(discrete.order)
+        (r_next, after, code, _), charts = jax.lax.scan(stage, carry0, jnp.asarray(stages, r.dtype))
         return _Node(r, g, charts[0], (r_next, after), code, jnp.sum(charts))
 
     return step
 
 
-def _settled(part: Any, closed: ScalarStep | None, forced: Forced, state: tuple[Array, ...]) -> tuple[Array, ...]:
+def _balance(part: Any, scalar: ScalarStep | None, forced: Forced, state: tuple[Array, ...]) -> tuple[Array, ...]:
     """Return momenta s = r + j, half impulses j, the chart of the displacement over s, and the outcome.
 
     Newton's method from the free displacement, which derivatives do not see; two corrections with its last slope give
     them up to the second.
     """
 
-    def push(given: Any, y: Array) -> Array:
-        part, forced, (_, g, row) = given
+    def push(problem: Any, y: Array) -> Array:
+        part, forced, (_, g, row) = problem
         return restricted(part, half_impulse(part, forced, y, g, row), g)
 
-    def missed(given: Any, y: Array) -> Array:
-        part, _, (r, g, _) = given
-        return equations_at(part, g)(y, r + push(given, y))
+    def residual(problem: Any, y: Array) -> Array:
+        part, _, (r, g, _) = problem
+        return equations_at(part, g)(y, r + push(problem, y))
 
     def better(carry: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
         y, _, count = carry
-        change = jnp.linalg.solve(jax.jacfwd(lambda y: missed(fixed, y))(y), missed(fixed, y))
+        change = jnp.linalg.solve(jax.jacfwd(lambda y: residual(constants, y))(y), residual(constants, y))
         return y - change, jnp.max(jnp.abs(change)), count + 1
 
-    given = part, forced, state
-    fixed, still = jax.tree.map(jax.lax.stop_gradient, (given, closed))
-    free, code = principal_of(fixed[0], still, fixed[2][0], fixed[2][1])
+    problem = part, forced, state
+    constants, still = jax.tree.map(jax.lax.stop_gradient, (problem, scalar))
+    free, code = principal_of(constants[0], still, constants[2][0], constants[2][1])
     begin = jnp.where(code == 0, free, 0 * free), jnp.asarray(jnp.inf, free.dtype), 0
     y, last, _ = jax.lax.while_loop(lambda c: (c[1] > _CLOSE) & (c[2] < _MOST), better, begin)
-    slope = jax.lax.stop_gradient(jax.jacfwd(lambda y: missed(fixed, y))(y))
+    slope = jax.lax.stop_gradient(jax.jacfwd(lambda y: residual(constants, y))(y))
     for _ in range(2):
-        y = y - jnp.linalg.solve(slope, missed(given, y))
-    j, lost = push(given, y), ~(last <= _CLOSE)
-    return state[0] + j, j, y, jnp.where((code == 0) & lost, int(Outcome.not_converged), code)
+        y = y - jnp.linalg.solve(slope, residual(problem, y))
+    j, is_lost = push(problem, y), ~(last <= _CLOSE)
+    return state[0] + j, j, y, jnp.where((code == 0) & is_lost, int(Outcome.not_converged), code)
 
 
-def _composed_step(discrete: Scheme, closed: ScalarStep | None) -> _Step:
+def _composed_step(discrete: Scheme, scalar: ScalarStep | None) -> _Step:
     """Return a step of higher order: the step of order 2 of several lengths, one after the other."""
 
     def substep(carry: tuple[Array, Array, Array], weight: Array) -> tuple[tuple[Array, Array, Array], Array]:
         r, g, code = carry
         part = _part(discrete, weight)
-        y, found = principal_of(part, closed and closed._replace(scale=weight * closed.scale), r, g)
-        good, code = (code == 0) & (found == 0), jnp.where(code == 0, found, code)
-        ahead, after = _moved(part, r, y, g)
+        y, outcome = principal_of(part, scalar and scalar._replace(scale=weight * scalar.scale), r, g)
+        good, code = (code == 0) & (outcome == 0), jnp.where(code == 0, outcome, code)
+        ahead, after = _move(part, r, y, g)
         return (jnp.where(good, ahead, r), jnp.where(good, after, g), code), y
 
     def step(r: Array, g: Array, guess: Array | None, row: Array | None) -> _Node:
         del guess, row
-        begun = (r, g, jnp.zeros((), jnp.result_type(int)))
-        (*after, code), charts = jax.lax.scan(substep, begun, jnp.asarray(weights(discrete.order), r.dtype))
+        carry0 = (r, g, jnp.zeros((), jnp.result_type(int)))
+        (*after, code), charts = jax.lax.scan(substep, carry0, jnp.asarray(weights(discrete.order), r.dtype))
         return _Node(r, g, charts[0], (after[0], after[1]), code, jnp.sum(charts))
 
     return step
 
 
-def _moved(discrete: Scheme, r: Array, y: Array, g: Array) -> tuple[Array, Array]:
+def _move(discrete: Scheme, r: Array, y: Array, g: Array) -> tuple[Array, Array]:
     """Return momenta along the constraint and pose after a displacement that has momenta r along it.
 
     The momenta change by the difference of two, in which the error of the root is not seen.
     """
     system = discrete.system
-    after = _rectified(system.group, system.moved(g, displaced(discrete, y)))
+    after = _rectify(system.group, system.moved(g, displacement_of(discrete, y)))
     arriving = restricted(discrete, momentum_of(discrete, y, g, "right"), after)
     return r + (arriving - restricted(discrete, momentum_of(discrete, y, g, "left"), g)), after
 
 
-def _rectified(group: AbstractMatrixGroup, g: Array) -> Array:
+def _rectify(group: AbstractMatrixGroup, g: Array) -> Array:
     """Return a pose whose rounding errors across a group of isometries are squared: R (3 - R* R) / 2."""
     if not group.has_skew_part:
         return g
@@ -308,7 +312,7 @@ def _rectified(group: AbstractMatrixGroup, g: Array) -> Array:
     return g.at[:n, :n].set(R @ (3 * jnp.eye(n, dtype=g.dtype) - square) / 2)
 
 
-def _decoded(
+def _decode(
     discrete: Scheme,
     nodes: _Node,
     states: tuple[Array, ...],
@@ -326,14 +330,14 @@ def _decoded(
 
     def at(r: Array, y: Array, g: Array, after: Array) -> tuple[Array, ...]:
         whole = discrete.order > 2 or system.is_spatial
-        W = system.group.inverse(g) @ after if whole else displaced(discrete, y)
+        W = system.group.inverse(g) @ after if whole else displacement_of(discrete, y)
         return r, momentum_of(first, y, g, "left"), W, g, system.constrained_energy(r, g)
 
     (r, P, W, g, energy), code = jax.vmap(at)(*states), nodes.code
     P, energy = P - forces[0], energy + forces[1]
     if momentum is not None:
-        missed = jnp.sum((P[0] - momentum) ** 2) > ON_LOCUS**2 * jnp.sum(momentum**2)
-        code = jnp.where((code == 0) & missed, int(Outcome.off_momentum_locus), code)
+        is_off = jnp.sum((P[0] - momentum) ** 2) > ON_LOCUS**2 * jnp.sum(momentum**2)
+        code = jnp.where((code == 0) & is_off, int(Outcome.off_momentum_locus), code)
 
     rows = (marked_rows(each, nodes.cause, code == 0) for each in (r, P, W, g, energy))
     return Rollout(time, *rows, outcome=code[-1])
@@ -356,14 +360,14 @@ def step_residual(
     arriving = restricted(discrete, momentum_of(discrete, y, g, "right"), ahead)
     if is_balanced(discrete, forced):
         push = restricted(discrete, half_impulse(discrete, cast(Forced, forced), y, g, force), g)
-        pushed, arriving = r + push, arriving + push
+        r_half, arriving = r + push, arriving + push
     else:
         impulse, _ = impulse_of(discrete, forced, jnp.zeros((0, system.group.dim)), 0)
-        pushed = r + restricted(discrete, impulse(r, g, force), g)
+        r_half = r + restricted(discrete, impulse(r, g, force), g)
         arriving = arriving + restricted(discrete, impulse(arriving, ahead, force), ahead)
-    moved = system.moved(g, displaced(discrete, y)) - ahead
-    root = equations_at(discrete, g)(y, pushed)
-    return jnp.concatenate([root, arriving - following, moved[: free_rows(system.group)].ravel()])
+    gap = system.moved(g, displacement_of(discrete, y)) - ahead
+    root = equations_at(discrete, g)(y, r_half)
+    return jnp.concatenate([root, arriving - following, gap[: free_rows(system.group)].ravel()])
 
 
 def free_rows(group: AbstractMatrixGroup) -> int:

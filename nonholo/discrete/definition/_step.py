@@ -20,7 +20,7 @@ from nonholo import kernels
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
 from nonholo.discrete._scheme import Scheme, legendre
-from nonholo.discrete.definition._precision import doubled, in_double
+from nonholo.discrete.definition._precision import compile_double, in_double
 from nonholo.discrete.definition._root import followed_root, principal_root
 from nonholo.discrete.routes import ScalarStep
 from nonholo.groups import AbstractMatrixGroup
@@ -45,10 +45,10 @@ def sample_displacements(discrete: Scheme, count: int) -> Float[np.ndarray, "cou
 @equinox.filter_jit
 def _displacements(discrete: Scheme, momenta: Array, g: Array) -> tuple[Array, Array]:
     charts, codes = jax.vmap(lambda r: principal_displacement(discrete, r, g))(momenta)
-    return jax.vmap(lambda y: displaced(discrete, y))(charts), codes
+    return jax.vmap(lambda y: displacement_of(discrete, y))(charts), codes
 
 
-def displaced(discrete: Scheme, y: Float[Array, "m"]) -> Float[Array, "N N"]:
+def displacement_of(discrete: Scheme, y: Float[Array, "m"]) -> Float[Array, "N N"]:
     """Return the element of the variety, in the user's frame, with canonical chart coordinates y."""
     frame = discrete.system.frame
     return jnp.asarray(frame) @ discrete.variety.displaced(y) @ jnp.asarray(discrete.system.group.inverse(frame))
@@ -88,8 +88,8 @@ def equations_at(discrete: Scheme, g: Array) -> Callable[[Array, Array], Array]:
     variety = discrete.variety
 
     def residual(y: Array, target: Array) -> Array:
-        missed = restricted(discrete, momentum_of(discrete, y, g, "left"), g) - target
-        return jnp.concatenate([missed, variety.equations(variety.displaced(y))])
+        gap = restricted(discrete, momentum_of(discrete, y, g, "left"), g) - target
+        return jnp.concatenate([gap, variety.equations(variety.displaced(y))])
 
     return residual
 
@@ -103,14 +103,14 @@ def next_charts_by_definition(discrete: Scheme, states: Orbit) -> Float[np.ndarr
 
 def step_from(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array, Array, Array]:
     """Return restricted momentum, chart and pose after one step to the principal value, and the outcome."""
-    r, after = pushed(discrete, y, g)
+    r, after = push(discrete, y, g)
     following, code = principal_displacement(discrete, r, after)
     return r, following, after, code
 
 
-def pushed(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
+def push(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
     """Return restricted momentum and pose after a displacement."""
-    W = displaced(discrete, y)
+    W = displacement_of(discrete, y)
     after = discrete.system.moved(g, W)
     return restricted(discrete, momentum_of(discrete, y, g, "right"), after), after
 
@@ -145,18 +145,18 @@ def is_even(function: Callable[[Array], Array], group: AbstractMatrixGroup) -> b
     return bool(np.abs(there - back).max() <= _EVEN * np.abs(there).max())
 
 
-@doubled
+@compile_double
 def momenta_by_derivative(
     lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup, W: Float[Array, "... N N"], side: str
 ) -> Float[Array, "... dim"]:
     """Return the momenta P(W) (left) or Ad*_W P(W) (right) of a discrete Lagrangian by automatic differentiation."""
 
     def momentum(V: Array) -> Array:
-        def varied(x: Array) -> Array:
+        def variation(x: Array) -> Array:
             g = group.exp(x)
             return lagrangian(g @ V if side == "left" else V @ g)
 
-        return jax.grad(varied)(jnp.zeros(group.dim, V.dtype))
+        return jax.grad(variation)(jnp.zeros(group.dim, V.dtype))
 
     flat = jnp.reshape(W, (-1, *W.shape[-2:]))
     return jnp.reshape(jax.vmap(momentum)(flat), (*W.shape[:-2], group.dim))
@@ -199,10 +199,10 @@ def kernel_root(body: kernels.Body, m: Float[Array, "2"], guess: Array | None = 
     return principal_root(residual, m, 2, lambda y, m: kernels.certified(body, *m, *y), guess)
 
 
-def principal_of(discrete: Scheme, closed: ScalarStep | None, r: Float[Array, "k"], g: Array) -> tuple[Array, Array]:
+def principal_of(discrete: Scheme, scalar: ScalarStep | None, r: Float[Array, "k"], g: Array) -> tuple[Array, Array]:
     """Return canonical chart coordinates of the principal displacement with momenta r along d, and the outcome."""
-    if closed is None:
+    if scalar is None:
         return principal_displacement(discrete, r, g)
-    step = closed_step_of(discrete, closed)
+    step = closed_step_of(discrete, scalar)
     y, code = kernel_root(step.body, step.momenta @ r)
     return y if step.rows is None else y @ step.rows, code

@@ -12,7 +12,7 @@ from nonholo.discrete._pytrees import pytree
 from nonholo.discrete._scheme import Difference, Scheme
 from nonholo.discrete._variety import Constraint, variety_of
 from nonholo.discrete.routes._balanced import balanced_route
-from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractRoute, Compact, posed
+from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractRoute, Compact, poses_of
 from nonholo.discrete.routes._forced import ComposedRoute, forced_route
 from nonholo.discrete.routes._matrix import MatrixRoute
 from nonholo.discrete.routes._normal_forms import ScalarRoute, SecularRoute, closed_form
@@ -36,14 +36,14 @@ class DefinitionRoute(Scheme, AbstractRoute):
     name: ClassVar[str] = "definition"
     is_scalar: ClassVar[bool] = False
     needs_pose: ClassVar[bool] = True
-    compiled: ClassVar[None] = None
+    compiled_route: ClassVar[None] = None
 
-    def stepper(self, motion: Any, *, posed: bool, branch: str = "principal") -> AbstractBodyStepper:
+    def stepper(self, motion: Any, *, with_poses: bool, branch: str = "principal") -> AbstractBodyStepper:
         """Return what takes the steps by the definition."""
         with needs("jax", "simulate(...) of a step that is not compiled"):
             from nonholo.discrete.definition import DefinitionStepper
 
-        return DefinitionStepper(motion, posed, branch)
+        return DefinitionStepper(motion, with_poses, branch)
 
     def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
         """Return the displacements that follow, one step of order 2 from each state."""
@@ -57,7 +57,7 @@ class DefinitionRoute(Scheme, AbstractRoute):
         with needs("jax", "A part of a step that is not compiled"):
             from nonholo.discrete.definition import parts_by_definition
 
-        return parts_by_definition(self, states, posed(states, needed=True), fractions)
+        return parts_by_definition(self, states, poses_of(states, is_needed=True), fractions)
 
     def whole_steps(self, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]) -> Compact:
         """Take one step from each row of momenta and poses; return both after it, and the outcomes."""
@@ -72,53 +72,53 @@ _SECULAR = (*_SCALAR, "secular")
 _MATRIX = (*_SECULAR, "matrix")
 
 
-def make_route(scheme: Scheme, wanted: str | None = None) -> AbstractRoute:
+def make_route(scheme: Scheme, route_name: str | None = None) -> AbstractRoute:
     """Return the route of a discretization.
 
     Args:
         scheme: The discretization, or what has its parts.
-        wanted: None for the best one; or the name of one, which then, or where it is not known for the system the next
-            more general one, is taken. Stores name the route that began them.
+        route_name: None for the best one; or the name of one, which then, or where it is not known for the system the
+            next more general one, is taken. Stores name the route that began them.
     """
     if scheme.system.is_forced:
         forced = cast(Forced, scheme.system)
         free = dataclasses.replace(cast(Any, scheme), system=forced.system)
         is_balanced = forced.forces is not None and forced.is_balanced(free.conserves_energy, scheme.order > 2)
         if forced.slip is not None:
-            return slip_route(scheme, forced, functools.partial(make_route, wanted=wanted))
+            return slip_route(scheme, forced, functools.partial(make_route, route_name=route_name))
         if is_balanced:
             system, variety = forced.system.canonical, variety_of(forced.system, "skew")
             matrix = functools.partial(MatrixRoute, system, variety, scheme.time_step)
-            return balanced_route(_single(free, wanted), matrix, forced, scheme.order)
-        return forced_route(make_route(free, wanted), forced)
-    single = _single(scheme, wanted)
-    compiled = single.compiled
-    return single if compiled is None or scheme.order == 2 else ComposedRoute(compiled, scheme.order)
+            return balanced_route(_single(free, route_name), matrix, forced, scheme.order)
+        return forced_route(make_route(free, route_name), forced)
+    single = _single(scheme, route_name)
+    route = single.compiled_route
+    return single if route is None or scheme.order == 2 else ComposedRoute(route, scheme.order)
 
 
-def _single(scheme: Scheme, wanted: str | None) -> AbstractRoute:
-    compiled = None
+def _single(scheme: Scheme, route_name: str | None) -> AbstractRoute:
+    route = None
     if scheme.difference == "matrix" and scheme.constraint in ("skew", "exponential"):
-        compiled = _of_form(scheme, wanted) or _of_matrices(scheme, wanted)
-    if compiled is not None:
-        return compiled
+        route = _of_form(scheme, route_name) or _of_matrices(scheme, route_name)
+    if route is not None:
+        return route
     return DefinitionRoute(scheme.system, scheme.time_step, scheme.difference, scheme.constraint, scheme.order)
 
 
-def _of_form(scheme: Scheme, wanted: str | None) -> AbstractRoute | None:
+def _of_form(scheme: Scheme, route_name: str | None) -> AbstractRoute | None:
     """Return the route of a top or a sleigh, by the numbers of its normal form."""
     form = scheme.system.normal_form
     if form is None:
         return None
-    if wanted in _SCALAR and (closed := closed_form(form)):
-        return ScalarRoute(scheme.system, form, closed, scheme.time_step)
-    if wanted in _SECULAR and SecularRoute.covers(form):
+    if route_name in _SCALAR and (entry := closed_form(form)):
+        return ScalarRoute(scheme.system, form, entry, scheme.time_step)
+    if route_name in _SECULAR and SecularRoute.covers(form):
         return SecularRoute(scheme.system, form, scheme.time_step)
     return None
 
 
-def _of_matrices(scheme: Scheme, wanted: str | None) -> AbstractRoute | None:
+def _of_matrices(scheme: Scheme, route_name: str | None) -> AbstractRoute | None:
     """Return the route of any system whose variety is no exponential."""
-    if wanted not in _MATRIX or (variety := variety_of(scheme.system, scheme.constraint)).exponential:
+    if route_name not in _MATRIX or (variety := variety_of(scheme.system, scheme.constraint)).exponential:
         return None
     return MatrixRoute(scheme.system, variety, scheme.time_step)

@@ -15,7 +15,7 @@ from nonholo.base.checks import error
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
 from nonholo.discrete._scheme import weights
-from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute, Compact, parts_by, posed
+from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute, Compact, parts_by, poses_of
 from nonholo.groups import SE
 from nonholo.orbit import Orbit
 from nonholo.systems import Forced
@@ -42,11 +42,11 @@ class ComposedRoute(AbstractOuterRoute):
     """Momenta, charts and poses are those of the route that is composed.
 
     Attributes:
-        composed: The route of a step of order 2 with the same time step.
+        substep: The route of a step of order 2 with the same time step.
         order: 4, 6 or 8.
     """
 
-    composed: AbstractCompiledRoute
+    substep: AbstractCompiledRoute
     order: int
     is_scalar: ClassVar[bool] = False
 
@@ -58,14 +58,14 @@ class ComposedRoute(AbstractOuterRoute):
     @property
     def single(self) -> AbstractCompiledRoute:
         """The discretization that is composed."""
-        return self.composed
+        return self.substep
 
 
 def forced_route(free: AbstractRoute, forced: Forced) -> AbstractRoute:
     """Return the route of a system with forces, by kicks at the nodes, around that of the free one."""
     if forced.forces is None:
         return free
-    inside = free.compiled
+    inside = free.compiled_route
     if inside is None or free.order > 2:
         remedy = "Use order=2, and the default difference and constraint of a system with a mass tensor."
         got = f"order {free.order}, route {free.name!r}"
@@ -78,11 +78,11 @@ def forced_route(free: AbstractRoute, forced: Forced) -> AbstractRoute:
 class AbstractForcedRoute(AbstractRoute):
     """A route whose steps depend on their numbers: there is none from a state alone.
 
-    What functions of the user said of the end of the last run is `said`.
+    What functions of the user said of the end of the last run is `notes`.
     """
 
     free: AbstractCompiledRoute
-    said: Any
+    notes: Any
     forced: Forced
     order: Any = 2
     is_scalar: ClassVar[bool] = False
@@ -108,23 +108,23 @@ class AbstractForcedRoute(AbstractRoute):
         Half the impulse of the part acts at each of its ends, at times t and t + s h, both of the row of the step. So
         at s = 1 it is the step itself.
         """
-        return parts_by(self.free, self._part, posed(states, needed=True), states, fractions)
+        return parts_by(self.free, self._part, poses_of(states, is_needed=True), states, fractions)
 
     def _part(self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> Compact | None:
         half, free = float(self.free.time_step) / 2, self.free
         end = time + fraction * 2 * half
 
-        def kicked(m: np.ndarray, pose: np.ndarray, time: float, step: int, tau: float) -> np.ndarray:
+        def kick(m: np.ndarray, pose: np.ndarray, time: float, step: int, tau: float) -> np.ndarray:
             return m + kick_of(free, self.forced, tau, np.array([time]), m, pose, np.array([step]))
 
         with contextlib.suppress(OutcomeError):  # the midpoint rule of a half impulse may fail
-            after, moved, (code,) = free.parts_of_steps(
-                kicked(m[None], pose[None], time, step, fraction * half), pose[None], fraction
+            after, place, (code,) = free.parts_of_steps(
+                kick(m[None], pose[None], time, step, fraction * half), pose[None], fraction
             )
             if code == 0:
-                after = kicked(after, moved, end, step, fraction * half)
-                pushed = kicked(after, moved, end, step + int(fraction), half)
-                return free.ahead(after[0], moved[0], pushed[0])
+                after = kick(after, place, end, step, fraction * half)
+                m_half = kick(after, place, end, step + int(fraction), half)
+                return free.ahead(after[0], place[0], m_half[0])
         return None
 
     def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
@@ -148,10 +148,10 @@ class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
 
     free: AbstractCompiledRoute
     forced: Forced
-    said: dict[str, str] = dataclasses.field(default_factory=dict, repr=False)
+    notes: dict[str, str] = dataclasses.field(default_factory=dict, repr=False)
 
     @property
-    def compiled(self) -> "ForcedRoute | None":  # type: ignore[override]
+    def compiled_route(self) -> "ForcedRoute | None":  # type: ignore[override]
         """The route itself, if numba compiled all functions that it calls."""
         return (
             self
@@ -164,7 +164,7 @@ class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
         """The body and its half impulse."""
         free, forced = self.free, self.forced
         has_function = forced.function is not None or driven_potential(forced) is not None
-        half = half_drive(free, forced, self.said) if has_function else half_kick(free, forced)
+        half = half_drive(free, forced, self.notes) if has_function else half_kick(free, forced)
         return kernels.ForcedBody(free.body, half)
 
 
@@ -181,9 +181,9 @@ class FunctionRoute(AbstractForcedRoute, AbstractOuterRoute):
 
     free: AbstractCompiledRoute
     forced: Forced
-    said: dict[str, str] = dataclasses.field(default_factory=dict, repr=False)
+    notes: dict[str, str] = dataclasses.field(default_factory=dict, repr=False)
     needs_pose: ClassVar[bool] = True
-    compiled: ClassVar[None] = None
+    compiled_route: ClassVar[None] = None
 
     @functools.cached_property
     def body(self) -> kernels.ForcedBody:
@@ -195,39 +195,39 @@ class FunctionRoute(AbstractForcedRoute, AbstractOuterRoute):
 
     def start(self, momenta: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray, np.ndarray]:
         """Return the outcome of the first root, its chart and the state of a run."""
-        said, pushed = None, np.array(momenta)
+        failure, m_half = None, np.array(momenta)
         try:  # the midpoint rule of a half impulse may fail
-            pushed += self._impulse(0, 0, momenta, pose)
+            m_half += self._impulse(0, 0, momenta, pose)
         except OutcomeError:
-            said = Outcome.no_half_impulse
-        code, state = self.runs.start(self.body, pushed, np.array(pose))
-        return said or code, self.runs.chart_of(self.body, state), np.append(state, 0.0)
+            failure = Outcome.no_half_impulse
+        code, state = self.runs.start(self.body, m_half, np.array(pose))
+        return failure or code, self.runs.chart_of(self.body, state), np.append(state, 0.0)
 
     def advance(self, state: np.ndarray, steps: int, every: int, rows: Compact) -> tuple[int, int]:
         """Take steps one by one, into rows of the kernel."""
         n, width, size = self.free.sizes
         room = np.empty((1, n)), np.empty((1, width)), np.empty((1, size))
         with contextlib.suppress(OutcomeError):
-            for done in range(steps):
+            for good in range(steps):
                 ahead, number = state[:-1].copy(), int(state[-1])
                 place = ahead[2 * n : 2 * n + size].copy()
                 m = ahead[:n] + self._impulse(number + 1, number, ahead[:n], place)
                 ahead[:n] = m + self._impulse(number + 1, number + 1, m, place)
                 _, code = self.runs.advance(self.body, ahead, 1, 1, *room)
                 if code != 0:
-                    return done, code
+                    return good, code
                 state[:] = np.append(ahead, number + 1)
-                if (done + 1) % every == 0:
+                if (good + 1) % every == 0:
                     for column, entries in zip(rows, (m, room[1][0], place), strict=True):
-                        column[done // every] = entries
+                        column[good // every] = entries
             return steps, 0
-        return done, Outcome.no_half_impulse
+        return good, Outcome.no_half_impulse
 
     def _impulse(self, node: int, step: int, m: np.ndarray, pose: np.ndarray) -> np.ndarray:
         """Return what half the impulse of a step at a node adds to the kernel's momenta."""
         half = float(self.free.time_step) / 2
         time, steps = np.array([2 * half * node]), np.array([step])
-        return kick_of(self.free, self.forced, half, time, m[None], pose[None], steps, self.said)[0]
+        return kick_of(self.free, self.forced, half, time, m[None], pose[None], steps, self.notes)[0]
 
 
 def kick_of(
@@ -238,14 +238,14 @@ def kick_of(
     momenta: np.ndarray,
     poses: np.ndarray,
     steps: np.ndarray,
-    said: dict[str, str] | None = None,
+    notes: dict[str, str] | None = None,
 ) -> np.ndarray:
     """Return what the impulses of a time add to momenta of a kernel; NaN where they are not finite."""
     group = forced.group
     g = group.matrix_from_pose(free.decode_poses(poses)) @ group.inverse(forced.frame)
-    j, said = np.array(np.nan), {} if said is None else said
-    with noted(said, "potential"):
-        j = forced.impulses(forced.from_canonical(free.decode(momenta.copy())), g, time, steps, half, said)
+    j, notes = np.array(np.nan), {} if notes is None else notes
+    with noted(notes, "potential"):
+        j = forced.impulses(forced.from_canonical(free.decode(momenta.copy())), g, time, steps, half, notes)
     if not np.isfinite(j).all():
         return np.full_like(momenta, np.nan)
     return free.encode(forced.to_canonical(forced.restrict_at(j, g)))
@@ -262,7 +262,7 @@ def half_kick(free: AbstractCompiledRoute, forced: Forced) -> kernels.Kick:
     return kick._replace(weight=plain(weight), arms=plain(arms))
 
 
-def half_drive(free: AbstractCompiledRoute, forced: Forced, said: dict[str, str]) -> kernels.Drive:
+def half_drive(free: AbstractCompiledRoute, forced: Forced, notes: dict[str, str]) -> kernels.Drive:
     """Return half the impulse of functions; those that numba compiled are asked before a run."""
     kick, along = _linear_part(free, forced)
     group, S, has = (
@@ -273,7 +273,7 @@ def half_drive(free: AbstractCompiledRoute, forced: Forced, said: dict[str, str]
     momenta = forced.from_canonical(free.decode(np.eye(forced.rank)))
     velocity = S.T @ np.linalg.solve(S @ np.asarray(forced.inertia_operator) @ S.T, momenta.T)
     moves, weights = forced.differences
-    force, potential = functions_of(forced, driven_potential(forced), said)
+    force, potential = functions_of(forced, driven_potential(forced), notes)
     return kernels.Drive(
         kick=kick,
         planar=(2 if group == SE(2) else 3) if free.is_scalar else 0,
@@ -295,10 +295,10 @@ def driven_potential(forced: Forced) -> Callable[..., Any] | None:
     return forced.potential_energy if whole else forced.own_potential
 
 
-def functions_of(forced: Forced, potential: Callable[..., Any] | None, said: dict[str, str]) -> tuple[Any, Any]:
+def functions_of(forced: Forced, potential: Callable[..., Any] | None, notes: dict[str, str]) -> tuple[Any, Any]:
     """Return force and potential as kernels call them: addresses if numba compiled all of them, else in Python."""
     if not forced.is_jitted or potential not in (None, forced.own_potential):
-        return _in_python(forced, potential, said)
+        return _in_python(forced, potential, notes)
     shape = (forced.group.size, forced.group.dim)
     if not forced.needs_function:
         return 0, 0
@@ -309,18 +309,18 @@ def functions_of(forced: Forced, potential: Callable[..., Any] | None, said: dic
     return force, 0 if potential is None else function_of(potential, shape, 1)
 
 
-def _in_python(forced: Forced, own: Any, said: dict[str, str]) -> tuple[Callable[..., None], Callable[..., None]]:
+def _in_python(forced: Forced, own: Any, notes: dict[str, str]) -> tuple[Callable[..., None], Callable[..., None]]:
     """Return what writes force and potential by the definition: NaN where they are not finite, which is noted."""
 
     def force(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:
         out[:] = np.nan
-        with noted(said, "force"):
+        with noted(notes, "force"):
             out[:] = forced.driving_force(time, g, velocity)
 
     def potential(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:
         del time, velocity
         out[0] = np.nan
-        with noted(said, "potential"):
+        with noted(notes, "potential"):
             out[0] = number_of("Forced(potential=...)", cast(Any, own), "Return U of a configuration.", g)
 
     return force, potential
@@ -332,14 +332,14 @@ def _check_compiled(forced: Forced) -> None:
     What they say at a place that is no place of a run does not count.
     """
     group, moving = forced.group, np.linspace(0.5, 1.0, forced.group.dim)
-    for g, velocity, ignored in (
+    for g, velocity, harmless in (
         (group.identity, 0 * moving, UndefinedError),
         (group.exp(moving / 8), moving, Exception),
     ):
         try:
             forced.driving_force(0.0, g, velocity)
             forced.potential_energy(g)
-        except ignored as failure:
+        except harmless as failure:
             if isinstance(failure, FunctionError) and not isinstance(failure, UndefinedError):
                 raise
 
@@ -350,12 +350,12 @@ def _linear_part(free: AbstractCompiledRoute, forced: Forced) -> tuple[kernels.K
     weight, arms = np.zeros(0), np.zeros((forced.rank, 0))
     if forced.gravity is not None:
         weight, levers = forced.gravity.levers(forced.group)
-        arms = summed(along, levers)
-    rows = summed(forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table)))).T, along)
+        arms = sum_products(along, levers)
+    rows = sum_products(forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table)))).T, along)
     return kernels.Kick(*map(plain, (keep, weight, arms, rows))), along
 
 
-def summed(columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
+def sum_products(columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """Return the sum of outer products in their order, as by the kernel of a page."""
     return functools.reduce(np.add, map(np.multiply.outer, columns, rows))
 
@@ -370,8 +370,8 @@ def _half_step(free: AbstractCompiledRoute, forced: Forced) -> tuple[np.ndarray,
         keep, push = np.reshape(kernels.rubbed(free.body, C.ravel().tolist(), half), (2, 2, 2))
         return keep, rows.T @ (scale * push).T
     keep, push, _ = forced.propagator(S.T, half)
-    kept = np.zeros((0, 0)) if forced.friction is None else np.linalg.solve(to_kernel, keep.T @ to_kernel).T
-    return kept, S.T @ push.T @ to_kernel
+    remainder = np.zeros((0, 0)) if forced.friction is None else np.linalg.solve(to_kernel, keep.T @ to_kernel).T
+    return remainder, S.T @ push.T @ to_kernel
 
 
 def kernel_frame(free: AbstractCompiledRoute, forced: Forced) -> Float[np.ndarray, "N N"]:

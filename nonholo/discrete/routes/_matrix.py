@@ -104,7 +104,7 @@ def general_body(system: AbstractSystem, variety: Variety) -> tuple[kernels.Gene
     mass = _mass_unit(tensor)
     tensor, directions, form, inverse_form = _in_form(group, tensor / mass, directions)
     spatial = system.is_spatial
-    pairings, lost = product_and_remainder(directions, tensor)
+    pairings, remainders = product_and_remainder(directions, tensor)
     radius, level = (0.0, 0.0) if spatial else _certain_ball(system, mass)
     body = kernels.GeneralBody(
         tensor=_plain(tensor),
@@ -113,7 +113,7 @@ def general_body(system: AbstractSystem, variety: Variety) -> tuple[kernels.Gene
         entries=_plain((chart / lengths[:, None, None])[chart != 0]),
         forbidden=_plain(forbidden),
         pairings=_plain(pairings),
-        remainders=_plain(np.concatenate([0 * lost if spatial else lost, completion])),
+        remainders=_plain(np.concatenate([0 * remainders if spatial else remainders, completion])),
         size=n,
         spatial=spatial,
         metric=_plain(np.linalg.inv(system.constrained_inertia / mass) * unit**2),
@@ -201,13 +201,13 @@ def _stiffness(system: AbstractSystem, unit: float) -> tuple[Callable[[np.ndarra
     tensor, n = np.asarray(system.homogeneous_mass_tensor), _size_of_rotations(system)
     N = len(tensor)
     stretch = np.where(np.arange(N) < n, 1 / unit, 1.0)
-    scaled = tensor * np.outer(stretch, stretch)
+    own_tensor = tensor * np.outer(stretch, stretch)
     turning = np.any(system.group.basis[:, :n, :n], axis=(1, 2))
     rows = system.constraint_subspace * np.where(turning, 1.0, 1 / unit)
     orthonormal = np.linalg.qr(rows.T)[0].T
-    inertia = orthonormal @ inertia_from_mass_tensor(system.group, scaled) @ orthonormal.T
+    inertia = orthonormal @ inertia_from_mass_tensor(system.group, own_tensor) @ orthonormal.T
     least = float(np.linalg.eigvalsh(inertia)[0]) if len(inertia) else 1.0
-    spread = np.linalg.eigvalsh(scaled)
+    spread = np.linalg.eigvalsh(own_tensor)
     if n == N:
         return (lambda s, c: (spread[-1] - spread[0]) / least * s / c), least
     if spread[0] < -1e-12 * spread[-1]:

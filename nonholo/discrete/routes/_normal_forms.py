@@ -67,7 +67,7 @@ def closed_form(form: NormalForm | None) -> ClosedForm | None:
     """Return the closed form of the step of a body; None where there is none."""
     if form is None or not form.is_planar or form.is_diagonal:
         return None
-    return next((closed for closed in _CLOSED_FORMS if closed.covers(form)), None)
+    return next((entry for entry in _CLOSED_FORMS if entry.covers(form)), None)
 
 
 class ScalarStep(NamedTuple):
@@ -90,7 +90,7 @@ class ScalarRoute(AbstractCompiledRoute):
 
     system: System
     form: NormalForm
-    closed: ClosedForm
+    closed_form: ClosedForm
     time_step: Array
     order: ClassVar[int] = 2
     name: ClassVar[str] = "scalar"
@@ -100,12 +100,12 @@ class ScalarRoute(AbstractCompiledRoute):
     @functools.cached_property
     def body(self) -> kernels.Body:
         """The numbers of the body."""
-        return self.closed.body(self.form)
+        return self.closed_form.body(self.form)
 
     @functools.cached_property
     def scale(self) -> Array:
         """The part of the time step that is the unit of the kernel's momenta."""
-        return self.time_step * self.closed.share
+        return self.time_step * self.closed_form.share
 
     @property
     def single(self) -> "ScalarRoute":
@@ -149,13 +149,13 @@ class ScalarRoute(AbstractCompiledRoute):
     def of_many(self, system: System, time_step: Array) -> "ScalarRoute | None":
         """Return the route of many systems in one, whose numbers have an axis in front; None of another closed form."""
         form = system.normal_form
-        same = form is not None and closed_form(form) is self.closed
+        same = form is not None and closed_form(form) is self.closed_form
         return dataclasses.replace(self, system=system, form=form, time_step=time_step) if same else None
 
     @functools.cached_property
     def axes(self) -> Axes:
         """The change from the canonical axes to those of the kernel."""
-        rows, own = self.form.frame_map, self.closed.rows
+        rows, own = self.form.frame_map, self.closed_form.rows
         if own is not None:
             rows = own if rows is None else own @ rows
         same = rows is None or np.array_equal(rows, np.broadcast_to(np.eye(2), rows.shape))
@@ -227,7 +227,7 @@ class SecularRoute(AbstractCompiledRoute):
 
     def encode_poses(self, poses: np.ndarray) -> np.ndarray:
         """Return the matrices of poses of the kernel's axes, row by row."""
-        g = self._axes.turned(self.system.group.matrix_from_pose(poses))
+        g = self._axes.turn(self.system.group.matrix_from_pose(poses))
         g = g if self._turn is None else g @ self._turn
         return g.reshape(*poses.shape[:-1], self.system.group.size**2)
 
@@ -236,7 +236,7 @@ class SecularRoute(AbstractCompiledRoute):
         size = self.system.group.size
         g = poses.reshape(*poses.shape[:-1], size, size)
         g = g if self._turn is None else g @ self._turn.T
-        return self.system.group.pose_from_matrix(self._axes.turned_back(g))
+        return self.system.group.pose_from_matrix(self._axes.turn_back(g))
 
     @functools.cached_property
     def _turn(self) -> Float[np.ndarray, "N N"] | None:

@@ -11,14 +11,14 @@ from nonholo.simulation.events._crossings import (
     flow_with_events,
     of_requested,
     refuse_resets,
-    watched,
+    watch_for,
 )
 from nonholo.simulation.events._event import Event, Impact, checked_events, has_resets
 from nonholo.simulation.events._search import (
     Part,
     Watch,
-    crossed,
-    located,
+    find_crossings,
+    locate,
     piece_of,
     search,
     struck,

@@ -72,8 +72,8 @@ class Impact:
         normal = array("Impact(normal=...)", self.normal, (None,), remedy)
         if not np.any(normal):
             raise error("Impact(normal=...)", "be no zero vector", shown(self.normal), remedy)
-        given = np.zeros_like(normal) if self.point is None else self.point
-        point = array("Impact(point=...)", given, normal.shape, "Pass as many numbers as the normal has.")
+        place = np.zeros_like(normal) if self.point is None else self.point
+        point = array("Impact(point=...)", place, normal.shape, "Pass as many numbers as the normal has.")
         object.__setattr__(self, "normal", normal)
         object.__setattr__(self, "point", point)
 
@@ -99,7 +99,7 @@ class Impact:
         if callable(self.normal):
             return numbers_of("Impact(normal=...)", self.normal, (system.group.dim,), "Return a body covector.", g)
         inside = system if system.forces is None else system.forces.system
-        return -Forced(inside, lambda pose: gap(_placed(states, pose))[0]).potential_force(g)
+        return -Forced(inside, lambda pose: gap(_place_at(states, pose))[0]).potential_force(g)
 
     def struck(self, where: str, gap: Any, states: Orbit, direction: int) -> Orbit | None:
         """Return a state after an impact; None where the motion is not toward the wall, or cannot be.
@@ -129,11 +129,11 @@ class Impact:
             raise error(where, "have the normal in whose direction the function grows", got, remedy)
 
 
-def _placed(states: Orbit, g: Float[np.ndarray, "N N"]) -> Orbit:
+def _place_at(states: Orbit, g: Float[np.ndarray, "N N"]) -> Orbit:
     """Return a state at another pose."""
     pose = states.system.group.pose_from_matrix(g @ states.system.frame)[None]
-    turned = None if states.turned is None else turned_near(states.turned, pose)
-    return dataclasses.replace(states, canonical_pose=pose, turned=turned)
+    headings = None if states.turned is None else turned_near(states.turned, pose)
+    return dataclasses.replace(states, canonical_pose=pose, turned=headings)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -195,14 +195,14 @@ def checked_events(owner: str, events: Any) -> dict[str, Event]:
     where = f"{owner}(events=...)"
     if not isinstance(events, Sequence) or isinstance(events, str):
         raise error(where, "be a list of events or functions", shown(events), "Pass a list, also of a single one.")
-    named: dict[str, Event] = {}
-    for position, given in enumerate(events):
-        event = given if isinstance(given, Event) else Event(given)
+    by_name: dict[str, Event] = {}
+    for position, each in enumerate(events):
+        event = each if isinstance(each, Event) else Event(each)
         name = event.name or _name_of(event.function, position)
-        if name in named:
+        if name in by_name:
             raise error(where, "have different names", f"{name!r} twice", "Pass Event(function, name=...).")
-        named[name] = event
-    return named
+        by_name[name] = event
+    return by_name
 
 
 def has_resets(events: dict[str, Event]) -> bool:
@@ -220,9 +220,9 @@ def values_at(name: str, event: Event, states: AbstractOrbit) -> Float[np.ndarra
     where, count = f"Event(function=...) of {name!r}", len(states)
     remedy = "It gets an `Orbit`: return an array with one number for each of its states."
     try:
-        found = called(where, event.function, states)
+        values = called(where, event.function, states)
     except Exception as failure:
         got = f"{type(failure).__name__}: {failure}"
         raise error(where, f"take an orbit of {count} states", got, remedy) from failure
     words = f"one real number for each of {count} states", remedy
-    return checked(where, event.function, found, (count,), words, lambda at: f"time {states.time[at]:.17g}")
+    return checked(where, event.function, values, (count,), words, lambda at: f"time {states.time[at]:.17g}")

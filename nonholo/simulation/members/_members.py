@@ -58,10 +58,10 @@ class Members(Keeper):
     def of(self, member: int) -> Any:
         """Return the motion of one member."""
         own = {name: values[member] for name, values in self.parameters.items()}
-        changed = {STEP: own.pop(STEP)} if STEP in own else {}
+        changes = {STEP: own.pop(STEP)} if STEP in own else {}
         if own:
-            changed["system"] = _rebuilt(self.discrete.system, own)
-        return dataclasses.replace(self.discrete, **changed) if changed else self.discrete
+            changes["system"] = _rebuilt(self.discrete.system, own)
+        return dataclasses.replace(self.discrete, **changes) if changes else self.discrete
 
     @property
     def of_system(self) -> set[str]:
@@ -69,7 +69,7 @@ class Members(Keeper):
         return self.parameters.keys() - {STEP}
 
     @functools.cached_property
-    def stacked(self) -> System | None:
+    def joint_system(self) -> System | None:
         """The systems of all members in one, numbers with an axis of members in front where any of them differ.
 
         None where formulas do not allow it.
@@ -80,26 +80,26 @@ class Members(Keeper):
             return None
         system = _inside(self.discrete.system)
         values = {name: self.values(_ARGUMENTS.get(name, name)) for name in _leaves(system)}
-        return system.stacked(**{name: np.broadcast_to(x, (len(self), *x.shape[1:])) for name, x in values.items()})
+        return system.stack(**{name: np.broadcast_to(x, (len(self), *x.shape[1:])) for name, x in values.items()})
 
     @functools.cached_property
     def keep_frame(self) -> bool:
         """Whether all members clearly have the canonical frame of the shared motion, whatever their parameters."""
-        return self.stacked is not None and bool(np.all(self.stacked.frame == self.discrete.system.frame))
+        return self.joint_system is not None and bool(np.all(self.joint_system.frame == self.discrete.system.frame))
 
     @functools.cached_property
     def lanes(self) -> Any:
         """The route of all members in one, in closed form; None where they do not have the same."""
-        if self.route is None or not self.route.is_scalar or self.stacked is None:
+        if self.route is None or not self.route.is_scalar or self.joint_system is None:
             return None
-        return self.route.of_many(self.stacked, self.time_step) if self.parameters else self.route
+        return self.route.of_many(self.joint_system, self.time_step) if self.parameters else self.route
 
-    def part(self, chosen: slice) -> "Members":
+    def part(self, which: slice) -> "Members":
         """Return some of the members."""
-        if chosen.indices(self.count) == (0, self.count, 1):
+        if which.indices(self.count) == (0, self.count, 1):
             return self
-        kept = {name: values[chosen] for name, values in self.parameters.items()}
-        return Members(self.discrete, kept, len(range(*chosen.indices(self.count))))
+        numbers = {name: values[which] for name, values in self.parameters.items()}
+        return Members(self.discrete, numbers, len(range(*which.indices(self.count))))
 
 
 def _inside(system: Any) -> Any:
@@ -112,8 +112,10 @@ def _rebuilt(system: Any, own: dict[str, Any]) -> Any:
         return system.with_parameters(**own)
     if system.is_forced:
         return dataclasses.replace(system, system=_rebuilt(system.system, own))
-    kept = {_ARGUMENTS.get(field.name, field.name): getattr(system, field.name) for field in dataclasses.fields(system)}
-    return type(system)(**{**kept, **own})
+    fields = {
+        _ARGUMENTS.get(field.name, field.name): getattr(system, field.name) for field in dataclasses.fields(system)
+    }
+    return type(system)(**{**fields, **own})
 
 
 def _leaves(system: System) -> list[str]:
@@ -135,20 +137,20 @@ def checked_parameters(motion: Any, parameters: Any) -> dict[str, Any]:
     if not isinstance(parameters, Mapping):
         raise error("ensemble(parameters=...)", "be a mapping of names to arrays", shown(parameters), "Pass a dict.")
     numbers = dict(_numbers(motion)) | ({} if motion.time_step is None else {STEP: motion.time_step})
-    kind, checked = type(motion.system if in_coordinates(motion) else _inside(motion.system)).__name__, {}
+    kind, arrays = type(motion.system if in_coordinates(motion) else _inside(motion.system)).__name__, {}
     for name, value in parameters.items():
         if name not in numbers:
             raise _unknown(name, kind, [*numbers])
         shape = np.shape(numbers[name])
         where = f"ensemble(parameters={{{name!r}: ...}})"
-        checked[name] = array(where, value, (None, *shape), "Pass one value for each member.")
-    return checked
+        arrays[name] = array(where, value, (None, *shape), "Pass one value for each member.")
+    return arrays
 
 
-def _unknown(name: str, kind: str, known: list[str]) -> ValueError:
+def _unknown(name: str, kind: str, names: list[str]) -> ValueError:
     """Return the error of a parameter that is none."""
-    requirement, remedy = "name fields of the system", f"{kind} has {', '.join(known)}."
-    if known == [STEP]:
+    requirement, remedy = "name fields of the system", f"{kind} has {', '.join(names)}."
+    if names == [STEP]:
         requirement = f"name {STEP!r} alone for a system in coordinates that has no parameters"
         remedy = "Give it some: LagrangeDAlembert(lagrangian, forms, dimension=n, parameters={'mass': 1.0})."
     elif name == STEP:
@@ -156,7 +158,7 @@ def _unknown(name: str, kind: str, known: list[str]) -> ValueError:
     return error("ensemble(parameters=...)", requirement, shown(name), remedy)
 
 
-def refused(member: int, failure: ValueError) -> ValueError:
+def refusal(member: int, failure: ValueError) -> ValueError:
     """Return the error of one member, with its number."""
     return ValueError(f"{failure} This is member {member}.")
 
@@ -235,8 +237,8 @@ def tangents(
 
 def inertias_of(members: Members) -> Float[np.ndarray, "m dim dim"]:
     """Return canonical inertia operators; an axis of length 1 where all members agree."""
-    if members.stacked is not None:
-        inertia = members.stacked.canonical.inertia_operator
+    if members.joint_system is not None:
+        inertia = members.joint_system.canonical.inertia_operator
         return inertia if inertia.ndim == 3 else inertia[None]
     return np.stack([members.of(member).system.canonical.inertia_operator for member in range(len(members))])
 
@@ -256,10 +258,10 @@ def check_systems(members: Members) -> None:
         try:
             members.of(int(member))
         except ValueError as failure:
-            raise refused(int(member), failure) from None
+            raise refusal(int(member), failure) from None
 
 
 def _doubtful(members: Members) -> Bool[np.ndarray, "M"]:
     """Tell which members have to be built to know that they can be."""
-    is_clear = not members.of_system or (members.stacked is not None and members.stacked.is_clear)
+    is_clear = not members.of_system or (members.joint_system is not None and members.joint_system.is_clear)
     return np.broadcast_to(~np.asarray(is_clear), len(members))

@@ -10,7 +10,7 @@ from nonholo.base.checks import array, error, is_traced, positive_definite, symm
 from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
-from nonholo.systems._base import AbstractLLSystem, AbstractLRSystem, unchecked
+from nonholo.systems._base import AbstractLLSystem, AbstractLRSystem, replace_numbers
 from nonholo.systems._mass import (
     body_tensor,
     checked_group,
@@ -86,7 +86,7 @@ class LLSystem(AbstractLLSystem):
     annihilator: Array = None
     leaves: ClassVar[tuple[str, ...]] = ("mass_tensor", "given_inertia")
     structure: ClassVar[tuple[str, ...]] = ("group", "constraint_subspace", "annihilator")
-    stacked = unchecked
+    stack = replace_numbers
 
     def __init__(
         self,
@@ -160,10 +160,10 @@ class LLSystem(AbstractLLSystem):
         return cls(group, tensor, constraint_subspace, annihilator=annihilator)
 
     def __repr__(self) -> str:
-        given = {"inertia operator": np.asarray(self.given_inertia)}
-        shown = given if self.mass_tensor is None else tensors_shown(self.group, self.mass_tensor)
+        operator = {"inertia operator": np.asarray(self.given_inertia)}
+        facts = operator if self.mass_tensor is None else tensors_shown(self.group, self.mass_tensor)
         subspace = {"constraint subspace": np.asarray(self.constraint_subspace)}
-        return f"LLSystem({self.group!r},\n  {lines_of(shown | subspace)})"
+        return f"LLSystem({self.group!r},\n  {lines_of(facts | subspace)})"
 
     @kept
     def homogeneous_mass_tensor(self) -> Float[Array, "... N N"] | None:
@@ -245,17 +245,17 @@ class LRSystem(AbstractLRSystem):
     def __post_init__(self) -> None:
         where, instead = "LRSystem(mass_tensor=...)", "LR systems on other groups are not offered."
         checked_group("LRSystem(group=...)", self.group)
-        given = (self.constraint_subspace, self.annihilator)
-        rows, covectors = subspace_and_annihilator("LRSystem", self.group.dim, *given)
+        spaces = (self.constraint_subspace, self.annihilator)
+        rows, covectors = subspace_and_annihilator("LRSystem", self.group.dim, *spaces)
         tensor = group_mass_tensor(where, self.group, self.mass_tensor, instead)
         for field, value in zip(dataclasses.fields(self), (self.group, tensor, rows, covectors), strict=True):
             object.__setattr__(self, field.name, value)
         positive_definite(where, self.inertia_operator, "the inertia operator", _REMEDY)
 
     def __repr__(self) -> str:
-        shown = tensors_shown(self.group, self.mass_tensor)
+        facts = tensors_shown(self.group, self.mass_tensor)
         subspace = {"constraint subspace": np.asarray(self.constraint_subspace)}
-        return f"LRSystem({self.group!r},\n  {lines_of(shown | subspace)})"
+        return f"LRSystem({self.group!r},\n  {lines_of(facts | subspace)})"
 
     @kept
     def homogeneous_mass_tensor(self) -> Float[Array, "N N"]:

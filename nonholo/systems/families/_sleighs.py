@@ -10,7 +10,7 @@ from nonholo.base.checks import array, error, is_traced, number, positive_defini
 from nonholo.base.kept import kept
 from nonholo.base.types import Array, Bool, Float
 from nonholo.groups import SE, AbstractMatrixGroup
-from nonholo.systems._base import AbstractLLSystem, unchecked
+from nonholo.systems._base import AbstractLLSystem, replace_numbers
 from nonholo.systems._normal_form import NormalForm, sleigh_form
 from nonholo.systems._subspace import sleigh_rows
 
@@ -50,7 +50,7 @@ class ChaplyginSleigh(AbstractLLSystem):
     group: ClassVar[AbstractMatrixGroup] = SE(2)
     leaves: ClassVar[tuple[str, ...]] = ("mass", "inertia", "a", "b")
     structure: ClassVar[tuple[str, ...]] = ()
-    stacked = unchecked
+    stack = replace_numbers
     has_blade: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
@@ -61,8 +61,8 @@ class ChaplyginSleigh(AbstractLLSystem):
         object.__setattr__(self, "b", number("ChaplyginSleigh(b=...)", self.b))
 
     def __repr__(self) -> str:
-        shown = (f"{name}={getattr(self, name)}" for name in ("mass", "inertia", "a", "b"))
-        return f"ChaplyginSleigh({', '.join(shown)})"
+        fields = (f"{name}={getattr(self, name)}" for name in ("mass", "inertia", "a", "b"))
+        return f"ChaplyginSleigh({', '.join(fields)})"
 
     @kept
     def homogeneous_mass_tensor(self) -> Float[Array, "... 3 3"]:
@@ -100,7 +100,7 @@ class ChaplyginSleigh(AbstractLLSystem):
     def canonical(self) -> "ChaplyginSleigh":
         """The same sleigh with b = 0: the offset across the blade does not enter the reduced motion."""
         is_canonical = not is_traced(self.b) and not np.any(self.b)
-        return self if is_canonical else unchecked(self, b=np.zeros(np.shape(self.b))[()])
+        return self if is_canonical else replace_numbers(self, b=np.zeros(np.shape(self.b))[()])
 
     @functools.cached_property
     def normal_form(self) -> NormalForm:

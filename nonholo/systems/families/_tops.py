@@ -10,7 +10,7 @@ from nonholo.base.checks import array, error, is_traced, positive_definite, symm
 from nonholo.base.kept import kept
 from nonholo.base.types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
-from nonholo.systems._base import AbstractLLSystem, unchecked
+from nonholo.systems._base import AbstractLLSystem, replace_numbers
 from nonholo.systems._mass import (
     body_tensor,
     checked_group,
@@ -60,7 +60,7 @@ class RigidBody(AbstractLLSystem):
     group: Array = None
     leaves: ClassVar[tuple[str, ...]] = ("mass_tensor",)
     structure: ClassVar[tuple[str, ...]] = ("group",)
-    stacked = unchecked
+    stack = replace_numbers
 
     def __post_init__(self) -> None:
         where = "RigidBody(mass_tensor=...)"
@@ -162,7 +162,7 @@ class SuslovTop(AbstractLLSystem):
     axis: Array = dataclasses.field(default=None, kw_only=True)
     leaves: ClassVar[tuple[str, ...]] = ("mass_tensor",)
     structure: ClassVar[tuple[str, ...]] = ("axis",)
-    stacked = unchecked
+    stack = replace_numbers
 
     def __post_init__(self) -> None:
         where = "SuslovTop(mass_tensor=...)"
@@ -251,9 +251,9 @@ class SuslovTop(AbstractLLSystem):
         """The same top in body axes whose last one is the forbidden axis."""
         if self.axis is None or tuple(self.axis) == _E3:
             return self
-        turned = self.frame.T @ self.mass_tensor @ self.frame
-        halves = turned + turned.__array_namespace__().swapaxes(turned, -1, -2)
-        return unchecked(self, mass_tensor=halves / 2, axis=np.array(_E3))
+        tensor = self.frame.T @ self.mass_tensor @ self.frame
+        halves = tensor + tensor.__array_namespace__().swapaxes(tensor, -1, -2)
+        return replace_numbers(self, mass_tensor=halves / 2, axis=np.array(_E3))
 
     @property
     def coupling(self) -> Float[Array, "... k"]:

@@ -43,8 +43,8 @@ class Friction:
 
     def __post_init__(self) -> None:
         where, shape = "Friction(coefficients=...)", shape_of(self.coefficients)
-        wanted = (None,) if len(shape) != 2 else (shape[0], shape[0])
-        value = array(where, self.coefficients, wanted, "Pass (dim,) coefficients, or a (dim, dim) matrix.")
+        sizes = (None,) if len(shape) != 2 else (shape[0], shape[0])
+        value = array(where, self.coefficients, sizes, "Pass (dim,) coefficients, or a (dim, dim) matrix.")
         if not value.size:
             raise error(where, "have a coefficient for each direction", "none", "Pass (dim,) coefficients.")
         object.__setattr__(self, "coefficients", value)
@@ -128,12 +128,12 @@ class Slip:
             raise error(where, "have a row", "none", "Pass (s, dim) rows of the system's annihilator.")
         object.__setattr__(self, "rows", rows)
         for name in ("grip", "viscous"):
-            value, given = f"Slip({name}=...)", getattr(self, name)
-            endless = name == "grip" and isinstance(given, float) and given == np.inf
-            given = given if endless else number(value, given, "Pass one number that is not negative.")
-            if not is_traced(given) and given < 0:
-                raise error(value, "never add energy", f"{given:.6g}", "Pass a number that is not negative.")
-            object.__setattr__(self, name, given)
+            place, value = f"Slip({name}=...)", getattr(self, name)
+            endless = name == "grip" and isinstance(value, float) and value == np.inf
+            value = value if endless else number(place, value, "Pass one number that is not negative.")
+            if not is_traced(value) and value < 0:
+                raise error(place, "never add energy", f"{value:.6g}", "Pass a number that is not negative.")
+            object.__setattr__(self, name, value)
 
     def check(self, system: Any) -> None:
         """Refuse a system whose constraint does not have the rows."""
@@ -228,8 +228,8 @@ class Widened(AbstractLLSystem):
         """The same body in the canonical frame of the system inside."""
         if self.system.canonical is self.system:
             return self
-        seen = self.group.adjoint(self.frame)
-        return Widened(self.system.canonical, self.rows @ seen, self.remaining @ seen)
+        adjoint = self.group.adjoint(self.frame)
+        return Widened(self.system.canonical, self.rows @ adjoint, self.remaining @ adjoint)
 
     @kept
     def frame(self) -> Float[Array, "N N"]:
@@ -275,12 +275,12 @@ def terms_of(potential: Any) -> tuple[Any, ...]:
     return terms
 
 
-def joined(parts: dict[str, Any]) -> Any:
+def force_of(parts: dict[str, Any]) -> Any:
     """Return the force of parts: None of nothing, a single one as it is, a tuple of several."""
     forces = tuple(parts.values())
     return forces if len(forces) > 1 else forces[0] if forces else None
 
 
 def _kind(force: Any) -> str:
-    known = {Friction: "friction", Slip: "slip"}
-    return known.get(type(force)) or ("function" if callable(force) else "table")
+    kinds = {Friction: "friction", Slip: "slip"}
+    return kinds.get(type(force)) or ("function" if callable(force) else "table")

@@ -29,13 +29,13 @@ class AbstractLinear(abc.ABC):
 
     def covector(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
         """Return -dU along the body directions at configurations."""
-        return pulled(group, self.matrix_for(group), configuration)
+        return covector_of(group, self.matrix_for(group), configuration)
 
     def mean_covector(
         self, group: AbstractMatrixGroup, g: Float[Array, "... N N"], W: Float[Array, "... N N"]
     ) -> Float[Array, "... dim"]:
         r"""Return -G of steps W from poses, $\langle G, x\rangle = \mathrm{tr}(A^Tg(I + Y)x)$: exactly what U loses."""
-        return pulled(group, self.matrix_for(group), leaning(g, W))
+        return covector_of(group, self.matrix_for(group), leaning(g, W))
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -84,7 +84,7 @@ class Linear(AbstractLinear):
         return -self.matrix.T, group.basis.swapaxes(-1, -2)
 
 
-def pulled(group: AbstractMatrixGroup, A: Array, g: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
+def covector_of(group: AbstractMatrixGroup, A: Array, g: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
     r"""Return the covectors $-\mathrm{tr}(A^Tg\,x)$ of body directions x at matrices g."""
     xp: Any = g.__array_namespace__()
     return -xp.einsum("...ab,...ac,dcb->...d", xp.asarray(A), g, xp.asarray(group.basis))
@@ -210,10 +210,10 @@ class Spring:
     def __post_init__(self) -> None:
         x = array("Spring(body_point=...)", self.body_point, (None,), "Pass the n body coordinates of a point.")
         p = array("Spring(space_point=...)", self.space_point, x.shape, "Pass as many numbers as the body point has.")
-        given = {"body_point": x, "space_point": p}
+        values = {"body_point": x, "space_point": p}
         for name in ("stiffness", "length"):
-            given[name] = array(f"Spring({name}=...)", getattr(self, name), (), "Pass a finite number.")
-        for name, value in given.items():
+            values[name] = array(f"Spring({name}=...)", getattr(self, name), (), "Pass a finite number.")
+        for name, value in values.items():
             object.__setattr__(self, name, value)
 
     def check(self, group: AbstractMatrixGroup) -> None:
@@ -227,14 +227,14 @@ class Spring:
     def covector(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
         """Return -dU along the body directions at configurations."""
         arm = self._arm(group, configuration)
-        return self._pulled(group, arm, 2 * self._size(arm), configuration)
+        return self._pull(group, arm, 2 * self._size(arm), configuration)
 
     def mean_covector(
         self, group: AbstractMatrixGroup, g: Float[Array, "... N N"], W: Float[Array, "... N N"]
     ) -> Float[Array, "... dim"]:
         """Return -G of steps W from poses: what U loses, exactly."""
         arm, ahead = self._arm(group, g), self._arm(group, g @ W)
-        return self._pulled(group, (arm + ahead) / 2, self._size(arm) + self._size(ahead), leaning(g, W))
+        return self._pull(group, (arm + ahead) / 2, self._size(arm) + self._size(ahead), leaning(g, W))
 
     def numbers_for(self, group: AbstractMatrixGroup) -> Float[Array, "size"]:
         """Return stiffness, length and both points as matrices of the group take them."""
@@ -248,8 +248,8 @@ class Spring:
         xp: Any = arm.__array_namespace__()
         return xp.sqrt((arm * arm).sum(axis=-1))
 
-    def _pulled(self, group: AbstractMatrixGroup, arm: Array, sizes: Array, leaning: Array) -> Array:
+    def _pull(self, group: AbstractMatrixGroup, arm: Array, sizes: Array, leaning: Array) -> Array:
         xp: Any = leaning.__array_namespace__()
         stiff = self.stiffness * (1 - 2 * self.length / sizes)
-        moved = group.basis @ homogeneous(group, self.body_point, 1.0)
-        return -stiff[..., None] * xp.einsum("...a,...ab,db->...d", arm, leaning, xp.asarray(moved))
+        directions = group.basis @ homogeneous(group, self.body_point, 1.0)
+        return -stiff[..., None] * xp.einsum("...a,...ab,db->...d", arm, leaning, xp.asarray(directions))
