@@ -9,14 +9,14 @@ import numpy as np
 from nonholo.base.checks import error, needs, shape_of, shown, trailing
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome, OutcomeError
-from nonholo.base.types import Array, Float
+from nonholo.base.types import Float
 from nonholo.discrete._decoder import AnyDisplacementDecoder, displacement_decoder
 from nonholo.discrete._pytrees import pytree
-from nonholo.discrete._scheme import Difference, Scheme, legendre, refuse_composition, weights
-from nonholo.discrete._variety import Constraint, equations_of
+from nonholo.discrete._scheme import Scheme, legendre, refuse_composition, weights
+from nonholo.discrete._variety import equations_of
 from nonholo.discrete.routes import AbstractBodyStepper, AbstractRoute, make_route
 from nonholo.orbit import AbstractMotion, First, Orbit, turned_near
-from nonholo.systems import Forced, Slip, Start, System, Widened, in_group, of_finite_energy, refuse_forces
+from nonholo.systems import Forced, Slip, Start, Widened, in_group, of_finite_energy, refuse_forces
 
 _TOLERANCE = 1e-9  # relative, for matrices and momenta that a user computed in floating point
 
@@ -39,16 +39,10 @@ class Discretization(Scheme, AbstractMotion):
             difference='matrix', constraint='skew', order=2)
     """
 
-    system: System
-    time_step: Array
-    difference: Difference = "matrix"
-    constraint: Constraint = "skew"
-    order: int = 2
     wanted_route: str | None = dataclasses.field(default=None, repr=False, kw_only=True, metadata={"stored": False})
     """The route of a store that was begun by another one than the best; see `make_route`."""
     starts: ClassVar[tuple[str, ...]] = ("body_velocity", "displacement", "momentum", "restricted_velocity")
-    leaves: ClassVar[tuple[str, ...]] = ("system", "time_step")
-    structure: ClassVar[tuple[str, ...]] = ("difference", "constraint", "order", "wanted_route")
+    structure: ClassVar[tuple[str, ...]] = (*Scheme.structure, "wanted_route")
 
     @functools.cached_property
     def route(self) -> AbstractRoute:
@@ -344,11 +338,8 @@ def on_variety(where: str, discrete: Scheme, g: np.ndarray | None, displacement:
         forbidden, what = system.annihilator @ logarithm, "a logarithm with forbidden part"
         remedy = "Build it as `group.exp(x)` with x admissible."
     else:
-        frame = system.frame
-        forbidden, what = (
-            equations_of(discrete.variety, group.inverse(frame) @ in_frame @ frame),
-            "equations with residual",
-        )
+        canonical = group.inverse(system.frame) @ in_frame @ system.frame
+        forbidden, what = equations_of(discrete.variety, canonical), "equations with residual"
         remedy = "Start from a velocity, or take a row of `orbit.displacement`: exp d is not this variety."
     if np.linalg.norm(forbidden) > _TOLERANCE * max(1.0, float(np.linalg.norm(logarithm))):
         got = f"{what} {np.array2string(forbidden, precision=6)}"

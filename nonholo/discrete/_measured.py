@@ -125,10 +125,8 @@ def _warn_of_aliasing(D: Float[np.ndarray, "K N N"]) -> None:
         row = int(wide.argmax())
         where = "`Orbit.from_poses(configuration=...)`"
         message = f"{where} turns by {turns[row]:.3g} degrees from row {row} to row {row + 1}."
-        remedy = (
-            "Velocities are those of the shorter turn, which may not be the one taken. Pass poses in shorter steps."
-        )
-        warnings.warn(f"{message} {remedy}", AliasingWarning, stacklevel=5)
+        reason = "Velocities are those of the shorter turn, which may not be the one taken."
+        warnings.warn(f"{message} {reason} Pass poses in shorter steps.", AliasingWarning, stacklevel=5)
 
 
 def _times(time: Any) -> Float[np.ndarray, "K"]:

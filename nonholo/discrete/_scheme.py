@@ -10,9 +10,10 @@ makes of it; its displacement is the principal one over r. Orbits keep the momen
 of each step.
 """
 
+import dataclasses
 import functools
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -26,6 +27,7 @@ from nonholo.systems import System
 Difference = str | Callable[[Array], Array]
 
 
+@dataclasses.dataclass(frozen=True, eq=False)
 class Scheme:
     """A system, a time step, a discrete Lagrangian and a displacement variety.
 
@@ -42,9 +44,11 @@ class Scheme:
 
     system: System
     time_step: Array
-    difference: Difference
-    constraint: Constraint
-    order: int
+    difference: Difference = "matrix"
+    constraint: Constraint = "skew"
+    order: int = 2
+    leaves: ClassVar[tuple[str, ...]] = ("system", "time_step")
+    structure: ClassVar[tuple[str, ...]] = ("difference", "constraint", "order")
 
     @functools.cached_property
     def variety(self) -> Variety:

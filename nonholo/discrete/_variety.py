@@ -182,3 +182,8 @@ def _at_identity(
         got = f"values {values}, derivatives {slopes.tolist()}"
         raise error(where, "be differentiable at the identity", got, "Avoid 0/0 and square roots of zero there.")
     return values, slopes
+
+
+def free_rows(group: AbstractMatrixGroup) -> int:
+    """Return how many rows of the matrices of a group are not the same for all."""
+    return group.size if group.form is not None or np.any(group.basis[:, -1]) else group.size - 1

@@ -16,7 +16,9 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Bool, Float
 from nonholo.continuous import ContinuousFlow, Solved, States
 from nonholo.orbit import Crossings, EventLog, Orbit
-from nonholo.simulation.events import Event, Watch, between_times, of_requested, search, struck, values_of
+from nonholo.simulation._crossings import between_times, of_requested
+from nonholo.simulation._event import Event
+from nonholo.simulation._search import Watch, search, struck, values_of
 
 _MOST = 200  # impacts in a step
 _LEAST = 2.0**-52  # of the part that is left, where the body is looked at
@@ -170,11 +172,6 @@ def _flow(solver_at: SolverAt, there: Orbit, elapsed: np.ndarray) -> tuple[Orbit
     return dataclasses.replace(there, motion=motion).at(begin + inside), solution._replace(states=turn(solution.states))
 
 
-def _places(elapsed: np.ndarray) -> np.ndarray:
-    """Return where times are among those of a flow that was asked for them: it begins at zero."""
-    return np.searchsorted(np.union1d(0.0, elapsed), elapsed)
-
-
 def _pass_impact(solver_at: SolverAt, watch: Watch, looks: Orbit) -> tuple[Orbit, Watch, Outcome]:
     """Return the state after the first step between two looks with an impact, or the last one; what is known there."""
     there, at, share = looks.chosen(slice(0, 1)), 0, 0.0
@@ -231,6 +228,7 @@ def _states(solver_at: SolverAt, begins: list[Orbit], elapsed: Float[np.ndarray,
     at = times[0] + elapsed
     owner = np.searchsorted(times, at, "right") - 1
     each = [(begins[k], at[owner == k] - times[k]) for k in np.unique(owner)]
-    flows = [_flow(solver_at, there, since)[1].states.chosen(_places(since)) for there, since in each]
+    places = [np.searchsorted(np.union1d(0.0, since), since) for _, since in each]  # a flow begins at zero
+    flows = [_flow(solver_at, *one)[1].states.chosen(there) for one, there in zip(each, places, strict=True)]
     rows: Any = [None if column[0] is None else np.concatenate(column) for column in zip(*flows, strict=True)]
     return States(*rows)

@@ -15,8 +15,8 @@ from nonholo.discrete import (
     refuse_composition,
 )
 from nonholo.orbit import AbstractStepper
+from nonholo.simulation._crossings import watch_for
 from nonholo.simulation._run import Run
-from nonholo.simulation.events import watch_for
 from nonholo.systems import AbstractCoordinateDiscretization, refuse_in_coordinates, refuse_slip
 
 FEW = 1 << 16  # numbers that fit into any memory

@@ -15,7 +15,8 @@ from nonholo.base.results import OUTCOMES, Outcome, OutcomeError, finished
 from nonholo.discrete import check_first_state
 from nonholo.orbit import AbstractOrbit, AbstractStepper, First, Plan, Rows, State, keep_row, write_first
 from nonholo.simulation._contact import after_contact
-from nonholo.simulation.events import Watch, begun_at, check_resets, piece_of, search
+from nonholo.simulation._crossings import begun_at, check_resets
+from nonholo.simulation._search import Watch, piece_of, search
 
 _PIECE, _SHORT = 1 << 20, 256  # steps of a call at most; of the first searched call, which an event may soon end
 _AGAIN = 32  # steps of the first searched call after an impact
@@ -129,10 +130,8 @@ class _Table:
         Whole rows are written in place. A part of a row is written beside them, and so are the single steps that are
         searched for events.
         """
-        past, most = (
-            (step - self.begin) % self.every,
-            min(max(step - self.fresh, self.least) if self.fine else pace, self.stop - step),
-        )
+        past = (step - self.begin) % self.every
+        most = min(max(step - self.fresh, self.least) if self.fine else pace, self.stop - step)
         if self.fine:
             each, count = 1, min(most, piece_of(self.stepper.columns.values()))
             self._reserve(1 + (step - self.begin + count) // self.every)
@@ -271,11 +270,6 @@ def _pace(pace: int, seconds: float) -> int:
     if seconds < _SOON:
         return min(2 * pace, _PIECE)
     return max(1, pace // 2) if seconds > _LATE else pace
-
-
-def in_memory(run: Run, first: First) -> Any:
-    """Run in memory; return the orbit."""
-    return run.finish(*run_to_end(run, first, whole=True))
 
 
 def run_to_end(run: Run, first: First, *, whole: bool) -> tuple[Any, int]:

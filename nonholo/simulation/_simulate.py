@@ -8,7 +8,7 @@ from nonholo.base.checks import error, path, shown
 from nonholo.discrete import BranchRule
 from nonholo.orbit import DiscreteMotion, OrbitT
 from nonholo.simulation._options import FEW, checked_run, refuse_too_large
-from nonholo.simulation._run import in_memory, one_by_one, rows_of_block
+from nonholo.simulation._run import one_by_one, rows_of_block, run_to_end
 from nonholo.simulation._stored import into_store
 from nonholo.systems import Start
 
@@ -109,7 +109,7 @@ def simulate(
             refuse_too_large("simulate", tuple(run.stepper.columns.values()), states)
     first = discrete.first(start, with_poses=run.stepper.has_poses)
     if store is None:
-        return in_memory(run, first)
+        return run.finish(*run_to_end(run, first, whole=True))
     return into_store(run, first, path("simulate(store=...)", store), checkpoint_every, scenario)
 
 

@@ -17,9 +17,11 @@ from nonholo.base.results import Outcome
 from nonholo.discrete import BranchRule
 from nonholo.io import Checkpoint, Seen
 from nonholo.orbit import AbstractStepper, First
+from nonholo.simulation._crossings import watch_for
+from nonholo.simulation._event import Event, checked_events
 from nonholo.simulation._options import check_forces, stepper_of
 from nonholo.simulation._run import Reached, Run, blocks, compute_block, open_run, orbit_at, rows_of_block
-from nonholo.simulation.events import Event, Watch, checked_events, search, watch_for
+from nonholo.simulation._search import Watch, search
 
 if TYPE_CHECKING:
     from nonholo.io import Stream
@@ -52,7 +54,7 @@ def continue_run(run: Run, stream: "Stream") -> Any:
     """Compute what a locked store lacks, block after block, and return the orbit."""
     stream.prepare()
     _warn_of_other_versions(stream)
-    with io.reporting_how_to_resume(stream.path, "The run", lambda: f"step {_standing(stream)}"):
+    with io.reporting_how_to_resume(stream.path, "The run", lambda: f"step {stream.reached()} of {stream.plan.steps}"):
         end = _complete(run, stream)
     return run.finish(_load(run, stream, end), end.done)
 
@@ -63,10 +65,6 @@ def _warn_of_other_versions(stream: "Stream") -> None:
     if others and not stream.is_finished:
         message = f"The store '{stream.path}' was begun with {others}: the last bits of what follows may differ."
         warnings.warn(message, RuntimeWarning, stacklevel=4)
-
-
-def _standing(stream: "Stream") -> str:
-    return f"{stream.reached()} of {stream.plan.steps}"
 
 
 def _complete(run: Run, stream: "Stream") -> Checkpoint:

@@ -299,3 +299,26 @@ def _about_center(where: str, inertia: Any, n: int) -> Array:
     remedy = "Pass the inertia tensor about the center of mass, (3, 3)."
     tensor = symmetric(where, array(where, inertia, (3, 3), remedy), remedy)
     return possible(where, mass_tensor_from_inertia(tensor), depth=5)
+
+
+def arrow_numbers(owner: str, diagonal: object, coupling: object) -> tuple[np.ndarray, np.ndarray]:
+    """Return the checked numbers of an arrowhead, a mass tensor of a diagonal and one row and column.
+
+    Every mass tensor takes this form in the axes that diagonalize the constrained inertia, so nothing is lost; and
+    nothing of size n x n is ever made.
+    """
+    where = f"{owner}(diagonal=...)"
+    d = array(where, diagonal, (None,), "Pass the n entries of the diagonal.")
+    if len(d) < 3:
+        raise error(where, "have at least 3 entries", f"{len(d)}", "In the plane use `ChaplyginSleigh`.")
+    check_scale(where, d)
+    c = array(f"{owner}(coupling=...)", coupling, (len(d) - 1,), f"Pass the {len(d) - 1} entries beside the corner.")
+    return d, c
+
+
+def refuse_negative(where: str, inertia: WideInertia) -> None:
+    """Refuse an inertia along the constraint that is not positive."""
+    turning = inertia.turning
+    if not turning.min() > 0:
+        got = f"{turning.min():.3g} at entry {int(np.argmin(turning))}"
+        raise error(where, "give a positive inertia along the constraint", got, "Pass the mass tensor of a body.")

@@ -77,13 +77,13 @@ class AbstractBranchRule(abc.ABC):
     is_nearest: ClassVar[bool] = False
     needs_all_values: ClassVar[bool] = True
 
-    @abc.abstractmethod
     def check(self, where: str, discrete: Discretization) -> None:
-        """Refuse a discretization that does not have the rule."""
+        """Refuse a discretization that does not have the rule: by default one of whose values not all are known."""
+        _check_values_known(where, discrete, self.name)
 
-    @abc.abstractmethod
     def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
-        """Refuse a start that the rule cannot continue from."""
+        """Refuse a start that the rule cannot continue from; by default there is none."""
+        del where, discrete, displacement
 
     @abc.abstractmethod
     def following(self, kick: Kick) -> Following:
@@ -100,9 +100,6 @@ class Principal(AbstractBranchRule):
 
     def check(self, where: str, discrete: Discretization) -> None:
         """Every discretization has it."""
-
-    def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
-        """Runs check their first displacement themselves."""
 
     def following(self, kick: Kick) -> Following:
         """Return the verified principal root."""
@@ -121,9 +118,6 @@ class Nearest(AbstractBranchRule):
         """Every left-invariant constraint has it."""
         _check_left_invariant(where, discrete, self.name)
 
-    def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
-        """Every displacement can be followed."""
-
     def following(self, kick: Kick) -> Following:
         """Follow the present point."""
         return follow(kick.now, kick.ahead, kick.point)
@@ -135,13 +129,6 @@ class Extreme(AbstractBranchRule):
 
     name: str
     sign: int
-
-    def check(self, where: str, discrete: Discretization) -> None:
-        """Refuse systems of whose values not all are known."""
-        _check_values_known(where, discrete, self.name)
-
-    def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
-        """Every displacement will do."""
 
     def following(self, kick: Kick) -> Following:
         """Choose by the norm; a tie is not decided."""
@@ -162,7 +149,7 @@ class Region(AbstractBranchRule):
 
     def check(self, where: str, discrete: Discretization) -> None:
         """Refuse systems whose invariant curves have no parts."""
-        _check_values_known(where, discrete, self.name)
+        super().check(where, discrete)
         if not is_regular(discrete):
             kind = type(discrete.system).__name__
             got = f"{self.name!r} for {kind}, whose invariant curves have no inner and outer part"
@@ -196,9 +183,6 @@ class Chosen(AbstractBranchRule):
     def check(self, where: str, discrete: Discretization) -> None:
         """Refuse systems of whose values not all are known."""
         _check_values_known(where, discrete, self.function)
-
-    def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
-        """Every displacement will do."""
 
     def following(self, kick: Kick) -> Following:
         """Ask the function, and refuse an answer that is no real value."""

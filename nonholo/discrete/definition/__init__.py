@@ -1,7 +1,8 @@
 """The map by its definition, in JAX: derivatives of the discrete Lagrangian, roots, runs. Imported on first use."""
 
+from nonholo.discrete._variety import free_rows
 from nonholo.discrete.definition._precision import allow_float32, compile_double, in_double
-from nonholo.discrete.definition._rollout import Rollout, free_rows, roll_out, step_residual
+from nonholo.discrete.definition._rollout import Rollout, roll_out, step_residual
 from nonholo.discrete.definition._step import (
     ON_LOCUS,
     displacement_of,

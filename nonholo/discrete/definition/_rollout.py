@@ -19,6 +19,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.traced import marked_rows, run_nodes
 from nonholo.base.types import Array, Float
 from nonholo.discrete._scheme import Scheme, weights
+from nonholo.discrete._variety import free_rows
 from nonholo.discrete.definition._step import (
     ON_LOCUS,
     closed_step_of,
@@ -93,35 +94,45 @@ def roll_out(
     The discretization is that of the free system, `forced` the system with its forces. `work` is the number by which
     many steps ask whether they are still wanted; None where they are differentiated.
     """
-    (name, value, g), (steps, every), system = start, sizes, discrete.system
+    (name, value, g), (steps, every) = start, sizes
     r, g = _along(discrete, name, jnp.asarray(value), jnp.asarray(g)), jnp.asarray(g)
     impulse, rows = impulse_of(discrete, forced, controls, steps)
-    at_displacement = forced if is_balanced(discrete, forced) else None
-    if at_displacement is not None:
-        step, start, at = (
-            _balanced_step(discrete, scalar, at_displacement),
-            (r, g, len(discrete.variety.chart)),
-            _as_it_is,
-        )
-    elif scalar is not None and discrete.order == 2:
-        step, C, at = _closed_step(discrete, scalar, g, impulse)
-        start = C @ r, jnp.asarray([1.0, 0.0, 0.0, 0.0], r.dtype), 2
-    else:
-        step = _composed_step(discrete, scalar) if discrete.order > 2 else _matrix_step(discrete, impulse)
-        start, at = (r, g, len(discrete.variety.chart)), _as_it_is
-    (m, pose, size), code = cast(Any, start), jnp.zeros((), jnp.result_type(int))
-    nothing = jnp.zeros(size, m.dtype)
+    balance = forced if is_balanced(discrete, forced) else None
+    step, at, (m, pose, size) = _step_from(discrete, scalar, (impulse, balance), r, g)
+    code, nothing = jnp.zeros((), jnp.result_type(int)), jnp.zeros(size, m.dtype)
     nodes = run_nodes(step, _Node(m, pose, nothing, (m, pose), code, jnp.sum(nothing)), rows, sizes, work)
-    demand = value if name == "momentum" and value.shape == (system.group.dim,) else None
+    demand = value if name == "momentum" and value.shape == (discrete.system.group.dim,) else None
     time = discrete.time_step * every * jnp.arange(1 + steps // every)
     states = jax.vmap(at)(nodes)
-    pushes, potential = jnp.zeros(()), jnp.zeros(()) if forced is None else forced.potential_energy(states[2])
-    if at_displacement is not None:
-        first = _part(discrete, weights(discrete.order)[0])
-        pushes = jax.vmap(functools.partial(half_impulse, first, at_displacement))(states[1], states[2], rows[::every])
-    elif impulse is not None:
-        pushes = jax.vmap(impulse)(states[0], states[2], rows[::every])
+    pushes = _half_impulses(discrete, (impulse, balance), states, None if rows is None else rows[::every])
+    potential = jnp.zeros(()) if forced is None else forced.potential_energy(states[2])
     return _decode(discrete, nodes, states, demand, (pushes, potential), time)
+
+
+def _step_from(
+    discrete: Scheme, scalar: ScalarStep | None, forces: tuple[_Impulse | None, Forced | None], r: Array, g: Array
+) -> tuple[_Step, Callable[[_Node], Any], tuple[Array, Array, int]]:
+    """Return the step, what its nodes are in the user's frame, and momenta, pose and length of a chart at the start."""
+    impulse, balance = forces
+    if balance is None and scalar is not None and discrete.order == 2:
+        step, C, at = _closed_step(discrete, scalar, g, impulse)
+        return step, at, (C @ r, jnp.asarray([1.0, 0.0, 0.0, 0.0], r.dtype), 2)
+    if balance is not None:
+        step = _in_stages(discrete, scalar, functools.partial(_balanced_stage, balance))
+    else:
+        step = _in_stages(discrete, scalar, _free_stage) if discrete.order > 2 else _matrix_step(discrete, impulse)
+    return step, _as_it_is, (r, g, len(discrete.variety.chart))
+
+
+def _half_impulses(
+    discrete: Scheme, forces: tuple[_Impulse | None, Forced | None], states: tuple[Array, ...], rows: Array | None
+) -> Array:
+    """Return the half impulses at saved nodes."""
+    impulse, balance = forces
+    if balance is not None:
+        first = _part(discrete, weights(discrete.order)[0])
+        return jax.vmap(functools.partial(half_impulse, first, balance))(states[1], states[2], rows)
+    return jnp.zeros(()) if impulse is None else jax.vmap(impulse)(states[0], states[2], rows)
 
 
 def impulse_of(discrete: Scheme, forced: Forced | None, controls: Array | None, steps: int) -> tuple[Any, Any]:
@@ -219,24 +230,39 @@ def _matrix_step(discrete: Scheme, impulse: _Impulse | None) -> _Step:
     return step
 
 
-def _balanced_step(discrete: Scheme, scalar: ScalarStep | None, forced: Forced) -> _Step:
-    """Return the step whose half impulses are those at its displacement, in one or several stages."""
+def _in_stages(discrete: Scheme, scalar: ScalarStep | None, take: Callable[..., tuple[Array, ...]]) -> _Step:
+    """Return the step of one or several lengths; `take` gives chart and outcome of each, momenta and pose after it."""
 
-    def stage(carry: tuple[Array, Array, Array, Array], weight: Array) -> tuple[tuple[Array, ...], Array]:
+    def stage(carry: tuple[Any, ...], weight: Array) -> tuple[tuple[Any, ...], Array]:
         r, g, code, row = carry
         part, own = _part(discrete, weight), scalar and scalar._replace(scale=weight * scalar.scale)
-        s, j, y, outcome = _balance(part, own, forced, (r, g, row))
+        y, outcome, ahead, after = take(part, own, (r, g, row))
         good, code = (code == 0) & (outcome == 0), jnp.where(code == 0, outcome, code)
-        ahead, after = _move(part, s, y, g)
-        return (jnp.where(good, ahead + j, r), jnp.where(good, after, g), code, row), y
+        return (jnp.where(good, ahead, r), jnp.where(good, after, g), code, row), y
 
     def step(r: Array, g: Array, guess: Array | None, row: Array | None) -> _Node:
         del guess
-        carry0, stages = (r, g, jnp.zeros((), jnp.result_type(int)), row), weights(discrete.order)
-        (r_next, after, code, _), charts = jax.lax.scan(stage, carry0, jnp.asarray(stages, r.dtype))
+        begin, stages = (r, g, jnp.zeros((), jnp.result_type(int)), row), weights(discrete.order)
+        (r_next, after, code, _), charts = jax.lax.scan(stage, begin, jnp.asarray(stages, r.dtype))
         return _Node(r, g, charts[0], (r_next, after), code, jnp.sum(charts))
 
     return step
+
+
+def _free_stage(part: Any, scalar: ScalarStep | None, state: tuple[Any, ...]) -> tuple[Array, ...]:
+    """Take the step of order 2 without forces."""
+    r, g, _ = state
+    y, outcome = principal_of(part, scalar, r, g)
+    return y, outcome, *_move(part, r, y, g)
+
+
+def _balanced_stage(
+    forced: Forced, part: Any, scalar: ScalarStep | None, state: tuple[Array, ...]
+) -> tuple[Array, ...]:
+    """Take the step whose half impulses are those at its displacement."""
+    s, j, y, outcome = _balance(part, scalar, forced, state)
+    ahead, after = _move(part, s, y, state[1])
+    return y, outcome, ahead + j, after
 
 
 def _balance(part: Any, scalar: ScalarStep | None, forced: Forced, state: tuple[Array, ...]) -> tuple[Array, ...]:
@@ -271,26 +297,6 @@ def _balance(part: Any, scalar: ScalarStep | None, forced: Forced, state: tuple[
     return state[0] + j, j, y, jnp.where((code == 0) & is_lost, int(Outcome.not_converged), code)
 
 
-def _composed_step(discrete: Scheme, scalar: ScalarStep | None) -> _Step:
-    """Return a step of higher order: the step of order 2 of several lengths, one after the other."""
-
-    def substep(carry: tuple[Array, Array, Array], weight: Array) -> tuple[tuple[Array, Array, Array], Array]:
-        r, g, code = carry
-        part = _part(discrete, weight)
-        y, outcome = principal_of(part, scalar and scalar._replace(scale=weight * scalar.scale), r, g)
-        good, code = (code == 0) & (outcome == 0), jnp.where(code == 0, outcome, code)
-        ahead, after = _move(part, r, y, g)
-        return (jnp.where(good, ahead, r), jnp.where(good, after, g), code), y
-
-    def step(r: Array, g: Array, guess: Array | None, row: Array | None) -> _Node:
-        del guess, row
-        carry0 = (r, g, jnp.zeros((), jnp.result_type(int)))
-        (*after, code), charts = jax.lax.scan(substep, carry0, jnp.asarray(weights(discrete.order), r.dtype))
-        return _Node(r, g, charts[0], (after[0], after[1]), code, jnp.sum(charts))
-
-    return step
-
-
 def _move(discrete: Scheme, r: Array, y: Array, g: Array) -> tuple[Array, Array]:
     """Return momenta along the constraint and pose after a displacement that has momenta r along it.
 
@@ -306,7 +312,7 @@ def _rectify(group: AbstractMatrixGroup, g: Array) -> Array:
     """Return a pose whose rounding errors across a group of isometries are squared: R (3 - R* R) / 2."""
     if not group.has_skew_part:
         return g
-    n = group.size if group.form is not None or np.any(group.basis[:, -1]) else group.size - 1
+    n = free_rows(group)
     R = g[:n, :n]
     square = group.form_adjoint(g) @ g if n == group.size else R.T @ R
     return g.at[:n, :n].set(R @ (3 * jnp.eye(n, dtype=g.dtype) - square) / 2)
@@ -324,9 +330,9 @@ def _decode(
 
     A full momentum of the start must be that of the first node. The forces are half impulses and potential energies.
     """
-    system, first = discrete.system, cast(Any, discrete)
+    system, first = discrete.system, discrete
     if discrete.order > 2:
-        first = dataclasses.replace(first, time_step=float(weights(discrete.order)[0]) * discrete.time_step, order=2)
+        first = _part(discrete, float(weights(discrete.order)[0]))
 
     def at(r: Array, y: Array, g: Array, after: Array) -> tuple[Array, ...]:
         whole = discrete.order > 2 or system.is_spatial
@@ -368,8 +374,3 @@ def step_residual(
     gap = system.moved(g, displacement_of(discrete, y)) - ahead
     root = equations_at(discrete, g)(y, r_half)
     return jnp.concatenate([root, arriving - following, gap[: free_rows(system.group)].ravel()])
-
-
-def free_rows(group: AbstractMatrixGroup) -> int:
-    """Return how many rows of the matrices of a group are not the same for all."""
-    return group.size if group.form is not None or np.any(group.basis[:, -1]) else group.size - 1

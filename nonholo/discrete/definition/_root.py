@@ -63,15 +63,12 @@ def followed_root(
 
     As `principal_root`, from a start of the caller's: a root and its momenta.
     """
-    if certificate is None:
-        certificate = _uncertain
     residual, numbers = jax.closure_convert(residual, *start)
-    certificate, facts = jax.closure_convert(certificate, *start)
+    certificate, facts = jax.closure_convert(certificate or _uncertain, *start)
     return _search(residual, certificate, numbers, facts, start, target, guess)
 
 
-def _uncertain(y: Array, m: Array) -> Array:
-    del y, m
+def _uncertain(_y: Array, _m: Array) -> Array:
     return jnp.asarray(False)
 
 

@@ -7,9 +7,8 @@ Functions of one matrix, the library's or the user's, in JAX: values, derivative
 principal displacement for JAX is that of the closed form of a body where it has one, which its kernel shares.
 """
 
-import functools
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox
 import jax
@@ -118,23 +117,15 @@ def push(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
 _steps_from = equinox.filter_jit(jax.vmap(step_from, in_axes=(None, 0, 0)))
 
 
-def value_and_slope(lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup) -> tuple[np.ndarray, np.ndarray]:
+@compile_double
+def value_and_slope(lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup) -> tuple[Any, Any]:
     """Return a discrete Lagrangian and its derivative along the group at the identity."""
-    return in_double(_value_and_slope, lagrangian, group, np.zeros(group.dim))
+    return jax.value_and_grad(lambda x: lagrangian(group.exp(x)))(jnp.zeros(group.dim))
 
 
-@functools.partial(jax.jit, static_argnums=(0, 1))
-def _value_and_slope(lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup, x: Array) -> tuple[Array, Array]:
-    return jax.value_and_grad(lambda x: lagrangian(group.exp(x)))(x)
-
-
-def map_each(function: Callable[[Array], Array], W: Float[np.ndarray, "K N N"]) -> np.ndarray:
+@compile_double
+def map_each(function: Callable[[Array], Array], W: Float[np.ndarray, "K N N"]) -> Any:
     """Return the values of a function of one matrix at each of several."""
-    return in_double(_map_each, function, W)
-
-
-@functools.partial(jax.jit, static_argnums=0)
-def _map_each(function: Callable[[Array], Array], W: Array) -> Array:
     return jax.vmap(function)(W)
 
 

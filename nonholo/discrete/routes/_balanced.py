@@ -11,13 +11,12 @@ from nonholo import kernels
 from nonholo.base.types import Float
 from nonholo.discrete._scheme import weights
 from nonholo.discrete._variety import variety_of
-from nonholo.discrete.routes._base import AbstractCompiledRoute, Compact, poses_of
+from nonholo.discrete.routes._base import AbstractCompiledRoute, Compact, plain, poses_of
 from nonholo.discrete.routes._forced import (
     AbstractForcedRoute,
     AbstractOuterRoute,
     functions_of,
     kernel_frame,
-    plain,
     sum_products,
 )
 from nonholo.groups import SE, SO
@@ -27,8 +26,8 @@ from nonholo.systems import Forced
 
 def balanced_route(free: Any, matrix: Callable[[], Any], forced: Forced, order: int) -> "BalancedRoute":
     """Return the route of balanced half impulses around a free step, or for any force around that on matrices."""
-    plain = forced.function is None and (forced.gravity is not None or not forced.terms)
-    return BalancedRoute(free if free.is_scalar and plain and order == 2 else matrix(), forced, order, matrix)
+    by_numbers = forced.function is None and (forced.gravity is not None or not forced.terms)
+    return BalancedRoute(free if free.is_scalar and by_numbers and order == 2 else matrix(), forced, order, matrix)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -36,17 +35,12 @@ class BalancedRoute(AbstractForcedRoute, AbstractOuterRoute):
     """Equal half impulses at the displacement, by which T + U and every balance is exact; in one or several stages.
 
     Attributes:
-        free: The route of the free step of order 2.
-        forced: The system with its forces.
         order: 2, 4, 6 or 8.
         matrix: Makes the route of the free step on matrices.
     """
 
-    free: AbstractCompiledRoute
-    forced: Forced
     order: int = 2
     matrix: Any = dataclasses.field(default=None, repr=False)
-    notes: dict[str, str] = dataclasses.field(default_factory=dict, repr=False)
 
     @property
     def compiled_route(self) -> "BalancedRoute | None":  # type: ignore[override]

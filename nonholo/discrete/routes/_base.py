@@ -176,9 +176,9 @@ class AbstractCompiledRoute(AbstractRoute):
         """The factor to the momenta of the kernel."""
 
     @property
-    @abc.abstractmethod
     def single(self) -> "AbstractCompiledRoute":
-        """The route of a step of order 2 with the same time step."""
+        """The route of a step of order 2 with the same time step: the route itself, if it is one."""
+        return self
 
     @abc.abstractmethod
     def encode(self, momenta: np.ndarray) -> np.ndarray:
@@ -318,6 +318,11 @@ def poses_of(states: Orbit, *, is_needed: bool) -> np.ndarray:
     if not is_needed:
         return np.empty((len(states), 0))
     return np.broadcast_to(states.system.frame_pose, (len(states), states.system.group.pose_size))
+
+
+def plain(array: Any) -> np.ndarray:
+    """Return a writable copy row by row: every other layout would be compiled for itself."""
+    return np.array(array, dtype=np.float64, order="C")
 
 
 def matrices_of(states: Orbit) -> Float[np.ndarray, "K size"] | None:

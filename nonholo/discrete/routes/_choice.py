@@ -7,10 +7,10 @@ from typing import Any, ClassVar, cast
 import numpy as np
 
 from nonholo.base.checks import needs
-from nonholo.base.types import Array, Float
+from nonholo.base.types import Float
 from nonholo.discrete._pytrees import pytree
-from nonholo.discrete._scheme import Difference, Scheme
-from nonholo.discrete._variety import Constraint, variety_of
+from nonholo.discrete._scheme import Scheme
+from nonholo.discrete._variety import variety_of
 from nonholo.discrete.routes._balanced import balanced_route
 from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractRoute, Compact, poses_of
 from nonholo.discrete.routes._forced import ComposedRoute, forced_route
@@ -18,7 +18,7 @@ from nonholo.discrete.routes._matrix import MatrixRoute
 from nonholo.discrete.routes._normal_forms import ScalarRoute, SecularRoute, closed_form
 from nonholo.discrete.routes._slipping import slip_route
 from nonholo.orbit import Orbit
-from nonholo.systems import Forced, System
+from nonholo.systems import Forced
 
 
 @pytree
@@ -26,13 +26,6 @@ from nonholo.systems import Forced, System
 class DefinitionRoute(Scheme, AbstractRoute):
     """Steps of one length or compositions, by derivatives of the discrete Lagrangian in JAX."""
 
-    system: System
-    time_step: Array
-    difference: Difference
-    constraint: Constraint
-    order: int
-    leaves: ClassVar[tuple[str, ...]] = ("system", "time_step")
-    structure: ClassVar[tuple[str, ...]] = ("difference", "constraint", "order")
     name: ClassVar[str] = "definition"
     is_scalar: ClassVar[bool] = False
     needs_pose: ClassVar[bool] = True

@@ -15,7 +15,7 @@ from nonholo.base.checks import error
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
 from nonholo.discrete._scheme import weights
-from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute, Compact, parts_by, poses_of
+from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute, Compact, parts_by, plain, poses_of
 from nonholo.groups import SE
 from nonholo.orbit import Orbit
 from nonholo.systems import Forced
@@ -75,16 +75,20 @@ def forced_route(free: AbstractRoute, forced: Forced) -> AbstractRoute:
     return ForcedRoute(inside, forced)
 
 
+@dataclasses.dataclass(frozen=True, eq=False)
 class AbstractForcedRoute(AbstractRoute):
     """A route whose steps depend on their numbers: there is none from a state alone.
 
-    What functions of the user said of the end of the last run is `notes`.
+    Attributes:
+        free: The route of the free step.
+        forced: The system with its forces.
+        notes: What functions of the user said of the end of the last run.
     """
 
     free: AbstractCompiledRoute
-    notes: Any
     forced: Forced
-    order: Any = 2
+    notes: dict[str, str] = dataclasses.field(default_factory=dict, repr=False, kw_only=True)
+    order = 2
     is_scalar: ClassVar[bool] = False
 
     @property
@@ -139,25 +143,14 @@ class AbstractForcedRoute(AbstractRoute):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
-    """The loop of the kernel, for left-invariant constraints; in plain Python if it calls functions of Python.
-
-    Attributes:
-        free: The route of the free step.
-        forced: The system with its forces.
-    """
-
-    free: AbstractCompiledRoute
-    forced: Forced
-    notes: dict[str, str] = dataclasses.field(default_factory=dict, repr=False)
+    """The loop of the kernel, for left-invariant constraints; in plain Python if it calls functions of Python."""
 
     @property
     def compiled_route(self) -> "ForcedRoute | None":  # type: ignore[override]
         """The route itself, if numba compiled all functions that it calls."""
-        return (
-            self
-            if self.forced.is_jitted and driven_potential(self.forced) in (None, self.forced.own_potential)
-            else None
-        )
+        forced = self.forced
+        is_jitted = forced.is_jitted and driven_potential(forced) in (None, forced.own_potential)
+        return self if is_jitted else None
 
     @functools.cached_property
     def body(self) -> kernels.ForcedBody:
@@ -173,15 +166,8 @@ class FunctionRoute(AbstractForcedRoute, AbstractOuterRoute):
     """In Python, by the definition of the impulses: for constraints that are fixed in space.
 
     Its state is that of the free kernel, one step ahead, and the number of the step.
-
-    Attributes:
-        free: The route of the free step.
-        forced: The system with its forces.
     """
 
-    free: AbstractCompiledRoute
-    forced: Forced
-    notes: dict[str, str] = dataclasses.field(default_factory=dict, repr=False)
     needs_pose: ClassVar[bool] = True
     compiled_route: ClassVar[None] = None
 
@@ -265,18 +251,14 @@ def half_kick(free: AbstractCompiledRoute, forced: Forced) -> kernels.Kick:
 def half_drive(free: AbstractCompiledRoute, forced: Forced, notes: dict[str, str]) -> kernels.Drive:
     """Return half the impulse of functions; those that numba compiled are asked before a run."""
     kick, along = _linear_part(free, forced)
-    group, S, has = (
-        forced.group,
-        np.asarray(forced.constraint_subspace),
-        (forced.function is not None, driven_potential(forced) is not None),
-    )
+    S, has = np.asarray(forced.constraint_subspace), (forced.function is not None, driven_potential(forced) is not None)
     momenta = forced.from_canonical(free.decode(np.eye(forced.rank)))
     velocity = S.T @ np.linalg.solve(S @ np.asarray(forced.inertia_operator) @ S.T, momenta.T)
     moves, weights = forced.differences
     force, potential = functions_of(forced, driven_potential(forced), notes)
     return kernels.Drive(
         kick=kick,
-        planar=(2 if group == SE(2) else 3) if free.is_scalar else 0,
+        planar=(2 if forced.group == SE(2) else 3) if free.is_scalar else 0,
         turn=plain(kernel_frame(free, forced)),
         velocity=plain(velocity),
         along=plain(along.T),
@@ -379,8 +361,3 @@ def kernel_frame(free: AbstractCompiledRoute, forced: Forced) -> Float[np.ndarra
     frame, group = free.encode_poses(forced.frame_pose[None]), forced.group
     matrix = group.matrix_from_pose(frame) if free.is_scalar else frame.reshape(-1, group.size, group.size)
     return np.linalg.inv(matrix[0])
-
-
-def plain(array: np.ndarray) -> np.ndarray:
-    """Return a writable copy row by row: every other layout would be compiled for itself."""
-    return np.array(array, order="C")

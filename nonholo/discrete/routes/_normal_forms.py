@@ -108,11 +108,6 @@ class ScalarRoute(AbstractCompiledRoute):
         return self.time_step * self.closed_form.share
 
     @property
-    def single(self) -> "ScalarRoute":
-        """The route itself."""
-        return self
-
-    @property
     def step(self) -> ScalarStep:
         """Its data for JAX."""
         return ScalarStep(self.body, self.scale, self.axes.rows)
@@ -196,11 +191,6 @@ class SecularRoute(AbstractCompiledRoute):
     def scale(self) -> Array:
         """Half the time step."""
         return self.time_step / 2
-
-    @property
-    def single(self) -> "SecularRoute":
-        """The route itself."""
-        return self
 
     def encode(self, momenta: np.ndarray) -> np.ndarray:
         """Return the momenta of the kernel from canonical ones."""

@@ -33,7 +33,7 @@ _STRETCH = 512  # steps that hold, taken at once
 def slip_route(scheme: Any, forced: Forced, route_of: Callable[[Any], Any]) -> "SlipRoute":
     """Return the route of rows that may yield."""
     holding, sliding = (dataclasses.replace(scheme, system=each) for each in (forced.holding, forced.sliding))
-    return SlipRoute(route_of(sliding), route_of(holding), holding, forced)
+    return SlipRoute(route_of(sliding), forced, route_of(holding), holding)
 
 
 class Beginning(NamedTuple):
@@ -64,14 +64,11 @@ class SlipRoute(AbstractForcedRoute):
         free: The route of steps that slide, but for the friction of the grip.
         hold: The route of steps that hold.
         holding: The discretization of these.
-        forced: The system with its forces.
     """
 
     free: BalancedRoute  # type: ignore[override]
     hold: AbstractCompiledRoute
     holding: Any
-    forced: Forced
-    notes: dict[str, str] = dataclasses.field(default_factory=dict, repr=False)
     needs_pose: ClassVar[bool] = True  # type: ignore[override]
     compiled_route: ClassVar[None] = None  # type: ignore[override]
 

@@ -29,11 +29,8 @@ def ensemble_to_dataset(ensemble: Ensemble, none: Any) -> xarray.Dataset:
     for name, values in ensemble.parameters.items():
         axes = _AXES[: values.ndim - 1] if values.ndim != 2 else (f"{name}_component",)
         variables[name] = ("member", *axes), values, {"long_name": "parameter of the member"}
-    labels = (
-        {}
-        if none.is_compact
-        else {str(x): rows for x, rows in none.to_dataset().coords.items() if x not in ("step", "time")}
-    )
+    coordinates = {} if none.is_compact else none.to_dataset().coords
+    labels: dict[str, Any] = {str(x): rows for x, rows in coordinates.items() if x not in ("step", "time")}
     if ensemble.save_every is not None:
         labels["step"] = ensemble.save_every * np.arange(ensemble.time.shape[1])
     common = io.attributes(none)

@@ -15,8 +15,8 @@ from nonholo.base.limits import within_memory
 from nonholo.base.progress import progress_bar
 from nonholo.continuous import ContinuousFlow, solver_of
 from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretization
+from nonholo.simulation._crossings import refuse_resets, watch_for
 from nonholo.simulation._options import check_forces, refuse_too_large, stepper_of
-from nonholo.simulation.events import refuse_resets, watch_for
 from nonholo.simulation.members._events import joined_blocks
 from nonholo.simulation.members._executors import Plan, Report, are_side_by_side, counting, run_members
 from nonholo.simulation.members._members import Members, check_systems, checked_parameters
@@ -209,12 +209,7 @@ def _check_momenta(members: Members, starts: Firsts, plan: Plan) -> None:
 
 
 def _run_all(
-    members: Members,
-    starts: Firsts,
-    plan: Plan,
-    width: int,
-    reduce: Callable[[Ensemble], Any] | None,
-    report: Report,
+    members: Members, starts: Firsts, plan: Plan, width: int, reduce: Callable[[Ensemble], Any] | None, report: Report
 ) -> Any:
     """Run all members, block by block where only what is found of them is kept, and join that."""
     has_search = plan.events is not None and are_side_by_side(members, plan)  # in every step of a block
@@ -234,7 +229,7 @@ def join_blocks(members: int, blocks: Iterable[tuple[int, Reduced]]) -> Reduced:
     Each result is copied to its place when it comes, so that nothing else of its block is kept.
 
     Example:
-        >>> joined(3, [(2, np.array([0.0, 1.0])), (1, np.array([2.0]))])
+        >>> join_blocks(3, [(2, np.array([0.0, 1.0])), (1, np.array([2.0]))])
         array([0., 1., 2.])
     """
     whole: dict[str, np.ndarray] = {}

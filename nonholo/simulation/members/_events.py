@@ -10,7 +10,8 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Int
 from nonholo.groups import SE
 from nonholo.orbit import Crossings
-from nonholo.simulation.events import Event, find_crossings, locate, values_of
+from nonholo.simulation._event import Event
+from nonholo.simulation._search import find_crossings, locate, values_of
 from nonholo.simulation.members._members import Members
 from nonholo.simulation.members._result import Ensemble, MemberCrossings, MemberEvents, stack_rows
 

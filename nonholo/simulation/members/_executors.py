@@ -19,10 +19,11 @@ from nonholo.base.types import Float
 from nonholo.continuous import has_series, members_by_series
 from nonholo.discrete import PRINCIPAL, BranchRule
 from nonholo.orbit import AbstractStepper, First
+from nonholo.simulation._event import Event
 from nonholo.simulation._flow import flow_from
 from nonholo.simulation._options import stepper_of
 from nonholo.simulation._run import Run, run_to_end
-from nonholo.simulation.events import Event, Watch
+from nonholo.simulation._search import Watch
 from nonholo.simulation.members._events import log_of, watched_block
 from nonholo.simulation.members._members import Members, ScalarMembers, in_lanes, inertias_of, refusal
 from nonholo.simulation.members._result import Ensemble, stack_rows
@@ -295,22 +296,15 @@ def run_by_series(members: Members, starts: Firsts, plan: Plan, threads: int, re
     numbers = sum(x.shape[1] for x in starts.places) * len(time)
     size = max(1, min(_FLOWS, _NUMBERS // numbers, max(_BESIDE, -(-count // 8))))
     free = members.discrete.system.forces is None
-    if (
-        free
-        and count <= _FLOWS
-        and count * numbers <= _SOON
-        and count * _motion_bound(members, starts, time) <= _SOON_TURNED
-    ):
+    is_short = free and count <= _FLOWS and count * numbers <= _SOON
+    if is_short and count * _motion_bound(members, starts, time) <= _SOON_TURNED:
         size, threads = count, 0
     parts = [slice(begin, min(begin + size, count)) for begin in range(0, count, size)]
     in_threads(work, parts, threads, report)
     states, counts = zip(*(pieces[part.start] for part in parts), strict=True)
-    names = {"reduced_momentum": "momenta", "canonical_pose": "poses", "turned": "turned"}
-    columns = {
-        name: np.concatenate([getattr(part, own) for part in states])
-        for name, own in names.items()
-        if getattr(states[0], own) is not None
-    }
+    names = "reduced_momentum", "canonical_pose", "turned"
+    parts_of = dict(zip(names, zip(*states, strict=True), strict=True))
+    columns = {name: np.concatenate(rows) for name, rows in parts_of.items() if rows[0] is not None}
     good = np.concatenate(counts)
     early = Outcome.not_converged if free else Outcome.too_stiff
     codes = np.where(good == len(time), int(Outcome.successful), int(early))
@@ -321,9 +315,8 @@ def _motion_bound(members: Members, starts: Firsts, time: np.ndarray) -> float:
     """Return by how much a body at most moves, in its algebra, and more where its inertia is uneven."""
     inertia, S = inertias_of(members), members.discrete.system.canonical.constraint_subspace
     velocity = np.linalg.solve(S @ inertia @ S.T, starts.numbers[0][..., None])[..., 0] @ S
-    return (
-        float(np.abs(velocity).max(initial=0.0)) * float(abs(time[-1] - time[0])) * float(np.linalg.cond(inertia).max())
-    )
+    speed, span = float(np.abs(velocity).max(initial=0.0)), float(abs(time[-1] - time[0]))
+    return speed * span * float(np.linalg.cond(inertia).max())
 
 
 def _times(plan: Plan, count: int) -> dict[str, np.ndarray]:

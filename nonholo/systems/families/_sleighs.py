@@ -2,7 +2,7 @@
 
 import dataclasses
 import functools
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -11,11 +11,9 @@ from nonholo.base.kept import kept
 from nonholo.base.types import Array, Bool, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, replace_numbers
+from nonholo.systems._mass import WideInertia, arrow_numbers, narrow, refuse_negative
 from nonholo.systems._normal_form import NormalForm, sleigh_form
 from nonholo.systems._subspace import sleigh_rows
-
-if TYPE_CHECKING:
-    from nonholo.systems.families._arrowhead import ArrowheadSleigh
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -182,8 +180,6 @@ class MultidimensionalSleigh(AbstractLLSystem):
             >>> sleigh.dense.constrained_inertia.diagonal()
             array([3.5, 4.5, 2. ])
         """
-        from nonholo.systems.families._arrowhead import ArrowheadSleigh
-
         return ArrowheadSleigh(mass, center_of_mass, diagonal, coupling)
 
     def __repr__(self) -> str:
@@ -223,3 +219,81 @@ class MultidimensionalSleigh(AbstractLLSystem):
     def normal_form(self) -> NormalForm:
         """The numbers of the equations of motion, c with the other sign."""
         return sleigh_form(self.mass, self.center_of_mass, self.mass_tensor)
+
+
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
+class ArrowheadSleigh(AbstractLLSystem):
+    r"""The sleigh on SE(n) with $J_C = \mathrm{diag}(d_1, \dots, d_n)$ plus c in the first row and column.
+
+    `MultidimensionalSleigh.arrowhead` makes it; `dense` gives the same sleigh as a `MultidimensionalSleigh`.
+
+    Args:
+        mass: m.
+        center_of_mass: a, n body coordinates.
+        diagonal: d, n numbers, n >= 3.
+        coupling: c, n - 1 numbers.
+
+    Raises:
+        ValueError: A wrong shape, a mass or an inertia that is not positive.
+
+    Example:
+        >>> center = np.linspace(0.5, 0.0, 1000)
+        >>> nh.MultidimensionalSleigh.arrowhead(1.0, center, np.linspace(1, 2, 1000), np.full(999, 0.01)).rank
+        1000
+    """
+
+    mass: Array
+    center_of_mass: Array
+    diagonal: Array
+    coupling: Array
+    leaves: ClassVar[tuple[str, ...]] = ("mass", "center_of_mass", "diagonal", "coupling")
+    structure: ClassVar[tuple[str, ...]] = ()
+    has_blade: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        owner = "MultidimensionalSleigh.arrowhead"
+        mass = scale(f"{owner}(mass=...)", self.mass, "Pass the mass of the body.")
+        diagonal, coupling = arrow_numbers(owner, self.diagonal, self.coupling)
+        where = f"{owner}(center_of_mass=...)"
+        center = array(where, self.center_of_mass, diagonal.shape, "Pass n body coordinates.")
+        for field, value in zip(dataclasses.fields(self), (mass, center, diagonal, coupling), strict=True):
+            object.__setattr__(self, field.name, value)
+        refuse_negative(f"{owner}(diagonal=...)", self.inertia_along)
+
+    def __repr__(self) -> str:
+        return f"MultidimensionalSleigh.arrowhead(n={len(self.diagonal)}, mass={self.mass}, a={self.center_of_mass[0]})"
+
+    @property
+    def dense(self) -> MultidimensionalSleigh:
+        """The same sleigh with its mass tensor as a matrix."""
+        narrow("A dense mass tensor of MultidimensionalSleigh.arrowhead", self.group.dim)
+        J = np.diag(self.diagonal)
+        J[0, 1:] = J[1:, 0] = self.coupling
+        return MultidimensionalSleigh(self.mass, self.center_of_mass, J)
+
+    @kept
+    def group(self) -> AbstractMatrixGroup:
+        """The group of rigid motions SE(n)."""
+        return SE(len(self.diagonal))
+
+    @kept
+    def homogeneous_mass_tensor(self) -> Float[np.ndarray, "N N"]:
+        """The mass tensor about the reference point as a matrix."""
+        return self.dense.homogeneous_mass_tensor
+
+    @kept
+    def inertia_along(self) -> WideInertia:
+        r"""The diagonal of $B_1$, the mass, and the offset of the center of mass across the blade."""
+        a = self.center_of_mass
+        return WideInertia(self.diagonal[1:] + self.diagonal[0] + self.mass * a[0] ** 2, self.mass, a[1:])
+
+    @kept
+    def constraint_subspace(self) -> Float[np.ndarray, "n dim"]:
+        r"""Rows $e_1\wedge e_j$, then the velocity along body axis 1."""
+        return self.dense.constraint_subspace
+
+    @functools.cached_property
+    def normal_form(self) -> NormalForm:
+        """The numbers of the equations of motion, c with the other sign."""
+        d, a = self.diagonal, self.center_of_mass
+        return NormalForm(d[1:], d[0], -self.coupling, self.mass, a[0], a[1:])

@@ -1,8 +1,8 @@
-"""The free rigid body, and the Suslov top, which may only turn in planes that contain one of its own axes."""
+"""The free rigid body, and the Suslov top, which only turns in planes through an axis of its own, in any dimension."""
 
 import dataclasses
 import functools
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -12,6 +12,8 @@ from nonholo.base.types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, replace_numbers
 from nonholo.systems._mass import (
+    WideInertia,
+    arrow_numbers,
     body_tensor,
     checked_group,
     group_mass_tensor,
@@ -19,15 +21,14 @@ from nonholo.systems._mass import (
     lines_of,
     mass_tensor_from_inertia,
     mass_tensor_of_body,
+    narrow,
     possible,
+    refuse_negative,
     rotation_to,
     tensors_shown,
 )
 from nonholo.systems._normal_form import NormalForm, top_form
 from nonholo.systems._subspace import top_rows
-
-if TYPE_CHECKING:
-    from nonholo.systems.families._arrowhead import ArrowheadTop
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
@@ -202,8 +203,6 @@ class SuslovTop(AbstractLLSystem):
             >>> SuslovTop.arrowhead([1.0, 2.0, 3.0, 4.0], [0.1, 0.2, 0.3]).dense.constrained_inertia.diagonal()
             array([5., 6., 7.])
         """
-        from nonholo.systems.families._arrowhead import ArrowheadTop
-
         return ArrowheadTop(diagonal, coupling)
 
     def __repr__(self) -> str:
@@ -281,3 +280,73 @@ def _forbidden_axis(where: str, value: Array, n: int) -> Array:
     if abs(length - 1) > 1e-12:
         raise error(where, "be a unit vector", f"length {length:.17g}", "Divide it by its length.")
     return axis
+
+
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
+class ArrowheadTop(AbstractLLSystem):
+    r"""The Suslov top on SO(n) with $J = \mathrm{diag}(d_1, \dots, d_n)$ plus c in the last row and column.
+
+    The constrained inertia is $B = \mathrm{diag}(d_1 + d_n, \dots, d_{n-1} + d_n)$. `SuslovTop.arrowhead` makes it;
+    `dense` gives the same top as a `SuslovTop`.
+
+    Args:
+        diagonal: d, as for `SuslovTop.arrowhead`.
+        coupling: c.
+
+    Raises:
+        ValueError: As by `SuslovTop.arrowhead`.
+
+    Example:
+        >>> top = nh.SuslovTop.arrowhead(np.linspace(1, 2, 1000), np.full(999, 0.01))
+        >>> orbit = nh.simulate(nh.discretize(top, 0.1), restricted_velocity=np.full(999, 0.03), steps=10,
+        ...                     reconstruct=False)
+        >>> orbit.restricted_momentum.shape, bool(np.ptp(orbit.energy) < 1e-14)
+        ((11, 999), True)
+    """
+
+    diagonal: Array
+    coupling: Array
+    leaves: ClassVar[tuple[str, ...]] = ("diagonal", "coupling")
+    structure: ClassVar[tuple[str, ...]] = ()
+
+    def __post_init__(self) -> None:
+        diagonal, coupling = arrow_numbers("SuslovTop.arrowhead", self.diagonal, self.coupling)
+        object.__setattr__(self, "diagonal", diagonal)
+        object.__setattr__(self, "coupling", coupling)
+        refuse_negative("SuslovTop.arrowhead(diagonal=...)", self.inertia_along)
+
+    def __repr__(self) -> str:
+        return f"SuslovTop.arrowhead(n={len(self.diagonal)})"
+
+    @property
+    def dense(self) -> SuslovTop:
+        """The same top with its mass tensor as a matrix."""
+        return SuslovTop(self.homogeneous_mass_tensor)
+
+    @kept
+    def group(self) -> AbstractMatrixGroup:
+        """The rotation group SO(n)."""
+        return SO(len(self.diagonal))
+
+    @kept
+    def homogeneous_mass_tensor(self) -> Float[np.ndarray, "n n"]:
+        """The mass tensor as a matrix."""
+        narrow("A dense mass tensor of SuslovTop.arrowhead", self.group.dim)
+        J = np.diag(self.diagonal)
+        J[-1, :-1] = J[:-1, -1] = self.coupling
+        return J
+
+    @kept
+    def inertia_along(self) -> WideInertia:
+        """The diagonal of B."""
+        return WideInertia(self.diagonal[:-1] + self.diagonal[-1], None, np.zeros_like(self.coupling))
+
+    @kept
+    def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
+        r"""Rows $e_i\wedge e_n$."""
+        return self.dense.constraint_subspace
+
+    @functools.cached_property
+    def normal_form(self) -> NormalForm:
+        """The diagonal of B, and c."""
+        return NormalForm(self.diagonal[:-1], self.diagonal[-1], self.coupling)

@@ -112,8 +112,7 @@ class Forced(AbstractSystem):
     structure: ClassVar[tuple[str, ...]] = ("scheme",)
     normal_form: ClassVar[None] = None
     is_forced: ClassVar[bool] = True
-    homogeneous_mass_tensor = constraint_subspace = carried = moved = cast(Any, None)  # seen by type checkers
-    restrict_at = restricted_velocity = restricted_momentum = cast(Any, None)
+    homogeneous_mass_tensor = constraint_subspace = cast(Any, None)  # seen by type checkers
     locals().update((name, property(operator.attrgetter(f"free.{name}"))) for name in _SAME.split())
 
     def __new__(cls, system: Any = None, potential: Any = None, force: Any = None, scheme: str | None = None) -> Any:
@@ -320,11 +319,8 @@ class Forced(AbstractSystem):
         before, after = _each(self._value, g), _each(self._value, g @ W)
         along = applied(np.asarray(self.inertia_operator), X)
         change, twice = after - before + (pull * X).sum(axis=1), (along * X).sum(axis=1)
-        is_significant = np.abs(change) > _UNSEEN * (np.abs(before) + np.abs(after))
-        return (
-            pull
-            - np.divide(change, twice, out=np.zeros_like(change), where=is_significant & (twice > 0))[:, None] * along
-        )
+        is_significant = (twice > 0) & (np.abs(change) > _UNSEEN * (np.abs(before) + np.abs(after)))
+        return pull - np.divide(change, twice, out=np.zeros_like(change), where=is_significant)[:, None] * along
 
     def applied_force(self, time: float, configuration: np.ndarray, body_velocity: np.ndarray) -> np.ndarray:
         """Return f, one body covector, of `Friction` and a function; nothing of a table, which belongs to steps."""

@@ -2,6 +2,7 @@
 
 import dataclasses
 import functools
+import operator
 from typing import Any, ClassVar
 
 import numpy as np
@@ -11,7 +12,6 @@ from nonholo.base.kept import kept
 from nonholo.base.limits import within_memory
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
-from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, AbstractSystem
 from nonholo.systems._subspace import independent_rows
 
@@ -179,20 +179,10 @@ class Widened(AbstractLLSystem):
     leaves: ClassVar[tuple[str, ...]] = ("system",)
     structure: ClassVar[tuple[str, ...]] = ("rows", "remaining")
 
-    @property
-    def group(self) -> AbstractMatrixGroup:  # type: ignore[override]
-        """The group."""
-        return self.system.group
-
-    @property
-    def homogeneous_mass_tensor(self) -> Float[Array, "... N N"] | None:
-        """That of the system inside."""
-        return self.system.homogeneous_mass_tensor
-
-    @kept
-    def inertia_operator(self) -> Float[Array, "dim dim"]:
-        """That of the system inside."""
-        return self.system.inertia_operator
+    group = property(operator.attrgetter("system.group"))  # type: ignore[assignment]
+    homogeneous_mass_tensor = property(operator.attrgetter("system.homogeneous_mass_tensor"))
+    inertia_operator = property(operator.attrgetter("system.inertia_operator"))
+    frame = property(operator.attrgetter("system.frame"))
 
     @kept
     def annihilator(self) -> Float[np.ndarray, "j dim"]:
@@ -230,11 +220,6 @@ class Widened(AbstractLLSystem):
             return self
         adjoint = self.group.adjoint(self.frame)
         return Widened(self.system.canonical, self.rows @ adjoint, self.remaining @ adjoint)
-
-    @kept
-    def frame(self) -> Float[Array, "N N"]:
-        """That of the system inside."""
-        return self.system.frame
 
     @kept
     def frame_map(self) -> Float[Array, "k k"]:

@@ -10,8 +10,8 @@ from nonholo.base.checks import error, instance
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit, AbstractStepper, Crossings, EventLog, First, Orbit, State
-from nonholo.simulation.events._event import Event, checked_events, has_resets, values_at
-from nonholo.simulation.events._search import Part, Watch, piece_of, search, values_of
+from nonholo.simulation._event import Event, checked_events, has_resets, values_at
+from nonholo.simulation._search import Part, Watch, piece_of, search
 
 
 def watch_for(owner: str, stepper: AbstractStepper[Any], events: Any) -> Watch:
@@ -172,11 +172,6 @@ def _search_flow(orbit: Any, looks: Any, watch: Watch) -> Any:
     return dataclasses.replace(
         orbit.chosen(slice(0, count)), outcome=outcome, events=EventLog(log.names, parts, log.stopped_by)
     )
-
-
-def check_functions(events: dict[str, Event], first: Orbit) -> None:
-    """Refuse events whose functions have no value at the first state."""
-    values_of(events, first)
 
 
 def between_times(looks: Orbit, forward: float) -> Part:

@@ -10,7 +10,7 @@ import numpy as np
 
 from nonholo.base.types import Bool, Float, Int
 from nonholo.orbit import AbstractOrbit, Crossings, EventLog, joined_crossings
-from nonholo.simulation.events._event import Event, Impact, has_resets, values_at
+from nonholo.simulation._event import Event, Impact, has_resets, values_at
 
 Part = Callable[[Any, Float[np.ndarray, "K"]], Any]
 """Gives what is reached from states after fractions of the steps that begin there."""
