@@ -15,7 +15,7 @@ compilers.use_one_thread()
 import hypothesis
 import numpy as np
 import pytest
-from profiles import COLLECTED, DEFAULT, MARKED, SOAKS, chosen_profiles, profile_of, runs
+from profiles import COLLECTED, DEFAULT, MARKED, SOAKS, chosen_profiles, commits, profile_of, runs, some_cases
 
 import nonholo as nh
 
@@ -30,6 +30,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the choice of a profile."""
     about = f"which parts of the tests run, with commas: {', '.join(MARKED)}; or all"
     parser.addoption("--profile", type=chosen_profiles, default={DEFAULT}, help=about)
+    parser.addoption(
+        "--every",
+        type=int,
+        default=1,
+        help="run every n-th case of each test; the number of commits says with which one it begins",
+    )
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -56,10 +62,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """Keep the tests of the chosen profile."""
     chosen = config.getoption("--profile")
     config.stash[COLLECTED] = list(items)
-    others = [item for item in items if not runs(item, chosen)]
-    if others:
-        config.hook.pytest_deselected(items=others)
-        items[:] = [item for item in items if runs(item, chosen)]
+    ours = some_cases([item for item in items if runs(item, chosen)], config.getoption("--every"), commits())
+    if len(ours) < len(items):
+        config.hook.pytest_deselected(items=list(set(items).difference(ours)))
+        items[:] = ours
     for item in items:
         if profile_of(item) in SOAKS:
             item.add_marker(pytest.mark.timeout(0))  # half an hour is no hang there
@@ -67,7 +73,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         items.sort(key=_turn({item.path: None for item in items}))
 
 
-_WITHOUT_KERNELS = {"docs", "groups", "lagrange_dalembert", "literature", "nonholo", "paper", "plotting", "testing"}
+_WITHOUT_KERNELS = {"docs", "examples", "groups", "lagrange_dalembert", "nonholo", "paper", "plot", "testing"}
 
 
 def _turn(files: Iterable[Path]) -> Callable[[pytest.Item], int]:

@@ -22,12 +22,12 @@ PAGE_ROOMS = {  # each page and its rooms, whose classes are described too: what
     "discrete": ("The discrete map", ["discrete"]),
     "motions": ("Motions", ["simulation", "orbit", "continuous", "base"]),
     "analysis": ("Questions", ["analysis"]),
-    "plot": ("Pictures", ["plotting"]),
+    "plot": ("Pictures", ["plot"]),
     "explorer": ("The live page", ["explorer"]),
     "sweeps": ("Sweeps", ["ensembles"]),
     "stores": ("Stores", ["io"]),
     "lagrange-dalembert": ("Lagrange-d'Alembert", ["lagrange_dalembert"]),
-    "examples": ("Examples", ["literature"]),
+    "examples": ("Examples", ["examples"]),
     "testing": ("Checks", ["testing"]),
 }
 INSIDE = ("io",)  # its classes serve other rooms
@@ -111,7 +111,7 @@ def _page(title: str, rooms: list[str]) -> str:
         and name not in INNER
         and value not in public().values()
     }
-    ready = _ready_systems() if "literature" in rooms else ""
+    ready = _ready_systems() if "examples" in rooms else ""
     body = ready + _entries(own) + ("\n\n## Results and interfaces\n\n" + _entries(others) if others else "")
     return _TEXT.format(title=title, body=body)
 
@@ -164,7 +164,7 @@ def _named_by(room: str) -> list[str]:
 _READY = """\
 All have pictures, `to_csv`, `to_pandas`, stores whose runs resume and extend, events, `nh.compare`, `nh.ensemble`, and
 sweeps over their parameters and starts by `nh.FamilyTask`. Two tests do all of it with each of them:
-`tests/literature/test_first_class.py` and `tests/literature/test_stores.py`.
+`tests/examples/test_first_class.py` and `tests/examples/test_stores.py`.
 """
 
 _TEXT = """\

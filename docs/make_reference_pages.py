@@ -8,13 +8,21 @@ from typing import Any
 import typer
 
 from nonholo.cli._app import app
-from nonholo.cli.scenario.bodies import BODIES
+from nonholo.cli.scenario.bodies import body_table, examples, own_kinds
 from nonholo.cli.scenario.files import built_in
 from nonholo.cli.scenario.motion import Scenario
-from nonholo.cli.scenario.sweeps import SweepScenario
+from nonholo.cli.scenario.sweeps import DESIGNS, SweepScenario
 
 PAGES = Path(__file__).parent / "reference"
-_WORDS = {"number": "number", "integer": "whole number", "boolean": "true or false", "string": "text", "null": ""}
+_WORDS = {
+    "numbers": "number, or lists of them",
+    "group": "group",
+    "number": "number",
+    "integer": "whole number",
+    "boolean": "true or false",
+    "string": "text",
+    "null": "",
+}
 
 
 def pages() -> dict[str, str]:
@@ -50,17 +58,21 @@ def _block(text: str) -> str:
 
 def _scenarios() -> str:
     """Return the tables of the keys of both kinds of scenario, and the commented scenarios themselves."""
-    bodies = "\n\n".join(
-        f'### `kind = "{kind}"`\n\n{(body.__doc__ or "").strip()}\n\n{_table(body.model_json_schema())}'
-        for kind, body in BODIES.items()
-    )
+    bodies, ready = "\n\n".join(map(_body, own_kinds())), "\n\n".join(map(_body, examples()))
     own = {**built_in(), **built_in("sweeps")}
     texts = "\n\n".join(f"### `nonholo new {name}`\n\n```toml\n{text.strip()}\n```" for name, text in own.items())
     motion, sweep = (
         _nested(Scenario, ("start", "run", "forces", "output")),
         _nested(SweepScenario, ("design", "keep", "output")),
     )
-    return _SCENARIOS.format(bodies=bodies, texts=texts, motion=motion, sweep=sweep)
+    return _SCENARIOS.format(bodies=bodies, ready=ready, texts=texts, motion=motion, sweep=sweep)
+
+
+def _body(kind: str) -> str:
+    table = body_table(kind)
+    schema = table.model_json_schema()
+    del schema["properties"]["kind"]
+    return f'### `kind = "{kind}"`\n\n{table.__doc__}\n\n{_table(schema)}'
 
 
 def _nested(model: Any, tables: tuple[str, ...]) -> str:
@@ -68,11 +80,11 @@ def _nested(model: Any, tables: tuple[str, ...]) -> str:
     schema = model.model_json_schema()
     parts = []
     for name in tables:
-        for kind in _referred(schema["properties"][name]):
-            inner = schema["$defs"][kind]
+        schemas = [schema["$defs"][kind] for kind in _referred(schema["properties"][name])]
+        for inner in schemas or [each.model_json_schema() for each in DESIGNS.values()]:
             own = inner["properties"].get("kind", {}).get("const")
             head = (f'`kind = "{own}"` ' if own else "") + inner.get("description", "")
-            parts.append(f"**`[{name}]`** {head}\n\n{_table({**inner, '$defs': schema['$defs']})}")
+            parts.append(f"**`[{name}]`** {head}\n\n{_table({'$defs': schema['$defs'], **inner})}")
     return "\n\n".join(parts)
 
 
@@ -142,15 +154,36 @@ Forces are those of `nh.Forced`, for every kind of body. Components of friction 
 `body_velocity`. A table stops acting after its last row, so it has one for each step at least; a first line of its file
 may name the columns, in the plane `omega,v1,v2`, in space `omega1` to `v3`, and no other words; stores keep its rows.
 Ready: [scenarios/hanging_top.toml](../../scenarios/hanging_top.toml),
-[scenarios/twisted_sleigh.toml](../../scenarios/twisted_sleigh.toml). Sweeps under forces vary starts and time steps.
+[scenarios/twisted_sleigh.toml](../../scenarios/twisted_sleigh.toml).
 
 ## Bodies
 
-`[body]` is one of these.
+`[body]` is one of these: a system of the library by the name of its class or a shorter one. Keys are the arguments of
+the class, with the meanings that its documentation has.
 
 {bodies}
 
+## Ready examples
+
+Or a system of the literature, of [`nonholo.examples`](../api/examples.md), whose name alone is a scenario:
+`nonholo simulate snakeboard`. It has a start, a time step and a number of steps, so `[start]` and `[run]` may be left
+out. `nonholo new snakeboard` prints its keys with their meanings, `nonholo examples snakeboard` what is known of it.
+
+{ready}
+
+## Your own bodies
+
+`--module my_robot.py` imports your own Python file, and no other; each public function in it is a kind of body, with
+its arguments as keys. It returns a system, or something with a `system`, a `configuration` and a `body_velocity` (as
+the examples have, perhaps with `time_step` and `steps`), which then needs no `[start]`; sweeps take the second sort.
+Commands that run the file are `simulate`, `explore`, `sweep`, `resume`, `extend`, `new` and `systems`.
+
 ## Sweeps
+
+What a design varies are keys of `[body]`, starts or one of their components ("start.restricted_velocity_0"),
+"run.time_step", and numbers of `[forces]`: "forces.gravity.force", "forces.gravity.force_2", "forces.friction_0",
+"forces.slip.grip". Of an example, and of what your own file makes, it varies every argument, or a component of one
+("body.planar_velocity_0").
 
 {sweep}
 

@@ -143,17 +143,14 @@ The paper's own formulas:
 """
 # A new name is a line of its group above; `python docs/make_api_pages.py` writes what it is for, here and on the pages.
 
-import importlib
 from typing import Any
 
 import lazy_loader
 
-_ROOMS = {"examples": "literature", "plot": "plotting"}
 _WITH_JAX = {"GroupLagrangeDAlembert", "LagrangeDAlembert", "mass_tensor_lagrangian"}
-_WITH_JAX |= {"allow_float32", "examples", "rollout", "step"}
+_WITH_JAX |= {"allow_float32", "rollout", "step"}
 
-_public, _, _names = lazy_loader.attach_stub(__name__, __file__)
-_NAMES = {*_names, *_ROOMS} - {*_ROOMS.values()}
+_public, _, _NAMES = lazy_loader.attach_stub(__name__, __file__)
 
 
 def __getattr__(name: str) -> Any:
@@ -163,18 +160,14 @@ def __getattr__(name: str) -> Any:
         return globals().setdefault(name, version("nonholo"))
     if name not in _NAMES:
         raise AttributeError(f"module 'nonholo' has no attribute {name!r}")
-    return globals().setdefault(name, _with_jax(name) if name in _WITH_JAX else _loaded(name))
-
-
-def _loaded(name: str) -> Any:
-    return importlib.import_module(f"nonholo.{_ROOMS[name]}") if name in _ROOMS else _public(name)
+    return globals().setdefault(name, _with_jax(name) if name in _WITH_JAX else _public(name))
 
 
 def _with_jax(name: str) -> Any:
     from nonholo.base.checks import needs
 
     with needs("jax", f"nonholo.{name}"):
-        return _loaded(name)
+        return _public(name)
 
 
 def __dir__() -> list[str]:

@@ -1,5 +1,5 @@
-from . import literature as examples
-from . import plotting as plot
+from . import examples as examples
+from . import plot as plot
 from . import testing as testing
 from .analysis import ShapedBody as ShapedBody
 from .analysis import accessibility as accessibility

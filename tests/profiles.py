@@ -37,11 +37,11 @@ class Profile:
 
 _MECHANICS = ("base", "kernels", "groups", "systems", "discrete", "continuous")
 _RUNS = ("kernels", "orbit", "simulation", "io", "ensembles")
-_QUESTIONS = ("analysis", "plotting", "literature", "testing")
+_QUESTIONS = ("analysis", "plot", "examples", "testing")
 PROFILES = {
     "routes": Profile(
         "every body by every route: the definition in JAX, which compiles a program for each",
-        (*_MECHANICS, "lagrange_dalembert", "orbit", "simulation", "analysis", "testing", "literature"),
+        (*_MECHANICS, "lagrange_dalembert", "orbit", "simulation", "analysis", "testing", "examples"),
     ),
     "faults": Profile(
         "processes and clusters that are killed, disks that are full, blocks that are damaged",
@@ -49,11 +49,11 @@ PROFILES = {
     ),
     "problems": Profile(
         "many random problems, long orbits, and four times the examples of tests that draw them",
-        (*_MECHANICS, "lagrange_dalembert", "simulation", "analysis", "literature"),
+        (*_MECHANICS, "lagrange_dalembert", "simulation", "analysis", "examples"),
     ),
     "paper": Profile(
         "changed formulas of the paper that findings must notice, and the pages of the docs, executed",
-        ("paper", "plotting", "analysis", "literature"),
+        ("paper", "plot", "analysis", "examples"),
     ),
     "shapes": Profile(
         "annotations of shapes and types, checked at run time by jaxtyping and beartype",
@@ -70,17 +70,16 @@ PROFILES = {
         "tests/simulation/test_ensemble.py tests/simulation/test_flow_ensemble.py",
     ),
     "browser": Profile(
-        "the live page in Chromium, its bundle, made anew by npm; films by ffmpeg; the site: links, and its requests",
-        ("explorer", "kernels", "plotting"),
+        "the live page in Chromium, its bundle, made anew by npm; films by ffmpeg",
+        ("explorer", "kernels", "plot"),
     ),
     "benchmarks": Profile(
         "every script of `benchmarks/` on small numbers, which compiles what it compares with",
         (*_MECHANICS[1:], *_RUNS[1:], *_QUESTIONS[:1], "lagrange_dalembert", "explorer", "benchmarks"),
     ),
     "site": Profile(
-        "the pages and the docstrings of public names as a site; broken links and unknown names are errors",
+        "the pages and the docstrings of public names as a site: unknown names, broken links, requests to elsewhere",
         (*_MECHANICS[2:], *_RUNS[1:], *_QUESTIONS, "lagrange_dalembert", "base", "docs"),
-        ".venv/bin/pip install -q -c constraints.txt -e '.[all,docs]' && .venv/bin/sphinx-build -W docs build/site",
     ),
     "long": Profile(
         "the same problems in thousands, and a hundred bodies for 100,000 steps: half an hour",
@@ -97,6 +96,8 @@ PROFILES = {
 }
 SOAKS = {"long", "fuzz"}
 """Profiles that take half an hour each: before a release, or after a change of what they guard."""
+EVERY = 3
+"""A change runs every third case of the tests of its profiles, another third at another number of commits."""
 
 MARKED = [DEFAULT, *(name for name, profile in PROFILES.items() if not profile.command)]
 _DALEMBERT = "nonholo.lagrange_dalembert."
@@ -106,10 +107,10 @@ DOCTESTS = {  # examples that compile for long
     f"{_DALEMBERT}on_groups._system.GroupLagrangeDAlembert.flow": "routes",
     f"{_DALEMBERT}_system.LagrangeDAlembert.flow": "routes",
     f"{_DALEMBERT}_orbit.CoordinateOrbit": "routes",
-    "nonholo.literature._particle.particle": "routes",
+    "nonholo.examples._particle.particle": "routes",
     "nonholo.ensembles._family_task.FamilyTask": "routes",
     "nonholo.discrete._discretize.consistency_defect": "routes",
-    "nonholo.literature._robot.two_wheeled_robot": "routes",
+    "nonholo.examples._robot.two_wheeled_robot": "routes",
     "nonholo.analysis.steering._feedback.tracking_feedback": "routes",
     "nonholo.analysis.steering._steer.steer": "routes",
     "nonholo.analysis.locomotion._accessibility.accessibility": "routes",
@@ -118,7 +119,7 @@ DOCTESTS = {  # examples that compile for long
     "nonholo.analysis.locomotion._connection.local_connection": "routes",
     "nonholo.analysis.locomotion._phase.geometric_phase": "routes",
     "nonholo.analysis.locomotion._shaped_body.ShapedBody": "routes",
-    "nonholo.plotting.geometry._curvature.curvature": "routes",
+    "nonholo.plot.geometry._curvature.curvature": "routes",
 }
 
 
@@ -127,11 +128,12 @@ def command(name: str) -> str:
     return PROFILES[name].command or f"{PYTHON} -m pytest -q --profile {name}"
 
 
-def commands(names: list[str]) -> list[str]:
-    """Return the commands that run profiles; those that are marked run together."""
+def commands(names: list[str], every: int = 1) -> list[str]:
+    """Return the commands that run every n-th case of profiles; those that are marked run together."""
     marked = [name for name in names if name in MARKED]
     together = [f"{PYTHON} -m pytest -q --profile {','.join(marked)}"] if marked else []
-    return together + [command(name) for name in names if name not in MARKED]
+    alone = [command(name) for name in names if name not in MARKED]
+    return [f"{line} --every {every}" if every > 1 and "pytest" in line else line for line in together + alone]
 
 
 def chosen_profiles(text: str) -> set[str]:
@@ -154,6 +156,20 @@ def profile_of(item: pytest.Item) -> str:
 
     stays = not matches(mark.kwargs["cases"]) if "cases" in mark.kwargs else matches(mark.kwargs.get("keep", []))
     return DEFAULT if stays else mark.args[0]
+
+
+def some_cases(items: list[pytest.Item], every: int, first: int) -> list[pytest.Item]:
+    """Return every n-th case of each test, from a first one on, and one at least."""
+    tests: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        tests.setdefault(item.nodeid.split("[")[0], []).append(item)
+    some = {id(case) for cases in tests.values() for case in cases[first % min(every, len(cases)) :: every]}
+    return [item for item in items if id(item) in some]
+
+
+def commits() -> int:
+    """Return the number of commits, 0 where it is unknown: it says which cases a change runs."""
+    return int(_git("rev-list", "--count", "HEAD") or 0)
 
 
 def runs(item: pytest.Item, chosen: set[str]) -> bool:
@@ -196,10 +212,13 @@ def room_of(file: str) -> str | None:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description="Print the commands of the profiles that a change concerns.")
-    parser.add_argument("--all", action="store_true", help="of all profiles but the two that take half an hour each")
+    parser.add_argument(
+        "--all", action="store_true", help="every case of all profiles but the two that take half an hour each"
+    )
     parser.add_argument("--soak", action="store_true", help="of all profiles")
     parser.add_argument("--base", help="the commit to compare with; by default the last tag or the merge base")
     given = parser.parse_args()
     wide = [name for name in PROFILES if given.soak or name not in SOAKS]
-    for line in commands(wide if given.all or given.soak else touched(changed_files(given.base))):
+    complete = given.all or given.soak
+    for line in commands(wide if complete else touched(changed_files(given.base)), 1 if complete else EVERY):
         print(line)  # noqa: T201

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import profiles
 import pytest
-from profiles import COLLECTED, DEFAULT, DOCTESTS, PROFILES, ROOT, command, profile_of, touched
+from profiles import COLLECTED, DEFAULT, DOCTESTS, PROFILES, ROOT, command, profile_of, some_cases, touched
 from scripts import script
 
 
@@ -87,7 +87,7 @@ def _complete(request: pytest.FixtureRequest) -> bool:
         (["benchmarks/gpu.py", "scenarios/sleigh.toml"], {"benchmarks"}),
         (["docs/house.md", "README.md", "benchmarks/gpu.py"], {"site", "benchmarks"}),
         (["nonholo/cli/commands/plot.py"], {"faults"}),
-        (["tests/plotting/test_section.py", "docs/paper.md"], {"paper", "site", "browser"}),
+        (["tests/plot/test_section.py", "docs/paper.md"], {"paper", "site", "browser"}),
         (["nonholo/kernels/_sleigh.py"], {"routes", "faults", "problems", "shapes", "bounds", "browser", "benchmarks"}),
         (["nonholo/base/checks.py"], {"routes", "problems", "shapes", "bounds", "site"}),
         (["pyproject.toml"], set(PROFILES) - {"fuzz", "long", "mutants"}),
@@ -98,6 +98,17 @@ def _complete(request: pytest.FixtureRequest) -> bool:
 def test_touched_profiles(files: list[str] | None, expected: set[str]) -> None:
     """A change of one room runs the profiles that guard it, one of what all share runs all of them."""
     assert set(touched(files)) == expected
+
+
+@pytest.mark.parametrize("every", [1, 2, 3, 7])
+def test_changes_in_a_row_run_every_case(request: pytest.FixtureRequest, every: int) -> None:
+    """N numbers of commits in a row run every case between them, and each of them some case of each test."""
+    items = request.config.stash[COLLECTED]
+    parts = [some_cases(items, every, 1234 + part) for part in range(every)]
+    assert {item.nodeid for part in parts for item in part} == {item.nodeid for item in items}
+    tests = {item.nodeid.split("[")[0] for item in items}
+    assert all({item.nodeid.split("[")[0] for item in part} == tests for part in parts)
+    assert every == 1 or len(parts[0]) < len(items)
 
 
 def test_marked_profiles_run_together() -> None:

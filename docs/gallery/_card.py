@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from nonholo.plotting import theme
+from nonholo.plot import theme
 
 COLORS = (theme.DISCRETE, theme.CONTINUOUS, "#d55e00", "#009e73")
 

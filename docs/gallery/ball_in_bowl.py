@@ -7,8 +7,8 @@ from _card import Curve, card
 from matplotlib.figure import Figure
 
 import nonholo as nh
+from nonholo.examples import Example
 from nonholo.lagrange_dalembert import CoordinateOrbit
-from nonholo.literature import Example
 
 STEP, SPIN = 0.05, 8.0
 

@@ -8,7 +8,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 
 SLEIGH = nh.ChaplyginSleigh(mass=1.0, inertia=0.4, a=0.5)
 BLADE = np.array([[0.0, 0.0, 1.0]])

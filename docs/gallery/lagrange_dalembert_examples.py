@@ -26,9 +26,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import nonholo as nh
+from nonholo.examples import Example
 from nonholo.lagrange_dalembert import CoordinateOrbit
-from nonholo.literature import Example
-from nonholo.plotting import theme
+from nonholo.plot import theme
 
 STEPS = {0.2: "#9ecae1", 0.1: theme.DISCRETE}
 """Time steps, and the color of their energy."""

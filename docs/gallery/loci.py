@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 
 PICTURE = Path(__file__).parents[1] / "images" / "gallery" / "loci.png"
 

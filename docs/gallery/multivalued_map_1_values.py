@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 
 PICTURE = Path(__file__).parents[1] / "images" / "gallery" / "multivalued_map_1_values.png"
 FOUR = nh.discretize(nh.SuslovTop([[1.25, 0.0, -0.5], [0.0, 1.0, -0.75], [-0.5, -0.75, 1.25]]), 1.0)

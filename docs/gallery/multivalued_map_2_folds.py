@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from scipy.ndimage import map_coordinates
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 
 PICTURE = Path(__file__).parents[1] / "images" / "gallery" / "multivalued_map_2_folds.png"
 TOP = nh.discretize(nh.SuslovTop([[1.25, 0.0, -0.5], [0.0, 1.0, -0.75], [-0.5, -0.75, 1.25]]), 1.0)

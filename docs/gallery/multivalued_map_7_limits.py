@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 
 PICTURE = Path(__file__).parents[1] / "images" / "gallery" / "multivalued_map_7_limits.png"
 SLEIGH = nh.ChaplyginSleigh(mass=1.0, inertia=0.75, a=0.5)  # the flow turns once round

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 
 SLEIGH = nh.ChaplyginSleigh(mass=1.0, inertia=0.5, a=0.3)
 CENTER, HULL = np.array([0.3, 0.0, 1.0]), 0.4  # a round hull about the center of mass, in a circle of radius 1.4

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 
 SLEIGH = nh.ChaplyginSleigh(mass=1.0, inertia=0.75, a=0.5)  # J = 3 m a^2: once round
 

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 
 PICTURES = Path(__file__).parents[1] / "images" / "theory"
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5, b=0.0), 0.5)

@@ -83,7 +83,7 @@ class Comparison:
 
     def plot(self, path: Any = None, *, overwrite: bool = False) -> Any:
         """Draw the errors against time; return the matplotlib figure, saved to a new `path` if given."""
-        return importlib.import_module("nonholo.plotting").comparison(self, path, overwrite=overwrite)
+        return importlib.import_module("nonholo.plot").comparison(self, path, overwrite=overwrite)
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -131,7 +131,7 @@ class Convergence:
 
     def plot(self, path: Any = None, *, overwrite: bool = False) -> Any:
         """Draw the errors over the time step; return the matplotlib figure, saved to a new `path` if given."""
-        return importlib.import_module("nonholo.plotting").convergence(self, path, overwrite=overwrite)
+        return importlib.import_module("nonholo.plot").convergence(self, path, overwrite=overwrite)
 
     def _slope(self, errors: np.ndarray | None, sizes: Sequence[float | None]) -> float | None:
         if errors is None or None in sizes:

@@ -30,13 +30,13 @@ class KindError(TypeError, FunctionError):
 
 
 @contextlib.contextmanager
-def noted(said: dict[str, str], part: str) -> Iterator[None]:
+def note_fault(faults: dict[str, str], part: str) -> Iterator[None]:
     """Note what a part says whose numbers are not finite, where a run ends by itself then; forget it where they are."""
-    said.pop(part, None)
+    faults.pop(part, None)
     try:
         yield
     except UndefinedError as failure:
-        said[part] = str(failure)
+        faults[part] = str(failure)
 
 
 def name_of(function: Any) -> str:
@@ -44,29 +44,31 @@ def name_of(function: Any) -> str:
     return f"`{getattr(function, '__name__', None) or type(function).__name__}`"
 
 
-def called(where: str, function: Callable[..., Any], *arguments: Any) -> Any:
+def call(where: str, function: Callable[..., Any], *arguments: Any) -> Any:
     """Return what a function of a user returns, of arguments that it may keep but not change.
 
     Example:
         >>> def half(v):
         ...     v *= 0.5
         ...     return v
-        >>> called("Forced(force=...)", half, np.ones(3))
+        >>> call("Forced(force=...)", half, np.ones(3))
         Traceback (most recent call last):
         ...
         nonholo.base.calls.FunctionError: `Forced(force=...)` must not write to its arguments. Got `half`...
     """
-    compiled = hasattr(function, "py_func")  # by numba, which would compile it once more for arrays that are read-only
-    given = [_protected(argument, compiled) for argument in arguments]
+    is_compiled = hasattr(
+        function, "py_func"
+    )  # by numba, which would compile it once more for arrays that are read-only
+    copies = [_protect(argument, is_compiled) for argument in arguments]
     try:
-        found = function(*given)
+        result = function(*copies)
     except ValueError as failure:
         if "read-only" in str(failure):
-            raise _written(where, function) from failure
+            raise _writing_error(where, function) from failure
         raise
-    if compiled and any(_bytes(new) != _bytes(old) for new, old in zip(given, arguments, strict=True)):
-        raise _written(where, function)
-    return found
+    if is_compiled and any(_bytes(new) != _bytes(old) for new, old in zip(copies, arguments, strict=True)):
+        raise _writing_error(where, function)
+    return result
 
 
 def number_of(where: str, function: Callable[..., Any], remedy: str, *arguments: Any) -> np.float64:
@@ -82,18 +84,18 @@ def numbers_of(where: str, function: Callable[..., Any], shape: tuple[int, ...],
         UndefinedError: A number is not finite.
         FunctionError: They have another shape, or it writes to its arguments.
     """
-    found, what = called(where, function, *arguments), f"{shape[0]} real numbers" if shape else "one real number"
-    return checked(where, function, found, shape, (what, remedy), lambda _: _place(arguments[0]))
+    result, what = call(where, function, *arguments), f"{shape[0]} real numbers" if shape else "one real number"
+    return check_result(where, function, result, shape, (what, remedy), lambda _: _place(arguments[0]))
 
 
 def _place(first: Any) -> str:
     return f"time {first:.17g}" if isinstance(first, float) else shown(np.asarray(first).tolist())
 
 
-def checked(
+def check_result(
     where: str,
     function: Callable[..., Any],
-    found: Any,
+    result: Any,
     shape: tuple[int, ...],
     words: tuple[str, str],
     place: Callable[[int], str],
@@ -104,13 +106,13 @@ def checked(
     """
     (what, remedy), name = words, name_of(function)
     try:
-        plain = type(found) is np.ndarray and found.dtype.char == "d"
-        raw = found if plain else real_or_complex(where, found, remedy)
+        plain = type(result) is np.ndarray and result.dtype.char == "d"
+        raw = result if plain else real_or_complex(where, result, remedy)
     except ValueError:
         raw = np.array(None)
     if raw.dtype.kind not in "iuf":
-        is_array = isinstance(found, np.ndarray) and not np.ma.is_masked(found)
-        got = f"{found.dtype} of shape {found.shape}" if is_array else shown(found)
+        is_array = isinstance(result, np.ndarray) and not np.ma.is_masked(result)
+        got = f"{result.dtype} of shape {result.shape}" if is_array else shown(result)
         raise KindError(*error(where, f"return {what}", f"{got} from {name}", remedy).args)
     if raw.shape != shape:
         got = f"{raw.dtype} of shape {raw.shape} from {name}"
@@ -123,11 +125,11 @@ def checked(
     return values
 
 
-def _protected(argument: Any, compiled: bool) -> Any:
+def _protect(argument: Any, is_writeable: bool) -> Any:
     """Return a copy of an array, or what looks at the arrays of an object, such as an orbit, without changing them."""
     if isinstance(argument, np.ndarray):
         argument = argument.copy()
-        argument.flags.writeable = compiled
+        argument.flags.writeable = is_writeable
         return argument
     if not dataclasses.is_dataclass(argument) or isinstance(argument, type):
         return argument
@@ -141,6 +143,6 @@ def _bytes(argument: Any) -> Any:
     return argument.tobytes() if isinstance(argument, np.ndarray) else None
 
 
-def _written(where: str, function: Any) -> FunctionError:
+def _writing_error(where: str, function: Any) -> FunctionError:
     got = f"{name_of(function)}, which does"
     return FunctionError(*error(where, "not write to its arguments", got, "Let it work on copies.").args)

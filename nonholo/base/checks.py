@@ -66,13 +66,13 @@ def array(where: str, value: Any, shape: tuple[int | None, ...], remedy: str = "
     """Return `value` as a read-only float64 array of the given shape (None: any length), finite and real."""
     if is_traced(value):
         if not _fits(value.shape, shape):
-            raise error(where, f"have shape {_shown(shape)}", f"shape {value.shape}", remedy)
+            raise error(where, f"have shape {_shape_text(shape)}", f"shape {value.shape}", remedy)
         return value
     raw = real_or_complex(where, value, remedy)
     if raw.dtype.kind == "c":
         raise error(where, "be real", "complex numbers", remedy)
     if not _fits(raw.shape, shape):
-        raise error(where, f"have shape {_shown(shape)}", f"shape {raw.shape}", remedy)
+        raise error(where, f"have shape {_shape_text(shape)}", f"shape {raw.shape}", remedy)
     try:
         result = np.array(_as_floats(raw), dtype=np.float64)
         _check_size(where, result, remedy)
@@ -149,13 +149,13 @@ def _check_size(where: str, value: np.ndarray, remedy: str) -> None:
         raise error(where, f"have no number beyond {LARGEST:g}", f"{most:g}", "Use other units.")
 
 
-def _fits(actual: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
-    if actual == wanted:
+def _fits(actual: tuple[int, ...], demand: tuple[int | None, ...]) -> bool:
+    if actual == demand:
         return True
-    return len(actual) == len(wanted) and all(w in (None, a) for a, w in zip(actual, wanted, strict=True))
+    return len(actual) == len(demand) and all(w in (None, a) for a, w in zip(actual, demand, strict=True))
 
 
-def _shown(shape: tuple[int | None, ...]) -> str:
+def _shape_text(shape: tuple[int | None, ...]) -> str:
     sizes = ", ".join("any" if size is None else str(size) for size in shape)
     return f"({sizes},)" if len(shape) == 1 else f"({sizes})"
 
@@ -185,18 +185,18 @@ def trailing(where: str, value: Any, shape: tuple[int, ...], remedy: str, *, rea
         return value
     raw = value if is_traced(value) else real_or_complex(where, value, remedy)
     if raw.shape[max(0, raw.ndim - len(shape)) :] != shape:
-        raise error(where, f"end in shape {_shown(shape)}", f"shape {raw.shape}", remedy)
+        raise error(where, f"end in shape {_shape_text(shape)}", f"shape {raw.shape}", remedy)
     if is_traced(raw):
         return _as_floats(raw)
     if real and raw.dtype.kind == "c":
         raise error(where, "be real", "complex numbers", remedy)
     try:
-        found = _as_floats(raw)
-        if not _is_moderate(found):
-            _check_finite(where, found if found.ndim == len(shape) else np.where(np.isnan(found), 0, found), remedy)
+        result = _as_floats(raw)
+        if not _is_moderate(result):
+            _check_finite(where, result if result.ndim == len(shape) else np.where(np.isnan(result), 0, result), remedy)
     except MemoryError:
         raise _too_large(where, raw, remedy) from None
-    return found
+    return result
 
 
 def _is_as_wanted(value: Any, shape: tuple[int, ...]) -> bool:
@@ -215,13 +215,13 @@ def shape_of(value: Any) -> tuple[int, ...]:
         return ()
 
 
-def refuse_given(owner: str, requirement: str, remedy: str, **given: tuple[Any, Any]) -> None:
+def refuse_given(owner: str, requirement: str, remedy: str, **arguments: tuple[Any, Any]) -> None:
     """Refuse arguments that this call does not have: each comes with its default.
 
     Example:
         >>> refuse_given("discretize", "be left out", "It has none.", order=(2, 2))
     """
-    for name, (value, default) in given.items():
+    for name, (value, default) in arguments.items():
         if value is not default and not (isinstance(value, type(default)) and value == default):
             raise error(f"{owner}({name}=...)", requirement, shown(value), remedy)
 
@@ -288,10 +288,10 @@ def step_counts(steps: Any, save_every: Any) -> tuple[int, int]:
     return steps, count("simulate(save_every=...)", save_every, "Pass the number of steps between saved states.")
 
 
-def choice(where: str, value: Any, allowed: tuple[Any, ...], remedy: str = "Choose one of them.") -> Any:
+def choice(where: str, value: Any, choices: tuple[Any, ...], remedy: str = "Choose one of them.") -> Any:
     """Return `value` if it is one of the allowed ones."""
-    if not any(value is a or value == a for a in allowed if isinstance(value, type(a))):
-        raise error(where, "be one of " + ", ".join(repr(a) for a in allowed), shown(value), remedy)
+    if not any(value is a or value == a for a in choices if isinstance(value, type(a))):
+        raise error(where, "be one of " + ", ".join(repr(a) for a in choices), shown(value), remedy)
     return value
 
 
@@ -338,23 +338,23 @@ def is_name(value: Any) -> bool:
     return fits and value.isidentifier() and not value.startswith("_")
 
 
-def name(where: str, value: Any, taken: Collection[str] = ()) -> str:
+def name(where: str, value: Any, others: Collection[str] = ()) -> str:
     """Return a name (`is_name`), refused if it is one of those with a meaning of their own."""
-    if not is_name(value) or value in taken:
-        remedy = f"Rename it; taken: {', '.join(sorted(taken))}." if taken else "Rename it."
+    if not is_name(value) or value in others:
+        remedy = f"Rename it; taken: {', '.join(sorted(others))}." if others else "Rename it."
         raise error(where, "be a name: a letter, then letters, digits and underscores, all ASCII", shown(value), remedy)
     return value
 
 
-def names(where: str, values: Any, count: int | None = None, taken: Collection[str] = COLUMNS) -> tuple[str, ...]:
+def names(where: str, values: Any, count: int | None = None, others: Collection[str] = COLUMNS) -> tuple[str, ...]:
     """Return different names as a tuple: as many as asked for, or at least one."""
-    given = values if isinstance(values, tuple | list) else ()
-    words = {value for value in given if is_name(value) and value not in taken}
-    if not given or len(words) < len(given) or len(given) != (count or len(given)):
+    entries = values if isinstance(values, tuple | list) else ()
+    words = {value for value in entries if is_name(value) and value not in others}
+    if not entries or len(words) < len(entries) or len(entries) != (count or len(entries)):
         requirement = f"be {'' if count is None else f'{count} '}different names"
-        remedy = f'Pass words such as ("x", "y", "theta"), none of them {", ".join(sorted(taken))}.'
+        remedy = f'Pass words such as ("x", "y", "theta"), none of them {", ".join(sorted(others))}.'
         raise error(where, requirement, shown(values), remedy)
-    return tuple(given)
+    return tuple(entries)
 
 
 def pair(where: str, value: Any) -> tuple[Any, Any]:

@@ -14,14 +14,14 @@ def table(title: str, rows: Iterable[Sequence[Any]], head: Sequence[Any] = ()) -
     """
     lines = [_row("th", head)] if head else []
     return (
-        f"<table><caption><b>{_shown(title)}</b></caption>{''.join(lines + [_row('td', row) for row in rows])}</table>"
+        f"<table><caption><b>{_cell(title)}</b></caption>{''.join(lines + [_row('td', row) for row in rows])}</table>"
     )
 
 
 def _row(cell: str, words: Sequence[Any]) -> str:
-    return f"<tr>{''.join(f'<{cell}>{_shown(word)}</{cell}>' for word in words)}</tr>"
+    return f"<tr>{''.join(f'<{cell}>{_cell(word)}</{cell}>' for word in words)}</tr>"
 
 
-def _shown(word: Any) -> str:
+def _cell(word: Any) -> str:
     text = html.escape(str(word))
     return f'<pre style="text-align:left;margin:0">{text}</pre>' if "\n" in text else text

@@ -14,7 +14,7 @@ _UNLIMITED = ("max", "")
 _LARGEST_TEXT = 1 << 22  # bytes of a file: a mass tensor of some hundred dimensions fits
 
 
-def within_memory(where: str, wanted: float, remedy: str) -> None:
+def within_memory(where: str, size: float, remedy: str) -> None:
     """Refuse what needs more bytes than this process can have.
 
     Example:
@@ -23,8 +23,8 @@ def within_memory(where: str, wanted: float, remedy: str) -> None:
         ...
         ValueError: `f(n=...)` must fit into memory. Got about 1e+12 EB of ... GB. Pass a smaller n.
     """
-    if wanted > (limit := memory_limit()):
-        raise error(where, "fit into memory", f"about {size_text(wanted)} of {size_text(limit)}", remedy)
+    if size > (limit := memory_limit()):
+        raise error(where, "fit into memory", f"about {size_text(size)} of {size_text(limit)}", remedy)
 
 
 def read_text(path: Path, largest: int = _LARGEST_TEXT) -> str:
@@ -32,17 +32,17 @@ def read_text(path: Path, largest: int = _LARGEST_TEXT) -> str:
     if path.exists() and not path.is_file():  # to open a pipe may take forever
         raise OSError("it is a folder, a device or a pipe")
     with path.open("rb") as file:
-        found = file.read(largest + 1)
-    if len(found) > largest:
+        content = file.read(largest + 1)
+    if len(content) > largest:
         raise OSError(f"it has more than {size_text(largest)}")
-    return found.decode("utf-8-sig")
+    return content.decode("utf-8-sig")
 
 
-def within_disk(where: str, wanted: float, folder: Path, remedy: str) -> None:
+def within_disk(where: str, size: float, folder: Path, remedy: str) -> None:
     """Refuse what needs more bytes than are free on the disk of a folder, or of the one that it would be made in."""
     there = next(path for path in (folder.absolute(), *folder.absolute().parents) if path.exists())
-    if wanted > (free := shutil.disk_usage(there).free):
-        got = f"about {size_text(wanted)} before compression, of which {size_text(free)} are free in '{there}'"
+    if size > (free := shutil.disk_usage(there).free):
+        got = f"about {size_text(size)} before compression, of which {size_text(free)} are free in '{there}'"
         raise error(where, "fit on the disk", got, remedy)
 
 

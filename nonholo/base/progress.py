@@ -17,7 +17,7 @@ from rich.text import Text
 _LATE = 2.0  # seconds
 Result = TypeVar("Result")
 _over: contextvars.ContextVar[Callable[[], bool]] = contextvars.ContextVar("over", default=lambda: False)
-_told: contextvars.ContextVar[Any] = contextvars.ContextVar("told", default=lambda *_: go_on())
+_report: contextvars.ContextVar[Any] = contextvars.ContextVar("told", default=lambda *_: go_on())
 _overs: dict[int, Callable[[], bool]] = {}
 _numbers = itertools.count()
 _LOOK = 0.2  # seconds between two looks at the keyboard, where a signal does not end the waiting
@@ -30,7 +30,7 @@ def until(over: Callable[[], bool]) -> Iterator[None]:
     Work in another thread is ended so: Ctrl-C reaches the main thread alone.
 
     Example:
-        >>> with until(lambda: True), progress_bar("steps", wanted=False) as report:
+        >>> with until(lambda: True), progress_bar("steps", is_visible=False) as report:
         ...     report(3, 10)
         Traceback (most recent call last):
         concurrent.futures._base.CancelledError
@@ -48,11 +48,11 @@ def is_over() -> bool:
 
 
 @contextlib.contextmanager
-def numbered() -> Iterator[int]:
+def number_of_work() -> Iterator[int]:
     """Give a number by which code of other threads asks `number_is_over` of this work.
 
     Example:
-        >>> with until(lambda: True), numbered() as number:
+        >>> with until(lambda: True), number_of_work() as number:
         ...     number_is_over(number)
         True
     """
@@ -65,7 +65,7 @@ def numbered() -> Iterator[int]:
 
 
 def number_is_over(number: int) -> bool:
-    """Tell whether the work of a number is over, from any thread: see `numbered`."""
+    """Tell whether the work of a number is over, from any thread: see `number_of_work`."""
     return _overs[int(number)]()
 
 
@@ -88,14 +88,14 @@ def interruptibly(work: Callable[[], Result]) -> Result:
         return work()
     pool, left, context = ThreadPoolExecutor(1), threading.Event(), contextvars.copy_context()
     context.run(_over.set, left.is_set)
-    found = pool.submit(context.run, work)
+    future = pool.submit(context.run, work)
     try:
-        while not found.done():
-            wait([found], _LOOK)
+        while not future.done():
+            wait([future], _LOOK)
     finally:
         left.set()
         pool.shutdown(wait=False)
-    return found.result()
+    return future.result()
 
 
 _SILENT = contextlib.nullcontext(lambda *_: go_on())
@@ -109,35 +109,35 @@ class _Rate(ProgressColumn):
         return Text("" if speed is None else f"{speed:,.0f}/s", style="progress.data.speed")
 
 
-def progress_bar(title: str, wanted: bool) -> contextlib.AbstractContextManager[Callable[[float, float], None]]:
+def progress_bar(title: str, is_visible: bool) -> contextlib.AbstractContextManager[Callable[[float, float], None]]:
     """Give a function that reports how much is done, and of how much.
 
     Example:
-        >>> with progress_bar("steps", wanted=False) as report:
+        >>> with progress_bar("steps", is_visible=False) as report:
         ...     report(3, 10)
     """
-    return _shown_bar(title) if wanted else _SILENT
+    return _shown_bar(title) if is_visible else _SILENT
 
 
 @contextlib.contextmanager
-def telling(title: str, wanted: bool) -> Iterator[None]:
+def telling(title: str, is_visible: bool) -> Iterator[None]:
     """Show what the work inside tells.
 
     Example:
-        >>> with telling("time", wanted=False):
+        >>> with telling("time", is_visible=False):
         ...     tell(3.0, 10.0)
     """
-    with progress_bar(title, wanted) as report:
-        token = _told.set(report)
+    with progress_bar(title, is_visible) as report:
+        token = _report.set(report)
         try:
             yield
         finally:
-            _told.reset(token)
+            _report.reset(token)
 
 
-def tell(done: float, total: float) -> None:
+def tell(amount: float, total: float) -> None:
     """Report how much is done, and of how much, to whoever is `telling`."""
-    _told.get()(done, total)
+    _report.get()(amount, total)
 
 
 @contextlib.contextmanager
@@ -146,9 +146,9 @@ def _shown_bar(title: str) -> Iterator[Callable[[float, float], None]]:
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(title, total=None)  # the bar pulses until it is known of how much
 
-        def report(done: float, total: float) -> None:
+        def report(amount: float, total: float) -> None:
             go_on()
-            bar.update(task, completed=done, total=total)
+            bar.update(task, completed=amount, total=total)
 
         yield report
 
@@ -161,26 +161,26 @@ def late_bar(title: str) -> Iterator[Callable[[int, int], None]]:
         >>> with late_bar("flow") as report:
         ...     report(3, 10)
     """
-    with contextlib.ExitStack() as opened:
-        begun, bars = time.monotonic(), []
+    with contextlib.ExitStack() as stack:
+        start, bars = time.monotonic(), []
 
-        def report(done: int, total: int) -> None:
+        def report(amount: int, total: int) -> None:
             go_on()
-            if not bars and time.monotonic() - begun > _LATE and sys.stderr.isatty():
-                bars.append(opened.enter_context(_shown_bar(title)))
+            if not bars and time.monotonic() - start > _LATE and sys.stderr.isatty():
+                bars.append(stack.enter_context(_shown_bar(title)))
             for show in bars:
-                show(done, total)
+                show(amount, total)
 
         yield report
 
 
 @contextlib.contextmanager
-def waiting(title: str, wanted: bool) -> Iterator[None]:
+def waiting(title: str, is_visible: bool) -> Iterator[None]:
     """Show what is being done, and for how long, where there is nothing to count.
 
     Example:
-        >>> with waiting("measuring", wanted=False):
+        >>> with waiting("measuring", is_visible=False):
         ...     pass
     """
-    with progress_bar(title, wanted):
+    with progress_bar(title, is_visible):
         yield

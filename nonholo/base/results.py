@@ -89,21 +89,23 @@ class OutcomeError(RuntimeError):
         'Step 7: nonfinite. A number overflowed or became undefined, or a force ...'
     """
 
-    def __init__(self, outcome: Outcome, where: str, orbit: object | None = None, said: str = "") -> None:
-        super().__init__(f"{where}: {outcome.name}. {said or outcome.message}")
+    def __init__(self, outcome: Outcome, where: str, orbit: object | None = None, reason: str = "") -> None:
+        super().__init__(f"{where}: {outcome.name}. {reason or outcome.message}")
         self.outcome = outcome
         self.where = where
         self.orbit = orbit
-        self.said = said
+        self.said = reason
 
     def __reduce__(self) -> Any:
         return type(self), (self.outcome, self.where, self.orbit, self.said)
 
 
-def finished(orbit: Any, time_step: float, done: int, steps: int, throw: bool) -> Any:
+def conclude(orbit: Any, time_step: float, good: int, steps: int, throw: bool) -> Any:
     """Return the orbit of a run; with `throw`, raise if it ended early, naming the step."""
     if throw and orbit.outcome != Outcome.successful:
-        where = f"Step {done + 1} of {steps}" if len(orbit) else "Start of the run"
-        said = getattr(getattr(orbit.motion, "route", None), "notes", {}) if orbit.outcome == Outcome.nonfinite else {}
-        raise OutcomeError(orbit.outcome, f"{where} (time_step {time_step:g})", orbit, " ".join(said.values()))
+        where = f"Step {good + 1} of {steps}" if len(orbit) else "Start of the run"
+        faults = (
+            getattr(getattr(orbit.motion, "route", None), "notes", {}) if orbit.outcome == Outcome.nonfinite else {}
+        )
+        raise OutcomeError(orbit.outcome, f"{where} (time_step {time_step:g})", orbit, " ".join(faults.values()))
     return orbit

@@ -30,7 +30,7 @@ _Advance = Callable[[Any, tuple[Array | None, Array | None]], tuple[Any, None]]
 
 
 @jax.custom_jvp
-def marked(value: Array, cause: Array, good: Array) -> Array:
+def nan_unless(value: Array, cause: Array, good: Array) -> Array:
     """Return a finite value where it is good, and NaN elsewhere.
 
     There the derivative is NaN along whatever moves the value or the cause of the failure; cotangents that are zero
@@ -40,25 +40,25 @@ def marked(value: Array, cause: Array, good: Array) -> Array:
     return jnp.where(good, value, jnp.nan)
 
 
-@marked.defjvp
+@nan_unless.defjvp
 def _tangent(primals: tuple[Array, ...], tangents: tuple[Array, ...]) -> tuple[Array, Array]:
-    (value, cause, good), (moved, caused, _) = primals, tangents
+    (value, cause, good), (change, cause_change, _) = primals, tangents
     many, none = jnp.where(good, 1.0, _HUGE).astype(value.dtype), jnp.where(good, 1.0, 0.0).astype(value.dtype)
-    moved = moved + jnp.where(good, 0.0, 1.0).astype(value.dtype) * caused
-    overflown = moved * many * many  # zero or infinite where it is not good, and so is the transpose
-    return marked(value, cause, good), overflown * none * many * many
+    change = change + jnp.where(good, 0.0, 1.0).astype(value.dtype) * cause_change
+    overflown = change * many * many  # zero or infinite where it is not good, and so is the transpose
+    return nan_unless(value, cause, good), overflown * none * many * many
 
 
 def marked_rows(rows: Array, cause: Array, good: Array) -> Array:
     """Return the rows that are good, each with a cause, and NaN in the others."""
-    return jax.vmap(marked)(rows, jnp.broadcast_to(cause.reshape(-1, *[1] * (rows.ndim - 1)), rows.shape), good)
+    return jax.vmap(nan_unless)(rows, jnp.broadcast_to(cause.reshape(-1, *[1] * (rows.ndim - 1)), rows.shape), good)
 
 
 def implicit(
     residual: Callable[..., Array],
     root: Float[Array, "m"],
     at: tuple[Any, ...],
-    moved: tuple[Any, ...],
+    changes: tuple[Any, ...],
     solve: Callable[[Array, Array], Array] = jnp.linalg.solve,
 ) -> tuple[Float[Array, "m"], Float[Array, "m"]]:
     """Return a root of residual(y, *at) as checkpoints keep it, and how it moves with all that the residual depends on.
@@ -66,7 +66,7 @@ def implicit(
     It is the derivative of the implicit function, which says nothing of the search.
     """
     y = checkpoint_name(root, _ROOT)
-    _, change = jax.jvp(lambda *given: residual(y, *given), at, moved)
+    _, change = jax.jvp(lambda *numbers: residual(y, *numbers), at, changes)
     return y, -solve(jax.jacfwd(residual)(y, *at), change[:, None])[:, 0]
 
 
@@ -83,15 +83,15 @@ def run_nodes(step: Step, begin: Any, controls: Array | None, sizes: tuple[int, 
     (steps, every), advance = sizes, _advance_of(step)
 
     def stretch(node: Any, rows: Array | None) -> tuple[Any, Any]:
-        node = advance(node, (rows, None))[0] if every == 1 else _advanced(advance, node, rows, every, work)
+        node = advance(node, (rows, None))[0] if every == 1 else _take_steps(advance, node, rows, every, work)
         return node, node
 
     if every == 1:
         return jax.lax.scan(stretch, begin, controls, length=steps + 1)[1]
     first, _ = advance(begin, (None if controls is None else controls[0], None))
-    saved = steps // every
-    rows = None if controls is None else controls[1 : 1 + saved * every].reshape(saved, every, -1)
-    _, later = jax.lax.scan(stretch, first, rows, length=saved)
+    count = steps // every
+    rows = None if controls is None else controls[1 : 1 + count * every].reshape(count, every, -1)
+    _, later = jax.lax.scan(stretch, first, rows, length=count)
     return jax.tree.map(lambda one, more: jnp.concatenate([one[None], more]), first, later)
 
 
@@ -100,18 +100,18 @@ def _advance_of(step: Step) -> _Advance:
 
     def advance(node: Any, row: tuple[Array | None, Array | None]) -> tuple[Any, None]:
         control, acts = row
-        found = step(*node.after, node.y, control)
+        following = step(*node.after, node.y, control)
         acts = jnp.asarray(True) if acts is None else acts
-        code = jnp.where((node.code == 0) & acts, found.code, node.code)
-        kept = jax.tree.map(lambda new, old: jnp.where((code == 0) & acts, new, old), found, node)
-        cause = jnp.where(node.code == code, node.cause, found.cause)
-        return kept._replace(code=code, cause=cause), None
+        code = jnp.where((node.code == 0) & acts, following.code, node.code)
+        last = jax.tree.map(lambda new, old: jnp.where((code == 0) & acts, new, old), following, node)
+        cause = jnp.where(node.code == code, node.cause, following.cause)
+        return last._replace(code=code, cause=cause), None
 
-    kept = jax.checkpoint_policies.save_only_these_names(_ROOT)
-    return jax.checkpoint(advance, prevent_cse=False, policy=kept)
+    policy = jax.checkpoint_policies.save_only_these_names(_ROOT)
+    return jax.checkpoint(advance, prevent_cse=False, policy=policy)
 
 
-def _advanced(advance: _Advance, node: Any, controls: Array | None, steps: int, work: Array | None) -> Any:
+def _take_steps(advance: _Advance, node: Any, controls: Array | None, steps: int, work: Array | None) -> Any:
     """Take steps; many of them in stretches whose insides reverse mode computes once more."""
     if steps <= _SHORT:
         return jax.lax.scan(advance, node, (controls, None), length=steps)[0]
@@ -121,12 +121,14 @@ def _advanced(advance: _Advance, node: Any, controls: Array | None, steps: int, 
     if controls is not None:
         controls = jnp.pad(controls, ((0, number * each - steps), (0, 0))).reshape(number, each, -1)
     stretch = jax.checkpoint(lambda node, rows: jax.lax.scan(advance, node, rows), prevent_cse=False)
-    inner = _wanted(stretch, work, each)
-    whole = _wanted(lambda node, rows: jax.lax.scan(lambda *part: (inner(*part)[0], None), node, rows), work, steps)
+    inner = _unless_over(stretch, work, each)
+    whole = _unless_over(
+        lambda node, rows: jax.lax.scan(lambda *part: (inner(*part)[0], None), node, rows), work, steps
+    )
     return whole(node, (controls, acts))[0]
 
 
-def _wanted(take: _Advance, work: Array | None, steps: int) -> _Advance:
+def _unless_over(take: _Advance, work: Array | None, steps: int) -> _Advance:
     """Return a function that takes many steps, or none where nobody wants them any more."""
     if work is None or steps < _MANY:
         return take

@@ -7,18 +7,14 @@ from typing import Annotated
 import typer
 
 from nonholo import __version__
-from nonholo.cli.commands.about.cite import cite
-from nonholo.cli.commands.about.examples import examples
-from nonholo.cli.commands.about.new import new
-from nonholo.cli.commands.about.systems import systems
+from nonholo.cli.commands.about import cite, examples, new, systems
 from nonholo.cli.commands.dataset import dataset
 from nonholo.cli.commands.explore import explore
 from nonholo.cli.commands.export import export
-from nonholo.cli.commands.extend import extend
 from nonholo.cli.commands.info import info
 from nonholo.cli.commands.paper import paper
 from nonholo.cli.commands.plot import plot
-from nonholo.cli.commands.resume import resume
+from nonholo.cli.commands.resume import extend, resume
 from nonholo.cli.commands.simulate import simulate
 from nonholo.cli.commands.sweep import sweep
 
@@ -50,8 +46,8 @@ def _stop_as_by_ctrl_c() -> None:
                 signal.signal(number, signal.default_int_handler)
 
 
-def _show_version(wanted: bool) -> None:
-    if wanted:
+def _show_version(is_asked: bool) -> None:
+    if is_asked:
         typer.echo(f"nonholo {__version__}")
         raise typer.Exit
 
@@ -65,6 +61,7 @@ def describe(
     """Nonholonomic mechanics on Lie groups: simulate tops and sleighs, keep the runs, look at them.
 
     nonholo simulate suslov             run a built-in scenario
+    nonholo simulate snakeboard         run a system of the literature
     nonholo new sleigh > my.toml        write a commented scenario to edit
     nonholo simulate my.toml            run it; the result is kept under runs/
     nonholo sweep sweep.toml            many motions: a grid or random draws
@@ -73,6 +70,6 @@ def describe(
     nonholo explore suslov              the live page, in the browser
     nonholo export run.zarr -o run.csv  its poses, for other programs
     nonholo resume run.zarr             resume what stopped, run or sweep
-    nonholo examples                    systems of the literature, with facts
+    nonholo examples                    what is known of those systems
     nonholo paper                       the paper behind it, recomputed
     """

@@ -2,7 +2,6 @@
 
 from nonholo.continuous._closed_form import closed_form
 from nonholo.continuous._equations import ContinuousFlow, vector_field
-from nonholo.continuous._members import has_series, members_by_series
-from nonholo.continuous._methods import solver_of
+from nonholo.continuous._series import flow_tangents
 from nonholo.continuous._solution import Solved, States
-from nonholo.continuous._tangent import flow_tangents
+from nonholo.continuous._solvers import has_series, members_by_series, solver_of

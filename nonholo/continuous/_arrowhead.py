@@ -28,13 +28,13 @@ def momenta_by_series(
 ) -> Solved:
     """Solve for the momenta of a top or sleigh, without its pose; times elapse from zero."""
     form, tolerance = cast(NormalForm, system.normal_form), tolerances[0] * GUARD
-    f, x = equations(form)[0], encoded(form, reduced_momentum)
+    f, x = equations(form)[0], encode(form, reduced_momentum)
     unit = power_of_two(np.append(np.sqrt(f.rates) * x, f.rates.max() * (f.coupling @ x)))
     start, end = np.zeros((2, len(x) + 1)), float(elapsed[-1]) * unit
     start[0, :-1] = x / unit
     rows, nodes = solve_arrowhead(f, start, elapsed[1:] * unit, end, tolerance)
     outcome = Outcome.successful if len(rows) == len(elapsed) - 1 else Outcome.not_converged
-    states = States(decoded(form, np.vstack([start[0, :-1], rows]) * unit), None, None)
+    states = States(decode(form, np.vstack([start[0, :-1], rows]) * unit), None, None)
     at = functools.partial(_between, form, nodes, unit, end, tolerance)
     ends = [*(node[0, -1] for node in nodes), end]
     return Solved(states, outcome, at, functools.partial(looked_at, ends, unit))
@@ -48,7 +48,7 @@ def _between(
     backward = np.copysign(1.0, end)
     after = np.maximum(np.searchsorted(backward * begins, backward * times) - 1, 0)
     parts = (solve_arrowhead(f, nodes[node], times[after == node], end, tolerance)[0] for node in np.unique(after))
-    return States(decoded(form, np.concatenate([np.empty((0, len(f.rates))), *parts]) * unit), None, None)
+    return States(decode(form, np.concatenate([np.empty((0, len(f.rates))), *parts]) * unit), None, None)
 
 
 def equations(form: NormalForm) -> tuple[Arrowhead, Float[np.ndarray, "k"]]:
@@ -61,7 +61,7 @@ def equations(form: NormalForm) -> tuple[Arrowhead, Float[np.ndarray, "k"]]:
     return f, np.append(np.sqrt(D), slide)
 
 
-def encoded(form: NormalForm, momentum: Float[np.ndarray, "k"]) -> Float[np.ndarray, "k"]:
+def encode(form: NormalForm, momentum: Float[np.ndarray, "k"]) -> Float[np.ndarray, "k"]:
     """Return the numbers of the kernel from canonical momenta."""
     r = momentum if form.frame_map is None else form.frame_map @ momentum
     if form.is_sleigh:
@@ -69,7 +69,7 @@ def encoded(form: NormalForm, momentum: Float[np.ndarray, "k"]) -> Float[np.ndar
     return form.to_principal(r) / equations(form)[1]
 
 
-def decoded(form: NormalForm, rows: Float[np.ndarray, "K k"]) -> Float[np.ndarray, "K k"]:
+def decode(form: NormalForm, rows: Float[np.ndarray, "K k"]) -> Float[np.ndarray, "K k"]:
     """Return canonical momenta from the numbers of the kernel."""
     momenta = form.from_principal(rows * equations(form)[1])
     if form.is_sleigh:

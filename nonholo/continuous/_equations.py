@@ -91,10 +91,10 @@ class ContinuousFlow(AbstractMotion):
             remedy = "Solve it again: flow(orbit.system, ...)."
             raise error("Orbit.at(...)", "know more than its states", "a flow from a file", remedy)
         time, order = times_within(self.span, times)
-        found = self.solution(time[order] - self.span[0]).chosen(np.argsort(order))
-        rows: dict[str, Any] = {"reduced_momentum": found.momenta}
+        there = self.solution(time[order] - self.span[0]).chosen(np.argsort(order))
+        rows: dict[str, Any] = {"reduced_momentum": there.momenta}
         if states.canonical_pose is not None:
-            rows |= {"canonical_pose": found.poses, "turned": found.turned}
+            rows |= {"canonical_pose": there.poses, "turned": there.turned}
         return dataclasses.replace(states, time=time, **rows, save_every=1, events=None, step=np.arange(len(time)))
 
     def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
@@ -221,10 +221,10 @@ def vector_field(
         r, g = state[..., :k], xp.reshape(state[..., k:], (*state.shape[:-1], *shape))
         if body is None:
             velocity = spatial_velocity(group, S, system.homogeneous_mass_tensor, r, g)
-            rate, moved = xp.zeros_like(r), group.hat(velocity) @ g
+            rate, pose_rate = xp.zeros_like(r), group.hat(velocity) @ g
         else:
             rate, velocity, _ = momentum_rate(group, body, r)
-            moved = g @ group.hat(velocity)
-        return xp.concatenate([rate, xp.reshape(moved, (*state.shape[:-1], -1))], axis=-1)
+            pose_rate = g @ group.hat(velocity)
+        return xp.concatenate([rate, xp.reshape(pose_rate, (*state.shape[:-1], -1))], axis=-1)
 
     return derivative

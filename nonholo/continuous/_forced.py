@@ -1,26 +1,38 @@
-r"""The continuous motion under any forces, by Runge-Kutta methods of SciPy, and the reaction of the constraint.
+r"""The continuous motion under forces, by Taylor series or by Runge-Kutta methods; the reaction of the constraint.
 
 With E(g) the admissible body directions ($S^T$, or $\mathrm{Ad}_{g^{-1}}S^T$ of a constraint fixed in space) and
 $f = -dU + f(t, g, \omega)$
 
 $$ \dot r = S\,\mathrm{ad}^*_\omega p + E^Tf \quad\text{(left)}, \qquad \dot r = E^Tf \quad\text{(right)}, \qquad
    \dot g = g\hat\omega, \quad \omega = E(E^T\mathbb{I}E)^{-1}r. $$
+
+Under weights and friction the equations of the series stay quadratic. A potential that is linear in the entries of the
+pose acts along the constraint by $Lu$, where constant vectors F in space are seen from the body as $u = g^TF$. With a
+constant c = 1
+
+$$ r' = S\,\mathrm{ad}^*_\omega p + c\,(Lu - Cw), \qquad u' = \sum_a w_a\hat S_a^Tu, \qquad c' = 0 : $$
+
+rates of (r, u, c) are quadratic in (w, u, c), as those of r are in w. So (r, u, c) are solved for as momenta of a free
+motion are; in another unit of time all of them are divided by one number.
 """
 
 import contextlib
+import functools
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy  # its parts load on first use
 
-from nonholo.base.calls import noted
+from nonholo.base.calls import note_fault
 from nonholo.base.checks import error, is_traced, number, trailing
 from nonholo.base.numerics import applied
 from nonholo.base.progress import late_bar
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
+from nonholo.continuous._series import body_equations, body_numbers, solve
 from nonholo.continuous._solution import PLANE, Solved, States, first_heading, on_same_turn
+from nonholo.kernels import Quadratic
 from nonholo.orbit import Orbit
 from nonholo.systems import Forced
 
@@ -29,6 +41,100 @@ _LEAST_IMPLICIT = 1e-9  # relative, for some hundred steps of order 5
 _FIRST, _FEW, _MOST = 1000, 10_000, 10_000_000  # steps tried before any judgment, and in total
 _STABLE = 3.0  # half of h |lambda| at the bound of stability; smooth motions have less than 1
 _PARTS = 1000  # of the time, for progress
+_STIFF = 2e6  # of a flow, in times in which friction slows the body down: a step of the series has about five
+
+
+class LinearForces(NamedTuple):
+    """What acts along the canonical rows of the constraint.
+
+    Attributes:
+        vectors: F, vectors in space.
+        turns: The rates of a vector seen from the body, as a matrix for each velocity.
+        levers: L.
+        friction: C.
+        velocities: V of w = V r.
+        fastest: The largest rate at which friction alone slows the body down.
+    """
+
+    vectors: Float[np.ndarray, "p N"]
+    turns: Float[np.ndarray, "k n n"]
+    levers: Float[np.ndarray, "k m"]
+    friction: Float[np.ndarray, "k k"]
+    velocities: Float[np.ndarray, "k k"]
+    fastest: float
+
+
+def _are_linear(forced: Forced) -> bool:
+    """Tell whether all that acts is friction and a potential linear in the pose, and the constraint is in the body."""
+    others = forced.function is not None or forced.table is not None or forced.is_spatial
+    return not others and (forced.potential is None or hasattr(forced.potential, "levers"))
+
+
+@functools.lru_cache(maxsize=16)
+def _linear_forces(forced: Forced) -> LinearForces:
+    """Return what acts, seen from the canonical frame."""
+    group, body, rows = forced.group, forced.canonical, forced.frame_map @ np.asarray(forced.constraint_subspace)
+    n = group.size - group.is_affine  # points have the last number 1, and levers none for it
+    vectors, levers = np.zeros((0, group.size)), np.zeros((group.dim, 0, group.size))
+    if forced.potential is not None:
+        vectors, levers = forced.potential.levers(group)
+        vectors, levers = vectors.reshape(-1, group.size), levers.reshape(group.dim, -1, group.size)
+    body_levers = np.tensordot(rows, levers, 1) @ np.linalg.inv(forced.frame).T
+    C = np.zeros((group.dim, group.dim)) if forced.friction is None else forced.friction.matrix
+    V, _ = body_numbers(group, body.constraint_subspace, body.inertia_operator)
+    friction, turns = rows @ C @ rows.T, group.hat(body.constraint_subspace).swapaxes(-1, -2)[:, :n, :n]
+    fastest = np.linalg.eigvals(V @ friction).real.max(initial=0.0)
+    return LinearForces(
+        vectors, turns, body_levers[..., :n].reshape(len(rows), n * len(vectors)), friction, V, float(fastest)
+    )
+
+
+@functools.lru_cache(maxsize=16)
+def quadratic_under(forced: Forced) -> Quadratic:
+    """Return the equations of momenta, vectors seen from the body, and the constant behind the pose."""
+    body, acting = forced.canonical, _linear_forces(forced)
+    S, (k, m) = body.constraint_subspace, acting.levers.shape
+    velocities, torques = np.eye(k + m + 1), np.zeros((k + m + 1,) * 3)
+    velocities[:k, :k], torques[:k, :k, :k] = body_numbers(body.group, S, body.inertia_operator)
+    torques[-1, :k, :k], torques[-1, k:-1, :k] = -acting.friction.T, acting.levers.T
+    torques[:k, k:-1, k:-1] = np.kron(np.eye(len(acting.vectors)), acting.turns).swapaxes(-1, -2)
+    return body_equations(body.group, S, velocities, torques, (k, m, 1))
+
+
+def heads(
+    forced: Forced, momenta: Float[np.ndarray, "M k"], poses: Float[np.ndarray, "M size"]
+) -> tuple[Float[np.ndarray, "M K"], Float[np.ndarray, "M"]]:
+    """Return momenta, vectors seen from the body and the constant at starts, divided by the unit of time, and this."""
+    acting, one = _linear_forces(forced), np.ones((len(momenta), 1))
+    V, n = acting.velocities, acting.turns.shape[-1]
+    body_vectors = (acting.vectors @ forced.group.matrix_from_pose(poses))[..., :n].reshape(len(momenta), -1)
+    pull, rub = (np.abs(V @ acts).max(initial=0.0) for acts in (acting.levers, acting.friction))
+    rates = np.concatenate([applied(V, momenta), np.sqrt(pull * np.abs(body_vectors)), rub * one], axis=1)
+    units = np.ldexp(1.0, np.frexp(np.abs(rates).max(axis=1))[1])  # as `power_of_two` of each
+    return np.concatenate([momenta, body_vectors, one], axis=1) / units[:, None], units
+
+
+def has_series_under(forced: Forced, span: float) -> bool:
+    """Tell whether the flow over a time is solved by series: not where friction is much faster."""
+    return _are_linear(forced) and bool(abs(span) * _linear_forces(forced).fastest <= _STIFF)
+
+
+def under_forces(
+    forced: Forced,
+    begins: float,
+    reduced_momentum: Float[np.ndarray, "k"],
+    pose: Float[np.ndarray, "size"],
+    elapsed: Float[np.ndarray, "K"],
+    tolerances: tuple[float, float],
+) -> Solved:
+    """Solve the equations of a system with forces from the time `begins` on, by series where they serve."""
+    if not has_series_under(forced, elapsed[-1]):
+        start = forced, begins, reduced_momentum, pose
+        return by_runge_kutta(*start, elapsed, tolerances, is_stiff=_are_linear(forced))
+    (head,), (unit,) = heads(forced, reduced_momentum[None], pose[None])
+    f, rank = quadratic_under(forced), forced.rank
+    solution = solve(forced.group, f, head, rank, None, float(unit), pose, elapsed, tolerances, _MOST)
+    return solution if solution.outcome == Outcome.successful else solution._replace(outcome=Outcome.too_stiff)
 
 
 def by_runge_kutta(
@@ -49,17 +155,17 @@ def by_runge_kutta(
     group, k = forced.group, forced.rank
     r, g = forced.from_canonical(reduced_momentum), group.matrix_from_pose(pose) @ group.inverse(forced.frame)
     start = np.concatenate([r, g.ravel(), first_heading(group, pose)])
-    said: dict[str, str] = {}
-    field, rtol = _field(forced, begins, k, said), max(_LEAST_IMPLICIT if is_stiff else _LEAST_RTOL, tolerances[0])
+    faults: dict[str, str] = {}
+    field, rtol = _field(forced, begins, k, faults), max(_LEAST_IMPLICIT if is_stiff else _LEAST_RTOL, tolerances[0])
     nodes, pieces, outcome = _steps(field, start, float(elapsed[-1]), rtol, is_stiff=is_stiff)
 
     def at(times: Float[np.ndarray, "K"]) -> States:
         whole = scipy.integrate.OdeSolution(nodes, pieces) if pieces else lambda t: np.tile(start[:, None], len(t))
         return _states(forced, whole(times).T)
 
-    reached = elapsed[np.abs(elapsed) <= abs(nodes[-1])]
-    why = " ".join(said.values()) if outcome == Outcome.nonfinite else ""
-    return Solved(at(reached), outcome, at, lambda: np.array(nodes[:-1]), why)
+    good_times = elapsed[np.abs(elapsed) <= abs(nodes[-1])]
+    why = " ".join(faults.values()) if outcome == Outcome.nonfinite else ""
+    return Solved(at(good_times), outcome, at, lambda: np.array(nodes[:-1]), why)
 
 
 def _steps(
@@ -77,19 +183,28 @@ def _steps(
         method = scipy.integrate.Radau if is_stiff else scipy.integrate.DOP853
         solver: Any = method(field, 0.0, start, end, rtol=rtol, atol=_SHARE * rtol) if end else None
         while solver is not None and solver.status == "running":
-            asked = solver.nfev
+            before = solver.nfev
             solver.step()
-            needed = 1 if is_stiff else (solver.nfev - asked) // solver.n_stages
+            attempts = 1 if is_stiff else (solver.nfev - before) // solver.n_stages
             if solver.status == "failed":
-                last = solver.f if is_stiff else solver.K
-                return nodes, pieces, Outcome.not_converged if np.isfinite(last).all() else Outcome.nonfinite
-            tries, vain = tries + needed, vain + needed - 1 + (not is_stiff and _is_short(solver))
+                return nodes, pieces, _failure(solver.f if is_stiff else solver.K)
+            tries, vain = tries + attempts, vain + attempts - 1 + (not is_stiff and _is_short(solver))
             nodes.append(solver.t)
             pieces.append(solver.dense_output())
             report(int(_PARTS * solver.t / end), _PARTS)
-            if tries > _FIRST and tries * end / solver.t > (_FEW if vain > tries / 3 else _MOST):
+            if tries > _FIRST and tries * end / solver.t > _most(tries, vain):
                 return nodes, pieces, Outcome.too_stiff
     return nodes, pieces, Outcome.successful
+
+
+def _failure(rates: np.ndarray) -> Outcome:
+    """Return why a step with these last rates failed."""
+    return Outcome.not_converged if np.isfinite(rates).all() else Outcome.nonfinite
+
+
+def _most(tries: int, vain: int) -> int:
+    """Return how many steps are too many, by those so far and those of them in vain."""
+    return _FEW if vain > tries / 3 else _MOST
 
 
 def _is_short(solver: Any) -> bool:
@@ -125,7 +240,7 @@ def _refuse_table(owner: str, forced: Forced) -> None:
 
 
 def _field(
-    forced: Forced, begins: float, k: int, said: dict[str, str] | None
+    forced: Forced, begins: float, k: int, faults: dict[str, str] | None
 ) -> Callable[[float, np.ndarray], np.ndarray]:
     """Return the right-hand side: momenta along the rows of the user, the pose row by row, the heading in the plane.
 
@@ -135,18 +250,18 @@ def _field(
 
     def derivative(time: float, state: np.ndarray) -> np.ndarray:
         xp = state.__array_namespace__()
-        if said is not None and not np.isfinite(state).all():
+        if faults is not None and not np.isfinite(state).all():
             return np.full_like(state, np.nan)
         g = state[k : k + N * N].reshape(N, N)
         E = forced.directions(g)
         velocity = E @ xp.linalg.solve(E.T @ inertia @ E, state[:k])
         force = np.full(group.dim, np.nan)
-        with contextlib.nullcontext() if said is None else noted(said, "force"):
+        with contextlib.nullcontext() if faults is None else note_fault(faults, "force"):
             force = forced.potential_force(g) + forced.applied_force(begins + time, g, velocity)
         if not forced.is_spatial:
             force = force + group.coad(velocity, inertia @ velocity)
-        moved = g @ group.hat(velocity)
-        return xp.concatenate([E.T @ force, moved.ravel(), velocity[: len(state) - k - N * N]])
+        pose_rate = g @ group.hat(velocity)
+        return xp.concatenate([E.T @ force, pose_rate.ravel(), velocity[: len(state) - k - N * N]])
 
     return derivative
 
@@ -155,8 +270,8 @@ def _states(forced: Forced, rows: Float[np.ndarray, "K size"]) -> States:
     group, k, N = forced.group, forced.rank, forced.group.size
     g = rows[:, k : k + N * N].reshape(-1, N, N)
     poses = group.normalize_pose(group.pose_from_matrix(g @ forced.frame))
-    turned = on_same_turn(rows[:, -1], poses) if group == PLANE else None
-    return States(forced.to_canonical(rows[:, :k]), poses, turned)
+    headings = on_same_turn(rows[:, -1], poses) if group == PLANE else None
+    return States(forced.to_canonical(rows[:, :k]), poses, headings)
 
 
 def forced_reaction(forced: Forced, states: Orbit) -> Float[np.ndarray, "K dim"]:

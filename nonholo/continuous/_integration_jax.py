@@ -31,10 +31,10 @@ def integrate_by_diffrax(
     planar = system.group == PLANE
     start = (reduced_momentum, pose, first_heading(system.group, pose))
     if system.is_spatial:
-        rate, known = _spatial_rate, (system.constraint_subspace, system.homogeneous_mass_tensor)
+        rate, numbers = _spatial_rate, (system.constraint_subspace, system.homogeneous_mass_tensor)
     else:
-        rate, known = _motion_rate, body_of(system)
-    rows, outcome = _solve(rate, system.group, start, known, elapsed, tolerances)
+        rate, numbers = _motion_rate, body_of(system)
+    rows, outcome = _solve(rate, system.group, start, numbers, elapsed, tolerances)
     momenta, poses, headings = rows
     poses = system.group.normalize_pose(poses)
     at = functools.partial(_solved_again, system, reduced_momentum, pose, tolerances)
@@ -52,39 +52,39 @@ def _solved_again(
 
 def _motion_rate(group: AbstractMatrixGroup, time: Array, state: State, body: Body) -> State:
     del time
-    momentum, pose, turned = state
+    momentum, pose, heading = state
     rate, velocity, _ = momentum_rate(group, body, momentum)
-    return rate, group.pose_rate(pose, velocity), velocity[: turned.shape[0]]
+    return rate, group.pose_rate(pose, velocity), velocity[: heading.shape[0]]
 
 
-def _spatial_rate(group: AbstractMatrixGroup, time: Array, state: State, known: tuple[Array, Array]) -> State:
+def _spatial_rate(group: AbstractMatrixGroup, time: Array, state: State, numbers: tuple[Array, Array]) -> State:
     del time
-    momentum, pose, turned = state
+    momentum, pose, heading = state
     g = group.matrix_from_pose(pose)
-    spatial = spatial_velocity(group, *known, momentum, g)
+    spatial = spatial_velocity(group, *numbers, momentum, g)
     velocity = group.adjoint(group.inverse(g)) @ spatial
-    return jax.numpy.zeros_like(momentum), group.pose_rate(pose, velocity), velocity[: turned.shape[0]]
+    return jax.numpy.zeros_like(momentum), group.pose_rate(pose, velocity), velocity[: heading.shape[0]]
 
 
 def _solve(
     rate: Rate,
     group: AbstractMatrixGroup,
     state: State,
-    known: Any,
+    numbers: Any,
     elapsed: np.ndarray,
     tolerances: tuple[float, float],
 ) -> tuple[list[np.ndarray], Outcome]:
-    def solved() -> list[np.ndarray]:
+    def solve() -> list[np.ndarray]:
         with double_precision():
-            rest, good = _sweep(rate, group, state, known, padded(elapsed), tolerances)
+            rest, good = _sweep(rate, group, state, numbers, padded(elapsed), tolerances)
         return reached(state, rest, good, len(elapsed))
 
-    rows = interruptibly(solved)
+    rows = interruptibly(solve)
     return rows, Outcome.successful if len(rows[0]) == len(elapsed) else Outcome.not_converged
 
 
 @functools.partial(jax.jit, static_argnums=(0, 1))
 def _sweep(
-    rate: Rate, group: AbstractMatrixGroup, state: State, known: Any, elapsed: Array, tolerances: tuple[Array, Array]
+    rate: Rate, group: AbstractMatrixGroup, state: State, numbers: Any, elapsed: Array, tolerances: tuple[Array, Array]
 ) -> tuple[State, Array]:
-    return sweep(lambda time, current: rate(group, time, current, known), lambda end: end, state, elapsed, tolerances)
+    return sweep(lambda time, current: rate(group, time, current, numbers), lambda end: end, state, elapsed, tolerances)

@@ -6,6 +6,9 @@ $$ r' = S\,\mathrm{ad}^*_\omega\mathbb{I}\omega, \qquad g' = g\,\hat\omega, \qqu
 and with one fixed in space, where r is constant, tensor in space and pose
 $$ \mathbb{J}_g' = X\mathbb{J}_g + \mathbb{J}_g X^T, \qquad g' = X g, \qquad X = \sum_j w_j D_j,
    \quad \sum_j \mathrm{tr}(D_i\mathbb{J}_g D_j^*)\,w_j = r_i . $$
+
+Variations of momenta move as a pose does: the rates $\sum_{ab}T_{ab}w_aw_b$ change with r along
+$$ \delta r' = \sum_a w_a\sum_b(T_{ab} + T_{ba})(V\,\delta r)_b, \qquad w = Vr. $$
 """
 
 import dataclasses
@@ -16,9 +19,9 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
+from nonholo.base.checks import error
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.continuous._heteroclinic import Heteroclinic
 from nonholo.continuous._solution import PLANE, Solved, States, first_heading, on_same_turn
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.kernels import Quadratic, revisit_series, solve_series, sparse_products
@@ -71,19 +74,19 @@ class Series:
     def __call__(self, elapsed: Float[np.ndarray, "K"]) -> States:
         """Return the states at times since the start, which lie in the order in which the motion was solved."""
         limits = self.end * self.unit, self.tolerance
-        return self.decoded(revisit_series(self.equations, self.nodes, elapsed * self.unit, *limits))
+        return self.decode(revisit_series(self.equations, self.nodes, elapsed * self.unit, *limits))
 
     def looks(self) -> Float[np.ndarray, "looks"]:
         """Return times since the start at which the state is looked at for events."""
         return looked_at([*self.nodes[:, 0, -1], self.end * self.unit], self.unit)
 
-    def decoded(self, rows: Float[np.ndarray, "K size"]) -> States:
+    def decode(self, rows: Float[np.ndarray, "K size"]) -> States:
         """Return momenta, poses and headings."""
         group, end = self.group, rows.shape[1] - self.head
         pose_end = end - (group == PLANE)
-        found = np.ascontiguousarray(rows[:, :pose_end])
-        matrices = found.reshape(-1, *group.identity.shape) if not self.compact else None
-        poses = group.normalize_pose(found if matrices is None else group.pose_from_matrix(matrices))
+        numbers = np.ascontiguousarray(rows[:, :pose_end])
+        matrices = numbers.reshape(-1, *group.identity.shape) if not self.compact else None
+        poses = group.normalize_pose(numbers if matrices is None else group.pose_from_matrix(matrices))
         momenta = (
             rows[:, end : end + self.rank] * self.unit
             if self.momentum is None
@@ -107,30 +110,7 @@ def by_series(
     else:
         unit = power_of_two(f.velocities @ reduced_momentum)
         head = reduced_momentum / unit
-    return solved(system.group, f, head, len(reduced_momentum), constant, unit, pose, elapsed, tolerances)
-
-
-def pose_by_series(
-    group: AbstractMatrixGroup,
-    motion: Heteroclinic,
-    to_velocity: Float[np.ndarray, "2 dim"],
-    pose: Float[np.ndarray, "size"],
-    elapsed: Float[np.ndarray, "K"],
-    tolerances: tuple[float, float],
-) -> Solved:
-    r"""Solve for the poses of a body whose momentum is known in closed form.
-
-    In place of the momenta stand sech s and tanh s, whose rates are $-\nu\,\mathrm{sech}\,s\tanh s$ and
-    $\nu\,\mathrm{sech}^2 s$.
-    """
-    velocities = np.stack([motion.across, motion.along]) @ to_velocity
-    unit = power_of_two(np.append(velocities, motion.rate))
-    torques = np.zeros((2, 2, 2))
-    torques[0, 1, 0], torques[0, 0, 1] = -motion.rate / unit, motion.rate / unit
-    decay = np.exp(-abs(motion.start))
-    head = np.array([2 * decay / (1 + decay * decay), np.tanh(motion.start)])
-    f = body_equations(group, velocities / unit, np.eye(2), torques)
-    return solved(group, f, head, len(head), None, unit, pose, elapsed, tolerances)
+    return solve(system.group, f, head, len(reduced_momentum), constant, unit, pose, elapsed, tolerances)
 
 
 def is_compact(group: AbstractMatrixGroup) -> bool:
@@ -143,7 +123,7 @@ def power_of_two(velocities: np.ndarray) -> float:
     return math.ldexp(1.0, math.frexp(np.abs(velocities).max(initial=0.0))[1])
 
 
-def solved(
+def solve(
     group: AbstractMatrixGroup,
     f: Quadratic,
     head: np.ndarray,
@@ -162,7 +142,7 @@ def solved(
     rows, nodes = solve_series(f, start, elapsed * unit, tolerance, most)
     series = Series(group, f, len(head), rank, compact, constant, unit, tolerance, float(elapsed[-1]), nodes)
     outcome = Outcome.successful if len(rows) == len(elapsed) else Outcome.not_converged
-    return Solved(series.decoded(rows), outcome, series, series.looks)
+    return Solved(series.decode(rows), outcome, series, series.looks)
 
 
 @functools.lru_cache(maxsize=16)
@@ -193,7 +173,7 @@ def body_equations(
     rates = _compact_rates(group, S) if is_compact(group) else _matrix_rates(group.hat(S), False)
     if group == PLANE:
         rates = rates._replace(lone=np.concatenate([rates.lone, S[:, :1]], axis=1))
-    return assembled(velocities, rates, torques, parts)
+    return assemble(velocities, rates, torques, parts)
 
 
 def _space_equations(group: AbstractMatrixGroup, S: np.ndarray, tensor: np.ndarray) -> Quadratic:
@@ -208,11 +188,11 @@ def _space_equations(group: AbstractMatrixGroup, S: np.ndarray, tensor: np.ndarr
     lone[:, N * N : J] = S[:, :1]
     rates = Rates(np.stack([np.tile(a, 3), sources, targets]), np.tile(values, 3), lone)
     forms = np.einsum("apq,brp->abqr", hats, group.form_adjoint(hats)).reshape(len(S), len(S), N * N)
-    made = assembled(np.eye(len(S)), rates, np.zeros((0, 0, 0)))
-    return made._replace(forms=forms, tensor=np.ascontiguousarray(tensor))
+    equations = assemble(np.eye(len(S)), rates, np.zeros((0, 0, 0)))
+    return equations._replace(forms=forms, tensor=np.ascontiguousarray(tensor))
 
 
-def assembled(velocities: np.ndarray, rates: Rates, torques: np.ndarray, parts: Sequence[int] = ()) -> Quadratic:
+def assemble(velocities: np.ndarray, rates: Rates, torques: np.ndarray, parts: Sequence[int] = ()) -> Quadratic:
     """Return equations of what moves by `rates` and of momenta behind it, with rates torques[a, b] w_a w_b.
 
     `parts` has the numbers of momenta that V mixes, and whose errors are measured together: by default that of all.
@@ -222,26 +202,26 @@ def assembled(velocities: np.ndarray, rates: Rates, torques: np.ndarray, parts: 
     places = np.arange(before) if not head else _side_by_side(k, before, a, b)
     b, m, i = (np.argsort(places)[x] for x in (b, m, i))
     # places in z: the velocities, the state
-    products, found = sparse_products(np.concatenate([a, d]), np.concatenate([b + k, o]), 8)
-    found = np.concatenate([c + 8 * products.shape[1], found])
+    products, index = sparse_products(np.concatenate([a, d]), np.concatenate([b + k, o]), 8)
+    index = np.concatenate([c + 8 * products.shape[1], index])
     targets, factors = np.concatenate([i, m, n + before]), np.concatenate([lone[c, i], values, torques[d, o, n]])
     rows = np.argsort(targets, kind="stable")
     first = np.searchsorted(targets[rows], np.arange(before + head + 1))
     momenta, ends = np.arange(before, before + head), np.cumsum(parts, dtype=np.int64)[:-1]  # each part in one block
-    part, turned = np.searchsorted(ends, np.arange(head), "right"), [np.roll(x, 1) for x in np.split(momenta, ends)]
+    part, cycles = np.searchsorted(ends, np.arange(head), "right"), [np.roll(x, 1) for x in np.split(momenta, ends)]
     o, n = (x[part[o] != part[n]] + before for x in (o, n))
-    edges = np.stack([np.concatenate([momenta, b, o]), np.concatenate([*turned, m, n])])
+    edges = np.stack([np.concatenate([momenta, b, o]), np.concatenate([*cycles, m, n])])
     order = np.append(places, momenta)
-    sparse = products, first, found[rows], factors[None, rows], order
+    sparse = products, first, index[rows], factors[None, rows], order
     nothing = np.zeros(0), np.zeros((0, 0)), np.zeros(0)
     return Quadratic(velocities, *sparse, *_blocks(before + head, edges, i), *nothing)
 
 
 def _side_by_side(k: int, size: int, velocities: np.ndarray, places: np.ndarray) -> np.ndarray:
     """Return an order of the components in which those stand together that the same velocities multiply."""
-    multiplied = np.zeros((k, size), dtype=np.bool_)
-    multiplied[velocities, places] = True
-    return np.lexsort(~multiplied[::-1])
+    is_multiplied = np.zeros((k, size), dtype=np.bool_)
+    is_multiplied[velocities, places] = True
+    return np.lexsort(~is_multiplied[::-1])
 
 
 def _compact_rates(group: AbstractMatrixGroup, S: np.ndarray) -> Rates:
@@ -270,7 +250,31 @@ def _blocks(size: int, edges: np.ndarray, lone: np.ndarray) -> tuple[np.ndarray,
 
     matrix = coo_array((np.ones(edges.shape[1]), tuple(edges)), (size, size))
     count, labels = connected_components(matrix, connection="strong")
-    closed, (sources, targets) = np.ones(count, dtype=np.bool_), labels[edges]
-    closed[targets[sources != targets]] = False
-    closed[labels[lone]] = False
-    return labels.astype(np.int64), closed
+    is_closed, (sources, targets) = np.ones(count, dtype=np.bool_), labels[edges]
+    is_closed[targets[sources != targets]] = False
+    is_closed[labels[lone]] = False
+    return labels.astype(np.int64), is_closed
+
+
+_TOLERANCE = 1e-12
+
+
+def flow_tangents(
+    where: str, system: AbstractSystem, momenta: Float[np.ndarray, "K k"], time: Float[np.ndarray, "K"]
+) -> Float[np.ndarray, "L k k"]:
+    """Return the derivative of each momentum by the one before, for restricted momenta of a flow."""
+    k = system.rank
+    V, torques = body_numbers(system.group, system.constraint_subspace, system.inertia_operator)
+    slopes = np.einsum("abn,bc->acn", torques + torques.swapaxes(0, 1), V)
+    a, c, n = np.nonzero(slopes)
+    column = np.arange(k)[:, None]
+    places = np.stack([np.broadcast_to(a, (k, len(a))), k * c + column, k * n + column]).reshape(3, -1)
+    f = assemble(V, Rates(places, np.tile(slopes[a, c, n], k), np.zeros((k, k * k))), torques)
+    out = np.empty((len(time) - 1, k, k))
+    for j, (r, step) in enumerate(zip(momenta, np.diff(time), strict=False)):
+        unit = power_of_two(V @ r)
+        rows, _ = solve_series(f, np.append(np.eye(k), r / unit), np.array([0.0, step * unit]), _TOLERANCE * GUARD)
+        if len(rows) < 2:
+            raise error(where, "be of a motion that can be integrated", f"none from state {j}", "Ask for closer times.")
+        out[j] = rows[1, : k * k].reshape(k, k)
+    return out

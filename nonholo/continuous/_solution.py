@@ -40,14 +40,14 @@ class Solved(NamedTuple):
         at: Gives the states at times since the start, up to the last good one, in the order of the requested times.
         steps: Gives where steps of the solver begin and, if they are long, times within; none if that says nothing of
             the motion.
-        said: What a function of the user did that ended it.
+        fault: What a function of the user did that ended it.
     """
 
     states: States
     outcome: Outcome
     at: Callable[[Float[np.ndarray, "K"]], States]
     steps: Callable[[], Float[np.ndarray, "steps"]] = lambda: np.zeros(0)
-    said: str = ""
+    fault: str = ""
 
 
 def first_heading(group: AbstractMatrixGroup, pose: Float[np.ndarray, "... size"]) -> Float[np.ndarray, "... j"]:

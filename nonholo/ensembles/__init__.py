@@ -5,7 +5,8 @@ from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._dataset import dataset
 from nonholo.ensembles._ensemble_task import EnsembleTask
 from nonholo.ensembles._family_task import FamilyTask
-from nonholo.ensembles._names import component_name
+from nonholo.ensembles._force_numbers import force_numbers
+from nonholo.ensembles._names import component_name, component_of
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.ensembles._sweep import load_sweep, resume, sweep
 from nonholo.ensembles.datasets import DEFINITIONS

@@ -9,12 +9,13 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from nonholo import io
-from nonholo.base.calls import called
+from nonholo.base.calls import call
 from nonholo.base.checks import array, count, error, flag, shown
 from nonholo.base.types import Float
 from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretization
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
+from nonholo.ensembles._force_numbers import force_numbers, is_force_number, with_force_numbers
 from nonholo.ensembles._names import OUTCOME, STARTS, checked_reductions, counted, start_component
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.io import unstored
@@ -37,7 +38,9 @@ class EnsembleTask:
     r"""Run the members of a design and keep some numbers of each.
 
     What the design does not name is as given here. Names of a design are parameters of the system, "time_step", a start
-    or one of its components, such as "restricted_velocity_0". A start need not be given if all of it is varied.
+    or one of its components, such as "restricted_velocity_0". A start need not be given if all of it is varied. Of a
+    system under forces they are also numbers of these, such as "gravity_force", "gravity_force_1", "friction" and
+    "slip_grip": such members run one by one.
 
     Reductions: "final_state" (restricted momentum, time, energy and compact pose of the last good state that is saved,
     and the number of good steps), "energy_drift" (of that state, relative), "limit_angle" (total turn of a plane
@@ -111,7 +114,13 @@ class EnsembleTask:
             refuse_forces(f"EnsembleTask(reductions={sorted(free)})", discrete.system)
 
     def __call__(self, block: MemberBlock) -> dict[str, Any]:
-        """Run a block of members and reduce it."""
+        """Run a block of members and reduce it; under forces that differ one by one."""
+        system = self.discrete.system
+        if of_forces := [name for name in block if is_force_number(system, name)]:
+            rest = {name: values for name, values in block.items() if name not in of_forces}
+            members = [dataclasses.replace(block, arrays=rest).part(i, i + 1) for i in range(block.count)]
+            systems = (with_force_numbers(system, {n: block[n][i] for n in of_forces}) for i in range(block.count))
+            return _joined([self._on(own)(member) for own, member in zip(systems, members, strict=True)])
         parameters = self._parameters(block)
         starts: dict[str, Any] = _rows_of_starts(self.start, block)
         run: Any = {"steps": self.steps, "save_every": self._every, "branch": self.branch}
@@ -124,7 +133,7 @@ class EnsembleTask:
             more = (
                 REDUCTIONS[reduction].function(batch)
                 if isinstance(reduction, str)
-                else called("EnsembleTask(reductions=...)", reduction, batch)
+                else call("EnsembleTask(reductions=...)", reduction, batch)
             )
             _add(found, more)
         return found
@@ -149,20 +158,29 @@ class EnsembleTask:
         """Refuse a design that names what the task does not know, no start, or several."""
         _check_starts(self.discrete, self.start, names)
         for name in names:
-            if name not in self._fields and name not in STARTS and start_component(name) is None:
-                kind, known = type(self.discrete.system).__name__, ", ".join(self._fields)
+            system = self.discrete.system
+            is_start = name in STARTS or start_component(name) is not None
+            if not (name in self._fields or is_start or is_force_number(system, name)):
+                kind, known = type(system).__name__, ", ".join([*self._fields, *force_numbers(system)])
                 remedy = f"{kind} has {known}; starts are {', '.join(STARTS)}."
                 raise error("sweep(design=...)", "name parameters of the system or starts", shown(name), remedy)
 
     def on_route_of(self, stored: dict[str, Any]) -> "EnsembleTask":
         """Return the task by the route that began a store, from the description of that one's task."""
+        return self._with(io.on_route_of(stored, self.discrete))
+
+    def _on(self, system: Any) -> "EnsembleTask":
+        return self._with(dataclasses.replace(self.discrete, system=system))
+
+    def _with(self, discrete: Discretization) -> "EnsembleTask":
         task = copy.copy(self)
-        object.__setattr__(task, "discrete", io.on_route_of(stored, self.discrete))
+        object.__setattr__(task, "discrete", discrete)
         return task
 
     @property
     def _fields(self) -> list[str]:
-        return [*self.discrete.system.leaves, "inertia_operator", "time_step"]
+        system: Any = self.discrete.system
+        return [*(system.system if system.is_forced else system).leaves, "inertia_operator", "time_step"]
 
     def _parameters(self, block: MemberBlock) -> dict[str, Any]:
         """Return the parameters in which members differ."""
@@ -217,6 +235,16 @@ def _add(found: dict[str, Any], more: Any) -> None:
         if name in found:
             raise error("EnsembleTask(reductions=...)", "return each name once", shown(name), "Rename one.")
     found |= named
+
+
+def _joined(members: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return the rows of some members that were reduced one by one."""
+    together: dict[str, Any] = {}
+    for name, first in members[0].items():
+        rows = [each[name][1] if isinstance(first, tuple) else each[name] for each in members]
+        whole = np.concatenate([np.asarray(row) for row in rows])
+        together[name] = (first[0], whole, *first[2:]) if isinstance(first, tuple) else whole
+    return together
 
 
 def _check_starts(discrete: Discretization, start: Start | None, names: Sequence[str]) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.calls import called
+from nonholo.base.calls import call
 from nonholo.base.checks import count, error, function, instance, scale, shown
 from nonholo.discrete import discretize
 from nonholo.ensembles._block import MemberBlock
@@ -16,7 +16,7 @@ from nonholo.ensembles._describe import function_from, function_name
 from nonholo.ensembles._names import OUTCOME, checked_reductions, component_of, counted
 from nonholo.simulation import ensemble
 
-_LITERATURE, _READY, _FINAL = "nonholo.literature", "examples.", "final_state"
+_EXAMPLES, _READY, _FINAL = "nonholo.examples", "examples.", "final_state"
 _STEP, _STARTS = "time_step", ("configuration", "body_velocity")
 _OWN = (*_STARTS, _STEP)
 _STEPS, _MEMBERS = 1 << 20, 1 << 12  # at most in a block
@@ -143,7 +143,7 @@ class FamilyTask:
         found: dict[str, Any] = {OUTCOME: batch.outcome}
         for reduction in self.reductions:
             found |= (
-                _final_state(batch) if reduction == _FINAL else called("FamilyTask(reductions=...)", reduction, batch)
+                _final_state(batch) if reduction == _FINAL else call("FamilyTask(reductions=...)", reduction, batch)
             )
         return {name: _labeled(name, entry) for name, entry in found.items()}
 
@@ -168,7 +168,7 @@ def family_task_from(entry: dict[str, Any]) -> FamilyTask:
     own = name.removeprefix(_READY)
     if own != name and own not in _ready_names():
         raise ValueError(f"one of {name!r}, which is no ready system of this version")
-    family = function_from(name) if own == name else getattr(importlib.import_module(_LITERATURE), own)
+    family = function_from(name) if own == name else getattr(importlib.import_module(_EXAMPLES), own)
     reductions = [each if each == _FINAL else function_from(each) for each in entry["reductions"]]
     run = {name: entry[name] for name in ("time_step", "steps", "parameters", "save_every")}
     return FamilyTask(family, reductions=reductions, **run)
@@ -180,13 +180,13 @@ def imported_functions(entry: dict[str, Any]) -> list[str]:
 
 
 def _ready_names() -> set[str]:
-    return {*importlib.import_module(_LITERATURE).__all__} - {"Example"}
+    return {*importlib.import_module(_EXAMPLES).__all__} - {"Example"}
 
 
 def _family_name(family: Callable[..., Any]) -> str:
     name = function_name(family)
     own = name.partition(":")[2]
-    return f"{_READY}{own}" if name.startswith(f"{_LITERATURE}.") and own in _ready_names() else name
+    return f"{_READY}{own}" if name.startswith(f"{_EXAMPLES}.") and own in _ready_names() else name
 
 
 def _named(argument: str) -> str:

@@ -20,7 +20,7 @@ import jinja2
 
 from nonholo.base.checks import MissingExtraError, flags
 from nonholo.base.checks import path as checked_path
-from nonholo.base.kept import Keeper
+from nonholo.base.memo import Keeper
 from nonholo.base.results import Outcome
 from nonholo.explorer._kernel import kernel, kinds_beside
 from nonholo.explorer._motion import shown_motion, simulated

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.checks import generator, trailing
-from nonholo.base.kept import Keeper
 from nonholo.base.limits import within_memory
+from nonholo.base.memo import Keeper
 from nonholo.base.numerics import identity_like, integrated_exponential, inverted
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.groups._coordinates import AbstractCoordinates
@@ -144,11 +144,11 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
         r"""Return $X^* = G^{-1}X^TG$, the adjoint of a matrix in the form of the group; $X^T$ where there is none."""
         X = self._matrix(X, real=False)
         xp = X.__array_namespace__()
-        turned = xp.swapaxes(X, -1, -2)
+        transpose = xp.swapaxes(X, -1, -2)
         if self.form is None:
-            return turned
+            return transpose
         G, inverse = (xp.asarray(each, dtype=X.dtype) for each in (self.form, np.linalg.inv(self.form)))
-        return inverse @ turned @ G
+        return inverse @ transpose @ G
 
     def adjoint(self, g: Float[Array, "... N N"]) -> Float[Array, "... dim dim"]:
         r"""Return the matrix of $\mathrm{Ad}_g$: column i holds the coordinates of $g\,e_i\,g^{-1}$."""
@@ -164,8 +164,8 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
         """
         g, p = self._matrix(g), self._vector(p)
         xp = g.__array_namespace__()
-        turned = xp.swapaxes(g, -1, -2) @ self.coordinates.dual_matrix(p) @ xp.swapaxes(self.inverse(g), -1, -2)
-        return self.coordinates.dual_vector(turned)
+        spatial = xp.swapaxes(g, -1, -2) @ self.coordinates.dual_matrix(p) @ xp.swapaxes(self.inverse(g), -1, -2)
+        return self.coordinates.dual_vector(spatial)
 
     def bracket(self, x: Float[Array, "... dim"], y: Float[Array, "... dim"]) -> Float[Array, "... dim"]:
         """Return the Lie bracket, in coordinates, of the matrix commutator."""
@@ -184,8 +184,8 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
         For the matrix $P$ of the covector it is $[X^T, P]$, on so(n) $[P, X]$.
         """
         X, P = self.hat(x), self.coordinates.dual_matrix(self._vector(p))
-        transposed = X.__array_namespace__().swapaxes(X, -1, -2)
-        return self.coordinates.dual_vector(transposed @ P - P @ transposed)
+        transpose = X.__array_namespace__().swapaxes(X, -1, -2)
+        return self.coordinates.dual_vector(transpose @ P - P @ transpose)
 
     def _vector(self, x: Array) -> Array:
         where = f"{self!r} (coordinates)"

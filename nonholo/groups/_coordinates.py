@@ -49,13 +49,13 @@ class SeparatedCoordinates(AbstractCoordinates):
         columns: Int[np.ndarray, "dim entries"],
         values: Float[np.ndarray, "dim entries"],
     ) -> None:
-        used = values != 0
+        is_nonzero = values != 0
         self._rows, self._columns = rows.astype(np.int32), columns.astype(np.int32)  # JAX takes these in 32 bits too
         self._values = values
         self._owner = np.zeros((size, size), dtype=np.int32)
-        self._owner[rows[used], columns[used]] = np.nonzero(used)[0]
+        self._owner[rows[is_nonzero], columns[is_nonzero]] = np.nonzero(is_nonzero)[0]
         self._weight = np.zeros((size, size))
-        self._weight[rows[used], columns[used]] = values[used]
+        self._weight[rows[is_nonzero], columns[is_nonzero]] = values[is_nonzero]
         self._squares = np.sum(values * values, axis=1)
 
     def matrix(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
@@ -91,38 +91,38 @@ class DenseCoordinates(AbstractCoordinates):
 
     def matrix(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         r"""Return $\sum x_i E_i$."""
-        return _combined(x, self._basis)
+        return _combine(x, self._basis)
 
     def vector(self, X: Inexact[Array, "... N N"]) -> Inexact[Array, "... dim"]:
         r"""Return $x_i = \mathrm{tr}\,D_i^TX$."""
-        return _paired(X, self._dual)
+        return _pair(X, self._dual)
 
     def dual_matrix(self, p: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         r"""Return $\sum p_i D_i$."""
-        return _combined(p, self._dual)
+        return _combine(p, self._dual)
 
     def dual_vector(self, P: Inexact[Array, "... N N"]) -> Inexact[Array, "... dim"]:
         r"""Return $p_i = \mathrm{tr}\,E_i^TP$."""
-        return _paired(P, self._basis)
+        return _pair(P, self._basis)
 
 
 def coordinates_of(basis: Float[np.ndarray, "dim N N"]) -> AbstractCoordinates:
     """Return the coordinates of a basis: by picking entries, if no two matrices share one."""
-    occupied = basis != 0
-    if np.any(occupied.sum(axis=0) > 1):
+    is_nonzero = basis != 0
+    if np.any(is_nonzero.sum(axis=0) > 1):
         return DenseCoordinates(basis)
-    entries = int(occupied.sum(axis=(1, 2)).max())
-    flat = np.argsort(~occupied.reshape(len(basis), -1), axis=1, kind="stable")[:, :entries]
+    entries = int(is_nonzero.sum(axis=(1, 2)).max())
+    flat = np.argsort(~is_nonzero.reshape(len(basis), -1), axis=1, kind="stable")[:, :entries]
     rows, columns = np.unravel_index(flat, basis.shape[1:])
     values = np.take_along_axis(basis.reshape(len(basis), -1), flat, axis=1)
     return SeparatedCoordinates(basis.shape[1], rows, columns, values)
 
 
-def _combined(x: Array, matrices: np.ndarray) -> Array:
+def _combine(x: Array, matrices: np.ndarray) -> Array:
     flat = x.__array_namespace__().asarray(matrices.reshape(len(matrices), -1), dtype=x.dtype)
     return applied(flat.T, x).reshape(*x.shape[:-1], *matrices.shape[1:])
 
 
-def _paired(X: Array, matrices: np.ndarray) -> Array:
+def _pair(X: Array, matrices: np.ndarray) -> Array:
     flat = X.__array_namespace__().asarray(matrices.reshape(len(matrices), -1), dtype=X.dtype)
     return applied(flat, X.reshape(*X.shape[:-2], flat.shape[1]))

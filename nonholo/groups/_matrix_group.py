@@ -140,9 +140,9 @@ class MatrixGroup(AbstractMatrixGroup):
         if not isinstance(g, np.ndarray):
             return self.vee(principal_logarithm(g, _HALVINGS))
         where, X = f"{self!r}.log(g=...)", _checked_logarithm(g)
-        lost = np.isnan(X).any(axis=(-2, -1)) & np.isfinite(g).all(axis=(-2, -1))
-        if np.any(lost):
-            got = f"eigenvalues {np.linalg.eigvals(g[lost][0]).round(6).tolist()}"
+        is_missing = np.isnan(X).any(axis=(-2, -1)) & np.isfinite(g).all(axis=(-2, -1))
+        if np.any(is_missing):
+            got = f"eigenvalues {np.linalg.eigvals(g[is_missing][0]).round(6).tolist()}"
             raise error(where, "have a real principal logarithm", got, "Split g into factors nearer to the identity.")
         x = self.vee(X)
         gap = np.abs(X - self.hat(x)).max(axis=(-2, -1), initial=0.0)
@@ -182,13 +182,13 @@ class MatrixGroup(AbstractMatrixGroup):
         return xp.where(xp.isnan(gap), xp.inf, gap)
 
     def _form_residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
-        xp, turned = g.__array_namespace__(), self.form_adjoint(g)
-        size, other = (xp.maximum(xp.max(abs(X), axis=(-2, -1), keepdims=True), 1) for X in (g, turned))
-        g, turned, eye = g / size, turned / other, identity_like(g) / size / other
-        K = (g - turned * (other / size)) / 2
-        worst = xp.maximum(abs(turned @ g - eye), abs(K - self.hat(self.vee(K))))
-        known = (eye[..., 0, 0] > _KNOWN) & (xp.linalg.det(g) < 0)
-        return xp.where(known, 2.0, xp.max(worst, axis=(-2, -1)))
+        xp, adjoint = g.__array_namespace__(), self.form_adjoint(g)
+        size, other = (xp.maximum(xp.max(abs(X), axis=(-2, -1), keepdims=True), 1) for X in (g, adjoint))
+        g, adjoint, eye = g / size, adjoint / other, identity_like(g) / size / other
+        K = (g - adjoint * (other / size)) / 2
+        worst = xp.maximum(abs(adjoint @ g - eye), abs(K - self.hat(self.vee(K))))
+        is_negative = (eye[..., 0, 0] > _KNOWN) & (xp.linalg.det(g) < 0)
+        return xp.where(is_negative, 2.0, xp.max(worst, axis=(-2, -1)))
 
     def angle(self, x: Float[Array, "... dim"]) -> Float[Array, "..."]:
         """Return the largest imaginary part of an eigenvalue of `hat(x)`."""
@@ -229,12 +229,12 @@ def checked_basis(where: str, basis: Array) -> Float[np.ndarray, "dim N N"]:
     basis = array(where, basis, (None, None, None), "Pass the basis as an array of shape (dim, N, N).")
     if basis.shape[0] == 0 or basis.shape[1] != basis.shape[2]:
         raise error(where, "hold square matrices", f"shape {basis.shape}", "Pass an array of shape (dim, N, N).")
-    _independent(where, basis)
-    _closed(where, basis)
+    _check_independence(where, basis)
+    _check_closure(where, basis)
     return array(where, basis + 0.0, basis.shape)  # without negative zeros: equal bases have equal bytes
 
 
-def _independent(where: str, basis: np.ndarray) -> None:
+def _check_independence(where: str, basis: np.ndarray) -> None:
     lengths = np.linalg.norm(basis, axis=(1, 2))
     if not np.all(lengths > 0):
         got = f"a zero matrix at index {int(np.argmin(lengths))}"
@@ -247,7 +247,7 @@ def _independent(where: str, basis: np.ndarray) -> None:
         raise error(where, "be linearly independent", got, "Leave out matrices that the others span.")
 
 
-def _closed(where: str, basis: np.ndarray) -> None:
+def _check_closure(where: str, basis: np.ndarray) -> None:
     unit = basis / np.linalg.norm(basis, axis=(1, 2), keepdims=True)
     products = unit[:, None] @ unit[None]
     brackets = products - np.swapaxes(products, 0, 1)
@@ -272,12 +272,12 @@ def checked_form(where: str, basis: Float[np.ndarray, "dim N N"], form: Array) -
         got = f"singular values from {values[0]:.3g} to {values[-1]:.3g}"
         raise error(where, "be nondegenerate", got, "Leave it out: without it W^-1 is not linear in W.")
     unit = basis / np.linalg.norm(basis, axis=(1, 2), keepdims=True)
-    _preserved(where, unit, form / values[0])
+    _check_preservation(where, unit, form / values[0])
     _cubes_stay(where, unit)
     return array(where, form + 0.0, form.shape)
 
 
-def _preserved(where: str, unit: np.ndarray, form: np.ndarray) -> None:
+def _check_preservation(where: str, unit: np.ndarray, form: np.ndarray) -> None:
     residuals = np.abs(np.swapaxes(unit, 1, 2) @ form + form @ unit).max(axis=(1, 2))
     if residuals.max() > _CLOSED:
         worst = int(residuals.argmax())

@@ -78,23 +78,23 @@ class ProductGroup(AbstractMatrixGroup):
 
     def exp_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         """Return `exp(x)` minus the identity, without cancellation."""
-        return self._assembled(lambda factor, part: factor.exp_increment(part), self._vectors(x))
+        return self._assemble(lambda factor, part: factor.exp_increment(part), self._vectors(x))
 
     def log(self, g: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
         """Return the logarithms of the factors."""
-        return self._joined(lambda factor, block: factor.log(block), self._blocks(g))
+        return self._concatenate(lambda factor, block: factor.log(block), self._blocks(g))
 
     def cayley_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         """Return `cayley(x)` minus the identity, without cancellation."""
-        return self._assembled(lambda factor, part: factor.cayley_increment(part), self._vectors(x))
+        return self._assemble(lambda factor, part: factor.cayley_increment(part), self._vectors(x))
 
     def dexp_inverse(self, x: Float[Array, "... dim"]) -> Float[Array, "... dim dim"]:
         r"""Return the matrix of $\mathrm{dexp}_x^{-1}$, block-diagonal."""
-        return self._assembled(lambda factor, part: factor.dexp_inverse(part), self._vectors(x))
+        return self._assemble(lambda factor, part: factor.dexp_inverse(part), self._vectors(x))
 
     def inverse(self, g: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
         """Return the inverse of every block."""
-        return self._assembled(lambda factor, block: factor.inverse(block), self._blocks(g))
+        return self._assemble(lambda factor, block: factor.inverse(block), self._blocks(g))
 
     def residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
         """Return the largest residual of a factor, or the largest entry outside the blocks."""
@@ -117,20 +117,20 @@ class ProductGroup(AbstractMatrixGroup):
 
     def matrix_from_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... N N"]:
         """Return the block-diagonal matrix of the factors' poses."""
-        return self._assembled(lambda factor, part: factor.matrix_from_pose(part), self._poses(pose))
+        return self._assemble(lambda factor, part: factor.matrix_from_pose(part), self._poses(pose))
 
     def pose_from_matrix(self, g: Float[Array, "... N N"]) -> Float[Array, "... size"]:
         """Return the poses of the factors, one after another."""
-        return self._joined(lambda factor, block: factor.pose_from_matrix(block), self._blocks(g))
+        return self._concatenate(lambda factor, block: factor.pose_from_matrix(block), self._blocks(g))
 
     def normalize_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... size"]:
         """Return the normalized poses of the factors."""
-        return self._joined(lambda factor, part: factor.normalize_pose(part), self._poses(pose))
+        return self._concatenate(lambda factor, part: factor.normalize_pose(part), self._poses(pose))
 
     def pose_rate(self, pose: Float[Array, "... size"], x: Float[Array, "... dim"]) -> Float[Array, "... size"]:
         """Return the rates of the factors' poses."""
         pairs = zip(self._poses(pose), self._vectors(x), strict=True)
-        return self._joined(lambda factor, pair: factor.pose_rate(*pair), list(pairs))
+        return self._concatenate(lambda factor, pair: factor.pose_rate(*pair), list(pairs))
 
     def _cuts(self, name: str) -> list[int]:
         return list(accumulate(getattr(factor, name) for factor in self.factors))[:-1]
@@ -148,9 +148,9 @@ class ProductGroup(AbstractMatrixGroup):
         ends = [*self._cuts("size"), self.size]
         return [g[..., a:b, a:b] for a, b in zip([0, *ends], ends, strict=False)]
 
-    def _assembled(self, function: Callable[..., Array], parts: list[Array]) -> Array:
+    def _assemble(self, function: Callable[..., Array], parts: list[Array]) -> Array:
         return block_diagonal([function(factor, part) for factor, part in zip(self.factors, parts, strict=True)])
 
-    def _joined(self, function: Callable[..., Array], parts: list[Array]) -> Array:
+    def _concatenate(self, function: Callable[..., Array], parts: list[Array]) -> Array:
         pieces = [function(factor, part) for factor, part in zip(self.factors, parts, strict=True)]
         return pieces[0].__array_namespace__().concatenate(pieces, axis=-1)

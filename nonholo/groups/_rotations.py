@@ -30,8 +30,8 @@ def cayley_increment(X: Float[np.ndarray, "... n n"]) -> Float[np.ndarray, "... 
     unit, inverse, one = _one_plane(X)
     if not one.any():
         return numerics.cayley_increment(X)
-    closed = 2 * (inverse * unit + unit @ unit) / (1 + inverse * inverse)
-    return np.where(one, closed, numerics.cayley_increment(np.where(one, 0.0, X)))
+    formula = 2 * (inverse * unit + unit @ unit) / (1 + inverse * inverse)
+    return np.where(one, formula, numerics.cayley_increment(np.where(one, 0.0, X)))
 
 
 def motion_cayley_increment(X: Float[np.ndarray, "... N N"]) -> Float[np.ndarray, "... N N"]:
@@ -46,12 +46,12 @@ def motion_cayley_increment(X: Float[np.ndarray, "... N N"]) -> Float[np.ndarray
     one &= np.isfinite(_norm(v))
     if not one.any():
         return numerics.cayley_increment(X)
-    closed, turned = np.zeros_like(X), unit @ v
-    across = v + unit @ turned
+    formula, image = np.zeros_like(X), unit @ v
+    across = v + unit @ image
     across = np.where(_norm(across) < _ONE_PLANE * _norm(v), 0.0, across)
-    closed[..., :-1, :-1] = cayley_increment(turn)
-    closed[..., :-1, -1:] = across + inverse * (inverse * (v - across) + turned) / (1 + inverse * inverse)
-    return np.where(one, closed, numerics.cayley_increment(np.where(one, 0.0, X)))
+    formula[..., :-1, :-1] = cayley_increment(turn)
+    formula[..., :-1, -1:] = across + inverse * (inverse * (v - across) + image) / (1 + inverse * inverse)
+    return np.where(one, formula, numerics.cayley_increment(np.where(one, 0.0, X)))
 
 
 def _one_plane(X: Float[np.ndarray, "... n n"]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -116,15 +116,15 @@ def _schur_logarithm(R: np.ndarray, where: str) -> np.ndarray:
     """The real Schur form of a rotation has blocks of one or two rows; those of one row hold 1 or -1."""
     T, Z = scipy.linalg.schur(R, output="real")[:2]
     X, n = np.zeros_like(R), len(R)
-    paired = np.append(np.diag(T, -1) != 0, False)
-    first = np.flatnonzero(paired)
+    is_pair = np.append(np.diag(T, -1) != 0, False)
+    first = np.flatnonzero(is_pair)
     cosine, sine = (T[first, first] + T[first + 1, first + 1]) / 2, (T[first + 1, first] - T[first, first + 1]) / 2
     X[first + 1, first] = np.arctan2(sine, cosine)
     alone = np.setdiff1d(np.arange(n), np.concatenate([first, first + 1]))
-    turned = alone[np.diag(T)[alone] < 0]
-    if len(turned) % 2:
+    flips = alone[np.diag(T)[alone] < 0]
+    if len(flips) % 2:
         raise error(where, "have determinant +1", "a reflection", "Use a rotation, built by `exp` or `cayley`.")
-    X[turned[1::2], turned[::2]] = np.pi
+    X[flips[1::2], flips[::2]] = np.pi
     return Z @ (X - X.T) @ Z.T
 
 
@@ -148,8 +148,8 @@ def residual(R: Float[Array, "... n n"]) -> Float[Array, "..."]:
 def motion_inverse(g: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
     """Return the inverse motion."""
     xp = g.__array_namespace__()
-    turned = xp.swapaxes(g[..., :-1, :-1], -1, -2)
-    upper = xp.concatenate([turned, -(turned @ g[..., :-1, -1:])], axis=-1)
+    transpose = xp.swapaxes(g[..., :-1, :-1], -1, -2)
+    upper = xp.concatenate([transpose, -(transpose @ g[..., :-1, -1:])], axis=-1)
     return xp.concatenate([upper, g[..., -1:, :]], axis=-2)
 
 

@@ -15,7 +15,7 @@ _WHERE = "load_orbit(path=...)"
 def restore_ready(name: str, parameters: dict[str, Any]) -> Any:
     """Make a ready system by the function of `nonholo.examples` that users call, which checks what it gets."""
     with needs("jax", f"load_orbit(...) of nonholo.examples.{name}"):
-        ready = importlib.import_module("nonholo.literature")
+        ready = importlib.import_module("nonholo.examples")
     if name not in ready.__all__ or not name.islower():
         raise error(_WHERE, "hold a ready system of this version", repr(name), "Upgrade nonholo.")
     try:

@@ -12,6 +12,7 @@ from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._equations import solve_bordered
 from nonholo.lagrange_dalembert._room import equations_of, in_double
 
+_PROJECTIONS, _NEAR = 50, 1e-14  # corrections of a place, at most, and what the last one may be beside it
 _REMEDY = "Pass the configuration, row by row, then the velocity."
 
 
@@ -33,6 +34,38 @@ def bordered_solution(system: Any, q: Array, v: Array, force: Array, off: Array)
     r"""Solve $M x - A^T\lambda$ = force, A x = off."""
     matrix, units = equations_of(system).acceleration_matrix(system, q, v)
     return solve_bordered(matrix, units, force, off)
+
+
+def admissible_velocity(system: Any, q: Array, v: Array) -> Array:
+    """Return the admissible velocity next to one in the kinetic energy."""
+    return v - bordered_solution(system, q, v, jnp.zeros_like(v), equations_of(system).constraint(system, q, v))[0]
+
+
+def nearest_place(system: Any, x: Array) -> Array:
+    r"""Return the admissible place y next to x in the kinetic energy at x; NaN where none is reached.
+
+    $M(y - x) = D\Phi(y)^T\lambda$, $\Phi(y) = 0$, by Newton's method from x.
+    """
+    equations, n, first = equations_of(system), system.dimension, system.velocity_constraints
+    M = equations.kinetic_matrix(system, x, jnp.zeros(n))
+
+    def missed(z: Array) -> Array:
+        y = x.at[:n].add(z[:n])
+        across = z[n:] @ equations.forms(system, y)[first:]
+        return jnp.concatenate([M @ z[:n] - across, equations.place_residual(system, y)])
+
+    def correct(carry: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
+        count, z, _ = carry
+        step = jnp.linalg.solve(jax.jacfwd(missed)(z), -missed(z))
+        after = z + step
+        return count + 1, after, jnp.linalg.norm(step[:n]) / (jnp.linalg.norm(x) + jnp.linalg.norm(after[:n]))
+
+    def goes_on(carry: tuple[Array, Array, Array]) -> Array:
+        return (carry[0] < _PROJECTIONS) & (carry[2] > _NEAR)
+
+    start = jnp.asarray(0), jnp.zeros(n + system.constraints - first), jnp.asarray(jnp.inf)
+    _, z, size = jax.lax.while_loop(goes_on, correct, start)
+    return jnp.where(size <= _NEAR, x.at[:n].add(z[:n]), jnp.nan)
 
 
 def refuse_table(owner: str, system: Any) -> None:

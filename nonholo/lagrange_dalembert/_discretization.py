@@ -67,14 +67,14 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
         del with_poses
         system, h, given = self.system, np.float64(self.time_step), (start.owner, self.system)
         checks, equations = room(system._start), equations_of(system)
-        q = checks.point(*given, start.configuration)
+        q = checks.point(*given, start.configuration, project=start.project)
         checks.consistent(system, q, h)
         if start.name == "momentum":
             return First(checks.of_momentum(*given, q, start.value))
         if start.name == "displacement":
             v = checks.velocity_of_displacement(system, q, start.value, h)
             return First((in_double(equations.momenta, system, q, v, h)[0], q, v))
-        v = checks.velocity(*given, q, start.value)
+        v = checks.velocity(*given, q, start.value, project=start.project)
         return First((in_double(equations.momentum, system, q, v), q, v))
 
     @functools.cached_property
@@ -166,14 +166,20 @@ class GroupDiscretization(AbstractLagrangeDAlembertMap[GroupOrbit]):
 
 
 def checked_state(
-    system: Any, configuration: Any, starts: dict[str, Any], time: float, owner: str = "flow"
+    system: Any,
+    configuration: Any,
+    starts: dict[str, Any],
+    time: float,
+    owner: str = "flow",
+    *,
+    project: bool = False,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the checked start of a flow, or another place and velocity."""
     checks, name = room(system._start), one_start(owner, **starts)
-    q = checks.point(owner, system, configuration, time)
+    q = checks.point(owner, system, configuration, time, project=project)
     if name == "momentum":
         return checks.of_momentum(owner, system, q, starts[name])[1:]
-    return q, checks.velocity(owner, system, q, starts[name])
+    return q, checks.velocity(owner, system, q, starts[name], project=project)
 
 
 def _fixed_time_step(value: Any) -> float:

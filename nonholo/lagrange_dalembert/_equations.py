@@ -28,26 +28,49 @@ def lagrangian(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
     return _called(system.lagrangian, system, x, v)
 
 
+def holonomic(system: LagrangeDAlembert, x: Array) -> Array:
+    r"""Return $\Phi$, nothing without holonomic constraints."""
+    return jnp.zeros(0) if system.holonomic is None else _called(system.holonomic, system, x)
+
+
+def place_residual(system: LagrangeDAlembert, x: Array) -> Array:
+    """Return how far a place is from holonomic constraints, then from prescribed coordinates."""
+    return jnp.concatenate([holonomic(system, x), *(x[i : i + 1] - s(x[-1]) for i, s in system.prescribed)])
+
+
+def holonomic_residual(system: LagrangeDAlembert, x: Array) -> Array:
+    r"""Return $\Phi$ in the rows of all constraints; the others have zero."""
+    others = system.velocity_constraints, len(system.prescribed)
+    return jnp.pad(holonomic(system, x), others)
+
+
 def forms(system: LagrangeDAlembert, x: Array) -> Array:
-    """Return the rows A, none for a free system; those of prescribed coordinates are the last."""
-    given = system.constraint_forms
-    rows = jnp.zeros((0, system.dimension)) if given is None else _called(given, system, x)
-    return (
-        jnp.concatenate([rows, jnp.eye(system.dimension)[np.array([i for i, _ in system.prescribed])]])
-        if system.prescribed
-        else rows
-    )
+    """Return the rows A, none for a free system; then come gradients of holonomic ones, and prescribed coordinates."""
+    n, given = system.dimension, system.constraint_forms
+    rows = [jnp.zeros((0, n)) if given is None else _called(given, system, x)]
+    if system.holonomic is not None:
+        rows.append(jax.jacfwd(holonomic, argnums=1)(system, x)[:, :n])
+    if system.prescribed:
+        rows.append(jnp.eye(n)[np.array([i for i, _ in system.prescribed])])
+    return jnp.concatenate(rows)
 
 
 def constraint(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
     """Return A v - b."""
-    rates = forms(system, x) @ v
-    if system.constraint_velocities is not None:
-        b = jnp.asarray(system.constraint_velocities(x[:-1], x[-1]), dtype=x.dtype)
-        rates = rates.at[: len(b)].add(-b)
-    if system.prescribed:
-        rates = rates.at[-len(system.prescribed) :].add(-jnp.stack([jax.grad(s)(x[-1]) for _, s in system.prescribed]))
-    return rates
+    _, rates = jax.jvp(lambda y: holonomic(system, y), (x,), (rate(system, x, v),))
+    return jnp.concatenate(
+        [_velocity_constraint(system, x, v), rates, *(v[i : i + 1] - jax.grad(s)(x[-1]) for i, s in system.prescribed)]
+    )
+
+
+def _velocity_constraint(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
+    """Return A v - b of the constraint forms."""
+    if system.constraint_forms is None:
+        return jnp.zeros(0)
+    rates = _called(system.constraint_forms, system, x) @ v
+    if system.constraint_velocities is None:
+        return rates
+    return rates - jnp.asarray(system.constraint_velocities(x[:-1], x[-1]), dtype=x.dtype)
 
 
 def discrete_lagrangian(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> Array:
@@ -60,17 +83,21 @@ def discrete_lagrangian(system: LagrangeDAlembert, x: Array, v: Array, h: Array)
 
 
 def discrete_constraints(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> Array:
-    """Return F(q, q + h v); prescribed coordinates move by exactly what is prescribed."""
+    """Return F(q, q + h v).
+
+    Holonomic constraints hold at the end of the step, prescribed coordinates move by exactly what is prescribed.
+    """
+    steps = (v[i : i + 1] - (s(x[-1] + h) - s(x[-1])) / h for i, s in system.prescribed)
+    at_end = holonomic(system, ahead(system, x, v, h)) / h
+    return jnp.concatenate([_discrete_velocity_constraint(system, x, v, h), at_end, *steps])
+
+
+def _discrete_velocity_constraint(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> Array:
     if system.discrete_constraints is not None:
         return jnp.asarray(system.discrete_constraints(x, x + h * v, h))
     if system.rule == "midpoint":
-        found = constraint(system, ahead(system, x, v, h / 2), v)
-    else:
-        found = (constraint(system, x, v) + constraint(system, ahead(system, x, v, h), v)) / 2
-    if system.prescribed:
-        missed = [v[i] - (s(x[-1] + h) - s(x[-1])) / h for i, s in system.prescribed]
-        found = found.at[-len(missed) :].set(jnp.stack(missed))
-    return found
+        return _velocity_constraint(system, ahead(system, x, v, h / 2), v)
+    return (_velocity_constraint(system, x, v) + _velocity_constraint(system, ahead(system, x, v, h), v)) / 2
 
 
 def momenta(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[Array, Array]:

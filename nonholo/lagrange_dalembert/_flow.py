@@ -36,11 +36,13 @@ def flow(
     times: Any,
     rtol: float | None,
     atol: float,
+    *,
+    project: bool,
 ) -> Any:
     """Check the arguments, solve the equations and return the orbit."""
     refuse_table("flow", system)
     time, errors = flow_times(times), flow_tolerances(_COARSE if rtol is None else rtol, atol)
-    first = checked_state(system, configuration, starts, time[0])
+    first = checked_state(system, configuration, starts, time[0], project=project)
     solved = compiled.flow(system, first, time, _FINE if rtol is None else errors[0])
     rows, solution = solved or room("_integration").flow(system, first, time, errors)
     count = len(rows[0])

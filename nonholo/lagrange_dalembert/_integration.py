@@ -9,7 +9,7 @@ import numpy as np
 from nonholo.base.numerics.time_sweep import padded, reached, sweep
 from nonholo.base.progress import interruptibly
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert._accelerations import acceleration, bordered_solution
+from nonholo.lagrange_dalembert._accelerations import acceleration, admissible_velocity, bordered_solution
 from nonholo.lagrange_dalembert._flow import State
 from nonholo.lagrange_dalembert._room import equations_of, in_double
 from nonholo.lagrange_dalembert._tangents import flow_slopes
@@ -69,9 +69,12 @@ def _sweep(system: Any, state: State, times: Array, errors: tuple[Array, Array])
     equations = equations_of(system)
 
     def settled(current: State) -> State:
-        """Return the state with the admissible velocity next to its own in the kinetic energy."""
+        """Return the admissible state next to one in the kinetic energy."""
         q, v = equations.normalized(system, current[0]), current[1]
-        return q, v - bordered_solution(system, q, v, jnp.zeros_like(v), equations.constraint(system, q, v))[0]
+        if system.holonomic is not None:
+            back = bordered_solution(system, q, v, jnp.zeros_like(v), equations.holonomic_residual(system, q))[0]
+            q = q - jnp.pad(back, (0, system.is_driven))
+        return q, admissible_velocity(system, q, v)
 
     def rate(current: State) -> State:
         return equations.rate(system, *current), acceleration(system, *current)[0]

@@ -8,7 +8,7 @@ import jax
 import numpy as np
 
 from nonholo.base.checks import error, shown
-from nonholo.base.kept import remembered
+from nonholo.base.memo import memo
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float, Int
 from nonholo.groups import AbstractMatrixGroup
@@ -92,7 +92,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         known = len(impulses) - int(len(impulses) > 0 and bool(np.isnan(impulses[-1]).any()))
         return dataclasses.replace(self, **{**rows, "multipliers": impulses[:known]})
 
-    @remembered
+    @memo
     def work(self) -> Float[np.ndarray, "K"]:
         r"""Work on a driven system since the first state, by the trapezoidal rule; zero of one that is not driven.
 
@@ -113,19 +113,20 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         system = self.system
         return bool(system.is_driven and system.has_functions and system.table is not None and not self.has_every_step)
 
-    @remembered
+    @memo
     def restricted_momentum(self) -> Float[np.ndarray, "K n"]:
         r"""Momenta less their parts $A^T\mu$ across the constraint: those along admissible directions."""
         A = in_double(_forms_at, self.system, places(self.system, self.configuration, self.time))
         p = self.momentum[..., None]
         return (p - np.linalg.pinv(A) @ (A @ p))[..., 0]
 
-    @remembered
+    @memo
     def tangent(self) -> Float[np.ndarray, "L d d"]:
         r"""Derivative of each state by the one before, in orthonormal bases of the admissible changes of (q, v).
 
-        Those of (q, v) that keep $A(q)v = b$, of a map the discrete constraint, d = 2 n - s; on a group $\xi$ of
-        $g\,e^\xi$ stands for q. Of a map by the implicit function of the step, of a flow by its equation of variation.
+        Those of (q, v) that keep $A(q)v = b$, of a map the discrete constraint, and m holonomic ones, d = 2 n - s - m;
+        on a group $\xi$ of $g\,e^\xi$ stands for q. Of a map by the implicit function of the step, of a flow by its
+        equation of variation.
         """
         return room("_tangents").tangent_map(self)
 
@@ -183,7 +184,8 @@ class CoordinateOrbit(AbstractCoordinateOrbit):
         multipliers: Impulses $\lambda$ in $P_{k+1} - P^+_k = \sum_j \lambda_j A^j(q_{k+1})$ of the steps from the saved
             states but the last, shape (K - 1, s); for a flow the forces at its times, shape (K, s).
         energy: $-\partial L_d/\partial h$, for a flow $v\cdot\partial L/\partial v - L$, shape (K,).
-        constraint_residual: Largest $|F_j(q_k, q_{k+1})|$, for a flow $|A^j(q) v|$, shape (K,).
+        constraint_residual: Largest $|F_j(q_k, q_{k+1})|$, of holonomic constraints $|\Phi_j(q_{k+1})|/h$; for a flow
+            $|A^j(q) v|$, shape (K,).
         outcome: How the run ended.
         system: What moves.
         time_step: h; None for a flow.

@@ -9,10 +9,13 @@ import numpy as np
 from nonholo.base.checks import array, error, scale
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
+from nonholo.lagrange_dalembert._accelerations import admissible_velocity, nearest_place
 from nonholo.lagrange_dalembert._equations import (
     acceleration_matrix,
     constraint,
     forms,
+    holonomic,
+    holonomic_residual,
     inverse_legendre,
     lagrangian,
 )
@@ -27,12 +30,20 @@ _CONSISTENT = 1e-7  # relative; looser, since the functions may difference numer
 _CORRECTIONS = 8  # of a displacement
 
 
-def point(owner: str, system: LagrangeDAlembert, configuration: Any, time: float = 0.0) -> Float[np.ndarray, "x"]:
-    """Return the place of a configuration at which the constraint forms are finite and independent."""
+def point(
+    owner: str, system: LagrangeDAlembert, configuration: Any, time: float = 0.0, *, project: bool = False
+) -> Float[np.ndarray, "x"]:
+    """Return the place of an admissible configuration at which the constraint forms are finite and independent.
+
+    With `project` it is the admissible one next to the configuration in the kinetic energy.
+    """
     where, n = f"{owner}(configuration=...)", system.dimension
     if configuration is None:
         raise error(where, "be given for a system in coordinates", "none", f"Pass the {n} coordinates of the start.")
     q = array(where, configuration, (n,), f"Pass the {n} coordinates.")
+    if project and system.constraints > system.velocity_constraints:
+        nearest = in_double(nearest_place, system, place(system, q, time))[:n]
+        q = q if np.isnan(nearest).any() else nearest
     for index, motion in system.plain.prescribed:
         with double_precision():
             given = float(motion(np.float64(time)))
@@ -40,15 +51,29 @@ def point(owner: str, system: LagrangeDAlembert, configuration: Any, time: float
             got, remedy = f"{q[index]:.17g}", f"Set coordinate {index} to {given:.17g}."
             raise error(where, "agree with prescribed motions", got, remedy)
     x = place(system, q, time)
-    check_rows("LagrangeDAlembert(constraint_forms=...)", in_double(forms, system, x), q)
+    A = in_double(forms, system, x)
+    if system.holonomic is not None:
+        _check_holonomic(where, system, x, A)
+    check_rows(f"LagrangeDAlembert({'constraint_forms' if system.holonomic is None else 'holonomic'}=...)", A, q)
     return x
+
+
+def _check_holonomic(where: str, system: LagrangeDAlembert, x: np.ndarray, A: Float[np.ndarray, "s n"]) -> None:
+    """Refuse a place that holonomic constraints do not allow, with the residual and the nearest one that they do."""
+    n, residual = system.dimension, in_double(holonomic_residual, system, x)
+    if np.all(np.abs(residual) <= _TOLERANCE * np.linalg.norm(A, axis=1) * (1 + np.linalg.norm(x[:n]))):
+        return
+    missed = in_double(holonomic, system, x)
+    nearest = in_double(nearest_place, system, x)[:n]
+    remedy = "Start elsewhere." if np.isnan(nearest).any() else f"The nearest admissible one is {nearest.tolist()}."
+    raise error(where, "satisfy the holonomic constraints", f"residual {np.array2string(missed, precision=6)}", remedy)
 
 
 def check_rows(what: str, A: Float[np.ndarray, "s n"], at: np.ndarray) -> None:
     """Refuse constraint forms that are not finite, or not independent, at a configuration."""
     if not np.all(np.isfinite(A)):
         raise error(what, "be finite at the start", f"{A.tolist()}", "Start where the constraint is defined.")
-    if least_value(A) < DEGENERATE:
+    if len(A) > A.shape[1] or least_value(A) < DEGENERATE:
         got = f"rank {np.linalg.matrix_rank(A)} of {len(A)} rows at {at.tolist()}"
         raise error(what, "have independent rows", got, "Drop the constraints that follow from others.")
 
@@ -81,11 +106,18 @@ def consistent(system: LagrangeDAlembert, q: Float[np.ndarray, "n"], h: Any) -> 
         raise error(where, "have derivatives along q_next that span the constraint forms", got, remedy)
 
 
-def velocity(owner: str, system: LagrangeDAlembert, q: Float[np.ndarray, "n"], given: Any) -> Float[np.ndarray, "n"]:
-    """Return a velocity that satisfies the constraint, at which the Lagrangian is regular."""
+def velocity(
+    owner: str, system: LagrangeDAlembert, q: Float[np.ndarray, "x"], given: Any, *, project: bool
+) -> Float[np.ndarray, "n"]:
+    """Return a velocity that satisfies the constraint, at which the Lagrangian is regular.
+
+    With `project` it is the admissible one next to the given one in the kinetic energy.
+    """
     where = f"{owner}(body_velocity=...)"
     v = array(where, given, (system.dimension,), f"Pass the {system.dimension} velocities.")
     regular(system, q, v)
+    if project:
+        return in_double(admissible_velocity, system, q, v)
     A, missed = in_double(forms, system, q), in_double(constraint, system, q, v)
     return admissible(where, A, v, missed)
 

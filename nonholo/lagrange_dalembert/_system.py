@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import jax
 import numpy as np
 
-from nonholo.base.calls import called
+from nonholo.base.calls import call
 from nonholo.base.checks import array, choice, count, error, names, shown, text
-from nonholo.base.kept import kept
 from nonholo.base.limits import within_memory
+from nonholo.base.memo import system_memo
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._room import room
@@ -20,6 +20,7 @@ from nonholo.lagrange_dalembert.functions import (
     ForceTable,
     Parameters,
     check_forms,
+    check_rows_of_places,
     check_value,
     count_of,
     takes_time,
@@ -34,7 +35,12 @@ if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
 
 Parts = tuple[Float[np.ndarray, "P 2"], ...]
-_FUNCTIONS = ("lagrangian", "constraint_forms", "discrete_lagrangian", "discrete_constraints", "constraint_velocities")
+_FUNCTIONS = (
+    *("lagrangian", "constraint_forms", "holonomic"),
+    *("discrete_lagrangian", "discrete_constraints", "constraint_velocities"),
+)
+_OTHERS = {"lagrangian": 2, "constraint_forms": 1, "holonomic": 1}
+"""How many arguments the functions have that may be called with the time after them."""
 _REMEDY = "Pass the corners of each part in body axes: [[(-0.1, -0.1), (0.2, 0.0), (-0.1, 0.1)], ...]."
 
 
@@ -50,9 +56,14 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     Nothing needs to be invariant under a group.
 
     A *driven* system has constraints $A(q, t)\,v = b(q, t)$, prescribed coordinates, a Lagrangian of the time or a
-    force f(t, q, v): then
+    force f(t, q, v), or it has holonomic constraints of the time: then
     $P_k = -D_1L_d - f^-_k$ and $P^+_k = D_2L_d + f^+_k$ with half the impulse of a step at each of its
     ends, $f^-_k = \tfrac h2f(t_k, q_k, v)$, $f^+_k = \tfrac h2f(t_{k+1}, q_{k+1}, v)$. The map is of order 2.
+
+    *Holonomic* constraints $\Phi(q, t) = 0$, as a closed loop or a wheel on the ground, hold at each node to rounding:
+    $\Phi(q_{k+1}, t_{k+1}) = 0$ stands beside F, rows $\partial\Phi_j/\partial q$ beside $A^j$, and the principle is
+    the same: nothing is projected. Without other constraints the map is the variational integrator on the surface
+    $\Phi = 0$ (SHAKE, for a constant mass matrix and "trapezoidal"); flows are kept on it.
 
     Reference: [cortes-martinez-2001]; [fedorov-zenkov-2004], section 2. The signs: docs/theory, "lagrange-dalembert".
 
@@ -60,13 +71,15 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         lagrangian: `lagrangian(q, v)` or `lagrangian(q, v, time)` -> scalar, written with `jax.numpy`.
         constraint_forms: `constraint_forms(q)` or `constraint_forms(q, time)` -> (s, n), the rows $A^j$; None for an
             unconstrained system.
+        holonomic: `holonomic(q)` or `holonomic(q, time)` -> (m,), the constraints $\Phi$ of places; their multipliers
+            come after those of the forms.
         dimension: n.
         rule: "midpoint" or "trapezoidal".
         discrete_lagrangian: `discrete_lagrangian(q, q_next, time_step)` -> scalar, in place of the rule; it includes
             the factor time_step. Or `discrete_lagrangian(q, q_next)`, made for one time step; the energy of an orbit
             is then that of the Lagrangian at the midpoint.
         discrete_constraints: `discrete_constraints(q, q_next, time_step)` or `(q, q_next)` -> (s,), in place of the
-            rule.
+            rule of the constraint forms.
         constraint_velocities: `constraint_velocities(q, time)` -> (s,), the right-hand side b of moving constraints.
         prescribed: Motions s(time) of coordinates, by index: joints that are driven. Discrete motions follow them
             exactly; their multipliers, the last ones, are what drives them.
@@ -75,9 +88,9 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             `nonholo.Forced(system, potential, force)` adds one.
         parameters: Numbers or arrays by name, p. Where there are any, every function takes them as its last argument, a
             dictionary with these names: `lagrangian(q, v, p)` or `(q, v, time, p)`, `constraint_forms(q, p)` or
-            `(q, time, p)`, `discrete_lagrangian(q, q_next, time_step, p)`, `constraint_velocities(q, time, p)`,
-            `force(time, q, v, p)`, prescribed motions `s(time, p)`, `outline(q, p)`. They are compiled once for all
-            numbers: see `with_parameters`.
+            `(q, time, p)` and so `holonomic`, `discrete_lagrangian(q, q_next, time_step, p)`,
+            `constraint_velocities(q, time, p)`, `force(time, q, v, p)`, prescribed motions `s(time, p)`,
+            `outline(q, p)`. They are compiled once for all numbers: see `with_parameters`.
         coordinates: Names of the coordinates, for tables and pictures, such as ("x", "y", "theta"); by default "q1",
             "q2" and so on.
         name: What pictures call the system.
@@ -102,10 +115,20 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         >>> orbit = discrete.simulate(configuration=(0, 0, 0), body_velocity=(1, 1, 0), steps=100)
         >>> orbit.configuration.shape, bool(orbit.constraint_residual.max() < 1e-13)
         ((101, 3), True)
+
+        A pendulum in Cartesian coordinates; twice the multiplier over the time step is the force of its rod:
+
+        >>> def length(q):
+        ...     return jnp.array([q @ q - 1.0])
+        >>> pendulum = LagrangeDAlembert(lambda q, v: v @ v / 2 - q[1], None, holonomic=length, dimension=2)
+        >>> swing = pendulum.discretize(0.1).simulate(configuration=(0.6, -0.8), body_velocity=(0, 0), steps=1000)
+        >>> bool(abs((swing.configuration**2).sum(axis=1) - 1).max() < 1e-15)
+        True
     """
 
     lagrangian: Callable[..., Array]
     constraint_forms: Callable[..., Array] | None
+    holonomic: Callable[..., Array] | None = dataclasses.field(default=None, kw_only=True)
     dimension: int = dataclasses.field(kw_only=True)
     rule: str = dataclasses.field(default="midpoint", kw_only=True)
     discrete_lagrangian: Callable[..., Array] | None = dataclasses.field(default=None, kw_only=True)
@@ -143,22 +166,24 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         n = self.dimension
         q, time, last = jax.ShapeDtypeStruct((n,), float), jax.ShapeDtypeStruct((), float), self._shapes_given
         with double_precision():
-            self._check("lagrangian", (), q, q, *self._time("lagrangian", 2))
+            self._check("lagrangian", (), q, q, *self._time("lagrangian"))
             if self.constraint_forms is not None:
                 where, remedy = _named("constraint_forms"), "Stack one row per constraint; pass None for no constraint."
-                arguments = (q, *self._time("constraint_forms", 1), *last)
+                arguments = (q, *self._time("constraint_forms"), *last)
                 check_forms(where, self.constraint_forms, n, arguments, f"{n} coordinates", remedy)
+            if self.holonomic is not None:
+                check_rows_of_places(_named("holonomic"), self.holonomic, n, (q, *self._time("holonomic"), *last))
             self._check("discrete_lagrangian", (), q, q, time)
-            self._check("discrete_constraints", (self.constraints,), q, q, time)
-            self._check("constraint_velocities", (self.constraints - len(self.prescribed),), q, time)
+            self._check("discrete_constraints", (self.velocity_constraints,), q, q, time)
+            self._check("constraint_velocities", (self.velocity_constraints,), q, time)
             if self.applied is not None:
                 check_value(_named("force"), self.applied, (n,), (time, q, q, *last), *2 * (f"{n} coordinates",))
         if self.is_driven and (self.discrete_lagrangian or self.discrete_constraints):
             remedy = 'Use rule="midpoint" or "trapezoidal".'
             raise error(_named("discrete_lagrangian"), "be left out of a driven system", "discrete functions", remedy)
 
-    def _time(self, name: str, others: int) -> tuple[Any, ...]:
-        count = others + len(self._shapes_given)
+    def _time(self, name: str) -> tuple[Any, ...]:
+        count = _OTHERS[name] + len(self._shapes_given)
         return (jax.ShapeDtypeStruct((), float),) if takes_time(getattr(self, name), count) else ()
 
     @property
@@ -175,7 +200,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     def is_driven(self) -> bool:
         """Whether a force acts, or anything depends on time or moves by itself."""
         given = self.force is not None or self.constraint_velocities is not None or bool(self.prescribed)
-        return given or self.takes_time("lagrangian") or self.takes_time("constraint_forms")
+        return given or any(map(self.takes_time, _OTHERS))
 
     def with_parameters(self, **numbers: Any) -> Self:
         r"""Return the same system with other numbers of some of its parameters; nothing is compiled anew.
@@ -236,11 +261,11 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     def parts(self, q: Any) -> tuple[Float[np.ndarray, "P 2"], ...]:
         """Return the parts of the outline at a configuration, in body axes."""
         where, last = _named("outline"), (self.parameters,) if self.parameters else ()
-        return _as_parts(where, called(where, self.outline, q, *last) if callable(self.outline) else self.outline)
+        return _as_parts(where, call(where, self.outline, q, *last) if callable(self.outline) else self.outline)
 
     def takes_time(self, function: str) -> bool:
-        """Return whether the Lagrangian or the constraint forms are called with the time."""
-        return bool(self._time(function, {"lagrangian": 2, "constraint_forms": 1}[function]))
+        """Return whether the Lagrangian, the constraint forms or the holonomic constraints are called with the time."""
+        return bool(self._time(function))
 
     @property
     def table(self) -> ForceTable | None:
@@ -254,11 +279,18 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
 
     @functools.cached_property
     def constraints(self) -> int:
-        """The number s of constraints, those of prescribed coordinates with them."""
-        arguments = ((self.dimension,), *(() for _ in self._time("constraint_forms", 1)))
-        return count_of(self.plain.constraint_forms, *arguments) + len(self.prescribed)
+        """The number s of constraints, the holonomic ones and those of prescribed coordinates with them."""
+        return self.velocity_constraints + self._rows_of("holonomic") + len(self.prescribed)
 
-    @kept
+    @functools.cached_property
+    def velocity_constraints(self) -> int:
+        """The number of constraint forms."""
+        return self._rows_of("constraint_forms")
+
+    def _rows_of(self, name: str) -> int:
+        return count_of(getattr(self.plain, name), (self.dimension,), *(() for _ in self._time(name)))
+
+    @system_memo
     def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
         """Shapes of a configuration and of a velocity."""
         return (self.dimension,), (self.dimension,)
@@ -338,6 +370,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         times: Any,
         body_velocity: Any = None,
         momentum: Any = None,
+        project: bool = False,
         rtol: float | None = None,
         atol: float = 1e-12,
     ) -> "CoordinateOrbit":
@@ -346,15 +379,16 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         $$ \dot p = \frac{\partial L}{\partial q} + \sum_j \lambda_j A^j(q), \qquad p = \frac{\partial L}{\partial v},
            \qquad A(q)\,v = 0. $$
 
-        The acceleration comes from the constraint differentiated once. Velocities are projected to the constraint,
-        orthogonally in the kinetic energy, at each evaluation and at each requested time; an adaptive Runge-Kutta
-        method of order 8 steps to every requested time.
+        The acceleration comes from the constraint differentiated once, a holonomic one twice. Velocities are projected
+        to the constraint, orthogonally in the kinetic energy, at each evaluation and at each requested time, and so are
+        places to holonomic constraints; an adaptive Runge-Kutta method of order 8 steps to every requested time.
 
         Args:
             configuration: The first configuration.
             times: The times of the states, at least one, increasing or decreasing; the start is at the first.
             body_velocity: Start with this velocity, which must satisfy the constraint.
             momentum: Start with this momentum; only its action on admissible velocities counts.
+            project: Take the admissible configuration and velocity next to the given ones in the kinetic energy.
             rtol: Relative error of a step, at least 1e-14, which is the default of series; of diffrax 1e-10.
             atol: Absolute error of a step of diffrax.
 
@@ -373,7 +407,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             [-1.]
         """
         starts = {"body_velocity": body_velocity, "momentum": momentum}
-        return room("_flow").flow(self, configuration, starts, times, rtol, atol)
+        return room("_flow").flow(self, configuration, starts, times, rtol, atol, project=project)
 
 
 def _of_numbers(system: Any, parameters: Parameters, **fields: Any) -> Any:

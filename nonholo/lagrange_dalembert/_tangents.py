@@ -13,7 +13,7 @@ import numpy as np
 
 from nonholo.base.checks import error
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert._accelerations import acceleration, refuse_table
+from nonholo.lagrange_dalembert._accelerations import acceleration, nearest_place, refuse_table
 from nonholo.lagrange_dalembert._discretization import checked_state, set_out
 from nonholo.lagrange_dalembert._equations import solve_bordered
 from nonholo.lagrange_dalembert._newton import newton_matrix, orientation, solve
@@ -23,7 +23,7 @@ _CORRECTIONS = 8  # of a velocity beside another one
 LATER = np.array([0.3719, 0.9173])  # times, not in a ratio that a rotation may have
 
 Slopes = tuple[Array, Array, Array]
-"""Changes of a state, their derivatives by place and velocity, and those of the constraint."""
+"""Changes of a state, their derivatives by place and velocity, and those of the constraints, holonomic ones last."""
 
 
 def begun(motion: Any, owner: str, configuration: Any, velocity: Any) -> tuple[np.ndarray, np.ndarray]:
@@ -97,6 +97,8 @@ def _beside(system: Any, *given: Array) -> tuple[Array, Array]:
     def one(offset: tuple[Array, Array]) -> tuple[Array, Array]:
         xi, w = offset
         place = equations_of(system).beside(system, x, xi)
+        if system.holonomic is not None:
+            place = nearest_place(system, place)
 
         def correct(_: Array, w: Array) -> Array:
             slope = jax.jacfwd(lambda w: _constraint(system, place, w, *h))(w)
@@ -140,12 +142,12 @@ def _each(system: Any, *given: Array) -> Slopes:
 
 
 def _differentiated(system: Any, change: Callable[[Array, Array], Array], x: Array, v: Array, *h: Array) -> Slopes:
-    size = len(v) + system.is_driven
+    equations, size = equations_of(system), len(v) + system.is_driven
 
     def both(z: Array) -> tuple[tuple[Array, Array], Array]:
         xi, w = z[:size], z[size:]
-        value = change(xi, w)
-        return (value, _constraint(system, equations_of(system).beside(system, x, xi), w, *h)), value
+        value, place = change(xi, w), equations.beside(system, x, xi)
+        return (value, jnp.concatenate([_constraint(system, place, w, *h), equations.holonomic(system, place)])), value
 
     (slope, rows), value = jax.jacfwd(both, has_aux=True)(jnp.append(jnp.zeros(size), v))
     return value, slope, rows

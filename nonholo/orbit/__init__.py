@@ -2,7 +2,6 @@
 
 from nonholo.orbit._base import AbstractOrbit, OrbitT, looked_at, times_within
 from nonholo.orbit._crossings import AbstractEventLog, Crossings, EventLog, joined_crossings
-from nonholo.orbit._decoder import Decoder
+from nonholo.orbit._decoder import AliasingWarning, Decoder, configurations, poses, turned_near, unwrap
 from nonholo.orbit._orbit import STATES, AbstractMotion, Orbit, as_orbit
-from nonholo.orbit._poses import AliasingWarning, configurations, poses, turned_near, unwrapped
 from nonholo.orbit._stepper import AbstractStepper, DiscreteMotion, First, Plan, Rows, State, keep_row, write_first

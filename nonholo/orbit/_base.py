@@ -11,8 +11,8 @@ import numpy as np
 
 from nonholo.base.checks import LARGEST, array, error, is_moderate, selection, shape_of
 from nonholo.base.html import table
-from nonholo.base.kept import Keeper, remembered
 from nonholo.base.limits import within_memory
+from nonholo.base.memo import Keeper, memo
 from nonholo.base.results import Outcome
 from nonholo.base.types import Bool, Float, Int
 
@@ -167,7 +167,7 @@ class AbstractOrbit(Keeper, abc.ABC):
     def to_dataset(self) -> Any:
         """Return the orbit as a labeled `xarray.Dataset`."""
 
-    @remembered
+    @memo
     def has_every_step(self) -> bool:
         """Whether each state but the first is one step after the one before, without an impact between them."""
         h = self.time_step
@@ -177,7 +177,7 @@ class AbstractOrbit(Keeper, abc.ABC):
             and (h is None or np.allclose(np.diff(self.time), h))
         )
 
-    @remembered
+    @memo
     def has_impacts(self) -> Bool[np.ndarray, "K"]:
         """Whether there was an impact in the step from each state, after it and up to the end of the step."""
         return np.isin(self.step, [] if self.events is None else self.events.impact_steps)
@@ -201,8 +201,8 @@ class AbstractOrbit(Keeper, abc.ABC):
         size = sum(each.nbytes for each in self.rows().values()) / len(self)
         within_memory(where, 2.0 * size * gaps.sum(), "Ask it of a part of the orbit.")
         last, parts = self.chosen(slice(0, -1)), []
-        for taken in range(1, gaps.max(initial=1)):
-            last, gaps = last.chosen(gaps > taken), gaps[gaps > taken]
+        for count in range(1, gaps.max(initial=1)):
+            last, gaps = last.chosen(gaps > count), gaps[gaps > count]
             last = self.motion.after_parts(last, np.ones(len(last)))
             parts.append(last)
         whole = self.joined(parts)
@@ -236,7 +236,7 @@ class AbstractOrbit(Keeper, abc.ABC):
 
     def plot(self, path: str | None = None, *, overwrite: bool = False) -> Any:
         """Draw the overview picture of the orbit; return the matplotlib figure, saved to a new `path` if given."""
-        return importlib.import_module("nonholo.plotting").overview(self, path, overwrite=overwrite)
+        return importlib.import_module("nonholo.plot").overview(self, path, overwrite=overwrite)
 
     def to_html(self, path: Any, *, overwrite: bool = False) -> None:
         """Write the live page of the orbit to a new HTML file, which runs in any browser; see `nh.explore`."""

@@ -107,13 +107,15 @@ class EventLog(AbstractEventLog[Crossings]):
 
     def joined(self, others: "Sequence[EventLog]") -> "EventLog":
         """Return the crossings with those of later parts of the same run."""
-        found = tuple(joined_crossings(column) for column in zip(*(log.found for log in (self, *others)), strict=True))
-        return EventLog(self.names, found, others[-1].stopped_by)
+        columns = tuple(
+            joined_crossings(column) for column in zip(*(log.found for log in (self, *others)), strict=True)
+        )
+        return EventLog(self.names, columns, others[-1].stopped_by)
 
     def __repr__(self) -> str:
-        counts = ", ".join(f"{name}: {len(found)}" for name, found in zip(self.names, self.found, strict=True))
-        ended = f", stopped by {self.stopped_by}" if self.stopped_by else ""
-        return f"<EventLog of crossings: {counts}{ended}>"
+        counts = ", ".join(f"{name}: {len(crossings)}" for name, crossings in zip(self.names, self.found, strict=True))
+        end = f", stopped by {self.stopped_by}" if self.stopped_by else ""
+        return f"<EventLog of crossings: {counts}{end}>"
 
 
 def joined_crossings(parts: Sequence[Crossings]) -> Crossings:
@@ -122,5 +124,5 @@ def joined_crossings(parts: Sequence[Crossings]) -> Crossings:
         np.concatenate([getattr(part, name) for part in parts]) for name in ("step", "fraction", "direction")
     )
     states, after = ([getattr(part, name) for part in parts] for name in ("states", "after"))
-    joined = None if after[0] is None else after[0].joined(after[1:])
-    return Crossings(step, fraction, direction, states[0].joined(states[1:]), joined)
+    later = None if after[0] is None else after[0].joined(after[1:])
+    return Crossings(step, fraction, direction, states[0].joined(states[1:]), later)

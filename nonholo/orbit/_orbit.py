@@ -14,14 +14,13 @@ from typing import Any, ClassVar, cast
 import numpy as np
 
 from nonholo.base.checks import error, instance, shown
-from nonholo.base.kept import Keeper, remembered
+from nonholo.base.memo import Keeper, memo
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float, Int
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.orbit._base import AbstractOrbit
-from nonholo.orbit._decoder import Decoder, decoder_of
-from nonholo.orbit._poses import poses, unwrapped
+from nonholo.orbit._decoder import Decoder, decoder_of, poses, unwrap
 from nonholo.systems import System
 
 STATES = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
@@ -215,7 +214,7 @@ class Orbit(AbstractOrbit):
         pose = self.canonical_pose
         if self.space != SE(2) or pose is None or self.turned is not None or not len(self):
             return self
-        return dataclasses.replace(self, turned=unwrapped(pose, before=before))
+        return dataclasses.replace(self, turned=unwrap(pose, before=before))
 
     def at(self, times: Any) -> "Orbit":
         """Return the states of a flow at any of its times, from its Taylor series or closed form, without a new run.
@@ -278,7 +277,7 @@ class Orbit(AbstractOrbit):
         """Whether poses were reconstructed."""
         return self.canonical_pose is not None
 
-    @remembered
+    @memo
     def restricted_momentum(self) -> Float[np.ndarray, "K k"]:
         """Momenta along the rows of the constraint subspace; spatial ones for a right-invariant constraint."""
         return self.system.from_canonical(self.reduced_momentum)
@@ -293,7 +292,7 @@ class Orbit(AbstractOrbit):
             raise ValueError("`Orbit.displacement` needs a discrete orbit. Got a continuous flow. Use `simulate`.")
         return self.cayley
 
-    @remembered
+    @memo
     def chart(self) -> Float[np.ndarray, "K k"]:
         """Coordinates of the displacements in rows S of the constraint subspace.
 
@@ -307,23 +306,23 @@ class Orbit(AbstractOrbit):
         back = np.linalg.pinv(system.constraint_subspace)
         return applied(back.T, system.group.vee((D - system.group.inverse(D)) / 2))
 
-    @remembered
+    @memo
     def momentum(self) -> Float[np.ndarray, "K dim"]:
         """Body momenta."""
         return self.motion.full_momentum(self)
 
-    @remembered
+    @memo
     def multipliers(self) -> Float[np.ndarray, "L s"]:
         """Impulses between the states of a discrete orbit, (K - 1, s), or forces at the times of a flow, (K, s).
 
         Those of steps with impacts are NaN.
         """
-        found = self.motion.multipliers(self)
+        rows = self.motion.multipliers(self)
         if not self.is_discrete or not self.has_impacts.any():
-            return found
-        return np.where(self.has_impacts[:-1, None], np.nan, found)
+            return rows
+        return np.where(self.has_impacts[:-1, None], np.nan, rows)
 
-    @remembered
+    @memo
     def displacement(self) -> Float[np.ndarray, "K N N"]:
         """Displacements W_k = g_k^-1 g_(k+1) of single steps at the saved states."""
         D = self.motion.displacements(self)
@@ -332,7 +331,7 @@ class Orbit(AbstractOrbit):
         g = self.configuration
         return self.system.group.inverse(g) @ D @ g
 
-    @remembered
+    @memo
     def spatial_displacement(self) -> Float[np.ndarray, "K N N"]:
         """Displacements U_k = g_(k+1) g_k^-1 seen from space; on the variety for a right-invariant constraint."""
         D = self.motion.displacements(self)
@@ -341,7 +340,7 @@ class Orbit(AbstractOrbit):
         g = self.configuration
         return g @ D @ self.system.group.inverse(g)
 
-    @remembered
+    @memo
     def pose(self) -> Float[np.ndarray, "K size"] | None:
         """Compact poses of the group in the user's body frame; None if not reconstructed.
 
@@ -350,43 +349,43 @@ class Orbit(AbstractOrbit):
         """
         return None if self.canonical_pose is None else poses(self.system, self.canonical_pose)
 
-    @remembered
+    @memo
     def configuration(self) -> Float[np.ndarray, "K N N"]:
         """Poses as matrices."""
-        self._posed()
+        self._pose_rows()
         return self.motion.decoder.configuration(self)
 
-    @remembered
+    @memo
     def body_velocity(self) -> Float[np.ndarray, "K dim"]:
         """Admissible body velocities whose momenta along the constraint are those of the states."""
         return self.motion.decoder.body_velocity(self)
 
-    @remembered
+    @memo
     def spatial_momentum(self) -> Float[np.ndarray, "K dim"]:
         """Momenta carried to space, the plain transpose of Ad at the inverse pose."""
         group = self.system.group
         return group.coadjoint(group.inverse(self.configuration), self.momentum)
 
-    @remembered
+    @memo
     def position(self) -> Float[np.ndarray, "K n"]:
         """Translation parts of the poses; for groups of motions."""
         group = self.system.group
         if not group.is_affine:
             raise ValueError(f"`Orbit.position` needs a group of motions. Got {group}. Use configuration.")
-        self._posed()
+        self._pose_rows()
         return self.motion.decoder.position(self)
 
-    @remembered
+    @memo
     def heading(self) -> Float[np.ndarray, "K"]:
         """Unwrapped angle of the body on SE(2); between saved states the shorter turn is assumed unless it is known."""
         if self.turned is not None:
             return self.turned
-        pose = self._posed()
+        pose = self._pose_rows()
         if self.system.group != SE(2):
             raise ValueError(f"`Orbit.heading` needs motions of the plane. Got {self.system.group}.")
-        return unwrapped(pose)
+        return unwrap(pose)
 
-    @remembered
+    @memo
     def energy(self) -> Float[np.ndarray, "K"]:
         """Reduced constrained energy; with the potential energy under forces, that of the nodes."""
         forced = self.system.forces
@@ -394,7 +393,7 @@ class Orbit(AbstractOrbit):
         kinetic = self.motion.decoder.kinetic_energy(self)
         return kinetic if potential is None else kinetic + potential
 
-    @remembered
+    @memo
     def work(self) -> Float[np.ndarray, "K"]:
         r"""Work of the force on the motion since the first state; zero without one.
 
@@ -422,7 +421,7 @@ class Orbit(AbstractOrbit):
         own = forced is not None and not (forced.table is None and forced.slip is None)
         return own and not self.has_every_step
 
-    @remembered
+    @memo
     def tangent(self) -> Float[np.ndarray, "L k k"]:
         """Derivatives of restricted momenta after each step of an orbit by those before it, (K - 1, k, k).
 
@@ -437,7 +436,7 @@ class Orbit(AbstractOrbit):
         """
         return importlib.import_module("nonholo.io").orbit_to_dataset(self, decoded=decoded)
 
-    def _posed(self) -> np.ndarray:
+    def _pose_rows(self) -> np.ndarray:
         if self.canonical_pose is None:
             raise ValueError("`Orbit.configuration` needs poses. Got reconstruct=False. Run with reconstruct=True.")
         return self.canonical_pose

@@ -23,11 +23,11 @@ class First(NamedTuple):
     Attributes:
         numbers: Of a body its canonical momenta and compact pose, which is empty where none is needed; in coordinates
             momentum, place and velocity.
-        demanded: The displacement (N, N) or the full momentum (dim,) of the first step; None if the start leaves it.
+        demand: The displacement (N, N) or the full momentum (dim,) of the first step; None if the start leaves it.
     """
 
     numbers: tuple[np.ndarray, ...]
-    demanded: np.ndarray | None = None
+    demand: np.ndarray | None = None
 
 
 class Plan(NamedTuple):
@@ -68,9 +68,9 @@ class Plan(NamedTuple):
         is_last = block == self.blocks - 1
         return self.begin(block), self.steps if is_last else self.begin(block + 1), is_last
 
-    def has_rows(self, block: int, done: int) -> bool:
+    def has_rows(self, block: int, step: int) -> bool:
         """Tell whether a block has saved states if the run stands at a step: it may fail before the first one."""
-        return block * self.rows <= done // self.every
+        return block * self.rows <= step // self.every
 
 
 class AbstractStepper(abc.ABC, Generic[OrbitT]):

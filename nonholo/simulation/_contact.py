@@ -152,7 +152,7 @@ def flow_through_impacts(
         if len(watch.impacts) > before:
             span, since = _SPAN * float(there.time[0] - since), float(watch.impacts[-1].time[0])
         elif there.time[0] == looks.time[-1]:
-            outcome, message, span = max(outcome, solution.outcome), solution.said, 2 * span
+            outcome, message, span = max(outcome, solution.outcome), solution.fault, 2 * span
     return _whole(first, time, solver_at, watch, float(there.time[0]), outcome), message
 
 

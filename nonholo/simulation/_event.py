@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.calls import called, checked, numbers_of
+from nonholo.base.calls import call, check_result, numbers_of
 from nonholo.base.checks import array, choice, error, instance, is_name, natural, number, shown
 from nonholo.base.checks import name as checked_name
 from nonholo.base.types import Float
@@ -220,9 +220,9 @@ def values_at(name: str, event: Event, states: AbstractOrbit) -> Float[np.ndarra
     where, count = f"Event(function=...) of {name!r}", len(states)
     remedy = "It gets an `Orbit`: return an array with one number for each of its states."
     try:
-        values = called(where, event.function, states)
+        values = call(where, event.function, states)
     except Exception as failure:
         got = f"{type(failure).__name__}: {failure}"
         raise error(where, f"take an orbit of {count} states", got, remedy) from failure
     words = f"one real number for each of {count} states", remedy
-    return checked(where, event.function, values, (count,), words, lambda at: f"time {states.time[at]:.17g}")
+    return check_result(where, event.function, values, (count,), words, lambda at: f"time {states.time[at]:.17g}")

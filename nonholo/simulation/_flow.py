@@ -32,6 +32,7 @@ def flow(
     restricted_velocity: Any = None,
     momentum: Any = None,
     configuration: Any = None,
+    project: bool = False,
     rtol: float | None = None,
     atol: float = 1e-12,
     method: str | None = None,
@@ -47,6 +48,7 @@ def flow(
     configuration: Any,
     body_velocity: Any = None,
     momentum: Any = None,
+    project: bool = False,
     rtol: float | None = None,
     atol: float = 1e-12,
     progress: bool = False,
@@ -59,6 +61,7 @@ def flow(
     restricted_velocity: Any = None,
     momentum: Any = None,
     configuration: Any = None,
+    project: bool = False,
     rtol: float | None = None,
     atol: float = 1e-12,
     method: str | None = None,
@@ -93,6 +96,7 @@ def flow(
         restricted_velocity: The same, in rows of the constraint subspace.
         momentum: Start with this momentum, full or along the constraint subspace.
         configuration: First pose, a matrix of the group; the identity by default.
+        project: Start at the admissible configuration and `body_velocity` next to the given ones in the kinetic energy.
         rtol: Relative error of a step, at least 1e-14, which is the default; with "diffrax" 1e-10.
         atol: Absolute error of a step with "diffrax". Smaller components are not resolved there: a solution that starts
             so near a repelling equilibrium leaves it at the wrong time.
@@ -123,13 +127,13 @@ def flow(
         >>> print(orbit.body_velocity[:, 1].round(6), (np.ptp(orbit.heading) / np.pi).round(6))
         [-2.  2.] 2.0
     """
-    flags("flow", reconstruct=reconstruct, progress=progress)
+    flags("flow", project=project, reconstruct=reconstruct, progress=progress)
     starts = {"body_velocity": body_velocity, "momentum": momentum}
     if isinstance(system, AbstractCoordinateSystem):
         others = {"restricted_velocity": restricted_velocity, "method": method}
         no_pose = {"reconstruct": (reconstruct, True)}
         refuse_in_coordinates("flow", **{name: (value, None) for name, value in others.items()}, **no_pose)
-        errors = {"rtol": rtol, "atol": atol}
+        errors = {"rtol": rtol, "atol": atol, "project": project}
         with telling("time", progress):
             return flow_in_coordinates(system, events, configuration=configuration, times=times, **starts, **errors)
     as_system("flow(system=...)", system)
@@ -137,9 +141,8 @@ def flow(
     solver, with_poses = solver_of(system, method, float(time[0]), reconstruct=reconstruct)
     tolerances = flow_tolerances((1e-10 if method == "diffrax" else 1e-14) if rtol is None else rtol, atol)
     task = _Task(system, time, tolerances, method, reconstruct)
-    first = _first_state(
-        task, Start.of("flow", configuration, restricted_velocity=restricted_velocity, **starts), with_poses
-    )
+    start = Start.of("flow", configuration, project=project, restricted_velocity=restricted_velocity, **starts)
+    first = _first_state(task, start, with_poses)
     by_name = None if events is None else checked_events("flow", events)
     with telling("time", progress):
         if by_name is not None and has_resets(by_name):
@@ -171,8 +174,8 @@ def _first_state(task: _Task, start: Start, with_poses: bool) -> FirstState:
     within_memory("flow(times=...)", 32.0 * len(task.time) * numbers, remedy)
     first = ContinuousFlow(task.system).first(start, with_poses=with_poses)
     reduced, pose = first.numbers[0], first.numbers[1] if with_poses else None
-    if first.demanded is not None:
-        _check_momentum(first.demanded, task.opening((reduced, pose)).momentum[0])
+    if first.demand is not None:
+        _check_momentum(first.demand, task.opening((reduced, pose)).momentum[0])
     return reduced, pose
 
 
@@ -198,7 +201,7 @@ def _solve_flow(
     orbit = Orbit(motion, time[:count], states.momenta, None, states.poses, outcome, turned=states.turned)
     if events is not None:
         orbit = flow_with_events(events, orbit, time[0] + solution.steps())
-    return _successful(task, orbit, solution.said)
+    return _successful(task, orbit, solution.fault)
 
 
 def _flow_between_walls(task: _Task, first: FirstState, events: dict[str, Event]) -> Orbit:

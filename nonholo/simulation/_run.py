@@ -11,7 +11,7 @@ import numpy as np
 from nonholo.base.checks import count, error
 from nonholo.base.limits import within_memory
 from nonholo.base.progress import progress_bar
-from nonholo.base.results import OUTCOMES, Outcome, OutcomeError, finished
+from nonholo.base.results import OUTCOMES, Outcome, OutcomeError, conclude
 from nonholo.discrete import check_first_state
 from nonholo.orbit import AbstractOrbit, AbstractStepper, First, Plan, Rows, State, keep_row, write_first
 from nonholo.simulation._contact import after_contact
@@ -49,7 +49,7 @@ class Run(NamedTuple):
 
     def finish(self, orbit: Any, step: int) -> Any:
         """Return the orbit of the run, or raise if it ended early."""
-        return finished(orbit, float(self.stepper.motion.time_step), step, self.steps, self.throw)
+        return conclude(orbit, float(self.stepper.motion.time_step), step, self.steps, self.throw)
 
 
 class Reached(NamedTuple):
@@ -78,7 +78,7 @@ def open_run(run: Run, first: First) -> tuple[Reached, AbstractOrbit | None]:
     """Begin a run; return how it stands at its start, and the empty orbit of one that cannot continue from there."""
     state, outcome = run.stepper.start(first)
     start = Reached(0, outcome, state, run.watch)
-    if outcome == Outcome.successful and first.demanded is None and run.watch is None:
+    if outcome == Outcome.successful and first.demand is None and run.watch is None:
         return start, None
     there = orbit_at(run.stepper, state, 0)
     if outcome != Outcome.successful:
@@ -87,8 +87,8 @@ def open_run(run: Run, first: First) -> tuple[Reached, AbstractOrbit | None]:
         watch, _ = search(run.watch, there)
         check_resets(run.watch.events, there)
         start, there = start._replace(watch=watch), dataclasses.replace(there, events=watch.log())
-    if outcome == Outcome.successful and first.demanded is not None:
-        check_first_state(first.demanded, there)
+    if outcome == Outcome.successful and first.demand is not None:
+        check_first_state(first.demand, there)
     return start, None if outcome == Outcome.successful else run.finish(there, 0)
 
 

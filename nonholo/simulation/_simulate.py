@@ -22,6 +22,7 @@ def simulate(
     displacement: Any = None,
     momentum: Any = None,
     configuration: Any = None,
+    project: bool = False,
     save_every: int = 1,
     branch: BranchRule = "principal",
     reconstruct: bool = True,
@@ -62,6 +63,7 @@ def simulate(
             for compositions (order > 2), whose state is the restricted momentum.
         momentum: Start with this momentum, full (on the momentum locus) or along the constraint subspace.
         configuration: First pose, a matrix of the group; the identity by default.
+        project: Start at the admissible configuration and `body_velocity` next to the given ones in the kinetic energy.
         save_every: Steps between saved states.
         branch: Which value of the map a step takes: "principal", "nearest", "smallest", "largest", "inner", "outer" or
             a function; see above. A velocity or restricted momentum starts at the principal W_0 with every rule.
@@ -100,7 +102,7 @@ def simulate(
     run = checked_run("simulate", discrete, **how)
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity}
     starts |= {"displacement": displacement, "momentum": momentum}
-    start = Start.of("simulate", configuration, choices=discrete.starts, **starts)
+    start = Start.of("simulate", configuration, choices=discrete.starts, project=project, **starts)
     if store is None and (checkpoint_every is not None or scenario is not None):
         _refuse_without_store(checkpoint_every=checkpoint_every, scenario=scenario)
     if store is not None or run.watch is None:  # an event may stop a run in memory long before
@@ -131,6 +133,7 @@ def iterate(
     displacement: Any = None,
     momentum: Any = None,
     configuration: Any = None,
+    project: bool = False,
     save_every: int = 1,
     branch: BranchRule = "principal",
     reconstruct: bool = True,
@@ -153,6 +156,7 @@ def iterate(
         displacement: See `simulate`.
         momentum: See `simulate`.
         configuration: See `simulate`.
+        project: See `simulate`.
         save_every: Steps between saved states.
         branch: As in `simulate`.
         reconstruct: Also compute poses.
@@ -179,7 +183,7 @@ def iterate(
     run = checked_run("iterate", discrete, **how)
     starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
     starts |= {"restricted_velocity": restricted_velocity}
-    start = Start.of("iterate", configuration, choices=discrete.starts, **starts)
+    start = Start.of("iterate", configuration, choices=discrete.starts, project=project, **starts)
     refuse_too_large("iterate", tuple(run.stepper.columns.values()), 1)
     rows = rows_of_block("iterate(block_steps=...)", run, block_steps)
     return one_by_one(run, discrete.first(start, with_poses=run.stepper.has_poses), rows)

@@ -9,7 +9,7 @@ import jax
 import numpy as np
 
 from nonholo.base.checks import array, count, error, is_traced, shape_of
-from nonholo.base.progress import interruptibly, numbered
+from nonholo.base.progress import interruptibly, number_of_work
 from nonholo.base.types import Array
 from nonholo.discrete import Discretization, ScalarRoute, as_discretization
 from nonholo.discrete.definition import in_double, roll_out, traceable
@@ -127,7 +127,7 @@ def _call(run: Callable[..., Any], *arguments: Any, many: bool) -> Any:
         return in_double(run, *arguments)
 
     def asking() -> Any:
-        with numbered() as number:
+        with number_of_work() as number:
             return jax.block_until_ready(in_double(run, *arguments, np.asarray(number)))
 
     return interruptibly(asking)

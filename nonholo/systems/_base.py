@@ -13,8 +13,8 @@ import numpy as np
 
 from nonholo.base.checks import error, instance, is_traced, shape_of, trailing
 from nonholo.base.html import table
-from nonholo.base.kept import Keeper, kept
 from nonholo.base.limits import within_memory
+from nonholo.base.memo import Keeper, system_memo
 from nonholo.base.numerics import Factors, applied, factors_of, solved
 from nonholo.base.types import Array, Bool, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
@@ -56,7 +56,7 @@ class AbstractSystem(Keeper, abc.ABC):
     def homogeneous_mass_tensor(self) -> Float[Array, "... N N"] | None:
         """The mass tensor on which the group's matrices act; None if the inertia operator was given directly."""
 
-    @kept
+    @system_memo
     def inertia_operator(self) -> Float[Array, "... dim dim"]:
         """The symmetric matrix that takes body velocity to body momentum, by default that of the mass tensor."""
         return inertia_from_mass_tensor(self.group, self.homogeneous_mass_tensor)
@@ -84,7 +84,7 @@ class AbstractSystem(Keeper, abc.ABC):
         is_symmetric = (J.swapaxes(-1, -2) == J).all(axis=(-2, -1))
         return np.asarray(is_symmetric & (eigenvalues[..., 0] > 1e-12 * eigenvalues[..., -1]))
 
-    @kept
+    @system_memo
     def annihilator(self) -> Float[np.ndarray, "s dim"]:
         """Rows span the covectors that vanish on the constraint subspace; multipliers refer to them.
 
@@ -102,7 +102,7 @@ class AbstractSystem(Keeper, abc.ABC):
         """Shapes of a configuration and of a velocity."""
         return (self.group.size, self.group.size), (self.group.dim,)
 
-    @kept
+    @system_memo
     def frame(self) -> Float[Array, "... N N"]:
         """The canonical body frame as seen from the user's: a group element that maps the constraint to itself.
 
@@ -110,7 +110,7 @@ class AbstractSystem(Keeper, abc.ABC):
         """
         return self.group.identity
 
-    @kept
+    @system_memo
     def frame_map(self) -> Float[Array, "... k k"]:
         """C with r_canonical = C r for momenta along the constraint subspace (and y = y_canonical C for charts)."""
         if self.canonical is self:
@@ -119,7 +119,7 @@ class AbstractSystem(Keeper, abc.ABC):
         images = self.canonical.constraint_subspace @ self.group.adjoint(self.frame).swapaxes(-1, -2)
         return images @ np.linalg.pinv(self.constraint_subspace)
 
-    @kept
+    @system_memo
     def inverse_frame_map(self) -> Float[Array, "... k k"]:
         """The inverse of `frame_map`."""
         return np.linalg.inv(self.frame_map)
@@ -134,7 +134,7 @@ class AbstractSystem(Keeper, abc.ABC):
         reduced = self._along("reduced_momentum", reduced_momentum)
         return reduced if self.canonical is self else applied(self.inverse_frame_map, reduced)
 
-    @kept
+    @system_memo
     def inertia_along(self) -> Float[Array, "... k k"] | WideInertia:
         r"""The inertia along the rows of the constraint subspace, $S\,\mathbb{I}\,S^T$; its parts if too large."""
         rows, mass_tensor = self.constraint_subspace, self.homogeneous_mass_tensor
@@ -176,7 +176,7 @@ class AbstractSystem(Keeper, abc.ABC):
         form = self.normal_form
         return self.frame_map if form is None or form.frame_map is None else form.frame_map @ self.frame_map
 
-    @kept
+    @system_memo
     def frame_pose(self) -> Float[np.ndarray, "... size"]:
         """The frame as a compact pose: the canonical pose of a body at the identity."""
         return self.group.pose_from_matrix(self.frame)

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 from nonholo.base.checks import error
-from nonholo.base.kept import Keeper
+from nonholo.base.memo import Keeper
 
 if TYPE_CHECKING:
     from typing_extensions import TypeIs
@@ -92,6 +92,7 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
         times: Any,
         body_velocity: Any = None,
         momentum: Any = None,
+        project: bool = False,
         rtol: float | None = None,
         atol: float = 1e-12,
     ) -> OrbitT:

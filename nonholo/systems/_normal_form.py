@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nonholo.base.checks import is_traced
-from nonholo.base.kept import Keeper
 from nonholo.base.limits import within_memory
+from nonholo.base.memo import Keeper
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE, SO

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.checks import array, error, refuse_given, shape_of
+from nonholo.base.checks import array, error, flags, refuse_given, shape_of
 from nonholo.base.types import Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._base import System
@@ -22,6 +22,7 @@ class Start:
         name: "body_velocity", "restricted_velocity", "momentum" or "displacement".
         value: What it is, not yet checked.
         configuration: The pose, not yet checked; None for the identity.
+        project: Whether the admissible start next to it in the kinetic energy is meant.
 
     Example:
         >>> from nonholo.systems import Start
@@ -34,17 +35,28 @@ class Start:
     name: str
     value: Any
     configuration: Any = None
+    project: bool = False
 
     @classmethod
     def of(
-        cls, owner: str, configuration: Any = None, choices: tuple[str, ...] | None = None, **starts: Any
+        cls,
+        owner: str,
+        configuration: Any = None,
+        choices: tuple[str, ...] | None = None,
+        *,
+        project: bool = False,
+        **starts: Any,
     ) -> "Start":
         """Return the start of a call, refused if it names none or several, or one that the motion does not have."""
+        if project is not False:
+            flags(owner, project=project)
         if choices is not None and len(choices) < len(starts):
             for other in [name for name in starts if name not in choices]:
                 refuse_in_coordinates(owner, **{other: (starts.pop(other), None)})
         name = one_start(owner, **starts)
-        return cls(owner, name, starts[name], configuration)
+        if project and name == "displacement":
+            raise error(f"{owner}(project=...)", "be left out", name, "Pass body_velocity instead.")
+        return cls(owner, name, starts[name], configuration, project)
 
     @property
     def where(self) -> str:
@@ -125,9 +137,13 @@ def _of_momentum(start: Start, system: System, g: np.ndarray | None) -> np.ndarr
 
 
 def _of_velocity(start: Start, system: System, g: np.ndarray | None) -> np.ndarray:
-    velocity = _admissible(start.where, system, g, start.value)
+    velocity = array(start.where, start.value, (system.group.dim,), "Use `vee` to turn a matrix into coordinates.")
     momentum = system.inertia_operator @ velocity
-    return of_finite_energy(start.owner, system, g, system.restrict_at(momentum, g), (momentum, velocity))
+    along = system.restrict_at(momentum, g)
+    if start.project:
+        return of_finite_energy(start.owner, system, g, along)
+    _check_admissible(start.where, system, g, velocity)
+    return of_finite_energy(start.owner, system, g, along, (momentum, velocity))
 
 
 def _of_coordinates(start: Start, system: System, g: np.ndarray | None) -> np.ndarray:
@@ -136,12 +152,10 @@ def _of_coordinates(start: Start, system: System, g: np.ndarray | None) -> np.nd
     return of_finite_energy(start.owner, system, g, along, (along, rows))
 
 
-def _admissible(where: str, system: System, g: np.ndarray | None, body_velocity: Any) -> np.ndarray:
-    velocity = array(where, body_velocity, (system.group.dim,), "Use `vee` to turn a matrix into coordinates.")
+def _check_admissible(where: str, system: System, g: np.ndarray | None, velocity: np.ndarray) -> None:
     pose = system.group.identity if g is None else g
     frame_velocity = system.carried(pose) @ velocity if system.is_spatial else velocity
     forbidden = system.annihilator @ frame_velocity
     if np.count_nonzero(forbidden) and np.abs(forbidden).max() > _TOLERANCE * np.abs(frame_velocity).max():
         nearest = frame_velocity - np.linalg.pinv(system.annihilator) @ forbidden
         raise inadmissible(where, forbidden, system.carried(system.group.inverse(pose)) @ nearest)
-    return velocity

@@ -27,7 +27,7 @@ class CoordinateSamples:
         owner: The check.
         system: The system.
         rng: Where the start comes from.
-        configuration: Where it starts; random by default, with what is prescribed.
+        configuration: Where it starts; by default what is admissible next to a random place, with what is prescribed.
         time_step: h, of a discretization.
         steps: Number of steps of the orbit.
     """
@@ -45,11 +45,11 @@ class CoordinateSamples:
             remedy = "Pass a LagrangeDAlembert, or a body on a group as an LLSystem or LRSystem."
             raise error(f"{owner}(...)", "be in coordinates or an LL or LR system", shown(system), remedy)
         self.system, self.time_step, self.steps, n = system, float(time_step), steps, system.dimension
-        self.q = rng.normal(size=n) if configuration is None else configuration
-        self._drawn = rng.normal(size=n)
+        self._place = rng.normal(size=n) if configuration is None else configuration
+        self._drawn, self._is_random = rng.normal(size=n), configuration is None
         if configuration is None:
             for index, motion in system.plain.prescribed:
-                self.q[index] = self._value(motion, 0.0)
+                self._place[index] = self._value(motion, 0.0)
 
     def _value(self, function: Callable[..., Any], *arguments: Any) -> np.ndarray:
         from nonholo.base.numerics import double_precision
@@ -62,12 +62,19 @@ class CoordinateSamples:
         return self._value(self.system.plain.lagrangian, q, v, *([t] if self.system.takes_time("lagrangian") else []))
 
     def forms(self, q: np.ndarray, t: float) -> Float[np.ndarray, "s n"]:
-        """Return the rows of the constraint, those of prescribed coordinates last."""
+        """Return the rows of the constraint, before the last ones of prescribed coordinates those of holonomic ones."""
         system, fixed = self.system.plain, [i for i, _ in self.system.prescribed]
         rows = np.zeros((0, system.dimension))
         if system.constraint_forms is not None:
             rows = self._value(system.constraint_forms, q, *([t] if system.takes_time("constraint_forms") else []))
+        if system.holonomic is not None:
+            rows = np.concatenate([rows, self.gradient(lambda x: self.holonomic(x, t), q).T])
         return np.concatenate([rows, np.eye(system.dimension)[fixed]])
+
+    def holonomic(self, q: np.ndarray, t: float) -> Float[np.ndarray, "m"]:
+        """Return what holonomic constraints leave."""
+        system = self.system.plain
+        return self._value(system.holonomic, q, *([t] if system.takes_time("holonomic") else []))
 
     def force(self, t: float, q: np.ndarray, v: np.ndarray, step: int) -> np.ndarray:
         """Return the force, of a table that of a step."""
@@ -75,14 +82,24 @@ class CoordinateSamples:
         return row if self.system.applied is None else row + self._value(self.system.plain.applied, t, q, v)
 
     def gradient(self, function: Callable[[np.ndarray], Any], at: np.ndarray) -> Float[np.ndarray, "n"]:
-        """Return the derivatives of a function of n numbers."""
+        """Return the derivatives of a function of n numbers, a row for each."""
         return np.array([derivative(lambda t, x=x: function(at + t * x)) for x in np.eye(len(at))])
+
+    @functools.cached_property
+    def _opening(self) -> Any:
+        free = dataclasses.replace(self.system, force=None)  # a table has no flow
+        start = {"configuration": self._place, "momentum": self._drawn, "project": self._is_random}
+        return flow(free, times=[0.0], **start)
+
+    @property
+    def q(self) -> Float[np.ndarray, "n"]:
+        """Where the motions start."""
+        return self._opening.configuration[0]
 
     @functools.cached_property
     def momentum(self) -> Float[np.ndarray, "n"]:
         """A momentum at the start, of velocities of about norm one."""
-        free = dataclasses.replace(self.system, force=None)  # a table has no flow
-        speed = np.linalg.norm(flow(free, configuration=self.q, momentum=self._drawn, times=[0.0]).body_velocity)
+        speed = np.linalg.norm(self._opening.body_velocity)
         return self._drawn / max(1.0, float(speed))
 
     @functools.cached_property
@@ -188,6 +205,13 @@ def _prescribed(s: CoordinateSamples) -> float:
     need(s.system.prescribed, "nothing is prescribed")
     pairs = ((s.orbit.configuration[:, i], motion) for i, motion in s.system.plain.prescribed)
     return max(gap(rows, [s._value(motion, t) for t in s.orbit.time]) for rows, motion in pairs)
+
+
+@measures(MAP, "holonomic", "Phi(q_k, t_k) = 0 at each state", 1e-12)
+def _holonomic(s: CoordinateSamples) -> float:
+    need(s.system.holonomic, "no constraint is holonomic")
+    states = zip(s.orbit.configuration, s.orbit.time, strict=True)
+    return max(largest(s.holonomic(q, t)) / (1 + largest(q)) for q, t in states)
 
 
 @measures(MAP, "start", "the first momentum along the constraint is that of the start", 1e-11)

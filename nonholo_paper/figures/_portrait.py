@@ -10,7 +10,7 @@ from matplotlib.collections import PathCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch
 
-from nonholo.plotting import theme
+from nonholo.plot import theme
 from nonholo.systems import AbstractLLSystem
 
 _LEAN = 0.02  # half the length of an arrow, as an angle on its ellipse

@@ -7,7 +7,7 @@ from jaxtyping import Float
 from matplotlib.figure import Figure as MatplotlibFigure
 from matplotlib.ticker import MaxNLocator
 
-from nonholo.plotting import theme
+from nonholo.plot import theme
 
 
 def space(title: str, labels: tuple[str, str, str], view: tuple[float, float]) -> Any:

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Arc, Polygon
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 from nonholo_paper._finding import Measured, finding
 from nonholo_paper.figures._figure import Figure
 from nonholo_paper.formulas import sleigh_continuous as formulas

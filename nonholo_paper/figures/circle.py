@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 
 import nonholo as nh
 from nonholo.orbit import Orbit
-from nonholo.plotting import BladeTrack, blade_track, theme
+from nonholo.plot import BladeTrack, blade_track, theme
 from nonholo_paper._finding import Measured, finding
 from nonholo_paper.figures._figure import Figure
 from nonholo_paper.formulas import sleigh_discrete as formulas

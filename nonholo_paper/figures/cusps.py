@@ -7,7 +7,7 @@ import numpy as np
 
 import nonholo as nh
 from nonholo.orbit import Orbit
-from nonholo.plotting import BladeTrack, blade_track, theme
+from nonholo.plot import BladeTrack, blade_track, theme
 from nonholo_paper._finding import Measured, finding
 from nonholo_paper.figures._figure import Figure
 

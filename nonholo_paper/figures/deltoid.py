@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 import nonholo as nh
-from nonholo.plotting import BranchCounts, branch_counts, theme
+from nonholo.plot import BranchCounts, branch_counts, theme
 from nonholo_paper._finding import Measured, finding
 from nonholo_paper.figures._figure import Figure
 from nonholo_paper.formulas import sleigh_discrete as formulas

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 import nonholo as nh
-from nonholo.plotting import BranchesPicture, theme
-from nonholo.plotting import branches as draw_branches
+from nonholo.plot import BranchesPicture, theme
+from nonholo.plot import branches as draw_branches
 from nonholo_paper import _suslov_twin as data
 from nonholo_paper._finding import Measured, finding
 from nonholo_paper._verdict import Verdict

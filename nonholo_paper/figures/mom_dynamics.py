@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure as MatplotlibFigure
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 from nonholo_paper._finding import Measured, finding
 from nonholo_paper.figures._figure import Figure
 from nonholo_paper.figures._portrait import Portrait, portrait

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure as MatplotlibFigure
 from matplotlib.lines import Line2D
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 from nonholo_paper._finding import Measured, finding
 from nonholo_paper.figures._figure import Figure
 from nonholo_paper.formulas import sleigh_discrete as formulas

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure as MatplotlibFigure
 from matplotlib.lines import Line2D
 
 import nonholo as nh
-from nonholo.plotting import theme
-from nonholo.plotting.elements import draw_rim
+from nonholo.plot import theme
+from nonholo.plot.elements import draw_rim
 from nonholo_paper._finding import Measured, finding
 from nonholo_paper._suslov_twin import BODIES
 from nonholo_paper.figures._figure import Figure

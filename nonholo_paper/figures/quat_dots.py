@@ -11,7 +11,7 @@ from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.figure import Figure as MatplotlibFigure
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 from nonholo_paper._finding import Measured, finding
 from nonholo_paper.figures._figure import Figure
 from nonholo_paper.figures._plane import draw_curve, project

@@ -7,7 +7,7 @@ import numpy as np
 
 import nonholo as nh
 from nonholo.analysis import MomentumLocus
-from nonholo.plotting import MomentumLocusPicture, momentum_locus, theme
+from nonholo.plot import MomentumLocusPicture, momentum_locus, theme
 from nonholo_paper._finding import Measured, finding
 from nonholo_paper._suslov_twin import BODIES
 from nonholo_paper.figures._figure import Figure

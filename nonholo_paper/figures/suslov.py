@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as MatplotlibFigure
 
 import nonholo as nh
-from nonholo.plotting import theme
+from nonholo.plot import theme
 from nonholo_paper._finding import Measured, finding
 from nonholo_paper._suslov_twin import BODIES
 from nonholo_paper.figures._figure import Figure

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from typer.testing import Result
 
 import nonholo as nh
-from nonholo.cli.commands import _running
+from nonholo.cli.commands import _runs
 from nonholo.cli.scenario.files import load_scenario
 from nonholo.simulation import _run
 
@@ -75,9 +75,9 @@ def test_runs_at_the_same_time_get_different_stores(rows: int, tmp_path: Path, m
     """Runs that begin and end together all keep their orbit."""
     monkeypatch.setattr(_run, "_ROWS", rows)
     loaded = load_scenario("sleigh", [])
-    _running.check_output(None, overwrite=False)
+    _runs.check_output(None, overwrite=False)
     with ThreadPoolExecutor(4) as pool:
-        kept = list(pool.map(lambda _: _running.run_and_keep(loaded, None, overwrite=False, progress=False), range(8)))
+        kept = list(pool.map(lambda _: _runs.run_and_keep(loaded, None, overwrite=False, progress=False), range(8)))
     assert len({store for store, _ in kept}) == 8
     assert all(len(nh.load_orbit(store)) == 1 + loaded.scenario.run.steps for store, _ in kept)
     assert len(list((tmp_path / "runs").iterdir())) == 8

@@ -1,5 +1,6 @@
 """Forces in scenarios: the same motion as in Python, the same text again, and refusals with their key."""
 
+import itertools
 import json
 import re
 import tomllib
@@ -13,7 +14,7 @@ from matplotlib.text import Text
 from typer.testing import Result
 
 import nonholo as nh
-from nonholo.cli.scenario.bodies import BODIES
+from nonholo.cli.scenario.bodies import SHORT
 from nonholo.cli.scenario.files import built_in, effective_text, load_scenario, parse_setting
 from nonholo.cli.scenario.forces import rows_of
 from nonholo.cli.scenario.problems import ScenarioError
@@ -123,7 +124,7 @@ REFUSED = {
     ),
     "no point": ("forces.gravity={force=[1,2]}", "forces.gravity.point: is missing"),
     "no table": ("forces=1", "forces: must be a table. Got 1"),
-    "formula": ('forces.friction="-v"', "forces.friction: must be a valid list. Got '-v'"),
+    "formula": ('forces.friction="-v"', "forces.friction: must be a valid number. Got '-v'"),
     "shapes of a weight": ("forces.gravity.force=[1]", "forces.gravity.force: must have shape (2,). Got shape (1,)"),
     "space": (
         "forces.gravity={force=[1,2,3],point=[1,2,3]}",
@@ -215,7 +216,7 @@ def test_report_says_what_was_read(table: str, file: Path, nonholo: Callable[...
     assert re.search(r"table of forces +3 rows, columns omega, v1, v2", result.output), result.output
 
 
-@pytest.mark.parametrize("kind", BODIES)
+@pytest.mark.parametrize("kind", SHORT)
 def test_forces_of_a_template(kind: str) -> None:
     """The forces that stand as comments in what `nonholo new` writes act on its body."""
     own = re.sub(r"^# (\[forces\]|gravity|friction)", r"\1", built_in()[kind], flags=re.MULTILINE)
@@ -264,8 +265,35 @@ def test_sweep_under_forces(file: Path, nonholo: Callable[..., Result]) -> None:
     assert load_sweep_scenario("again.toml", [])[0] == load_sweep_scenario(str(file), [])[0]
 
 
-def test_bodies_under_forces_are_not_varied(file: Path) -> None:
-    """A sweep under forces varies starts and time steps; its body is refused with that said."""
-    file.write_text(SLEIGH + FORCES + DESIGN + '"body.a" = [0.1, 0.2]\n')
-    with pytest.raises(ScenarioError, match=r"design.values.body.a: cannot be varied"):
-        load_sweep_scenario(str(file), [])
+def test_sweep_over_numbers_of_forces(file: Path, nonholo: Callable[..., Result]) -> None:
+    """Members under other forces, and other bodies under them, end where `simulate` ends; a killed one is resumed."""
+    own = '"body.a" = [0.1, 0.2]\n"forces.gravity.force_1" = [-2.0, -1.0]\n"forces.gravity.point" = [[0.5, 0.1]]\n'
+    file.write_text(SLEIGH + FORCES.replace("friction", "# friction") + DESIGN + own)
+    result = nonholo("sweep", file, "-o", "s.zarr", "--no-plot", "-q")
+    assert result.exit_code == 0, result.output
+    swept = nh.load_sweep("s.zarr").load()
+    for a, weight in itertools.product([0.1, 0.2], [-2.0, -1.0]):
+        forced = nh.Forced(nh.ChaplyginSleigh(2.0, 0.7, a), nh.Gravity([0.1, weight], [0.5, 0.1]), np.array(TABLE))
+        last = nh.simulate(nh.discretize(forced, 0.05), restricted_velocity=(0.3, 0.4), steps=3)
+        member = swept.sel(a=a, gravity_force_1=weight, restricted_velocity_0=0.3).isel(gravity_point_number=0)
+        np.testing.assert_array_equal(member["final_momentum"].values, last.restricted_momentum[-1])
+    next(Path("s.zarr").rglob("[0-9]*.json")).unlink()
+    assert nonholo("resume", "s.zarr").exit_code == 0  # without trust: nothing of somebody's own is named
+    np.testing.assert_array_equal(nh.load_sweep("s.zarr")["final_momentum"], swept["final_momentum"])
+
+
+@pytest.mark.parametrize(
+    ("value", "told"),
+    [
+        ('"forces.gravity.wight" = [1]', "cannot be varied. Did you mean gravity_point?"),
+        ('"forces.friction_7" = [1.0]', "must vary components that there are. Got friction_7 of 3"),
+        ('"forces.slip.grip" = [1.0]', "cannot be varied. Known: gravity_force, gravity_point, friction."),
+    ],
+)
+def test_numbers_that_no_force_has(value: str, told: str, file: Path, nonholo: Callable[..., Result]) -> None:
+    """A sweep over what no force of the scenario has is refused with what there is."""
+    forces = FORCES.replace("[[0.2, 0.1, 0], [-0.1, 0.3, 0], [0, 0, 0.1]]", "[1, 2, 3]")
+    file.write_text(SLEIGH + forces + DESIGN + value)
+    result = nonholo("sweep", file, "--no-plot")
+    assert result.exit_code == 2
+    assert told in result.output

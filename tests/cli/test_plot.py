@@ -11,7 +11,7 @@ from PIL import Image
 from typer.testing import Result
 
 import nonholo as nh
-from nonholo.cli.screen.kinds import KINDS, figure_of
+from nonholo.cli.screen.pictures import figure_of, kinds
 
 Command = Callable[..., Result]
 
@@ -32,12 +32,12 @@ def _free() -> nh.Orbit:
 def test_every_kind_of_picture() -> None:
     """Each function that draws a run is a kind, named with hyphens, and gives a figure with the title that is asked."""
     functions = {name.replace("_", "-") for name in nh.plot.__all__ if name.islower()}
-    assert set(KINDS) == functions - {"animate", "comparison", "convergence", "curvature", "sweep-map"}
+    assert set(kinds()) == functions - {"animate", "comparison", "convergence", "curvature", "sweep-map"}
     sleigh = _sleigh(steps=20, events=[nh.cusp])
     others = {"body-axis-track": _top(), "momentum-sphere": _free()}
-    for kind in KINDS:
+    for kind in kinds():
         names = {"across": "body_velocity.0", "up": "heading"} if kind == "section" else {}
-        figure = figure_of(kind, others.get(kind, sleigh), lambda _: None, {"title": "Mine"}, **names)
+        figure = figure_of(kind, others.get(kind, sleigh), {"title": "Mine"}, **names)
         assert isinstance(figure, Figure)
         axes = figure.axes[0]
         title = figure.texts[0].get_text() if kind == "overview" else axes.get_title(loc="left")
@@ -62,7 +62,7 @@ def test_options_of_pictures(nonholo: Command) -> None:
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (("--kind", "portrait"), "--kind must be one of overview, blade-track"),
+        (("--kind", "portrait"), "--kind must be one of overview, "),
         (("--size", "16"), "--size must be width and height in inches, 1 to 100, as 16x9. Got '16'"),
         (("--size", "0x9"), "--size must be width and height"),
         (("--kind", "branches", "--gif"), "Leave --kind out"),
@@ -84,4 +84,4 @@ def test_what_a_section_needs(nonholo: Command) -> None:
     assert result.exit_code == 1
     assert "must hold crossings of an event" in result.stderr
     with pytest.raises(ValueError, match=r"needs --x and --y like body_velocity.0. Got 'speed' to run across"):
-        figure_of("section", _sleigh(steps=20, events=[nh.cusp]), lambda _: None, {}, across="speed", up="time")
+        figure_of("section", _sleigh(steps=20, events=[nh.cusp]), {}, across="speed", up="time")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from typer.testing import Result
 
-from nonholo.cli.scenario.toml import parsed
+from nonholo.cli.scenario.files import parse_toml
 
 BOMBS = {
     "deep arrays": ("a = " + "[" * 200_000, "nested deeper than 32"),
@@ -61,4 +61,4 @@ def test_grids_that_fill_the_memory_are_refused(count: str, nonholo: Callable[..
 
 def test_what_is_nested_a_little_is_read() -> None:
     """The limit is far from what scenarios need."""
-    assert parsed("a = " + "[" * 20 + "]" * 20)
+    assert parse_toml("a = " + "[" * 20 + "]" * 20)

@@ -65,14 +65,14 @@ def test_the_equations_are_the_vector_field(name: str) -> None:
     f, pose = _arrowhead.equations(form)[0], system.group.identity.ravel()
     for size in (1.0, 1e3, 0.0):
         r = system.restricted_momentum(size * RNG.normal(size=system.rank))
-        x = _arrowhead.encoded(form, r)
+        x = _arrowhead.encode(form, r)
         rate = (f.coupling @ x) * f.rates * x - (f.rates * x @ x) * f.coupling
         expected = field(0.0, np.append(r, pose))[: system.rank]
         scale = (
-            np.abs(f.coupling).max() * f.rates.max() * (x @ x) * np.abs(_arrowhead.decoded(form, np.eye(len(x)))).max()
+            np.abs(f.coupling).max() * f.rates.max() * (x @ x) * np.abs(_arrowhead.decode(form, np.eye(len(x)))).max()
         )
-        assert np.abs(_arrowhead.decoded(form, rate[None])[0] - expected).max() <= 1e-13 * scale
-        assert np.abs(_arrowhead.decoded(form, x[None])[0] - r).max() <= 1e-14 * np.abs(r).max()
+        assert np.abs(_arrowhead.decode(form, rate[None])[0] - expected).max() <= 1e-13 * scale
+        assert np.abs(_arrowhead.decode(form, x[None])[0] - r).max() <= 1e-14 * np.abs(r).max()
 
 
 @pytest.mark.parametrize("name", SYSTEMS)

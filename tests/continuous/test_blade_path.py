@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from nonholo.continuous._blade_path import blade_path
+from nonholo.continuous._closed_form import blade_path
 
 RATIOS = [1.0001, 2.0, 2.6, 7.3, 200.0]
 STARTS = [0.0, 0.3, -0.92, 5.0, -20.0, 150.0]

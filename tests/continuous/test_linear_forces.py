@@ -10,7 +10,7 @@ from references import golden, numbers
 from scipy.integrate import solve_ivp
 
 import nonholo as nh
-from nonholo.continuous import _linear_forces
+from nonholo.continuous import _forced
 from nonholo.systems import AbstractSystem
 
 RNG = np.random.default_rng(11)
@@ -209,7 +209,7 @@ def test_stiff_and_other_steps_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     slow, times = _under(TILTED, "weight and friction"), np.linspace(0.0, 5.0, 11)
     found = []
     for bound in (2e6, 0.0):
-        monkeypatch.setattr(_linear_forces, "_STIFF", bound)
+        monkeypatch.setattr(_forced, "_STIFF", bound)
         found.append(nh.flow(slow, restricted_velocity=(0.4, -0.5), times=times))
         line = nh.flow(blade, body_velocity=(0.0, 1.0, 0.0), times=times)
         exact = 2.0 / 5e3 + (1 - 2.0 / 5e3) * np.exp(-5e3 * times)

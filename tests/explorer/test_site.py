@@ -62,7 +62,7 @@ class Links(HTMLParser):
                 self.referred.append(value or "")
 
 
-@pytest.mark.profile("browser", instead="test_links")
+@pytest.mark.profile("site", instead="test_links")
 def test_every_link_leads_somewhere(site: Path) -> None:
     """Of links, pictures, scripts and frames within the site each file is there, and so is the place in it."""
     pages = {path: Links(path) for path in _pages(site)}
@@ -80,7 +80,7 @@ def test_every_link_leads_somewhere(site: Path) -> None:
     assert lost == []
 
 
-@pytest.mark.profile("browser", instead="test_what_a_page_loads")
+@pytest.mark.profile("site", instead="test_what_a_page_loads")
 def test_nothing_is_asked_of_elsewhere(site: Path, address: str, browser: Any) -> None:
     """Every page of the site, open in Chromium, asks its own server alone; so does the live page of the first one."""
     page, asked = browser.new_page(), set()

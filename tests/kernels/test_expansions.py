@@ -13,7 +13,7 @@ from problems import PROBLEMS
 
 import nonholo as nh
 from nonholo.base.compiled import emission, library_of_kernels, njit, way_of_kernels
-from nonholo.continuous import _linear_forces, _series
+from nonholo.continuous import _forced, _series
 from nonholo.kernels import Quadratic
 from nonholo.kernels._scalar import COMPILED
 from nonholo.kernels.lanes import EIGHT, ONE
@@ -61,7 +61,7 @@ def cases(systems: dict[str, AbstractSystem]) -> list[tuple[str, tuple[int, ...]
 
 def equations(system: AbstractSystem, lanes: tuple[int, ...]) -> Quadratic:
     """Return the equations of one motion, or of eight with factors of their own."""
-    f = _linear_forces.quadratic_under(system.forces) if system.forces else _series.quadratic(system.canonical)
+    f = _forced.quadratic_under(system.forces) if system.forces else _series.quadratic(system.canonical)
     if lanes == ONE:
         return f._replace(momentum=RNG.normal(size=len(f.velocities))) if len(f.forms) else f
     wide = f._replace(**_members.one_by_one(f.rows, f.found))

@@ -107,7 +107,7 @@ class Fit:
 
     def plot(self) -> Any:
         """Draw the residuals of every kind against time; return the matplotlib figure."""
-        return importlib.import_module("nonholo.plotting.motion").fit_residuals(self)
+        return importlib.import_module("nonholo.plot.motion").fit_residuals(self)
 
 
 def fit(

@@ -154,4 +154,7 @@ def coordinate_model(system: Any, again: Any) -> CoordinateModel:
     if not (system.parameters and system.family == again.family):
         remedy = "Make the system once, with parameters=..., and return system.with_parameters(**p)."
         raise error("fit(system_of=...)", "vary the parameters of one system", type(system).__name__, remedy)
+    if system.holonomic is not None:
+        remedy = "Choose coordinates that satisfy them."
+        raise error("fit(system_of=...)", "have no holonomic constraints", "some", remedy)
     return CoordinateModel(system)

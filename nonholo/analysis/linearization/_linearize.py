@@ -9,7 +9,7 @@ import numpy as np
 
 from nonholo.analysis.linearization._reduction import Local, reduced
 from nonholo.base.checks import error, needs, shown
-from nonholo.base.kept import Keeper
+from nonholo.base.memo import Keeper
 from nonholo.base.types import Float, Inexact
 from nonholo.discrete import Discretization
 from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, in_coordinates

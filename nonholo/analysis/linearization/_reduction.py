@@ -29,7 +29,7 @@ class Local(NamedTuple):
         state: The steady state, shape (m,).
         change: Rates of the states, or what a step adds to them, shape (K, m).
         slope: Their derivatives by the states, shape (K, m, m).
-        rows: Derivatives of the constraint, shape (K, s, m).
+        rows: Derivatives of the constraints, shape (K, s, m); those of holonomic ones by velocities are zero.
         later: How many of the states after the first one are the steady motion at later times.
     """
 
@@ -64,8 +64,11 @@ class Reduced(NamedTuple):
 
 def reduced(local: Local) -> Reduced:
     """Return the equations in the velocities that leave the fewest coordinates, steady if there are such."""
-    choices = _choices(local.rows[0][:, local.places :])
-    found = (_without(local, [local.places + i for i in dependent]) for dependent in choices)
+    rows, places = local.rows[0], local.places
+    of_places = ~rows[:, places:].any(axis=1)  # holonomic constraints
+    fixed = list(next(_choices(rows[of_places, :places])))
+    choices = _choices(rows[~of_places, places:])
+    found = (_without(local, fixed + [places + i for i in dependent]) for dependent in choices)
     return min(found, key=lambda each: (not each.is_steady, len(each.states)))
 
 
@@ -81,11 +84,11 @@ def _choices(rows: Float[np.ndarray, "s n"]) -> Iterator[tuple[int, ...]]:
 
 
 def _without(local: Local, dependent: list[int]) -> Reduced:
-    places, independent = local.places, np.setdiff1d(np.arange(len(local.state)), dependent)
+    independent = np.setdiff1d(np.arange(len(local.state)), dependent)
     tied = -np.linalg.solve(local.rows[:, :, dependent], local.rows[:, :, independent])
     slope = local.slope[:, independent][:, :, independent] + local.slope[:, independent][:, :, dependent] @ tied
     change, count = local.change[:, independent], 1 + local.later
-    matters = _influences(_depends(slope), places)
+    matters = _influences(_depends(slope), int((independent < local.places).sum()))
     states = independent[matters]
     matrix, missed = slope[:count, matters][:, :, matters], change[:count, matters]
     largest, z = np.abs(local.slope[0]).max(), 1 + np.abs(local.state[states])
@@ -93,9 +96,10 @@ def _without(local: Local, dependent: list[int]) -> Reduced:
     same = np.abs(matrix - matrix[0]).max(initial=0.0) <= _STEADY * largest
     is_steady = bool(same and np.all(np.abs(missed) <= bound))
     worst = missed[np.argmax(np.abs(missed).max(axis=1, initial=0.0))]
+    free = independent[independent < local.places]
     directions = np.eye(len(local.state))[:, independent]
     directions[dependent] = tied[0]
-    return Reduced(states, matrix[0], worst, directions[:, matters], is_steady, np.setdiff1d(np.arange(places), states))
+    return Reduced(states, matrix[0], worst, directions[:, matters], is_steady, np.setdiff1d(free, states))
 
 
 def _depends(slope: Float[np.ndarray, "K d d"]) -> Bool[np.ndarray, "d d"]:

@@ -238,6 +238,8 @@ def checked_names(owner: str, system: Any) -> tuple[str, ...]:
     if system.force is not None or dataclasses.replace(system, prescribed=()).is_driven:
         got = "a force, moving constraints or functions of time"
         raise error(where, "not depend on time, and have no force", got, "Leave these out.")
+    if system.holonomic is not None:
+        raise error(where, "have no holonomic constraints", "some", "Choose coordinates that satisfy them.")
     return names
 
 

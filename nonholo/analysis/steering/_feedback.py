@@ -9,7 +9,7 @@ import numpy as np
 
 from nonholo.analysis.steering._arguments import check_names, checked_limits
 from nonholo.base.checks import array, error, needs, positive_definite, shape_of, symmetric
-from nonholo.base.kept import Keeper
+from nonholo.base.memo import Keeper
 from nonholo.base.progress import interruptibly
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization, as_discretization

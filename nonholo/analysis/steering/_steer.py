@@ -19,8 +19,8 @@ from nonholo.analysis.steering._arguments import (
 from nonholo.analysis.steering._state_bounds import StateBounds, bounds_of_body, coordinate_numbers
 from nonholo.analysis.steering._way import Way, body_points
 from nonholo.base.checks import choice, count, error, flag, needs, refuse_given
-from nonholo.base.kept import Keeper
 from nonholo.base.limits import within_memory
+from nonholo.base.memo import Keeper
 from nonholo.base.progress import interruptibly, progress_bar
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, as_discretization

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from nonholo.cli.commands.simulate import Overwrite, Settings, Steps, TimeStep
+from nonholo.cli.commands.simulate import Module, Overwrite, Settings, Steps, TimeStep
 
 Source = Annotated[
     str, typer.Argument(metavar="[SCENARIO | STORE]", help="What `nonholo simulate` takes, or a store that it made.")
@@ -20,6 +20,7 @@ def explore(
     steps: Steps = None,
     time_step: TimeStep = None,
     settings: Settings = None,
+    module: Module = None,
     browser: Browser = True,
     overwrite: Overwrite = False,
 ) -> None:
@@ -29,10 +30,12 @@ def explore(
     same numbers; others are replayed. Without -o the page is a temporary file.
 
     nonholo explore suslov
+    nonholo explore snakeboard
     nonholo explore my.toml -o top.html --no-browser
     nonholo explore runs/sleigh-001.zarr
     """
-    from nonholo.cli.commands._exploring import write_page
+    from nonholo.cli.commands._runs import write_page
 
-    chosen = {"run.steps": ("--steps", steps), "run.time_step": ("--time-step", time_step)}
-    typer.echo(write_page(source, chosen, settings or [], output, browser=browser, overwrite=overwrite))
+    options = {"run.steps": ("--steps", steps), "run.time_step": ("--time-step", time_step)}
+    how = {"module": module, "browser": browser, "overwrite": overwrite}
+    typer.echo(write_page(source, options, settings or [], output, **how))

@@ -19,7 +19,7 @@ def info(
     nonholo info runs/suslov-001.zarr --scenario > again.toml
     """
     from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
-    from nonholo.cli.screen.provenance import show_provenance, show_standing, show_sweep_standing
+    from nonholo.cli.screen.stores import show_provenance, show_standing, show_sweep_standing
     from nonholo.ensembles.stores import attributes_of
     from nonholo.io import SWEEP_FORMAT, format_of, load_orbit, read_attributes, standing
 

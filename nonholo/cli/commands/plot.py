@@ -7,14 +7,14 @@ from typing import Annotated, Any
 
 import typer
 
-from nonholo.cli.screen.kinds import KINDS
-
 Store = Annotated[Path, typer.Argument(metavar="STORE", help="A store made by simulate, sweep or save_orbit.")]
 Output = Annotated[
     Path | None,
     typer.Option("-o", "--output", metavar="PICTURE", help="A .png, .svg or .pdf; by default beside STORE."),
 ]
-Kind = Annotated[str, typer.Option(metavar="KIND", help=f"Of a run: {', '.join(KINDS)}.")]
+Kind = Annotated[
+    str, typer.Option(metavar="KIND", help="Of a run: a picture of nonholo.plot, such as blade-track; or all of them.")
+]
 Gif = Annotated[bool, typer.Option("--gif", help="Of a run: draw an animation instead.")]
 Color = Annotated[str | None, typer.Option(metavar="NAME", help="Of a sweep: the quantity that is shown.")]
 Across = Annotated[str | None, typer.Option("--x", metavar="NAME", help="Of a sweep or section: what runs across.")]
@@ -29,7 +29,7 @@ Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace an older P
 def plot(
     store: Store,
     output: Output = None,
-    kind: Kind = KINDS[0],
+    kind: Kind = "overview",
     gif: Gif = False,
     color: Color = None,
     x: Across = None,
@@ -47,12 +47,13 @@ def plot(
     nonholo plot runs/sleigh-001.zarr -o sleigh.pdf
     nonholo plot runs/sleigh-001.zarr --gif
     nonholo plot runs/sleigh-001.zarr --kind blade-track --title 'A sleigh' --size 16x9 --dark
+    nonholo plot runs/sleigh-001.zarr --kind all
     nonholo plot crossings.zarr --kind section --x body_velocity.0 --y momentum.1
     nonholo plot sweep.zarr --color outcome --x body.a --y run.time_step
     """
     from nonholo import io
     from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
-    from nonholo.cli.screen.pictures import beside
+    from nonholo.cli.screen.pictures import OVERVIEW, beside, draw_stored_sweep
 
     if output is not None:
         with store_errors(USAGE):
@@ -60,29 +61,29 @@ def plot(
     path = output or beside(store, "gif" if gif else "png")
     look = _look(title, size, dark)
     if io.format_of(store) == io.SWEEP_FORMAT:
-        from nonholo.cli.screen.sweep_picture import draw_stored_sweep
-
-        if gif or kind != KINDS[0]:
+        if gif or kind != OVERVIEW:
             leave("A sweep has one kind of picture, its map. Leave --kind and --gif out.", USAGE)
-        drawn = draw_stored_sweep(store, path, color, x, y, dpi=dpi, **look)
+        paths = draw_stored_sweep(store, path, color, x, y, dpi=dpi, **look)
     else:
         _check_kind(kind, gif, color, x or y)
         names = {"across": x, "up": y} if kind == "section" else {}
-        drawn = _draw_run(store, path, look, gif=gif, kind=kind, dpi=dpi, **names)
-    if str(path) not in drawn:
+        paths = _draw_run(store, path, look, gif=gif, kind=kind, dpi=dpi, **names)
+    files = [each for each in paths if each]
+    if not files:
         raise typer.Exit(FAILED)
-    typer.echo(path)
+    typer.echo("\n".join(files))
 
 
 def _check_kind(kind: str, gif: bool, color: str | None, axis: str | None) -> None:
     """Refuse options that do not belong to this kind of picture of a run."""
     from nonholo.cli.screen.errors import USAGE, leave
+    from nonholo.cli.screen.pictures import ALL, OVERVIEW, kinds
 
-    if kind not in KINDS:
-        leave(f"--kind must be one of {', '.join(KINDS)}. Got '{kind}'.", USAGE)
+    if kind not in (names := [*kinds(), ALL]):
+        leave(f"--kind must be one of {', '.join(names)}. Got '{kind}'.", USAGE)
     if color or (axis and kind != "section"):
         leave("--color, --x and --y are for the store of a sweep; --x and --y for --kind section too.", USAGE)
-    if gif and kind != KINDS[0]:
+    if gif and kind != OVERVIEW:
         leave("--gif is a kind of its own. Leave --kind out.", USAGE)
 
 
@@ -106,10 +107,13 @@ def _draw_run(store: Path, path: Path, look: dict[str, Any], *, gif: bool, **opt
     from nonholo import io
     from nonholo.base.progress import waiting
     from nonholo.cli.screen.errors import FAILED, USAGE, store_errors
-    from nonholo.cli.screen.pictures import draw
+    from nonholo.cli.screen.pictures import ALL, draw, draw_all
 
     with store_errors(USAGE):
         io.read_attributes(store)
-    with store_errors(FAILED), waiting("reading", shown := sys.stderr.isatty()):
+    progress = sys.stderr.isatty()
+    with store_errors(FAILED), waiting("reading", progress):
         orbit = io.load_orbit(store)
-    return draw(orbit, None if gif else path, path if gif else None, progress=shown, look=look, **options).values()
+    if options["kind"] == ALL:
+        return draw_all(orbit, path, progress=progress, look=look, dpi=options["dpi"])
+    return draw(orbit, None if gif else path, path if gif else None, progress=progress, look=look, **options).values()

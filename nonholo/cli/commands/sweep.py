@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from nonholo.cli.commands.simulate import Json, Quiet, Settings
+from nonholo.cli.commands.simulate import Json, Module, Quiet, Settings
 
 Scenario = Annotated[
     str, typer.Argument(metavar="SCENARIO", help="A TOML file; `nonholo new sweep` writes one, with comments.")
@@ -33,6 +33,7 @@ def sweep(
     workers: Workers = None,
     settings: Settings = None,
     plot: Plot = None,
+    module: Module = None,
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
@@ -44,6 +45,7 @@ def sweep(
     \[design.values] what is varied, by key path of the same file:
       "body.a" = [0.1, 0.2, 0.5]
       "run.time_step" = {from = 0.1, to = 1.0, count = 9}
+      "forces.gravity.force_2" = [-9.81, -1.6]
       "body.a" = {uniform = [0.1, 1.0]}       in a random design; also
       log_uniform, normal, direction, mass_tensor, choice
     \[keep] reductions = ["final_state"]       or energy_drift, ...
@@ -55,12 +57,12 @@ def sweep(
     nonholo sweep my.toml --members 1e6 -o large.zarr
     nonholo sweep my.toml --set design.values.body.a=[0.1,0.2] --no-plot
     nonholo sweep my.toml --scheduler tcp://127.0.0.1:8786
+    nonholo sweep robots.toml --module my_robot.py
     nonholo resume large.zarr               resume one that stopped
     """
-    from nonholo.cli.commands._sweeping import sweep_and_keep
+    from nonholo.cli.commands._sweeps import sweep_and_keep
 
     whole = int(members) if members is not None and members.is_integer() else members  # 1e6 is a whole number
-    chosen = {"design.members": ("--members", whole), "output.plot": ("--plot", plot)}
-    sweep_and_keep(
-        scenario, chosen, settings or [], output, scheduler=scheduler, workers=workers, json=json, quiet=quiet
-    )
+    options = {"design.members": ("--members", whole), "output.plot": ("--plot", plot)}
+    how = {"scheduler": scheduler, "workers": workers, "json": json, "quiet": quiet}
+    sweep_and_keep(scenario, options, settings or [], output, module=module, **how)

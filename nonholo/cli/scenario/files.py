@@ -1,8 +1,9 @@
-"""Reading a scenario: a file or a built-in name, changed by options, checked as a whole."""
+"""Reading a scenario: a file, a built-in name or an example, changed by options, checked as a whole; and writing it."""
 
 import json
 import operator
 import re
+import tomllib
 from importlib import resources
 from pathlib import Path
 from typing import Any, Generic, NamedTuple, TypeVar
@@ -10,13 +11,16 @@ from typing import Any, Generic, NamedTuple, TypeVar
 from pydantic import ValidationError
 
 from nonholo.base.limits import read_text
+from nonholo.cli.scenario.bodies import body_table, import_own, is_example, kinds
 from nonholo.cli.scenario.forces import read_table
-from nonholo.cli.scenario.motion import Scenario
-from nonholo.cli.scenario.problems import Problem, ScenarioError, problem, problems_of, suggestion
-from nonholo.cli.scenario.sections import Section
-from nonholo.cli.scenario.toml import parsed
+from nonholo.cli.scenario.makers import summary
+from nonholo.cli.scenario.motion import Scenario, complete_ready, moving
+from nonholo.cli.scenario.problems import Problem, ScenarioError, problem, problems_of
+from nonholo.cli.scenario.sections import Section, suggestion
+from nonholo.groups import components_of
 
 Model = TypeVar("Model", bound=Section)
+_DEEPEST = 32  # arrays and tables in each other
 
 
 class Setting(NamedTuple):
@@ -28,44 +32,125 @@ class Setting(NamedTuple):
 
 
 class Loaded(NamedTuple, Generic[Model]):
-    """A checked scenario, its short name, where it came from, and which key paths the command line set."""
+    """A checked scenario, its short name, where it came from, which key paths the command line set, whose bodies."""
 
     scenario: Model
     name: str
     source: str
     options: dict[str, str]
+    module: Path | None = None
 
 
-def load_scenario(name: str, settings: list[Setting]) -> Loaded[Scenario]:
-    """Return the scenario of a file or a built-in name with settings applied, or raise with all its problems."""
+def parse_toml(text: str) -> dict[str, Any]:
+    """Return the document of a text.
+
+    Raises:
+        ValueError: It is not valid TOML, has an integer of thousands of digits, or arrays within arrays without end.
+
+    Example:
+        >>> parse_toml("a = 1")
+        {'a': 1}
+    """
+    try:
+        document = tomllib.loads(text)
+    except RecursionError:
+        document = None
+    if document is None or _depth(document) > _DEEPEST:
+        raise ValueError(f"arrays or tables are nested deeper than {_DEEPEST}")
+    return document
+
+
+def _depth(document: dict[str, Any]) -> int:
+    """Return how deep arrays and tables are nested, without recursion."""
+    depth, level = 0, [document]
+    while level:
+        entries = [entry for each in level for entry in (each.values() if isinstance(each, dict) else each)]
+        depth, level = depth + 1, [entry for entry in entries if isinstance(entry, dict | list)]
+    return depth
+
+
+def load_scenario(name: str, settings: list[Setting], module: Path | None = None) -> Loaded[Scenario]:
+    """Return the scenario of a file, a built-in name or an example with settings, or raise with all its problems."""
+    take_module(module)
     source, document = read_document(name, built_in())
     if "design" in document:
         raise ScenarioError([Problem(source, "design", f"is for sweeps: nonholo sweep {name}")])
     for setting in settings:
         assign(document, setting)
-    take_table(document, name, source, settings)
-    return checked(document, Scenario, Path(name).stem, source, settings)
+    complete(document, name, source, settings)
+    return validated(document, Scenario, Path(name).stem, source, settings)._replace(module=module)
 
 
-def take_table(document: dict[str, Any], name: str, source: str, settings: list[Setting]) -> None:
-    """Read the table of forces that a document names, from its own folder or, where an option does, from here."""
+def take_module(module: Path | None) -> None:
+    """Run the module of the user's own that was asked for, and no other: what it makes are kinds of bodies."""
+    try:
+        import_own(module)
+    except Exception as failure:
+        kind = "" if isinstance(failure, ValueError) else f"{type(failure).__name__}: "
+        raise ScenarioError([Problem(f"--module {module}", "", f"cannot be used. {kind}{failure}")]) from failure
+
+
+def by_table(document: dict[str, Any]) -> None:
+    """Put values under quoted key paths, "body.a" = ..., where unquoted ones stand: in tables."""
+    values = table_in(table_in(document, "design"), "values")
+    for path in [path for path in values if "." in path]:
+        table, _, name = path.partition(".")
+        own = values.setdefault(table, {})
+        if isinstance(own, dict):
+            own.setdefault(name, values.pop(path))
+
+
+def table_in(document: dict[str, Any], name: str) -> dict[str, Any]:
+    """Return a table of a document; an empty one where there is none, or a value, which is refused later."""
+    held = document.get(name)
+    return held if isinstance(held, dict) else {}
+
+
+def stored_scenario(attributes: dict[str, Any], module: Path | None, model: type[Model]) -> Model:
+    """Return the scenario that a store keeps, of bodies of a module."""
+    take_module(module)
+    if "scenario" not in attributes:
+        raise ScenarioError([Problem(f"--module {module}", "", "is for stores that were made from a scenario")])
+    document = parse_toml(attributes["scenario"])
+    by_table(document)
+    return validated(document, model, "", "the scenario of the store", []).scenario
+
+
+def complete(document: dict[str, Any], name: str, source: str, settings: list[Setting], *, start: bool = True) -> None:
+    """Take from an example what a document leaves out, and read the table of forces that it names.
+
+    The table is in the folder of the scenario or, where an option names it, here.
+    """
     options = {setting.key: setting.option for setting in settings}
     try:
-        read_table(document, Path() if {"forces", "forces.table"} & options.keys() else Path(name).parent)
+        complete_ready(document, start=start)
+    except ValidationError as failure:
+        raise ScenarioError(problems_of(failure, source, options, ("body",))) from None
+    folder = Path() if {"forces", "forces.table"} & options.keys() else Path(name).parent
+    try:
+        read_table(document, folder, _directions(document))
     except ValueError as failure:
         raise ScenarioError([problem("forces.table", str(failure), source, options)]) from None
+
+
+def _directions(document: dict[str, Any]) -> tuple[str, ...] | None:
+    """Return the names of the directions of the body of a document; None if it is no body, which is reported later."""
+    try:
+        return components_of(moving(body_table(document["body"]["kind"]).model_validate(document["body"]).made).group)
+    except (AttributeError, KeyError, TypeError, ValueError):
+        return None
 
 
 def read_document(name: str, own: dict[str, str]) -> tuple[str, dict[str, Any]]:
     """Return how the scenario of a file or a built-in name is called in messages, and what it says."""
     source, text = _text_of(name, own)
     try:
-        return source, parsed(text)
+        return source, parse_toml(text)
     except ValueError as failure:
         raise ScenarioError([Problem(source, "", f"is not valid TOML: {failure}")]) from None
 
 
-def checked(
+def validated(
     document: dict[str, Any], model: type[Model], name: str, source: str, settings: list[Setting]
 ) -> Loaded[Model]:
     """Return a scenario of that model, or raise with all its problems."""
@@ -73,7 +158,7 @@ def checked(
     try:
         return Loaded(model.model_validate(document), name, source, options)
     except ValidationError as failure:
-        raise ScenarioError(problems_of(failure, model, source, options)) from None
+        raise ScenarioError(problems_of(failure, source, options)) from None
 
 
 def given_settings(chosen: dict[str, tuple[str, Any]], texts: list[str]) -> list[Setting]:
@@ -95,7 +180,7 @@ def parse_setting(text: str) -> Setting:
     if not equals or not all(key.split(".")):
         raise ScenarioError([Problem(option, "", "must be KEY=VALUE, for example --set body.a=0.3")])
     try:
-        found = parsed(f"value = {value}")
+        found = parse_toml(f"value = {value}")
     except ValueError:
         found = {}
     if set(found) != {"value"}:
@@ -113,7 +198,7 @@ def built_in(kind: str = "") -> dict[str, str]:
 
 def effective_text(scenario: Scenario) -> str:
     """Return a scenario as TOML with every value that was in force; running it again repeats the run."""
-    document = scenario.model_dump(exclude_none=True)
+    document = scenario.model_dump(exclude_none=True, serialize_as_any=True)
     tables = {name: value for name, value in document.items() if isinstance(value, dict)}
     return toml_text(document["title"], tables)
 
@@ -122,7 +207,7 @@ def toml_text(title: str, tables: dict[str, dict[str, Any]]) -> str:
     """Return a title and tables as TOML, without those that are empty."""
     lines = [f"title = {json.dumps(title, ensure_ascii=False)}"]
     for name, table in filter(operator.itemgetter(1), tables.items()):
-        lines += ["", f"[{name}]", *(f"{_key(key)} = {_as_toml(value)}" for key, value in table.items())]
+        lines += ["", f"[{name}]", *(f"{_key(key)} = {as_toml(value)}" for key, value in table.items())]
     return "\n".join(lines) + "\n"
 
 
@@ -130,9 +215,10 @@ def _key(name: str) -> str:
     return name if re.fullmatch(r"[\w-]+", name, re.ASCII) else json.dumps(name)
 
 
-def _as_toml(value: Any) -> str:
+def as_toml(value: Any) -> str:
+    """Return a value as TOML."""
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{_key(key)} = {_as_toml(entry)}" for key, entry in value.items()) + "}"
+        return "{" + ", ".join(f"{_key(key)} = {as_toml(entry)}" for key, entry in value.items()) + "}"
     return json.dumps(value)
 
 
@@ -142,7 +228,10 @@ def _text_of(name: str, own: dict[str, str]) -> tuple[str, str]:
     try:
         return name, read_text(Path(name))
     except FileNotFoundError:
-        text = f"there is no such file, and no built-in scenario of this name. {suggestion(name, list(own))}"
+        if own == built_in() and name.isidentifier() and is_example(name) and name in kinds():
+            return f"{name} (example)", toml_text(summary(body_table(name).make), {"body": {"kind": name}})
+        names = [*own, *(kinds() if name.isidentifier() else ())]
+        text = f"there is no such file, and no built-in scenario of this name. {suggestion(name, names)}"
     except (OSError, UnicodeDecodeError) as failure:
         text = f"cannot be read as a text file: {failure}"
     raise ScenarioError([Problem(name, "", text)])

@@ -1,89 +1,46 @@
-"""Forces in a scenario, as data: a weight, friction, a slip, a table; what `Forced` calls them too."""
+"""Forces in a scenario, as data: the classes of `nonholo` that act, by their names, and a table of rows."""
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, cast
 
-from pydantic import Discriminator, Tag, model_validator
+from pydantic import Field, create_model
 
 import nonholo
 from nonholo.base.checks import shown
 from nonholo.base.limits import read_text
-from nonholo.cli.scenario.bodies import BODIES
-from nonholo.cli.scenario.sections import Matrix, Number, Section, Vector
+from nonholo.cli.scenario.makers import Maker, arguments, summary, table_of
+from nonholo.cli.scenario.sections import Numbers, Section, checked_by
 from nonholo.groups import components_of
 
 if TYPE_CHECKING:
     from nonholo.systems import System
 
-DIAGONAL, WHOLE = "friction by coefficients", "friction by matrix"
-"""Parts that pydantic adds to the key path of friction."""
+_CLASSES: dict[str, Maker] = {
+    make.__name__.lower(): make
+    for make in (nonholo.Gravity, nonholo.Linear, nonholo.Spring, nonholo.Friction, nonholo.Slip)
+}
 
 
-def _tag(given: Any) -> str:
-    match given:
-        case [list(), *_]:
-            return WHOLE
-    return DIAGONAL
-
-
-Coefficients = Annotated[Annotated[Vector, Tag(DIAGONAL)] | Annotated[Matrix, Tag(WHOLE)], Discriminator(_tag)]
-
-
-class Weight(Section):
-    """A force that is constant in space and acts at one point of the body."""
-
-    force: Vector
-    """In space: mass times the acceleration of gravity, for a weight."""
-    point: Vector
-    """In body coordinates: the center of mass, for a weight."""
-
-    @model_validator(mode="after")
-    def _is_one(self) -> Self:
-        nonholo.Gravity(self.force, self.point)
-        return self
-
-
-class Yielding(Section):
-    """Rows of the constraint that may yield: one contact."""
-
-    rows: Matrix
-    """Rows of the annihilator, in body axes: `[[0, 0, 1]]` for the blade of a sleigh in the plane."""
-    grip: Number
-    """The largest reaction that holds."""
-    viscous: Number = 0.0
-    """The coefficient of viscous friction while the rows slide."""
-
-    @model_validator(mode="after")
-    def _is_one(self) -> Self:
-        nonholo.Slip(self.rows, self.grip, self.viscous)
-        return self
-
-
-class Forces(Section):
+class AbstractForces(Section):
     """What acts on the body beside its constraint; several add up."""
 
-    gravity: Weight | None = None
-    """A force F that is constant in space, at a body point: `{force = [0, 0, -9.81], point = [0, 0, 0.3]}`."""
-    friction: Coefficients | None = None
-    """Against the body velocity: a coefficient for each of its components, or a matrix."""
-    slip: Yielding | None = None
-    """Rows of the constraint that slide beyond a grip: `{rows = [[0, 0, 1]], grip = 0.8}`."""
-    table: Matrix | None = None
+    table: Numbers | None = None
     """A force for each step, in body axes: rows, or the path of a CSV file of them, from the folder of the scenario."""
-
     scheme: Literal["energy", "variational"] | None = None
     """Where forces act: "energy" keeps T + U and every balance exactly, "variational" kicks at the nodes."""
 
     def on(self, system: "System") -> "System":
         """Return the system under these forces, the system itself without any."""
-        parts = {
-            name: self._part(name, make, system) for name, make in _PARTS.items() if getattr(self, name) is not None
-        }
-        gravity, force = parts.pop("gravity", None), tuple(parts.values())
-        if gravity is None and not force:
+        tables = {word: getattr(self, word) for word in (*_CLASSES, "table")}
+        parts = {word: _part(word, table) for word, table in tables.items() if table is not None}
+        if not parts:
             return system
-        return nonholo.Forced(system, gravity, force[0] if len(force) == 1 else force or None, self.scheme)
+        for word, part in parts.items():
+            try:
+                nonholo.Forced(system, **_acting([part]))
+            except ValueError as failure:
+                raise ValueError(f"`Forces({word}=...)` {_requirement(failure)}") from None
+        return nonholo.Forced(system, **_acting([*parts.values()]), scheme=self.scheme)
 
     def check(self, system: "System", steps: int) -> None:
         """Refuse forces that cannot act on a system, or that end before a run does."""
@@ -94,35 +51,60 @@ class Forces(Section):
 
     def about(self, system: "System") -> dict[str, str]:
         """Return what a report says of a table, if there is one: how long it is, and what its columns are."""
-        names, rows = ", ".join(components_of(system.group)), self.table
-        return {} if rows is None else {"table of forces": f"{len(rows)} rows, columns {names}"}
+        if self.table is None:
+            return {}
+        return {"table of forces": f"{len(self.table)} rows, columns {', '.join(components_of(system.group))}"}
 
-    def _part(self, name: str, make: "Callable[[System, Any], Any]", system: "System") -> Any:
+
+def _requirement(failure: ValueError) -> str:
+    """Return what an error asks for, without its owner, and without remedies that a scenario does not have."""
+    text, _, _ = (str(failure).partition("` ")[2] or str(failure)).partition(". Pass ")
+    return text
+
+
+def _part(word: str, table: Any) -> Any:
+    """Return the force of a table; one with a single argument is written without its name."""
+    if isinstance(table, Section):
+        return cast(Any, table).made
+    return _CLASSES[word](table) if word in _CLASSES else table
+
+
+def _acting(parts: list[Any]) -> dict[str, Any]:
+    """Return the arguments of `Forced`: what has an energy is a potential."""
+    potentials = [part for part in parts if hasattr(part, "energy")]
+    forces = [part for part in parts if not hasattr(part, "energy")]
+    several = {"potential": potentials, "force": forces}
+    return {name: tuple(own) if len(own) > 1 else own[0] for name, own in several.items() if own}
+
+
+def _value(word: str, make: Maker) -> Any:
+    """Return what a scenario holds of a class: its table, or the value of its only argument."""
+    if len(arguments(make)) > 1:
+        return table_of(word, make)
+
+    def check(value: Any) -> None:
         try:
-            return make(system, getattr(self, name))
+            make(value)
         except ValueError as failure:
-            requirement, _, _ = (str(failure).partition("` ")[2] or str(failure)).partition(". Pass ")
-            raise ValueError(f"`Forces({name}=...)` {requirement}. {_REMEDIES[name]}") from None
+            raise ValueError(_requirement(failure)) from None
+
+    return Annotated[Numbers, checked_by(check)]
 
 
-_PARTS: "dict[str, Callable[[System, Any], Any]]" = {
-    "gravity": lambda system, w: nonholo.Forced(system, nonholo.Gravity(w.force, w.point)).potential,
-    "friction": lambda system, given: nonholo.Forced(system, force=nonholo.Friction(given)).force,
-    "slip": lambda system, given: (
-        nonholo.Forced(system, force=nonholo.Slip(given.rows, given.grip, given.viscous)).force
-    ),
-    "table": lambda system, rows: nonholo.Forced(system, force=rows).force,
+_FIELDS: Any = {
+    word: (
+        _value(word, make) | None if len(arguments(make)) > 1 else _value(word, make),
+        Field(None, description=summary(make)),
+    )
+    for word, make in _CLASSES.items()
 }
-"""How each acts on a system."""
-_REMEDIES = {
-    "gravity": "Give force and point as many numbers as space has directions",
-    "friction": "Give each direction of the group a coefficient that is not negative, or a matrix",
-    "slip": "Give rows that span the same as rows of the annihilator",
-    "table": "Give each row one number for each direction of the group",
-}
+if TYPE_CHECKING:
+    Forces = AbstractForces
+else:
+    Forces = create_model("Forces", __base__=AbstractForces, __doc__=AbstractForces.__doc__, **_FIELDS)
 
 
-def read_table(document: dict[str, Any], folder: Path) -> None:
+def read_table(document: dict[str, Any], folder: Path, names: tuple[str, ...] | None) -> None:
     """Put the rows of a CSV file where a document names it: the text of a scenario then says all of a run.
 
     Raises:
@@ -131,18 +113,10 @@ def read_table(document: dict[str, Any], folder: Path) -> None:
     match document:
         case {"forces": {"table": str(name)} as forces}:
             try:
-                forces["table"] = rows_of(read_text(folder / name), _directions(document))
+                forces["table"] = rows_of(read_text(folder / name), names)
             except (OSError, ValueError) as failure:
                 fault = f"Got {name!r}: {failure}"
                 raise ValueError(f"must be rows, or the path of a CSV file of numbers. {fault}") from None
-
-
-def _directions(document: dict[str, Any]) -> tuple[str, ...] | None:
-    """Return the names of the directions of the body of a document; None if it is no body, which is reported later."""
-    try:
-        return components_of(BODIES[document["body"]["kind"]].model_validate(document["body"]).system().group)
-    except (KeyError, TypeError, ValueError):
-        return None
 
 
 def rows_of(text: str, names: tuple[str, ...] | None) -> list[list[float]]:

@@ -2,35 +2,38 @@
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import Field, ValidationInfo, field_validator, model_validator
+import numpy as np
+from pydantic import ValidationInfo, field_validator, model_validator
 
 import nonholo
-from nonholo.cli.scenario.bodies import AnyBody
+from nonholo.cli.scenario.bodies import body_table, is_example, kinds
 from nonholo.cli.scenario.forces import Forces
-from nonholo.cli.scenario.sections import Count, Matrix, Positive, Section, Vector, exactly_one
+from nonholo.cli.scenario.sections import Count, Numbers, Positive, Section, by_kind, exactly_one
 
 if TYPE_CHECKING:
     from nonholo.discrete import Discretization
     from nonholo.systems import System
 
+SPEEDS = ("body_velocity", "restricted_velocity", "momentum", "displacement")
+
 
 class Start(Section):
     """The start of the motion: one of four ways to say how fast, and a first pose."""
 
-    body_velocity: Vector | None = None
-    """Velocity in body axes, which must satisfy the constraint."""
-    restricted_velocity: Vector | None = None
+    body_velocity: Numbers | None = None
+    """Velocity in body axes, or of the coordinates, which must satisfy the constraint."""
+    restricted_velocity: Numbers | None = None
     """Its components along the constraint subspace."""
-    momentum: Vector | None = None
+    momentum: Numbers | None = None
     """Discrete body momentum, or its components along the constraint subspace."""
-    displacement: Matrix | None = None
-    """The first displacement, a matrix of the group."""
-    configuration: Matrix | None = None
-    """First pose, a matrix of the group; by default the identity."""
+    displacement: Numbers | None = None
+    """The first displacement, a matrix of the group, or what is added to the coordinates."""
+    configuration: Numbers | None = None
+    """First pose, a matrix of the group, by default the identity; or the first coordinates."""
 
     @model_validator(mode="after")
     def _is_one_start(self) -> Self:
-        exactly_one(self, ("body_velocity", "restricted_velocity", "momentum", "displacement"))
+        exactly_one(self, SPEEDS)
         return self
 
 
@@ -38,9 +41,9 @@ class Run(Section):
     """The discretization and the length of the run."""
 
     time_step: Positive
-    """Time from one state to the next, in your units."""
+    """Time from one state to the next, in your units; of an example, its own by default."""
     steps: Count
-    """How many."""
+    """How many; of an example, its own by default."""
     save_every: Count = 1
     """Steps between saved states."""
     difference: Literal["matrix", "logarithmic"] | None = None
@@ -66,8 +69,7 @@ class AbstractScenario(Section):
     """The tables that scenarios of one motion and of sweeps share."""
 
     title: str = ""
-    body: Annotated[AnyBody, Field(discriminator="kind")]
-    start: Start
+    body: Annotated[Any, by_kind(body_table, kinds)]
     run: Run
     forces: Forces = Forces()
 
@@ -75,12 +77,12 @@ class AbstractScenario(Section):
     @classmethod
     def _can_act(cls, forces: Forces, rest: ValidationInfo) -> Forces:
         if {"body", "run"} <= rest.data.keys():
-            forces.check(rest.data["body"].system(), rest.data["run"].steps)
+            forces.check(moving(rest.data["body"].made), rest.data["run"].steps)
         return forces
 
     def system(self) -> "System":
         """Return the body under its forces."""
-        return self.forces.on(self.body.system())
+        return self.forces.on(moving(self.body.made))
 
     def discretization(self) -> "Discretization":
         """Return the discretized body."""
@@ -89,19 +91,51 @@ class AbstractScenario(Section):
 
     def in_force(self, discrete: "Discretization") -> Self:
         """Return the scenario with the library's choices of difference and constraint written out."""
-        chosen = {"difference": discrete.difference, "constraint": discrete.constraint}
-        return self.model_copy(update={"run": self.run.model_copy(update=chosen)})
+        choices = {name: getattr(discrete, name, None) for name in ("difference", "constraint")}
+        return self.model_copy(update={"run": self.run.model_copy(update=choices)})
 
 
 class Scenario(AbstractScenario):
     """A whole scenario."""
 
+    start: Start
     output: Output = Output()
 
     def options(self) -> dict[str, Any]:
         """Return the arguments of `simulate`."""
-        return {
-            **self.start.model_dump(exclude_none=True),
-            "save_every": self.run.save_every,
-            "branch": self.run.branch,
-        }
+        branch = {} if self.run.branch == "principal" else {"branch": self.run.branch}
+        return {**self.start.model_dump(exclude_none=True), "save_every": self.run.save_every, **branch}
+
+
+def is_ready(made: Any) -> bool:
+    """Tell whether what a body made comes with a start, as the examples do."""
+    return hasattr(made, "configuration") and hasattr(made, "body_velocity")
+
+
+def moving(made: Any) -> Any:
+    """Return the system of what a body made."""
+    return made.system if is_ready(made) else made
+
+
+def complete_ready(document: dict[str, Any], *, start: bool = True) -> None:
+    """Take from an example what a document leaves out: its start, its time step, how many steps show it.
+
+    Raises:
+        ValidationError: The body is none.
+    """
+    body = document.get("body")
+    if not (isinstance(body, dict) and isinstance(body.get("kind"), str) and is_example(body["kind"])):
+        return
+    try:
+        made = body_table(body["kind"]).model_validate(body).made
+    except KeyError:
+        return  # reported with the rest
+    if not is_ready(made):
+        return
+    run, own = document.setdefault("run", {}), document.setdefault("start", {}) if start else None
+    if isinstance(run, dict):
+        known = {name: getattr(made, name, None) for name in ("time_step", "steps")}
+        run |= {name: value for name, value in known.items() if value is not None and name not in run}
+    if isinstance(own, dict):
+        names = ("configuration",) if own.keys() & {*SPEEDS} else ("configuration", "body_velocity")
+        own |= {name: np.asarray(getattr(made, name)).tolist() for name in names if name not in own}

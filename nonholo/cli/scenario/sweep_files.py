@@ -5,133 +5,144 @@ import re
 from pathlib import Path
 from typing import Any
 
-from nonholo.cli.scenario._values import along, drawn, needs_size
-from nonholo.cli.scenario.files import Loaded, Setting, assign, built_in, checked, read_document, take_table, toml_text
-from nonholo.cli.scenario.problems import ScenarioError, problem, suggestion
-from nonholo.cli.scenario.sweeps import SweepScenario
+import numpy as np
 
-_TABLES = ("body", "start", "run")
+from nonholo.cli.scenario.bodies import is_example
+from nonholo.cli.scenario.files import (
+    Loaded,
+    Setting,
+    assign,
+    built_in,
+    by_table,
+    complete,
+    read_document,
+    table_in,
+    take_module,
+    toml_text,
+    validated,
+)
+from nonholo.cli.scenario.makers import arguments
+from nonholo.cli.scenario.problems import ScenarioError, problem
+from nonholo.cli.scenario.sections import suggestion
+from nonholo.cli.scenario.sweeps import TABLES, SweepScenario, along, drawn, library_name, needs_size
+from nonholo.ensembles import component_of, force_numbers
+
 _STARTS = ("body_velocity", "restricted_velocity", "momentum")
 _COMPONENT = re.compile(rf"({'|'.join(_STARTS)})(?:_(\d+)|\[(\d+)\])")
 
 
-def load_sweep_scenario(name: str, settings: list[Setting]) -> Loaded[SweepScenario]:
+def load_sweep_scenario(name: str, settings: list[Setting], module: Path | None = None) -> Loaded[SweepScenario]:
     """Return the scenario of a sweep with settings applied, or raise with all its problems."""
+    take_module(module)
     source, document = read_document(name, built_in("sweeps"))
-    _by_table(document)
+    by_table(document)
     for setting in settings:
         assign(document, setting)
-    _by_table(document)
-    _complete(document)
-    take_table(document, name, source, settings)
-    loaded = checked(document, SweepScenario, Path(name).stem, source, settings)
-    refused = [problem(*found, source, loaded.options) for found in _refusals(loaded.scenario)]
-    if refused:
-        raise ScenarioError(refused)
+    by_table(document)
+    body = table_in(document, "body").get("kind")
+    if not (isinstance(body, str) and is_example(body)):
+        _complete(document)
+    complete(document, name, source, settings, start=False)
+    request = validated(document, SweepScenario, Path(name).stem, source, settings)
+    if flaws := [problem(*flaw, source, request.options) for flaw in _refusals(request.scenario)]:
+        raise ScenarioError(flaws)
     try:
-        design = loaded.scenario.design.scaled()
+        design = request.scenario.design.scaled()
     except ValueError as failure:
-        raise ScenarioError([problem("design.members", str(failure), source, loaded.options)]) from None
-    return loaded._replace(scenario=loaded.scenario.model_copy(update={"design": design}))
+        raise ScenarioError([problem("design.members", str(failure), source, request.options)]) from None
+    return request._replace(scenario=request.scenario.model_copy(update={"design": design}))
 
 
 def sweep_text(scenario: SweepScenario) -> str:
     """Return the scenario of a sweep as TOML with every value that was in force; running it again repeats it."""
-    document = scenario.model_dump(exclude_none=True)
+    document = scenario.model_dump(exclude_none=True, serialize_as_any=True)
     title, design = document.pop("title"), document.pop("design")
-    values = {f"{table}.{name}": given for table, held in design.pop("values").items() for name, given in held.items()}
+    entries = design.pop("values").items()
+    values = {f"{table}.{name}": value for table, own in entries for name, value in own.items()}
     return toml_text(title, {**document, "design": design, "design.values": values})
-
-
-def _by_table(document: dict[str, Any]) -> None:
-    """Put values under quoted key paths, "body.a" = ..., where unquoted ones stand: in tables."""
-    values = _table(_table(document, "design"), "values")
-    for path in [path for path in values if "." in path]:
-        table, _, name = path.partition(".")
-        held = values.setdefault(table, {})
-        if isinstance(held, dict):
-            held.setdefault(name, values.pop(path))
 
 
 def _complete(document: dict[str, Any]) -> None:
     """Take the size of a distribution from the value it varies; give a value that is varied and not given."""
-    values = _table(_table(document, "design"), "values")
-    for table in _TABLES:
-        held = _table(values, table)
-        if held:
+    values = table_in(table_in(document, "design"), "values")
+    for table in ("body", "start", "run"):
+        own = table_in(values, table)
+        if own:
             document.setdefault(table, {})
-        for name, given in held.items():
-            _complete_one(_table(document, table), name, given)
-    _complete_start(_table(document, "start"), _table(values, "start"))
+        for name, value in own.items():
+            _complete_one(table_in(document, table), name, value)
+    _complete_start(table_in(document, "start"), table_in(values, "start"))
 
 
-def _table(document: dict[str, Any], name: str) -> dict[str, Any]:
-    """Return a table of a document; an empty one where there is none, or a value, which is refused later."""
-    held = document.get(name)
-    return held if isinstance(held, dict) else {}
-
-
-def _complete_one(own: dict[str, Any], name: str, given: Any) -> None:
-    if needs_size(given) and isinstance(own.get(name), list):
-        given["size"] = len(own[name])
+def _complete_one(own: dict[str, Any], name: str, value: Any) -> None:
+    if needs_size(value) and isinstance(own.get(name), list):
+        value["size"] = len(own[name])
     if name in own or _COMPONENT.fullmatch(name):
         return
     with contextlib.suppress(ValueError):  # reported as a problem of the design
-        own[name] = _typical(given)
+        own[name] = _typical(value)
 
 
-def _complete_start(own: dict[str, Any], held: dict[str, Any]) -> None:
+def _complete_start(own: dict[str, Any], values: dict[str, Any]) -> None:
     """Give a start of which every component is varied, from the first one on, and none is given."""
-    parts = {(part[1], int(part[2] or part[3])): held[name] for name in held if (part := _COMPONENT.fullmatch(name))}
-    if not parts or not set(_STARTS).isdisjoint([*own, *held]):
+    parts = {
+        (part[1], int(part[2] or part[3])): values[name] for name in values if (part := _COMPONENT.fullmatch(name))
+    }
+    if not parts or not set(_STARTS).isdisjoint([*own, *values]):
         return
     owner, _ = next(iter(parts))
-    wanted = [(owner, component) for component in range(len(parts))]
-    if parts.keys() != set(wanted):
+    places = [(owner, component) for component in range(len(parts))]
+    if parts.keys() != set(places):
         return
     with contextlib.suppress(ValueError):  # reported as a problem of the design
-        own[owner] = [_typical(parts[part]) for part in wanted]
+        own[owner] = [_typical(parts[place]) for place in places]
 
 
-def _typical(given: Any) -> Any:
-    import numpy as np
-
-    if isinstance(given, list) or "count" in given:
-        return along(given)[0].tolist()
-    distribution = drawn(given)
+def _typical(value: Any) -> Any:
+    if isinstance(value, list) or "count" in value:
+        return along(value)[0].tolist()
+    distribution = drawn(value)
     return distribution.draw(np.random.default_rng(0).random((1, distribution.width)))[0].tolist()
 
 
 def _refusals(scenario: SweepScenario) -> list[tuple[str, str]]:
     """Return key paths and texts of what a scenario of one motion may say, but no sweep."""
-    found = _refused_values(scenario)
-    for key in ("displacement", "configuration"):
-        if getattr(scenario.start, key) is not None:
-            found.append((f"start.{key}", f"is not for sweeps. Start by {', '.join(_STARTS)}"))
+    flaws = _refused_values(scenario)
+    if scenario.start is not None:
+        if scenario.is_family:
+            flaws.append(("start", "is not for sweeps of this body, whose keys say how it starts"))
+        for key in ("displacement", "configuration"):
+            if getattr(scenario.start, key) is not None:
+                flaws.append((f"start.{key}", f"is not for sweeps. Start by {', '.join(_STARTS)}"))
     if scenario.run.save_every != 1:
-        found.append(("run.save_every", "is not for sweeps: [keep] says what is kept"))
-    return found
+        flaws.append(("run.save_every", "is not for sweeps: [keep] says what is kept"))
+    return flaws
 
 
 def _refused_values(scenario: SweepScenario) -> list[tuple[str, str]]:
     """Return key paths and texts of what a design cannot vary."""
-    found, values = [], scenario.design.values
-    if not any((values.body, values.start, values.run)):
-        found.append(("design.values", 'must name what is varied, for example "body.a" = [0.1, 0.2]'))
-    known = {"body": _parameters(scenario), "start": _STARTS, "run": ("time_step",)}
-    for table, names in known.items():
-        for name in getattr(values, table):
-            whole = _COMPONENT.sub(r"\1", name) if table == "start" else name
-            if whole not in names:
-                problem = f"cannot be varied. {suggestion(name, list(names))}"
-                found.append((f"design.values.{table}.{name}", problem))
-            elif whole != name and getattr(scenario.start, whole) is None:
-                found.append((f"start.{whole}", f"is missing: {name} is varied, the other components are given here"))
-    return found
+    values = scenario.design.values
+    entries = [(table, name) for table in TABLES for name in getattr(values, table)]
+    if not entries:
+        return [("design.values", 'must name what is varied, for example "body.a" = [0.1, 0.2]')]
+    names, flaws = _varied_names(scenario), []
+    for table, name in entries:
+        own = library_name(f"{table}.{name}")
+        part = component_of(own)
+        whole = part[0] if part and own not in names[table] else own
+        if whole not in names[table] or (whole != own and table == "body" and not scenario.is_family):
+            flaws.append((f"design.values.{table}.{name}", f"cannot be varied. {suggestion(own, names[table])}"))
+        elif scenario.start and whole != own and table == "start" and getattr(scenario.start, whole) is None:
+            flaws.append((f"start.{whole}", f"is missing: {name} is varied, the other components are given here"))
+    return flaws
 
 
-def _parameters(scenario: SweepScenario) -> tuple[str, ...]:
-    """Return the keys of a body that are parameters of its system; of one under forces there are none."""
-    system = scenario.system()
-    leaves = () if system.is_forced else (*system.leaves, "inertia_operator")
-    return tuple(name for name in type(scenario.body).model_fields if name in leaves)
+def _varied_names(scenario: SweepScenario) -> dict[str, tuple[str, ...]]:
+    """Return what can be varied by table, as the library calls it."""
+    if scenario.is_family:
+        names = tuple(arguments(type(scenario.body).make))
+        return {"body": names, "start": ("configuration", "body_velocity"), "run": ("time_step",), "forces": ()}
+    system: Any = scenario.system()
+    leaves = (*(system.system if system.is_forced else system).leaves, "inertia_operator")
+    body = tuple(name for name in type(scenario.body).model_fields if name in leaves)
+    return {"body": body, "start": _STARTS, "run": ("time_step",), "forces": tuple(force_numbers(system))}

@@ -1,18 +1,82 @@
-"""Pictures of a run, drawn beside its store; a picture that fails never costs the run."""
+"""Pictures of a run or a sweep, drawn beside its store; a picture that fails never costs the result.
 
+Pictures of a run are the functions of `nonholo.plot` that an orbit has every argument of.
+"""
+
+import inspect
 import os
+import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import nonholo
 from nonholo.base.progress import progress_bar, waiting
-from nonholo.cli.screen.errors import warn
-from nonholo.cli.screen.kinds import KINDS, figure_of
+from nonholo.cli.scenario.files import parse_toml
+from nonholo.cli.scenario.sweeps import library_name
+from nonholo.cli.screen.errors import FAILED, store_errors, warn
 from nonholo.io import complete_file
 
 if TYPE_CHECKING:
+    import numpy as np
+    import xarray
+
     from nonholo.orbit import Orbit
 
+OVERVIEW, ALL = "overview", "all"
 _MOST_TIMES = 20_000  # of the flow that is drawn along
+_GENERATIONS = 4  # of a tree of branches
+_GIVEN: dict[str, Callable[[Any], Any]] = {
+    "orbit": lambda orbit: orbit,
+    "system": lambda orbit: orbit.system,
+    "discrete": lambda orbit: orbit.motion,
+    "locus": lambda orbit: nonholo.momentum_locus(orbit.motion),
+    "tree": lambda orbit: nonholo.branch_tree(orbit.motion, orbit.displacement[0], _GENERATIONS),
+    "crossings": lambda orbit: orbit.events[0] if orbit.events else None,
+    "displacement": lambda orbit: orbit.displacement[0],
+    "flow": lambda orbit: _flow(orbit),
+}
+"""What an orbit has for the arguments of a picture, by their names."""
+_ASKED = ("across", "up")  # arguments that the command line has
+_OTHER = ("animate",)  # drawn by --gif
+
+
+def kinds() -> dict[str, Callable[..., Any]]:
+    """Return the pictures of a run, by the names of the command line, the overview first."""
+    from nonholo import plot
+
+    functions = {name: getattr(plot, name) for name in dir(plot) if name.islower() and name not in _OTHER}
+    of_orbits = [name for name, make in functions.items() if _needed(make) <= {*_GIVEN, *_ASKED}]
+    return {name.replace("_", "-"): functions[name] for name in sorted(of_orbits, key=lambda name: name != OVERVIEW)}
+
+
+def _needed(make: Callable[..., Any]) -> set[str]:
+    parameters = inspect.signature(make).parameters.values()
+    return {each.name for each in parameters if each.default is each.empty and each.kind is not each.VAR_KEYWORD}
+
+
+def figure_of(kind: str, orbit: "Orbit", look: dict[str, Any], **names: str | None) -> Any:
+    """Return the figure of one kind, of named quantities: with the orbit on it, and the flow beside it."""
+    make = kinds()[kind]
+    known = {*inspect.signature(make).parameters} | ({"displacement"} if kind == "branches" else set())
+    own = {name: give(orbit) for name, give in _GIVEN.items() if name in known}
+    quantities = {side: _quantity(side, name) for side, name in names.items()}
+    picture = make(**own, **quantities, **look)
+    return picture if kind == OVERVIEW else (picture.axes if hasattr(picture, "axes") else picture.plane).figure
+
+
+def _quantity(side: str, name: str | None) -> Callable[["Orbit"], "np.ndarray"]:
+    """Return what gives a number of each state: an array of orbits by its name, with the indices of one component."""
+    attribute, *indices = (name or "").split(".")
+
+    def quantity(states: "Orbit") -> "np.ndarray":
+        values: Any = getattr(states, attribute, None)
+        if not all(index.isdigit() for index in indices) or not hasattr(values, "shape"):
+            raise ValueError(f"a section needs --x and --y like body_velocity.0. Got '{name}' to run {side}.")
+        return values[(slice(None), *map(int, indices))]
+
+    quantity.__name__ = name or side
+    return quantity
 
 
 def beside(store: Path, suffix: str) -> Path:
@@ -21,49 +85,69 @@ def beside(store: Path, suffix: str) -> Path:
 
 
 def draw(
-    orbit: "Orbit",
+    orbit: Any,
     picture: Path | None,
     animation: Path | None,
     *,
     progress: bool,
     look: dict[str, Any] | None = None,
-    kind: str = KINDS[0],
+    kind: str = OVERVIEW,
     dpi: float = 150,
     **names: str | None,
 ) -> dict[str, str | None]:
     """Draw what is asked for, with progress if wanted; return the paths of what was drawn, None for the rest."""
     look = look or {}
-    drawn: dict[str, str | None] = {"picture": None, "animation": None}
+    paths: dict[str, str | None] = {"picture": None, "animation": None}
     if picture is None and animation is None:
-        return drawn
+        return paths
     os.environ.setdefault("MPLBACKEND", "agg")
     try:
-        from nonholo import plotting
+        from nonholo import plot
 
         if picture is not None:
             with complete_file(picture) as part, waiting("drawing", progress):
-                figure_of(kind, orbit, _flow, look, **names).savefig(part, dpi=dpi)
-            drawn["picture"] = str(picture)
+                figure_of(kind, orbit, look, **names).savefig(part, dpi=dpi)
+            paths["picture"] = str(picture)
         if animation is not None:
             with progress_bar("frames", progress) as report:
-                plotting.animate(orbit, animation, progress=report, overwrite=True, **look)
-            drawn["animation"] = str(animation)
+                plot.animate(orbit, animation, progress=report, overwrite=True, **look)
+            paths["animation"] = str(animation)
     except Exception as failure:
         warn(f"no picture: {type(failure).__name__}: {failure}")
-    return drawn
+    return paths
 
 
-def warn_of_older(store: Path, drawn: dict[str, str | None]) -> None:
+def draw_all(orbit: Any, picture: Path, *, progress: bool, look: dict[str, Any], dpi: float) -> list[str]:
+    """Draw every kind that this orbit has, each in a file of its own; return their paths, and warn of the others."""
+    os.environ.setdefault("MPLBACKEND", "agg")
+    paths, others = [], []
+    for kind, make in kinds().items():
+        path = picture.with_stem(f"{picture.stem}-{kind}")
+        try:
+            with waiting(f"drawing {kind}", progress):
+                figure = None if _needed(make) & {*_ASKED} else figure_of(kind, orbit, look)
+        except (AttributeError, TypeError, ValueError):
+            figure = None
+        if figure is None:
+            others.append(kind)
+            continue
+        with complete_file(path) as part:
+            figure.savefig(part, dpi=dpi)
+        paths.append(str(path))
+    if others:
+        warn(f"of this run there is no {', '.join(others)}; --kind {others[0]} says why.")
+    return paths
+
+
+def warn_of_older(store: Path, paths: dict[str, str | None]) -> None:
     """Say so if a picture beside a store that was replaced still shows the run before."""
     for path in (beside(store, "png"), beside(store, "gif")):
-        if path.exists() and str(path) not in drawn.values():
+        if path.exists() and str(path) not in paths.values():
             warn(f"'{path}' shows an older run. Remove it, or draw it again with: nonholo plot {store}")
 
 
-def _flow(orbit: "Orbit") -> "Orbit | None":
+def _flow(orbit: Any) -> Any:
     """Return the continuous motion from the same start where a closed form makes it cheap."""
-    import nonholo
-
     if not orbit.is_compact:
         return None
     form = orbit.system.normal_form
@@ -77,3 +161,52 @@ def _flow(orbit: "Orbit") -> "Orbit | None":
     except Exception as failure:
         warn(f"the continuous motion is not drawn along: {type(failure).__name__}: {failure}")
         return None
+
+
+def draw_sweep(
+    result: "xarray.Dataset", picture: Path, *names: str | None, dpi: float = 150, **look: Any
+) -> str | None:
+    """Draw a quantity over the design; return the path of the picture, None if there is none."""
+    os.environ.setdefault("MPLBACKEND", "agg")
+    quantity, across, up = (None if name is None else _name_of(name) for name in names)
+    try:
+        from nonholo import plot
+
+        figure: Any = plot.sweep_map(result, quantity, across, up, **look).axes.figure
+        with complete_file(picture) as part, waiting("drawing", sys.stderr.isatty()):
+            figure.savefig(part, dpi=dpi)
+    except Exception as failure:
+        warn(f"no picture: {type(failure).__name__}: {failure}")
+        return None
+    return str(picture)
+
+
+def _name_of(path: str) -> str:
+    """Return the name in a result of a key path."""
+    from nonholo.ensembles import component_name
+
+    return component_name(library_name(path))
+
+
+def draw_stored_sweep(
+    store: Path, picture: Path, color: str | None, x: str | None, y: str | None, **options: Any
+) -> tuple[str | None]:
+    """Draw the sweep of a store: what is asked for, or what its scenario shows."""
+    from nonholo.ensembles import load_sweep
+    from nonholo.ensembles.stores import attributes_of
+
+    with store_errors(FAILED):
+        result = load_sweep(store)
+    if not (color or x or y):
+        output = _output_of(attributes_of(store).get("scenario", ""))
+        color, x, y = (output.get(name) for name in ("color", "x", "y"))
+    return (draw_sweep(result, picture, color, x, y, **options),)
+
+
+def _output_of(scenario: str) -> dict[str, Any]:
+    """Return the table [output] of a scenario; of a text that is none, which a store may keep too, an empty one."""
+    try:
+        output = parse_toml(scenario).get("output")
+    except ValueError:
+        return {}
+    return output if isinstance(output, dict) else {}

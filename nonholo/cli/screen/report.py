@@ -107,6 +107,7 @@ def _body(orbit: AbstractOrbit) -> dict[str, Any]:
     if not orbit.is_compact:
         kind, parameters = described_system(system)
         about = {"coordinates": ", ".join(orbit.coordinates)} if "orbits" in parameters else parameters
+        about = {name: value for name, value in about.items() if value is not None}
         return {"system": kind, "name": system.name, **about}
     given = {name: value for name, value in fields_of(system).items() if name != "group" and value is not None}
     if system.group.dim > _LARGE:

@@ -11,7 +11,7 @@ from typing import ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 
-from nonholo.base.calls import called
+from nonholo.base.calls import call
 from nonholo.base.checks import choice, error, is_integer, shown
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
@@ -187,7 +187,7 @@ class Chosen(AbstractBranchRule):
     def following(self, kick: Kick) -> Following:
         """Ask the function, and refuse an answer that is no real value."""
         roots, values = _values(kick)
-        index = called("branch(found, present)", self.function, values, kick.present)
+        index = call("branch(found, present)", self.function, values, kick.present)
         if index is None:
             return _only(kick, roots, values, [])
         if not is_integer(index) or not 0 <= index < len(values) or not values.is_real[index]:

@@ -129,7 +129,7 @@ class RuleStepper(AbstractBodyStepper):
     def start(self, first: First) -> tuple[State, Outcome]:
         """Return the state of the first displacement, which may be demanded."""
         (reduced, pose), frame, group = first.numbers, self._frame, self.motion.system.group
-        code, place = first_place("simulate", self.motion, frame, self.rule, reduced, first.demanded)
+        code, place = first_place("simulate", self.motion, frame, self.rule, reduced, first.demand)
         if place is None:
             return np.concatenate((reduced, np.full_like(reduced, np.nan), pose)), code
         now = _Now(place, *self._origin(frame, place.momentum), group.matrix_from_pose(pose), 0)

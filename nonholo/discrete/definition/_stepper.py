@@ -98,8 +98,8 @@ class DefinitionStepper(AbstractBodyStepper):
             ahead, y, code = in_double(sweep, self.motion, r, g)
             return np.concatenate((r, y, g.ravel(), *self._normal(ahead))), Outcome(int(code))
         y, number = np.zeros(len(self.motion.variety.chart)), -1
-        if self.branch == "nearest" and first.demanded is not None and first.demanded.ndim == 2:
-            y, number = self.motion.variety.coordinates(group.inverse(frame) @ first.demanded @ frame), 0
+        if self.branch == "nearest" and first.demand is not None and first.demand.ndim == 2:
+            y, number = self.motion.variety.coordinates(group.inverse(frame) @ first.demand @ frame), 0
         _, code, r, y, g = self._take(number, 0, r, y, g)
         return np.concatenate((r, y, g.ravel())), Outcome(int(code))
 

@@ -51,7 +51,7 @@ class BalancedRoute(AbstractForcedRoute, AbstractOuterRoute):
     def body(self) -> kernels.ForcedBody:
         """The body and its half impulses."""
         forced, free = self.forced, self.free
-        kick = pull(free, forced) if free.is_scalar else balance(free, forced, self.order, self.notes)
+        kick = pull(free, forced) if free.is_scalar else balance(free, forced, self.order, self.faults)
         return kernels.ForcedBody(free.body, kick)
 
     @functools.cached_property
@@ -116,7 +116,7 @@ def pull(free: AbstractCompiledRoute, forced: Forced) -> kernels.Pull:
     return kernels.Pull(*map(plain, (weight, arms, friction, half * free.scale * sum_products(table.T, rows.T))))
 
 
-def balance(free: AbstractCompiledRoute, forced: Forced, order: int, notes: dict[str, str]) -> kernels.Balanced:
+def balance(free: AbstractCompiledRoute, forced: Forced, order: int, faults: dict[str, str]) -> kernels.Balanced:
     """Return half the impulses at displacements in the units and axes of a kernel."""
     group, S, half = forced.group, np.asarray(forced.constraint_subspace), float(free.time_step) / 2
     to_kernel = free.encode(forced.to_canonical(np.eye(forced.rank)))
@@ -130,7 +130,7 @@ def balance(free: AbstractCompiledRoute, forced: Forced, order: int, notes: dict
     C = np.zeros((0, 0)) if forced.friction is None else along @ forced.friction.matrix @ velocity
     rows = forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table)))) @ along.T
     moves, parts = forced.differences
-    force, potential = functions_of(forced, forced.own_potential, notes)
+    force, potential = functions_of(forced, forced.own_potential, faults)
     numbers = kernels.Impulses(
         turn=plain(kernel_frame(free, forced)),
         directions=plain(frame @ group.hat(charts @ variety.chart) @ group.inverse(frame)),

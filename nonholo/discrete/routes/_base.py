@@ -87,7 +87,7 @@ class CompiledStepper(AbstractBodyStepper):
     def start(self, first: First) -> tuple[State, Outcome]:
         """Return the state at the first root."""
         reduced, pose = first.numbers
-        getattr(self.route, "notes", {}).clear()  # of the run before
+        getattr(self.route, "faults", {}).clear()  # of the run before
         momenta = self.route.encode(reduced)
         own_pose = self.route.encode_poses(pose) if pose.size else pose
         code, chart, kernel = self.route.start(momenta, own_pose)

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, NoReturn, cast
 import numpy as np
 
 from nonholo import kernels
-from nonholo.base.calls import FunctionError, UndefinedError, noted, number_of
+from nonholo.base.calls import FunctionError, UndefinedError, note_fault, number_of
 from nonholo.base.checks import error
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
@@ -82,12 +82,12 @@ class AbstractForcedRoute(AbstractRoute):
     Attributes:
         free: The route of the free step.
         forced: The system with its forces.
-        notes: What functions of the user said of the end of the last run.
+        faults: What functions of the user said of the end of the last run.
     """
 
     free: AbstractCompiledRoute
     forced: Forced
-    notes: dict[str, str] = dataclasses.field(default_factory=dict, repr=False, kw_only=True)
+    faults: dict[str, str] = dataclasses.field(default_factory=dict, repr=False, kw_only=True)
     order = 2
     is_scalar: ClassVar[bool] = False
 
@@ -157,7 +157,7 @@ class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
         """The body and its half impulse."""
         free, forced = self.free, self.forced
         has_function = forced.function is not None or driven_potential(forced) is not None
-        half = half_drive(free, forced, self.notes) if has_function else half_kick(free, forced)
+        half = half_drive(free, forced, self.faults) if has_function else half_kick(free, forced)
         return kernels.ForcedBody(free.body, half)
 
 
@@ -213,7 +213,7 @@ class FunctionRoute(AbstractForcedRoute, AbstractOuterRoute):
         """Return what half the impulse of a step at a node adds to the kernel's momenta."""
         half = float(self.free.time_step) / 2
         time, steps = np.array([2 * half * node]), np.array([step])
-        return kick_of(self.free, self.forced, half, time, m[None], pose[None], steps, self.notes)[0]
+        return kick_of(self.free, self.forced, half, time, m[None], pose[None], steps, self.faults)[0]
 
 
 def kick_of(
@@ -224,14 +224,14 @@ def kick_of(
     momenta: np.ndarray,
     poses: np.ndarray,
     steps: np.ndarray,
-    notes: dict[str, str] | None = None,
+    faults: dict[str, str] | None = None,
 ) -> np.ndarray:
     """Return what the impulses of a time add to momenta of a kernel; NaN where they are not finite."""
     group = forced.group
     g = group.matrix_from_pose(free.decode_poses(poses)) @ group.inverse(forced.frame)
-    j, notes = np.array(np.nan), {} if notes is None else notes
-    with noted(notes, "potential"):
-        j = forced.impulses(forced.from_canonical(free.decode(momenta.copy())), g, time, steps, half, notes)
+    j, faults = np.array(np.nan), {} if faults is None else faults
+    with note_fault(faults, "potential"):
+        j = forced.impulses(forced.from_canonical(free.decode(momenta.copy())), g, time, steps, half, faults)
     if not np.isfinite(j).all():
         return np.full_like(momenta, np.nan)
     return free.encode(forced.to_canonical(forced.restrict_at(j, g)))
@@ -248,14 +248,14 @@ def half_kick(free: AbstractCompiledRoute, forced: Forced) -> kernels.Kick:
     return kick._replace(weight=plain(weight), arms=plain(arms))
 
 
-def half_drive(free: AbstractCompiledRoute, forced: Forced, notes: dict[str, str]) -> kernels.Drive:
+def half_drive(free: AbstractCompiledRoute, forced: Forced, faults: dict[str, str]) -> kernels.Drive:
     """Return half the impulse of functions; those that numba compiled are asked before a run."""
     kick, along = _linear_part(free, forced)
     S, has = np.asarray(forced.constraint_subspace), (forced.function is not None, driven_potential(forced) is not None)
     momenta = forced.from_canonical(free.decode(np.eye(forced.rank)))
     velocity = S.T @ np.linalg.solve(S @ np.asarray(forced.inertia_operator) @ S.T, momenta.T)
     moves, weights = forced.differences
-    force, potential = functions_of(forced, driven_potential(forced), notes)
+    force, potential = functions_of(forced, driven_potential(forced), faults)
     return kernels.Drive(
         kick=kick,
         planar=(2 if forced.group == SE(2) else 3) if free.is_scalar else 0,
@@ -277,10 +277,10 @@ def driven_potential(forced: Forced) -> Callable[..., Any] | None:
     return forced.potential_energy if whole else forced.own_potential
 
 
-def functions_of(forced: Forced, potential: Callable[..., Any] | None, notes: dict[str, str]) -> tuple[Any, Any]:
+def functions_of(forced: Forced, potential: Callable[..., Any] | None, faults: dict[str, str]) -> tuple[Any, Any]:
     """Return force and potential as kernels call them: addresses if numba compiled all of them, else in Python."""
     if not forced.is_jitted or potential not in (None, forced.own_potential):
-        return _in_python(forced, potential, notes)
+        return _in_python(forced, potential, faults)
     shape = (forced.group.size, forced.group.dim)
     if not forced.needs_function:
         return 0, 0
@@ -291,18 +291,18 @@ def functions_of(forced: Forced, potential: Callable[..., Any] | None, notes: di
     return force, 0 if potential is None else function_of(potential, shape, 1)
 
 
-def _in_python(forced: Forced, own: Any, notes: dict[str, str]) -> tuple[Callable[..., None], Callable[..., None]]:
+def _in_python(forced: Forced, own: Any, faults: dict[str, str]) -> tuple[Callable[..., None], Callable[..., None]]:
     """Return what writes force and potential by the definition: NaN where they are not finite, which is noted."""
 
     def force(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:
         out[:] = np.nan
-        with noted(notes, "force"):
+        with note_fault(faults, "force"):
             out[:] = forced.driving_force(time, g, velocity)
 
     def potential(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:
         del time, velocity
         out[0] = np.nan
-        with noted(notes, "potential"):
+        with note_fault(faults, "potential"):
             out[0] = number_of("Forced(potential=...)", cast(Any, own), "Return U of a configuration.", g)
 
     return force, potential

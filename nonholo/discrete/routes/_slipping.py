@@ -260,7 +260,7 @@ class SlipStepper(AbstractBodyStepper):
     Attributes:
         motion: The discretization.
         route: The route.
-        posed: Whether poses are saved.
+        with_poses: Whether poses are saved.
     """
 
     motion: Any

@@ -86,4 +86,4 @@ def system_of(name: str) -> Any:
     """Return the system of a data set; one of `nonholo.examples` loads JAX."""
     if name in _BODIES:
         return _BODIES[name]()
-    return getattr(importlib.import_module("nonholo.literature"), name)().system
+    return getattr(importlib.import_module("nonholo.examples"), name)().system

@@ -1,4 +1,4 @@
-// Colors: the palette of nonholo.plotting, for light and for dark; time runs from violet to yellow.
+// Colors: the palette of nonholo.plot, for light and for dark; time runs from violet to yellow.
 
 const VIRIDIS = ["440154", "482878", "3e4989", "31688e", "26828e", "1f9e89", "35b779", "6ece58", "b5de2b"].map((hex) =>
   [0, 2, 4].map((k) => parseInt(hex.slice(k, k + 2), 16) / 255));

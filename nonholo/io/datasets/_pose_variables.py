@@ -12,7 +12,7 @@ import numpy as np
 from nonholo.base.types import Float
 from nonholo.groups import AbstractMatrixGroup, ProductGroup, Translations, quaternion_from_matrix
 from nonholo.io._descriptions import describe_group
-from nonholo.orbit import Orbit, configurations, poses, unwrapped
+from nonholo.orbit import Orbit, configurations, poses, unwrap
 
 Variables: TypeAlias = dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]
 """Dimensions after those of the states, values and attributes, by name."""
@@ -206,7 +206,7 @@ def _headed(stretches: Iterable[Stretch], row: Float[np.ndarray, "1 c"] | None) 
     before = None if row is None else float(row[0, -1])
     for stretch in stretches:
         turned = stretch.pose[:, :2, 0] if stretch.pose.ndim == 3 else stretch.pose  # cosine and sine first
-        headings = unwrapped(turned, before) if stretch.headings is None else stretch.headings
+        headings = unwrap(turned, before) if stretch.headings is None else stretch.headings
         before = headings[-1] if len(headings) else before
         yield stretch._replace(headings=headings)
 

@@ -3,6 +3,7 @@
 import functools
 import itertools
 import math
+from collections.abc import Iterable
 from typing import Any, NamedTuple, cast
 
 import jax
@@ -16,7 +17,7 @@ from nonholo.lagrange_dalembert._room import compiling, equations_of
 from nonholo.lagrange_dalembert.compiled._derivatives import bordered
 from nonholo.lagrange_dalembert.compiled._expansion import Expansion
 from nonholo.lagrange_dalembert.compiled._run import Values, evaluated, machine_code, program
-from nonholo.lagrange_dalembert.compiled._scalars import Scalar, UntranslatableError
+from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError
 from nonholo.lagrange_dalembert.compiled._windows import array_of
 from nonholo.orbit import looked_at
 
@@ -32,7 +33,7 @@ class Formulation(NamedTuple):
     Attributes:
         expansion: The address of what writes Taylor coefficients.
         room: How many numbers that needs.
-        settle: Maps places and velocities to the admissible velocity next to them in the kinetic energy.
+        settle: Maps places and velocities to the admissible ones next to them in the kinetic energy.
         decode: Maps them to momentum, forces of constraint, energy and residual; pivots and diagonal of the mass.
     """
 
@@ -46,7 +47,8 @@ class Formulation(NamedTuple):
 def formulation(family: Any, place: tuple[int, ...], n: int) -> Formulation | None:
     """Return the continuous equations of a family of systems; None if they are no formulas, or none that are smooth.
 
-    Parameters are numbers of the state that stay as they are.
+    Parameters are numbers of the state that stay as they are. A place moves with the velocity that keeps holonomic
+    constraints, so that what rounding takes from the velocity does not gather in the place.
     """
     equations, size = equations_of(family), math.prod(place)
 
@@ -54,25 +56,27 @@ def formulation(family: Any, place: tuple[int, ...], n: int) -> Formulation | No
         system = family.bound(*numbers)
         rate = equations.rate(system, x, v)
         missed, turned = jax.jvp(lambda y: equations.constraint(system, y, v), (x,), (rate,))
-        columns = equations.momentum(system, x, v), equations.energy(system, x, v), missed
+        away = jax.jvp(lambda y: equations.holonomic_residual(system, y), (x,), (rate,))
+        columns = equations.momentum(system, x, v), equations.energy(system, x, v), missed, *away
         matrices = equations.mass_matrix(system, x, v), equations.forms(system, x)
         return *matrices, equations.force(system, x, v), -turned, rate, *columns
 
     try:
         whole = program(at, place, (n,), *map(np.shape, family.parameters.values()))
         f, parts = whole.formulas, iter(whole.results)
-        mass, A, force, off, rate, momentum, energy, missed = (
+        mass, A, force, off, rate, momentum, energy, missed, away, leaving = (
             array_of(list(itertools.islice(parts, math.prod(shape))), shape) for shape in whole.shapes
         )
         matrix = bordered(f, mass, A)
-        moved, settled = matrix.solution([*force, *off]), matrix.solution([*[f.constant(0.0)] * n, *missed])
-        still = [f.constant(0.0)] * (len(whole.inputs) - size - n)
-        expansion = Expansion(f, whole.inputs, [*rate.ravel(), *moved[:n], *still])
+        zero, moved = f.constant(0.0), matrix.solution([*force, *off])
+        across, back, drift = (matrix.solution([*[zero] * n, *rows])[:n] for rows in (missed, away, leaving))
+        still = [zero] * (len(whole.inputs) - size - n)
+        expansion = Expansion(f, whole.inputs, [*_less(f, rate.ravel(), drift), *moved[:n], *still])
     except UntranslatableError:
         return None
     module = ir.Module()
     expansion.write(module, "expansion", -(-len(whole.inputs) // _SIDE) * _SIDE)
-    velocity = [f("sub", *each) for each in zip(whole.inputs[size : size + n], settled[:n], strict=True)]
+    settled = [*_less(f, whole.inputs[:size], back), *_less(f, whole.inputs[size : size + n], across)]
     forces, pivots = (f("neg", each) for each in moved[n:]), matrix.pivots[:n]
     told = [*momentum, *forces, energy.item(), *missed, *pivots, *np.diagonal(mass)]
     shapes = [(n,), (len(A),), (), (len(A),), (n,), (n,)]
@@ -82,7 +86,12 @@ def formulation(family: Any, place: tuple[int, ...], n: int) -> Formulation | No
         return Values(machine_code(whole.inputs, [*results, doubt]), shapes)
 
     address = compiled(str(module), "expansion", is_long=True)
-    return Formulation(address, expansion.room, values(velocity, [(n,)]), values(told, shapes))
+    return Formulation(address, expansion.room, values(settled, [place, (n,)]), values(told, shapes))
+
+
+def _less(f: Formulas, numbers: Iterable[Scalar], others: list[Scalar]) -> list[Scalar]:
+    """Return numbers less others, the last of which may be left out."""
+    return [f("sub", *each) for each in itertools.zip_longest(numbers, others, fillvalue=f.constant(0.0))]
 
 
 class Series(NamedTuple):
@@ -118,7 +127,7 @@ class Series(NamedTuple):
         place, (n,) = self.shapes
         size = math.prod(place)
         x = equations_of(self.system).normalized(self.system, rows[:, :size].reshape(-1, *place))
-        return [x, *cast(Any, _evaluated(self.code.settle, self.system, x, rows[:, size : size + n]))]
+        return cast(Any, _evaluated(self.code.settle, self.system, x, rows[:, size : size + n]))
 
     @property
     def span(self) -> tuple[float, float]:

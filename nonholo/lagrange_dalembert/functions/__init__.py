@@ -4,6 +4,7 @@ from nonholo.lagrange_dalembert.functions._parameters import Bound, Parameters
 from nonholo.lagrange_dalembert.functions._tracing import (
     ForceTable,
     check_forms,
+    check_rows_of_places,
     check_value,
     count_of,
     takes_time,

@@ -74,6 +74,14 @@ def check_forms(where: str, forms: Any, n: int, arguments: tuple[Any, ...], of: 
         raise error(where, f"return an array of shape (s, {n}) with 0 < s < {n}", f"shape {found}", remedy)
 
 
+def check_rows_of_places(where: str, function: Any, n: int, arguments: tuple[Any, ...]) -> None:
+    """Refuse holonomic constraints that are not m numbers of n coordinates."""
+    found = traced_shape(where, function, arguments, f"{n} coordinates")
+    if len(found) != 1 or not 0 < found[0] <= n:
+        remedy = "Return one number per constraint, jnp.array([...]); pass None for no constraint."
+        raise error(where, f"return an array of shape (m,) with 0 < m <= {n}", f"shape {found}", remedy)
+
+
 def count_of(forms: Any, *shapes: tuple[int, ...]) -> int:
     """Return the number s of constraint forms, of arguments of given shapes."""
     if forms is None:

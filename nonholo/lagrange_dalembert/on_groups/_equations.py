@@ -29,6 +29,16 @@ def constraint(system: GroupLagrangeDAlembert, g: Array, v: Array) -> Array:
     return forms(system, g) @ v
 
 
+def holonomic(_system: GroupLagrangeDAlembert, _g: Array) -> Array:
+    """Return nothing: no constraint is one of poses alone."""
+    return jnp.zeros(0)
+
+
+def holonomic_residual(system: GroupLagrangeDAlembert, _g: Array) -> Array:
+    """Return zeros, one for each constraint."""
+    return jnp.zeros(system.constraints)
+
+
 def displaced(system: GroupLagrangeDAlembert, v: Array, h: Array) -> tuple[Array]:
     """Return the displacement W."""
     return (_displacement(system, v, h),)

@@ -7,6 +7,7 @@ import numpy as np
 
 from nonholo.base.checks import array, error
 from nonholo.base.types import Array, Float
+from nonholo.lagrange_dalembert._accelerations import admissible_velocity
 from nonholo.lagrange_dalembert._newton import root
 from nonholo.lagrange_dalembert._room import in_double
 from nonholo.lagrange_dalembert._start import (
@@ -27,21 +28,25 @@ _CLOSE = 1e-4  # what the comparison must reach: far above rounding and the erro
 
 
 def point(
-    owner: str, system: GroupLagrangeDAlembert, configuration: Any, time: float = 0.0
+    owner: str, system: GroupLagrangeDAlembert, configuration: Any, time: float = 0.0, *, project: bool
 ) -> Float[np.ndarray, "N N"]:
     """Return a configuration at which the constraint forms are finite and independent."""
-    del time
+    del time, project
     group = system.group
     g = group.identity if configuration is None else in_group(f"{owner}(configuration=...)", group, configuration)
     check_rows("GroupLagrangeDAlembert(constraint_forms=...)", in_double(equations.forms, system, g), g)
     return g
 
 
-def velocity(owner: str, system: GroupLagrangeDAlembert, g: np.ndarray, given: Any) -> Float[np.ndarray, "dim"]:
+def velocity(
+    owner: str, system: GroupLagrangeDAlembert, g: np.ndarray, given: Any, *, project: bool
+) -> Float[np.ndarray, "dim"]:
     """Return a velocity that satisfies the constraint, at which the Lagrangian is regular."""
     where = f"{owner}(body_velocity=...)"
     w = array(where, given, (system.group.dim,), "Use `vee` to turn a matrix into coordinates.")
     regular(system, g, w)
+    if project:
+        return in_double(admissible_velocity, system, g, w)
     A = in_double(equations.forms, system, g)
     return admissible(where, A, w, A @ w)
 

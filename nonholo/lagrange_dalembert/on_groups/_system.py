@@ -73,6 +73,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
     constraint_forms: Callable[[Array], Array] | None = dataclasses.field(repr=False)
     discrete_constraints: Callable[[Array, Array, Array], Array] | None = dataclasses.field(default=None, repr=False)
     lagrangian: Callable[[Array], Array] | None = dataclasses.field(default=None, kw_only=True, repr=False)
+    holonomic: ClassVar[None] = None
     is_driven: ClassVar[bool] = False
     coordinates: ClassVar[tuple[str, ...]] = ()
     name: ClassVar[str] = "System with constraints that depend on the pose"
@@ -135,6 +136,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
         times: Any,
         body_velocity: Any = None,
         momentum: Any = None,
+        project: bool = False,
         rtol: float | None = None,
         atol: float = 1e-12,
     ) -> "GroupOrbit":
@@ -149,6 +151,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
             times: The times of the states, at least one, increasing or decreasing; the start is at the first.
             body_velocity: The first velocity, which must satisfy the constraint.
             momentum: Start with this momentum instead; only its action on admissible velocities counts.
+            project: Take the admissible velocity next to the given one in the kinetic energy.
             rtol: Relative error of a step, at least 1e-14, which is the default of series; of diffrax 1e-10.
             atol: Absolute error of a step of diffrax.
 
@@ -168,7 +171,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
             [-1. -1.  1.]
         """
         starts = {"body_velocity": body_velocity, "momentum": momentum}
-        return room("_flow").flow(self, configuration, starts, times, rtol, atol)
+        return room("_flow").flow(self, configuration, starts, times, rtol, atol, project=project)
 
 
 def _named(argument: str) -> str:

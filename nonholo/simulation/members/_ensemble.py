@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from nonholo.base.calls import called
+from nonholo.base.calls import call
 from nonholo.base.checks import count, error, flags, flow_times, flow_tolerances, function, refuse_given
 from nonholo.base.limits import within_memory
 from nonholo.base.progress import progress_bar
@@ -46,6 +46,7 @@ def ensemble(
     steps: int | None = None,
     times: Any = None,
     configuration: Any = None,
+    project: bool = False,
     body_velocity: Any = None,
     restricted_velocity: Any = None,
     displacement: Any = None,
@@ -82,6 +83,7 @@ def ensemble(
         times: Of a system instead: the times of the states, as in `flow`.
         configuration: First poses, matrices (M, N, N), in coordinates (M, n); one alone is that of all members. Bodies
             start at the identity by default.
+        project: Start at the admissible configurations and velocities next to the given ones, as in `simulate`.
         body_velocity: One row for each member, (M, dim), or one for all. Of bodies members start with the principal
             W_0 that has the same momentum along the constraint.
         restricted_velocity: The same, in rows of the constraint subspace, (M, k).
@@ -125,20 +127,19 @@ def ensemble(
     flags("ensemble", reconstruct=reconstruct, progress=progress)
     if reduce is not None:
         function("ensemble(reduce=...)", reduce)
-        reduce = functools.partial(called, "ensemble(reduce=...)", reduce)
+        reduce = functools.partial(call, "ensemble(reduce=...)", reduce)
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity}
     starts |= {"displacement": displacement, "momentum": momentum}
     of_steps = {"steps": steps, "save_every": save_every, "events": events, "branch": branch, "backend": backend}
-    of_steps["reconstruct"], of_flow = reconstruct, {"times": times, "rtol": rtol}
+    of_steps["reconstruct"] = reconstruct
     make: Any = _of_times if isinstance(discrete, AbstractSystem) else _of_steps
-    motion, plan, widths = make(discrete, of_flow, of_steps, starts)
-    start = Start.of("ensemble", configuration, choices=motion.starts, **starts)
-    numbers = checked_parameters(motion, parameters)
-    start, several = in_rows(motion, start, numbers)
+    motion, plan, widths = make(discrete, {"times": times, "rtol": rtol}, of_steps, starts)
+    start = Start.of("ensemble", configuration, choices=motion.starts, project=project, **starts)
+    start, several = in_rows(motion, start, numbers := checked_parameters(motion, parameters))
     members = Members(motion, numbers, several)
     _refuse_too_large(plan, widths, 1 if reduce is not None else several)
     check_systems(members)
-    first = firsts(members, start, with_poses=widths[-1] > 0, at_once=are_side_by_side(members, plan))
+    first = firsts(members, start, with_poses=widths[-1] > 0, at_once=not project and are_side_by_side(members, plan))
     _check_momenta(members, first, plan)
     with progress_bar("members", progress) as show:
         return _run_all(members, first, plan, sum(widths), reduce, counting(show, several))

@@ -9,7 +9,7 @@ import numpy as np
 
 from nonholo import kernels
 from nonholo.base.checks import array, error, shown
-from nonholo.base.kept import Keeper
+from nonholo.base.memo import Keeper
 from nonholo.base.types import Bool, Float
 from nonholo.discrete import Discretization, discretize
 from nonholo.systems import AbstractCoordinateSystem, System, in_coordinates

@@ -100,7 +100,7 @@ def firsts(members: Members, start: Start, *, with_poses: bool, at_once: bool) -
 def _one_by_one(members: Members, start: Start, *, with_poses: bool) -> Firsts:
     each = [_of_one(members, start, member, with_poses=with_poses) for member in range(len(members))]
     numbers = tuple(np.stack(column) for column in zip(*(first.numbers for first in each), strict=True))
-    demand = None if each[0].demanded is None else np.stack([np.asarray(first.demanded) for first in each])
+    demand = None if each[0].demand is None else np.stack([np.asarray(first.demand) for first in each])
     return Firsts(numbers, demand)
 
 

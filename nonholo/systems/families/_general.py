@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from nonholo.base.checks import array, error, is_traced, positive_definite, symmetric
-from nonholo.base.kept import kept
+from nonholo.base.memo import system_memo
 from nonholo.base.types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, AbstractLRSystem, replace_numbers
@@ -165,12 +165,12 @@ class LLSystem(AbstractLLSystem):
         subspace = {"constraint subspace": np.asarray(self.constraint_subspace)}
         return f"LLSystem({self.group!r},\n  {lines_of(facts | subspace)})"
 
-    @kept
+    @system_memo
     def homogeneous_mass_tensor(self) -> Float[Array, "... N N"] | None:
         """The mass tensor; None if the inertia operator was given."""
         return self.mass_tensor
 
-    @kept
+    @system_memo
     def inertia_operator(self) -> Float[Array, "... dim dim"]:
         """The inertia operator, that of the mass tensor if there is one."""
         if self.mass_tensor is None:
@@ -257,7 +257,7 @@ class LRSystem(AbstractLRSystem):
         subspace = {"constraint subspace": np.asarray(self.constraint_subspace)}
         return f"LRSystem({self.group!r},\n  {lines_of(facts | subspace)})"
 
-    @kept
+    @system_memo
     def homogeneous_mass_tensor(self) -> Float[Array, "N N"]:
         """The mass tensor itself."""
         return self.mass_tensor
@@ -300,17 +300,17 @@ class VeselovaTop(AbstractLRSystem):
     def __repr__(self) -> str:
         return f"VeselovaTop({self.group!r},\n  {lines_of(tensors_shown(self.group, self.mass_tensor))})"
 
-    @kept
+    @system_memo
     def group(self) -> AbstractMatrixGroup:
         """The rotation group SO(n)."""
         return SO(self.mass_tensor.shape[-1])
 
-    @kept
+    @system_memo
     def homogeneous_mass_tensor(self) -> Float[Array, "n n"]:
         """The mass tensor itself."""
         return self.mass_tensor
 
-    @kept
+    @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
         r"""Rows $e_i\wedge e_n$, fixed in space."""
         return top_rows(self.group)

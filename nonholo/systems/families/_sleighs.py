@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from nonholo.base.checks import array, error, is_traced, number, positive_definite, scale, symmetric
-from nonholo.base.kept import kept
+from nonholo.base.memo import system_memo
 from nonholo.base.types import Array, Bool, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, replace_numbers
@@ -62,7 +62,7 @@ class ChaplyginSleigh(AbstractLLSystem):
         fields = (f"{name}={getattr(self, name)}" for name in ("mass", "inertia", "a", "b"))
         return f"ChaplyginSleigh({', '.join(fields)})"
 
-    @kept
+    @system_memo
     def homogeneous_mass_tensor(self) -> Float[Array, "... 3 3"]:
         """The mass tensor about the contact point in homogeneous coordinates; the moment J is shared by both axes."""
         m, a, b = self.mass, self.a, self.b
@@ -76,17 +76,17 @@ class ChaplyginSleigh(AbstractLLSystem):
         """Whether mass and moment are positive."""
         return np.asarray((self.mass > 0) & (self.inertia > 0))
 
-    @kept
+    @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "2 3"]:
         """Rows (omega) and (v1)."""
         return np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 
-    @kept
+    @system_memo
     def annihilator(self) -> Float[np.ndarray, "1 3"]:
         """The velocity across the blade."""
         return np.array([[0.0, 0.0, 1.0]])
 
-    @kept
+    @system_memo
     def frame(self) -> Float[Array, "... 3 3"]:
         """The translation to the foot of the center of mass on the line through the contact point across the blade."""
         xp = (self.b * self.mass).__array_namespace__()
@@ -187,12 +187,12 @@ class MultidimensionalSleigh(AbstractLLSystem):
         head = f"mass={self.mass}, center_of_mass={np.asarray(self.center_of_mass).tolist()}"
         return f"MultidimensionalSleigh({head},\n  mass tensor about the center of mass = {tensor})"
 
-    @kept
+    @system_memo
     def group(self) -> AbstractMatrixGroup:
         """The group of rigid motions SE(n)."""
         return SE(self.center_of_mass.shape[-1])
 
-    @kept
+    @system_memo
     def homogeneous_mass_tensor(self) -> Float[Array, "N N"]:
         """The mass tensor about the reference point in homogeneous coordinates."""
         xp = (self.mass * self.center_of_mass @ self.mass_tensor).__array_namespace__()
@@ -200,7 +200,7 @@ class MultidimensionalSleigh(AbstractLLSystem):
         lever = xp.concatenate([a, xp.ones_like(a[:1])])
         return xp.pad(xp.asarray(self.mass_tensor), ((0, 1), (0, 1))) + self.mass * lever[:, None] * lever
 
-    @kept
+    @system_memo
     def inertia_along(self) -> Float[Array, "n n"]:
         r"""The matrix of $w\cdot Bw + m\,a_1^2|w|^2 + m(v_1 + \alpha\cdot w)^2$ in (w, v_1), twice the energy."""
         J, a, m = self.mass_tensor, self.center_of_mass, self.mass
@@ -210,7 +210,7 @@ class MultidimensionalSleigh(AbstractLLSystem):
         turning = J[1:, 1:] + (J[0, 0] + m * a[0] ** 2) * xp.eye(J.shape[-1] - 1, dtype=J.dtype)
         return xp.pad(turning, ((0, 1), (0, 1))) + m * lever[:, None] * lever
 
-    @kept
+    @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "n dim"]:
         r"""Rows $e_1\wedge e_j$, j = 2..n, then the velocity along body axis 1."""
         return sleigh_rows(self.group)
@@ -271,23 +271,23 @@ class ArrowheadSleigh(AbstractLLSystem):
         J[0, 1:] = J[1:, 0] = self.coupling
         return MultidimensionalSleigh(self.mass, self.center_of_mass, J)
 
-    @kept
+    @system_memo
     def group(self) -> AbstractMatrixGroup:
         """The group of rigid motions SE(n)."""
         return SE(len(self.diagonal))
 
-    @kept
+    @system_memo
     def homogeneous_mass_tensor(self) -> Float[np.ndarray, "N N"]:
         """The mass tensor about the reference point as a matrix."""
         return self.dense.homogeneous_mass_tensor
 
-    @kept
+    @system_memo
     def inertia_along(self) -> WideInertia:
         r"""The diagonal of $B_1$, the mass, and the offset of the center of mass across the blade."""
         a = self.center_of_mass
         return WideInertia(self.diagonal[1:] + self.diagonal[0] + self.mass * a[0] ** 2, self.mass, a[1:])
 
-    @kept
+    @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "n dim"]:
         r"""Rows $e_1\wedge e_j$, then the velocity along body axis 1."""
         return self.dense.constraint_subspace

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from nonholo.base.checks import array, error, is_traced, positive_definite, symmetric
-from nonholo.base.kept import kept
+from nonholo.base.memo import system_memo
 from nonholo.base.types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, replace_numbers
@@ -107,17 +107,17 @@ class RigidBody(AbstractLLSystem):
     def __repr__(self) -> str:
         return f"RigidBody({self.group!r},\n  {lines_of(tensors_shown(self.group, self.mass_tensor))})"
 
-    @kept
+    @system_memo
     def homogeneous_mass_tensor(self) -> Float[Array, "... N N"]:
         """The mass tensor itself."""
         return self.mass_tensor
 
-    @kept
+    @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "dim dim"]:
         """All coordinate rows."""
         return np.eye(self.group.dim)
 
-    @kept
+    @system_memo
     def annihilator(self) -> Float[np.ndarray, "0 dim"]:
         """No rows."""
         return np.empty((0, self.group.dim))
@@ -209,43 +209,43 @@ class SuslovTop(AbstractLLSystem):
         head = f"n={self.group.size}" if self.axis is None else f"axis={np.asarray(self.axis).tolist()}"
         return f"SuslovTop({head},\n  {lines_of(tensors_shown(self.group, self.mass_tensor))})"
 
-    @kept
+    @system_memo
     def group(self) -> AbstractMatrixGroup:
         """The rotation group SO(n)."""
         return SO(self.mass_tensor.shape[-1])
 
-    @kept
+    @system_memo
     def homogeneous_mass_tensor(self) -> Float[Array, "... n n"]:
         """The mass tensor itself."""
         return self.mass_tensor
 
-    @kept
+    @system_memo
     def inertia_operator(self) -> Float[Array, "... dim dim"]:
         r"""The operator $\omega \mapsto J\omega + \omega J$; for n = 3 it is $\mathrm{tr}(J)\,\mathrm{Id} - J$."""
         return super().inertia_operator if self.axis is None else inertia_tensor(self.mass_tensor)
 
-    @kept
+    @system_memo
     def inertia_along(self) -> Float[Array, "... k k"]:
         r"""The matrix $B = A + d\,\mathrm{Id}$; for n = 3 in the rows of the constraint subspace."""
         return self.normal_form.stiffness
 
-    @kept
+    @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
         r"""Rows $e_i\wedge e_n$; n = 3: S(0, 1, 0) and S(-1, 0, 0), S the shortest rotation taking e3 to the axis."""
         rows = top_rows(self.group)
         return rows if self.axis is None else rows @ self.frame.T
 
-    @kept
+    @system_memo
     def annihilator(self) -> Float[np.ndarray, "s dim"]:
         r"""The forbidden planes $e_i\wedge e_j$, i < j < n; for n = 3 the forbidden axis."""
         return super().annihilator if self.axis is None else np.array(self.axis)[None, :]
 
-    @kept
+    @system_memo
     def frame(self) -> Float[np.ndarray, "... n n"]:
         """The shortest rotation taking e3 to the forbidden axis; the identity for n > 3."""
         return self.group.identity if self.axis is None else rotation_to(self.axis)
 
-    @kept
+    @system_memo
     def canonical(self) -> "SuslovTop":
         """The same top in body axes whose last one is the forbidden axis."""
         if self.axis is None or tuple(self.axis) == _E3:
@@ -323,12 +323,12 @@ class ArrowheadTop(AbstractLLSystem):
         """The same top with its mass tensor as a matrix."""
         return SuslovTop(self.homogeneous_mass_tensor)
 
-    @kept
+    @system_memo
     def group(self) -> AbstractMatrixGroup:
         """The rotation group SO(n)."""
         return SO(len(self.diagonal))
 
-    @kept
+    @system_memo
     def homogeneous_mass_tensor(self) -> Float[np.ndarray, "n n"]:
         """The mass tensor as a matrix."""
         narrow("A dense mass tensor of SuslovTop.arrowhead", self.group.dim)
@@ -336,12 +336,12 @@ class ArrowheadTop(AbstractLLSystem):
         J[-1, :-1] = J[:-1, -1] = self.coupling
         return J
 
-    @kept
+    @system_memo
     def inertia_along(self) -> WideInertia:
         """The diagonal of B."""
         return WideInertia(self.diagonal[:-1] + self.diagonal[-1], None, np.zeros_like(self.coupling))
 
-    @kept
+    @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
         r"""Rows $e_i\wedge e_n$."""
         return self.dense.constraint_subspace

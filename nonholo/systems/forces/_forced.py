@@ -13,7 +13,7 @@ from typing import Any, ClassVar, cast
 
 import numpy as np
 
-from nonholo.base.calls import name_of, noted, number_of, numbers_of
+from nonholo.base.calls import name_of, note_fault, number_of, numbers_of
 from nonholo.base.checks import array, choice, error, shown, trailing
 from nonholo.base.numerics import applied, exponential_increment, inverted
 from nonholo.base.results import Outcome, OutcomeError
@@ -377,7 +377,7 @@ class Forced(AbstractSystem):
         time: Float[np.ndarray, "K"],
         steps: np.ndarray,
         tau: float,
-        notes: dict[str, str] | None = None,
+        faults: dict[str, str] | None = None,
     ) -> Float[np.ndarray, "K dim"]:
         r"""Return the impulses j of kicks over a time $\tau$, body covectors; a kick takes r to $r + E^Tj$.
 
@@ -392,9 +392,9 @@ class Forced(AbstractSystem):
             time: Times of the nodes.
             steps: Numbers of the steps, whose row of a table acts.
             tau: Half a time step, or its negative.
-            notes: Gets what a force says that is not finite: its impulse is NaN then.
+            faults: Gets what a force says that is not finite: its impulse is NaN then.
         """
-        constant, notes = self.potential_force(g) + self.rows(steps), {} if notes is None else notes
+        constant, faults = self.potential_force(g) + self.rows(steps), {} if faults is None else faults
         if self.function is None:
             return self.impulse(r, g, constant, tau)
         E = self.directions(g)
@@ -405,7 +405,7 @@ class Forced(AbstractSystem):
 
             def impulse(velocity: np.ndarray, k: int = k) -> np.ndarray:
                 force = np.full(self.group.dim, np.nan)
-                with noted(notes, "force"):
+                with note_fault(faults, "force"):
                     force = self.driving_force(time[k], g[k], velocity)
                 return self.impulse(r[k], g[k], constant[k] + force, tau)
 

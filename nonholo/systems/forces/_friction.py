@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from nonholo.base.checks import array, error, is_traced, number, shape_of, shown
-from nonholo.base.kept import kept
 from nonholo.base.limits import within_memory
+from nonholo.base.memo import system_memo
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
 from nonholo.systems._base import AbstractLLSystem, AbstractSystem
@@ -184,12 +184,12 @@ class Widened(AbstractLLSystem):
     inertia_operator = property(operator.attrgetter("system.inertia_operator"))
     frame = property(operator.attrgetter("system.frame"))
 
-    @kept
+    @system_memo
     def annihilator(self) -> Float[np.ndarray, "j dim"]:
         """The rows that never yield."""
         return self.remaining
 
-    @kept
+    @system_memo
     def duals(self) -> Float[np.ndarray, "s dim"]:
         """V, the velocities of unit slips."""
         system, s = self.system, len(self.rows)
@@ -197,18 +197,18 @@ class Widened(AbstractLLSystem):
         equations = np.concatenate([S @ np.asarray(system.inertia_operator), self.remaining, self.rows])
         return np.linalg.solve(equations, np.eye(len(equations))[:, -s:]).T
 
-    @kept
+    @system_memo
     def slip_inertia(self) -> Float[np.ndarray, "s s"]:
         """M, by which momenta of slips are their velocities."""
         inertia = self.duals @ np.asarray(self.inertia_operator) @ self.duals.T
         return (inertia + inertia.T) / 2
 
-    @kept
+    @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
         """The rows of the system inside, and V."""
         return np.concatenate([self.system.constraint_subspace, self.duals])
 
-    @kept
+    @system_memo
     def inertia_along(self) -> Float[np.ndarray, "k k"]:
         """That of the system inside beside M: nothing couples them, not even a rounding error."""
         return beside(np.asarray(self.system.constrained_inertia), self.slip_inertia)
@@ -221,7 +221,7 @@ class Widened(AbstractLLSystem):
         adjoint = self.group.adjoint(self.frame)
         return Widened(self.system.canonical, self.rows @ adjoint, self.remaining @ adjoint)
 
-    @kept
+    @system_memo
     def frame_map(self) -> Float[Array, "k k"]:
         """That of the system inside; the slip is the same in every frame."""
         return beside(np.asarray(self.system.frame_map), np.eye(len(self.rows)))

@@ -1,0 +1,66 @@
+"""Properties that are computed once, and are no part of what is copied or pickled."""
+
+import functools
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from nonholo.base.checks import is_traced
+from nonholo.base.types import read_only
+
+_SMALL = 1 << 15  # bytes; larger arrays take longer to compute than anyone saves by keeping them
+
+
+class Keeper:
+    """An object that keeps what it computes; its copies and pickles have what it was made of, nothing else."""
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        """Return the call that made it, where it was made by one that has a name; otherwise its fields."""
+        return vars(self).get("recipe") or object.__reduce_ex__(self, protocol)
+
+    def __getstate__(self) -> dict[str, Any]:
+        kind, own = type(self), vars(self)
+        properties = {x for x in own if "." in x or isinstance(getattr(kind, x, None), functools.cached_property)}
+        return {name: own[name] for name in own if name not in properties}
+
+
+if TYPE_CHECKING:
+    memo = system_memo = property
+else:
+
+    class memo(functools.cached_property):  # noqa: N801
+        """A property of a `Keeper` that is computed once, whatever its size; its array is read-only.
+
+        Example:
+            >>> class Row(Keeper):
+            ...     @memo
+            ...     def squares(self) -> np.ndarray:
+            ...         return np.arange(3.0) ** 2
+            >>> row = Row()
+            >>> row.squares is row.squares, row.squares.flags.writeable
+            (True, False)
+        """
+
+        def __init__(self, compute: Callable[[Any], Any]) -> None:
+            super().__init__(functools.wraps(compute)(lambda owner: read_only(compute(owner))))
+
+    class system_memo(property):  # noqa: N801
+        """A property of a system, computed once; small arrays are kept, and given as copies.
+
+        What is traced belongs to its trace: nothing is kept by a system one of whose `leaves` is.
+        """
+
+        def __get__(self, owner: Any, kind: type | None = None) -> Any:
+            """Return the value."""
+            if owner is None:
+                return self
+            name = self.fget.__qualname__  # has a dot, which no name of a field has
+            value = owner.__dict__.get(name)
+            if value is None:
+                value = self.fget(owner)
+                is_large = isinstance(value, np.ndarray) and value.nbytes > _SMALL
+                if is_large or any(is_traced(getattr(owner, leaf)) for leaf in owner.leaves):
+                    return value
+                owner.__dict__[name] = value
+            return value.copy() if isinstance(value, np.ndarray) else value

@@ -1,0 +1,149 @@
+"""The work of `nonholo sweep`; that of `resume` and `extend` around what resumes a run or a sweep."""
+
+import contextlib
+import functools
+import sys
+import time
+import warnings
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import typer
+import xarray
+
+from nonholo import ensembles, io
+from nonholo.base.results import OutcomeError
+from nonholo.cli.commands._runs import Chosen, at_free_path, check_output, is_stopped
+from nonholo.cli.scenario.files import Loaded, given_settings, stored_scenario
+from nonholo.cli.scenario.motion import Scenario
+from nonholo.cli.scenario.problems import ScenarioError, problem_of_value
+from nonholo.cli.scenario.sweep_files import load_sweep_scenario, sweep_text
+from nonholo.cli.scenario.sweeps import SweepScenario
+from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, scenario_errors, store_errors, warn
+from nonholo.cli.screen.pictures import beside, draw_sweep
+from nonholo.cli.screen.stores import leave_if_all_raised, show_provenance, show_sweep, sweep_figures
+from nonholo.ensembles.stores import attributes_of
+from nonholo.orbit import AbstractOrbit
+
+_MOST_WARNINGS = 5  # warnings of a sweep that are reported
+
+
+def sweep_and_keep(
+    name: str,
+    options: Chosen,
+    settings: list[str],
+    output: Path | None,
+    *,
+    module: Path | None,
+    scheduler: str | None,
+    workers: int | None,
+    json: bool,
+    quiet: bool,
+) -> None:
+    """Load, run, draw, report; options of the command line come before the settings of `--set`."""
+    with scenario_errors(), reporting_warnings():
+        request = load_sweep_scenario(name, given_settings(options, settings), module)
+        task = _task(request)
+    scenario, begin = request.scenario, time.perf_counter()
+    text = sweep_text(scenario if scenario.is_family else scenario.in_force(task.discrete))
+    again = _is_stopped(output, text, scenario.output.plot)
+    design, progress = scenario.design.design(), sys.stderr.isatty() and not quiet
+    how: Any = {"scheduler": scheduler, "workers": workers, "resume": again}
+    run = functools.partial(ensembles.sweep, task, design, **how, progress=progress, scenario=text)
+    with store_errors(USAGE):
+        store, result = at_free_path(request.name, output, lambda path: _kept_in(run, path))
+    seconds, wishes = time.perf_counter() - begin, scenario.output
+    picture = draw_sweep(result, beside(store, "png"), wishes.color, wishes.x, wishes.y) if wishes.plot else None
+    figures = sweep_figures(store, result, seconds)
+    if quiet and not json:
+        typer.echo(store)
+    else:
+        heading = {"title": scenario.title or request.name} | scenario.forces.about(scenario.system())
+        show_sweep(store, figures, heading, {"picture": picture}, json=json)
+    leave_if_all_raised(figures)
+
+
+def _is_stopped(output: Path | None, text: str, has_picture: bool) -> bool:
+    """Tell whether this very sweep was begun at a path and stopped; refuse a path that holds something else."""
+    again = output is not None and is_stopped(output, text, ["png"] * has_picture, attributes_of)
+    if output is not None and output.exists() and not again:
+        leave(f"'{output}' exists. Choose another path, or resume what it holds: nonholo resume {output}", USAGE)
+    with store_errors(USAGE):
+        check_output(None if again else output, overwrite=False)
+    return again
+
+
+def _task(request: Loaded[SweepScenario]) -> Any:
+    try:
+        return request.scenario.task()
+    except ValueError as failure:
+        section = "start" if "velocity" in str(failure) or "momentum" in str(failure) else "run"
+        raise ScenarioError([problem_of_value(failure, section, request.source, request.options)]) from None
+
+
+def _kept_in(run: Callable[..., xarray.Dataset], store: Path) -> xarray.Dataset:
+    with reporting_stops(store):
+        return run(store=store)
+
+
+def continue_and_report(store: Path, module: Path | None, resume: Callable[..., AbstractOrbit], *, json: bool) -> None:
+    """Run, name what was damaged, report what the store holds now; `resume` takes `discrete` that no store holds."""
+    reason = None
+    with reporting_warnings(), scenario_errors(), store_errors(USAGE):
+        motion = stored_scenario(io.read_attributes(store), module, Scenario).discretization() if module else None
+        try:
+            orbit: Any = resume(discrete=motion, progress=sys.stderr.isatty())
+        except OutcomeError as failure:
+            orbit, reason = failure.orbit, str(failure)
+        except KeyboardInterrupt as failure:
+            leave(str(failure), FAILED)
+    show_provenance(store, io.read_attributes(store), orbit, json=json)
+    if reason:
+        leave(f"Stopped early; the good steps are kept. {reason}", FAILED)
+
+
+def resume_sweep(
+    store: Path, module: Path | None, scheduler: str | None, workers: int | None, *, trust: bool, json: bool
+) -> None:
+    """Do what a sweep lacks, report what the store holds now; name what is trusted first."""
+    with store_errors(USAGE):
+        before, names = ensembles.standing_of(store).done, ensembles.functions_of(store)
+    with scenario_errors(), reporting_warnings():
+        task = stored_scenario(attributes_of(store), module, SweepScenario).task() if module else None
+    if trust and names:
+        warn(f"trusted, and run with your rights: {', '.join(names)}")
+    begin = time.perf_counter()
+    how: Any = {"scheduler": scheduler, "workers": workers, "trust": trust, "task": task}
+    with store_errors(USAGE), reporting_stops(store):
+        result = ensembles.resume(store, **how, progress=sys.stderr.isatty())
+    figures = sweep_figures(store, result, time.perf_counter() - begin, before)
+    show_sweep(store, figures, {"title": str(store)}, {}, json=json)
+    leave_if_all_raised(figures)
+
+
+@contextlib.contextmanager
+def reporting_stops(store: Path) -> Iterator[None]:
+    """Tell what stopped a sweep and how to resume, and at its end what it warned of."""
+    with warnings.catch_warnings(record=True) as messages:
+        warnings.simplefilter("always", RuntimeWarning)
+        try:
+            yield
+        except KeyboardInterrupt:
+            leave(f"Stopped {_where(store)}", FAILED)
+        except OSError as failure:
+            if not store.exists() or isinstance(failure, FileExistsError | BlockingIOError):
+                raise
+            leave(f"{failure.strerror or failure} (nonholo resume {store})", FAILED)
+        finally:
+            for warning in messages[:_MOST_WARNINGS]:
+                warn(str(warning.message))
+            if len(messages) > _MOST_WARNINGS:
+                warn(f"and {len(messages) - _MOST_WARNINGS} more of this kind.")
+
+
+def _where(store: Path) -> str:
+    """Say how far a sweep came; before its store is there it has not begun."""
+    if not store.exists():
+        return "before it began."
+    return f"at {ensembles.standing_of(store)}. Resume with: nonholo resume {store}"

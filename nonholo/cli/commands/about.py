@@ -1,0 +1,215 @@
+"""`nonholo cite`, `examples`, `new` and `systems`: what there is, and how to cite it; they run nothing."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from nonholo.cli.commands.simulate import Module
+
+if TYPE_CHECKING:
+    from nonholo.examples import Example
+
+_SWEEP = "sweep"
+_NICKNAMES = {"top": ("suslov", "veselova"), "body": ("rigid_body",), "skate": ("sleigh",)}
+
+
+def cite(
+    cff: Annotated[
+        bool, typer.Option("--cff", help="Print CITATION.cff, for repositories and reference managers.")
+    ] = False,
+) -> None:
+    """Print BibTeX entries of this version of the library and of the paper behind it.
+
+    Please cite both: the discrete maps of tops and sleighs are the paper's.
+
+    nonholo cite >> references.bib
+    nonholo cite --cff
+    """
+    import yaml
+
+    text = _citation().read_text("utf-8")
+    if cff:
+        typer.echo(text, nl=False)
+        return
+    about = yaml.safe_load(text)
+    typer.echo("\n\n".join([_entry("nonholo", about), *(_entry(_key(each), each) for each in about["references"])]))
+
+
+def _citation() -> Path:
+    """Return the file: in an installed package beside the room, in a checkout at its root."""
+    room = Path(__file__).parents[1]
+    return next(path for path in (room / "CITATION.cff", room.parents[1] / "CITATION.cff") if path.exists())
+
+
+def _key(about: dict[str, Any]) -> str:
+    names = (author["family-names"].lower() for author in about["authors"])
+    return "-".join([*names, str(about["year"])])
+
+
+def _entry(key: str, about: dict[str, Any]) -> str:
+    """Return a BibTeX entry of a work as CITATION.cff describes it; braces keep capitals and the names of groups."""
+    fields = {
+        "author": " and ".join(_author(each) for each in about["authors"]),
+        "title": f"{{{about['title']}}}",
+        "journal": about.get("journal"),
+        "volume": about.get("volume"),
+        "number": about.get("issue"),
+        "pages": f"{about['start']}--{about['end']}" if "start" in about else None,
+        "version": about.get("version"),
+        "year": about.get("year") or about["date-released"].year,
+        "doi": about.get("doi"),
+    }
+    lines = [f"  {name} = {{{value}}}," for name, value in fields.items() if value is not None]
+    return "\n".join([f"@{about['type']}{{{key},", *lines, "}"])
+
+
+def _author(about: dict[str, str]) -> str:
+    return f"{about['family-names']}, {about['given-names']}" if "family-names" in about else f"{{{about['name']}}}"
+
+
+def examples(
+    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="One of those that are listed.")] = None,
+) -> None:
+    """List the ready systems of the literature and the built-in scenarios; of one, show what is known.
+
+    All of them are for `nonholo simulate`, `explore` and `new`.
+
+    nonholo examples
+    nonholo examples snakeboard
+    nonholo examples suslov
+    """
+    import tomllib
+
+    from nonholo.cli.scenario.bodies import examples as ready_ones
+    from nonholo.cli.scenario.files import built_in
+    from nonholo.cli.scenario.makers import summary
+    from nonholo.cli.scenario.sections import suggestion
+    from nonholo.cli.screen.errors import USAGE, leave, store_errors
+
+    scenarios = {each: tomllib.loads(text)["title"] for each, text in built_in().items()}
+    if name in scenarios:
+        typer.echo(f"{name}: {scenarios[name]}\n\n{_commands(name)}")
+        return
+    with store_errors(USAGE):
+        ready = ready_ones()
+    if name is None:
+        _show_tables(
+            {
+                "Ready systems, nonholo.examples": {each: summary(make) for each, make in ready.items()},
+                "Built-in scenarios": scenarios,
+            }
+        )
+    elif name in ready:
+        _show(ready[name]())
+    else:
+        leave(f"There is no ready system or scenario {name!r}. {suggestion(name, [*ready, *scenarios])}", USAGE)
+
+
+def _commands(name: str) -> str:
+    return "\n".join(f"  nonholo {command} {name}" for command in ("simulate", "explore", "new"))
+
+
+def _show_tables(tables: dict[str, dict[str, str]]) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    for title, rows in tables.items():
+        table = Table("name", "what it is", title=title, title_justify="left")
+        for row in rows.items():
+            table.add_row(*row)
+        Console().print(table)
+
+
+def _show(example: "Example") -> None:
+    """Print the start, the facts and the conserved quantities of a system, and how to run it."""
+    from nonholo.cli.scenario.bodies import examples as ready_ones
+    from nonholo.cli.scenario.makers import summary
+
+    parts: dict[str, list[Any]] = {
+        "Start": [
+            f"coordinates: {', '.join(example.coordinates)}",
+            f"configuration: {example.configuration.tolist()}",
+            f"velocity: {example.body_velocity.round(12).tolist()}",
+        ],
+        "Facts": [*example.facts],
+        "Conserved along the motion": [*example.conserved],
+        "In Python": [
+            f"ready = nh.examples.{example.name}()",
+            "discrete = nh.discretize(ready.system, 0.05)",
+            "start = dict(configuration=ready.configuration, body_velocity=ready.body_velocity)",
+            "orbit = nh.simulate(discrete, **start, steps=400)",
+        ],
+    }
+    typer.echo(summary(ready_ones()[example.name]))
+    for title, lines in parts.items():
+        if lines:
+            typer.echo("\n".join([f"\n{title}", *(f"  {line}" for line in lines)]))
+    typer.echo(f"\nHere\n{_commands(example.name)}")
+
+
+def new(
+    kind: Annotated[
+        str, typer.Argument(metavar="KIND", help="suslov, sleigh, ..., see `nonholo systems` and `examples`; or sweep.")
+    ],
+    module: Module = None,
+) -> None:
+    """Print a commented scenario: every key, with its meaning.
+
+    nonholo new sleigh > my.toml
+    nonholo simulate my.toml
+    nonholo new roller_racer > racer.toml
+    nonholo new sweep > many.toml
+    """
+    from nonholo.cli.scenario.files import built_in, take_module
+    from nonholo.cli.screen.errors import scenario_errors
+
+    own = {**built_in(), **built_in("sweeps")}
+    with scenario_errors():
+        take_module(module)
+    if kind in own:
+        typer.echo(own[kind], nl=False)
+        return
+    from nonholo.cli.scenario.templates import template
+
+    try:
+        typer.echo(template(kind), nl=False)
+    except KeyError:
+        raise typer.BadParameter(f"there is no kind {kind!r}. {_nearest(kind)}") from None
+
+
+def _nearest(kind: str) -> str:
+    import difflib
+
+    from nonholo.cli.scenario.bodies import kinds
+
+    names = [*kinds(), _SWEEP]
+    near = (*_NICKNAMES.get(kind.lower(), ()), *difflib.get_close_matches(kind.lower(), names))
+    return f"Did you mean {' or '.join(dict.fromkeys(near))}?" if near else f"Known: {', '.join(names)}."
+
+
+def systems(module: Module = None) -> None:
+    """List the bodies that a scenario can hold, with their parameters, and the built-in scenarios.
+
+    nonholo systems
+    nonholo new suslov > my.toml        a scenario to edit
+    nonholo systems --module my_robot.py
+    """
+    import tomllib
+
+    from rich.console import Console
+    from rich.table import Table
+
+    from nonholo.cli.scenario.bodies import body_table, own_kinds
+    from nonholo.cli.scenario.files import built_in, take_module
+    from nonholo.cli.screen.errors import scenario_errors
+
+    with scenario_errors():
+        take_module(module)
+    bodies = Table("kind", "what it is", "parameters", title="Bodies", title_justify="left")
+    for kind in own_kinds():
+        body = body_table(kind)
+        bodies.add_row(kind, body.__doc__, ", ".join(name for name in body.model_fields if name != "kind"))
+    Console().print(bodies)
+    _show_tables({"Built-in scenarios": {name: tomllib.loads(text)["title"] for name, text in built_in().items()}})
+    typer.echo("And every ready system of `nonholo examples`.")

@@ -1,1 +1,0 @@
-"""The subcommands that say what there is, and run nothing."""

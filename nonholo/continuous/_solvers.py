@@ -1,0 +1,116 @@
+"""What solves a flow: of one motion the solver that its method names, of many their series side by side.
+
+Series serve where the constraint is in the body and forces are linear. diffrax loads slowly: on first use.
+"""
+
+import functools
+from collections.abc import Callable
+
+import numpy as np
+
+from nonholo.base.checks import choice, error, needs
+from nonholo.base.types import Bool, Float, Int
+from nonholo.continuous._arrowhead import momenta_by_series
+from nonholo.continuous._closed_form import closed_form
+from nonholo.continuous._forced import has_series_under, heads, quadratic_under, under_forces
+from nonholo.continuous._series import (
+    GUARD,
+    body_equations,
+    body_numbers,
+    by_series,
+    is_compact,
+    power_of_two,
+    quadratic,
+)
+from nonholo.continuous._solution import PLANE, Solved, States, first_heading, on_same_turn
+from nonholo.kernels import Quadratic, solve_members
+from nonholo.systems import AbstractSystem, System, refuse_slip
+
+
+def has_series(system: AbstractSystem, span: float) -> bool:
+    """Tell whether flows of a system over a time can be solved side by side.
+
+    Example:
+        >>> [has_series(each, 9.0) for each in (nh.ChaplyginSleigh(1.0, 1.0, 0.5), nh.VeselovaTop(np.eye(3)))]
+        [True, False]
+    """
+    is_linear = system.forces is None or has_series_under(system.forces, span)
+    return not system.is_spatial and is_compact(system.group) and is_linear
+
+
+def _equations(
+    system: AbstractSystem, inertias: Float[np.ndarray, "m dim dim"]
+) -> tuple[Quadratic, Float[np.ndarray, "m k k"], Float[np.ndarray, "m Q"]]:
+    """Return the equations of members, and their velocities and factors; those of one body are known."""
+    if len(inertias) == 1:
+        f = quadratic(system.canonical) if system.forces is None else quadratic_under(system.forces)
+        return f, f.velocities[None], f.factors
+    system = system.canonical
+    group, S = system.group, system.constraint_subspace
+    velocities, torques = body_numbers(group, S, inertias)
+    is_nonzero = (torques != 0).any(axis=0)
+    f = body_equations(group, S, velocities[0], is_nonzero.astype(np.float64))
+    own = np.moveaxis(torques, -1, 1)[:, np.moveaxis(is_nonzero, -1, 0)]  # row by row of the equations
+    return f, velocities, np.hstack([np.tile(f.factors[0, : f.factors.size - own.shape[1]], (len(own), 1)), own])
+
+
+def members_by_series(
+    system: AbstractSystem,
+    inertias: Float[np.ndarray, "m dim dim"],
+    momenta: Float[np.ndarray, "M k"],
+    poses: Float[np.ndarray, "M size"],
+    elapsed: Float[np.ndarray, "K"],
+    tolerance: float,
+    stop: Bool[np.ndarray, "1"],
+) -> tuple[States, Int[np.ndarray, "M"]]:
+    """Return the states of members at times since the start, NaN where there is none, and how many each has.
+
+    Args:
+        system: A system that has series; those of the members differ from it in numbers only.
+        inertias: Their inertia operators, or with an axis of length 1 that of all, as under forces.
+        momenta: First momenta.
+        poses: First poses.
+        elapsed: Times since the start.
+        tolerance: Relative error of a step.
+        stop: Ends the work when it becomes true.
+    """
+    group, k = system.group, momenta.shape[1]
+    f, velocities, factors = _equations(system, inertias)
+    if system.forces is None:
+        units = np.array([power_of_two(w) for w in (velocities @ momenta[..., None])[..., 0]])
+        head = momenta / units[:, None]
+    else:
+        head, units = heads(system.forces, momenta, poses)
+    starts = np.hstack([poses, first_heading(group, poses), head])
+    rows = np.full((len(momenta), len(elapsed), starts.shape[1]), np.nan)
+    counts = solve_members(f, (velocities, factors), starts, (elapsed, units), tolerance * GUARD, rows, stop)
+    path = group.normalize_pose(rows[..., : poses.shape[1]])
+    headings = on_same_turn(rows[..., poses.shape[1]], path) if group == PLANE else None
+    first = starts.shape[1] - head.shape[1]
+    return States(rows[..., first : first + k] * units[:, None, None], path, headings), counts
+
+
+def solver_of(
+    system: System, method: str | None, begins: float, *, reconstruct: bool
+) -> tuple[Callable[..., Solved], bool]:
+    """Return what solves the equations from a time on, and whether with poses; refuse an unknown method."""
+    refuse_slip("flow(system=...)", system)
+    choice("flow(method=...)", method, (None, "closed_form", "diffrax"))
+    if system.forces is not None:
+        if method is not None:
+            remedy = "Leave it out: the forces say which one it is."
+            raise error("flow(method=...)", "be None under forces", repr(method), remedy)
+        return functools.partial(under_forces, system.forces, begins), True
+    alone = not reconstruct and method is None and system.canonical.normal_form is not None
+    return functools.partial(_method_solver(method, alone=alone), system.canonical), not alone
+
+
+def _method_solver(method: str | None, *, alone: bool) -> Callable[..., Solved]:
+    if method is None:
+        return momenta_by_series if alone else by_series
+    if method == "closed_form":
+        return closed_form
+    with needs("jax", "flow(method='diffrax')"):
+        from nonholo.continuous._integration_jax import integrate_by_diffrax
+
+    return integrate_by_diffrax

@@ -1,0 +1,132 @@
+"""Films of bodies in the plane: a sleigh with its blade, center of mass and track, the outline of a system, a point."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+
+from nonholo.base.types import Float
+from nonholo.groups import SE
+from nonholo.orbit import AbstractOrbit, Orbit
+from nonholo.plot import theme
+from nonholo.plot.animation._part import Part, Show, draw_point, draw_trail, motion_of, name_of_trail, together
+from nonholo.plot.motion import Bodies, Track, bodies_of
+from nonholo.plot.parts import fit_view
+from nonholo.plot.sheets import blade_of_system
+from nonholo.systems import System
+
+_SLENDER = 1.6  # length of the drawn body over its width
+
+
+def motion(orbit: Orbit) -> float:
+    """Return how far the body moves between saved states, in units of what the eye can follow from frame to frame."""
+    point = SE(2).adjoint(SE(2).inverse(_axes(orbit.system)))[1:]
+    return motion_of(orbit, point, float(np.ptp(_outline(orbit.system)[0][:, 0])))
+
+
+def draw_body(axes: Axes, orbit: Orbit, parts: list[Part]) -> Show:
+    """Draw a body on SE(2) and others beside; return what shows a frame."""
+    frame, outline = _axes(orbit.system), _outline(orbit.system)
+    radius = max(float(np.linalg.norm(part, axis=1).max()) for part in outline)
+
+    def points(states: Orbit) -> Float[np.ndarray, "K 2"]:
+        return (states.configuration @ frame)[:, :2, 2]
+
+    def bodies(states: Orbit) -> Bodies:
+        g = states.configuration @ frame
+        outlines = [[part @ pose[:2, :2].T + pose[:2, 2] for part in outline] for pose in g]
+        return Bodies(g[:, :2, 2], g[:, :2, 0], outlines, radius, 1.0)
+
+    return _draw(axes, orbit, parts, points, bodies)
+
+
+def draw_path(track: Track, axes: Axes, orbit: AbstractOrbit, parts: list[Part]) -> Show:
+    """Draw a path in two coordinates, with the outline of the system or as a point; return what shows a frame."""
+    if not track.is_place:
+        look: Any = {"transform": axes.transAxes, "color": theme.QUIET}
+        axes.text(0.99, 0.01, track.names[0], ha="right", **look)
+        axes.text(0.01, 0.99, track.names[1], va="top", **look)
+    points = track.points(orbit)
+
+    def bodies(states: AbstractOrbit) -> Bodies | None:
+        return bodies_of(orbit, points, states) if track.is_place else None
+
+    return _draw(axes, orbit, parts, track.points, bodies, is_place=track.is_place)
+
+
+def _axes(system: System) -> Float[np.ndarray, "3 3"]:
+    """Return the axes in the body that are drawn: those of its blade, if it has one."""
+    blade = blade_of_system(system)
+    return np.eye(3) if blade is None else blade.frame
+
+
+def _outline(system: System) -> list[Float[np.ndarray, "P 2"]]:
+    r"""Return the uniform ellipse with the mass and moment of inertia of a body, its center, and its blade.
+
+    The ellipse with half axes $p$, $q$ has $J = m(p^2 + q^2)/4$.
+    """
+    inertia, frame = np.asarray(system.inertia_operator), _axes(system)
+    mass = float(np.trace(inertia[1:, 1:])) / 2
+    center = np.array([inertia[0, 2], -inertia[0, 1]]) / mass
+    moment = max(float(inertia[0, 0] - mass * center @ center), 0.0)
+    length = _SLENDER * np.sqrt(4 * moment / mass / (1 + _SLENDER**2)) or 1.0
+    angle = np.linspace(0, 2 * np.pi, 121)
+    circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    middle = (SE(2).inverse(frame) @ [*center, 1.0])[:2]
+    drawn = [middle + length * circle * [1.0, 1 / _SLENDER], middle + 0.05 * length * circle]
+    stroke = np.array([[-0.4, -0.025], [0.4, -0.025], [0.4, 0.025], [-0.4, 0.025]])
+    return drawn if blade_of_system(system) is None else [*drawn, length * stroke]
+
+
+def _draw(
+    axes: Axes,
+    orbit: AbstractOrbit,
+    parts: list[Part],
+    points: Callable[[Any], Float[np.ndarray, "K 2"]],
+    bodies: Callable[[Any], Bodies | None],
+    *,
+    is_place: bool = True,
+) -> Show:
+    drawn = [(part, points(part.path), bodies(part.frames)) for part in parts]
+    _ground(axes, np.concatenate([path if at is None else at.with_corners(path) for _, path, at in drawn]), is_place)
+    shows = []
+    for part, path, at in drawn:
+        shows.append(draw_trail(axes, orbit, part, path, label=name_of_trail(part)))
+        shows.append(draw_point(axes, part, points(part.frames)) if at is None else _draw_body(axes, part, at))
+    theme.legend(axes, loc="best")
+    return together(shows)
+
+
+def _ground(axes: Axes, points: Float[np.ndarray, "L 2"], is_place: bool) -> None:
+    if is_place:
+        fit_view(axes, points)
+        axes.set(xlabel="", ylabel="")
+    else:
+        axes.margins(0.1)
+        axes.update_datalim(points)
+        axes.autoscale_view()
+    axes.grid(color=theme.LEVEL, linewidth=0.8, alpha=0.3)
+    axes.tick_params(length=0, labelleft=False, labelbottom=False)
+    axes.spines[:].set_visible(False)
+    axes.set_axisbelow(True)
+
+
+def _draw_body(axes: Axes, part: Part, bodies: Bodies) -> Show:
+    """Return what draws the outline of a frame: the body in a light shade, what it carries in a dark one."""
+    edge: Any = theme.CONTINUOUS if part.is_flow else theme.asked("color", theme.INK)
+    look: Any = {"edgecolors": [edge], "linewidths": 1.2}
+    faces = ("none", "none") if part.is_flow else (theme.INSIDE, edge)
+    layers = (2.2, 2.2) if part.is_flow else (1.0, 3.0)  # below the trail and above it
+    body, carried = (
+        PolyCollection([], facecolors=[face], zorder=layer, **look) for face, layer in zip(faces, layers, strict=True)
+    )
+    for collection in (body, carried):
+        axes.add_collection(collection, autolim=False)
+
+    def show(frame: int) -> None:
+        body.set_verts(bodies.outlines[frame][:1])
+        carried.set_verts(bodies.outlines[frame][1:])
+
+    return show

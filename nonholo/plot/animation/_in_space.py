@@ -1,0 +1,112 @@
+"""Films of bodies and points that move in space, over a floor on which their shadows lie."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PolyCollection
+
+from nonholo.base.types import Float
+from nonholo.orbit import AbstractOrbit, Orbit
+from nonholo.plot import theme
+from nonholo.plot.animation._box import Box, box_of, draw_box
+from nonholo.plot.animation._part import Part, Show, draw_point, draw_trail, motion_of, name_of_trail, together
+from nonholo.plot.motion import Track
+from nonholo.plot.parts import View, fit_view
+from nonholo.systems import System
+
+_VIEW = View(-58.0, 22.0)
+_SQUARES = 12  # of the floor
+_ARM = 1.5  # of a body axis, in half diagonals of the box
+
+
+def motion(orbit: Orbit) -> float:
+    """Return how far the body moves between saved states, in units of what the eye can follow from frame to frame."""
+    return motion_of(orbit, np.eye(6)[3:], 2 * float(np.linalg.norm(_box(orbit.system).half)))
+
+
+def draw_body(axes: Axes, orbit: Orbit, parts: list[Part]) -> Show:
+    """Draw a body on SE(3) as a box, and others beside; return what shows a frame."""
+    return _draw(axes, orbit, parts, lambda states: states.configuration[:, :3, 3], _box(orbit.system))
+
+
+def draw_path(track: Track, axes: Axes, orbit: AbstractOrbit, parts: list[Part]) -> Show:
+    """Draw a path in three coordinates and a point on it; return what shows a frame."""
+    return _draw(axes, orbit, parts, track.points, None)
+
+
+def _box(system: System) -> Box:
+    """Return the uniform box with the mass tensor of a body about its center of mass."""
+    inertia = np.asarray(system.inertia_operator)
+    mass = float(np.trace(inertia[3:, 3:])) / 3
+    lever = inertia[:3, 3:] / mass  # hat(center)
+    center = np.array([lever[2, 1] - lever[1, 2], lever[0, 2] - lever[2, 0], lever[1, 0] - lever[0, 1]]) / 2
+    steiner = mass * (center @ center * np.eye(3) - np.outer(center, center))
+    return box_of(inertia[:3, :3] - steiner, mass)._replace(center=center)
+
+
+def _draw(
+    axes: Axes,
+    orbit: AbstractOrbit,
+    parts: list[Part],
+    points: Callable[[Any], Float[np.ndarray, "K 3"]],
+    box: Box | None,
+) -> Show:
+    paths = [points(part.path) for part in parts]
+    reach = 0.0 if box is None else float(np.linalg.norm(box.half) * _ARM + np.linalg.norm(box.center))
+    every = np.concatenate(paths)
+    floor = _draw_floor(axes, np.concatenate([every - reach, every + reach]))
+    shows = []
+    for part, path in zip(parts, paths, strict=True):
+        shows.append(draw_trail(axes, orbit, part, _dropped(path, floor), color=theme.LEVEL, zorder=1))
+        shows.append(draw_trail(axes, orbit, part, _VIEW(path)[0], zorder=2.5, label=name_of_trail(part)))
+        if box is None:
+            shows.append(draw_point(axes, part, _VIEW(points(part.frames))[0]))
+        else:
+            shows.append(_draw_body(axes, part, box, floor))
+    theme.legend(axes, loc="upper right")
+    return together(shows)
+
+
+def _draw_floor(axes: Axes, points: Float[np.ndarray, "L 3"]) -> float:
+    """Draw a floor below the points, in squares, and let the axes show both; return its height."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    height, side = float(low[2]), float((high - low).max() or 1.0) / _SQUARES
+    marks = [np.arange(np.floor(low[i] / side), np.ceil(high[i] / side) + 1) * side for i in (0, 1)]
+    lines = [[(x, marks[1][0], height), (x, marks[1][-1], height)] for x in marks[0]]
+    lines += [[(marks[0][0], y, height), (marks[0][-1], y, height)] for y in marks[1]]
+    flat = _VIEW(np.array(lines))[0]
+    axes.add_collection(LineCollection(list(flat), colors=theme.LEVEL, linewidths=0.6, alpha=0.6, zorder=0))
+    fit_view(axes, np.concatenate([flat.reshape(-1, 2), _VIEW(points)[0]]))
+    axes.set_axis_off()
+    return height
+
+
+def _dropped(points: Float[np.ndarray, "... 3"], floor: float) -> Float[np.ndarray, "... 2"]:
+    """Return the shadows of points in the picture."""
+    return _VIEW(np.concatenate([points[..., :2], np.full_like(points[..., :1], floor)], axis=-1))[0]
+
+
+def _draw_body(axes: Axes, part: Part, box: Box, floor: float) -> Show:
+    """Return what draws the box of a frame, its shadow, and the body axes from the reference point."""
+    poses = part.frames.configuration
+    show_box = draw_box(axes, _VIEW, box, zorder=3.5 if part.is_flow else 4, ghost=part.is_flow)
+    if part.is_flow:
+        return lambda frame: show_box(poses[frame])
+    shade = PolyCollection([], facecolors=theme.LEVEL, linewidths=0, zorder=1.2)
+    axes.add_collection(shade, autolim=False)
+    arm = _ARM * float(np.linalg.norm(box.half))
+    looks: list[Any] = [{"color": theme.COMPONENTS[i], "label": f"body axis {i + 1}"} for i in range(3)]
+    sticks = [axes.plot([], [], linewidth=2.0, solid_capstyle="round", **look)[0] for look in looks]
+
+    def show(frame: int) -> None:
+        g = poses[frame]
+        show_box(g)
+        shade.set_verts(list(_dropped(box.corners(g), floor)))
+        for axis, stick in zip(g[:3, :3].T, sticks, strict=True):
+            flat, depth = _VIEW(np.stack([g[:3, 3], g[:3, 3] + arm * axis]))
+            stick.set_data(*flat.T)
+            stick.set_zorder(5 if depth[1] >= depth[0] else 3)
+
+    return show

@@ -1,0 +1,302 @@
+"""All values of the discrete map from one point: on the variety of displacements, or as tangents of the deltoid.
+
+The number of real values of the discrete sleigh, over the plane of its restricted momenta: three inside the deltoid.
+
+Coordinates are those of the canonical frame, pi = p_theta + b p_1 and p_1.
+"""
+
+import dataclasses
+from typing import Any, Unpack, cast
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PathCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Polygon
+from matplotlib.text import Annotation
+
+from nonholo.analysis import Deltoid, deltoid, invariant_curve
+from nonholo.analysis.planar import planar_map
+from nonholo.base.checks import choice, error, shape_of, shown
+from nonholo.base.types import Float
+from nonholo.discrete import Branches, Discretization, discrete_legendre, displacements_over, inverse_discrete_legendre
+from nonholo.discrete import branches as values_of
+from nonholo.orbit import Orbit
+from nonholo.plot import theme
+from nonholo.plot.parts import draw_orbit, own_orbit
+from nonholo.plot.sheets import AbstractSheet, ellipse, momenta_on_plane, on_plane, sheet_of
+
+
+def draw_deltoid(axes: Axes, found: Deltoid) -> tuple[Polygon, Line2D, PathCollection]:
+    """Draw the region with three real values, its boundary and its cusps."""
+    around, cusps = on_plane(found.discrete.system, found.boundary(601)), on_plane(found.discrete.system, found.cusps)
+    inside = axes.fill(*around.T, color=theme.INSIDE, linewidth=0, zorder=1)[0]
+    boundary = axes.plot(*around.T, color=theme.DISCRETE, linewidth=1.8, zorder=2, label="two meet")[0]
+    dots = axes.scatter(*cusps.T, s=34, color=theme.DISCRETE, zorder=4, label="three meet")
+    return inside, boundary, dots
+
+
+def name_inside(axes: Axes, found: Deltoid, words: str) -> None:
+    """Write words into the region with three real values."""
+    x, y = on_plane(found.discrete.system, found.cusps).T @ [0.4, 0.3, 0.3]
+    look: Any = {"ha": "center", "va": "center", "color": theme.DISCRETE, "fontweight": "bold", "zorder": 5}
+    axes.annotate(words, (x, y), **look)
+
+
+def dress_momenta(axes: Axes, found: Deltoid, title: str) -> None:
+    """Name the axes; the corners beside the long cusp are free, for the legend and for words."""
+    cusps = on_plane(found.discrete.system, found.cusps)
+    points_down = bool(cusps[0, 1] < cusps[1, 1])
+    side, anchor = (0.03, "left") if points_down else (0.97, "right")
+    axes.margins(0.1)
+    axes.text(side, 0.96, "1 real value", transform=axes.transAxes, ha=anchor, va="top", fontweight="bold")
+    axes.set(xlabel=r"$\pi = p_\theta + b\,p_1$", ylabel=r"momentum along the blade  $p_1$")
+    theme.write_title(axes, title)
+    theme.legend(axes, loc="lower left" if points_down else "upper left")
+
+
+@dataclasses.dataclass(frozen=True)
+class BranchCounts:
+    """The artists of `branch_counts`; None where there was nothing to draw.
+
+    Attributes:
+        axes: The axes.
+        inside: The region with three real values.
+        boundary: Its boundary, where two values meet.
+        cusps: Where all three meet.
+        resting: Turns without translation.
+        level: The energy ellipse of the orbit.
+        orbit: The momenta of the orbit, colored by time.
+    """
+
+    axes: Axes
+    inside: Polygon
+    boundary: Line2D
+    cusps: PathCollection
+    resting: Line2D
+    level: Line2D | None
+    orbit: PathCollection | None
+
+
+@theme.styled
+def branch_counts(
+    discrete: Discretization, orbit: Orbit | None = None, axes: Axes | None = None, **look: Unpack[theme.Look]
+) -> BranchCounts:
+    r"""Draw where the discrete sleigh has one real value and where it has three: the deltoid.
+
+    The plane is that of $\pi = p_\theta + bp_1$ and $p_1$. On the boundary two values meet, in the cusps three. The
+    ellipse of turns without translation (for b = 0: $V_1 = 0$) is drawn dashed, the energy ellipse of the orbit solid.
+
+    Args:
+        discrete: A discretized sleigh with a not zero.
+        orbit: An orbit of it.
+        axes: Where to draw; a new figure by default.
+        **look: Title, label, color and more: `nh.plot.Look`.
+
+    Raises:
+        ValueError: Another system or discretization, a = 0, an orbit of another discretized system.
+
+    Example:
+        >>> picture = nh.plot.branch_counts(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.5))
+        >>> picture.cusps.get_offsets().shape
+        (3, 2)
+    """
+    found = deltoid(discrete)
+    own_orbit("plot.branch_counts(orbit=...)", orbit, discrete)
+    axes = theme.axes_or_new(axes, (6.4, 5.4))
+    inside, boundary, dots = draw_deltoid(axes, found)
+    dashed: Any = {"color": theme.MUTED, "linewidth": 1.3, "dashes": (4, 3), "zorder": 2}
+    resting = axes.plot(*on_plane(discrete.system, found.resting()).T, label="no translation", **dashed)[0]
+    level = path = None
+    if orbit is not None:
+        around = ellipse(orbit.system, float(orbit.energy[0]))
+        level = axes.plot(*around.T, color=theme.MUTED, linewidth=1.2, zorder=2, label="energy")[0]
+        path = draw_orbit(axes, orbit, momenta_on_plane(orbit))
+    name_inside(axes, found, "3 real values")
+    dress_momenta(axes, found, "Real values")
+    return BranchCounts(axes, inside, boundary, dots, resting, level, path)
+
+
+_BEYOND = 0.3  # how far a tangent continues beyond its ends, in its length
+_AWAY = 12.0  # from a dot to its label, in points
+
+
+@dataclasses.dataclass(frozen=True)
+class BranchesPicture:
+    """The artists of `branches`; None where there was nothing to draw.
+
+    Attributes:
+        axes: The axes.
+        found: The values.
+        principal: The principal value, filled.
+        others: The other real values, empty.
+        present: Where the map is applied.
+        level: The displacements that have the energy of all values; None on the plane of momenta.
+        tangents: On the plane of momenta, a line for each real value.
+        labels: The index and step angle of each real value.
+    """
+
+    axes: Axes
+    found: Branches
+    principal: PathCollection | None
+    others: PathCollection | None
+    present: PathCollection
+    level: LineCollection | None
+    tangents: tuple[Line2D, ...]
+    labels: tuple[Annotation, ...]
+
+
+@theme.styled
+def branches(
+    discrete: Discretization,
+    *,
+    momentum: Any = None,
+    displacement: Any = None,
+    plane: str | None = None,
+    axes: Axes | None = None,
+    **look: Unpack[theme.Look],
+) -> BranchesPicture:
+    r"""Draw every value of the discrete map from one displacement: the principal one filled, other real ones empty.
+
+    On the plane "displacements", a disc for a top and a strip for a sleigh as in `invariant_curves`, all real values
+    lie on the curve of their energy. On the plane "momenta" of a sleigh all values are over one point. There the
+    displacements of one step angle are a tangent of the deltoid, with $\varphi = \Delta/2$
+
+    $$ h\pi\cos\varphi - \bigl(\hat p + \tfrac J2\bigr)\sin\varphi = \tfrac J2\sin3\varphi, \qquad
+       \hat p = a\,hp_1 + 2ma^2, $$
+
+    so the values are the tangents through the point. Each bears its index in `nh.branches` and its step angle; complex
+    ones are counted in the legend.
+
+    Reference: docs/theory/branches.md, docs/theory/chaplygin-sleigh.md.
+
+    Args:
+        discrete: A top with n = 3 or a sleigh, discretized with "matrix" and "skew".
+        momentum: As in `nh.branches`.
+        displacement: As in `nh.branches`.
+        plane: "displacements" or "momenta"; by default "momenta" for a sleigh that has a deltoid.
+        axes: Where to draw; a new figure by default.
+        **look: Title, label, color and more: `nh.plot.Look`.
+
+    Raises:
+        ValueError: Another system or discretization; a top, or a sleigh with a = 0, on the plane of momenta; as
+            `nh.branches`.
+
+    Example:
+        >>> top = nh.discretize(nh.SuslovTop([[1.25, 0, -0.5], [0, 1, -0.75], [-0.5, -0.75, 1.25]]), 1.0)
+        >>> picture = nh.plot.branches(top, displacement=nh.SO(3).cayley(2 * np.array([0.375, -0.25, 0.0])))
+        >>> len(picture.others.get_offsets()), picture.labels[0].get_text()
+        (3, '0: 49°')
+    """
+    where = "plot.branches"
+    checked = planar_map(f"{where}(discrete=...)", discrete)[0]
+    on_momenta = _chosen(checked, plane)
+    found = values_of(checked, momentum=momentum, displacement=displacement)
+    W = _present(checked, momentum) if displacement is None else np.asarray(displacement, dtype=float)
+    axes = theme.axes_or_new(axes, (6.4, 5.6))
+    return (_over_momenta if on_momenta else _on_displacements)(axes, checked, found, W)
+
+
+def _chosen(discrete: Discretization, plane: str | None) -> bool:
+    """Tell whether to draw on the plane of momenta."""
+    has_deltoid = _sheet(discrete).has_deltoid
+    if plane is None:
+        return has_deltoid
+    where = "plot.branches(plane=...)"
+    choice(where, plane, ("displacements", "momenta"), "Leave it out for the usual one.")
+    if plane == "momenta" and not has_deltoid:
+        raise error(where, "be 'displacements' where there is no deltoid", shown(discrete.system), "Leave it out.")
+    return plane == "momenta"
+
+
+def _present(discrete: Discretization, momentum: Any) -> Float[np.ndarray, "N N"]:
+    """Return the displacement of a momentum that has one."""
+    if shape_of(momentum) == (discrete.system.group.dim,):
+        return inverse_discrete_legendre(discrete, momentum)
+    found = displacements_over(discrete, momentum)
+    return found.displacement[found.principal].real
+
+
+def _on_displacements(axes: Axes, discrete: Discretization, found: Branches, W: np.ndarray) -> BranchesPicture:
+    curves, level, sheet = [], None, _sheet(discrete)
+    if found.energy > 0:
+        curves = [invariant_curve(discrete, found.energy)]
+        look = {"color": theme.DISCRETE, "linewidth": 1.5, "zorder": 2}
+        level = sheet.draw_level(axes, curves[0], label="its energy", **look)
+    real = np.flatnonzero(found.is_real)
+    places = sheet.places(sheet.variety.points(found.displacement[real].real))
+    here = sheet.places(sheet.variety.points(W[None]))
+    dots = _dots(axes, found, places, here)
+    labels = _labels(axes, sheet, found, places, places * sheet.inwards(places))
+    theme.write_title(axes, _title(found))
+    sheet.dress(axes, curves, places)
+    return BranchesPicture(axes, found, *dots, level, (), labels)
+
+
+def _over_momenta(axes: Axes, discrete: Discretization, found: Branches, W: np.ndarray) -> BranchesPicture:
+    region, system, sheet = deltoid(discrete), discrete.system, _sheet(discrete)
+    draw_deltoid(axes, region)
+    before, after = system.restrict(discrete_legendre(discrete, W)), system.restrict(found.momentum[0].real)
+    here, there = on_plane(system, np.stack([before, after]))
+    real = np.flatnonzero(found.is_real)
+    places = on_plane(system, region.touching(_angles(sheet, found)[real]))
+    tangents = tuple(_tangent(axes, there, place, i == found.principal) for i, place in zip(real, places, strict=True))
+    axes.scatter(*there, marker="D", s=40, color=theme.UNSTABLE, zorder=6, label="new momentum")
+    dots = _dots(axes, found, places, here[None])
+    labels = _labels(axes, sheet, found, places, places - there)
+    name_inside(axes, region, "3 real values")
+    dress_momenta(axes, region, _title(found))
+    return BranchesPicture(axes, found, *dots, None, tangents, labels)
+
+
+def _sheet(discrete: Discretization) -> AbstractSheet:
+    return cast(AbstractSheet, sheet_of(discrete.system))
+
+
+def _angles(sheet: AbstractSheet, found: Branches) -> Float[np.ndarray, "B"]:
+    return sheet.step_angles(sheet.variety.points(found.displacement.real))
+
+
+def _tangent(axes: Axes, there: np.ndarray, place: np.ndarray, is_principal: bool) -> Line2D:
+    ends = np.stack([there, place]) + _BEYOND * np.stack([there - place, place - there])
+    style: Any = {"linewidth": 1.6} if is_principal else {"linewidth": 1.1, "dashes": (5, 3)}
+    return axes.plot(*ends.T, color=theme.STABLE, zorder=3, **style)[0]
+
+
+def _dots(axes: Axes, found: Branches, places: np.ndarray, here: np.ndarray) -> tuple[Any, Any, Any]:
+    """Draw the values and the present displacement; count the complex values in the legend."""
+    real = np.flatnonzero(found.is_real)
+    is_principal = real == found.principal if found.principal is not None else np.zeros(len(real), dtype=bool)
+    own, look = theme.named(theme.STABLE, "principal"), {"linewidths": 1.6, "s": 58, "zorder": 7}
+    principal = others = None
+    if is_principal.any():
+        principal = axes.scatter(*places[is_principal].T, **look, **own)
+    if not is_principal.all():
+        others = axes.scatter(
+            *places[~is_principal].T, facecolors=theme.PAPER, edgecolors=own["color"], label="other real", **look
+        )
+    present = axes.scatter(*here.T, marker="x", s=70, color=theme.UNSTABLE, linewidths=2.2, zorder=8, label="present")
+    if not found.is_real.all():
+        axes.plot([], [], " ", label=f"and {np.count_nonzero(~found.is_real)} complex")
+    return principal, others, present
+
+
+def _labels(
+    axes: Axes, sheet: AbstractSheet, found: Branches, places: np.ndarray, away: np.ndarray
+) -> tuple[Annotation, ...]:
+    """Write index and step angle beside each real value, in a direction."""
+    angles = np.degrees(_angles(sheet, found))
+    labels = []
+    for i, place, direction in zip(np.flatnonzero(found.is_real), places, away, strict=True):
+        size = np.linalg.norm(direction)
+        x, y = direction / size if size > 0 else np.array([0.0, 1.0])
+        text = f"{i}: {angles[i]:.0f}°".replace("-", "\u2212")
+        look: Any = {"ha": "left" if x >= 0 else "right", "va": "center", "path_effects": theme.HALO, "zorder": 9}
+        shift = (_AWAY * float(np.copysign(max(abs(x), 0.6), x)), _AWAY * float(y))
+        labels.append(axes.annotate(text, (place[0], place[1]), shift, textcoords="offset points", **look))
+    return tuple(labels)
+
+
+def _title(found: Branches) -> str:
+    real, others = int(np.count_nonzero(found.is_real)), int(np.count_nonzero(~found.is_real))
+    return f"Values: {real} real" + (f", {others} complex" if others else "")

@@ -1,0 +1,209 @@
+"""Phase portraits: the momenta along a two-dimensional constraint subspace, on their energy ellipses.
+
+[fedorov-zenkov-2004], figures suslov and mom_dynamics.
+"""
+
+import dataclasses
+from typing import Any, Unpack
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PathCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import FancyArrowPatch
+
+from nonholo.base.checks import choice, error, instance, shown
+from nonholo.base.checks import energies as checked_energies
+from nonholo.base.types import Float
+from nonholo.discrete import BranchTree, Discretization, branch_tree
+from nonholo.orbit import Orbit
+from nonholo.plot import parts, theme
+from nonholo.plot.parts import evenly_in_box
+from nonholo.plot.sheets import ellipse, half_axes, momenta_on_plane, name_axes, on_plane, plane_inertia
+from nonholo.systems import AbstractLLSystem, AbstractSystem, refuse_forces
+
+_SEEDS = 3  # states of the orbit whose images are drawn
+_GENERATIONS = 3
+_SAME = 1e-6  # relative distance of an image from a state of the orbit that it is
+
+
+def _trees_of(orbit: Orbit | None, branches: str) -> list[BranchTree]:
+    """Return the images of some states of the orbit, or none."""
+    where = "phase_portrait(branches=...)"
+    if choice(where, branches, ("principal", "all")) == "principal":
+        return []
+    if orbit is None or not isinstance(orbit.motion, Discretization):
+        got = "a system alone" if orbit is None else shown(orbit)
+        raise error(where, "be 'principal' without a discrete orbit", got, "Pass what `nh.simulate` returned.")
+    chosen = evenly_in_box(orbit.reduced_momentum, _SEEDS + 1)[:_SEEDS]
+    return [branch_tree(orbit.motion, W, _GENERATIONS) for W in orbit.displacement[chosen]]
+
+
+def _draw_images(axes: Axes, orbit: Orbit, trees: list[BranchTree]) -> tuple[PathCollection, LineCollection]:
+    """Draw the real images that are not on the orbit, later generations smaller, and lines that lead to them."""
+    found = [_other_images(orbit, tree) for tree in trees]
+    ends, level = (np.concatenate(column) for column in zip(*found, strict=True))
+    edges = LineCollection(list(ends), colors=theme.COMPONENTS[1], linewidths=0.8, zorder=4)
+    axes.add_collection(edges)
+    look: Any = {"facecolors": theme.PAPER, "edgecolors": theme.COMPONENTS[1], "linewidths": 1.4, "zorder": 7}
+    return axes.scatter(*ends[:, 1].T, s=90.0 / level, marker="D", label="other values", **look), edges
+
+
+def _other_images(orbit: Orbit, tree: BranchTree) -> tuple[np.ndarray, np.ndarray]:
+    """Return the momenta of the parents and of the real images that differ from the orbit's, and their generations."""
+    system: Any = orbit.system
+    momentum = on_plane(system, system.restrict(tree.momentum.real))
+    missed = np.linalg.norm(momentum[:, None] - momenta_on_plane(orbit), axis=2).min(axis=1)
+    apart = missed > _SAME * np.linalg.norm(momentum[0])
+    chosen = np.flatnonzero(tree.is_real & tree.is_real[tree.parent] & (tree.level > 0) & apart)
+    return np.stack([momentum[tree.parent[chosen]], momentum[chosen]], axis=1), tree.level[chosen]
+
+
+@dataclasses.dataclass(frozen=True)
+class PhasePortrait:
+    """The artists of `phase_portrait`; None where there was nothing to draw.
+
+    Attributes:
+        axes: The axes.
+        levels: One closed line for each energy.
+        stable: Attracting equilibria, filled.
+        unstable: Repelling equilibria, empty.
+        neutral: Equilibria of a balanced system, which neither attract nor repel.
+        arrows: The direction of motion along the levels.
+        orbit: The orbit, colored by time: dots if discrete, a line if a flow.
+        images: Real images of some of its states, of all branches, that are not states of the orbit; diamonds.
+        edges: From each image to its images.
+    """
+
+    axes: Axes
+    levels: tuple[Line2D, ...]
+    stable: PathCollection | None
+    unstable: PathCollection | None
+    neutral: PathCollection | None
+    arrows: tuple[FancyArrowPatch, ...]
+    orbit: PathCollection | LineCollection | None
+    images: PathCollection | None
+    edges: LineCollection | None
+
+
+@theme.styled
+def phase_portrait(
+    system: AbstractLLSystem,
+    orbit: Orbit | None = None,
+    axes: Axes | None = None,
+    energies: Any = None,
+    branches: str = "principal",
+    **look: Unpack[theme.Look],
+) -> PhasePortrait:
+    r"""Draw the momenta along the constraint subspace: energy levels, equilibria, direction of motion, an orbit.
+
+    The levels of the reduced constrained energy are the ellipses
+
+    $$ \tfrac12\, r\cdot(\mathbb{I}|_{\mathfrak{d}})^{-1} r = E . $$
+
+    Equilibria are one line through the origin, filled where they attract and empty where they repel; all other
+    motions run along their ellipse from one to the other. In a balanced system every point is an equilibrium. Momenta
+    of a sleigh are $(p_\theta + b p_1, p_1)$ in the axes of its blade, those of a top $(M_{13}, M_{23})$ in axes whose
+    third one is the forbidden axis, whatever the axes of the body; those of other systems are in its canonical frame.
+
+    With `branches="all"` three states of a discrete orbit are followed for three steps along every real branch. All
+    images stay on the ellipse. The values from one displacement coincide here, as they have the same momenta along the
+    constraint subspace; what follows them differs. Images that the orbit itself visits are left out.
+
+    Reference: [fedorov-zenkov-2004], figures suslov and mom_dynamics.
+
+    Args:
+        system: A left-invariant system with two-dimensional constraint subspace.
+        orbit: An orbit of it.
+        axes: Where to draw; a new figure by default.
+        energies: Energies of the ellipses; by default four, evenly spread in size, one of them through the orbit.
+        branches: "principal" or "all".
+        **look: Title, label, color and more: `nh.plot.Look`.
+
+    Raises:
+        ValueError: A right-invariant constraint, a subspace of another dimension, an orbit of another body,
+            energies that are not positive, all branches without a discrete orbit or as `nh.branch_tree` refuses them.
+
+    Example:
+        >>> top = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+        >>> portrait = nh.plot.phase_portrait(top, energies=[0.5, 1.0])
+        >>> len(portrait.levels), len(portrait.stable.get_offsets())
+        (2, 2)
+    """
+    _check(system, orbit)
+    orbit = None if orbit is None else parts.drawable("phase_portrait(orbit=...)", orbit)
+    trees = _trees_of(orbit, branches)
+    levels = _energies(system, orbit, energies)
+    axes = theme.axes_or_new(axes)
+    thin: Any = {"color": theme.LEVEL, "linewidth": 1.1, "zorder": 1}
+    drawn = tuple(axes.plot(*ellipse(system, level).T, **thin)[0] for level in levels)
+    stable, unstable, neutral, arrows = _equilibria(axes, system, half_axes(system), np.sqrt(2 * levels))
+    path = None if orbit is None else _orbit(axes, orbit)
+    images, edges = _draw_images(axes, orbit, trees) if orbit is not None and trees else (None, None)
+    name_axes(axes, system)
+    theme.write_title(axes, "Phase portrait")
+    theme.legend_above(axes)
+    return PhasePortrait(axes, drawn, stable, unstable, neutral, arrows, path, images, edges)
+
+
+def _check(system: AbstractLLSystem, orbit: Orbit | None) -> None:
+    where = "phase_portrait(system=...)"
+    refuse_forces(where, system)
+    instance(where, system, AbstractSystem, "be a system", "Pass `orbit.system` first, then the orbit.")
+    if system.is_spatial:
+        remedy = "Its momenta along the constraint are conserved: draw `overview` instead."
+        raise error(where, "have a left-invariant constraint", shown(system), remedy)
+    if len(system.constraint_subspace) != 2:
+        got = f"dimension {len(system.constraint_subspace)}"
+        raise error(where, "have a two-dimensional constraint subspace", got, "Plot `orbit.restricted_momentum`.")
+    if orbit is not None and not parts.is_same_body(parts.drawable("phase_portrait(orbit=...)", orbit).system, system):
+        raise error("phase_portrait(orbit=...)", "be an orbit of the system", shown(orbit), "Pass `orbit.system`.")
+
+
+def _energies(system: AbstractLLSystem, orbit: Orbit | None, energies: Any) -> Float[np.ndarray, "L"]:
+    if energies is not None:
+        return checked_energies("phase_portrait(energies=...)", energies)
+    own = 0.0 if orbit is None else float(orbit[:1].energy[0])
+    # at rest, or without an orbit, the ellipse of unit velocities sets the size
+    scale = own if own > 0 else float(np.trace(plane_inertia(system))) / 4
+    return scale * (np.arange(1, 5) / 3) ** 2
+
+
+def _equilibria(
+    axes: Axes, system: AbstractLLSystem, half_axes: Float[np.ndarray, "2 2"], sizes: Float[np.ndarray, "L"]
+) -> tuple[Any, ...]:
+    equilibria = parts.known_equilibria(system)
+    if equilibria is None:
+        return None, None, None, ()
+    attracting = equilibria.attracting
+    if attracting is None:
+        return None, None, _every_point(axes, half_axes, sizes), ()
+    u = np.linalg.solve(half_axes, on_plane(system, system.restrict(system.inertia_operator @ attracting)))
+    u /= np.linalg.norm(u)
+    points = sizes[:, None] * (half_axes @ u)
+    stable, unstable = parts.draw_equilibria(axes, points, 1.12 * points[sizes.argmax()], 46)
+    arrows = tuple(_arrow(axes, size * half_axes, u, side) for size in sizes for side in (1, -1))
+    return stable, unstable, None, arrows
+
+
+def _every_point(axes: Axes, half_axes: Float[np.ndarray, "2 2"], sizes: Float[np.ndarray, "L"]) -> PathCollection:
+    angle = np.arange(24) * (np.pi / 12)
+    circle = np.array([np.cos(angle), np.sin(angle)])
+    x, y = np.concatenate([size * half_axes @ circle for size in sizes], axis=1)
+    return axes.scatter(x, y, s=16, color=theme.MUTED, linewidths=0, zorder=3, label="equilibria")
+
+
+def _arrow(axes: Axes, half_axes: Float[np.ndarray, "2 2"], u: Float[np.ndarray, "2"], side: int) -> FancyArrowPatch:
+    across = side * np.array([-u[1], u[0]])
+    tail, head = (tuple(half_axes @ (across + lean * u)) for lean in (-0.02, 0.02))
+    look: Any = {"arrowstyle": "-|>", "mutation_scale": 13, "shrinkA": 0, "shrinkB": 0, "linewidth": 0}
+    arrow = FancyArrowPatch(tail, head, color=theme.MUTED, zorder=2, **look)
+    axes.add_patch(arrow)
+    return arrow
+
+
+def _orbit(axes: Axes, orbit: Orbit) -> PathCollection | LineCollection:
+    momentum = momenta_on_plane(orbit)
+    stays = np.ptp(momentum, axis=0).max() <= 1e-6 * np.abs(momentum).max()
+    chosen = parts.evenly_in_box(momentum)
+    return parts.draw_in_time(axes, orbit, momentum, chosen, zorder=6, size=60 if stays else None)

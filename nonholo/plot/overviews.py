@@ -1,0 +1,275 @@
+"""The picture of an orbit: its panels in one figure with a head, for the screen, a slide or a page.
+
+Which panels it has is chosen by the group, the kind of constraint and the number of free directions. The head says what
+moves, its parameters, how long, and how the run ended.
+"""
+
+import functools
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple, Unpack, cast
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from nonholo.base.checks import error
+from nonholo.base.results import Outcome
+from nonholo.base.types import Float
+from nonholo.groups import SE, SO
+from nonholo.orbit import AbstractOrbit, Orbit
+from nonholo.plot import motion, theme
+from nonholo.plot.parts import drawable_in_time, finish_page, is_free, new_page
+from nonholo.plot.sheets import blade_of_system, sheet_of
+from nonholo.systems import AbstractLLSystem, LLSystem, System
+
+
+class Panel(NamedTuple):
+    """A panel: what draws it on its axes, whether its abscissa is time, and the projection that its axes need."""
+
+    draw: Callable[[Axes], object]
+    is_timed: bool = False
+    projection: str | None = None
+
+
+def panels_of(orbit: AbstractOrbit, flow: AbstractOrbit | None) -> list[Panel]:
+    """Return the panels of an orbit, the large one first; there is always one."""
+    if not isinstance(orbit, Orbit):
+        return _in_coordinates(orbit, flow)
+    return _of_body(orbit, cast(Orbit | None, flow))
+
+
+def _in_coordinates(orbit: AbstractOrbit, flow: AbstractOrbit | None) -> list[Panel]:
+    """Return the panels of an orbit of a Lagrange-d'Alembert system."""
+    track = motion.track_of(orbit)
+    path = []
+    if track is not None:
+        projection = "3d" if len(track.names) == 3 else None
+        path = [Panel(functools.partial(motion.draw_path, track, orbit, flow), projection=projection)]
+    shape = [Panel(functools.partial(motion.draw_shape, orbit, flow), is_timed=True)] if orbit.coordinates else []
+    velocity = Panel(functools.partial(motion.draw_velocity, orbit, flow), is_timed=True)
+    energy = Panel(functools.partial(motion.energy_error, orbit), is_timed=True)
+    residual = (
+        [Panel(functools.partial(motion.draw_residual, orbit), is_timed=True)] if orbit.system.constraints else []
+    )
+    return [*path, *shape, velocity, energy, *residual]
+
+
+def _of_body(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
+    energy = Panel(functools.partial(motion.energy_error, orbit), is_timed=True)
+    if orbit.system.is_wide and sheet_of(orbit.system) is None:
+        return [_components(orbit, flow), energy]
+    path, momentum = _path(orbit, flow), _momentum(orbit, flow)
+    velocity = Panel(functools.partial(_velocity, orbit, flow), is_timed=True)
+    if not orbit.system.is_spatial:
+        return [*path, *momentum, velocity, energy]
+    if orbit.canonical_pose is None:
+        return [_components(orbit, flow)]
+    return [*path, velocity, *momentum, energy]  # the momenta along such a constraint are constant: nothing to enlarge
+
+
+def _path(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
+    if orbit.canonical_pose is None:
+        return []
+    group, flow = orbit.system.group, flow if flow is not None and flow.canonical_pose is not None else None
+    if blade_of_system(orbit.system) is not None:
+        return [Panel(lambda axes: motion.blade_track(orbit, axes=axes, flow=flow))]
+    if group == SO(3):
+        return [Panel(functools.partial(_body_axis, orbit, flow))]
+    if group.size > 2 and group == SE(group.size - 1):
+        projection = "3d" if group.size > 3 else None
+        return [Panel(lambda axes: motion.point_track(orbit, axes=axes, flow=flow), projection=projection)]
+    return []
+
+
+def _momentum(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
+    system, directions = orbit.system, orbit.system.rank
+    if directions == 0:
+        return []
+    if system.is_forced:
+        return [_components(orbit, flow)]
+    if not system.is_spatial and directions == 2:
+        return [Panel(lambda axes: motion.phase_portrait(cast(AbstractLLSystem, system), orbit, axes=axes))]
+    if not system.is_spatial and directions == 3:
+        return [Panel(lambda axes: motion.momentum_sphere(orbit, axes=axes))]
+    return [_components(orbit, flow)]
+
+
+def _components(orbit: Orbit, flow: Orbit | None) -> Panel:
+    return Panel(lambda axes: motion.momentum_components(orbit, axes, flow), is_timed=True)
+
+
+def _body_axis(orbit: Orbit, flow: Orbit | None, axes: Axes) -> None:
+    motion.body_axis_track(orbit, axes=axes, flow=flow)
+    tensor: Any = orbit.system.homogeneous_mass_tensor
+    if tensor is not None:
+        _write_mass_tensor(axes, np.asarray(tensor))
+
+
+def _velocity(orbit: Orbit, flow: Orbit | None, axes: Axes) -> None:
+    headed = blade_of_system(orbit.system) is not None and orbit.canonical_pose is not None
+    if flow is not None and flow.canonical_pose is None and (headed or orbit.system.is_spatial):
+        flow = None
+    (motion.heading_and_speed if headed else motion.velocity_components)(orbit, axes, flow)
+
+
+def _write_mass_tensor(axes: Axes, mass_tensor: Float[np.ndarray, "3 3"]) -> None:
+    cells = [[f"{number:.3g}".replace("-", "\u2212") for number in row] for row in mass_tensor + 0.0]
+    width = max(len(cell) for row in cells for cell in row)
+    lines = ["  ".join(cell.rjust(width) for cell in row) for row in cells]
+    text = f"    \u23a1{lines[0]}\u23a4\nJ = \u23a2{lines[1]}\u23a5\n    \u23a3{lines[2]}\u23a6"
+    look: Any = {"family": "monospace", "fontsize": "medium", "linespacing": 1.05, "color": theme.QUIET}
+    axes.text(0.0, 0.0, text, transform=axes.transAxes, **look)
+
+
+_FIXED = {False: "System with a left-invariant constraint", True: "System with a right-invariant constraint"}
+
+
+def _facts(orbit: AbstractOrbit) -> list[str]:
+    run, step = f"from time {orbit.time[0]:g} to {orbit.time[-1]:g}", orbit.time_step
+    if orbit.is_measured:
+        run = f"{len(orbit):,} given poses {run}".replace(",", "\u2009")
+    elif step is None:
+        run = f"continuous flow {run}"
+    else:
+        steps = int(orbit.step[-1] - orbit.step[0])
+        run = f"{steps:,} step{'s' * (steps != 1)} of $h$ = {step:g}".replace(",", "\u2009")
+    stopped = [] if orbit.outcome == Outcome.successful else [f"stopped: {orbit.outcome}"]
+    return [_parameters(_inside(orbit.system)) if isinstance(orbit, Orbit) else _form(orbit), run, *stopped]
+
+
+def _form(orbit: AbstractOrbit) -> str:
+    """Say where an orbit moves that no system of bodies describes, and how many constraints it has."""
+    names = [motion.symbol(name) for name in orbit.coordinates]
+    where = ", ".join(names if len(names) <= 7 else [*names[:3], "...", names[-1]]) or str(orbit.space)
+    s = orbit.system.constraints
+    return f"{where},  {s or 'no'} constraint{'s' * (s != 1)}"
+
+
+def name_of(orbit: AbstractOrbit) -> str:
+    """Return what moves, in words."""
+    return _name_of_body(orbit.system) if isinstance(orbit, Orbit) else orbit.system.name
+
+
+def _inside(system: Any) -> System:
+    """Return a system without its forces."""
+    return system.system if system.is_forced else system
+
+
+_NAMES = {  # by is_sleigh and is_planar: of its own class, and of an LLSystem that equals one
+    (True, True): ("Chaplygin sleigh", "a sleigh in the plane"),
+    (True, False): ("Multidimensional sleigh", "a multidimensional sleigh"),
+    **dict.fromkeys([(False, True), (False, False)], ("Suslov top", "a Suslov top")),
+}
+
+
+def _name_of_body(system: System) -> str:
+    if system.is_forced:
+        return f"{_name_of_body(_inside(system))}, under forces"
+    form = system.normal_form
+    if form is not None:
+        name, recognized = _NAMES[form.is_sleigh, form.is_planar]
+        return f"LLSystem, {recognized}" if type(system) is LLSystem else name
+    if system.homogeneous_mass_tensor is not None and system.group.is_rigid:
+        if is_free(system):
+            return "Free rigid body"
+        if system.is_spatial and _is_top_in_body(system):
+            return "Veselova top"
+    return _FIXED[system.is_spatial]
+
+
+def _is_top_in_body(system: System) -> bool:
+    """Tell whether the body would be a top if its constraint were fixed in it."""
+    form = LLSystem(system.group, system.homogeneous_mass_tensor, system.constraint_subspace).normal_form
+    return form is not None and not form.is_sleigh
+
+
+def _parameters(system: System) -> str:
+    sheet = sheet_of(system)
+    if sheet is not None:
+        return sheet.facts(system)
+    free, all_directions = system.rank, system.group.dim
+    if free == all_directions:
+        return f"{system.group},  no constraint"
+    side = "space" if system.is_spatial else "the body"
+    return f"{system.group},  {free} of {all_directions} directions of velocity allowed, fixed in {side}"
+
+
+_SIZE = (13.0, 7.6)
+_LARGER = 2.2  # times as high as a panel against time
+
+
+@theme.styled
+def overview(
+    orbit: AbstractOrbit,
+    path: str | Path | None = None,
+    flow: AbstractOrbit | None = None,
+    *,
+    overwrite: bool = False,
+    **look: Unpack[theme.Look],
+) -> Figure:
+    """Draw an orbit of any system: its path in space, its momentum, its velocity and the error of its energy.
+
+    The path is that of a body axis on SO(3), of the blade of a sleigh, of the reference point on SE(n); other groups,
+    and orbits without poses, have none. Momenta along the constraint are drawn as a phase portrait where they are two,
+    on their energy sphere where they are three, against time otherwise. With a right-invariant constraint velocity and
+    energy need poses, and are left out without them. Color is time in all panels; the strip under a panel against time
+    is the key.
+
+    Of a Lagrange-d'Alembert system there are its path, where coordinates named x and y, or a group, say where it is,
+    the other coordinates, velocities, the error of the energy and the residual of the constraint.
+
+    Args:
+        orbit: An orbit of any system, discrete or continuous.
+        path: Where to save the figure, a new file; the suffix (.png, .svg, .pdf) chooses the format.
+        flow: The continuous motion from the same initial data, drawn beside a discrete orbit.
+        overwrite: Replace an older picture at the path.
+        **look: Title, label, color and more: `nh.plot.Look`.
+
+    Raises:
+        FileExistsError: The path exists, and is not to be replaced.
+        ValueError: No orbit, one without states, or a suffix that is not a picture format.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+        >>> orbit = nh.simulate(sleigh, body_velocity=(1, 0, 0), steps=50)
+        >>> [axes.get_title(loc="left") for axes in nh.plot.overview(orbit).axes[:2]]
+        ['Track of the blade', 'Phase portrait']
+    """
+    smooth = drawable_in_time("overview(orbit=...)", orbit)
+    flow = None if flow is None else drawable_in_time("overview(flow=...)", flow)
+    if flow is not None and flow.space != orbit.space:
+        remedy = "Pass a motion of the same system."
+        raise error("overview(flow=...)", f"move in {orbit.space}", f"{flow.space}", remedy)
+    figure = new_page("overview", _SIZE, path, overwrite=overwrite)
+    panels = panels_of(smooth, flow)
+    axes = _axes(figure, panels)
+    for panel, own in zip(panels, axes, strict=True):
+        theme.begin(own)
+        panel.draw(own)
+    if panels[0].is_timed:
+        axes[0].set_xlabel("time")
+    _share_time([own for panel, own in zip(panels[1:], axes[1:], strict=True) if panel.is_timed])
+    return finish_page(figure, name_of(orbit), _facts(orbit), path)
+
+
+def _axes(figure: Figure, panels: list[Panel]) -> list[Axes]:
+    """Return the large axes on the left and the others on the right, those against time lower."""
+    first, *others = panels
+    heights = [1.0 if panel.is_timed else _LARGER for panel in others]
+    if len(heights) == 0:
+        return [figure.add_subplot(projection=first.projection)]
+    grid = figure.add_gridspec(len(others), 2, width_ratios=(1.3, 1.0), height_ratios=heights)
+    large = figure.add_subplot(grid[:, 0], projection=first.projection)
+    return [large, *(figure.add_subplot(grid[row, 1], projection=each.projection) for row, each in enumerate(others))]
+
+
+def _share_time(panels: list[Axes]) -> None:
+    if not panels:
+        return
+    *upper, lowest = panels
+    lowest.set_xlabel("time")
+    for axes in upper:
+        axes.sharex(lowest)
+        axes.set_xlabel("")
+        axes.tick_params(labelbottom=False)

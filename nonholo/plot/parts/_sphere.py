@@ -1,0 +1,154 @@
+"""The unit sphere in orthographic projection: what lies behind is faded, not hidden. No mechanics."""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.colors import to_rgb
+from matplotlib.patches import Circle
+
+from nonholo.base.checks import number, pair
+from nonholo.base.types import Float
+from nonholo.plot import theme
+
+_SHADES = 256
+_BEHIND = 0.22  # opacity of what lies behind the sphere
+
+
+@dataclasses.dataclass(frozen=True)
+class View:
+    """An orthographic view of space with e3 upwards, from an azimuth and an elevation in degrees.
+
+    Example:
+        >>> flat, depth = View(0.0, 0.0)(np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.5]]))
+        >>> flat.tolist(), depth.tolist()
+        ([[0.0, 0.0], [1.0, 0.5]], [1.0, 0.0])
+    """
+
+    azimuth: float
+    elevation: float
+
+    @property
+    def frame(self) -> Float[np.ndarray, "3 3"]:
+        """Rows: to the right, upwards, toward the eye."""
+        azimuth, elevation = np.radians([self.azimuth, self.elevation])
+        ca, sa, ce, se = np.cos(azimuth), np.sin(azimuth), np.cos(elevation), np.sin(elevation)
+        return np.array([[-sa, ca, 0.0], [-se * ca, -se * sa, ce], [ce * ca, ce * sa, se]])
+
+    def __call__(self, points: Float[np.ndarray, "... 3"]) -> tuple[np.ndarray, np.ndarray]:
+        """Return the flat points and their distances toward the eye."""
+        seen = points @ self.frame.T
+        return seen[..., :2], seen[..., 2]
+
+
+def view_of(where: str, asked: Any, points: Float[np.ndarray, "K 3"], axes: Float[np.ndarray, "A 3"]) -> View:
+    """Return the view that a caller asks for, by default the best one."""
+    if asked is None:
+        return best_view(points, axes)
+    return View(*(float(number(where, angle)) for angle in pair(where, asked)))
+
+
+def best_view(points: Float[np.ndarray, "K 3"], axes: Float[np.ndarray, "A 3"]) -> View:
+    """Return the view that has most of a path in front and sees axes, or that of the path, obliquely."""
+    if not len(axes):
+        axes = np.linalg.eigh(points.T @ points)[1][:, :1].T
+    candidates = [View(azimuth, elevation) for elevation in (20, 30, 40) for azimuth in range(0, 360, 15)]
+    tips = np.concatenate([axes, -axes])
+
+    def merit(view: View) -> float:
+        in_front = np.tanh(3 * view(points)[1]).mean()
+        flat, depth = view(axes)
+        oblique = np.abs(np.linalg.norm(flat, axis=1) - 0.85).sum()
+        flat_tips = view(tips)[0]
+        apart = np.linalg.norm(flat_tips[:, None] - flat_tips, axis=-1) + 2 * np.eye(len(tips))
+        return float(in_front - oblique + 0.3 * np.sign(depth).sum() + min(apart.min(initial=1.0), 0.5))
+
+    return max(candidates, key=merit)
+
+
+def draw_globe(axes: Axes, view: View) -> None:
+    """Draw the shaded sphere with its wireframe and set up the axes for it."""
+    x, y = np.meshgrid(*2 * (np.linspace(-1, 1, _SHADES),))
+    light = np.clip((-0.45 * x + 0.55 * y + 0.7 * np.sqrt(np.clip(1 - x * x - y * y, 0, 1))), 0, 1)
+    ground, range_ = (0.12, 0.13) if theme.is_dark() else (0.90, 0.095)
+    shade = axes.imshow(ground + range_ * light, cmap="gray", vmin=0, vmax=1, extent=(-1, 1, -1, 1), origin="lower")
+    shade.set(zorder=0, interpolation="bilinear")
+    rim = Circle((0, 0), 1.0, facecolor="none", edgecolor=theme.MUTED, linewidth=0.9, zorder=3)
+    axes.add_patch(rim)
+    shade.set_clip_path(rim)
+    for circle in _wires():
+        draw_curve(axes, view, circle, to_rgb(theme.MUTED if theme.is_dark() else "#aab0ba"), width=0.6, zorder=1)
+    axes.set(xlim=(-1.27, 1.27), ylim=(-1.15, 1.15), aspect="equal")
+    axes.set_axis_off()
+
+
+def _wires() -> list[Float[np.ndarray, "K 3"]]:
+    turn = np.linspace(0, 2 * np.pi, 181)
+    cos, sin, zero = np.cos(turn), np.sin(turn), np.zeros_like(turn)
+    parallels = [(np.cos(v) * cos, np.cos(v) * sin, np.sin(v) + zero) for v in np.radians([-60, -30, 0, 30, 60])]
+    meridians = [(np.cos(v) * cos, np.sin(v) * cos, sin) for v in np.radians([0, 30, 60, 90, 120, 150])]
+    return [np.stack(circle, axis=-1) for circle in parallels + meridians]
+
+
+def draw_curve(
+    axes: Axes, view: View, points: Float[np.ndarray, "K 3"], colors: Any, width: float, **options: Any
+) -> LineCollection:
+    """Draw a curve on the sphere; parts behind are fainter and thinner, nearer parts are drawn last."""
+    collection = LineCollection([], **options)
+    axes.add_collection(collection, autolim=False)
+    set_curve(collection, view, points, colors, width)
+    return collection
+
+
+def set_curve(
+    collection: LineCollection, view: View, points: Float[np.ndarray, "K 3"], colors: Any, width: float, side: int = 0
+) -> None:
+    """Give a collection a new curve.
+
+    Args:
+        collection: What to change.
+        view: The projection.
+        points: The curve.
+        colors: One color, or one for each piece.
+        width: Width of what lies in front.
+        side: 1 for the pieces in front only, -1 for those behind only, 0 for all.
+    """
+    ends, depths = view(points)
+    depth = (depths[:-1] + depths[1:]) / 2
+    order = np.argsort(depth)
+    order = order[depth[order] * side >= 0]
+    front = _in_front(depth)[order]
+    rgb = np.broadcast_to(np.asarray(colors)[..., :3], (len(depth), 3))[order]
+    alpha = (_BEHIND + (1 - _BEHIND) * front)[:, None]
+    segments = np.stack([ends[:-1], ends[1:]], axis=1)[order]
+    collection.set(segments=segments, colors=np.hstack([rgb, alpha]), linewidths=width * (0.6 + 0.4 * front))
+
+
+def _in_front(depth: Float[np.ndarray, "K"]) -> Float[np.ndarray, "K"]:
+    """Return 0 behind, 1 in front, with a smooth change at the rim."""
+    return np.clip(0.5 + depth / 0.16, 0.0, 1.0)
+
+
+def opacity(depth: Float[np.ndarray, "K"]) -> Float[np.ndarray, "K"]:
+    """Return the opacity of points at these distances toward the eye."""
+    return _BEHIND + (1 - _BEHIND) * _in_front(depth)
+
+
+def arcs(points: Float[np.ndarray, "K 3"], pieces: int) -> Float[np.ndarray, "L 3"]:
+    """Join points of the sphere by arcs of great circles, each of this many pieces."""
+    share = np.arange(pieces)[:, None] / pieces
+    chords = (1 - share) * points[:-1, None] + share * points[1:, None]
+    joined = np.concatenate([chords.reshape(-1, 3), points[-1:]])
+    length = np.linalg.norm(joined, axis=1, keepdims=True)
+    return joined / np.where(length > 0, length, 1.0)
+
+
+def great_circle(axis: Float[np.ndarray, "3"]) -> Float[np.ndarray, "K 3"]:
+    """Return the great circle about an axis."""
+    seed = np.eye(3)[np.argmin(np.abs(axis))]
+    first = np.cross(axis, seed) / np.linalg.norm(np.cross(axis, seed))
+    second = np.cross(axis, first) / np.linalg.norm(axis)
+    turn = np.linspace(0, 2 * np.pi, 241)[:, None]
+    return np.cos(turn) * first + np.sin(turn) * second

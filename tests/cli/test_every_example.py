@@ -1,0 +1,205 @@
+"""Every ready example from the command line: run, page, sweep, picture, template; and bodies of a user's own file."""
+
+import json
+import sys
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import Result
+
+import nonholo as nh
+from nonholo.cli.scenario.bodies import examples
+from nonholo.cli.scenario.files import load_scenario, parse_setting
+
+Command = Callable[..., Result]
+NAMES = sorted(name for name in nh.examples.__all__ if name.islower())
+QUICK = ["particle", "snakeboard", "heavy_suslov_top", "sleigh_in_a_well"]
+VARIED = {
+    "chaotic_quartic_oscillator": ("start.body_velocity_1", [0.1, 0.2]),
+    "non_reversible": ("body.turning", [2.5, 2.6]),
+    "bicycle": ("body.speed", [4.6, 4.7]),
+    "rattleback": ("body.spin", [4.0, 5.0]),
+    "heavy_suslov_top": ("body.velocity_0", [0.5, 0.6]),
+}
+"""What a sweep varies where there is no mass; of the oscillators, whose start says their energy, one velocity."""
+
+
+WITHOUT_PAGE = {"chaotic_quartic_oscillator", "non_reversible"}
+"""Examples that nothing in the plane stands for."""
+
+
+def _done(result: Result) -> str:
+    assert result.exit_code == 0, result.output
+    return result.stdout
+
+
+def test_they_are_the_public_ones() -> None:
+    """The kinds of the command line are the functions of `nh.examples`."""
+    assert examples() == {name: getattr(nh.examples, name) for name in NAMES}
+
+
+@pytest.mark.profile("routes", keep=[f"*{name}*" for name in QUICK])
+@pytest.mark.parametrize("name", NAMES)
+def test_every_example(name: str, nonholo: Command) -> None:
+    """It runs as in Python, from its own start; its store is shown and drawn; its page and a sweep of two are made."""
+    orbit = getattr(nh.examples, name)().simulate(steps=6)
+    told = json.loads(_done(nonholo("simulate", name, "--steps", 6, "-o", "a.zarr", "--json")))
+    assert told["outcome"] == "successful"
+    stored = nh.load_orbit("a.zarr")
+    np.testing.assert_array_equal(stored.configuration, orbit.configuration)
+    assert Path("a.png").stat().st_size > 5_000
+    assert "successful" in _done(nonholo("info", "a.zarr"))
+    assert "a-overview.png" in _done(nonholo("plot", "a.zarr", "--kind", "all", "--dpi", 30))
+    page = nonholo("explore", name, "--steps", 6, "-o", "page.html", "--no-browser")
+    if name in WITHOUT_PAGE:
+        assert (page.exit_code, page.stderr.count("must have coordinates named x and y")) == (1, 1)
+    else:
+        assert _done(page) == "page.html\n"
+        assert Path("page.html").stat().st_size > 50_000
+    path, values = VARIED.get(name, ("body.mass", [1.0, 1.5]))
+    design = f'[design]\nkind = "grid"\n[design.values]\n"{path}" = {values}'
+    Path("many.toml").write_text(f'[body]\nkind = "{name}"\n[run]\nsteps = 6\n{design}')
+    _done(nonholo("sweep", "many.toml", "-o", "s.zarr", "-q"))
+    swept = nh.load_sweep("s.zarr")
+    assert (swept["steps_done"].values == 6).all()
+
+
+def test_another_speed_keeps_the_pose_of_the_example() -> None:
+    """A start that gives a speed alone begins where the example does; one that gives a place, at its speed."""
+    ready = nh.examples.snakeboard()
+    for name in ("momentum", "body_velocity"):
+        start = load_scenario("snakeboard", [parse_setting(f"start.{name}=[1.0, 0.0, 0.0, 0.0, 0.0]")]).scenario.start
+        assert start.configuration == ready.configuration.tolist()
+        assert start.model_dump(exclude_none=True).keys() == {name, "configuration"}
+    start = load_scenario("snakeboard", [parse_setting("start.configuration=[0.0, 0.0, 0.0, 0.0, 0.5]")]).scenario.start
+    assert (start.configuration[-1], start.body_velocity) == (0.5, ready.body_velocity.tolist())
+
+
+@pytest.mark.profile("routes", keep=[f"*{name}*" for name in QUICK])
+@pytest.mark.parametrize("name", NAMES)
+def test_every_template(name: str, nonholo: Command) -> None:
+    """What `new` writes has every argument with its meaning, and is the scenario that the bare name runs."""
+    text = _done(nonholo("new", name))
+    assert max(map(len, text.splitlines())) <= 120
+    Path("my.toml").write_text(text)
+    body = tomllib.loads(text)["body"]
+    named, written = load_scenario(name, []).scenario, load_scenario("my.toml", []).scenario
+    assert (written.body, written.start, written.run) == (named.body, named.start, named.run)
+    assert body.pop("kind") == name
+    assert text.count("#") > len(body)
+
+
+ROBOT = '''
+"""A robot of mine."""
+import types
+
+import jax.numpy as jnp
+import nonholo as nh
+
+
+def cart(mass: float = 1.0, speed: float = 0.5):
+    """A cart that moves along x alone.
+
+    Args:
+        mass: m, of the cart.
+        speed: x' at the start.
+    """
+    system = nh.LagrangeDAlembert(
+        lambda q, v, p: 0.5 * p["mass"] * (v @ v) - 0.5 * q @ q,
+        lambda q, p: jnp.array([[0.0, 1.0]]),
+        dimension=2,
+        coordinates=("x", "y"),
+        parameters={"mass": mass},
+    )
+    start = {"configuration": [0.3, 0.0], "body_velocity": [speed, 0.0]}
+    return types.SimpleNamespace(system=system, time_step=0.1, steps=8, **start)
+
+
+def plank(mass: float):
+    """A sleigh of this mass."""
+    return nh.ChaplyginSleigh(mass, 1.0, 0.3)
+'''
+SWEEP = """
+[body]
+kind = "cart"
+[design]
+kind = "random"
+members = 4
+[design.values]
+"body.mass" = {uniform = [1.0, 2.0]}
+"body.speed" = {normal = [0.5, 0.1]}
+"""
+
+
+@pytest.fixture
+def robot(monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A file of a user's own, forgotten after the test."""
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    monkeypatch.delitem(sys.modules, "cart_of_mine", raising=False)
+    path = Path("cart_of_mine.py")
+    path.write_text(ROBOT)
+    return path
+
+
+def test_a_body_of_ones_own(robot: Path, nonholo: Command) -> None:
+    """Functions of a file that is named are kinds of bodies: run, listed, a template, a page, a run."""
+    own = ("--module", robot)
+    assert "cart" in _done(nonholo("systems", *own))
+    Path("cart.toml").write_text(_done(nonholo("new", "cart", *own)))
+    assert "mass = 1.0  # m, of the cart." in Path("cart.toml").read_text()
+    told = json.loads(_done(nonholo("simulate", "cart.toml", *own, "--json", "-o", "c.zarr", "--set", "body.mass=2.0")))
+    assert (told["steps"], told["outcome"]) == (8, "successful")
+    orbit = nh.load_orbit("c.zarr")
+    system = sys_modules_cart(mass=2.0).system
+    again = nh.simulate(nh.discretize(system, 0.1), configuration=[0.3, 0.0], body_velocity=[0.5, 0.0], steps=8)
+    np.testing.assert_array_equal(orbit.configuration, again.configuration)
+    _done(nonholo("explore", "cart", *own, "-o", "page.html", "--no-browser"))
+    start = "start={restricted_velocity=[0.1, 1.0]}"
+    run = ("--set", "run.time_step=0.1", "--steps", 4)
+    _done(nonholo("simulate", "plank", *own, *run, "--set", "body.mass=2.0", "--set", start, "--no-plot"))
+
+
+def sys_modules_cart(**numbers: float) -> Any:
+    """Return what the file makes, as it was imported."""
+    return sys.modules["cart_of_mine"].cart(**numbers)
+
+
+def test_a_sweep_over_a_body_of_ones_own(robot: Path, nonholo: Command) -> None:
+    """Members are those of the file's function; the store is resumed with the file, and not without."""
+    Path("many.toml").write_text(SWEEP)
+    _done(nonholo("sweep", "many.toml", "--module", robot, "-o", "s.zarr", "--no-plot", "-q"))
+    swept = nh.load_sweep("s.zarr").load()
+    member = sys_modules_cart(mass=float(swept["mass"][2]), speed=float(swept["speed"][2]))
+    start = {"configuration": member.configuration, "body_velocity": member.body_velocity}
+    orbit = nh.simulate(nh.discretize(member.system, 0.1), **start, steps=8)
+    np.testing.assert_array_equal(swept["final_configuration"][2], orbit.configuration[-1])
+    assert nonholo("resume", "s.zarr").exit_code == 2  # it names what it would run
+    _done(nonholo("resume", "s.zarr", "--module", robot))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (("simulate", "cart"), "there is no such file, and no built-in scenario of this name"),
+        (("simulate", "cart", "--module", "none.py"), "must be the path of a Python file. Got 'none.py'"),
+        (("simulate", "cart", "--module", "json.py"), "but there is a module json at"),
+        (("simulate", "cart", "--module", "broken.py"), "cannot be used. SyntaxError"),
+        (("simulate", "cart", "--module", "cart_of_mine.py", "--set", "body.mas=1"), "Did you mean mass?"),
+        (("simulate", "snakebord"), "Did you mean snakeboard?"),
+        (("simulate", "particle", "--set", "body.mass=-1"), "body.mass: must be positive. Got -1"),
+        (("simulate", "particle", "--set", "body.planar_velocity=[1]"), "body.planar_velocity: must have shape (2,)"),
+        (("new", "snakebord"), "Did you mean snakeboard or snake?"),
+    ],
+)
+@pytest.mark.usefixtures("robot")
+def test_refusals(arguments: tuple[str, ...], told: str, nonholo: Command) -> None:
+    """A file is never imported unasked; what is wrong with one, or with the numbers of an example, is said."""
+    Path("json.py").write_text("")
+    Path("broken.py").write_text("def cart(:")
+    result = nonholo(*arguments)
+    assert result.exit_code == 2
+    assert told in " ".join(result.output.replace("│", " ").split())

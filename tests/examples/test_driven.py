@@ -1,0 +1,275 @@
+"""Driven systems: equations written by hand, order, prescribed motions, forces and tables, and what is refused."""
+
+from collections.abc import Callable
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+import scipy.linalg
+from scipy.integrate import solve_ivp
+
+import nonholo as nh
+from nonholo.base.numerics import double_precision
+from nonholo.examples import Example
+from nonholo.lagrange_dalembert import LagrangeDAlembert
+
+TIMES = np.linspace(0.0, 6.0, 13)
+
+
+def _start(ready: Example) -> dict:
+    return {"configuration": ready.configuration, "body_velocity": ready.body_velocity}
+
+
+def _solved(rate: Callable, first: list[float]) -> np.ndarray:
+    return solve_ivp(rate, (0.0, TIMES[-1]), first, t_eval=TIMES, method="DOP853", rtol=1e-13, atol=1e-14).y
+
+
+def _sleigh_by_hand(time: float, z: np.ndarray) -> list[float]:
+    """The momentum equations of the driven sleigh with its default parameters, and (x, y, theta)."""
+    m, J, a, mu, d, A, Om = 1.0, 0.5, 0.3, 0.3, -0.3, 0.5, 1.0
+    u, w, theta = z[0], z[1], z[4]
+    s, ds, dds = A * np.sin(Om * time), A * Om * np.cos(Om * time), -A * Om**2 * np.sin(Om * time)
+    sideways = m * a * w + mu * (d * w + ds)
+    matrix = np.array([[m + mu, -mu * s], [-mu * s, J + m * a**2 + mu * s**2 + mu * d**2]])
+    changes = np.array([[0.0, -mu * ds], [-mu * ds, 2 * mu * s * ds]]) @ [u, w] + [0.0, mu * d * dds]
+    return [*np.linalg.solve(matrix, np.array([w, -u]) * sideways - changes), u * np.cos(theta), u * np.sin(theta), w]
+
+
+def _racer_by_hand(time: float, z: np.ndarray) -> list[float]:
+    """The momentum along the constraint of the roller racer with its default parameters, and (x, y, theta)."""
+    m, seat, J, c, ell, k, A, Om = 1.0, 0.2, 0.02, 0.2, 1.0, 0.3, 0.5, 2.0
+    u, theta = z[0], z[3]
+    phi, dphi, ddphi = A * np.sin(Om * time), A * Om * np.cos(Om * time), -A * Om**2 * np.sin(Om * time)
+    below = ell * np.cos(phi) + k
+    sigma, dsigma = np.sin(phi) / below, dphi * (np.cos(phi) * below + ell * np.sin(phi) ** 2) / below**2
+    turn, dturn = k * dphi / below, k * ddphi / below + k * dphi**2 * ell * np.sin(phi) / below**2
+    w = sigma * u - turn  # dw = sigma du + dsigma u - dturn
+    about = seat + m * c**2 + J
+    rest = sigma * (about * (dsigma * u - dturn) + J * ddphi)
+    du = ((w - sigma * u) * m * c * w - rest) / (m + about * sigma**2)
+    return [du, u * np.cos(theta), u * np.sin(theta), w]
+
+
+def _ball_by_hand(_time: float, z: np.ndarray) -> np.ndarray:
+    """Momentum about the contact and the vertical, seen from the ball; and the path of the middle with its rotation."""
+    M, R = z[:3], z[3:12].reshape(3, 3)
+    gamma, inertia = R[2], np.diag([0.3, 0.4, 0.5])
+    omega = np.linalg.solve(inertia + np.eye(3) - np.outer(gamma, gamma), M)
+    return np.concatenate([np.cross(M, omega), (R @ nh.SO(3).hat(omega)).ravel(), R @ np.cross(omega, gamma)])
+
+
+@pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")
+def test_the_driven_sleigh_moves_as_derived_by_hand() -> None:
+    """Path and heading of the flow, to 1e-10."""
+    ready = nh.examples.driven_sleigh()
+    by_hand = _solved(_sleigh_by_hand, [0.5, 0.3, 0.0, 0.0, 0.0])
+    found = nh.flow(ready.system, **_start(ready), times=TIMES, rtol=1e-13, atol=1e-14)
+    assert np.abs(found.configuration[:, :3] - by_hand[2:].T).max() <= 1e-10
+
+
+def test_the_roller_racer_moves_as_derived_by_hand() -> None:
+    """Path and heading of the flow, to 1e-10; it moves on."""
+    ready = nh.examples.roller_racer()
+    by_hand = _solved(_racer_by_hand, [0.0, 0.0, 0.0, 0.0])
+    found = nh.flow(ready.system, **_start(ready), times=TIMES, rtol=1e-13, atol=1e-14)
+    assert np.abs(found.configuration[:, :3] - by_hand[1:].T).max() <= 1e-10
+
+
+def _robot_by_hand(time: float, z: np.ndarray) -> list[float]:
+    """Speed and turning rate of the two-wheeled robot with its default parameters, torques and friction; the pose."""
+    m, J, ell, c, R, Jw, d = 1.0, 0.5, 0.3, 0.5, 0.25, 0.01, 0.02
+    u, w, theta = z[0], z[1], z[4]
+    right, left = 0.1 + 0.05 * np.sin(time), 0.1 - 0.03 * time
+    M, K = m + 2 * Jw / R**2, J + m * ell**2 + 2 * Jw * c**2 / R**2
+    du = m * ell * w**2 + (right + left) / R - 2 * d * u / R**2
+    dw = -m * ell * u * w + (right - left) * c / R - 2 * d * c**2 * w / R**2
+    return [du / M, dw / K, u * np.cos(theta), u * np.sin(theta), w]
+
+
+@pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")
+def test_the_robot_moves_as_derived_by_hand() -> None:
+    """Path and heading of the flow under torques and friction, to 1e-10; the axle keeps its angle."""
+    ready = nh.examples.two_wheeled_robot(
+        torques=lambda time: (0.1 + 0.05 * jnp.sin(time), 0.1 - 0.03 * time), friction=0.02
+    )
+    by_hand = _solved(_robot_by_hand, [-0.5, 1.0, 0.0, 0.0, 0.0])
+    found = nh.flow(ready.system, **_start(ready), times=TIMES, rtol=1e-13, atol=1e-14)
+    assert np.abs(found.configuration[:, :3] - by_hand[2:].T).max() <= 1e-10
+    assert list(ready.conserved) == ["axle"]
+    assert np.ptp(ready.conserved["axle"](found.configuration, found.body_velocity)) <= 1e-11
+
+
+def test_torques_of_the_robot() -> None:
+    """Without torques and friction nothing drives it; two numbers are constant torques; others are refused."""
+    robot = nh.examples.two_wheeled_robot
+    assert not robot().system.is_driven
+    assert robot(torques=lambda time: (time, 0.0)).system.description is None  # no store holds a function
+    assert robot(torques=(0.3, 0.1)).system.description[1]["torques"] == [0.3, 0.1]
+    force = robot(torques=(0.3, 0.1), friction=0.5).system.force
+    with double_precision():
+        pushed = np.asarray(force(jnp.asarray(2.0), jnp.zeros(5), jnp.arange(5.0)))
+    assert np.allclose(pushed, [0, 0, 0, 0.3 - 1.5, 0.1 - 2.0], rtol=0, atol=1e-15)
+    with pytest.raises(ValueError, match=r"two_wheeled_robot\(torques=...\)` must have shape \(2,\)"):
+        robot(torques=(0.3, 0.1, 0.2))
+    with pytest.raises(ValueError, match=r"two_wheeled_robot\(friction=...\)` must not be negative. Got -0.1"):
+        robot(friction=-0.1)
+
+
+@pytest.mark.profile("long", instead="test_the_roller_racer_moves_as_derived_by_hand")
+def test_the_ball_moves_as_derived_by_hand() -> None:
+    """Path and rotation of the flow, to 1e-10, momentum in space and energy constant."""
+    ready = nh.examples.chaplygin_ball()
+    first = ready.conserved
+    start = [first[f"momentum along {axis}"](ready.configuration, ready.body_velocity) for axis in "xyz"]
+    by_hand = _solved(_ball_by_hand, [*start, *np.eye(3).ravel(), 0.0, 0.0, 0.0])
+    found = nh.flow(ready.system, **_start(ready), times=TIMES, rtol=1e-13, atol=1e-14)
+    assert np.abs(found.configuration[:, :3, :3].reshape(-1, 9) - by_hand[3:12].T).max() <= 1e-10
+    assert np.abs(found.configuration[:, :3, 3] - by_hand[12:].T).max() <= 1e-10
+    assert np.ptp(found.energy) <= 1e-11
+    kept = [values(found.configuration, found.body_velocity) for values in first.values()]
+    assert np.ptp(kept, axis=1).max() <= 1e-11
+
+
+@pytest.mark.profile("routes", instead="test_the_maps_have_order_two")
+def test_what_drives_them() -> None:
+    """The handle alone moves the racer from rest; the mass on the right side of the contact makes the sleigh faster."""
+    racer, sleigh = nh.examples.roller_racer(), nh.examples.driven_sleigh()
+    path = nh.simulate(nh.discretize(racer.system, 0.02), **_start(racer), steps=1000)
+    assert np.linalg.norm(path.configuration[-1, :2]) > 1.0
+    run = nh.simulate(nh.discretize(sleigh.system, 0.05), **_start(sleigh), steps=2000)
+    speed = np.linalg.norm(run.body_velocity[:, :2], axis=1)
+    assert speed[-200:].mean() > 1.5 * speed[:200].mean()
+
+
+@pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")
+@pytest.mark.parametrize("name", ["heavy_suslov_top", "sleigh_in_a_well"])
+def test_integrals_under_a_potential(name: str) -> None:
+    """Constant along the flow; of the map off by an error of order two."""
+    ready = getattr(nh.examples, name)()
+    orbit = nh.flow(ready.system, body_velocity=ready.body_velocity, times=TIMES)
+    for kept in ready.conserved.values():
+        assert np.ptp(kept(orbit.configuration, orbit.body_velocity)) <= 1e-11
+    errors = []
+    for steps in (60, 120):
+        found = nh.simulate(nh.discretize(ready.system, 6.0 / steps), body_velocity=ready.body_velocity, steps=steps)
+        errors.append(np.abs(found.configuration[-1] - orbit.configuration[-1]).max())
+    assert abs(np.log2(errors[0] / errors[1]) - 2.0) <= 0.1
+
+
+def test_the_sleigh_in_a_well_obeys_a_linear_system() -> None:
+    """With its center of mass at the contact: speed and place seen from the sleigh, by the exponential of a matrix."""
+    ready, k, omega = nh.examples.sleigh_in_a_well(), 0.3, 0.4
+    matrix = np.array([[0.0, -k, 0.0], [1.0, 0.0, omega], [0.0, -omega, 0.0]])
+    found = nh.flow(ready.system, body_velocity=ready.body_velocity, times=TIMES)
+    for time, g, velocity in zip(TIMES, found.configuration, found.body_velocity, strict=True):
+        u, s, w = scipy.linalg.expm(time * matrix) @ [0.7, 0.0, 0.0]
+        assert np.abs(g[:2, :2].T @ g[:2, 2] - [s, w]).max() <= 1e-10
+        assert np.abs(velocity - [omega, u, 0.0]).max() <= 1e-10
+
+
+@pytest.mark.profile("routes", keep=["roller_racer"])
+@pytest.mark.parametrize("name", ["driven_sleigh", "roller_racer", "chaplygin_ball"])
+def test_the_maps_have_order_two(name: str) -> None:
+    """Configurations at the end; the constraint, and what is prescribed, to rounding."""
+    ready = getattr(nh.examples, name)()
+    exact = nh.flow(ready.system, **_start(ready), times=(0.0, 2.0), rtol=1e-13, atol=1e-14).configuration[-1]
+    errors = []
+    for steps in (100, 200):
+        orbit = nh.simulate(nh.discretize(ready.system, 2.0 / steps), **_start(ready), steps=steps)
+        errors.append(np.abs(orbit.configuration[-1] - exact).max())
+        assert orbit.constraint_residual.max() <= 1e-13
+    assert abs(np.log2(errors[0] / errors[1]) - 2.0) <= 0.1
+    if name == "driven_sleigh":
+        assert np.abs(orbit.configuration[:, 3] - 0.5 * np.sin(orbit.time)).max() <= 1e-14
+
+
+def _blade(q):  # noqa: ANN001, ANN202
+    return jnp.array([[-jnp.sin(q[2]), jnp.cos(q[2]), 0.0]])
+
+
+def _skate(**more) -> LagrangeDAlembert:  # noqa: ANN003
+    return LagrangeDAlembert(lambda _q, v: (v[0] ** 2 + v[1] ** 2 + 0.3 * v[2] ** 2) / 2, _blade, dimension=3, **more)
+
+
+DRIVEN = {
+    "force": _skate(force=lambda t, q, v: jnp.array([jnp.cos(t), 0.3 * q[0], 0.5]) - 0.2 * v * jnp.sqrt(v @ v + 1)),
+    "moving belt": LagrangeDAlembert(
+        lambda _q, v: v @ v / 2,
+        lambda q, t: jnp.array([[-jnp.sin(q[2]), jnp.cos(q[2]) * (1 + 0.2 * jnp.sin(t)), 0.0]]),
+        dimension=3,
+        constraint_velocities=lambda q, t: jnp.array([0.3 * q[1] * jnp.cos(t)]),
+    ),
+    "growing mass, prescribed heading": LagrangeDAlembert(
+        lambda q, v, t: (1 + 0.5 * jnp.sin(t)) * (v @ v) / 2 - q[0] ** 2 / 2 + 0.2 * v[0] * v[2],
+        _blade,
+        dimension=3,
+        prescribed={2: lambda t: 0.4 * jnp.sin(2 * t)},
+        rule="trapezoidal",
+    ),
+}
+TURNING = {"growing mass, prescribed heading": 0.8}
+
+
+@pytest.mark.profile("routes", instead="test_the_maps_have_order_two")
+@pytest.mark.parametrize("name", DRIVEN)
+def test_order_two_of_configuration_and_energy(name: str) -> None:
+    """Against the flow, whose energies are those of its velocities."""
+    system = DRIVEN[name]
+    start = {"configuration": (0.0, 0.0, 0.0), "body_velocity": (1.0, 0.0, TURNING.get(name, 0.5))}
+    exact = nh.flow(system, **start, times=(0.0, 1.0), rtol=1e-13, atol=1e-14)
+    errors = []
+    for steps in (50, 100):
+        orbit = nh.simulate(nh.discretize(system, 1.0 / steps), **start, steps=steps)
+        errors.append(
+            [np.abs(orbit.configuration[-1] - exact.configuration[-1]).max(), orbit.energy[-1] - exact.energy[-1]]
+        )
+        assert orbit.constraint_residual.max() <= 1e-14
+    assert np.abs(np.log2(np.abs(np.divide(*errors))) - 2.0).max() <= 0.1
+
+
+@pytest.mark.profile("routes", instead="test_the_maps_have_order_two")
+def test_a_table_acts_row_by_row() -> None:
+    """A constant table is a constant force; after its last row nothing acts."""
+    push = np.array([0.2, -0.1, 0.3])
+    start = {"configuration": (0.0, 0.0, 0.0), "body_velocity": (1.0, 0.0, 0.0), "steps": 60}
+    constant = nh.simulate(nh.discretize(_skate(force=lambda _t, _q, _v: jnp.asarray(push)), 0.1), **start)
+    table = nh.simulate(nh.discretize(_skate(force=np.tile(push, (40, 1))), 0.1), **start)
+    assert np.abs(table.configuration[:41] - constant.configuration[:41]).max() <= 1e-13
+    assert np.ptp(table.energy[40:]) <= 1e-13 < np.ptp(table.energy[:40])
+
+
+@pytest.mark.profile("routes", instead="test_the_maps_have_order_two")
+def test_forced_in_coordinates() -> None:
+    """A potential and friction as in the Lagrangian and by hand; neither gives the system itself; not twice."""
+    start = {"configuration": (0.5, 0.0, 0.0), "body_velocity": (1.0, 0.0, 0.3), "steps": 20}
+    forced = nh.Forced(_skate(), lambda q: 2.0 * q[0] ** 2, nh.Friction([0.2, 0.2, 0.1]))
+    by_hand = LagrangeDAlembert(
+        lambda q, v: (v[0] ** 2 + v[1] ** 2 + 0.3 * v[2] ** 2) / 2 - 2.0 * q[0] ** 2,
+        _blade,
+        dimension=3,
+        force=lambda _t, _q, v: -jnp.array([0.2, 0.2, 0.1]) * v,
+    )
+    orbits = [nh.simulate(nh.discretize(system, 0.1), **start) for system in (forced, by_hand)]
+    assert np.abs(orbits[0].configuration - orbits[1].configuration).max() <= 1e-14
+    free = _skate()
+    assert nh.Forced(free) is free
+    with pytest.raises(ValueError, match="have no force yet"):
+        nh.Forced(forced, None, nh.Friction([0.1, 0.1, 0.1]))
+    with pytest.raises(ValueError, match="be a system that forces act on"):
+        nh.Forced(nh.examples.chaplygin_ball().system, None, nh.Friction([0.1, 0.1, 0.1]))
+
+
+def test_what_a_driven_system_refuses() -> None:
+    """Each with what is wanted: starts off the motion, functions of its own, indices, tables."""
+    racer = nh.examples.roller_racer()
+    discrete = nh.discretize(racer.system, 0.1)
+    with pytest.raises(ValueError, match="agree with prescribed motions"):
+        nh.simulate(discrete, configuration=(0.0, 0.0, 0.0, 0.1), body_velocity=racer.body_velocity, steps=1)
+    with pytest.raises(ValueError, match="nearest admissible"):
+        nh.simulate(discrete, configuration=racer.configuration, body_velocity=(0.0, 0.0, 0.0, 0.0), steps=1)
+    with pytest.raises(ValueError, match="be left out of a driven system"):
+        _skate(force=np.zeros((2, 3)), discrete_lagrangian=lambda q, p, h: (p - q) @ (p - q) / h)
+    with pytest.raises(ValueError, match="indices from 0 to 2"):
+        _skate(prescribed={3: jnp.sin})
+    with pytest.raises(ValueError, match="force"):
+        _skate(force=np.zeros((4, 2)))

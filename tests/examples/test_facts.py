@@ -1,0 +1,198 @@
+"""The ready examples: what is known of their motion holds along the flow, and the map converges to the flow."""
+
+import functools
+
+import numpy as np
+import pytest
+
+import nonholo as nh
+from nonholo.examples import Example
+from nonholo.lagrange_dalembert import CoordinateOrbit
+
+EXAMPLES = {
+    "particle": nh.examples.particle,
+    "rolling_disk": nh.examples.rolling_disk,
+    "knife_edge_on_incline": nh.examples.knife_edge_on_incline,
+    "snakeboard": nh.examples.snakeboard,
+    "kinematic_car": nh.examples.kinematic_car,
+    "two_wheeled_robot": nh.examples.two_wheeled_robot,
+    "chaotic_quartic_oscillator": nh.examples.chaotic_quartic_oscillator,
+    "non_reversible": nh.examples.non_reversible,
+}
+EXACT = ("particle", "rolling_disk", "knife_edge_on_incline", "kinematic_car")
+TIMES = np.linspace(0.0, 4.0, 9)
+
+
+@functools.cache
+def ready(name: str) -> Example:
+    """Return an example with its default parameters."""
+    return EXAMPLES[name]()
+
+
+@functools.cache
+def flow(name: str) -> CoordinateOrbit:
+    """Return an accurate flow of an example: relative errors per step 1e-13."""
+    example = ready(name)
+    start = {"configuration": example.configuration, "body_velocity": example.body_velocity}
+    return nh.flow(example.system, **start, times=TIMES, rtol=1e-13, atol=1e-14)
+
+
+@functools.cache
+def run(name: str, steps: int) -> CoordinateOrbit:
+    """Return the discrete orbit of an example over the time of its flow."""
+    example, h = ready(name), TIMES[-1] / steps
+    start = {"configuration": example.configuration, "body_velocity": example.body_velocity}
+    return nh.simulate(nh.discretize(example.system, h), **start, steps=steps)
+
+
+def test_every_public_example_is_tested() -> None:
+    """The table above holds every function of the room."""
+    by_hand = {
+        "driven_sleigh",
+        "roller_racer",
+        "chaplygin_ball",
+        "heavy_suslov_top",
+        "sleigh_in_a_well",  # test_driven.py
+        "ball_in_bowl",
+        "ball_on_turntable",
+        "bicycle",
+        "rattleback",
+        "snake",
+        "tilting_disk",
+        "trailers",  # test_bicycle.py, test_rolling_bodies.py
+    }
+    assert set(EXAMPLES) == set(nh.examples.__all__) - {"Example"} - by_hand
+
+
+@pytest.mark.profile("routes", keep=["particle"])
+@pytest.mark.parametrize("name", EXACT)
+def test_the_flow_is_the_published_solution(name: str) -> None:
+    """Configurations agree with the closed form; a few steps of relative error 1e-13 stay below 1e-11."""
+    assert np.abs(flow(name).configuration - ready(name).exact(TIMES)).max() <= 1e-11
+
+
+@pytest.mark.profile("routes", keep=["particle"])
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_conserved_quantities_are_constant_along_the_flow(name: str) -> None:
+    """Each of them varies by rounding and solver errors only, and there is at least one."""
+    orbit = flow(name)
+    found = [f(orbit.configuration, orbit.body_velocity) for f in ready(name).conserved.values()]
+    assert len(found) > 0
+    assert max(np.ptp(values) / np.abs(values).max(initial=1.0) for values in found) <= 1e-11
+
+
+@pytest.mark.profile("routes", keep=["particle"])
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_energy_and_constraint_hold_along_the_flow(name: str) -> None:
+    """Energy is conserved in all of them, and the velocity stays admissible to rounding."""
+    orbit = flow(name)
+    assert np.ptp(orbit.energy) <= 1e-11
+    assert orbit.constraint_residual.max() <= 1e-14
+
+
+@pytest.mark.profile("routes", keep=["particle"])
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_the_map_satisfies_its_constraint_and_has_order_two(name: str) -> None:
+    """Discrete constraints hold to rounding; configurations converge to the flow with slope 2.0 +- 0.1."""
+    counts, errors = (40, 80, 160), []
+    for n in counts:
+        orbit = run(name, n)
+        assert orbit.constraint_residual.max() <= 1e-14
+        errors.append(np.abs(orbit.configuration[-1] - flow(name).configuration[-1]).max())
+    assert abs(-np.polyfit(np.log(counts), np.log(errors), 1)[0] - 2.0) <= 0.1
+
+
+@pytest.mark.profile("routes", instead="test_the_disk_keeps_its_energy")
+def test_the_disk_rolls_on_the_circle_of_the_midpoint_rule() -> None:
+    """Contact points are at the radius R theta'_h h / (2 sin(h phi'/2)) from one center; 40 steps of rounding."""
+    orbit, h, turning = run("rolling_disk", 40), 0.1, 0.5
+    rolling = 1.5 / (np.cos(h * turning / 2) + 0.5)  # m R^2 = 1, I = 1/2, theta' = 1
+    radius = rolling * h / (2 * np.sin(h * turning / 2))
+    points = orbit.configuration[:, :2]
+    assert np.abs(orbit.body_velocity[:, 2:] - [rolling, turning]).max() <= 1e-13
+    # the first step points along phi = h phi'/2: the disk's heading at (0, 0) is the circle's tangent, the center above
+    assert np.abs(np.hypot(points[:, 0], points[:, 1] - radius) - radius).max() <= 1e-13
+
+
+@pytest.mark.profile("routes", instead="test_the_disk_keeps_its_energy")
+def test_the_knife_edge_draws_the_cycloid_of_the_midpoint_rule() -> None:
+    """The speed of each step is w + G h / sin(h phi') sin(phi) at the heading of its middle."""
+    orbit, h = run("knife_edge_on_incline", 40), 0.1
+    heading = orbit.configuration[:, 2] + h / 2  # phi' = 1
+    along = orbit.body_velocity[:, 0] * np.cos(heading) + orbit.body_velocity[:, 1] * np.sin(heading)
+    assert np.ptp(along - h / np.sin(h) * np.sin(heading)) <= 1e-13
+
+
+@pytest.mark.profile("routes", instead="test_motions_that_become_straight_settle")
+def test_the_robot_speeds_up_like_a_sleigh() -> None:
+    """Speed is u_inf tanh kappa(t - t0), turning rate omega_0 sech kappa(t - t0), constants as derived."""
+    orbit = flow("two_wheeled_robot")
+    M, K = 1.0 + 2 * 0.01 / 0.25**2, 0.5 + 0.3**2 + 2 * 0.01 * 0.5**2 / 0.25**2
+    energy = (M * 0.5**2 + K) / 2
+    limit, largest = np.sqrt(2 * energy / M), np.sqrt(2 * energy / K)
+    phase = 0.3 * limit / K * TIMES + np.arctanh(-0.5 / limit)
+    theta, v = orbit.configuration[:, 2], orbit.body_velocity
+    assert np.abs(v[:, 0] * np.cos(theta) + v[:, 1] * np.sin(theta) - limit * np.tanh(phase)).max() <= 1e-11
+    assert np.abs(v[:, 2] - largest / np.cosh(phase)).max() <= 1e-11
+
+
+@pytest.mark.profile("routes", keep=["particle"])
+@pytest.mark.parametrize(
+    ("name", "kept"),
+    [("particle", ["y'"]), ("snakeboard", ["phi'", "theta' + psi'"]), ("two_wheeled_robot", ["axle"])],
+    ids=["particle", "snakeboard", "robot"],
+)
+def test_what_the_midpoint_rule_conserves(name: str, kept: list[str]) -> None:
+    """Momenta along constant admissible directions and integrable linear constraints are kept; the others are not."""
+    orbit = run(name, 40)
+    middle = orbit.configuration + orbit.displacement / 2
+    spread = {key: np.ptp(f(middle, orbit.body_velocity)) for key, f in ready(name).conserved.items()}
+    assert {key for key, width in spread.items() if width <= 1e-13} == set(kept)
+    assert max(spread.values()) > 1e-5
+
+
+@pytest.mark.profile("routes", instead="test_conserved_quantities_are_constant_along_the_flow")
+def test_one_pair_of_oscillators_has_its_own_potential() -> None:
+    """With one pair the coupling z_1 z_2 is absent, and the conserved function is the energy of the Lagrangian."""
+    single = nh.examples.chaotic_quartic_oscillator(pairs=1)
+    start = {"configuration": single.configuration, "body_velocity": single.body_velocity}
+    orbit = nh.flow(single.system, **start, times=TIMES)
+    assert single.coordinates == ("x", "y1", "z1")
+    assert np.abs(single.conserved["energy"](orbit.configuration, orbit.body_velocity) - orbit.energy).max() <= 1e-14
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: nh.examples.particle(mass=0.0), r"particle\(mass=...\)` must be positive"),
+        (lambda: nh.examples.particle(planar_velocity=(1.0,)), r"planar_velocity=...\)` must have shape"),
+        (lambda: nh.examples.rolling_disk(radius=np.nan), r"radius=...\)` must be finite"),
+        (lambda: nh.examples.knife_edge_on_incline(turning=0.0), r"turning=...\)` must not be zero"),
+        (lambda: nh.examples.snakeboard(rotor_inertia=1.0), r"be less than m r\^2 = 1"),
+        (lambda: nh.examples.snakeboard(configuration=(0, 0, 0, 0, 1.6)), r"have \|phi\| < pi/2"),
+        (lambda: nh.examples.kinematic_car(configuration=(0, 0, 0, 0, 1.6)), r"have \|phi\| < pi/2"),
+        (lambda: nh.examples.two_wheeled_robot(half_width=-1.0), r"half_width=...\)` must be positive"),
+        (lambda: nh.examples.chaotic_quartic_oscillator(pairs=0), r"pairs=...\)` must be a positive integer"),
+        (lambda: nh.examples.non_reversible(turning="fast"), r"turning=...\)` must be an array of real numbers"),
+    ],
+    ids=["mass", "shape", "nan", "straight", "heavy rotor", "crossed wheels", "car across", "width", "pairs", "text"],
+)
+def test_bad_parameters_are_refused(make: object, words: str) -> None:
+    """Each refusal names the argument and what it must be."""
+    with pytest.raises(ValueError, match=words):
+        make()
+
+
+def test_the_rotor_turns_with_the_board() -> None:
+    """The kinetic energy of the snakeboard is that of its parts, each with its velocity in space."""
+    m, r, J0, J1 = 1.3, 0.7, 0.2, 0.05
+    board = nh.examples.snakeboard(mass=m, half_length=r, rotor_inertia=J0, wheel_inertia=J1).system.plain
+    v = np.array([0.3, -0.2, 0.5, 1.1, -0.4])
+    parts = m * (v[0] ** 2 + v[1] ** 2) + (m * r * r - J0) * v[2] ** 2 + J0 * (v[2] + v[3]) ** 2 + 2 * J1 * v[4] ** 2
+    assert float(board.lagrangian(np.zeros(5), v)) == pytest.approx(parts / 2, rel=1e-6)
+
+
+def test_gravity_pulls_the_blade_down_the_slope() -> None:
+    """The Lagrangian of the knife edge grows along the first axis, which points downhill."""
+    blade, v = ready("knife_edge_on_incline").system.plain, np.zeros(3)
+    assert float(blade.lagrangian(np.array([1.0, 0.0, 0.0]), v)) > float(blade.lagrangian(np.zeros(3), v))

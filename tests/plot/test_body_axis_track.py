@@ -1,0 +1,106 @@
+"""Paths of the forbidden axis on the sphere, the two permanent rotations, the projection."""
+
+import numpy as np
+import pytest
+from plot.runs import MASS_TENSOR, top_run
+
+import nonholo as nh
+from nonholo.plot.parts._sphere import View, arcs, great_circle, opacity
+
+
+def test_points_are_the_forbidden_axis_in_space(top_orbit: nh.Orbit) -> None:
+    """The path is R_k gamma for every state of a short orbit."""
+    drawn = nh.plot.body_axis_track(top_orbit)
+    assert np.allclose(drawn.points, top_orbit.configuration[:, :, 2], atol=1e-15)
+    flat = drawn.view(drawn.points)[0]
+    dots = drawn.dots.get_offsets()
+    assert np.allclose(np.sort(dots[:, 0]), np.sort(flat[:, 0]))
+
+
+def test_tilted_axis() -> None:
+    """With a forbidden axis other than e_3 the path is that of the axis in the user's frame."""
+    axis = np.array([2.0, 1.0, 2.0]) / 3
+    top = nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 1.5]), axis=axis)
+    orbit = nh.simulate(nh.discretize(top, 0.1), restricted_velocity=(0.3, 0.5), steps=30)
+    assert np.allclose(nh.plot.body_axis_track(orbit).points, orbit.configuration @ axis)
+
+
+def test_axes_of_the_permanent_rotations() -> None:
+    """The axes are the spatial angular velocities at the ends: along +c in the body before, along -c after."""
+    orbit = top_run((0.465, 0.75, 0.0), steps=1500)
+    drawn = nh.plot.body_axis_track(orbit)
+    spin = np.einsum("kij,kj->ki", orbit.configuration, orbit.body_velocity)
+    spin /= np.linalg.norm(spin, axis=1)[:, None]
+    assert np.allclose(drawn.axis_after, spin[-1], atol=1e-8)  # settled
+    assert np.allclose(drawn.axis_before, spin[0], atol=0.03)  # starts at sine 0.01 from the equilibrium
+    line = orbit.system.equilibria().subspace[0] / np.linalg.norm(orbit.system.equilibria().subspace[0])
+    assert np.allclose(drawn.axis_before, orbit.configuration[0] @ line)
+    assert np.allclose(drawn.axis_after, orbit.configuration[-1] @ -line)
+
+
+def test_axes_of_a_backward_flow() -> None:
+    """A motion followed into the past has its repelling rotation before and its attracting one after, if it is near."""
+    times = np.linspace(0.0, -150.0, 400)
+    flow = nh.flow(nh.SuslovTop(MASS_TENSOR), body_velocity=(0.4, 0.9, 0.0), times=times)
+    drawn = nh.plot.body_axis_track(flow)
+    line = flow.system.equilibria().subspace[0] / np.linalg.norm(flow.system.equilibria().subspace[0])
+    assert np.allclose(drawn.axis_before, flow.configuration[-1] @ line)
+    assert drawn.axis_after is None
+
+
+def test_balanced_top_has_one_axis() -> None:
+    """Every motion of a balanced top is a permanent rotation, with the same axis before and after."""
+    discrete = nh.discretize(nh.SuslovTop(np.diag([1.4, 1.0, 0.9])), 0.1)
+    drawn = nh.plot.body_axis_track(nh.simulate(discrete, body_velocity=(0.4, 0.9, 0.0), steps=50))
+    assert np.allclose(drawn.axis_before, drawn.axis_after, atol=1e-13)
+
+
+def test_axes_are_left_out_where_the_orbit_is_not_near() -> None:
+    """An orbit in the midst of its transition has neither axis."""
+    drawn = nh.plot.body_axis_track(top_run((0.4, 0.9, 0.0), steps=40))
+    assert drawn.axis_before is None
+    assert drawn.axis_after is None
+
+
+def test_long_runs_show_the_transition() -> None:
+    """Of 50001 states a stretch without gaps is drawn, and it holds the fastest change of momentum."""
+    orbit = top_run((0.465, 0.75, 0.0), steps=50000)
+    drawn = nh.plot.body_axis_track(orbit)
+    fastest = int(np.abs(np.diff(orbit.reduced_momentum, axis=0)).sum(axis=1).argmax())
+    assert len(drawn.points) <= 1200
+    assert np.linalg.norm(drawn.points - orbit.configuration[fastest, :, 2], axis=1).min() < 1e-12
+    assert np.linalg.norm(np.diff(drawn.points, axis=0), axis=1).max() < 0.12
+
+
+def test_what_lies_behind_is_faint(top_orbit: nh.Orbit) -> None:
+    """Dots behind the sphere are fainter than those in front."""
+    drawn = nh.plot.body_axis_track(top_orbit, view=(0.0, 20.0))
+    alpha = drawn.dots.get_facecolor()[:, 3]
+    depth = np.sort(drawn.view(drawn.points)[1])
+    assert np.allclose(alpha, opacity(depth))
+    assert alpha.min() < 0.3
+    assert alpha.max() == 1.0
+
+
+def test_views_are_rotations() -> None:
+    """The projection is an orthonormal frame with e_3 upwards."""
+    frame = View(37.0, 20.0).frame
+    assert np.allclose(frame @ frame.T, np.eye(3))
+    assert np.isclose(np.linalg.det(frame), 1.0)
+    assert frame[0, 2] == 0.0
+    assert frame[1, 2] > 0.0
+
+
+def test_curves_on_the_sphere() -> None:
+    """Arcs pass through their points and stay on the sphere; a great circle is perpendicular to its axis."""
+    points = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    joined = arcs(points, 5)
+    assert np.allclose(joined[::5], points)
+    assert np.allclose(np.linalg.norm(joined, axis=1), 1.0)
+    assert np.allclose(great_circle(np.array([0.3, -0.5, 2.0])) @ [0.3, -0.5, 2.0], 0.0)
+
+
+def test_refuses_a_sleigh(sleigh_orbit: nh.Orbit) -> None:
+    """A sleigh has no forbidden axis of rotation; the refusal names the picture for it."""
+    with pytest.raises(ValueError, match=r"must be an orbit on SO\(3\). .* Use `blade_track` for a sleigh"):
+        nh.plot.body_axis_track(sleigh_orbit)

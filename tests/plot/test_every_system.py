@@ -1,0 +1,240 @@
+"""Pictures of every system: which panels the overview has, and what the pictures beyond tops and sleighs show."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from plot.runs import body_tensor, made_up, run_of
+
+import nonholo as nh
+from nonholo.plot.motion._time_series import velocity_names
+from nonholo.plot.overviews import panels_of
+from nonholo.systems import SYSTEMS
+
+_HEISENBERG = nh.MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
+_PRODUCT = nh.ProductGroup(nh.SE(2), nh.Translations(1))
+_FORBIDDEN, _AXIS, _POINT = "Forbidden body axis in space", "Body axis 3 in space", "Reference point"
+_PORTRAIT, _SPHERE = "Phase portrait", "Momentum on its energy sphere"
+_MOMENTUM, _SPATIAL = "Momentum along the constraint", "Spatial momentum along the constraint"
+_VELOCITY, _ENERGY = "Body velocity", "Energy error"
+
+
+def _left(group: object, rows: object) -> nh.LLSystem:
+    rigid = {nh.SO(3): 3, nh.SE(2): 2, nh.SE(3): 3}[group]
+    tensor = body_tensor(rigid)
+    return nh.LLSystem(group, tensor[:rigid, :rigid] if group == nh.SO(3) else tensor, np.array(rows, dtype=float))
+
+
+def _any(group: object, free: int) -> nh.LLSystem:
+    return nh.LLSystem(group, constraint_subspace=np.eye(group.dim)[:free], inertia_operator=np.eye(group.dim))
+
+
+CASES: dict[str, tuple[Callable[[], nh.Orbit], list[str]]] = {
+    "nothing moves": (lambda: run_of(_left(nh.SO(3), np.empty((0, 3)))), [_AXIS, _VELOCITY, _ENERGY]),
+    "one direction": (lambda: run_of(_left(nh.SO(3), [[1, 0, 0]])), [_AXIS, _MOMENTUM, _VELOCITY, _ENERGY]),
+    "two": (lambda: run_of(_left(nh.SO(3), [[1, 0, 0.2], [0, 1, 0]])), [_FORBIDDEN, _PORTRAIT, _VELOCITY, _ENERGY]),
+    "free top": (lambda: run_of(nh.RigidBody(np.diag([1.0, 3.0, 2.0]))), [_AXIS, _SPHERE, _VELOCITY, _ENERGY]),
+    "free in the plane": (
+        lambda: run_of(nh.RigidBody(body_tensor(2), nh.SE(2))),
+        [_POINT, _SPHERE, _VELOCITY, _ENERGY],
+    ),
+    "free on SO(5)": (lambda: run_of(nh.RigidBody(body_tensor(5)[:5, :5])), [_MOMENTUM, _VELOCITY, _ENERGY]),
+    "top of SO(4)": (lambda: run_of(nh.SuslovTop(body_tensor(4)[:4, :4])), [_SPHERE, _VELOCITY, _ENERGY]),
+    "arrowhead of SO(1000)": (
+        lambda: nh.simulate(
+            nh.discretize(nh.SuslovTop.arrowhead(np.linspace(40, 80, 1000), np.ones(999)), 0.1),
+            restricted_velocity=0.05 * np.cos(np.arange(999)),
+            steps=40,
+            reconstruct=False,
+        ),
+        [f"{_MOMENTUM}, the 60 largest of 999", _ENERGY],
+    ),
+    "arrowhead of SE(4)": (
+        lambda: run_of(nh.MultidimensionalSleigh.arrowhead(1.0, [0.5, 0.2, 0.1, 0.0], [1.0, 2, 3, 4], [0.1, 0.2, 0.3])),
+        [_MOMENTUM, _ENERGY],
+    ),
+    "sleigh of SE(3)": (
+        lambda: run_of(nh.MultidimensionalSleigh(1.0, [0.5, 0.2, 0.1], body_tensor(3)[:3, :3])),
+        [_POINT, _SPHERE, _VELOCITY, _ENERGY],
+    ),
+    "sleigh of SE(4)": (
+        lambda: run_of(nh.MultidimensionalSleigh(1.0, [0.5, 0.2, 0.1, 0.0], body_tensor(4)[:4, :4])),
+        [_POINT, _MOMENTUM, _VELOCITY, _ENERGY],
+    ),
+    "dart": (lambda: run_of(_left(nh.SE(3), np.eye(6)[:4])), [_POINT, _MOMENTUM, _VELOCITY, _ENERGY]),
+    "Veselova": (lambda: run_of(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0]))), [_AXIS, _VELOCITY, _SPATIAL, _ENERGY]),
+    "Veselova of SO(4)": (
+        lambda: run_of(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0, 4.0]))),
+        [_VELOCITY, _SPATIAL, _ENERGY],
+    ),
+    "plate": (
+        lambda: run_of(nh.LRSystem(nh.SE(2), body_tensor(2), [[1.0, 0, 0], [0, 1.0, 0]])),
+        [_POINT, _VELOCITY, _SPATIAL, _ENERGY],
+    ),
+    "plate that cannot move": (
+        lambda: run_of(nh.LRSystem(nh.SE(2), body_tensor(2), np.empty((0, 3))), reconstruct=False),
+        [_SPATIAL],
+    ),
+    "Heisenberg": (lambda: made_up(_any(_HEISENBERG, 2)), [_PORTRAIT, _VELOCITY, _ENERGY]),
+    "product": (lambda: made_up(_any(_PRODUCT, 4)), [_MOMENTUM, _VELOCITY, _ENERGY]),
+    "translations": (lambda: made_up(_any(nh.Translations(9), 9)), [_MOMENTUM, _VELOCITY, _ENERGY]),
+    "no poses": (
+        lambda: run_of(_left(nh.SE(3), np.eye(6)[:4]), reconstruct=False),
+        [_MOMENTUM, _VELOCITY, _ENERGY],
+    ),
+    "Veselova without poses": (
+        lambda: run_of(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), reconstruct=False),
+        [_SPATIAL],
+    ),
+    "one state": (lambda: run_of(_left(nh.SE(3), np.eye(6)[:4]))[:1], [_POINT, _MOMENTUM, _VELOCITY, _ENERGY]),
+}
+
+
+def _titles(orbit: nh.Orbit, **options: object) -> list[str]:
+    axes = nh.plot.overview(orbit, **options).axes
+    return [title for one in axes if (title := one.get_title(loc="left"))]
+
+
+@pytest.mark.parametrize(("make", "titles"), CASES.values(), ids=CASES)
+def test_panels(make: Callable[[], nh.Orbit], titles: list[str]) -> None:
+    """Each orbit has the panels that are defined for it, the large one first, and none is a failure."""
+    assert _titles(make()) == titles
+
+
+def test_every_system_is_tried() -> None:
+    """No final system is missing here or in `test_overview`, which draws the sleigh of the plane."""
+    assert {type(make().system) for make, _ in CASES.values()} | {nh.ChaplyginSleigh} == set(SYSTEMS)
+
+
+@pytest.mark.parametrize("name", ["sleigh of SE(3)", "Veselova of SO(4)", "translations"])
+def test_pictures_are_saved(name: str, tmp_path: object) -> None:
+    """Panels in three dimensions, panels against time alone, and many lines are saved without a warning."""
+    CASES[name][0]().plot(tmp_path / "a.png")
+    assert (tmp_path / "a.png").stat().st_size > 10_000
+
+
+def test_a_flow_beside_and_alone() -> None:
+    """A flow of a right-invariant system has the same panels, alone and beside the discrete orbit."""
+    orbit = CASES["plate"][0]()
+    flow = nh.flow(orbit.system, restricted_velocity=0.6 * np.cos(np.arange(2)), times=np.linspace(0.0, 4.0, 20))
+    titles = CASES["plate"][1]
+    assert _titles(flow) == titles
+    assert _titles(orbit, flow=flow) == titles
+    assert nh.plot.energy_error(flow).expected.get_text() == "error of the solver"
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [("dart", "exact by theorem, up to rounding"), ("Veselova", "not exact for this discretization")],
+)
+def test_the_energy_panel_says_what_to_expect(name: str, words: str) -> None:
+    """The panel says whether a theorem makes the energy exact, and the measured error agrees with it."""
+    orbit = CASES[name][0]()
+    assert nh.plot.energy_error(orbit).expected.get_text() == words
+    assert (np.ptp(orbit.energy) < 1e-14) == words.startswith("exact")
+
+
+def test_energy_without_poses_is_refused() -> None:
+    """The energy of a right-invariant system needs poses, and the refusal says how to get them."""
+    with pytest.raises(ValueError, match=r"`energy_error\(orbit=...\)` must have poses. .* reconstruct=True"):
+        nh.plot.energy_error(CASES["Veselova without poses"][0]())
+
+
+def test_large_panel_is_not_a_constant() -> None:
+    """The conserved momenta of a right-invariant constraint never fill the large panel if there is another one."""
+    orbit = CASES["Veselova of SO(4)"][0]()
+    assert np.ptp(orbit.restricted_momentum, axis=0).max() < 1e-14
+    assert len(panels_of(orbit, None)) == 3
+    assert _titles(orbit)[0] != _SPATIAL
+
+
+def test_momentum_sphere_is_the_energy_level() -> None:
+    """Points have the length of their energy, and their directions turned back are the momenta."""
+    orbit = run_of(nh.RigidBody(np.diag([1.0, 3.0, 2.0])), steps=30)
+    drawn = nh.plot.momentum_sphere(orbit)
+    assert np.allclose(np.linalg.norm(drawn.points, axis=1), 1.0, atol=1e-14)
+    back = np.sqrt(2 * orbit.energy[0]) * drawn.points * np.sqrt([5.0, 3.0, 4.0])  # principal moments
+    assert np.allclose(back, orbit.momentum, atol=1e-13)
+    assert drawn.stable is None
+
+
+def test_momentum_sphere_ends_at_the_stable_equilibrium() -> None:
+    """A long motion of a top of SO(4) ends where the filled dot is drawn, opposite to the empty one."""
+    drawn = nh.plot.momentum_sphere(run_of(nh.SuslovTop(body_tensor(4)[:4, :4]), steps=2000))
+    end = drawn.view(drawn.points[-1])[0]
+    assert np.allclose(drawn.stable.get_offsets()[0], end, atol=1e-3)  # it approaches exponentially
+    assert np.allclose(drawn.unstable.get_offsets(), -drawn.stable.get_offsets())
+
+
+def test_momentum_sphere_refuses_other_dimensions() -> None:
+    """Two directions and right-invariant constraints are refused, with what to draw instead."""
+    with pytest.raises(ValueError, match=r"three-dimensional constraint subspace. Got dimension 2. Use `phase_portr"):
+        nh.plot.momentum_sphere(CASES["two"][0]())
+    with pytest.raises(ValueError, match=r"must have a left-invariant constraint. .* draw `overview`"):
+        nh.plot.momentum_sphere(CASES["Veselova of SO(4)"][0]())
+
+
+def test_point_track_shows_the_positions() -> None:
+    """The track is the path of the reference point; of SE(4) the three largest coordinates are shown."""
+    plane = CASES["plate"][0]()
+    assert np.array_equal(nh.plot.point_track(plane).points, plane.position)
+    four = CASES["sleigh of SE(4)"][0]()
+    drawn = nh.plot.point_track(four)
+    left_out = set(range(4)) - set(drawn.coordinates)
+    assert left_out == {int(np.argmin(np.ptp(four.position, axis=0)))}
+    assert np.array_equal(drawn.points, four.position[:, drawn.coordinates])
+
+
+def test_point_track_refusals(top_orbit: nh.Orbit) -> None:
+    """Rotations, missing poses and flat axes for motions of space are refused in words."""
+    with pytest.raises(ValueError, match=r"must be an orbit on SE\(n\). Got SO\(3\). Use `body_axis_track`"):
+        nh.plot.point_track(top_orbit)
+    with pytest.raises(ValueError, match="must have poses"):
+        nh.plot.point_track(CASES["no poses"][0]())
+    flat = nh.plot.energy_error(top_orbit).axes
+    with pytest.raises(ValueError, match=r"must be axes of dimension 3. .* projection=\"3d\""):
+        nh.plot.point_track(CASES["dart"][0](), axes=flat)
+
+
+def test_axis_of_the_constraint_is_marked() -> None:
+    """For a Veselova top the vertical is marked; for a free body its spatial momentum, the same in every state."""
+    assert nh.plot.body_axis_track(CASES["Veselova"][0]()).fixed_axis.tolist() == [0.0, 0.0, 1.0]
+    free = CASES["free top"][0]()
+    axis = nh.plot.body_axis_track(free).fixed_axis
+    last = free.spatial_momentum[-1]
+    assert np.allclose(axis, last / np.linalg.norm(last), atol=1e-14)
+
+
+def test_any_body_axis() -> None:
+    """A body axis of the user's choice is scaled to length one and carried along; a zero vector is refused."""
+    orbit = CASES["free top"][0]()
+    assert np.allclose(nh.plot.body_axis_track(orbit, body_axis=(0, 2, 0)).points, orbit.configuration[:, :, 1])
+    with pytest.raises(ValueError, match=r"`body_axis_track\(body_axis=...\)` must have a direction"):
+        nh.plot.body_axis_track(orbit, body_axis=(0, 0, 0))
+
+
+def test_portraits_of_any_plane() -> None:
+    """A plane of a general system has levels, orbit and the line of equilibria; right-invariant ones are refused."""
+    operator = np.eye(3) + 0.3 * (np.eye(3, k=2) + np.eye(3, k=-2))  # the center of the group moves the momenta
+    system = nh.LLSystem(_HEISENBERG, constraint_subspace=np.eye(3)[:2], inertia_operator=operator)
+    drawn = nh.plot.phase_portrait(system, made_up(system))
+    assert len(drawn.levels) == 4
+    assert drawn.neutral is None
+    assert np.abs(drawn.stable.get_offsets()[:, 0]).max() < 1e-15  # momenta in d move where the first is not zero
+    assert len(drawn.arrows) == 8
+    with pytest.raises(ValueError, match=r"must have a left-invariant constraint"):
+        nh.plot.phase_portrait(CASES["plate"][0]().system)
+
+
+@pytest.mark.parametrize("name", ["top of SO(4)", "sleigh of SE(4)", "translations"])
+def test_animations_of_other_systems_are_refused(name: str, tmp_path: object) -> None:
+    """What has no moving picture is refused before anything is written, and the still picture is named."""
+    with pytest.raises(ValueError, match=r"must move on SO\(3\), SE\(2\) or SE\(3\). Got .* Use `overview`"):
+        nh.plot.animate(CASES[name][0](), tmp_path / "a.gif")
+    assert not (tmp_path / "a.gif").exists()
+
+
+@pytest.mark.parametrize("group", [nh.SO(2), nh.SO(3), nh.SO(12), nh.SE(2), nh.SE(3), nh.SE(4), _PRODUCT], ids=repr)
+def test_one_name_for_each_component(group: object) -> None:
+    """Every component of a velocity has its own name."""
+    assert len(set(velocity_names(group))) == group.dim

@@ -1,0 +1,142 @@
+"""The overview: its panels for every kind of orbit, its files, and that no settings leak."""
+
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from PIL import Image
+from plot.runs import MASS_TENSOR, sleigh_run, top_run
+
+import nonholo as nh
+
+TITLES = {
+    "top": ["Forbidden body axis in space", "Phase portrait", "Body velocity", "Energy error"],
+    "sleigh": ["Track of the blade", "Phase portrait", "Heading and speed", "Energy error"],
+    "no poses": ["Phase portrait", "Body velocity", "Energy error"],
+}
+FEW = {
+    "one state": lambda: top_run((0.4, 0.9, 0.0), steps=1)[:1],
+    "two states": lambda: top_run((0.4, 0.9, 0.0), steps=1),
+    "top at rest": lambda: top_run((0.0, 0.0, 0.0), steps=3),
+    "sleigh at rest": lambda: sleigh_run((0.0, 0.0, 0.0), steps=3),
+    "balanced sleigh": lambda: sleigh_run((1.0, 0.0, 0.0), a=0.0, steps=30),
+    "backward sleigh": lambda: sleigh_run((0.3, 1.0, 0.0), a=-0.5, steps=150),
+    "thinned top": lambda: top_run((0.4, 0.9, 0.0), steps=600, save_every=20),
+}
+
+
+def _titles(orbit: nh.Orbit, **options: nh.Orbit) -> list[str]:
+    axes = nh.plot.overview(orbit, **options).axes
+    return [title for one in axes if (title := one.get_title(loc="left"))]
+
+
+def test_panels(top_orbit: nh.Orbit, sleigh_orbit: nh.Orbit) -> None:
+    """A top and a sleigh have four panels, an orbit without poses three."""
+    assert _titles(top_orbit) == TITLES["top"]
+    assert _titles(sleigh_orbit) == TITLES["sleigh"]
+    assert _titles(top_run((0.4, 0.9, 0.0), steps=20, reconstruct=False)) == TITLES["no poses"]
+    assert _titles(sleigh_run((0.1, -1.0, 0.0), steps=20, reconstruct=False)) == TITLES["no poses"]
+
+
+@pytest.mark.profile("paper", instead="test_a_flow_beside_and_alone")
+def test_panels_of_flows(sleigh_orbit: nh.Orbit) -> None:
+    """A continuous orbit has the same panels, forwards and backwards in time, and can accompany a discrete one."""
+    system = sleigh_orbit.system
+    forwards, backwards = (
+        nh.flow(system, body_velocity=(0.3, 1.0, 0.0), times=np.linspace(0.0, end, 100)) for end in (20.0, -20.0)
+    )
+    assert _titles(forwards) == TITLES["sleigh"]
+    assert _titles(backwards) == TITLES["sleigh"]
+    assert _titles(sleigh_orbit, flow=forwards) == TITLES["sleigh"]
+
+
+@pytest.mark.profile("paper", keep=["one state", "top at rest", "backward sleigh"])
+@pytest.mark.parametrize("run", FEW.values(), ids=FEW)
+def test_unusual_orbits_are_drawn(run: object, tmp_path: Path) -> None:
+    """Short, resting, balanced and thinned orbits are drawn and saved without a warning."""
+    nh.plot.overview(run(), tmp_path / "few.png")
+    assert (tmp_path / "few.png").stat().st_size > 10_000
+
+
+def test_series_are_the_velocities(top_orbit: nh.Orbit, sleigh_orbit: nh.Orbit) -> None:
+    """The panels of velocity hold the free components; those of the sleigh its heading over pi and its speed."""
+    lines = nh.plot.overview(top_orbit).axes[2].lines
+    assert np.array_equal(lines[0].get_ydata(), top_orbit.body_velocity[:, 0])
+    assert np.array_equal(lines[1].get_ydata(), top_orbit.body_velocity[:, 1])
+    figure = nh.plot.overview(sleigh_orbit)
+    heading = next(axes for axes in figure.axes if "heading" in axes.get_ylabel())
+    speed = next(axes for axes in figure.axes if "speed" in axes.get_ylabel())
+    assert np.allclose(heading.lines[0].get_ydata() * np.pi, sleigh_orbit.heading)
+    assert np.array_equal(speed.lines[0].get_ydata(), sleigh_orbit.body_velocity[:, 1])
+
+
+def test_words_name_system_step_and_outcome(sleigh_orbit: nh.Orbit) -> None:
+    """The head of the figure tells the parameters, the number and size of steps, and why a run stopped."""
+    words = " ".join(text.get_text() for text in nh.plot.overview(sleigh_orbit).texts)
+    assert "Chaplygin sleigh" in words
+    assert "$a$ = 0.5,  $b$ = 0.3" in words
+    assert "200 steps of $h$ = 0.1" in words
+    discrete = nh.discretize(nh.SuslovTop(MASS_TENSOR), 1.0)
+    stopped = nh.simulate(discrete, body_velocity=(0.4, 0.9, 0.0), steps=40, throw=False)
+    assert any("stopped: no_real_branch" in text.get_text() for text in nh.plot.overview(stopped).texts)
+
+
+@pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
+def test_files(suffix: str, sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:
+    """The suffix chooses the format, and `Orbit.plot` is the same picture."""
+    path = tmp_path / f"picture.{suffix}"
+    sleigh_orbit.plot(str(path))
+    assert path.stat().st_size > 10_000
+    if suffix == "png":
+        with Image.open(path) as picture:
+            assert picture.size == (1950, 1140)
+    if suffix == "svg":
+        assert ">Chaplygin sleigh</text>" in path.read_text()
+
+
+def test_refuses_other_suffixes(sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:
+    """A suffix that is no picture format is refused before anything is drawn."""
+    with pytest.raises(ValueError, match=r"`overview\(path=...\)` must end in a picture format"):
+        nh.plot.overview(sleigh_orbit, tmp_path / "picture.zarr")
+
+
+@pytest.mark.parametrize("draw", ["plot", "overview", "animate"])
+def test_older_pictures_are_kept(draw: str, sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:
+    """A picture at the path is kept unless it is to be replaced; a folder is never replaced."""
+    path = tmp_path / ("a.gif" if draw == "animate" else "a.png")
+    functions = {
+        "plot": lambda **options: sleigh_orbit.plot(str(path), **options),
+        "overview": lambda **options: nh.plot.overview(sleigh_orbit, path, **options),
+        "animate": lambda **options: nh.plot.animate(sleigh_orbit, path, frames=2, **options),
+    }
+    path.write_text("mine")
+    with pytest.raises(FileExistsError, match=r"must be new\. Got .* or pass overwrite=True"):
+        functions[draw]()
+    assert path.read_text() == "mine"
+    functions[draw](overwrite=True)
+    assert path.read_bytes() != b"mine"
+    path.unlink()
+    path.mkdir()
+    with pytest.raises(FileExistsError, match="not a file"):
+        functions[draw](overwrite=True)
+
+
+def test_global_settings_are_unchanged(sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:
+    """Drawing and saving leave matplotlib's settings as they were."""
+    before = dict(mpl.rcParams)
+    nh.plot.overview(sleigh_orbit, tmp_path / "picture.png")
+    assert dict(mpl.rcParams) == before
+
+
+def test_flows_with_few_times_have_smooth_curves() -> None:
+    """Two requested times, forward or backward, give the curve of the flow; a flow from elsewhere has its states."""
+    sleigh = nh.ChaplyginSleigh(1.0, 0.75, 0.5)
+    for times in ((0.0, 10.0), (10.0, 0.0)):
+        flow = nh.flow(sleigh, body_velocity=(1.0, 0.5, 0.0), times=times)
+        track = nh.plot.overview(flow).axes[0].collections[0].get_paths()
+        points = np.concatenate([path.vertices for path in track])
+        exact = nh.flow(sleigh, body_velocity=(1.0, 0.5, 0.0), times=np.linspace(*times, 4000), method="closed_form")
+        assert len(points) > 500
+        gaps = np.abs(points[::50, None] - exact.position[None]).max(axis=-1).min(axis=1)
+        assert gaps.max() < 0.01
