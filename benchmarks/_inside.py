@@ -33,7 +33,7 @@ HOMES = {
     "kernels": "nonholo",
     "loop_in_jax": "nonholo.lagrange_dalembert._discretization:_advance",
     "in_double_precision": "nonholo.lagrange_dalembert._room:in_double",
-    "located": "nonholo.discrete.certificate._certificate",
+    "locate": "nonholo.discrete.certificate._certificate",
     "Located": "nonholo.discrete.certificate._certificate",
     "problem_of": "nonholo.discrete.certificate._roots",
     "published": "",  # of the tests

@@ -19,7 +19,7 @@ from collections.abc import Callable
 
 import numpy as np
 from _command import options, small
-from _inside import Branches, Located, enclosures, frame_of, located, problem_of
+from _inside import Branches, Located, enclosures, frame_of, locate, problem_of
 
 import nonholo as nh
 
@@ -88,7 +88,7 @@ def disagreement(certified: Branches, found: Branches) -> str:
 
 def count(discrete: nh.Discretization, canonical: np.ndarray) -> list[Located]:
     """Count the values over canonical restricted momenta."""
-    return located(problem_of(discrete.system.canonical.normal_form, float(discrete.time_step), canonical))
+    return locate(problem_of(discrete.system.canonical.normal_form, float(discrete.time_step), canonical))
 
 
 def miscounted(found: list[Located]) -> bool:

@@ -101,7 +101,7 @@ def main() -> None:
         for h in (0.1, 0.005):
             routes = {kind: nh.discretize(each, h).route for kind, each in forced(system, given.steps).items()}
             routes = {"free": nh.discretize(system, h).route} | routes
-            counts = {kind: 200 if route.compiled is None else given.steps for kind, route in routes.items()}
+            counts = {kind: 200 if route.compiled_route is None else given.steps for kind, route in routes.items()}
             taken: dict[str, list[float]] = {kind: [] for kind in routes}
             ends = {}
             for _ in range(given.rounds + 1):

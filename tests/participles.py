@@ -25,11 +25,11 @@ ARGUED = {
     "compiled": "a public option of `check_group`",
 }
 MEMBERS = {
-    *("chosen", "displaced", "drawn", "ended", "enlarged", "expected", "failed", "found", "isolated", "joined"),
-    *("missed", "passed", "turned"),
-    *("added", "done", "finished", "made"),
+    *("added", "carried", "certified", "chosen", "displaced", "done", "drawn", "ended", "enlarged", "expected"),
+    *("failed", "finished", "found", "isolated", "joined", "made", "missed", "moved", "passed", "turned"),
+    "uncertified",
 }
-"""Public attributes and methods of orbits, motions, logs of events, pictures and reports; keys of stores."""
+"""Public attributes and methods of systems, orbits, branches, logs of events, pictures and reports; keys of stores."""
 MOST = 40
 _IRREGULAR = re.compile(
     "begun|broken|brought|built|caught|chosen|done|drawn|felt|found|given|gone|grown|held|hidden|kept|known|lost|made|"

@@ -109,7 +109,7 @@ DOCTESTS = {  # examples that compile for long
     f"{_DALEMBERT}_orbit.CoordinateOrbit": "routes",
     "nonholo.examples._points.particle": "routes",
     "nonholo.ensembles._family_task.FamilyTask": "routes",
-    "nonholo.discrete._consistency.consistency_defect": "routes",
+    "nonholo.discrete._discretize.consistency_defect": "routes",
     "nonholo.examples._cars.two_wheeled_robot": "routes",
     "nonholo.analysis.steering._feedback.tracking_feedback": "routes",
     "nonholo.analysis.steering._steer.steer": "routes",

@@ -78,7 +78,7 @@ def test_a_closed_form_stands_in_three_files(body: str) -> None:
     """The rooms that run it name a body in the places that the page lists: kernel, export and entry."""
     files = [file for room in ("kernels", "discrete", "simulation") for file in (LIBRARY / room).rglob("*.py")]
     named = {str(file.relative_to(LIBRARY)) for file in files if re.search(body, file.read_text())}
-    listed = {"kernels/__init__.py", "discrete/routes/_closed_forms.py"}
+    listed = {"kernels/__init__.py", "discrete/routes/_normal_forms.py"}
     assert all(f"`{place}`" in PAGE for place in listed)
     assert listed <= named
     assert [str(Path(place).parent) for place in named - listed] == ["kernels"]

@@ -76,13 +76,13 @@ class ContinuousFlow(AbstractMotion):
         """The system with its forces; None of a free one."""
         return self.system.forces
 
-    def first(self, start: Start, *, posed: bool) -> First:
+    def first(self, start: Start, *, with_poses: bool) -> First:
         """Return the checked start of a flow with poses or without."""
         system = self.system
         g = start.pose(system.group) if system.is_spatial or start.configuration is not None else None
         reduced = start.momentum(system, g)
         full = start.name == "momentum" and np.shape(start.value) != (system.rank,)
-        pose = start.canonical_pose(system, g) if posed else np.empty(0)
+        pose = start.canonical_pose(system, g) if with_poses else np.empty(0)
         return First((reduced, pose), np.asarray(start.value, dtype=np.float64) if full else None)
 
     def at(self, states: Orbit, times: Any) -> Orbit:

@@ -12,8 +12,7 @@ import numpy as np
 
 from nonholo.base.numerics import applied
 from nonholo.base.types import Float
-from nonholo.discrete._legendre import legendre, matrix_legendre
-from nonholo.discrete._scheme import Scheme
+from nonholo.discrete._scheme import Scheme, legendre, matrix_legendre
 from nonholo.kernels import decoding
 from nonholo.orbit import Decoder
 
@@ -65,8 +64,8 @@ class ClosedDisplacementDecoder:
 
     def displacement(self, charts: Float[np.ndarray, "... 2"]) -> Float[np.ndarray, "... 3 3"]:
         """Return the displacements as matrices."""
-        found = decoding.read(decoding.write_displacements, self.numbers, (charts.reshape(-1, 2),), (3, 3))
-        return found.reshape(*charts.shape[:-1], 3, 3)
+        matrices = decoding.read(decoding.write_displacements, self.numbers, (charts.reshape(-1, 2),), (3, 3))
+        return matrices.reshape(*charts.shape[:-1], 3, 3)
 
     def multipliers(
         self, charts: Float[np.ndarray, "K 2"], following: Float[np.ndarray, "K 2"]
@@ -99,8 +98,8 @@ def step_jacobians(discrete: Scheme, W: Float[np.ndarray, "... N N"]) -> Float[n
     if discrete.variety.exact:
         after, before = (momentum_slope(discrete, V) for V in (group.inverse(W), W))
         return after @ np.linalg.inv(before)
-    (after, _), tied = (_all_slopes(discrete, V) for V in (group.inverse(W), W))
-    return after @ np.linalg.inv(np.concatenate(tied, axis=-2))[..., : system.rank]
+    (after, _), slopes = (_all_slopes(discrete, V) for V in (group.inverse(W), W))
+    return after @ np.linalg.inv(np.concatenate(slopes, axis=-2))[..., : system.rank]
 
 
 def _all_slopes(discrete: Scheme, W: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -125,5 +124,5 @@ def momentum_slope(
     sum_, X = (W + system.group.identity)[..., None, :, :], W - system.group.identity
     dW = sum_ @ (rows if directions is None else directions) @ sum_ / 2
     arm = dW @ tensor @ star(X)[..., None, :, :]
-    turned = (W @ tensor)[..., None, :, :] @ star(dW)
-    return np.einsum("iab,...jba->...ij", rows, arm + turned)
+    twist = (W @ tensor)[..., None, :, :] @ star(dW)
+    return np.einsum("iab,...jba->...ij", rows, arm + twist)

@@ -11,7 +11,7 @@ import scipy  # its parts load on first use
 from nonholo.base.checks import array, choice, error, scale, shape_of, symmetric
 from nonholo.base.types import Array, Float
 from nonholo.discrete._discretization import Discretization, as_discretization
-from nonholo.discrete._legendre import legendre
+from nonholo.discrete._scheme import legendre
 from nonholo.groups import SO
 
 

@@ -9,16 +9,14 @@ import numpy as np
 from nonholo.base.checks import error, needs, shape_of, shown, trailing
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome, OutcomeError
-from nonholo.base.types import Array, Float
-from nonholo.discrete._composition import refuse_composition, weights
+from nonholo.base.types import Float
 from nonholo.discrete._decoder import AnyDisplacementDecoder, displacement_decoder
-from nonholo.discrete._legendre import legendre
 from nonholo.discrete._pytrees import pytree
-from nonholo.discrete._scheme import Difference, Scheme
-from nonholo.discrete._variety import Constraint, equations_of
+from nonholo.discrete._scheme import Scheme, legendre, refuse_composition, weights
+from nonholo.discrete._variety import equations_of
 from nonholo.discrete.routes import AbstractBodyStepper, AbstractRoute, make_route
 from nonholo.orbit import AbstractMotion, First, Orbit, turned_near
-from nonholo.systems import Forced, Slip, Start, System, Widened, in_group, of_finite_energy, refuse_forces
+from nonholo.systems import Forced, Slip, Start, Widened, in_group, of_finite_energy, refuse_forces
 
 _TOLERANCE = 1e-9  # relative, for matrices and momenta that a user computed in floating point
 
@@ -41,16 +39,10 @@ class Discretization(Scheme, AbstractMotion):
             difference='matrix', constraint='skew', order=2)
     """
 
-    system: System
-    time_step: Array
-    difference: Difference = "matrix"
-    constraint: Constraint = "skew"
-    order: int = 2
     wanted_route: str | None = dataclasses.field(default=None, repr=False, kw_only=True, metadata={"stored": False})
     """The route of a store that was begun by another one than the best; see `make_route`."""
     starts: ClassVar[tuple[str, ...]] = ("body_velocity", "displacement", "momentum", "restricted_velocity")
-    leaves: ClassVar[tuple[str, ...]] = ("system", "time_step")
-    structure: ClassVar[tuple[str, ...]] = ("difference", "constraint", "order", "wanted_route")
+    structure: ClassVar[tuple[str, ...]] = (*Scheme.structure, "wanted_route")
 
     @functools.cached_property
     def route(self) -> AbstractRoute:
@@ -64,19 +56,19 @@ class Discretization(Scheme, AbstractMotion):
 
     @functools.cached_property
     def _steppers(self) -> tuple[AbstractBodyStepper, ...]:
-        return tuple(self.route.stepper(self, posed=posed) for posed in (False, True))
+        return tuple(self.route.stepper(self, with_poses=with_poses) for with_poses in (False, True))
 
-    def stepper(self, *, posed: bool) -> AbstractBodyStepper:
+    def stepper(self, *, with_poses: bool) -> AbstractBodyStepper:
         """Return what takes the steps of the principal branch, and saves poses or not."""
-        return self._steppers[posed]
+        return self._steppers[with_poses]
 
-    def first(self, start: Start, *, posed: bool) -> First:
+    def first(self, start: Start, *, with_poses: bool) -> First:
         """Return the checked start of a run whose rows have poses or not: one may be large."""
         system, g = self.system, None
-        if start.configuration is not None or (posed and system.is_spatial):
+        if start.configuration is not None or (with_poses and system.is_spatial):
             g = start.pose(system.group)
-        reduced, demanded = initial_state(self, start, g if posed else None)
-        return First((reduced, start.canonical_pose(system, g) if posed else np.empty(0)), demanded)
+        reduced, demand = initial_state(self, start, g if with_poses else None)
+        return First((reduced, start.canonical_pose(system, g) if with_poses else np.empty(0)), demand)
 
     @functools.cached_property
     def forces(self) -> Forced | None:
@@ -180,8 +172,8 @@ class Discretization(Scheme, AbstractMotion):
             return states
         momenta, charts, pose = self.route.parts(states, fractions)
         pose = None if states.canonical_pose is None else pose
-        turned = None if states.turned is None or pose is None else turned_near(states.turned, pose)
-        rows = {"reduced_momentum": momenta, "cayley": charts, "canonical_pose": pose, "turned": turned}
+        headings = None if states.turned is None or pose is None else turned_near(states.turned, pose)
+        rows = {"reduced_momentum": momenta, "cayley": charts, "canonical_pose": pose, "turned": headings}
         step, time = states.step + fractions.astype(np.int64), states.time + fractions * self.time_step
         return dataclasses.replace(states, time=time, step=step, **rows)
 
@@ -193,8 +185,8 @@ class Discretization(Scheme, AbstractMotion):
         if not self.variety.exact:
             return equations_of(self.variety, D)
         group = self.system.group
-        moved = group.log(D) if self.variety.exponential else group.vee(D - group.inverse(D)) / 2
-        return applied(self.variety.annihilator, moved)
+        coordinates = group.log(D) if self.variety.exponential else group.vee(D - group.inverse(D)) / 2
+        return applied(self.variety.annihilator, coordinates)
 
     def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
         """Return the discrete momenta at the displacements, of a composition at those of first substeps."""
@@ -236,10 +228,10 @@ class Discretization(Scheme, AbstractMotion):
         forced, h = cast(Forced, self.forces), float(self.time_step)
         rows, size, momenta = cast(Slip, forced.slip), np.linalg.norm(slip, axis=1), states.restricted_momentum.copy()
         momenta[:, : -len(rows.rows)] = 0.0
-        lost = forced.constrained_energy(momenta)[:-1]
+        losses = forced.constrained_energy(momenta)[:-1]
         turns = (momenta[1:] == -momenta[:-1]).all(axis=1)
         slid = np.where(size > 0, rows.grip, 0.0) * size + rows.viscous * size**2 / h
-        return -np.where((momenta[1:] == 0).all(axis=1), lost, np.where(turns, 0.0, slid))
+        return -np.where((momenta[1:] == 0).all(axis=1), losses, np.where(turns, 0.0, slid))
 
     def multipliers(self, states: Orbit) -> Float[np.ndarray, "L s"]:
         r"""Return the impulses $\lambda$ in $P_{k+1} - \mathrm{Ad}^*_{W_k} P_k = \sum_j \lambda_j a^j$.
@@ -251,7 +243,7 @@ class Discretization(Scheme, AbstractMotion):
         refuse_composition("Orbit.multipliers", self, remedy)
         before, after = states.chosen(slice(None, -1)), states.chosen(slice(1, None))
         if not states.has_every_step:
-            after = self._computed(before, after)
+            after = self._next_states(before, after)
         if self.forces is None and not self.system.is_spatial:
             return self.displacement_decoder.multipliers(before.canonical_chart, after.canonical_chart)
         arriving = self._momentum(before, before.canonical_chart, "right")
@@ -267,7 +259,7 @@ class Discretization(Scheme, AbstractMotion):
         jump = _in_body(self, after.canonical_chart, g, "left") - arriving
         return applied(to_multipliers, group.coadjoint(group.inverse(g), jump))
 
-    def _computed(self, before: Orbit, after: Orbit) -> Orbit:
+    def _next_states(self, before: Orbit, after: Orbit) -> Orbit:
         """Return the states one step after others, whose displacements count, instead of those that were saved."""
         if before.branch != "principal":
             got = f"branch {before.branch!r} and {len(before) + 1} states with others between, which are not known"
@@ -282,8 +274,8 @@ class Discretization(Scheme, AbstractMotion):
         if self.is_balanced:  # the same at both ends
             return half * self.mean_force(states)
         steps, momenta = states.step + shift, states.restricted_momentum
-        found = forced.impulses(momenta, states.configuration, states.time, steps, half)
-        return found if shift == 0 else -found
+        impulses = forced.impulses(momenta, states.configuration, states.time, steps, half)
+        return impulses if shift == 0 else -impulses
 
     def _momentum(self, states: Orbit, cayley: np.ndarray, side: str) -> np.ndarray:
         if self.system.is_spatial:
@@ -296,11 +288,11 @@ def _in_body(discrete: Discretization, cayley: np.ndarray, g: np.ndarray, side: 
     return legendre(discrete, discrete.system.group.inverse(g) @ discrete.variety.increment(cayley) @ g, side)
 
 
-def as_discretization(where: str, value: Any, *, composed: bool = False, forced: bool = False) -> Discretization:
+def as_discretization(where: str, value: Any, *, compositions: bool = False, forced: bool = False) -> Discretization:
     """Refuse what is not a discretized system on a group, and compositions and forces unless they are welcome."""
     if not isinstance(value, Discretization):
         raise error(where, "be a discretized system on a group", shown(value), "Pass what `discretize` returned.")
-    if not composed:
+    if not compositions:
         refuse_composition(where, value, "Pass the discretization of order 2 that is composed.")
     if not forced:
         refuse_forces(where, value.system)
@@ -326,13 +318,13 @@ def initial_state(
     return start.momentum(system, g), np.asarray(start.value, dtype=np.float64) if full else None
 
 
-def check_first_state(demanded: np.ndarray, there: Orbit) -> None:
+def check_first_state(demand: np.ndarray, there: Orbit) -> None:
     """Refuse a start whose displacement or full momentum is not that of the principal root, which is the first one."""
-    if demanded.ndim == 2:
-        found, outcome = there.displacement[0], Outcome.branch_unverified
+    if demand.ndim == 2:
+        value, outcome = there.displacement[0], Outcome.branch_unverified
     else:
-        found, outcome = there.momentum[0], Outcome.off_momentum_locus
-    if np.linalg.norm(demanded - found) > _TOLERANCE * np.linalg.norm(found):
+        value, outcome = there.momentum[0], Outcome.off_momentum_locus
+    if np.linalg.norm(demand - value) > _TOLERANCE * np.linalg.norm(value):
         raise OutcomeError(outcome, "Start of the run", there.chosen(slice(0, 0)))
 
 
@@ -340,14 +332,14 @@ def on_variety(where: str, discrete: Scheme, g: np.ndarray | None, displacement:
     """Return a displacement whose place on the variety is checked, refused with its forbidden part."""
     system, group = discrete.system, discrete.system.group
     W = in_group(where, group, displacement)
-    seen = g @ W @ group.inverse(g) if system.is_spatial else W
-    logarithm = group.log(seen)
+    in_frame = g @ W @ group.inverse(g) if system.is_spatial else W
+    logarithm = group.log(in_frame)
     if discrete.variety.exact:
         forbidden, what = system.annihilator @ logarithm, "a logarithm with forbidden part"
         remedy = "Build it as `group.exp(x)` with x admissible."
     else:
-        frame = system.frame
-        forbidden, what = equations_of(discrete.variety, group.inverse(frame) @ seen @ frame), "equations with residual"
+        canonical = group.inverse(system.frame) @ in_frame @ system.frame
+        forbidden, what = equations_of(discrete.variety, canonical), "equations with residual"
         remedy = "Start from a velocity, or take a row of `orbit.displacement`: exp d is not this variety."
     if np.linalg.norm(forbidden) > _TOLERANCE * max(1.0, float(np.linalg.norm(logarithm))):
         got = f"{what} {np.array2string(forbidden, precision=6)}"

@@ -1,15 +1,14 @@
-"""`discretize`: the choice of the discrete Lagrangian and the variety, checked."""
+"""`discretize`: the choice of the discrete Lagrangian and the variety, checked; and whether the two fit."""
 
 from collections.abc import Callable
 from typing import Any, overload
 
 import numpy as np
 
-from nonholo.base.checks import choice, error, needs, scale
+from nonholo.base.checks import choice, error, function, needs, scale
 from nonholo.base.types import Array
-from nonholo.discrete._composition import checked_order
-from nonholo.discrete._discretization import Discretization
-from nonholo.discrete._scheme import Difference
+from nonholo.discrete._discretization import Discretization, as_discretization
+from nonholo.discrete._scheme import Difference, checked_order
 from nonholo.discrete._variety import Constraint, checked_constraint
 from nonholo.systems import (
     AbstractCoordinateSystem,
@@ -82,22 +81,22 @@ def discretize(
         return system.discretize(time_step)
     as_system("discretize(system=...)", system)
     step = scale("discretize(time_step=...)", time_step, "Pass a positive real time step.")
-    chosen = _difference(system, difference)
+    lagrangian = _difference(system, difference)
     variety = _constraint(system, constraint)
-    made = Discretization(system, step, chosen, variety, checked_order(order, chosen, variety))
-    if made.forces is not None:
-        _ = made.route  # refused here where there is none
-    return made
+    discrete = Discretization(system, step, lagrangian, variety, checked_order(order, lagrangian, variety))
+    if discrete.forces is not None:
+        _ = discrete.route  # refused here where there is none
+    return discrete
 
 
 def _difference(system: AbstractSystem, difference: Difference | None) -> Difference:
-    where, defined = "discretize(difference=...)", system.is_wide or system.homogeneous_mass_tensor is not None
+    where, is_defined = "discretize(difference=...)", system.is_wide or system.homogeneous_mass_tensor is not None
     if difference is None:
-        return "matrix" if defined else "logarithmic"
+        return "matrix" if is_defined else "logarithmic"
     if callable(difference):
         return _scalar(where, system, difference)
     choice(where, difference, ("matrix", "logarithmic"), "Or pass a callable L_d(W).")
-    if difference == "matrix" and not defined:
+    if difference == "matrix" and not is_defined:
         got = "a kinetic energy given by an inertia operator, which says nothing of W - I outside the algebra"
         remedy = "Pass 'logarithmic', or build the system of a mass tensor, on SO(n), SE(n) or MatrixGroup(form=...)."
         raise error(where, "be defined for the system", got, remedy)
@@ -121,13 +120,65 @@ def _scalar(where: str, system: AbstractSystem, difference: Callable[[Array], Ar
 
 
 def _constraint(system: AbstractSystem, constraint: object) -> Constraint:
-    defined = system.group.has_skew_part
+    is_defined = system.group.has_skew_part
     if constraint is None:
-        return "skew" if defined else "exponential"
+        return "skew" if is_defined else "exponential"
     where = "discretize(constraint=...)"
-    checked = checked_constraint(where, system, constraint)
-    if checked == "skew" and not defined:
+    kind = checked_constraint(where, system, constraint)
+    if kind == "skew" and not is_defined:
         got = f"{system.group}, where (W - W^-1)/2 need not lie in the algebra"
         remedy = "Pass 'exponential' or, if the group preserves a form G, build it as MatrixGroup(basis, form=G)."
         raise error(where, "be defined on the group", got, remedy)
-    return checked
+    return kind
+
+
+_SAMPLES = 16
+
+
+def consistency_defect(discrete: Discretization, discretization_map: Callable[[Array], Array] | None = None) -> float:
+    r"""Return how far a displacement variety is from consistency with a discretization map; zero if it is consistent.
+
+    A discrete Lagrangian that comes from a continuous one by a map $\Psi$ from displacements to velocities,
+    $l_d(W) = h\,l(\Psi(W))$, has the consistent variety $\{W : \langle a^j, \Psi(W)\rangle = 0\}$. What is returned is
+    the largest $|\langle a^j, \Psi(W)\rangle|$ at displacements W drawn from the variety, with rows $a^j$ and
+    velocities of length one. Consistency does not conserve energy, nor does its absence spoil it: "matrix" is
+    consistent with "naive" and conserves with "skew".
+
+    Reference: [fedorov-zenkov-2004], section 2, the remark on discretization mappings.
+
+    Args:
+        discrete: The discretized system.
+        discretization_map: W -> coordinates of the velocity, for one JAX matrix, up to a factor. By default that of the
+            difference: the projection of W - I to the algebra for "matrix", log W for "logarithmic".
+
+    Raises:
+        ValueError: No map for a difference that is a callable, or one with a wrong result.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1, constraint="naive")
+        >>> consistency_defect(sleigh) < 1e-14
+        True
+        >>> consistency_defect(nh.discretize(sleigh.system, 0.1)) > 0.01
+        True
+    """
+    as_discretization("consistency_defect(discrete=...)", discrete)
+    with needs("jax", "consistency_defect(...)"):
+        from nonholo.discrete.definition import map_each, sample_displacements
+
+    group, annihilator = discrete.system.group, np.asarray(discrete.system.annihilator)
+    where = "consistency_defect(discretization_map=...)"
+    own = {"matrix": lambda W: group.vee(W - group.identity), "logarithmic": group.log}
+    if discretization_map is not None:
+        function(where, discretization_map)
+        velocities = map_each(discretization_map, sample_displacements(discrete, _SAMPLES))
+    elif callable(discrete.difference):
+        got = "none, with a callable difference"
+        raise error(where, "be given", got, "Pass the map W -> velocity that the difference was made with.")
+    else:
+        velocities = own[discrete.difference](sample_displacements(discrete, _SAMPLES))
+    if velocities.shape != (_SAMPLES, group.dim) or not np.all(np.isfinite(velocities)):
+        got = f"shape {velocities.shape[1:]}" if velocities.shape[1:] != (group.dim,) else "a value that is not finite"
+        raise error(where, f"return {group.dim} finite coordinates", got, "Use `vee` on a matrix of the algebra.")
+    unit = velocities / np.linalg.norm(velocities, axis=1, keepdims=True)
+    rows = annihilator / np.linalg.norm(annihilator, axis=1, keepdims=True)
+    return float(np.abs(unit @ rows.T).max(initial=0.0))

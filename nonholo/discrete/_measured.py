@@ -14,7 +14,7 @@ from nonholo.base.checks import array, error, instance
 from nonholo.base.numerics import applied
 from nonholo.base.types import Float
 from nonholo.discrete._discretize import discretize
-from nonholo.discrete._legendre import legendre
+from nonholo.discrete._scheme import legendre
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractMotion, AliasingWarning, Orbit, configurations
 from nonholo.systems import AbstractSystem, System
@@ -69,8 +69,8 @@ class MeasuredMotion(AbstractMotion):
         """Return the forbidden velocities: parts of (W - W^-1)/2h, or of log W/h where the group has no skew part."""
         system, chart = self.system, states.canonical_chart
         group, D = system.group, self.displaced(chart)
-        moved = group.vee(D - group.inverse(D)) / 2 if group.has_skew_part else group.log(D)
-        return applied(system.annihilator, moved) / chart[:, -1:]
+        coordinates = group.vee(D - group.inverse(D)) / 2 if group.has_skew_part else group.log(D)
+        return applied(system.annihilator, coordinates) / chart[:, -1:]
 
     def _increments(self, chart: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
         """Return displacements less the identity, without cancellation."""
@@ -125,10 +125,8 @@ def _warn_of_aliasing(D: Float[np.ndarray, "K N N"]) -> None:
         row = int(wide.argmax())
         where = "`Orbit.from_poses(configuration=...)`"
         message = f"{where} turns by {turns[row]:.3g} degrees from row {row} to row {row + 1}."
-        remedy = (
-            "Velocities are those of the shorter turn, which may not be the one taken. Pass poses in shorter steps."
-        )
-        warnings.warn(f"{message} {remedy}", AliasingWarning, stacklevel=5)
+        reason = "Velocities are those of the shorter turn, which may not be the one taken."
+        warnings.warn(f"{message} {reason} Pass poses in shorter steps.", AliasingWarning, stacklevel=5)
 
 
 def _times(time: Any) -> Float[np.ndarray, "K"]:

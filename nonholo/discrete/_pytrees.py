@@ -40,20 +40,20 @@ def register() -> None:
 
 
 def _flatten(leaves: tuple[str, ...], static: tuple[str, ...], thing: Any) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-    fixed = (getattr(thing, name) for name in static)
-    return tuple(getattr(thing, name) for name in leaves), tuple(_hashable(x) for x in fixed)
+    constants = (getattr(thing, name) for name in static)
+    return tuple(getattr(thing, name) for name in leaves), tuple(_hashable(x) for x in constants)
 
 
 def _hashable(value: Any) -> Any:
     return _FixedArray(value.tobytes(), value.shape) if isinstance(value, np.ndarray) else value
 
 
-def _restored(value: Any) -> Any:
+def _from_hashable(value: Any) -> Any:
     return np.frombuffer(value.entries).reshape(value.shape) if isinstance(value, _FixedArray) else value
 
 
-def _unflatten(kind: type, leaves: tuple[str, ...], static: tuple[str, ...], fixed: Any, children: Any) -> Any:
+def _unflatten(kind: type, leaves: tuple[str, ...], static: tuple[str, ...], constants: Any, children: Any) -> Any:
     thing = object.__new__(kind)
-    for name, value in (*zip(leaves, children, strict=True), *zip(static, map(_restored, fixed), strict=True)):
+    for name, value in (*zip(leaves, children, strict=True), *zip(static, map(_from_hashable, constants), strict=True)):
         object.__setattr__(thing, name, value)
     return thing

@@ -11,7 +11,7 @@ from nonholo.base.checks import array, error, is_traced, shape_of, shown
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.discrete._discretization import Discretization, as_discretization
-from nonholo.discrete._legendre import legendre
+from nonholo.discrete._scheme import legendre
 from nonholo.discrete.branching import (
     AbstractBranchRule,
     BranchRule,
@@ -24,7 +24,7 @@ from nonholo.discrete.branching import (
 )
 from nonholo.discrete.definition import (
     ON_LOCUS,
-    displaced,
+    displacement_of,
     in_double,
     momentum_of,
     nearest_displacement,
@@ -90,16 +90,16 @@ def step(discrete: Discretization, momentum: Any, branch: BranchRule = "principa
     size = k if shape_of(momentum) == (k,) else dim
     where = "step(momentum=...)"
     value = array(where, momentum, (size,), f"Pass {dim} body momenta or the {k} along the constraint subspace.")
-    traced = any(is_traced(x) for x in jax.tree.leaves((discrete, value)))
+    in_jax = any(is_traced(x) for x in jax.tree.leaves((discrete, value)))
     rule = branch_rule("step", branch)
-    if traced and rule.needs_all_values:
+    if in_jax and rule.needs_all_values:
         got = f"{shown(branch)} under a JAX transformation"
         raise error("step(branch=...)", "be 'principal' or 'nearest'", got, "Take this step outside of it.")
     rule.check("step(branch=...)", discrete)
-    if rule.is_principal or traced or not has_frame(discrete):
+    if rule.is_principal or in_jax or not has_frame(discrete):
         route = discrete.route
-        closed = jax.tree.map(traceable, route.step) if isinstance(route, ScalarRoute) else None
-        return in_double(_step, discrete, closed, not rule.is_principal, value)
+        scalar_step = jax.tree.map(traceable, route.step) if isinstance(route, ScalarRoute) else None
+        return in_double(_step, discrete, scalar_step, not rule.is_principal, value)
     return _step_by_rule(discrete, rule, value)
 
 
@@ -123,26 +123,26 @@ def _step_by_rule(discrete: Discretization, rule: AbstractBranchRule, momentum: 
 
 
 @equinox.filter_jit
-def _step(discrete: Discretization, closed: ScalarStep | None, nearest: bool, momentum: Array) -> StepResult:
+def _step(discrete: Discretization, scalar_step: ScalarStep | None, nearest: bool, momentum: Array) -> StepResult:
     system = discrete.system
     subspace = jnp.asarray(system.constraint_subspace)
     full, nowhere = momentum.shape[0] != subspace.shape[0], system.group.identity
-    y, code = principal_of(discrete, closed, subspace @ momentum if full else momentum, nowhere)
+    y, code = principal_of(discrete, scalar_step, subspace @ momentum if full else momentum, nowhere)
     if full:
         code = jnp.where((code == 0) & _off_locus(discrete, y, momentum), int(Outcome.off_momentum_locus), code)
     arriving = momentum_of(discrete, y, nowhere, "right")
     if nearest:
         following, later = nearest_displacement(discrete, y, subspace @ arriving)
     else:
-        following, later = principal_of(discrete, closed, subspace @ arriving, nowhere)
+        following, later = principal_of(discrete, scalar_step, subspace @ arriving, nowhere)
     code = jnp.where(code == 0, later, code)
     after = momentum_of(discrete, following, nowhere, "left")
     multipliers = (after - arriving) @ jnp.linalg.pinv(jnp.asarray(system.annihilator))
     good = code == 0
-    W = displaced(discrete, following)
+    W = displacement_of(discrete, following)
     return StepResult(*(jnp.where(good, x, jnp.nan) for x in (after, W, multipliers)), outcome=code)
 
 
 def _off_locus(discrete: Discretization, y: Array, momentum: Array) -> Array:
-    missed = momentum_of(discrete, y, discrete.system.group.identity, "left") - momentum
-    return jnp.sum(missed**2) > ON_LOCUS**2 * jnp.sum(momentum**2)
+    gap = momentum_of(discrete, y, discrete.system.group.identity, "left") - momentum
+    return jnp.sum(gap**2) > ON_LOCUS**2 * jnp.sum(momentum**2)

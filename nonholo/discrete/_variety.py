@@ -105,9 +105,9 @@ def _variety(group: AbstractMatrixGroup, rows: tuple, constraint: str) -> Variet
     data, shape, other, other_shape = rows
     subspace = np.frombuffer(data).reshape(shape)
     annihilator = np.frombuffer(other).reshape(other_shape)
-    closed = group.has_skew_part and _cubes_stay(group, subspace, annihilator)
-    exponential = constraint == "exponential" and not closed
-    chart = subspace if closed or exponential else np.eye(group.dim)
+    is_closed = group.has_skew_part and _cubes_stay(group, subspace, annihilator)
+    exponential = constraint == "exponential" and not is_closed
+    chart = subspace if is_closed or exponential else np.eye(group.dim)
     return Variety(group, chart, annihilator, constraint, exponential)
 
 
@@ -182,3 +182,8 @@ def _at_identity(
         got = f"values {values}, derivatives {slopes.tolist()}"
         raise error(where, "be differentiable at the identity", got, "Avoid 0/0 and square roots of zero there.")
     return values, slopes
+
+
+def free_rows(group: AbstractMatrixGroup) -> int:
+    """Return how many rows of the matrices of a group are not the same for all."""
+    return group.size if group.form is not None or np.any(group.basis[:, -1]) else group.size - 1

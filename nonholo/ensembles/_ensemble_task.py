@@ -98,7 +98,7 @@ class EnsembleTask:
         if save_every is not None:
             save_every = count("EnsembleTask(save_every=...)", save_every, "Pass the steps between states, or None.")
         fields = {
-            "discrete": as_discretization("EnsembleTask(discrete=...)", discrete, composed=True, forced=True),
+            "discrete": as_discretization("EnsembleTask(discrete=...)", discrete, compositions=True, forced=True),
             "steps": count("EnsembleTask(steps=...)", steps, "Pass the number of steps."),
             "start": start[0] if start else None,
             "reductions": checked_reductions("EnsembleTask(reductions=...)", reductions, REDUCTIONS, _KNOWN),
@@ -108,7 +108,7 @@ class EnsembleTask:
         }
         for name, value in fields.items():
             object.__setattr__(self, name, value)
-        stepper_of(discrete, branch, "auto", posed=self.reconstruct, owner="EnsembleTask")
+        stepper_of(discrete, branch, "auto", with_poses=self.reconstruct, owner="EnsembleTask")
         check_forces("EnsembleTask", discrete, self.steps)
         if free := ({*REDUCTIONS} - {"final_state"}) & {*self.reductions}:
             refuse_forces(f"EnsembleTask(reductions={sorted(free)})", discrete.system)

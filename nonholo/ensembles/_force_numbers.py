@@ -8,7 +8,7 @@ import numpy as np
 
 from nonholo.base.checks import error
 from nonholo.ensembles._names import component_of
-from nonholo.systems import Forced, joined
+from nonholo.systems import Forced, force_of
 
 
 def force_numbers(system: Any) -> dict[str, Any]:
@@ -51,7 +51,7 @@ def with_force_numbers(system: Any, values: Mapping[str, Any]) -> Any:
 
     parts = {name: change(part) if dataclasses.is_dataclass(part) else part for name, part in system.parts.items()}
     terms = tuple(change(term) if dataclasses.is_dataclass(term) else term for term in system.terms)
-    return Forced(system.system, terms or None, joined(parts), system.scheme)
+    return Forced(system.system, terms or None, force_of(parts), system.scheme)
 
 
 def _value(name: str, value: Any, values: Mapping[str, Any]) -> Any:

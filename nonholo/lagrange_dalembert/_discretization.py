@@ -67,9 +67,9 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
     def __post_init__(self) -> None:
         object.__setattr__(self, "time_step", _fixed_time_step(self.time_step))
 
-    def first(self, start: Start, *, posed: bool) -> First:
+    def first(self, start: Start, *, with_poses: bool) -> First:
         """Return the checked momentum, place and velocity of a start."""
-        del posed
+        del with_poses
         system, h, subject = self.system, np.float64(self.time_step), (start.owner, self.system)
         checks, equations = room(system._start), equations_of(system)
         q = checks.point(*subject, start.configuration, project=start.project)
@@ -86,9 +86,9 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
     def _stepper(self) -> AbstractStepper[Any]:
         return cast(Any, CoordinateStepper(self))
 
-    def stepper(self, *, posed: bool) -> AbstractStepper[Any]:
+    def stepper(self, *, with_poses: bool) -> AbstractStepper[Any]:
         """Return what takes its steps."""
-        del posed
+        del with_poses
         return self._stepper
 
     def after_parts(self, states: Any, fractions: Float[np.ndarray, "K"]) -> Any:

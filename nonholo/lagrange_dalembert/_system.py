@@ -27,7 +27,7 @@ from nonholo.lagrange_dalembert._functions import (
     with_time_step,
 )
 from nonholo.lagrange_dalembert._room import room
-from nonholo.systems import AbstractCoordinateSystem, joined, parts_of
+from nonholo.systems import AbstractCoordinateSystem, force_of, parts_of
 
 if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization
@@ -253,7 +253,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         parts = parts_of(self.force)
         parts |= {"function": Bound(parts["function"], p)} if "function" in parts else {}
         motions = tuple((index, Bound(motion, p)) for index, motion in self.prescribed)
-        return self._with_fields(parameters=Parameters({}), force=joined(parts), prescribed=motions, **functions)
+        return self._with_fields(parameters=Parameters({}), force=force_of(parts), prescribed=motions, **functions)
 
     @functools.cached_property
     def plain(self) -> Self:
@@ -315,7 +315,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         if self.parameters:
             potential, parts = with_parameters(potential, 1), parts_of(force)
             parts |= {"function": with_parameters(parts["function"], 3)} if "function" in parts else {}
-            force = joined(parts)
+            force = force_of(parts)
         if potential is not None:
             q = jax.ShapeDtypeStruct((self.dimension,), float)
             with double_precision():
@@ -466,7 +466,7 @@ def _force(value: Any, dimension: int) -> Any:
     if "table" in parts and not isinstance(parts["table"], ForceTable):
         remedy = "Pass a function of time, configuration and velocity, Friction, or one force a step."
         parts["table"] = ForceTable(array(_argument("force"), parts["table"], (None, dimension), remedy))
-    return joined(parts)
+    return force_of(parts)
 
 
 def _argument(argument: str) -> str:

@@ -159,11 +159,11 @@ class DiscreteMotion(Protocol[OrbitT]):
     def time_step(self) -> Any:
         """The time step h."""
 
-    def first(self, start: Any, *, posed: bool) -> First:
+    def first(self, start: Any, *, with_poses: bool) -> First:
         """Return a checked start, for rows with poses or without."""
         ...
 
-    def stepper(self, *, posed: bool) -> AbstractStepper[OrbitT]:
+    def stepper(self, *, with_poses: bool) -> AbstractStepper[OrbitT]:
         """Return what takes its steps, and saves poses or not."""
         ...
 

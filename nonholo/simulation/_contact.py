@@ -1,10 +1,12 @@
-"""Steps with impacts: the part to the wall, the reflection, the part that is left, in which there may be more impacts.
+"""Steps and flows with impacts: up to the wall, the reflection, and the rest, in which there may be more impacts.
 
-At a wall nothing is known of a gap but rounding. So the part that is left is looked at in its halves, down to where the
-body has left the wall; from there on the sign of the gap can be trusted.
+At a wall nothing is known of a gap but rounding. So the part of a step that is left is looked at in its halves, down to
+where the body has left the wall; from there on the sign of the gap can be trusted. A flow begins again with the
+reflected momentum.
 """
 
 import dataclasses
+import functools
 from collections.abc import Callable
 from typing import Any
 
@@ -12,8 +14,11 @@ import numpy as np
 
 from nonholo.base.results import Outcome
 from nonholo.base.types import Bool, Float
-from nonholo.orbit import Crossings, Orbit
-from nonholo.simulation.events import Watch, search, struck, values_of
+from nonholo.continuous import ContinuousFlow, Solved, States
+from nonholo.orbit import Crossings, EventLog, Orbit
+from nonholo.simulation._crossings import between_times, of_requested
+from nonholo.simulation._event import Event
+from nonholo.simulation._search import Watch, search, struck, values_of
 
 _MOST = 200  # impacts in a step
 _LEAST = 2.0**-52  # of the part that is left, where the body is looked at
@@ -22,7 +27,7 @@ _ROUNDING = 2.0**-54  # of a step, that is left and gone at least
 
 
 def after_contact(
-    begin: Callable[[Orbit], tuple[Any, Outcome]], watch: Watch, there: Orbit, number: int, gone: float
+    begin: Callable[[Orbit], tuple[Any, Outcome]], watch: Watch, there: Orbit, number: int, share: float
 ) -> tuple[Any, Watch, Outcome]:
     """Take the part of a step that is left after an impact, or a step from a node at a wall.
 
@@ -31,7 +36,7 @@ def after_contact(
         watch: What is known.
         there: One state: after the impact, or at the node.
         number: The number of the step.
-        gone: The part of it that is gone.
+        share: The part of it that is gone.
 
     Returns:
         The state at its end, None if it is not reached; what is known then, and the outcome.
@@ -40,36 +45,36 @@ def after_contact(
         there = dataclasses.replace(there.with_headings(watch.heading), step=np.array([number]))
         if (outcome := begin(there)[1]) != Outcome.successful:
             return None, watch, outcome
-        watch, end, outcome = _moved(watch, there, gone)
+        watch, end, outcome = _move_on(watch, there, share)
         if outcome != Outcome.successful or watch.stopped_by is not None:
             return None, watch, outcome
         if watch.reset_by is None:
             state, outcome = begin(end)
             return state if outcome == Outcome.successful else None, watch, outcome
         hit = watch.impact
-        there, gone = hit.after, float(hit.fraction[0] + hit.step[0] - number)
+        there, share = hit.after, float(hit.fraction[0] + hit.step[0] - number)
     return None, watch, Outcome.lasting_contact
 
 
-def _moved(watch: Watch, there: Orbit, gone: float) -> tuple[Watch, Orbit, Outcome]:
+def _move_on(watch: Watch, there: Orbit, share: float) -> tuple[Watch, Orbit, Outcome]:
     """Continue to the next impact or to the end of the step; return what is known, the state at the end, the outcome.
 
     A motion that the curve of the step alone leads through a wall, while its velocity turns away from it, is let go.
     """
-    rest, grazes = max(1 - gone, _ROUNDING), watch.grazes
+    rest, grazes = max(1 - share, _ROUNDING), watch.grazes
     places, looks, inside = _looks(watch, there, rest)
     end, watch = looks.chosen(slice(-1, None)), dataclasses.replace(watch, reset_by=None)
     if not np.isfinite(looks.reduced_momentum).all():
         return watch, end, Outcome.not_converged
     if inside.any():
-        watch = _struck_here(watch, there, max(gone, _ROUNDING), inside)
+        watch = _struck_here(watch, there, max(share, _ROUNDING), inside)
         if watch.reset_by is not None:
             return watch, end, Outcome.successful
         leaves = grazes and _struck_here(watch, end, 1.0, inside).reset_by is None
         return watch.seen_at(end), end, Outcome.successful if leaves else Outcome.lasting_contact
     if rest < _SHORT:
         return watch.seen_at(end), end, Outcome.successful
-    return _searched(watch, there, places, looks, gone), end, Outcome.successful
+    return _search_rest(watch, there, places, looks, share), end, Outcome.successful
 
 
 def _looks(watch: Watch, there: Orbit, rest: float) -> tuple[np.ndarray, Orbit, Bool[np.ndarray, "E 1"]]:
@@ -88,38 +93,142 @@ def _looks(watch: Watch, there: Orbit, rest: float) -> tuple[np.ndarray, Orbit, 
     return np.array([0.0, *places[::-1]]), there.joined(looks[::-1]), inside
 
 
-def _struck_here(watch: Watch, there: Orbit, gone: float, inside: Bool[np.ndarray, "E 1"]) -> Watch:
+def _struck_here(watch: Watch, there: Orbit, share: float, inside: Bool[np.ndarray, "E 1"]) -> Watch:
     """Return what is known after an impact of one of several walls at a place, where the motion is toward one."""
     sides = np.sign(watch.values).astype(np.int64)  # type: ignore[call-overload]
     for position, name in enumerate(watch.events):
         if inside[position] and (after := struck(watch, name, there, -sides[position])) is not None:
-            found = [known.chosen(slice(0, 0)) for known in watch.parts[0]]
-            found[position] = Crossings(there.step, np.array([gone]), -sides[position], there, after)
-            known = dataclasses.replace(watch.after_stretch(tuple(found)), reset_by=name)
-            return known.after_impact(watch.values)  # type: ignore[arg-type]
+            crossings = [each.chosen(slice(0, 0)) for each in watch.parts[0]]
+            crossings[position] = Crossings(there.step, np.array([share]), -sides[position], there, after)
+            struck_watch = dataclasses.replace(watch.after_stretch(tuple(crossings)), reset_by=name)
+            return struck_watch.after_impact(watch.values)  # type: ignore[arg-type]
     return watch
 
 
-def _searched(watch: Watch, there: Orbit, places: np.ndarray, looks: Orbit, gone: float) -> Watch:
+def _search_rest(watch: Watch, there: Orbit, places: np.ndarray, looks: Orbit, share: float) -> Watch:
     """Return what is known after the search of what is left of a step."""
-    widths, rest = np.diff(places, append=1.0), 1 - gone
+    widths, rest = np.diff(places, append=1.0), 1 - share
 
     def between(states: Orbit, fractions: Float[np.ndarray, "K"]) -> Orbit:
         parts = places[states.step] + fractions * widths[states.step]
-        moved = watch.part(there.chosen(np.zeros(len(states), dtype=int)), rest * parts)
-        return dataclasses.replace(moved, step=states.step)
+        ends = watch.part(there.chosen(np.zeros(len(states), dtype=int)), rest * parts)
+        return dataclasses.replace(ends, step=states.step)
 
-    def placed(found: Crossings) -> Crossings:
-        fraction = gone + rest * (places[found.step] + found.fraction * widths[found.step])
+    def place(crossings: Crossings) -> Crossings:
+        fraction = share + rest * (places[crossings.step] + crossings.fraction * widths[crossings.step])
         step = there.step[0] + (fraction == 1)
         own = {
-            name: None if (rows := getattr(found, name)) is None else dataclasses.replace(rows, step=step)
+            name: None if (rows := getattr(crossings, name)) is None else dataclasses.replace(rows, step=step)
             for name in ("states", "after")
         }
-        return Crossings(step, np.where(fraction == 1, 0.0, fraction), found.direction, **own)
+        return Crossings(step, np.where(fraction == 1, 0.0, fraction), crossings.direction, **own)
 
     alone = dataclasses.replace(watch, part=between, parts=())
-    known, _ = search(alone, dataclasses.replace(looks, step=np.arange(len(looks))))
-    found = tuple(map(placed, known.parts[0]))
-    parts = (*watch.parts, found) if any(map(len, found)) else watch.parts
-    return dataclasses.replace(known, part=watch.part, parts=parts)
+    new_watch, _ = search(alone, dataclasses.replace(looks, step=np.arange(len(looks))))
+    crossings = tuple(map(place, new_watch.parts[0]))
+    parts = (*watch.parts, crossings) if any(map(len, crossings)) else watch.parts
+    return dataclasses.replace(new_watch, part=watch.part, parts=parts)
+
+
+SolverAt = Callable[[float], Callable[..., Solved]]
+"""Gives what solves the equations with poses from a time on."""
+
+_TURN = 2 * np.pi
+_SPAN = 2.0  # times that from one impact to the next are solved for at first after it
+
+
+def flow_through_impacts(
+    first: Orbit, time: Float[np.ndarray, "K"], solver_at: SolverAt, events: dict[str, Event]
+) -> tuple[Orbit, str]:
+    """Return the flow from its first state at requested times, and what a function said that ended it."""
+    there, span, since, end = first.with_headings(None), np.inf, float(time[0]), float(time[-1])
+    watch, _ = search(Watch(events, between_times(there, 1.0)), there)
+    outcome, message = Outcome.successful, ""
+    while outcome == Outcome.successful and watch.stopped_by is None and there.time[0] < end:
+        begin, before = float(there.time[0]), len(watch.impacts)
+        until = min(begin + span, end)
+        looks, solution = _flow(solver_at, there, np.append(time[(time > begin) & (time < until)], until) - begin)
+        there, watch, outcome = _pass_impact(solver_at, watch, looks)
+        if len(watch.impacts) > before:
+            span, since = _SPAN * float(there.time[0] - since), float(watch.impacts[-1].time[0])
+        elif there.time[0] == looks.time[-1]:
+            outcome, message, span = max(outcome, solution.outcome), solution.fault, 2 * span
+    return _whole(first, time, solver_at, watch, float(there.time[0]), outcome), message
+
+
+def _flow(solver_at: SolverAt, there: Orbit, elapsed: np.ndarray) -> tuple[Orbit, Solved]:
+    """Return the flow from a state, with headings that continue from its own, where its solver or its caller looks."""
+    begin, pose = float(there.time[0]), there.canonical_pose[0]  # type: ignore[index]
+    elapsed = np.union1d(0.0, elapsed)
+    solution = solver_at(begin)(there.reduced_momentum[0], pose, elapsed)
+    turns = 0.0 if there.turned is None else _TURN * np.rint((there.turned[0] - np.arctan2(pose[1], pose[0])) / _TURN)
+
+    def turn(states: States) -> States:
+        return states if states.turned is None else states._replace(turned=states.turned + turns)
+
+    good_times, steps = elapsed[: len(solution.states.momenta)], solution.steps()
+    inside = np.union1d(good_times, steps[(steps > 0) & (steps < good_times[-1])])
+    motion = ContinuousFlow(there.system, (begin, begin + good_times[-1]), lambda times: turn(solution.at(times)))
+    return dataclasses.replace(there, motion=motion).at(begin + inside), solution._replace(states=turn(solution.states))
+
+
+def _pass_impact(solver_at: SolverAt, watch: Watch, looks: Orbit) -> tuple[Orbit, Watch, Outcome]:
+    """Return the state after the first step between two looks with an impact, or the last one; what is known there."""
+    there, at, share = looks.chosen(slice(0, 1)), 0, 0.0
+    if not watch.is_at_wall:
+        watch, last = search(dataclasses.replace(watch, part=between_times(looks, 1.0)), looks)
+        if watch.reset_by is None:
+            return looks.chosen(slice(last - 1, last)), watch, Outcome.successful
+        there, at, share = watch.begun_at(last - 1)
+    ends = looks.time[at + 1 : at + 2]
+    part = functools.partial(_part, solver_at, float(ends[0] - looks.time[at]), {})
+    after, watch, outcome = after_contact(
+        lambda states: (states, Outcome.successful), dataclasses.replace(watch, part=part), there, at, share
+    )
+    return there if after is None else dataclasses.replace(after, time=ends), watch, outcome
+
+
+def _part(
+    solver_at: SolverAt, length: float, flows: dict[bytes, Any], states: Orbit, fractions: Float[np.ndarray, "K"]
+) -> Orbit:
+    """Return what is reached from one state, in all rows, after fractions of a time; NaN if that is not solved for."""
+    if not len(states):
+        return states
+    first, place = states.chosen(slice(0, 1)), states.reduced_momentum[0].tobytes()
+    if place not in flows:
+        flows[place] = _flow(solver_at, first, np.array(length))
+    flow, solution = flows[place]
+    if solution.outcome != Outcome.successful:
+        return dataclasses.replace(states, reduced_momentum=np.full_like(states.reduced_momentum, np.nan))
+    return flow.at(np.minimum(first.time + length * fractions, flow.time[-1]))
+
+
+def _whole(first: Orbit, time: np.ndarray, solver_at: SolverAt, watch: Watch, until: float, outcome: Outcome) -> Orbit:
+    """Return the flow at requested times up to one, each from the last impact before it."""
+    log = watch.log()
+    if log.stopped_by is not None:
+        until = float(log[log.stopped_by].time[-1])
+    begins = [dataclasses.replace(each, motion=first.motion) for each in (first.with_headings(None), *watch.impacts)]
+    motion = ContinuousFlow(first.system, (float(time[0]), until), functools.partial(_states, solver_at, begins))
+    orbit = dataclasses.replace(first, motion=motion).at(time[time <= until])
+    crossings = tuple(of_requested(_of_motion(part, motion), time, 1.0) for part in log.found)
+    return dataclasses.replace(orbit, outcome=outcome, events=EventLog(log.names, crossings, log.stopped_by))
+
+
+def _of_motion(crossings: Crossings, motion: ContinuousFlow) -> Crossings:
+    """Return crossings with states of the whole flow."""
+    states = dataclasses.replace(crossings.states, motion=motion)
+    after = None if crossings.after is None else dataclasses.replace(crossings.after, motion=motion)
+    return dataclasses.replace(crossings, states=states, after=after)
+
+
+def _states(solver_at: SolverAt, begins: list[Orbit], elapsed: Float[np.ndarray, "K"]) -> States:
+    """Return the states at times since the first of several states, each from the last one before it."""
+    times = np.concatenate([each.time for each in begins])
+    at = times[0] + elapsed
+    owner = np.searchsorted(times, at, "right") - 1
+    each = [(begins[k], at[owner == k] - times[k]) for k in np.unique(owner)]
+    places = [np.searchsorted(np.union1d(0.0, since), since) for _, since in each]  # a flow begins at zero
+    flows = [_flow(solver_at, *one)[1].states.chosen(there) for one, there in zip(each, places, strict=True)]
+    rows: Any = [None if column[0] is None else np.concatenate(column) for column in zip(*flows, strict=True)]
+    return States(*rows)

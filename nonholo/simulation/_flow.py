@@ -2,7 +2,7 @@
 
 import functools
 from collections.abc import Callable
-from typing import Any, overload
+from typing import Any, NamedTuple, TypeAlias, overload
 
 import numpy as np
 
@@ -12,20 +12,15 @@ from nonholo.base.progress import telling
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.continuous import ContinuousFlow, Solved, solver_of
 from nonholo.orbit import First, Orbit
-from nonholo.simulation._flow_impacts import flow_through_impacts
-from nonholo.simulation.events import (
-    Event,
-    check_functions,
-    check_resets,
-    checked_events,
-    flow_in_coordinates,
-    flow_with_events,
-    has_resets,
-    refuse_resets,
-)
+from nonholo.simulation._contact import flow_through_impacts
+from nonholo.simulation._crossings import check_resets, flow_in_coordinates, flow_with_events, refuse_resets
+from nonholo.simulation._event import Event, checked_events, has_resets
+from nonholo.simulation._search import values_of
 from nonholo.systems import AbstractCoordinateSystem, OrbitT, Start, System, as_system, refuse_in_coordinates
 
 _TOLERANCE = 1e-9  # relative, for momenta that a user computed in floating point
+FirstState: TypeAlias = tuple[np.ndarray, np.ndarray | None]
+"""The momentum at the first time and the pose, where one is solved for."""
 
 
 @overload
@@ -135,120 +130,112 @@ def flow(
     flags("flow", project=project, reconstruct=reconstruct, progress=progress)
     starts = {"body_velocity": body_velocity, "momentum": momentum}
     if isinstance(system, AbstractCoordinateSystem):
-        refused = {"restricted_velocity": restricted_velocity, "method": method}
+        others = {"restricted_velocity": restricted_velocity, "method": method}
         no_pose = {"reconstruct": (reconstruct, True)}
-        refuse_in_coordinates("flow", **{name: (value, None) for name, value in refused.items()}, **no_pose)
+        refuse_in_coordinates("flow", **{name: (value, None) for name, value in others.items()}, **no_pose)
         errors = {"rtol": rtol, "atol": atol, "project": project}
         with telling("time", progress):
             return flow_in_coordinates(system, events, configuration=configuration, times=times, **starts, **errors)
     as_system("flow(system=...)", system)
     time = flow_times(times)
-    solver, posed = solver_of(system, method, float(time[0]), reconstruct=reconstruct)
+    solver, with_poses = solver_of(system, method, float(time[0]), reconstruct=reconstruct)
     tolerances = flow_tolerances((1e-10 if method == "diffrax" else 1e-14) if rtol is None else rtol, atol)
-    solve = functools.partial(solver, tolerances=tolerances)
+    task = _Task(system, time, tolerances, method, reconstruct)
     start = Start.of("flow", configuration, project=project, restricted_velocity=restricted_velocity, **starts)
-    first = _first_state(system, time, start, posed=posed)
-    found = None if events is None else checked_events("flow", events)
+    first = _first_state(task, start, with_poses)
+    by_name = None if events is None else checked_events("flow", events)
     with telling("time", progress):
-        if found is not None and has_resets(found):
-            return _flowed_between_walls(system, first, time, tolerances, method, found, reconstruct=reconstruct)
-        return _flowed(system, first, time, tolerances, solve, found, reconstruct=reconstruct)
+        if by_name is not None and has_resets(by_name):
+            return _flow_between_walls(task, first, by_name)
+        return _solve_flow(task, solver, first, by_name)
 
 
-def _first_state(
-    system: System, time: np.ndarray, start: Start, *, posed: bool
-) -> tuple[np.ndarray, np.ndarray | None]:
+class _Task(NamedTuple):
+    """The equations of a system at times, by a method, and whether poses are asked for."""
+
+    system: System
+    time: np.ndarray
+    tolerances: tuple[float, float]
+    method: str | None
+    reconstruct: bool
+
+    def opening(self, first: FirstState) -> Orbit:
+        """Return the first state alone."""
+        reduced, pose = first
+        return Orbit(
+            ContinuousFlow(self.system), self.time[:1], reduced[None], None, None if pose is None else pose[None]
+        )
+
+
+def _first_state(task: _Task, start: Start, with_poses: bool) -> FirstState:
     """Return the checked momentum at the first time and the pose, where one is solved for."""
-    numbers = system.rank + posed * system.group.pose_size
+    numbers = task.system.rank + with_poses * task.system.group.pose_size
     remedy = "Ask for fewer times, or for momenta alone: reconstruct=False without a method."
-    within_memory("flow(times=...)", 32.0 * len(time) * numbers, remedy)
-    first = ContinuousFlow(system).first(start, posed=posed)
-    reduced, pose = first.numbers[0], first.numbers[1] if posed else None
+    within_memory("flow(times=...)", 32.0 * len(task.time) * numbers, remedy)
+    first = ContinuousFlow(task.system).first(start, with_poses=with_poses)
+    reduced, pose = first.numbers[0], first.numbers[1] if with_poses else None
     if first.demand is not None:
-        _check_momentum(first.demand, _opening(system, time, (reduced, pose)).momentum[0])
+        _check_momentum(first.demand, task.opening((reduced, pose)).momentum[0])
     return reduced, pose
 
 
 def flow_from(system: System, first: First, time: np.ndarray, rtol: float, *, reconstruct: bool) -> Orbit:
     """Return the flow from a checked start, with a pose where one is solved for, by the method that is the default."""
-    solver, posed = solver_of(system, None, float(time[0]), reconstruct=reconstruct)
-    tolerances = rtol, 1.0
-    solve = functools.partial(solver, tolerances=tolerances)
+    solver, with_poses = solver_of(system, None, float(time[0]), reconstruct=reconstruct)
     reduced, pose = first.numbers
-    begun = reduced, pose if posed else None
-    return _flowed(system, begun, time, tolerances, solve, None, reconstruct=reconstruct)
+    task = _Task(system, time, (rtol, 1.0), None, reconstruct)
+    return _solve_flow(task, solver, (reduced, pose if with_poses else None), None)
 
 
-def _opening(system: System, time: np.ndarray, first: tuple[np.ndarray, np.ndarray | None]) -> Orbit:
-    """Return the first state alone."""
-    return Orbit(ContinuousFlow(system), time[:1], first[0][None], None, None if first[1] is None else first[1][None])
-
-
-def _flowed(
-    system: System,
-    first: tuple[np.ndarray, np.ndarray | None],
-    time: np.ndarray,
-    tolerances: tuple[float, float],
-    solve: Callable[..., Solved],
-    events: dict[str, Event] | None,
-    *,
-    reconstruct: bool,
+def _solve_flow(
+    task: _Task, solver: Callable[..., Solved], first: FirstState, events: dict[str, Event] | None
 ) -> Orbit:
     """Return the orbit from a first state, with what events found."""
+    time, reconstruct = task.time, task.reconstruct
     if events is not None:
-        check_functions(events, _opening(system, time, first if reconstruct else (first[0], None)))
-    solved = solve(*first, time - time[0])
-    states = solved.states if reconstruct else solved.states._replace(poses=None, turned=None)
-    outcome, reached = solved.outcome, len(states.momenta)
-    motion = ContinuousFlow(system, (time[0], time[reached - 1]), solved.at)
-    orbit = Orbit(motion, time[:reached], states.momenta, None, states.poses, outcome, turned=states.turned)
+        values_of(events, task.opening(first if reconstruct else (first[0], None)))  # refused where there is none
+    solution = solver(*first, time - time[0], tolerances=task.tolerances)
+    states = solution.states if reconstruct else solution.states._replace(poses=None, turned=None)
+    outcome, count = solution.outcome, len(states.momenta)
+    motion = ContinuousFlow(task.system, (time[0], time[count - 1]), solution.at)
+    orbit = Orbit(motion, time[:count], states.momenta, None, states.poses, outcome, turned=states.turned)
     if events is not None:
-        orbit = flow_with_events(events, orbit, time[0] + solved.steps())
-    return _successful(orbit, solved.fault, time, tolerances)
+        orbit = flow_with_events(events, orbit, time[0] + solution.steps())
+    return _successful(task, orbit, solution.fault)
 
 
-def _flowed_between_walls(
-    system: System,
-    first: tuple[np.ndarray, np.ndarray | None],
-    time: np.ndarray,
-    tolerances: tuple[float, float],
-    method: str | None,
-    events: dict[str, Event],
-    *,
-    reconstruct: bool,
-) -> Orbit:
+def _flow_between_walls(task: _Task, first: FirstState, events: dict[str, Event]) -> Orbit:
     """Return the orbit from a first state, with impacts."""
-    if not reconstruct:
+    if not task.reconstruct:
         refuse_resets("flow", events, "those of a flow without poses: reconstruct=False")
-    if time[-1] < time[0]:
+    if task.time[-1] < task.time[0]:
         refuse_resets("flow", events, "those of a flow back in time, which has other impacts")
-    opening = _opening(system, time, first)
-    check_functions(events, opening)
+    opening = task.opening(first)
+    values_of(events, opening)
     check_resets(events, opening)
-    solver_at = functools.partial(_solver_at, system, method, tolerances)
-    return _successful(*flow_through_impacts(opening, time, solver_at, events), time, tolerances)
+    solver_at = functools.partial(_solver_at, task)
+    return _successful(task, *flow_through_impacts(opening, task.time, solver_at, events))
 
 
-def _solver_at(
-    system: System, method: str | None, tolerances: tuple[float, float], begins: float
-) -> Callable[..., Solved]:
+def _solver_at(task: _Task, begins: float) -> Callable[..., Solved]:
     """Return what solves the equations with poses from a time on."""
-    return functools.partial(solver_of(system, method, begins, reconstruct=True)[0], tolerances=tolerances)
+    solver, _ = solver_of(task.system, task.method, begins, reconstruct=True)
+    return functools.partial(solver, tolerances=task.tolerances)
 
 
-def _successful(orbit: Orbit, said: str, time: np.ndarray, tolerances: tuple[float, float]) -> Orbit:
+def _successful(task: _Task, orbit: Orbit, message: str) -> Orbit:
     """Return a flow, or raise if it ended early."""
     if orbit.outcome != Outcome.successful:
-        (rtol, atol), reached, system = tolerances, len(orbit), orbit.system
-        acting = "" if system.forces is None else f" under {system.forces.names}"
-        where = f"Flow from time {time[reached - 1]:g} to {time[reached]:g}{acting} (rtol {rtol:g}, atol {atol:g})"
-        raise OutcomeError(orbit.outcome, where, orbit, said)
+        (rtol, atol), count, forces, time = task.tolerances, len(orbit), task.system.forces, task.time
+        acting = "" if forces is None else f" under {forces.names}"
+        where = f"Flow from time {time[count - 1]:g} to {time[count]:g}{acting} (rtol {rtol:g}, atol {atol:g})"
+        raise OutcomeError(orbit.outcome, where, orbit, message)
     return orbit
 
 
-def _check_momentum(given: Any, found: np.ndarray) -> None:
+def _check_momentum(momentum: Any, nearest: np.ndarray) -> None:
     """Refuse a full momentum that no admissible velocity has."""
-    missed = np.linalg.norm(np.asarray(given) - found) if np.shape(given) == found.shape else 0.0
-    if missed > _TOLERANCE * np.linalg.norm(found):
-        remedy = f"With the same components along the constraint it is {found.tolist()}."
-        raise error("flow(momentum=...)", "belong to an admissible velocity", f"a distance {missed:.3g}", remedy)
+    distance = np.linalg.norm(np.asarray(momentum) - nearest) if np.shape(momentum) == nearest.shape else 0.0
+    if distance > _TOLERANCE * np.linalg.norm(nearest):
+        remedy = f"With the same components along the constraint it is {nearest.tolist()}."
+        raise error("flow(momentum=...)", "belong to an admissible velocity", f"a distance {distance:.3g}", remedy)

@@ -15,14 +15,14 @@ from nonholo.discrete import (
     refuse_composition,
 )
 from nonholo.orbit import AbstractStepper
+from nonholo.simulation._crossings import watch_for
 from nonholo.simulation._run import Run
-from nonholo.simulation.events import watched
 from nonholo.systems import AbstractCoordinateDiscretization, refuse_in_coordinates, refuse_slip
 
 FEW = 1 << 16  # numbers that fit into any memory
 
 
-def check_forces(owner: str, discrete: Any, steps: int, *, free: str | None = None, traced: bool = False) -> None:
+def check_forces(owner: str, discrete: Any, steps: int, *, free: str | None = None, in_jax: bool = False) -> None:
     """Refuse what runs with forces do not have, which `free` names, and more steps than their table has rows.
 
     Traced are numbers alone.
@@ -31,9 +31,9 @@ def check_forces(owner: str, discrete: Any, steps: int, *, free: str | None = No
         return
     if free is not None:
         raise error(f"{owner}(discrete=...)", "have the principal branch under forces", free, "Leave both out.")
-    if traced:
+    if in_jax:
         refuse_slip(f"{owner}(discrete=...)", discrete.system)
-    if traced and forced.needs_function:
+    if in_jax and forced.needs_function:
         remedy = "Use Gravity, Friction or a table: what a function does is not traced."
         raise error(f"{owner}(discrete=...)", "have forces that are numbers", "a Python function", remedy)
     if forced.table is not None and steps > len(forced.table):
@@ -60,26 +60,26 @@ def checked_run(
     if isinstance(discrete, AbstractCoordinateDiscretization):
         others = {"branch": (branch, "principal"), "reconstruct": (reconstruct, True), "backend": (backend, "auto")}
         refuse_in_coordinates(owner, **others)
-    stepper = stepper_of(discrete, branch, backend, posed=reconstruct)
+    stepper = stepper_of(discrete, branch, backend, with_poses=reconstruct)
     if discrete.forces is not None:
         check_forces(owner, discrete, count)
-    return Run(stepper, count, every, None if events is None else watched(owner, stepper, events), throw, progress)
+    return Run(stepper, count, every, None if events is None else watch_for(owner, stepper, events), throw, progress)
 
 
 def stepper_of(
-    discrete: Any, branch: BranchRule, backend: str, *, posed: bool, owner: str = "simulate"
+    discrete: Any, branch: BranchRule, backend: str, *, with_poses: bool, owner: str = "simulate"
 ) -> AbstractStepper[Any]:
     """Return what takes the steps of a run: the one place that asks for rule, backend and extra."""
     if isinstance(discrete, AbstractCoordinateDiscretization):
-        return discrete.stepper(posed=True)
-    as_discretization("simulate(discrete=...)", discrete, composed=True, forced=True)
+        return discrete.stepper(with_poses=True)
+    as_discretization("simulate(discrete=...)", discrete, compositions=True, forced=True)
     if isinstance(branch, str) and isinstance(backend, str) and (branch, backend) == ("principal", "auto"):
-        return discrete.stepper(posed=posed)
-    return _other_stepper(owner, discrete, branch, backend, posed=posed)
+        return discrete.stepper(with_poses=with_poses)
+    return _other_stepper(owner, discrete, branch, backend, with_poses=with_poses)
 
 
 def _other_stepper(
-    owner: str, discrete: Discretization, branch: BranchRule, backend: str, *, posed: bool
+    owner: str, discrete: Discretization, branch: BranchRule, backend: str, *, with_poses: bool
 ) -> AbstractStepper[Any]:
     rule = checked_rule(owner, discrete, branch)
     if not rule.is_principal:
@@ -88,29 +88,29 @@ def _other_stepper(
     if not rule.is_principal or backend == "jax":
         check_forces(owner, discrete, 0, free=f"branch {rule.name!r} and backend {backend!r}")
     if rule.is_principal:
-        return _principal(where, discrete, backend, posed=posed)
+        return _principal(where, discrete, backend, with_poses=with_poses)
     if backend == "numba":
         got, remedy = f"the branch rule {rule.name!r}", "Only 'principal' runs compiled by numba."
         raise error(where, "be 'auto' or 'jax'", got, remedy)
     if has_frame(discrete) and backend == "auto":
-        return RuleStepper(discrete, rule, posed)
+        return RuleStepper(discrete, rule, with_poses)
     if rule.needs_all_values:
         raise error(where, "be 'auto'", f"{shown(backend)} with branch {rule.name!r}", "Leave it out.")
-    return _by_definition(discrete, posed=posed, branch=rule.name)
+    return _by_definition(discrete, with_poses=with_poses, branch=rule.name)
 
 
-def _principal(where: str, discrete: Discretization, backend: str, *, posed: bool) -> AbstractStepper[Any]:
+def _principal(where: str, discrete: Discretization, backend: str, *, with_poses: bool) -> AbstractStepper[Any]:
     if backend == "jax":
-        return _by_definition(discrete, posed=posed)
-    if backend == "numba" and discrete.forces is None and discrete.route.compiled is None:
+        return _by_definition(discrete, with_poses=with_poses)
+    if backend == "numba" and discrete.forces is None and discrete.route.compiled_route is None:
         remedy = "Pass backend='jax', or difference='matrix'."
         raise error(where, "have a closed form of the step", shown(discrete.difference), remedy)
-    return discrete.stepper(posed=posed)
+    return discrete.stepper(with_poses=with_poses)
 
 
-def _by_definition(discrete: Discretization, *, posed: bool, branch: str = "principal") -> AbstractStepper[Any]:
-    defined = dataclasses.replace(discrete, wanted_route="definition")
-    return defined.route.stepper(defined, posed=posed, branch=branch)
+def _by_definition(discrete: Discretization, *, with_poses: bool, branch: str = "principal") -> AbstractStepper[Any]:
+    by_definition = dataclasses.replace(discrete, wanted_route="definition")
+    return by_definition.route.stepper(by_definition, with_poses=with_poses, branch=branch)
 
 
 def refuse_too_large(owner: str, widths: tuple[int, ...], states: int) -> None:

@@ -15,7 +15,8 @@ from nonholo.base.results import OUTCOMES, Outcome, OutcomeError, conclude
 from nonholo.discrete import check_first_state
 from nonholo.orbit import AbstractOrbit, AbstractStepper, First, Plan, Rows, State, keep_row, write_first
 from nonholo.simulation._contact import after_contact
-from nonholo.simulation.events import Watch, begun_at, check_resets, piece_of, search
+from nonholo.simulation._crossings import begun_at, check_resets
+from nonholo.simulation._search import Watch, piece_of, search
 
 _PIECE, _SHORT = 1 << 20, 256  # steps of a call at most; of the first searched call, which an event may soon end
 _AGAIN = 32  # steps of the first searched call after an impact
@@ -46,15 +47,15 @@ class Run(NamedTuple):
         """Return how the run is cut into blocks of this many saved states."""
         return Plan(self.steps, self.every, rows, self.stepper.lead)
 
-    def finished(self, orbit: Any, done: int) -> Any:
+    def finish(self, orbit: Any, step: int) -> Any:
         """Return the orbit of the run, or raise if it ended early."""
-        return conclude(orbit, float(self.stepper.motion.time_step), done, self.steps, self.throw)
+        return conclude(orbit, float(self.stepper.motion.time_step), step, self.steps, self.throw)
 
 
 class Reached(NamedTuple):
     """The state of a run between two blocks: good steps, the outcome so far, the state, what was seen of events."""
 
-    done: int
+    step: int
     outcome: Outcome
     state: State
     watch: Watch | None
@@ -70,32 +71,32 @@ class Block(NamedTuple):
 
     number: int
     orbit: Any
-    reached: Reached
+    standing: Reached
 
 
-def opened(run: Run, first: First) -> tuple[Reached, AbstractOrbit | None]:
+def open_run(run: Run, first: First) -> tuple[Reached, AbstractOrbit | None]:
     """Begin a run; return how it stands at its start, and the empty orbit of one that cannot continue from there."""
     state, outcome = run.stepper.start(first)
-    begun = Reached(0, outcome, state, run.watch)
+    start = Reached(0, outcome, state, run.watch)
     if outcome == Outcome.successful and first.demand is None and run.watch is None:
-        return begun, None
+        return start, None
     there = orbit_at(run.stepper, state, 0)
     if outcome != Outcome.successful:
         there = dataclasses.replace(there.chosen(slice(0, 0)), outcome=outcome)
     if run.watch is not None:
         watch, _ = search(run.watch, there)
         check_resets(run.watch.events, there)
-        begun, there = begun._replace(watch=watch), dataclasses.replace(there, events=watch.log())
+        start, there = start._replace(watch=watch), dataclasses.replace(there, events=watch.log())
     if outcome == Outcome.successful and first.demand is not None:
         check_first_state(first.demand, there)
-    return begun, None if outcome == Outcome.successful else run.finished(there, 0)
+    return start, None if outcome == Outcome.successful else run.finish(there, 0)
 
 
-def orbit_at(stepper: AbstractStepper[Any], state: State, done: int) -> Any:
+def orbit_at(stepper: AbstractStepper[Any], state: State, step: int) -> Any:
     """Return the row of a state as an orbit."""
     rows = empty_rows(stepper, 1)
     write_first(state, rows)
-    return stepper.orbit(_ended(stepper, rows), done, 1, Outcome.successful)
+    return stepper.orbit(_certain_rows(stepper, rows), step, 1, Outcome.successful)
 
 
 def empty_rows(stepper: AbstractStepper[Any], places: int) -> Rows:
@@ -108,7 +109,7 @@ def part_of(rows: Rows, begin: int, end: int) -> Rows:
     return rows if begin == 0 and end >= len(rows[0]) else tuple([column[begin:end] for column in rows])
 
 
-def _ended(stepper: AbstractStepper[Any], rows: Rows) -> Rows:
+def _certain_rows(stepper: AbstractStepper[Any], rows: Rows) -> Rows:
     """Return rows without what belongs to the step ahead of the last one, which may not be taken."""
     return rows if stepper.lead else (*rows[:-1], rows[-1][:-1])
 
@@ -118,110 +119,108 @@ class _Table:
 
     def __init__(self, stepper: AbstractStepper[Any], plan: Plan, number: int, *, fine: bool) -> None:
         self.stepper, self.every, self.fine = stepper, plan.every, fine
-        self.number, self.begun, self.stop, self.ends = number, *plan.stretch(number)
-        self.places = 1 + (self.stop - self.begun) // self.every
+        self.number, self.begin, self.stop, self.ends = number, *plan.stretch(number)
+        self.places = 1 + (self.stop - self.begin) // self.every
         self.rows = empty_rows(stepper, 1 if fine else self.places)  # an event may stop the run long before
         self.fresh, self.least = 0, _SHORT  # where steps of searched calls begin to double, and from how many on
 
-    def room(self, done: int, pace: int) -> tuple[int, int, Rows]:
+    def room(self, step: int, pace: int) -> tuple[int, int, Rows]:
         """Return how many steps to take from a step, after how many of them a row is written, and where.
 
         Whole rows are written in place. A part of a row is written beside them, and so are the single steps that are
         searched for events.
         """
-        past, most = (
-            (done - self.begun) % self.every,
-            min(max(done - self.fresh, self.least) if self.fine else pace, self.stop - done),
-        )
+        past = (step - self.begin) % self.every
+        most = min(max(step - self.fresh, self.least) if self.fine else pace, self.stop - step)
         if self.fine:
             each, count = 1, min(most, piece_of(self.stepper.columns.values()))
-            self._reserve(1 + (done - self.begun + count) // self.every)
+            self._reserve(1 + (step - self.begin + count) // self.every)
         elif past == 0 and most >= self.every:
             each, count = self.every, most // self.every
         else:
             each, count = min(most, self.every - past), 1
         if each != self.every:
             return each * count, each, empty_rows(self.stepper, 1 + count)
-        first = (done - self.begun) // each
+        first = (step - self.begin) // each
         return each * count, each, part_of(self.rows, first, first + count + 1)
 
     def _reserve(self, places: int) -> None:
         """Have at least this many places."""
         if places > (have := len(self.rows[0])):
             longer = empty_rows(self.stepper, min(self.places, max(places, 2 * have)))
-            for column, known in zip(longer, self.rows, strict=True):
-                column[:have] = known
+            for column, old in zip(longer, self.rows, strict=True):
+                column[:have] = old
             self.rows = longer
 
-    def take(self, room: Rows, done: int, good: int, each: int) -> None:
+    def take(self, room: Rows, step: int, good: int, each: int) -> None:
         """Keep the saved states among the rows of a call, if they are not in place."""
-        past = done - self.begun + each * np.arange(1 + good // each)
-        saved = np.flatnonzero(past % self.every == 0)
+        past = step - self.begin + each * np.arange(1 + good // each)
+        at = np.flatnonzero(past % self.every == 0)
         for column, new in zip(self.rows, room, strict=True):
-            column[past[saved] // self.every] = new[saved]
+            column[past[at] // self.every] = new[at]
 
 
 def blocks(
     run: Run,
     plan: Plan,
-    begun: Reached,
+    start: Reached,
     report: Callable[[int, int], object],
-    known: Callable[[int], Reached | None] | None = None,
+    look_up: Callable[[int], Reached | None] | None = None,
 ) -> Iterator[Block]:
     """Give the blocks of a run in order, up to the one that ends it; nothing of those that are known is computed."""
-    reached = begun
+    standing = start
     for number in range(plan.blocks):
-        orbit, there = None, None if known is None else known(number)
+        orbit, there = None, None if look_up is None else look_up(number)
         if there is None:
-            orbit, there = computed(run.stepper, plan, number, reached, report)
+            orbit, there = compute_block(run.stepper, plan, number, standing, report)
         else:
-            report(there.done, plan.steps)
-        reached = there
-        yield Block(number, orbit, reached)
-        if reached.is_last:
+            report(there.step, plan.steps)
+        standing = there
+        yield Block(number, orbit, standing)
+        if standing.is_last:
             return
 
 
-def computed(
-    stepper: AbstractStepper[Any], plan: Plan, number: int, begun: Reached, report: Callable[[int, int], object]
+def compute_block(
+    stepper: AbstractStepper[Any], plan: Plan, number: int, start: Reached, report: Callable[[int, int], object]
 ) -> tuple[Any, Reached]:
     """Take the steps of a block: the only loop over steps."""
-    table, watch = _Table(stepper, plan, number, fine=begun.watch is not None), begun.watch
-    state, done, code, pace = begun.state.copy(), table.begun, 0, stepper.pace
+    table, watch = _Table(stepper, plan, number, fine=start.watch is not None), start.watch
+    state, step, code, pace = start.state.copy(), table.begin, 0, stepper.pace
     if watch is not None:  # a block without steps has a log too
-        watch, _ = search(dataclasses.replace(watch, parts=()), orbit_at(stepper, state, done))
+        watch, _ = search(dataclasses.replace(watch, parts=()), orbit_at(stepper, state, step))
     over = watch is not None and watch.stopped_by is not None
-    while code == 0 and done < table.stop and not over:
+    while code == 0 and step < table.stop and not over:
         since = time.monotonic()
-        steps, each, room = table.room(done, pace)
+        steps, each, room = table.room(step, pace)
         if watch is None:
-            state, good, code = _advanced(stepper, state, steps, each, room)
+            state, good, code = _advance(stepper, state, steps, each, room)
         else:
-            state, good, code, watch = _watched(stepper, watch, state, (done, steps), room)
+            state, good, code, watch = _watch_steps(stepper, watch, state, (step, steps), room)
             over = watch.stopped_by is not None
             if good < steps:  # up to an impact
-                table.fresh, table.least = done + good, _AGAIN
+                table.fresh, table.least = step + good, _AGAIN
         if each != plan.every:
-            table.take(room, done, good, each)
-        done, pace = done + good, _paced(pace, time.monotonic() - since)
-        report(done, plan.steps)
-    reached = Reached(done, Outcome.successful if over else OUTCOMES[code], state, watch)
-    return _orbit_of(stepper, table, plan, reached), reached
+            table.take(room, step, good, each)
+        step, pace = step + good, _pace(pace, time.monotonic() - since)
+        report(step, plan.steps)
+    standing = Reached(step, Outcome.successful if over else OUTCOMES[code], state, watch)
+    return _orbit_of(stepper, table, plan, standing), standing
 
 
-def _watched(
+def _watch_steps(
     stepper: AbstractStepper[Any], watch: Watch, state: State, stretch: tuple[int, int], room: Rows
 ) -> tuple[State, int, int, Watch]:
     """Take single steps up to an event that ends the motion, or through the step with an impact; search them."""
-    done, steps = stretch
+    step, steps = stretch
     if watch.is_at_wall:
         write_first(state, room)
-        return _through(stepper, watch, state, (done, 0), room)
-    state, good, code = _advanced(stepper, state, steps, 1, room)
-    rows = _ended(stepper, part_of(room, 0, 1 + good))
-    watch, states = search(watch, stepper.orbit(rows, done, 1, Outcome.successful))
+        return _through(stepper, watch, state, (step, 0), room)
+    state, good, code = _advance(stepper, state, steps, 1, room)
+    rows = _certain_rows(stepper, part_of(room, 0, 1 + good))
+    watch, states = search(watch, stepper.orbit(rows, step, 1, Outcome.successful))
     if watch.reset_by is not None:
-        return _through(stepper, watch, state, (done, states - 1), room)
+        return _through(stepper, watch, state, (step, states - 1), room)
     if watch.stopped_by is not None:
         keep_row(state, room, states - 1)
     return state, states - 1, code, watch
@@ -231,12 +230,12 @@ def _through(
     stepper: AbstractStepper[Any], watch: Watch, state: State, place: tuple[int, int], room: Rows
 ) -> tuple[State, int, int, Watch]:
     """Take the step from a node at a wall, or the part that is left of the step with the impact that was seen last."""
-    done, good = place
+    step, good = place
     if watch.reset_by is None:
-        there, gone = orbit_at(stepper, state, done), 0.0
+        there, share = orbit_at(stepper, state, step), 0.0
     else:
-        there, good, gone = watch.begun_at(good)
-    after, watch, outcome = after_contact(functools.partial(begun_at, stepper), watch, there, done + good, gone)
+        there, good, share = watch.begun_at(good)
+    after, watch, outcome = after_contact(functools.partial(begun_at, stepper), watch, there, step + good, share)
     keep_row(state, room, good)
     if after is None:
         return state, good, outcome, watch
@@ -244,7 +243,7 @@ def _through(
     return after, good + 1, outcome, watch
 
 
-def _advanced(stepper: AbstractStepper[Any], state: State, steps: int, each: int, room: Rows) -> tuple[State, int, int]:
+def _advance(stepper: AbstractStepper[Any], state: State, steps: int, each: int, room: Rows) -> tuple[State, int, int]:
     """Return the state after the last good step, how many steps were good, and the outcome."""
     before = state.copy() if each > 1 else state
     good, code = stepper.advance(state, steps, each, room)
@@ -254,56 +253,51 @@ def _advanced(stepper: AbstractStepper[Any], state: State, steps: int, each: int
     return state, good, code
 
 
-def _orbit_of(stepper: AbstractStepper[Any], table: _Table, plan: Plan, reached: Reached) -> Any:
+def _orbit_of(stepper: AbstractStepper[Any], table: _Table, plan: Plan, standing: Reached) -> Any:
     """Return the saved states of a block as an orbit."""
-    last, ends = (reached.done - table.begun) // plan.every, table.ends or reached.is_last
+    last, ends = (standing.step - table.begin) // plan.every, table.ends or standing.is_last
     first = int(stepper.lead == 1 and table.number > 0)
-    if reached.done == table.begun:  # no step was taken
-        write_first(reached.state, table.rows)
-    kept = part_of(table.rows, first, last + (stepper.lead or ends))
-    kept = _ended(stepper, kept) if ends else kept
-    orbit = stepper.orbit(kept, table.begun + first * plan.every, plan.every, reached.outcome)
-    return orbit if reached.watch is None else dataclasses.replace(orbit, events=reached.watch.log())
+    if standing.step == table.begin:  # no step was taken
+        write_first(standing.state, table.rows)
+    rows = part_of(table.rows, first, last + (stepper.lead or ends))
+    rows = _certain_rows(stepper, rows) if ends else rows
+    orbit = stepper.orbit(rows, table.begin + first * plan.every, plan.every, standing.outcome)
+    return orbit if standing.watch is None else dataclasses.replace(orbit, events=standing.watch.log())
 
 
-def _paced(pace: int, seconds: float) -> int:
+def _pace(pace: int, seconds: float) -> int:
     """Return how many steps to take next, after that many took so long."""
     if seconds < _SOON:
         return min(2 * pace, _PIECE)
     return max(1, pace // 2) if seconds > _LATE else pace
 
 
-def in_memory(run: Run, first: First) -> Any:
-    """Run in memory; return the orbit."""
-    return run.finished(*ended(run, first, whole=True))
-
-
-def ended(run: Run, first: First, *, whole: bool) -> tuple[Any, int]:
+def run_to_end(run: Run, first: First, *, whole: bool) -> tuple[Any, int]:
     """Run in memory; return the saved states, or the last good one alone, as an orbit, and the good steps."""
-    begun, orbit = opened(run, first)
+    start, orbit = open_run(run, first)
     if orbit is not None:
         return orbit, 0
     with progress_bar("steps", run.progress) as report:
-        orbit, reached = computed(run.stepper, run.plan(1 + run.steps // run.every), 0, begun, report)
+        orbit, standing = compute_block(run.stepper, run.plan(1 + run.steps // run.every), 0, start, report)
     if whole:
-        return orbit, reached.done
-    last = orbit_at(run.stepper, reached.state, reached.done)
-    return dataclasses.replace(last, outcome=orbit.outcome, events=orbit.events), reached.done
+        return orbit, standing.step
+    last = orbit_at(run.stepper, standing.state, standing.step)
+    return dataclasses.replace(last, outcome=orbit.outcome, events=orbit.events), standing.step
 
 
 def one_by_one(run: Run, first: First, rows: int) -> Iterator[Any]:
     """Begin a run, before any block is asked for; return the iterator over the orbits of its blocks."""
-    begun, empty = opened(run, first)
-    return iter((empty,)) if empty is not None else _given(run, begun, rows)
+    start, empty = open_run(run, first)
+    return iter((empty,)) if empty is not None else _orbits(run, start, rows)
 
 
-def _given(run: Run, begun: Reached, rows: int) -> Iterator[Any]:
+def _orbits(run: Run, start: Reached, rows: int) -> Iterator[Any]:
     with progress_bar("steps", run.progress) as report:
-        for _, orbit, reached in blocks(run, run.plan(rows), begun, report):
+        for _, orbit, standing in blocks(run, run.plan(rows), start, report):
             if len(orbit) or not run.throw:
                 yield orbit
             if run.throw and orbit.outcome != Outcome.successful:
-                where = f"Step {reached.done + 1} of {run.steps} (time_step {run.stepper.motion.time_step:g})"
+                where = f"Step {standing.step + 1} of {run.steps} (time_step {run.stepper.motion.time_step:g})"
                 raise OutcomeError(orbit.outcome, where, orbit)
 
 
@@ -313,9 +307,9 @@ def rows_of_block(where: str, run: Run, block_steps: int | None) -> int:
         widest = max(1, *run.stepper.columns.values())
         least = min(1 + run.steps // run.every, _ROWS, _NUMBERS // widest, run.stepper.block // run.every)
         return max(1, least)
-    asked = count(where, block_steps, "Pass the number of steps.")
-    if asked % run.every:
-        remedy = f"Pass {-(-asked // run.every) * run.every}."
-        raise error(where, f"be a multiple of save_every = {run.every}", str(asked), remedy)
-    within_memory(where, 16.0 * (asked // run.every) * run.stepper.width, "Pass fewer steps: a block is held whole.")
-    return asked // run.every
+    steps = count(where, block_steps, "Pass the number of steps.")
+    if steps % run.every:
+        remedy = f"Pass {-(-steps // run.every) * run.every}."
+        raise error(where, f"be a multiple of save_every = {run.every}", str(steps), remedy)
+    within_memory(where, 16.0 * (steps // run.every) * run.stepper.width, "Pass fewer steps: a block is held whole.")
+    return steps // run.every

@@ -8,7 +8,7 @@ from nonholo.base.checks import error, path, shown
 from nonholo.discrete import BranchRule
 from nonholo.orbit import DiscreteMotion, OrbitT
 from nonholo.simulation._options import FEW, checked_run, refuse_too_large
-from nonholo.simulation._run import in_memory, one_by_one, rows_of_block
+from nonholo.simulation._run import one_by_one, rows_of_block, run_to_end
 from nonholo.simulation._stored import into_store
 from nonholo.systems import Start
 
@@ -102,22 +102,22 @@ def simulate(
     run = checked_run("simulate", discrete, **how)
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity}
     starts |= {"displacement": displacement, "momentum": momentum}
-    start = Start.of("simulate", configuration, allowed=discrete.starts, project=project, **starts)
+    start = Start.of("simulate", configuration, choices=discrete.starts, project=project, **starts)
     if store is None and (checkpoint_every is not None or scenario is not None):
         _refuse_without_store(checkpoint_every=checkpoint_every, scenario=scenario)
     if store is not None or run.watch is None:  # an event may stop a run in memory long before
         states = 1 if store is not None else 1 + run.steps // run.every
         if states * run.stepper.width > FEW:
             refuse_too_large("simulate", tuple(run.stepper.columns.values()), states)
-    first = discrete.first(start, posed=run.stepper.has_poses)
+    first = discrete.first(start, with_poses=run.stepper.has_poses)
     if store is None:
-        return in_memory(run, first)
+        return run.finish(*run_to_end(run, first, whole=True))
     return into_store(run, first, path("simulate(store=...)", store), checkpoint_every, scenario)
 
 
-def _refuse_without_store(**given: Any) -> None:
+def _refuse_without_store(**arguments: Any) -> None:
     """Refuse what only a store can keep."""
-    for name, value in given.items():
+    for name, value in arguments.items():
         if value is not None:
             got, remedy = f"{shown(value)} without a store", "Pass store='run.zarr' too, or leave it out."
             raise error(f"simulate({name}=...)", "come with a store", got, remedy)
@@ -183,7 +183,7 @@ def iterate(
     run = checked_run("iterate", discrete, **how)
     starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
     starts |= {"restricted_velocity": restricted_velocity}
-    start = Start.of("iterate", configuration, allowed=discrete.starts, project=project, **starts)
+    start = Start.of("iterate", configuration, choices=discrete.starts, project=project, **starts)
     refuse_too_large("iterate", tuple(run.stepper.columns.values()), 1)
     rows = rows_of_block("iterate(block_steps=...)", run, block_steps)
-    return one_by_one(run, discrete.first(start, posed=run.stepper.has_poses), rows)
+    return one_by_one(run, discrete.first(start, with_poses=run.stepper.has_poses), rows)

@@ -10,9 +10,8 @@ from nonholo.systems._base import (
     as_system,
     refuse_forces,
     refuse_slip,
-    unchecked,
+    replace_numbers,
 )
-from nonholo.systems._body import ImpossibleBodyWarning
 from nonholo.systems._coordinate_system import (
     AbstractCoordinateDiscretization,
     AbstractCoordinateSystem,
@@ -20,10 +19,10 @@ from nonholo.systems._coordinate_system import (
     OrbitT,
     in_coordinates,
 )
-from nonholo.systems._displacements import in_exp_d, trace_constraints
-from nonholo.systems._drift import gyroscopic_form
-from nonholo.systems._euler_angles import euler_angle_discrete_lagrangian
+from nonholo.systems._displacements import euler_angle_discrete_lagrangian, in_exp_d, trace_constraints
+from nonholo.systems._equilibria import gyroscopic_form
 from nonholo.systems._mass import (
+    ImpossibleBodyWarning,
     checked_group,
     group_mass_tensor,
     inertia_form,
@@ -33,8 +32,13 @@ from nonholo.systems._mass import (
 )
 from nonholo.systems._normal_form import NormalForm
 from nonholo.systems._start import Start, in_group, inadmissible, of_finite_energy, one_start, refuse_in_coordinates
-from nonholo.systems._subspace import null_space, reference_point_subspace, spanned
-from nonholo.systems._symmetric_pair import is_symmetric_pair, symmetric_complement
+from nonholo.systems._subspace import (
+    is_symmetric_pair,
+    null_space,
+    reference_point_subspace,
+    row_space,
+    symmetric_complement,
+)
 from nonholo.systems.families import (
     ArrowheadSleigh,
     ArrowheadTop,
@@ -46,7 +50,7 @@ from nonholo.systems.families import (
     SuslovTop,
     VeselovaTop,
 )
-from nonholo.systems.forces import Forced, Friction, Gravity, Linear, Slip, Spring, Widened, joined, parts_of
+from nonholo.systems.forces import Forced, Friction, Gravity, Linear, Slip, Spring, Widened, force_of, parts_of
 
 SYSTEMS = tuple(kind for kind in vars(families).values() if isinstance(kind, type))
 """Every final class of this room."""

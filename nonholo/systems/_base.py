@@ -19,10 +19,9 @@ from nonholo.base.numerics import Factors, applied, factors_of, solve_by_factors
 from nonholo.base.types import Array, Bool, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._equilibria import Equilibria, equilibria_of, transverse_rates
-from nonholo.systems._mass import inertia_form, inertia_from_mass_tensor
+from nonholo.systems._mass import WideInertia, inertia_form, inertia_from_mass_tensor
 from nonholo.systems._normal_form import NormalForm
 from nonholo.systems._subspace import complement
-from nonholo.systems._wide import WideInertia
 
 SystemT = TypeVar("SystemT", bound="AbstractSystem")
 
@@ -30,8 +29,9 @@ SystemT = TypeVar("SystemT", bound="AbstractSystem")
 class AbstractSystem(Keeper, abc.ABC):
     """A kinetic energy that is invariant under left translations, with a linear constraint on velocities.
 
-    A system states its group, mass tensor, constraint subspace and annihilator in the user's body frame. Kernels work
-    in its canonical body frame: `canonical` is the same body seen from `frame`, that is g_canonical = g @ frame.
+    The constraint is fixed in the body, unless a class says otherwise. A system states its group, mass tensor,
+    constraint subspace and annihilator in the user's body frame. Kernels work in its canonical body frame: `canonical`
+    is the same body seen from `frame`, that is g_canonical = g @ frame.
     """
 
     group: AbstractMatrixGroup
@@ -66,7 +66,7 @@ class AbstractSystem(Keeper, abc.ABC):
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
         """Rows span the subspace of the constraint; k runs from 0 to dim."""
 
-    def stacked(self, /, **numbers: Array) -> Any:
+    def stack(self, /, **numbers: Array) -> Any:
         """Return the systems of many numbers in one: they have an axis in front; None where formulas do not allow it.
 
         Args:
@@ -193,7 +193,6 @@ class AbstractSystem(Keeper, abc.ABC):
         inertia = self.inertia_along
         return inertia.dense if isinstance(inertia, WideInertia) else inertia
 
-    @abc.abstractmethod
     def carried(self, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim dim"]:
         r"""Return the matrix from body velocities to those whose constraint is fixed: the identity, or $\mathrm{Ad}_g$.
 
@@ -209,8 +208,9 @@ class AbstractSystem(Keeper, abc.ABC):
             >>> bool(np.all(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])).carried(quarter) == np.eye(3)))
             True
         """
+        del configuration
+        return np.eye(self.group.dim)
 
-    @abc.abstractmethod
     def moved(self, configuration: Float[Array, "... N N"], displacement: Array) -> Float[Array, "... N N"]:
         """Return a pose after a displacement that the constraint sees: g W, or W g where it is fixed in space.
 
@@ -218,8 +218,8 @@ class AbstractSystem(Keeper, abc.ABC):
             configuration: g.
             displacement: W, (..., N, N).
         """
+        return configuration @ displacement
 
-    @abc.abstractmethod
     def restrict_at(
         self, momentum: Inexact[Array, "... dim"], configuration: Float[Array, "... N N"] | None = None
     ) -> Inexact[Array, "... k"]:
@@ -230,8 +230,9 @@ class AbstractSystem(Keeper, abc.ABC):
             configuration: g; needed where the constraint is fixed in space, where they are those of the spatial
                 momentum, $S\,\mathrm{Ad}^*_{g^{-1}}p$.
         """
+        del configuration
+        return self.restrict(momentum)
 
-    @abc.abstractmethod
     def restricted_velocity(
         self, restricted_momentum: Float[Array, "... k"], configuration: Float[Array, "... N N"] | None = None
     ) -> Float[Array, "... k"]:
@@ -241,8 +242,12 @@ class AbstractSystem(Keeper, abc.ABC):
             restricted_momentum: r.
             configuration: g; needed where the constraint is fixed in space.
         """
+        del configuration
+        momentum, inertia = self._along("restricted_momentum", restricted_momentum), self.inertia_along
+        if isinstance(momentum, np.ndarray) and self.inertia_factors is not None:
+            return solve_by_factors(self.inertia_factors, momentum)
+        return inertia.velocities(momentum) if isinstance(inertia, WideInertia) else _solve(inertia, momentum)
 
-    @abc.abstractmethod
     def restricted_momentum(
         self, restricted_velocity: Float[Array, "... k"], configuration: Float[Array, "... N N"] | None = None
     ) -> Float[Array, "... k"]:
@@ -252,6 +257,10 @@ class AbstractSystem(Keeper, abc.ABC):
             restricted_velocity: w.
             configuration: g, by default the identity; it matters where the constraint is fixed in space.
         """
+        del configuration
+        velocity, inertia = self._along("restricted_velocity", restricted_velocity), self.inertia_along
+        is_wide = isinstance(inertia, WideInertia)
+        return inertia.momenta(velocity) if is_wide else applied(inertia.swapaxes(-1, -2), velocity)
 
     def constrained_energy(
         self,
@@ -289,7 +298,7 @@ class AbstractSystem(Keeper, abc.ABC):
         return trailing(f"{type(self).__name__} ({name}=...)", value, (self.rank,), remedy)
 
 
-def unchecked(system: SystemT, /, **numbers: Array) -> SystemT:
+def replace_numbers(system: SystemT, /, **numbers: Array) -> SystemT:
     """Return a system with other numbers, unchecked: they may have axes in front, where its formulas allow them."""
     other = object.__new__(type(system))
     for name in (*system.leaves, *system.structure):
@@ -326,11 +335,6 @@ class AbstractLLSystem(AbstractSystem):
         """
         return equilibria_of(self)
 
-    def carried(self, configuration: Float[Array, "... N N"]) -> Float[Array, "dim dim"]:
-        """Return the identity: the constraint is fixed in the body."""
-        del configuration
-        return np.eye(self.group.dim)
-
     def transverse_rates(
         self, velocity: Float[Array, "dim"], subspace: Float[Array, "m dim"]
     ) -> Float[np.ndarray, "j"] | Inexact[np.ndarray, "j"]:
@@ -349,36 +353,6 @@ class AbstractLLSystem(AbstractSystem):
             array([-0.258,  0.258])
         """
         return transverse_rates(self, velocity, subspace)
-
-    def moved(self, configuration: Float[Array, "... N N"], displacement: Array) -> Float[Array, "... N N"]:
-        """Return g W."""
-        return configuration @ displacement
-
-    def restrict_at(
-        self, momentum: Inexact[Array, "... dim"], configuration: Float[Array, "... N N"] | None = None
-    ) -> Inexact[Array, "... k"]:
-        """Return the components of a body momentum along the constraint subspace."""
-        del configuration
-        return self.restrict(momentum)
-
-    def restricted_velocity(
-        self, restricted_momentum: Float[Array, "... k"], configuration: Float[Array, "... N N"] | None = None
-    ) -> Float[Array, "... k"]:
-        """Return the velocity, in rows of the constraint subspace, that has these momenta along it."""
-        del configuration
-        momentum, inertia = self._along("restricted_momentum", restricted_momentum), self.inertia_along
-        if isinstance(momentum, np.ndarray) and self.inertia_factors is not None:
-            return solve_by_factors(self.inertia_factors, momentum)
-        return inertia.velocities(momentum) if isinstance(inertia, WideInertia) else _solve(inertia, momentum)
-
-    def restricted_momentum(
-        self, restricted_velocity: Float[Array, "... k"], configuration: Float[Array, "... N N"] | None = None
-    ) -> Float[Array, "... k"]:
-        """Return the momenta along the constraint subspace of velocities in its rows."""
-        del configuration
-        velocity, inertia = self._along("restricted_velocity", restricted_velocity), self.inertia_along
-        is_wide = isinstance(inertia, WideInertia)
-        return inertia.momenta(velocity) if is_wide else applied(inertia.swapaxes(-1, -2), velocity)
 
 
 class AbstractLRSystem(AbstractSystem):

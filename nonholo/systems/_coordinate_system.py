@@ -26,11 +26,11 @@ class AbstractCoordinateDiscretization(Keeper, abc.ABC, Generic[OrbitT]):
     starts: ClassVar[tuple[str, ...]] = ("body_velocity", "displacement", "momentum")
 
     @abc.abstractmethod
-    def first(self, start: Any, *, posed: bool) -> Any:
+    def first(self, start: Any, *, with_poses: bool) -> Any:
         """Return a checked start in the numbers of the motion."""
 
     @abc.abstractmethod
-    def stepper(self, *, posed: bool) -> Any:
+    def stepper(self, *, with_poses: bool) -> Any:
         """Return what takes its steps."""
 
 

@@ -175,3 +175,17 @@ def transverse_rates(system: "AbstractLLSystem", velocity: Any, subspace: Any) -
     rows = array(f"{where}(subspace=...)", subspace, (None, dim), "Pass rows that span equilibria.")
     field, inertia = quadratic_field(system), np.asarray(system.inertia_operator)
     return field.rates(field.coordinates(x, inertia), field.coordinates(rows, inertia))
+
+
+def gyroscopic_form(
+    inertia: Float[np.ndarray, "dim dim"], brackets: Float[np.ndarray, "k m dim"], rows: Float[np.ndarray, "k dim"]
+) -> Float[np.ndarray, "k k m"]:
+    r"""Return the forms $\langle\mathbb{I}\omega, [\omega, x_m]\rangle$ as symmetric matrices in the rows of $\omega$.
+
+    Args:
+        inertia: $\mathbb{I}$.
+        brackets: $[d_b, x_m]$ for the rows $d_b$ and any directions $x_m$.
+        rows: $d_a$.
+    """
+    form = np.einsum("ad,bmd->abm", rows @ inertia, brackets)
+    return (form + form.transpose(1, 0, 2)) / 2

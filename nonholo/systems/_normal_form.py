@@ -166,8 +166,8 @@ def _recognized_top(system: "AbstractLLSystem", tensor: np.ndarray) -> NormalFor
     if not _pass_through(planes, axis):
         return None
     turn = _rotation(np.eye(n)[-1], axis)
-    seen = turn.T @ tensor @ turn
-    form = top_form((seen + seen.swapaxes(-1, -2)) / 2)
+    in_axes = turn.T @ tensor @ turn
+    form = top_form((in_axes + in_axes.swapaxes(-1, -2)) / 2)
     return _seen_from(system, form, turn, top_rows(system.group))
 
 

@@ -42,15 +42,16 @@ class Start:
         cls,
         owner: str,
         configuration: Any = None,
-        allowed: tuple[str, ...] | None = None,
+        choices: tuple[str, ...] | None = None,
         *,
         project: bool = False,
         **starts: Any,
     ) -> "Start":
         """Return the start of a call, refused if it names none or several, or one that the motion does not have."""
-        flags(owner, project=project)
-        if allowed is not None and len(allowed) < len(starts):
-            for other in [name for name in starts if name not in allowed]:
+        if project is not False:
+            flags(owner, project=project)
+        if choices is not None and len(choices) < len(starts):
+            for other in [name for name in starts if name not in choices]:
                 refuse_in_coordinates(owner, **{other: (starts.pop(other), None)})
         name = one_start(owner, **starts)
         if project and name == "displacement":
@@ -78,7 +79,7 @@ class Start:
         return along(self, system, g)
 
 
-def refuse_in_coordinates(owner: str, **given: tuple[Any, Any]) -> None:
+def refuse_in_coordinates(owner: str, **arguments: tuple[Any, Any]) -> None:
     """Refuse arguments that only systems on a group have: each comes with its default.
 
     Example:
@@ -86,16 +87,16 @@ def refuse_in_coordinates(owner: str, **given: tuple[Any, Any]) -> None:
         >>> refuse_in_coordinates("discretize", order=(2, 2))
     """
     remedy = "Leave it out: only tops, sleighs and other LL and LR systems have it."
-    refuse_given(owner, "keep its default for a Lagrange-d'Alembert system", remedy, **given)
+    refuse_given(owner, "keep its default for a Lagrange-d'Alembert system", remedy, **arguments)
 
 
 def one_start(owner: str, **starts: Any) -> str:
     """Return the name of the only start that is given, refused if there are none or several."""
-    given = [name for name, value in starts.items() if value is not None]
-    if len(given) != 1:
-        got = " and ".join(given) if given else "none"
+    names = [name for name, value in starts.items() if value is not None]
+    if len(names) != 1:
+        got = " and ".join(names) if names else "none"
         raise error(f"{owner}(...)", "be given exactly one of " + ", ".join(starts), got, "Choose one start.")
-    return given[0]
+    return names[0]
 
 
 def in_group(where: str, group: AbstractMatrixGroup, element: Any) -> np.ndarray:
@@ -153,8 +154,8 @@ def _of_coordinates(start: Start, system: System, g: np.ndarray | None) -> np.nd
 
 def _check_admissible(where: str, system: System, g: np.ndarray | None, velocity: np.ndarray) -> None:
     pose = system.group.identity if g is None else g
-    carried = system.carried(pose) @ velocity if system.is_spatial else velocity
-    forbidden = system.annihilator @ carried
-    if np.count_nonzero(forbidden) and np.abs(forbidden).max() > _TOLERANCE * np.abs(carried).max():
-        nearest = carried - np.linalg.pinv(system.annihilator) @ forbidden
+    frame_velocity = system.carried(pose) @ velocity if system.is_spatial else velocity
+    forbidden = system.annihilator @ frame_velocity
+    if np.count_nonzero(forbidden) and np.abs(forbidden).max() > _TOLERANCE * np.abs(frame_velocity).max():
+        nearest = frame_velocity - np.linalg.pinv(system.annihilator) @ forbidden
         raise inadmissible(where, forbidden, system.carried(system.group.inverse(pose)) @ nearest)

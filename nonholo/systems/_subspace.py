@@ -1,6 +1,7 @@
-r"""Constraint subspaces: rows that span $\mathfrak{d}$ and rows of its annihilator, the one from the other.
+r"""Constraint subspaces: rows that span $\mathfrak{d}$ and rows of its annihilator, and whether it is half of a pair.
 
-Linear algebra alone; what a subspace means is said by the systems.
+Linear algebra alone; what a subspace means is said by the systems. For a symmetric pair $\exp\mathfrak{d}$ is a
+submanifold, the model of Cartan of the symmetric space G/H.
 """
 
 from typing import Any
@@ -11,7 +12,7 @@ from nonholo.base.checks import array, dimension, error, is_traced
 from nonholo.base.limits import within_memory
 from nonholo.base.types import Array, Float, read_only
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.systems._wide import narrow
+from nonholo.systems._mass import checked_group, narrow
 
 _ROUNDING = 64 * np.finfo(np.float64).eps  # times the larger side of a matrix: singular values below it count as zero
 
@@ -44,7 +45,7 @@ def _refuse_too_wide(dim: int) -> None:
     within_memory(f"The complement of a subspace in {dim} dimensions", 8.0 * dim**2, "Use a smaller group.")
 
 
-def spanned(rows: Float[np.ndarray, "m dim"], tolerance: float = _ROUNDING) -> Float[np.ndarray, "k dim"]:
+def row_space(rows: Float[np.ndarray, "m dim"], tolerance: float = _ROUNDING) -> Float[np.ndarray, "k dim"]:
     """Return orthonormal rows that span the same space as the given rows."""
     return null_space(null_space(rows, tolerance))
 
@@ -148,10 +149,129 @@ def _from_axes(rows: Float[np.ndarray, "k dim"]) -> Float[np.ndarray, "k dim"]:
     rows. The squared residuals of the axes add up to the number of missing rows, so some axis always passes the bound.
     """
     dim = rows.shape[1]
-    chosen = np.empty((0, dim))
-    for projected in rows.T @ rows:
-        residual = projected - chosen.T @ (chosen @ projected)
+    basis = np.empty((0, dim))
+    for projection in rows.T @ rows:
+        residual = projection - basis.T @ (basis @ projection)
         if residual @ residual > 1 / (2 * dim):
-            residual = residual - chosen.T @ (chosen @ residual)
-            chosen = np.concatenate([chosen, residual[None, :] / np.linalg.norm(residual)])
-    return chosen
+            residual = residual - basis.T @ (basis @ residual)
+            basis = np.concatenate([basis, residual[None, :] / np.linalg.norm(residual)])
+    return basis
+
+
+_RANK = 1e-12  # relative size below which a singular value or a residual counts as zero
+
+
+def is_symmetric_pair(group: AbstractMatrixGroup, constraint_subspace: Any) -> bool:
+    r"""Tell whether the algebra has a subalgebra that forms a symmetric pair with the constraint subspace.
+
+    $$ \mathfrak{g} = \mathfrak{h}\oplus\mathfrak{d}, \qquad [\mathfrak{h},\mathfrak{h}]\subset\mathfrak{h}, \quad
+       [\mathfrak{h},\mathfrak{d}]\subset\mathfrak{d}, \quad [\mathfrak{d},\mathfrak{d}]\subset\mathfrak{h} $$
+
+    for some $\mathfrak{h}$; `symmetric_complement` returns one. No complement is preferred: the answer does not depend
+    on a scalar product, and it is complete up to the rank decisions (relative tolerance 1e-12). It speaks of the
+    algebra. That $(W - W^{-1})/2 \in \mathfrak{d}$ for $W \in \exp\mathfrak{d}$ follows where the involution is a
+    conjugation by a matrix, as for the tops and sleighs of this library.
+
+    Reference: [fedorov-zenkov-2004], section 2, the condition on (g, h).
+
+    Args:
+        group: A matrix group.
+        constraint_subspace: Rows span $\mathfrak{d}$.
+
+    Raises:
+        ValueError: Dependent rows, or rows of the wrong width.
+
+    Example:
+        >>> is_symmetric_pair(nh.SE(2), [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+        True
+        >>> is_symmetric_pair(nh.SO(3), [[1.0, 0.0, 0.0]])
+        False
+    """
+    return symmetric_complement(group, constraint_subspace) is not None
+
+
+def symmetric_complement(group: AbstractMatrixGroup, constraint_subspace: Any) -> Float[np.ndarray, "s dim"] | None:
+    r"""Return rows that span an $\mathfrak{h}$ of a symmetric pair with the constraint subspace, or None.
+
+    Every such $\mathfrak{h}$ lies in the normalizer $\mathfrak{n} = \{x : [x, \mathfrak{d}]\subset\mathfrak{d}\}$,
+    contains $[\mathfrak{d}, \mathfrak{d}]$ and complements $\mathfrak{e} = \mathfrak{n}\cap\mathfrak{d}$, which must
+    commute with $\mathfrak{d}$ and is then an abelian ideal of $\mathfrak{n}$. So $\mathfrak{h}$ is the graph of a map
+    $\varphi$ from any complement $\mathfrak{h}_0 \supset [\mathfrak{d},\mathfrak{d}]$ to $\mathfrak{e}$; that it is a
+    subalgebra is a linear condition on $\varphi$, because $\mathfrak{e}$ is abelian:
+
+    $$ \varphi([x, y]_0) = [x, y]_\mathfrak{e} + [x, \varphi(y)] - [y, \varphi(x)], \qquad
+       \varphi|_{[\mathfrak{d},\mathfrak{d}]} = 0. $$
+
+    Raises:
+        ValueError: Dependent rows, or rows of the wrong width.
+
+    Example:
+        >>> symmetric_complement(nh.SE(2), [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+        array([[0., 0., 1.]])
+    """
+    checked_group("is_symmetric_pair(group=...)", group)
+    within_memory("is_symmetric_pair(group=...)", 8.0 * group.dim**3, "Use a smaller group.")
+    where = "is_symmetric_pair(constraint_subspace=...)"
+    d = row_space(independent_rows(where, constraint_subspace, group.dim))
+    constants, everything = _structure_constants(group), np.eye(group.dim)
+    escape = _significant(_brackets(constants, everything, d) @ null_space(d).T)
+    normalizer = null_space(escape.reshape(group.dim, escape[0].size).T, _RANK)
+    commutators = row_space(_significant(_brackets(constants, d, d)).reshape(-1, group.dim), _RANK)
+    overlap = _intersection(normalizer, d)
+    fits = (
+        len(normalizer) + len(d) - len(overlap) == group.dim
+        and len(row_space(np.concatenate([normalizer, commutators]), _RANK)) == len(normalizer)
+        and len(_intersection(commutators, d)) == 0
+        and not _significant(_brackets(constants, overlap, d)).any()
+    )
+    return _subalgebra(constants, normalizer, overlap, commutators) if fits else None
+
+
+def _subalgebra(
+    constants: np.ndarray, normalizer: np.ndarray, overlap: np.ndarray, commutators: np.ndarray
+) -> np.ndarray | None:
+    """Solve for the graph of phi over a complement of `overlap` in `normalizer`; None if there is none."""
+    rest = _intersection(normalizer, null_space(np.concatenate([commutators, overlap])))
+    start = np.concatenate([commutators, rest])
+    if len(overlap) == 0:
+        return start
+    coordinates = np.linalg.pinv(np.concatenate([start, overlap]))
+    parts = _significant(_brackets(constants, start, start) @ coordinates)
+    along, omega = parts[..., : len(start)], parts[..., len(start) :]
+    action = _significant(_brackets(constants, start, overlap) @ coordinates)[..., len(start) :]  # [x_i, e_a] in e
+    matrix, target = _conditions(along, omega, action, len(commutators))
+    phi = np.linalg.lstsq(matrix, target, rcond=_RANK)[0]
+    residual = np.abs(matrix @ phi - target).max(initial=0.0)
+    graph = start + phi.reshape(len(start), len(overlap)) @ overlap
+    return graph if residual <= 1e3 * _RANK * (1 + np.abs(phi).max(initial=0.0)) else None
+
+
+def _conditions(along: np.ndarray, omega: np.ndarray, action: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the linear system of phi (h rows, e columns, flattened) and its right-hand side."""
+    h, e = action.shape[:2]
+    unit_h, unit_e = np.eye(h), np.eye(e)
+    system = np.einsum("ijl,ac->ijcla", along, unit_e)
+    system = system - np.einsum("jl,iac->ijcla", unit_h, action) + np.einsum("il,jac->ijcla", unit_h, action)
+    zero = np.einsum("fl,ac->fcla", unit_h[:count], unit_e)
+    matrix = np.concatenate([system.reshape(-1, h * e), zero.reshape(-1, h * e)])
+    return matrix, np.concatenate([omega.ravel(), np.zeros(count * e)])
+
+
+def _structure_constants(group: AbstractMatrixGroup) -> Float[np.ndarray, "dim dim dim"]:
+    """Return the brackets of the basis; a common factor does not matter here, so the largest is made 1."""
+    basis = np.eye(group.dim)
+    constants = group.bracket(basis[:, None, :], basis[None, :, :])
+    return constants / max(np.abs(constants).max(initial=0.0), np.finfo(np.float64).tiny)
+
+
+def _brackets(constants: np.ndarray, x: np.ndarray, y: np.ndarray) -> Float[np.ndarray, "i j dim"]:
+    return np.einsum("jb,ibc->ijc", y, np.einsum("ia,abc->ibc", x, constants))
+
+
+def _significant(values: np.ndarray) -> np.ndarray:
+    """Set rounding errors in brackets of unit rows to zero: ranks are relative to the largest entry."""
+    return np.where(np.abs(values) > _RANK * values.shape[0], values, 0.0)
+
+
+def _intersection(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    return null_space(np.concatenate([null_space(first), null_space(second)]), _RANK)

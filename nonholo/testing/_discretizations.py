@@ -291,7 +291,7 @@ def reversal(s: OrbitSamples) -> float:
 
 def compiled_reversal(s: OrbitSamples) -> float:
     """Return how far one compiled step forward and back misses its start."""
-    need(s.discrete.route.compiled is not None, "the step is not compiled")
+    need(s.discrete.route.compiled_route is not None, "the step is not compiled")
     need(s.discrete.forces is None, "forces act")
     defect = invariants(s.orbit).reversal_defect
     return float("nan") if defect is None else defect
@@ -324,7 +324,7 @@ def order_of_poses(s: OrbitSamples) -> float:
 
 def definition(s: OrbitSamples) -> float:
     """Compare three compiled steps with the definition, solved by JAX."""
-    need(s.discrete.route.compiled is not None, "the step that runs is the definition")
+    need(s.discrete.route.compiled_route is not None, "the step that runs is the definition")
     need(s.discrete.forces is None, "forces act: check the system inside")
     slow = simulate(s.discrete, steps=3, backend="jax", **s.first)
     return max(relative(getattr(s.orbit[:4], name), getattr(slow, name)) for name in _AGREE)

@@ -22,7 +22,7 @@ from nonholo.continuous import vector_field
 from nonholo.discrete import Discretization, discrete_legendre
 from nonholo.orbit import Orbit
 from nonholo.simulation import simulate
-from nonholo.systems import AbstractSystem, Forced, joined
+from nonholo.systems import AbstractSystem, Forced, force_of
 from nonholo.testing._report import NotApplicableError, need
 
 COUNTS = (10, 20, 40)  # steps for the path whose order is measured
@@ -118,7 +118,7 @@ class OrbitSamples:
         forced = self.forced
         if forced.table is not None:
             rows = np.repeat(forced.rows(np.arange(COUNTS[0])), count // COUNTS[0], axis=0)
-            forced = dataclasses.replace(forced, force=joined(forced.parts | {"table": rows}))
+            forced = dataclasses.replace(forced, force=force_of(forced.parts | {"table": rows}))
         discrete = dataclasses.replace(self.discrete, system=forced, time_step=np.float64(self.span / count))
         return simulate(discrete, steps=count, **self.moving(norm / self.span))
 

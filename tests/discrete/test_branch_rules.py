@@ -9,8 +9,8 @@ from continuation import FAMILIES, Problems, fold_factors, followed, newton, ran
 import nonholo as nh
 from nonholo import Outcome
 from nonholo.discrete import Branches
+from nonholo.discrete.branching._equations import follow as followed_on_sphere
 from nonholo.discrete.branching._equations import frame_of
-from nonholo.discrete.branching._path import followed as followed_on_sphere
 from nonholo.discrete.branching._rules import PRINCIPAL, branch_rule
 from nonholo.discrete.branching._stepper import displacement_at, first_place, next_place
 

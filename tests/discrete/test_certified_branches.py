@@ -10,7 +10,7 @@ from sturm import real_roots
 
 import nonholo as nh
 from nonholo.discrete import Discretization
-from nonholo.discrete.certificate._certificate import located
+from nonholo.discrete.certificate._certificate import locate
 from nonholo.discrete.certificate._roots import problem_of
 
 _TENSOR = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
@@ -87,7 +87,7 @@ def test_random_counts_are_exact(kind: str) -> None:
         discrete = module.random_body(rng, kind)
         r = module.random_momentum(rng, discrete)[0]
         form = discrete.system.canonical.normal_form
-        found = located(problem_of(form, discrete.time_step, discrete.system.to_canonical(r)))
+        found = locate(problem_of(form, discrete.time_step, discrete.system.to_canonical(r)))
         counted = [sum(mu.imag == 0 for mu in x.balls) for x in found]
         assert counted == [real_roots(x.factor) for x in found]
 

@@ -10,9 +10,9 @@ from sturm import real_roots
 import nonholo as nh
 from nonholo.discrete import Discretization
 from nonholo.discrete.certificate import _roots as certificate_roots
-from nonholo.discrete.certificate._certificate import located
+from nonholo.discrete.certificate._certificate import locate
 from nonholo.discrete.certificate._families import _secular
-from nonholo.discrete.certificate._roots import Problem, isolated, problem_of, sharpened
+from nonholo.discrete.certificate._roots import Problem, isolate, problem_of, sharpen
 
 _X = fmpz_poly([0, 1])
 _HUGE = fmpz(10) ** 40
@@ -46,7 +46,7 @@ _NEED_NO_SEARCH = ["one root", "far apart", "close real roots", "real, 20 digits
 @pytest.mark.parametrize("polynomial", _POLYNOMIALS.values(), ids=_POLYNOMIALS)
 def test_discs_count_what_sturm_counts(polynomial: fmpz_poly) -> None:
     """As many balls are real as Sturm's theorem says, and all roots are there, counting the mirror images."""
-    balls = isolated(polynomial)
+    balls = isolate(polynomial)
     real = [x for x in balls if x.imag == 0]
     assert len(real) == real_roots(polynomial)
     assert 2 * len(balls) - len(real) == polynomial.degree()
@@ -55,7 +55,7 @@ def test_discs_count_what_sturm_counts(polynomial: fmpz_poly) -> None:
 @pytest.mark.parametrize("polynomial", _POLYNOMIALS.values(), ids=_POLYNOMIALS)
 def test_every_ball_holds_one_root(polynomial: fmpz_poly) -> None:
     """Each root that FLINT isolates to 600 bits lies in one ball, each in another."""
-    balls = isolated(polynomial)
+    balls = isolate(polynomial)
     with ctx.workprec(600):
         roots = [acb(z) for z, _ in polynomial.complex_roots()]
         holders = [[i for i, x in enumerate(balls) if x.overlaps(z)] for z in roots if z.imag >= 0]
@@ -65,16 +65,16 @@ def test_every_ball_holds_one_root(polynomial: fmpz_poly) -> None:
 @pytest.mark.parametrize("name", _NEED_NO_SEARCH)
 def test_close_pairs_need_no_search(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The parabola at the middle of two close eigenvalues says whether they are real, and the discs prove it."""
-    monkeypatch.setattr(certificate_roots, "_searched", lambda *_: [])
-    assert isolated(_POLYNOMIALS[name]) is not None
+    monkeypatch.setattr(certificate_roots, "_search", lambda *_: [])
+    assert isolate(_POLYNOMIALS[name]) is not None
 
 
 @pytest.mark.parametrize("name", ["one root", "close real roots", "Mignotte's, complex", "three close roots"])
 def test_bad_guesses_cost_time_only(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Without guesses the roots are searched, and counted the same."""
     polynomial = _POLYNOMIALS[name]
-    monkeypatch.setattr(certificate_roots, "_guessed", lambda _: [acb(1)] * polynomial.degree())
-    balls = isolated(polynomial)
+    monkeypatch.setattr(certificate_roots, "_guess", lambda _: [acb(1)] * polynomial.degree())
+    balls = isolate(polynomial)
     assert sum(x.imag == 0 for x in balls) == real_roots(polynomial)
 
 
@@ -93,19 +93,19 @@ _BAD_CENTERS = {
 @pytest.mark.parametrize(("polynomial", "centers"), _BAD_CENTERS.values(), ids=_BAD_CENTERS)
 def test_a_wrong_guess_is_refused(polynomial: fmpz_poly, centers: list[acb]) -> None:
     """Discs prove nothing unless they are disjoint, complete, finite, and those of pairs off the real axis."""
-    assert sharpened(polynomial, centers, 128) is None
+    assert sharpen(polynomial, centers, 128) is None
 
 
 def test_rough_guesses_are_improved() -> None:
     """From guesses with one digit Newton's method finds balls that are small, and proves the same as from good ones."""
-    balls = sharpened(_CUBIC, [acb(2.1), acb(0.1, 0.9)], 128)
+    balls = sharpen(_CUBIC, [acb(2.1), acb(0.1, 0.9)], 128)
     assert [x.imag == 0 for x in balls] == [True, False]
     assert all(x.rad() < 2.0**-60 for x in balls)
 
 
 def test_a_double_root_is_refused() -> None:
     """Two discs at a double root are never disjoint: what is not square-free has no proof."""
-    assert isolated((_X - 1) ** 2 * (_X + 3)) is None
+    assert isolate((_X - 1) ** 2 * (_X + 3)) is None
 
 
 def _top(B: object, c: object) -> Discretization:
@@ -141,7 +141,7 @@ def _problem(discrete: Discretization, r: list[float]) -> Problem:
 @pytest.mark.parametrize(("discrete", "r", "multiplicity"), _SPECIAL.values(), ids=_SPECIAL)
 def test_special_counts(discrete: Discretization, r: list[float], multiplicity: list[int]) -> None:
     """Values, multiplicities and real ones of special bodies are counted as theory and Sturm's theorem say."""
-    found = located(_problem(discrete, r))
+    found = locate(_problem(discrete, r))
     counted = [x.multiplicity for x in found for _ in range(x.factor.degree())]
     assert sorted(counted) == multiplicity
     for x in found:

@@ -11,7 +11,7 @@ from bodies import GENERAL
 
 import nonholo as nh
 from nonholo import kernels
-from nonholo.discrete._composition import WEIGHTS, weights
+from nonholo.discrete._scheme import WEIGHTS, weights
 from nonholo.kernels import _composition
 from nonholo.systems import AbstractSystem
 

@@ -144,7 +144,7 @@ def test_which_route(options: dict[str, Any], expected: str) -> None:
     discrete = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.1, **options)
     assert discrete.route.name == expected
     assert discrete.route is discrete.route
-    assert (discrete.route.compiled is None) == (expected == "definition")
+    assert (discrete.route.compiled_route is None) == (expected == "definition")
 
 
 @pytest.mark.parametrize(("wanted", "expected"), [("secular", "matrix"), ("matrix", "matrix"), ("x", "definition")])

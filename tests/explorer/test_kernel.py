@@ -75,7 +75,7 @@ def _forced(kind: str, rng: np.random.Generator, forces: str) -> tuple[kernels.F
     has = [name in forces for name in ("weight", "friction", "table")]
     acting = (nh.Friction(c),) * has[1] + (table,) * has[2]
     force = acting if len(acting) > 1 else acting[0] if acting else None
-    route = nh.discretize(nh.Forced(system, nh.Gravity(F, x) if has[0] else None, force), h).route.compiled
+    route = nh.discretize(nh.Forced(system, nh.Gravity(F, x) if has[0] else None, force), h).route.compiled_route
     assert route is not None
     free = getattr(route.body, "body", route.body)
     none = kernels.Pull(np.zeros(0), np.zeros((2, 0)), np.zeros((0, 0)), np.zeros((1, 2)))

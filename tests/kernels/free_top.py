@@ -16,7 +16,7 @@ import numpy as np
 
 import nonholo as nh
 from nonholo.base.compiled import njit
-from nonholo.discrete.routes import _closed_forms
+from nonholo.discrete.routes import _normal_forms
 from nonholo.kernels._scalar import COMPILED, Body, scalar, sqrt
 from nonholo.kernels._suslov import move as moved
 from nonholo.systems import NormalForm
@@ -85,7 +85,7 @@ def body(form: NormalForm) -> Body:
     return FreeTopBody(*(x if np.ndim(x) else float(x) for x in numbers))
 
 
-FREE_TOP = _closed_forms.ClosedForm(lambda form: not form.is_sleigh and not form.is_coupled, body, 0.5, None)
+FREE_TOP = _normal_forms.ClosedForm(lambda form: not form.is_sleigh and not form.is_coupled, body, 0.5, None)
 VELOCITY, STEPS = (0.7, -0.4), 12
 
 
@@ -102,7 +102,7 @@ def motions(system: nh.SuslovTop) -> dict[str, Any]:
         nh.simulate(two, restricted_velocity=VELOCITY, steps=STEPS // 2, store=store)
         stored = nh.extend(store, steps=STEPS // 2)
     return {
-        "body": type(two.route.compiled.body).__name__,
+        "body": type(two.route.compiled_route.body).__name__,
         "is_scalar": two.route.is_scalar,
         "pose": run.pose.tolist(),
         "composed": composed.pose.tolist(),
@@ -117,5 +117,5 @@ def motions(system: nh.SuslovTop) -> dict[str, Any]:
 if __name__ == "__main__":
     top = nh.SuslovTop([[1.4, 0.2, 0.0], [0.2, 1.0, 0.0], [0.0, 0.0, 0.9]])
     given = motions(top)
-    _closed_forms._CLOSED_FORMS = (FREE_TOP, *_closed_forms._CLOSED_FORMS)
+    _normal_forms._CLOSED_FORMS = (FREE_TOP, *_normal_forms._CLOSED_FORMS)
     sys.stdout.write(json.dumps({"given": given, "added": motions(top)}))

@@ -93,7 +93,7 @@ def test_weights_seen_from_the_body_are_those_of_matrices() -> None:
     for y in [*rng.normal(size=(20, 2)), *(10.0 ** rng.uniform(-200, 4, (9, 2))), np.zeros(2), np.array([1.0, 0.0])]:
         for group, n in ((nh.SO(3), 3), (nh.SE(2), 2)):
             pose = np.pad(group.pose_from_matrix(group.random(rng)), (0, 4 - group.pose_size))
-            body = nh.discretize(BODIES["top" if n == 3 else "sleigh"][0], 0.1).route.compiled.body  # type: ignore[union-attr]
+            body = nh.discretize(BODIES["top" if n == 3 else "sleigh"][0], 0.1).route.compiled_route.body  # type: ignore[union-attr]
             here = to_body(n, F, *pose)
             R, after = (
                 group.matrix_from_pose(q[: group.pose_size])[:n, :n]
@@ -108,7 +108,7 @@ def test_weights_seen_from_the_body_are_those_of_matrices() -> None:
 def test_the_loop_has_the_bits_of_plain_python(name: str, kind: str) -> None:
     """The compiled loop, at once and in pieces, gives the bits of a Python loop over the same half impulses."""
     system, velocity = BODIES[name]
-    route = nh.discretize(_forced(system, kind), 0.05).route.compiled
+    route = nh.discretize(_forced(system, kind), 0.05).route.compiled_route
     assert route is not None
     m = route.encode(np.asarray(system.to_canonical(system.restricted_momentum(velocity))))
     pose = route.encode_poses(np.asarray(system.frame_pose))
@@ -130,7 +130,7 @@ def test_the_loop_has_the_bits_of_plain_python(name: str, kind: str) -> None:
 def test_the_second_correction_leaves_an_error_of_third_order(name: str) -> None:
     """Two corrections of one slope leave residuals that fall by 1000 with a guess ten times as near, one by 100."""
     system, velocity = BODIES[name]
-    route = nh.discretize(system, 0.4).route.compiled
+    route = nh.discretize(system, 0.4).route.compiled_route
     assert route is not None
     m = route.encode(np.asarray(system.to_canonical(system.restricted_momentum(velocity))))
     _, state = kernels.runs_of(route.body).start(route.body, m, route.encode_poses(np.asarray(system.frame_pose)))
@@ -149,7 +149,7 @@ def test_friction_of_two_momenta_is_an_exponential(stiffness: float) -> None:
     """What friction leaves and what forces add are those of exponentials with 40 digits, also on stiff problems."""
     rng = np.random.default_rng(8)
     for name in ("top", "sleigh"):
-        body = nh.discretize(BODIES[name][0], 0.1).route.compiled.body  # type: ignore[union-attr]
+        body = nh.discretize(BODIES[name][0], 0.1).route.compiled_route.body  # type: ignore[union-attr]
         K, skew = rng.normal(size=(2, 2)), np.array([[0.0, 0.3], [-0.3, 0.0]])
         C, (b11, b12, b22) = stiffness * (K @ K.T + skew), kernels.inertia(body)
         with mpmath.workdps(40 + int(stiffness)):  # the exponential is below that of its terms

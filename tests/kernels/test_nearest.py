@@ -5,8 +5,7 @@ import pytest
 
 import nonholo as nh
 from nonholo import kernels
-from nonholo.discrete.branching._equations import Equations, frame_of
-from nonholo.discrete.branching._path import followed, nearest_body
+from nonholo.discrete.branching._equations import Equations, follow, frame_of, nearest_body
 from nonholo.discrete.branching._rules import branch_rule
 from nonholo.discrete.branching._stepper import displacement_at, first_place, next_place
 from nonholo.kernels.secular import nearest as _nearest
@@ -58,7 +57,7 @@ def test_what_the_kernel_reaches_is_what_the_definition_reaches(name: str) -> No
         start = _equations(name, rng, False)
         x = np.append(1.0, 0.0 * _goal(start))
         rest = Equations(start.stiffness, start.coupling, 0.0 * start.target, start.lever, 0.0 * start.push)
-        code, end = followed(rest, start, x)
+        code, end = follow(rest, start, x)
         y = x.copy()
         if _nearest.follow(nearest_body(start), _goal(rest), _goal(start), y):
             reached += 1

@@ -333,7 +333,7 @@ def test_the_general_step_sees_tiny_folds(share: float) -> None:
             [-0.001420035, -1.168234e-06, -1.056824e-05, 2.55948e-05],
         ]
     )
-    step = make_route(nh.discretize(nh.SuslovTop(tensor), 1.0), "matrix").compiled
+    step = make_route(nh.discretize(nh.SuslovTop(tensor), 1.0), "matrix").compiled_route
     assert step is not None
     momentum = share * 0.04532060048 * np.array([-0.9221329, -0.0006786948, -0.001358454])
     assert (kernels.runs_of(step.body).start(step.body, step.scale * momentum, np.eye(4).ravel())[0] == 0) == (

@@ -93,12 +93,12 @@ def test_compiled_functions_have_the_bits_of_python(name: str, kind: str) -> Non
         thin = nh.simulate(discrete, **start, steps=11, save_every=3)
         for every, some in zip(_rows(found[-1]), _rows(thin), strict=True):
             assert np.array_equal(every[:12:3], some)
-    assert discrete.route.compiled is not None
+    assert discrete.route.compiled_route is not None
     if discrete.is_balanced:  # test_energy_scheme has the definition
         assert all(np.array_equal(*both) for both in zip(*map(_rows, found), strict=True))
         return
-    route = FunctionRoute(discrete.route.compiled.single, forced)
-    stepper = route.stepper(discrete, posed=True)
+    route = FunctionRoute(discrete.route.compiled_route.single, forced)
+    stepper = route.stepper(discrete, with_poses=True)
     state, _ = stepper.start(First((found[0].reduced_momentum[0], found[0].canonical_pose[0])))
     rows = tuple(np.empty((13, width)) for width in stepper.columns.values())
     assert stepper.advance(state, 12, 1, rows) == (12, 0)

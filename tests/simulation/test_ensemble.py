@@ -11,8 +11,7 @@ import nonholo as nh
 from nonholo import kernels
 from nonholo.kernels import suslov_body
 from nonholo.simulation.members import _ensemble, _executors
-from nonholo.simulation.members._families import ScalarMembers, in_lanes
-from nonholo.simulation.members._members import Members
+from nonholo.simulation.members._members import Members, ScalarMembers, in_lanes
 
 J = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 TOP = nh.SuslovTop(J, axis=(0.6, 0.0, 0.8))

@@ -9,8 +9,7 @@ from bodies import mass_tensor
 import nonholo as nh
 from nonholo.continuous._series import body_numbers, by_series
 from nonholo.continuous._solution import Problem
-from nonholo.simulation.members._families import inertias_of
-from nonholo.simulation.members._members import Members
+from nonholo.simulation.members._members import Members, inertias_of
 from nonholo.systems import AbstractSystem
 
 RNG = np.random.default_rng(8)

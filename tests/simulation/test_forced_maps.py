@@ -168,8 +168,8 @@ def test_functions_give_the_impulses_of_what_is_compiled() -> None:
             forced = nh.Forced(system, heavy, force, "variational")
             discrete, g = nh.discretize(forced, 0.05), system.group.random(rng)
             orbit = nh.simulate(discrete, restricted_velocity=rng.normal(size=system.rank), configuration=g, steps=16)
-            route = FunctionRoute(discrete.route.compiled.single, forced)  # type: ignore[union-attr]
-            stepper = route.stepper(discrete, posed=True)
+            route = FunctionRoute(discrete.route.compiled_route.single, forced)  # type: ignore[union-attr]
+            stepper = route.stepper(discrete, with_poses=True)
             state, _ = stepper.start(First((orbit.reduced_momentum[0], orbit.canonical_pose[0])))
             rows = tuple(np.empty((17, width)) for width in stepper.columns.values())
             assert stepper.advance(state, 16, 1, rows) == (16, 0)

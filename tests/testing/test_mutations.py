@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.discrete import _legendre
+from nonholo.discrete import _scheme
 from nonholo.groups._special_euclidean import SpecialEuclidean2
 from nonholo.systems import Equilibria
 from nonholo.testing import Report, check_discretization, check_group, check_system
@@ -183,8 +183,8 @@ def test_a_discrete_lagrangian_of_first_order() -> None:
 
 def test_a_wrong_momentum(monkeypatch: pytest.MonkeyPatch) -> None:
     """Momenta of the wrong side of the displacement are not the derivative of the discrete Lagrangian."""
-    right = _legendre.matrix_legendre
-    monkeypatch.setattr(_legendre, "matrix_legendre", lambda group, J, X, _: right(group, J, X, "right"))
+    right = _scheme.matrix_legendre
+    monkeypatch.setattr(_scheme, "matrix_legendre", lambda group, J, X, _: right(group, J, X, "right"))
     report = check_discretization(nh.discretize(SLEIGH, STEP), definition=False, throw=False)
     assert {"left momentum", "momentum equation"} <= names(report)
 

@@ -14,7 +14,7 @@ from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, reversal_defects
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractOrbit, Orbit
-from nonholo.systems import AbstractSystem, NormalForm, gyroscopic_form, null_space, refuse_forces, spanned
+from nonholo.systems import AbstractSystem, NormalForm, gyroscopic_form, null_space, refuse_forces, row_space
 
 _SAMPLED = 100_000  # states on which the matrix residuals are measured, spread evenly; the energy uses all
 _SAMPLED_LARGE = 1_000  # of them where the group has more than three dimensions, and logarithms cost more
@@ -131,7 +131,7 @@ def _group_residual(orbit: Orbit) -> float:
 
 
 def _reversal_defect(discrete: Discretization, orbit: Orbit) -> float | None:
-    route = discrete.route.compiled if discrete.forces is None else None
+    route = discrete.route.compiled_route if discrete.forces is None else None
     if route is None:
         return None
     moving = np.asarray(orbit.canonical_chart.any(axis=1))
@@ -198,7 +198,7 @@ def conserved_momenta(system: AbstractSystem) -> ConservedMomenta:
 
 
 def _left(system: AbstractSystem) -> ConservedMomenta:
-    group, rows = system.group, spanned(system.constraint_subspace)
+    group, rows = system.group, row_space(system.constraint_subspace)
     inertia, everything = np.asarray(system.inertia_operator), np.eye(group.dim)
     form = gyroscopic_form(inertia, _brackets(group, rows, rows), rows)
     coefficients = _vanishing(form.reshape(len(rows) ** 2, len(rows)), _scale(group, inertia))
@@ -207,7 +207,7 @@ def _left(system: AbstractSystem) -> ConservedMomenta:
 
 
 def _right(system: AbstractSystem) -> ConservedMomenta:
-    group, rows, everything = system.group, spanned(system.constraint_subspace), np.eye(system.group.dim)
+    group, rows, everything = system.group, row_space(system.constraint_subspace), np.eye(system.group.dim)
     inertia, rng = np.asarray(system.inertia_operator), np.random.default_rng(0)
     brackets, rates, reactions = _brackets(group, rows, everything), [], []
     for _ in range(group.dim + 1):

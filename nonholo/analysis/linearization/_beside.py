@@ -16,7 +16,7 @@ from nonholo.base.checks import error
 from nonholo.base.types import Array, Float
 from nonholo.continuous import vector_field
 from nonholo.discrete import Discretization
-from nonholo.discrete.definition import doubled
+from nonholo.discrete.definition import compile_double
 from nonholo.lagrange_dalembert import CoordinateFlow, tangents
 from nonholo.simulation import refuse_many_matrices, simulate
 from nonholo.simulation.traced import rollout
@@ -129,7 +129,7 @@ def _beside(
     return change, xp.concatenate([xp.zeros(group.dim), r])
 
 
-@doubled
+@compile_double
 def _by_jax(subject: Any, *states: Array) -> tuple[Array, Array]:
     def at(*state: Array) -> tuple[Array, Array]:
         change, z = _beside(subject, rollout, *state)

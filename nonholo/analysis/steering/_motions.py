@@ -7,7 +7,7 @@ import numpy as np
 
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
-from nonholo.discrete.definition import Rollout, doubled, in_double
+from nonholo.discrete.definition import Rollout, compile_double, in_double
 from nonholo.simulation.traced import rollout
 
 Ends = tuple[Array, Array, Array | None, Array | None]
@@ -46,7 +46,7 @@ def _gaps(discrete: Discretization, forces: Array, ends: Ends) -> tuple[Array, A
     return values, slopes
 
 
-@doubled
+@compile_double
 def driven(discrete: Discretization, controls: Array, start: tuple[Array, Array]) -> Rollout:
     """Return the orbits under body covectors from velocities and poses of members."""
     return jax.vmap(lambda controls, start: _orbit(discrete, controls, start, 1))(controls, start)
@@ -73,7 +73,7 @@ def _step(discrete: Discretization, state: State, covector: Array) -> tuple[Roll
     return pair, (discrete.system.restricted_velocity(pair.restricted_momentum[1]), pair.configuration[1])
 
 
-@doubled
+@compile_double
 def linearize_steps(
     discrete: Discretization, nodes: State, controls: Float[Array, "steps dim"]
 ) -> tuple[Float[Array, "steps n n"], Float[Array, "steps n k"]]:
@@ -93,7 +93,7 @@ def linearize_steps(
     return jax.vmap(at)(before, following, controls)
 
 
-@doubled
+@compile_double
 def closed_loop(
     discrete: Discretization, nodes: State, start: State, tables: tuple[Array, ...], limits: tuple[Array, Array]
 ) -> tuple[Rollout, Float[Array, "steps k"], Float[Array, "K n"]]:

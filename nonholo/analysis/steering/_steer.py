@@ -206,7 +206,7 @@ def _check(discrete: Discretization, steps: int) -> None:
         raise error(where, "have a left-invariant constraint", got, "Steer it by `nh.rollout`.")
     if system.is_wide:
         raise error(where, "have matrices", "a system without", "Discretize `system.dense`.")
-    check_forces("steer", discrete, steps, traced=True)
+    check_forces("steer", discrete, steps, in_jax=True)
 
 
 def _refuse_too_many(discrete: Discretization, steps: int, method: str, members: int) -> None:

@@ -1,7 +1,7 @@
 r"""All values of the multivalued discrete map, complex ones included, and what tells them apart.
 
-Reference: [fedorov-zenkov-2004], section 3; docs/theory/branches.md. The equations are in `_branch_equations`, their
-roots in `_branch_roots`; which value a run takes is not decided here.
+Reference: [fedorov-zenkov-2004], section 3; docs/theory/branches.md. The equations are in `_equations`, their
+roots in `_roots`; which value a run takes is not decided here.
 """
 
 import dataclasses
@@ -13,7 +13,7 @@ import numpy as np
 from nonholo.base.checks import array, error, flags, needs, shape_of
 from nonholo.base.types import Array, Float
 from nonholo.discrete._discretization import Discretization, as_discretization
-from nonholo.discrete._legendre import legendre
+from nonholo.discrete._scheme import legendre
 from nonholo.discrete.branching._equations import Frame, frame_of
 from nonholo.discrete.branching._roots import Root, place
 from nonholo.discrete.branching._values import SAME, Branches, Roots, branches_of, point_over, values_over
@@ -23,17 +23,17 @@ from nonholo.groups import AbstractMatrixGroup
 def certified_over(owner: str, discrete: Discretization, frame: Frame, r: Float[np.ndarray, "k"]) -> Branches:
     """Return all values over a restricted momentum, certified where that can be decided."""
     canonical = discrete.system.to_canonical(r)
-    enclosed = _enclosures(owner)(discrete, canonical)
-    if isinstance(enclosed, str):
-        return dataclasses.replace(values_over(discrete, frame, r), uncertified=enclosed)
-    system, facts = discrete.system, zip(enclosed.multiplicity, enclosed.is_real, strict=True)
-    turned = system.group.inverse(system.frame) @ (enclosed.increment + system.group.identity) @ system.frame
-    points = [frame.point(W.real if real else W) for W, real in zip(turned, enclosed.is_real, strict=True)]
-    found = [Root(x if x[0].real >= 0 else -x, int(m), bool(real)) for x, (m, real) in zip(points, facts, strict=True)]
-    order = sorted(range(len(found)), key=lambda i: place(found[i]))
-    roots = Roots(frame.equations(discrete.time_step * canonical), [found[i] for i in order], enclosed.increment[order])
+    balls = _enclosures(owner)(discrete, canonical)
+    if isinstance(balls, str):
+        return dataclasses.replace(values_over(discrete, frame, r), uncertified=balls)
+    system, facts = discrete.system, zip(balls.multiplicity, balls.is_real, strict=True)
+    matrices = system.group.inverse(system.frame) @ (balls.increment + system.group.identity) @ system.frame
+    points = [frame.point(W.real if real else W) for W, real in zip(matrices, balls.is_real, strict=True)]
+    zeros = [Root(x if x[0].real >= 0 else -x, int(m), bool(real)) for x, (m, real) in zip(points, facts, strict=True)]
+    order = sorted(range(len(zeros)), key=lambda i: place(zeros[i]))
+    roots = Roots(frame.equations(discrete.time_step * canonical), [zeros[i] for i in order], balls.increment[order])
     values = branches_of(discrete, canonical, roots)
-    return dataclasses.replace(values, certified=True, radius=enclosed.radius[order])
+    return dataclasses.replace(values, certified=True, radius=balls.radius[order])
 
 
 def _enclosures(owner: str) -> Callable[..., Any]:
@@ -86,7 +86,7 @@ def displacements_over(discrete: Discretization, restricted_momentum: Any, certi
         (array([ True,  True, False, False]), True)
     """
     where = "displacements_over"
-    frame = _checked(where, discrete)
+    frame = _frame_for(where, discrete)
     flags(where, certify=certify)
     r = _restricted(f"{where}(restricted_momentum=...)", discrete, restricted_momentum)
     return certified_over(where, discrete, frame, r) if certify else values_over(discrete, frame, r)
@@ -119,7 +119,7 @@ def branches(
         >>> bool(np.allclose(values.momentum[values.principal], after.momentum))
         True
     """
-    frame = _checked("branches", discrete)
+    frame = _frame_for("branches", discrete)
     flags("branches", certify=certify)
     if (momentum is None) == (displacement is None):
         got = "none" if momentum is None else "both"
@@ -156,7 +156,7 @@ def inverse_discrete_legendre(discrete: Discretization, momentum: Any) -> Float[
         True
     """
     where = "inverse_discrete_legendre"
-    frame = _checked(where, discrete)
+    frame = _frame_for(where, discrete)
     return _inverse(f"{where}(momentum=...)", discrete, frame, momentum) + discrete.system.group.identity
 
 
@@ -181,14 +181,14 @@ def fold_distance(discrete: Discretization, displacement: Any) -> float:
         (1.0, 0.0)
     """
     where = "fold_distance(displacement=...)"
-    frame = _checked("fold_distance", discrete)
+    frame = _frame_for("fold_distance", discrete)
     group: AbstractMatrixGroup = discrete.system.group
     W = array(where, displacement, group.identity.shape, f"Pass an element of {group} as a matrix.")
     x = point_over(where, discrete, frame, W)
     return float(frame.equations(np.zeros(len(discrete.system.constraint_subspace))).regularity(x))
 
 
-def _checked(owner: str, discrete: Discretization) -> Frame:
+def _frame_for(owner: str, discrete: Discretization) -> Frame:
     return frame_of(f"{owner}(discrete=...)", as_discretization(f"{owner}(discrete=...)", discrete))
 
 
@@ -201,25 +201,25 @@ def _before(where: str, discrete: Discretization, frame: Frame, momentum: Any) -
     """Return the displacement minus the identity that a full or restricted momentum belongs to."""
     if shape_of(momentum) != (len(discrete.system.constraint_subspace),):
         return _inverse(where, discrete, frame, momentum)
-    found = values_over(discrete, frame, _restricted(where, discrete, momentum))
-    if found.principal is None:
+    values = values_over(discrete, frame, _restricted(where, discrete, momentum))
+    if values.principal is None:
         remedy = "Pass a full momentum or the displacement, or take a smaller time_step."
         raise error(where, "have a principal displacement", "components that it does not reach", remedy)
-    return found.displacement[found.principal].real - discrete.system.group.identity
+    return values.displacement[values.principal].real - discrete.system.group.identity
 
 
 def _inverse(where: str, discrete: Discretization, frame: Frame, momentum: Any) -> Float[np.ndarray, "N N"]:
     system = discrete.system
     p = array(where, momentum, (system.group.dim,), "Pass all components of a body momentum.")
-    found = values_over(discrete, frame, system.restrict(p))
-    missed = np.where(found.is_real, np.linalg.norm(found.momentum - p, axis=1), np.inf)
-    rounding = _ROUNDING * np.abs(found.momentum).max(initial=0.0)  # matters at rest
-    near = np.flatnonzero(missed <= SAME * np.linalg.norm(p) + rounding)
+    values = values_over(discrete, frame, system.restrict(p))
+    distances = np.where(values.is_real, np.linalg.norm(values.momentum - p, axis=1), np.inf)
+    rounding = _ROUNDING * np.abs(values.momentum).max(initial=0.0)  # matters at rest
+    near = np.flatnonzero(distances <= SAME * np.linalg.norm(p) + rounding)
     if len(near) == 0:
-        got = f"distance {missed.min():.3g}" if found.is_real.any() else "components that no displacement has"
+        got = f"distance {distances.min():.3g}" if values.is_real.any() else "components that no displacement has"
         raise error(where, "lie on the momentum locus", got, "Make it with `discrete_legendre`.")
-    if len(near) > 1 and found.principal not in near:
+    if len(near) > 1 and values.principal not in near:
         got = f"a momentum that {len(near)} of them have"
         raise error(where, "determine the displacement", got, "Use `displacements_over` and choose.")
-    best = near[0] if len(near) == 1 else found.principal
-    return found.displacement[best].real - system.group.identity
+    best = near[0] if len(near) == 1 else values.principal
+    return values.displacement[best].real - system.group.identity

@@ -1,9 +1,10 @@
 r"""The momentum equations of tops and sleighs on the sphere over their displacement variety, in units of the body.
 
 A displacement of $\exp\mathfrak{d}$ is a pair $\pm(z_0, z)$ with $z_0^2 + z\cdot z = 1$, of a sleigh also a length
-$u$; angle $\pi$ is $z_0 = 0$, and no other sheet exists here. Roots are found in `_branch_roots`.
+$u$; angle $\pi$ is $z_0 = 0$, and no other sheet exists here. All roots are found in `_roots`; one is followed here,
+while the momentum moves along a segment.
 
-Reference: docs/theory/branches.md.
+Reference: docs/theory/branches.md, "Following a value".
 """
 
 import dataclasses
@@ -12,8 +13,10 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from nonholo import kernels
 from nonholo.base.checks import error
 from nonholo.base.numerics import applied
+from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.systems import NormalForm
 
@@ -205,8 +208,8 @@ class Frame:
 
 def has_frame(discrete: "Discretization") -> bool:
     """Tell whether all branches of a discretization are known."""
-    known = discrete.system.normal_form is not None
-    return known and discrete.difference == "matrix" and discrete.constraint in ("skew", "exponential")
+    has_form = discrete.system.normal_form is not None
+    return has_form and discrete.difference == "matrix" and discrete.constraint in ("skew", "exponential")
 
 
 def frame_of(where: str, discrete: "Discretization") -> Frame:
@@ -229,3 +232,96 @@ def _frame(form: NormalForm) -> Frame:
         coupling = np.zeros_like(coupling)
     lever = None if length is None else float(form.arm / length)
     return Frame(axes, eigenvalues / unit, coupling, unit, length, lever, form.offset, form.frame, form.frame_map)
+
+
+_LONGEST = 0.1  # a predicted move per continuation step, on the sphere
+_CLOSE = 0.1  # part of the predicted move that the corrector may add
+_SMALL = 1e-3  # a corrector's move that is always accepted where the predicted one is smaller
+_CORRECTIONS = 6  # of Newton's method
+_CONVERGED = 1e-11  # a correction after which the next one is below rounding
+_SHORTEST = 1e-10  # continuation step below which the root is given up
+_FOLD = 1e-2  # regularity below which a root that cannot be followed has met a fold
+_SINGULAR = 1e-8  # regularity of a root that cannot be followed at all
+_CLEAR = 10.0  # times that, for a bound of it that rounding has moved
+_TRANSVERSAL = 1e-6  # part of the momentum's motion across a fold below which the singular point is no fold
+_FAR = 1e5  # length of a displacement that counts as infinite
+
+
+def follow(start: Equations, end: Equations, x: Float[np.ndarray, "m"]) -> tuple[Outcome, Float[np.ndarray, "m"]]:
+    """Follow a real root of the first equations to the second ones, which differ in target and push alone.
+
+    Returns:
+        The outcome, and the root or the last point that was reached.
+    """
+    if start.regularity(x) < _SINGULAR:
+        return Outcome.branch_unverified, x
+    direction = _motion(start, end)
+    slope = start.slope(x)
+    side, s, size = np.sign(np.linalg.det(slope)), 0.0, 1.0
+    while s < 1.0:
+        tangent = np.linalg.solve(slope, direction)
+        pace = _length(tangent, x)
+        size = min(size, 1.0 - s, _LONGEST / pace if pace > 0 else 1.0)
+        ahead = 1.0 if size == 1.0 - s else s + size
+        next_point = _correct(_between(start, end, ahead), x + size * tangent, size * pace)
+        if next_point is not None and np.sign(np.linalg.det(end.slope(next_point))) == side:
+            x, s, size, slope = next_point, ahead, 2 * size, end.slope(next_point)
+        elif size > _SHORTEST:
+            size /= 4
+        else:
+            return _why_it_ended(_between(start, end, s), direction, x), x
+    return Outcome.successful, x
+
+
+def nearest_body(equations: Equations) -> kernels.NearestBody:
+    """Return what a kernel follows the roots of equations by, whatever their target and push."""
+    slides, inertia = equations.lever is not None, equations.stiffness + equations.arm**2
+    how = (_LONGEST, _CLOSE, _SMALL, _CORRECTIONS, _CONVERGED, _SHORTEST, _CLEAR * _SINGULAR)
+    return kernels.NearestBody(inertia, equations.coupling, equations.arm, slides, *how)
+
+
+def _motion(start: Equations, end: Equations) -> Float[np.ndarray, "m"]:
+    """Return how the right-hand sides move, in the order of the residual."""
+    push = [] if start.lever is None else [end.push - start.push]
+    return np.array([*(end.target - start.target), *push, 0.0])
+
+
+def _between(start: Equations, end: Equations, s: float) -> Equations:
+    if s == 1.0:
+        return end
+    target, push = start.target + s * (end.target - start.target), start.push + s * (end.push - start.push)
+    return dataclasses.replace(start, target=target, push=push)
+
+
+def _length(move: np.ndarray, x: np.ndarray) -> float:
+    """Return the size of a move, of the length u relative to u where that is large."""
+    return float(np.linalg.norm(move / np.maximum(1.0, np.abs(x))))
+
+
+def _correct(equations: Equations, guess: np.ndarray, reach: float) -> Float[np.ndarray, "m"] | None:
+    """Return the root next to a guess by Newton's method; None if it is further away than the prediction allows."""
+    x, limit = guess, max(_CLOSE * reach, min(_SMALL, reach))
+    for _ in range(_CORRECTIONS):
+        try:
+            correction = np.linalg.solve(equations.slope(x), equations.residual(x)[0])
+        except np.linalg.LinAlgError:
+            return None
+        x = x - correction
+        if not _length(x - guess, guess) <= limit + _CONVERGED:
+            return None
+        if _length(correction, x) <= _CONVERGED:
+            return x
+    return None
+
+
+def _why_it_ended(equations: Equations, direction: np.ndarray, x: np.ndarray) -> Outcome:
+    """Tell a fold from another singular point, from a root that goes to infinity, and from a failure to converge."""
+    if not np.all(np.isfinite(x)):
+        return Outcome.nonfinite
+    if np.abs(x).max() > _FAR:
+        return Outcome.branch_unverified
+    if equations.regularity(x) > _FOLD:
+        return Outcome.not_converged
+    left = np.linalg.svd(equations.slope(x))[0][:, -1]
+    across = abs(left @ direction) > _TRANSVERSAL * np.linalg.norm(direction)
+    return Outcome.no_real_branch if across else Outcome.branch_unverified

@@ -158,7 +158,7 @@ def branch_growth(discrete: Discretization, certify: bool = False, *, energy: fl
     level = highest * _BELOW if energy is None else float(positive(where, energy, "Pass a level of the energy."))
     body = (mass, inertia, arm, step, level)
     try:
-        words, discs = _certified(body) if certify else best_words(Axis.of(body, DOUBLES))
+        words, discs = _words_in_balls(body) if certify else best_words(Axis.of(body, DOUBLES))
     except ArithmeticError:
         got = f"{level:.6g}, with J = {inertia:.6g} and ma^2 = {moment:.6g}"
         requirement = f"be below {highest:.6g} and give words of at most {_LONGEST} steps"
@@ -183,7 +183,7 @@ def _sleigh(where: str, discrete: Discretization) -> tuple[float, float, float, 
     return float(form.mass), float(form.stiffness[0, 0]), abs(float(form.arm)), float(discrete.time_step)
 
 
-def _certified(body: tuple[float, ...]) -> tuple[Words, Float[np.ndarray, "d 2"]]:
+def _words_in_balls(body: tuple[float, ...]) -> tuple[Words, Float[np.ndarray, "d 2"]]:
     with needs("certify", "branch_growth(certify=...)"):
         from flint import arb, ctx
     with ctx.workprec(_BITS):
@@ -200,10 +200,10 @@ def best_words(axis: Axis) -> tuple[Words, Float[np.ndarray, "d 2"]]:
         three = _words(axis, 1, longest)
     except ArithmeticError:
         return two
-    return max(two, three, key=lambda found: _rate(found[0]))
+    return max(two, three, key=lambda pair: _rate(pair[0]))
 
 
-def _words(axis: Axis, mirrored: int, longest: int) -> tuple[Words, Float[np.ndarray, "d 2"]]:
+def _words(axis: Axis, mirror: int, longest: int) -> tuple[Words, Float[np.ndarray, "d 2"]]:
     r"""Return words and discs for $K = [-\rho, 0]$, or mirrored $[-\rho, \rho]$, with $\rho = \varphi^j(\rho_0)$.
 
     $\beta(K)$ lies in $(-\rho_0, -\varphi(\rho_0))$, whose second end is close to $\beta(0)$; mirrored, both ends are
@@ -212,28 +212,28 @@ def _words(axis: Axis, mirrored: int, longest: int) -> tuple[Words, Float[np.nda
     rough = Axis(float(axis.turn), float(axis.lift), DOUBLES)
     jump = -rough.ends(rough.around(0.0, outer=True)[0])[1]
 
-    def missed(tau: float) -> float:
+    def gap(tau: float) -> float:
         before, after = rough.ends(tau)
-        return before + after - 2 * jump if mirrored else after - _CLOSE * jump
+        return before + after - 2 * jump if mirror else after - _CLOSE * jump
 
-    outside, inside = axis.ends(_root(missed, 0.0, 1 - 2.0**-50))
+    outside, inside = axis.ends(_root(gap, 0.0, 1 - 2.0**-50))
     rho = (outside, outside)
     for count in range(1, longest + 1):
         rho = axis.onwards(rho)
-        first, last = axis.around(-rho[1], outer=True)[0], axis.around(mirrored * rho[1], outer=True)[1]
+        first, last = axis.around(-rho[1], outer=True)[0], axis.around(mirror * rho[1], outer=True)[1]
         image = -axis.ends(last)[1], -axis.ends(first)[1]
         if inside < image[0] and image[1] < outside and axis.rises(last):
-            words = ((0,), *((letter, *[0] * count) for letter in (1, -1)[: 1 + mirrored]))
-            return words, _discs(axis, rho, image, count, mirrored)
+            words = ((0,), *((letter, *[0] * count) for letter in (1, -1)[: 1 + mirror]))
+            return words, _discs(axis, rho, image, count, mirror)
     raise ArithmeticError
 
 
-def _discs(axis: Axis, rho: tuple, image: tuple, count: int, mirrored: int) -> Float[np.ndarray, "d 2"]:
+def _discs(axis: Axis, rho: tuple, image: tuple, count: int, mirror: int) -> Float[np.ndarray, "d 2"]:
     """Return the interval and its images, the last one if there is a mirror."""
     inner = axis.onwards(rho)[1]
     for _ in range(count):
         image = axis.onwards(image)
-    ends = [(-rho[0], mirrored * rho[0]), (-inner, mirrored * inner), (-image[1], -image[0]), image][: 3 + mirrored]
+    ends = [(-rho[0], mirror * rho[0]), (-inner, mirror * inner), (-image[1], -image[0]), image][: 3 + mirror]
     discs = np.array([(float(x + y) / 2, float(y - x) / 2) for x, y in ends])
     discs[1:, 1] *= _WIDER
     return discs

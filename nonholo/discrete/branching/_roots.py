@@ -1,4 +1,4 @@
-r"""All complex roots of the equations of `_branch_equations`, with multiplicity.
+r"""All complex roots of the equations of `_equations`, with multiplicity.
 
 First the secular polynomial: companion eigenvalues, then Newton's method. Where the body or the momentum is special and
 roots are missing, the roots of a generic problem close by are followed to the given one.
@@ -20,12 +20,12 @@ def candidates(equations: Equations) -> Inexact[Array, "B m"]:
     """Return approximate roots, only finite ones."""
     with np.errstate(all="ignore"):
         if equations.is_balanced:
-            found = _balanced(equations)
+            vectors = _odd(equations)
         elif len(equations.stiffness) == 1:
-            found = _planar(equations)
+            vectors = _planar(equations)
         else:
-            found = _generic(equations)
-        points = equations.points([_with_length(equations, v) for v in found])
+            vectors = _generic(equations)
+        points = equations.points([_with_length(equations, v) for v in vectors])
     return points[np.isfinite(points).all(axis=1)]
 
 
@@ -81,7 +81,7 @@ def _half_of_p(equations: Equations) -> Array:
     return equations.arm * (equations.push / 2 + equations.arm)
 
 
-def _balanced(equations: Equations) -> list[Array]:
+def _odd(equations: Equations) -> list[Array]:
     """Return the two roots z_0 z = B^-1 r; one if r = 0, where the other is a whole sphere of half-turns."""
     w = equations.target / equations.stiffness
     spread = np.sqrt(1 - 4 * (w @ w) + 0j)
@@ -125,21 +125,21 @@ class Root(NamedTuple):
 
 def roots_of(equations: Equations) -> list[Root]:
     """Return the isolated roots: of a real problem the real ones by step angle, then the complex ones."""
-    found = _merged(equations, _polished(equations, candidates(equations)))
-    complete = equations.is_balanced or _count(found) == equations.count
-    if not complete or _crowded(equations, found):
-        followed = _merged(equations, _by_continuation(equations))
-        found = followed if not complete or _count(followed) == equations.count else found
+    roots = _merge(equations, _polish(equations, candidates(equations)))
+    complete = equations.is_balanced or _count(roots) == equations.count
+    if not complete or _is_crowded(equations, roots):
+        by_path = _merge(equations, _by_continuation(equations))
+        roots = by_path if not complete or _count(by_path) == equations.count else roots
     if not np.iscomplexobj(equations.target) and not np.iscomplexobj(equations.push):
-        found = _realified(equations, found)
-    return sorted(found, key=place)
+        roots = _mark_real(equations, roots)
+    return sorted(roots, key=place)
 
 
 def _count(roots: list[Root]) -> int:
     return sum(root.multiplicity for root in roots)
 
 
-def _crowded(equations: Equations, roots: list[Root]) -> bool:
+def _is_crowded(equations: Equations, roots: list[Root]) -> bool:
     """Tell whether iterations that missed hidden roots may have ended on a multiple root and been counted there."""
     return len(equations.stiffness) > 1 and not equations.is_balanced and any(r.multiplicity > 2 for r in roots)
 
@@ -149,9 +149,9 @@ def place(root: Root) -> tuple:
     return not root.is_real, np.linalg.norm(root.point[1:]), root.point[0].imag
 
 
-def _polished(equations: Equations, starts: Inexact[Array, "B m"]) -> Inexact[Array, "C m"]:
-    roots, reached = _newton(equations, _finite(starts))
-    return _finite(roots[reached])
+def _polish(equations: Equations, starts: Inexact[Array, "B m"]) -> Inexact[Array, "C m"]:
+    roots, converged = _newton(equations, _finite(starts))
+    return _finite(roots[converged])
 
 
 def _finite(points: Inexact[Array, "B m"]) -> Inexact[Array, "C m"]:
@@ -181,13 +181,13 @@ def _newton(
     return best, least < _REACHED
 
 
-def _merged(equations: Equations, points: Inexact[Array, "B m"]) -> list[Root]:
+def _merge(equations: Equations, points: Inexact[Array, "B m"]) -> list[Root]:
     """Join what rounding cannot tell from a multiple root; drop what is a point of a continuum of roots."""
     points = np.where(points[:, :1].real >= 0, points, -points)
     regularity = equations.regularity(points)
     blur = _blur(regularity)
     near = _distance(points[:, None], points) <= np.maximum(blur[:, None], blur)
-    left, found = np.ones(len(points), dtype=bool), []
+    left, roots = np.ones(len(points), dtype=bool), []
     while left.any():
         i = int(np.argmax(left))
         members = near[i] & left
@@ -195,10 +195,10 @@ def _merged(equations: Equations, points: Inexact[Array, "B m"]) -> list[Root]:
         group = points[members]
         if len(group) > 1 and regularity[i] <= _FOLDED:
             sides = np.where((group @ points[i].conj()).real >= 0, 1.0, -1.0)
-            found.append(Root(_centered(equations, sides @ group / len(group)), len(group), False))
+            roots.append(Root(_center(equations, sides @ group / len(group)), len(group), False))
         elif regularity[i] > _ISOLATED:
-            found.append(Root(points[i], 1, False))
-    return found
+            roots.append(Root(points[i], 1, False))
+    return roots
 
 
 def _blur(regularity: Float[np.ndarray, "B"]) -> Float[np.ndarray, "B"]:
@@ -211,7 +211,7 @@ def _distance(x: Inexact[Array, "... m"], y: Inexact[Array, "... m"]) -> Float[n
     return apart / np.maximum(1.0, np.linalg.norm(x, axis=-1))
 
 
-def _centered(equations: Equations, x: Array) -> Array:
+def _center(equations: Equations, x: Array) -> Array:
     """Correct the mean of a multiple root across the direction in which it is not determined."""
     for _ in range(3):
         U, values, V = np.linalg.svd(equations.slope(x))
@@ -220,61 +220,61 @@ def _centered(equations: Equations, x: Array) -> Array:
     return x
 
 
-def _realified(equations: Equations, roots: list[Root]) -> list[Root]:
+def _mark_real(equations: Equations, roots: list[Root]) -> list[Root]:
     """Mark roots that cannot be distinguished from their own conjugates as real, and make them so."""
     x = equations.points([root.point for root in roots])
     real = _distance(x, x.conj()) <= _blur(equations.regularity(x))
-    found = [
+    result = [
         Root(root.point.real.copy(), root.multiplicity, True) if on else root
         for root, on in zip(roots, real, strict=True)
     ]
-    simple = [i for i, root in enumerate(found) if root.is_real and root.multiplicity == 1]
-    polished, reached = _newton(equations, np.real(x[simple]))
-    for i, point, good in zip(simple, polished, reached, strict=True):
-        found[i] = Root(point, 1, True) if good else found[i]
-    return found
+    simple = [i for i, root in enumerate(result) if root.is_real and root.multiplicity == 1]
+    points, converged = _newton(equations, np.real(x[simple]))
+    for i, point, good in zip(simple, points, converged, strict=True):
+        result[i] = Root(point, 1, True) if good else result[i]
+    return result
 
 
 def _by_continuation(equations: Equations) -> Inexact[Array, "B m"]:
     """Return the ends of all paths from a generic problem; roots at infinity have none."""
     rng = np.random.default_rng(0)
     for _ in range(5):
-        generic = _disturbed(equations, rng)
-        starts = _polished(generic, candidates(generic))
-        if _count(_merged(generic, starts)) == generic.count:
+        generic = _disturb(equations, rng)
+        starts = _polish(generic, candidates(generic))
+        if _count(_merge(generic, starts)) == generic.count:
             break
-    return _finite(_followed(equations, generic, starts))
+    return _finite(_follow(equations, generic, starts))
 
 
-def _disturbed(equations: Equations, rng: np.random.Generator) -> Equations:
+def _disturb(equations: Equations, rng: np.random.Generator) -> Equations:
     def near(value: Array) -> Array:
         noise = rng.normal(size=np.shape(value)) + 1j * rng.normal(size=np.shape(value))
         return value + 0.2 * (1 + np.abs(value).max()) * noise
 
     names = ("stiffness", "coupling", "target", "push")
-    changed = {name: near(np.asarray(getattr(equations, name))) for name in names}
-    return dataclasses.replace(equations, **changed)
+    values = {name: near(np.asarray(getattr(equations, name))) for name in names}
+    return dataclasses.replace(equations, **values)
 
 
 def _between(start: Equations, end: Equations, t: float) -> Equations:
     names = ("stiffness", "coupling", "target", "push")
-    mixed = {name: (1 - t) * getattr(end, name) + t * getattr(start, name) for name in names}
-    return dataclasses.replace(end, **mixed)
+    values = {name: (1 - t) * getattr(end, name) + t * getattr(start, name) for name in names}
+    return dataclasses.replace(end, **values)
 
 
-def _followed(end: Equations, start: Equations, x: Inexact[Array, "B m"]) -> Inexact[Array, "C m"]:
+def _follow(end: Equations, start: Equations, x: Inexact[Array, "B m"]) -> Inexact[Array, "C m"]:
     """Follow roots while t falls from 1 to almost 0 by factors, then solve the given problem; some are lost."""
     t, ratio = 1.0, 0.8
     while t > _ARRIVED and len(x) > 0:
         change = start.residual(x)[0] - end.residual(x)[0]
         tangent = np.linalg.pinv(_between(start, end, t).slope(x), rcond=_RANK) @ change[:, :, None]
-        predicted = x + (1 - ratio) * t * tangent[..., 0]
-        corrected, reached = _newton(_between(start, end, ratio * t), predicted, 6, 0.05)
-        kept = reached & (np.linalg.norm(corrected - x, axis=1) <= 0.5 * np.linalg.norm(x, axis=1))
-        if not kept.all() and ratio < 1 - 1e-4:
+        guess = x + (1 - ratio) * t * tangent[..., 0]
+        points, converged = _newton(_between(start, end, ratio * t), guess, 6, 0.05)
+        good = converged & (np.linalg.norm(points - x, axis=1) <= 0.5 * np.linalg.norm(x, axis=1))
+        if not good.all() and ratio < 1 - 1e-4:
             ratio = ratio**0.5
             continue
-        x, t = _finite(corrected[kept]), ratio * t
+        x, t = _finite(points[good]), ratio * t
         ratio = max(ratio**1.5, 0.05)
-    solved, reached = _newton(end, x.astype(complex), 40, 1e-3)
-    return solved[reached]
+    roots, converged = _newton(end, x.astype(complex), 40, 1e-3)
+    return roots[converged]

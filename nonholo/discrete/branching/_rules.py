@@ -1,6 +1,6 @@
 r"""Branch rules: which of the values of the discrete map a run takes. One class a rule; what a rule needs, it says.
 
-The values themselves come from `_branch_values`, following one of them from `_branch_path`. Compiled and traced runs of
+The values themselves come from `_values`, following one of them from `_equations`. Compiled and traced runs of
 "principal" and "nearest" solve their steps where they are; all others ask `following`.
 """
 
@@ -16,10 +16,17 @@ from nonholo.base.checks import choice, error, is_integer, shown
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.discrete._discretization import Discretization
-from nonholo.discrete.branching._equations import Equations, Frame, has_frame
-from nonholo.discrete.branching._path import followed
-from nonholo.discrete.branching._regions import is_regular, regions
-from nonholo.discrete.branching._values import SAME, Branches, Roots, branches_of, principal_increment, roots_over
+from nonholo.discrete.branching._equations import Equations, Frame, follow, has_frame
+from nonholo.discrete.branching._values import (
+    SAME,
+    Branches,
+    Roots,
+    branches_of,
+    is_regular,
+    principal_increment,
+    regions,
+    roots_over,
+)
 
 Chooser: TypeAlias = Callable[[Branches, np.ndarray], int | None]
 BranchRule: TypeAlias = str | Chooser
@@ -70,13 +77,13 @@ class AbstractBranchRule(abc.ABC):
     is_nearest: ClassVar[bool] = False
     needs_all_values: ClassVar[bool] = True
 
-    @abc.abstractmethod
     def check(self, where: str, discrete: Discretization) -> None:
-        """Refuse a discretization that does not have the rule."""
+        """Refuse a discretization that does not have the rule: by default one of whose values not all are known."""
+        _check_values_known(where, discrete, self.name)
 
-    @abc.abstractmethod
     def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
-        """Refuse a start that the rule cannot continue from."""
+        """Refuse a start that the rule cannot continue from; by default there is none."""
+        del where, discrete, displacement
 
     @abc.abstractmethod
     def following(self, kick: Kick) -> Following:
@@ -93,9 +100,6 @@ class Principal(AbstractBranchRule):
 
     def check(self, where: str, discrete: Discretization) -> None:
         """Every discretization has it."""
-
-    def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
-        """Runs check their first displacement themselves."""
 
     def following(self, kick: Kick) -> Following:
         """Return the verified principal root."""
@@ -114,12 +118,9 @@ class Nearest(AbstractBranchRule):
         """Every left-invariant constraint has it."""
         _check_left_invariant(where, discrete, self.name)
 
-    def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
-        """Every displacement can be followed."""
-
     def following(self, kick: Kick) -> Following:
         """Follow the present point."""
-        return followed(kick.now, kick.ahead, kick.point)
+        return follow(kick.now, kick.ahead, kick.point)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -129,22 +130,15 @@ class Extreme(AbstractBranchRule):
     name: str
     sign: int
 
-    def check(self, where: str, discrete: Discretization) -> None:
-        """Refuse systems of whose values not all are known."""
-        _check_values_known(where, discrete, self.name)
-
-    def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
-        """Every displacement will do."""
-
     def following(self, kick: Kick) -> Following:
         """Choose by the norm; a tie is not decided."""
-        roots, found = _values(kick)
-        real = np.flatnonzero(found.is_real)
+        roots, values = _values(kick)
+        real = np.flatnonzero(values.is_real)
         if len(real) == 0:
-            return _only(kick, roots, found, [])
-        norms = self.sign * np.linalg.norm(found.momentum[real], axis=1)
-        tied = real[norms <= norms.min() + _TIED * np.abs(norms).max()]
-        return _only(kick, roots, found, tied.tolist())
+            return _only(kick, roots, values, [])
+        norms = self.sign * np.linalg.norm(values.momentum[real], axis=1)
+        ties = real[norms <= norms.min() + _TIED * np.abs(norms).max()]
+        return _only(kick, roots, values, ties.tolist())
 
 
 @dataclasses.dataclass(frozen=True)
@@ -155,7 +149,7 @@ class Region(AbstractBranchRule):
 
     def check(self, where: str, discrete: Discretization) -> None:
         """Refuse systems whose invariant curves have no parts."""
-        _check_values_known(where, discrete, self.name)
+        super().check(where, discrete)
         if not is_regular(discrete):
             kind = type(discrete.system).__name__
             got = f"{self.name!r} for {kind}, whose invariant curves have no inner and outer part"
@@ -171,12 +165,12 @@ class Region(AbstractBranchRule):
 
     def following(self, kick: Kick) -> Following:
         """Choose by the region, then by continuation."""
-        roots, found = _values(kick)
-        inside = np.flatnonzero(found.is_real & (found.region == self.name)).tolist()
+        roots, values = _values(kick)
+        inside = np.flatnonzero(values.is_real & (values.region == self.name)).tolist()
         if len(inside) > 1:
             nearest = _nearest_of(kick, roots)
             inside = [nearest] if nearest in inside else inside
-        return _only(kick, roots, found, inside)
+        return _only(kick, roots, values, inside)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -190,19 +184,16 @@ class Chosen(AbstractBranchRule):
         """Refuse systems of whose values not all are known."""
         _check_values_known(where, discrete, self.function)
 
-    def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
-        """Every displacement will do."""
-
     def following(self, kick: Kick) -> Following:
         """Ask the function, and refuse an answer that is no real value."""
-        roots, found = _values(kick)
-        index = call("branch(found, present)", self.function, found, kick.present)
+        roots, values = _values(kick)
+        index = call("branch(found, present)", self.function, values, kick.present)
         if index is None:
-            return _only(kick, roots, found, [])
-        if not is_integer(index) or not 0 <= index < len(found) or not found.is_real[index]:
+            return _only(kick, roots, values, [])
+        if not is_integer(index) or not 0 <= index < len(values) or not values.is_real[index]:
             remedy = "Choose among np.flatnonzero(found.is_real), or return None."
             raise error("branch(found, present)", "return the index of a real branch or None", shown(index), remedy)
-        return _only(kick, roots, found, [int(index)])
+        return _only(kick, roots, values, [int(index)])
 
 
 PRINCIPAL = Principal()
@@ -261,18 +252,18 @@ def _values(kick: Kick) -> tuple[Roots, Branches]:
     return roots, branches_of(kick.discrete, kick.momentum, roots)
 
 
-def _only(kick: Kick, roots: Roots, found: Branches, taken: list[int]) -> Following:
+def _only(kick: Kick, roots: Roots, values: Branches, choices: list[int]) -> Following:
     """Return the one value that is left, or why there is none."""
-    if not taken:
+    if not choices:
         return Outcome.no_real_branch, kick.point
-    if len(taken) > 1 or found.multiplicity[taken[0]] > 1:
+    if len(choices) > 1 or values.multiplicity[choices[0]] > 1:
         return Outcome.branch_unverified, kick.point
-    return Outcome.successful, roots.found[taken[0]].point.real
+    return Outcome.successful, roots.zeros[choices[0]].point.real
 
 
 def _nearest_of(kick: Kick, roots: Roots) -> int | None:
     """Return the index of the root that the present point is followed to; None if it is lost."""
-    code, end = followed(kick.now, roots.equations, kick.point)
-    missed = [min(np.linalg.norm(end - root.point), np.linalg.norm(end + root.point)) for root in roots.found]
-    best = int(np.argmin(missed))
-    return best if code == 0 and missed[best] <= SAME * np.linalg.norm(end) else None
+    code, end = follow(kick.now, roots.equations, kick.point)
+    distances = [min(np.linalg.norm(end - root.point), np.linalg.norm(end + root.point)) for root in roots.zeros]
+    best = int(np.argmin(distances))
+    return best if code == 0 and distances[best] <= SAME * np.linalg.norm(end) else None

@@ -16,8 +16,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete.branching._branches import inverse_discrete_legendre
-from nonholo.discrete.branching._equations import Frame, frame_of
-from nonholo.discrete.branching._path import nearest_body
+from nonholo.discrete.branching._equations import Frame, frame_of, nearest_body
 from nonholo.discrete.branching._rules import AbstractBranchRule, Kick, displacement_at, principal_point
 from nonholo.discrete.routes import AbstractBodyStepper, Compact
 from nonholo.orbit import First, Rows, State, keep_row, write_first
@@ -36,16 +35,16 @@ def first_place(
     frame: Frame,
     rule: AbstractBranchRule,
     canonical: Float[np.ndarray, "k"],
-    demanded: np.ndarray | None,
+    demand: np.ndarray | None,
 ) -> tuple[Outcome, Place | None]:
     """Return the state of a start: of a displacement, of a full momentum, or else the principal one."""
-    if demanded is None:
+    if demand is None:
         code, point = principal_point(discrete, frame, canonical)
         if code != 0:
             return code, None
         place = Place(point, canonical)
     else:
-        W = demanded if demanded.ndim == 2 else inverse_discrete_legendre(discrete, demanded)
+        W = demand if demand.ndim == 2 else inverse_discrete_legendre(discrete, demand)
         place = _place_of(discrete, frame, W)
     rule.check_start(f"{owner}(branch=...)", discrete, displacement_at(discrete, frame, place.point))
     return Outcome.successful, place
@@ -89,9 +88,9 @@ def clear_places(
     h, k = float(discrete.time_step), len(frame.stiffness)
     first, now = goal_of(discrete, frame, begin), frame.equations(h * begin)
     goals, points = np.empty((count, len(goal))), np.empty((count, len(point)))
-    done = kernels.advance_to_nearest(nearest_body(now), goal, point, goals, points)
-    moved = goals[:done] - first
-    return Place(points[:done], begin + frame.momentum(moved[:, :k], moved[:, -1]) / h), goals[:done]
+    steps = kernels.advance_to_nearest(nearest_body(now), goal, point, goals, points)
+    change = goals[:steps] - first
+    return Place(points[:steps], begin + frame.momentum(change[:, :k], change[:, -1]) / h), goals[:steps]
 
 
 _BATCH = 256  # steps to the nearest value between two poses that are freed of their rounding errors
@@ -104,12 +103,12 @@ class RuleStepper(AbstractBodyStepper):
     Attributes:
         motion: The discretization.
         rule: Which value of the map a step takes.
-        posed: Whether poses are saved.
+        with_poses: Whether poses are saved.
     """
 
     motion: Any
     rule: AbstractBranchRule
-    posed: bool
+    with_poses: bool
     in_threads = False
 
     @property
@@ -133,35 +132,35 @@ class RuleStepper(AbstractBodyStepper):
         code, place = first_place("simulate", self.motion, frame, self.rule, reduced, first.demand)
         if place is None:
             return np.concatenate((reduced, np.full_like(reduced, np.nan), pose)), code
-        now = _Now(place, *self._begun(frame, place.momentum), group.matrix_from_pose(pose), 0)
+        now = _Now(place, *self._origin(frame, place.momentum), group.matrix_from_pose(pose), 0)
         return np.concatenate((place.momentum, frame.chart(place.point), pose, now.vector)), code
 
     def advance(self, state: State, steps: int, every: int, rows: Rows) -> tuple[int, int]:
         """Take steps by the rule, and carry the pose along."""
         write_first(state, rows)
-        frame, group, done, code = self._frame, self.motion.system.group, 0, Outcome.successful
+        frame, group, good, code = self._frame, self.motion.system.group, 0, Outcome.successful
         width, often = self.width, _BATCH if self.rule.is_nearest else 1
         now = self._now(frame, state)
-        while code == 0 and done < steps:
-            code, ahead, goal = self._following(frame, now, min(steps - done, often - now.step % often))
+        while code == 0 and good < steps:
+            code, ahead, goal = self._following(frame, now, min(steps - good, often - now.step % often))
             if not (count := len(ahead.point)):
                 break
             points = np.concatenate([now.place.point[None], ahead.point])
-            matrices = _carried(now.g, frame.increment(points[:-1]) + group.identity)
+            matrices = _poses_after(now.g, frame.increment(points[:-1]) + group.identity)
             poses = group.normalize_pose(group.pose_from_matrix(matrices))
-            at = done + 1 + np.arange(count)
-            saved = np.flatnonzero(at % every == 0)
+            at = good + 1 + np.arange(count)
+            marks = np.flatnonzero(at % every == 0)
             for column, new in zip(rows, (ahead.momentum, frame.chart(ahead.point), poses), strict=True):
-                column[at[saved] // every] = new[saved]
-            done, step, place = done + count, now.step + count, Place(points[-1], ahead.momentum[-1])
+                column[at[marks] // every] = new[marks]
+            good, step, place = good + count, now.step + count, Place(points[-1], ahead.momentum[-1])
             begin = now.begin
             if goal is None or step % often == 0:
-                goal, begin = self._begun(frame, place.momentum)
+                goal, begin = self._origin(frame, place.momentum)
             g = matrices[-1] if step % often else group.matrix_from_pose(poses[-1])
             now = _Now(place, goal, begin, g, step)
         state[width:] = now.vector
-        keep_row(state, rows, done // every)
-        return done, int(code)
+        keep_row(state, rows, good // every)
+        return good, int(code)
 
     def _following(self, frame: Frame, now: "_Now", most: int) -> tuple[Outcome, Place, np.ndarray | None]:
         """Return states that follow as rows, and the goal of the last one if the kernel found them.
@@ -176,14 +175,14 @@ class RuleStepper(AbstractBodyStepper):
         rows = slice(0, int(code == 0))
         return code, Place(following.point[None][rows], following.momentum[None][rows]), None
 
-    def _begun(self, frame: Frame, momentum: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _origin(self, frame: Frame, momentum: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the goal and the momentum at which clear steps begin to be summed."""
         return goal_of(self.motion, frame, momentum), momentum
 
     def _now(self, frame: Frame, state: State) -> "_Now":
         """Return the numbers of a state."""
         k, size = self.motion.system.rank, self.motion.system.group.size
-        own, goal = state[self.width :], len(self._begun(frame, state[:k])[0])
+        own, goal = state[self.width :], len(self._origin(frame, state[:k])[0])
         point, goals, begin, g, (step,) = np.split(
             own, np.cumsum([len(own) - goal - k - size**2 - 1, goal, k, size**2])
         )
@@ -211,7 +210,7 @@ class _Now(NamedTuple):
         return np.concatenate((self.place.point, self.goal, self.begin, self.g.ravel(), [self.step]))
 
 
-def _carried(g: np.ndarray, displacements: np.ndarray) -> np.ndarray:
+def _poses_after(g: np.ndarray, displacements: np.ndarray) -> np.ndarray:
     """Return the matrices of poses after displacements, one after another."""
     matrices = np.empty_like(displacements)
     for step, W in enumerate(displacements):

@@ -1,6 +1,6 @@
 r"""The tree of all values of the discrete map: images, images of images, over real and complex displacements.
 
-Reference: docs/theory/branches.md. The values over one momentum come from `_branch_values`.
+Reference: docs/theory/branches.md. The values over one momentum come from `_values`.
 """
 
 import dataclasses
@@ -11,7 +11,7 @@ import numpy as np
 from nonholo.base.checks import array, error, natural
 from nonholo.base.types import Array, Bool, Int
 from nonholo.discrete._discretization import Discretization, as_discretization
-from nonholo.discrete._legendre import legendre
+from nonholo.discrete._scheme import legendre
 from nonholo.discrete.branching._equations import Frame, frame_of
 from nonholo.discrete.branching._values import point_over, roots_over
 
@@ -120,10 +120,10 @@ def _next_generation(
     if len(X) == 0:
         return X, is_real, np.zeros(0, dtype=np.int64)
     images = [_images(discrete, frame, *node) for node in zip(X, is_real, strict=True)]
-    found, reality = (np.concatenate(column) for column in zip(*images, strict=True))
-    parents = np.repeat(np.arange(len(X)), [len(reached) for reached, _ in images])
-    first = _first_of_equals(found)
-    return found[first], reality[first], parents[first]
+    matrices, reality = (np.concatenate(column) for column in zip(*images, strict=True))
+    parents = np.repeat(np.arange(len(X)), [len(each) for each, _ in images])
+    first = _first_of_equals(matrices)
+    return matrices[first], reality[first], parents[first]
 
 
 def _images(discrete: Discretization, frame: Frame, X: Array, is_real: Array) -> tuple[Array, Array]:
@@ -131,16 +131,16 @@ def _images(discrete: Discretization, frame: Frame, X: Array, is_real: Array) ->
     if is_real or np.abs(r.imag).max() <= _ROUNDING * np.abs(r).max():
         r = r.real
     roots = roots_over(discrete, frame, discrete.system.to_canonical(r))
-    return roots.increments, np.array([root.is_real for root in roots.found], dtype=bool)
+    return roots.increments, np.array([root.is_real for root in roots.zeros], dtype=bool)
 
 
 def _first_of_equals(X: Array) -> Int[np.ndarray, "G"]:
     """Return the indices of matrices minus the identity that repeat none before them."""
-    kept = np.empty_like(X)
-    chosen: list[int] = []
+    distinct = np.empty_like(X)
+    indices: list[int] = []
     for i, candidate in enumerate(X):
-        missed = np.abs(kept[: len(chosen)] - candidate).max(axis=(1, 2))
-        if not np.any(missed <= _SAME * max(1.0, np.abs(candidate).max())):
-            kept[len(chosen)] = candidate
-            chosen.append(i)
-    return np.array(chosen, dtype=np.int64)
+        distances = np.abs(distinct[: len(indices)] - candidate).max(axis=(1, 2))
+        if not np.any(distances <= _SAME * max(1.0, np.abs(candidate).max())):
+            distinct[len(indices)] = candidate
+            indices.append(i)
+    return np.array(indices, dtype=np.int64)

@@ -13,7 +13,7 @@ from flint import acb, acb_poly, ctx, fmpz_poly
 
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete.certificate._families import Family, UncertainError, families
-from nonholo.discrete.certificate._roots import PRECISIONS, Lever, Problem, isolated, problem_of, sharpened
+from nonholo.discrete.certificate._roots import PRECISIONS, Lever, Problem, isolate, problem_of, sharpen
 from nonholo.systems import NormalForm
 
 _SHARP = 2.0**-48  # relative radius that ends the search for more digits
@@ -45,36 +45,36 @@ def enclosures(discrete: Discretization, canonical: np.ndarray) -> Enclosures | 
         return "the axes of the constraint are not those of the body, whose doubles would be rounded"
     problem = problem_of(form, float(discrete.time_step), canonical)
     try:
-        found = located(problem)
+        places = locate(problem)
     except UncertainError as reason:
         return str(reason)
-    if not found:
+    if not places:
         return "no displacement is isolated"
     for bits in PRECISIONS:
-        found = [x._replace(balls=sharpened(x.factor, x.balls, bits) or x.balls) for x in found]
-        values = _values(problem, found, bits)
+        places = [x._replace(balls=sharpen(x.factor, x.balls, bits) or x.balls) for x in places]
+        values = _values(problem, places, bits)
         if values is not None:
             return _as_matrices(discrete, problem, *values)
     return f"{PRECISIONS[-1]} bits do not separate the values from infinity"
 
 
-def located(problem: Problem) -> list[Located]:
+def locate(problem: Problem) -> list[Located]:
     """Locate all isolated displacements: how many there are, which are real, with which multiplicities."""
-    found = []
+    places = []
     for family in families(problem):
         for factor, multiplicity in family.polynomial.factor_squarefree()[1]:
-            balls = isolated(factor)
+            balls = isolate(factor)
             if balls is None:
                 raise UncertainError("the roots are not isolated from the real axis")
-            found.append(Located(family, factor, multiplicity, balls))
-    return found
+            places.append(Located(family, factor, multiplicity, balls))
+    return places
 
 
-def _values(problem: Problem, found: list[Located], bits: int) -> tuple[np.ndarray, ...] | None:
+def _values(problem: Problem, places: list[Located], bits: int) -> tuple[np.ndarray, ...] | None:
     """Return the products of all roots, how far off, multiplicity, reality; None if the number of bits is too small."""
     rows = []
     with ctx.workprec(bits):
-        for family, _, multiplicity, balls in found:
+        for family, _, multiplicity, balls in places:
             q, norm = [acb_poly(row) for row in family.q], acb_poly(family.norm)
             for mu in balls:
                 exact = _products(problem, [row(mu) for row in q], 2 / norm(mu))
@@ -101,7 +101,7 @@ def _as_matrices(
     X = _increments(products, len(problem.excess), problem.lever is not None)
     group, frame = discrete.system.group, np.asarray(discrete.system.frame)
     if not np.array_equal(frame, group.identity):
-        X, radii = _turned(X, radii, frame, np.asarray(group.inverse(frame)))
+        X, radii = _turn(X, radii, frame, np.asarray(group.inverse(frame)))
     return Enclosures(X, radii + _ROUNDING * (1 + _largest(X)), multiplicity, is_real)
 
 
@@ -110,9 +110,9 @@ def _products(problem: Problem, q: list[acb], scale: acb) -> list[acb]:
     k, lever = len(q) - 1, problem.lever
     S: list[list[acb]] = [[acb(0)] * (k + 1) for _ in q]
     for i, x in enumerate(q):
-        scaled = scale * x
+        multiple = scale * x
         for j in range(i, k + 1):
-            S[i][j] = S[j][i] = scaled * q[j]
+            S[i][j] = S[j][i] = multiple * q[j]
     square = _sum(S[i][i] for i in range(1, k + 1))
     products = [square, *S[0][1:], *(S[i][j] for i in range(1, k + 1) for j in range(i, k + 1))]
     if lever is None:
@@ -162,7 +162,7 @@ def _places(n: int, sleigh: bool) -> tuple[np.ndarray, np.ndarray]:
     return index, sign
 
 
-def _turned(X: np.ndarray, radii: np.ndarray, frame: np.ndarray, back: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _turn(X: np.ndarray, radii: np.ndarray, frame: np.ndarray, back: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return displacements seen from the user's frame, whose entries are taken as exact, and their radii."""
     sizes = np.abs(frame).sum(axis=1).max() * np.abs(back).sum(axis=0).max()
     return frame @ X @ back, sizes * (radii + 4 * _ROUNDING * _largest(X))

@@ -44,7 +44,7 @@ def families(problem: Problem) -> Iterator[Family]:
     if len(problem.excess) == 1:
         yield from _planar(problem)
     elif not any(problem.coupling) and problem.half == 0:
-        yield from _balanced(problem)
+        yield from _quadratic(problem)
     elif not any(problem.excess) and problem.half == 0:
         yield from _at_the_coupling(problem)
     else:
@@ -60,11 +60,11 @@ def _planar(problem: Problem) -> Iterator[Family]:
         yield Family(_X ** (3 - cubic.degree()), [fmpz_poly(), _ONE], _ONE)
 
 
-def _balanced(problem: Problem) -> Iterator[Family]:
+def _quadratic(problem: Problem) -> Iterator[Family]:
     r"""The quadratic of $z_0^2$: $z_0z = w = B^{-1}r$, $z_0^4 - z_0^2 + w\cdot w = 0$; if w = 0 only the identity."""
     d = problem.excess
-    solved = fmpq_mat(problem.stiffness).solve(fmpq_mat(fmpz_mat([[x] for x in d])))
-    numerators, unit = solved.numer_denom()
+    solution = fmpq_mat(problem.stiffness).solve(fmpq_mat(fmpz_mat([[x] for x in d])))
+    numerators, unit = solution.numer_denom()
     w = [numerators[i, 0] for i in range(len(d))]
     if not any(w):
         yield Family(_X, [_ONE, *(fmpz_poly() for _ in w)], _ONE)
@@ -99,11 +99,11 @@ def _generic(problem: Problem) -> Iterator[Family]:
     polynomial = n2 * (n1 - n2) - _dot(y, y)
     if polynomial == 0:
         raise UncertainError("the secular polynomial vanishes")
-    hidden = polynomial.gcd(n2)
-    regular = _without(_without(polynomial, hidden), n1)
+    common = polynomial.gcd(n2)
+    regular = _without(_without(polynomial, common), n1)
     if regular.degree() > 0:
         yield Family(regular, [n2, *y], n1 * n2)
-    yield from _hidden(problem, hidden, [n1, *y])
+    yield from _hidden_roots(problem, common, [n1, *y])
     lever, k = problem.lever, len(y)
     if problem.half == 0 and (lever is None or lever.arm != 0):
         missing = 2 * k + (lever is not None) - polynomial.degree()
@@ -114,20 +114,20 @@ def _generic(problem: Problem) -> Iterator[Family]:
 def _secular(problem: Problem) -> _Secular:
     B, c, d = problem.stiffness, _column(problem.coupling), _column(problem.excess)
     determinant = (-B).charpoly()
-    Ac, Ad = (_solved(B, [x * side for x in determinant.coeffs()]) for side in (c, d))
+    Ac, Ad = (_solve(B, [x * side for x in determinant.coeffs()]) for side in (c, d))
     along = c.transpose()
     n1 = determinant * _X + _polynomials(along * x for x in Ac)[0]
     n2 = determinant * problem.half - _polynomials(along * x for x in Ad)[0]
     sides = [x * d + y * c for x, y in zip_longest(n1.coeffs(), n2.coeffs(), fillvalue=0)]
-    return _Secular(determinant, Ac, n1, n2, _polynomials(_solved(B, sides)))
+    return _Secular(determinant, Ac, n1, n2, _polynomials(_solve(B, sides)))
 
 
-def _solved(B: fmpz_mat, sides: list[fmpz_mat]) -> list[fmpz_mat]:
+def _solve(B: fmpz_mat, sides: list[fmpz_mat]) -> list[fmpz_mat]:
     r"""Return the coefficients of $(B + \mu)^{-1}$ times a polynomial vector, if they are those of a polynomial."""
-    found = [sides[-1]]
+    coefficients = [sides[-1]]
     for side in sides[-2:0:-1]:
-        found.append(side - B * found[-1])
-    return found[::-1]
+        coefficients.append(side - B * coefficients[-1])
+    return coefficients[::-1]
 
 
 def _column(vector: list[fmpz]) -> fmpz_mat:
@@ -139,7 +139,7 @@ def _polynomials(coefficients: Iterable[fmpz_mat]) -> list[fmpz_poly]:
     return [fmpz_poly(list(row)) for row in zip(*(x.entries() for x in coefficients), strict=True)]
 
 
-def _hidden(problem: Problem, common: fmpz_poly, numerators: list[fmpz_poly]) -> Iterator[Family]:
+def _hidden_roots(problem: Problem, common: fmpz_poly, numerators: list[fmpz_poly]) -> Iterator[Family]:
     r"""The roots at a $\mu$ where the linear equations for (y, s) are singular and yet have solutions."""
     for row in numerators:
         common = common.gcd(row)
@@ -152,7 +152,7 @@ def _hidden(problem: Problem, common: fmpz_poly, numerators: list[fmpz_poly]) ->
 def _on_line(problem: Problem, factor: fmpz_poly) -> Iterator[Family]:
     """The isolated solutions on the line of (y, s) that solve the linear equations at a rational mu."""
     M, right = _equations_at(problem, *factor.coeffs())
-    if M.rank() + 1 < M.ncols() or _augmented(M, right).rank() >= M.ncols():
+    if M.rank() + 1 < M.ncols() or _augment(M, right).rank() >= M.ncols():
         return  # no solution, or whole curves of them
     *y, s = [fmpq_poly([p, v]) for p, v in zip(_particular(M, right), _null(M), strict=True)]
     compatible = s - 1 - _dot(y, y)
@@ -163,7 +163,7 @@ def _on_line(problem: Problem, factor: fmpz_poly) -> Iterator[Family]:
         raise UncertainError("the multiplicity of a root that the secular polynomial hides is not known")
     compatible = compatible // compatible.gcd(s)
     if compatible.degree() > 0:
-        unit, whole = _cleared([*y, s])
+        unit, whole = _clear_denominators([*y, s])
         yield Family(compatible.numer(), [fmpz_poly([unit]), *whole[:-1]], unit * whole[-1])
 
 
@@ -176,7 +176,7 @@ def _equations_at(problem: Problem, low: fmpz, high: fmpz) -> tuple[fmpz_mat, fm
     return fmpz_mat(rows), fmpz_mat([[high * x] for x in c] + [[low]])
 
 
-def _augmented(M: fmpz_mat, right: fmpz_mat) -> fmpz_mat:
+def _augment(M: fmpz_mat, right: fmpz_mat) -> fmpz_mat:
     return fmpz_mat([[*row, *side] for row, side in zip(M.tolist(), right.tolist(), strict=True)])
 
 
@@ -184,7 +184,7 @@ def _shares_root(polynomial: fmpq_poly, other: fmpq_poly) -> bool:
     return polynomial.gcd(other).degree() > 0
 
 
-def _cleared(polynomials: list[fmpq_poly]) -> tuple[fmpz, list[fmpz_poly]]:
+def _clear_denominators(polynomials: list[fmpq_poly]) -> tuple[fmpz, list[fmpz_poly]]:
     """Return a common denominator of polynomials and their numerators over it."""
     unit = fmpz(1)
     for polynomial in polynomials:
@@ -207,7 +207,7 @@ def _null(M: fmpz_mat) -> list:
 def _particular(M: fmpz_mat, right: fmpz_mat) -> list:
     """Return one solution of compatible equations of corank one."""
     size = M.ncols()
-    reduced = fmpq_mat(_augmented(M, right)).rref()[0]
+    reduced = fmpq_mat(_augment(M, right)).rref()[0]
     vector = [fmpq_mat(1, 1)[0, 0] for _ in range(size)]
     for i in range(size - 1):
         vector[next(j for j in range(size) if reduced[i, j] != 0)] = reduced[i, size]

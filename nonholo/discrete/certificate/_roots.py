@@ -85,17 +85,17 @@ _CLOSE = 1e-4  # relative distance up to which rounding may have merged or split
 _STEPS = 8  # of Newton's method; two suffice from a good guess
 
 
-def isolated(polynomial: fmpz_poly) -> list[acb] | None:
+def isolate(polynomial: fmpz_poly) -> list[acb] | None:
     """Return a ball for each real root and one of each conjugate pair, None if no precision separates them."""
-    guessed = _guessed(polynomial)
-    found = chain(
-        (sharpened(polynomial, guessed, bits) for bits in (_ROUGH, PRECISIONS[0])),
-        (sharpened(polynomial, _searched(polynomial, bits), bits) for bits in PRECISIONS),
+    guess = _guess(polynomial)
+    attempts = chain(
+        (sharpen(polynomial, guess, bits) for bits in (_ROUGH, PRECISIONS[0])),
+        (sharpen(polynomial, _search(polynomial, bits), bits) for bits in PRECISIONS),
     )
-    return next((balls for balls in found if balls is not None), None)
+    return next((balls for balls in attempts if balls is not None), None)
 
 
-def sharpened(polynomial: fmpz_poly, centers: list[acb], bits: int) -> list[acb] | None:
+def sharpen(polynomial: fmpz_poly, centers: list[acb], bits: int) -> list[acb] | None:
     """Return the balls near centers, which are real or above the real axis, or None if they do not prove anything."""
     with ctx.workprec(bits):
         value = acb_poly(polynomial)
@@ -104,12 +104,12 @@ def sharpened(polynomial: fmpz_poly, centers: list[acb], bits: int) -> list[acb]
     flat = [z.imag == 0 for z in centers]
     if 2 * len(flat) - sum(flat) != polynomial.degree() or any(x.overlaps(y) for x, y in combinations(squares, 2)):
         return None
-    placed = (_placed(square, real=on_axis) for square, on_axis in zip(squares, flat, strict=True))
-    balls = [ball for ball in placed if ball is not None]
+    candidates = (_place(square, real=on_axis) for square, on_axis in zip(squares, flat, strict=True))
+    balls = [ball for ball in candidates if ball is not None]
     return balls if len(balls) == len(flat) else None
 
 
-def _placed(square: acb, *, real: bool) -> acb | None:
+def _place(square: acb, *, real: bool) -> acb | None:
     """Return the ball of the root in a square, of a real root on the axis; None if it lies on the wrong side."""
     if real:
         return acb(square.real) if square.imag.mid() == 0 else None
@@ -128,16 +128,16 @@ def _around(value: acb_poly, slope: acb_poly, center: acb, bits: int) -> acb:
     return center + acb(arb(0, radius), arb(0, radius))
 
 
-def _guessed(polynomial: fmpz_poly) -> list[acb]:
+def _guess(polynomial: fmpz_poly) -> list[acb]:
     """Return eigenvalues of the companion matrix; two that are close come from the parabola at their middle."""
     exponent, values = _eigenvalues(polynomial)
-    alone, middles = _parted(values)
+    alone, middles = _split_pairs(values)
     with ctx.workprec(PRECISIONS[0]):
         unit = arb(fmpz(1) << exponent) if exponent >= 0 else 1 / arb(fmpz(1) << -exponent)
         return [acb(z) * unit for z in alone] + [z for x in middles for z in _parabola(polynomial, x * unit)]
 
 
-def _parted(values: list[complex]) -> tuple[list[complex], list[float]]:
+def _split_pairs(values: list[complex]) -> tuple[list[complex], list[float]]:
     """Return the values that lie alone, none below the real axis, and the real middles of two that are close."""
     real = sorted(z.real for z in values if z.imag == 0)
     middles = [(x + y) / 2 for x, y in pairwise(real) if y - x <= _CLOSE * abs(y)]
@@ -179,9 +179,9 @@ def _parabola(polynomial: fmpz_poly, middle: arb) -> list[acb]:
     return [acb(center - half), acb(center + half)] if square >= 0 else [acb(center, abs(half))]
 
 
-def _searched(polynomial: fmpz_poly, bits: int) -> list[acb]:
+def _search(polynomial: fmpz_poly, bits: int) -> list[acb]:
     """Return the centers that FLINT finds, however long it takes."""
     with ctx.workprec(bits):
-        found: Any = polynomial.complex_roots()
-        centers = [acb(z).mid() for z, _ in found]
+        roots: Any = polynomial.complex_roots()
+        centers = [acb(z).mid() for z, _ in roots]
     return [z for z in centers if z.imag >= 0]

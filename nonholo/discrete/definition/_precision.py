@@ -35,11 +35,11 @@ def allow_float32() -> Iterator[None]:
 
 def in_double(function: Callable[..., Any], *arguments: Any) -> Any:
     """Call a JAX function: eagerly in a 64-bit scope with NumPy results, or as it is on traced 64-bit input."""
-    traced = [x for x in jax.tree.leaves(arguments) if is_traced(x)]
-    if not traced:
+    tracers = [x for x in jax.tree.leaves(arguments) if is_traced(x)]
+    if not tracers:
         with double_precision():
             return jax.tree.map(np.asarray, function(*arguments))
-    if not _float32.get() and any(x.dtype == np.float32 for x in traced):
+    if not _float32.get() and any(x.dtype == np.float32 for x in tracers):
         raise TypeError(
             "`nonholo` must be traced in 64 bits. Got float32. Wrap the call in `with jax.enable_x64(True):`, "
             "or accept single precision with `with nonholo.allow_float32():`."
@@ -47,6 +47,6 @@ def in_double(function: Callable[..., Any], *arguments: Any) -> Any:
     return function(*arguments)
 
 
-def doubled(function: Callable[..., Any]) -> Callable[..., Any]:
+def compile_double(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile a JAX function, which is then called as `in_double` calls it."""
     return functools.wraps(function)(functools.partial(in_double, equinox.filter_jit(function)))

@@ -1,7 +1,8 @@
-"""Orbits as JAX functions: steps between nodes, long runs with checkpoints, and what saved nodes are.
+"""Orbits as JAX functions: steps between nodes, long runs with checkpoints, and the equations of a step.
 
 A node is the state before a step, with the chart of the step and the state after it. Bodies with a closed form run in
-the scalars of their kernel, from the identity; other ones in momenta along the constraint and matrices of poses.
+the scalars of their kernel, from the identity; other ones in momenta along the constraint and matrices of poses. In
+`step_residual` nothing is solved for: momenta, chart, pose and force are unknown at once.
 """
 
 import dataclasses
@@ -17,10 +18,18 @@ from nonholo import kernels
 from nonholo.base.results import Outcome
 from nonholo.base.traced import marked_rows, run_nodes
 from nonholo.base.types import Array, Float
-from nonholo.discrete._composition import weights
-from nonholo.discrete._scheme import Scheme
-from nonholo.discrete.definition._principal import ON_LOCUS, closed_step_of, kernel_root, principal_of
-from nonholo.discrete.definition._step import displaced, equations_at, momentum_of, restricted
+from nonholo.discrete._scheme import Scheme, weights
+from nonholo.discrete._variety import free_rows
+from nonholo.discrete.definition._step import (
+    ON_LOCUS,
+    closed_step_of,
+    displacement_of,
+    equations_at,
+    kernel_root,
+    momentum_of,
+    principal_of,
+    restricted,
+)
 from nonholo.discrete.routes import ScalarStep
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import Forced
@@ -71,9 +80,9 @@ _Impulse = Callable[[Array, Array, Array], Array]
 """From momenta along the constraint, pose and control to half the impulse of a step, a body covector."""
 
 
-def rolled(
+def roll_out(
     discrete: Scheme,
-    closed: ScalarStep | None,
+    scalar: ScalarStep | None,
     start: tuple[str, Array, Array],
     controls: Array | None,
     sizes: tuple[int, int],
@@ -85,31 +94,45 @@ def rolled(
     The discretization is that of the free system, `forced` the system with its forces. `work` is the number by which
     many steps ask whether they are still wanted; None where they are differentiated.
     """
-    (name, value, g), (steps, every), system = start, sizes, discrete.system
+    (name, value, g), (steps, every) = start, sizes
     r, g = _along(discrete, name, jnp.asarray(value), jnp.asarray(g)), jnp.asarray(g)
     impulse, rows = impulse_of(discrete, forced, controls, steps)
-    balanced = forced if is_balanced(discrete, forced) else None
-    if balanced is not None:
-        step, start, at = _balanced_step(discrete, closed, balanced), (r, g, len(discrete.variety.chart)), _as_it_is
-    elif closed is not None and discrete.order == 2:
-        step, C, at = _closed_step(discrete, closed, g, impulse)
-        start = C @ r, jnp.asarray([1.0, 0.0, 0.0, 0.0], r.dtype), 2
-    else:
-        step = _composed_step(discrete, closed) if discrete.order > 2 else _matrix_step(discrete, impulse)
-        start, at = (r, g, len(discrete.variety.chart)), _as_it_is
-    (m, pose, size), code = cast(Any, start), jnp.zeros((), jnp.result_type(int))
-    nothing = jnp.zeros(size, m.dtype)
+    balance = forced if is_balanced(discrete, forced) else None
+    step, at, (m, pose, size) = _step_from(discrete, scalar, (impulse, balance), r, g)
+    code, nothing = jnp.zeros((), jnp.result_type(int)), jnp.zeros(size, m.dtype)
     nodes = run_nodes(step, _Node(m, pose, nothing, (m, pose), code, jnp.sum(nothing)), rows, sizes, work)
-    given = value if name == "momentum" and value.shape == (system.group.dim,) else None
+    demand = value if name == "momentum" and value.shape == (discrete.system.group.dim,) else None
     time = discrete.time_step * every * jnp.arange(1 + steps // every)
     states = jax.vmap(at)(nodes)
-    pushes, potential = jnp.zeros(()), jnp.zeros(()) if forced is None else forced.potential_energy(states[2])
-    if balanced is not None:
+    pushes = _half_impulses(discrete, (impulse, balance), states, None if rows is None else rows[::every])
+    potential = jnp.zeros(()) if forced is None else forced.potential_energy(states[2])
+    return _decode(discrete, nodes, states, demand, (pushes, potential), time)
+
+
+def _step_from(
+    discrete: Scheme, scalar: ScalarStep | None, forces: tuple[_Impulse | None, Forced | None], r: Array, g: Array
+) -> tuple[_Step, Callable[[_Node], Any], tuple[Array, Array, int]]:
+    """Return the step, what its nodes are in the user's frame, and momenta, pose and length of a chart at the start."""
+    impulse, balance = forces
+    if balance is None and scalar is not None and discrete.order == 2:
+        step, C, at = _closed_step(discrete, scalar, g, impulse)
+        return step, at, (C @ r, jnp.asarray([1.0, 0.0, 0.0, 0.0], r.dtype), 2)
+    if balance is not None:
+        step = _in_stages(discrete, scalar, functools.partial(_balanced_stage, balance))
+    else:
+        step = _in_stages(discrete, scalar, _free_stage) if discrete.order > 2 else _matrix_step(discrete, impulse)
+    return step, _as_it_is, (r, g, len(discrete.variety.chart))
+
+
+def _half_impulses(
+    discrete: Scheme, forces: tuple[_Impulse | None, Forced | None], states: tuple[Array, ...], rows: Array | None
+) -> Array:
+    """Return the half impulses at saved nodes."""
+    impulse, balance = forces
+    if balance is not None:
         first = _part(discrete, weights(discrete.order)[0])
-        pushes = jax.vmap(functools.partial(half_impulse, first, balanced))(states[1], states[2], rows[::every])
-    elif impulse is not None:
-        pushes = jax.vmap(impulse)(states[0], states[2], rows[::every])
-    return _decoded(discrete, nodes, states, given, (pushes, potential), time)
+        return jax.vmap(functools.partial(half_impulse, first, balance))(states[1], states[2], rows)
+    return jnp.zeros(()) if impulse is None else jax.vmap(impulse)(states[0], states[2], rows)
 
 
 def impulse_of(discrete: Scheme, forced: Forced | None, controls: Array | None, steps: int) -> tuple[Any, Any]:
@@ -124,12 +147,12 @@ def impulse_of(discrete: Scheme, forced: Forced | None, controls: Array | None, 
     rows = rows + forced.rows(np.arange(steps + 1))
     if is_balanced(discrete, forced):
         return None, rows
-    fixed = None
+    propagator = None
     if forced.friction is not None and not forced.is_spatial:
-        fixed = forced.propagator(jnp.asarray(forced.constraint_subspace.T), half)
+        propagator = forced.propagator(jnp.asarray(forced.constraint_subspace.T), half)
 
     def impulse(r: Array, g: Array, row: Array) -> Array:
-        return forced.impulse(r, g, forced.potential_force(g) + row, half, fixed)
+        return forced.impulse(r, g, forced.potential_force(g) + row, half, propagator)
 
     return impulse, rows
 
@@ -142,7 +165,7 @@ def is_balanced(discrete: Scheme, forced: Forced | None) -> bool:
 def half_impulse(discrete: Scheme, forced: Forced, y: Array, g: Array, row: Array) -> Float[Array, "dim"]:
     """Return half the impulse of a balanced step by the chart of its displacement, a body covector."""
     h = discrete.time_step
-    return h / 2 * forced.mean_force(g, displaced(discrete, y), h, row)
+    return h / 2 * forced.mean_force(g, displacement_of(discrete, y), h, row)
 
 
 def _part(discrete: Scheme, weight: Array) -> Any:
@@ -165,23 +188,23 @@ def _along(discrete: Scheme, name: str, value: Array, g: Array) -> Array:
 
 
 def _closed_step(
-    discrete: Scheme, closed: ScalarStep, g: Array, impulse: _Impulse | None
+    discrete: Scheme, scalar: ScalarStep, g: Array, impulse: _Impulse | None
 ) -> tuple[_Step, Array, Callable[[_Node], Any]]:
     """Return the step of a kernel, the matrix of its momenta, and what its nodes are in the user's frame."""
-    (body, C, rows), system = closed_step_of(discrete, closed), discrete.system
+    (body, C, rows), system = closed_step_of(discrete, scalar), discrete.system
     group, frame, inverse = system.group, jnp.asarray(system.form_frame), jnp.linalg.inv(C)
 
     def pose(q: Array) -> Array:
         return g @ frame @ group.matrix_from_pose(q) @ group.inverse(frame)
 
-    def kicked(m: Array, q: Array, row: Array | None) -> Array:
+    def kick(m: Array, q: Array, row: Array | None) -> Array:
         return m if impulse is None else m + C @ (system.constraint_subspace @ impulse(inverse @ m, pose(q), row))
 
     def step(m: Array, q: Array, guess: Array | None, row: Array | None) -> _Node:
-        pushed = kicked(m, q, row)
-        y, code = kernel_root(body, pushed, guess)
+        m_half = kick(m, q, row)
+        y, code = kernel_root(body, m_half, guess)
         after = jnp.stack(kernels.move(body, *y, *q))
-        arriving = kicked(pushed + jnp.stack(kernels.increment(body, *pushed, *y)), after, row)
+        arriving = kick(m_half + jnp.stack(kernels.increment(body, *m_half, *y)), after, row)
         return _Node(m, q, y, (arriving, after), code, jnp.sum(y))
 
     def at(node: _Node) -> tuple[Array, ...]:
@@ -194,113 +217,108 @@ def _closed_step(
 def _matrix_step(discrete: Scheme, impulse: _Impulse | None) -> _Step:
     """Return the step by the matrix equations."""
 
-    def kicked(r: Array, g: Array, row: Array | None) -> Array:
+    def kick(r: Array, g: Array, row: Array | None) -> Array:
         return r if impulse is None else r + restricted(discrete, impulse(r, g, row), g)
 
     def step(r: Array, g: Array, guess: Array | None, row: Array | None) -> _Node:
         del guess  # there is no certificate
-        pushed = kicked(r, g, row)
-        y, code = principal_of(discrete, None, pushed, g)
-        following, after = _moved(discrete, pushed, y, g)
-        return _Node(r, g, y, (kicked(following, after, row), after), code, jnp.sum(y))
+        r_half = kick(r, g, row)
+        y, code = principal_of(discrete, None, r_half, g)
+        following, after = _move(discrete, r_half, y, g)
+        return _Node(r, g, y, (kick(following, after, row), after), code, jnp.sum(y))
 
     return step
 
 
-def _balanced_step(discrete: Scheme, closed: ScalarStep | None, forced: Forced) -> _Step:
-    """Return the step whose half impulses are those at its displacement, in one or several stages."""
+def _in_stages(discrete: Scheme, scalar: ScalarStep | None, take: Callable[..., tuple[Array, ...]]) -> _Step:
+    """Return the step of one or several lengths; `take` gives chart and outcome of each, momenta and pose after it."""
 
-    def stage(carry: tuple[Array, Array, Array, Array], weight: Array) -> tuple[tuple[Array, ...], Array]:
+    def stage(carry: tuple[Any, ...], weight: Array) -> tuple[tuple[Any, ...], Array]:
         r, g, code, row = carry
-        part, scaled = _part(discrete, weight), closed and closed._replace(scale=weight * closed.scale)
-        s, j, y, found = _settled(part, scaled, forced, (r, g, row))
-        good, code = (code == 0) & (found == 0), jnp.where(code == 0, found, code)
-        ahead, after = _moved(part, s, y, g)
-        return (jnp.where(good, ahead + j, r), jnp.where(good, after, g), code, row), y
+        part, own = _part(discrete, weight), scalar and scalar._replace(scale=weight * scalar.scale)
+        y, outcome, ahead, after = take(part, own, (r, g, row))
+        good, code = (code == 0) & (outcome == 0), jnp.where(code == 0, outcome, code)
+        return (jnp.where(good, ahead, r), jnp.where(good, after, g), code, row), y
 
     def step(r: Array, g: Array, guess: Array | None, row: Array | None) -> _Node:
         del guess
-        begun, stages = (r, g, jnp.zeros((), jnp.result_type(int)), row), weights(discrete.order)
-        (r_next, after, code, _), charts = jax.lax.scan(stage, begun, jnp.asarray(stages, r.dtype))
+        begin, stages = (r, g, jnp.zeros((), jnp.result_type(int)), row), weights(discrete.order)
+        (r_next, after, code, _), charts = jax.lax.scan(stage, begin, jnp.asarray(stages, r.dtype))
         return _Node(r, g, charts[0], (r_next, after), code, jnp.sum(charts))
 
     return step
 
 
-def _settled(part: Any, closed: ScalarStep | None, forced: Forced, state: tuple[Array, ...]) -> tuple[Array, ...]:
+def _free_stage(part: Any, scalar: ScalarStep | None, state: tuple[Any, ...]) -> tuple[Array, ...]:
+    """Take the step of order 2 without forces."""
+    r, g, _ = state
+    y, outcome = principal_of(part, scalar, r, g)
+    return y, outcome, *_move(part, r, y, g)
+
+
+def _balanced_stage(
+    forced: Forced, part: Any, scalar: ScalarStep | None, state: tuple[Array, ...]
+) -> tuple[Array, ...]:
+    """Take the step whose half impulses are those at its displacement."""
+    s, j, y, outcome = _balance(part, scalar, forced, state)
+    ahead, after = _move(part, s, y, state[1])
+    return y, outcome, ahead + j, after
+
+
+def _balance(part: Any, scalar: ScalarStep | None, forced: Forced, state: tuple[Array, ...]) -> tuple[Array, ...]:
     """Return momenta s = r + j, half impulses j, the chart of the displacement over s, and the outcome.
 
     Newton's method from the free displacement, which derivatives do not see; two corrections with its last slope give
     them up to the second.
     """
 
-    def push(given: Any, y: Array) -> Array:
-        part, forced, (_, g, row) = given
+    def push(problem: Any, y: Array) -> Array:
+        part, forced, (_, g, row) = problem
         return restricted(part, half_impulse(part, forced, y, g, row), g)
 
-    def missed(given: Any, y: Array) -> Array:
-        part, _, (r, g, _) = given
-        return equations_at(part, g)(y, r + push(given, y))
+    def residual(problem: Any, y: Array) -> Array:
+        part, _, (r, g, _) = problem
+        return equations_at(part, g)(y, r + push(problem, y))
 
     def better(carry: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
         y, _, count = carry
-        change = jnp.linalg.solve(jax.jacfwd(lambda y: missed(fixed, y))(y), missed(fixed, y))
+        change = jnp.linalg.solve(jax.jacfwd(lambda y: residual(constants, y))(y), residual(constants, y))
         return y - change, jnp.max(jnp.abs(change)), count + 1
 
-    given = part, forced, state
-    fixed, still = jax.tree.map(jax.lax.stop_gradient, (given, closed))
-    free, code = principal_of(fixed[0], still, fixed[2][0], fixed[2][1])
+    problem = part, forced, state
+    constants, still = jax.tree.map(jax.lax.stop_gradient, (problem, scalar))
+    free, code = principal_of(constants[0], still, constants[2][0], constants[2][1])
     begin = jnp.where(code == 0, free, 0 * free), jnp.asarray(jnp.inf, free.dtype), 0
     y, last, _ = jax.lax.while_loop(lambda c: (c[1] > _CLOSE) & (c[2] < _MOST), better, begin)
-    slope = jax.lax.stop_gradient(jax.jacfwd(lambda y: missed(fixed, y))(y))
+    slope = jax.lax.stop_gradient(jax.jacfwd(lambda y: residual(constants, y))(y))
     for _ in range(2):
-        y = y - jnp.linalg.solve(slope, missed(given, y))
-    j, lost = push(given, y), ~(last <= _CLOSE)
-    return state[0] + j, j, y, jnp.where((code == 0) & lost, int(Outcome.not_converged), code)
+        y = y - jnp.linalg.solve(slope, residual(problem, y))
+    j, is_lost = push(problem, y), ~(last <= _CLOSE)
+    return state[0] + j, j, y, jnp.where((code == 0) & is_lost, int(Outcome.not_converged), code)
 
 
-def _composed_step(discrete: Scheme, closed: ScalarStep | None) -> _Step:
-    """Return a step of higher order: the step of order 2 of several lengths, one after the other."""
-
-    def substep(carry: tuple[Array, Array, Array], weight: Array) -> tuple[tuple[Array, Array, Array], Array]:
-        r, g, code = carry
-        part = _part(discrete, weight)
-        y, found = principal_of(part, closed and closed._replace(scale=weight * closed.scale), r, g)
-        good, code = (code == 0) & (found == 0), jnp.where(code == 0, found, code)
-        ahead, after = _moved(part, r, y, g)
-        return (jnp.where(good, ahead, r), jnp.where(good, after, g), code), y
-
-    def step(r: Array, g: Array, guess: Array | None, row: Array | None) -> _Node:
-        del guess, row
-        begun = (r, g, jnp.zeros((), jnp.result_type(int)))
-        (*after, code), charts = jax.lax.scan(substep, begun, jnp.asarray(weights(discrete.order), r.dtype))
-        return _Node(r, g, charts[0], (after[0], after[1]), code, jnp.sum(charts))
-
-    return step
-
-
-def _moved(discrete: Scheme, r: Array, y: Array, g: Array) -> tuple[Array, Array]:
+def _move(discrete: Scheme, r: Array, y: Array, g: Array) -> tuple[Array, Array]:
     """Return momenta along the constraint and pose after a displacement that has momenta r along it.
 
     The momenta change by the difference of two, in which the error of the root is not seen.
     """
     system = discrete.system
-    after = _rectified(system.group, system.moved(g, displaced(discrete, y)))
+    after = _rectify(system.group, system.moved(g, displacement_of(discrete, y)))
     arriving = restricted(discrete, momentum_of(discrete, y, g, "right"), after)
     return r + (arriving - restricted(discrete, momentum_of(discrete, y, g, "left"), g)), after
 
 
-def _rectified(group: AbstractMatrixGroup, g: Array) -> Array:
+def _rectify(group: AbstractMatrixGroup, g: Array) -> Array:
     """Return a pose whose rounding errors across a group of isometries are squared: R (3 - R* R) / 2."""
     if not group.has_skew_part:
         return g
-    n = group.size if group.form is not None or np.any(group.basis[:, -1]) else group.size - 1
+    n = free_rows(group)
     R = g[:n, :n]
     square = group.form_adjoint(g) @ g if n == group.size else R.T @ R
     return g.at[:n, :n].set(R @ (3 * jnp.eye(n, dtype=g.dtype) - square) / 2)
 
 
-def _decoded(
+def _decode(
     discrete: Scheme,
     nodes: _Node,
     states: tuple[Array, ...],
@@ -312,20 +330,47 @@ def _decoded(
 
     A full momentum of the start must be that of the first node. The forces are half impulses and potential energies.
     """
-    system, first = discrete.system, cast(Any, discrete)
+    system, first = discrete.system, discrete
     if discrete.order > 2:
-        first = dataclasses.replace(first, time_step=float(weights(discrete.order)[0]) * discrete.time_step, order=2)
+        first = _part(discrete, float(weights(discrete.order)[0]))
 
     def at(r: Array, y: Array, g: Array, after: Array) -> tuple[Array, ...]:
         whole = discrete.order > 2 or system.is_spatial
-        W = system.group.inverse(g) @ after if whole else displaced(discrete, y)
+        W = system.group.inverse(g) @ after if whole else displacement_of(discrete, y)
         return r, momentum_of(first, y, g, "left"), W, g, system.constrained_energy(r, g)
 
     (r, P, W, g, energy), code = jax.vmap(at)(*states), nodes.code
     P, energy = P - forces[0], energy + forces[1]
     if momentum is not None:
-        missed = jnp.sum((P[0] - momentum) ** 2) > ON_LOCUS**2 * jnp.sum(momentum**2)
-        code = jnp.where((code == 0) & missed, int(Outcome.off_momentum_locus), code)
+        is_off = jnp.sum((P[0] - momentum) ** 2) > ON_LOCUS**2 * jnp.sum(momentum**2)
+        code = jnp.where((code == 0) & is_off, int(Outcome.off_momentum_locus), code)
 
     rows = (marked_rows(each, nodes.cause, code == 0) for each in (r, P, W, g, energy))
     return Rollout(time, *rows, outcome=code[-1])
+
+
+def step_residual(
+    discrete: Scheme,
+    forced: Forced | None,
+    state: tuple[Array, Array],
+    y: Array,
+    after: tuple[Array, Array],
+    force: Array,
+) -> Array:
+    """Return what vanishes if y is the chart of a step between two states under a constant body covector.
+
+    A state is a pose and the momenta of its node along the constraint; the discretization is that of the free system.
+    Poses may be any matrices whose constant rows are those of the group: it is kept by the equations.
+    """
+    (g, r), (ahead, following), system = state, after, discrete.system
+    arriving = restricted(discrete, momentum_of(discrete, y, g, "right"), ahead)
+    if is_balanced(discrete, forced):
+        push = restricted(discrete, half_impulse(discrete, cast(Forced, forced), y, g, force), g)
+        r_half, arriving = r + push, arriving + push
+    else:
+        impulse, _ = impulse_of(discrete, forced, jnp.zeros((0, system.group.dim)), 0)
+        r_half = r + restricted(discrete, impulse(r, g, force), g)
+        arriving = arriving + restricted(discrete, impulse(arriving, ahead, force), ahead)
+    gap = system.moved(g, displacement_of(discrete, y)) - ahead
+    root = equations_at(discrete, g)(y, r_half)
+    return jnp.concatenate([root, arriving - following, gap[: free_rows(system.group)].ravel()])

@@ -29,7 +29,7 @@ def principal_root(
     residual: Residual,
     target: Float[Array, "k"],
     unknowns: int,
-    certified: Certificate | None = None,
+    certificate: Certificate | None = None,
     guess: Float[Array, "m"] | None = None,
 ) -> tuple[Float[Array, "m"], Array]:
     r"""Solve residual(y, target) = 0 for the root that (0, 0) reaches along s target, 0 <= s <= 1.
@@ -41,7 +41,7 @@ def principal_root(
         residual: A function of y and the momenta, zero at (0, 0).
         target: The momenta.
         unknowns: Number m of components of y.
-        certified: Tells of a root whether it is certainly the principal one, whatever the continuation saw.
+        certificate: Tells of a root whether it is certainly the principal one, whatever the continuation saw.
         guess: Where Newton's method may look first; what it finds there needs the certificate.
 
     Returns:
@@ -49,36 +49,33 @@ def principal_root(
         some finite derivative along all that the residual depends on.
     """
     nothing = jnp.zeros(unknowns, target.dtype), jnp.zeros_like(target)
-    return followed_root(residual, nothing, target, certified, guess)
+    return followed_root(residual, nothing, target, certificate, guess)
 
 
 def followed_root(
     residual: Residual,
     start: tuple[Float[Array, "m"], Float[Array, "k"]],
     target: Float[Array, "k"],
-    certified: Certificate | None = None,
+    certificate: Certificate | None = None,
     guess: Float[Array, "m"] | None = None,
 ) -> tuple[Float[Array, "m"], Array]:
     """Solve residual(y, target) = 0 for the root that a given one reaches while the momenta move straight to target.
 
     As `principal_root`, from a start of the caller's: a root and its momenta.
     """
-    if certified is None:
-        certified = _uncertain
     residual, numbers = jax.closure_convert(residual, *start)
-    certified, facts = jax.closure_convert(certified, *start)
-    return _found(residual, certified, numbers, facts, start, target, guess)
+    certificate, facts = jax.closure_convert(certificate or _uncertain, *start)
+    return _search(residual, certificate, numbers, facts, start, target, guess)
 
 
-def _uncertain(y: Array, m: Array) -> Array:
-    del y, m
+def _uncertain(_y: Array, _m: Array) -> Array:
     return jnp.asarray(False)
 
 
 @functools.partial(jax.custom_jvp, nondiff_argnums=(0, 1))
-def _found(
+def _search(
     residual: Callable[..., Array],
-    certified: Callable[..., Array],
+    certificate: Callable[..., Array],
     numbers: list[Array],
     facts: list[Array],
     start: tuple[Array, Array],
@@ -88,32 +85,32 @@ def _found(
     """Return where the search ends, and its outcome; what the functions are made of stands in `numbers` and `facts`."""
 
     def is_certain(y: Array, m: Array) -> Array:
-        return certified(y, m, *facts)
+        return certificate(y, m, *facts)
 
-    end, folded, jumped = _continue(lambda y, m: residual(y, m, *numbers), start, target, guess, is_certain)
+    end, at_fold, is_lost = _continue(lambda y, m: residual(y, m, *numbers), start, target, guess, is_certain)
     y = end.iterate
     converged = end.converged & jnp.all(jnp.isfinite(y)) & jnp.all(jnp.isfinite(target))
-    code = jnp.where(jumped, int(Outcome.branch_unverified), int(Outcome.successful))
-    beyond = jumped & (jnp.sum(end.root**2) > _FAR**2)
+    code = jnp.where(is_lost, int(Outcome.branch_unverified), int(Outcome.successful))
+    beyond = is_lost & (jnp.sum(end.root**2) > _FAR**2)
     code = jnp.where(converged | beyond, code, int(Outcome.not_converged))
-    code = jnp.where(folded, int(Outcome.no_real_branch), code)
+    code = jnp.where(at_fold, int(Outcome.no_real_branch), code)
     code = jnp.where(jnp.all(jnp.isfinite(target)), code, int(Outcome.nonfinite))
     code = jnp.where(converged & is_certain(y, target), int(Outcome.successful), code)
     return jnp.where(code == 0, y, _NOWHERE), code
 
 
-@_found.defjvp
-def _implicit(residual: Any, certified: Any, primals: Any, tangents: Any) -> tuple[Any, Any]:
+@_search.defjvp
+def _implicit(residual: Any, certificate: Any, primals: Any, tangents: Any) -> tuple[Any, Any]:
     """Return the derivative of the implicit function at the root, which says nothing of the search."""
-    y, code = _found(residual, certified, *primals)
+    y, code = _search(residual, certificate, *primals)
     numbers, _, start, target, _ = primals
     finite = jnp.all(jnp.isfinite(target))
-    at, moved = jnp.where(finite, target, start[1]), jnp.where(finite, tangents[3], 0.0)
-    y, change = implicit(residual, y, (at, *numbers), (moved, *tangents[0]), lambda *given: _solved(*given)[1])
+    at, rates = jnp.where(finite, target, start[1]), jnp.where(finite, tangents[3], 0.0)
+    y, change = implicit(residual, y, (at, *numbers), (rates, *tangents[0]), lambda *system: _solve(*system)[1])
     return (y, code), (change, np.zeros(code.shape, jax.dtypes.float0))
 
 
-def _solved(matrix: Float[Array, "m m"], values: Float[Array, "m j"]) -> tuple[Array, Float[Array, "m j"]]:
+def _solve(matrix: Float[Array, "m m"], values: Float[Array, "m j"]) -> tuple[Array, Float[Array, "m j"]]:
     """Return the determinant and the solutions; two unknowns need no library, which would be called at each step."""
     if len(matrix) != 2:
         return jnp.linalg.det(matrix), jnp.linalg.solve(matrix, values)
@@ -153,41 +150,41 @@ class _Path(NamedTuple):
 
 
 def _continue(
-    residual: Residual, begun: tuple[Array, Array], target: Array, guess: Array | None, is_certain: Certificate
+    residual: Residual, known_root: tuple[Array, Array], target: Array, guess: Array | None, is_certain: Certificate
 ) -> tuple[_Path, Array, Array]:
     """Return the end of the path, where its last root is corrected at s = 1, and whether it met a fold or was lost.
 
     Beginning, path and end are one loop, so that the residual and its derivatives are compiled once.
     """
-    one, (root, before) = jnp.ones((), target.dtype), begun
+    one, (root, before) = jnp.ones((), target.dtype), known_root
     evaluate = _evaluation(residual, before, target)
     eps = float(jnp.finfo(target.dtype).eps)
 
     def advance(path: _Path) -> _Path:
         first, last = path.count < 0, ~_is_unfinished(path)
         ahead = jnp.where(first, 0.0, jnp.where(last, 1.0, jnp.minimum(path.s + path.size, 1.0)))
-        det, missed, correction, tangent = evaluate(path.iterate, ahead)
-        found = path.iterate - correction
-        done = jnp.sum(correction**2) <= eps * (1 + jnp.sum(found**2))
-        moved, off = jnp.sum((found - path.root) ** 2), jnp.sum((found - path.guess) ** 2)
-        near = ((off <= 0.01 * moved) | (moved < 1e-6)) & (moved <= _JUMP**2 * (1 + jnp.sum(path.root**2)) ** 2)
-        arrived = ~last & ~first & done & near & (det * path.now > 0)
-        ended = ~last & (first | done | (path.count == _CORRECTIONS) | ~jnp.all(jnp.isfinite(found)))
-        root, reached = jnp.where(arrived, found, path.root), arrived | first
+        det, values, correction, tangent = evaluate(path.iterate, ahead)
+        y = path.iterate - correction
+        is_small = jnp.sum(correction**2) <= eps * (1 + jnp.sum(y**2))
+        move, off = jnp.sum((y - path.root) ** 2), jnp.sum((y - path.guess) ** 2)
+        near = ((off <= 0.01 * move) | (move < 1e-6)) & (move <= _JUMP**2 * (1 + jnp.sum(path.root**2)) ** 2)
+        arrives = ~last & ~first & is_small & near & (det * path.now > 0)
+        ends = ~last & (first | is_small | (path.count == _CORRECTIONS) | ~jnp.all(jnp.isfinite(y)))
+        root, is_root = jnp.where(arrives, y, path.root), arrives | first
         here, before = (ahead, det, tangent), (path.s, path.now, path.tangent)
-        s, now, tangent = (jnp.where(reached, x, old) for x, old in zip(here, before, strict=True))
-        size = jnp.where(reached, 2 * path.size, jnp.where(ended, path.size / 4, path.size))
+        s, now, tangent = (jnp.where(is_root, x, old) for x, old in zip(here, before, strict=True))
+        size = jnp.where(is_root, 2 * path.size, jnp.where(ends, path.size / 4, path.size))
         following = path._replace(s=s, size=size, root=root, tangent=tangent, now=now)
         ahead = jnp.where(_is_unfinished(following), root + jnp.minimum(size, 1 - s) * tangent, root)
-        at_rest = jnp.all(jnp.abs(missed) < eps**0.65) & jnp.all(jnp.abs(correction) < eps**0.65 * (1 + jnp.abs(found)))
+        at_rest = jnp.all(jnp.abs(values) < eps**0.65) & jnp.all(jnp.abs(correction) < eps**0.65 * (1 + jnp.abs(y)))
         following = following._replace(
             start=jnp.where(first, det, path.start),
-            guess=jnp.where(ended, ahead, path.guess),
-            iterate=jnp.where(ended, ahead, found),
-            count=jnp.where(ended, 0, path.count + 1),
+            guess=jnp.where(ends, ahead, path.guess),
+            iterate=jnp.where(ends, ahead, y),
+            count=jnp.where(ends, 0, path.count + 1),
             converged=last & at_rest,
         )
-        return following if guess is None else _unless_it_failed(following, begin, is_certain(found, target))
+        return following if guess is None else _unless_it_failed(following, begin, is_certain(y, target))
 
     zero, finite = 0 * one, jnp.all(jnp.isfinite(target))
     nothing, no = jnp.zeros_like(root), jnp.asarray(False)
@@ -209,28 +206,28 @@ def _goes_on(path: _Path) -> Array:
 def _unless_it_failed(path: _Path, begin: _Path, certain: Array) -> _Path:
     """Return the path, or its beginning where Newton's method has looked at a guess in vain."""
     over = (path.count > _CORRECTIONS) | path.converged | ~jnp.all(jnp.isfinite(path.iterate))
-    failed = path.trial & over & ~(path.converged & certain)
-    return jax.tree.map(lambda new, old: jnp.where(failed, new, old), begin, path)
+    fails = path.trial & over & ~(path.converged & certain)
+    return jax.tree.map(lambda new, old: jnp.where(fails, new, old), begin, path)
 
 
 def _verdict(end: _Path) -> tuple[Array, Array]:
     """Tell whether a path has met a fold, or was lost."""
-    lost = end.s < 1
+    is_lost = end.s < 1
     far = jnp.sum(end.root**2) > _FAR**2  # where the determinant vanishes without a fold
-    folded = lost & ~far & (jnp.abs(end.now) < _NEAR_FOLD * jnp.abs(end.start))
-    return folded, lost & ~folded
+    at_fold = is_lost & ~far & (jnp.abs(end.now) < _NEAR_FOLD * jnp.abs(end.start))
+    return at_fold, is_lost & ~at_fold
 
 
 def _evaluation(residual: Residual, before: Array, target: Array) -> Callable[[Array, Array], tuple[Array, ...]]:
     """Return the function of y and s that gives Jacobian determinant, residual, Newton correction and tangent."""
 
     def values(y: Array, s: Array) -> tuple[Array, Array]:
-        missed = residual(y, before + s * (target - before))
-        return missed, missed
+        gap = residual(y, before + s * (target - before))
+        return gap, gap
 
     def evaluate(y: Array, s: Array) -> tuple[Array, Array, Array, Array]:
-        (slope, rate), missed = jax.jacfwd(values, argnums=(0, 1), has_aux=True)(y, s)
-        det, solved = _solved(slope, jnp.stack([missed, -rate], axis=1))
-        return det, missed, solved[:, 0], solved[:, 1]
+        (slope, rate), gap = jax.jacfwd(values, argnums=(0, 1), has_aux=True)(y, s)
+        det, solutions = _solve(slope, jnp.stack([gap, -rate], axis=1))
+        return det, gap, solutions[:, 0], solutions[:, 1]
 
     return evaluate

@@ -3,23 +3,25 @@
 Written from the definitions for any group, any discrete Lagrangian and any displacement variety, in JAX; the compiled
 steps are tested against it. With a right-invariant constraint the unknown is U = g W g^-1; the equations depend on g.
 
-Functions of one matrix, the library's or the user's, in JAX: values, derivatives along the group, momenta.
+Functions of one matrix, the library's or the user's, in JAX: values, derivatives along the group, momenta. The
+principal displacement for JAX is that of the closed form of a body where it has one, which its kernel shares.
 """
 
-import functools
 from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import equinox
 import jax
 import jax.numpy as jnp
 import numpy as np
 
+from nonholo import kernels
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
-from nonholo.discrete._legendre import legendre
-from nonholo.discrete._scheme import Scheme
-from nonholo.discrete.definition._precision import doubled, in_double
+from nonholo.discrete._scheme import Scheme, legendre
+from nonholo.discrete.definition._precision import compile_double, in_double
 from nonholo.discrete.definition._root import followed_root, principal_root
+from nonholo.discrete.routes import ScalarStep
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import Orbit
 
@@ -42,10 +44,10 @@ def sample_displacements(discrete: Scheme, count: int) -> Float[np.ndarray, "cou
 @equinox.filter_jit
 def _displacements(discrete: Scheme, momenta: Array, g: Array) -> tuple[Array, Array]:
     charts, codes = jax.vmap(lambda r: principal_displacement(discrete, r, g))(momenta)
-    return jax.vmap(lambda y: displaced(discrete, y))(charts), codes
+    return jax.vmap(lambda y: displacement_of(discrete, y))(charts), codes
 
 
-def displaced(discrete: Scheme, y: Float[Array, "m"]) -> Float[Array, "N N"]:
+def displacement_of(discrete: Scheme, y: Float[Array, "m"]) -> Float[Array, "N N"]:
     """Return the element of the variety, in the user's frame, with canonical chart coordinates y."""
     frame = discrete.system.frame
     return jnp.asarray(frame) @ discrete.variety.displaced(y) @ jnp.asarray(discrete.system.group.inverse(frame))
@@ -85,8 +87,8 @@ def equations_at(discrete: Scheme, g: Array) -> Callable[[Array, Array], Array]:
     variety = discrete.variety
 
     def residual(y: Array, target: Array) -> Array:
-        missed = restricted(discrete, momentum_of(discrete, y, g, "left"), g) - target
-        return jnp.concatenate([missed, variety.equations(variety.displaced(y))])
+        gap = restricted(discrete, momentum_of(discrete, y, g, "left"), g) - target
+        return jnp.concatenate([gap, variety.equations(variety.displaced(y))])
 
     return residual
 
@@ -100,14 +102,14 @@ def next_charts_by_definition(discrete: Scheme, states: Orbit) -> Float[np.ndarr
 
 def step_from(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array, Array, Array]:
     """Return restricted momentum, chart and pose after one step to the principal value, and the outcome."""
-    r, after = pushed(discrete, y, g)
+    r, after = push(discrete, y, g)
     following, code = principal_displacement(discrete, r, after)
     return r, following, after, code
 
 
-def pushed(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
+def push(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
     """Return restricted momentum and pose after a displacement."""
-    W = displaced(discrete, y)
+    W = displacement_of(discrete, y)
     after = discrete.system.moved(g, W)
     return restricted(discrete, momentum_of(discrete, y, g, "right"), after), after
 
@@ -115,23 +117,15 @@ def pushed(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
 _steps_from = equinox.filter_jit(jax.vmap(step_from, in_axes=(None, 0, 0)))
 
 
-def value_and_slope(lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup) -> tuple[np.ndarray, np.ndarray]:
+@compile_double
+def value_and_slope(lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup) -> tuple[Any, Any]:
     """Return a discrete Lagrangian and its derivative along the group at the identity."""
-    return in_double(_value_and_slope, lagrangian, group, np.zeros(group.dim))
+    return jax.value_and_grad(lambda x: lagrangian(group.exp(x)))(jnp.zeros(group.dim))
 
 
-@functools.partial(jax.jit, static_argnums=(0, 1))
-def _value_and_slope(lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup, x: Array) -> tuple[Array, Array]:
-    return jax.value_and_grad(lambda x: lagrangian(group.exp(x)))(x)
-
-
-def map_each(function: Callable[[Array], Array], W: Float[np.ndarray, "K N N"]) -> np.ndarray:
+@compile_double
+def map_each(function: Callable[[Array], Array], W: Float[np.ndarray, "K N N"]) -> Any:
     """Return the values of a function of one matrix at each of several."""
-    return in_double(_map_each, function, W)
-
-
-@functools.partial(jax.jit, static_argnums=0)
-def _map_each(function: Callable[[Array], Array], W: Array) -> Array:
     return jax.vmap(function)(W)
 
 
@@ -142,18 +136,64 @@ def is_even(function: Callable[[Array], Array], group: AbstractMatrixGroup) -> b
     return bool(np.abs(there - back).max() <= _EVEN * np.abs(there).max())
 
 
-@doubled
+@compile_double
 def momenta_by_derivative(
     lagrangian: Callable[[Array], Array], group: AbstractMatrixGroup, W: Float[Array, "... N N"], side: str
 ) -> Float[Array, "... dim"]:
     """Return the momenta P(W) (left) or Ad*_W P(W) (right) of a discrete Lagrangian by automatic differentiation."""
 
     def momentum(V: Array) -> Array:
-        def varied(x: Array) -> Array:
+        def variation(x: Array) -> Array:
             g = group.exp(x)
             return lagrangian(g @ V if side == "left" else V @ g)
 
-        return jax.grad(varied)(jnp.zeros(group.dim, V.dtype))
+        return jax.grad(variation)(jnp.zeros(group.dim, V.dtype))
 
     flat = jnp.reshape(W, (-1, *W.shape[-2:]))
     return jnp.reshape(jax.vmap(momentum)(flat), (*W.shape[:-2], group.dim))
+
+
+ON_LOCUS = 1e-6  # relative distance from the momentum locus that a computed momentum may have
+
+
+class ClosedStep(NamedTuple):
+    """The closed form of a step, between momenta and charts of the canonical frame and those of the kernel.
+
+    Attributes:
+        body: The body of the kernel.
+        momenta: C with m = C r, for r along the rows of the constraint subspace.
+        rows: R with y_canonical = y R; None where they are the same.
+    """
+
+    body: kernels.Body
+    momenta: Float[Array, "2 2"]
+    rows: Float[Array, "2 2"] | None
+
+
+def closed_step_of(discrete: Scheme, step: ScalarStep) -> ClosedStep:
+    """Return the closed form with the numbers that it has for a discretization."""
+    C = jnp.asarray(discrete.system.frame_map)
+    return ClosedStep(step.body, step.scale * (C if step.rows is None else step.rows @ C), step.rows)
+
+
+def traceable(number: Array) -> Array:
+    """Return a number as a scalar array: JAX would compile the step anew for each value of a Python float."""
+    return np.float64(number) if isinstance(number, float) else number
+
+
+def kernel_root(body: kernels.Body, m: Float[Array, "2"], guess: Array | None = None) -> tuple[Array, Array]:
+    """Return the principal root over momenta of a kernel, and the outcome; the search looks at a guess first."""
+
+    def residual(y: Array, m: Array) -> Array:
+        return jnp.stack(kernels.residual(body, *m, *y))
+
+    return principal_root(residual, m, 2, lambda y, m: kernels.is_certain(body, *m, *y), guess)
+
+
+def principal_of(discrete: Scheme, scalar: ScalarStep | None, r: Float[Array, "k"], g: Array) -> tuple[Array, Array]:
+    """Return canonical chart coordinates of the principal displacement with momenta r along d, and the outcome."""
+    if scalar is None:
+        return principal_displacement(discrete, r, g)
+    step = closed_step_of(discrete, scalar)
+    y, code = kernel_root(step.body, step.momenta @ r)
+    return y if step.rows is None else y @ step.rows, code

@@ -12,15 +12,14 @@ import numpy as np
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
-from nonholo.discrete._composition import weights
-from nonholo.discrete._scheme import Scheme
+from nonholo.discrete._scheme import Scheme, weights
 from nonholo.discrete.definition._precision import in_double
 from nonholo.discrete.definition._step import (
-    displaced,
+    displacement_of,
     momentum_of,
     nearest_displacement,
     principal_displacement,
-    pushed,
+    push,
     restricted,
 )
 from nonholo.discrete.routes import AbstractBodyStepper, Compact
@@ -31,7 +30,7 @@ def _substep(discrete: Scheme, weight: Array, r: Array, g: Array) -> tuple[Array
     """Return momentum and pose after a substep, the chart of its displacement and the outcome."""
     part: Any = dataclasses.replace(cast(Any, discrete), time_step=weight * discrete.time_step, order=2)
     y, code = principal_displacement(part, r, g)
-    W = displaced(part, y)
+    W = displacement_of(part, y)
     after = discrete.system.moved(g, W)
     return restricted(part, momentum_of(part, y, g, "right"), after), after, y, code
 
@@ -41,17 +40,17 @@ def _sweep(discrete: Scheme, r: Array, g: Array) -> tuple[tuple[Array, Array], A
 
     def advance(carry: tuple[Array, ...], weight: Array) -> tuple[tuple[Array, ...], Array]:
         *now, code = carry
-        *ahead, y, found = _substep(discrete, weight, *now)
-        good = (code == 0) & (found == 0)
-        chosen = (jnp.where(good, new, old) for new, old in zip(ahead, now, strict=True))
-        return (*chosen, jnp.where(code == 0, found, code)), y
+        *ahead, y, outcome = _substep(discrete, weight, *now)
+        good = (code == 0) & (outcome == 0)
+        after = (jnp.where(good, new, old) for new, old in zip(ahead, now, strict=True))
+        return (*after, jnp.where(code == 0, outcome, code)), y
 
     start = (r, g, jnp.zeros((), dtype=jnp.result_type(int)))
     (*state, code), charts = jax.lax.scan(advance, start, jnp.asarray(weights(discrete.order)))
     return (state[0], state[1]), charts[0], code
 
 
-swept = equinox.filter_jit(_sweep)
+sweep = equinox.filter_jit(_sweep)
 _swept_each = equinox.filter_jit(jax.vmap(_sweep, in_axes=(None, 0, 0)))
 
 
@@ -60,9 +59,9 @@ def whole_steps_by_definition(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Take one step from each row of canonical momenta and poses; return both after it, and the outcomes."""
     system = discrete.system
-    (after, moved), _, codes = in_double(_swept_each, discrete, applied(system.inverse_frame_map, momenta), np.array(g))
+    (after, poses), _, codes = in_double(_swept_each, discrete, applied(system.inverse_frame_map, momenta), np.array(g))
     bad, after = codes != Outcome.successful, applied(system.frame_map, after)
-    return np.where(bad[:, None], np.nan, after), np.where(bad[:, None, None], np.nan, moved), codes
+    return np.where(bad[:, None], np.nan, after), np.where(bad[:, None, None], np.nan, poses), codes
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -71,12 +70,12 @@ class DefinitionStepper(AbstractBodyStepper):
 
     Attributes:
         motion: The discretization.
-        posed: Whether poses are saved.
+        with_poses: Whether poses are saved.
         branch: "principal" or "nearest".
     """
 
     motion: Any
-    posed: bool
+    with_poses: bool
     branch: str = "principal"
     in_threads = False
 
@@ -96,41 +95,41 @@ class DefinitionStepper(AbstractBodyStepper):
         group, frame, (reduced, pose) = system.group, system.frame, first.numbers
         r, g = applied(system.inverse_frame_map, reduced), group.matrix_from_pose(pose) @ group.inverse(frame)
         if self.motion.order > 2:
-            ahead, y, code = in_double(swept, self.motion, r, g)
+            ahead, y, code = in_double(sweep, self.motion, r, g)
             return np.concatenate((r, y, g.ravel(), *self._normal(ahead))), Outcome(int(code))
-        y, begun = np.zeros(len(self.motion.variety.chart)), -1
+        y, number = np.zeros(len(self.motion.variety.chart)), -1
         if self.branch == "nearest" and first.demand is not None and first.demand.ndim == 2:
-            y, begun = self.motion.variety.coordinates(group.inverse(frame) @ first.demand @ frame), 0
-        _, code, r, y, g = self._advanced(begun, 0, r, y, g)
+            y, number = self.motion.variety.coordinates(group.inverse(frame) @ first.demand @ frame), 0
+        _, code, r, y, g = self._take(number, 0, r, y, g)
         return np.concatenate((r, y, g.ravel())), Outcome(int(code))
 
     def advance(self, state: State, steps: int, every: int, rows: Rows) -> tuple[int, int]:
         """Take steps from one saved row to the next."""
         write_first(state, rows)
-        step, done, code = self._composed if self.motion.order > 2 else self._plain, 0, 0
-        while code == 0 and done < steps:
+        step, total, code = self._whole_steps if self.motion.order > 2 else self._plain, 0, 0
+        while code == 0 and total < steps:
             good, code = step(state, every)
-            done += good
+            total += good
             if good == every:
-                write_first(state, tuple(column[done // every :] for column in rows))
-        if done % every == 0:
-            keep_row(state, rows, done // every)
-        return done, code
+                write_first(state, tuple(column[total // every :] for column in rows))
+        if total % every == 0:
+            keep_row(state, rows, total // every)
+        return total, code
 
     def _plain(self, state: State, steps: int) -> tuple[int, int]:
         k, m = self.motion.system.rank, len(self.motion.variety.chart)
-        good, code, r, y, g = self._advanced(0, steps, state[:k], state[k : k + m], self._matrix(state[k + m :]))
+        good, code, r, y, g = self._take(0, steps, state[:k], state[k : k + m], self._matrix(state[k + m :]))
         state[:] = np.concatenate((r, y, g.ravel()))
         return int(good), int(code)
 
-    def _composed(self, state: State, steps: int) -> tuple[int, int]:
+    def _whole_steps(self, state: State, steps: int) -> tuple[int, int]:
         """Take steps one by one: a state is good if the whole step that starts there could be taken."""
         k, width = self.motion.system.rank, self.width
-        for done in range(steps):
+        for number in range(steps):
             r, g = state[width : width + k].copy(), self._matrix(state[width + k :]).copy()
-            ahead, y, code = in_double(swept, self.motion, r, g)
+            ahead, y, code = in_double(sweep, self.motion, r, g)
             if code != 0:
-                return done, int(code)
+                return number, int(code)
             state[:] = np.concatenate((r, y, g.ravel(), *self._normal(ahead)))
         return steps, 0
 
@@ -140,9 +139,9 @@ class DefinitionStepper(AbstractBodyStepper):
         compact = system.group.pose_from_matrix(self._matrix(poses) @ system.frame)
         return applied(system.frame_map, momenta), charts, compact
 
-    def _advanced(self, begun: int, steps: int, r: np.ndarray, y: np.ndarray, g: np.ndarray) -> Any:
+    def _take(self, number: int, steps: int, r: np.ndarray, y: np.ndarray, g: np.ndarray) -> Any:
         nearest = self.branch == "nearest"
-        return in_double(_advance, self.motion, nearest, np.int64(begun), np.int64(steps), r, y, g)
+        return in_double(_advance, self.motion, nearest, np.int64(number), np.int64(steps), r, y, g)
 
     def _matrix(self, rows: np.ndarray) -> np.ndarray:
         size = self.motion.system.group.size
@@ -157,30 +156,30 @@ class DefinitionStepper(AbstractBodyStepper):
 
 @equinox.filter_jit
 def _advance(
-    discrete: Scheme, nearest: bool, begun: Array, steps: Array, r: Array, y: Array, g: Array
+    discrete: Scheme, nearest: bool, number: Array, steps: Array, r: Array, y: Array, g: Array
 ) -> tuple[Array, ...]:
-    """Take steps; before the first one, if `begun` is -1 and y zero, find the displacement with momenta r at g.
+    """Take steps; before the first one, if `number` is -1 and y zero, find the displacement with momenta r at g.
 
     From zero the nearest value is the principal one, and the root is compiled once for both.
     """
     group = discrete.system.group
 
     def body(carry: tuple[Array, ...]) -> tuple[Array, ...]:
-        done, _, *now = carry
-        r, g = pushed(discrete, now[1], now[2])
+        count, _, *now = carry
+        r, g = push(discrete, now[1], now[2])
         g = group.matrix_from_pose(group.normalize_pose(group.pose_from_matrix(g)))
-        r, g = (jnp.where(done < 0, old, new) for new, old in ((r, now[0]), (g, now[2])))
+        r, g = (jnp.where(count < 0, old, new) for new, old in ((r, now[0]), (g, now[2])))
         y, code = nearest_displacement(discrete, now[1], r) if nearest else principal_displacement(discrete, r, g)
         code = jnp.where(jnp.all(jnp.isfinite(g)), code, int(Outcome.nonfinite))
         good = code == 0
-        return done + good, code, *(jnp.where(good, new, old) for new, old in zip((r, y, g), now, strict=True))
+        return count + good, code, *(jnp.where(good, new, old) for new, old in zip((r, y, g), now, strict=True))
 
-    start = (jnp.asarray(begun), jnp.asarray(0), jnp.asarray(r), jnp.asarray(y), jnp.asarray(g))
+    start = (jnp.asarray(number), jnp.asarray(0), jnp.asarray(r), jnp.asarray(y), jnp.asarray(g))
     return jax.lax.while_loop(lambda c: (c[0] < steps) & (c[1] == 0), body, start)
 
 
 _root = equinox.filter_jit(principal_displacement)
-_moved = equinox.filter_jit(pushed)
+_push = equinox.filter_jit(push)
 
 
 def parts_by_definition(
@@ -190,9 +189,9 @@ def parts_by_definition(
     group, frame, C = discrete.system.group, discrete.system.frame, discrete.system.frame_map
     g = group.matrix_from_pose(poses) @ group.inverse(frame)
     r = applied(discrete.system.inverse_frame_map, states.reduced_momentum)
-    found = [_partial_step(discrete, *row) for row in zip(fractions, r, g, strict=True)]
-    momenta, charts, moved = (np.array(column) for column in zip(*found, strict=True))
-    return applied(C, momenta), charts, group.pose_from_matrix(moved @ frame)
+    rows = [_partial_step(discrete, *row) for row in zip(fractions, r, g, strict=True)]
+    momenta, charts, ends = (np.array(column) for column in zip(*rows, strict=True))
+    return applied(C, momenta), charts, group.pose_from_matrix(ends @ frame)
 
 
 def _partial_step(
@@ -203,7 +202,7 @@ def _partial_step(
     one, parts = dataclasses.replace(cast(Any, discrete), order=2), weights(order)
     for part in fraction * parts:
         y, code = in_double(_root, one, part * r, g)
-        r, g = in_double(_moved, one, y, g)
+        r, g = in_double(_push, one, y, g)
         r, g = (np.where(code == 0, x, np.nan) for x in (r / part, g))
     y, code = in_double(_root, one, parts[0] * r, g)
     return r, np.where(code == 0, y, np.nan), g

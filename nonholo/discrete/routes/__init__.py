@@ -11,18 +11,8 @@
 | `FunctionRoute` | the definition of the impulses, for constraints fixed in space |
 """
 
-from nonholo.discrete.routes._base import (
-    AbstractBodyStepper,
-    AbstractCompiledRoute,
-    AbstractRoute,
-    Compact,
-    CompiledStepper,
-)
+from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledRoute, AbstractRoute, Compact
 from nonholo.discrete.routes._choice import make_route
-from nonholo.discrete.routes._composed import ComposedRoute
-from nonholo.discrete.routes._definition import DefinitionRoute
-from nonholo.discrete.routes._forced import ForcedRoute, FunctionRoute
-from nonholo.discrete.routes._matrix import MatrixRoute
+from nonholo.discrete.routes._forced import FunctionRoute
+from nonholo.discrete.routes._normal_forms import ScalarRoute, ScalarStep, SecularRoute
 from nonholo.discrete.routes._reversal import reversal_defects
-from nonholo.discrete.routes._scalar import ScalarRoute, ScalarStep
-from nonholo.discrete.routes._secular import SecularRoute

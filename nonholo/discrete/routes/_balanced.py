@@ -9,11 +9,16 @@ import numpy as np
 
 from nonholo import kernels
 from nonholo.base.types import Float
-from nonholo.discrete._composition import weights
+from nonholo.discrete._scheme import weights
 from nonholo.discrete._variety import variety_of
-from nonholo.discrete.routes._base import AbstractCompiledRoute, Compact, posed
-from nonholo.discrete.routes._composed import AbstractOuterRoute
-from nonholo.discrete.routes._forced import AbstractForcedRoute, functions_of, kernel_frame, plain, summed
+from nonholo.discrete.routes._base import AbstractCompiledRoute, Compact, plain, poses_of
+from nonholo.discrete.routes._forced import (
+    AbstractForcedRoute,
+    AbstractOuterRoute,
+    functions_of,
+    kernel_frame,
+    sum_products,
+)
 from nonholo.groups import SE, SO
 from nonholo.orbit import Orbit
 from nonholo.systems import Forced
@@ -21,8 +26,8 @@ from nonholo.systems import Forced
 
 def balanced_route(free: Any, matrix: Callable[[], Any], forced: Forced, order: int) -> "BalancedRoute":
     """Return the route of balanced half impulses around a free step, or for any force around that on matrices."""
-    plain = forced.function is None and (forced.gravity is not None or not forced.terms)
-    return BalancedRoute(free if free.is_scalar and plain and order == 2 else matrix(), forced, order, matrix)
+    by_numbers = forced.function is None and (forced.gravity is not None or not forced.terms)
+    return BalancedRoute(free if free.is_scalar and by_numbers and order == 2 else matrix(), forced, order, matrix)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -30,20 +35,15 @@ class BalancedRoute(AbstractForcedRoute, AbstractOuterRoute):
     """Equal half impulses at the displacement, by which T + U and every balance is exact; in one or several stages.
 
     Attributes:
-        free: The route of the free step of order 2.
-        forced: The system with its forces.
         order: 2, 4, 6 or 8.
         matrix: Makes the route of the free step on matrices.
     """
 
-    free: AbstractCompiledRoute
-    forced: Forced
     order: int = 2
     matrix: Any = dataclasses.field(default=None, repr=False)
-    said: dict[str, str] = dataclasses.field(default_factory=dict, repr=False)
 
     @property
-    def compiled(self) -> "BalancedRoute | None":  # type: ignore[override]
+    def compiled_route(self) -> "BalancedRoute | None":  # type: ignore[override]
         """The route itself, if numba compiled all functions that it calls."""
         return self if self.forced.is_jitted else None
 
@@ -51,7 +51,7 @@ class BalancedRoute(AbstractForcedRoute, AbstractOuterRoute):
     def body(self) -> kernels.ForcedBody:
         """The body and its half impulses."""
         forced, free = self.forced, self.free
-        kick = pull(free, forced) if free.is_scalar else balanced(free, forced, self.order, self.said)
+        kick = pull(free, forced) if free.is_scalar else balance(free, forced, self.order, self.faults)
         return kernels.ForcedBody(free.body, kick)
 
     @functools.cached_property
@@ -65,7 +65,7 @@ class BalancedRoute(AbstractForcedRoute, AbstractOuterRoute):
             return super().parts(states, fractions)
         momenta, charts, poses = self.general.parts(states, fractions)
         if self.forced.group == SO(3):  # of both quaternions of a pose that of a turn by less than a half
-            ahead = (poses * posed(states, needed=True)).sum(axis=1, keepdims=True)
+            ahead = (poses * poses_of(states, is_needed=True)).sum(axis=1, keepdims=True)
             poses = np.where(ahead < 0, -poses, poses)
         return momenta, charts, poses
 
@@ -74,9 +74,9 @@ class BalancedRoute(AbstractForcedRoute, AbstractOuterRoute):
         code, state = self.after(np.array(m), np.array(pose), time, step, fraction)
         if code != 0:
             return None
-        after, moved = state[:k].copy(), state[2 * k : 2 * k + len(pose)].copy()
-        _, ahead = self.after(after, moved, time + fraction * float(self.free.time_step), step + int(fraction), 1.0)
-        return after, self.runs.chart_of(self.body, ahead), moved
+        after, place = state[:k].copy(), state[2 * k : 2 * k + len(pose)].copy()
+        _, ahead = self.after(after, place, time + fraction * float(self.free.time_step), step + int(fraction), 1.0)
+        return after, self.runs.chart_of(self.body, ahead), place
 
     def after(
         self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float, force: Any = None
@@ -113,10 +113,10 @@ def pull(free: AbstractCompiledRoute, forced: Forced) -> kernels.Pull:
         stiff = kernels.quadratic(free.body)[0] / kernels.inertia(free.body)[0]
         friction = half * stiff * (rows @ forced.friction.matrix @ rows.T)
     table = forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table))))
-    return kernels.Pull(*map(plain, (weight, arms, friction, half * free.scale * summed(table.T, rows.T))))
+    return kernels.Pull(*map(plain, (weight, arms, friction, half * free.scale * sum_products(table.T, rows.T))))
 
 
-def balanced(free: AbstractCompiledRoute, forced: Forced, order: int, said: dict[str, str]) -> kernels.Balanced:
+def balance(free: AbstractCompiledRoute, forced: Forced, order: int, faults: dict[str, str]) -> kernels.Balanced:
     """Return half the impulses at displacements in the units and axes of a kernel."""
     group, S, half = forced.group, np.asarray(forced.constraint_subspace), float(free.time_step) / 2
     to_kernel = free.encode(forced.to_canonical(np.eye(forced.rank)))
@@ -130,7 +130,7 @@ def balanced(free: AbstractCompiledRoute, forced: Forced, order: int, said: dict
     C = np.zeros((0, 0)) if forced.friction is None else along @ forced.friction.matrix @ velocity
     rows = forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table)))) @ along.T
     moves, parts = forced.differences
-    force, potential = functions_of(forced, forced.own_potential, said)
+    force, potential = functions_of(forced, forced.own_potential, faults)
     numbers = kernels.Impulses(
         turn=plain(kernel_frame(free, forced)),
         directions=plain(frame @ group.hat(charts @ variety.chart) @ group.inverse(frame)),

@@ -12,7 +12,7 @@ from nonholo import kernels
 from nonholo.base.numerics import applied
 from nonholo.base.results import OUTCOMES, Outcome, OutcomeError
 from nonholo.base.types import Array, Float
-from nonholo.discrete._composition import weights
+from nonholo.discrete._scheme import weights
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractStepper, First, Orbit, Rows, State
 from nonholo.systems import System
@@ -26,18 +26,18 @@ class AbstractBodyStepper(AbstractStepper[Orbit]):
 
     Attributes:
         motion: The discretization.
-        posed: Whether poses are saved.
+        with_poses: Whether poses are saved.
     """
 
     motion: Any
-    posed: bool
+    with_poses: bool
 
     @property
     def part_refused(self) -> str | None:
         """Why a step has no parts; None if it has."""
         if self.branch != "principal":
             return f"branch {self.branch!r}: only the principal branch has them"
-        if self.motion.step_needs_pose and not self.posed:
+        if self.motion.step_needs_pose and not self.with_poses:
             return "a step that depends on the pose, without reconstruct=True"
         return None
 
@@ -48,9 +48,9 @@ class AbstractBodyStepper(AbstractStepper[Orbit]):
     def orbit(self, rows: Rows, step: int, every: int, outcome: Outcome) -> Orbit:
         """Return rows as an orbit."""
         momenta, charts, poses = self.decode(rows)
-        number, kept = np.arange(step, step + every * len(momenta), every), poses if self.posed else None
+        number, saved_poses = np.arange(step, step + every * len(momenta), every), poses if self.with_poses else None
         time = self.motion.time_step * number
-        return Orbit(self.motion, time, momenta, charts, kept, outcome, every, branch=self.branch, step=number)
+        return Orbit(self.motion, time, momenta, charts, saved_poses, outcome, every, branch=self.branch, step=number)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -60,24 +60,24 @@ class CompiledStepper(AbstractBodyStepper):
     Attributes:
         motion: The discretization.
         route: The route.
-        posed: Whether poses are saved.
+        with_poses: Whether poses are saved.
     """
 
     motion: Any
     route: Any
-    posed: bool
+    with_poses: bool
 
     @functools.cached_property
     def columns(self) -> dict[str, int]:  # type: ignore[override]
         """The names and sizes of what a row holds."""
         momenta, charts, pose = self.route.sizes
-        pose = pose if self.posed or self.route.needs_pose else 0
+        pose = pose if self.with_poses or self.route.needs_pose else 0
         return {"reduced_momentum": momenta, "cayley": charts, "canonical_pose": pose}
 
     @property
     def in_threads(self) -> bool:  # type: ignore[override]
         """Whether `advance` releases the interpreter's lock."""
-        return self.route.compiled is not None
+        return self.route.compiled_route is not None
 
     @property
     def block(self) -> int:  # type: ignore[override]
@@ -87,11 +87,11 @@ class CompiledStepper(AbstractBodyStepper):
     def start(self, first: First) -> tuple[State, Outcome]:
         """Return the state at the first root."""
         reduced, pose = first.numbers
-        getattr(self.route, "said", {}).clear()  # of the run before
-        scaled = self.route.encode(reduced)
-        coded = self.route.encode_poses(pose) if pose.size else pose
-        code, chart, kernel = self.route.start(scaled, coded)
-        return np.concatenate((scaled, chart, coded, kernel)), OUTCOMES[code]
+        getattr(self.route, "faults", {}).clear()  # of the run before
+        momenta = self.route.encode(reduced)
+        own_pose = self.route.encode_poses(pose) if pose.size else pose
+        code, chart, kernel = self.route.start(momenta, own_pose)
+        return np.concatenate((momenta, chart, own_pose, kernel)), OUTCOMES[code]
 
     def advance(self, state: State, steps: int, every: int, rows: Rows) -> tuple[int, int]:
         """Take steps with the state of the kernel."""
@@ -106,8 +106,8 @@ class CompiledStepper(AbstractBodyStepper):
     def decode(self, rows: Rows) -> Compact:
         """Return rows of the kernel in canonical numbers."""
         momenta, charts, poses = rows
-        decoded = self.route.decode_poses(poses) if self.posed else poses
-        return self.route.decode(momenta), self.route.from_kernel(charts), decoded
+        canonical = self.route.decode_poses(poses) if self.with_poses else poses
+        return self.route.decode(momenta), self.route.from_kernel(charts), canonical
 
 
 class AbstractRoute(abc.ABC):
@@ -131,11 +131,11 @@ class AbstractRoute(abc.ABC):
 
     @property
     @abc.abstractmethod
-    def compiled(self) -> "AbstractCompiledRoute | None":
+    def compiled_route(self) -> "AbstractCompiledRoute | None":
         """The route itself if its runs are compiled; None if there is only the definition."""
 
     @abc.abstractmethod
-    def stepper(self, motion: Any, *, posed: bool, branch: str = "principal") -> AbstractBodyStepper:
+    def stepper(self, motion: Any, *, with_poses: bool, branch: str = "principal") -> AbstractBodyStepper:
         """Return what takes the steps of a discretization, and saves poses or not."""
 
     @abc.abstractmethod
@@ -176,9 +176,9 @@ class AbstractCompiledRoute(AbstractRoute):
         """The factor to the momenta of the kernel."""
 
     @property
-    @abc.abstractmethod
     def single(self) -> "AbstractCompiledRoute":
-        """The route of a step of order 2 with the same time step."""
+        """The route of a step of order 2 with the same time step: the route itself, if it is one."""
+        return self
 
     @abc.abstractmethod
     def encode(self, momenta: np.ndarray) -> np.ndarray:
@@ -205,7 +205,7 @@ class AbstractCompiledRoute(AbstractRoute):
         """Return compact canonical poses from those of the kernel."""
 
     @property
-    def compiled(self) -> "AbstractCompiledRoute":
+    def compiled_route(self) -> "AbstractCompiledRoute":
         """The route itself."""
         return self
 
@@ -245,10 +245,10 @@ class AbstractCompiledRoute(AbstractRoute):
         code, chart, _ = one.start(one.encode(momenta), one.encode_poses(self.system.frame_pose))
         return Outcome(code), one.from_kernel(chart)
 
-    def stepper(self, motion: Any, *, posed: bool, branch: str = "principal") -> CompiledStepper:
+    def stepper(self, motion: Any, *, with_poses: bool, branch: str = "principal") -> CompiledStepper:
         """Return what takes the steps with the kernel, to the principal value."""
         del branch
-        return CompiledStepper(motion, self, posed)
+        return CompiledStepper(motion, self, with_poses)
 
     def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
         """Return the displacements that follow, one step of order 2 from each state."""
@@ -263,24 +263,24 @@ class AbstractCompiledRoute(AbstractRoute):
         """Take one step from each row of momenta and poses; return both after it, and the outcomes."""
         group, frame = self.system.group, self.system.frame
         poses = self.encode_poses(group.pose_from_matrix(g @ frame))
-        after, moved, codes = self.parts_of_steps(self.encode(momenta), poses)
-        after, moved = (np.where((codes == Outcome.successful)[:, None], rows, np.nan) for rows in (after, moved))
-        ahead = group.matrix_from_pose(self.decode_poses(moved)) @ group.inverse(frame)
+        after, places, codes = self.parts_of_steps(self.encode(momenta), poses)
+        after, places = (np.where((codes == Outcome.successful)[:, None], rows, np.nan) for rows in (after, places))
+        ahead = group.matrix_from_pose(self.decode_poses(places)) @ group.inverse(frame)
         return self.decode(after), ahead, codes
 
     def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Compact:
         """Return momenta, charts and poses after fractions of the steps from states; NaN where none starts."""
-        return parts_by(self, self._part, posed(states, needed=self.needs_pose), states, fractions)
+        return parts_by(self, self._part, poses_of(states, is_needed=self.needs_pose), states, fractions)
 
     def _part(self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> Compact | None:
         """Return the kernel's momenta, chart and pose after a fraction of a step; None where there is no such step."""
         del time, step  # a free step is the same at all times
-        (after,), (moved,), (code,) = self.parts_of_steps(m[None], pose[None], fraction)
-        return self.ahead(after, moved) if code == 0 else None
+        (after,), (place,), (code,) = self.parts_of_steps(m[None], pose[None], fraction)
+        return self.ahead(after, place) if code == 0 else None
 
-    def ahead(self, m: np.ndarray, pose: np.ndarray, pushed: np.ndarray | None = None) -> Compact:
+    def ahead(self, m: np.ndarray, pose: np.ndarray, m_half: np.ndarray | None = None) -> Compact:
         """Return the kernel's momenta, the chart of the step from them, or from pushed ones, and the pose."""
-        code, chart, _ = self.start(m if pushed is None else pushed, pose)
+        code, chart, _ = self.start(m if m_half is None else m_half, pose)
         return m, chart if code == 0 else np.full(len(chart), np.nan), pose
 
     def parts_of_steps(self, momenta: np.ndarray, poses: np.ndarray, fraction: float = 1.0) -> Compact:
@@ -301,23 +301,28 @@ def parts_by(
     So the bits of each do not depend on the others.
     """
     poses = route.encode_poses(poses) if poses.size else poses
-    given = route.encode(states.reduced_momentum), poses, states.time, states.step.tolist(), fractions
+    rows = route.encode(states.reduced_momentum), poses, states.time, states.step.tolist(), fractions
     nowhere = tuple(np.full(size, np.nan) for size in (*route.sizes[:2], poses.shape[1]))
-    found = (part(*row) or nowhere for row in zip(*given, strict=True))
-    momenta, charts, moved = (np.array(column) for column in zip(*found, strict=True))
-    return route.decode(momenta), route.from_kernel(charts), route.decode_poses(moved) if moved.size else moved
+    ends = (part(*row) or nowhere for row in zip(*rows, strict=True))
+    momenta, charts, places = (np.array(column) for column in zip(*ends, strict=True))
+    return route.decode(momenta), route.from_kernel(charts), route.decode_poses(places) if places.size else places
 
 
-def posed(states: Orbit, *, needed: bool) -> np.ndarray:
+def poses_of(states: Orbit, *, is_needed: bool) -> np.ndarray:
     """Return the compact poses of states; where they are not kept, any that the step can carry along, if it needs one.
 
     So it must not depend on which.
     """
     if states.canonical_pose is not None:
         return states.canonical_pose
-    if not needed:
+    if not is_needed:
         return np.empty((len(states), 0))
     return np.broadcast_to(states.system.frame_pose, (len(states), states.system.group.pose_size))
+
+
+def plain(array: Any) -> np.ndarray:
+    """Return a writable copy row by row: every other layout would be compiled for itself."""
+    return np.array(array, dtype=np.float64, order="C")
 
 
 def matrices_of(states: Orbit) -> Float[np.ndarray, "K size"] | None:
@@ -368,11 +373,11 @@ class Axes:
         """Return charts along the canonical rows."""
         return charts if self.rows is None else applied(self.rows.swapaxes(-1, -2), charts)
 
-    def turned(self, g: np.ndarray) -> np.ndarray:
+    def turn(self, g: np.ndarray) -> np.ndarray:
         """Return matrices of poses of the kernel's axes."""
         return g if self.frame is None else g @ self.frame
 
-    def turned_back(self, g: np.ndarray) -> np.ndarray:
+    def turn_back(self, g: np.ndarray) -> np.ndarray:
         """Return matrices of poses of the canonical axes."""
         return g if self.frame is None else g @ self.group.inverse(self.frame)
 

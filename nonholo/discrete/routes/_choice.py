@@ -1,75 +1,117 @@
-"""Which route a discretization takes: the first of its system that computes what is asked for."""
+"""Which route a discretization takes: the first of its system that computes what is asked for, else the definition."""
 
 import dataclasses
 import functools
-from typing import Any, cast
+from typing import Any, ClassVar, cast
 
+import numpy as np
+
+from nonholo.base.checks import needs
+from nonholo.base.types import Float
+from nonholo.discrete._pytrees import pytree
 from nonholo.discrete._scheme import Scheme
 from nonholo.discrete._variety import variety_of
 from nonholo.discrete.routes._balanced import balanced_route
-from nonholo.discrete.routes._base import AbstractRoute
-from nonholo.discrete.routes._closed_forms import closed_form
-from nonholo.discrete.routes._composed import ComposedRoute
-from nonholo.discrete.routes._definition import DefinitionRoute
-from nonholo.discrete.routes._forced import forced_route
+from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractRoute, Compact, poses_of
+from nonholo.discrete.routes._forced import ComposedRoute, forced_route
 from nonholo.discrete.routes._matrix import MatrixRoute
-from nonholo.discrete.routes._scalar import ScalarRoute
-from nonholo.discrete.routes._secular import SecularRoute
+from nonholo.discrete.routes._normal_forms import ScalarRoute, SecularRoute, closed_form
 from nonholo.discrete.routes._slipping import slip_route
+from nonholo.orbit import Orbit
 from nonholo.systems import Forced
+
+
+@pytree
+@dataclasses.dataclass(frozen=True, eq=False)
+class DefinitionRoute(Scheme, AbstractRoute):
+    """Steps of one length or compositions, by derivatives of the discrete Lagrangian in JAX."""
+
+    name: ClassVar[str] = "definition"
+    is_scalar: ClassVar[bool] = False
+    needs_pose: ClassVar[bool] = True
+    compiled_route: ClassVar[None] = None
+
+    def stepper(self, motion: Any, *, with_poses: bool, branch: str = "principal") -> AbstractBodyStepper:
+        """Return what takes the steps by the definition."""
+        with needs("jax", "simulate(...) of a step that is not compiled"):
+            from nonholo.discrete.definition import DefinitionStepper
+
+        return DefinitionStepper(motion, with_poses, branch)
+
+    def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
+        """Return the displacements that follow, one step of order 2 from each state."""
+        with needs("jax", "A step that is not compiled"):
+            from nonholo.discrete.definition import next_charts_by_definition
+
+        return next_charts_by_definition(self, states)
+
+    def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Compact:
+        """Return momenta, charts and poses after fractions of the steps from states; NaN where none starts."""
+        with needs("jax", "A part of a step that is not compiled"):
+            from nonholo.discrete.definition import parts_by_definition
+
+        return parts_by_definition(self, states, poses_of(states, is_needed=True), fractions)
+
+    def whole_steps(self, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]) -> Compact:
+        """Take one step from each row of momenta and poses; return both after it, and the outcomes."""
+        with needs("jax", "A step that is not compiled"):
+            from nonholo.discrete.definition import whole_steps_by_definition
+
+        return whole_steps_by_definition(self, momenta, g)
+
 
 _SCALAR = (None, "scalar")
 _SECULAR = (*_SCALAR, "secular")
 _MATRIX = (*_SECULAR, "matrix")
 
 
-def make_route(scheme: Scheme, wanted: str | None = None) -> AbstractRoute:
+def make_route(scheme: Scheme, route_name: str | None = None) -> AbstractRoute:
     """Return the route of a discretization.
 
     Args:
         scheme: The discretization, or what has its parts.
-        wanted: None for the best one; or the name of one, which then, or where it is not known for the system the next
-            more general one, is taken. Stores name the route that began them.
+        route_name: None for the best one; or the name of one, which then, or where it is not known for the system the
+            next more general one, is taken. Stores name the route that began them.
     """
     if scheme.system.is_forced:
         forced = cast(Forced, scheme.system)
         free = dataclasses.replace(cast(Any, scheme), system=forced.system)
         is_balanced = forced.forces is not None and forced.is_balanced(free.conserves_energy, scheme.order > 2)
         if forced.slip is not None:
-            return slip_route(scheme, forced, functools.partial(make_route, wanted=wanted))
+            return slip_route(scheme, forced, functools.partial(make_route, route_name=route_name))
         if is_balanced:
             system, variety = forced.system.canonical, variety_of(forced.system, "skew")
             matrix = functools.partial(MatrixRoute, system, variety, scheme.time_step)
-            return balanced_route(_single(free, wanted), matrix, forced, scheme.order)
-        return forced_route(make_route(free, wanted), forced)
-    single = _single(scheme, wanted)
-    compiled = single.compiled
-    return single if compiled is None or scheme.order == 2 else ComposedRoute(compiled, scheme.order)
+            return balanced_route(_single(free, route_name), matrix, forced, scheme.order)
+        return forced_route(make_route(free, route_name), forced)
+    single = _single(scheme, route_name)
+    route = single.compiled_route
+    return single if route is None or scheme.order == 2 else ComposedRoute(route, scheme.order)
 
 
-def _single(scheme: Scheme, wanted: str | None) -> AbstractRoute:
-    compiled = None
+def _single(scheme: Scheme, route_name: str | None) -> AbstractRoute:
+    route = None
     if scheme.difference == "matrix" and scheme.constraint in ("skew", "exponential"):
-        compiled = _of_form(scheme, wanted) or _of_matrices(scheme, wanted)
-    if compiled is not None:
-        return compiled
+        route = _of_form(scheme, route_name) or _of_matrices(scheme, route_name)
+    if route is not None:
+        return route
     return DefinitionRoute(scheme.system, scheme.time_step, scheme.difference, scheme.constraint, scheme.order)
 
 
-def _of_form(scheme: Scheme, wanted: str | None) -> AbstractRoute | None:
+def _of_form(scheme: Scheme, route_name: str | None) -> AbstractRoute | None:
     """Return the route of a top or a sleigh, by the numbers of its normal form."""
     form = scheme.system.normal_form
     if form is None:
         return None
-    if wanted in _SCALAR and (closed := closed_form(form)):
-        return ScalarRoute(scheme.system, form, closed, scheme.time_step)
-    if wanted in _SECULAR and SecularRoute.covers(form):
+    if route_name in _SCALAR and (entry := closed_form(form)):
+        return ScalarRoute(scheme.system, form, entry, scheme.time_step)
+    if route_name in _SECULAR and SecularRoute.covers(form):
         return SecularRoute(scheme.system, form, scheme.time_step)
     return None
 
 
-def _of_matrices(scheme: Scheme, wanted: str | None) -> AbstractRoute | None:
+def _of_matrices(scheme: Scheme, route_name: str | None) -> AbstractRoute | None:
     """Return the route of any system whose variety is no exponential."""
-    if wanted not in _MATRIX or (variety := variety_of(scheme.system, scheme.constraint)).exponential:
+    if route_name not in _MATRIX or (variety := variety_of(scheme.system, scheme.constraint)).exponential:
         return None
     return MatrixRoute(scheme.system, variety, scheme.time_step)

@@ -1,9 +1,10 @@
-"""The routes of forced steps: another route with half an impulse at each end of its steps, compiled or in Python."""
+"""Routes around another one, whose units, axes and poses they have: over substeps, or with half impulses at nodes."""
 
 import contextlib
 import dataclasses
 import functools
 from collections.abc import Callable
+from operator import attrgetter
 from typing import Any, ClassVar, NoReturn, cast
 
 import numpy as np
@@ -13,18 +14,58 @@ from nonholo.base.calls import FunctionError, UndefinedError, note_fault, number
 from nonholo.base.checks import error
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
-from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute, Compact, parts_by, posed
-from nonholo.discrete.routes._composed import AbstractOuterRoute
+from nonholo.discrete._scheme import weights
+from nonholo.discrete.routes._base import AbstractCompiledRoute, AbstractRoute, Compact, parts_by, plain, poses_of
 from nonholo.groups import SE
 from nonholo.orbit import Orbit
 from nonholo.systems import Forced
+
+
+class AbstractOuterRoute(AbstractCompiledRoute):
+    """A route that runs the kernel of another one, its `single`, and has its units, axes and poses."""
+
+    name = property(attrgetter("single.name"))
+    needs_pose: Any = property(attrgetter("single.needs_pose"))
+    system: Any = property(attrgetter("single.system"))
+    time_step = property(attrgetter("single.time_step"))
+    scale = property(attrgetter("single.scale"))
+    encode: Any = property(attrgetter("single.encode"))
+    decode: Any = property(attrgetter("single.decode"))
+    to_kernel: Any = property(attrgetter("single.to_kernel"))
+    from_kernel: Any = property(attrgetter("single.from_kernel"))
+    encode_poses: Any = property(attrgetter("single.encode_poses"))
+    decode_poses: Any = property(attrgetter("single.decode_poses"))
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class ComposedRoute(AbstractOuterRoute):
+    """Momenta, charts and poses are those of the route that is composed.
+
+    Attributes:
+        substep: The route of a step of order 2 with the same time step.
+        order: 4, 6 or 8.
+    """
+
+    substep: AbstractCompiledRoute
+    order: int
+    is_scalar: ClassVar[bool] = False
+
+    @functools.cached_property
+    def body(self) -> kernels.ComposedBody:
+        """The body and the weights of the substeps."""
+        return kernels.ComposedBody(self.single.body, weights(self.order).copy())
+
+    @property
+    def single(self) -> AbstractCompiledRoute:
+        """The discretization that is composed."""
+        return self.substep
 
 
 def forced_route(free: AbstractRoute, forced: Forced) -> AbstractRoute:
     """Return the route of a system with forces, by kicks at the nodes, around that of the free one."""
     if forced.forces is None:
         return free
-    inside = free.compiled
+    inside = free.compiled_route
     if inside is None or free.order > 2:
         remedy = "Use order=2, and the default difference and constraint of a system with a mass tensor."
         got = f"order {free.order}, route {free.name!r}"
@@ -34,16 +75,20 @@ def forced_route(free: AbstractRoute, forced: Forced) -> AbstractRoute:
     return ForcedRoute(inside, forced)
 
 
+@dataclasses.dataclass(frozen=True, eq=False)
 class AbstractForcedRoute(AbstractRoute):
     """A route whose steps depend on their numbers: there is none from a state alone.
 
-    What functions of the user said of the end of the last run is `said`.
+    Attributes:
+        free: The route of the free step.
+        forced: The system with its forces.
+        faults: What functions of the user said of the end of the last run.
     """
 
     free: AbstractCompiledRoute
-    said: Any
     forced: Forced
-    order: Any = 2
+    faults: dict[str, str] = dataclasses.field(default_factory=dict, repr=False, kw_only=True)
+    order = 2
     is_scalar: ClassVar[bool] = False
 
     @property
@@ -67,23 +112,23 @@ class AbstractForcedRoute(AbstractRoute):
         Half the impulse of the part acts at each of its ends, at times t and t + s h, both of the row of the step. So
         at s = 1 it is the step itself.
         """
-        return parts_by(self.free, self._part, posed(states, needed=True), states, fractions)
+        return parts_by(self.free, self._part, poses_of(states, is_needed=True), states, fractions)
 
     def _part(self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> Compact | None:
         half, free = float(self.free.time_step) / 2, self.free
         end = time + fraction * 2 * half
 
-        def kicked(m: np.ndarray, pose: np.ndarray, time: float, step: int, tau: float) -> np.ndarray:
+        def kick(m: np.ndarray, pose: np.ndarray, time: float, step: int, tau: float) -> np.ndarray:
             return m + kick_of(free, self.forced, tau, np.array([time]), m, pose, np.array([step]))
 
         with contextlib.suppress(OutcomeError):  # the midpoint rule of a half impulse may fail
-            after, moved, (code,) = free.parts_of_steps(
-                kicked(m[None], pose[None], time, step, fraction * half), pose[None], fraction
+            after, place, (code,) = free.parts_of_steps(
+                kick(m[None], pose[None], time, step, fraction * half), pose[None], fraction
             )
             if code == 0:
-                after = kicked(after, moved, end, step, fraction * half)
-                pushed = kicked(after, moved, end, step + int(fraction), half)
-                return free.ahead(after[0], moved[0], pushed[0])
+                after = kick(after, place, end, step, fraction * half)
+                m_half = kick(after, place, end, step + int(fraction), half)
+                return free.ahead(after[0], place[0], m_half[0])
         return None
 
     def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
@@ -98,32 +143,21 @@ class AbstractForcedRoute(AbstractRoute):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
-    """The loop of the kernel, for left-invariant constraints; in plain Python if it calls functions of Python.
-
-    Attributes:
-        free: The route of the free step.
-        forced: The system with its forces.
-    """
-
-    free: AbstractCompiledRoute
-    forced: Forced
-    said: dict[str, str] = dataclasses.field(default_factory=dict, repr=False)
+    """The loop of the kernel, for left-invariant constraints; in plain Python if it calls functions of Python."""
 
     @property
-    def compiled(self) -> "ForcedRoute | None":  # type: ignore[override]
+    def compiled_route(self) -> "ForcedRoute | None":  # type: ignore[override]
         """The route itself, if numba compiled all functions that it calls."""
-        return (
-            self
-            if self.forced.is_jitted and driven_potential(self.forced) in (None, self.forced.own_potential)
-            else None
-        )
+        forced = self.forced
+        is_jitted = forced.is_jitted and driven_potential(forced) in (None, forced.own_potential)
+        return self if is_jitted else None
 
     @functools.cached_property
     def body(self) -> kernels.ForcedBody:
         """The body and its half impulse."""
         free, forced = self.free, self.forced
         has_function = forced.function is not None or driven_potential(forced) is not None
-        half = half_drive(free, forced, self.said) if has_function else half_kick(free, forced)
+        half = half_drive(free, forced, self.faults) if has_function else half_kick(free, forced)
         return kernels.ForcedBody(free.body, half)
 
 
@@ -132,17 +166,10 @@ class FunctionRoute(AbstractForcedRoute, AbstractOuterRoute):
     """In Python, by the definition of the impulses: for constraints that are fixed in space.
 
     Its state is that of the free kernel, one step ahead, and the number of the step.
-
-    Attributes:
-        free: The route of the free step.
-        forced: The system with its forces.
     """
 
-    free: AbstractCompiledRoute
-    forced: Forced
-    said: dict[str, str] = dataclasses.field(default_factory=dict, repr=False)
     needs_pose: ClassVar[bool] = True
-    compiled: ClassVar[None] = None
+    compiled_route: ClassVar[None] = None
 
     @functools.cached_property
     def body(self) -> kernels.ForcedBody:
@@ -154,39 +181,39 @@ class FunctionRoute(AbstractForcedRoute, AbstractOuterRoute):
 
     def start(self, momenta: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray, np.ndarray]:
         """Return the outcome of the first root, its chart and the state of a run."""
-        said, pushed = None, np.array(momenta)
+        failure, m_half = None, np.array(momenta)
         try:  # the midpoint rule of a half impulse may fail
-            pushed += self._impulse(0, 0, momenta, pose)
+            m_half += self._impulse(0, 0, momenta, pose)
         except OutcomeError:
-            said = Outcome.no_half_impulse
-        code, state = self.runs.start(self.body, pushed, np.array(pose))
-        return said or code, self.runs.chart_of(self.body, state), np.append(state, 0.0)
+            failure = Outcome.no_half_impulse
+        code, state = self.runs.start(self.body, m_half, np.array(pose))
+        return failure or code, self.runs.chart_of(self.body, state), np.append(state, 0.0)
 
     def advance(self, state: np.ndarray, steps: int, every: int, rows: Compact) -> tuple[int, int]:
         """Take steps one by one, into rows of the kernel."""
         n, width, size = self.free.sizes
         room = np.empty((1, n)), np.empty((1, width)), np.empty((1, size))
         with contextlib.suppress(OutcomeError):
-            for done in range(steps):
+            for good in range(steps):
                 ahead, number = state[:-1].copy(), int(state[-1])
                 place = ahead[2 * n : 2 * n + size].copy()
                 m = ahead[:n] + self._impulse(number + 1, number, ahead[:n], place)
                 ahead[:n] = m + self._impulse(number + 1, number + 1, m, place)
                 _, code = self.runs.advance(self.body, ahead, 1, 1, room)
                 if code != 0:
-                    return done, code
+                    return good, code
                 state[:] = np.append(ahead, number + 1)
-                if (done + 1) % every == 0:
+                if (good + 1) % every == 0:
                     for column, entries in zip(rows, (m, room[1][0], place), strict=True):
-                        column[done // every] = entries
+                        column[good // every] = entries
             return steps, 0
-        return done, Outcome.no_half_impulse
+        return good, Outcome.no_half_impulse
 
     def _impulse(self, node: int, step: int, m: np.ndarray, pose: np.ndarray) -> np.ndarray:
         """Return what half the impulse of a step at a node adds to the kernel's momenta."""
         half = float(self.free.time_step) / 2
         time, steps = np.array([2 * half * node]), np.array([step])
-        return kick_of(self.free, self.forced, half, time, m[None], pose[None], steps, self.said)[0]
+        return kick_of(self.free, self.forced, half, time, m[None], pose[None], steps, self.faults)[0]
 
 
 def kick_of(
@@ -197,14 +224,14 @@ def kick_of(
     momenta: np.ndarray,
     poses: np.ndarray,
     steps: np.ndarray,
-    said: dict[str, str] | None = None,
+    faults: dict[str, str] | None = None,
 ) -> np.ndarray:
     """Return what the impulses of a time add to momenta of a kernel; NaN where they are not finite."""
     group = forced.group
     g = group.matrix_from_pose(free.decode_poses(poses)) @ group.inverse(forced.frame)
-    j, said = np.array(np.nan), {} if said is None else said
-    with note_fault(said, "potential"):
-        j = forced.impulses(forced.from_canonical(free.decode(momenta.copy())), g, time, steps, half, said)
+    j, faults = np.array(np.nan), {} if faults is None else faults
+    with note_fault(faults, "potential"):
+        j = forced.impulses(forced.from_canonical(free.decode(momenta.copy())), g, time, steps, half, faults)
     if not np.isfinite(j).all():
         return np.full_like(momenta, np.nan)
     return free.encode(forced.to_canonical(forced.restrict_at(j, g)))
@@ -221,21 +248,17 @@ def half_kick(free: AbstractCompiledRoute, forced: Forced) -> kernels.Kick:
     return kick._replace(weight=plain(weight), arms=plain(arms))
 
 
-def half_drive(free: AbstractCompiledRoute, forced: Forced, said: dict[str, str]) -> kernels.Drive:
+def half_drive(free: AbstractCompiledRoute, forced: Forced, faults: dict[str, str]) -> kernels.Drive:
     """Return half the impulse of functions; those that numba compiled are asked before a run."""
     kick, along = _linear_part(free, forced)
-    group, S, has = (
-        forced.group,
-        np.asarray(forced.constraint_subspace),
-        (forced.function is not None, driven_potential(forced) is not None),
-    )
+    S, has = np.asarray(forced.constraint_subspace), (forced.function is not None, driven_potential(forced) is not None)
     momenta = forced.from_canonical(free.decode(np.eye(forced.rank)))
     velocity = S.T @ np.linalg.solve(S @ np.asarray(forced.inertia_operator) @ S.T, momenta.T)
     moves, weights = forced.differences
-    force, potential = functions_of(forced, driven_potential(forced), said)
+    force, potential = functions_of(forced, driven_potential(forced), faults)
     return kernels.Drive(
         kick=kick,
-        planar=(2 if group == SE(2) else 3) if free.is_scalar else 0,
+        planar=(2 if forced.group == SE(2) else 3) if free.is_scalar else 0,
         turn=plain(kernel_frame(free, forced)),
         velocity=plain(velocity),
         along=plain(along.T),
@@ -254,10 +277,10 @@ def driven_potential(forced: Forced) -> Callable[..., Any] | None:
     return forced.potential_energy if whole else forced.own_potential
 
 
-def functions_of(forced: Forced, potential: Callable[..., Any] | None, said: dict[str, str]) -> tuple[Any, Any]:
+def functions_of(forced: Forced, potential: Callable[..., Any] | None, faults: dict[str, str]) -> tuple[Any, Any]:
     """Return force and potential as kernels call them: addresses if numba compiled all of them, else in Python."""
     if not forced.is_jitted or potential not in (None, forced.own_potential):
-        return _in_python(forced, potential, said)
+        return _in_python(forced, potential, faults)
     shape = (forced.group.size, forced.group.dim)
     if not forced.needs_function:
         return 0, 0
@@ -268,18 +291,18 @@ def functions_of(forced: Forced, potential: Callable[..., Any] | None, said: dic
     return force, 0 if potential is None else function_of(potential, shape, 1)
 
 
-def _in_python(forced: Forced, own: Any, said: dict[str, str]) -> tuple[Callable[..., None], Callable[..., None]]:
+def _in_python(forced: Forced, own: Any, faults: dict[str, str]) -> tuple[Callable[..., None], Callable[..., None]]:
     """Return what writes force and potential by the definition: NaN where they are not finite, which is noted."""
 
     def force(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:
         out[:] = np.nan
-        with note_fault(said, "force"):
+        with note_fault(faults, "force"):
             out[:] = forced.driving_force(time, g, velocity)
 
     def potential(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:
         del time, velocity
         out[0] = np.nan
-        with note_fault(said, "potential"):
+        with note_fault(faults, "potential"):
             out[0] = number_of("Forced(potential=...)", cast(Any, own), "Return U of a configuration.", g)
 
     return force, potential
@@ -291,14 +314,14 @@ def _check_compiled(forced: Forced) -> None:
     What they say at a place that is no place of a run does not count.
     """
     group, moving = forced.group, np.linspace(0.5, 1.0, forced.group.dim)
-    for g, velocity, ignored in (
+    for g, velocity, harmless in (
         (group.identity, 0 * moving, UndefinedError),
         (group.exp(moving / 8), moving, Exception),
     ):
         try:
             forced.driving_force(0.0, g, velocity)
             forced.potential_energy(g)
-        except ignored as failure:
+        except harmless as failure:
             if isinstance(failure, FunctionError) and not isinstance(failure, UndefinedError):
                 raise
 
@@ -309,12 +332,12 @@ def _linear_part(free: AbstractCompiledRoute, forced: Forced) -> tuple[kernels.K
     weight, arms = np.zeros(0), np.zeros((forced.rank, 0))
     if forced.gravity is not None:
         weight, levers = forced.gravity.levers(forced.group)
-        arms = summed(along, levers)
-    rows = summed(forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table)))).T, along)
+        arms = sum_products(along, levers)
+    rows = sum_products(forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table)))).T, along)
     return kernels.Kick(*map(plain, (keep, weight, arms, rows))), along
 
 
-def summed(columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
+def sum_products(columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """Return the sum of outer products in their order, as by the kernel of a page."""
     return functools.reduce(np.add, map(np.multiply.outer, columns, rows))
 
@@ -329,8 +352,8 @@ def _half_step(free: AbstractCompiledRoute, forced: Forced) -> tuple[np.ndarray,
         keep, push = np.reshape(kernels.friction_flow(free.body, C.ravel().tolist(), half), (2, 2, 2))
         return keep, rows.T @ (scale * push).T
     keep, push, _ = forced.propagator(S.T, half)
-    kept = np.zeros((0, 0)) if forced.friction is None else np.linalg.solve(to_kernel, keep.T @ to_kernel).T
-    return kept, S.T @ push.T @ to_kernel
+    remainder = np.zeros((0, 0)) if forced.friction is None else np.linalg.solve(to_kernel, keep.T @ to_kernel).T
+    return remainder, S.T @ push.T @ to_kernel
 
 
 def kernel_frame(free: AbstractCompiledRoute, forced: Forced) -> Float[np.ndarray, "N N"]:
@@ -338,8 +361,3 @@ def kernel_frame(free: AbstractCompiledRoute, forced: Forced) -> Float[np.ndarra
     frame, group = free.encode_poses(forced.frame_pose[None]), forced.group
     matrix = group.matrix_from_pose(frame) if free.is_scalar else frame.reshape(-1, group.size, group.size)
     return np.linalg.inv(matrix[0])
-
-
-def plain(array: np.ndarray) -> np.ndarray:
-    """Return a writable copy row by row: every other layout would be compiled for itself."""
-    return np.array(array, order="C")

@@ -20,8 +20,8 @@ import numpy as np
 from nonholo import kernels
 from nonholo.base.numerics import product_and_remainder
 from nonholo.base.types import Array, Float
-from nonholo.discrete._variety import Variety, forbidden_matrices
-from nonholo.discrete.routes._base import AbstractCompiledRoute
+from nonholo.discrete._variety import Variety, forbidden_matrices, free_rows
+from nonholo.discrete.routes._base import AbstractCompiledRoute, plain
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractSystem, System, inertia_from_mass_tensor
 
@@ -56,11 +56,6 @@ class MatrixRoute(AbstractCompiledRoute):
         """The time step over the unit of momenta."""
         return self.time_step / self._body_and_unit[1]
 
-    @property
-    def single(self) -> "MatrixRoute":
-        """The route itself."""
-        return self
-
     def encode(self, momenta: np.ndarray) -> np.ndarray:
         """Return the momenta of the kernel from canonical ones."""
         return self.scale * momenta
@@ -91,7 +86,7 @@ class MatrixRoute(AbstractCompiledRoute):
 def general_body(system: AbstractSystem, variety: Variety) -> tuple[kernels.GeneralBody, float]:
     """Return the body of the general kernel in its own units of length and mass, and the unit of its momenta / h."""
     group, unit = system.group, _length_unit(system)
-    N, n = group.identity.shape[0], _size_of_rotations(system)
+    N, n = group.identity.shape[0], free_rows(system.group)
     shrink = np.where(np.arange(N) < n, 1 / unit, 1.0)
     motions = np.outer(shrink, 1 / shrink)
     chart = group.hat(variety.chart) * motions
@@ -104,25 +99,25 @@ def general_body(system: AbstractSystem, variety: Variety) -> tuple[kernels.Gene
     mass = _mass_unit(tensor)
     tensor, directions, form, inverse_form = _in_form(group, tensor / mass, directions)
     spatial = system.is_spatial
-    pairings, lost = product_and_remainder(directions, tensor)
+    pairings, remainders = product_and_remainder(directions, tensor)
     radius, level = (0.0, 0.0) if spatial else _certain_ball(system, mass)
     body = kernels.GeneralBody(
-        tensor=_plain(tensor),
-        directions=_plain(directions),
+        tensor=plain(tensor),
+        directions=plain(directions),
         places=np.ascontiguousarray(np.argwhere(chart)),  # of one layout, empty or not: compiled once
-        entries=_plain((chart / lengths[:, None, None])[chart != 0]),
-        forbidden=_plain(forbidden),
-        pairings=_plain(pairings),
-        remainders=_plain(np.concatenate([0 * lost if spatial else lost, completion])),
+        entries=plain((chart / lengths[:, None, None])[chart != 0]),
+        forbidden=plain(forbidden),
+        pairings=plain(pairings),
+        remainders=plain(np.concatenate([0 * remainders if spatial else remainders, completion])),
         size=n,
         spatial=spatial,
-        metric=_plain(np.linalg.inv(system.constrained_inertia / mass) * unit**2),
+        metric=plain(np.linalg.inv(system.constrained_inertia / mass) * unit**2),
         radius=radius,
         level=level,
         unit=unit,
-        stretch=_plain(1 / lengths),
-        form=_plain(form),
-        inverse_form=_plain(inverse_form),
+        stretch=plain(1 / lengths),
+        form=plain(form),
+        inverse_form=plain(inverse_form),
     )
     return body, mass * unit**2
 
@@ -140,20 +135,6 @@ def _completion(forbidden: Float[np.ndarray, "s N N"], directions: Float[np.ndar
     A, D = (x.reshape(len(x), directions.shape[1] ** 2) for x in (forbidden, directions))
     high, low = product_and_remainder(A, D.T)
     return -(np.linalg.solve(D @ D.T, (high + low).T).T @ D).reshape(forbidden.shape)
-
-
-def _plain(array: Any) -> np.ndarray:
-    """Return a writable copy row by row: every other layout would be compiled for itself."""
-    return np.array(array, dtype=np.float64, order="C")
-
-
-def _size_of_rotations(system: AbstractSystem) -> int:
-    """Return n: matrices of SO(n) have entries in the last row of their algebra, those of SE(n) have none.
-
-    N on a group with a form.
-    """
-    basis, form = system.group.basis, system.group.form
-    return basis.shape[1] if form is not None or np.any(basis[:, -1]) else basis.shape[1] - 1
 
 
 def _certain_ball(system: AbstractSystem, mass: float) -> tuple[float, float]:
@@ -175,7 +156,7 @@ def _certain_ball(system: AbstractSystem, mass: float) -> tuple[float, float]:
 
 def _length_unit(system: AbstractSystem) -> float:
     """Return the length that makes translations comparable with rotations; one for rotations alone."""
-    tensor, n = np.asarray(system.homogeneous_mass_tensor), _size_of_rotations(system)
+    tensor, n = np.asarray(system.homogeneous_mass_tensor), free_rows(system.group)
     if n == len(tensor):
         return 1.0
     if tensor[n, n] <= 0 or np.trace(tensor[:n, :n]) <= 0:  # no length is distinguished
@@ -198,16 +179,16 @@ def _stiffness(system: AbstractSystem, unit: float) -> tuple[Callable[[np.ndarra
     $\phi(E) = \mathrm{tr}(E\,\mathbb{J}\,S^T)$ with $S = (W + W^{-1})/2 - I$; on SO(n) a multiple of the identity in
     $\mathbb{J}$ does not count.
     """
-    tensor, n = np.asarray(system.homogeneous_mass_tensor), _size_of_rotations(system)
+    tensor, n = np.asarray(system.homogeneous_mass_tensor), free_rows(system.group)
     N = len(tensor)
     stretch = np.where(np.arange(N) < n, 1 / unit, 1.0)
-    scaled = tensor * np.outer(stretch, stretch)
+    own_tensor = tensor * np.outer(stretch, stretch)
     turning = np.any(system.group.basis[:, :n, :n], axis=(1, 2))
     rows = system.constraint_subspace * np.where(turning, 1.0, 1 / unit)
     orthonormal = np.linalg.qr(rows.T)[0].T
-    inertia = orthonormal @ inertia_from_mass_tensor(system.group, scaled) @ orthonormal.T
+    inertia = orthonormal @ inertia_from_mass_tensor(system.group, own_tensor) @ orthonormal.T
     least = float(np.linalg.eigvalsh(inertia)[0]) if len(inertia) else 1.0
-    spread = np.linalg.eigvalsh(scaled)
+    spread = np.linalg.eigvalsh(own_tensor)
     if n == N:
         return (lambda s, c: (spread[-1] - spread[0]) / least * s / c), least
     if spread[0] < -1e-12 * spread[-1]:

@@ -23,17 +23,19 @@ def _of_single_steps(route: AbstractCompiledRoute, states: Orbit) -> Float[np.nd
 
     The map is multivalued and its principal value is not always the way back: the nearest value counts.
     """
-    scaled, cayley = route.encode(states.reduced_momentum), route.to_kernel(states.canonical_chart)
+    r, cayley = route.encode(states.reduced_momentum), route.to_kernel(states.canonical_chart)
     poses = matrices_of(states)
-    momenta, charts, ahead = route.step_each((scaled, cayley, poses), cayley, principal_only=True)
+    momenta, charts, ahead = route.step_each((r, cayley, poses), cayley, principal_only=True)
     if poses is None:
         after, _, _ = route.step_each((momenta, charts, None), charts, principal_only=False)
         returning = (-after, -charts, None)
     else:
         returning = (-momenta, -charts, _two_ahead(states, charts))
-    back, returned, behind = route.step_each(returning, -cayley, principal_only=False)
-    missed = np.maximum(_largest(returned + cayley) / _largest(cayley), _largest(back + momenta) / _largest(momenta))
-    return np.where(ahead != 0, np.nan, np.where(behind != 0, np.inf, missed))
+    back, charts_back, behind = route.step_each(returning, -cayley, principal_only=False)
+    distances = np.maximum(
+        _largest(charts_back + cayley) / _largest(cayley), _largest(back + momenta) / _largest(momenta)
+    )
+    return np.where(ahead != 0, np.nan, np.where(behind != 0, np.inf, distances))
 
 
 def _two_ahead(states: Orbit, following: np.ndarray) -> Float[np.ndarray, "K size"]:
@@ -50,10 +52,10 @@ def _of_compositions(route: AbstractCompiledRoute, states: Orbit) -> Float[np.nd
     after, there, ahead = route.whole_steps(r, g)
     good = ahead == Outcome.successful
     back, _, behind = route.whole_steps(-after[good], there[good])
-    missed = np.full(len(r), np.nan)
+    distances = np.full(len(r), np.nan)
     far = _largest(back + r[good]) / _largest(r[good])
-    missed[good] = np.where(behind == Outcome.successful, far, np.inf)
-    return missed
+    distances[good] = np.where(behind == Outcome.successful, far, np.inf)
+    return distances
 
 
 def _largest(rows: np.ndarray) -> np.ndarray:

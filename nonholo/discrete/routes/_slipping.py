@@ -19,7 +19,7 @@ from nonholo.base.results import OUTCOMES, Outcome
 from nonholo.base.types import Float
 from nonholo.discrete._variety import Variety, variety_of
 from nonholo.discrete.routes._balanced import BalancedRoute
-from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledRoute, Compact, posed
+from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledRoute, Compact, poses_of
 from nonholo.discrete.routes._forced import AbstractForcedRoute
 from nonholo.orbit import First, Orbit, Rows, State, configurations, keep_row, write_first
 from nonholo.systems import Forced, Slip, Widened
@@ -32,8 +32,8 @@ _STRETCH = 512  # steps that hold, taken at once
 
 def slip_route(scheme: Any, forced: Forced, route_of: Callable[[Any], Any]) -> "SlipRoute":
     """Return the route of rows that may yield."""
-    held, slid = (dataclasses.replace(scheme, system=each) for each in (forced.holding, forced.sliding))
-    return SlipRoute(route_of(slid), route_of(held), held, forced)
+    holding, sliding = (dataclasses.replace(scheme, system=each) for each in (forced.holding, forced.sliding))
+    return SlipRoute(route_of(sliding), forced, route_of(holding), holding)
 
 
 class Beginning(NamedTuple):
@@ -63,17 +63,14 @@ class SlipRoute(AbstractForcedRoute):
     Attributes:
         free: The route of steps that slide, but for the friction of the grip.
         hold: The route of steps that hold.
-        held: The discretization of these.
-        forced: The system with its forces.
+        holding: The discretization of these.
     """
 
     free: BalancedRoute  # type: ignore[override]
     hold: AbstractCompiledRoute
-    held: Any
-    forced: Forced
-    said: dict[str, str] = dataclasses.field(default_factory=dict, repr=False)
+    holding: Any
     needs_pose: ClassVar[bool] = True  # type: ignore[override]
-    compiled: ClassVar[None] = None  # type: ignore[override]
+    compiled_route: ClassVar[None] = None  # type: ignore[override]
 
     @property
     def name(self) -> str:  # type: ignore[override]
@@ -98,54 +95,54 @@ class SlipRoute(AbstractForcedRoute):
     @functools.cached_property
     def _wide(self) -> np.ndarray:
         """Charts without the rows from those with them."""
-        charts = self.held.variety.chart @ np.linalg.pinv(self.variety.chart)
+        charts = self.holding.variety.chart @ np.linalg.pinv(self.variety.chart)
         return np.where(np.abs(charts) < 1e-15, 0.0, charts)
 
-    def stepper(self, motion: Any, *, posed: bool, branch: str = "principal") -> "SlipStepper":
+    def stepper(self, motion: Any, *, with_poses: bool, branch: str = "principal") -> "SlipStepper":
         """Return what takes the steps."""
         del branch
-        return SlipStepper(motion, self, posed)
+        return SlipStepper(motion, self, with_poses)
 
-    def wide(self, held: np.ndarray) -> np.ndarray:
+    def wide(self, charts: np.ndarray) -> np.ndarray:
         """Return canonical charts of steps that hold as those of the body without the rows."""
-        return self.hold.from_kernel(held) @ self._wide
+        return self.hold.from_kernel(charts) @ self._wide
 
     def reaction(
         self, charts: Float[np.ndarray, "K m"], poses: Float[np.ndarray, "K p"], steps: np.ndarray
     ) -> Float[np.ndarray, "K s"]:
         """Return the impulses that the rows need over steps that hold, from no slip."""
-        held, forced, h = self.held, self.held.forces, float(self.held.time_step)
-        decoder, charts = held.displacement_decoder, self.hold.from_kernel(charts)
+        holding, forced, h = self.holding, self.holding.forces, float(self.holding.time_step)
+        decoder, charts = holding.displacement_decoder, self.hold.from_kernel(charts)
         jump = decoder.momentum(charts, "left") - decoder.momentum(charts, "right")
         if forced is not None:
-            g, W = configurations(held.system, self.hold.decode_poses(poses)), held.displaced(charts)
+            g, W = configurations(holding.system, self.hold.decode_poses(poses)), holding.displaced(charts)
             jump = jump - h * forced.mean_force(g, W, h, forced.rows(steps), steps * h)
         return applied(self.body.duals, jump)
 
-    def holds(self, needed: Float[np.ndarray, "K s"], moving: Any = 0.0) -> np.ndarray:
+    def holds(self, impulses: Float[np.ndarray, "K s"], moving: Any = 0.0) -> np.ndarray:
         """Tell which impulses the grip gives, and the viscous friction of a slip that ends in the step."""
-        h = float(self.held.time_step)
+        h = float(self.holding.time_step)
         most = h * self.slip.grip + h / 2 * self.slip.viscous * np.linalg.norm(moving)
-        return np.linalg.norm(needed, axis=1) <= most
+        return np.linalg.norm(impulses, axis=1) <= most
 
     def begin(self, r: np.ndarray, pose: np.ndarray, time: float, step: int) -> Beginning:
         """Begin the step from canonical momenta and a pose."""
         k = self.hold.sizes[0]
-        coded = self.hold.encode_poses(pose)
-        code, kernel = self.hold.runs.start(self.hold.body_from(step), self.hold.encode(r[:k]), coded)
+        own_pose = self.hold.encode_poses(pose)
+        code, kernel = self.hold.runs.start(self.hold.body_from(step), self.hold.encode(r[:k]), own_pose)
         chart = self.hold.runs.chart_of(self.hold.body, kernel)
         if code != 0:
             return Beginning(code, self.wide(chart))
-        needed = self.reaction(chart[None], coded[None], np.array([step])) - r[k:]
-        if self.holds(needed, np.linalg.solve(self.body.slip_inertia, r[k:]))[0]:
+        impulses = self.reaction(chart[None], own_pose[None], np.array([step])) - r[k:]
+        if self.holds(impulses, np.linalg.solve(self.body.slip_inertia, r[k:]))[0]:
             return Beginning(0, self.wide(chart), kernel)
-        turning = needed[0] - r[k:]
-        if np.linalg.norm(turning) > float(self.held.time_step) * self.slip.grip:
+        turning = impulses[0] - r[k:]
+        if np.linalg.norm(turning) > float(self.holding.time_step) * self.slip.grip:
             return self.slide((r, pose), (time, step, 1.0), turning, np.zeros_like(turning))
-        found = self._pushed((r, pose), (time, step, 1.0), turning)
-        if found.after is not None:
-            found.after[0][k:] = -r[k:]  # the slip of the step is none
-        return found
+        beginning = self._push((r, pose), (time, step, 1.0), turning)
+        if beginning.after is not None:
+            beginning.after[0][k:] = -r[k:]  # the slip of the step is none
+        return beginning
 
     def slide(
         self, now: tuple[np.ndarray, np.ndarray], when: tuple[float, int, float], impulse: np.ndarray, slip: Any = None
@@ -154,37 +151,37 @@ class SlipRoute(AbstractForcedRoute):
 
         The friction of a slip x is the root of a model, $j = j_n + A(x - x_n)$, whose slope is corrected.
         """
-        part, before = when[2] * float(self.held.time_step), np.inf
+        part, before = when[2] * float(self.holding.time_step), np.inf
         slope, law = 2 / part * self.body.slip_inertia, (part * self.slip.grip, self.slip.viscous)
         goal = impulse if slip is None else friction(slope, slope @ slip - impulse, *law)
         for _ in range(_MOST):
-            found = self._pushed(now, when, goal)
-            if found.code != 0:
-                return found
-            size = np.linalg.norm(goal) + np.linalg.norm(slope) * np.linalg.norm(found.chart)
+            beginning = self._push(now, when, goal)
+            if beginning.code != 0:
+                return beginning
+            size = np.linalg.norm(goal) + np.linalg.norm(slope) * np.linalg.norm(beginning.chart)
             if slip is not None:
-                slope = corrected(slope, found.slip - slip, goal - impulse, _SEEN * float(size))
-            impulse, slip = goal, found.slip
+                slope = update_slope(slope, beginning.slip - slip, goal - impulse, _SEEN * float(size))
+            impulse, slip = goal, beginning.slip
             goal = friction(slope, slope @ slip - impulse, *law)
-            missed = np.linalg.norm(goal - impulse)
-            if missed <= _ROUNDING * np.linalg.norm(goal) or before / 2 < missed <= _SETTLED * size:
-                return found
-            before = missed
-        return found._replace(code=Outcome.not_converged)
+            gap = np.linalg.norm(goal - impulse)
+            if gap <= _ROUNDING * np.linalg.norm(goal) or before / 2 < gap <= _SETTLED * size:
+                return beginning
+            before = gap
+        return beginning._replace(code=Outcome.not_converged)
 
-    def _pushed(
+    def _push(
         self, now: tuple[np.ndarray, np.ndarray], when: tuple[float, int, float], impulse: np.ndarray
     ) -> Beginning:
         """Take a fraction of a step that slides under an impulse along the rows."""
-        route, (r, pose), part = self.free, now, when[2] * float(self.held.time_step)
-        coded, k = route.encode_poses(pose), len(r)
+        route, (r, pose), part = self.free, now, when[2] * float(self.holding.time_step)
+        own_pose, k = route.encode_poses(pose), len(r)
         force = self.slip.rows.T @ impulse / part
-        code, state = route.after(route.encode(r), coded, *when, force)
+        code, state = route.after(route.encode(r), own_pose, *when, force)
         chart = route.from_kernel(route.runs.chart_of(route.body, state))
         if code != 0:
             return Beginning(code, chart)
-        moved = route.decode_poses(state[2 * k : 2 * k + len(coded)])
-        return Beginning(0, chart, None, (route.decode(state[:k]), moved), impulse, self.slips(chart[None])[0])
+        place = route.decode_poses(state[2 * k : 2 * k + len(own_pose)])
+        return Beginning(0, chart, None, (route.decode(state[:k]), place), impulse, self.slips(chart[None])[0])
 
     def slips(self, charts: Float[np.ndarray, "K m"]) -> Float[np.ndarray, "K s"]:
         """Return the slips x of displacements, A (W - W^-1)/2."""
@@ -193,17 +190,17 @@ class SlipRoute(AbstractForcedRoute):
 
     def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Compact:
         """Return momenta, charts and poses after fractions of the steps from states; NaN where none starts."""
-        poses, rows = posed(states, needed=True), []
+        poses, rows = poses_of(states, is_needed=True), []
         for place, fraction in enumerate(fractions):
             one = states.chosen(slice(place, place + 1))
-            after, moved = self._part(one, poses[place], float(fraction))  # type: ignore[arg-type]
-            time, chart = float(one.time[0] + fraction * self.held.time_step), np.full(self.free.sizes[1], np.nan)
+            after, end = self._part(one, poses[place], float(fraction))  # type: ignore[arg-type]
+            time, chart = float(one.time[0] + fraction * self.holding.time_step), np.full(self.free.sizes[1], np.nan)
             if np.isfinite(after).all():
-                ahead = self.begin(after, moved, time, int(one.step[0]) + int(fraction))
+                ahead = self.begin(after, end, time, int(one.step[0]) + int(fraction))
                 chart = ahead.chart if ahead.code == 0 else chart
-            rows.append((after, chart, moved))
-        momenta, charts, moved = (np.array(column) for column in zip(*rows, strict=True))
-        return momenta, charts, moved
+            rows.append((after, chart, end))
+        momenta, charts, end = (np.array(column) for column in zip(*rows, strict=True))
+        return momenta, charts, end
 
     def _part(self, one: Orbit, pose: np.ndarray, fraction: float) -> Any:  # type: ignore[override]
         """Return momenta and pose after a fraction of one step, which is of the kind of the whole."""
@@ -213,18 +210,18 @@ class SlipRoute(AbstractForcedRoute):
         if whole.code != 0:
             return nothing, np.full_like(pose, np.nan)
         if whole.kernel is not None:
-            held = dataclasses.replace(one, reduced_momentum=one.reduced_momentum[:, :k], canonical_pose=pose[None])
-            momenta, _, moved = self.hold.parts(held, np.array([fraction]))
-            return np.append(momenta[0], np.zeros(len(r) - k)), moved[0]
-        found = whole if fraction == 1 else self.slide((r, pose), (*when, fraction), fraction * whole.impulse)
-        return found.after if found.code == 0 else (nothing, np.full_like(pose, np.nan))
+            still = dataclasses.replace(one, reduced_momentum=one.reduced_momentum[:, :k], canonical_pose=pose[None])
+            momenta, _, ends = self.hold.parts(still, np.array([fraction]))
+            return np.append(momenta[0], np.zeros(len(r) - k)), ends[0]
+        beginning = whole if fraction == 1 else self.slide((r, pose), (*when, fraction), fraction * whole.impulse)
+        return beginning.after if beginning.code == 0 else (nothing, np.full_like(pose, np.nan))
 
 
-def corrected(slope: np.ndarray, gone: np.ndarray, change: np.ndarray, least: float) -> np.ndarray:
+def update_slope(slope: np.ndarray, way: np.ndarray, change: np.ndarray, least: float) -> np.ndarray:
     """Return a slope that knows a change of the impulse along a way, by Broyden; rounding errors say nothing."""
-    if np.linalg.norm(change) < least or not gone @ change > 0:
+    if np.linalg.norm(change) < least or not way @ change > 0:
         return slope
-    return slope + np.outer(change - slope @ gone, gone) / (gone @ gone)
+    return slope + np.outer(change - slope @ way, way) / (way @ way)
 
 
 def friction(
@@ -263,12 +260,12 @@ class SlipStepper(AbstractBodyStepper):
     Attributes:
         motion: The discretization.
         route: The route.
-        posed: Whether poses are saved.
+        with_poses: Whether poses are saved.
     """
 
     motion: Any
     route: SlipRoute
-    posed: bool
+    with_poses: bool
     in_threads = False
 
     @functools.cached_property
@@ -283,73 +280,73 @@ class SlipStepper(AbstractBodyStepper):
         r, pose = first.numbers
         pose = pose if pose.size else self.route.body.frame_pose
         hold = self.route.hold
-        begun = self.route.begin(r, pose, 0.0, 0)
+        beginning = self.route.begin(r, pose, 0.0, 0)
         size = len(hold.start(hold.encode(0 * r[: hold.sizes[0]]), hold.encode_poses(pose))[2])
         state = np.zeros(self.width + len(r) + len(pose) + 2 + size)
-        state[: self.width] = np.concatenate(self._row(r, pose, begun))
-        self._keep(state, begun, 0)
-        return state, OUTCOMES[begun.code]
+        state[: self.width] = np.concatenate(self._row(r, pose, beginning))
+        self._keep(state, beginning, 0)
+        return state, OUTCOMES[beginning.code]
 
     def advance(self, state: State, steps: int, every: int, rows: Rows) -> tuple[int, int]:
         """Take steps, those that hold many at once."""
         write_first(state, rows)
-        done, code, most = 0, 0, 1
-        while done < steps and code == 0:
-            found, code = self._stretch(state, min(most, steps - done))
-            for column, entries in zip(rows, found, strict=True):
-                first = -(done + 1) % every
-                column[(done + 1 + first) // every :][: len(entries[first::every])] = entries[first::every]
-            most = min(2 * most, _STRETCH) if len(found[0]) == most else 1
-            done += len(found[0])
-        keep_row(state, rows, done // every)
-        return done, code
+        good, code, most = 0, 0, 1
+        while good < steps and code == 0:
+            states, code = self._stretch(state, min(most, steps - good))
+            for column, entries in zip(rows, states, strict=True):
+                first = -(good + 1) % every
+                column[(good + 1 + first) // every :][: len(entries[first::every])] = entries[first::every]
+            most = min(2 * most, _STRETCH) if len(states[0]) == most else 1
+            good += len(states[0])
+        keep_row(state, rows, good // every)
+        return good, code
 
     def _stretch(self, state: State, most: int) -> tuple[Rows, int]:
         """Take steps that hold, or one that begins anew; return their rows and the outcome."""
         (r, pose, (number, since)), route = self._own(state), self.route
         if since >= 0:
-            return self._held(state, most)
+            return self._hold(state, most)
         h = float(self.motion.time_step)
-        begun = route.begin(r.copy(), pose.copy(), number * h, int(number))
-        if begun.code != 0:
-            return tuple(np.empty((0, size)) for size in self.columns.values()), begun.code
-        row = self._row(r, pose, begun)
-        self._keep(state, begun, int(number))
+        beginning = route.begin(r.copy(), pose.copy(), number * h, int(number))
+        if beginning.code != 0:
+            return tuple(np.empty((0, size)) for size in self.columns.values()), beginning.code
+        row = self._row(r, pose, beginning)
+        self._keep(state, beginning, int(number))
         return tuple(column[None] for column in row), 0
 
-    def _held(self, state: State, most: int) -> tuple[Rows, int]:
+    def _hold(self, state: State, most: int) -> tuple[Rows, int]:
         """Take steps of the kernel that holds, up to one whose rows yield."""
         (r, pose, places), hold, kernel = self._own(state), self.route.hold, self._kernel(state)
         number, since, run = int(places[0]), int(places[1]), kernel.copy()
         rows = tuple(np.empty((most, size)) for size in hold.sizes)
         good, code = hold.runs.advance(hold.body_from(since), run, most, 1, rows)
         m, charts, poses = (column[:good] for column in rows)
-        needed = self.route.reaction(charts, poses, number + np.arange(good))
-        ends = np.flatnonzero(~self.route.holds(needed))
+        impulses = self.route.reaction(charts, poses, number + np.arange(good))
+        ends = np.flatnonzero(~self.route.holds(impulses))
         momenta = np.concatenate([hold.decode(m), np.zeros((good, len(r) - m.shape[1]))], axis=1)
-        found = momenta, self.route.wide(charts), hold.decode_poses(poses)
+        states = momenta, self.route.wide(charts), hold.decode_poses(poses)
         if len(ends):
-            r[:], pose[:], places[:] = found[0][ends[0]], found[2][ends[0]], (number + ends[0], -1)
-            return tuple(column[: ends[0]] for column in found), 0
+            r[:], pose[:], places[:] = states[0][ends[0]], states[2][ends[0]], (number + ends[0], -1)
+            return tuple(column[: ends[0]] for column in states), 0
         kernel[:], places[0] = run, number + good
-        return found, code
+        return states, code
 
-    def _row(self, r: np.ndarray, pose: np.ndarray, begun: Beginning) -> tuple[np.ndarray, ...]:
+    def _row(self, r: np.ndarray, pose: np.ndarray, beginning: Beginning) -> tuple[np.ndarray, ...]:
         """Return the row of a step; of one that holds as the kernel has it."""
-        if begun.kernel is None:
-            return r.copy(), begun.chart, pose.copy()
+        if beginning.kernel is None:
+            return r.copy(), beginning.chart, pose.copy()
         hold, k = self.route.hold, self.route.hold.sizes[0]
         along = np.append(hold.decode(hold.encode(r[:k])), r[k:])
-        return along, begun.chart, hold.decode_poses(hold.encode_poses(pose))
+        return along, beginning.chart, hold.decode_poses(hold.encode_poses(pose))
 
-    def _keep(self, state: State, begun: Beginning, number: int) -> None:
+    def _keep(self, state: State, beginning: Beginning, number: int) -> None:
         """Write what follows the step that begins with a number."""
         r, pose, places = self._own(state)
-        places[:] = number + 1, -1 if begun.kernel is None else number
-        if begun.kernel is not None:
-            self._kernel(state)[:] = begun.kernel
-        elif begun.after is not None:
-            r[:], pose[:] = begun.after
+        places[:] = number + 1, -1 if beginning.kernel is None else number
+        if beginning.kernel is not None:
+            self._kernel(state)[:] = beginning.kernel
+        elif beginning.after is not None:
+            r[:], pose[:] = beginning.after
 
     def _own(self, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         k, _, size = self.columns.values()

@@ -25,11 +25,16 @@ def advance_by_jax(
     body: kernels.Body, momenta: np.ndarray, poses: np.ndarray, steps: int, every: int, rows: kernels.MemberRows
 ) -> np.ndarray:
     """Take steps as `kernels.advance_members` does, with fields of the body that are arrays; tell who was uncertain."""
-    saved = steps // every if every else 1
+    save_count = steps // every if every else 1
     each = every or steps
-    posed = rows.poses.shape[1] > 0
+    with_poses = rows.poses.shape[1] > 0
     first, history, certain = in_double(
-        functools.partial(_run, saved=saved, posed=posed), body, momenta.T, poses.T, each, steps - saved * each
+        functools.partial(_run, save_count=save_count, with_poses=with_poses),
+        body,
+        momenta.T,
+        poses.T,
+        each,
+        steps - save_count * each,
     )
     for target, start, later in zip(rows[:3], first, history, strict=True):
         if every and target.shape[1]:
@@ -40,42 +45,49 @@ def advance_by_jax(
     return ~certain
 
 
-@functools.partial(jax.jit, static_argnames=("saved", "posed"))
+@functools.partial(jax.jit, static_argnames=("save_count", "with_poses"))
 def _run(
-    body: kernels.Body, m: jax.Array, q: jax.Array, each: jax.Array, rest: jax.Array, *, saved: int, posed: bool
+    body: kernels.Body,
+    m: jax.Array,
+    q: jax.Array,
+    each: jax.Array,
+    rest: jax.Array,
+    *,
+    save_count: int,
+    with_poses: bool,
 ) -> tuple[State, State, jax.Array]:
     """Return the first states, the saved ones, and which members were certain all the time."""
     y, certain = _root(body, m, jnp.zeros_like(m))
     state = (m, jnp.zeros_like(m), y, y, y, q, certain)
-    step = functools.partial(_step, body, posed)
+    step = functools.partial(_step, body, with_poses)
 
     def stretch(state: State, _: None) -> tuple[State, State]:
         state = jax.lax.fori_loop(0, each, step, state)
         return state, (state[0], state[2], state[5])
 
-    state, history = jax.lax.scan(stretch, state, None, length=saved)
+    state, history = jax.lax.scan(stretch, state, None, length=save_count)
     state = jax.lax.fori_loop(0, rest, step, state)
     return (m, y, q), history, state[-1]
 
 
-def _step(body: kernels.Body, posed: bool, _: jax.Array, state: State) -> State:
+def _step(body: kernels.Body, with_poses: bool, _: jax.Array, state: State) -> State:
     m, k, y, u, v, q, certain = state
-    n, lost = _compensated(m, k, jnp.stack(kernels.increment(body, *m, *y)))
+    n, error = _add(m, k, jnp.stack(kernels.increment(body, *m, *y)))
     w, sure = _root(body, n, 3 * (y - u) + v)
-    if posed:
+    if with_poses:
         q = jnp.stack(kernels.move(body, *y, *q))
     certain = certain & sure
-    rest = (jnp.where(certain, x, 0.0) for x in (n, lost, w, y, u))  # a lost member costs no further corrections
+    rest = (jnp.where(certain, x, 0.0) for x in (n, error, w, y, u))  # a lost member costs no further corrections
     return *rest, q, certain
 
 
-def _compensated(total: jax.Array, lost: jax.Array, term: jax.Array) -> tuple[jax.Array, jax.Array]:
+def _add(total: jax.Array, error: jax.Array, term: jax.Array) -> tuple[jax.Array, jax.Array]:
     """Add as the compiled loop does, each momentum measured by the other one."""
-    term = term - lost
+    term = term - error
     result = total + term
     small = jnp.abs(result) < kernels.SETTLED * jnp.abs(total[::-1])
-    settled = small & ((jnp.abs(result) < jnp.abs(total)) | (total == 0))
-    return jnp.where(settled, 0.0, result), jnp.where(settled, 0.0, (result - total) - term)
+    is_zero = small & ((jnp.abs(result) < jnp.abs(total)) | (total == 0))
+    return jnp.where(is_zero, 0.0, result), jnp.where(is_zero, 0.0, (result - total) - term)
 
 
 def _root(body: kernels.Body, m: jax.Array, guess: jax.Array) -> tuple[jax.Array, jax.Array]:

@@ -29,28 +29,25 @@ def ensemble_to_dataset(ensemble: Ensemble, none: Any) -> xarray.Dataset:
     for name, values in ensemble.parameters.items():
         axes = _AXES[: values.ndim - 1] if values.ndim != 2 else (f"{name}_component",)
         variables[name] = ("member", *axes), values, {"long_name": "parameter of the member"}
-    labels = (
-        {}
-        if none.is_compact
-        else {str(x): rows for x, rows in none.to_dataset().coords.items() if x not in ("step", "time")}
-    )
+    coordinates = {} if none.is_compact else none.to_dataset().coords
+    labels: dict[str, Any] = {str(x): rows for x, rows in coordinates.items() if x not in ("step", "time")}
     if ensemble.save_every is not None:
         labels["step"] = ensemble.save_every * np.arange(ensemble.time.shape[1])
-    kept = io.attributes(none)
-    del kept["outcome"]
-    attributes = {**kept, "format": "nonholo.ensemble", "steps": ensemble.steps}
+    common = io.attributes(none)
+    del common["outcome"]
+    attributes = {**common, "format": "nonholo.ensemble", "steps": ensemble.steps}
     return xarray.Dataset(variables, labels, attributes).set_coords("time")
 
 
 def _of_bodies(ensemble: Ensemble) -> dict[str, Any]:
     """Return energies, momenta along the constraint and poses."""
-    system, posed = ensemble.members.discrete.system, ensemble.canonical_pose is not None
+    system, has_poses = ensemble.members.discrete.system, ensemble.canonical_pose is not None
     variables: dict[str, Any] = {}
     for name in ("energy", "restricted_momentum"):
-        if io.is_known(system, name, posed=posed, discrete=True):
+        if io.is_known(system, name, posed=has_poses, discrete=True):
             axes, labels = io.labels_of(system, name)
             variables[name] = (*_EACH, *axes), getattr(ensemble, name), labels
-    if posed:
+    if has_poses:
         poses = io.separate_variables(system.group, ensemble.configuration)
         variables |= {name: ((*_EACH, *axes), values, labels) for name, (axes, values, labels) in poses.items()}
     return variables
@@ -58,5 +55,5 @@ def _of_bodies(ensemble: Ensemble) -> dict[str, Any]:
 
 def _in_coordinates(ensemble: Ensemble, none: Any) -> dict[str, Any]:
     """Return all that an orbit tells."""
-    told = none.to_dataset().data_vars.items()
-    return {str(name): (("member", *x.dims), getattr(ensemble, str(name)), x.attrs) for name, x in told}
+    variables = none.to_dataset().data_vars.items()
+    return {str(name): (("member", *x.dims), getattr(ensemble, str(name)), x.attrs) for name, x in variables}

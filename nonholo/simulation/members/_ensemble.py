@@ -15,12 +15,11 @@ from nonholo.base.limits import within_memory
 from nonholo.base.progress import progress_bar
 from nonholo.continuous import ContinuousFlow, solver_of
 from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretization
+from nonholo.simulation._crossings import refuse_resets, watch_for
 from nonholo.simulation._options import check_forces, refuse_too_large, stepper_of
-from nonholo.simulation.events import refuse_resets, watched
 from nonholo.simulation.members._events import joined_blocks
 from nonholo.simulation.members._executors import Plan, Report, are_side_by_side, counting, run_members
-from nonholo.simulation.members._families import check_systems
-from nonholo.simulation.members._members import Members, checked_parameters
+from nonholo.simulation.members._members import Members, check_systems, checked_parameters
 from nonholo.simulation.members._result import Ensemble
 from nonholo.simulation.members._start import Firsts, are_others, firsts, in_rows
 from nonholo.systems import (
@@ -135,21 +134,21 @@ def ensemble(
     of_steps["reconstruct"] = reconstruct
     make: Any = _of_times if isinstance(discrete, AbstractSystem) else _of_steps
     motion, plan, widths = make(discrete, {"times": times, "rtol": rtol}, of_steps, starts)
-    start = Start.of("ensemble", configuration, allowed=motion.starts, project=project, **starts)
+    start = Start.of("ensemble", configuration, choices=motion.starts, project=project, **starts)
     start, several = in_rows(motion, start, numbers := checked_parameters(motion, parameters))
     members = Members(motion, numbers, several)
     _refuse_too_large(plan, widths, 1 if reduce is not None else several)
     check_systems(members)
-    begun = firsts(members, start, posed=widths[-1] > 0, at_once=not project and are_side_by_side(members, plan))
-    _check_momenta(members, begun, plan)
+    first = firsts(members, start, with_poses=widths[-1] > 0, at_once=not project and are_side_by_side(members, plan))
+    _check_momenta(members, first, plan)
     with progress_bar("members", progress) as show:
-        return _joined(members, begun, plan, sum(widths), reduce, counting(show, several))
+        return _run_all(members, first, plan, sum(widths), reduce, counting(show, several))
 
 
-def _refuse(what: str, **given: Any) -> None:
+def _refuse(what: str, **arguments: Any) -> None:
     """Refuse arguments of another kind of ensemble, unless they are what they are by default."""
-    given = {name: (value, _DEFAULTS.get(name)) for name, value in given.items()}
-    refuse_given("ensemble", f"be left out {what}", "A discretization has steps, a system times and rtol.", **given)
+    arguments = {name: (value, _DEFAULTS.get(name)) for name, value in arguments.items()}
+    refuse_given("ensemble", f"be left out {what}", "A discretization has steps, a system times and rtol.", **arguments)
 
 
 def _of_times(
@@ -160,8 +159,8 @@ def _of_times(
     _refuse("for a flow", displacement=starts.pop("displacement"), **of_steps)
     time, rtol = flow_times(of_flow["times"]), 1e-14 if of_flow["rtol"] is None else of_flow["rtol"]
     plan = Plan(len(time) - 1, 1, reconstruct, times=time, rtol=flow_tolerances(rtol, 1.0)[0])
-    posed = solver_of(system, None, float(time[0]), reconstruct=reconstruct)[1]
-    return ContinuousFlow(system), plan, (1, system.rank, system.group.pose_size * posed)
+    with_poses = solver_of(system, None, float(time[0]), reconstruct=reconstruct)[1]
+    return ContinuousFlow(system), plan, (1, system.rank, system.group.pose_size * with_poses)
 
 
 def _of_steps(
@@ -175,16 +174,16 @@ def _of_steps(
         refuse_in_coordinates("ensemble", **{name: (value, _DEFAULTS.get(name)) for name, value in absent.items()})
     else:
         _refuse("for a discretization", **of_flow)
-        as_discretization("ensemble(discrete=...)", discrete, composed=True, forced=True)
+        as_discretization("ensemble(discrete=...)", discrete, compositions=True, forced=True)
     steps = count("ensemble(steps=...)", steps, "Pass the number of steps.")
     if save_every is not None:
         save_every = count("ensemble(save_every=...)", save_every, "Pass the steps between saved states, or None.")
-    stepper = stepper_of(discrete, branch, backend, posed=bool(reconstruct), owner="ensemble")
+    stepper = stepper_of(discrete, branch, backend, with_poses=bool(reconstruct), owner="ensemble")
     check_forces("ensemble", discrete, steps)
-    watch = None if events is None else watched("ensemble", stepper, events)
-    sought = None if watch is None else watch.events
-    refuse_resets("ensemble", sought or {}, "those of many members, whose steps are taken side by side")
-    plan = Plan(steps, save_every, bool(reconstruct), branch, backend, sought)
+    watch = None if events is None else watch_for("ensemble", stepper, events)
+    by_name = None if watch is None else watch.events
+    refuse_resets("ensemble", by_name or {}, "those of many members, whose steps are taken side by side")
+    plan = Plan(steps, save_every, bool(reconstruct), branch, backend, by_name)
     return discrete, plan, tuple(stepper.columns.values())
 
 
@@ -198,52 +197,47 @@ def _refuse_too_large(plan: Plan, widths: tuple[int, ...], members: int) -> None
 
 def _check_momenta(members: Members, starts: Firsts, plan: Plan) -> None:
     """Refuse full momenta of flows that no admissible velocity has."""
-    given = starts.demanded
-    if plan.times is None or given is None:
+    momenta = starts.demand
+    if plan.times is None or momenta is None:
         return
     full = run_members(members, starts, plan._replace(steps=0, times=plan.times[:1])).momentum[:, 0]
-    wrong = are_others(given, full)
+    wrong = are_others(momenta, full)
     if wrong.any():
         member = int(np.argmax(wrong))
         remedy = f"With the same components along the constraint that of member {member} is {full[member].tolist()}."
-        got = f"{given[member].tolist()}"
+        got = f"{momenta[member].tolist()}"
         raise error("ensemble(momentum=...)", "belong to admissible velocities", got, remedy)
 
 
-def _joined(
-    members: Members,
-    starts: Firsts,
-    plan: Plan,
-    width: int,
-    reduce: Callable[[Ensemble], Any] | None,
-    report: Report,
+def _run_all(
+    members: Members, starts: Firsts, plan: Plan, width: int, reduce: Callable[[Ensemble], Any] | None, report: Report
 ) -> Any:
     """Run all members, block by block where only what is found of them is kept, and join that."""
-    searched = plan.events is not None and are_side_by_side(members, plan)  # in every step of a block
-    if reduce is None and not searched:
+    has_search = plan.events is not None and are_side_by_side(members, plan)  # in every step of a block
+    if reduce is None and not has_search:
         return run_members(members, starts, plan, report=report)
-    size = max(1, _BLOCK // (width * (1 + plan.steps if searched else plan.states)))
+    size = max(1, _BLOCK // (width * (1 + plan.steps if has_search else plan.states)))
     parts = [slice(begin, begin + size) for begin in range(0, len(members), size)]
     blocks = (run_members(members.part(part), starts.part(part), plan, report=report) for part in parts)
     if reduce is None:
         return joined_blocks(members, list(blocks))
-    return joined(len(members), ((len(block), reduce(block)) for block in blocks))
+    return join_blocks(len(members), ((len(block), reduce(block)) for block in blocks))
 
 
-def joined(members: int, blocks: Iterable[tuple[int, Reduced]]) -> Reduced:
+def join_blocks(members: int, blocks: Iterable[tuple[int, Reduced]]) -> Reduced:
     """Join the results of blocks, which come with their numbers of members, along the member axis.
 
     Each result is copied to its place when it comes, so that nothing else of its block is kept.
 
     Example:
-        >>> joined(3, [(2, np.array([0.0, 1.0])), (1, np.array([2.0]))])
+        >>> join_blocks(3, [(2, np.array([0.0, 1.0])), (1, np.array([2.0]))])
         array([0., 1., 2.])
     """
     whole: dict[str, np.ndarray] = {}
     begin = 0
     for size, result in blocks:
-        named = result if isinstance(result, dict) else {_ONE: result}
-        rows = {name: _checked(size, value) for name, value in named.items()}
+        arrays = result if isinstance(result, dict) else {_ONE: result}
+        rows = {name: _check_rows(size, value) for name, value in arrays.items()}
         whole = whole or {name: np.empty((members, *value.shape[1:]), value.dtype) for name, value in rows.items()}
         _check_same(whole, rows)
         for name, value in rows.items():
@@ -255,12 +249,12 @@ def joined(members: int, blocks: Iterable[tuple[int, Reduced]]) -> Reduced:
 
 def _check_same(whole: dict[str, np.ndarray], rows: dict[str, np.ndarray]) -> None:
     """Refuse a block with other names or shapes than the first one."""
-    ours, first = ({name: value.shape[1:] for name, value in found.items()} for found in (rows, whole))
+    ours, first = ({name: value.shape[1:] for name, value in block.items()} for block in (rows, whole))
     if ours != first:
         raise error(_WHERE, "return one shape for all blocks", f"{ours} after {first}", "Pad with NaN.")
 
 
-def _checked(size: int, result: object) -> np.ndarray:
+def _check_rows(size: int, result: object) -> np.ndarray:
     """Refuse what does not have one row for each member of the block."""
     rows = np.asarray(result)
     if rows.ndim == 0 or len(rows) != size:

@@ -19,14 +19,14 @@ from nonholo.base.types import Float
 from nonholo.continuous import has_series, members_by_series
 from nonholo.discrete import PRINCIPAL, BranchRule
 from nonholo.orbit import AbstractStepper, First
+from nonholo.simulation._event import Event
 from nonholo.simulation._flow import flow_from
 from nonholo.simulation._options import stepper_of
-from nonholo.simulation._run import Run, ended
-from nonholo.simulation.events import Event, Watch
+from nonholo.simulation._run import Run, run_to_end
+from nonholo.simulation._search import Watch
 from nonholo.simulation.members._events import log_of, watched_block
-from nonholo.simulation.members._families import ScalarMembers, in_lanes, inertias_of
-from nonholo.simulation.members._members import Members, refused
-from nonholo.simulation.members._result import Ensemble, stacked
+from nonholo.simulation.members._members import Members, ScalarMembers, in_lanes, inertias_of, refusal
+from nonholo.simulation.members._result import Ensemble, stack_rows
 from nonholo.simulation.members._start import Firsts, are_others
 
 _PART = 8192  # members in a piece of work of one thread, a multiple of what a compiled block holds
@@ -55,8 +55,8 @@ def in_one_thread() -> Iterator[None]:
 
 def threads_to_use() -> int:
     """Return one `in_one_thread`, else as many as `NUMBA_NUM_THREADS` says, else one for each core."""
-    asked = os.environ.get("NUMBA_NUM_THREADS", "")
-    return _THREADS.get() or (int(asked) if asked.isdigit() and int(asked) > 0 else _cores())
+    text = os.environ.get("NUMBA_NUM_THREADS", "")
+    return _THREADS.get() or (int(text) if text.isdigit() and int(text) > 0 else _cores())
 
 
 def _cores() -> int:
@@ -65,12 +65,12 @@ def _cores() -> int:
 
 def counting(show: Callable[[int, int], None], total: int) -> Report:
     """Return a function that adds up how many members are done, and shows it."""
-    done = 0
+    count = 0
 
     def report(more: int) -> None:
-        nonlocal done
-        done += more
-        show(done, total)
+        nonlocal count
+        count += more
+        show(count, total)
 
     return report
 
@@ -81,7 +81,7 @@ class Plan(NamedTuple):
     Attributes:
         steps: Number of steps; of a flow the number of times after the first.
         every: Steps between saved states; None for the last one alone.
-        posed: Whether to compute poses.
+        with_poses: Whether to compute poses.
         branch: The branch rule.
         backend: "auto", "numba" or "jax".
         events: What the runs look for, by name; None if for nothing.
@@ -91,7 +91,7 @@ class Plan(NamedTuple):
 
     steps: int
     every: int | None
-    posed: bool = True
+    with_poses: bool = True
     branch: BranchRule = PRINCIPAL.name
     backend: str = "auto"
     events: dict[str, Event] | None = None
@@ -127,7 +127,7 @@ def _has_series(members: Members, plan: Plan) -> bool:
     """Tell whether flows are solved side by side; under forces those of one body are."""
     system, times = members.discrete.system, cast(np.ndarray, plan.times)
     alike = system.forces is None or not members.of_system
-    return plan.posed and alike and has_series(system, times[-1] - times[0])
+    return plan.with_poses and alike and has_series(system, times[-1] - times[0])
 
 
 def are_side_by_side(members: Members, plan: Plan) -> bool:
@@ -145,12 +145,12 @@ def run_in_lanes(members: Members, starts: Firsts, plan: Plan, threads: int, rep
 def _in_lanes(members: Members, starts: Firsts, plan: Plan, threads: int, report: Report) -> Ensemble:
     """Run members of a closed form, 32 at a time, or by JAX."""
     scalar, count, (momenta, first) = ScalarMembers(members), len(members), starts.numbers
-    rows = _rows(count, plan.states, posed=plan.posed)
+    rows = _rows(count, plan.states, with_poses=plan.with_poses)
     fields, run = scalar.fields, _advance_by_jax if plan.backend == "jax" else _advance
     advance = functools.partial(run, scalar.body)
 
     def work(part: slice, stop: np.ndarray) -> None:
-        pieces = _unfilled(kernels.MemberRows(*(array[part] for array in rows)))
+        pieces = _fill_nan(kernels.MemberRows(*(array[part] for array in rows)))
         scale = np.broadcast_to(scalar.scale, (count,))[part, None]
         axes = scalar.axes.at(part)
         poses = np.array(axes.poses(first[part]), order="C")  # never read-only: compiled once
@@ -165,21 +165,21 @@ def _in_lanes(members: Members, starts: Firsts, plan: Plan, threads: int, report
         threads = 0
     in_threads(work, _parts(count, threads, plan.backend), threads, report)
     columns = {"reduced_momentum": rows.momenta, "cayley": rows.charts}
-    columns |= {"canonical_pose": rows.poses} if plan.posed else {}
+    columns |= {"canonical_pose": rows.poses} if plan.with_poses else {}
     batch = Ensemble(members, plan.steps, plan.every, columns, *rows[3:], *starts.places)
-    if starts.demanded is not None:
-        free, probe = starts._replace(demanded=None), plan._replace(steps=1, every=1, posed=True)
-        _refuse_other_starts(batch, starts.demanded, _in_lanes(members, free, probe, threads, lambda _: None))
+    if starts.demand is not None:
+        free, probe = starts._replace(demand=None), plan._replace(steps=1, every=1, with_poses=True)
+        _refuse_other_starts(batch, starts.demand, _in_lanes(members, free, probe, threads, lambda _: None))
     return batch
 
 
-def _refuse_other_starts(batch: Ensemble, demanded: np.ndarray, probe: Ensemble) -> None:
+def _refuse_other_starts(batch: Ensemble, demand: np.ndarray, probe: Ensemble) -> None:
     """Take the states from members that start with another full momentum or displacement than they should."""
-    outcome = Outcome.off_momentum_locus if demanded.ndim == 2 else Outcome.branch_unverified
-    missed = are_others(demanded, (probe.momentum if demanded.ndim == 2 else probe.displacement)[:, 0])
-    batch.outcome[missed], batch.steps_done[missed] = outcome, 0
+    outcome = Outcome.off_momentum_locus if demand.ndim == 2 else Outcome.branch_unverified
+    others = are_others(demand, (probe.momentum if demand.ndim == 2 else probe.displacement)[:, 0])
+    batch.outcome[others], batch.steps_done[others] = outcome, 0
     for column in batch.columns.values():
-        column[missed] = np.nan
+        column[others] = np.nan
 
 
 def _decode(axes: Any, pieces: kernels.MemberRows) -> None:
@@ -193,13 +193,13 @@ def _decode(axes: Any, pieces: kernels.MemberRows) -> None:
         pieces.poses[good] = axes.at(np.nonzero(good)[0]).canonical_poses(pieces.poses[good])
 
 
-def _rows(count: int, states: int, *, posed: bool) -> kernels.MemberRows:
+def _rows(count: int, states: int, *, with_poses: bool) -> kernels.MemberRows:
     """Return rows for the states of members, not yet NaN: threads that run a part of them touch its memory first."""
-    empty = (np.empty((count, kept, size)) for kept, size in ((states, 2), (states, 2), (states * posed, 4)))
+    empty = (np.empty((count, number, size)) for number, size in ((states, 2), (states, 2), (states * with_poses, 4)))
     return kernels.MemberRows(*empty, *np.zeros((2, count), dtype=np.int64))
 
 
-def _unfilled(rows: kernels.MemberRows) -> kernels.MemberRows:
+def _fill_nan(rows: kernels.MemberRows) -> kernels.MemberRows:
     """Return rows whose states are NaN, as those of members that do not get there stay."""
     for states in rows[:3]:
         states.fill(np.nan)
@@ -225,19 +225,19 @@ def _advance_by_jax(
     uncertain = advance_by_jax(body(*fields), *starts, plan.steps, plan.every or 0, rows)
     again = np.flatnonzero(uncertain)
     if again.size:
-        found = _unfilled(_rows(len(again), rows.momenta.shape[1], posed=plan.posed))
+        fresh = _fill_nan(_rows(len(again), rows.momenta.shape[1], with_poses=plan.with_poses))
         own, (momenta, poses) = fields if fields.shape[1] == 1 else fields[:, again], starts
-        _advance(body, own, (momenta[again], poses[again]), plan, found, stop)
-        for array, values in zip(rows, found, strict=True):
+        _advance(body, own, (momenta[again], poses[again]), plan, fresh, stop)
+        for array, values in zip(rows, fresh, strict=True):
             array[again] = values
 
 
 def run_one_by_one(members: Members, starts: Firsts, plan: Plan, threads: int, report: Report) -> Ensemble:
     """Run members alone, each as it runs by `simulate` or `flow`."""
-    count, orbits, done = len(members), {}, np.zeros(len(members), dtype=np.int64)
+    count, orbits, good = len(members), {}, np.zeros(len(members), dtype=np.int64)
 
     def work(part: slice, _: np.ndarray) -> None:
-        orbits[part.start], done[part.start] = _alone(members, starts, plan, part.start)
+        orbits[part.start], good[part.start] = _alone(members, starts, plan, part.start)
 
     stepper = None if plan.times is not None else _stepper_of(members.discrete, plan)
     if stepper is not None and (not stepper.in_threads or count * plan.steps <= _SOON_ALONE):
@@ -245,9 +245,9 @@ def run_one_by_one(members: Members, starts: Firsts, plan: Plan, threads: int, r
     in_threads(work, [slice(i, i + 1) for i in range(count)], threads, report)
     each = [orbits[member] for member in range(count)]
     codes = np.array([int(orbit.outcome) for orbit in each])
-    columns = stacked(each, plan.states) | _times(plan, count)
+    columns = stack_rows(each, plan.states) | _times(plan, count)
     branch = PRINCIPAL.name if stepper is None else stepper.branch
-    batch = Ensemble(members, plan.steps, plan.every, columns, codes, done, *starts.places, branch=branch)
+    batch = Ensemble(members, plan.steps, plan.every, columns, codes, good, *starts.places, branch=branch)
     return batch if plan.events is None else dataclasses.replace(batch, events=log_of(batch, each))
 
 
@@ -256,11 +256,11 @@ def _alone(members: Members, starts: Firsts, plan: Plan, member: int) -> tuple[A
     try:
         return run(members.of(member), starts.of(member), plan)
     except ValueError as failure:
-        raise refused(member, failure) from failure
+        raise refusal(member, failure) from failure
 
 
 def _stepper_of(motion: Any, plan: Plan) -> AbstractStepper[Any]:
-    return stepper_of(motion, plan.branch, plan.backend, posed=plan.posed, owner="ensemble")
+    return stepper_of(motion, plan.branch, plan.backend, with_poses=plan.with_poses, owner="ensemble")
 
 
 def _run_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
@@ -269,16 +269,16 @@ def _run_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
     watch = None if plan.events is None else Watch(plan.events, motion.after_parts)
     run = Run(stepper, plan.steps, plan.every or plan.steps, watch, throw=False, progress=False)
     try:
-        return ended(run, first, whole=plan.every is not None)
-    except OutcomeError as refused:
-        return dataclasses.replace(cast(Any, refused.orbit), outcome=refused.outcome), 0
+        return run_to_end(run, first, whole=plan.every is not None)
+    except OutcomeError as early:
+        return dataclasses.replace(cast(Any, early.orbit), outcome=early.outcome), 0
 
 
 def _flow_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
     """Return the flow of one member up to its end, and the number of good times after the first."""
     try:
         times = cast(np.ndarray, plan.times)
-        orbit = flow_from(motion.system, first, times, plan.rtol, reconstruct=plan.posed)
+        orbit = flow_from(motion.system, first, times, plan.rtol, reconstruct=plan.with_poses)
     except OutcomeError as early:
         orbit = cast(Any, early.orbit)
     return orbit, len(orbit) - 1
@@ -289,37 +289,34 @@ def run_by_series(members: Members, starts: Firsts, plan: Plan, threads: int, re
     count, pieces, time = len(members), {}, cast(np.ndarray, plan.times)
 
     def work(part: slice, stop: np.ndarray) -> None:
-        given = time - time[0], plan.rtol, stop
+        options = time - time[0], plan.rtol, stop
         inertias, places = inertias_of(members.part(part)), starts.part(part).places
-        pieces[part.start] = members_by_series(members.discrete.system, inertias, *places, *given)
+        pieces[part.start] = members_by_series(members.discrete.system, inertias, *places, *options)
 
     numbers = sum(x.shape[1] for x in starts.places) * len(time)
     size = max(1, min(_FLOWS, _NUMBERS // numbers, max(_BESIDE, -(-count // 8))))
     free = members.discrete.system.forces is None
-    if free and count <= _FLOWS and count * numbers <= _SOON and count * _turned(members, starts, time) <= _SOON_TURNED:
+    is_short = free and count <= _FLOWS and count * numbers <= _SOON
+    if is_short and count * _motion_bound(members, starts, time) <= _SOON_TURNED:
         size, threads = count, 0
     parts = [slice(begin, min(begin + size, count)) for begin in range(0, count, size)]
     in_threads(work, parts, threads, report)
-    states, reached = zip(*(pieces[part.start] for part in parts), strict=True)
-    names = {"reduced_momentum": "momenta", "canonical_pose": "poses", "turned": "turned"}
-    columns = {
-        name: np.concatenate([getattr(part, own) for part in states])
-        for name, own in names.items()
-        if getattr(states[0], own) is not None
-    }
-    good = np.concatenate(reached)
+    states, counts = zip(*(pieces[part.start] for part in parts), strict=True)
+    names = "reduced_momentum", "canonical_pose", "turned"
+    parts_of = dict(zip(names, zip(*states, strict=True), strict=True))
+    columns = {name: np.concatenate(rows) for name, rows in parts_of.items() if rows[0] is not None}
+    good = np.concatenate(counts)
     early = Outcome.not_converged if free else Outcome.too_stiff
     codes = np.where(good == len(time), int(Outcome.successful), int(early))
     return Ensemble(members, plan.steps, plan.every, columns | _times(plan, count), codes, good - 1, *starts.places)
 
 
-def _turned(members: Members, starts: Firsts, time: np.ndarray) -> float:
+def _motion_bound(members: Members, starts: Firsts, time: np.ndarray) -> float:
     """Return by how much a body at most moves, in its algebra, and more where its inertia is uneven."""
     inertia, S = inertias_of(members), members.discrete.system.canonical.constraint_subspace
     velocity = np.linalg.solve(S @ inertia @ S.T, starts.numbers[0][..., None])[..., 0] @ S
-    return (
-        float(np.abs(velocity).max(initial=0.0)) * float(abs(time[-1] - time[0])) * float(np.linalg.cond(inertia).max())
-    )
+    speed, span = float(np.abs(velocity).max(initial=0.0)), float(abs(time[-1] - time[0]))
+    return speed * span * float(np.linalg.cond(inertia).max())
 
 
 def _times(plan: Plan, count: int) -> dict[str, np.ndarray]:
@@ -349,11 +346,11 @@ def in_threads(work: Callable[[slice, np.ndarray], None], parts: list[slice], th
         threads: How many; 0 for this one, which Ctrl-C reaches only between calls of compiled code.
         report: Called with the number of members of a piece.
     """
-    for part in _finished(work, parts, threads):
+    for part in _finish_each(work, parts, threads):
         report(part.stop - part.start)
 
 
-def _finished(work: Callable[[slice, np.ndarray], None], parts: list[slice], threads: int) -> Iterator[slice]:
+def _finish_each(work: Callable[[slice, np.ndarray], None], parts: list[slice], threads: int) -> Iterator[slice]:
     """Give pieces of work as they are done; what ends this thread, Ctrl-C among it, soon ends the others."""
     stop = np.zeros(1, dtype=np.bool_)
     if not threads:

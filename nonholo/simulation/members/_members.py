@@ -1,4 +1,4 @@
-"""The members of an ensemble: one motion, and the parameters in which each member differs from it."""
+"""The members of an ensemble: one motion, the parameters in which each differs, and those that have one closed form."""
 
 import dataclasses
 import functools
@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from nonholo import kernels
 from nonholo.base.checks import array, error, shown
 from nonholo.base.memo import Keeper
-from nonholo.base.types import Float
-from nonholo.discrete import discretize
+from nonholo.base.types import Bool, Float
+from nonholo.discrete import Discretization, discretize
 from nonholo.systems import AbstractCoordinateSystem, System, in_coordinates
 
 STEP = "time_step"
@@ -57,10 +58,10 @@ class Members(Keeper):
     def of(self, member: int) -> Any:
         """Return the motion of one member."""
         own = {name: values[member] for name, values in self.parameters.items()}
-        changed = {STEP: own.pop(STEP)} if STEP in own else {}
+        changes = {STEP: own.pop(STEP)} if STEP in own else {}
         if own:
-            changed["system"] = _rebuilt(self.discrete.system, own)
-        return dataclasses.replace(self.discrete, **changed) if changed else self.discrete
+            changes["system"] = _rebuilt(self.discrete.system, own)
+        return dataclasses.replace(self.discrete, **changes) if changes else self.discrete
 
     @property
     def of_system(self) -> set[str]:
@@ -68,7 +69,7 @@ class Members(Keeper):
         return self.parameters.keys() - {STEP}
 
     @functools.cached_property
-    def stacked(self) -> System | None:
+    def joint_system(self) -> System | None:
         """The systems of all members in one, numbers with an axis of members in front where any of them differ.
 
         None where formulas do not allow it.
@@ -79,26 +80,26 @@ class Members(Keeper):
             return None
         system = _inside(self.discrete.system)
         values = {name: self.values(_ARGUMENTS.get(name, name)) for name in _leaves(system)}
-        return system.stacked(**{name: np.broadcast_to(x, (len(self), *x.shape[1:])) for name, x in values.items()})
+        return system.stack(**{name: np.broadcast_to(x, (len(self), *x.shape[1:])) for name, x in values.items()})
 
     @functools.cached_property
     def keep_frame(self) -> bool:
         """Whether all members clearly have the canonical frame of the shared motion, whatever their parameters."""
-        return self.stacked is not None and bool(np.all(self.stacked.frame == self.discrete.system.frame))
+        return self.joint_system is not None and bool(np.all(self.joint_system.frame == self.discrete.system.frame))
 
     @functools.cached_property
     def lanes(self) -> Any:
         """The route of all members in one, in closed form; None where they do not have the same."""
-        if self.route is None or not self.route.is_scalar or self.stacked is None:
+        if self.route is None or not self.route.is_scalar or self.joint_system is None:
             return None
-        return self.route.of_many(self.stacked, self.time_step) if self.parameters else self.route
+        return self.route.of_many(self.joint_system, self.time_step) if self.parameters else self.route
 
-    def part(self, chosen: slice) -> "Members":
+    def part(self, which: slice) -> "Members":
         """Return some of the members."""
-        if chosen.indices(self.count) == (0, self.count, 1):
+        if which.indices(self.count) == (0, self.count, 1):
             return self
-        kept = {name: values[chosen] for name, values in self.parameters.items()}
-        return Members(self.discrete, kept, len(range(*chosen.indices(self.count))))
+        numbers = {name: values[which] for name, values in self.parameters.items()}
+        return Members(self.discrete, numbers, len(range(*which.indices(self.count))))
 
 
 def _inside(system: Any) -> Any:
@@ -111,8 +112,10 @@ def _rebuilt(system: Any, own: dict[str, Any]) -> Any:
         return system.with_parameters(**own)
     if system.is_forced:
         return dataclasses.replace(system, system=_rebuilt(system.system, own))
-    kept = {_ARGUMENTS.get(field.name, field.name): getattr(system, field.name) for field in dataclasses.fields(system)}
-    return type(system)(**{**kept, **own})
+    fields = {
+        _ARGUMENTS.get(field.name, field.name): getattr(system, field.name) for field in dataclasses.fields(system)
+    }
+    return type(system)(**{**fields, **own})
 
 
 def _leaves(system: System) -> list[str]:
@@ -134,20 +137,20 @@ def checked_parameters(motion: Any, parameters: Any) -> dict[str, Any]:
     if not isinstance(parameters, Mapping):
         raise error("ensemble(parameters=...)", "be a mapping of names to arrays", shown(parameters), "Pass a dict.")
     numbers = dict(_numbers(motion)) | ({} if motion.time_step is None else {STEP: motion.time_step})
-    kind, checked = type(motion.system if in_coordinates(motion) else _inside(motion.system)).__name__, {}
+    kind, arrays = type(motion.system if in_coordinates(motion) else _inside(motion.system)).__name__, {}
     for name, value in parameters.items():
         if name not in numbers:
             raise _unknown(name, kind, [*numbers])
         shape = np.shape(numbers[name])
         where = f"ensemble(parameters={{{name!r}: ...}})"
-        checked[name] = array(where, value, (None, *shape), "Pass one value for each member.")
-    return checked
+        arrays[name] = array(where, value, (None, *shape), "Pass one value for each member.")
+    return arrays
 
 
-def _unknown(name: str, kind: str, known: list[str]) -> ValueError:
+def _unknown(name: str, kind: str, names: list[str]) -> ValueError:
     """Return the error of a parameter that is none."""
-    requirement, remedy = "name fields of the system", f"{kind} has {', '.join(known)}."
-    if known == [STEP]:
+    requirement, remedy = "name fields of the system", f"{kind} has {', '.join(names)}."
+    if names == [STEP]:
         requirement = f"name {STEP!r} alone for a system in coordinates that has no parameters"
         remedy = "Give it some: LagrangeDAlembert(lagrangian, forms, dimension=n, parameters={'mass': 1.0})."
     elif name == STEP:
@@ -155,6 +158,110 @@ def _unknown(name: str, kind: str, known: list[str]) -> ValueError:
     return error("ensemble(parameters=...)", requirement, shown(name), remedy)
 
 
-def refused(member: int, failure: ValueError) -> ValueError:
+def refusal(member: int, failure: ValueError) -> ValueError:
     """Return the error of one member, with its number."""
     return ValueError(f"{failure} This is member {member}.")
+
+
+class ScalarMembers:
+    """Members of one closed form as its kernel sees them; an axis of length 1 where all agree.
+
+    Attributes:
+        members: Who runs.
+        route: The route of all of them in one.
+        axes: The change from the canonical axes to those of the kernel, with an axis of members where they differ.
+    """
+
+    def __init__(self, members: Members) -> None:
+        self.members, self.route = members, members.lanes
+        self.axes = self.route.axes
+
+    @property
+    def body(self) -> type[Any]:
+        """The type of the bodies that the kernel runs."""
+        return type(self.members.route.body)
+
+    @functools.cached_property
+    def fields(self) -> Float[np.ndarray, "f m"]:
+        """Fields of their bodies, one row each, which only a run needs: for tops they take longer than all else."""
+        fields = np.broadcast_arrays(*self.route.body)
+        return np.reshape(fields, (len(fields), -1))
+
+    @property
+    def scale(self) -> Float[np.ndarray, "m"]:
+        """Factors from momenta to those of the kernel."""
+        return np.reshape(self.route.scale, -1)
+
+    @property
+    def inertia(self) -> Float[np.ndarray, "m 2 2"]:
+        """Inertias along the constraint in the canonical frame."""
+        return np.reshape(self.route.system.canonical.inertia_along, (-1, 2, 2))
+
+    @property
+    def frame_map(self) -> Float[np.ndarray, "m 2 2"]:
+        """C with r_canonical = C r."""
+        return np.reshape(self.route.system.frame_map, (-1, 2, 2))
+
+    @property
+    def pose(self) -> Float[np.ndarray, "m 4"]:
+        """First poses."""
+        return np.reshape(self.route.system.frame_pose, (-1, 4))
+
+    def charts(self, canonical: Float[np.ndarray, "M K 2"]) -> Float[np.ndarray, "M K 2"]:
+        """Return chart coordinates of the kernel: of a sleigh the first is the tangent of half the turn."""
+        return self.axes.beside(1).charts(canonical)
+
+
+def run_in_lanes(discrete: Discretization) -> bool:
+    """Tell whether the members of an ensemble of a discretization are computed side by side."""
+    return in_lanes(Members(discrete, {}, 1))
+
+
+def in_lanes(members: Members) -> bool:
+    """Tell whether members are computed side by side: those of one closed form."""
+    return members.lanes is not None
+
+
+def tangents(
+    members: Members, momenta: Float[np.ndarray, "M K 2"], charts: Float[np.ndarray, "M K 2"]
+) -> Float[np.ndarray, "M K 2 2"]:
+    """Return the derivatives of steps of members in lanes by the momenta of their rows before them."""
+    scalar = ScalarMembers(members)
+    axes = scalar.axes.beside(1)
+    m1, m2 = np.moveaxis(axes.momenta(momenta) * scalar.scale[:, None, None], -1, 0)
+    C, body = scalar.frame_map[:, None], scalar.body(*scalar.fields[..., None])
+    own = np.stack(kernels.tangent(body, m1, m2, *np.moveaxis(axes.charts(charts), -1, 0)), axis=-1)
+    C = C if axes.rows is None else axes.rows @ C
+    return np.linalg.inv(C) @ own.reshape(*m1.shape, 2, 2) @ C
+
+
+def inertias_of(members: Members) -> Float[np.ndarray, "m dim dim"]:
+    """Return canonical inertia operators; an axis of length 1 where all members agree."""
+    if members.joint_system is not None:
+        inertia = members.joint_system.canonical.inertia_operator
+        return inertia if inertia.ndim == 3 else inertia[None]
+    return np.stack([members.of(member).system.canonical.inertia_operator for member in range(len(members))])
+
+
+def check_systems(members: Members) -> None:
+    """Refuse parameters of which no system can be made; those that clearly make one are looked through in one go."""
+    step = members.parameters.get(STEP)
+    if step is not None and callable(getattr(members.discrete, "difference", None)):
+        where, got = "ensemble(parameters={'time_step': ...})", "a function"
+        remedy = "Run `simulate` for each: your own discrete Lagrangian includes its time step."
+        raise error(where, "go with a difference by name", got, remedy)
+    if step is not None and not np.all(step > 0):
+        at = int(np.argmax(~(step > 0)))
+        remedy = f"Pass positive time steps. This is member {at}."
+        raise error("ensemble(parameters={'time_step': ...})", "be positive", f"{step[at]}", remedy)
+    for member in np.flatnonzero(_doubtful(members)):
+        try:
+            members.of(int(member))
+        except ValueError as failure:
+            raise refusal(int(member), failure) from None
+
+
+def _doubtful(members: Members) -> Bool[np.ndarray, "M"]:
+    """Tell which members have to be built to know that they can be."""
+    is_clear = not members.of_system or (members.joint_system is not None and members.joint_system.is_clear)
+    return np.broadcast_to(~np.asarray(is_clear), len(members))

@@ -1,4 +1,4 @@
-"""The result of `ensemble`: columns of the orbits of all members, decoded on access as those of an orbit are."""
+"""The result of `ensemble`: columns of the orbits of all members, decoded on access, and results of their events."""
 
 import dataclasses
 import importlib
@@ -12,10 +12,53 @@ from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Bool, Float, Int
 from nonholo.groups import SE
-from nonholo.simulation.members._event_log import MemberEvents
-from nonholo.simulation.members._families import ScalarMembers, in_lanes
-from nonholo.simulation.members._members import Members
+from nonholo.orbit import AbstractEventLog
+from nonholo.simulation.members._members import Members, ScalarMembers, in_lanes
 from nonholo.simulation.members._start import energies
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class MemberCrossings:
+    """The crossings of one event in the members of an ensemble.
+
+    Attributes:
+        count: How many each member has, (M,).
+        first: The states at the first one, an ensemble of one state each; NaN, also its time, if there is none. Its
+            `steps_done` are the steps with their fractions.
+        last: The states at the last one.
+    """
+
+    count: Int[np.ndarray, "M"]
+    first: Any
+    last: Any
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class MemberEvents(AbstractEventLog[MemberCrossings]):
+    """The crossings of all events in the members of an ensemble, by name or position.
+
+    Attributes:
+        names: The names of the events.
+        found: Their crossings.
+        stopped_by: The position of the event that ended each member, -1 if it ran its full length, (M,).
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+        >>> batch = nh.ensemble(sleigh, restricted_velocity=[[0.1, -1], [0.1, 1]], steps=200, events=[nh.cusp])
+        >>> batch.events["cusp"].count, batch.events["cusp"].first.time[:, 0].round(3)
+        (array([1, 0]), array([7.169,   nan]))
+    """
+
+    names: tuple[str, ...]
+    found: tuple[MemberCrossings, ...]
+    stopped_by: Int[np.ndarray, "M"]
+
+    def __repr__(self) -> str:
+        counts = ", ".join(
+            f"{name}: {crossings.count.sum()}" for name, crossings in zip(self.names, self.found, strict=True)
+        )
+        return f"<MemberEvents of crossings: {counts}, {np.sum(self.stopped_by >= 0)} members stopped>"
+
 
 _OF_FRAME = ("configuration", "pose", "position", "displacement")
 _COUNTED = ("step", "time")  # which follow from the steps done
@@ -73,9 +116,9 @@ class Ensemble:
 
     def __repr__(self) -> str:
         counts = zip(*np.unique(self.outcome, return_counts=True), strict=True)
-        ended = ", ".join(f"{count} {Outcome(int(code))}" for code, count in counts)
+        ends = ", ".join(f"{count} {Outcome(int(code))}" for code, count in counts)
         kind = type(self.members.discrete.system).__name__
-        return f"<Ensemble of {kind}: {len(self)} members, {self._good.shape[1]} states each, {ended}>"
+        return f"<Ensemble of {kind}: {len(self)} members, {self._good.shape[1]} states each, {ends}>"
 
     def orbit(self, member: int) -> Any:
         """Return the good states of one member as an orbit."""
@@ -84,16 +127,16 @@ class Ensemble:
             raise error("Ensemble.orbit(member=...)", f"be below {len(self)}", str(member), "Members count from 0.")
         return self._orbit(member, self._good[member])
 
-    def _orbit(self, member: int, kept: Bool[np.ndarray, "K"]) -> Any:
-        done = self._done[member][kept]
-        about = {"save_every": self.save_every or self.steps or 1, "step": np.nan_to_num(done).astype(np.int64)}
+    def _orbit(self, member: int, rows: Bool[np.ndarray, "K"]) -> Any:
+        numbers = self._step_numbers[member][rows]
+        about = {"save_every": self.save_every or self.steps or 1, "step": np.nan_to_num(numbers).astype(np.int64)}
         outcome = Outcome(int(self.outcome[member]))
-        return self._states(self.members.of(member), (member, kept), outcome=outcome, **about)
+        return self._states(self.members.of(member), (member, rows), outcome=outcome, **about)
 
     def _states(self, motion: Any, rows: Any, **about: Any) -> Any:
         """Return some rows of the states as an orbit."""
-        kept = {"time": self.time[rows]} | {name: column[rows] for name, column in self.columns.items()}
-        return motion.orbit(branch=self.branch, **{name: kept.get(name) for name in motion.columns}, **about)
+        columns = {"time": self.time[rows]} | {name: column[rows] for name, column in self.columns.items()}
+        return motion.orbit(branch=self.branch, **{name: columns.get(name) for name in motion.columns}, **about)
 
     @property
     def _good(self) -> Bool[np.ndarray, "M K"]:
@@ -102,7 +145,7 @@ class Ensemble:
         return np.asarray(np.isfinite(lead.reshape(*lead.shape[:2], -1)).all(-1))
 
     @property
-    def _done(self) -> Int[np.ndarray, "M K"] | Float[np.ndarray, "M K"]:
+    def _step_numbers(self) -> Int[np.ndarray, "M K"] | Float[np.ndarray, "M K"]:
         """How many steps lead to each state."""
         if self.save_every is None:
             return self.steps_done[:, None]
@@ -112,12 +155,12 @@ class Ensemble:
     @property
     def reduced_momentum(self) -> Float[np.ndarray, "M K k"]:
         """Compact momenta of bodies, canonical frame."""
-        return self._decoded("reduced_momentum")
+        return self._decode("reduced_momentum")
 
     @property
     def cayley(self) -> Float[np.ndarray, "M K m"]:
         """Chart coordinates of the displacements of bodies, canonical frame; refused of flows, which have none."""
-        return self._decoded("canonical_chart" if "cayley" not in self.columns else "cayley")
+        return self._decode("canonical_chart" if "cayley" not in self.columns else "cayley")
 
     @property
     def canonical_pose(self) -> Float[np.ndarray, "M K size"] | None:
@@ -142,8 +185,8 @@ class Ensemble:
     @property
     def time(self) -> Float[np.ndarray, "M K"]:
         """Times of the states; with `save_every=None` that of each member's last good one."""
-        known = self.columns.get("time")
-        return self.members.time_step[:, None] * self._done if known is None else known
+        column = self.columns.get("time")
+        return self.members.time_step[:, None] * self._step_numbers if column is None else column
 
     @property
     def times(self) -> Float[np.ndarray, "K"]:
@@ -157,14 +200,14 @@ class Ensemble:
         Spatial ones for a right-invariant constraint.
         """
         if not in_lanes(self.members):
-            return self._decoded("restricted_momentum")
+            return self._decode("restricted_momentum")
         return applied(np.linalg.inv(ScalarMembers(self.members).frame_map)[:, None], self.reduced_momentum)
 
     @property
     def energy(self) -> Float[np.ndarray, "M K"]:
         """Energies; of bodies reduced constrained ones."""
         if not in_lanes(self.members):
-            return self._decoded("energy")
+            return self._decode("energy")
         return energies(ScalarMembers(self.members), self.reduced_momentum)
 
     @property
@@ -182,7 +225,7 @@ class Ensemble:
     @property
     def momentum(self) -> Float[np.ndarray, "M K dim"]:
         """Momenta, of bodies in the body; decoded member by member where parameters differ, some 50 us each."""
-        return self._decoded("momentum")
+        return self._decode("momentum")
 
     @property
     def body_velocity(self) -> Float[np.ndarray, "M K dim"]:
@@ -190,45 +233,45 @@ class Ensemble:
 
         In coordinates those of the steps from the states.
         """
-        return self._decoded("body_velocity")
+        return self._decode("body_velocity")
 
     @property
     def displacement(self) -> Float[np.ndarray, "M K ..."]:
         """Displacements of single steps at the saved states, of bodies matrices W_k."""
-        return self._decoded("displacement")
+        return self._decode("displacement")
 
     @property
     def configuration(self) -> Float[np.ndarray, "M K ..."]:
         """Poses as matrices (M, K, N, N), or coordinates (M, K, n)."""
-        return self._decoded("configuration")
+        return self._decode("configuration")
 
     @property
     def multipliers(self) -> Float[np.ndarray, "M K s"]:
         """Impulses of constraint in the steps from the states, forces of flows; NaN where a step was not taken."""
-        return self._decoded("multipliers")
+        return self._decode("multipliers")
 
     @property
     def constraint_residual(self) -> Float[np.ndarray, "M K"]:
         """Largest residuals of the constraint in coordinates."""
-        return self._decoded("constraint_residual")
+        return self._decode("constraint_residual")
 
     @property
     def pose(self) -> Float[np.ndarray, "M K size"] | None:
         """Compact poses of the group in the user's body frame; None if not reconstructed."""
         if self.canonical_pose is None or not in_lanes(self.members) or self._is_shared("pose"):
-            return None if self.canonical_pose is None else self._decoded("pose")
+            return None if self.canonical_pose is None else self._decode("pose")
         group = self.members.discrete.system.group
         frames = group.matrix_from_pose(ScalarMembers(self.members).pose)[:, None]
         if np.array_equal(frames, np.broadcast_to(group.identity, frames.shape)):
             return self.canonical_pose
         sound = np.asarray(np.isfinite(self.canonical_pose).all(-1))
-        moved = group.matrix_from_pose(self.canonical_pose) @ group.inverse(frames)
-        return _spread(group.pose_from_matrix(moved[sound]), sound)
+        poses = group.matrix_from_pose(self.canonical_pose) @ group.inverse(frames)
+        return _spread(group.pose_from_matrix(poses[sound]), sound)
 
     @property
     def position(self) -> Float[np.ndarray, "M K n"]:
         """Translation parts of the poses; for groups of motions."""
-        return self._decoded("position")
+        return self._decode("position")
 
     @property
     def heading(self) -> Float[np.ndarray, "M K"]:
@@ -250,7 +293,7 @@ class Ensemble:
         none = self._states(self.members.discrete, np.zeros_like(self._good), save_every=every)
         return importlib.import_module("nonholo.simulation.members._dataset").ensemble_to_dataset(self, none)
 
-    def _decoded(self, name: str) -> np.ndarray:
+    def _decode(self, name: str) -> np.ndarray:
         """Return a quantity of orbits, NaN after a member's end; in one go where it is the same function for all."""
         if name in self.columns:
             return self.columns[name]
@@ -258,30 +301,30 @@ class Ensemble:
         if self._is_shared(name):
             return _spread(getattr(self._states(self.members.discrete, good), name), good)
         each = (getattr(self._orbit(member, good[member]), name) for member in range(len(self)))
-        return np.stack([_spread(found, rows) for found, rows in zip(each, good, strict=True)])
+        return np.stack([_spread(values, rows) for values, rows in zip(each, good, strict=True)])
 
     def _is_shared(self, name: str) -> bool:
         """Tell whether a quantity is the same function of the state for all members."""
         motion = self.members.discrete
         if name == "multipliers" or motion.forces is not None:
             return False
-        composed = name == "displacement" and getattr(self.members.route, "order", 2) > 2
-        same = set() if name == "momentum" or composed else {"time_step"}
-        varied = self.members.of_system
-        if varied and name in _OF_FRAME and not composed and self.members.keep_frame:
-            same |= varied
+        is_composition = name == "displacement" and getattr(self.members.route, "order", 2) > 2
+        same = set() if name == "momentum" or is_composition else {"time_step"}
+        names = self.members.of_system
+        if names and name in _OF_FRAME and not is_composition and self.members.keep_frame:
+            same |= names
         return self.members.parameters.keys() <= same
 
 
-def _spread(found: np.ndarray, rows: np.ndarray) -> np.ndarray:
+def _spread(values: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """Return what belongs to the first of the rows in its place among all of them, NaN in the others."""
-    whole = np.full((*rows.shape, *found.shape[1:]), np.nan)
-    places = tuple(numbers[: len(found)] for numbers in np.nonzero(rows))
-    whole[places] = found
+    whole = np.full((*rows.shape, *values.shape[1:]), np.nan)
+    places = tuple(numbers[: len(values)] for numbers in np.nonzero(rows))
+    whole[places] = values
     return whole
 
 
-def stacked(orbits: Sequence[Any], states: int) -> dict[str, np.ndarray]:
+def stack_rows(orbits: Sequence[Any], states: int) -> dict[str, np.ndarray]:
     """Return the rows of the orbits of all members, column by column in one array, NaN where a member has none."""
     rows = [orbit.rows() for orbit in orbits]
     shapes = {name: own.shape[1:] for each in rows for name, own in each.items() if name not in _COUNTED}

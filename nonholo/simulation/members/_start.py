@@ -10,8 +10,7 @@ from nonholo.base.checks import array, error, shape_of
 from nonholo.base.numerics import applied, factors_of, solve_by_factors
 from nonholo.base.types import Bool, Float
 from nonholo.orbit import First
-from nonholo.simulation.members._families import ScalarMembers
-from nonholo.simulation.members._members import Members, refused
+from nonholo.simulation.members._members import Members, ScalarMembers, refusal
 from nonholo.systems import Start, in_group
 
 _CHUNK = 1 << 16  # members whose starts are made at once: what it takes between is not kept
@@ -23,20 +22,20 @@ class Firsts(NamedTuple):
     """The checked starts of members: as `First`, with an axis of members in front of all arrays."""
 
     numbers: tuple[Float[np.ndarray, "M ..."], ...]
-    demanded: Float[np.ndarray, "M ..."] | None
+    demand: Float[np.ndarray, "M ..."] | None
 
     def of(self, member: int) -> First:
         """Return the start of one member."""
-        return First(tuple(x[member] for x in self.numbers), None if self.demanded is None else self.demanded[member])
+        return First(tuple(x[member] for x in self.numbers), None if self.demand is None else self.demand[member])
 
     @property
     def places(self) -> tuple[Float[np.ndarray, "M k"], Float[np.ndarray, "M ..."]]:
         """Momenta, and poses or places."""
         return self.numbers[0], self.numbers[1]
 
-    def part(self, chosen: slice) -> "Firsts":
+    def part(self, which: slice) -> "Firsts":
         """Return the starts of some members."""
-        return Firsts(tuple(x[chosen] for x in self.numbers), None if self.demanded is None else self.demanded[chosen])
+        return Firsts(tuple(x[which] for x in self.numbers), None if self.demand is None else self.demand[which])
 
 
 def in_rows(motion: Any, start: Start, parameters: Mapping[str, np.ndarray]) -> tuple[Start, int]:
@@ -46,14 +45,14 @@ def in_rows(motion: Any, start: Start, parameters: Mapping[str, np.ndarray]) -> 
     """
     pose, velocity = motion.system.shapes
     shapes = {"configuration": pose, start.name: _shape(motion, start, pose, velocity)}
-    given = {"configuration": start.configuration, start.name: start.value}
-    given = {name: value for name, value in given.items() if value is not None}
-    several = [name for name, value in given.items() if len(shape_of(value)) != len(shapes[name])]
+    arrays = {"configuration": start.configuration, start.name: start.value}
+    arrays = {name: value for name, value in arrays.items() if value is not None}
+    several = [name for name, value in arrays.items() if len(shape_of(value)) != len(shapes[name])]
     rows = {
         name: array(
             f"{start.owner}({name}=...)", value, (None, *shapes[name]) if name in several else shapes[name], _ONE
         )
-        for name, value in given.items()
+        for name, value in arrays.items()
     }
     count = _common({name: len(values) for name, values in parameters.items()} | {n: len(rows[n]) for n in several})
     whole = {n: x if n in several else np.broadcast_to(x, (count, *x.shape)) for n, x in rows.items()}
@@ -81,38 +80,38 @@ def _common(lengths: dict[str, int]) -> int:
     return next(iter(lengths.values()))
 
 
-def firsts(members: Members, start: Start, *, posed: bool, at_once: bool) -> Firsts:
+def firsts(members: Members, start: Start, *, with_poses: bool, at_once: bool) -> Firsts:
     """Return the checked starts of all members, with poses or without, from one that has rows.
 
     Those that are computed side by side start at once.
     """
     if start.name == "displacement" or not at_once:
-        return _one_by_one(members, start, posed=posed)
+        return _one_by_one(members, start, with_poses=with_poses)
     momenta = np.empty((len(members), 2))
     for begin in range(0, len(members), _CHUNK):
         part = slice(begin, begin + _CHUNK)
         momenta[part], bad = _momenta_of_part(members.part(part), start.name, start.value[part])
         if bad.any():
-            _of_one(members, start, begin + int(np.argmax(bad)), posed=posed)
+            _of_one(members, start, begin + int(np.argmax(bad)), with_poses=with_poses)
     full = start.name == "momentum" and start.value.shape[1] != 2
     return Firsts((momenta, _poses(members, start)), start.value if full else None)
 
 
-def _one_by_one(members: Members, start: Start, *, posed: bool) -> Firsts:
-    each = [_of_one(members, start, member, posed=posed) for member in range(len(members))]
+def _one_by_one(members: Members, start: Start, *, with_poses: bool) -> Firsts:
+    each = [_of_one(members, start, member, with_poses=with_poses) for member in range(len(members))]
     numbers = tuple(np.stack(column) for column in zip(*(first.numbers for first in each), strict=True))
-    demanded = None if each[0].demand is None else np.stack([np.asarray(first.demand) for first in each])
-    return Firsts(numbers, demanded)
+    demand = None if each[0].demand is None else np.stack([np.asarray(first.demand) for first in each])
+    return Firsts(numbers, demand)
 
 
-def _of_one(members: Members, start: Start, member: int, *, posed: bool) -> First:
+def _of_one(members: Members, start: Start, member: int, *, with_poses: bool) -> First:
     """Return the checked start of one member, refused with its number."""
     pose = None if start.configuration is None else start.configuration[member]
     own = dataclasses.replace(start, value=start.value[member], configuration=pose)
     try:
-        return members.of(member).first(own, posed=posed)
+        return members.of(member).first(own, with_poses=with_poses)
     except ValueError as failure:
-        raise refused(member, failure) from None
+        raise refusal(member, failure) from None
 
 
 def _poses(members: Members, start: Start) -> Float[np.ndarray, "M 4"]:
@@ -124,7 +123,7 @@ def _poses(members: Members, start: Start) -> Float[np.ndarray, "M 4"]:
         try:
             in_group(f"{start.owner}(configuration=...)", system.group, g)
         except ValueError as failure:
-            raise refused(member, failure) from None
+            raise refusal(member, failure) from None
     frames = system.frame if len(pose) == 1 else system.group.matrix_from_pose(pose)
     return system.group.pose_from_matrix(start.configuration @ frames)
 
@@ -154,7 +153,7 @@ def energies(scalar: ScalarMembers, momenta: Float[np.ndarray, "M ... 2"]) -> Fl
     return (momenta * solve_by_factors(factors, momenta)).sum(-1) / 2
 
 
-def are_others(given: Float[np.ndarray, "M ..."], full: Float[np.ndarray, "M ..."]) -> Bool[np.ndarray, "M"]:
+def are_others(demand: Float[np.ndarray, "M ..."], full: Float[np.ndarray, "M ..."]) -> Bool[np.ndarray, "M"]:
     """Tell which momenta or displacements that were given are not those with which the members start."""
-    given, full = given.reshape(len(given), -1), full.reshape(len(full), -1)
-    return np.linalg.norm(given - full, axis=1) > _TOLERANCE * np.linalg.norm(full, axis=1)
+    demand, full = demand.reshape(len(demand), -1), full.reshape(len(full), -1)
+    return np.linalg.norm(demand - full, axis=1) > _TOLERANCE * np.linalg.norm(full, axis=1)

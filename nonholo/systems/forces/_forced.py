@@ -20,11 +20,8 @@ from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
 from nonholo.systems._base import AbstractSystem
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem
-from nonholo.systems.forces._friction import Friction
-from nonholo.systems.forces._gravity import Gravity
-from nonholo.systems.forces._parts import joined, parts_of, terms_of
-from nonholo.systems.forces._slip import Slip
-from nonholo.systems.forces._widened import Widened
+from nonholo.systems.forces._friction import Friction, Slip, Widened, force_of, parts_of, terms_of
+from nonholo.systems.forces._potentials import Gravity
 
 _OFFSET = 8e-3  # of a body direction, for central differences: its sixth power is at rounding
 _DIFFERENCES = np.array([45.0, -9.0, 1.0]) / (60 * _OFFSET)  # of order 6, at one, two and three offsets
@@ -115,8 +112,7 @@ class Forced(AbstractSystem):
     structure: ClassVar[tuple[str, ...]] = ("scheme",)
     normal_form: ClassVar[None] = None
     is_forced: ClassVar[bool] = True
-    homogeneous_mass_tensor = constraint_subspace = carried = moved = cast(Any, None)  # seen by type checkers
-    restrict_at = restricted_velocity = restricted_momentum = cast(Any, None)
+    homogeneous_mass_tensor = constraint_subspace = cast(Any, None)  # seen by type checkers
     locals().update((name, property(operator.attrgetter(f"free.{name}"))) for name in _SAME.split())
 
     def __new__(cls, system: Any = None, potential: Any = None, force: Any = None, scheme: str | None = None) -> Any:
@@ -137,7 +133,7 @@ class Forced(AbstractSystem):
             if not callable(each):
                 each.check(inside.group)
         object.__setattr__(self, "potential", terms if len(terms) > 1 else terms[0] if terms else None)
-        object.__setattr__(self, "force", joined(self._checked_parts()))
+        object.__setattr__(self, "force", force_of(self._checked_parts()))
 
     def _checked_parts(self) -> dict[str, Any]:
         """Return what the force is made of, checked against the system."""
@@ -189,16 +185,16 @@ class Forced(AbstractSystem):
     @functools.cached_property
     def holding(self) -> AbstractSystem:
         """The system while no row yields."""
-        rest = joined({name: each for name, each in self.parts.items() if name != "slip"})
-        held = Forced(self.system, self.potential, rest, self.scheme)
-        return self.system if held.forces is None else held
+        rest = force_of({name: each for name, each in self.parts.items() if name != "slip"})
+        system = Forced(self.system, self.potential, rest, self.scheme)
+        return self.system if system.forces is None else system
 
     @functools.cached_property
     def sliding(self) -> "Forced":
         """The system while rows slide, without the friction of these."""
         rest = {"friction": Friction(np.zeros(self.group.dim))} | self.parts
         del rest["slip"]
-        return Forced(self.free, self.potential, joined(rest), "energy")
+        return Forced(self.free, self.potential, force_of(rest), "energy")
 
     @property
     def table(self) -> Array | None:
@@ -218,8 +214,8 @@ class Forced(AbstractSystem):
     @property
     def names(self) -> str:
         """What acts, as errors call it."""
-        given = [*self.terms, *self.parts.values()]
-        return " and ".join(map(name_of, given))
+        actions = [*self.terms, *self.parts.values()]
+        return " and ".join(map(name_of, actions))
 
     @property
     def needs_function(self) -> bool:
@@ -231,21 +227,21 @@ class Forced(AbstractSystem):
         """Whether numba compiled every function, so that a kernel can call it."""
         return all(hasattr(each, "py_func") for each in (self.own_potential, self.function) if callable(each))
 
-    def is_balanced(self, exact: bool, composed: bool = False) -> bool:
+    def is_balanced(self, exact: bool, is_composition: bool = False) -> bool:
         """Whether forces act by equal half impulses at the displacement, the scheme "energy", around a free step.
 
         Raises:
             ValueError: It is asked for where the free step does not keep its energy.
         """
         if self.slip is not None:
-            return self._slips(exact and not composed)
+            return self._slips(exact and not is_composition)
         if self.scheme == "energy" and not exact:
             got = "an inertia operator, a constraint fixed in space, or another difference or constraint"
             remedy = "Leave scheme out, or pass a mass tensor and the default difference and constraint."
             raise error("Forced(scheme='energy')", "stand around a free step that keeps its energy", got, remedy)
         if self.scheme is not None or not exact:
             return self.scheme == "energy"
-        return composed or self.rank < self.group.dim
+        return is_composition or self.rank < self.group.dim
 
     def _slips(self, exact: bool) -> bool:
         """Refuse steps of rows that yield beside those of order 2 that keep their energy."""
@@ -273,16 +269,16 @@ class Forced(AbstractSystem):
         g = self._at(configuration)
         if not self.terms:
             return np.zeros(g.shape[:-2])
-        given = (_each(self._value, g) if callable(each) else each.energy(self.group, g) for each in self.terms)
-        return functools.reduce(operator.add, given)
+        energies = (_each(self._value, g) if callable(each) else each.energy(self.group, g) for each in self.terms)
+        return functools.reduce(operator.add, energies)
 
     def potential_force(self, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
         """Return -dU, body covectors at configurations: by differences of a function, else exact."""
         g = self._at(configuration)
         if not self.terms:
             return np.zeros((*g.shape[:-2], self.group.dim))
-        given = (_each(self._slope, g) if callable(each) else each.covector(self.group, g) for each in self.terms)
-        return functools.reduce(operator.add, given)
+        covectors = (_each(self._slope, g) if callable(each) else each.covector(self.group, g) for each in self.terms)
+        return functools.reduce(operator.add, covectors)
 
     def mean_force(
         self,
@@ -323,13 +319,13 @@ class Forced(AbstractSystem):
         before, after = _each(self._value, g), _each(self._value, g @ W)
         along = applied(np.asarray(self.inertia_operator), X)
         change, twice = after - before + (pull * X).sum(axis=1), (along * X).sum(axis=1)
-        seen = np.abs(change) > _UNSEEN * (np.abs(before) + np.abs(after))
-        return pull - np.divide(change, twice, out=np.zeros_like(change), where=seen & (twice > 0))[:, None] * along
+        is_significant = (twice > 0) & (np.abs(change) > _UNSEEN * (np.abs(before) + np.abs(after)))
+        return pull - np.divide(change, twice, out=np.zeros_like(change), where=is_significant)[:, None] * along
 
     def applied_force(self, time: float, configuration: np.ndarray, body_velocity: np.ndarray) -> np.ndarray:
         """Return f, one body covector, of `Friction` and a function; nothing of a table, which belongs to steps."""
-        given = self.driving_force(time, configuration, body_velocity)
-        return given if self.friction is None else given + self.friction.covector(body_velocity)
+        force = self.driving_force(time, configuration, body_velocity)
+        return force if self.friction is None else force + self.friction.covector(body_velocity)
 
     def driving_force(self, time: float, configuration: np.ndarray, body_velocity: np.ndarray) -> np.ndarray:
         """Return the body covector of the function alone; zero without one."""
@@ -358,8 +354,8 @@ class Forced(AbstractSystem):
         one = nothing + np.eye(k)
         rows = (-D, one, nothing), (nothing, nothing, one), (nothing, nothing, nothing)
         block = xp.concatenate([xp.concatenate(row, axis=-1) for row in rows], axis=-2)
-        found = exponential_increment(tau * block)[..., :k, :] + np.eye(k, 3 * k)
-        return found.__array_namespace__().stack([found[..., j * k : (j + 1) * k] for j in range(3)])
+        blocks = exponential_increment(tau * block)[..., :k, :] + np.eye(k, 3 * k)
+        return blocks.__array_namespace__().stack([blocks[..., j * k : (j + 1) * k] for j in range(3)])
 
     def impulse(
         self, r: Array, g: Array, constant: Array, tau: Array, propagator: Any = None
@@ -381,7 +377,7 @@ class Forced(AbstractSystem):
         time: Float[np.ndarray, "K"],
         steps: np.ndarray,
         tau: float,
-        said: dict[str, str] | None = None,
+        faults: dict[str, str] | None = None,
     ) -> Float[np.ndarray, "K dim"]:
         r"""Return the impulses j of kicks over a time $\tau$, body covectors; a kick takes r to $r + E^Tj$.
 
@@ -396,25 +392,25 @@ class Forced(AbstractSystem):
             time: Times of the nodes.
             steps: Numbers of the steps, whose row of a table acts.
             tau: Half a time step, or its negative.
-            said: Gets what a force says that is not finite: its impulse is NaN then.
+            faults: Gets what a force says that is not finite: its impulse is NaN then.
         """
-        constant, said = self.potential_force(g) + self.rows(steps), {} if said is None else said
+        constant, faults = self.potential_force(g) + self.rows(steps), {} if faults is None else faults
         if self.function is None:
             return self.impulse(r, g, constant, tau)
         E = self.directions(g)
         to_velocity = E @ inverse_of(E.swapaxes(-1, -2) @ self.inertia_operator @ E)
-        found = np.empty((len(r), self.group.dim))
+        covectors = np.empty((len(r), self.group.dim))
         E, to_velocity = (np.broadcast_to(x, (len(r), *x.shape[-2:])) for x in (E, to_velocity))
         for k in range(len(r)):
 
             def impulse(velocity: np.ndarray, k: int = k) -> np.ndarray:
                 force = np.full(self.group.dim, np.nan)
-                with note_fault(said, "force"):
+                with note_fault(faults, "force"):
                     force = self.driving_force(time[k], g[k], velocity)
                 return self.impulse(r[k], g[k], constant[k] + force, tau)
 
-            found[k] = midpoint_impulse(impulse, r[k], E[k], to_velocity[k])
-        return found
+            covectors[k] = midpoint_impulse(impulse, r[k], E[k], to_velocity[k])
+        return covectors
 
     def work(self, time: np.ndarray, g: np.ndarray, velocity: np.ndarray, step: np.ndarray) -> Float[np.ndarray, "K"]:
         """Return the work of the force along states of steps since the first, by the trapezoidal rule."""
@@ -441,8 +437,8 @@ class Forced(AbstractSystem):
 
 def _each(function: Callable[[np.ndarray], Any], g: np.ndarray) -> np.ndarray:
     """Return the values of a function of one matrix at all of them."""
-    found = np.array([function(each) for each in g.reshape(-1, *g.shape[-2:])])
-    return found.reshape((*g.shape[:-2], *found.shape[1:]))
+    values = np.array([function(each) for each in g.reshape(-1, *g.shape[-2:])])
+    return values.reshape((*g.shape[:-2], *values.shape[1:]))
 
 
 def midpoint_impulse(
@@ -460,7 +456,7 @@ def midpoint_impulse(
     def impulse(after: np.ndarray) -> np.ndarray:
         return impulse_at(to_velocity @ ((r + after) / 2))
 
-    def missed(after: np.ndarray) -> np.ndarray:
+    def residual(after: np.ndarray) -> np.ndarray:
         return r + E.T @ impulse(after) - after
 
     def slope_at(after: np.ndarray) -> np.ndarray:
@@ -470,27 +466,27 @@ def midpoint_impulse(
     first = E.T @ impulse(r)
     offsets = _DIFFERENCE * (np.abs(np.append(r, first)).max() or 1.0) * np.eye(len(r))
     slope = slope_at(r)
-    after = _root(missed, lambda _: slope, r, r + np.nan_to_num(first), _ITERATIONS, shortens=False)
+    after = _root(residual, lambda _: slope, r, r + np.nan_to_num(first), _ITERATIONS, shortens=False)
     if after is None:
-        after = _root(missed, slope_at, r, r, _MOST, shortens=True)
+        after = _root(residual, slope_at, r, r, _MOST, shortens=True)
     if after is None:
         raise OutcomeError(Outcome.no_half_impulse, "Half impulse of a force that depends on the velocity")
     return impulse(after)
 
 
 def _root(
-    missed: Function, slope_at: Function, r: np.ndarray, after: np.ndarray, most: int, *, shortens: bool
+    residual: Function, slope_at: Function, r: np.ndarray, after: np.ndarray, most: int, *, shortens: bool
 ) -> np.ndarray | None:
     """Return the momenta after the impulse by Newton's method, which may halve corrections that miss more; or None."""
     for _ in range(most):
-        gap = missed(after)
+        gap = residual(after)
         left = np.abs(gap).max()
         if not left < np.inf:
             return np.full_like(r, np.nan) if shortens else None
         change, parts = np.linalg.lstsq(slope_at(after), gap)[0], _PARTS if shortens else _PARTS[:1]
         if left <= _ROUNDING * np.abs(np.append(r, after)).max():
             return after + change
-        better = (part for part in parts if not shortens or np.abs(missed(after + part * change)).max() < left)
+        better = (part for part in parts if not shortens or np.abs(residual(after + part * change)).max() < left)
         if (part := next(better, None)) is None:
             return None
         after = after + part * change

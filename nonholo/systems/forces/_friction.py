@@ -1,14 +1,19 @@
-"""Viscous friction: a force against the body velocity, linear in it."""
+"""Viscous friction, rows of a constraint that may yield and the body without these, and what a force is made of."""
 
 import dataclasses
-from typing import ClassVar
+import functools
+import operator
+from typing import Any, ClassVar
 
 import numpy as np
 
-from nonholo.base.checks import array, error, is_traced, shape_of
+from nonholo.base.checks import array, error, is_traced, number, shape_of, shown
 from nonholo.base.limits import within_memory
+from nonholo.base.memo import system_memo
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
+from nonholo.systems._base import AbstractLLSystem, AbstractSystem
+from nonholo.systems._subspace import independent_rows
 
 _ROUNDING = 1e-13  # relative, of an eigenvalue
 
@@ -38,8 +43,8 @@ class Friction:
 
     def __post_init__(self) -> None:
         where, shape = "Friction(coefficients=...)", shape_of(self.coefficients)
-        wanted = (None,) if len(shape) != 2 else (shape[0], shape[0])
-        value = array(where, self.coefficients, wanted, "Pass (dim,) coefficients, or a (dim, dim) matrix.")
+        sizes = (None,) if len(shape) != 2 else (shape[0], shape[0])
+        value = array(where, self.coefficients, sizes, "Pass (dim,) coefficients, or a (dim, dim) matrix.")
         if not value.size:
             raise error(where, "have a coefficient for each direction", "none", "Pass (dim,) coefficients.")
         object.__setattr__(self, "coefficients", value)
@@ -67,3 +72,200 @@ class Friction:
     def covector(self, body_velocity: Float[Array, "... dim"]) -> Float[Array, "... dim"]:
         """Return the force at body velocities."""
         return applied(self.matrix, -body_velocity)
+
+
+_IN_SPAN = 1e-10  # relative, of rows that must lie in a span
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Slip:
+    r"""Rows of a constraint that may yield: one contact with dry and viscous friction.
+
+    With the slip velocity $v = A\omega$, A the rows, and the reaction $\lambda$ in $A^T\lambda$:
+
+    $$ v = 0, \quad |\lambda| \le \mu \qquad\text{or}\qquad
+       \lambda = -\mu\,\frac{v}{|v|} - c\,v, \quad v \ne 0 . $$
+
+    Several rows are one contact with a cone: $|\lambda|$ is their norm. Rows of unit velocities make $\mu$ a force.
+
+    `discretize` decides at every step whether the rows hold, then takes the step of the system itself, or slide
+    (docs/theory/forces.md, Theorem 18.4). T never grows by a slip, at any step size. Momenta and velocities are those
+    of the system without these rows, and an orbit shows the slip: `orbit.body_velocity @ rows.T`, zero while they hold.
+
+    Args:
+        rows: A, (s, dim) rows of the system's annihilator, or others that span the same as s of them. The other rows of
+            the annihilator always hold.
+        grip: $\mu$, the largest reaction that holds; 0 for none, infinite for rows that never yield.
+        viscous: c of the sliding rows.
+
+    Raises:
+        ValueError: Rows that are dependent or not finite, a grip or a coefficient that is negative; by `Forced`, rows
+            that are not those of the constraint, a body without one, a constraint fixed in space; by `discretize`, a
+            free map that does not keep its energy, the scheme "variational", an order above 2.
+
+    Example:
+        A sleigh whose blade holds up to a sideward force of 0.8:
+
+        >>> blade = nh.Slip([[0.0, 0.0, 1.0]], grip=0.8)
+        >>> car = nh.Forced(nh.ChaplyginSleigh(1.0, 1.0, 0.5), force=blade)
+        >>> orbit = nh.simulate(nh.discretize(car, 0.01), body_velocity=(2.0, 1.0, 0.0), steps=500)
+        >>> slip = orbit.body_velocity @ blade.rows[0]
+        >>> bool(slip.any()), bool(slip[-1] == 0), bool((np.diff(orbit.energy) < 1e-14).all())
+        (True, True, True)
+    """
+
+    rows: Array
+    grip: Array
+    viscous: Array = 0.0
+    leaves: ClassVar[tuple[str, ...]] = ("grip", "viscous")
+    structure: ClassVar[tuple[str, ...]] = ("rows",)
+
+    def __post_init__(self) -> None:
+        where = "Slip(rows=...)"
+        rows = array(where, self.rows, (None, None), "Pass (s, dim) rows of the system's annihilator.")
+        rows = independent_rows(where, rows, rows.shape[1])
+        if not len(rows):
+            raise error(where, "have a row", "none", "Pass (s, dim) rows of the system's annihilator.")
+        object.__setattr__(self, "rows", rows)
+        for name in ("grip", "viscous"):
+            place, value = f"Slip({name}=...)", getattr(self, name)
+            endless = name == "grip" and isinstance(value, float) and value == np.inf
+            value = value if endless else number(place, value, "Pass one number that is not negative.")
+            if not is_traced(value) and value < 0:
+                raise error(place, "never add energy", f"{value:.6g}", "Pass a number that is not negative.")
+            object.__setattr__(self, name, value)
+
+    def check(self, system: Any) -> None:
+        """Refuse a system whose constraint does not have the rows."""
+        where, remedy = "Forced(force=Slip(...))", "Pass rows of the system's annihilator."
+        if system.is_spatial:
+            remedy = "Leave the slip out: rows that yield are fixed in the body."
+            raise error(where, "have a constraint fixed in the body", "one fixed in space", remedy)
+        if self.rows.shape[1] != system.group.dim:
+            got = f"rows of {self.rows.shape[1]} numbers"
+            raise error(where, f"have rows of {system.group.dim} numbers", got, remedy)
+        if not len(system.annihilator):
+            raise error(where, "have a constraint that can yield", "a free body", "Leave the slip out.")
+        size = np.abs(self.rows @ system.constraint_subspace.T).max(initial=0.0)
+        if size > _IN_SPAN * np.abs(self.rows).max() * np.abs(system.constraint_subspace).max(initial=1.0):
+            raise error(where, "vanish on the constraint", f"a row that is {size:.6g} along it", remedy)
+        if len(system.annihilator) - len(self.remaining(system)) != len(self.rows):
+            remedy = "Build the LLSystem of annihilator= with the rows that yield and the rows that hold."
+            got = f"{len(self.rows)} rows across them"
+            raise error(where, "span the same as rows of the annihilator", got, remedy)
+
+    def remaining(self, system: Any) -> Float[np.ndarray, "j dim"]:
+        """Return the rows of the annihilator of a system that never yield."""
+        across = system.annihilator - system.annihilator @ np.linalg.pinv(self.rows) @ self.rows
+        return system.annihilator[np.linalg.norm(across, axis=1) > _IN_SPAN * np.linalg.norm(system.annihilator)]
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Widened(AbstractLLSystem):
+    r"""A body whose velocity may leave $\mathfrak{d}$ along vectors V with $AV^T = I$ that are orthogonal to it.
+
+    They are orthogonal in the kinetic energy. So momenta along $\mathfrak{d}$ are those of the system inside, and
+    $\pi = Mv$ with the slip velocity v and $M = V\mathbb{I}V^T$ are the others.
+
+    Attributes:
+        system: The system with its whole constraint.
+        rows: A, (s, dim), what may not vanish.
+        remaining: The rows of its annihilator that never yield.
+    """
+
+    system: AbstractSystem
+    rows: Float[np.ndarray, "s dim"]
+    remaining: Float[np.ndarray, "j dim"]
+    leaves: ClassVar[tuple[str, ...]] = ("system",)
+    structure: ClassVar[tuple[str, ...]] = ("rows", "remaining")
+
+    group = property(operator.attrgetter("system.group"))  # type: ignore[assignment]
+    homogeneous_mass_tensor = property(operator.attrgetter("system.homogeneous_mass_tensor"))
+    inertia_operator = property(operator.attrgetter("system.inertia_operator"))
+    frame = property(operator.attrgetter("system.frame"))
+
+    @system_memo
+    def annihilator(self) -> Float[np.ndarray, "j dim"]:
+        """The rows that never yield."""
+        return self.remaining
+
+    @system_memo
+    def duals(self) -> Float[np.ndarray, "s dim"]:
+        """V, the velocities of unit slips."""
+        system, s = self.system, len(self.rows)
+        S = np.asarray(system.constraint_subspace)
+        equations = np.concatenate([S @ np.asarray(system.inertia_operator), self.remaining, self.rows])
+        return np.linalg.solve(equations, np.eye(len(equations))[:, -s:]).T
+
+    @system_memo
+    def slip_inertia(self) -> Float[np.ndarray, "s s"]:
+        """M, by which momenta of slips are their velocities."""
+        inertia = self.duals @ np.asarray(self.inertia_operator) @ self.duals.T
+        return (inertia + inertia.T) / 2
+
+    @system_memo
+    def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
+        """The rows of the system inside, and V."""
+        return np.concatenate([self.system.constraint_subspace, self.duals])
+
+    @system_memo
+    def inertia_along(self) -> Float[np.ndarray, "k k"]:
+        """That of the system inside beside M: nothing couples them, not even a rounding error."""
+        return beside(np.asarray(self.system.constrained_inertia), self.slip_inertia)
+
+    @functools.cached_property
+    def canonical(self) -> "Widened":  # type: ignore[override]
+        """The same body in the canonical frame of the system inside."""
+        if self.system.canonical is self.system:
+            return self
+        adjoint = self.group.adjoint(self.frame)
+        return Widened(self.system.canonical, self.rows @ adjoint, self.remaining @ adjoint)
+
+    @system_memo
+    def frame_map(self) -> Float[Array, "k k"]:
+        """That of the system inside; the slip is the same in every frame."""
+        return beside(np.asarray(self.system.frame_map), np.eye(len(self.rows)))
+
+
+def beside(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Return the block diagonal matrix of two."""
+    k, s = len(first), len(second)
+    return np.block([[first, np.zeros((k, s))], [np.zeros((s, k)), second]])
+
+
+def parts_of(force: Any) -> dict[str, Any]:
+    """Return friction, slip, table and function of a force, or of a tuple or list of them; of None nothing.
+
+    Rows in a tuple or list are a table, unless friction or a function stands beside them.
+    """
+    several = isinstance(force, tuple | list) and any(_kind(each) != "table" for each in force)
+    forces = force if several else () if force is None else (force,)
+    parts = {_kind(each): each for each in forces}
+    if len(parts) < len(forces):
+        remedy = "Add coefficients, rows or functions of one kind together."
+        raise error("Forced(force=...)", "have at most one force of each kind", shown(force), remedy)
+    return parts
+
+
+def terms_of(potential: Any) -> tuple[Any, ...]:
+    """Return the potentials of one, or of a tuple or list of them, with at most one function; of None nothing."""
+    terms = tuple(potential) if isinstance(potential, tuple | list) else () if potential is None else (potential,)
+    where = "Forced(potential=...)"
+    remedy = "Pass a function of a configuration, Gravity, Linear or Spring; Friction and other forces as force=."
+    for each in terms:
+        if not (callable(each) or hasattr(each, "mean_covector")):
+            raise error(where, "be a potential", shown(each), remedy)
+    if sum(map(callable, terms)) > 1:
+        raise error(where, "have at most one function", shown(potential), "Add them together in one function.")
+    return terms
+
+
+def force_of(parts: dict[str, Any]) -> Any:
+    """Return the force of parts: None of nothing, a single one as it is, a tuple of several."""
+    forces = tuple(parts.values())
+    return forces if len(forces) > 1 else forces[0] if forces else None
+
+
+def _kind(force: Any) -> str:
+    kinds = {Friction: "friction", Slip: "slip"}
+    return kinds.get(type(force)) or ("function" if callable(force) else "table")

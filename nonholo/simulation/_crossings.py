@@ -1,28 +1,28 @@
-"""Events of a motion that is already there, and ready events."""
+"""Events of a motion that is already there, of a flow between its steps and the requested times; ready events."""
 
 import dataclasses
 import functools
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from nonholo.base.checks import error, instance
-from nonholo.base.results import Outcome
+from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
-from nonholo.orbit import AbstractOrbit, AbstractStepper, Crossings, First, Orbit, State
-from nonholo.simulation.events._event import Event, checked_events, has_resets, values_at
-from nonholo.simulation.events._search import Watch, piece_of, search
+from nonholo.orbit import AbstractOrbit, AbstractStepper, Crossings, EventLog, First, Orbit, State
+from nonholo.simulation._event import Event, checked_events, has_resets, values_at
+from nonholo.simulation._search import Part, Watch, piece_of, search
 
 
-def watched(owner: str, stepper: AbstractStepper[Any], events: Any) -> Watch:
+def watch_for(owner: str, stepper: AbstractStepper[Any], events: Any) -> Watch:
     """Return what a run looks for, refused where parts of its steps are not defined."""
-    named = checked_events(owner, events)
+    by_name = checked_events(owner, events)
     if stepper.part_refused is not None:
         remedy = "Look for changes of sign in the states yourself."
         raise error(f"{owner}(events=...)", "have parts of a step", stepper.part_refused, remedy)
-    watch = Watch(named, stepper.motion.after_parts, functools.partial(_with_displacement, stepper))
+    watch = Watch(by_name, stepper.motion.after_parts, functools.partial(_with_displacement, stepper))
     if watch.has_walls:
-        _check_walls(owner, stepper, named)
+        _check_walls(owner, stepper, by_name)
     return watch
 
 
@@ -35,10 +35,10 @@ def refuse_resets(owner: str, events: dict[str, Event], got: str) -> None:
 
 def _check_walls(owner: str, stepper: AbstractStepper[Any], events: dict[str, Event]) -> None:
     """Refuse impacts of motions whose steps cannot begin at an impact."""
-    posed, motion = getattr(stepper, "posed", None), stepper.motion
-    if posed is None:
+    with_poses, motion = getattr(stepper, "with_poses", None), stepper.motion
+    if with_poses is None:
         refuse_resets(owner, events, "those of a system in coordinates")
-    if not posed:
+    if not with_poses:
         refuse_resets(owner, events, "those of a run without poses: reconstruct=False")
     if (forced := motion.forces) is not None and (forced.table is not None or forced.function is not None):
         refuse_resets(owner, events, f"those under {forced.names}: a force of the time, whose steps begin at nodes")
@@ -99,14 +99,14 @@ def crossings(orbit: AbstractOrbit, event: Any) -> Crossings:
     if not orbit.is_discrete or orbit.is_measured or not orbit.has_every_step:
         got = "a flow or given poses" if orbit.has_every_step else "one with steps left out, or with impacts"
         raise error("crossings(orbit=...)", "have every single step of a discrete run", got, "Pass events= to the run.")
-    stepper = orbit.motion.stepper(posed=orbit.has_poses)
+    stepper = orbit.motion.stepper(with_poses=orbit.has_poses)
     if orbit.branch != stepper.branch:
         got, remedy = f"branch {orbit.branch!r}", "Look for changes of sign in the states yourself."
         raise error("crossings(orbit=...)", "have parts of a step", got, remedy)
     refuse_resets("crossings", checked_events("crossings", [event]), "one for an orbit that is there")
-    watch, piece = watched("crossings", stepper, [event]), piece_of(stepper.columns.values())
-    for begun in range(0, max(1, len(orbit) - 1), piece):
-        watch, _ = search(watch, orbit.chosen(slice(begun, begun + piece + 1)))
+    watch, piece = watch_for("crossings", stepper, [event]), piece_of(stepper.columns.values())
+    for begin in range(0, max(1, len(orbit) - 1), piece):
+        watch, _ = search(watch, orbit.chosen(slice(begin, begin + piece + 1)))
         if watch.stopped_by:
             break
     return watch.log()[0]
@@ -122,3 +122,77 @@ def _forward_speed(orbit: Orbit) -> Float[np.ndarray, "K"]:
 
 cusp = Event(_forward_speed, name="cusp")
 r"""The event of a sleigh whose velocity $v_1$ along the blade changes sign: its path in the plane has a cusp there."""
+
+
+def flow_in_coordinates(system: Any, events: Any, **flow: Any) -> Any:
+    """Solve the equations of a system in coordinates; return the orbit with what was found, if there are events."""
+    if events is None:
+        return system.flow(**flow)
+    refuse_resets("flow", checked_events("flow", events), "those of a system in coordinates")
+    by_name = checked_events("flow", events)
+    try:
+        orbit, failure = system.flow(**flow), None
+    except OutcomeError as early:
+        orbit, failure = cast(AbstractOrbit, early.orbit), early
+    result = flow_with_events(by_name, orbit, cast(Any, orbit).solution.looks())
+    if failure is not None and result.events.stopped_by is None:
+        raise OutcomeError(failure.outcome, failure.where, result)
+    return result
+
+
+def flow_with_events(events: dict[str, Event], orbit: Any, steps: Float[np.ndarray, "steps"]) -> Any:
+    """Return the states of a flow up to the event that ends it, with what was found.
+
+    Args:
+        events: What is looked for, by name.
+        orbit: The flow.
+        steps: Times at which steps of its solver begin: there, too, its states are looked at.
+    """
+    forward = _direction(orbit)
+    outputs = forward * orbit.time
+    inside = steps[(forward * steps > outputs[0]) & (forward * steps < outputs[-1])]
+    times = np.unique(np.concatenate([outputs, forward * inside]))
+    looks = orbit.at(forward * times) if len(inside) else orbit
+    return _search_flow(orbit, looks, Watch(events, between_times(looks, forward)))
+
+
+def _direction(orbit: AbstractOrbit) -> float:
+    return 1.0 if orbit.time[-1] >= orbit.time[0] else -1.0
+
+
+def _search_flow(orbit: Any, looks: Any, watch: Watch) -> Any:
+    """Return the orbit up to the event that ends it, with what is found between the states that are looked at."""
+    forward = _direction(orbit)
+    outputs, times = forward * orbit.time, forward * looks.time
+    watch, last = search(watch, looks)
+    outcome = Outcome.successful if watch.stopped_by else orbit.outcome
+    count = int(np.searchsorted(outputs, times[last - 1], "right"))
+    log = watch.log()
+    parts = tuple(of_requested(part, outputs, forward) for part in log.found)
+    return dataclasses.replace(
+        orbit.chosen(slice(0, count)), outcome=outcome, events=EventLog(log.names, parts, log.stopped_by)
+    )
+
+
+def between_times(looks: Orbit, forward: float) -> Part:
+    """Return the function of states and fractions that gives those on a part of the way to the next."""
+    times, spans = forward * looks.time, np.diff(looks.time)
+
+    def between(states: Orbit, fractions: Float[np.ndarray, "K"]) -> Orbit:
+        if not len(states):
+            return states
+        begin = np.searchsorted(times, forward * states.time)
+        return looks.at(forward * np.minimum(forward * (states.time + fractions * spans[begin]), times[-1]))
+
+    return between
+
+
+def of_requested(crossings: Crossings, outputs: np.ndarray, forward: float) -> Crossings:
+    """Return crossings with the numbers of the requested times before them."""
+    times = forward * crossings.time
+    step = np.searchsorted(outputs, times, "right") - 1
+    gaps = np.append(np.diff(outputs), np.inf)
+    fraction, after = (times - outputs[step]) / gaps[step], crossings.after
+    states = dataclasses.replace(crossings.states, step=step)
+    after = None if after is None else dataclasses.replace(after, step=step)
+    return Crossings(step, fraction, crossings.direction, states, after)

@@ -10,8 +10,7 @@ import numpy as np
 
 from nonholo.base.types import Bool, Float, Int
 from nonholo.orbit import AbstractOrbit, Crossings, EventLog, joined_crossings
-from nonholo.simulation.events._event import Event, has_resets, values_at
-from nonholo.simulation.events._impact import Impact
+from nonholo.simulation._event import Event, Impact, has_resets, values_at
 
 Part = Callable[[Any, Float[np.ndarray, "K"]], Any]
 """Gives what is reached from states after fractions of the steps that begin there."""
@@ -50,8 +49,8 @@ class Watch:
     @property
     def left(self) -> list[float]:
         """The number of further crossings of every event that ends the motion, or breaks it; infinite if none does."""
-        done = self.counts or (0,) * len(self.events)
-        left = [event.last - count for event, count in zip(self.events.values(), done, strict=True)]
+        counts = self.counts or (0,) * len(self.events)
+        left = [event.last - count for event, count in zip(self.events.values(), counts, strict=True)]
         return [rest if event.reset is None else 1.0 for event, rest in zip(self.events.values(), left, strict=True)]
 
     @property
@@ -67,8 +66,8 @@ class Watch:
     @property
     def impacts(self) -> list[Any]:
         """The states after impacts, in their order."""
-        hits = (found for part in self.parts for found in part if found.after is not None)
-        return [found.after for found in hits if len(found)]
+        hits = (crossings for part in self.parts for crossings in part if crossings.after is not None)
+        return [crossings.after for crossings in hits if len(crossings)]
 
     @property
     def impact(self) -> Crossings:
@@ -91,10 +90,10 @@ class Watch:
         exact = hit.fraction[0] == 0
         return hit.after, last - int(exact), 1.0 if exact else float(hit.fraction[0])
 
-    def after_stretch(self, found: tuple[Crossings, ...]) -> "Watch":
+    def after_stretch(self, crossings: tuple[Crossings, ...]) -> "Watch":
         """Return what is known after another stretch, but for what is known of its last state."""
-        counts = tuple(map(operator.add, self.counts or (0,) * len(found), map(len, found)))
-        parts = (*self.parts, found) if not self.parts or any(map(len, found)) else self.parts
+        counts = tuple(map(operator.add, self.counts or (0,) * len(crossings), map(len, crossings)))
+        parts = (*self.parts, crossings) if not self.parts or any(map(len, crossings)) else self.parts
         return dataclasses.replace(self, parts=parts, counts=counts, reset_by=None)
 
     def after_impact(self, before: np.ndarray) -> "Watch":
@@ -118,8 +117,8 @@ class Watch:
 
     def log(self) -> EventLog:
         """Return what has been found."""
-        found = tuple(joined_crossings(column) for column in zip(*self.parts, strict=True))
-        return EventLog(tuple(self.events), found, self.stopped_by)
+        crossings = tuple(joined_crossings(column) for column in zip(*self.parts, strict=True))
+        return EventLog(tuple(self.events), crossings, self.stopped_by)
 
 
 def search(watch: Watch, stretch: AbstractOrbit) -> tuple[Watch, int]:
@@ -133,41 +132,43 @@ def search(watch: Watch, stretch: AbstractOrbit) -> tuple[Watch, int]:
     if watch.values is not None:  # those of a state that was seen before stay what they were
         values[:, :1] = watch.values
     else:
-        values[:, :1] = _begun(watch.events, values[:, :1])
+        values[:, :1] = _opening_values(watch.events, values[:, :1])
     owner, left = np.zeros(len(stretch), dtype=int), np.array([watch.left]).T
-    places = crossed(watch.events, stretch, values, owner, left, watch.part)
-    first, kept = int(places.stopped[0]), len(stretch)
+    places = find_crossings(watch.events, stretch, values, owner, left, watch.part)
+    first, count = int(places.stopper[0]), len(stretch)
     if first >= 0:
-        kept = 1 + int(places.end[0] - stretch.step[0])
-    found = tuple(
-        _seen(watch, first, position, stretch, row, at)
+        count = 1 + int(places.end[0] - stretch.step[0])
+    crossings = tuple(
+        _crossings_of(watch, first, position, stretch, row, at)
         for position, (row, at) in enumerate(zip(values, places.at, strict=True))
     )
-    known = watch.after_stretch(found)
+    new_watch = watch.after_stretch(crossings)
     if len(stretch):
-        known = dataclasses.replace(known, values=values[:, kept - 1 : kept])
-    heading = float(stretch.turned[kept - 1]) if stretch.turned is not None else None
-    known = dataclasses.replace(known, heading=heading)
+        new_watch = dataclasses.replace(new_watch, values=values[:, count - 1 : count])
+    heading = float(stretch.turned[count - 1]) if stretch.turned is not None else None
+    new_watch = dataclasses.replace(new_watch, heading=heading)
     if first < 0:
-        return known, kept
+        return new_watch, count
     name, event = tuple(watch.events.items())[first]
-    if event.reset is None or known.counts[first] >= event.last:
-        return dataclasses.replace(known, stopped_by=name), kept
-    known = dataclasses.replace(known, reset_by=name)
-    _, before, _ = known.begun_at(kept - 1)  # at a wall a gap says nothing of sides
-    return known.after_impact(values[:, before : before + 1]), kept
+    if event.reset is None or new_watch.counts[first] >= event.last:
+        return dataclasses.replace(new_watch, stopped_by=name), count
+    new_watch = dataclasses.replace(new_watch, reset_by=name)
+    _, before, _ = new_watch.begun_at(count - 1)  # at a wall a gap says nothing of sides
+    return new_watch.after_impact(values[:, before : before + 1]), count
 
 
-def _seen(watch: Watch, first: int, position: int, stretch: Any, values: np.ndarray, at: np.ndarray) -> Crossings:
+def _crossings_of(
+    watch: Watch, first: int, position: int, stretch: Any, values: np.ndarray, at: np.ndarray
+) -> Crossings:
     """Return the crossings of one event, with the states after its impacts; of two walls at a moment the first acts."""
     name, event = tuple(watch.events.items())[position]
     if event.reset is not None and position != first:
         at = at[:0]
-    found = located(name, event, stretch, values, at, watch.part)
+    crossings = locate(name, event, stretch, values, at, watch.part)
     if event.reset is None:
-        return found
-    after = struck(watch, name, found.states, found.direction) if len(found) else None
-    return dataclasses.replace(found, after=found.states if after is None else after)
+        return crossings
+    after = struck(watch, name, crossings.states, crossings.direction) if len(crossings) else None
+    return dataclasses.replace(crossings, after=crossings.states if after is None else after)
 
 
 def struck(watch: Watch, name: str, states: Any, direction: Int[np.ndarray, "1"]) -> Any:
@@ -178,7 +179,7 @@ def struck(watch: Watch, name: str, states: Any, direction: Int[np.ndarray, "1"]
     return None if after is None else watch.begin(after)
 
 
-def _begun(events: dict[str, Event], values: Float[np.ndarray, "E K"]) -> Float[np.ndarray, "E K"]:
+def _opening_values(events: dict[str, Event], values: Float[np.ndarray, "E K"]) -> Float[np.ndarray, "E K"]:
     """Return values at the first state: one at a wall with a direction is on the side that leads through it."""
     side = [[-event.direction * (event.reset is not None)] for event in events.values()]
     return np.where(values == 0, _TOUCH * np.reshape(side, (-1, 1)), values)
@@ -195,16 +196,16 @@ class Crossed(NamedTuple):
 
     Attributes:
         at: For every event the states before its crossings.
-        stopped: The position of the event that ends each motion, -1 where none does.
+        stopper: The position of the event that ends each motion, -1 where none does.
         end: The step with which it ends.
     """
 
     at: list[Int[np.ndarray, "C"]]
-    stopped: Int[np.ndarray, "M"]
+    stopper: Int[np.ndarray, "M"]
     end: Int[np.ndarray, "M"]
 
 
-def crossed(
+def find_crossings(
     events: dict[str, Event],
     states: AbstractOrbit,
     values: Float[np.ndarray, "E K"],
@@ -222,11 +223,11 @@ def crossed(
         left: The number of further crossings of every event that ends a motion; infinite if none does.
         part: Gives the states after parts of steps.
     """
-    joined, count = owner[1:] == owner[:-1], left.shape[1]
-    at = [np.flatnonzero(changes(event, row) & joined) for event, row in zip(events.values(), values, strict=True)]
+    is_same, count = owner[1:] == owner[:-1], left.shape[1]
+    at = [np.flatnonzero(changes(event, row) & is_same) for event, row in zip(events.values(), values, strict=True)]
     ending = [x[_rank(owner[x]) == most[owner[x]] - 1] for x, most in zip(at, left, strict=True)]
-    done = Crossed(at, np.full(count, -1), np.zeros(count, dtype=int))
-    return _ended(events, states, values, owner, done, ending, part) if any(map(len, ending)) else done
+    places = Crossed(at, np.full(count, -1), np.zeros(count, dtype=int))
+    return _cut_ends(events, states, values, owner, places, ending, part) if any(map(len, ending)) else places
 
 
 def _rank(owner: Int[np.ndarray, "C"]) -> Int[np.ndarray, "C"]:
@@ -234,33 +235,33 @@ def _rank(owner: Int[np.ndarray, "C"]) -> Int[np.ndarray, "C"]:
     return np.arange(len(owner)) - np.searchsorted(owner, owner)
 
 
-def _ended(
+def _cut_ends(
     events: dict[str, Event],
     states: AbstractOrbit,
     values: np.ndarray,
     owner: np.ndarray,
-    done: Crossed,
+    places: Crossed,
     ending: list[np.ndarray],
     part: Part,
 ) -> Crossed:
     """Leave out crossings after those that end a motion, by where they are in its last step."""
-    _, stopped, end = done
+    _, stopper, end = places
     limit, moment = np.full(len(end), len(owner)), np.full(len(end), np.inf)
     for at in ending:
         np.minimum.at(limit, owner[at], at)
-    kept = [at[at <= limit[owner[at]]] for at in done.at]
-    within = [at[at == limit[owner[at]]] for at in kept]
-    found = [
-        located(name, event, states, row, at, part)
+    early = [at[at <= limit[owner[at]]] for at in places.at]
+    within = [at[at == limit[owner[at]]] for at in early]
+    crossings = [
+        locate(name, event, states, row, at, part)
         for (name, event), row, at in zip(events.items(), values, within, strict=True)
     ]
-    gone = [each.step - states.step[at] + each.fraction for each, at in zip(found, within, strict=True)]
-    for event, (at, past) in enumerate(zip(within, gone, strict=True)):
+    moments = [each.step - states.step[at] + each.fraction for each, at in zip(crossings, within, strict=True)]
+    for event, (at, past) in enumerate(zip(within, moments, strict=True)):
         ends = np.isin(at, ending[event]) & (past < moment[owner[at]])
         who = owner[at[ends]]
-        moment[who], stopped[who], end[who] = past[ends], event, found[event].step[ends]
-    late = [at[past > moment[owner[at]]] for at, past in zip(within, gone, strict=True)]
-    return Crossed([np.setdiff1d(at, out) for at, out in zip(kept, late, strict=True)], stopped, end)
+        moment[who], stopper[who], end[who] = past[ends], event, crossings[event].step[ends]
+    late = [at[past > moment[owner[at]]] for at, past in zip(within, moments, strict=True)]
+    return Crossed([np.setdiff1d(at, out) for at, out in zip(early, late, strict=True)], stopper, end)
 
 
 def changes(event: Event, values: Float[np.ndarray, "... K"]) -> Bool[np.ndarray, "... L"]:
@@ -271,7 +272,7 @@ def changes(event: Event, values: Float[np.ndarray, "... K"]) -> Bool[np.ndarray
     return crosses & (event.direction * (after - before) >= 0)
 
 
-def located(
+def locate(
     name: str,
     event: Event,
     stretch: AbstractOrbit,
@@ -302,10 +303,10 @@ def _roots(
 
     def value(fraction: np.ndarray, which: np.ndarray) -> np.ndarray:
         at = which.astype(int)
-        known = np.where(fraction == 0, begin[at], end[at])
+        values = np.where(fraction == 0, begin[at], end[at])
         inner = (fraction > 0) & (fraction < 1)
-        known[inner] = values_at(name, event, part(base.chosen(at[inner]), fraction[inner])) if inner.any() else 0.0
-        return known
+        values[inner] = values_at(name, event, part(base.chosen(at[inner]), fraction[inner])) if inner.any() else 0.0
+        return values
 
     if not len(base):
         return np.empty(0)
@@ -313,8 +314,8 @@ def _roots(
 
     count = np.arange(len(base), dtype=np.float64)
     whole = np.zeros(len(base)), np.ones(len(base))
-    found = elementwise.find_root(value, whole, args=(count,), tolerances={"xatol": _ROUNDING})
-    return np.maximum(found.x, _ROUNDING)
+    roots = elementwise.find_root(value, whole, args=(count,), tolerances={"xatol": _ROUNDING})
+    return np.maximum(roots.x, _ROUNDING)
 
 
 def piece_of(widths: Iterable[int]) -> int:

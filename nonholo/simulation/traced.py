@@ -12,12 +12,12 @@ from nonholo.base.checks import array, count, error, is_traced, shape_of
 from nonholo.base.progress import interruptibly, number_of_work
 from nonholo.base.types import Array
 from nonholo.discrete import Discretization, ScalarRoute, as_discretization
-from nonholo.discrete.definition import in_double, rolled, traceable
+from nonholo.discrete.definition import in_double, roll_out, traceable
 from nonholo.lagrange_dalembert import rolled_in_coordinates
 from nonholo.simulation._options import check_forces, refuse_many_matrices
 from nonholo.systems import AbstractCoordinateDiscretization, Forced, Start, in_coordinates, refuse_in_coordinates
 
-_rolled = equinox.filter_jit(rolled)
+_roll_out = equinox.filter_jit(roll_out)
 _MANY = 10_000  # steps, which may take longer than a user waits for an answer to Ctrl-C
 
 
@@ -94,10 +94,10 @@ def rollout(
         refuse_in_coordinates("rollout", restricted_velocity=(starts.pop("restricted_velocity"), None))
         run, arguments = rolled_in_coordinates, _in_coordinates
     else:
-        as_discretization("rollout(discrete=...)", discrete, composed=True, forced=True)
-        run, arguments = _rolled, _on_group
-    given = arguments(discrete, Start.of("rollout", configuration, **starts), sizes, controls)
-    return _called(run, *given, many=sizes[0] >= _MANY)
+        as_discretization("rollout(discrete=...)", discrete, compositions=True, forced=True)
+        run, arguments = _roll_out, _on_group
+    own = arguments(discrete, Start.of("rollout", configuration, **starts), sizes, controls)
+    return _call(run, *own, many=sizes[0] >= _MANY)
 
 
 def _on_group(discrete: Any, start: Start, sizes: tuple[int, ...], controls: Any) -> tuple[Any, ...]:
@@ -112,16 +112,16 @@ def _on_group(discrete: Any, start: Start, sizes: tuple[int, ...], controls: Any
         if discrete.order > 2:
             got = f"order {discrete.order}"
             raise error("rollout(controls=...)", "have a step of order 2", got, "Use discretize(..., order=2).")
-    check_forces("rollout", discrete, sizes[0], traced=True)
+    check_forces("rollout", discrete, sizes[0], in_jax=True)
     free, forced = discrete, discrete.forces
     if discrete.system.is_forced:
         free = dataclasses.replace(discrete, system=cast(Forced, discrete.system).system)
     route = dataclasses.replace(free, order=2).route
-    closed = jax.tree.map(traceable, route.step) if isinstance(route, ScalarRoute) else None
-    return free, closed, (start.name, value, g), controls, sizes, forced
+    scalar = jax.tree.map(traceable, route.step) if isinstance(route, ScalarRoute) else None
+    return free, scalar, (start.name, value, g), controls, sizes, forced
 
 
-def _called(run: Callable[..., Any], *arguments: Any, many: bool) -> Any:
+def _call(run: Callable[..., Any], *arguments: Any, many: bool) -> Any:
     """Return the states; many steps that are not traced end where nobody wants them any more."""
     if not many or any(map(is_traced, jax.tree.leaves(arguments))):
         return in_double(run, *arguments)
@@ -140,7 +140,7 @@ def _in_coordinates(discrete: Any, start: Start, sizes: tuple[int, ...], control
         got, remedy = type(system).__name__, "Use `LLSystem`, `LRSystem` or `LagrangeDAlembert`."
         raise error("rollout(discrete=...)", "be a body on a group, or in coordinates", got, remedy)
     if not any(map(is_traced, (start.value, start.configuration, *numbers))):
-        discrete.first(start, posed=True)
+        discrete.first(start, with_poses=True)
     n = system.dimension
     value = array(start.where, start.value, (n,))
     q = array("rollout(configuration=...)", start.configuration, (n,), f"Pass the {n} coordinates of the start.")
@@ -156,8 +156,8 @@ def _checked_start(discrete: Discretization, start: Start) -> tuple[Array, Array
         g = start.pose(group)
         start.momentum(system, g)
         return array(start.where, start.value, shape_of(start.value)), g
-    given = group.identity if start.configuration is None else start.configuration
-    g = array("rollout(configuration=...)", given, group.identity.shape, f"Pass an element of {group} as a matrix.")
+    pose = group.identity if start.configuration is None else start.configuration
+    g = array("rollout(configuration=...)", pose, group.identity.shape, f"Pass an element of {group} as a matrix.")
     along = start.name == "restricted_velocity" or (
         start.name == "momentum" and shape_of(start.value) == (system.rank,)
     )

@@ -1,0 +1,255 @@
+r"""Potentials: linear in the entries of the pose, $U = \mathrm{tr}(A^Tg)$, such as weights; and springs."""
+
+import abc
+import dataclasses
+from typing import Any, ClassVar
+
+import numpy as np
+
+from nonholo.base.checks import array, error
+from nonholo.base.numerics import applied
+from nonholo.base.types import Array, Float
+from nonholo.groups import AbstractMatrixGroup
+
+
+class AbstractLinear(abc.ABC):
+    r"""A potential $U(g) = \mathrm{tr}(A^Tg)$ with a constant matrix A, homogeneous on SE(n)."""
+
+    @abc.abstractmethod
+    def matrix_for(self, group: AbstractMatrixGroup) -> Float[Array, "N N"]:
+        """Return A for matrices of the group."""
+
+    @abc.abstractmethod
+    def check(self, group: AbstractMatrixGroup) -> None:
+        """Refuse a group of another size."""
+
+    def energy(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "..."]:
+        """Return U at configurations."""
+        return (self.matrix_for(group) * configuration).sum(axis=(-2, -1))
+
+    def covector(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
+        """Return -dU along the body directions at configurations."""
+        return covector_of(group, self.matrix_for(group), configuration)
+
+    def mean_covector(
+        self, group: AbstractMatrixGroup, g: Float[Array, "... N N"], W: Float[Array, "... N N"]
+    ) -> Float[Array, "... dim"]:
+        r"""Return -G of steps W from poses, $\langle G, x\rangle = \mathrm{tr}(A^Tg(I + Y)x)$: exactly what U loses."""
+        return covector_of(group, self.matrix_for(group), leaning(g, W))
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Linear(AbstractLinear):
+    r"""The potential $U(g) = \mathrm{tr}(A^Tg) = \sum_{ij}A_{ij}g_{ij}$: a magnet, a field, weights at several points.
+
+    Args:
+        matrix: A, (N, N), as large as the matrices of the group: (n + 1, n + 1) on SE(n), whose last column acts on the
+            position. A force F at the body point x is $A = -F x^T$, with x = (..., 1) and F = (..., 0) on SE(n).
+
+    Raises:
+        ValueError: No square matrix, a value that is not finite.
+
+    Example:
+        A magnet along the third body axis in a field along the first axis of space:
+
+        >>> magnet = nh.Linear([[0.0, 0.0, -1.5], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+        >>> needle = nh.Forced(nh.SuslovTop(np.diag([1.0, 1.2, 0.6])), magnet)
+        >>> orbit = nh.simulate(nh.discretize(needle, 0.1), body_velocity=(0.2, 0.1, 0.0), steps=1000)
+        >>> float(np.ptp(orbit.energy)) < 1e-13
+        True
+    """
+
+    matrix: Array
+    leaves: ClassVar[tuple[str, ...]] = ("matrix",)
+    structure: ClassVar[tuple[str, ...]] = ()
+
+    def __post_init__(self) -> None:
+        rows = array("Linear(matrix=...)", self.matrix, (None, None), "Pass A, as large as the matrices of the group.")
+        object.__setattr__(self, "matrix", rows)
+
+    def check(self, group: AbstractMatrixGroup) -> None:
+        """Refuse a group of another size."""
+        if self.matrix.shape != (group.size, group.size):
+            remedy = f"Pass a matrix {(group.size, group.size)}."
+            got = f"shape {self.matrix.shape}"
+            raise error("Forced(potential=Linear(...))", f"be as large as matrices of {group}", got, remedy)
+
+    def matrix_for(self, group: AbstractMatrixGroup) -> Float[Array, "N N"]:
+        """Return A."""
+        del group
+        return self.matrix
+
+    def levers(self, group: AbstractMatrixGroup) -> tuple[Float[Array, "N N"], Float[Array, "dim N N"]]:
+        """Return vectors F_j and L: -dU is the sum of L_j g^T F_j, over the columns of A."""
+        return -self.matrix.T, group.basis.swapaxes(-1, -2)
+
+
+def covector_of(group: AbstractMatrixGroup, A: Array, g: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
+    r"""Return the covectors $-\mathrm{tr}(A^Tg\,x)$ of body directions x at matrices g."""
+    xp: Any = g.__array_namespace__()
+    return -xp.einsum("...ab,...ac,dcb->...d", xp.asarray(A), g, xp.asarray(group.basis))
+
+
+def leaning(g: Float[Array, "... N N"], W: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
+    r"""Return $g(I + Y) = 2 g W(I + W)^{-1}$ with the Cayley matrix Y of displacements."""
+    xp: Any = W.__array_namespace__()
+    one = xp.eye(W.shape[-1])
+    return g @ xp.linalg.solve(one + W, 2 * W)
+
+
+def homogeneous(group: AbstractMatrixGroup, vector: Array, last: float) -> Array:
+    """Return a vector as matrices of the group take it: on motions with one more number, 1 of points, 0 of forces."""
+    if not group.is_affine:
+        return vector
+    rows = np.eye(len(vector) + 1)
+    return vector @ rows[:-1] + last * rows[-1]
+
+
+def check_point(where: str, group: AbstractMatrixGroup, point: Array) -> None:
+    """Refuse a group whose matrices move points of another dimension."""
+    n = group.size - group.is_affine
+    if point.shape != (n,):
+        remedy = f"Pass points and forces with {n} numbers each, or a function of the configuration."
+        raise error(where, f"have points of {group}", f"{len(point)} numbers", remedy)
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Gravity(AbstractLinear):
+    r"""The potential of a constant spatial force F at the body point x, $U(g) = -F\cdot(g\,x)$.
+
+    Its body covector is exact, $\langle -dU, \xi\rangle = (R^TF)\cdot(\hat\xi\,x)$, R the rotation of g: zero along
+    translations across F, the moment $x \times R^TF$ on SO(3). On SO(n) the body turns about the origin of body
+    coordinates, on SE(n) that is the reference point; on any other group matrices act on vectors of their size.
+
+    Args:
+        force: F, n numbers: m times the acceleration of gravity for a weight.
+        point: x, n body coordinates.
+
+    Raises:
+        ValueError: Two shapes that differ, a value that is not finite.
+
+    Example:
+        >>> heavy = nh.Gravity(force=[0.0, 0.0, -2.0], point=[0.0, 0.0, 0.5])
+        >>> float(heavy.energy(nh.SO(3), np.eye(3))), heavy.covector(nh.SO(3), nh.SO(3).exp([0.1, 0.2, 0.0])).round(3)
+        (1.0, array([0.099, 0.198, 0.   ]))
+    """
+
+    force: Array
+    point: Array
+    leaves: ClassVar[tuple[str, ...]] = ("force", "point")
+    structure: ClassVar[tuple[str, ...]] = ()
+
+    def __post_init__(self) -> None:
+        point = array("Gravity(point=...)", self.point, (None,), "Pass the n body coordinates of a point.")
+        force = array("Gravity(force=...)", self.force, point.shape, "Pass as many numbers as the point has.")
+        object.__setattr__(self, "force", force)
+        object.__setattr__(self, "point", point)
+
+    def check(self, group: AbstractMatrixGroup) -> None:
+        """Refuse a group whose matrices move points of another dimension."""
+        check_point("Forced(potential=Gravity(...))", group, self.point)
+
+    def matrix_for(self, group: AbstractMatrixGroup) -> Float[Array, "N N"]:
+        """Return -F x^T for matrices of the group."""
+        weight, place = self.homogeneous(group)
+        return -weight[:, None] * place
+
+    def energy(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "..."]:
+        """Return U at configurations."""
+        weight, place = self.homogeneous(group)
+        return -applied(weight[None], configuration @ place)[..., 0]
+
+    def covector(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
+        """Return -dU along the body directions at configurations."""
+        force, levers = self.levers(group)
+        return applied(levers, force @ configuration)
+
+    def levers(self, group: AbstractMatrixGroup) -> tuple[Float[Array, "N"], Float[Array, "dim N"]]:
+        """Return F and L for matrices of the group, homogeneous on SE(n): -dU is L g^T F."""
+        weight, place = self.homogeneous(group)
+        return weight, group.basis @ place
+
+    def homogeneous(self, group: AbstractMatrixGroup) -> tuple[Float[Array, "N"], Float[Array, "N"]]:
+        """Return F and x as matrices of the group take them."""
+        return homogeneous(group, self.force, 0.0), homogeneous(group, self.point, 1.0)
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Spring:
+    r"""The potential of a spring between the body point x and the space point p, $U(g) = \tfrac k2(|gx - p| - L)^2$.
+
+    Under the scheme "energy" its covector of a step between ends at distances $d_0$, $d_1$ is exact:
+
+    $$ \langle G, \xi\rangle = k\Bigl(1 - \frac{2L}{d_0 + d_1}\Bigr)
+       \Bigl(\frac{gx + g'x}2 - p\Bigr)\cdot g(I + Y)\xi x. $$
+
+    Args:
+        body_point: x, n body coordinates.
+        space_point: p, n coordinates in space.
+        stiffness: k.
+        length: L of the free spring.
+
+    Raises:
+        ValueError: Two shapes that differ, a value that is not finite.
+
+    Example:
+        >>> spring = nh.Spring(body_point=[0.5, 0.0], space_point=[0.0, 0.0], stiffness=2.0, length=0.1)
+        >>> swing = nh.Forced(nh.ChaplyginSleigh(1.0, 1.0, 0.3), spring)
+        >>> orbit = nh.simulate(nh.discretize(swing, 0.1), body_velocity=(0.5, 1.0, 0.0), steps=1000)
+        >>> float(np.ptp(orbit.energy)) < 1e-12
+        True
+    """
+
+    body_point: Array
+    space_point: Array
+    stiffness: Array
+    length: Array = 0.0
+    leaves: ClassVar[tuple[str, ...]] = ("body_point", "space_point", "stiffness", "length")
+    structure: ClassVar[tuple[str, ...]] = ()
+
+    def __post_init__(self) -> None:
+        x = array("Spring(body_point=...)", self.body_point, (None,), "Pass the n body coordinates of a point.")
+        p = array("Spring(space_point=...)", self.space_point, x.shape, "Pass as many numbers as the body point has.")
+        values = {"body_point": x, "space_point": p}
+        for name in ("stiffness", "length"):
+            values[name] = array(f"Spring({name}=...)", getattr(self, name), (), "Pass a finite number.")
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+
+    def check(self, group: AbstractMatrixGroup) -> None:
+        """Refuse a group whose matrices move points of another dimension."""
+        check_point("Forced(potential=Spring(...))", group, self.body_point)
+
+    def energy(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "..."]:
+        """Return U at configurations."""
+        return self.stiffness * (self._size(self._arm(group, configuration)) - self.length) ** 2 / 2
+
+    def covector(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
+        """Return -dU along the body directions at configurations."""
+        arm = self._arm(group, configuration)
+        return self._pull(group, arm, 2 * self._size(arm), configuration)
+
+    def mean_covector(
+        self, group: AbstractMatrixGroup, g: Float[Array, "... N N"], W: Float[Array, "... N N"]
+    ) -> Float[Array, "... dim"]:
+        """Return -G of steps W from poses: what U loses, exactly."""
+        arm, ahead = self._arm(group, g), self._arm(group, g @ W)
+        return self._pull(group, (arm + ahead) / 2, self._size(arm) + self._size(ahead), leaning(g, W))
+
+    def numbers_for(self, group: AbstractMatrixGroup) -> Float[Array, "size"]:
+        """Return stiffness, length and both points as matrices of the group take them."""
+        x, p = homogeneous(group, self.body_point, 1.0), homogeneous(group, self.space_point, 1.0)
+        return np.concatenate([[self.stiffness, self.length], x, p])
+
+    def _arm(self, group: AbstractMatrixGroup, g: Array) -> Array:
+        return g @ homogeneous(group, self.body_point, 1.0) - homogeneous(group, self.space_point, 1.0)
+
+    def _size(self, arm: Array) -> Array:
+        xp: Any = arm.__array_namespace__()
+        return xp.sqrt((arm * arm).sum(axis=-1))
+
+    def _pull(self, group: AbstractMatrixGroup, arm: Array, sizes: Array, leaning: Array) -> Array:
+        xp: Any = leaning.__array_namespace__()
+        stiff = self.stiffness * (1 - 2 * self.length / sizes)
+        directions = group.basis @ homogeneous(group, self.body_point, 1.0)
+        return -stiff[..., None] * xp.einsum("...a,...ab,db->...d", arm, leaning, xp.asarray(directions))
