@@ -46,18 +46,15 @@ def is_participle(name: str) -> bool:
     return bare not in _NOUNS and bool(_IRREGULAR.fullmatch(bare) or _REGULAR.fullmatch(bare))
 
 
-def names(tree: ast.AST) -> Iterator[tuple[int, str]]:
-    """Yield the names that a module defines: its functions, their arguments, its variables; each with its line."""
-    members = {id(part) for node in ast.walk(tree) if isinstance(node, ast.ClassDef) for part in _members(node)}
+def every_name(tree: ast.AST) -> Iterator[tuple[ast.AST, str]]:
+    """Yield the names that a module defines: its functions, their arguments, its variables; each with what defines it."""
     for node in ast.walk(tree):
-        if id(node) in members:
-            continue
         if isinstance(node, ast.FunctionDef):
-            yield node.lineno, node.name
+            yield node, node.name
         elif isinstance(node, ast.arg):
-            yield node.lineno, node.arg
+            yield node, node.arg
         elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
-            yield node.lineno, node.id
+            yield node, node.id
 
 
 def _members(owner: ast.ClassDef) -> Iterator[ast.AST]:
@@ -71,9 +68,11 @@ def _members(owner: ast.ClassDef) -> Iterator[ast.AST]:
 def participles(folder: Path) -> Iterator[tuple[str, str]]:
     """Yield each participle below a folder that nobody argues for, with its place."""
     for path in sorted(folder.rglob("*.py")):
-        for line, name in names(ast.parse(path.read_text())):
-            if is_participle(name) and name.strip("_") not in ARGUED:
-                yield f"{path}:{line}", name
+        tree = ast.parse(path.read_text())
+        public = {id(part) for node in ast.walk(tree) if isinstance(node, ast.ClassDef) for part in _members(node)}
+        for node, name in every_name(tree):
+            if is_participle(name) and name.strip("_") not in ARGUED and id(node) not in public:
+                yield f"{path}:{getattr(node, 'lineno', 0)}", name
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from participles import ARGUED, MEMBERS, MOST, every_name, participles
 
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "docs" / "house.md").read_text()
@@ -71,6 +72,16 @@ def test_what_it_counts() -> None:
     assert f"at most {_BOXES} files and folders" in PAGE
     assert f"the house itself has {_ROOMS} rooms" in PAGE
     assert f"at most {_LINES} lines of code" in PAGE
+
+
+def test_values_have_nouns_and_functions_verbs() -> None:
+    """No name is one bare participle but those that are argued for, which there are; docstrings begin with a noun or a verb."""
+    assert list(participles(LIBRARY)) == []
+    assert len(ARGUED) + len(MEMBERS) <= MOST
+    used = {name.strip("_") for file in FILES for _, name in every_name(_tree(file))}
+    assert {*ARGUED, *MEMBERS} <= used
+    begins = re.compile(r'^\s*r?"""(What|That|Those|Whoever) ', re.MULTILINE)
+    assert [str(file) for file in FILES if begins.search(file.read_text())] == []
 
 
 @pytest.mark.parametrize("body", ["SuslovBody|suslov_body", "SleighBody"], ids=["top", "sleigh"])

@@ -45,7 +45,7 @@ _STIFF = 2e6  # of a flow, in times in which friction slows the body down: a ste
 
 
 class LinearForces(NamedTuple):
-    """What acts along the canonical rows of the constraint.
+    """Forces along the canonical rows of the constraint.
 
     Attributes:
         vectors: F, vectors in space.

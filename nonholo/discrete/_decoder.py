@@ -19,7 +19,7 @@ from nonholo.orbit import Decoder
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class DisplacementDecoder:
-    """What is read of the displacements of single steps of any left-invariant map."""
+    """Columns that are read from the displacements of single steps of any left-invariant map."""
 
     discrete: Scheme
 

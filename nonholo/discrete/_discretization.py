@@ -51,7 +51,7 @@ class Discretization(Scheme, AbstractMotion):
 
     @functools.cached_property
     def displacement_decoder(self) -> AnyDisplacementDecoder:
-        """What decodes the displacements of its single steps."""
+        """The decoder of the displacements of its single steps."""
         return displacement_decoder(self, self.decoder)
 
     @functools.cached_property

@@ -42,7 +42,7 @@ _Number = Annotated[float, Field(ge=-1e6, le=1e6)]
 
 
 class _State(BaseModel):
-    """What a page may say that it shows, by the rules of `view/state.mjs`."""
+    """The states that a page accepts, by the rules of `view/state.mjs`."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
     kind: Literal["top", "sleigh", "forced_top", "forced_sleigh", "top4"]

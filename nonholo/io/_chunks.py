@@ -15,7 +15,7 @@ _NAN = "NaN"
 
 
 class DamagedError(Exception):
-    """What is wrong with a part of a store; whoever reads it says so, or computes the part again."""
+    """Damage of a part of a store; a reader reports it, or computes the part again."""
 
 
 def opened_array(root: Path, name: str, shape: tuple[int, ...] | None) -> zarr.Array:

@@ -152,7 +152,7 @@ def restore_ready(name: str, parameters: dict[str, Any]) -> Any:
 
 
 class _Recorded(BaseModel):
-    """What a store knows of a system whose functions it does not hold."""
+    """A system whose functions its store does not hold."""
 
     name: str
     coordinates: Annotated[tuple[str, ...], AfterValidator(lambda several: several and names("coordinates", several))]

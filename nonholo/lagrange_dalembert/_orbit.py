@@ -341,7 +341,7 @@ class CoordinateFlow(CoordinateMotion):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class RecordedSystem(AbstractCoordinateSystem):
-    """What a store says of a system whose functions it does not hold: enough for pictures and tables.
+    """A system whose functions its store does not hold: the store describes it enough for pictures and tables.
 
     Attributes:
         record: Fields that could be restored, with what else was recorded.

@@ -236,7 +236,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
 
     @functools.cached_property
     def family(self) -> Self:
-        """What is the same for all numbers of the parameters: the system with zeros."""
+        """The system with zeros as parameters, which stands for all their numbers."""
         if not self.parameters:
             return self
         family = self._with_fields(parameters=self.parameters.nothing)

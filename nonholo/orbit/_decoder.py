@@ -90,7 +90,7 @@ def turned_near(headings: Float[np.ndarray, "K"], pose: Float[np.ndarray, "K 4"]
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class BodyDecoder:
-    """What is read of the momenta and poses of orbits of any system."""
+    """Columns that are read from the momenta and poses of orbits of any system."""
 
     system: System
     numbers: ClassVar[None] = None

@@ -50,7 +50,7 @@ class AbstractMotion(Keeper, abc.ABC):
 
     @functools.cached_property
     def decoder(self) -> Decoder:
-        """What decodes the momenta and poses of its orbits."""
+        """The decoder of the momenta and poses of its orbits."""
         return decoder_of(self.system)
 
     @property

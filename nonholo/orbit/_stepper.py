@@ -153,7 +153,7 @@ class DiscreteMotion(Protocol[OrbitT]):
 
     @property
     def system(self) -> Any:
-        """What moves."""
+        """The system or map whose motion it steps."""
 
     @property
     def time_step(self) -> Any:

@@ -80,7 +80,7 @@ _R = TypeVar("_R")
 
 
 class Look(TypedDict, total=False):
-    """What every picture takes by keyword, beside its own arguments; None is as if it were not given.
+    """The keywords of every picture beside its own arguments; None means that one is left out.
 
     Attributes:
         title: Instead of the picture's own title; "" for none. A title that the axes have, or get later, also takes

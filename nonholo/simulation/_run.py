@@ -25,7 +25,7 @@ _SOON, _LATE = 0.1, 0.3  # seconds: Ctrl-C waits for a call, whose steps are dou
 
 
 class Run(NamedTuple):
-    """What runs, and how.
+    """The motion of a run and its options.
 
     Attributes:
         stepper: What takes its steps.

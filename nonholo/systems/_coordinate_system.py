@@ -51,7 +51,7 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
 
     @property
     def family(self) -> Any:
-        """What is the same for all numbers of the parameters: one system for them all."""
+        """The one system that stands for all numbers of the parameters."""
         return self
 
     def bound(self, *numbers: Any) -> Any:

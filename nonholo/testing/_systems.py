@@ -99,7 +99,7 @@ class SystemSamples:
 
     @functools.cached_property
     def force(self) -> Float[np.ndarray, "4 dim"]:
-        """What a function or friction exerts on them at time zero."""
+        """The forces of a function or of friction on them at time zero."""
         states = zip(self.g, self.body_velocity, strict=True)
         rows = [] if self.forced is None else [self.forced.applied_force(0.0, *state) for state in states]
         return np.reshape(rows or np.zeros_like(self.momentum), self.momentum.shape)

@@ -98,7 +98,7 @@ def bent(rows: np.ndarray, loss: str) -> Bent:
 
 
 class Estimate(NamedTuple):
-    r"""What residuals and derivatives at a point tell.
+    r"""The likelihood at a point, from residuals and their derivatives.
 
     Attributes:
         levels: The noise levels that follow from the present ones, $\sigma_k^2 = \sum r^2/(n_k - \mathrm{tr} G_k)$.

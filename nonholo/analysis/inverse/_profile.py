@@ -111,7 +111,7 @@ def profile_of(minimum: Minimum, at: int, name: str, level: Any) -> Profile:
 
 
 class _Search(NamedTuple):
-    """What profiles of one number are searched with."""
+    """The settings of a search for the profile of one number."""
 
     minimum: Minimum
     at: int

@@ -34,7 +34,7 @@ class Ranges(NamedTuple):
 
 
 class Solution(NamedTuple):
-    """What a search came to: a point, noise levels, what residuals tell there, and whether both have settled."""
+    """The end of a search: a point, noise levels, the likelihood there, and whether both have settled."""
 
     point: np.ndarray
     noise: np.ndarray
@@ -43,7 +43,7 @@ class Solution(NamedTuple):
 
 
 class Search(NamedTuple):
-    """What is searched.
+    """The problem of a search.
 
     Attributes:
         problem: Residuals with derivatives.

@@ -115,7 +115,7 @@ _OUTSIDE = 1e-8  # by which a start or a goal may miss them
 
 
 class StateBounds(NamedTuple):
-    """What is bounded: low <= rows @ numbers <= high, of every state after the start.
+    """Bounds of every state after the start, low <= rows @ numbers <= high.
 
     Attributes:
         rows: Coefficients of the numbers of a state.

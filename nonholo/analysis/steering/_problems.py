@@ -144,7 +144,7 @@ class CoordinateNodes(NamedTuple):
 
 
 class Goal(NamedTuple):
-    """What is to be reached: coordinates by index, and a velocity where one is named."""
+    """The goal: coordinates by index, and a velocity where one is named."""
 
     coordinates: dict[int, float]
     velocity: Float[np.ndarray, "n"] | None

@@ -23,7 +23,7 @@ _SAMPLES = 3  # random points at which an entry of a derivative vanishes only if
 
 
 class Steps(NamedTuple):
-    """What all steps share.
+    """Numbers that all steps share.
 
     Attributes:
         nodes: Unknowns and equations of a step.

@@ -92,12 +92,12 @@ class MadeTable(Section):
 
     @property
     def values(self) -> dict[str, Any]:
-        """What is given, by the names of the arguments."""
+        """The arguments that the table has, by their names."""
         return self.model_dump(exclude_none=True, exclude={"kind"})
 
     @functools.cached_property
     def product(self) -> Any:
-        """What the table makes."""
+        """The body that the table describes."""
         values = self.values
         ways = (type(self).make, *type(self).others)
         for make in ways:
@@ -134,11 +134,11 @@ def table_of(word: str, make: Maker, kind: bool = False, plain: bool = True) -> 
     """
     others = tuple(getattr(make, name) for name in ("from_inertia",) if hasattr(make, name))
     fields: dict[str, Any] = {"kind": (str, ...)} if kind else {}
-    shared = set.intersection(*({*arguments(way)} for way in (make, *others)))
+    common = set.intersection(*({*arguments(way)} for way in (make, *others)))
     for way in (make, *others):
         about = meanings(way)
         for name, each in arguments(way).items():
-            default = _default_of(each) if name in shared else None
+            default = _default_of(each) if name in common else None
             shape = Group if name == "group" else Numbers if plain else Any
             fields.setdefault(name, (shape, Field(default, description=about.get(name))))
     table = create_model(word, __base__=MadeTable, __doc__=summary(make), **fields)

@@ -22,7 +22,7 @@ _CLASSES: dict[str, Maker] = {
 
 
 class AbstractForces(Section):
-    """What acts on the body beside its constraint; several add up."""
+    """Forces on the body beside those of its constraint; several add up."""
 
     table: Numbers | None = None
     """A force for each step, in body axes: rows, or the path of a CSV file of them, from the folder of the scenario."""

@@ -141,7 +141,7 @@ def _check_keys(table: dict[str, Any], keys: list[str], necessary: list[str], ex
 
 
 class Values(Section, Generic[Value]):
-    """What is varied, by table and key: values along the axes of a grid, or distributions."""
+    """The varied keys, by table and key: values along the axes of a grid, or distributions."""
 
     body: dict[str, Value] = Field(default_factory=dict)
     start: dict[str, Value] = Field(default_factory=dict)
@@ -164,7 +164,7 @@ class GridDesign(Section):
     seed: Seed = 0
     """Of random numbers."""
     values: Values[Annotated[Any, checked_by(along)]]
-    """What is varied, by key path, and its values: a list, or a range with a count."""
+    """The varied keys, by path, and their values: a list, or a range with a count."""
 
     def with_members(self) -> Self:
         """Return the design with the counts of its ranges multiplied by one factor, for the members asked for."""
@@ -194,7 +194,7 @@ class RandomMembers(Section):
     seed: Seed = 0
     """Of random numbers."""
     values: Values[Annotated[Any, checked_by(distribution_of)]]
-    """What is varied, by key path, and its distribution."""
+    """The varied keys, by path, and their distributions."""
 
     def with_members(self) -> Self:
         """Return the design itself: it has the members asked for."""
@@ -231,9 +231,9 @@ class SweepOutput(Section):
     color: str | None = None
     """The quantity that it shows."""
     x: str | None = None
-    """What is varied along the horizontal axis, by key path."""
+    """The key along the horizontal axis, by its path."""
     y: str | None = None
-    """What is varied along the vertical axis."""
+    """The key along the vertical axis."""
 
 
 class SweepScenario(AbstractScenario):

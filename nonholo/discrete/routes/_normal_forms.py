@@ -46,7 +46,7 @@ def _sleigh(form: NormalForm) -> kernels.SleighBody:
 
 
 def _turns(form: NormalForm) -> bool:
-    """What does not slide is a top."""
+    """A body that does not slide is a top."""
     return not form.is_sleigh
 
 

@@ -89,7 +89,7 @@ class SlipRoute(AbstractForcedRoute):
 
     @functools.cached_property
     def variety(self) -> Variety:
-        """That of steps that slide."""
+        """The route of steps that slide."""
         return variety_of(self.body, "skew")
 
     @functools.cached_property

@@ -53,7 +53,7 @@ class Definition(NamedTuple):
 
     @property
     def distributions(self) -> dict[str, AbstractDistribution]:
-        """What is drawn for each orbit, by name."""
+        """The random quantities of each orbit, by name."""
         draws: dict[str, AbstractDistribution] = {"start_energy": Uniform(*self.energy)}
         draws["start_direction"] = Direction(len(self.weights))
         if self.spread is not None:

@@ -53,7 +53,7 @@ _CODECS = BloscCodec(cname="lz4", clevel=5, shuffle="bitshuffle"), Crc32cCodec()
 
 
 class Mark(NamedTuple):
-    """What the mark of a finished block says."""
+    """The mark of a finished block."""
 
     members: int
     outcomes: dict[str, int]

@@ -94,7 +94,7 @@ class Balanced(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """What half impulses write to.
+    """The arrays that half impulses write to.
 
     Attributes:
         poses: The user's pose before and after, in the middle, and others, (8, N, N).

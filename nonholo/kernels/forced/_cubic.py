@@ -100,7 +100,7 @@ class Pull(NamedTuple):
 
 
 class Cubic(NamedTuple):
-    """What the cubic of a step has of body and forces.
+    """The numbers of body and forces in the cubic of a step.
 
     Attributes:
         A: B + K.

@@ -57,7 +57,7 @@ class Drive(NamedTuple):
 
 
 class DriveRoom(NamedTuple):
-    """What a half impulse writes to.
+    """The arrays that a half impulse writes to.
 
     Attributes:
         force: The momenta of what does not depend on velocities, (k,).

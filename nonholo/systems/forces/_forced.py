@@ -163,7 +163,7 @@ class Forced(AbstractSystem):
 
     @functools.cached_property
     def parts(self) -> dict[str, Any]:
-        """What the force is made of: "friction", "table", "function", those that there are."""
+        """The parts of the force among "friction", "table" and "function"."""
         return parts_of(self.force)
 
     @property
@@ -213,7 +213,7 @@ class Forced(AbstractSystem):
 
     @property
     def names(self) -> str:
-        """What acts, as errors call it."""
+        """The name of the forces in errors."""
         actions = [*self.terms, *self.parts.values()]
         return " and ".join(map(name_of, actions))
 

@@ -210,7 +210,7 @@ class Widened(AbstractLLSystem):
 
     @system_memo
     def inertia_along(self) -> Float[np.ndarray, "k k"]:
-        """That of the system inside beside M: nothing couples them, not even a rounding error."""
+        """The operator of the system inside beside M: nothing couples them, not even a rounding error."""
         return beside(np.asarray(self.system.constrained_inertia), self.slip_inertia)
 
     @functools.cached_property
@@ -223,7 +223,7 @@ class Widened(AbstractLLSystem):
 
     @system_memo
     def frame_map(self) -> Float[Array, "k k"]:
-        """That of the system inside; the slip is the same in every frame."""
+        """The system inside in its canonical frame; the slip is the same in every frame."""
         return beside(np.asarray(self.system.frame_map), np.eye(len(self.rows)))
 
 
