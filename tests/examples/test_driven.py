@@ -103,8 +103,8 @@ def test_torques_of_the_robot() -> None:
     """Without torques and friction nothing drives it; two numbers are constant torques; others are refused."""
     robot = nh.examples.two_wheeled_robot
     assert not robot().system.is_driven
-    assert robot(torques=lambda time: (time, 0.0)).system.described is None  # no store holds a function
-    assert robot(torques=(0.3, 0.1)).system.described[1]["torques"] == [0.3, 0.1]
+    assert robot(torques=lambda time: (time, 0.0)).system.description is None  # no store holds a function
+    assert robot(torques=(0.3, 0.1)).system.description[1]["torques"] == [0.3, 0.1]
     force = robot(torques=(0.3, 0.1), friction=0.5).system.force
     with double_precision():
         pushed = np.asarray(force(jnp.asarray(2.0), jnp.zeros(5), jnp.arange(5.0)))

@@ -72,7 +72,7 @@ def test_a_run_that_is_stopped_resumed_and_extended_is_the_run(name: str, tmp_pa
     assert same(nh.extend(path, 24), whole)
     opened = nh.load_orbit(path)
     assert same(opened, whole)
-    assert opened.system.described == whole.system.described == (f"examples.{name}", opened.system.described[1])
+    assert opened.system.description == whole.system.description == (f"examples.{name}", opened.system.description[1])
     assert name in BODIES or opened.system == whole.system
     assert np.array_equal(opened.restricted_momentum, whole.restricted_momentum)
     stored = json.loads((path / "zarr.json").read_text())["attributes"]
@@ -222,11 +222,11 @@ def test_the_store_of_a_stranger_runs_nothing(tmp_path: Path) -> None:
 def test_what_is_changed_is_no_ready_system_any_more() -> None:
     """A potential, a replaced field: such a system is its own; numbers of the body alone tell it from others."""
     system = ready("particle").system
-    assert system.described == ("examples.particle", {"mass": 1.0})
+    assert system.description == ("examples.particle", {"mass": 1.0})
     assert nh.examples.particle(mass=1, planar_velocity=(2.0, 3.0)).system is system
-    assert nh.Forced(system, lambda q: q[2]).described is None
-    assert dataclasses.replace(system, rule="trapezoidal").described is None
-    assert nh.examples.chaotic_quartic_oscillator(pairs=1).system.described[1] == {"pairs": 1}
+    assert nh.Forced(system, lambda q: q[2]).description is None
+    assert dataclasses.replace(system, rule="trapezoidal").description is None
+    assert nh.examples.chaotic_quartic_oscillator(pairs=1).system.description[1] == {"pairs": 1}
 
 
 def test_damage_is_refused_and_computed_again(tmp_path: Path) -> None:
