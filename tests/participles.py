@@ -27,8 +27,9 @@ ARGUED = {
 MEMBERS = {
     *("chosen", "displaced", "drawn", "ended", "enlarged", "expected", "failed", "found", "isolated", "joined"),
     *("missed", "passed", "turned"),
+    *("added", "done", "finished", "made"),
 }
-"""Public attributes and methods of orbits, motions, logs of events, pictures and reports."""
+"""Public attributes and methods of orbits, motions, logs of events, pictures and reports; keys of stores."""
 MOST = 40
 _IRREGULAR = re.compile(
     "begun|broken|brought|built|caught|chosen|done|drawn|felt|found|given|gone|grown|held|hidden|kept|known|lost|made|"

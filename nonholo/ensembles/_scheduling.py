@@ -54,13 +54,13 @@ def _here(work: Work, blocks: Iterator[int], scheduler: str, workers: int | None
     import dask
     from dask.system import CPU_COUNT
 
-    def finished(_key: Any, done: Any, *_: Any) -> None:
-        take(done)
+    def report(_key: Any, result: Any, *_: Any) -> None:
+        take(result)
 
     one = dask.delayed(functools.partial(do_block, work), name="block", pure=False, traverse=False)  # pyright: ignore
     pool = _pool(scheduler, workers or CPU_COUNT)
     options = {} if pool is None else {"pool": pool}
-    options |= {"chunksize": 1, "callbacks": [(None, None, None, finished, None)]}  # of this call, not of all of Dask
+    options |= {"chunksize": 1, "callbacks": [(None, None, None, report, None)]}  # of this call, not of all of Dask
     try:
         while wave := [one(block) for block in itertools.islice(blocks, _WAVE)]:
             dask.compute(*wave, scheduler=scheduler, optimize_graph=False, traverse=False, **options)  # pyright: ignore

@@ -18,8 +18,8 @@ from ._csv import store_to_csv as store_to_csv
 from ._csv import table_lines as table_lines
 from ._descriptions import described_system as described_system
 from ._descriptions import fields_of as fields_of
+from ._descriptions import missing_part as missing_part
 from ._descriptions import recorded_system as recorded_system
-from ._descriptions import unstored as unstored
 from ._groups import create_array as create_array
 from ._groups import edit_attributes as edit_attributes
 from ._groups import new_group as new_group
@@ -44,14 +44,14 @@ from ._orbit_store import standing as standing
 from ._orbit_store import writable_array as writable_array
 from ._places import check_file as check_file
 from ._places import complete_file as complete_file
-from ._places import locked as locked
 from ._places import new_beside as new_beside
 from ._places import new_file as new_file
 from ._places import owner_of as owner_of
 from ._places import remove_store as remove_store
+from ._places import write_lock as write_lock
 from ._stored_events import Checkpoint as Checkpoint
 from ._stored_events import Seen as Seen
-from ._stored_events import described as described
+from ._stored_events import events_text as events_text
 from .datasets._dataset import Variable as Variable
 from .datasets._dataset import is_known as is_known
 from .datasets._dataset import labels_of as labels_of

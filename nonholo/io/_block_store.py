@@ -179,8 +179,8 @@ class BlockStore:
         """
         file = self._mark_file(block)
         try:
-            written = file.read_text()
-            check, _, text = written.partition(" ")
+            line = file.read_text()
+            check, _, text = line.partition(" ")
             mark = _MARK.validate_python(json.loads(text))
         except FileNotFoundError:
             return None
@@ -193,25 +193,25 @@ class BlockStore:
             raise DamagedError(f"the mark {file.name} is damaged")
         return mark
 
-    def marked(self) -> set[int]:
+    def block_numbers(self) -> set[int]:
         """Return the blocks that have a mark, sound or not; the folder is read once."""
         folder = self.path / _MARKS
         stems = (name.removesuffix(".json") for name in os.listdir(folder)) if folder.is_dir() else ()
         return {int(stem) for stem in stems if stem.isdecimal()}
 
-    def written(self, block: int) -> BlockMark:
+    def mark_of(self, block: int) -> BlockMark:
         """Return the mark of a block, which must be there."""
         mark = self.mark(block)
         if mark is None:
             raise DamagedError(f"no mark {self._mark_file(block).name}")
         return mark
 
-    def ended(self, block: int) -> BlockMark:
+    def checked_mark(self, block: int) -> BlockMark:
         """Return the mark of a block that holds the chunks that were written.
 
         That each chunk is sound is looked at where it is read.
         """
-        mark = self.written(block)
+        mark = self.mark_of(block)
         self._check_seal(block, mark)
         return mark
 
@@ -221,7 +221,7 @@ class BlockStore:
         Raises:
             DamagedError: One is not, or the mark is not; the message says which, and how.
         """
-        mark = self.written(block)
+        mark = self.mark_of(block)
         for name, index in self._chunks(block, mark):
             array, with_nan = self._array(name), self.holds_nan or name == EVENTS
             try:
@@ -247,7 +247,7 @@ class BlockStore:
     def cut_log(self, block: int) -> None:
         """Cut the log to its chunks up to the end of a block."""
         if self.log is not None:
-            self.log.resize((self.written(block).log[1] * self.log.chunks[0], self.log.shape[1]))
+            self.log.resize((self.mark_of(block).log[1] * self.log.chunks[0], self.log.shape[1]))
 
     def prepare(self) -> None:
         """Remove what killed writers left; nothing here loses data."""
@@ -299,12 +299,12 @@ class BlockStore:
 
 def new_blocks(path: Path, metadata: dict[str, Any], variables: Variables, rows: int, chunk: int) -> BlockStore:
     """Make the store of an orbit, whose arrays have this many rows, this many in a block; none is written yet."""
-    made, shapes = uuid.uuid4().hex, {name: (rows, *variable.shape[1:]) for name, variable in variables.items()}
-    group = new_group(path, metadata | {"made": made, "arrays": json.dumps(shapes)}, OrbitMetadata)
+    identity, shapes = uuid.uuid4().hex, {name: (rows, *variable.shape[1:]) for name, variable in variables.items()}
+    group = new_group(path, metadata | {"made": identity, "arrays": json.dumps(shapes)}, OrbitMetadata)
     create_groups(group, variables)
     arrays = {name: create_array(group, name, variable, rows, chunk) for name, variable in variables.items()}
     make_marks(group, path)
-    return BlockStore(path, made, Layout((rows,), (chunk,)), arrays)
+    return BlockStore(path, identity, Layout((rows,), (chunk,)), arrays)
 
 
 def make_marks(group: zarr.Group, path: Path) -> None:

@@ -71,11 +71,11 @@ def create_array(group: zarr.Group, name: str, variable: Variable, rows: int, ch
 def settle(path: Path) -> None:
     """Wait until a file, or the names in a folder, are on the disk: a power cut does not take them back."""
     with contextlib.suppress(PermissionError):  # Windows opens no folders
-        opened = os.open(path, os.O_RDONLY)
+        descriptor = os.open(path, os.O_RDONLY)
         try:
-            os.fsync(opened)
+            os.fsync(descriptor)
         finally:
-            os.close(opened)
+            os.close(descriptor)
 
 
 def remove_partials(store: Path) -> None:
@@ -86,12 +86,12 @@ def remove_partials(store: Path) -> None:
                 Path(folder, file).unlink(missing_ok=True)
 
 
-def write_whole(path: Path, text: str, *, settled: bool = False) -> None:
+def write_whole(path: Path, text: str, *, is_settled: bool = False) -> None:
     """Write a small file at once: a reader sees the old one or the new one, and a killed writer leaves a `.partial`."""
     part = sibling(path, "partial")
     try:
         part.write_text(text)
-        if settled:
+        if is_settled:
             settle(part)
         part.replace(path)
     finally:
@@ -101,9 +101,9 @@ def write_whole(path: Path, text: str, *, settled: bool = False) -> None:
 def edit_attributes(path: Path, changes: dict[str, Any]) -> None:
     """Change attributes (None removes one) and drop the consolidated metadata, in one atomic write."""
     document = json.loads((path / "zarr.json").read_text())
-    merged = document["attributes"] | changes
-    kept = {name: value for name, value in merged.items() if value is not None}
-    document["attributes"] = kept | {"checksum": checksum(kept)}
+    together = document["attributes"] | changes
+    attributes = {name: value for name, value in together.items() if value is not None}
+    document["attributes"] = attributes | {"checksum": checksum(attributes)}
     document.pop("consolidated_metadata", None)
-    write_whole(path / "zarr.json", json.dumps(document), settled=True)
+    write_whole(path / "zarr.json", json.dumps(document), is_settled=True)
     settle(path)

@@ -20,11 +20,11 @@ from filelock import FileLock, Timeout
 from nonholo.base.checks import path as checked_path
 from nonholo.base.checks import printable
 
-_PATIENCE = 0.2  # seconds to wait for who only asks whether the store is locked
+_PATIENCE = 0.2  # seconds to wait for who only asks whether the store is write_lock
 
 
 @contextlib.contextmanager
-def locked(store: Path) -> Iterator[None]:
+def write_lock(store: Path) -> Iterator[None]:
     """Hold the lock of a store; refuse, naming the owner, while another process or thread holds it.
 
     The lock is one of the operating system on the file `run/lock`, so it ends with the process that holds it, however
@@ -39,7 +39,7 @@ def locked(store: Path) -> Iterator[None]:
         lock.acquire()
     except Timeout:
         raise BlockingIOError(
-            f"The store '{store}' is being written by {_named(about)}. Wait until it is done."
+            f"The store '{store}' is being written by {_owner_in(about)}. Wait until it is done."
         ) from None
     except (OSError, NotImplementedError) as failure:
         number = getattr(failure, "errno", None)
@@ -97,7 +97,7 @@ def owner_of(store: Path) -> str | None:
         with lock:
             return None
     except Timeout:
-        return _named(store / "run" / "lock.json")
+        return _owner_in(store / "run" / "lock.json")
     except OSError:  # a store of somebody else, or on a medium that is only read
         return None
 
@@ -106,7 +106,7 @@ def _lock(store: Path, timeout: float) -> FileLock:
     return FileLock(store / "run" / "lock", timeout=timeout, thread_local=False, fallback_to_soft=False)
 
 
-def _named(about: Path) -> str:
+def _owner_in(about: Path) -> str:
     try:
         owner = json.loads(about.read_text())
         return printable(f"process {owner['pid']} on {owner['host']} since {owner['since']}")

@@ -6,7 +6,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.numerics.time_sweep import padded, reached, sweep
+from nonholo.base.numerics.time_sweep import good_rows, pad, sweep
 from nonholo.base.progress import interruptibly
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._flow import State, acceleration, admissible_velocity, bordered_solution
@@ -20,8 +20,8 @@ def flow(
     system: Any, first: State, times: np.ndarray, errors: tuple[float, float]
 ) -> tuple[list[np.ndarray], "Pieces"]:
     """Return places and velocities at the times, up to the first that cannot be reached, and the motion between."""
-    rest, good = interruptibly(lambda: in_double(_sweep, system, first, padded(times), errors))
-    rows = reached(first, rest, good, len(times))
+    rest, good = interruptibly(lambda: in_double(_sweep, system, first, pad(times), errors))
+    rows = good_rows(first, rest, good, len(times))
     return rows, Pieces(system, times[: len(rows[0])], rows, errors)
 
 
@@ -47,9 +47,9 @@ class Pieces(NamedTuple):
         columns = [np.full((len(times), *column.shape[1:]), np.nan) for column in self.rows]
         for i, (at, time) in enumerate(zip(begin, times, strict=True)):
             first = self.rows[0][at], self.rows[1][at]
-            span = padded(np.array([self.times[at], time]))
+            span = pad(np.array([self.times[at], time]))
             rest, good = in_double(_sweep, self.system, first, span, self.errors)
-            ends = reached(first, rest, good, 2)
+            ends = good_rows(first, rest, good, 2)
             for column, end in zip(columns, ends, strict=True):
                 column[i : i + len(end) - 1] = end[1:]
         return columns
@@ -83,7 +83,7 @@ def _sweep(system: Any, state: State, times: Array, errors: tuple[Array, Array])
 
 def columns(system: Any, rows: list[np.ndarray]) -> list[np.ndarray]:
     """Return momenta, forces of constraint, energies and residuals of places and velocities."""
-    return [x[: len(rows[0])] for x in in_double(_decode, system, *map(padded, rows))]
+    return [x[: len(rows[0])] for x in in_double(_decode, system, *map(pad, rows))]
 
 
 def _decode(system: Any, q: Array, v: Array) -> tuple[Array, ...]:
@@ -103,7 +103,7 @@ def transitions(system: Any, x: np.ndarray, v: np.ndarray, time: Float[np.ndarra
     count, spans = len(time) - 1, np.stack([time[:-1], time[1:]], axis=1)
     if not count:
         return np.empty((0, *2 * (2 * v.shape[1] + system.is_driven,)))
-    x, v, spans = padded(x[:-1]), padded(v[:-1]), padded(spans)
+    x, v, spans = pad(x[:-1]), pad(v[:-1]), pad(spans)
     spans[count:] = time[-1]
     return in_double(_transitions, system, x, v, spans)[:count]
 

@@ -28,14 +28,14 @@ def watch_of_store(owner: str, stream: "Stream", stepper: AbstractStepper[Any], 
     chosen, stored = [] if events is None else events, json.loads(text or "[]")
     if text is None and not checked_events(owner, chosen):
         return None
-    wanted = f"be the events of the store, {io.described(stored)}"
+    wanted = f"be the events of the store, {io.events_text(stored)}"
     if events is None and stored:
         remedy = "Pass events=[...] again, in that order with these directions and stops: a store holds no functions."
         raise error(where, wanted, f"None for '{stream.path}'", remedy)
     watch = watched(owner, stepper, chosen)
     passed = descriptions(watch.events)
     if passed != stored:
-        raise error(where, wanted, io.described(passed), "Pass the ones it was run with.")
+        raise error(where, wanted, io.events_text(passed), "Pass the ones it was run with.")
     _refuse_other_values(where, stream, stepper, watch)
     return watch
 
@@ -46,10 +46,10 @@ def _refuse_other_values(where: str, stream: "Stream", stepper: AbstractStepper[
         first = stream.checkpoint(0)
     except io.DamagedError:
         return  # whoever needs it to continue says so
-    if first.seen is None:
+    if first.of_events is None:
         return
     seen, _ = search(watch, orbit_at(stepper, first.vector, 0))
-    for name, now, then in zip(watch.events, seen_by(seen).values, first.seen.values, strict=True):
+    for name, now, then in zip(watch.events, seen_by(seen).values, first.of_events.values, strict=True):
         if abs(now - then) > _SAME * (1 + abs(then)):
             got = f"another one of {name!r}: {now:.17g} instead of {then:.17g} at the first state"
             raise error(where, "be the functions of the store", got, "Pass those it was run with.")
@@ -92,7 +92,7 @@ def _difference(now: np.ndarray, then: np.ndarray) -> float:
 
 def _last_sound(stream: "Stream") -> int | None:
     """Return the last block that took steps and is sound."""
-    for block in sorted(stream.marked(), reverse=True):
+    for block in sorted(stream.block_numbers(), reverse=True):
         try:
             if stream.sound(block).done > stream.checkpoint(block).done:
                 return block
@@ -104,7 +104,7 @@ def _last_sound(stream: "Stream") -> int | None:
 def resume_run(store: str | Path, *, discrete: Any, events: Any, throw: bool, progress: bool) -> Any:
     """Resume the run of a store: what `resume` does once it has asked the store, and found no sweep."""
     stream, run = _opened("resume", store, discrete, events, throw=throw, progress=progress)
-    with io.locked(stream.path):
+    with io.write_lock(stream.path):
         return continued(run, io.open_stream(stream.path))
 
 
@@ -153,12 +153,12 @@ def extend(
         raise error("extend(task=...)", "come with the store of a sweep", shown(task), "Leave it out for an orbit.")
     steps = count("extend(steps=...)", steps, "Pass how many steps more.")
     stream, run = _opened("extend", store, discrete, events, throw=throw, progress=progress)
-    with io.locked(stream.path):
+    with io.write_lock(stream.path):
         _refuse_ended(io.read_attributes(stream.path))
         numbers, remedy = 1 + sum(run.stepper.columns.values()), "Pass fewer steps."
         size = 8.0 * (steps // run.every) * numbers
         within_disk("extend(steps=...)", size, stream.path, remedy)
-        longer = io.open_stream(stream.path).lengthened(steps)
+        longer = io.open_stream(stream.path).longer(steps)
         check_forces("extend", run.stepper.motion, longer.plan.steps)
         longer.announce(steps)
         return continued(run._replace(steps=longer.plan.steps), longer)

@@ -42,7 +42,7 @@ def into_store(run: Run, first: First, path: Path, checkpoint_every: int | None,
     numbers = 1 + run.stepper.width
     within_disk("simulate(store=...)", 8.0 * (1 + run.steps // run.every) * numbers, path, remedy)
     stream = io.create_stream(path, there, plan, _checkpoint(begun), events, scenario)
-    with io.locked(stream.path):
+    with io.write_lock(stream.path):
         return continued(run, stream)
 
 
@@ -64,12 +64,12 @@ def _warn_of_other_versions(stream: "Stream") -> None:
 
 
 def _standing(stream: "Stream") -> str:
-    return f"{stream.reached()} of {stream.plan.steps}"
+    return f"{stream.steps_done()} of {stream.plan.steps}"
 
 
 def _completed(run: Run, stream: "Stream") -> Checkpoint:
     """Compute every block that is missing or damaged; return the end of the run."""
-    marked, is_computed = max(stream.marked(), default=-1), not stream.is_finished
+    marked, is_computed = max(stream.block_numbers(), default=-1), not stream.is_finished
 
     @functools.cache
     def known(number: int) -> Reached | None:
@@ -115,7 +115,7 @@ def _first(stream: "Stream") -> Checkpoint:
 
 def _loaded(run: Run, stream: "Stream", reached: Checkpoint) -> Any:
     """Return the orbit, of one that would fill the memory the last block."""
-    states = 1 + reached.done // run.every + (0 if reached.seen is None else int(reached.seen.counts.sum()))
+    states = 1 + reached.done // run.every + (0 if reached.of_events is None else int(reached.of_events.counts.sum()))
     if states * (2 + run.stepper.width) <= _LOADED:
         return io.load_orbit(stream.path, discrete=run.stepper.motion)
     return io.load_last_block(stream.path, run.stepper.motion)
@@ -145,9 +145,9 @@ def seen_by(watch: Watch) -> Seen:
 
 def reached_at(run: Run, kept: Checkpoint) -> Reached:
     """Return the state of a run at a checkpoint of its store."""
-    watch, seen = run.watch, kept.seen
+    watch, seen = run.watch, kept.of_events
     if watch is not None and seen is not None:
-        stopped = tuple(watch.events)[seen.stopped] if kept.is_stopped else None
+        stopped = tuple(watch.events)[seen.last_event] if kept.is_stopped else None
         known = {"counts": tuple(map(int, seen.counts)), "values": seen.values[:, None], "heading": seen.heading}
         watch = dataclasses.replace(watch, stopped_by=stopped, **known)
     return Reached(kept.done, kept.outcome, kept.vector, watch)

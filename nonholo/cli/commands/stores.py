@@ -29,23 +29,23 @@ def info(
 
     is_sweep = format_of(store) == SWEEP_FORMAT
     with store_errors(USAGE):
-        stored = attributes_of(store) if is_sweep else read_attributes(store)
+        attributes = attributes_of(store) if is_sweep else read_attributes(store)
     if scenario:
-        if "scenario" not in stored:
+        if "scenario" not in attributes:
             leave("This store was not made from a scenario.", FAILED)
-        typer.echo(stored["scenario"], nl=False)
+        typer.echo(attributes["scenario"], nl=False)
         return
     if is_sweep:
-        show_sweep_standing(store, stored, json=json)
+        show_sweep_standing(store, attributes, json=json)
         return
-    if unfinished := standing(store):
-        show_standing(store, stored, unfinished, json=json)
+    if partly := standing(store):
+        show_standing(store, attributes, partly, json=json)
         return
     try:
         orbit, failure = load_orbit(store), None
     except (OSError, ValueError) as caught:
         orbit, failure = None, caught
-    show_provenance(store, stored, orbit, json=json)
+    show_provenance(store, attributes, orbit, json=json)
     if failure:
         leave(f"Its orbit cannot be loaded. {failure}", FAILED)
 
@@ -152,8 +152,7 @@ def plot(
     if output is not None:
         with store_errors(USAGE):
             io.check_file(output, overwrite=overwrite, where="nonholo plot -o")
-    path = output or beside(store, "gif" if gif else "png")
-    look = _look(title, size, dark)
+    path, look = output or beside(store, "gif" if gif else "png"), _look(title, size, dark)
     if io.format_of(store) == io.SWEEP_FORMAT:
         if gif or kind != OVERVIEW:
             leave("A sweep has one kind of picture, its map. Leave --kind and --gif out.", USAGE)
@@ -162,10 +161,9 @@ def plot(
         _check_kind(kind, gif, color, x or y)
         names = {"across": x, "up": y} if kind == "section" else {}
         paths = _draw_run(store, path, look, gif=gif, kind=kind, dpi=dpi, **names)
-    files = [each for each in paths if each]
-    if not files:
+    if not any(paths):
         raise typer.Exit(FAILED)
-    typer.echo("\n".join(files))
+    typer.echo("\n".join(filter(None, paths)))
 
 
 def _check_kind(kind: str, gif: bool, color: str | None, axis: str | None) -> None:

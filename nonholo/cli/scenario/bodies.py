@@ -73,8 +73,8 @@ def group_of(text: Any) -> "AbstractMatrixGroup":
 
 def _factor(name: str) -> "AbstractMatrixGroup":
     try:
-        if named := _NAME.fullmatch(name):
-            return getattr(nonholo, named[1])(int(named[2]))
+        if match := _NAME.fullmatch(name):
+            return getattr(nonholo, match[1])(int(match[2]))
     except ValueError:
         pass
     raise ValueError(f"{_HOW}. Got {name!r}")
@@ -96,25 +96,25 @@ class MadeTable(Section):
         return self.model_dump(exclude_none=True, exclude={"kind"})
 
     @functools.cached_property
-    def made(self) -> Any:
+    def product(self) -> Any:
         """What the table makes."""
         values = self.values
         ways = (type(self).make, *type(self).others)
         for make in ways:
-            known = arguments(make)
-            needed = {name for name, each in known.items() if each.default is each.empty}
-            if needed <= values.keys() <= known.keys():
-                return _called(make, {name: group_of(x) if name == "group" else x for name, x in values.items()})
+            known_arguments = arguments(make)
+            necessary = {name for name, each in known_arguments.items() if each.default is each.empty}
+            if necessary <= values.keys() <= known_arguments.keys():
+                return _call(make, {name: group_of(x) if name == "group" else x for name, x in values.items()})
         words = " or ".join(", ".join(arguments(make)) for make in ways)
         raise ValueError(f"must hold the keys {words}. Got {', '.join(values) or 'none'}")
 
     @model_validator(mode="after")
     def _can_be_made(self) -> Any:
-        _ = self.made
+        _ = self.product
         return self
 
 
-def _called(make: Maker, values: dict[str, Any]) -> Any:
+def _call(make: Maker, values: dict[str, Any]) -> Any:
     try:
         return make(**values)
     except ValueError:
@@ -134,20 +134,22 @@ def table_of(word: str, make: Maker, kind: bool = False, plain: bool = True) -> 
     """
     others = tuple(getattr(make, name) for name in ("from_inertia",) if hasattr(make, name))
     fields: dict[str, Any] = {"kind": (str, ...)} if kind else {}
+    shared = set.intersection(*({*arguments(way)} for way in (make, *others)))
     for way in (make, *others):
         about = meanings(way)
         for name, each in arguments(way).items():
-            is_shared = all(name in arguments(other) for other in (make, *others))
-            default = each.default if is_shared else None
-            if default is each.empty:
-                default = ...
-            elif isinstance(default, tuple):
-                default = list(default)
+            default = _default_of(each) if name in shared else None
             shape = Group if name == "group" else Numbers if plain else Any
             fields.setdefault(name, (shape, Field(default, description=about.get(name))))
     table = create_model(word, __base__=MadeTable, __doc__=summary(make), **fields)
     table.make, table.others = make, others
     return table
+
+
+def _default_of(argument: inspect.Parameter) -> Any:
+    """Return the default of an argument as TOML writes it; `...` for one that must be given."""
+    default = argument.default
+    return ... if default is argument.empty else [*default] if isinstance(default, tuple) else default
 
 
 SHORT = {
@@ -223,11 +225,11 @@ def _module_at(path: Path) -> Any:
     name = path.stem
     if not (path.suffix == ".py" and name.isidentifier() and path.is_file()):
         raise ValueError(f"`--module` must be the path of a Python file. Got '{path}'. Pass one such as my_robot.py.")
-    known = importlib.util.find_spec(name)
-    if known is None:
+    spec = importlib.util.find_spec(name)
+    if spec is None:
         sys.path.insert(0, str(path.resolve().parent))  # where other processes find it too
-    elif known.origin != str(path.resolve()):
-        got = f"'{path}', but there is a module {name} at {known.origin}"
+    elif spec.origin != str(path.resolve()):
+        got = f"'{path}', but there is a module {name} at {spec.origin}"
         raise ValueError(f"`--module` must have a name of its own. Got {got}. Rename it.")
     return importlib.import_module(name)
 

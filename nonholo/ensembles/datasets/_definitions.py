@@ -54,12 +54,12 @@ class Definition(NamedTuple):
     @property
     def distributions(self) -> dict[str, AbstractDistribution]:
         """What is drawn for each orbit, by name."""
-        drawn: dict[str, AbstractDistribution] = {"start_energy": Uniform(*self.energy)}
-        drawn["start_direction"] = Direction(len(self.weights))
+        draws: dict[str, AbstractDistribution] = {"start_energy": Uniform(*self.energy)}
+        draws["start_direction"] = Direction(len(self.weights))
         if self.spread is not None:
             half = np.array(self.spread)
-            drawn["start_configuration"] = Uniform(self.center - half, self.center + half)
-        return drawn
+            draws["start_configuration"] = Uniform(self.center - half, self.center + half)
+        return draws
 
 
 _TURN, _PLANE, _PI = (2.0, 2.0, 2.0), (1.0, 1.0, np.pi), np.pi
@@ -134,16 +134,16 @@ class DatasetTask:
         """Run some orbits."""
         each = [self._orbit({name: rows[member] for name, rows in block.items()}) for member in range(block.count)]
         fields = [_fields(orbit) for orbit in each]
-        found: dict[str, Field] = {}
+        results: dict[str, Field] = {}
         for name, (axes, rows, labels) in fields[0].items():
             whole = np.full((block.count, self.steps + 1, *rows.shape[1:]), np.nan)
             for place, own in zip(whole, fields, strict=True):
                 place[: len(own[name][1])] = own[name][1]
-            found[name] = ("step", *axes), whole, labels
-        found |= self._observed(block, found)
-        for name in found.keys() - {"time"}:
-            found[name][2]["coordinates"] = "time"  # as CF conventions name them
-        return found | {
+            results[name] = ("step", *axes), whole, labels
+        results |= self._observations(block, results)
+        for name in results.keys() - {"time"}:
+            results[name][2]["coordinates"] = "time"  # as CF conventions name them
+        return results | {
             OUTCOME: np.array([int(orbit.outcome) for orbit in each]),
             "split": ((), np.searchsorted(self.ends, block.index, side="right"), _FLAGS),
         }
@@ -164,16 +164,16 @@ class DatasetTask:
         discrete = discretize(system, self.time_step)
         return simulate(discrete, configuration=q, momentum=p, steps=self.steps, throw=False)
 
-    def _observed(self, block: MemberBlock, fields: dict[str, Field]) -> dict[str, Field]:
+    def _observations(self, block: MemberBlock, fields: dict[str, Field]) -> dict[str, Field]:
         """Return what can be observed with normal noise, which depends on nothing but seed, orbit and name."""
-        found: dict[str, Field] = {}
+        observations: dict[str, Field] = {}
         for name in fields.keys() - _EXACT if self.noise else ():
             axes, rows, labels = fields[name]
             uniform = block.random(rows[0].size, f"noise {name}")
             noise = Normal(0.0, self.noise, size=rows[0].size).draw(uniform).reshape(rows.shape)
             meaning = f"{labels['long_name']}, with noise"
-            found[f"observed_{name}"] = axes, rows + noise, labels | {"long_name": meaning}
-        return dict(sorted(found.items()))
+            observations[f"observed_{name}"] = axes, rows + noise, labels | {"long_name": meaning}
+        return dict(sorted(observations.items()))
 
     @property
     def block(self) -> int:
@@ -206,12 +206,12 @@ def _system(name: str) -> Any:
 def _fields(orbit: Any) -> dict[str, Field]:
     """Return what an orbit says of its states by name: poses as people know them, no impulse of the last state."""
     dataset = orbit.to_dataset()
-    found: dict[str, Field] = {}
+    fields: dict[str, Field] = {}
     for name, variable in dataset.reset_coords("time").data_vars.items():
-        named = {"components": list(orbit.coordinates)} if orbit.coordinates and "coordinate" in variable.dims else {}
-        found[str(name)] = tuple(map(str, variable.dims[1:])), variable.values, variable.attrs | named
-    if not orbit.coordinates and "configuration" in found:
-        found |= io.separate_variables(orbit.space, found.pop("configuration")[1])
+        names = {"components": list(orbit.coordinates)} if orbit.coordinates and "coordinate" in variable.dims else {}
+        fields[str(name)] = tuple(map(str, variable.dims[1:])), variable.values, variable.attrs | names
+    if not orbit.coordinates and "configuration" in fields:
+        fields |= io.separate_variables(orbit.space, fields.pop("configuration")[1])
     labels = {"long_name": "impulses of constraint on the way to the next state"}
-    found["multipliers"] = ("constraint",), orbit.multipliers, labels
-    return {name: (axes, rows, dict(labels)) for name, (axes, rows, labels) in found.items() if name not in _LEFT_OUT}
+    fields["multipliers"] = ("constraint",), orbit.multipliers, labels
+    return {name: (axes, rows, dict(labels)) for name, (axes, rows, labels) in fields.items() if name not in _LEFT_OUT}

@@ -83,7 +83,7 @@ def card(record: dict[str, Any]) -> str:
     fields = "\n".join(f"| `{name}` | {_row(each)} |" for name, each in record["fields"].items())
     parts = ", ".join(f"{part} {begin} to {end - 1}" for part, (begin, end) in record["split"].items() if begin < end)
     last = record["split"]["train"][1]
-    ended = ", ".join(f"{number} {outcome}" for outcome, number in record["outcomes"].items())
+    endings = ", ".join(f"{number} {outcome}" for outcome, number in record["outcomes"].items())
     definition = "\n".join(f"- {name}: {value}" for name, value in record["definition"].items() if value is not None)
     system = record["system"]
     parameters = "\n".join(f"- {name}: {value}" for name, value in system["parameters"].items())
@@ -91,7 +91,7 @@ def card(record: dict[str, Any]) -> str:
 
 Orbits of the data set `{record["name"]}`, version {record["definition"]["version"]}, computed by the discrete
 map of nonholo {record["versions"]["nonholo"]} with time step {record["time_step"]:g}.
-Row k of an orbit is a state, row k + 1 the next one. How they ended: {ended}; rows after an early end are NaN.
+Row k of an orbit is a state, row k + 1 the next one. How they ended: {endings}; rows after an early end are NaN.
 
 Parts (`split`): {parts}. Orbits are independent draws, so parts are.
 Noise: {record["noise"]:g} (standard deviation of the fields `observed_...`; none if 0). License: {record["license"]}.
@@ -179,11 +179,11 @@ def _rows(store: SweepStore, names: list[str], begin: int, end: int) -> Iterator
     for block in range(store.layout.blocks):
         piece = store.layout.piece(block)
         members = np.arange(piece.first, piece.first + piece.count)
-        wanted = (members >= begin) & (members < end)
-        if not wanted.any():
+        is_within = (members >= begin) & (members < end)
+        if not is_within.any():
             continue
-        fields = [store.rows(name, piece)[wanted] for name in names]
+        fields = [store.rows(name, piece)[is_within] for name in names]
         states = np.concatenate([each.reshape(*each.shape[:2], -1) for each in fields], axis=2)
         rows = np.empty((*states.shape[:2], 1 + states.shape[2]), dtype=object)  # whole numbers are written as such
-        rows[..., 0], rows[..., 1:] = members[wanted, None], states
+        rows[..., 0], rows[..., 1:] = members[is_within, None], states
         yield rows[np.isfinite(states[..., 0])]

@@ -103,15 +103,15 @@ def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> "xarray.Dataset"
     """
     import xarray
 
-    wanted = (*_KNOWN, *_MATRICES) if decoded else tuple(_KNOWN)
-    known = {name: _variable(orbit, name) for name in wanted if _is_known(orbit, name)}
-    found = {"time": _variable(orbit, "time")} | known | _posed(orbit, None)
+    names = (*_KNOWN, *_MATRICES) if decoded else tuple(_KNOWN)
+    states = {name: _variable(orbit, name) for name in names if _is_known(orbit, name)}
+    columns = {"time": _variable(orbit, "time")} | states | _posed(orbit, None)
     if decoded and _has_multipliers(orbit):
         rows = orbit.multipliers
         missing = np.full((len(orbit) - len(rows), rows.shape[1]), np.nan)
-        found["multipliers"] = _variable(orbit, "multipliers", np.concatenate([rows, missing]))
+        columns["multipliers"] = _variable(orbit, "multipliers", np.concatenate([rows, missing]))
     number = ("step", orbit.step, {"long_name": "number of the step", "units": "1"})
-    return xarray.Dataset(found, {"step": number}, attributes(orbit)).set_coords("time").copy(deep=True)
+    return xarray.Dataset(columns, {"step": number}, attributes(orbit)).set_coords("time").copy(deep=True)
 
 
 def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None) -> dict[str, Variable]:
@@ -122,16 +122,16 @@ def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None)
         before: The heading or the quaternion of the state before the first one, in a row.
     """
     if not orbit.is_compact:
-        return _told(orbit)
+        return _variables(orbit)
     compact = {
         CANONICAL + name: _variable(orbit, name, getattr(orbit, state))
         for name, state in zip(_COMPACT, STATES[1:], strict=True)
         if getattr(orbit, state) is not None
     }
-    known = {name: _variable(orbit, name) for name in _STORED if _is_known(orbit, name)} | _posed(orbit, before)
-    for variable in known.values():
+    states = {name: _variable(orbit, name) for name in _STORED if _is_known(orbit, name)} | _posed(orbit, before)
+    for variable in states.values():
         variable.attrs["coordinates"] = "time"  # those of the group canonical need none
-    return {"time": _variable(orbit, "time")} | known | compact
+    return {"time": _variable(orbit, "time")} | states | compact
 
 
 def steps_apart(orbit: Any) -> dict[str, Variable]:
@@ -141,12 +141,12 @@ def steps_apart(orbit: Any) -> dict[str, Variable]:
     return {STEP: Variable(("step",), orbit.step, {"long_name": "number of the step"})}
 
 
-def _told(orbit: Any) -> dict[str, Variable]:
+def _variables(orbit: Any) -> dict[str, Variable]:
     """Return what an orbit tells, but for empty rows; names along axes are texts, which are attributes of a store."""
     dataset = orbit.to_dataset()
     for variable in dataset.data_vars.values():
-        named = {"components": list(orbit.coordinates)} if "coordinate" in variable.dims else {}
-        variable.attrs |= {"coordinates": "time"} | named
+        own_labels = {"components": list(orbit.coordinates)} if "coordinate" in variable.dims else {}
+        variable.attrs |= {"coordinates": "time"} | own_labels
     variables = {
         str(name): Variable(tuple(map(str, each.dims)), each.values, each.attrs)
         for name, each in dataset.reset_coords("time").data_vars.items()

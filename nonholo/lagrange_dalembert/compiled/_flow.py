@@ -10,7 +10,7 @@ import jax
 import numpy as np
 from llvmlite import ir
 
-from nonholo.base.compiled.emission import compiled
+from nonholo.base.compiled.emission import compile_text
 from nonholo.base.types import Array
 from nonholo.kernels import Quadratic, revisit_series, solve_series
 from nonholo.lagrange_dalembert._room import compiling, equations_of
@@ -84,7 +84,7 @@ def formulation(family: Any, place: tuple[int, ...], n: int) -> Formulation | No
         doubt = functools.reduce(functools.partial(f, "add"), f.doubts, f.constant(0.0))
         return Values(machine_code(whole.inputs, [*results, doubt]), shapes)
 
-    address = compiled(str(module), "expansion", is_long=True)
+    address = compile_text(str(module), "expansion", is_long=True)
     return Formulation(address, expansion.room, values(admissible, [place, (n,)]), values(columns_out, shapes))
 
 
