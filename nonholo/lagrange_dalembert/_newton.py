@@ -16,6 +16,7 @@ from nonholo.kernels import CONTRACTION, ITERATIONS, SINGULAR, TOLERANCE
 from nonholo.lagrange_dalembert._equations import Scaled, bordered_matrix
 from nonholo.lagrange_dalembert._room import equations_of
 
+_ROUNDING = 1e-15  # of a place
 _SMALLEST = 2.0**-20  # of the path; below it the continuation is given up
 _NEAR_FOLD = 0.05  # of the regularity at the start of the path, where a continuation that stops has met a fold
 
@@ -67,7 +68,16 @@ def solve(
     system: Any, h: Array, q: Array, p: Array, near: Array, guess: Array, sign: Array
 ) -> tuple[Array, Array, Array]:
     """Return velocity, multipliers and outcome of the root with this orientation next to `near`."""
-    return root(of_step(system, q, near, h), equations_of(system).forms(system, q), p, near, guess, sign)
+    rows = equations_of(system).forms(system, q)
+    return root(of_step(system, q, near, h), rows, p, near, guess, sign, rounding_of_step(system, q, h))
+
+
+def rounding_of_step(system: Any, q: Array, h: Array) -> Array | None:
+    """Return by what the rounding of a place moves the velocity of a step to a holonomic constraint, over `TOLERANCE`.
+
+    Newton's corrections of short steps, and of short parts of steps, do not become smaller.
+    """
+    return None if system.holonomic is None else _ROUNDING / TOLERANCE * jnp.abs(q[: system.dimension]) / h
 
 
 def of_step(system: Any, q: Array, near: Array, h: Array) -> Matrix:
@@ -102,13 +112,15 @@ def of_node(system: Any, q: Array, _near: Array, _h: Array) -> Matrix:
     return matrix_at
 
 
-def root(matrix: Matrix, rows: Array, p: Array, near: Array, guess: Array, sign: Array) -> tuple[Array, Array, Array]:
+def root(
+    matrix: Matrix, rows: Array, p: Array, near: Array, guess: Array, sign: Array, rounding: Array | None = None
+) -> tuple[Array, Array, Array]:
     r"""Solve P = p + multipliers @ rows, F = 0; return velocity, multipliers and outcome.
 
     A loop of attempts, so that the equations are compiled once: from the guess; at `near`, which is the root of the
     equations less their residual there; then along $R(x) = (1 - s) R(x_0)$ from s = 0 to 1.
     """
-    correction, offset = _correction(matrix, rows, p, near)
+    correction, offset = _correction(matrix, rows, p, near, rounding)
 
     def attempt(path: _Path) -> _Path:
         fast, first = path.count == 0, path.count == 1
@@ -148,22 +160,33 @@ def _outcome(path: _Path) -> Array:
 
 
 def equations(
-    matrix_at: Matrix, rows: Array, p: Array, v: Array, multipliers: Array, offset: Array
+    matrix_at: Matrix,
+    rows: Array,
+    p: Array,
+    v: Array,
+    multipliers: Array,
+    offset: Array,
+    rounding: Array | None,
 ) -> tuple[Array, Array, Scaled, Array]:
     """Return the scaled matrix, what the scaled equations less an offset miss, the units and the size of velocities."""
     matrix, units, (P, F) = matrix_at(v)
     n = len(p)
     residual = jnp.concatenate([P - p - multipliers @ rows, F]) - offset
     scaled_residual = jnp.concatenate([residual[:n] * units.velocity, residual[n:] / units.constraints])
-    return matrix, scaled_residual, units, jnp.linalg.norm(v / units.velocity) + jnp.linalg.norm(p * units.velocity)
+    size = jnp.linalg.norm(v / units.velocity) + jnp.linalg.norm(p * units.velocity)
+    if rounding is not None:
+        size = size + jnp.linalg.norm(rounding / units.velocity)
+    return matrix, scaled_residual, units, size
 
 
-def _correction(matrix_at: Matrix, rows: Array, p: Array, near: Array) -> tuple[Correction, Array]:
+def _correction(
+    matrix_at: Matrix, rows: Array, p: Array, near: Array, rounding: Array | None
+) -> tuple[Correction, Array]:
     """Return the Newton correction of the equations less an offset, and the residual at the velocity `near`."""
     n = len(p)
 
     def correct(v: Array, multipliers: Array, offset: Array) -> tuple[Array, Array, Array, Array, Array]:
-        matrix, scaled_residual, units, scale = equations(matrix_at, rows, p, v, multipliers, offset)
+        matrix, scaled_residual, units, scale = equations(matrix_at, rows, p, v, multipliers, offset, rounding)
         factors, pivots = jax.scipy.linalg.lu_factor(matrix)
         inverse = jax.scipy.linalg.lu_solve((factors, pivots), jnp.eye(len(scaled_residual)))
         step = -(inverse @ scaled_residual)

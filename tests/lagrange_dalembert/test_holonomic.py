@@ -389,3 +389,14 @@ def test_checks_and_linearizations_see_the_surface() -> None:
     assert orbit.tangent.shape == (4, 2, 2)
     with pytest.raises(ValueError, match="have no holonomic constraints"):
         nh.accessibility(pendulum(), configuration=(0.0, -1.0))
+
+
+def test_short_parts_of_steps_hold_the_constraint() -> None:
+    """Down to 1e-15 of a step, where the rounding of a place is a velocity of its own; an event at a node is found."""
+    discrete: Any = nh.discretize(pendulum(), 0.05)
+    run: Any = {"configuration": (0.6, -0.8), "body_velocity": (0, 0), "steps": 20}
+    orbit = nh.simulate(discrete, **run)
+    for fraction in 10.0 ** -np.arange(1, 16):
+        assert left(pendulum(), discrete.after_parts(orbit, np.full(21, fraction))) <= 1e-15
+    event = nh.Event(lambda states: states.configuration[:, 0] - orbit.configuration[5, 0])
+    assert np.abs(nh.simulate(discrete, **run, events=[event]).events[0].time - 0.25).max() <= 1e-15

@@ -118,7 +118,10 @@ def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
         *numbers, v, multipliers = rest
         system = family.bound(*numbers)
         matrix_at, rows = matrix_of(system, x, near, h), equations.forms(system, x)
-        matrix, residual, units, size = _newton.equations(matrix_at, rows, p, v, multipliers, jnp.zeros(n + s))
+        rounding = None if at_node else _newton.rounding_of_step(system, x, h)
+        matrix, residual, units, size = _newton.equations(
+            matrix_at, rows, p, v, multipliers, jnp.zeros(n + s), rounding
+        )
         return matrix, residual, units.velocity, units.forms, size, doubt
 
     try:
