@@ -22,7 +22,7 @@ HOMES = {
     "advance": "nonholo.lagrange_dalembert.compiled",
     "best": "nonholo.analysis.steering._shooting",
     "continuation": "",  # of the tests
-    "correction": "nonholo.kernels._interface",
+    "correction": "nonholo.kernels._scalar",
     "each_row": "nonholo.kernels",
     "enclosures": "nonholo.discrete.certificate._certificate",
     "flow_by_diffrax": "nonholo.lagrange_dalembert._integration:flow",

@@ -19,6 +19,7 @@ ARGUED = {
     "elapsed": "the elapsed time, since a start",
     "applied": "a matrix applied to vectors: their product",
     "shown": "what was got, shown in an error; all rooms ask for it",
+    "prescribed": "a public argument of systems: prescribed motions",
     "posed": "a public option of motions: with poses",
     "decoded": "a public option of `to_dataset`",
     "compiled": "a public option of `check_group`",

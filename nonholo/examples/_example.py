@@ -153,7 +153,7 @@ def _with_recipe(system: Any, make: Callable[..., Example], parameters: str) -> 
     """Return a system that can be described; changes of it, by `Forced` or `dataclasses.replace`, are not."""
     own = copy.copy(system)
     arguments = json.loads(parameters)
-    object.__setattr__(own, "described", (f"examples.{make.__name__}", arguments))
+    object.__setattr__(own, "description", (f"examples.{make.__name__}", arguments))
     object.__setattr__(own, "recipe", (_system_of, (make, arguments)))
     return own
 

@@ -22,7 +22,7 @@ _FAMILIES = {"SO": SO, "SE": SE, "Translations": Translations}
 
 def described_system(system: Any) -> tuple[str, dict[str, Any]]:
     """Return the name of a system, that of its class or of what makes it, and its parameters as plain data."""
-    return getattr(system, "described", None) or (type(system).__name__, fields_of(system))
+    return getattr(system, "description", None) or (type(system).__name__, fields_of(system))
 
 
 def fields_of(owner: Any) -> dict[str, Any]:
@@ -30,7 +30,7 @@ def fields_of(owner: Any) -> dict[str, Any]:
     names_of_fields = (field.name for field in dataclasses.fields(owner) if field.metadata.get("stored", True))
     fields = {name: getattr(owner, name) for name in names_of_fields}
     plain = {name: _plain(value) for name, value in fields.items() if not isinstance(value, Mapping) or value}
-    plain |= {name: getattr(owner, name) for name in getattr(owner, "recorded", ())}
+    plain |= {name: getattr(owner, name) for name in getattr(owner, "in_stores", ())}
     if getattr(owner, "is_forced", False):
         plain["system"] = {"kind": type(owner.system).__name__, "parameters": fields_of(owner.system)}
     return plain

@@ -38,7 +38,7 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
     """A system in coordinates: `nonholo.discretize`, `flow` and `Forced` hand their arguments on to it.
 
     Attributes:
-        described: What stores say of it in place of its fields: a name and parameters.
+        description: What stores say of it in place of its fields: a name and parameters.
         parameters: Numbers that its functions take.
     """
 
@@ -46,7 +46,7 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
     has_functions: ClassVar[bool] = True
     """Whether it has its Lagrangian: one from a store need not."""
 
-    described: tuple[str, dict[str, Any]] | None = None
+    description: tuple[str, dict[str, Any]] | None = None
     parameters: Mapping[str, Any] = MappingProxyType({})
 
     @property

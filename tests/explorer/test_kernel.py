@@ -6,7 +6,7 @@ from explorer.webassembly import Module
 
 import nonholo as nh
 from nonholo import kernels
-from nonholo.base.compiled.webassembly import module_of
+from nonholo.base.compiled.wasm import module_of
 from nonholo.explorer import kernel
 from nonholo.explorer._kernel import KINDS
 

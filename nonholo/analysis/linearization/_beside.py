@@ -154,7 +154,7 @@ def _differences(function: Callable[[np.ndarray], np.ndarray], z: np.ndarray) ->
 def beside_state(owner: str, subject: Any, configuration: Any, velocity: Any) -> tuple[Local, Any]:
     """Return the changes beside a state of a system or of its map, and the function that gives states beside it."""
     motion = subject if in_coordinates(subject) else CoordinateFlow(subject)
-    x, v = tangents.begun(motion, owner, configuration, velocity)
+    x, v = tangents.begin(motion, owner, configuration, velocity)
     later = tangents.following(motion, x, v)
     rng, size = np.random.default_rng(0), len(v) + motion.system.is_driven
     xi, w = _SPREAD * rng.uniform(-1, 1, (_OTHERS, size)), _SPREAD * rng.uniform(-1, 1, (_OTHERS, len(v)))

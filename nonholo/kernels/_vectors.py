@@ -8,7 +8,7 @@ from numba import types
 from numba.core import cgutils, config
 from numba.extending import lower_builtin, models, register_model, type_callable
 
-from nonholo.kernels.lanes._lanes import load, spread, store
+from nonholo.kernels.lanes import load, spread, store
 
 
 class _Row(types.Type):
