@@ -134,11 +134,11 @@ def table_of(word: str, make: Maker, kind: bool = False, plain: bool = True) -> 
     """
     others = tuple(getattr(make, name) for name in ("from_inertia",) if hasattr(make, name))
     fields: dict[str, Any] = {"kind": (str, ...)} if kind else {}
-    shared = set.intersection(*({*arguments(way)} for way in (make, *others)))
+    common = set.intersection(*({*arguments(way)} for way in (make, *others)))
     for way in (make, *others):
         about = meanings(way)
         for name, each in arguments(way).items():
-            default = _default_of(each) if name in shared else None
+            default = _default_of(each) if name in common else None
             shape = Group if name == "group" else Numbers if plain else Any
             fields.setdefault(
                 name, (shape, Field(default, description=about.get(name, f"As in `{way.__qualname__}`.")))
