@@ -15,7 +15,7 @@ import math
 import os
 import uuid
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
@@ -24,6 +24,7 @@ import zarr
 from pydantic import NonNegativeInt, TypeAdapter
 from zarr.core.sync import sync
 
+from nonholo.base.results import Outcome
 from nonholo.io._chunks import DamagedError, chunk_name, chunk_path, read_chunk
 from nonholo.io._groups import (
     consolidate,
@@ -35,7 +36,7 @@ from nonholo.io._groups import (
     write_whole,
 )
 from nonholo.io._metadata import OrbitMetadata, require_identity
-from nonholo.io._stored_events import EVENTS
+from nonholo.io._stored_events import EVENTS, Checkpoint, Seen
 from nonholo.io.datasets import Variable
 
 BEFORE = -1
@@ -319,3 +320,50 @@ def _crc(chunk: Path) -> bytes:
         file.seek(-_CRC, 2)
         return file.read()
     return b""  # there is none, or it is too short
+
+
+_NONE = "a mark without the state of a run"
+
+
+def said_of(checkpoint: Checkpoint) -> dict[str, Any]:
+    """Return a checkpoint as what the mark of a block says; JSON has every bit of a number."""
+    events = None if checkpoint.of_events is None else _said_of_events(checkpoint.of_events)
+    return {
+        "done": int(checkpoint.done),
+        "outcome": checkpoint.outcome.name,
+        "state": checkpoint.vector.tolist(),
+        "seen": events,
+    }
+
+
+def _said_of_events(events: Seen) -> dict[str, Any]:
+    lists = {"counts": events.counts.tolist(), "values": events.values.tolist()}
+    return {**lists, "heading": float(events.heading), "stopped": int(events.last_event)}
+
+
+def checkpoint_of(about: dict[str, Any], events: Sequence[str] | None) -> Checkpoint:
+    """Return the checkpoint of a mark, of a run that looks for these events; None if it looks for none.
+
+    Raises:
+        DamagedError: The mark says something else.
+
+    Example:
+        >>> reached = Checkpoint(7, Outcome.successful, np.array([0.1]), Seen(np.array([3]), np.array([0.3]), 1.2, -1))
+        >>> checkpoint_of(said_of(reached), events=['cusp']).of_events
+        Seen(counts=array([3]), values=array([0.3]), heading=1.2, last_event=-1)
+    """
+    try:
+        vector, of_events = np.array(about["state"], dtype=np.float64), about["seen"]
+        if of_events is not None:
+            counts, values = (
+                np.array(of_events["counts"], dtype=np.int64),
+                np.array(of_events["values"], dtype=np.float64),
+            )
+            of_events = Seen(counts, values, float(of_events["heading"]), int(of_events["stopped"]))
+        checkpoint = Checkpoint(int(about["done"]), Outcome[about["outcome"]], vector, of_events)
+    except (KeyError, TypeError, ValueError, OverflowError):
+        raise DamagedError(_NONE) from None
+    shapes = None if of_events is None else (of_events.counts.shape, of_events.values.shape)
+    if vector.ndim != 1 or shapes != (None if events is None else ((len(events),),) * 2):
+        raise DamagedError(_NONE)
+    return checkpoint

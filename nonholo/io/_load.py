@@ -14,10 +14,10 @@ from nonholo.base.checks import path as checked_path
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.io._attributes import FORMAT, SCHEMA, SWEEP_FORMAT, restore_motion
-from nonholo.io._block_store import BlockStore, Layout
+from nonholo.io._block_store import BlockStore, Layout, checkpoint_of
 from nonholo.io._chunks import AGAIN, WHERE, DamagedError, checked_array, checked_block, opened_array
 from nonholo.io._metadata import OrbitMetadata, SweepMetadata, check_assertions, check_metadata
-from nonholo.io._stored_events import EVENTS, checkpoint_of, log_of, without_padding
+from nonholo.io._stored_events import EVENTS, log_of, without_padding
 from nonholo.io.datasets import CANONICAL, STEP
 from nonholo.orbit import STATES, EventLog, Orbit, Plan
 

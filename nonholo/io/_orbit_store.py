@@ -24,13 +24,13 @@ import zarr
 from nonholo.base.checks import error, flags, instance
 from nonholo.base.checks import path as checked_path
 from nonholo.io._attributes import FORMAT, attributes, attributes_of_text
-from nonholo.io._block_store import BEFORE, BlockStore, Layout, new_blocks
+from nonholo.io._block_store import BEFORE, BlockStore, Layout, checkpoint_of, new_blocks, said_of
 from nonholo.io._chunks import DamagedError
 from nonholo.io._groups import create_array, edit_attributes
 from nonholo.io._load import format_of, plan_of, read_attributes
 from nonholo.io._metadata import check_array, check_assertions
 from nonholo.io._places import new_beside, owner_of, remove_remains
-from nonholo.io._stored_events import EVENTS, Checkpoint, checkpoint_of, rows_of, said_of
+from nonholo.io._stored_events import EVENTS, Checkpoint, rows_of
 from nonholo.io.datasets import HEADED, Variable, steps_apart, stored_variables
 from nonholo.orbit import AbstractOrbit, Plan
 

@@ -168,7 +168,7 @@ def resume(
     store: Store,
     scheduler: Scheduler = None,
     workers: Workers = None,
-    members: Annotated[int | None, typer.Option(metavar="N", help="So many members: a random design grows.")] = None,
+    members: Annotated[int | None, typer.Option(metavar="N", help="Members that a random design is to have.")] = None,
     module: Module = None,
     trust: Trust = False,
     json: Json = False,

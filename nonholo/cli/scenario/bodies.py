@@ -91,14 +91,14 @@ class MadeTable(Section):
     """Other ways to make the same, of other keys."""
 
     @property
-    def values(self) -> dict[str, Any]:
+    def keywords(self) -> dict[str, Any]:
         """The arguments that the table has, by their names."""
         return self.model_dump(exclude_none=True, exclude={"kind"})
 
     @functools.cached_property
-    def product(self) -> Any:
+    def creation(self) -> Any:
         """The body that the table describes."""
-        values = self.values
+        values = self.keywords
         ways = (type(self).make, *type(self).others)
         for make in ways:
             known_arguments = arguments(make)
@@ -110,7 +110,7 @@ class MadeTable(Section):
 
     @model_validator(mode="after")
     def _can_be_made(self) -> Any:
-        _ = self.product
+        _ = self.creation
         return self
 
 
@@ -140,7 +140,9 @@ def table_of(word: str, make: Maker, kind: bool = False, plain: bool = True) -> 
         for name, each in arguments(way).items():
             default = _default_of(each) if name in common else None
             shape = Group if name == "group" else Numbers if plain else Any
-            fields.setdefault(name, (shape, Field(default, description=about.get(name))))
+            fields.setdefault(
+                name, (shape, Field(default, description=about.get(name, f"As in `{way.__qualname__}`.")))
+            )
     table = create_model(word, __base__=MadeTable, __doc__=summary(make), **fields)
     table.make, table.others = make, others
     return table

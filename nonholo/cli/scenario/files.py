@@ -136,7 +136,7 @@ def _directions(document: dict[str, Any]) -> tuple[str, ...] | None:
     """Return the names of the directions of the body of a document; None if it is no body, which is reported later."""
     try:
         return components_of(
-            moving(body_table(document["body"]["kind"]).model_validate(document["body"]).product).group
+            moving(body_table(document["body"]["kind"]).model_validate(document["body"]).creation).group
         )
     except (AttributeError, KeyError, TypeError, ValueError):
         return None

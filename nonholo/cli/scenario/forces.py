@@ -65,7 +65,7 @@ def _requirement(failure: ValueError) -> str:
 def _part(word: str, table: Any) -> Any:
     """Return the force of a table; one with a single argument is written without its name."""
     if isinstance(table, Section):
-        return cast(Any, table).product
+        return cast(Any, table).creation
     return _CLASSES[word](table) if word in _CLASSES else table
 
 

@@ -78,12 +78,12 @@ class AbstractScenario(Section):
     @classmethod
     def _can_act(cls, forces: Forces, rest: ValidationInfo) -> Forces:
         if {"body", "run"} <= rest.data.keys():
-            forces.check(moving(rest.data["body"].product), rest.data["run"].steps)
+            forces.check(moving(rest.data["body"].creation), rest.data["run"].steps)
         return forces
 
     def system(self) -> "System":
         """Return the body under its forces."""
-        return self.forces.on(moving(self.body.product))
+        return self.forces.on(moving(self.body.creation))
 
     def discretization(self) -> "Discretization":
         """Return the discretized body."""
@@ -127,7 +127,7 @@ def complete_ready(document: dict[str, Any], *, start: bool = True) -> None:
     match document:
         case {"body": {"kind": str(kind)} as body} if is_example(kind):
             with contextlib.suppress(KeyError):  # of an unknown kind, which is reported with the rest
-                product = body_table(kind).model_validate(body).product
+                product = body_table(kind).model_validate(body).creation
                 if is_ready(product):
                     _complete_by(product, document, start=start)
 

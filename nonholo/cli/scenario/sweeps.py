@@ -253,13 +253,13 @@ class SweepScenario(AbstractScenario):
     @property
     def is_family(self) -> bool:
         """Whether members are made by a function, with their start."""
-        return is_ready(self.body.product)
+        return is_ready(self.body.creation)
 
     def task(self) -> Any:
         """Return what is done with every member."""
         keep, run = self.keep, self.run
         if self.is_family:
-            how: Any = {"parameters": self.body.values, "reductions": keep.reductions}
+            how: Any = {"parameters": self.body.keywords, "reductions": keep.reductions}
             return nonholo.FamilyTask(type(self.body).make, run.time_step, run.steps, **how)
         start: Any = self.start.model_dump(exclude_none=True) if self.start else {}
         options: Any = {"reductions": keep.reductions, "reconstruct": keep.poses, "branch": run.branch}

@@ -36,7 +36,7 @@ def template(kind: str) -> str:
     example = None
     if is_whole:
         with contextlib.suppress(ValueError):  # running the template says why
-            example = table.model_validate({"kind": kind}).product
+            example = table.model_validate({"kind": kind}).creation
     own = ("configuration", "body_velocity") if is_ready(example) else ()
     starts = {name: np.asarray(getattr(example, name)).tolist() for name in own}
     run = {name: getattr(example, name) for name in ("time_step", "steps") if hasattr(example, name)}
