@@ -1,10 +1,13 @@
 """The compiled steps: scalar arithmetic written once for numba and JAX, the matrix step for any body, the loops."""
 
+import functools
+from collections.abc import Callable
+
 from nonholo.kernels._composition import ComposedBody, whole_steps
 from nonholo.kernels._driver import CHART, CORRECTIONS, SETTLED, STATE_SIZE, converged, start
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
 from nonholo.kernels._entry import AnyBody, runs_of, sizes, step_each
-from nonholo.kernels._flat import FLAT_RUNS
+from nonholo.kernels._flat import flat_arrowhead_run, flat_forced_run, flat_run, flat_secular_run
 from nonholo.kernels._scalar import (
     Body,
     correction,
@@ -44,3 +47,13 @@ from nonholo.kernels.taylor import (
     solve_series,
     sparse_products,
 )
+
+FLAT_RUNS: dict[str, Callable[[], Callable[..., int]]] = {
+    "top": functools.partial(flat_run, SuslovBody),
+    "sleigh": functools.partial(flat_run, SleighBody),
+    "forced_top": functools.partial(flat_forced_run, SuslovBody),
+    "forced_sleigh": functools.partial(flat_forced_run, SleighBody),
+    "top4": functools.partial(flat_secular_run, 3),
+    "flow4": functools.partial(flat_arrowhead_run, 3, 1e-14 / 64),
+}
+"""What makes runs on bare memory, for hosts without Python: those of a page."""

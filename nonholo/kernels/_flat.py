@@ -1,15 +1,12 @@
 """Runs on bare memory, for hosts without Python: plain functions to compile for them."""
 
-import functools
 import math
 from collections.abc import Callable
 from typing import Any
 
 from nonholo.kernels._driver import STATE_SIZE, advance, start
 from nonholo.kernels._scalar import Body, inertia, quadratic
-from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._small import assign
-from nonholo.kernels._suslov import SuslovBody
 from nonholo.kernels.forced import advance_cubic, cubic_of
 from nonholo.kernels.secular import SecularBody
 from nonholo.kernels.secular import run as secular
@@ -143,14 +140,3 @@ def flat_arrowhead_run(size: int, tolerance: float) -> Callable[..., int]:
         return good
 
     return run
-
-
-FLAT_RUNS: dict[str, Callable[[], Callable[..., int]]] = {
-    "top": functools.partial(flat_run, SuslovBody),
-    "sleigh": functools.partial(flat_run, SleighBody),
-    "forced_top": functools.partial(flat_forced_run, SuslovBody),
-    "forced_sleigh": functools.partial(flat_forced_run, SleighBody),
-    "top4": functools.partial(flat_secular_run, 3),
-    "flow4": functools.partial(flat_arrowhead_run, 3, 1e-14 / 64),
-}
-"""What makes runs on bare memory, for hosts without Python: those of a page."""

@@ -72,7 +72,7 @@ def expand_at(address: int, arrays: tuple[np.ndarray, ...], order: int) -> None:
     _EXPANSION(address)(*(each.ctypes.data for each in arrays), order)
 
 
-compiled_in("nonholo.kernels.addresses")
+compiled_in("nonholo.kernels.by_numba")
 
 Rows: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Momenta, charts and poses, into which a run takes its steps."""

@@ -29,4 +29,4 @@ def spread(value: Any, lanes: tuple[int, ...]) -> Any:
     return value if len(lanes) == 1 or np.ndim(value) else np.array([value] * len(lanes))
 
 
-compiled_in("nonholo.kernels._vectors")
+compiled_in("nonholo.kernels.by_numba")

@@ -284,7 +284,7 @@ def functions_of(forced: Forced, potential: Callable[..., Any] | None, faults: d
     shape = (forced.group.size, forced.group.dim)
     if not forced.needs_function:
         return 0, 0
-    from nonholo.kernels.addresses import function_of
+    from nonholo.kernels.by_numba import function_of
 
     _check_compiled(forced)
     force = 0 if forced.function is None else function_of(forced.function, shape, 3)
