@@ -16,13 +16,13 @@ import nonholo as nh
 HOMES = {
     "AbstractSystem": "nonholo.systems",
     "Branches": "nonholo.discrete",
-    "Missed": "nonholo.analysis.steering._least_effort",
+    "Missed": "nonholo.analysis.steering._shooting",
     "REDUCTIONS": "nonholo.ensembles",
     "accelerations": "",  # of the tests
     "advance": "nonholo.lagrange_dalembert.compiled",
     "best": "nonholo.analysis.steering._shooting",
     "continuation": "",  # of the tests
-    "correction": "nonholo.kernels._interface",
+    "correction": "nonholo.kernels._scalar",
     "each_row": "nonholo.kernels",
     "enclosures": "nonholo.discrete.certificate._certificate",
     "flow_by_diffrax": "nonholo.lagrange_dalembert._integration:flow",

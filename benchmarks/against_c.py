@@ -97,7 +97,7 @@ def one_orbit(both: tuple, name: str, system: nh.SuslovTop | nh.ChaplyginSleigh,
 
     def kernel(rows: tuple, every: int) -> None:
         _, state = kernels.runs_of(step.body).start(step.body, first, unit)
-        kernels.runs_of(step.body).advance(step.body, state, STEPS, every, *rows)
+        kernels.runs_of(step.body).advance(step.body, state, STEPS, every, rows)
 
     def call() -> nh.Orbit:
         return nh.simulate(discrete, restricted_velocity=velocity, steps=STEPS)
@@ -148,7 +148,7 @@ def many_dimensions(both: tuple, n: int, slides: bool) -> None:
 
     def library() -> None:
         _, state = kernels.runs_of(step.body).start(step.body, first, np.empty(0))
-        done, _ = kernels.runs_of(step.body).advance(step.body, state, steps, steps + 1, *empty)
+        done, _ = kernels.runs_of(step.body).advance(step.body, state, steps, steps + 1, empty)
         assert done == steps
         ends["library"] = state[:k]
 

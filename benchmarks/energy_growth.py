@@ -73,7 +73,7 @@ class Live:
     def run(self, steps: int) -> None:
         """Take steps, and continue from elsewhere at the end of each crossing."""
         for _ in range(steps // BLOCK):
-            _, code = kernels.runs_of(self.step.body).advance(self.step.body, self.state, BLOCK, BLOCK, *self.rows)
+            _, code = kernels.runs_of(self.step.body).advance(self.step.body, self.state, BLOCK, BLOCK, self.rows)
             if code != 0:
                 raise SystemExit(f"the run ended: {nh.Outcome(code)}")
             if self.end @ np.linalg.solve(self.half, self.state[self.momenta]) > NEAR:

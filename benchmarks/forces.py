@@ -110,7 +110,7 @@ def main() -> None:
                     start = route.encode(np.array([0.4, 0.9])), route.encode_poses(np.asarray(system.frame_pose))
                     _, state = kernels.runs_of(body).start(body, *start)
                     begun, count = time.process_time(), counts.get(kind, given.steps)
-                    done = kernels.runs_of(body).advance(body, state, count, 1, *rows)
+                    done = kernels.runs_of(body).advance(body, state, count, 1, rows)
                     taken[kind].append((time.process_time() - begun) / count * 1e9)
                     if done != (count, 0):
                         raise RuntimeError(f"{name}, {kind}: {done}")

@@ -75,7 +75,7 @@ def wrong(body: kernels.Body, states: State) -> int:
     """Return how many members are not on a certified root."""
     m1, m2, _, _, y1, y2 = states[:6]
     g1, g2 = jax.vmap(functools.partial(kernels.residual, body))(m1, m2, y1, y2)
-    certain = jax.vmap(functools.partial(kernels.certified, body))(m1, m2, y1, y2)
+    certain = jax.vmap(functools.partial(kernels.is_certain, body))(m1, m2, y1, y2)
     size = jnp.abs(m1) + jnp.abs(m2)
     return int(jnp.sum(~(certain & (jnp.abs(g1) + jnp.abs(g2) < 1e-13 * size))))
 

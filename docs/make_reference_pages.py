@@ -175,7 +175,7 @@ out. `nonholo new snakeboard` prints its keys with their meanings, `nonholo exam
 
 `--module my_robot.py` imports your own Python file, and no other; each public function in it is a kind of body, with
 its arguments as keys. It returns a system, or something with a `system`, a `configuration` and a `body_velocity` (as
-the examples have, perhaps with `time_step` and `steps`), which then needs no `[start]`; sweeps take the second sort.
+the examples have, with `time_step` and `steps` if you like), which then needs no `[start]`; sweeps take these.
 Commands that run the file are `simulate`, `explore`, `sweep`, `resume`, `extend`, `new` and `systems`.
 
 ## Sweeps

@@ -19,11 +19,19 @@ ARGUED = {
     "elapsed": "the elapsed time, since a start",
     "applied": "a matrix applied to vectors: their product",
     "shown": "what was got, shown in an error; all rooms ask for it",
+    "prescribed": "a public argument of systems: prescribed motions",
     "posed": "a public option of motions: with poses",
     "decoded": "a public option of `to_dataset`",
+    "compiled": "a public option of `check_group`",
 }
-MEMBERS = {"carried", "certified", "chosen", "displaced", "found", "joined", "moved", "turned", "uncertified"}
-"""Public attributes and methods of systems, orbits, motions, branches and logs of events."""
+MEMBERS = {
+    *("chosen", "displaced", "drawn", "ended", "enlarged", "expected", "failed", "found", "isolated", "joined"),
+    *("missed", "passed", "turned"),
+    *("added", "done", "finished", "made"),
+    *("carried", "certified", "moved", "uncertified"),
+}
+"""Public attributes and methods of systems, orbits, motions, branches, logs of events, pictures and reports; keys of
+stores."""
 MOST = 40
 _IRREGULAR = re.compile(
     "begun|broken|brought|built|caught|chosen|done|drawn|felt|found|given|gone|grown|held|hidden|kept|known|lost|made|"

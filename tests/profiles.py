@@ -107,10 +107,10 @@ DOCTESTS = {  # examples that compile for long
     f"{_DALEMBERT}on_groups._system.GroupLagrangeDAlembert.flow": "routes",
     f"{_DALEMBERT}_system.LagrangeDAlembert.flow": "routes",
     f"{_DALEMBERT}_orbit.CoordinateOrbit": "routes",
-    "nonholo.examples._particle.particle": "routes",
+    "nonholo.examples._points.particle": "routes",
     "nonholo.ensembles._family_task.FamilyTask": "routes",
     "nonholo.discrete._discretize.consistency_defect": "routes",
-    "nonholo.examples._robot.two_wheeled_robot": "routes",
+    "nonholo.examples._cars.two_wheeled_robot": "routes",
     "nonholo.analysis.steering._feedback.tracking_feedback": "routes",
     "nonholo.analysis.steering._steer.steer": "routes",
     "nonholo.analysis.locomotion._accessibility.accessibility": "routes",
@@ -118,7 +118,7 @@ DOCTESTS = {  # examples that compile for long
     "nonholo.analysis.locomotion._connection.LocalConnection.momentum_rate": "routes",
     "nonholo.analysis.locomotion._connection.local_connection": "routes",
     "nonholo.analysis.locomotion._phase.geometric_phase": "routes",
-    "nonholo.analysis.locomotion._shaped_body.ShapedBody": "routes",
+    "nonholo.analysis.locomotion._connection.ShapedBody": "routes",
     "nonholo.plot.geometry._curvature.curvature": "routes",
 }
 

@@ -86,7 +86,7 @@ def _complete(request: pytest.FixtureRequest) -> bool:
         ([], set()),
         (["benchmarks/gpu.py", "scenarios/sleigh.toml"], {"benchmarks"}),
         (["docs/house.md", "README.md", "benchmarks/gpu.py"], {"site", "benchmarks"}),
-        (["nonholo/cli/commands/plot.py"], {"faults"}),
+        (["nonholo/cli/commands/stores.py"], {"faults"}),
         (["tests/plot/test_section.py", "docs/paper.md"], {"paper", "site", "browser"}),
         (["nonholo/kernels/_sleigh.py"], {"routes", "faults", "problems", "shapes", "bounds", "browser", "benchmarks"}),
         (["nonholo/base/checks.py"], {"routes", "problems", "shapes", "bounds", "site"}),

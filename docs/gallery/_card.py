@@ -20,7 +20,7 @@ class Curve(NamedTuple):
     label: str = ""
 
 
-@theme.styled
+@theme.in_style
 def card(
     title: str,
     path: Iterable[Curve],

@@ -41,7 +41,7 @@ def numbers() -> dict[str, tuple[float, float, float]]:
     }
 
 
-@theme.styled
+@theme.in_style
 def draw() -> Figure:
     """Draw the paths with the hull, where blades slide, and the slips and the energies over time."""
     figure = Figure(figsize=(10.0, 4.8), layout="constrained")

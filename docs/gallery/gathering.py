@@ -24,7 +24,7 @@ def numbers() -> dict[str, tuple[float, float, float]]:
     return {"part that glides forwards": (float((members().restricted_momentum[:, -1, 1] > 0).mean()), 1.0, 0.0)}
 
 
-@theme.styled
+@theme.in_style
 def draw() -> Figure:
     """Draw the momenta at four times."""
     figure = Figure(figsize=(10.0, 3.0), layout="constrained")

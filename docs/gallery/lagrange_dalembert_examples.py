@@ -112,7 +112,7 @@ def draw_energies(axes: Axes, orbits: dict[float, CoordinateOrbit]) -> None:
         axes.text(0.03, 0.78, "below 1e-9", transform=axes.transAxes, fontsize=9, color="#555a62")
 
 
-@theme.styled
+@theme.in_style
 def draw() -> Figure:
     """Run all systems, print their residuals and energies, and return the picture."""
     figure = Figure(figsize=(13.0, 9.4), layout="constrained")

@@ -46,7 +46,7 @@ def numbers() -> dict[str, float]:
     }
 
 
-@theme.styled
+@theme.in_style
 def draw(resolution: int = 70) -> Figure:
     """Draw surfaces, foliations, a section and the deltoid."""
     of_top, of_sleigh = orbits()

@@ -39,7 +39,7 @@ def numbers() -> dict[str, float]:
     }
 
 
-@theme.styled
+@theme.in_style
 def draw() -> Figure:
     """Draw each set of values where it lives."""
     figure = Figure(figsize=(15.0, 5.2), layout="constrained")

@@ -86,7 +86,7 @@ def draw_distances(axes: Axes, resolution: int) -> None:
     axes.legend(loc="upper right")
 
 
-@theme.styled
+@theme.in_style
 def draw(resolution: int = 130) -> Figure:
     """Draw the sheets, the fold distances and the deltoid."""
     figure = Figure(figsize=(15.0, 4.8), layout="constrained")

@@ -61,7 +61,7 @@ def disc(z: np.ndarray) -> np.ndarray:
     return z * 2 * np.arcsin(min(size, 1.0)) / np.pi / size if size else z
 
 
-@theme.styled
+@theme.in_style
 def draw() -> Figure:
     """Draw both discs."""
     figure = Figure(figsize=(13.0, 5.6), layout="constrained")

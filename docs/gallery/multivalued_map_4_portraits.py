@@ -51,7 +51,7 @@ def draw_region(axes: Axes) -> None:
     axes.set_title("Sleigh: single-valued below")
 
 
-@theme.styled
+@theme.in_style
 def draw() -> Figure:
     """Draw two portraits and the region."""
     figure = Figure(figsize=(15.0, 5.0), layout="constrained")

@@ -66,7 +66,7 @@ def draw_tracks(axes: Axes) -> None:
     axes.legend()
 
 
-@theme.styled
+@theme.in_style
 def draw() -> Figure:
     """Draw an outer run on the disc, the momenta of all runs of the top, and tracks of the sleigh."""
     figure = Figure(figsize=(15.0, 5.0), layout="constrained")

@@ -35,7 +35,7 @@ def numbers() -> dict[str, float]:
     }
 
 
-@theme.styled
+@theme.in_style
 def draw() -> Figure:
     """Draw both trees."""
     figure = Figure(figsize=(12.5, 9.6), layout="constrained")

@@ -51,7 +51,7 @@ def draw_turns(axes: Axes) -> None:
     axes.legend()
 
 
-@theme.styled
+@theme.in_style
 def draw() -> Figure:
     """Draw a whole orbit of the sleigh, its turn, and the path of the axis of the top."""
     figure = Figure(figsize=(15.0, 5.0), layout="constrained")

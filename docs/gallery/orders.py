@@ -28,7 +28,7 @@ def numbers() -> dict[str, tuple[float, float, float]]:
     return {f"slope of order {order}": (float(slope), float(order), order / 10) for order, slope in slopes.items()}
 
 
-@theme.styled
+@theme.in_style
 def draw() -> Figure:
     """Draw the errors over the time step."""
     figure = Figure(figsize=(6.0, 4.6), layout="constrained")

@@ -49,7 +49,7 @@ def velocity(states: nh.Orbit) -> np.ndarray:
     return (states.configuration[:, :2, :2] @ np.stack([v, 0.3 * omega], axis=1)[..., None])[..., 0]
 
 
-@theme.styled
+@theme.in_style
 def draw() -> Figure:
     """Draw the path of one, with the sleigh at its impacts, and the impacts of all."""
     figure = Figure(figsize=(10.0, 4.8), layout="constrained")

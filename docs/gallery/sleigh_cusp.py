@@ -15,7 +15,7 @@ def numbers() -> dict[str, tuple[float, float, float]]:
     return {"whole turn, degrees": (float(np.degrees(np.ptp(flow.heading))), 360.0, 1e-3)}
 
 
-@theme.styled
+@theme.in_style
 def draw() -> Figure:
     """Draw the track with its cusp."""
     orbit = nh.simulate(nh.discretize(SLEIGH, 0.1), body_velocity=(0.05, -1.0, 0.0), steps=260)

@@ -22,7 +22,7 @@ def numbers() -> dict[str, tuple[float, float, float]]:
     return {"angle between the rotations, degrees": (float(np.degrees(np.arccos(cosine))), 180.0, 1.0)}
 
 
-@theme.styled
+@theme.in_style
 def draw() -> Figure:
     """Draw the momenta with all energy levels, and the forbidden axis in space."""
     figure = Figure(figsize=(10.0, 4.8), layout="constrained")

@@ -88,7 +88,7 @@ def numbers() -> dict[str, float]:
     }
 
 
-@theme.styled
+@theme.in_style
 def draw_mirror() -> Figure:
     """Draw both momenta in the metric of the energy, with the line between them."""
     figure = Figure(figsize=(5.4, 5.0), layout="constrained")
@@ -128,7 +128,7 @@ def draw_momenta(axes: Axes) -> None:
     axes.set_aspect("equal", adjustable="datalim")
 
 
-@theme.styled
+@theme.in_style
 def draw_fold(resolution: int = 90) -> Figure:
     """Draw a segment that reaches its momentum and one that meets a fold; beside it the angles along the second."""
     figure = Figure(figsize=(9.6, 4.2), layout="constrained")
@@ -150,7 +150,7 @@ def draw_fold(resolution: int = 90) -> Figure:
     return figure
 
 
-@theme.styled
+@theme.in_style
 def draw_deltoid() -> Figure:
     """Draw the deltoid, a point inside with its three tangents, and the segment from momentum zero."""
     figure = Figure(figsize=(6.0, 5.2), layout="constrained")
@@ -182,7 +182,7 @@ def curve(t: Any) -> tuple[Any, Any]:
     return 4 * t**3 / (1 + t**2) ** 2, -2 * (1 - t**2) / (1 + t**2) ** 2
 
 
-@theme.styled
+@theme.in_style
 def draw_substep() -> Figure:
     """Draw the square of a substep: scale, take the step of length h, scale back."""
     figure = Figure(figsize=(5.6, 2.6), layout="constrained")

@@ -1,10 +1,19 @@
 """Questions asked of systems and orbits."""
 
+from nonholo.analysis._asymptotics import Asymptotics, asymptotics, turn_of_flow
 from nonholo.analysis._comparison import Comparison, Convergence, Errors, compare
-from nonholo.analysis._deltoid import Deltoid, deltoid
+from nonholo.analysis._critical_energies import CriticalEnergies, CriticalPoint, critical_energies
+from nonholo.analysis._deltoid import Deltoid, SingleValuedRegion, deltoid, single_valued_region
 from nonholo.analysis._equilibria import EquilibriumSpectrum, equilibria
-from nonholo.analysis._invariant_curve import InvariantCurve, invariant_curve
-from nonholo.analysis._momentum_locus import MomentumLocus, momentum_locus
+from nonholo.analysis._heteroclinic import FlowObstruction, HeteroclinicOrbit, flow_obstruction, heteroclinic
+from nonholo.analysis._loci import (
+    HalfPlanes,
+    InvariantCurve,
+    MomentumLocus,
+    half_planes,
+    invariant_curve,
+    momentum_locus,
+)
 from nonholo.analysis.conserved import (
     ConservedMomenta,
     InvariantMeasure,
@@ -16,23 +25,6 @@ from nonholo.analysis.conserved import (
     lyapunov_exponents,
     lyapunov_function,
     tangent,
-)
-from nonholo.analysis.energies import (
-    CriticalEnergies,
-    CriticalPoint,
-    SingleValuedRegion,
-    critical_energies,
-    single_valued_region,
-)
-from nonholo.analysis.limits import (
-    Asymptotics,
-    FlowObstruction,
-    HalfPlanes,
-    HeteroclinicOrbit,
-    asymptotics,
-    flow_obstruction,
-    half_planes,
-    heteroclinic,
 )
 from nonholo.analysis.linearization import Linearization, SteadyMotion, critical_values, linearize
 from nonholo.analysis.locomotion import (

@@ -60,8 +60,8 @@ class Comparison:
     time_step: float | None = None
 
     def __repr__(self) -> str:
-        said = [f"{name} {value:.3g}" for name, value in self.largest._asdict().items() if value is not None]
-        return f"<Comparison at {len(self)} times, largest errors: {', '.join(said)}>"
+        parts = [f"{name} {value:.3g}" for name, value in self.largest._asdict().items() if value is not None]
+        return f"<Comparison at {len(self)} times, largest errors: {', '.join(parts)}>"
 
     def __len__(self) -> int:
         return len(self.time)
@@ -105,8 +105,8 @@ class Convergence:
     comparisons: tuple[Comparison, ...]
 
     def __repr__(self) -> str:
-        known = {name: value for name, value in self.order._asdict().items() if value is not None}
-        orders = ", ".join(f"{name} {'at rounding' if np.isnan(x) else f'{x:.2f}'}" for name, x in known.items())
+        slopes = {name: value for name, value in self.order._asdict().items() if value is not None}
+        orders = ", ".join(f"{name} {'at rounding' if np.isnan(x) else f'{x:.2f}'}" for name, x in slopes.items())
         return f"<Convergence over {len(self)} time steps, order: {orders}>"
 
     def __len__(self) -> int:
@@ -136,10 +136,10 @@ class Convergence:
     def _slope(self, errors: np.ndarray | None, sizes: Sequence[float | None]) -> float | None:
         if errors is None or None in sizes:
             return None
-        told = errors > _ROUNDING * np.array(sizes)
-        if told.sum() < 2:
+        is_clear = errors > _ROUNDING * np.array(sizes)
+        if is_clear.sum() < 2:
             return float("nan")
-        return float(np.polyfit(np.log(self.time_step[told]), np.log(errors[told]), 1)[0])
+        return float(np.polyfit(np.log(self.time_step[is_clear]), np.log(errors[is_clear]), 1)[0])
 
 
 @overload
@@ -179,28 +179,30 @@ def compare(orbit: AbstractOrbit | Sequence[AbstractOrbit], flow: AbstractOrbit)
     instance("compare(flow=...)", flow, AbstractOrbit, "be an orbit", _REMEDY)
     if not isinstance(orbit, list | tuple):
         one = instance("compare(orbit=...)", orbit, AbstractOrbit, "be an orbit, or a list of them", _REMEDY)
-        return _compared(one, flow)
+        return _compare_two(one, flow)
     for number, each in enumerate(orbit):
         instance(f"compare(orbit=...)[{number}]", each, AbstractOrbit, "be an orbit", _REMEDY)
     steps = [each.time_step for each in orbit]
     if len(steps) < 2 or None in steps or len(set(steps)) < len(steps):
         remedy = "Pass discrete orbits, two or more; one orbit alone without a list."
         raise error("compare(orbit=...)", "have different time steps", shown(steps), remedy)
-    return Convergence(tuple(_compared(each, flow) for each in sorted(orbit, key=lambda each: -(each.time_step or 0))))
+    return Convergence(
+        tuple(_compare_two(each, flow) for each in sorted(orbit, key=lambda each: -(each.time_step or 0)))
+    )
 
 
-def _compared(orbit: AbstractOrbit, flow: AbstractOrbit) -> Comparison:
+def _compare_two(orbit: AbstractOrbit, flow: AbstractOrbit) -> Comparison:
     _check_alike(orbit, flow)
-    (orbit, i), (other, j) = _matched(orbit, flow)
-    posed = orbit.has_poses and other.has_poses
+    (orbit, i), (other, j) = _common_rows(orbit, flow)
+    has_poses = orbit.has_poses and other.has_poses
     momenta = orbit.restricted_momentum[i] - other.restricted_momentum[j]
-    pose = _distance(orbit.configuration[i], other.configuration[j]) if posed else None
-    told = posed or not getattr(orbit.system, "is_spatial", False)
-    energy = orbit.energy[i] - other.energy[j] if told else None
+    pose = _distance(orbit.configuration[i], other.configuration[j]) if has_poses else None
+    has_energy = has_poses or not getattr(orbit.system, "is_spatial", False)
+    energy = orbit.energy[i] - other.energy[j] if has_energy else None
     sizes = Errors(
         float(np.linalg.norm(other.restricted_momentum[j], axis=1).max()),
-        float(np.abs(other.configuration[j]).max()) if posed else None,
-        float(np.abs(other.energy[j]).max()) if told else None,
+        float(np.abs(other.configuration[j]).max()) if has_poses else None,
+        float(np.abs(other.energy[j]).max()) if has_energy else None,
     )
     return Comparison(orbit.time[i], np.linalg.norm(momenta, axis=1), pose, energy, sizes, orbit.time_step)
 
@@ -229,7 +231,7 @@ def _directions(orbit: AbstractOrbit) -> np.ndarray:
     return np.array([count]) if getattr(system, "is_wide", True) else system.constraint_subspace
 
 
-def _matched(orbit: AbstractOrbit, flow: AbstractOrbit) -> tuple[Rows, Rows]:
+def _common_rows(orbit: AbstractOrbit, flow: AbstractOrbit) -> tuple[Rows, Rows]:
     """Return both orbits and the rows that are at the same times; a flow that knows its states between at new times."""
     for one, other in ((orbit, flow), (flow, orbit)):
         if other.span is not None:

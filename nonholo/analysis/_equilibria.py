@@ -96,7 +96,7 @@ def equilibria(
     if configuration is not None or body_velocity is not None:
         refuse_given("equilibria", "be left out beside a configuration", "Pass one of them.", energy=(energy, 1.0))
         return steady_motion(system, configuration, body_velocity)
-    body, step = _checked("equilibria(system=...)", system)
+    body, step = _body_and_steps("equilibria(system=...)", system)
     level = float(positive("equilibria(energy=...)", energy, "Pass the energy of the equilibrium."))
     if body.normal_form is None:
         return _of_field(body, step, body.equilibria(), level)
@@ -104,35 +104,35 @@ def equilibria(
 
 
 def _of_form(
-    body: AbstractLLSystem, steps: Float[np.ndarray, "S"] | None, known: Equilibria, level: float
+    body: AbstractLLSystem, steps: Float[np.ndarray, "S"] | None, family: Equilibria, level: float
 ) -> EquilibriumSpectrum:
-    if known.attracting is None:
+    if family.attracting is None:
         nothing = np.zeros(0)
-        return EquilibriumSpectrum(known.subspace, None, None, nothing, None if steps is None else nothing)
-    velocity = _with_energy(body, known.attracting, level)
+        return EquilibriumSpectrum(family.subspace, None, None, nothing, None if steps is None else nothing)
+    velocity = _with_energy(body, family.attracting, level)
     rates = np.sort(_rates(body, velocity @ np.linalg.pinv(body.constraint_subspace)))
     if steps is None:
-        return EquilibriumSpectrum(known.subspace, known.attracting, velocity, rates, None)
+        return EquilibriumSpectrum(family.subspace, family.attracting, velocity, rates, None)
     multipliers, highest = _multipliers(body, velocity, rates, steps), _highest_energy(body, steps)
-    return EquilibriumSpectrum(known.subspace, known.attracting, velocity, rates, multipliers, highest)
+    return EquilibriumSpectrum(family.subspace, family.attracting, velocity, rates, multipliers, highest)
 
 
 def _of_field(
-    body: AbstractLLSystem, steps: Float[np.ndarray, "S"] | None, known: Equilibria, level: float
+    body: AbstractLLSystem, steps: Float[np.ndarray, "S"] | None, family: Equilibria, level: float
 ) -> EquilibriumSpectrum:
-    nothing, everywhere = np.zeros(0), len(known.subspace) == body.rank
+    nothing, everywhere = np.zeros(0), len(family.subspace) == body.rank
     if steps is not None and not everywhere:
         got, remedy = type(body).__name__, "Pass the system itself, for the rates of its flow."
         raise error("equilibria(system=...)", "be a top or a sleigh to have known multipliers", got, remedy)
-    others = tuple(_of_field(body, steps, other, level) for other in known.others)
-    line = known.subspace[0] if len(known.subspace) == 1 and not everywhere else None
-    direction = line if known.attracting is None else known.attracting
+    others = tuple(_of_field(body, steps, other, level) for other in family.others)
+    line = family.subspace[0] if len(family.subspace) == 1 and not everywhere else None
+    direction = line if family.attracting is None else family.attracting
     if direction is None:
         multipliers = None if steps is None else nothing
-        return EquilibriumSpectrum(known.subspace, None, None, nothing, multipliers, others=others)
+        return EquilibriumSpectrum(family.subspace, None, None, nothing, multipliers, others=others)
     velocity = _with_energy(body, direction, level)
-    rates = body.transverse_rates(velocity, known.subspace)
-    return EquilibriumSpectrum(known.subspace, known.attracting, velocity, rates, None, others=others)
+    rates = body.transverse_rates(velocity, family.subspace)
+    return EquilibriumSpectrum(family.subspace, family.attracting, velocity, rates, None, others=others)
 
 
 def _with_energy(body: AbstractLLSystem, direction: Float[np.ndarray, "dim"], level: float) -> Float[np.ndarray, "dim"]:
@@ -163,7 +163,7 @@ def _steps(discrete: Discretization) -> Float[np.ndarray, "S"]:
     return float(discrete.time_step) * weights(discrete.order)
 
 
-def _checked(where: str, value: Any) -> tuple[AbstractLLSystem, Float[np.ndarray, "S"] | None]:
+def _body_and_steps(where: str, value: Any) -> tuple[AbstractLLSystem, Float[np.ndarray, "S"] | None]:
     """Return the body and the time steps of the substeps, one for order 2."""
     remedy = "Pass a left-invariant system, a discretization of a top or a sleigh, or configuration= to look near."
     body = value.system if isinstance(value, Discretization) else value

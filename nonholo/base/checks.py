@@ -367,8 +367,7 @@ def pair(where: str, value: Any) -> tuple[Any, Any]:
 def flags(owner: str, **values: Any) -> None:
     """Refuse arguments of an owner that are neither True nor False."""
     for name, value in values.items():
-        if type(value) is not bool:
-            flag(f"{owner}({name}=...)", value)
+        flag(f"{owner}({name}=...)", value)
 
 
 def path(where: str, value: Any) -> Path:

@@ -13,9 +13,8 @@ def table(title: str, rows: Iterable[Sequence[Any]], head: Sequence[Any] = ()) -
         '<table><caption><b>&lt;Top&gt;</b></caption><tr><td>time</td><td>0.5</td></tr></table>'
     """
     lines = [_row("th", head)] if head else []
-    return (
-        f"<table><caption><b>{_cell(title)}</b></caption>{''.join(lines + [_row('td', row) for row in rows])}</table>"
-    )
+    lines += [_row("td", row) for row in rows]
+    return f"<table><caption><b>{_cell(title)}</b></caption>{''.join(lines)}</table>"
 
 
 def _row(cell: str, words: Sequence[Any]) -> str:

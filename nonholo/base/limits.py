@@ -10,7 +10,6 @@ from typing import Any
 from nonholo.base.checks import count, error
 
 _UNITS = ("B", "kB", "MB", "GB", "TB", "PB", "EB")
-_UNLIMITED = ("max", "")
 _LARGEST_TEXT = 1 << 22  # bytes of a file: a mass tensor of some hundred dimensions fits
 
 
@@ -80,7 +79,7 @@ def _machine() -> float:
             content = Path(file).read_text().strip()
         except OSError:
             continue
-        return whole if content in _UNLIMITED else min(whole, float(content))
+        return whole if content in ("max", "") else min(whole, float(content))
     return whole
 
 

@@ -9,14 +9,9 @@ import typer
 from nonholo import __version__
 from nonholo.cli.commands.about import cite, examples, new, systems
 from nonholo.cli.commands.dataset import dataset
-from nonholo.cli.commands.explore import explore
-from nonholo.cli.commands.export import export
-from nonholo.cli.commands.info import info
 from nonholo.cli.commands.paper import paper
-from nonholo.cli.commands.plot import plot
-from nonholo.cli.commands.resume import extend, resume
-from nonholo.cli.commands.simulate import simulate
-from nonholo.cli.commands.sweep import sweep
+from nonholo.cli.commands.run import explore, extend, resume, simulate, sweep
+from nonholo.cli.commands.stores import export, info, plot
 
 app = typer.Typer(
     name="nonholo",

@@ -13,22 +13,16 @@ from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.continuous._series import GUARD, power_of_two
-from nonholo.continuous._solution import Solved, States
+from nonholo.continuous._solution import Problem, Solved, States
 from nonholo.kernels import Arrowhead, solve_arrowhead
 from nonholo.orbit import looked_at
 from nonholo.systems import AbstractSystem, NormalForm
 
 
-def momenta_by_series(
-    system: AbstractSystem,
-    reduced_momentum: Float[np.ndarray, "k"],
-    _pose: None,
-    elapsed: Float[np.ndarray, "K"],
-    tolerances: tuple[float, float],
-) -> Solved:
-    """Solve for the momenta of a top or sleigh, without its pose; times elapse from zero."""
-    form, tolerance = cast(NormalForm, system.normal_form), tolerances[0] * GUARD
-    f, x = equations(form)[0], encode(form, reduced_momentum)
+def momenta_by_series(system: AbstractSystem, problem: Problem) -> Solved:
+    """Solve for the momenta of a top or sleigh, without its pose."""
+    form, elapsed, tolerance = cast(NormalForm, system.normal_form), problem.elapsed, problem.tolerances[0] * GUARD
+    f, x = equations(form)[0], encode(form, problem.momentum)
     unit = power_of_two(np.append(np.sqrt(f.rates) * x, f.rates.max() * (f.coupling @ x)))
     start, end = np.zeros((2, len(x) + 1)), float(elapsed[-1]) * unit
     start[0, :-1] = x / unit

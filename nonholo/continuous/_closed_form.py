@@ -23,7 +23,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.continuous._equations import body_of, momentum_rate
 from nonholo.continuous._series import body_equations, power_of_two, solve
-from nonholo.continuous._solution import Solved, States
+from nonholo.continuous._solution import Problem, Solved, States
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractSystem, NormalForm
 
@@ -180,17 +180,12 @@ def _remainder(ratio: float, q: np.ndarray | float) -> np.ndarray:
 _LARGEST_RATIO = 1e150  # of turn to the Gudermannian; beyond it the center of mass is as good as at the blade
 
 
-def closed_form(
-    system: AbstractSystem,
-    reduced_momentum: Float[np.ndarray, "k"],
-    pose: Float[np.ndarray, "size"],
-    elapsed: Float[np.ndarray, "K"],
-    tolerances: tuple[float, float],
-) -> Solved:
-    """Solve the equations of a canonical system with two directions; times elapse from zero.
+def closed_form(system: AbstractSystem, problem: Problem) -> Solved:
+    """Solve the equations of a canonical system with two directions.
 
     Heading and path of a sleigh are exact; other poses are a quadrature by Taylor series.
     """
+    reduced_momentum, pose, elapsed, _ = problem
     if system.is_spatial or system.rank != 2:
         remedy = "Leave method out to integrate numerically."
         raise error("flow(method='closed_form')", "have a closed-form solution", type(system).__name__, remedy)
@@ -198,19 +193,14 @@ def closed_form(
     if form is not None and form.is_sleigh:
         at = functools.partial(_sleigh_states, system, form, motion, reduced_momentum, pose)
         return Solved(at(elapsed), Outcome.successful, at)
-    series = _pose_by_series(system.group, motion, body_of(system)[2], pose, elapsed, tolerances)
+    series = _pose_by_series(system.group, motion, body_of(system)[2], problem)
     times = elapsed[: len(series.states.momenta)]
     at = functools.partial(_with_momenta, motion, series.at)
     return series._replace(states=series.states._replace(momenta=motion.momentum(times)), at=at)
 
 
 def _pose_by_series(
-    group: AbstractMatrixGroup,
-    motion: Heteroclinic,
-    to_velocity: Float[np.ndarray, "2 dim"],
-    pose: Float[np.ndarray, "size"],
-    elapsed: Float[np.ndarray, "K"],
-    tolerances: tuple[float, float],
+    group: AbstractMatrixGroup, motion: Heteroclinic, to_velocity: Float[np.ndarray, "2 dim"], problem: Problem
 ) -> Solved:
     r"""Solve for the poses of a body whose momentum is known in closed form.
 
@@ -224,7 +214,7 @@ def _pose_by_series(
     decay = np.exp(-abs(motion.start))
     head = np.array([2 * decay / (1 + decay * decay), np.tanh(motion.start)])
     f = body_equations(group, velocities / unit, np.eye(2), torques)
-    return solve(group, f, head, len(head), None, unit, pose, elapsed, tolerances)
+    return solve(group, f, head, len(head), None, unit, problem)
 
 
 def _with_momenta(motion: Heteroclinic, series: Callable[[np.ndarray], States], elapsed: np.ndarray) -> States:
@@ -269,14 +259,10 @@ def _foot(form: NormalForm) -> Float[np.ndarray, "3 3"] | None:
     return shift if form.frame is None else form.frame @ shift
 
 
-def _rows(form: NormalForm) -> Float[np.ndarray, "2 2"]:
-    """Return C with r_form = C r."""
-    return np.eye(2) if form.frame_map is None else form.frame_map
-
-
 def _turn_and_slide(system: AbstractSystem, form: NormalForm, momentum: np.ndarray) -> tuple[float, float]:
     r"""Return $\omega$ and the velocity along the blade of the foot of the center of mass."""
-    w, v1 = np.linalg.solve(_rows(form).T, system.restricted_velocity(momentum))
+    rows = np.eye(2) if form.frame_map is None else form.frame_map
+    w, v1 = np.linalg.solve(rows.T, system.restricted_velocity(momentum))
     return -w, v1 + form.offset[0] * w
 
 

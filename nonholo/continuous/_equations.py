@@ -207,16 +207,24 @@ def vector_field(
         return system.vector_field()
     as_system("vector_field(system=...)", system)
     refuse_slip("vector_field(system=...)", system)
-    if system.forces is not None:
-        return forced_field(system.forces)
+    field = _free_field(system) if system.forces is None else forced_field(system.forces)
+    where, size = "vector_field(...)(state=...)", system.rank + system.group.size**2
+
+    def derivative(time: Array, state: Float[Array, "size"]) -> Float[Array, "size"]:
+        now = number("vector_field(...)(time=...)", time)
+        remedy = "Pass momenta along the subspace, then the pose row by row."
+        return field(now, trailing(where, state, (size,), remedy, real=True))
+
+    return derivative
+
+
+def _free_field(system: AbstractSystem) -> Callable[[Array, Array], Array]:
+    """Return the equations of a free motion as a function of time and states."""
     group, S = system.group, system.constraint_subspace
     k, shape = len(S), group.identity.shape
     body = None if system.is_spatial else body_of(system)
 
-    def derivative(time: Array, state: Float[Array, "size"]) -> Float[Array, "size"]:
-        number("vector_field(...)(time=...)", time)
-        where, size = "vector_field(...)(state=...)", k + shape[0] * shape[1]
-        state = trailing(where, state, (size,), "Pass momenta along the subspace, then the pose row by row.", real=True)
+    def derivative(_: Array, state: Array) -> Array:
         xp = state.__array_namespace__()
         r, g = state[..., :k], xp.reshape(state[..., k:], (*state.shape[:-1], *shape))
         if body is None:

@@ -25,13 +25,13 @@ import numpy as np
 import scipy  # its parts load on first use
 
 from nonholo.base.calls import note_fault
-from nonholo.base.checks import error, is_traced, number, trailing
+from nonholo.base.checks import error, is_traced
 from nonholo.base.numerics import applied
 from nonholo.base.progress import late_bar
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.continuous._series import body_equations, body_numbers, solve
-from nonholo.continuous._solution import PLANE, Solved, States, first_heading, on_same_turn
+from nonholo.continuous._solution import PLANE, Problem, Solved, States, first_heading, on_same_turn
 from nonholo.kernels import Quadratic
 from nonholo.orbit import Orbit
 from nonholo.systems import Forced
@@ -119,38 +119,22 @@ def has_series_under(forced: Forced, span: float) -> bool:
     return _are_linear(forced) and bool(abs(span) * _linear_forces(forced).fastest <= _STIFF)
 
 
-def under_forces(
-    forced: Forced,
-    begins: float,
-    reduced_momentum: Float[np.ndarray, "k"],
-    pose: Float[np.ndarray, "size"],
-    elapsed: Float[np.ndarray, "K"],
-    tolerances: tuple[float, float],
-) -> Solved:
+def under_forces(forced: Forced, begins: float, problem: Problem) -> Solved:
     """Solve the equations of a system with forces from the time `begins` on, by series where they serve."""
-    if not has_series_under(forced, elapsed[-1]):
-        start = forced, begins, reduced_momentum, pose
-        return by_runge_kutta(*start, elapsed, tolerances, is_stiff=_are_linear(forced))
-    (head,), (unit,) = heads(forced, reduced_momentum[None], pose[None])
+    if not has_series_under(forced, problem.elapsed[-1]):
+        return by_runge_kutta(forced, begins, problem, is_stiff=_are_linear(forced))
+    (head,), (unit,) = heads(forced, problem.momentum[None], problem.pose[None])
     f, rank = quadratic_under(forced), forced.rank
-    solution = solve(forced.group, f, head, rank, None, float(unit), pose, elapsed, tolerances, _MOST)
+    solution = solve(forced.group, f, head, rank, None, float(unit), problem, _MOST)
     return solution if solution.outcome == Outcome.successful else solution._replace(outcome=Outcome.too_stiff)
 
 
-def by_runge_kutta(
-    forced: Forced,
-    begins: float,
-    reduced_momentum: Float[np.ndarray, "k"],
-    pose: Float[np.ndarray, "size"],
-    elapsed: Float[np.ndarray, "K"],
-    tolerances: tuple[float, float],
-    *,
-    is_stiff: bool = False,
-) -> Solved:
+def by_runge_kutta(forced: Forced, begins: float, problem: Problem, *, is_stiff: bool = False) -> Solved:
     """Solve the equations of a system with forces, from canonical momenta and pose at the time `begins`.
 
     By DOP853, or if they are known to be stiff by the implicit Radau.
     """
+    reduced_momentum, pose, elapsed, tolerances = problem
     _refuse_table("flow", forced)
     group, k = forced.group, forced.rank
     r, g = forced.from_canonical(reduced_momentum), group.matrix_from_pose(pose) @ group.inverse(forced.frame)
@@ -180,9 +164,10 @@ def _steps(
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"), late_bar("flow under forces") as report:
         if not np.isfinite(np.linalg.norm(first / (_SHARE + np.abs(start)) / rtol)):
             return nodes, pieces, Outcome.nonfinite
-        method = scipy.integrate.Radau if is_stiff else scipy.integrate.DOP853
-        solver: Any = method(field, 0.0, start, end, rtol=rtol, atol=_SHARE * rtol) if end else None
-        while solver is not None and solver.status == "running":
+        if not end:
+            return nodes, pieces, Outcome.successful
+        solver = _solver(field, start, end, rtol, is_stiff=is_stiff)
+        while solver.status == "running":
             before = solver.nfev
             solver.step()
             attempts = 1 if is_stiff else (solver.nfev - before) // solver.n_stages
@@ -195,6 +180,12 @@ def _steps(
             if tries > _FIRST and tries * end / solver.t > _most(tries, vain):
                 return nodes, pieces, Outcome.too_stiff
     return nodes, pieces, Outcome.successful
+
+
+def _solver(field: Any, start: np.ndarray, end: float, rtol: float, *, is_stiff: bool) -> Any:
+    """Return the solver of SciPy, by the implicit Radau or by DOP853."""
+    method = scipy.integrate.Radau if is_stiff else scipy.integrate.DOP853
+    return method(field, 0.0, start, end, rtol=rtol, atol=_SHARE * rtol)
 
 
 def _failure(rates: np.ndarray) -> Outcome:
@@ -218,13 +209,9 @@ def _is_short(solver: Any) -> bool:
 def forced_field(forced: Forced) -> Callable[[float, np.ndarray], np.ndarray]:
     """Return the equations of motion as a function of time and states, as `vector_field` does."""
     _refuse_table("vector_field", forced)
-    size = forced.rank + forced.group.size**2
     field = _field(forced, 0.0, forced.rank, None)
 
-    def derivative(time: float, state: np.ndarray) -> np.ndarray:
-        now = number("vector_field(...)(time=...)", time)
-        remedy = "Pass momenta along the subspace, then the pose row by row."
-        rows = trailing("vector_field(...)(state=...)", state, (size,), remedy, real=True)
+    def derivative(now: float, rows: np.ndarray) -> np.ndarray:
         if is_traced(rows):
             return rows.__array_namespace__().vectorize(lambda row: field(now, row), signature="(n)->(n)")(rows)
         return np.apply_along_axis(lambda row: field(now, row), -1, rows)

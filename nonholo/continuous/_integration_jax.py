@@ -8,26 +8,21 @@ import jax
 import numpy as np
 
 from nonholo.base.numerics import double_precision
-from nonholo.base.numerics.time_sweep import State, padded, reached, sweep
+from nonholo.base.numerics.time_sweep import State, good_rows, pad, sweep
 from nonholo.base.progress import interruptibly
 from nonholo.base.results import Outcome
-from nonholo.base.types import Array, Float
+from nonholo.base.types import Array
 from nonholo.continuous._equations import Body, body_of, momentum_rate, spatial_velocity
-from nonholo.continuous._solution import PLANE, Solved, States, first_heading, on_same_turn
+from nonholo.continuous._solution import PLANE, Problem, Solved, States, first_heading, on_same_turn
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractSystem
 
 Rate = Callable[[AbstractMatrixGroup, Array, State, Any], State]
 
 
-def integrate_by_diffrax(
-    system: AbstractSystem,
-    reduced_momentum: Float[np.ndarray, "k"],
-    pose: Float[np.ndarray, "size"],
-    elapsed: Float[np.ndarray, "K"],
-    tolerances: tuple[float, float],
-) -> Solved:
-    """Solve the equations of a system; times elapse from zero."""
+def integrate_by_diffrax(system: AbstractSystem, problem: Problem) -> Solved:
+    """Solve the equations of a system."""
+    reduced_momentum, pose, elapsed, tolerances = problem
     planar = system.group == PLANE
     start = (reduced_momentum, pose, first_heading(system.group, pose))
     if system.is_spatial:
@@ -37,16 +32,14 @@ def integrate_by_diffrax(
     rows, outcome = _solve(rate, system.group, start, numbers, elapsed, tolerances)
     momenta, poses, headings = rows
     poses = system.group.normalize_pose(poses)
-    at = functools.partial(_solved_again, system, reduced_momentum, pose, tolerances)
+    at = functools.partial(_solved_again, system, problem)
     return Solved(States(momenta, poses, on_same_turn(headings[:, 0], poses) if planar else None), outcome, at)
 
 
-def _solved_again(
-    system: AbstractSystem, momentum: np.ndarray, pose: np.ndarray, tolerances: tuple[float, float], elapsed: np.ndarray
-) -> States:
+def _solved_again(system: AbstractSystem, problem: Problem, elapsed: np.ndarray) -> States:
     times = np.unique(np.append(np.abs(elapsed), 0.0))
     backward = np.copysign(1.0, elapsed.sum())
-    states = integrate_by_diffrax(system, momentum, pose, backward * times, tolerances).states
+    states = integrate_by_diffrax(system, problem._replace(elapsed=backward * times)).states
     return states.chosen(np.searchsorted(times, np.abs(elapsed)))
 
 
@@ -76,8 +69,8 @@ def _solve(
 ) -> tuple[list[np.ndarray], Outcome]:
     def solve() -> list[np.ndarray]:
         with double_precision():
-            rest, good = _sweep(rate, group, state, numbers, padded(elapsed), tolerances)
-        return reached(state, rest, good, len(elapsed))
+            rest, good = _sweep(rate, group, state, numbers, pad(elapsed), tolerances)
+        return good_rows(state, rest, good, len(elapsed))
 
     rows = interruptibly(solve)
     return rows, Outcome.successful if len(rows[0]) == len(elapsed) else Outcome.not_converged

@@ -22,7 +22,7 @@ import numpy as np
 from nonholo.base.checks import error
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.continuous._solution import PLANE, Solved, States, first_heading, on_same_turn
+from nonholo.continuous._solution import PLANE, Problem, Solved, States, first_heading, on_same_turn
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.kernels import Quadratic, revisit_series, solve_series, sparse_products
 from nonholo.orbit import looked_at
@@ -95,22 +95,16 @@ class Series:
         return States(momenta, poses, on_same_turn(rows[:, pose_end], poses) if group == PLANE else None)
 
 
-def by_series(
-    system: AbstractSystem,
-    reduced_momentum: Float[np.ndarray, "k"],
-    pose: Float[np.ndarray, "size"],
-    elapsed: Float[np.ndarray, "K"],
-    tolerances: tuple[float, float],
-) -> Solved:
-    """Solve the equations of a system; times elapse from zero."""
-    f, constant = quadratic(system), None
+def by_series(system: AbstractSystem, problem: Problem) -> Solved:
+    """Solve the equations of a system."""
+    reduced_momentum, f, constant = problem.momentum, quadratic(system), None
     if system.is_spatial:
-        unit = power_of_two(system.restricted_velocity(reduced_momentum, system.group.matrix_from_pose(pose)))
+        unit = power_of_two(system.restricted_velocity(reduced_momentum, system.group.matrix_from_pose(problem.pose)))
         f, head, constant = f._replace(momentum=reduced_momentum / unit), np.zeros(f.tensor.size), reduced_momentum
     else:
         unit = power_of_two(f.velocities @ reduced_momentum)
         head = reduced_momentum / unit
-    return solve(system.group, f, head, len(reduced_momentum), constant, unit, pose, elapsed, tolerances)
+    return solve(system.group, f, head, len(reduced_momentum), constant, unit, problem)
 
 
 def is_compact(group: AbstractMatrixGroup) -> bool:
@@ -130,12 +124,11 @@ def solve(
     rank: int,
     constant: np.ndarray | None,
     unit: float,
-    pose: np.ndarray,
-    elapsed: np.ndarray,
-    tolerances: tuple[float, float],
+    problem: Problem,
     most: float = math.inf,
 ) -> Solved:
     """Solve equations from a head and a pose, in up to as many steps; see `Series` for the others."""
+    _, pose, elapsed, tolerances = problem
     compact, tolerance = is_compact(group) and not len(f.forms), tolerances[0] * GUARD
     g = pose if compact else group.matrix_from_pose(pose).ravel()
     start = np.concatenate([g, first_heading(group, pose), head])

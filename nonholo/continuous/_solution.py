@@ -1,7 +1,7 @@
 """What a solver of the continuous equations returns."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -29,6 +29,22 @@ class States(NamedTuple):
         """Return the states at some places."""
         others = (None if rows is None else rows[at] for rows in (self.poses, self.turned))
         return States(self.momenta[at], *others)
+
+
+class Problem(NamedTuple):
+    """An initial value problem, in canonical numbers.
+
+    Attributes:
+        momentum: The reduced momentum at the start.
+        pose: The compact pose there; None if it is not solved for.
+        elapsed: Times since the start, from zero.
+        tolerances: Relative and absolute.
+    """
+
+    momentum: Float[np.ndarray, "k"]
+    pose: Any
+    elapsed: Float[np.ndarray, "K"]
+    tolerances: tuple[float, float]
 
 
 class Solved(NamedTuple):

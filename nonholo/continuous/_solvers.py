@@ -22,7 +22,7 @@ from nonholo.continuous._series import (
     power_of_two,
     quadratic,
 )
-from nonholo.continuous._solution import PLANE, Solved, States, first_heading, on_same_turn
+from nonholo.continuous._solution import PLANE, Problem, Solved, States, first_heading, on_same_turn
 from nonholo.kernels import Quadratic, solve_members
 from nonholo.systems import AbstractSystem, System, refuse_slip
 
@@ -100,9 +100,13 @@ def solver_of(
         if method is not None:
             remedy = "Leave it out: the forces say which one it is."
             raise error("flow(method=...)", "be None under forces", repr(method), remedy)
-        return functools.partial(under_forces, system.forces, begins), True
+        return _of_problem(functools.partial(under_forces, system.forces, begins)), True
     alone = not reconstruct and method is None and system.canonical.normal_form is not None
-    return functools.partial(_method_solver(method, alone=alone), system.canonical), not alone
+    return _of_problem(functools.partial(_method_solver(method, alone=alone), system.canonical)), not alone
+
+
+def _of_problem(solve: Callable[[Problem], Solved]) -> Callable[..., Solved]:
+    return lambda *parts, **others: solve(Problem(*parts, **others))
 
 
 def _method_solver(method: str | None, *, alone: bool) -> Callable[..., Solved]:

@@ -19,7 +19,7 @@ from nonholo.ensembles._names import Axes, check_dimensions
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.ensembles.datasets import DatasetTask, dataset_task_from
 from nonholo.ensembles.designs import Design, Grid, RandomDesign, axis_dimensions
-from nonholo.ensembles.stores import Output, SweepStore, Task, create_store, layout_of, open_store, probed
+from nonholo.ensembles.stores import Output, SweepStore, Task, create_store, layout_of, open_store, probe_outputs
 from nonholo.simulation import in_one_thread
 
 _BLOCK = 4096  # most members of a block of a task that does not say how many
@@ -42,18 +42,20 @@ def check_task(task: Any, design: Any) -> None:
         task.check_design([*design.axes, *design.drawn])
 
 
-def begun(task: Task, design: Design, path: Path, block: Any, scenario: str | None, *, progress: bool) -> SweepStore:
+def begin_store(
+    task: Task, design: Design, path: Path, block: Any, scenario: str | None, *, progress: bool
+) -> SweepStore:
     """Make the store of a sweep, after its task has been tried."""
     io.check_suffix(path, "sweep(store=...)")
     size = _block(task, design.members) if block is None else count("sweep(block=...)", block, "Pass how many members.")
     with in_one_thread(), waiting("compiling and trying a member", progress):
-        returned = probed(task, lambda first, some: block_of(design, first, some), design.members)
-    drawn = {name: _drawn(name, shape) for name, shape in design.drawn.items()}
-    _check_names(design, drawn, returned)
+        results = probe_outputs(task, lambda first, some: block_of(design, first, some), design.members)
+    draws = {name: _output_of_draws(name, shape) for name, shape in design.drawn.items()}
+    _check_names(design, draws, results)
     layout = layout_of(tuple(design.sizes.values()), size)
-    _refuse_too_large(layout, drawn | returned, path)
+    _refuse_too_large(layout, draws | results, path)
     extra = {} if scenario is None else io.attributes_of_text(scenario)
-    return create_store(path, _described(task, design), design, layout, drawn | returned, extra)
+    return create_store(path, _description(task, design), design, layout, draws | results, extra)
 
 
 def _block(task: Task, members: int) -> int:
@@ -64,22 +66,37 @@ def _block(task: Task, members: int) -> int:
 def _refuse_too_large(layout: io.Layout, outputs: dict[str, Output], path: Path) -> None:
     """Refuse blocks that memory does not hold, and results that the disk does not: numbers, and files of each block."""
     each = sum(math.prod(o.shape) * np.dtype(o.dtype).itemsize for o in outputs.values())
-    held = 2.0 * each * math.prod(layout.chunk)
-    within_memory("sweep(block=...)", held, "Pass fewer members: a block is held whole.")
+    in_memory = 2.0 * each * math.prod(layout.chunk)
+    within_memory("sweep(block=...)", in_memory, "Pass fewer members: a block is held whole.")
     files = layout.blocks * (1 + len(outputs))
-    needed = float(each) * math.prod(layout.sizes) + _FILE * files
-    within_disk("sweep(design=...)", needed, path, "Ask for fewer members, or for less of each.")
+    on_disk = float(each) * math.prod(layout.sizes) + _FILE * files
+    within_disk("sweep(design=...)", on_disk, path, "Ask for fewer members, or for less of each.")
 
 
-def _check_names(design: Design, drawn: dict[str, Output], returned: dict[str, Output]) -> None:
+def _check_names(design: Design, draws: dict[str, Output], results: dict[str, Output]) -> None:
     """Refuse names that stand for two things, before anything is computed that nobody could open."""
-    for name in returned:
-        if name in drawn:
+    for name in results:
+        if name in draws:
             raise error("sweep(task=...)", "return names that the design does not have", shown(name), "Rename it.")
     members, lengths = tuple(design.sizes), tuple(design.sizes.values())
     coordinates = {name: Axes(axis_dimensions(name, x), x.shape) for name, x in design.axes.items()}
-    outputs = (drawn | returned).items()
+    outputs = (draws | results).items()
     check_dimensions({n: Axes(members + o.dimensions, lengths + o.shape) for n, o in outputs}, coordinates)
+
+
+def grow(store: SweepStore, members: Any) -> SweepStore:
+    """Return the store of a random design that is to have more members."""
+    where, remedy = "resume(members=...)", "Pass a larger number, or leave it out."
+    size, design = count(where, members, "Pass how many."), store.design
+    if not isinstance(design, RandomDesign):
+        raise error(where, "come with a random design", "a grid, which has no more members", "Run another grid.")
+    if size < design.members:
+        raise error(where, f"not be below the {design.members} members that there are", shown(size), remedy)
+    if size == design.members:
+        return store
+    _refuse_too_large(io.Layout((size,), store.layout.chunk), store.outputs, store.path)
+    with io.write_lock(store.path):
+        return store.grow(size)
 
 
 def check_same(store: SweepStore, task: Any, design: Design) -> None:
@@ -87,11 +104,11 @@ def check_same(store: SweepStore, task: Any, design: Design) -> None:
     theirs = store.description
     if isinstance(task, EnsembleTask) and theirs["task"]["kind"] == "EnsembleTask":
         task = task.on_route_of(theirs["task"])
-    ours = json.loads(json.dumps(_described(task, design)))
-    found = list(differences(ours, theirs))
-    if found:
+    ours = json.loads(json.dumps(_description(task, design)))
+    flaws = list(differences(ours, theirs))
+    if flaws:
         remedy = "Pass that task and design, or choose another path."
-        raise error("sweep(store=...)", "hold this sweep", f"'{store.path}', where {'; '.join(found[:5])}", remedy)
+        raise error("sweep(store=...)", "hold this sweep", f"'{store.path}', where {'; '.join(flaws[:5])}", remedy)
 
 
 def functions_of(store: str | Path) -> list[str]:
@@ -116,8 +133,8 @@ def restored_task(store: SweepStore, task: Any, *, trust: bool = False) -> Task:
     _refuse_untrusted(store, functions_of(store.path), trust=trust)
     entry = store.description["task"]
     try:
-        made = _MAKERS.get(entry["kind"], lambda entry: function_from(entry["name"]))
-        return _as_begun(store, made(entry))
+        make = _MAKERS.get(entry["kind"], lambda entry: function_from(entry["name"]))
+        return _as_begun(store, make(entry))
     except (ImportError, ValueError) as failure:
         remedy = f"Pass it: nonholo.resume('{store.path}', task=...)."
         raise error("resume(store=...)", "be a sweep whose task can be made again", f"{failure}", remedy) from failure
@@ -138,11 +155,11 @@ def _refuse_untrusted(store: SweepStore, names: list[str], *, trust: bool) -> No
         raise error("resume(store=...)", "name no function but the library's, unless trusted", got, remedy)
 
 
-def _described(task: Any, design: Design) -> dict[str, Any]:
+def _description(task: Any, design: Design) -> dict[str, Any]:
     entry = task.describe() if isinstance(task, DESCRIBED) else {"kind": "function", "name": function_name(task)}
     return {"task": entry, "design": design_text(design)}
 
 
-def _drawn(name: str, shape: tuple[int, ...]) -> Output:
+def _output_of_draws(name: str, shape: tuple[int, ...]) -> Output:
     dimensions = tuple(f"{name}_{axis}" for axis in range(1, len(shape) + 1))
     return Output(dimensions, shape, "float64", {"long_name": "value of the design"})

@@ -11,7 +11,7 @@ import numpy as np
 from nonholo import io
 from nonholo.base.results import Outcome
 from nonholo.ensembles._block import block_of
-from nonholo.ensembles.stores import OUTCOME, RAISED, Mark, Results, SweepStore, Task, attempted, store_of
+from nonholo.ensembles.stores import OUTCOME, RAISED, Mark, Results, SweepStore, Task, attempt, store_of
 from nonholo.simulation import in_one_thread
 
 
@@ -27,25 +27,25 @@ class Done(NamedTuple):
 
     block: int
     mark: Mark
-    damaged: str | None
+    damage: str | None
     versions: str
 
 
 def do_block(work: Work, block: int) -> Done:
     """Make sure that a block is in the store."""
     store = store_of(work.store)
-    mark, damaged = _standing(store, block)
-    if mark is not None:
+    mark, damage = _standing(store, block)
+    piece, begin = store.layout.piece(block), time.perf_counter()
+    if mark is not None and mark.members == piece.count:  # or the sweep has grown
         return Done(block, mark, None, _versions())
-    piece, begun = store.layout.piece(block), time.perf_counter()
-    members, drawn = block_of(store.design, piece.first, piece.count), store.design.drawn
-    returned = {name: output for name, output in store.outputs.items() if name not in drawn}
+    members, draws = block_of(store.design, piece.first, piece.count), store.design.drawn
+    outputs = {name: output for name, output in store.outputs.items() if name not in draws}
     with in_one_thread():
-        found = attempted(work.task, members, returned)
-    results = Results({name: members[name] for name in drawn} | found.arrays, found.messages)
-    mark = _mark(results, piece.count, time.perf_counter() - begun)
+        outcome = attempt(work.task, members, outputs)
+    results = Results({name: members[name] for name in draws} | outcome.arrays, outcome.messages)
+    mark = _mark(results, piece.count, time.perf_counter() - begin)
     store.write(piece, results, mark)
-    return Done(block, mark, damaged, _versions())
+    return Done(block, mark, damage, _versions())
 
 
 def _standing(store: SweepStore, block: int) -> tuple[Mark | None, str | None]:

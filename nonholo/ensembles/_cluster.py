@@ -1,6 +1,7 @@
 """All blocks of a sweep by the workers of a Dask cluster; the only file that loads `distributed`."""
 
 import asyncio
+import contextlib
 import errno
 import functools
 import itertools
@@ -29,11 +30,11 @@ def check_cluster(address: str) -> None:
 
     Not by a client: one that cannot start is closed by the garbage collector, in any thread, and may block the next.
     """
-    distributed = _distributed()
+    library = _library()
 
     async def answer() -> dict[str, Any]:
-        async with distributed.rpc(address, timeout=_CONNECT) as asked:
-            return await asyncio.wait_for(asked.identity(), _CONNECT)
+        async with library.rpc(address, timeout=_CONNECT) as remote:
+            return await asyncio.wait_for(remote.identity(), _CONNECT)
 
     try:
         with ThreadPoolExecutor(1) as pool:  # the loop of a notebook runs in this thread
@@ -44,12 +45,33 @@ def check_cluster(address: str) -> None:
         raise _no_scheduler(f"{address}, a {kind.lower()}")
 
 
-def do_on_cluster(work: Work, blocks: Iterator[int], address: str, take: Callable[[Done], None]) -> None:
-    """Do every block; a loss of the scheduler, or of workers again and again, is reported as what it is."""
+def is_client(scheduler: Any) -> bool:
+    """Tell whether a scheduler is the client of one, of the user's own."""
+    return hasattr(scheduler, "scheduler_info") and hasattr(scheduler, "map")
+
+
+def check_client(client: Any) -> None:
+    """Refuse a client that is closed, or one of `async` code."""
+    if client.status != "running" or client.asynchronous:
+        got, remedy = f"one that is {client.status}", "Pass distributed.Client(...), or the address tcp://host:port."
+        raise error(_WHERE, "be a client that is connected, and not asynchronous", got, remedy)
+
+
+def do_on_cluster(work: Work, blocks: Iterator[int], scheduler: Any, take: Callable[[Done], None]) -> None:
+    """Do every block by the scheduler at an address, or by that of a client, which stays open.
+
+    A loss of the scheduler, or of workers again and again, is reported as what it is.
+    """
     from distributed.comm.core import CommClosedError
     from distributed.scheduler import KilledWorker
 
-    with _distributed().Client(address, timeout=_CONNECT, set_as_default=False) as client:
+    own = is_client(scheduler)
+    connect = _library().Client
+    with (
+        contextlib.nullcontext(scheduler)
+        if own
+        else connect(scheduler, timeout=_CONNECT, set_as_default=False) as client
+    ):
         try:
             _do_blocks(work, blocks, client, take)
         except KilledWorker as failure:
@@ -58,6 +80,7 @@ def do_on_cluster(work: Work, blocks: Iterator[int], address: str, take: Callabl
         except Exception as failure:
             if client.status == "running" and not isinstance(failure, CommClosedError | CancelledError):
                 raise
+            address = client.scheduler.address if own else scheduler
             raise ConnectionError(f"The connection to the scheduler at {address} was lost") from None
 
 
@@ -68,27 +91,27 @@ def _do_blocks(work: Work, blocks: Iterator[int], client: Any, take: Callable[[D
     # as bytes: a worker of Dask that cannot make a function of what it receives ends itself
     function = functools.partial(do_sent, cloudpickle.dumps(work))
 
-    def sent(count: int) -> list[Any]:
+    def send(count: int) -> list[Any]:
         return client.map(function, list(itertools.islice(blocks, count)), pure=False, key="block")
 
-    running = _distributed().as_completed(sent(_AHEAD), loop=client.loop)
-    for finished in _batches(running, client):
-        for future in finished:
+    running = _library().as_completed(send(_AHEAD), loop=client.loop)
+    for batch in _batches(running, client):
+        for future in batch:
             take(future.result())
-        running.update(sent(len(finished)))
+        running.update(send(len(batch)))
 
 
-def do_sent(sent: bytes, block: int) -> Done:
+def do_sent(work_bytes: bytes, block: int) -> Done:
     """Make sure that a block is in the store: what a worker is asked for."""
-    return do_block(_restored(sent), block)
+    return do_block(_work_of(work_bytes), block)
 
 
 @functools.lru_cache(maxsize=4)
-def _restored(sent: bytes) -> Work:
+def _work_of(work_bytes: bytes) -> Work:
     """Return what was sent, once it is known that this worker can import the task and sees the store."""
     worker = f"{socket.gethostname()}:{os.getpid()}"
     try:
-        work: Work = pickle.loads(sent)  # noqa: S301
+        work: Work = pickle.loads(work_bytes)  # noqa: S301
     except (ImportError, AttributeError) as failure:
         remedy = "Install its module there, or define the function in the script that calls sweep."
         raise error("sweep(task=...)", "be importable by the workers", f"{failure} ({worker})", remedy) from None
@@ -104,14 +127,14 @@ def _restored(sent: bytes) -> Work:
 
 def _batches(running: Any, client: Any) -> Iterator[list[Any]]:
     """Yield what is finished, as soon as it is; warn when there is nobody to do the rest."""
-    seen, warned = time.monotonic(), False
+    last_time, has_warned = time.monotonic(), False
     while running.count():
         if running.has_ready():
             yield running.next_batch(block=False)
-            seen, warned = time.monotonic(), False
-        elif not warned and time.monotonic() - seen > _PATIENCE:
-            seen, warned = time.monotonic(), not client.ncores()
-            if warned:
+            last_time, has_warned = time.monotonic(), False
+        elif not has_warned and time.monotonic() - last_time > _PATIENCE:
+            last_time, has_warned = time.monotonic(), not client.ncores()
+            if has_warned:
                 address = client.scheduler.address
                 text = f"The scheduler at {address} has no workers. The sweep waits for some: dask worker {address}"
                 warnings.warn(text, RuntimeWarning, stacklevel=2)
@@ -124,7 +147,7 @@ def _no_scheduler(got: str) -> ValueError:
     return error(_WHERE, "be the address of a Dask scheduler", got, remedy)
 
 
-def _distributed() -> Any:
+def _library() -> Any:
     with needs("cluster", _WHERE):
         import distributed
     return distributed

@@ -122,8 +122,8 @@ def _ends(split: Any, orbits: int) -> tuple[int, ...]:
 def _checked_folder(folder: Any) -> Path:
     """Return a folder that is new, or that of a call that was stopped."""
     target = path("dataset(folder=...)", folder)
-    stopped = (target / STORE / "zarr.json").exists() and not (target / METADATA).exists()
-    hidden = target.is_dir() and all(each.name.startswith(".") for each in target.iterdir())  # left by a killed call
-    if target.exists() and not (stopped or hidden):
+    is_partial = (target / STORE / "zarr.json").exists() and not (target / METADATA).exists()
+    is_empty = target.is_dir() and all(each.name.startswith(".") for each in target.iterdir())  # left by a killed call
+    if target.exists() and not (is_partial or is_empty):
         raise FileExistsError(f"`dataset(folder=...)` must be new. Got '{target}', which exists. Choose another path.")
     return target

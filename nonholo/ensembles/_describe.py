@@ -21,8 +21,8 @@ def design_text(design: Design) -> dict[str, Any]:
     if isinstance(design, Grid):
         hashes = {name: _hash(values) for name, values in design.axes.items()}
         return {"kind": "Grid", "seed": design.seed, "axes": hashes}
-    drawn = {name: {"kind": type(d).__name__, **fields_of(d)} for name, d in design.distributions.items()}
-    return {"kind": "RandomDesign", "seed": design.seed, "members": design.members, "distributions": drawn}
+    distributions = {name: {"kind": type(d).__name__, **fields_of(d)} for name, d in design.distributions.items()}
+    return {"kind": "RandomDesign", "seed": design.seed, "members": design.members, "distributions": distributions}
 
 
 def design_from(text: dict[str, Any], axis: Callable[[str], np.ndarray]) -> Design:
@@ -30,8 +30,8 @@ def design_from(text: dict[str, Any], axis: Callable[[str], np.ndarray]) -> Desi
     if text["kind"] == "Grid":
         along = {name: _sound(name, axis(name), digest) for name, digest in text["axes"].items()}
         return Grid(along, seed=text["seed"])
-    drawn = {name: _distribution(dict(entry)) for name, entry in text["distributions"].items()}
-    return RandomDesign(text["members"], drawn, seed=text["seed"])
+    distributions = {name: _distribution(dict(entry)) for name, entry in text["distributions"].items()}
+    return RandomDesign(text["members"], distributions, seed=text["seed"])
 
 
 def function_name(function: Callable[..., Any]) -> str:
@@ -47,13 +47,13 @@ def function_from(name: str) -> Callable[..., Any]:
     if name == NO_NAME:
         raise ImportError(name)
     module, _, path = name.partition(":")
-    found: Any = importlib.import_module(module)
+    member: Any = importlib.import_module(module)
     try:
         for part in path.split("."):
-            found = getattr(found, part)
+            member = getattr(member, part)
     except AttributeError as failure:
         raise ImportError(str(failure)) from failure
-    return found
+    return member
 
 
 def differences(ours: Any, theirs: Any, where: str = "") -> Iterator[str]:

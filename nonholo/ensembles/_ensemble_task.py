@@ -16,9 +16,9 @@ from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretiz
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
 from nonholo.ensembles._force_numbers import force_numbers, is_force_number, with_force_numbers
-from nonholo.ensembles._names import OUTCOME, STARTS, checked_reductions, counted, start_component
+from nonholo.ensembles._names import OUTCOME, STARTS, checked_reductions, numbering, start_component
 from nonholo.ensembles._reductions import REDUCTIONS
-from nonholo.io import unstored
+from nonholo.io import missing_part
 from nonholo.simulation import Ensemble, check_forces, ensemble, run_in_lanes, stepper_of
 from nonholo.systems import one_start, refuse_forces
 
@@ -92,21 +92,21 @@ class EnsembleTask:
         reconstruct: bool = True,
     ) -> None:
         starts = dict(zip(STARTS, (body_velocity, restricted_velocity, momentum), strict=True))
-        given = [(name, _start(name, value)) for name, value in starts.items() if value is not None]
-        if given:
+        start = [(name, _start(name, value)) for name, value in starts.items() if value is not None]
+        if start:
             one_start("EnsembleTask", **starts)
         if save_every is not None:
             save_every = count("EnsembleTask(save_every=...)", save_every, "Pass the steps between states, or None.")
-        kept = {
+        fields = {
             "discrete": as_discretization("EnsembleTask(discrete=...)", discrete, compositions=True, forced=True),
             "steps": count("EnsembleTask(steps=...)", steps, "Pass the number of steps."),
-            "start": given[0] if given else None,
+            "start": start[0] if start else None,
             "reductions": checked_reductions("EnsembleTask(reductions=...)", reductions, REDUCTIONS, _KNOWN),
             "save_every": save_every,
             "branch": branch,
             "reconstruct": flag("EnsembleTask(reconstruct=...)", reconstruct),
         }
-        for name, value in kept.items():
+        for name, value in fields.items():
             object.__setattr__(self, name, value)
         stepper_of(discrete, branch, "auto", with_poses=self.reconstruct, owner="EnsembleTask")
         check_forces("EnsembleTask", discrete, self.steps)
@@ -115,34 +115,30 @@ class EnsembleTask:
 
     def __call__(self, block: MemberBlock) -> dict[str, Any]:
         """Run a block of members and reduce it; under forces that differ one by one."""
-        system = self.discrete.system
-        if of_forces := [name for name in block if is_force_number(system, name)]:
-            rest = {name: values for name, values in block.items() if name not in of_forces}
-            members = [dataclasses.replace(block, arrays=rest).part(i, i + 1) for i in range(block.count)]
-            systems = (with_force_numbers(system, {n: block[n][i] for n in of_forces}) for i in range(block.count))
-            return _joined([self._on(own)(member) for own, member in zip(systems, members, strict=True)])
+        if of_forces := [name for name in block if is_force_number(self.discrete.system, name)]:
+            return _join([self._member(block, member, of_forces) for member in range(block.count)])
         parameters = self._parameters(block)
         starts: dict[str, Any] = _rows_of_starts(self.start, block)
         run: Any = {"steps": self.steps, "save_every": self._every, "branch": self.branch}
-        with counted(lambda member: block.first + member):
+        with numbering(lambda member: block.first + member):
             batch = ensemble(
                 self.discrete, parameters=parameters or None, reconstruct=self.reconstruct, **run, **starts
             )
-        found: dict[str, Any] = {OUTCOME: batch.outcome}
+        results: dict[str, Any] = {OUTCOME: batch.outcome}
         for reduction in self.reductions:
             more = (
                 REDUCTIONS[reduction].function(batch)
                 if isinstance(reduction, str)
                 else call("EnsembleTask(reductions=...)", reduction, batch)
             )
-            _add(found, more)
-        return found
+            _add(results, more)
+        return results
 
     @property
     def block(self) -> int:
         """Members of a block that make a good piece of work: their states fit in memory, and it takes some seconds."""
-        compiled = self.branch == PRINCIPAL.name and run_in_lanes(self.discrete)
-        lanes, steps = (_LANES, _STEPS) if compiled else (1, _STEPS_EACH)
+        is_compiled = self.branch == PRINCIPAL.name and run_in_lanes(self.discrete)
+        lanes, steps = (_LANES, _STEPS) if is_compiled else (1, _STEPS_EACH)
         states = 1 if self._every is None else 1 + self.steps // self._every
         state = 2 * self.discrete.system.rank + self.discrete.system.group.pose_size
         members = min(_BLOCK, _NUMBERS // (states * state), steps // self.steps)
@@ -151,8 +147,8 @@ class EnsembleTask:
     @property
     def _every(self) -> int | None:
         """Steps between states: every one, if a built-in reduction needs all of them."""
-        named = [REDUCTIONS[r] for r in self.reductions if isinstance(r, str)]
-        return 1 if any(r.needs_all(self.discrete.system) for r in named) else self.save_every
+        reductions = [REDUCTIONS[r] for r in self.reductions if isinstance(r, str)]
+        return 1 if any(r.needs_all(self.discrete.system) for r in reductions) else self.save_every
 
     def check_design(self, names: list[str]) -> None:
         """Refuse a design that names what the task does not know, no start, or several."""
@@ -161,16 +157,20 @@ class EnsembleTask:
             system = self.discrete.system
             is_start = name in STARTS or start_component(name) is not None
             if not (name in self._fields or is_start or is_force_number(system, name)):
-                kind, known = type(system).__name__, ", ".join([*self._fields, *force_numbers(system)])
-                remedy = f"{kind} has {known}; starts are {', '.join(STARTS)}."
+                kind, names_known = type(system).__name__, ", ".join([*self._fields, *force_numbers(system)])
+                remedy = f"{kind} has {names_known}; starts are {', '.join(STARTS)}."
                 raise error("sweep(design=...)", "name parameters of the system or starts", shown(name), remedy)
 
-    def on_route_of(self, stored: dict[str, Any]) -> "EnsembleTask":
+    def on_route_of(self, attributes: dict[str, Any]) -> "EnsembleTask":
         """Return the task by the route that began a store, from the description of that one's task."""
-        return self._with(io.on_route_of(stored, self.discrete))
+        return self._with(io.on_route_of(attributes, self.discrete))
 
-    def _on(self, system: Any) -> "EnsembleTask":
-        return self._with(dataclasses.replace(self.discrete, system=system))
+    def _member(self, block: MemberBlock, member: int, of_forces: list[str]) -> dict[str, Any]:
+        """Run one member under forces of its own."""
+        system = with_force_numbers(self.discrete.system, {name: block[name][member] for name in of_forces})
+        rest = {name: values for name, values in block.items() if name not in of_forces}
+        task = self._with(dataclasses.replace(self.discrete, system=system))
+        return task(dataclasses.replace(block, arrays=rest).part(member, member + 1))
 
     def _with(self, discrete: Discretization) -> "EnsembleTask":
         task = copy.copy(self)
@@ -188,14 +188,14 @@ class EnsembleTask:
 
     def describe(self) -> dict[str, Any]:
         """Return the task as plain data."""
-        named = [r if isinstance(r, str) else function_name(r) for r in self.reductions]
+        names = [r if isinstance(r, str) else function_name(r) for r in self.reductions]
         start = None if self.start is None else [self.start[0], self.start[1].tolist()]
         return {
             "kind": "EnsembleTask",
             **io.identity_of(self.discrete),
             "steps": self.steps,
             "start": start,
-            "reductions": named,
+            "reductions": names,
             "save_every": self.save_every,
             "reconstruct": self.reconstruct,
             **_described_rule(self.branch),
@@ -204,7 +204,7 @@ class EnsembleTask:
 
 def ensemble_task_from(entry: dict[str, Any]) -> EnsembleTask:
     """Return the task of a description, whose functions are imported; refuse one of which data are not enough."""
-    missing = unstored(json.loads(entry["motion"])) or unstored(json.loads(entry["parameters"]))
+    missing = missing_part(json.loads(entry["motion"])) or missing_part(json.loads(entry["parameters"]))
     if missing:
         raise ValueError(f"one whose {missing}")
     reductions = [name if name in REDUCTIONS else function_from(name) for name in entry["reductions"]]
@@ -228,16 +228,16 @@ def _start(name: str, value: Any) -> np.ndarray:
     return array(f"EnsembleTask({name}=...)", value, (None,), remedy)
 
 
-def _add(found: dict[str, Any], more: Any) -> None:
+def _add(results: dict[str, Any], more: Any) -> None:
     """Add what a reduction returned, refused if it would replace what another one did."""
-    named = more if isinstance(more, Mapping) else {"result": more}
-    for name in named:
-        if name in found:
+    entries = more if isinstance(more, Mapping) else {"result": more}
+    for name in entries:
+        if name in results:
             raise error("EnsembleTask(reductions=...)", "return each name once", shown(name), "Rename one.")
-    found |= named
+    results |= entries
 
 
-def _joined(members: list[dict[str, Any]]) -> dict[str, Any]:
+def _join(members: list[dict[str, Any]]) -> dict[str, Any]:
     """Return the rows of some members that were reduced one by one."""
     together: dict[str, Any] = {}
     for name, first in members[0].items():
@@ -252,53 +252,53 @@ def _check_starts(discrete: Discretization, start: Start | None, names: Sequence
     whole = [name for name in names if name in STARTS]
     if len(whole) > 1:
         raise error("sweep(design=...)", "vary one start", " and ".join(whole), "Choose one.")
-    varied = {name: part for name in names if (part := start_component(name))}
+    parts = {name: part for name in names if (part := start_component(name))}
     if not whole and start is None:
-        _check_all(discrete, varied)
+        _check_all(discrete, parts)
     else:
-        _check_components(None if whole else start, varied)
+        _check_components(None if whole else start, parts)
 
 
-def _check_components(start: Start | None, varied: dict[str, tuple[str, int]]) -> None:
+def _check_components(start: Start | None, parts: dict[str, tuple[str, int]]) -> None:
     """Refuse components of another start than that of the task, whole or not, and those that it does not have."""
-    for name, (owner, component) in varied.items():
+    for name, (owner, component) in parts.items():
         if start is None or start[0] != owner:
             remedy = f"Pass EnsembleTask(..., {owner}=...) with what the other components are, or vary each of them."
             raise error("sweep(design=...)", "vary components of the start of the task", shown(name), remedy)
         if component >= len(start[1]):
             got = f"{name!r} of a start with {len(start[1])}"
-            raise error("sweep(design=...)", "vary components that there are", got, "They are counted from 0.")
+            raise error("sweep(design=...)", "vary components that there are", got, "They are numbering from 0.")
 
 
 def _rows_of_starts(start: Start | None, block: MemberBlock) -> dict[str, Float[np.ndarray, "count n"]]:
     """Return the start of each member of a block, by its name."""
-    varied = {name: part for name in block if (part := start_component(name))}
+    parts = {name: part for name in block if (part := start_component(name))}
     whole = [name for name in block if name in STARTS]
     if whole:
         name, value = whole[0], block[whole[0]]
     elif start is not None:
         name, value = start
     else:
-        name, value = next(iter(varied.values()))[0], np.zeros(len(varied))
+        name, value = next(iter(parts.values()))[0], np.zeros(len(parts))
     rows = np.broadcast_to(value, (block.count, np.shape(value)[-1])).copy()
-    for given, (_, component) in varied.items():
-        rows[:, component] = block[given]
+    for key, (_, component) in parts.items():
+        rows[:, component] = block[key]
     return {name: rows}
 
 
-def _check_all(discrete: Discretization, varied: dict[str, tuple[str, int]]) -> None:
+def _check_all(discrete: Discretization, parts: dict[str, tuple[str, int]]) -> None:
     """Refuse components that are not all of one start, where the task has none."""
-    owners = {owner for owner, _ in varied.values()}
+    owners = {owner for owner, _ in parts.values()}
     if not owners:
         raise error("sweep(task=...)", "have a start", "none", "Pass body_velocity=..., or vary it in the design.")
     if len(owners) > 1:
-        raise error("sweep(design=...)", "vary components of one start", " and ".join(varied), "Choose one.")
+        raise error("sweep(design=...)", "vary components of one start", " and ".join(parts), "Choose one.")
     (owner,) = owners
     k, dim = discrete.system.rank, discrete.system.group.dim
     lengths: dict[str, Any] = {"body_velocity": (dim,), "restricted_velocity": (k,), "momentum": (k, dim)}
-    given = sorted(component for _, component in varied.values())
-    if not any(given == list(range(length)) for length in lengths[owner]):
-        wanted = " or ".join(dict.fromkeys(map(str, lengths[owner])))
+    components = sorted(component for _, component in parts.values())
+    if not any(components == list(range(length)) for length in lengths[owner]):
+        sizes = " or ".join(dict.fromkeys(map(str, lengths[owner])))
         remedy = f"Vary {owner}_0 to the last one, or pass EnsembleTask(..., {owner}=...) with what the others are."
-        requirement = f"vary all {wanted} components of a start that is not given"
-        raise error("sweep(design=...)", requirement, str(given), remedy)
+        requirement = f"vary all {sizes} components of a start that is not given"
+        raise error("sweep(design=...)", requirement, str(components), remedy)

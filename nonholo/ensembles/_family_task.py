@@ -13,7 +13,8 @@ from nonholo.base.checks import count, error, function, instance, scale, shown
 from nonholo.discrete import discretize
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
-from nonholo.ensembles._names import OUTCOME, checked_reductions, component_of, counted
+from nonholo.ensembles._names import OUTCOME, checked_reductions, component_of, numbering
+from nonholo.groups import components_of
 from nonholo.simulation import ensemble
 
 _EXAMPLES, _READY, _FINAL = "nonholo.examples", "examples.", "final_state"
@@ -65,22 +66,22 @@ class FamilyTask:
     save_every: int | None = dataclasses.field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
-        function(_named("family"), self.family)
-        parameters = instance(_named("parameters"), self.parameters, Mapping, "be a mapping of names", "Pass a dict.")
+        function(_where("family"), self.family)
+        parameters = instance(_where("parameters"), self.parameters, Mapping, "be a mapping of names", "Pass a dict.")
         every, remedy = self.save_every, f"Pass {_FINAL!r} or functions of an ensemble."
-        kept = {
-            "time_step": float(scale(_named("time_step"), self.time_step, "Pass a positive time step.")),
-            "steps": count(_named("steps"), self.steps, "Pass the number of steps."),
+        fields = {
+            "time_step": float(scale(_where("time_step"), self.time_step, "Pass a positive time step.")),
+            "steps": count(_where("steps"), self.steps, "Pass the number of steps."),
             "parameters": dict(parameters),
-            "reductions": checked_reductions(_named("reductions"), self.reductions, (_FINAL,), remedy),
-            "save_every": every and count(_named("save_every"), every, "Pass the steps between states, or None."),
+            "reductions": checked_reductions(_where("reductions"), self.reductions, (_FINAL,), remedy),
+            "save_every": every and count(_where("save_every"), every, "Pass the steps between states, or None."),
         }
-        for name, value in kept.items():
+        for name, value in fields.items():
             object.__setattr__(self, name, value)
-        known = inspect.signature(self.family).parameters
-        for name in self.parameters.keys() - known.keys():
-            remedy = f"It has {', '.join(known)}."
-            raise error(_named("parameters"), "name arguments of the family", shown(name), remedy)
+        arguments = inspect.signature(self.family).parameters
+        for name in self.parameters.keys() - arguments.keys():
+            remedy = f"It has {', '.join(arguments)}."
+            raise error(_where("parameters"), "name arguments of the family", shown(name), remedy)
 
     @property
     def _arguments(self) -> dict[str, Any]:
@@ -90,11 +91,11 @@ class FamilyTask:
 
     def check_design(self, names: list[str]) -> None:
         """Refuse a design that names what the family does not have."""
-        known = [*self._arguments, *(name for name in _OWN if name not in self._arguments)]
+        own = [*self._arguments, *(name for name in _OWN if name not in self._arguments)]
         for name in names:
             part = component_of(name)
-            if name not in known and not (part and part[0] in known):
-                raise error("sweep(design=...)", "name what the family has", shown(name), f"It has {', '.join(known)}.")
+            if name not in own and not (part and part[0] in own):
+                raise error("sweep(design=...)", "name what the family has", shown(name), f"It has {', '.join(own)}.")
 
     @property
     def block(self) -> int:
@@ -103,61 +104,67 @@ class FamilyTask:
 
     def __call__(self, block: MemberBlock) -> dict[str, Any]:
         """Run a block of members, those with one system together, and reduce it."""
-        made = [self._made({name: values[member] for name, values in block.items()}) for member in range(block.count)]
-        found: dict[str, tuple[Any, np.ndarray, Any]] = {}
-        families = [getattr(system, "family", system) for system, _ in made]
+        made_members = [
+            self._member({name: values[member] for name, values in block.items()}) for member in range(block.count)
+        ]
+        results: dict[str, tuple[Any, np.ndarray, Any]] = {}
+        families = [getattr(system, "family", system) for system, _ in made_members]
         for family in dict.fromkeys(families):
             members = [member for member, other in enumerate(families) if other == family]
-            starts = {name: np.stack([made[member][1][name] for member in members]) for name in made[0][1]}
-            batch = self._ensemble([made[member][0] for member in members], starts, [block.first + m for m in members])
-            self._place(self._reduced(batch), members, block.count, found)
-        return found
+            starts = {
+                name: np.stack([made_members[member][1][name] for member in members]) for name in made_members[0][1]
+            }
+            batch = self._ensemble(
+                [made_members[member][0] for member in members], starts, [block.first + m for m in members]
+            )
+            self._place(self._reduced(batch), members, block.count, results)
+        return results
 
-    def _place(self, reduced: dict[str, Any], members: list[int], count: int, found: dict[str, Any]) -> None:
+    def _place(self, reduced: dict[str, Any], members: list[int], count: int, results: dict[str, Any]) -> None:
         """Write the rows of some members."""
         for name, (dimensions, rows, labels) in reduced.items():
             whole = np.empty((count, *rows.shape[1:]), rows.dtype)
-            found.setdefault(name, (dimensions, whole, labels))[1][members] = rows
+            results.setdefault(name, (dimensions, whole, labels))[1][members] = rows
 
-    def _made(self, own: dict[str, Any]) -> tuple[Any, dict[str, np.ndarray]]:
+    def _member(self, own: dict[str, Any]) -> tuple[Any, dict[str, np.ndarray]]:
         """Return the system of a member, and what it starts with."""
         arguments = self._arguments
-        values = {name: _valued(name, value, own) for name, value in arguments.items()}
+        values = {name: _value(name, value, own) for name, value in arguments.items()}
         example = self.family(**{name: value for name, value in values.items() if value is not inspect.Parameter.empty})
         rest = {key: value for key, value in own.items() if key not in arguments and _base(key) not in arguments}
-        starts = {name: np.asarray(_valued(name, getattr(example, name), rest)) for name in _STARTS}
+        starts = {name: np.asarray(_value(name, getattr(example, name), rest)) for name in _STARTS}
         return example.system, starts | ({_STEP: np.asarray(own[_STEP])} if _STEP in own else {})
 
     def _ensemble(self, systems: list[Any], starts: dict[str, np.ndarray], numbers: list[int]) -> Any:
         """Run members with systems of one family."""
         discrete = discretize(systems[0], self.time_step)
-        varied = {_STEP: starts.pop(_STEP)} if _STEP in starts else {}
+        parameters = {_STEP: starts.pop(_STEP)} if _STEP in starts else {}
         for name in getattr(systems[0], "parameters", ()):
-            varied[name] = np.stack([system.parameters[name] for system in systems])
+            parameters[name] = np.stack([system.parameters[name] for system in systems])
         run = {"steps": self.steps, "save_every": self.save_every}
-        with counted(numbers.__getitem__):
-            return ensemble(discrete, parameters=varied or None, **starts, **run)
+        with numbering(numbers.__getitem__):
+            return ensemble(discrete, parameters=parameters or None, **starts, **run)
 
     def _reduced(self, batch: Any) -> dict[str, tuple[Any, np.ndarray, Any]]:
         """Return dimensions, rows and labels of what is kept of members, by name."""
-        found: dict[str, Any] = {OUTCOME: batch.outcome}
+        results: dict[str, Any] = {OUTCOME: batch.outcome}
         for reduction in self.reductions:
-            found |= (
+            results |= (
                 _final_state(batch) if reduction == _FINAL else call("FamilyTask(reductions=...)", reduction, batch)
             )
-        return {name: _labeled(name, entry) for name, entry in found.items()}
+        return {name: _labels(name, entry) for name, entry in results.items()}
 
     def describe(self) -> dict[str, Any]:
         """Return the task as plain data."""
-        kept = {name: np.asarray(value).tolist() for name, value in self.parameters.items()}
-        named = [_FINAL if reduction == _FINAL else function_name(reduction) for reduction in self.reductions]
+        parameters = {name: np.asarray(value).tolist() for name, value in self.parameters.items()}
+        reductions = [_FINAL if reduction == _FINAL else function_name(reduction) for reduction in self.reductions]
         return {
             "kind": "FamilyTask",
             "family": _family_name(self.family),
-            "parameters": kept,
+            "parameters": parameters,
             "time_step": self.time_step,
             "steps": self.steps,
-            "reductions": named,
+            "reductions": reductions,
             "save_every": self.save_every,
         }
 
@@ -189,7 +196,7 @@ def _family_name(family: Callable[..., Any]) -> str:
     return f"{_READY}{own}" if name.startswith(f"{_EXAMPLES}.") and own in _ready_names() else name
 
 
-def _named(argument: str) -> str:
+def _where(argument: str) -> str:
     return f"FamilyTask({argument}=...)"
 
 
@@ -198,7 +205,7 @@ def _base(name: str) -> str:
     return part[0] if part else name
 
 
-def _valued(name: str, value: Any, own: dict[str, Any]) -> Any:
+def _value(name: str, value: Any, own: dict[str, Any]) -> Any:
     """Return the value of a member: its own, or the common one with its own components."""
     value, parts = own.get(name, value), [key for key in own if key != name and _base(key) == name]
     if not parts:
@@ -208,12 +215,12 @@ def _valued(name: str, value: Any, own: dict[str, Any]) -> Any:
         _, component = component_of(key) or (name, 0)
         if value.ndim != 1 or component >= len(value):
             got = f"{key!r} of {name} with shape {value.shape}"
-            raise error("sweep(design=...)", "vary components that there are", got, "They are counted from 0.")
+            raise error("sweep(design=...)", "vary components that there are", got, "They are numbering from 0.")
         value[component] = own[key]
     return value
 
 
-def _labeled(name: str, entry: Any) -> tuple[Any, np.ndarray, Any]:
+def _labels(name: str, entry: Any) -> tuple[Any, np.ndarray, Any]:
     dimensions, rows, *labels = entry if isinstance(entry, tuple) else (None, entry)
     rows = np.asarray(rows)
     if dimensions is None:
@@ -226,11 +233,18 @@ def _final_state(batch: Any) -> dict[str, Any]:
     every, members = batch.save_every, np.arange(len(batch))
     last = np.zeros_like(members) if every is None else batch.steps_done // every
     configuration = batch.configuration[members, last]
-    axes = ("coordinate",) if configuration.ndim == 2 else ("row", "column")
+    system = batch.members.discrete.system
+    names = list(getattr(system, "coordinates", ()))
+    axes, of_places = (("coordinate",), {"components": names}) if configuration.ndim == 2 else (("row", "column"), {})
+    of_rates = {"components": names or list(components_of(system.group))}
     return {
         "final_time": ((), batch.time[members, last], {"long_name": "time of the last good state"}),
-        "final_configuration": (axes, configuration, {"long_name": "configuration of the last good state"}),
-        "final_velocity": (("component",), batch.body_velocity[members, last], {"long_name": "velocity there"}),
+        "final_configuration": (axes, configuration, of_places | {"long_name": "configuration of the last good state"}),
+        "final_velocity": (
+            ("component",),
+            batch.body_velocity[members, last],
+            of_rates | {"long_name": "velocity there"},
+        ),
         "final_energy": ((), batch.energy[members, last], {"long_name": "energy there"}),
         "steps_done": ((), batch.steps_done, {"long_name": "good steps"}),
     }

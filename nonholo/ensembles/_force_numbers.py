@@ -36,21 +36,21 @@ def _names(part: Any) -> Iterator[tuple[str, str]]:
 
 def is_force_number(system: Any, name: str) -> bool:
     """Tell whether a name is a number of a force, or a component of one that is a vector."""
-    known, part = force_numbers(system), component_of(name)
-    return name in known or (part is not None and np.ndim(known.get(part[0], 0.0)) == 1)
+    numbers, part = force_numbers(system), component_of(name)
+    return name in numbers or (part is not None and np.ndim(numbers.get(part[0], 0.0)) == 1)
 
 
 def with_force_numbers(system: Any, values: Mapping[str, Any]) -> Any:
     """Return a system under the same forces with other numbers."""
-    known = force_numbers(system)
-    own = {name: _value(name, value, values) for name, value in known.items()}
+    numbers = force_numbers(system)
+    own = {name: _value(name, value, values) for name, value in numbers.items()}
 
-    def changed(part: Any) -> Any:
+    def change(part: Any) -> Any:
         fields = {field: own[name] for name, field in _names(part) if name in own}
         return dataclasses.replace(part, **fields)
 
-    parts = {name: changed(part) if dataclasses.is_dataclass(part) else part for name, part in system.parts.items()}
-    terms = tuple(changed(term) if dataclasses.is_dataclass(term) else term for term in system.terms)
+    parts = {name: change(part) if dataclasses.is_dataclass(part) else part for name, part in system.parts.items()}
+    terms = tuple(change(term) if dataclasses.is_dataclass(term) else term for term in system.terms)
     return Forced(system.system, terms or None, force_of(parts), system.scheme)
 
 

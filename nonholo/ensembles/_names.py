@@ -75,7 +75,7 @@ def check_dimensions(arrays: Mapping[str, Axes], coordinates: Mapping[str, Axes]
 
 
 @contextlib.contextmanager
-def counted(number: Callable[[int], int]) -> Iterator[None]:
+def numbering(number: Callable[[int], int]) -> Iterator[None]:
     """Let refusals call the members of a block by their numbers in the sweep."""
     try:
         yield
@@ -84,10 +84,10 @@ def counted(number: Callable[[int], int]) -> Iterator[None]:
         raise ValueError(message) from failure
 
 
-def checked_reductions(where: str, reductions: Any, known: Collection[str], remedy: str) -> tuple[Any, ...]:
+def checked_reductions(where: str, reductions: Any, names: Collection[str], remedy: str) -> tuple[Any, ...]:
     """Return reductions as a tuple; refuse what is neither a function nor one of the known names."""
     several = tuple(reductions) if isinstance(reductions, list | tuple) else (reductions,)
     for reduction in several:
-        if not (callable(reduction) or (isinstance(reduction, str) and reduction in known)):
+        if not (callable(reduction) or (isinstance(reduction, str) and reduction in names)):
             raise error(where, "be names or functions", shown(reduction), remedy)
     return several

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nonholo.analysis.limits import turn_of_flow
+from nonholo.analysis import turn_of_flow
 from nonholo.base.checks import error, shown
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
@@ -26,23 +26,23 @@ class Reduction(NamedTuple):
 
 
 def _final_state(batch: Ensemble) -> Reduced:
-    ended = _ended(batch)
-    found: Reduced = {
-        "final_time": ((), ended.time[:, 0], _labels("time of the last good state", "time unit")),
-        "final_momentum": (("component",), ended.restricted_momentum[:, 0], _labels("restricted momentum")),
-        "final_energy": ((), ended.energy[:, 0], _labels("reduced constrained energy")),
+    last = _last_states(batch)
+    results: Reduced = {
+        "final_time": ((), last.time[:, 0], _labels("time of the last good state", "time unit")),
+        "final_momentum": (("component",), last.restricted_momentum[:, 0], _labels("restricted momentum")),
+        "final_energy": ((), last.energy[:, 0], _labels("reduced constrained energy")),
         "steps_done": ((), batch.steps_done, _labels("good steps", "1")),
     }
-    if (pose := ended.pose) is not None:
-        found["final_pose"] = ("pose_component",), pose[:, 0], _labels("compact pose")
-    return found
+    if (pose := last.pose) is not None:
+        results["final_pose"] = ("pose_component",), pose[:, 0], _labels("compact pose")
+    return results
 
 
 def _energy_drift(batch: Ensemble) -> Reduced:
-    begun, ended = batch.first_energy, _ended(batch).energy[:, 0]
+    first, last = batch.first_energy, _last_states(batch).energy[:, 0]
     with np.errstate(invalid="ignore"):  # 0/0 at rest, where energy cannot drift
-        drift = np.where(ended == begun, 0.0, np.abs((ended - begun) / begun))
-    return {"energy_drift": ((), np.where(np.isfinite(ended), drift, np.nan), _labels("relative error of energy", "1"))}
+        drift = np.where(last == first, 0.0, np.abs((last - first) / first))
+    return {"energy_drift": ((), np.where(np.isfinite(last), drift, np.nan), _labels("relative error of energy", "1"))}
 
 
 def _is_plane_sleigh(system: AbstractSystem) -> bool:
@@ -63,8 +63,8 @@ def _limit_angle(batch: Ensemble) -> Reduced:
 def _heading_turn(batch: Ensemble) -> Float[np.ndarray, "M"]:
     """Sum the angles of the steps, which know of full turns: the first chart coordinate is the tangent of the half."""
     angles = 2 * np.arctan(ScalarMembers(batch.members).charts(batch.cayley[:, :-1])[..., 0])
-    taken = np.arange(angles.shape[1]) < batch.steps_done[:, None]
-    turn = np.where(taken, angles, 0.0).sum(axis=1)
+    is_step = np.arange(angles.shape[1]) < batch.steps_done[:, None]
+    turn = np.where(is_step, angles, 0.0).sum(axis=1)
     return np.where(np.isfinite(batch.reduced_momentum[:, 0, 0]), turn, np.nan)
 
 
@@ -81,11 +81,11 @@ def _turning_deviation(batch: Ensemble) -> Reduced:
 
 
 def _axis_angle(batch: Ensemble) -> Float[np.ndarray, "M"]:
-    scalar, ended = ScalarMembers(batch.members), _ended(batch)
-    if ended.canonical_pose is None:
+    scalar, last = ScalarMembers(batch.members), _last_states(batch)
+    if last.canonical_pose is None:
         raise error("reduction 'limit_angle'", "have poses", "reconstruct=False", "Leave that out.")
-    pose = np.stack([np.broadcast_to(scalar.pose, (len(batch), 4)), ended.canonical_pose[:, 0]], axis=1)
-    r = np.stack([batch.first_momentum, ended.reduced_momentum[:, 0]], axis=1)
+    pose = np.stack([np.broadcast_to(scalar.pose, (len(batch), 4)), last.canonical_pose[:, 0]], axis=1)
+    r = np.stack([batch.first_momentum, last.reduced_momentum[:, 0]], axis=1)
     velocity = applied(np.linalg.inv(scalar.inertia), r)
     body = applied(scalar.route.system.canonical.constraint_subspace.T, velocity)
     axes = (batch.members.discrete.system.group.matrix_from_pose(pose) @ body[..., None])[..., 0]
@@ -95,8 +95,8 @@ def _axis_angle(batch: Ensemble) -> Float[np.ndarray, "M"]:
 
 def _branch_counts(batch: Ensemble) -> Reduced:
     each = [(batch.members.of(member), r) for member, r in enumerate(batch.first_momentum)]
-    found = [displacements_over(discrete, discrete.system.from_canonical(r)) for discrete, r in each]
-    counts = np.array([int(values.multiplicity[values.is_real].sum()) for values in found])
+    values = [displacements_over(discrete, discrete.system.from_canonical(r)) for discrete, r in each]
+    counts = np.array([int(own.multiplicity[own.is_real].sum()) for own in values])
     return {"real_branches": ((), counts, _labels("real values of the map over the first momentum", "1"))}
 
 
@@ -105,7 +105,7 @@ def _lyapunov(batch: Ensemble) -> Reduced:
     if discrete.order != 2 or not has_frame(discrete):
         requirement = "have a top or a sleigh with difference 'matrix' and order 2"
         raise error("reduction 'lyapunov'", requirement, shown(discrete), "Write your own reduction.")
-    product, growth = _multiplied(_jacobians(batch))
+    product, growth = _products(_jacobians(batch))
     growth += np.log(np.linalg.norm(product, ord=2, axis=(1, 2)))
     elapsed = batch.steps_done * batch.members.time_step
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -113,7 +113,7 @@ def _lyapunov(batch: Ensemble) -> Reduced:
     return {"lyapunov": ((), exponent, _labels("largest finite-time Lyapunov exponent of momenta", "1 / time unit"))}
 
 
-def _multiplied(slopes: Float[np.ndarray, "M K k k"]) -> tuple[Float[np.ndarray, "M k k"], Float[np.ndarray, "M"]]:
+def _products(slopes: Float[np.ndarray, "M K k k"]) -> tuple[Float[np.ndarray, "M k k"], Float[np.ndarray, "M"]]:
     """Return the products of the steps, of norm one, and the logarithms of their norms; halves are paired again."""
     growth = np.zeros(len(slopes))
     while True:
@@ -127,23 +127,23 @@ def _multiplied(slopes: Float[np.ndarray, "M K k k"]) -> tuple[Float[np.ndarray,
 
 def _jacobians(batch: Ensemble) -> Float[np.ndarray, "M K k k"]:
     """Return the derivatives of the steps of members, the identity after their end."""
-    taken, k = np.arange(batch.steps) < batch.steps_done[:, None], batch.reduced_momentum.shape[-1]
+    is_step, k = np.arange(batch.steps) < batch.steps_done[:, None], batch.reduced_momentum.shape[-1]
     if in_lanes(batch.members):
-        found = tangents(batch.members, batch.reduced_momentum[:, :-1], batch.cayley[:, :-1])
-        return np.where(taken[..., None, None], found, np.eye(k))
-    slopes = np.broadcast_to(np.eye(k), (*taken.shape, k, k)).copy()
-    for member, done in enumerate(batch.steps_done):
-        slopes[member, :done] = step_jacobians(batch.members.of(member), batch.orbit(member)[:done].displacement)
+        slopes = tangents(batch.members, batch.reduced_momentum[:, :-1], batch.cayley[:, :-1])
+        return np.where(is_step[..., None, None], slopes, np.eye(k))
+    slopes = np.broadcast_to(np.eye(k), (*is_step.shape, k, k)).copy()
+    for member, count in enumerate(batch.steps_done):
+        slopes[member, :count] = step_jacobians(batch.members.of(member), batch.orbit(member)[:count].displacement)
     return slopes
 
 
-def _ended(batch: Ensemble) -> Ensemble:
+def _last_states(batch: Ensemble) -> Ensemble:
     """Return the last good state of each member alone; of one that did not start any row, which is NaN."""
     every, rows = batch.save_every, np.arange(len(batch))
     last = np.zeros_like(rows) if every is None else batch.steps_done // every
     states = {name: column[rows, last][:, None] for name, column in batch.columns.items()}
-    done = batch.steps_done if every is None else last * every
-    return dataclasses.replace(batch, save_every=None, steps_done=done, columns=states)
+    step_count = batch.steps_done if every is None else last * every
+    return dataclasses.replace(batch, save_every=None, steps_done=step_count, columns=states)
 
 
 def _labels(meaning: str, units: str = "") -> dict[str, str]:

@@ -13,7 +13,7 @@ from typing import Any
 
 from nonholo.base.checks import count, error, shown
 from nonholo.ensembles._blocks import Done, Work, do_block
-from nonholo.ensembles._cluster import check_cluster, do_on_cluster
+from nonholo.ensembles._cluster import check_client, check_cluster, do_on_cluster, is_client
 
 _WAVE = 1024  # blocks of which a scheduler knows at once
 _LOCAL = ("threads", "processes", "synchronous")
@@ -21,25 +21,31 @@ _LOCAL = ("threads", "processes", "synchronous")
 Take = Callable[[Done], None]
 
 
-def checked_scheduler(scheduler: Any, workers: Any) -> tuple[str, int | None]:
-    """Return the scheduler by its name or address; one that does not answer is refused, as is a missing extra."""
+def checked_scheduler(scheduler: Any, workers: Any) -> tuple[Any, int | None]:
+    """Return the scheduler by name, address or client; one that does not answer is refused, as is a missing extra."""
     where = "sweep(scheduler=...)"
     name = "threads" if scheduler is None else scheduler
-    if not isinstance(name, str) or not (name in _LOCAL or "://" in name):
+    if not (is_client(name) or (isinstance(name, str) and (name in _LOCAL or "://" in name))):
         remedy = "Choose one of them, or leave it out for threads."
-        raise error(where, f"be one of {', '.join(_LOCAL)} or an address tcp://host:port", shown(scheduler), remedy)
-    if "://" in name:
+        requirement = f"be one of {', '.join(_LOCAL)} or an address tcp://host:port, or a distributed.Client"
+        raise error(where, requirement, shown(scheduler), remedy)
+    if _is_remote(name):
         if workers is not None:
             remedy = "Leave it out: a cluster has the workers that were started for it."
-            raise error("sweep(workers=...)", "come with threads or processes", f"{shown(workers)} for {name}", remedy)
-        check_cluster(name)
+            got = f"{shown(workers)} for {name}"
+            raise error("sweep(workers=...)", "come with threads or processes", got, remedy)
+        (check_client if is_client(name) else check_cluster)(name)
     return name, None if workers is None else count("sweep(workers=...)", workers, "Pass how many work at a time.")
 
 
-def do_all(work: Work, scheduler: str, workers: int | None, take: Take) -> None:
+def _is_remote(scheduler: Any) -> bool:
+    return is_client(scheduler) or "://" in scheduler
+
+
+def do_all(work: Work, scheduler: Any, workers: int | None, take: Take) -> None:
     """Do every block; what becomes of each is taken as soon as it is known, in the thread of the caller."""
     blocks = iter(range(work.store.layout.blocks))
-    if "://" in scheduler:
+    if _is_remote(scheduler):
         return do_on_cluster(work, blocks, scheduler, take)
     return _here(work, blocks, scheduler, workers, take)
 
@@ -48,13 +54,13 @@ def _here(work: Work, blocks: Iterator[int], scheduler: str, workers: int | None
     import dask
     from dask.system import CPU_COUNT
 
-    def finished(_key: Any, done: Any, *_: Any) -> None:
-        take(done)
+    def report(_key: Any, result: Any, *_: Any) -> None:
+        take(result)
 
     one = dask.delayed(functools.partial(do_block, work), name="block", pure=False, traverse=False)  # pyright: ignore
     pool = _pool(scheduler, workers or CPU_COUNT)
     options = {} if pool is None else {"pool": pool}
-    options |= {"chunksize": 1, "callbacks": [(None, None, None, finished, None)]}  # of this call, not of all of Dask
+    options |= {"chunksize": 1, "callbacks": [(None, None, None, report, None)]}  # of this call, not of all of Dask
     try:
         while wave := [one(block) for block in itertools.islice(blocks, _WAVE)]:
             dask.compute(*wave, scheduler=scheduler, optimize_graph=False, traverse=False, **options)  # pyright: ignore

@@ -12,7 +12,7 @@ import xarray
 from nonholo import io, simulation
 from nonholo.base.checks import error, flags, path, shown
 from nonholo.base.progress import progress_bar
-from nonholo.ensembles._begin import begun, check_same, check_task, restored_task
+from nonholo.ensembles._begin import begin_store, check_same, check_task, grow, restored_task
 from nonholo.ensembles._blocks import Done, Work
 from nonholo.ensembles._scheduling import checked_scheduler, do_all
 from nonholo.ensembles.designs import Design
@@ -23,7 +23,7 @@ def sweep(
     task: Any,
     design: Design,
     store: str | Path,
-    scheduler: str | None = None,
+    scheduler: Any = None,
     *,
     workers: int | None = None,
     block: int | None = None,
@@ -43,7 +43,8 @@ def sweep(
         design: A `Grid` or a `RandomDesign`.
         store: A new path, usually named `*.zarr`; for a cluster one that all workers see.
         scheduler: "threads" (the default: embedded, nothing to start), "processes" for functions that hold the
-            interpreter's lock, or the address `tcp://host:port` of a Dask scheduler.
+            interpreter's lock, the address `tcp://host:port` of a Dask scheduler, or a `distributed.Client`, which
+            stays open.
         workers: How many threads or processes; by default one for each core.
         block: Most members in a block, which is one chunk on disk and one piece of work; a store that is there keeps
             its own.
@@ -76,12 +77,12 @@ def sweep(
     store = path("sweep(store=...)", store)
     check_task(task, design)
     if resume and store.exists():
-        opened = open_store(store)
-        check_same(opened, task, design)
-        task = restored_task(opened, task)
+        sweep_store = open_store(store)
+        check_same(sweep_store, task, design)
+        task = restored_task(sweep_store, task)
     else:
-        opened = begun(task, design, store, block, scenario, progress=progress)
-    return continue_sweep(Work(opened, task), name, workers, progress)
+        sweep_store = begin_store(task, design, store, block, scenario, progress=progress)
+    return continue_sweep(Work(sweep_store, task), name, workers, progress)
 
 
 def load_sweep(store: str | Path) -> xarray.Dataset:
@@ -99,12 +100,12 @@ def load_sweep(store: str | Path) -> xarray.Dataset:
         >>> result = nh.load_sweep("sweep.zarr")  # doctest: +SKIP
     """
     where = "load_sweep(store=...)"
-    opened = open_store(path(where, store))
-    if not opened.is_finished:
+    sweep_store = open_store(path(where, store))
+    if not sweep_store.is_finished:
         got, remedy = f"'{store}', at {standing_of(store)}", f"Resume with nonholo.resume('{store}')."
         raise error(where, "be a finished sweep", got, remedy)
-    opened.check(where, range(opened.layout.blocks))
-    return opened_result(opened)
+    sweep_store.check(where, range(sweep_store.layout.blocks))
+    return opened_result(sweep_store)
 
 
 def resume(
@@ -113,8 +114,9 @@ def resume(
     discrete: Any = None,
     events: Any = None,
     task: Any = None,
+    members: int | None = None,
     trust: bool = False,
-    scheduler: str | None = None,
+    scheduler: Any = None,
     workers: int | None = None,
     throw: bool = True,
     progress: bool = False,
@@ -132,6 +134,8 @@ def resume(
         events: The events of an orbit that looks for some: a store holds their names, directions and stops, but no
             functions. Others than those of the store are refused. To read a finished orbit `load_orbit` needs none.
         task: The task of a sweep; needed if it is, or holds, a custom function, which a store only names.
+        members: How many members a random design is to have, more than it has: it grows by those that are missing, in
+            blocks as large as before. Those that are there stay; the result has the bits of a sweep of all of them.
         trust: Import those functions by the names that the store gives. They run with your rights, whatever they are,
             so only for a store whose maker you trust; without it nothing runs that you did not pass.
         scheduler: As in `sweep`.
@@ -155,63 +159,66 @@ def resume(
     """
     flags("resume", trust=trust, throw=throw, progress=progress)
     store = path("resume(store=...)", store)
-    stored = io.format_of(store)
-    if stored is None and store.exists():
+    kind = io.format_of(store)
+    if kind is None and store.exists():
         got, remedy = f"'{store}', whose zarr.json does not say so", "Check the path, or run it again."
         raise error("resume(store=...)", "be a store of a run or a sweep", got, remedy)
-    if stored == io.SWEEP_FORMAT:
-        given, owner, remedy = {"discrete": discrete, "events": events}, "an orbit", "Pass task=..., or nothing."
+    if kind == io.SWEEP_FORMAT:
+        others, owner, remedy = {"discrete": discrete, "events": events}, "an orbit", "Pass task=..., or nothing."
     else:
-        given, owner = {"task": task, "scheduler": scheduler, "workers": workers}, "a sweep"
+        others, owner = {"task": task, "members": members, "scheduler": scheduler, "workers": workers}, "a sweep"
         remedy = "Leave it out for an orbit."
-    for name, value in given.items():
+    for name, value in others.items():
         if value is not None:
             got = f"{shown(value)} for '{store}'"
             raise error(f"resume({name}=...)", f"come with the store of {owner}", got, remedy)
-    if stored != io.SWEEP_FORMAT:
+    if kind != io.SWEEP_FORMAT:
         return simulation.resume_run(store, discrete=discrete, events=events, throw=throw, progress=progress)
     name, workers = checked_scheduler(scheduler, workers)
-    opened = open_store(store)
-    return continue_sweep(Work(opened, restored_task(opened, task, trust=trust)), name, workers, progress)
+    sweep_store = open_store(store)
+    work = Work(sweep_store, restored_task(sweep_store, task, trust=trust))
+    if members is not None:
+        work = work._replace(store=grow(sweep_store, members))
+    return continue_sweep(work, name, workers, progress)
 
 
-def continue_sweep(work: Work, scheduler: str, workers: int | None, progress: bool) -> xarray.Dataset:
+def continue_sweep(work: Work, scheduler: Any, workers: int | None, progress: bool) -> xarray.Dataset:
     """Do every block that a store lacks, and open the result."""
     store = work.store
-    with io.locked(store.path):
+    with io.write_lock(store.path):
         store.prepare()
         with io.reporting_how_to_resume(store.path, "The sweep", lambda: standing_of(store.path)):
             _complete(work, scheduler, workers, progress)
     return opened_result(store)
 
 
-def _complete(work: Work, scheduler: str, workers: int | None, progress: bool) -> None:
+def _complete(work: Work, scheduler: Any, workers: int | None, progress: bool) -> None:
     """Do every block, tell what was damaged and who works with other versions."""
     store = work.store
-    total, done, versions = store.design.members, 0, {attributes_of(store.path)["versions"]}
+    total, count, versions = store.design.members, 0, {attributes_of(store.path)["versions"]}
     with progress_bar("members", progress) as report:
         report(0, total)
 
-        def take(finished: Done) -> None:
-            nonlocal done
-            done += finished.mark.members
-            report(done, total)
-            if finished.damaged:
-                which = f"Block {finished.block} is computed again."
-                _warn(f"The store '{store.path}' is damaged: {finished.damaged}. {which}")
-            if finished.versions not in versions:
-                versions.add(finished.versions)
-                _warn(_other_versions(store, finished))
+        def take(piece: Done) -> None:
+            nonlocal count
+            count += piece.mark.members
+            report(count, total)
+            if piece.damage:
+                which = f"Block {piece.block} is computed again."
+                _warn(f"The store '{store.path}' is damaged: {piece.damage}. {which}")
+            if piece.versions not in versions:
+                versions.add(piece.versions)
+                _warn(_other_versions(store, piece))
 
         do_all(work, scheduler, workers, take)
     if not store.is_finished:
         store.finish()
 
 
-def _other_versions(store: SweepStore, finished: Done) -> str:
+def _other_versions(store: SweepStore, report: Done) -> str:
     return (
-        f"The store '{store.path}' was begun with {attributes_of(store.path)['versions']}, but {finished.mark.writer} "
-        f"has {finished.versions}: what it computes may differ in the last bits."
+        f"The store '{store.path}' was begun with {attributes_of(store.path)['versions']}, but {report.mark.writer} "
+        f"has {report.versions}: what it computes may differ in the last bits."
     )
 
 

@@ -3,21 +3,16 @@
 from nonholo.base.checks import needs
 
 with needs("jax", "nonholo.examples"):
-    from nonholo.examples._chaplygin_ball import chaplygin_ball
-    from nonholo.examples._driven_sleigh import driven_sleigh
+    from nonholo.examples._balls import ball_in_bowl, ball_on_turntable, chaplygin_ball
+    from nonholo.examples._bicycle import bicycle
+    from nonholo.examples._blades import driven_sleigh, knife_edge_on_incline, sleigh_in_a_well
+    from nonholo.examples._boards import roller_racer, snake, snakeboard
+    from nonholo.examples._cars import kinematic_car, trailers, two_wheeled_robot
+    from nonholo.examples._disks import rolling_disk, tilting_disk
     from nonholo.examples._example import Example
     from nonholo.examples._heavy_suslov_top import heavy_suslov_top
-    from nonholo.examples._kinematic_car import kinematic_car
-    from nonholo.examples._knife_edge import knife_edge_on_incline
-    from nonholo.examples._oscillators import chaotic_quartic_oscillator, non_reversible
-    from nonholo.examples._particle import particle
-    from nonholo.examples._robot import two_wheeled_robot
-    from nonholo.examples._roller_racer import roller_racer
-    from nonholo.examples._rolling_disk import rolling_disk
-    from nonholo.examples._sleigh_in_a_well import sleigh_in_a_well
-    from nonholo.examples._snakeboard import snakeboard
-    from nonholo.examples.rolling import ball_in_bowl, ball_on_turntable, rattleback, tilting_disk
-    from nonholo.examples.vehicles import bicycle, snake, trailers
+    from nonholo.examples._points import chaotic_quartic_oscillator, non_reversible, particle
+    from nonholo.examples._rattleback import rattleback
 
 __all__ = [
     "Example",

@@ -1,4 +1,4 @@
-"""The form of an example: a system in coordinates, a start, and what is known."""
+"""The form of an example: a system, a start, and what is known; parts of bodies as they look from above."""
 
 import copy
 import dataclasses
@@ -13,7 +13,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import array, scale
+from nonholo.base.checks import array, number, scale
 from nonholo.base.memo import Keeper
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
@@ -21,6 +21,28 @@ from nonholo.discrete import discretize
 from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, LagrangeDAlembert
 from nonholo.simulation import flow, simulate
 from nonholo.systems import AbstractSystem
+
+
+def wheel(
+    place: tuple[float, float], diameter: float, angle: Array | float = 0.0, width: float = 0.3
+) -> Float[np.ndarray, "4 2"]:
+    """Return a wheel at a place that rolls along a direction, its width in parts of its diameter."""
+    corners = diameter / 2 * np.array([[-1.0, -width], [1.0, -width], [1.0, width], [-1.0, width]])
+    return np.array(place) + corners @ turn(angle)
+
+
+def pair(
+    place: tuple[float, float], half_width: float, diameter: float, angle: Array | float = 0.0
+) -> list[Float[np.ndarray, "P 2"]]:
+    """Return an axle and its two wheels, turned together."""
+    ends = np.array(place) + np.array([[0.0, -half_width], [0.0, half_width]]) @ turn(angle)
+    return [ends, *(wheel(end, diameter, angle) for end in ends)]
+
+
+def turn(angle: Array | float) -> Float[np.ndarray, "2 2"]:
+    """Return the matrix that turns rows."""
+    return np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+
 
 Numbers = Mapping[str, Any]
 """Parameters of a system by name."""
@@ -101,23 +123,24 @@ class Example(Keeper):
 def ready(*start: str) -> Callable[[Callable[..., Example]], Callable[..., Example]]:
     """Let the system of what a function makes tell stores the function and its arguments but for those of the start."""
 
-    def decorated(make: Callable[..., Example]) -> Callable[..., Example]:
+    def decorator(make: Callable[..., Example]) -> Callable[..., Example]:
         defaults = {name: each.default for name, each in inspect.signature(make).parameters.items()}
 
         @functools.wraps(make)
-        def made(**given: Any) -> Example:
-            example = make(**given)
-            if any(map(callable, given.values())):
+        def make_ready(**arguments: Any) -> Example:
+            example = make(**arguments)
+            if any(map(callable, arguments.values())):
                 return example  # which no data describes
-            body = {name: _plain(given.get(name, default), default) for name, default in defaults.items()}
-            kept = {name: value for name, value in body.items() if name not in start}
-            example = dataclasses.replace(example, system=_named(example.system, made, json.dumps(kept)))
-            object.__setattr__(example, "recipe", (functools.partial(made, **given), ()))
+            body = {name: _plain(arguments.get(name, default), default) for name, default in defaults.items()}
+            parameters = {name: value for name, value in body.items() if name not in start}
+            system = _with_recipe(example.system, make_ready, json.dumps(parameters))
+            example = dataclasses.replace(example, system=system)
+            object.__setattr__(example, "recipe", (functools.partial(make_ready, **arguments), ()))
             return example
 
-        return made
+        return make_ready
 
-    return decorated
+    return decorator
 
 
 def _plain(value: Any, default: Any) -> Any:
@@ -126,20 +149,26 @@ def _plain(value: Any, default: Any) -> Any:
 
 
 @functools.lru_cache(maxsize=64)  # one with a new function each time is another one
-def _named(system: Any, make: Callable[..., Example], parameters: str) -> Any:
+def _with_recipe(system: Any, make: Callable[..., Example], parameters: str) -> Any:
     """Return a system that can be described; changes of it, by `Forced` or `dataclasses.replace`, are not."""
-    named = copy.copy(system)
-    given = json.loads(parameters)
-    object.__setattr__(named, "description", (f"examples.{make.__name__}", given))
-    object.__setattr__(named, "recipe", (_system_of, (make, given)))
-    return named
+    own = copy.copy(system)
+    arguments = json.loads(parameters)
+    object.__setattr__(own, "description", (f"examples.{make.__name__}", arguments))
+    object.__setattr__(own, "recipe", (_system_of, (make, arguments)))
+    return own
 
 
-def _system_of(make: Callable[..., Example], given: dict[str, Any]) -> Any:
-    return make(**given).system
+def _system_of(make: Callable[..., Example], arguments: dict[str, Any]) -> Any:
+    return make(**arguments).system
 
 
-def sized(make: Callable[[], LagrangeDAlembert], *numbers: float) -> LagrangeDAlembert:
+def system_in(coordinates: str, name: str, *functions: Any, **options: Any) -> LagrangeDAlembert:
+    """Return the system of a Lagrangian and constraint forms, its coordinates named by words."""
+    names = tuple(coordinates.split())
+    return LagrangeDAlembert(*functions, dimension=len(names), coordinates=names, name=name, **options)
+
+
+def with_numbers(make: Callable[[], LagrangeDAlembert], *numbers: float) -> LagrangeDAlembert:
     """Return a system that is made once, with these parameters in its order."""
     system = make()
     return system.with_parameters(**dict(zip(system.parameters, numbers, strict=True)))
@@ -180,6 +209,11 @@ def positives(owner: str, **values: Any) -> list[float]:
     """Return the parameters of a body, all positive."""
     remedy = "Pass a positive number."
     return [float(scale(f"examples.{owner}({name}=...)", value, remedy)) for name, value in values.items()]
+
+
+def reals(owner: str, **values: Any) -> list[float]:
+    """Return the parameters of a body or of a start, finite numbers."""
+    return [float(number(f"examples.{owner}({name}=...)", value)) for name, value in values.items()]
 
 
 def numbers(owner: str, name: str, value: Any, size: int, what: str) -> Float[np.ndarray, "size"]:

@@ -48,17 +48,17 @@ def heavy_suslov_top(
         True
     """
     name = "heavy_suslov_top"
-    given = numbers(name, "inertia", inertia, 3, "three moments")
-    moments = positives(name, **{f"inertia[{i}]": moment for i, moment in enumerate(given)})
+    principal = numbers(name, "inertia", inertia, 3, "three moments")
+    moments = positives(name, **{f"inertia[{i}]": moment for i, moment in enumerate(principal)})
     c = numbers(name, "stiffness", stiffness, 3, "three numbers")
     omega = np.append(numbers(name, "velocity", velocity, 2, "two components"), 0.0)
 
-    def kept(g: Array, v: Array, turning: int, tilting: int) -> Array:
+    def integral(g: Array, v: Array, turning: int, tilting: int) -> Array:
         return moments[turning] * v[..., turning] ** 2 - (c[2] - c[tilting]) * g[..., 2, tilting] ** 2
 
     conserved = {
-        "of the first axis": functools.partial(kept, turning=0, tilting=1),
-        "of the second axis": functools.partial(kept, turning=1, tilting=0),
+        "of the first axis": functools.partial(integral, turning=0, tilting=1),
+        "of the second axis": functools.partial(integral, turning=1, tilting=0),
     }
 
     import numba

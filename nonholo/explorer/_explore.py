@@ -23,7 +23,7 @@ from nonholo.base.checks import path as checked_path
 from nonholo.base.memo import Keeper
 from nonholo.base.results import Outcome
 from nonholo.explorer._kernel import kernel, kinds_beside
-from nonholo.explorer._motion import shown_motion, simulated
+from nonholo.explorer._motion import shown_motion, simulate_state
 from nonholo.io import check_file, new_file
 from nonholo.orbit import Orbit
 
@@ -50,10 +50,11 @@ class Page(Keeper):
         return f"<Page of {len(self.text) / 1e3:.0f} kB>"
 
     def _repr_html_(self) -> str:
-        allowed = "allow-scripts allow-downloads allow-modals"
+        permissions = "allow-scripts allow-downloads allow-modals"
         inner = html.escape(self.text, quote=True)
         look = f"width:100%;height:{_HEIGHT}px;border:0"
-        return f'<iframe sandbox="{allowed}" style="{look}" title="The live page of nonholo" srcdoc="{inner}"></iframe>'
+        about = f'sandbox="{permissions}" style="{look}" title="The live page of nonholo"'
+        return f'<iframe {about} srcdoc="{inner}"></iframe>'
 
     def _repr_mimebundle_(self, **_: Any) -> Any:
         if self.widget is None:
@@ -73,8 +74,8 @@ class Page(Keeper):
     @property
     def state(self) -> dict[str, Any] | None:
         """Body, start and time step that the page shows now: the last that its sliders in a notebook said."""
-        shown = vars(self).get("widget")  # there is one when a notebook has shown the page
-        return self.first_state if shown is None or self.first_state is None else dict(shown.state)
+        widget = vars(self).get("widget")  # there is one when a notebook has shown the page
+        return self.first_state if widget is None or self.first_state is None else dict(widget.state)
 
     def orbit(self) -> Orbit:
         """Return the motion that the page shows now, computed here: in a notebook that of its sliders.
@@ -86,7 +87,7 @@ class Page(Keeper):
             >>> nh.explore(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5)).orbit()
             <Orbit of ChaplyginSleigh: 401 states, time 0 to 40, successful>
         """
-        return simulated("Page.orbit()", self.state, self.table)
+        return simulate_state("Page.orbit()", self.state, self.table)
 
     def save(self, path: str | Path, *, overwrite: bool = False) -> None:
         """Write the page to a new file.
@@ -143,9 +144,9 @@ def orbit_to_html(orbit: Any, path: str | Path, *, overwrite: bool = False) -> N
 def page_text(data: dict[str, Any], title: str, note: str, version: str) -> str:
     """Return the text of a page, in ASCII; what it is given is escaped, and data cannot end their element."""
     outcomes = {int(outcome): (outcome.name, outcome.message) for outcome in Outcome}
-    kernels = {} if "replay" in data else {kind: _packed(kernel(kind)) for kind in kinds_beside(data["kind"])}
-    known = {**data, "title": title, "library": version, "outcomes": outcomes, "kernels": kernels}
-    text = json.dumps(known, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+    kernels = {} if "replay" in data else {kind: _pack(kernel(kind)) for kind in kinds_beside(data["kind"])}
+    content = {**data, "title": title, "library": version, "outcomes": outcomes, "kernels": kernels}
+    text = json.dumps(content, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     script, style = _text("view.js"), _text("style.css")
     whole = _template().render(
         data=text,
@@ -171,7 +172,7 @@ def _template() -> jinja2.Template:
     return jinja2.Environment(autoescape=True).from_string(_text("page.html"))
 
 
-def _packed(module: bytes) -> str:
+def _pack(module: bytes) -> str:
     return base64.b64encode(gzip.compress(module, mtime=0)).decode()
 
 

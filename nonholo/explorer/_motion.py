@@ -57,9 +57,9 @@ class _State(BaseModel):
     def _is_one(self) -> "_State":
         own = self.kind.removeprefix("forced_")
         names, forces, numbers, entries, unit = _BODIES[own]
-        wanted, scale = (f"{names} {forces}", {"s"}) if own != self.kind else (names, set())
-        if self.parameters.keys() - scale != {*wanted.split()}:
-            raise ValueError(f"parameters: must be {wanted}")
+        keys, scale = (f"{names} {forces}", {"s"}) if own != self.kind else (names, set())
+        if self.parameters.keys() - scale != {*keys.split()}:
+            raise ValueError(f"parameters: must be {keys}")
         is_pose = len(self.pose) == entries and (not unit or abs(np.linalg.norm(self.pose[:unit]) - 1) <= 1e-9)
         if len(self.momentum) != numbers or not is_pose:
             raise ValueError(f"momentum must have {numbers} numbers, pose the {entries} of a pose")
@@ -105,8 +105,8 @@ def _of_discretization(where: str, discrete: Discretization) -> Shown:
     kind = _kind(discrete)
     if kind is None:
         remedy = "Run it, and pass the orbit: a page replays any."
-        wanted = "be a top with n = 3 or 4 or a sleigh in the plane, of order 2"
-        raise error(where, wanted, shown(discrete.system), remedy)
+        demand = "be a top with n = 3 or 4 or a sleigh in the plane, of order 2"
+        raise error(where, demand, shown(discrete.system), remedy)
     system = discrete.system
     lower = np.linalg.cholesky(system.canonical.constrained_inertia)
     table, momentum = _table(system, kind, 0), lower @ np.array([0.4, -0.9, 0.3])[: len(lower)] * lower[0, 0]
@@ -117,8 +117,8 @@ def _of_discretization(where: str, discrete: Discretization) -> Shown:
         if not len(orbit):
             raise error(where, "be a motion that the page can show", problem, "Run it, and pass the orbit.")
         return _replay(orbit, _BEYOND)
-    recorded = _numbers(orbit, _spread(orbit, _RECORDED))[0] if len(orbit) else None
-    data = {"kind": kind, "state": state, "recorded": recorded, "table": table}
+    preview = _numbers(orbit, _spread(orbit, _RECORDED))[0] if len(orbit) else None
+    data = {"kind": kind, "state": state, "recorded": preview, "table": table}
     return Shown(data, _name(discrete.system), _frame_note(discrete.system))
 
 
@@ -129,17 +129,17 @@ def _live(orbit: Orbit) -> Shown | None:
         return None
     if orbit.has_impacts.any():
         return None
-    kind, wanted = _kind(discrete), int(orbit.step[-1] - orbit.step[0])
-    if kind is None or wanted < 1:
+    kind, step_count = _kind(discrete), int(orbit.step[-1] - orbit.step[0])
+    if kind is None or step_count < 1:
         return None
-    steps = min(wanted, MOST_STEPS)
+    steps = min(step_count, MOST_STEPS)
     table = _table(orbit.system, kind, orbit.step[0])
     state = _state(discrete, kind, orbit.reduced_momentum[0], orbit.canonical_pose[0], steps, table)
     if _problem(state):
         return _replay(orbit, _BEYOND)
-    cut = f" The first {steps:,} of {wanted:,} steps." if steps < wanted else ""
-    recorded = _numbers(orbit, _spread(orbit, _RECORDED))[0]
-    data = {"kind": kind, "state": state, "recorded": recorded, "table": table}
+    cut = f" The first {steps:,} of {step_count:,} steps." if steps < step_count else ""
+    preview = _numbers(orbit, _spread(orbit, _RECORDED))[0]
+    data = {"kind": kind, "state": state, "recorded": preview, "table": table}
     return Shown(data, _name(orbit.system), _frame_note(orbit.system) + cut)
 
 
@@ -189,7 +189,7 @@ def _parameters(system: AbstractSystem) -> dict[str, float]:
 def _state(
     discrete: Discretization, kind: str, momentum: np.ndarray, pose: np.ndarray, steps: int, table: Any
 ) -> dict[str, Any]:
-    named = {} if table is None else {"table": table["name"]}
+    name_of_table = {} if table is None else {"table": table["name"]}
     form = cast(NormalForm, _inside(discrete.system).normal_form)
     if kind == "top4" and form.principal[1] is not None:  # a matrix with rows of the pose turned, its last column stays
         momentum, g = form.to_principal(momentum), pose.reshape(4, 4)
@@ -201,11 +201,11 @@ def _state(
         "pose": [float(x) + 0.0 for x in pose],
         "time_step": float(discrete.time_step),
         "steps": steps,
-        **named,
+        **name_of_table,
     }
 
 
-def simulated(where: str, state: Any, table: dict[str, Any] | None = None) -> Orbit:
+def simulate_state(where: str, state: Any, table: dict[str, Any] | None = None) -> Orbit:
     """Return the motion of a state, which may come from a page and be anything, under the table of that page."""
     problem = "a replay" if state is None else _problem(state)
     if problem is None and (state or {}).get("table") not in (None, table and table["name"]):
@@ -247,21 +247,21 @@ def _name(system: AbstractSystem) -> str:
 
 
 def _frame_note(system: AbstractSystem) -> str:
-    turned = system.canonical is not system and np.any(system.frame != np.eye(len(system.frame)))
+    is_turned = system.canonical is not system and np.any(system.frame != np.eye(len(system.frame)))
     form = _inside(system).normal_form
     axes = None if form is None or form.is_planar else form.principal[1]
     if axes is not None and np.any(axes != np.eye(len(axes))):
         return "Shown in the principal axes of the constrained inertia, with the forbidden axis as the last one."
-    return "Shown in the canonical body frame: its last axis is the forbidden one, or b = 0." if turned else ""
+    return "Shown in the canonical body frame: its last axis is the forbidden one, or b = 0." if is_turned else ""
 
 
 def _replay(orbit: AbstractOrbit, why: str = "there is no kernel in the page for this motion") -> Shown:
-    chosen = _spread(orbit, MOST_STATES)
-    replay, forces = _numbers(orbit, chosen)
+    states = _spread(orbit, MOST_STATES)
+    replay, forces = _numbers(orbit, states)
     names = [f"p({name})" for name in orbit.coordinates[:2]] or ["r\u2081", "r\u2082"]
     data = {"kind": "replay", "replay": replay, "momenta": names}
-    thinned = f" {len(chosen):,} of {len(orbit):,} saved states." if len(chosen) < len(orbit) else ""
-    note = f"A replay of numbers from Python: {why}.{thinned}{forces}"
+    part = f" {len(states):,} of {len(orbit):,} saved states." if len(states) < len(orbit) else ""
+    note = f"A replay of numbers from Python: {why}.{part}{forces}"
     title = _name(orbit.system) if isinstance(orbit, Orbit) else orbit.system.name
     return Shown(data, title, note)
 
@@ -271,14 +271,14 @@ def _spread(orbit: AbstractOrbit, most: int) -> Int[np.ndarray, "L"]:
     return np.unique(np.linspace(0, len(orbit) - 1, min(len(orbit), most)).round().astype(np.int64))
 
 
-def _numbers(orbit: AbstractOrbit, chosen: Int[np.ndarray, "L"]) -> tuple[dict[str, Any], str]:
+def _numbers(orbit: AbstractOrbit, states: Int[np.ndarray, "L"]) -> tuple[dict[str, Any], str]:
     """Return what a page replays of some states, and a note on their energy."""
-    part = orbit.chosen(chosen) if isinstance(orbit, Orbit) and len(chosen) < len(orbit) else orbit
-    rows = chosen if len(part) > len(chosen) else slice(None)
+    part = orbit.chosen(states) if isinstance(orbit, Orbit) and len(states) < len(orbit) else orbit
+    rows = states if len(part) > len(states) else slice(None)
     momenta = np.pad(part.restricted_momentum, ((0, 0), (0, 2)))[rows, :2]
     energy, forces = _shown_energy(orbit)
     frames = (_planar_frames(part) if orbit.coordinates else _frames(part))[rows]
-    arrays = {"time": orbit.time[chosen], "energy": energy[chosen], "frames": frames, "momentum": momenta}
+    arrays = {"time": orbit.time[states], "energy": energy[states], "frames": frames, "momentum": momenta}
     replay = {name: base64.b64encode(each.astype("<f8").tobytes()).decode() for name, each in arrays.items()}
     return {**replay, "outcome": int(orbit.outcome)}, forces
 
@@ -337,8 +337,8 @@ def force_numbers(forced: Forced) -> dict[str, float] | None:
     coefficients = np.zeros(2) if friction is None else friction.coefficients
     if coefficients.ndim > 1 or not _is_plain(forced):
         return None
-    numbered = {"F": gravity.force, "x": gravity.point, "c": coefficients[:2]}
-    numbers = {f"{name}{i}": float(x) for name, row in numbered.items() for i, x in enumerate(row, 1)}
+    rows = {"F": gravity.force, "x": gravity.point, "c": coefficients[:2]}
+    numbers = {f"{name}{i}": float(x) for name, row in rows.items() for i, x in enumerate(row, 1)}
     return numbers if forced.table is None else {**numbers, "s": 1.0}
 
 
@@ -363,7 +363,7 @@ def packed_table(body: str, rows: Float[np.ndarray, "K dim"]) -> dict[str, Any]:
     return {"body": body, "name": name, "rows": base64.b64encode(content).decode()}
 
 
-def table_of(packed: dict[str, Any] | None, least: int) -> Float[np.ndarray, "K dim"]:
+def table_of(table: dict[str, Any] | None, least: int) -> Float[np.ndarray, "K dim"]:
     """Return the rows of a page's table, and after the last one as many that are zero as are missing from a number."""
-    rows = np.zeros((0, 3)) if packed is None else np.frombuffer(base64.b64decode(packed["rows"]), "<f8").reshape(-1, 3)
+    rows = np.zeros((0, 3)) if table is None else np.frombuffer(base64.b64decode(table["rows"]), "<f8").reshape(-1, 3)
     return np.concatenate([rows, np.zeros((max(0, least - len(rows)), 3))])

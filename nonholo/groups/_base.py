@@ -12,7 +12,7 @@ import numpy as np
 from nonholo.base.checks import generator, trailing
 from nonholo.base.limits import within_memory
 from nonholo.base.memo import Keeper
-from nonholo.base.numerics import identity_like, integrated_exponential, inverted
+from nonholo.base.numerics import identity_like, integrated_exponential, inverse_of
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.groups._coordinates import AbstractCoordinates
 
@@ -60,7 +60,7 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
         It is the inverse of $\mathrm{dexp}_x = \sum_k \mathrm{ad}_x^k/(k+1)! = \varphi_1(\mathrm{ad}_x)$, defined by
         $\frac{d}{dt}e^{X(t)} = \mathrm{hat}(\mathrm{dexp}_x\dot x)\,e^{X}$.
         """
-        return inverted(integrated_exponential(self.ad(x)))
+        return inverse_of(integrated_exponential(self.ad(x)))
 
     @abc.abstractmethod
     def inverse(self, g: Float[Array, "... N N"]) -> Float[Array, "... N N"]:

@@ -14,7 +14,7 @@ from nonholo.base.numerics import (
     cayley_increment,
     exponential_increment,
     identity_like,
-    inverted,
+    inverse_of,
     principal_logarithm,
 )
 from nonholo.base.types import Array, Float
@@ -165,7 +165,7 @@ class MatrixGroup(AbstractMatrixGroup):
     def inverse(self, g: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
         """Return the inverse matrix."""
         g = self._matrix(g)
-        return inverted(g) if self.form is None else self.form_adjoint(g)
+        return inverse_of(g) if self.form is None else self.form_adjoint(g)
 
     def residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
         """Return how far the logarithm is from the algebra; infinite where there is no logarithm (JAX: undefined).

@@ -17,7 +17,7 @@ from nonholo.base.numerics import cayley_increment, cotangent_deficit, identity_
 from nonholo.base.types import Array, Float
 from nonholo.groups import _rotations
 from nonholo.groups._base import AbstractMatrixGroup
-from nonholo.groups._coordinates import AbstractCoordinates, SeparatedCoordinates, coordinates_of
+from nonholo.groups._coordinates import AbstractCoordinates, SeparatedCoordinates
 
 
 class AbstractRodriguesGroup(AbstractMatrixGroup):
@@ -96,14 +96,8 @@ class SpecialOrthogonal3(AbstractRodriguesGroup):
     tan(angle / 2) = |x| / 2.
     """
 
-    basis: ClassVar[np.ndarray] = np.array(
-        [
-            [[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]],
-            [[0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [-1.0, 0.0, 0.0]],
-            [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
-        ]
-    )
-    coordinates: ClassVar[AbstractCoordinates] = coordinates_of(basis)
+    coordinates: ClassVar[AbstractCoordinates] = SeparatedCoordinates(3, *_rotations.planes(3))
+    basis: ClassVar[np.ndarray] = np.ascontiguousarray(coordinates.matrix(np.eye(3)))
     curvature: ClassVar[float] = 1.0
 
     def __repr__(self) -> str:

@@ -15,8 +15,14 @@ from nonholo.base.checks import error, instance, text
 from nonholo.base.compiled import way_of_kernels
 from nonholo.continuous import ContinuousFlow
 from nonholo.discrete import MeasuredMotion, discretize
-from nonholo.io._descriptions import described_system, fields_of, restore_group, restore_system, unstored
-from nonholo.io._in_coordinates import recorded_system
+from nonholo.io._descriptions import (
+    described_system,
+    fields_of,
+    missing_part,
+    recorded_system,
+    restore_group,
+    restore_system,
+)
 from nonholo.orbit import AbstractMotion, AbstractOrbit
 from nonholo.systems import AbstractCoordinateDiscretization
 
@@ -76,7 +82,7 @@ def attributes_of_text(scenario: str) -> dict[str, str]:
     return {"scenario": scenario, "scenario_sha256": hashlib.sha256(scenario.encode()).hexdigest()}
 
 
-def restore_motion(stored: dict[str, Any], motion: Any) -> Any:
+def restore_motion(attributes: dict[str, Any], motion: Any) -> Any:
     """Rebuild the motion of a store, or check that the one given is the stored one.
 
     Callables and groups of the user's own cannot be stored: such a motion has to be given. In coordinates, where stores
@@ -86,44 +92,44 @@ def restore_motion(stored: dict[str, Any], motion: Any) -> Any:
     if motion is not None:
         kinds: Any = (AbstractMotion, AbstractCoordinateDiscretization)
         remedy = "Pass that of the store, or None."
-        return _same(stored, instance("load_orbit(discrete=...)", motion, kinds, "be a discretization", remedy))
-    options = json.loads(stored["motion"])
+        return _same(attributes, instance("load_orbit(discrete=...)", motion, kinds, "be a discretization", remedy))
+    options = json.loads(attributes["motion"])
     kind, route = options.pop("kind"), options.pop("route", None)
     remedy = f"Pass load_orbit(path, discrete=...) with the {kind} that made this store."
-    system = system_of(stored, where, remedy, unstored(options))
+    system = system_of(attributes, where, remedy, missing_part(options))
     if kind not in _MOTIONS:
         raise error(where, "hold a motion of this version", repr(kind), "Upgrade nonholo.")
-    restored = on_route_of(stored, _MOTIONS[kind](system, **options))
-    if type(restored).__name__ != kind or route != restored.route_name:
+    motion_again = on_route_of(attributes, _MOTIONS[kind](system, **options))
+    if type(motion_again).__name__ != kind or route != motion_again.route_name:
         raise error(where, "hold a run by a route of this version", repr(route or kind), "Upgrade nonholo.")
-    return restored
+    return motion_again
 
 
-def system_of(stored: dict[str, Any], where: str, remedy: str, missing: str | None = None) -> Any:
+def system_of(attributes: dict[str, Any], where: str, remedy: str, missing: str | None = None) -> Any:
     """Return the system of a store; in coordinates, what is known of one whose functions it does not hold."""
-    name, parameters = stored["system"], json.loads(stored["parameters"])
-    group, absent = parameters.get("group"), missing or unstored(parameters)
+    name, parameters = attributes["system"], json.loads(attributes["parameters"])
+    group, absent = parameters.get("group"), missing or missing_part(parameters)
     if not absent:
         return restore_system(name, parameters)
-    if missing or "orbits" not in parameters or unstored({"group": group}):
+    if missing or "orbits" not in parameters or missing_part({"group": group}):
         raise error(where, "be rebuilt from data", f"a store whose {absent}", remedy)
     return recorded_system(name, parameters, None if group is None else restore_group(group))
 
 
-def _same(stored: dict[str, Any], motion: Any) -> Any:
-    motion = on_route_of(stored, motion)
+def _same(attributes: dict[str, Any], motion: Any) -> Any:
+    motion = on_route_of(attributes, motion)
     for key, value in identity_of(motion).items():
-        if value != stored[key]:  # JSON text: floating-point numbers are compared exactly
-            got = f"{key} {value} instead of {stored[key]}"
+        if value != attributes[key]:  # JSON text: floating-point numbers are compared exactly
+            got = f"{key} {value} instead of {attributes[key]}"
             raise error("load_orbit(discrete=...)", "be the discretization of the store", got, "Pass that one.")
     return motion
 
 
-def on_route_of(stored: dict[str, Any], motion: Any) -> Any:
+def on_route_of(attributes: dict[str, Any], motion: Any) -> Any:
     """Return a motion by the route that began a store, or the next one; the motion itself where that is its own."""
     if motion.route_name is None:
         return motion
-    other = dataclasses.replace(motion, wanted_route=json.loads(stored["motion"]).get("route"))
+    other = dataclasses.replace(motion, wanted_route=json.loads(attributes["motion"]).get("route"))
     return motion if other.route_name == motion.route_name else other
 
 
@@ -140,11 +146,11 @@ def identity_of(motion: Any) -> dict[str, str]:
     }
 
 
-def other_versions(stored: dict[str, Any]) -> str:
+def other_versions(attributes: dict[str, Any]) -> str:
     """Name the packages of which a store was made with another version; empty if there is none."""
-    made = json.loads(stored["versions"])
-    now = _versions(*made)
-    return ", ".join(f"{name} {old} (now {now.get(name)})" for name, old in made.items() if old != now.get(name))
+    theirs = json.loads(attributes["versions"])
+    now = _versions(*theirs)
+    return ", ".join(f"{name} {old} (now {now.get(name)})" for name, old in theirs.items() if old != now.get(name))
 
 
 @functools.cache  # each is read from a file
@@ -154,8 +160,8 @@ def versions_text(*others: str) -> str:
 
 
 def _versions(*packages: str) -> dict[str, str]:
-    found = {"python": platform.python_version()}
+    versions = {"python": platform.python_version()}
     for name in packages:
         with contextlib.suppress(PackageNotFoundError):
-            found |= {name: version(name)} if name not in found else {}
-    return found
+            versions |= {name: version(name)} if name not in versions else {}
+    return versions

@@ -12,7 +12,7 @@ from nonholo.base.checks import count, error, flags, instance
 from nonholo.base.checks import path as checked_path
 from nonholo.base.progress import progress_bar
 from nonholo.base.types import Float
-from nonholo.io._beside import check_file, new_file
+from nonholo.io._places import check_file, new_file
 from nonholo.io.datasets import Stretch, column_names, coordinate_rows, rows_of
 from nonholo.orbit import AbstractOrbit
 
@@ -61,8 +61,8 @@ def _lines_of(orbit: Any) -> Iterator[str]:
     if not orbit.has_poses:
         remedy = "Run with reconstruct=True."
         raise error("Orbit.to_csv(...)", "be asked of an orbit with poses", "reconstruct=False", remedy)
-    pose, turned = (orbit.canonical_pose, orbit.turned) if orbit.is_compact else (orbit.configuration, None)
-    return _lines(orbit.system, [Stretch(orbit.time, np.asarray(pose), turned)], 1)
+    pose, heading = (orbit.canonical_pose, orbit.turned) if orbit.is_compact else (orbit.configuration, None)
+    return _lines(orbit.system, [Stretch(orbit.time, np.asarray(pose), heading)], 1)
 
 
 def store_to_csv(
@@ -101,16 +101,16 @@ def store_to_csv(
     poses = open_poses(checked_path("store_to_csv(store=...)", store))
     poses.check()
     with new_file(target, overwrite=overwrite) as file, progress_bar("states", progress) as report:
-        stretches = _reported(poses.stretches(), lambda done: report(done, poses.rows))
+        stretches = _reporting(poses.stretches(), lambda row: report(row, poses.rows))
         file.writelines(_lines(poses.system, stretches, every))
 
 
 def _lines(system: Any, stretches: Iterable[Stretch], every: int) -> Iterator[str]:
     """Return the header, then many lines at a time."""
-    named = getattr(system, "coordinates", ())
-    names = ["t", *named] if named else column_names(system.group)
+    coordinates = getattr(system, "coordinates", ())
+    names = ["t", *coordinates] if coordinates else column_names(system.group)
     parts = _cut(stretches, max(1, _NUMBERS // len(names)))
-    return table_lines(names, coordinate_rows(parts, every) if named else rows_of(system, parts, every))
+    return table_lines(names, coordinate_rows(parts, every) if coordinates else rows_of(system, parts, every))
 
 
 def table_lines(names: list[str], pieces: Iterable[Float[np.ndarray, "R c"]]) -> Iterator[str]:
@@ -131,9 +131,9 @@ def _cut(stretches: Iterable[Stretch], most: int) -> Iterator[Stretch]:
             yield Stretch(time[part], pose[part], None if headings is None else headings[part])
 
 
-def _reported(stretches: Iterable[Stretch], report: Callable[[int], object]) -> Iterator[Stretch]:
-    done = 0
+def _reporting(stretches: Iterable[Stretch], report: Callable[[int], object]) -> Iterator[Stretch]:
+    row_count = 0
     for stretch in stretches:
         yield stretch
-        done += len(stretch.time)
-        report(done)
+        row_count += len(stretch.time)
+        report(row_count)

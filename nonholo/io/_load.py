@@ -14,10 +14,10 @@ from nonholo.base.checks import path as checked_path
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.io._attributes import FORMAT, SCHEMA, SWEEP_FORMAT, restore_motion
+from nonholo.io._block_store import BlockStore, Layout
 from nonholo.io._chunks import AGAIN, WHERE, DamagedError, checked_array, checked_block, opened_array
 from nonholo.io._metadata import OrbitMetadata, SweepMetadata, check_assertions, check_metadata
-from nonholo.io._stored_events import EVENTS, known, log_of
-from nonholo.io.blocks import BlockStore, Layout, checkpoint_of
+from nonholo.io._stored_events import EVENTS, checkpoint_of, log_of, without_padding
 from nonholo.io.datasets import CANONICAL, STEP
 from nonholo.orbit import STATES, EventLog, Orbit, Plan
 
@@ -47,57 +47,61 @@ def load_orbit(path: str | Path, *, discrete: Any = None) -> Any:
     Example:
         >>> orbit = load_orbit("orbit.zarr")  # doctest: +SKIP
     """
-    return _loaded(checked_path(WHERE, path), discrete, last=False)
+    return _load(checked_path(WHERE, path), discrete, last=False)
 
 
 def load_last_block(path: Path, discrete: Any) -> Any:
     """Load the states in the last chunk of a store."""
-    return _loaded(path, discrete, last=True)
+    return _load(path, discrete, last=True)
 
 
-def _loaded(root: Path, discrete: Any, *, last: bool) -> Any:
-    stored = read_attributes(root)
-    if "run" in stored and "outcome" not in stored:
+def _load(root: Path, discrete: Any, *, last: bool) -> Any:
+    attributes = read_attributes(root)
+    if "run" in attributes and "outcome" not in attributes:
         remedy = f"Resume with nonholo.resume('{root}') (nonholo resume); `nonholo info` says how far it came."
         raise error(WHERE, "be a finished run", f"'{root}', which is not", remedy)
     try:
-        shapes = json.loads(stored["arrays"])
-        motion, outcome, every = restore_motion(stored, discrete), Outcome[stored["outcome"]], stored["save_every"]
+        shapes = json.loads(attributes["arrays"])
+        motion, outcome, every = (
+            restore_motion(attributes, discrete),
+            Outcome[attributes["outcome"]],
+            attributes["save_every"],
+        )
     except (KeyError, json.JSONDecodeError) as failure:
         raise error(WHERE, "hold complete attributes", f"'{root}' without {failure}", AGAIN) from failure
     arrays = {name: _read(root, name, tuple(shape), last) for name, shape in shapes.items()}
     if not last:  # whoever asks for the last block has looked at the others
-        check_seals(root, stored)
+        check_seals(root, attributes)
     rows = {name: arrays.get(array) for name, array in stored_names(shapes, motion.columns).items()}
-    total, kept = shapes["time"][0], len(arrays["time"])
-    step = arrays[STEP].astype(np.int64) if STEP in arrays else every * np.arange(total - kept, total)
-    orbit = motion.orbit(outcome=outcome, save_every=every, branch=stored["branch"], step=step, **rows)
-    if "events" not in stored:
+    total, rows_kept = shapes["time"][0], len(arrays["time"])
+    step = arrays[STEP].astype(np.int64) if STEP in arrays else every * np.arange(total - rows_kept, total)
+    orbit = motion.orbit(outcome=outcome, save_every=every, branch=attributes["branch"], step=step, **rows)
+    if "events" not in attributes:
         return orbit
-    begin = _begin_of_last(stored, shapes["time"][0]) if last else 0
-    return dataclasses.replace(orbit, events=_events(root, stored, orbit, begin))
+    begin = _begin_of_last(attributes, shapes["time"][0]) if last else 0
+    return dataclasses.replace(orbit, events=_events(root, attributes, orbit, begin))
 
 
-def check_seals(root: Path, stored: dict[str, Any]) -> None:
+def check_seals(root: Path, attributes: dict[str, Any]) -> None:
     """Refuse the store of a finished run, or of an orbit saved whole, where a chunk lies in the place of another."""
-    arrays = {name: opened_array(root, name, tuple(shape)) for name, shape in json.loads(stored["arrays"]).items()}
-    events = [event["name"] for event in json.loads(stored["events"])] if "events" in stored else None
+    arrays = {name: opened_array(root, name, tuple(shape)) for name, shape in json.loads(attributes["arrays"]).items()}
+    events = [event["name"] for event in json.loads(attributes["events"])] if "events" in attributes else None
     log = None if events is None else opened_array(root, EVENTS, None)
     layout = Layout(arrays["time"].shape, arrays["time"].chunks)
-    store = BlockStore(root, stored["made"], layout, arrays, log)
+    store = BlockStore(root, attributes["made"], layout, arrays, log)
     try:
-        for block in range(plan_of(stored).blocks if "run" in stored else layout.blocks):
-            about = store.ended(block).about
-            if "run" in stored and checkpoint_of(about, events).is_last:
+        for block in range(plan_of(attributes).blocks if "run" in attributes else layout.blocks):
+            about = store.checked_mark(block).about
+            if "run" in attributes and checkpoint_of(about, events).is_last:
                 break
     except DamagedError as flaw:
         raise error(WHERE, "hold each chunk in its place", f"{flaw}, in '{root}'", AGAIN) from None
 
 
-def plan_of(stored: dict[str, Any]) -> Plan:
+def plan_of(attributes: dict[str, Any]) -> Plan:
     """Return the plan of a store with these attributes."""
-    run = json.loads(stored["run"])
-    return Plan(run["steps"], stored["save_every"], run["rows"], run["lead"])
+    run = json.loads(attributes["run"])
+    return Plan(run["steps"], attributes["save_every"], run["rows"], run["lead"])
 
 
 def stored_names(arrays: Container[str], columns: Iterable[str] = STATES) -> dict[str, str]:
@@ -106,51 +110,51 @@ def stored_names(arrays: Container[str], columns: Iterable[str] = STATES) -> dic
     return {name: CANONICAL + array if CANONICAL + array in arrays else array for name, array in names.items()}
 
 
-def _events(root: Path, stored: dict[str, Any], orbit: Orbit, begin: int) -> EventLog:
+def _events(root: Path, attributes: dict[str, Any], orbit: Orbit, begin: int) -> EventLog:
     """Return the crossings of a stored run after the state of a step."""
     array = opened_array(root, EVENTS, None)
-    events, counts = json.loads(stored["events"]), json.loads(stored["crossings"])
+    events, counts = json.loads(attributes["events"]), json.loads(attributes["crossings"])
     parts = [np.empty((0, array.shape[1]))]
     for chunk in range(array.cdata_shape[0]):
-        parts.append(known(checked_block(root, EVENTS, array, (chunk, 0), with_nan=True), begin))
-    log = log_of(np.concatenate(parts), events, orbit, stored.get("stopped_by"))
-    found = [len(crossings) for crossings in log.found]
-    if begin == 0 and found != counts:
-        raise error(WHERE, f"hold {counts} crossings in {EVENTS}", str(found), AGAIN)
+        parts.append(without_padding(checked_block(root, EVENTS, array, (chunk, 0), with_nan=True), begin))
+    log = log_of(np.concatenate(parts), events, orbit, attributes.get("stopped_by"))
+    lengths = [len(crossings) for crossings in log.found]
+    if begin == 0 and lengths != counts:
+        raise error(WHERE, f"hold {counts} crossings in {EVENTS}", str(lengths), AGAIN)
     return log
 
 
-def _begin_of_last(stored: dict[str, Any], states: int) -> int:
+def _begin_of_last(attributes: dict[str, Any], states: int) -> int:
     """Return the step at which the last block of states begins."""
-    plan = plan_of(stored)
+    plan = plan_of(attributes)
     return plan.begin((states - 1) // plan.rows)
 
 
-def read_attributes(path: str | Path, expected: str = FORMAT, schema: int = SCHEMA) -> dict[str, Any]:
+def read_attributes(path: str | Path, format_name: str = FORMAT, schema: int = SCHEMA) -> dict[str, Any]:
     """Return the attributes of a store, after checking that they are of that format and schema."""
-    where = WHERE if expected == FORMAT else "load_sweep(store=...)"
+    where = WHERE if format_name == FORMAT else "load_sweep(store=...)"
     check_assertions(where)
-    kind = f"be a store of {_KINDS[expected]}"
+    kind = f"be a store of {_KINDS[format_name]}"
     if not Path(path).exists():
         raise FileNotFoundError(f"`{where}` must exist. Got '{path}'. Check the path; runs are kept under 'runs/'.")
     try:
-        stored = dict(zarr.open_group(Path(path), mode="r", use_consolidated=False).attrs)
+        attributes = dict(zarr.open_group(Path(path), mode="r", use_consolidated=False).attrs)
     except Exception as failure:
         remedy = f"Its metadata cannot be read: {failure}"
         raise error(where, kind, f"'{path}'", remedy) from failure
-    if stored.get("format") != expected:
-        made = _KINDS.get(str(stored.get("format")))
-        got = f"'{path}', " + (f"a store of {made}" if made else "made by another program")
+    if attributes.get("format") != format_name:
+        kind_of_store = _KINDS.get(str(attributes.get("format")))
+        got = f"'{path}', " + (f"a store of {kind_of_store}" if kind_of_store else "made by another program")
         raise error(where, kind, got, "Pass a store of nonholo that is one.")
-    if stored.get("schema") != schema:
-        raise _other_schema(where, stored, schema)
-    check_metadata(where, str(path), stored, OrbitMetadata if expected == FORMAT else SweepMetadata)
-    return stored
+    if attributes.get("schema") != schema:
+        raise _other_schema(where, attributes, schema)
+    check_metadata(where, str(path), attributes, OrbitMetadata if format_name == FORMAT else SweepMetadata)
+    return attributes
 
 
-def _other_schema(where: str, stored: dict[str, Any], schema: int) -> Exception:
+def _other_schema(where: str, attributes: dict[str, Any], schema: int) -> Exception:
     """Return what refuses a store of another schema: of a later version, or of before stores were read for good."""
-    number, versions = stored.get("schema"), stored.get("versions")
+    number, versions = attributes.get("schema"), attributes.get("versions")
     got, remedy = f"schema {number}", f"Upgrade nonholo: {versions} wrote it."
     if isinstance(number, int) and number < schema:
         got += ", of before 0.3.0, from which on later versions read stores"

@@ -124,13 +124,13 @@ class SweepMetadata(_About):
 _OURS = {field.alias or name for kind in (OrbitMetadata, SweepMetadata) for name, field in kind.model_fields.items()}
 
 
-def checksum(stored: dict[str, Any]) -> str:
+def checksum(attributes: dict[str, Any]) -> str:
     """Return the SHA-256 of all attributes that are ours; whoever writes one of them writes it again."""
-    ours = {name: value for name, value in stored.items() if name in _OURS}
+    ours = {name: value for name, value in attributes.items() if name in _OURS}
     return hashlib.sha256(json.dumps(ours, sort_keys=True).encode()).hexdigest()
 
 
-def check_metadata(where: str, path: str, stored: dict[str, Any], kind: type[BaseModel]) -> None:
+def check_metadata(where: str, path: str, attributes: dict[str, Any], kind: type[BaseModel]) -> None:
     """Refuse attributes that a store of ours does not have; the message names each.
 
     Raises:
@@ -139,9 +139,9 @@ def check_metadata(where: str, path: str, stored: dict[str, Any], kind: type[Bas
     """
     remedy = "The store is damaged or was edited: copy it again from its source, or run it again."
     try:
-        about = kind.model_validate(stored).model_dump()
+        about = kind.model_validate(attributes).model_dump()
         controls = [name for name, value in about.items() if _has_controls(value)]
-        differs = stored.get("checksum") != checksum(stored)
+        differs = attributes.get("checksum") != checksum(attributes)
     except (ValidationError, RecursionError, TypeError, AttributeError) as failure:
         raise error(where, "hold sound attributes", f"'{path}', in which {_problems(failure)}", remedy) from None
     scenario = about["scenario"]
@@ -163,17 +163,17 @@ def _has_controls(value: Any) -> bool:
     return isinstance(value, list | tuple) and any(map(_has_controls, value))
 
 
-def require_identity(path: Path, made: str) -> None:
+def require_identity(path: Path, identity: str) -> None:
     """Refuse to continue writing where another store has taken the place of the one that was opened.
 
     Raises:
         OSError: There is another store, or none.
     """
     try:
-        found = json.loads((path / "zarr.json").read_text())["attributes"].get("made")
+        other = json.loads((path / "zarr.json").read_text())["attributes"].get("made")
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        found = "none"
-    if found != made:
+        other = "none"
+    if other != identity:
         reason = "Another store has taken the place of the one that was being written; nothing of it was changed"
         raise OSError(errno.ESTALE, reason, str(path))
 

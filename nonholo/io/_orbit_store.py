@@ -24,22 +24,13 @@ import zarr
 from nonholo.base.checks import error, flags, instance
 from nonholo.base.checks import path as checked_path
 from nonholo.io._attributes import FORMAT, attributes, attributes_of_text
-from nonholo.io._beside import new_beside
+from nonholo.io._block_store import BEFORE, BlockStore, Layout, new_blocks
 from nonholo.io._chunks import DamagedError
+from nonholo.io._groups import create_array, edit_attributes
 from nonholo.io._load import format_of, plan_of, read_attributes
-from nonholo.io._lock import owner_of, remove_remains
 from nonholo.io._metadata import check_array, check_assertions
-from nonholo.io._stored_events import EVENTS, Checkpoint, rows_of
-from nonholo.io.blocks import (
-    BEFORE,
-    BlockStore,
-    Layout,
-    checkpoint_of,
-    create_array,
-    edit_attributes,
-    new_blocks,
-    said_of,
-)
+from nonholo.io._places import new_beside, owner_of, remove_remains
+from nonholo.io._stored_events import EVENTS, Checkpoint, checkpoint_of, rows_of, said_of
 from nonholo.io.datasets import HEADED, Variable, steps_apart, stored_variables
 from nonholo.orbit import AbstractOrbit, Plan
 
@@ -79,11 +70,11 @@ class Stream:
         """Whether the run came to its end, or can go no further."""
         return "outcome" in read_attributes(self.path)
 
-    def write(self, block: int, orbit: Any, reached: Checkpoint) -> None:
+    def write(self, block: int, orbit: Any, checkpoint: Checkpoint) -> None:
         """Write a block, and the state of the run at its end."""
         rows = self.columns(orbit, block * self.plan.rows) if len(orbit) else {}
         log = None if orbit.events is None else rows_of(orbit.events)
-        self._blocks.write(block, rows, said_of(reached), log)
+        self._blocks.write(block, rows, said_of(checkpoint), log)
 
     def columns(self, orbit: Any, first: int) -> dict[str, np.ndarray]:
         """Return the arrays that the store has, of an orbit whose first state is a row of it."""
@@ -92,16 +83,16 @@ class Stream:
 
     def checkpoint(self, block: int) -> Checkpoint:
         """Return the state at the begin of a block, unless the mark before it is damaged (`DamagedError`)."""
-        mark = self._blocks.ended(BEFORE) if block == 0 else self._blocks.written(block - 1)
+        mark = self._blocks.checked_mark(BEFORE) if block == 0 else self._blocks.mark_of(block - 1)
         return checkpoint_of(mark.about, self.events)
 
     def rows(self, name: str, first: int, count: int) -> np.ndarray:
         """Return some rows of an array of sound blocks."""
         return self._blocks.rows(name, (slice(first, first + count),))
 
-    def marked(self) -> set[int]:
+    def block_numbers(self) -> set[int]:
         """Return the blocks that are marked as finished, sound or not; the folder is read once."""
-        return self._blocks.marked()
+        return self._blocks.block_numbers()
 
     def sound(self, block: int) -> Checkpoint:
         """Return the state at the end of a block that is marked as finished, of which every chunk is sound.
@@ -111,60 +102,60 @@ class Stream:
         """
         return checkpoint_of(self._blocks.sound(block).about, self.events)
 
-    def reached(self) -> int:
+    def steps_done(self) -> int:
         """Return the step up to which blocks are marked as finished."""
-        marked = self.finished_blocks()
+        block = self.finished_blocks()
         try:
-            return self.checkpoint(marked).done
+            return self.checkpoint(block).done
         except DamagedError:
-            return self.plan.begin(marked)
+            return self.plan.begin(block)
 
     def full_blocks(self) -> int:
         """Return the number of blocks from the first one on with all their rows, unless the last one is damaged."""
         full = self.finished_blocks()
-        done = self.checkpoint(full).done
-        return full - (full > 0 and done != self.plan.stop(full - 1))  # it failed, or was extended
+        last = self.checkpoint(full).done
+        return full - (full > 0 and last != self.plan.stop(full - 1))  # it failed, or was extended
 
-    def saved(self, full: int) -> int:
+    def state_count(self, full: int) -> int:
         """Return the number of saved states in this many full blocks."""
         return min(full * self.plan.rows, 1 + self.plan.steps // self.plan.every)
 
     def finished_blocks(self) -> int:
         """Return the number of blocks, from the first one on, that are marked as finished."""
-        marked = self.marked()
-        return next(block for block in range(len(marked) + 1) if block not in marked)
+        numbers = self.block_numbers()
+        return next(block for block in range(len(numbers) + 1) if block not in numbers)
 
     def finish(self, end: Checkpoint, block: int) -> None:
         """Cut the arrays to the good states of a run that ended in a block, and add the outcome."""
         shapes = self._blocks.resize(1 + end.done // self.plan.every)
         metadata: dict[str, Any] = {"outcome": end.outcome.name, "arrays": json.dumps(shapes)}
-        if self.events is not None and end.seen is not None:
+        if self.events is not None and end.of_events is not None:
             self._blocks.cut_log(block)
-            metadata["crossings"] = json.dumps(end.seen.counts.tolist())
-            metadata["stopped_by"] = self.events[end.seen.stopped] if end.is_stopped else None
+            metadata["crossings"] = json.dumps(end.of_events.counts.tolist())
+            metadata["stopped_by"] = self.events[end.of_events.last_event] if end.is_stopped else None
         self._blocks.finish(metadata)
 
     def _turn_before(self, row: int) -> np.ndarray | None:
         """Return the heading or the quaternion of the state before a row, on which what follows continues."""
-        turned = [name for name in HEADED if name in self._blocks.arrays]
-        return np.ravel(self._blocks.arrays[turned[0]][row - 1 : row])[None] if turned and row > 0 else None
+        headings = [name for name in HEADED if name in self._blocks.arrays]
+        return np.ravel(self._blocks.arrays[headings[0]][row - 1 : row])[None] if headings and row > 0 else None
 
     @functools.cached_property
     def events(self) -> tuple[str, ...] | None:
         """The names of the events that the run looks for; None if it looks for none."""
-        stored = read_attributes(self.path).get("events")
-        return None if stored is None else tuple(event["name"] for event in json.loads(stored))
+        text = read_attributes(self.path).get("events")
+        return None if text is None else tuple(event["name"] for event in json.loads(text))
 
-    def lengthened(self, steps: int) -> "Stream":
+    def longer(self, steps: int) -> "Stream":
         """Return the stream with this many more steps to go; a last block that was not full is computed again."""
         run = json.loads(read_attributes(self.path)["run"])
         if not self.is_finished and run.get("added") == steps:  # the same call again, which was stopped
             return self
         return dataclasses.replace(self, plan=self.plan._replace(steps=self.plan.steps + steps))
 
-    def announce(self, added: int) -> None:
+    def announce(self, more: int) -> None:
         """Say in the store how long the run is now, and how many steps were asked for."""
-        run = json.loads(read_attributes(self.path)["run"]) | {"steps": self.plan.steps, "added": added}
+        run = json.loads(read_attributes(self.path)["run"]) | {"steps": self.plan.steps, "added": more}
         edit_attributes(self.path, {"run": json.dumps(run), "outcome": None, "crossings": None})
 
     def prepare(self) -> None:
@@ -196,19 +187,19 @@ def create_stream(
     target = path.resolve()
     check_target(target, new="simulate(store=...)")
     with new_beside(path) as part:
-        made = _create(part, first, plan, opening, extra)
+        identity = _create(part, first, plan, opening, extra)
         put_in_place(part, target, overwrite=False)
-    return Stream(target, plan, first.has_poses, made)
+    return Stream(target, plan, first.has_poses, identity)
 
 
 def open_stream(path: str | Path) -> Stream:
     """Return the stream of a store that a run was written to."""
-    stored = read_attributes(path)
-    if "run" not in stored:
+    attributes = read_attributes(path)
+    if "run" not in attributes:
         remedy = "Run it again with simulate(..., store=...) to be able to resume."
         raise error("resume(store=...)", "have checkpoints", f"'{path}', which was saved whole", remedy)
-    run = json.loads(stored["run"])
-    return Stream(Path(path).resolve(), plan_of(stored), run["reconstruct"], stored["made"])
+    run = json.loads(attributes["run"])
+    return Stream(Path(path).resolve(), plan_of(attributes), run["reconstruct"], attributes["made"])
 
 
 def writable_array(path: Path, name: str, shape: Sequence[int] | None = None) -> zarr.Array:
@@ -235,11 +226,11 @@ class Standing(NamedTuple):
 
 def standing(path: str | Path) -> Standing | None:
     """Say how far the run of a store came; None if it is finished."""
-    stored = read_attributes(path)
-    if "run" not in stored or "outcome" in stored:
+    attributes = read_attributes(path)
+    if "run" not in attributes or "outcome" in attributes:
         return None
     stream = open_stream(path)
-    return Standing(stream.reached(), stream.plan.steps, owner_of(stream.path))
+    return Standing(stream.steps_done(), stream.plan.steps, owner_of(stream.path))
 
 
 def _create(part: Path, first: Any, plan: Plan, opening: Checkpoint, extra: dict[str, str]) -> str:

@@ -7,12 +7,14 @@ rows of a block begin with a chunk of their own; what is left of its last chunk 
 
 import dataclasses
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple, cast
 
 import numpy as np
 
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float, Int
+from nonholo.io._chunks import DamagedError
 from nonholo.orbit import AbstractOrbit, Crossings, EventLog
 
 EVENTS = "run/events"
@@ -26,13 +28,13 @@ class Seen(NamedTuple):
         counts: Crossings of each so far.
         values: Values at the last state.
         heading: The heading there; 0 where there is none.
-        stopped: Position of the event that ended the run, -1 if none did.
+        last_event: Position of the event that ended the run, -1 if none did.
     """
 
     counts: Int[np.ndarray, "E"]
     values: Float[np.ndarray, "E"]
     heading: float
-    stopped: int
+    last_event: int
 
 
 class Checkpoint(NamedTuple):
@@ -41,7 +43,7 @@ class Checkpoint(NamedTuple):
     done: int
     outcome: Outcome
     vector: np.ndarray
-    seen: Seen | None = None
+    of_events: Seen | None = None
 
     @property
     def is_last(self) -> bool:
@@ -51,68 +53,119 @@ class Checkpoint(NamedTuple):
     @property
     def is_stopped(self) -> bool:
         """Whether an event ended the run here."""
-        return self.seen is not None and self.seen.stopped >= 0
+        return self.of_events is not None and self.of_events.last_event >= 0
 
 
 def rows_of(log: EventLog) -> Float[np.ndarray, "C width"]:
     """Return the crossings of a block as rows, one event after another."""
-    parts = [_rows(event, found) for event, found in enumerate(log.found)]
+    parts = [_rows(event, crossings) for event, crossings in enumerate(log.found)]
     parts += [
-        _rows(-1 - event, Crossings(found.step, found.fraction, found.direction, found.after))
-        for event, found in enumerate(log.found)
-        if found.after is not None
+        _rows(-1 - event, Crossings(crossings.step, crossings.fraction, crossings.direction, crossings.after))
+        for event, crossings in enumerate(log.found)
+        if crossings.after is not None
     ]
     return np.concatenate(parts) if parts else np.empty((0, _PLACE))
 
 
-def _rows(event: int, found: Crossings) -> np.ndarray:
-    rows = found.states.rows()
-    states = [rows[name].reshape(len(found), math.prod(rows[name].shape[1:])) for name in rows if name != "step"]
-    return np.column_stack([np.full(len(found), event), found.step, found.fraction, found.direction, *states])
+def _rows(event: int, crossings: Crossings) -> np.ndarray:
+    rows = crossings.states.rows()
+    states = [rows[name].reshape(len(crossings), math.prod(rows[name].shape[1:])) for name in rows if name != "step"]
+    return np.column_stack(
+        [np.full(len(crossings), event), crossings.step, crossings.fraction, crossings.direction, *states]
+    )
 
 
 def log_of(
     rows: Float[np.ndarray, "C width"], events: list[dict[str, Any]], orbit: AbstractOrbit, by: str | None
 ) -> EventLog:
     """Return the crossings in rows of an orbit's run of described events, and which event ended it."""
-    found = [_found(rows[rows[:, 0] == event], orbit) for event in range(len(events))]
+    crossings = [_crossings_of(rows[rows[:, 0] == event], orbit) for event in range(len(events))]
     for event, about in enumerate(events):
         if "restitution" in about:
-            after = _found(rows[rows[:, 0] == -1 - event], orbit).states
-            found[event] = dataclasses.replace(found[event], after=after)
-    return EventLog(tuple(about["name"] for about in events), tuple(found), by)
+            after = _crossings_of(rows[rows[:, 0] == -1 - event], orbit).states
+            crossings[event] = dataclasses.replace(crossings[event], after=after)
+    return EventLog(tuple(about["name"] for about in events), tuple(crossings), by)
 
 
-def _found(rows: np.ndarray, orbit: AbstractOrbit) -> Crossings:
+def _crossings_of(rows: np.ndarray, orbit: AbstractOrbit) -> Crossings:
     shapes = {name: column.shape[1:] for name, column in orbit.rows().items() if name not in ("step", "turned")}
     columns = np.split(rows, np.cumsum([_PLACE, *map(math.prod, shapes.values())]), axis=1)
-    place, *states, turned = map(np.ascontiguousarray, columns)
-    kept: dict[str, Any] = {
+    place, *states, turns = map(np.ascontiguousarray, columns)
+    columns_by_name: dict[str, Any] = {
         name: part.reshape(len(rows), *shapes[name]) for name, part in zip(shapes, states, strict=True)
     }
     step, direction = (place[:, entry].astype(np.int64) for entry in (1, 3))
     single: Any = dataclasses.replace(cast(Any, orbit), outcome=Outcome.successful, save_every=1, events=None)
-    if single.turned is not None or turned.shape[1]:
-        kept["turned"] = turned[:, 0] if turned.shape[1] else None
-    return Crossings(step, np.ascontiguousarray(place[:, 2]), direction, single.of_rows({**kept, "step": step}))
+    if single.turned is not None or turns.shape[1]:
+        columns_by_name["turned"] = turns[:, 0] if turns.shape[1] else None
+    return Crossings(
+        step, np.ascontiguousarray(place[:, 2]), direction, single.of_rows({**columns_by_name, "step": step})
+    )
 
 
-def known(rows: Float[np.ndarray, "D width"], after: int = 0) -> Float[np.ndarray, "C width"]:
+def without_padding(rows: Float[np.ndarray, "D width"], after: int = 0) -> Float[np.ndarray, "C width"]:
     """Return the rows of chunks that hold crossings, of them those after the state of a step."""
     step, fraction = rows[:, 1], rows[:, 2]
     return rows[np.isfinite(rows[:, 0]) & ((step > after) | ((step == after) & (fraction > 0)))]
 
 
-def described(events: list[dict[str, Any]]) -> str:
+def events_text(events: list[dict[str, Any]]) -> str:
     """Name events with their options.
 
     Example:
-        >>> described([{"name": "cusp", "direction": 0, "stop": 0}, {"name": "east", "direction": 1, "stop": 3}])
+        >>> events_text([{"name": "cusp", "direction": 0, "stop": 0}, {"name": "east", "direction": 1, "stop": 3}])
         "'cusp', 'east' (direction=1, stop=3)"
     """
-    return ", ".join(_described(event) for event in events) or "no events"
+    return ", ".join(_described_event(event) for event in events) or "no events"
 
 
-def _described(event: dict[str, Any]) -> str:
+def _described_event(event: dict[str, Any]) -> str:
     options = ", ".join(f"{name}={event[name]}" for name in ("direction", "stop", "restitution") if event.get(name))
     return f"{event['name']!r}" + (f" ({options})" if options else "")
+
+
+_NONE = "a mark without the state of a run"
+
+
+def said_of(checkpoint: Checkpoint) -> dict[str, Any]:
+    """Return a checkpoint as what the mark of a block says; JSON has every bit of a number."""
+    events = None if checkpoint.of_events is None else _said_of_events(checkpoint.of_events)
+    return {
+        "done": int(checkpoint.done),
+        "outcome": checkpoint.outcome.name,
+        "state": checkpoint.vector.tolist(),
+        "seen": events,
+    }
+
+
+def _said_of_events(events: Seen) -> dict[str, Any]:
+    lists = {"counts": events.counts.tolist(), "values": events.values.tolist()}
+    return {**lists, "heading": float(events.heading), "stopped": int(events.last_event)}
+
+
+def checkpoint_of(about: dict[str, Any], events: Sequence[str] | None) -> Checkpoint:
+    """Return the checkpoint of a mark, of a run that looks for these events; None if it looks for none.
+
+    Raises:
+        DamagedError: The mark says something else.
+
+    Example:
+        >>> reached = Checkpoint(7, Outcome.successful, np.array([0.1]), Seen(np.array([3]), np.array([0.3]), 1.2, -1))
+        >>> checkpoint_of(said_of(reached), events=['cusp']).of_events
+        Seen(counts=array([3]), values=array([0.3]), heading=1.2, last_event=-1)
+    """
+    try:
+        vector, of_events = np.array(about["state"], dtype=np.float64), about["seen"]
+        if of_events is not None:
+            counts, values = (
+                np.array(of_events["counts"], dtype=np.int64),
+                np.array(of_events["values"], dtype=np.float64),
+            )
+            of_events = Seen(counts, values, float(of_events["heading"]), int(of_events["stopped"]))
+        checkpoint = Checkpoint(int(about["done"]), Outcome[about["outcome"]], vector, of_events)
+    except (KeyError, TypeError, ValueError, OverflowError):
+        raise DamagedError(_NONE) from None
+    shapes = None if of_events is None else (of_events.counts.shape, of_events.values.shape)
+    if vector.ndim != 1 or shapes != (None if events is None else ((len(events),),) * 2):
+        raise DamagedError(_NONE)
+    return checkpoint

@@ -1,18 +1,16 @@
 """The compiled steps: scalar arithmetic written once for numba and JAX, the matrix step for any body, the loops."""
 
-import functools
-from collections.abc import Callable
-
 from nonholo.kernels._composition import ComposedBody, whole_steps
-from nonholo.kernels._driver import CHART, CORRECTIONS, SETTLED, STATE_SIZE, converged, flat_run, start
+from nonholo.kernels._driver import CHART, CORRECTIONS, SETTLED, STATE_SIZE, converged, start
 from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
 from nonholo.kernels._entry import AnyBody, runs_of, sizes, step_each
-from nonholo.kernels._interface import (
+from nonholo.kernels._flat import FLAT_RUNS
+from nonholo.kernels._scalar import (
     Body,
-    certified,
     correction,
     increment,
     inertia,
+    is_certain,
     move,
     quadratic,
     residual,
@@ -20,7 +18,7 @@ from nonholo.kernels._interface import (
 )
 from nonholo.kernels._sleigh import SleighBody
 from nonholo.kernels._suslov import SuslovBody, suslov_body, suslov_table
-from nonholo.kernels.forced import Balanced, Drive, ForcedBody, Impulses, Kick, Pull, flat_forced_run, rubbed
+from nonholo.kernels.forced import Balanced, Drive, ForcedBody, Impulses, Kick, Pull, friction_flow
 from nonholo.kernels.general import GeneralBody
 from nonholo.kernels.general.coordinates import (
     CONTRACTION,
@@ -33,13 +31,12 @@ from nonholo.kernels.general.coordinates import (
     each_row,
     set_out_coordinates,
 )
-from nonholo.kernels.secular import SecularBody, flat_secular_run, secular_sleigh, secular_top
+from nonholo.kernels.secular import SecularBody, secular_sleigh, secular_top
 from nonholo.kernels.secular.nearest import NearestBody
 from nonholo.kernels.secular.nearest import advance as advance_to_nearest
 from nonholo.kernels.taylor import (
     Arrowhead,
     Quadratic,
-    flat_arrowhead_run,
     order_for,
     revisit_series,
     solve_arrowhead,
@@ -47,13 +44,3 @@ from nonholo.kernels.taylor import (
     solve_series,
     sparse_products,
 )
-
-FLAT_RUNS: dict[str, Callable[[], Callable[..., int]]] = {
-    "top": functools.partial(flat_run, SuslovBody),
-    "sleigh": functools.partial(flat_run, SleighBody),
-    "forced_top": functools.partial(flat_forced_run, SuslovBody),
-    "forced_sleigh": functools.partial(flat_forced_run, SleighBody),
-    "top4": functools.partial(flat_secular_run, 3),
-    "flow4": functools.partial(flat_arrowhead_run, 3, 1e-14 / 64),
-}
-"""What makes runs on bare memory, for hosts without Python: those of a page."""

@@ -4,15 +4,10 @@ The state is one array, so that a run can stop after any step and continue with 
 momentum (2), its compensation (2), the last three Cayley coordinates (6), pose (4).
 """
 
-import math
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 
 from nonholo.base.compiled import njit
-from nonholo.kernels._interface import Body, certified, correction, increment, move, principal
-from nonholo.kernels._scalar import COMPILED, scalar
+from nonholo.kernels._scalar import COMPILED, Body, Rows, correction, increment, is_certain, move, principal, scalar
 from nonholo.kernels._small import assign
 
 STATE_SIZE = 14
@@ -45,35 +40,34 @@ def chart_in(_p: Body, state: np.ndarray) -> np.ndarray:
 
 
 @njit(nogil=True, **COMPILED)
-def advance(
-    p: Body, state: np.ndarray, steps: int, every: int, momenta: np.ndarray, charts: np.ndarray, poses: np.ndarray
-) -> tuple[int, int]:
+def advance(p: Body, state: np.ndarray, steps: int, every: int, rows: Rows) -> tuple[int, int]:
     """Take up to `steps` steps, saving each `every`-th one; return how many were good and the outcome.
 
     After a failure the state is that of the last good step.
     """
+    momenta, charts, poses = rows
     m1, m2, k1, k2, y1, y2, u1, u2, v1, v2, q0, q1, q2, q3 = _unpack(state)
-    code, done = 0, 0
-    while done < steps:
+    code, count = 0, 0
+    while count < steps:
         d1, d2 = increment(p, m1, m2, y1, y2)
-        n1, l1 = _compensated(m1, k1, d1, SETTLED * abs(m2))
-        n2, l2 = _compensated(m2, k2, d2, SETTLED * abs(m1))
+        n1, l1 = kahan_sum(m1, k1, d1, SETTLED * abs(m2))
+        n2, l2 = kahan_sum(m2, k2, d2, SETTLED * abs(m1))
         code, w1, w2 = _solve(p, n1, n2, 3 * (y1 - u1) + v1, 3 * (y2 - u2) + v2)
         if code != 0:
             break
         q0, q1, q2, q3 = move(p, y1, y2, q0, q1, q2, q3)
         m1, m2, k1, k2 = n1, n2, l1, l2
         v1, v2, u1, u2, y1, y2 = u1, u2, y1, y2, w1, w2
-        done += 1
-        if done % every == 0:
-            row = done // every - 1
+        count += 1
+        if count % every == 0:
+            row = count // every - 1
             momenta[row, 0], momenta[row, 1] = m1, m2
             charts[row, 0], charts[row, 1] = y1, y2
             poses[row, 0], poses[row, 1], poses[row, 2], poses[row, 3] = q0, q1, q2, q3
     state[0], state[1], state[2], state[3] = m1, m2, k1, k2
     state[4], state[5], state[6], state[7], state[8], state[9] = y1, y2, u1, u2, v1, v2
     state[10], state[11], state[12], state[13] = q0, q1, q2, q3
-    return done, code
+    return count, code
 
 
 @njit(inline="always", **COMPILED)
@@ -82,14 +76,14 @@ def _unpack(s: np.ndarray):  # noqa: ANN202
 
 
 @njit(**COMPILED)
-def _compensated(total: float, lost: float, term: float, settled: float) -> tuple[float, float]:
+def kahan_sum(total: float, carry: float, term: float, floor: float) -> tuple[float, float]:
     """Add by Kahan's summation; return the sum and the rounding it lost.
 
-    A sum that has decayed below `settled` is put on the equilibrium: what is left would soon be denormal, and slow.
+    A sum that has decayed below `floor` is put on the equilibrium: what is left would soon be denormal, and slow.
     """
-    term = term - lost
+    term = term - carry
     result = total + term
-    if abs(result) < settled and (abs(result) < abs(total) or total == 0):
+    if abs(result) < floor and (abs(result) < abs(total) or total == 0):
         return 0.0, 0.0
     return result, (result - total) - term
 
@@ -98,7 +92,7 @@ def _compensated(total: float, lost: float, term: float, settled: float) -> tupl
 def _solve(p: Body, m1: float, m2: float, y1: float, y2: float) -> tuple[int, float, float]:
     """Correct a guess and verify that it is the principal root, or restart from momentum zero."""
     good, y1, y2 = _newton(p, m1, m2, y1, y2)
-    if good and certified(p, m1, m2, y1, y2):
+    if good and is_certain(p, m1, m2, y1, y2):
         return 0, y1, y2
     return principal(p, m1, m2)
 
@@ -116,15 +110,22 @@ def _newton(p: Body, m1: float, m2: float, y1: float, y2: float) -> tuple[bool, 
 
 
 @scalar
+def floor_of(m: np.ndarray) -> float:
+    """Return below what momenta count as zero."""
+    largest = 0.0
+    for i in range(len(m)):
+        largest = max(largest, abs(m[i]))
+    return SETTLED * largest
+
+
+@scalar
 def converged(d1: float, d2: float, y1: float, y2: float) -> bool:
     """Tell whether a correction that led to y was so small that the next one would be below rounding."""
     return d1 * d1 + d2 * d2 <= 1e-18 * (1 + y1 * y1 + y2 * y2)
 
 
 @njit(nogil=True, **COMPILED)
-def step_each(
-    p: Body, momenta: np.ndarray, charts: np.ndarray, guesses: np.ndarray, principal_only: bool
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def step_each(p: Body, momenta: np.ndarray, charts: np.ndarray, guesses: np.ndarray, principal_only: bool) -> Rows:
     """Take one step from each row; return momenta, charts and outcomes.
 
     The root is the principal one or else that value of the map which Newton's method reaches from the guess.
@@ -143,29 +144,3 @@ def step_each(
         next_momenta[k, 0], next_momenta[k, 1] = m1, m2
         next_charts[k, 0], next_charts[k, 1] = w1, w2
     return next_momenta, next_charts, codes
-
-
-def flat_run(kind: type[Body]) -> Callable[..., int]:
-    """Return the run of a kind of body on bare memory, for hosts without Python: a plain function to compile for them.
-
-    Its arguments are addresses of numbers but for `steps`. It takes up to `steps` steps into rows of momenta, charts
-    and poses, and returns how many were good. A state whose chart is NaN is started first, from its momentum and pose.
-    The outcome is written behind the state.
-    """
-    count = len(kind._fields)  # pyright: ignore[reportAttributeAccessIssue]
-
-    from numba.np.numpy_support import carray
-    from numba.np.unsafe.ndarray import to_fixed_tuple
-
-    def run(body: Any, state: Any, steps: int, momenta: Any, charts: Any, poses: Any) -> int:
-        p = kind(*to_fixed_tuple(carray(body, count), count))  # pyright: ignore
-        s = carray(state, STATE_SIZE + 1)
-        code = start(p, s[:2], s[10:STATE_SIZE], s) if math.isnan(s[4]) else 0
-        done = 0
-        if code == 0:
-            rows = carray(momenta, (steps, 2)), carray(charts, (steps, 2)), carray(poses, (steps, 4))
-            done, code = advance(p, s, steps, 1, rows[0], rows[1], rows[2])
-        s[STATE_SIZE] = code
-        return done
-
-    return run

@@ -12,8 +12,7 @@ import numpy as np
 
 from nonholo.base.compiled import njit, overload
 from nonholo.kernels import _driver
-from nonholo.kernels._interface import Body, certified, correction, increment, move, principal
-from nonholo.kernels._scalar import COMPILED, scalar
+from nonholo.kernels._scalar import COMPILED, Body, correction, increment, is_certain, move, principal, scalar
 
 Table: TypeAlias = np.ndarray | None
 LANES = 32
@@ -31,14 +30,14 @@ class MemberRows(NamedTuple):
         charts: Chart coordinates, (members, states, 2).
         poses: Poses, (members, states, 4); without states if they are not wanted.
         codes: Outcomes, zero before the run, (members,).
-        done: Numbers of good steps, (members,).
+        counts: Numbers of good steps, (members,).
     """
 
     momenta: np.ndarray
     charts: np.ndarray
     poses: np.ndarray
     codes: np.ndarray
-    done: np.ndarray
+    counts: np.ndarray
 
 
 def member(p: Body, table: Table, j: int) -> Body:
@@ -46,7 +45,7 @@ def member(p: Body, table: Table, j: int) -> Body:
     return p if table is None else type(p)(*table[j::LANES])
 
 
-def _shared(p: Any, table: Any, j: Any) -> Any:
+def _common(p: Any, table: Any, j: Any) -> Any:
     return p
 
 
@@ -77,7 +76,7 @@ def _is_none(kind: Any) -> bool:
 @overload(member, jit_options=COMPILED, strict=False)
 def _compiled_member(p: Any, table: Any, j: Any) -> Any:
     if _is_none(table):
-        return _shared
+        return _common
     return _own(p.instance_class)
 
 
@@ -122,7 +121,7 @@ def _verify(p: Body, table: Table, s: np.ndarray) -> int:
     """Mark the members whose root is not certain, and return their number."""
     left = 0
     for j in range(LANES):
-        sure = certified(member(p, table, j), s[_N + j], s[_N + 32 + j], s[_W + j], s[_W + 32 + j])
+        sure = is_certain(member(p, table, j), s[_N + j], s[_N + 32 + j], s[_W + j], s[_W + 32 + j])
         further = (s[_OPEN + j] != 0.0) | ~sure
         s[_OPEN + j] = 1.0 if further else 0.0
         left += further
@@ -142,7 +141,7 @@ def _rescue(p: Body, table: Table, s: np.ndarray, first: int, good: int, every: 
         if code != 0:
             if every == 0 and good >= 0:
                 _save(s, j, rows, first + j, 0)
-            rows.codes[first + j], rows.done[first + j] = code, max(good, 0)
+            rows.codes[first + j], rows.counts[first + j] = code, max(good, 0)
             s[j::LANES] = 0.0  # at rest, so that what is left of the member costs no corrections
 
 
@@ -152,16 +151,16 @@ def _predict(p: Body, table: Table, s: np.ndarray) -> None:
     for j in range(LANES):
         m1, m2, y1, y2 = s[_M + j], s[_M + 32 + j], s[_Y + j], s[_Y + 32 + j]
         d1, d2 = increment(member(p, table, j), m1, m2, y1, y2)
-        s[_N + j], s[_L + j] = _driver._compensated(m1, s[_K + j], d1, _driver.SETTLED * abs(m2))
-        s[_N + 32 + j], s[_L + 32 + j] = _driver._compensated(m2, s[_K + 32 + j], d2, _driver.SETTLED * abs(m1))
+        s[_N + j], s[_L + j] = _driver.kahan_sum(m1, s[_K + j], d1, _driver.SETTLED * abs(m2))
+        s[_N + 32 + j], s[_L + 32 + j] = _driver.kahan_sum(m2, s[_K + 32 + j], d2, _driver.SETTLED * abs(m1))
     for j in range(2 * LANES):
         s[_W + j] = 3 * (s[_Y + j] - s[_U + j]) + s[_V + j]
 
 
 @njit(nogil=True, **COMPILED)
-def _accept(p: Body, table: Table, s: np.ndarray, posed: bool) -> None:
+def _accept(p: Body, table: Table, s: np.ndarray, has_poses: bool) -> None:
     """Move on to the next momenta and charts, and with them the poses."""
-    if posed:
+    if has_poses:
         for j in range(LANES):
             own, y1, y2 = member(p, table, j), s[_Y + j], s[_Y + 32 + j]
             q0, q1, q2, q3 = move(own, y1, y2, s[_Q + j], s[_Q + 32 + j], s[_Q + 64 + j], s[_Q + 96 + j])
@@ -211,21 +210,27 @@ def _run_block(
         s[_Y + k], s[_U + k], s[_V + k] = s[_W + k], s[_W + k], s[_W + k]
     if every > 0:
         _save_good(s, rows, first, 0)
-    for done in range(1, steps + 1):
+    for count in range(1, steps + 1):
         _predict(p, table, s)
         _correct(p, table, s)
         if _verify(p, table, s) > 0:
-            _rescue(p, table, s, first, done - 1, every, rows)
+            _rescue(p, table, s, first, count - 1, every, rows)
         _accept(p, table, s, rows.poses.shape[1] > 0)
-        if every > 0 and done % every == 0:
-            _save_good(s, rows, first, done // every)
-        if done % _LOOK == 0 and stop[0]:
+        if every > 0 and count % every == 0:
+            _save_good(s, rows, first, count // every)
+        if count % _LOOK == 0 and stop[0]:
             return
+    _finish(s, first, steps, every, rows)
+
+
+@njit(nogil=True, **COMPILED)
+def _finish(s: np.ndarray, first: int, steps: int, every: int, rows: MemberRows) -> None:
+    """Write the last states where no others are, and how many steps the members took that have not failed."""
     if every == 0:
         _save_good(s, rows, first, 0)
     for i in range(first, min(first + LANES, len(rows.codes))):
         if rows.codes[i] == 0:
-            rows.done[i] = steps
+            rows.counts[i] = steps
 
 
 @njit(nogil=True, **COMPILED)
@@ -255,8 +260,8 @@ def advance_members(
     for block in range((len(momenta) + LANES - 1) // LANES):
         first = block * LANES
         table = table_of(tables, block)
-        chosen = slice(first, min(first + LANES, len(momenta)))
-        if _begin(p, table, momenta[chosen], poses[chosen], s) > 0:
+        part = slice(first, min(first + LANES, len(momenta)))
+        if _begin(p, table, momenta[part], poses[part], s) > 0:
             _rescue(p, table, s, first, -1, every, rows)
         _run_block(p, table, s, first, steps, every, rows, stop)
         if stop[0]:
@@ -266,5 +271,5 @@ def advance_members(
 def tables_of(fields: np.ndarray) -> np.ndarray:
     """Return the parameters of bodies (fields, members) block by block; the last member fills up the last block."""
     count, members = fields.shape
-    padded = np.pad(fields, ((0, 0), (0, -members % LANES)), mode="edge")
-    return np.ascontiguousarray(padded.reshape(count, -1, LANES).swapaxes(0, 1)).reshape(-1, count * LANES)
+    columns = np.pad(fields, ((0, 0), (0, -members % LANES)), mode="edge")
+    return np.ascontiguousarray(columns.reshape(count, -1, LANES).swapaxes(0, 1)).reshape(-1, count * LANES)

@@ -7,7 +7,7 @@ import numpy as np
 
 from nonholo.kernels import _composition, _driver
 from nonholo.kernels._composition import ComposedBody
-from nonholo.kernels._interface import Body
+from nonholo.kernels._scalar import Body, Rows
 from nonholo.kernels.forced import ForcedBody
 from nonholo.kernels.forced import run as forced_run
 from nonholo.kernels.general import GeneralBody
@@ -17,7 +17,6 @@ from nonholo.kernels.secular import run as secular_run
 
 PlainBody = Body | GeneralBody | SecularBody
 AnyBody = PlainBody | ComposedBody | ForcedBody
-Rows = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 class Runs(NamedTuple):
@@ -81,17 +80,13 @@ def _general_chart(body: GeneralBody, state: np.ndarray) -> np.ndarray:
 def _general_each(
     body: GeneralBody, momenta: np.ndarray, charts: np.ndarray, poses: np.ndarray | None, *rest: Any
 ) -> Rows:
-    carried = np.zeros((len(momenta), 0)) if poses is None else poses
-    return general_run.step_each(body, momenta, charts, carried, *rest)
+    matrices = np.zeros((len(momenta), 0)) if poses is None else poses
+    return general_run.step_each(body, (momenta, charts, matrices), *rest)
 
 
 def _composed_chart(body: ComposedBody, state: np.ndarray) -> np.ndarray:
     momenta, coordinates, _ = sizes(body.body)
     return _composition.first_chart(body, state, momenta, coordinates)
-
-
-def _composed_advance(body: ComposedBody, state: np.ndarray, steps: int, every: int, *rows: Any) -> tuple[int, int]:
-    return _composition.advance(body, state, steps, every, rows)
 
 
 def _forced_start(body: ForcedBody, momentum: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray]:
@@ -107,6 +102,6 @@ _SCALAR = Runs(lambda _: (2, 2, 4), _driver.first_state, _driver.chart_in, _driv
 _RUNS: dict[type, Runs] = {
     SecularBody: Runs(_secular_sizes, secular_run.start, secular_run.chart_in, secular_run.advance, _SECULAR_EACH),
     GeneralBody: Runs(_general_sizes, general_run.start, _general_chart, general_run.advance, _general_each),
-    ComposedBody: Runs(lambda body: sizes(body.body), _composition.start, _composed_chart, _composed_advance, None),
+    ComposedBody: Runs(lambda body: sizes(body.body), _composition.start, _composed_chart, _composition.advance, None),
     ForcedBody: Runs(lambda body: sizes(body.body), _forced_start, _forced_chart, forced_run.advance, None),
 }

@@ -86,7 +86,7 @@ def slopes(p: SleighBody, m1: Any, m2: Any, y1: Any, y2: Any) -> tuple[Any, Any,
 
 
 @scalar
-def certified(p: SleighBody, m1: float, m2: float, y1: float, y2: float) -> bool:
+def is_certain(p: SleighBody, m1: float, m2: float, y1: float, y2: float) -> bool:
     """Tell whether a root is certainly the principal one: on the middle sheet, turning by at most 120 degrees."""
     return (slope(p, m1, m2, y1) >= 0) & (y1 * y1 <= 3) & (y1 * m1 >= 0)
 
@@ -124,7 +124,7 @@ def principal(p: SleighBody, m1: float, m2: float) -> tuple[int, float, float]:
     hat = p_hat(p, m2)
     count, t1, t2, t3 = _half_angle_roots(p, m1, hat)
     for t in (t1, t2, t3):
-        if certified(p, m1, m2, t, 0.0):
+        if is_certain(p, m1, m2, t, 0.0):
             return 0, t, slide(p, m2, t)
     if count == 1 and p.a != 0 and _passes_the_cusp(p, abs(m1), hat):
         return 0, t1, slide(p, m2, t1) if t1 * t1 < 3 else _far_slide(p, m1, t1)

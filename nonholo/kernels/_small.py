@@ -84,7 +84,7 @@ def transpose(A: np.ndarray, out: np.ndarray) -> None:
 
 
 @njit(**BORROWING)
-def paired(A: np.ndarray, B: np.ndarray) -> float:
+def pair(A: np.ndarray, B: np.ndarray) -> float:
     """Return the sum of products of entries."""
     total = 0.0
     for i in range(A.shape[0]):

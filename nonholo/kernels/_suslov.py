@@ -126,7 +126,7 @@ def corrections(p: SuslovBody, m1: float, m2: float, y1: float, y2: float) -> tu
 
 
 @scalar
-def certified(p: SuslovBody, m1: float, m2: float, y1: float, y2: float) -> bool:
+def is_certain(p: SuslovBody, m1: float, m2: float, y1: float, y2: float) -> bool:
     """Tell whether a root is certainly the principal one: it lies in the disc that no fold reaches."""
     return y1 * y1 + y2 * y2 <= p.certain
 
@@ -169,9 +169,9 @@ def principal(p: SuslovBody, m1: float, m2: float) -> tuple[int, float, float]:
         if not size > 0:  # the squares overflow
             return 5, np.nan, np.nan
         guess = (z[0] + size * d0, z[1] + size * d1, z[2] + size * d2)
-        good, found = _correct(p, (s + size) * m1, (s + size) * m2, guess)
+        good, root = _correct(p, (s + size) * m1, (s + size) * m2, guess)
         if good:
-            z, s, size = found, (1.0 if size == 1.0 - s else s + size), 2 * size
+            z, s, size = root, (1.0 if size == 1.0 - s else s + size), 2 * size
             if s == 1.0:
                 z0 = z[0] if z[0] != 0 else 1e-75
                 return 0, z[1] / z0, z[2] / z0
@@ -191,8 +191,8 @@ def _correct(p, m1, m2, guess):  # noqa: ANN001, ANN202
         g1, g2 = _homogeneous_residual(p, m1, m2, z)
         d0, d1, d2, det = _solve(p, m1, m2, z, -g1, -g2, (1 - z[0] * z[0] - z[1] * z[1] - z[2] * z[2]) / 2)
         z = (z[0] + d0, z[1] + d1, z[2] + d2)
-        moved = (z[0] - guess[0]) ** 2 + (z[1] - guess[1]) ** 2 + (z[2] - guess[2]) ** 2
-        if not (det > 0 and moved < _CLOSE * _CLOSE):
+        shift = (z[0] - guess[0]) ** 2 + (z[1] - guess[1]) ** 2 + (z[2] - guess[2]) ** 2
+        if not (det > 0 and shift < _CLOSE * _CLOSE):
             return False, z
         if d0 * d0 + d1 * d1 + d2 * d2 < 1e-24:
             return True, z

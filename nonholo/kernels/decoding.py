@@ -31,7 +31,7 @@ class Reading(NamedTuple):
         across: The row that takes a force of constraint to its multiplier.
         back: The inverse of the canonical frame as seen from the user's, (3, 3).
         factors: l, d1 and d2 of the inertia along the canonical rows: its `factors_of`.
-        turned: Whether the canonical frame is another one than the user's.
+        is_turned: Whether the canonical frame is another one than the user's.
     """
 
     curvature: float
@@ -41,7 +41,7 @@ class Reading(NamedTuple):
     across: Triple
     back: tuple[float, ...]
     factors: Triple
-    turned: bool
+    is_turned: bool
 
 
 def read(loop: Any, numbers: Reading, columns: tuple[np.ndarray, ...], shape: tuple[int, ...], *others: float) -> Any:
@@ -194,7 +194,7 @@ def write_matrices(b: Reading, poses: np.ndarray, out: np.ndarray) -> None:
         g = _motion(q0, q1, q2, q3) if b.curvature == 0 else _rotation(q0, q1, q2, q3)
         for r in range(3):
             row = g[r]
-            if not b.turned:
+            if not b.is_turned:
                 out[i, r, 0], out[i, r, 1], out[i, r, 2] = row
             else:
                 for c in range(3):

@@ -5,15 +5,19 @@ from nonholo.base.checks import needs
 with needs("jax", "nonholo.lagrange_dalembert"):
     from nonholo.lagrange_dalembert import _equations as equations
     from nonholo.lagrange_dalembert import _tangents as tangents
-    from nonholo.lagrange_dalembert._accelerations import vector_field
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization, GroupDiscretization, checked_state
-    from nonholo.lagrange_dalembert._motion import CoordinateFlow, RecordedSystem
-    from nonholo.lagrange_dalembert._orbit import AbstractCoordinateOrbit, CoordinateOrbit
+    from nonholo.lagrange_dalembert._flow import vector_field
+    from nonholo.lagrange_dalembert._functions import check_forms, check_value
+    from nonholo.lagrange_dalembert._orbit import (
+        AbstractCoordinateOrbit,
+        CoordinateFlow,
+        CoordinateOrbit,
+        RecordedSystem,
+    )
     from nonholo.lagrange_dalembert._rollout import CoordinateRollout
-    from nonholo.lagrange_dalembert._rollout import rolled as rolled_in_coordinates
+    from nonholo.lagrange_dalembert._rollout import roll as rolled_in_coordinates
     from nonholo.lagrange_dalembert._room import in_double, place
     from nonholo.lagrange_dalembert._system import LagrangeDAlembert
-    from nonholo.lagrange_dalembert.functions import check_forms, check_value
     from nonholo.lagrange_dalembert.on_groups import (
         GroupLagrangeDAlembert,
         GroupOrbit,

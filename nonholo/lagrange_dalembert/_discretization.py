@@ -22,9 +22,14 @@ from nonholo.base.checks import error, is_traced, scale
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import compiled
-from nonholo.lagrange_dalembert._motion import ORBITS, CoordinateMotion
 from nonholo.lagrange_dalembert._newton import orientation, solve
-from nonholo.lagrange_dalembert._orbit import AbstractCoordinateOrbit, CoordinateOrbit, GroupOrbit
+from nonholo.lagrange_dalembert._orbit import (
+    ORBITS,
+    AbstractCoordinateOrbit,
+    CoordinateMotion,
+    CoordinateOrbit,
+    GroupOrbit,
+)
 from nonholo.lagrange_dalembert._room import configurations, equations_of, in_double, places, room
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
 from nonholo.lagrange_dalembert.compiled import ROWS
@@ -65,16 +70,16 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
     def first(self, start: Start, *, with_poses: bool) -> First:
         """Return the checked momentum, place and velocity of a start."""
         del with_poses
-        system, h, given = self.system, np.float64(self.time_step), (start.owner, self.system)
+        system, h, subject = self.system, np.float64(self.time_step), (start.owner, self.system)
         checks, equations = room(system._start), equations_of(system)
-        q = checks.point(*given, start.configuration, project=start.project)
+        q = checks.point(*subject, start.configuration, project=start.project)
         checks.consistent(system, q, h)
         if start.name == "momentum":
-            return First(checks.of_momentum(*given, q, start.value))
+            return First(checks.of_momentum(*subject, q, start.value))
         if start.name == "displacement":
             v = checks.velocity_of_displacement(system, q, start.value, h)
             return First((in_double(equations.momenta, system, q, v, h)[0], q, v))
-        v = checks.velocity(*given, q, start.value, project=start.project)
+        v = checks.velocity(*subject, q, start.value, project=start.project)
         return First((in_double(equations.momentum, system, q, v), q, v))
 
     @functools.cached_property
@@ -90,16 +95,17 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
         """Return what is reached after fractions of the steps from states; NaN where there is no such step."""
         system, h, count = self.system, np.float64(self.time_step), len(states)
         x, v = places(system, states.configuration, states.time), states.body_velocity
-        given = [_padded(rows) for rows in (fractions, x, v, states.momentum)]
+        columns = [_pad(rows) for rows in (fractions, x, v, states.momentum)]
+        run = functools.partial(in_double, _after_parts, system, h)
         parts = [
-            in_double(_moved, system, h, np.int64(min(_PARTS, count - i)), *(rows[i : i + _PARTS] for rows in given))
+            run(np.int64(min(_PARTS, count - i)), *(rows[i : i + _PARTS] for rows in columns))
             for i in range(0, count, _PARTS)
         ]
         ends, ahead = (np.concatenate(column)[:count] for column in zip(*parts, strict=True)) if parts else (x, v)
         none = np.empty((0, system.constraints))
-        reached = CoordinateStepper(self).states(ends, ahead, none, 0, 1, Outcome.successful)
+        orbit = CoordinateStepper(self).states(ends, ahead, none, 0, 1, Outcome.successful)
         step = states.step + fractions.astype(np.int64)
-        return dataclasses.replace(reached, time=states.time + fractions * h, step=step)
+        return dataclasses.replace(orbit, time=states.time + fractions * h, step=step)
 
     def simulate(self, **run: Any) -> OrbitT:
         """Run the map: `nonholo.simulate(self, ...)`."""
@@ -233,18 +239,18 @@ class CoordinateStepper(AbstractStepper[AbstractCoordinateOrbit]):
 
     def advance(self, state: State, steps: int, every: int, rows: Rows) -> tuple[int, int]:
         """Take steps by compiled formulas, or by JAX."""
-        system, h, done, code = self.motion.system, np.float64(self.motion.time_step), 0, 0
+        system, h, count, code = self.motion.system, np.float64(self.motion.time_step), 0, 0
         by_jax = functools.partial(in_double, _advance, system, h)
         motion, sign = self._motion(state), state[-1]
-        while code == 0 and done < steps:
-            table = tuple(column[done // every : steps // every] for column in rows)
+        while code == 0 and count < steps:
+            table = tuple(column[count // every : steps // every] for column in rows)
             good, motion, code = compiled.advance(by_jax, system, h, motion, sign, every, table)
-            done += good
+            count += good
         for column, entries in zip(rows, (*motion[:2], np.nan), strict=True):
-            if done % every == 0:
-                column[done // every] = np.ravel(entries)
+            if count % every == 0:
+                column[count // every] = np.ravel(entries)
         state[:] = self._state(motion, [sign])
-        return done, int(code)
+        return count, int(code)
 
     def orbit(self, rows: Rows, step: int, every: int, outcome: Outcome) -> AbstractCoordinateOrbit:
         """Return rows as an orbit."""
@@ -256,8 +262,8 @@ class CoordinateStepper(AbstractStepper[AbstractCoordinateOrbit]):
     ) -> Any:
         """Return states that were reached, with all that they tell, as an orbit."""
         system, h = self.motion.system, np.float64(self.motion.time_step)
-        *displaced, momentum, energy, residual = _decoded(system, h, q, v)
-        displacement, number = displaced[0] if displaced else h * v, step + every * np.arange(len(q))
+        *displacements, momentum, energy, residual = _decoded(system, h, q, v)
+        displacement, number = displacements[0] if displacements else h * v, step + every * np.arange(len(q))
         arrays = h * number, configurations(system, q), displacement, v, momentum, impulses, energy, residual
         return ORBITS[system.orbits](*arrays, outcome, system, float(h), every, step=number)
 
@@ -299,21 +305,21 @@ def _advance(system: Any, h: Array, state: Motion, sign: Array, rows: Array, eve
     s = system.constraints
 
     def one(carry: tuple) -> tuple:
-        done, current, impulse, _ = carry
+        count, current, impulse, _ = carry
         following, multipliers, code = _step(system, h, current, sign)
-        kept = jax.tree.map(lambda new, old: jnp.where(code == 0, new, old), following, current)
-        return done + (code == 0), kept, jnp.where(done == 0, multipliers, impulse), code
+        next_state = jax.tree.map(lambda new, old: jnp.where(code == 0, new, old), following, current)
+        return count + (code == 0), next_state, jnp.where(count == 0, multipliers, impulse), code
 
     def row(carry: tuple) -> tuple:
-        i, taken, current, _, (configurations, velocities, impulses) = carry
+        i, total, current, _, (configurations, velocities, impulses) = carry
         start = (jnp.asarray(0), current, jnp.zeros(s), jnp.asarray(0))
-        done, end, impulse, code = jax.lax.while_loop(lambda c: (c[0] < every) & (c[3] == 0), one, start)
+        count, end, impulse, code = jax.lax.while_loop(lambda c: (c[0] < every) & (c[3] == 0), one, start)
         table = (
             configurations.at[i].set(current[0]),
             velocities.at[i].set(current[1]),
             impulses.at[i].set(impulse),
         )
-        return i + 1, taken + done, end, code, table
+        return i + 1, total + count, end, code, table
 
     tables = tuple(jnp.zeros((ROWS, *shape)) for shape in (state[0].shape, state[1].shape, (s,)))
     start = (jnp.asarray(0), jnp.asarray(0), state, jnp.asarray(0), tables)
@@ -326,10 +332,12 @@ def _decoded(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> list[np.ndarr
     if columns is not None:
         return columns
     blocks = max(1, -(-len(q) // ROWS))
-    padded = [np.concatenate([x, np.zeros((blocks * ROWS - len(x), *x.shape[1:]))]) for x in (q, v)]
-    for x in padded:
+    whole_blocks = [np.concatenate([x, np.zeros((blocks * ROWS - len(x), *x.shape[1:]))]) for x in (q, v)]
+    for x in whole_blocks:
         x[len(q) :] = x[len(q) - 1] if len(q) else 0.0
-    parts = [in_double(_decode_all, system, h, *(x[i * ROWS : (i + 1) * ROWS] for x in padded)) for i in range(blocks)]
+    parts = [
+        in_double(_decode_all, system, h, *(x[i * ROWS : (i + 1) * ROWS] for x in whole_blocks)) for i in range(blocks)
+    ]
     return [np.concatenate(column)[: len(q)] for column in zip(*parts, strict=True)]
 
 
@@ -341,15 +349,17 @@ def _decode(system: Any, h: Array, q: Array, v: Array, *node: Array) -> tuple[Ar
     equations = equations_of(system)
     residual = jnp.max(jnp.abs(equations.discrete_constraints(system, q, v, h)), initial=0.0)
     momentum, energy = equations.momenta(system, q, v, h)[0], equations.discrete_energy(system, q, v, h, *node)
-    return *equations.displaced(system, v, h), momentum, energy, residual
+    return *equations.displacements(system, v, h), momentum, energy, residual
 
 
-def _padded(rows: np.ndarray) -> np.ndarray:
+def _pad(rows: np.ndarray) -> np.ndarray:
     """Return rows up to a multiple of those of one call, the others zero."""
     return np.concatenate([rows, np.zeros((-len(rows) % _PARTS, *rows.shape[1:]))])
 
 
-def _moved(system: Any, h: Array, count: Array, fractions: Array, x: Array, v: Array, p: Array) -> tuple[Array, Array]:
+def _after_parts(
+    system: Any, h: Array, count: Array, fractions: Array, x: Array, v: Array, p: Array
+) -> tuple[Array, Array]:
     """Return the places after parts of steps, and the velocities of the whole steps that begin there."""
     equations = equations_of(system)
 

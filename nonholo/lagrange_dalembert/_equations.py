@@ -11,13 +11,13 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.types import Array
+from nonholo.lagrange_dalembert._functions import takes_time
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
-from nonholo.lagrange_dalembert.functions import takes_time
 
 _CORRECTIONS = 8  # of a velocity that belongs to a momentum: Newton's, one where L is quadratic
 
 
-def _called(function: Any, system: LagrangeDAlembert, x: Array, *velocity: Array) -> Array:
+def _value_at(function: Any, system: LagrangeDAlembert, x: Array, *velocity: Array) -> Array:
     """Return the value of a user's function at a place, with the time if it takes it."""
     time = (x[-1],) if takes_time(function, 1 + len(velocity)) else ()
     return jnp.asarray(function(x[: system.dimension], *velocity, *time), dtype=x.dtype)
@@ -25,12 +25,12 @@ def _called(function: Any, system: LagrangeDAlembert, x: Array, *velocity: Array
 
 def lagrangian(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
     """Return L."""
-    return _called(system.lagrangian, system, x, v)
+    return _value_at(system.lagrangian, system, x, v)
 
 
 def holonomic(system: LagrangeDAlembert, x: Array) -> Array:
     r"""Return $\Phi$, nothing without holonomic constraints."""
-    return jnp.zeros(0) if system.holonomic is None else _called(system.holonomic, system, x)
+    return jnp.zeros(0) if system.holonomic is None else _value_at(system.holonomic, system, x)
 
 
 def place_residual(system: LagrangeDAlembert, x: Array) -> Array:
@@ -46,8 +46,8 @@ def holonomic_residual(system: LagrangeDAlembert, x: Array) -> Array:
 
 def forms(system: LagrangeDAlembert, x: Array) -> Array:
     """Return the rows A, none for a free system; then come gradients of holonomic ones, and prescribed coordinates."""
-    n, given = system.dimension, system.constraint_forms
-    rows = [jnp.zeros((0, n)) if given is None else _called(given, system, x)]
+    n, function = system.dimension, system.constraint_forms
+    rows = [jnp.zeros((0, n)) if function is None else _value_at(function, system, x)]
     if system.holonomic is not None:
         rows.append(jax.jacfwd(holonomic, argnums=1)(system, x)[:, :n])
     if system.prescribed:
@@ -67,7 +67,7 @@ def _velocity_constraint(system: LagrangeDAlembert, x: Array, v: Array) -> Array
     """Return A v - b of the constraint forms."""
     if system.constraint_forms is None:
         return jnp.zeros(0)
-    rates = _called(system.constraint_forms, system, x) @ v
+    rates = _value_at(system.constraint_forms, system, x) @ v
     if system.constraint_velocities is None:
         return rates
     return rates - jnp.asarray(system.constraint_velocities(x[:-1], x[-1]), dtype=x.dtype)
@@ -134,8 +134,8 @@ def _impulses(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[
 
 def applied(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
     """Return the force f(t, q, v); zero without a function, for a table belongs to steps."""
-    given = system.applied
-    return jnp.zeros_like(v) if given is None else jnp.asarray(given(x[-1], x[:-1], v), dtype=x.dtype)
+    function = system.applied
+    return jnp.zeros_like(v) if function is None else jnp.asarray(function(x[-1], x[:-1], v), dtype=x.dtype)
 
 
 def momentum(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
@@ -167,7 +167,7 @@ def ahead(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> Array:
     return x + h * rate(system, x, v)
 
 
-def displaced(*_: object) -> tuple[()]:
+def displacements(*_: object) -> tuple[()]:
     """Return nothing: the displacement is h v."""
     return ()
 
@@ -197,7 +197,7 @@ def departure_rate(system: LagrangeDAlembert, _v: Array, xi: Array, w: Array) ->
     return rate(system, xi, w)
 
 
-def normalized(_: LagrangeDAlembert, x: Array) -> Array:
+def normalize(_: LagrangeDAlembert, x: Array) -> Array:
     """Return the place as it is: rounding errors lead to another one."""
     return x
 
@@ -205,8 +205,8 @@ def normalized(_: LagrangeDAlembert, x: Array) -> Array:
 def force(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
     r"""Return $\partial L/\partial q + f$ less the change of $\partial L/\partial v$ with q and t."""
     along_q = jax.grad(lagrangian, argnums=1)(system, x, v)[: system.dimension]
-    _, carried = jax.jvp(lambda y: momentum(system, y, v), (x,), (rate(system, x, v),))
-    return along_q - carried + applied(system, x, v)
+    _, momentum_drift = jax.jvp(lambda y: momentum(system, y, v), (x,), (rate(system, x, v),))
+    return along_q - momentum_drift + applied(system, x, v)
 
 
 def inverse_legendre(system: LagrangeDAlembert, x: Array, p: Array) -> Array:
@@ -214,8 +214,8 @@ def inverse_legendre(system: LagrangeDAlembert, x: Array, p: Array) -> Array:
 
     def correct(_: Array, v: Array) -> Array:
         matrix, units = acceleration_matrix(system, x, v)
-        missed = p - momentum(system, x, v)
-        return v + solve_bordered(matrix, units, missed, -constraint(system, x, v))[0]
+        momentum_gap = p - momentum(system, x, v)
+        return v + solve_bordered(matrix, units, momentum_gap, -constraint(system, x, v))[0]
 
     return jax.lax.fori_loop(0, _CORRECTIONS, correct, jnp.zeros_like(p))
 
@@ -228,7 +228,7 @@ class Scaled(NamedTuple):
     constraints: Array
 
 
-def bordered(mass: Array, right: Array, below: Array, kinetic: Array) -> tuple[Array, Scaled]:
+def bordered_matrix(mass: Array, right: Array, below: Array, kinetic: Array) -> tuple[Array, Scaled]:
     r"""Return $\begin{pmatrix} M & -A^T \\ F & 0 \end{pmatrix}$ without units, and the units.
 
     Velocities are measured in units of $|\partial^2 L/\partial v_i^2|^{-1/2}$ (1 where it vanishes), which does not
@@ -262,4 +262,4 @@ mass_matrix = kinetic_matrix
 def acceleration_matrix(system: LagrangeDAlembert, q: Array, v: Array) -> tuple[Array, Scaled]:
     """Return the scaled matrix of the continuous equations: the regularity matrix for h -> 0."""
     kinetic, A = kinetic_matrix(system, q, v), forms(system, q)
-    return bordered(kinetic, A, A, kinetic)
+    return bordered_matrix(kinetic, A, A, kinetic)

@@ -1,4 +1,4 @@
-r"""The continuous motion: the solve, the orbit of it, and the work that changes the energy.
+r"""The continuous motion: accelerations, forces of constraint, the solve, its orbit, the work that changes the energy.
 
 Equations that are smooth formulas are solved by Taylor series, any other by diffrax.
 
@@ -6,21 +6,113 @@ Along a motion $\dot E = f\cdot v + \lambda\cdot b - \partial L/\partial t$: the
 constraints $A v = b$ (of driven joints what their motors give), and what a Lagrangian of the time adds.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import error, flow_times, flow_tolerances
+from nonholo.base.checks import error, flow_times, flow_tolerances, is_traced, number, trailing
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations, compiled
-from nonholo.lagrange_dalembert._accelerations import acceleration, refuse_table
 from nonholo.lagrange_dalembert._discretization import checked_state
-from nonholo.lagrange_dalembert._motion import ORBITS
-from nonholo.lagrange_dalembert._room import configurations, in_double, places, room
+from nonholo.lagrange_dalembert._equations import solve_bordered
+from nonholo.lagrange_dalembert._orbit import ORBITS
+from nonholo.lagrange_dalembert._room import configurations, equations_of, in_double, places, room
 from nonholo.orbit import times_within
+
+_PROJECTIONS, _NEAR = 50, 1e-14  # corrections of a place, at most, and what the last one may be beside it
+_REMEDY = "Pass the configuration, row by row, then the velocity."
+
+
+def acceleration(system: Any, q: Array, v: Array, extra: Any = 0.0) -> tuple[Array, Array]:
+    r"""Return the rate of v and the forces $\lambda$, from the equations and $\tfrac{d}{dt}(A v - b) = 0$.
+
+    Args:
+        system: What moves.
+        q: Where it is.
+        v: Its velocity.
+        extra: A force beside those of the system: of a table the row that acts.
+    """
+    equations = equations_of(system)
+    _, constraint_rate = jax.jvp(lambda x: equations.constraint(system, x, v), (q,), (equations.rate(system, q, v),))
+    return bordered_solution(system, q, v, equations.force(system, q, v) + extra, -constraint_rate)
+
+
+def bordered_solution(system: Any, q: Array, v: Array, force: Array, off: Array) -> tuple[Array, Array]:
+    r"""Solve $M x - A^T\lambda$ = force, A x = off."""
+    matrix, units = equations_of(system).acceleration_matrix(system, q, v)
+    return solve_bordered(matrix, units, force, off)
+
+
+def admissible_velocity(system: Any, q: Array, v: Array) -> Array:
+    """Return the admissible velocity next to one in the kinetic energy."""
+    return v - bordered_solution(system, q, v, jnp.zeros_like(v), equations_of(system).constraint(system, q, v))[0]
+
+
+def nearest_place(system: Any, x: Array) -> Array:
+    r"""Return the admissible place y next to x in the kinetic energy at x; NaN where none is reached.
+
+    $M(y - x) = D\Phi(y)^T\lambda$, $\Phi(y) = 0$, by Newton's method from x.
+    """
+    equations, n, first = equations_of(system), system.dimension, system.velocity_constraints
+    M = equations.kinetic_matrix(system, x, jnp.zeros(n))
+
+    def residual(z: Array) -> Array:
+        y = x.at[:n].add(z[:n])
+        across = z[n:] @ equations.forms(system, y)[first:]
+        return jnp.concatenate([M @ z[:n] - across, equations.place_residual(system, y)])
+
+    def correct(carry: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
+        count, z, _ = carry
+        step = jnp.linalg.solve(jax.jacfwd(residual)(z), -residual(z))
+        after = z + step
+        return count + 1, after, jnp.linalg.norm(step[:n]) / (jnp.linalg.norm(x) + jnp.linalg.norm(after[:n]))
+
+    def goes_on(carry: tuple[Array, Array, Array]) -> Array:
+        return (carry[0] < _PROJECTIONS) & (carry[2] > _NEAR)
+
+    start = jnp.asarray(0), jnp.zeros(n + system.constraints - first), jnp.asarray(jnp.inf)
+    _, z, size = jax.lax.while_loop(goes_on, correct, start)
+    return jnp.where(size <= _NEAR, x.at[:n].add(z[:n]), jnp.nan)
+
+
+def refuse_table(owner: str, system: Any) -> None:
+    """Refuse forces that belong to steps."""
+    if system.is_driven and system.table is not None:
+        remedy = "Discretize the system, or pass a function of time."
+        raise error(f"{owner}(system=...)", "have forces at times", "one force for each step", remedy)
+
+
+def vector_field(system: Any) -> Callable[[Array, Float[Array, "size"]], Float[Array, "size"]]:
+    """Return the equations of motion as a function (time, state) -> derivative; `nonholo.vector_field` says of what."""
+    equations_of(system)  # refused by the system of a store without functions
+    refuse_table("vector_field", system)
+    size = int(np.prod(system.shapes[0]) + np.prod(system.shapes[1]))
+
+    def derivative(time: Array, state: Float[Array, "size"]) -> Float[Array, "size"]:
+        now = number("vector_field(...)(time=...)", time)
+        rows = trailing("vector_field(...)(state=...)", state, (size,), _REMEDY, real=True)
+        if is_traced(now) or is_traced(rows):
+            return _derivative(system.bound(*system.parameters.values()), now, rows)
+        return in_double(_derivative, system, now, rows)
+
+    return derivative
+
+
+def _derivative(system: Any, time: Array, state: Float[Array, "... size"]) -> Float[Array, "... size"]:
+    equations, (pose, _) = equations_of(system), system.shapes
+
+    def one(row: Array) -> Array:
+        q, v = jnp.split(row, [int(np.prod(pose))])
+        x = jnp.append(q, time) if system.is_driven else q.reshape(pose)
+        place_rate = jnp.ravel(equations.rate(system, x, v))[: len(q)]
+        return jnp.concatenate([place_rate, acceleration(system, x, v)[0]])
+
+    return one(state) if state.ndim == 1 else jax.lax.map(one, state.reshape(-1, state.shape[-1])).reshape(state.shape)
+
 
 State = tuple[Array, Array]
 """Configuration and velocity."""
@@ -43,8 +135,8 @@ def flow(
     refuse_table("flow", system)
     time, errors = flow_times(times), flow_tolerances(_COARSE if rtol is None else rtol, atol)
     first = checked_state(system, configuration, starts, time[0], project=project)
-    solved = compiled.flow(system, first, time, _FINE if rtol is None else errors[0])
-    rows, solution = solved or room("_integration").flow(system, first, time, errors)
+    motion = compiled.flow(system, first, time, _FINE if rtol is None else errors[0])
+    rows, solution = motion or room("_integration").flow(system, first, time, errors)
     count = len(rows[0])
     outcome = Outcome.successful if count == len(time) else Outcome.not_converged
     orbit = _orbit(system, time[:count], rows, outcome, solution)
@@ -87,8 +179,8 @@ def work(orbit: Any) -> Float[np.ndarray, "K"]:
 def _powers(system: Any, *columns: Float[np.ndarray, "K n"]) -> Float[np.ndarray, "K"]:
     """Return the power on each state: of places, momenta and rows of a table."""
     missing = -len(columns[0]) % _ROWS
-    padded = [np.concatenate([rows, np.repeat(rows[-1:], missing, axis=0)]) for rows in columns]
-    blocks = zip(*(rows.reshape(-1, _ROWS, rows.shape[1]) for rows in padded), strict=True)
+    full_columns = [np.concatenate([rows, np.repeat(rows[-1:], missing, axis=0)]) for rows in columns]
+    blocks = zip(*(rows.reshape(-1, _ROWS, rows.shape[1]) for rows in full_columns), strict=True)
     return np.concatenate([np.empty(0), *(in_double(_power, system, *block) for block in blocks)])[: len(columns[0])]
 
 
@@ -96,8 +188,8 @@ def _power(system: Any, x: Array, p: Array, row: Array) -> Array:
     def one(x: Array, p: Array, row: Array) -> Array:
         v = _equations.inverse_legendre(system, x, p)
         force = row + _equations.applied(system, x, v)
-        moved = _equations.forms(system, x) @ v - _equations.constraint(system, x, v)
-        changed = jax.grad(_equations.lagrangian, argnums=1)(system, x, v)[-1]
-        return force @ v + acceleration(system, x, v, row)[1] @ moved - changed
+        rates = _equations.forms(system, x) @ v - _equations.constraint(system, x, v)
+        time_slope = jax.grad(_equations.lagrangian, argnums=1)(system, x, v)[-1]
+        return force @ v + acceleration(system, x, v, row)[1] @ rates - time_slope
 
     return jax.vmap(one)(x, p, jnp.asarray(row))

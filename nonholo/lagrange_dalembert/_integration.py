@@ -6,11 +6,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.numerics.time_sweep import padded, reached, sweep
+from nonholo.base.numerics.time_sweep import good_rows, pad, sweep
 from nonholo.base.progress import interruptibly
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert._accelerations import acceleration, admissible_velocity, bordered_solution
-from nonholo.lagrange_dalembert._flow import State
+from nonholo.lagrange_dalembert._flow import State, acceleration, admissible_velocity, bordered_solution
 from nonholo.lagrange_dalembert._room import equations_of, in_double
 from nonholo.lagrange_dalembert._tangents import flow_slopes
 
@@ -21,8 +20,8 @@ def flow(
     system: Any, first: State, times: np.ndarray, errors: tuple[float, float]
 ) -> tuple[list[np.ndarray], "Pieces"]:
     """Return places and velocities at the times, up to the first that cannot be reached, and the motion between."""
-    rest, good = interruptibly(lambda: in_double(_sweep, system, first, padded(times), errors))
-    rows = reached(first, rest, good, len(times))
+    rest, good = interruptibly(lambda: in_double(_sweep, system, first, pad(times), errors))
+    rows = good_rows(first, rest, good, len(times))
     return rows, Pieces(system, times[: len(rows[0])], rows, errors)
 
 
@@ -45,15 +44,15 @@ class Pieces(NamedTuple):
         """Return places and velocities at times; NaN where the solver fails."""
         forward = 1.0 if self.times[-1] >= self.times[0] else -1.0
         begin = np.maximum(np.searchsorted(forward * self.times, forward * times, "right") - 1, 0)
-        found = [np.full((len(times), *column.shape[1:]), np.nan) for column in self.rows]
+        columns = [np.full((len(times), *column.shape[1:]), np.nan) for column in self.rows]
         for i, (at, time) in enumerate(zip(begin, times, strict=True)):
             first = self.rows[0][at], self.rows[1][at]
-            span = padded(np.array([self.times[at], time]))
+            span = pad(np.array([self.times[at], time]))
             rest, good = in_double(_sweep, self.system, first, span, self.errors)
-            ends = reached(first, rest, good, 2)
-            for column, end in zip(found, ends, strict=True):
+            ends = good_rows(first, rest, good, 2)
+            for column, end in zip(columns, ends, strict=True):
                 column[i : i + len(end) - 1] = end[1:]
-        return found
+        return columns
 
     @property
     def span(self) -> tuple[float, float]:
@@ -68,9 +67,9 @@ class Pieces(NamedTuple):
 def _sweep(system: Any, state: State, times: Array, errors: tuple[Array, Array]) -> tuple[State, Array]:
     equations = equations_of(system)
 
-    def settled(current: State) -> State:
+    def settle(current: State) -> State:
         """Return the admissible state next to one in the kinetic energy."""
-        q, v = equations.normalized(system, current[0]), current[1]
+        q, v = equations.normalize(system, current[0]), current[1]
         if system.holonomic is not None:
             back = bordered_solution(system, q, v, jnp.zeros_like(v), equations.holonomic_residual(system, q))[0]
             q = q - jnp.pad(back, (0, system.is_driven))
@@ -79,12 +78,12 @@ def _sweep(system: Any, state: State, times: Array, errors: tuple[Array, Array])
     def rate(current: State) -> State:
         return equations.rate(system, *current), acceleration(system, *current)[0]
 
-    return sweep(lambda _, current: rate(settled(current)), settled, state, times, errors)
+    return sweep(lambda _, current: rate(settle(current)), settle, state, times, errors)
 
 
 def columns(system: Any, rows: list[np.ndarray]) -> list[np.ndarray]:
     """Return momenta, forces of constraint, energies and residuals of places and velocities."""
-    return [x[: len(rows[0])] for x in in_double(_decode, system, *map(padded, rows))]
+    return [x[: len(rows[0])] for x in in_double(_decode, system, *map(pad, rows))]
 
 
 def _decode(system: Any, q: Array, v: Array) -> tuple[Array, ...]:
@@ -104,7 +103,7 @@ def transitions(system: Any, x: np.ndarray, v: np.ndarray, time: Float[np.ndarra
     count, spans = len(time) - 1, np.stack([time[:-1], time[1:]], axis=1)
     if not count:
         return np.empty((0, *2 * (2 * v.shape[1] + system.is_driven,)))
-    x, v, spans = padded(x[:-1]), padded(v[:-1]), padded(spans)
+    x, v, spans = pad(x[:-1]), pad(v[:-1]), pad(spans)
     spans[count:] = time[-1]
     return in_double(_transitions, system, x, v, spans)[:count]
 

@@ -13,7 +13,7 @@ import jax.numpy as jnp
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array
 from nonholo.kernels import CONTRACTION, ITERATIONS, SINGULAR, TOLERANCE
-from nonholo.lagrange_dalembert._equations import Scaled, bordered
+from nonholo.lagrange_dalembert._equations import Scaled, bordered_matrix
 from nonholo.lagrange_dalembert._room import equations_of
 
 _SMALLEST = 2.0**-20  # of the path; below it the continuation is given up
@@ -86,9 +86,9 @@ def newton_matrix(
         both = equations.momenta(system, q, w, h)[0], equations.discrete_constraints(system, q, w, h)
         return both, both
 
-    (mass, below), found = jax.jacfwd(values, has_aux=True)(v)
-    matrix, units = bordered(mass, equations.forms(system, q), below, kinetic)
-    return matrix, units, found
+    (mass, below), momentum_and_constraint = jax.jacfwd(values, has_aux=True)(v)
+    matrix, units = bordered_matrix(mass, equations.forms(system, q), below, kinetic)
+    return matrix, units, momentum_and_constraint
 
 
 def of_node(system: Any, q: Array, _near: Array, _h: Array) -> Matrix:
@@ -117,23 +117,23 @@ def root(matrix: Matrix, rows: Array, p: Array, near: Array, guess: Array, sign:
         left = jnp.where(
             ahead == 1, 0.0, (1 - ahead) * offset
         )  # which need not be finite, if the guess leads to a root
-        found = _newton(correction, begin, path.root.multipliers, left)
-        good = found.converged & (found.sign == sign) & ~first
-        kept = jax.tree.map(lambda new, old: jnp.where(good, new, old), found, path.root)
+        trial = _newton(correction, begin, path.root.multipliers, left)
+        good = trial.converged & (trial.sign == sign) & ~first
+        best = jax.tree.map(lambda new, old: jnp.where(good, new, old), trial, path.root)
         stride = jnp.where(good, 2 * path.stride, path.stride / 2)
         return _Path(
             path.count + 1,
             jnp.where(good, ahead, path.s),
             jnp.where(fast | first, path.stride, stride),
-            kept._replace(regularity=jnp.where(first, found.regularity, kept.regularity)),
-            jnp.where(first, found.regularity, path.regularity),
-            jnp.where(fast, found.converged, path.elsewhere),
+            best._replace(regularity=jnp.where(first, trial.regularity, best.regularity)),
+            jnp.where(first, trial.regularity, path.regularity),
+            jnp.where(fast, trial.converged, path.elsewhere),
         )
 
     zero, one, no = jnp.zeros(()), jnp.ones(()), jnp.asarray(False)
     start = Root(near, jnp.zeros((rows.shape[0],)), no, zero, one)
-    begun = _Path(jnp.asarray(0), zero, 0.25 * one, start, one, no)
-    path = jax.lax.while_loop(lambda path: (path.s < 1) & (path.stride > _SMALLEST), attempt, begun)
+    path_start = _Path(jnp.asarray(0), zero, 0.25 * one, start, one, no)
+    path = jax.lax.while_loop(lambda path: (path.s < 1) & (path.stride > _SMALLEST), attempt, path_start)
     finite = (path.count == 1) | (jnp.all(jnp.isfinite(offset)) & jnp.isfinite(path.regularity))
     return path.root.velocity, path.root.multipliers, jnp.where(finite, _outcome(path), int(Outcome.nonfinite))
 
@@ -141,9 +141,9 @@ def root(matrix: Matrix, rows: Array, p: Array, near: Array, guess: Array, sign:
 def _outcome(path: _Path) -> Array:
     """Say what ended a path if it did not arrive."""
     singular = path.root.regularity < SINGULAR
-    folded = (path.root.regularity < _NEAR_FOLD * path.regularity) | singular
+    is_folded = (path.root.regularity < _NEAR_FOLD * path.regularity) | singular
     code = jnp.where(path.elsewhere, int(Outcome.branch_unverified), int(Outcome.not_converged))
-    code = jnp.where(folded, int(Outcome.no_real_branch), code)
+    code = jnp.where(is_folded, int(Outcome.no_real_branch), code)
     return jnp.where((path.s == 1) & ~singular, int(Outcome.successful), code)
 
 
@@ -153,9 +153,9 @@ def equations(
     """Return the scaled matrix, what the scaled equations less an offset miss, the units and the size of velocities."""
     matrix, units, (P, F) = matrix_at(v)
     n = len(p)
-    missed = jnp.concatenate([P - p - multipliers @ rows, F]) - offset
-    scaled = jnp.concatenate([missed[:n] * units.velocity, missed[n:] / units.constraints])
-    return matrix, scaled, units, jnp.linalg.norm(v / units.velocity) + jnp.linalg.norm(p * units.velocity)
+    residual = jnp.concatenate([P - p - multipliers @ rows, F]) - offset
+    scaled_residual = jnp.concatenate([residual[:n] * units.velocity, residual[n:] / units.constraints])
+    return matrix, scaled_residual, units, jnp.linalg.norm(v / units.velocity) + jnp.linalg.norm(p * units.velocity)
 
 
 def _correction(matrix_at: Matrix, rows: Array, p: Array, near: Array) -> tuple[Correction, Array]:
@@ -163,11 +163,11 @@ def _correction(matrix_at: Matrix, rows: Array, p: Array, near: Array) -> tuple[
     n = len(p)
 
     def correct(v: Array, multipliers: Array, offset: Array) -> tuple[Array, Array, Array, Array, Array]:
-        matrix, scaled, units, scale = equations(matrix_at, rows, p, v, multipliers, offset)
+        matrix, scaled_residual, units, scale = equations(matrix_at, rows, p, v, multipliers, offset)
         factors, pivots = jax.scipy.linalg.lu_factor(matrix)
-        inverse = jax.scipy.linalg.lu_solve((factors, pivots), jnp.eye(len(scaled)))
-        step = -(inverse @ scaled)
-        swaps = jnp.sum(pivots != jnp.arange(len(scaled)))
+        inverse = jax.scipy.linalg.lu_solve((factors, pivots), jnp.eye(len(scaled_residual)))
+        step = -(inverse @ scaled_residual)
+        swaps = jnp.sum(pivots != jnp.arange(len(scaled_residual)))
         sign = jnp.prod(jnp.sign(jnp.diag(factors))) * (1 - 2 * (swaps % 2))
         size = jnp.linalg.norm(step[:n])
         relative = jnp.where(size == 0, 0.0, size / scale)
@@ -182,10 +182,10 @@ def _newton(correction: Correction, v: Array, multipliers: Array, offset: Array)
     def body(carry: tuple[Array, Array, Root]) -> tuple[Array, Array, Root]:
         i, before, root = carry
         dv, dm, size, sign, regularity = correction(root.velocity, root.multipliers, offset)
-        done = size <= TOLERANCE
+        is_small = size <= TOLERANCE
         contracts = (i == 0) | (size <= CONTRACTION * before)
-        after = Root(root.velocity + dv, root.multipliers + dm, done, sign, regularity)
-        return jnp.where(contracts | done, i + 1, ITERATIONS), size, after
+        after = Root(root.velocity + dv, root.multipliers + dm, is_small, sign, regularity)
+        return jnp.where(contracts | is_small, i + 1, ITERATIONS), size, after
 
     zero = jnp.zeros(())
     start = (jnp.asarray(0), zero, Root(v, multipliers, jnp.asarray(False), zero, zero))

@@ -1,7 +1,11 @@
-"""Orbits in coordinates and on a group: plain arrays at the saved states, and their labels."""
+"""Orbits in coordinates and on a group: plain arrays at the saved states, and their labels.
+
+And their motions as stores keep them: what orbits tell, and systems without functions.
+"""
 
 import abc
 import dataclasses
+from collections.abc import Mapping
 from typing import Any, ClassVar, Self
 
 import jax
@@ -14,6 +18,7 @@ from nonholo.base.types import Array, Float, Int
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert._room import equations_of, in_double, places, room
 from nonholo.orbit import AbstractOrbit
+from nonholo.systems import AbstractCoordinateSystem
 
 Labels = dict[str, tuple[tuple[str, ...], str]]
 """Name: dimensions after `step`, and what the numbers are."""
@@ -62,7 +67,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     @property
     def motion(self) -> Any:
         """The discretization or the flow."""
-        flow = room("_motion").CoordinateFlow
+        flow = CoordinateFlow
         return flow(self.system) if self.time_step is None else self.system.discretize(self.time_step)
 
     @property
@@ -83,14 +88,14 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     def rows(self) -> dict[str, np.ndarray]:
         """Return the arrays with a row for each state; impulses that are not known are NaN."""
         missing = np.full((len(self) - len(self.multipliers), self.multipliers.shape[1]), np.nan)
-        known = {name: rows for name in _ROWS if (rows := getattr(self, name)) is not None}
-        return known | {"multipliers": np.concatenate([self.multipliers, missing])}
+        arrays = {name: rows for name in _ROWS if (rows := getattr(self, name)) is not None}
+        return arrays | {"multipliers": np.concatenate([self.multipliers, missing])}
 
     def of_rows(self, rows: dict[str, np.ndarray]) -> Self:
         """Return the orbit of such arrays, without the impulse of the last state if it is not known."""
         impulses = rows["multipliers"]
-        known = len(impulses) - int(len(impulses) > 0 and bool(np.isnan(impulses[-1]).any()))
-        return dataclasses.replace(self, **{**rows, "multipliers": impulses[:known]})
+        count = len(impulses) - int(len(impulses) > 0 and bool(np.isnan(impulses[-1]).any()))
+        return dataclasses.replace(self, **{**rows, "multipliers": impulses[:count]})
 
     @memo
     def work(self) -> Float[np.ndarray, "K"]:
@@ -276,3 +281,111 @@ class GroupOrbit(AbstractCoordinateOrbit):
 
 def _forms_at(system: Any, q: Array) -> Array:
     return jax.vmap(lambda x: equations_of(system).forms(system, x))(q)
+
+
+ORBITS: dict[str, Any] = {orbit.__name__: orbit for orbit in (CoordinateOrbit, GroupOrbit)}
+
+
+class CoordinateMotion:
+    """A motion whose stores keep the numbers that its orbit tells."""
+
+    system: Any
+    time_step: float | None
+    columns: ClassVar[tuple[str, ...]] = (
+        *("time", "configuration", "displacement", "body_velocity"),
+        *("momentum", "multipliers", "energy", "constraint_residual"),
+    )
+
+    def orbit(self, *, branch: str, **rows: Any) -> AbstractCoordinateOrbit:
+        """Return the orbit of rows of the columns; those of multipliers that do not exist are left out.
+
+        Raises:
+            ValueError: Columns that are none of this system.
+        """
+        del branch
+        system, last = self.system, None if self.time_step is None else -1
+        if system.constraints:
+            rows["multipliers"] = rows["multipliers"] if rows["multipliers"] is None else rows["multipliers"][:last]
+        else:  # which is not stored
+            rows["multipliers"] = rows["body_velocity"][:last, :0]
+        shapes = {name: None if rows[name] is None else rows[name].shape[1:] for name in self.columns}
+        if shapes != self._shapes():
+            remedy = "The store was edited: copy it again from its source, or run it again."
+            raise error("load_orbit(path=...)", f"hold the columns of {system.name!r}", f"shapes {shapes}", remedy)
+        return ORBITS[system.orbits](**rows, system=system, time_step=self.time_step)
+
+    def _shapes(self) -> dict[str, tuple[int, ...] | None]:
+        q, v = self.system.shapes
+        places = {"configuration": q, "displacement": None if self.time_step is None else q}
+        rates = {"body_velocity": v, "momentum": v, "multipliers": (self.system.constraints,)}
+        return {"time": (), **places, **rates, "energy": (), "constraint_residual": ()}
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class CoordinateFlow(CoordinateMotion):
+    """The flow of a system in coordinates or on a group, as the motion of its orbits.
+
+    Attributes:
+        system: What moves.
+
+    Example:
+        >>> from nonholo.lagrange_dalembert import CoordinateFlow
+        >>> CoordinateFlow(nh.examples.particle().system).columns[:2]
+        ('time', 'configuration')
+    """
+
+    system: Any
+    time_step: ClassVar[None] = None
+    route_name: ClassVar[None] = None
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class RecordedSystem(AbstractCoordinateSystem):
+    """What a store says of a system whose functions it does not hold: enough for pictures and tables.
+
+    Attributes:
+        record: Fields that could be restored, with what else was recorded.
+        description: The class of the system and all of its fields, as in the store.
+
+    Example:
+        >>> from nonholo.lagrange_dalembert import RecordedSystem
+        >>> system = RecordedSystem({"name": "Mine"}, ("LagrangeDAlembert", {"name": "Mine", "lagrangian": "callable"}))
+        >>> system.name
+        'Mine'
+        >>> system.lagrangian
+        Traceback (most recent call last):
+        ValueError: `load_orbit(discrete=...)` must be the discretization. Got None: stores hold no functions. ...
+    """
+
+    has_functions: ClassVar[bool] = False
+    record: Mapping[str, Any]
+    description: tuple[str, dict[str, Any]]  # pyright: ignore[reportGeneralTypeIssues]
+
+    def __getattr__(self, name: str) -> Any:
+        """Return what was recorded; functions were not."""
+        if name.startswith("__") or name == "record":  # asked by copies before there are fields
+            raise AttributeError(name)
+        if name not in self.record:
+            remedy = "Pass the one that made the store to load_orbit, resume or extend: discrete=..."
+            raise error("load_orbit(discrete=...)", "be the discretization", "None: stores hold no functions", remedy)
+        return self.record[name]
+
+    @property
+    def parameters(self) -> Mapping[str, Any]:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """Numbers that its functions take."""
+        return self.record["parameters"]
+
+    def parts(self, q: Any) -> tuple[()]:
+        """Return no outline: it may be a function."""
+        del q
+        return ()
+
+    def discretize(self, time_step: Any) -> Any:
+        """Return the map of the store, which cannot run."""
+        kind = "GroupDiscretization" if "group" in self.record else "CoordinateDiscretization"
+        return getattr(room("_discretization"), kind)(self, time_step)
+
+    def flow(self, **arguments: Any) -> Any:
+        """Refuse: there are no functions."""
+        del arguments
+        return self.lagrangian

@@ -45,7 +45,7 @@ class _Node(NamedTuple):
 
 
 @functools.partial(jax.jit, static_argnums=(0, 1, 2))
-def rolled(
+def roll(
     family: Any,
     name: str,
     sizes: tuple[int, int],
@@ -63,15 +63,15 @@ def rolled(
     equations, n = equations_of(system), family.dimension
     x, value = jnp.append(q, 0.0) if family.is_driven else jnp.asarray(q), jnp.asarray(value)
     p = equations.momentum(system, x, value) if name == "body_velocity" else value
-    still, x_still, given = jax.lax.stop_gradient((numbers, x, value))
-    fixed = family.bound(*still)
-    near = given if name == "body_velocity" else equations.inverse_legendre(fixed, x_still, given)
-    sign, _ = orientation(fixed, x_still, near, h)
+    still, x_still, value_still = jax.lax.stop_gradient((numbers, x, value))
+    search_system = family.bound(*still)
+    near = value_still if name == "body_velocity" else equations.inverse_legendre(search_system, x_still, value_still)
+    sign, _ = orientation(search_system, x_still, near, h)
 
     def step(x: Array, p: Array, before: tuple[Array, Array], row: Array | None) -> _Node:
         push = 0.0 if row is None else h / 2 * row
         near, last = before
-        z, code = _root(family, (numbers, h, x, p + push), (near, 2 * near - last, sign))
+        z, code = step_root(family, (numbers, h, x, p + push), (near, 2 * near - last, sign))
         v = z[:n]
         after = equations.ahead(system, x, v, h), equations.momenta(system, x, v, h)[1] + push
         return _Node(x, (v, near), after, code, jnp.sum(z))
@@ -81,8 +81,8 @@ def rolled(
     nodes = run_nodes(step, begin, rows, sizes, work)
 
     decoded = functools.partial(_decoded, system, h)
-    saved = jax.vmap(decoded)(nodes.x, nodes.y[0], None if rows is None else rows[::every])
-    good = (marked_rows(each, nodes.cause, nodes.code == 0) for each in saved)
+    states = jax.vmap(decoded)(nodes.x, nodes.y[0], None if rows is None else rows[::every])
+    good = (marked_rows(each, nodes.cause, nodes.code == 0) for each in states)
     return CoordinateRollout(h * every * jnp.arange(1 + steps // every), *good, outcome=nodes.code[-1])
 
 
@@ -96,28 +96,28 @@ def _decoded(system: Any, h: Array, x: Array, v: Array, row: Array | None) -> tu
 
 
 @functools.partial(jax.custom_jvp, nondiff_argnums=(0,))
-def _root(
-    family: Any, given: tuple[tuple[Array, ...], Array, Array, Array], search: tuple[Array, Array, Array]
+def step_root(
+    family: Any, arguments: tuple[tuple[Array, ...], Array, Array, Array], search: tuple[Array, Array, Array]
 ) -> tuple[Array, Array]:
     """Return velocity with multipliers of the step from a place with a momentum, and the outcome.
 
     The search begins near a velocity, with a guess, and keeps an orientation; derivatives do not see it.
     """
-    numbers, h, x, p = given
+    numbers, h, x, p = arguments
     v, multipliers, code = solve(family.bound(*numbers), h, x, p, *search)
     return jnp.concatenate([v, multipliers]), code
 
 
-@_root.defjvp
+@step_root.defjvp
 def _implicit(family: Any, primals: Any, tangents: Any) -> tuple[Any, Any]:
-    n = family.dimension
+    n = primals[0][3].shape[0]
 
     def residual(z: Array, numbers: tuple[Array, ...], h: Array, x: Array, p: Array) -> Array:
         system, v = family.bound(*numbers), z[:n]
         equations = equations_of(system)
-        missed = equations.momenta(system, x, v, h)[0] - p - z[n:] @ equations.forms(system, x)
-        return jnp.concatenate([missed, equations.discrete_constraints(system, x, v, h)])
+        momentum_gap = equations.momenta(system, x, v, h)[0] - p - z[n:] @ equations.forms(system, x)
+        return jnp.concatenate([momentum_gap, equations.discrete_constraints(system, x, v, h)])
 
-    z, code = _root(family, *primals)
+    z, code = step_root(family, *primals)
     z, change = implicit(residual, z, primals[0], tangents[0])
     return (z, code), (change, np.zeros(code.shape, jax.dtypes.float0))

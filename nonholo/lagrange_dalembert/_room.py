@@ -17,16 +17,16 @@ import numpy as np
 from nonholo.base.numerics import double_precision
 
 _PATIENCE = 1.0  # seconds of silence
-_called: set[tuple[Any, Any]] = set()
-_told: set[Any] = set()
+_calls: set[tuple[Any, Any]] = set()
+_announcements: set[Any] = set()
 
 
 @functools.cache
-def _compiled(function: Callable[..., Any]) -> Callable[..., Any]:
-    def called(family: Any, numbers: tuple[Any, ...], *arguments: Any) -> Any:
+def _compile(function: Callable[..., Any]) -> Callable[..., Any]:
+    def call(family: Any, numbers: tuple[Any, ...], *arguments: Any) -> Any:
         return function(family.bound(*numbers), *arguments)
 
-    return jax.jit(called, static_argnums=0)
+    return jax.jit(call, static_argnums=0)
 
 
 def room(name: str) -> Any:
@@ -57,10 +57,10 @@ def place(system: Any, q: Any, time: Any) -> Any:
 def in_double(function: Callable[..., Any], system: Any, *arguments: Any) -> Any:
     """Call a JAX function of a system, compiled once for all of its numbers, in 64 bits; return NumPy arrays."""
     family, numbers = system.family, tuple(system.parameters.values())
-    with double_precision(), contextlib.nullcontext() if (function, family) in _called else compiling(family):
-        found = jax.tree.map(np.asarray, _compiled(function)(family, numbers, *arguments))
-    _called.add((function, family))
-    return found
+    with double_precision(), contextlib.nullcontext() if (function, family) in _calls else compiling(family):
+        result = jax.tree.map(np.asarray, _compile(function)(family, numbers, *arguments))
+    _calls.add((function, family))
+    return result
 
 
 @contextlib.contextmanager
@@ -68,8 +68,8 @@ def compiling(system: Any) -> Iterator[None]:
     """Say on standard error what is waited for, once for a system: JAX compiles at the first call of each function."""
 
     def say() -> None:
-        if system not in _told:
-            _told.add(system)
+        if system not in _announcements:
+            _announcements.add(system)
             sys.stderr.write("compiling a system in coordinates, once ...\n")
 
     timer = threading.Timer(_PATIENCE, say)

@@ -9,7 +9,6 @@ import numpy as np
 from nonholo.base.checks import array, error, scale
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert._accelerations import admissible_velocity, nearest_place
 from nonholo.lagrange_dalembert._equations import (
     acceleration_matrix,
     constraint,
@@ -19,6 +18,7 @@ from nonholo.lagrange_dalembert._equations import (
     inverse_legendre,
     lagrangian,
 )
+from nonholo.lagrange_dalembert._flow import admissible_velocity, nearest_place
 from nonholo.lagrange_dalembert._newton import orientation
 from nonholo.lagrange_dalembert._room import equations_of, in_double, place
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
@@ -46,9 +46,9 @@ def point(
         q = q if np.isnan(nearest).any() else nearest
     for index, motion in system.plain.prescribed:
         with double_precision():
-            given = float(motion(np.float64(time)))
-        if not abs(q[index] - given) <= _TOLERANCE * (1 + abs(given)):
-            got, remedy = f"{q[index]:.17g}", f"Set coordinate {index} to {given:.17g}."
+            target = float(motion(np.float64(time)))
+        if not abs(q[index] - target) <= _TOLERANCE * (1 + abs(target)):
+            got, remedy = f"{q[index]:.17g}", f"Set coordinate {index} to {target:.17g}."
             raise error(where, "agree with prescribed motions", got, remedy)
     x = place(system, q, time)
     A = in_double(forms, system, x)
@@ -63,10 +63,10 @@ def _check_holonomic(where: str, system: LagrangeDAlembert, x: np.ndarray, A: Fl
     n, residual = system.dimension, in_double(holonomic_residual, system, x)
     if np.all(np.abs(residual) <= _TOLERANCE * np.linalg.norm(A, axis=1) * (1 + np.linalg.norm(x[:n]))):
         return
-    missed = in_double(holonomic, system, x)
     nearest = in_double(nearest_place, system, x)[:n]
+    got = f"residual {np.array2string(in_double(holonomic, system, x), precision=6)}"
     remedy = "Start elsewhere." if np.isnan(nearest).any() else f"The nearest admissible one is {nearest.tolist()}."
-    raise error(where, "satisfy the holonomic constraints", f"residual {np.array2string(missed, precision=6)}", remedy)
+    raise error(where, "satisfy the holonomic constraints", got, remedy)
 
 
 def check_rows(what: str, A: Float[np.ndarray, "s n"], at: np.ndarray) -> None:
@@ -99,43 +99,42 @@ def consistent(system: LagrangeDAlembert, q: Float[np.ndarray, "n"], h: Any) -> 
         raise error(where, "vanish for q_next = q", f"{at_rest.tolist()} at {q.tolist()}", "Subtract its value there.")
     A = in_double(forms, system, q)
     directions = np.linalg.svd(A)[2][len(A) :]
-    missed = np.abs(slope @ directions.T)
-    if not missed.max() <= _CONSISTENT * np.linalg.norm(slope, axis=1).max() or np.linalg.matrix_rank(slope) < len(A):
+    span_gap = np.abs(slope @ directions.T)
+    if not span_gap.max() <= _CONSISTENT * np.linalg.norm(slope, axis=1).max() or np.linalg.matrix_rank(slope) < len(A):
         got = f"derivatives {slope.tolist()} beside the forms {A.tolist()} at {q.tolist()}"
         remedy = "Discretize the same forms, or change the forms."
         raise error(where, "have derivatives along q_next that span the constraint forms", got, remedy)
 
 
 def velocity(
-    owner: str, system: LagrangeDAlembert, q: Float[np.ndarray, "x"], given: Any, *, project: bool
+    owner: str, system: LagrangeDAlembert, q: Float[np.ndarray, "x"], value: Any, *, project: bool
 ) -> Float[np.ndarray, "n"]:
     """Return a velocity that satisfies the constraint, at which the Lagrangian is regular.
 
     With `project` it is the admissible one next to the given one in the kinetic energy.
     """
     where = f"{owner}(body_velocity=...)"
-    v = array(where, given, (system.dimension,), f"Pass the {system.dimension} velocities.")
+    v = array(where, value, (system.dimension,), f"Pass the {system.dimension} velocities.")
     regular(system, q, v)
     if project:
         return in_double(admissible_velocity, system, q, v)
-    A, missed = in_double(forms, system, q), in_double(constraint, system, q, v)
-    return admissible(where, A, v, missed)
+    return admissible(where, in_double(forms, system, q), v, in_double(constraint, system, q, v))
 
 
 def admissible(
-    where: str, A: Float[np.ndarray, "s n"], v: Float[np.ndarray, "n"], missed: Float[np.ndarray, "s"]
+    where: str, A: Float[np.ndarray, "s n"], v: Float[np.ndarray, "n"], residual: Float[np.ndarray, "s"]
 ) -> Float[np.ndarray, "n"]:
     """Return a velocity that misses A v = b by nothing, refused with its residual and the nearest one that does."""
     rounding = np.finfo(float).eps * np.linalg.norm(A, axis=1) * np.linalg.norm(v)  # of forms where their terms vanish
-    if np.any(np.abs(missed) > _TOLERANCE * (np.abs(A) @ np.abs(v) + np.abs(A @ v - missed)) + rounding):
-        raise inadmissible(where, missed, v - np.linalg.pinv(A) @ missed)
+    if np.any(np.abs(residual) > _TOLERANCE * (np.abs(A) @ np.abs(v) + np.abs(A @ v - residual)) + rounding):
+        raise inadmissible(where, residual, v - np.linalg.pinv(A) @ residual)
     return v
 
 
 def regular(system: LagrangeDAlembert, q: np.ndarray, v: np.ndarray) -> None:
     """Refuse a Lagrangian without finite derivatives, or one that does not determine accelerations."""
     what, at = "LagrangeDAlembert(lagrangian=...)", f"at {q.tolist()}, velocity {v.tolist()}"
-    value, gradients = in_double(_differentiated, system, q, v)
+    value, gradients = in_double(_value_and_gradients, system, q, v)
     if not all(np.all(np.isfinite(x)) for x in (value, *gradients)):
         got = f"value {value.tolist()}, gradients {[x.tolist() for x in gradients]} {at}"
         raise error(what, "be finite and differentiable", got, "Start elsewhere, or smooth it with jnp.where.")
@@ -146,28 +145,28 @@ def regular(system: LagrangeDAlembert, q: np.ndarray, v: np.ndarray) -> None:
 
 
 def of_momentum(
-    owner: str, system: LagrangeDAlembert, q: np.ndarray, given: Any
+    owner: str, system: LagrangeDAlembert, q: np.ndarray, value: Any
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return a checked momentum, the place and the admissible velocity that has its part along the constraint."""
     n = system.dimension
     where = f"{owner}(momentum=...)"
-    p = array(where, given, (n,), f"Pass the {n} momenta; only their action on admissible velocities counts.")
+    p = array(where, value, (n,), f"Pass the {n} momenta; only their action on admissible velocities counts.")
     regular(system, q, np.zeros(n))
     v = in_double(inverse_legendre, system, q, p)
     regular(system, q, v)
     return p, q, v
 
 
-def velocity_of_displacement(system: LagrangeDAlembert, q: np.ndarray, given: Any, h: float) -> np.ndarray:
+def velocity_of_displacement(system: LagrangeDAlembert, q: np.ndarray, value: Any, h: float) -> np.ndarray:
     """Return the velocity d/h of a displacement that satisfies the discrete constraint."""
     where = "simulate(displacement=...)"
-    d = array(where, given, (system.dimension,), "Pass q_1 - q_0.")
+    d = array(where, value, (system.dimension,), "Pass q_1 - q_0.")
     v = d / h
     regular(system, q, v)
-    missed, slope = in_double(constraint_slope, system, q, v, h)
-    if np.any(np.abs(missed) > _TOLERANCE * (np.abs(slope) @ np.abs(v) + np.abs(slope @ v - missed))):
+    residual, slope = in_double(constraint_slope, system, q, v, h)
+    if np.any(np.abs(residual) > _TOLERANCE * (np.abs(slope) @ np.abs(v) + np.abs(slope @ v - residual))):
         nearest = h * in_double(_admissible, system, q, v, h)
-        got = f"residual {np.array2string(missed, precision=6)}"
+        got = f"residual {np.array2string(residual, precision=6)}"
         remedy = f"The nearest admissible displacement is {nearest.tolist()}."
         raise error(where, "satisfy the discrete constraint", got, remedy)
     return v
@@ -189,7 +188,7 @@ def constraint_slope(system: Any, q: Array, v: Array, h: Array) -> tuple[Array, 
     return constraints(system, q, v, h), slope
 
 
-def _differentiated(system: LagrangeDAlembert, q: Array, v: Array) -> tuple[Array, tuple[Array, Array]]:
+def _value_and_gradients(system: LagrangeDAlembert, q: Array, v: Array) -> tuple[Array, tuple[Array, Array]]:
     return jax.value_and_grad(lagrangian, argnums=(1, 2))(system, q, v)
 
 
@@ -199,7 +198,7 @@ def _least(system: LagrangeDAlembert, q: Array, v: Array) -> Array:
 
 def _admissible(system: LagrangeDAlembert, q: Array, v: Array, h: Array) -> Array:
     def correct(_: Array, w: Array) -> Array:
-        missed, slope = constraint_slope(system, q, w, h)
-        return w - jnp.linalg.pinv(slope) @ missed
+        residual, slope = constraint_slope(system, q, w, h)
+        return w - jnp.linalg.pinv(slope) @ residual
 
     return jax.lax.fori_loop(0, _CORRECTIONS, correct, v)

@@ -14,8 +14,7 @@ from nonholo.base.limits import within_memory
 from nonholo.base.memo import system_memo
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert._room import room
-from nonholo.lagrange_dalembert.functions import (
+from nonholo.lagrange_dalembert._functions import (
     Bound,
     ForceTable,
     Parameters,
@@ -27,8 +26,8 @@ from nonholo.lagrange_dalembert.functions import (
     with_parameters,
     with_time_step,
 )
-from nonholo.systems import AbstractCoordinateSystem, parts_of
-from nonholo.systems import force_of as joined
+from nonholo.lagrange_dalembert._room import room
+from nonholo.systems import AbstractCoordinateSystem, force_of, parts_of
 
 if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization
@@ -140,22 +139,22 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     coordinates: tuple[str, ...] = dataclasses.field(default=(), kw_only=True)
     name: str = dataclasses.field(default="System in coordinates", kw_only=True)
     orbits: ClassVar[str] = "CoordinateOrbit"
-    recorded: ClassVar[tuple[str, ...]] = ("constraints", "is_driven", "orbits", "shapes")
+    in_stores: ClassVar[tuple[str, ...]] = ("constraints", "is_driven", "orbits", "shapes")
     heading: str | None = dataclasses.field(default=None, kw_only=True, compare=False)
     outline: Any = dataclasses.field(default=(), kw_only=True, compare=False, repr=False, metadata={"stored": False})
     _equations: ClassVar[str] = "_equations"
     _start: ClassVar[str] = "_start"
 
     def __post_init__(self) -> None:
-        dimension = count(_named("dimension"), self.dimension, "Pass the number of coordinates.")
-        within_memory(_named("dimension"), 8.0 * dimension**2, "Pass the number of coordinates.")  # the mass matrix
+        dimension = count(_argument("dimension"), self.dimension, "Pass the number of coordinates.")
+        within_memory(_argument("dimension"), 8.0 * dimension**2, "Pass the number of coordinates.")  # the mass matrix
         object.__setattr__(self, "dimension", dimension)
         object.__setattr__(self, "parameters", Parameters(self.parameters))
         object.__setattr__(self, "coordinates", _names(self.coordinates, dimension))
-        text(_named("name"), self.name)
-        _check_heading(_named("heading"), self.heading, self.coordinates)
-        object.__setattr__(self, "outline", _checked_outline(_named("outline"), self.outline))
-        choice(_named("rule"), self.rule, ("midpoint", "trapezoidal"))
+        text(_argument("name"), self.name)
+        _check_heading(_argument("heading"), self.heading, self.coordinates)
+        object.__setattr__(self, "outline", _checked_outline(_argument("outline"), self.outline))
+        choice(_argument("rule"), self.rule, ("midpoint", "trapezoidal"))
         for name in ("discrete_lagrangian", "discrete_constraints"):
             object.__setattr__(self, name, with_time_step(getattr(self, name), len(self._shapes_given)))
         object.__setattr__(self, "prescribed", _motions(self.prescribed, dimension, self._shapes_given))
@@ -168,19 +167,22 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         with double_precision():
             self._check("lagrangian", (), q, q, *self._time("lagrangian"))
             if self.constraint_forms is not None:
-                where, remedy = _named("constraint_forms"), "Stack one row per constraint; pass None for no constraint."
                 arguments = (q, *self._time("constraint_forms"), *last)
+                remedy = "Stack one row per constraint; pass None for no constraint."
+                where = _argument("constraint_forms")
                 check_forms(where, self.constraint_forms, n, arguments, f"{n} coordinates", remedy)
             if self.holonomic is not None:
-                check_rows_of_places(_named("holonomic"), self.holonomic, n, (q, *self._time("holonomic"), *last))
+                check_rows_of_places(_argument("holonomic"), self.holonomic, n, (q, *self._time("holonomic"), *last))
             self._check("discrete_lagrangian", (), q, q, time)
             self._check("discrete_constraints", (self.velocity_constraints,), q, q, time)
             self._check("constraint_velocities", (self.velocity_constraints,), q, time)
             if self.applied is not None:
-                check_value(_named("force"), self.applied, (n,), (time, q, q, *last), *2 * (f"{n} coordinates",))
+                check_value(_argument("force"), self.applied, (n,), (time, q, q, *last), *2 * (f"{n} coordinates",))
         if self.is_driven and (self.discrete_lagrangian or self.discrete_constraints):
             remedy = 'Use rule="midpoint" or "trapezoidal".'
-            raise error(_named("discrete_lagrangian"), "be left out of a driven system", "discrete functions", remedy)
+            raise error(
+                _argument("discrete_lagrangian"), "be left out of a driven system", "discrete functions", remedy
+            )
 
     def _time(self, name: str) -> tuple[Any, ...]:
         count = _OTHERS[name] + len(self._shapes_given)
@@ -194,13 +196,13 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     def _check(self, name: str, shape: tuple[int, ...], *arguments: Any) -> None:
         function, of = getattr(self, name), f"{self.dimension} coordinates"
         if function is not None or name == "lagrangian":
-            check_value(_named(name), function, shape, (*arguments, *self._shapes_given), of, of)
+            check_value(_argument(name), function, shape, (*arguments, *self._shapes_given), of, of)
 
     @functools.cached_property
     def is_driven(self) -> bool:
         """Whether a force acts, or anything depends on time or moves by itself."""
-        given = self.force is not None or self.constraint_velocities is not None or bool(self.prescribed)
-        return given or any(map(self.takes_time, _OTHERS))
+        acts = self.force is not None or self.constraint_velocities is not None or bool(self.prescribed)
+        return acts or any(map(self.takes_time, _OTHERS))
 
     def with_parameters(self, **numbers: Any) -> Self:
         r"""Return the same system with other numbers of some of its parameters; nothing is compiled anew.
@@ -222,22 +224,22 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             >>> print(orbit.configuration[-1].round(9))
             [-1.]
         """
-        return _of_numbers(self, self.parameters.changed("with_parameters(...)", numbers), family=self.family)
+        return _of_numbers(self, self.parameters.replace("with_parameters(...)", numbers), family=self.family)
 
-    def _changed(self, **fields: Any) -> Self:
+    def _with_fields(self, **fields: Any) -> Self:
         """Return a system with other fields, which need no check; it does not have a name for stores."""
-        changed = object.__new__(type(self))
-        vars(changed).update(vars(self), **fields)
+        system = object.__new__(type(self))
+        vars(system).update(vars(self), **fields)
         for name in {"description", "family", "plain", "recipe"} - fields.keys():
-            vars(changed).pop(name, None)
-        return changed
+            vars(system).pop(name, None)
+        return system
 
     @functools.cached_property
     def family(self) -> Self:
         """What is the same for all numbers of the parameters: the system with zeros."""
         if not self.parameters:
             return self
-        family = self._changed(parameters=self.parameters.nothing)
+        family = self._with_fields(parameters=self.parameters.nothing)
         vars(family)["family"] = family
         return family
 
@@ -246,12 +248,12 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         if not self.parameters:
             return self
         p = dict(zip(self.parameters, numbers, strict=True))
-        given = {name: getattr(self, name) for name in _FUNCTIONS}
-        functions = {name: each and Bound(each, p) for name, each in given.items()}
+        own = {name: getattr(self, name) for name in _FUNCTIONS}
+        functions = {name: each and Bound(each, p) for name, each in own.items()}
         parts = parts_of(self.force)
         parts |= {"function": Bound(parts["function"], p)} if "function" in parts else {}
         motions = tuple((index, Bound(motion, p)) for index, motion in self.prescribed)
-        return self._changed(parameters=Parameters({}), force=joined(parts), prescribed=motions, **functions)
+        return self._with_fields(parameters=Parameters({}), force=force_of(parts), prescribed=motions, **functions)
 
     @functools.cached_property
     def plain(self) -> Self:
@@ -260,7 +262,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
 
     def parts(self, q: Any) -> tuple[Float[np.ndarray, "P 2"], ...]:
         """Return the parts of the outline at a configuration, in body axes."""
-        where, last = _named("outline"), (self.parameters,) if self.parameters else ()
+        where, last = _argument("outline"), (self.parameters,) if self.parameters else ()
         return _as_parts(where, call(where, self.outline, q, *last) if callable(self.outline) else self.outline)
 
     def takes_time(self, function: str) -> bool:
@@ -298,8 +300,8 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     @property
     def has_parts(self) -> bool:
         """Whether parts of a step are defined: functions and tables that were made for one time step have none."""
-        given = (self.discrete_lagrangian, self.discrete_constraints, self.table)
-        return not any(getattr(each, "is_of_one_step", False) for each in given)
+        functions = (self.discrete_lagrangian, self.discrete_constraints, self.table)
+        return not any(getattr(each, "is_of_one_step", False) for each in functions)
 
     def forced(self, potential: Any, force: Any) -> "LagrangeDAlembert":
         """Return the system with a potential U(q) and a force; itself with neither. `nonholo.Forced` calls it.
@@ -313,7 +315,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         if self.parameters:
             potential, parts = with_parameters(potential, 1), parts_of(force)
             parts |= {"function": with_parameters(parts["function"], 3)} if "function" in parts else {}
-            force = joined(parts)
+            force = force_of(parts)
         if potential is not None:
             q = jax.ShapeDtypeStruct((self.dimension,), float)
             with double_precision():
@@ -412,11 +414,11 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
 
 def _of_numbers(system: Any, parameters: Parameters, **fields: Any) -> Any:
     """Return a system with other numbers, which is pickled as such where it is made by a call that has a name."""
-    changed, recipe = system._changed(parameters=parameters, **fields), vars(system).get("recipe")
+    other, recipe = system._with_fields(parameters=parameters, **fields), vars(system).get("recipe")
     if recipe:
-        named = recipe[1][0] if recipe[0] is _of_numbers else system
-        vars(changed)["recipe"] = (_of_numbers, (named, parameters))
-    return changed
+        origin = recipe[1][0] if recipe[0] is _of_numbers else system
+        vars(other)["recipe"] = (_of_numbers, (origin, parameters))
+    return other
 
 
 def _plain(system: Any) -> Any:
@@ -440,10 +442,10 @@ def _with_potential(lagrangian: Callable[..., Array], potential: Any, *, last: b
     return lambda q, v: lagrangian(q, v) - potential(q)
 
 
-def _motions(given: Any, dimension: int, last: tuple[Any, ...]) -> tuple[tuple[int, Callable[[Array], Array]], ...]:
+def _motions(motions: Any, dimension: int, last: tuple[Any, ...]) -> tuple[tuple[int, Callable[[Array], Array]], ...]:
     """Return prescribed motions as pairs of index and function, in the order of the coordinates."""
-    where = _named("prescribed")
-    pairs = sorted(dict(given).items(), key=lambda pair: pair[0])
+    where = _argument("prescribed")
+    pairs = sorted(dict(motions).items(), key=lambda pair: pair[0])
     for index, motion in pairs:
         if not isinstance(index, int) or not 0 <= index < dimension:
             raise error(where, f"have indices from 0 to {dimension - 1}", shown(index), "Name coordinates by index.")
@@ -452,30 +454,30 @@ def _motions(given: Any, dimension: int, last: tuple[Any, ...]) -> tuple[tuple[i
     return tuple(pairs)
 
 
-def _force(given: Any, dimension: int) -> Any:
+def _force(value: Any, dimension: int) -> Any:
     """Return a force as a function, with that of `Friction`, a table, both, or None."""
-    parts = parts_of(given)
+    parts = parts_of(value)
     if "slip" in parts:
-        raise error(_named("force"), "be no Slip", "one", "Rows that may yield need a body on a group: nh.LLSystem.")
+        raise error(_argument("force"), "be no Slip", "one", "Rows that may yield need a body on a group: nh.LLSystem.")
     if (friction := parts.pop("friction", None)) is not None:
         friction.check(dimension)
         matrix, other = friction.matrix, parts.get("function")
         parts["function"] = lambda time, q, v, *p: (0 if other is None else other(time, q, v, *p)) - matrix @ v
     if "table" in parts and not isinstance(parts["table"], ForceTable):
         remedy = "Pass a function of time, configuration and velocity, Friction, or one force a step."
-        parts["table"] = ForceTable(array(_named("force"), parts["table"], (None, dimension), remedy))
-    return joined(parts)
+        parts["table"] = ForceTable(array(_argument("force"), parts["table"], (None, dimension), remedy))
+    return force_of(parts)
 
 
-def _named(argument: str) -> str:
+def _argument(argument: str) -> str:
     return f"LagrangeDAlembert({argument}=...)"
 
 
-def _names(given: Any, n: int) -> tuple[str, ...]:
+def _names(value: Any, n: int) -> tuple[str, ...]:
     """Return the names of the coordinates: by default q1 and so on."""
-    if isinstance(given, tuple) and not given:
+    if isinstance(value, tuple) and not value:
         return tuple(f"q{i}" for i in range(1, n + 1))
-    return names(_named("coordinates"), given, n)
+    return names(_argument("coordinates"), value, n)
 
 
 def _check_heading(where: str, heading: Any, coordinates: tuple[str, ...]) -> None:
@@ -485,17 +487,17 @@ def _check_heading(where: str, heading: Any, coordinates: tuple[str, ...]) -> No
         raise error(where, f"be a coordinate beside x and y of {', '.join(coordinates)}", shown(heading), remedy)
 
 
-def _checked_outline(where: str, given: Any) -> Any:
+def _checked_outline(where: str, outline: Any) -> Any:
     """Return an outline: a function as it is, parts as arrays."""
-    return given if callable(given) else _as_parts(where, given)
+    return outline if callable(outline) else _as_parts(where, outline)
 
 
-def _as_parts(where: str, given: Any) -> Parts:
+def _as_parts(where: str, value: Any) -> Parts:
     """Return the parts of an outline, at least two points each."""
     try:
-        rows = tuple(given)
+        rows = tuple(value)
     except TypeError:
-        raise error(where, "be a list of parts", shown(given), _REMEDY) from None
+        raise error(where, "be a list of parts", shown(value), _REMEDY) from None
     parts = tuple(array(where, part, (None, 2), _REMEDY) for part in rows)
     if any(len(part) < 2 for part in parts):
         raise error(where, "have parts of at least two points", "one point", _REMEDY)

@@ -13,10 +13,10 @@ import numpy as np
 
 from nonholo.base.checks import error
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert._accelerations import acceleration, nearest_place, refuse_table
 from nonholo.lagrange_dalembert._discretization import checked_state, set_out
-from nonholo.lagrange_dalembert._equations import solve_bordered
-from nonholo.lagrange_dalembert._newton import newton_matrix, orientation, solve
+from nonholo.lagrange_dalembert._flow import acceleration, nearest_place, refuse_table
+from nonholo.lagrange_dalembert._newton import orientation
+from nonholo.lagrange_dalembert._rollout import step_root
 from nonholo.lagrange_dalembert._room import equations_of, in_double, places, room
 
 _CORRECTIONS = 8  # of a velocity beside another one
@@ -26,7 +26,7 @@ Slopes = tuple[Array, Array, Array]
 """Changes of a state, their derivatives by place and velocity, and those of the constraints, holonomic ones last."""
 
 
-def begun(motion: Any, owner: str, configuration: Any, velocity: Any) -> tuple[np.ndarray, np.ndarray]:
+def begin(motion: Any, owner: str, configuration: Any, velocity: Any) -> tuple[np.ndarray, np.ndarray]:
     """Return the checked place and velocity of a flow, or of the step that a map begins with."""
     system = motion.system
     refuse_table(owner, system)
@@ -72,14 +72,14 @@ def tangent_map(orbit: Any) -> Float[np.ndarray, "L d d"]:
         raise error(where, "have a state", "none", "Run longer.")
     x, v = places(system, orbit.configuration, time), orbit.body_velocity
     _, slope, rows = slopes(motion, x, v)
-    moved = (
+    maps = (
         slope[:-1] + np.eye(slope.shape[-1])
         if orbit.is_discrete
         else room("_integration").transitions(system, x, v, time)
     )
     matters = np.r_[:n, n + system.is_driven : slope.shape[-1]]  # all but the time
     bases = np.linalg.svd(rows[..., matters])[2][:, rows.shape[1] :].swapaxes(1, 2)
-    return bases[1:].swapaxes(1, 2) @ moved[:, matters][:, :, matters] @ bases[:-1]
+    return bases[1:].swapaxes(1, 2) @ maps[:, matters][:, :, matters] @ bases[:-1]
 
 
 def _step_of(motion: Any) -> tuple[np.float64, ...]:
@@ -91,8 +91,8 @@ def _constraint(system: Any, x: Array, v: Array, *h: Array) -> Array:
     return equations.discrete_constraints(system, x, v, *h) if h else equations.constraint(system, x, v)
 
 
-def _beside(system: Any, *given: Array) -> tuple[Array, Array]:
-    *h, x, v, xis, ws = given
+def _beside(system: Any, *arguments: Array) -> tuple[Array, Array]:
+    *h, x, v, xis, ws = arguments
 
     def one(offset: tuple[Array, Array]) -> tuple[Array, Array]:
         xi, w = offset
@@ -117,23 +117,23 @@ def flow_slopes(system: Any, x: Array, v: Array) -> Slopes:
         beside = equations.beside(system, x, xi)
         return jnp.concatenate([equations.departure_rate(system, v, xi, w), acceleration(system, beside, w)[0]])
 
-    return _differentiated(system, change, x, v)
+    return _slopes_of(system, change, x, v)
 
 
 def _step_slopes(system: Any, h: Array, x: Array, v: Array) -> Slopes:
     equations = equations_of(system)
 
     def change(xi: Array, w: Array) -> Array:
-        after, arrived = _stepped(system, h, equations.beside(system, x, xi), w)
-        departed = equations.departure(system, equations.frame(system, x, v, h), after)
-        return jnp.concatenate([departed - xi, arrived - w])
+        after, w_after = _after_step(system, h, equations.beside(system, x, xi), w)
+        xi_after = equations.departure(system, equations.frame(system, x, v, h), after)
+        return jnp.concatenate([xi_after - xi, w_after - w])
 
-    return _differentiated(system, change, x, v, h)
+    return _slopes_of(system, change, x, v, h)
 
 
-def _each(system: Any, *given: Array) -> Slopes:
+def _each(system: Any, *arguments: Array) -> Slopes:
     """Return the slopes at states, one after another: the bits of each do not depend on the others."""
-    *h, xs, vs = given
+    *h, xs, vs = arguments
 
     def one(state: tuple[Array, Array]) -> Slopes:
         return _step_slopes(system, h[0], *state) if h else flow_slopes(system, *state)
@@ -141,7 +141,7 @@ def _each(system: Any, *given: Array) -> Slopes:
     return jax.lax.map(one, (xs, vs))
 
 
-def _differentiated(system: Any, change: Callable[[Array, Array], Array], x: Array, v: Array, *h: Array) -> Slopes:
+def _slopes_of(system: Any, change: Callable[[Array, Array], Array], x: Array, v: Array, *h: Array) -> Slopes:
     equations, size = equations_of(system), len(v) + system.is_driven
 
     def both(z: Array) -> tuple[tuple[Array, Array], Array]:
@@ -153,17 +153,11 @@ def _differentiated(system: Any, change: Callable[[Array, Array], Array], x: Arr
     return value, slope, rows
 
 
-def _stepped(system: Any, h: Array, x: Array, v: Array) -> tuple[Array, Array]:
-    """Return the state after a step, with the derivatives of the implicit function: those of a correction of Newton."""
-    equations, n = equations_of(system), v.shape[0]
+def _after_step(system: Any, h: Array, x: Array, v: Array) -> tuple[Array, Array]:
+    """Return the state after a step, with the derivatives of the implicit function."""
+    equations = equations_of(system)
     _, p = equations.momenta(system, x, v, h)
     after = equations.ahead(system, x, v, h)
-    fixed = jax.lax.stop_gradient((x, after, p, v))
-    w, impulses, code = solve(system, h, fixed[1], fixed[2], fixed[3], fixed[3], orientation(system, fixed[0], v, h)[0])
-    w, impulses = jax.lax.stop_gradient((w, impulses))
-    kinetic = equations.kinetic_matrix(system, fixed[1], fixed[3], h)
-    matrix, units, _ = jax.lax.stop_gradient(newton_matrix(system, fixed[1], w, h, kinetic))
-    leaving, missed = equations.momenta(system, after, w, h)[0], equations.discrete_constraints(system, after, w, h)
-    force = p + impulses @ equations.forms(system, after) - leaving
-    correction = solve_bordered(matrix, units, force, -missed)[0][:n]
-    return after, jnp.where(code == 0, w + correction, jnp.nan)
+    place, near = jax.lax.stop_gradient((x, v))
+    z, code = step_root(system, ((), h, after, p), (near, near, orientation(system, place, near, h)[0]))
+    return after, jnp.where(code == 0, z[: len(v)], jnp.nan)

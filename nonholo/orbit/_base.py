@@ -16,13 +16,7 @@ from nonholo.base.memo import Keeper, memo
 from nonholo.base.results import Outcome
 from nonholo.base.types import Bool, Float, Int
 
-_COLUMNS = {
-    "time",
-    "configuration",
-    "body_velocity",
-    "momentum",
-    "energy",
-}  # in coordinates; multipliers may be unknown
+_COLUMNS = {"time", "configuration", "body_velocity", "momentum", "energy"}  # in coordinates
 _COLUMNS |= {"reduced_momentum", "cayley", "canonical_pose"}  # compact
 
 _LOOKS = 8  # in a step of a flow, for events

@@ -176,7 +176,7 @@ def _reading_of(system: System) -> decoding.Reading | None:
         across=_flat(across / (across @ across)),
         back=_flat(frame if own else group.inverse(frame)),
         factors=(float(T[1, 0]), float(d[0]), float(d[1])),
-        turned=not own,
+        is_turned=not own,
     )
 
 

@@ -18,7 +18,7 @@ _TITLES = {"pose": "Pose", "momentum": "Momentum along admissible directions", "
 _LEAST = 1e-17  # of an error that a picture against a logarithmic scale shows
 
 
-@theme.styled
+@theme.in_style
 def comparison(
     comparison: Comparison, path: str | Path | None = None, *, overwrite: bool = False, **look: Unpack[theme.Look]
 ) -> Figure:
@@ -45,7 +45,7 @@ def comparison(
     """
     remedy = "Pass what `compare` returned for one orbit."
     instance("comparison(comparison=...)", comparison, Comparison, "be a comparison", remedy)
-    panels = _known(comparison.errors)
+    panels = _by_name(comparison.errors)
     figure = new_page("comparison", (8.4, 1.4 + 2.3 * len(panels)), path, overwrite=overwrite)
     axes = np.atleast_1d(figure.subplots(len(panels), sharex=True))
     for (name, errors), own in zip(panels.items(), axes, strict=True):
@@ -53,11 +53,11 @@ def comparison(
         _draw_errors(own, comparison.time, name, errors)
     axes[-1].set_xlabel("time")
     step = [] if comparison.time_step is None else [f"$h$ = {comparison.time_step:g}"]
-    said = [f"{len(comparison):,} common times".replace(",", "\u2009"), *step]
-    return finish_page(figure, "Difference of two motions", said, path)
+    facts = [f"{len(comparison):,} common times".replace(",", "\u2009"), *step]
+    return finish_page(figure, "Difference of two motions", facts, path)
 
 
-@theme.styled
+@theme.in_style
 def convergence(
     convergence: Convergence, path: str | Path | None = None, *, overwrite: bool = False, **look: Unpack[theme.Look]
 ) -> Figure:
@@ -88,7 +88,7 @@ def convergence(
     axes = figure.add_subplot(xscale="log", yscale="log", xlabel="time step  $h$", ylabel="largest error")
     theme.begin(axes)
     h, orders = convergence.time_step, convergence.order._asdict()
-    for name, errors in _known(convergence.largest).items():
+    for name, errors in _by_name(convergence.largest).items():
         _draw_slope(axes, h, np.maximum(errors, _LEAST), orders[name], name)
     axes.margins(x=0.12, y=0.1)
     axes.grid(which="major", color=theme.LEVEL, linewidth=0.5, alpha=0.6)
@@ -99,7 +99,7 @@ def convergence(
     return finish_page(figure, "Order of convergence", [steps], path)
 
 
-def _known(errors: Errors) -> dict[str, np.ndarray]:
+def _by_name(errors: Errors) -> dict[str, np.ndarray]:
     """Return what is known of errors, by name in the order of pictures."""
     rows = errors._asdict()
     return {name: rows[name] for name in _TITLES if rows[name] is not None}
@@ -107,20 +107,20 @@ def _known(errors: Errors) -> dict[str, np.ndarray]:
 
 def _color(name: str) -> Any:
     """Return the color of a kind of errors, or the one that is asked for."""
-    return theme.asked("color", theme.COMPONENTS[list(_TITLES).index(name)])
+    return theme.option("color", theme.COMPONENTS[list(_TITLES).index(name)])
 
 
-@theme.styled
+@theme.in_style
 def _draw_errors(axes: Axes, time: Float[np.ndarray, "K"], name: str, errors: Float[np.ndarray, "K"]) -> None:
     """Draw errors in units of a power of ten, and a ring about the largest."""
     most = int(np.abs(errors).argmax())
     unit = 10.0 ** np.floor(np.log10(max(abs(errors[most]), _LEAST)))
-    shown = evenly_in_box(np.stack([time, errors], axis=1), _MOST_POINTS)
+    at = evenly_in_box(np.stack([time, errors], axis=1), _MOST_POINTS)
     color = _color(name)
-    axes.plot(time[shown], errors[shown] / unit, color=color, label=theme.asked("label", None), linewidth=1.6, zorder=3)
+    axes.plot(time[at], errors[at] / unit, color=color, label=theme.option("label", None), linewidth=1.6, zorder=3)
     axes.axhline(0.0, color=theme.LEVEL, linewidth=0.8, zorder=1)
     ring: Any = {"s": 46, "facecolors": theme.PAPER, "edgecolors": color, "linewidths": 1.6, "zorder": 5}
-    axes.scatter(time[most], errors[most] / unit, label=f"largest {_written(abs(errors[most]))}", **ring)
+    axes.scatter(time[most], errors[most] / unit, label=f"largest {_scientific(abs(errors[most]))}", **ring)
     theme.write_title(axes, _TITLES[name])
     axes.set(ylabel=rf"error   [$10^{{{round(np.log10(unit))}}}$]")
     axes.margins(x=0.02, y=0.16)
@@ -129,18 +129,18 @@ def _draw_errors(axes: Axes, time: Float[np.ndarray, "K"], name: str, errors: Fl
 
 def _draw_slope(axes: Axes, h: Float[np.ndarray, "R"], errors: Float[np.ndarray, "R"], order: float, name: str) -> None:
     """Draw errors as dots, through them the line of their order, and write the order."""
-    told, color = np.isfinite(order), _color(name)
-    whose = " ".join(filter(None, (theme.asked("label", None), name)))
-    label = f"{whose}: order {order:.2f}" if told else f"{whose}: rounding"
+    has_order, color = np.isfinite(order), _color(name)
+    whose = " ".join(filter(None, (theme.option("label", None), name)))
+    label = f"{whose}: order {order:.2f}" if has_order else f"{whose}: rounding"
     look: Any = {"color": color, "marker": "o", "markersize": 7, "linewidth": 0, "zorder": 3}
-    axes.plot(h, errors, label=label, alpha=1.0 if told else 0.35, **look)
-    if told:
+    axes.plot(h, errors, label=label, alpha=1.0 if has_order else 0.35, **look)
+    if has_order:
         middle = np.exp(np.log(errors / h**order).mean())
         ends = np.array([h.min() / 1.15, h.max() * 1.15])
         axes.plot(ends, middle * ends**order, color=color, linewidth=1.2, alpha=0.6, zorder=2)
 
 
-def _written(value: float) -> str:
+def _scientific(value: float) -> str:
     """Return a number with two digits and its power of ten."""
     mantissa, power = f"{value:.1e}".split("e")
     return "0" if value == 0 else rf"${mantissa}\cdot10^{{{int(power)}}}$"

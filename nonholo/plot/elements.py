@@ -31,8 +31,8 @@ def draw_surface(axes: Any, momentum: Float[np.ndarray, "R C 3"]) -> Any:
         (12, 4)
     """
     x, y, z = np.moveaxis(momentum, -1, 0)
-    scaled = momentum / spans(momentum)
-    normal = np.cross(np.gradient(scaled, axis=0), np.gradient(scaled, axis=1))
+    unit = momentum / spans(momentum)
+    normal = np.cross(np.gradient(unit, axis=0), np.gradient(unit, axis=1))
     length = np.linalg.norm(normal, axis=-1, keepdims=True)
     light = np.abs(normal / np.where(length > 0, length, 1.0) @ (np.array([0.35, -0.45, 0.82])))
     shade = 0.55 + 0.45 * light[..., None]

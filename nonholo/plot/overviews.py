@@ -107,10 +107,10 @@ def _body_axis(orbit: Orbit, flow: Orbit | None, axes: Axes) -> None:
 
 
 def _velocity(orbit: Orbit, flow: Orbit | None, axes: Axes) -> None:
-    headed = blade_of_system(orbit.system) is not None and orbit.canonical_pose is not None
-    if flow is not None and flow.canonical_pose is None and (headed or orbit.system.is_spatial):
+    has_heading = blade_of_system(orbit.system) is not None and orbit.canonical_pose is not None
+    if flow is not None and flow.canonical_pose is None and (has_heading or orbit.system.is_spatial):
         flow = None
-    (motion.heading_and_speed if headed else motion.velocity_components)(orbit, axes, flow)
+    (motion.heading_and_speed if has_heading else motion.velocity_components)(orbit, axes, flow)
 
 
 def _write_mass_tensor(axes: Axes, mass_tensor: Float[np.ndarray, "3 3"]) -> None:
@@ -134,8 +134,8 @@ def _facts(orbit: AbstractOrbit) -> list[str]:
     else:
         steps = int(orbit.step[-1] - orbit.step[0])
         run = f"{steps:,} step{'s' * (steps != 1)} of $h$ = {step:g}".replace(",", "\u2009")
-    stopped = [] if orbit.outcome == Outcome.successful else [f"stopped: {orbit.outcome}"]
-    return [_parameters(_inside(orbit.system)) if isinstance(orbit, Orbit) else _form(orbit), run, *stopped]
+    end = [] if orbit.outcome == Outcome.successful else [f"stopped: {orbit.outcome}"]
+    return [_parameters(_inside(orbit.system)) if isinstance(orbit, Orbit) else _form(orbit), run, *end]
 
 
 def _form(orbit: AbstractOrbit) -> str:
@@ -168,8 +168,8 @@ def _name_of_body(system: System) -> str:
         return f"{_name_of_body(_inside(system))}, under forces"
     form = system.normal_form
     if form is not None:
-        name, recognized = _NAMES[form.is_sleigh, form.is_planar]
-        return f"LLSystem, {recognized}" if type(system) is LLSystem else name
+        name, synonym = _NAMES[form.is_sleigh, form.is_planar]
+        return f"LLSystem, {synonym}" if type(system) is LLSystem else name
     if system.homogeneous_mass_tensor is not None and system.group.is_rigid:
         if is_free(system):
             return "Free rigid body"
@@ -199,7 +199,7 @@ _SIZE = (13.0, 7.6)
 _LARGER = 2.2  # times as high as a panel against time
 
 
-@theme.styled
+@theme.in_style
 def overview(
     orbit: AbstractOrbit,
     path: str | Path | None = None,

@@ -138,17 +138,17 @@ def is_dark() -> bool:
     return _DRAWING.get().is_dark
 
 
-def asked(name: str, otherwise: Any) -> Any:
+def option(name: str, otherwise: Any) -> Any:
     """Return what the caller asks for under a name of `Look`, or something else."""
     return _DRAWING.get().look.get(name, otherwise)
 
 
-def named(color: Any, label: str | None = None) -> dict[str, Any]:
+def own_look(color: Any, label: str | None = None) -> dict[str, Any]:
     """Return the color and the name of what the caller may color and name, else these."""
-    return {"color": asked("color", color), "label": asked("label", label)}
+    return {"color": option("color", color), "label": option("label", label)}
 
 
-def styled(draw: Callable[_P, _R]) -> Callable[_P, _R]:
+def in_style(draw: Callable[_P, _R]) -> Callable[_P, _R]:
     """Run a drawing function under the style sheet and the keywords of `Look`, and restore all settings afterwards.
 
     Where pictures are parts of another one, they inherit what is asked of it, but for title and size.
@@ -157,29 +157,29 @@ def styled(draw: Callable[_P, _R]) -> Callable[_P, _R]:
     names = Look.__annotations__ if "look" in own else {}
 
     @functools.wraps(draw)
-    def under_sheet(*arguments: _P.args, **named: _P.kwargs) -> _R:
-        unknown = [name for name in named if name not in own and name not in Look.__annotations__]
+    def under_sheet(*arguments: _P.args, **keywords: _P.kwargs) -> _R:
+        unknown = [name for name in keywords if name not in own and name not in Look.__annotations__]
         if names and unknown:
             raise TypeError(f"{draw.__name__}() got an unexpected keyword argument {unknown[0]!r}")
-        inherited = {name: value for name, value in _DRAWING.get().look.items() if name not in ("title", "size")}
-        given: Any = {name: named.pop(name) for name in names if name in named}
-        look = _checked(draw.__name__, {name: value for name, value in given.items() if value is not None})
+        outer = {name: value for name, value in _DRAWING.get().look.items() if name not in ("title", "size")}
+        choices: Any = {name: keywords.pop(name) for name in names if name in keywords}
+        look = _valid_look(draw.__name__, {name: value for name, value in choices.items() if value is not None})
         with matplotlib.style.context(_SHEET):
-            drawing = _Drawing(Look(**{**inherited, **look}))
+            drawing = _Drawing(Look(**{**outer, **look}))
             token = _DRAWING.set(drawing)
             try:
-                _settle(asked("dark", None), _SETTINGS["axes.facecolor"])
+                _settle(option("dark", None), _SETTINGS["axes.facecolor"])
                 _set_fonts(_scale())
-                drawn = draw(*arguments, **named)
+                result = draw(*arguments, **keywords)
                 _choose_words(drawing)
-                return drawn
+                return result
             finally:
                 _DRAWING.reset(token)
 
     return under_sheet
 
 
-def _checked(owner: str, look: dict[str, Any]) -> dict[str, Any]:
+def _valid_look(owner: str, look: dict[str, Any]) -> dict[str, Any]:
     checks = dict.fromkeys(("title", "label"), text) | dict.fromkeys(("legend", "annotate", "dark"), flag)
     for name in checks.keys() & look.keys():
         checks[name](f"{owner}({name}=...)", look[name])
@@ -204,13 +204,13 @@ def luminance(color: Any) -> float:
 def _settle(dark: bool | None, paper: Any) -> None:
     """Choose the colors for a background; one that is not as dark or light as asked for gives way."""
     drawing = _DRAWING.get()
-    found = luminance(paper) < _DARK
-    drawing.is_dark = found if dark is None else dark
-    drawing.paper = paper if found == drawing.is_dark else _PAPERS[drawing.is_dark]
-    ink, muted = (_COLORS[name][drawing.is_dark] for name in ("INK", "MUTED"))
+    is_dark_paper = luminance(paper) < _DARK
+    drawing.is_dark = is_dark_paper if dark is None else dark
+    drawing.paper = paper if is_dark_paper == drawing.is_dark else _PAPERS[drawing.is_dark]
+    ink, gray = (_COLORS[name][drawing.is_dark] for name in ("INK", "MUTED"))
     settings = dict.fromkeys(("figure.facecolor", "axes.facecolor"), drawing.paper) if paper != drawing.paper else {}
     settings |= dict.fromkeys(("text.color", "axes.labelcolor", "xtick.labelcolor", "ytick.labelcolor"), ink)
-    settings |= dict.fromkeys(("axes.edgecolor", "xtick.color", "ytick.color"), muted)
+    settings |= dict.fromkeys(("axes.edgecolor", "xtick.color", "ytick.color"), gray)
     _SETTINGS.update(settings)
 
 
@@ -232,14 +232,14 @@ class _Picture(Figure):
         self.savefig(file := io.BytesIO(), format="png")
         return file.getvalue()
 
-    def savefig(self, fname: Any, **named: Any) -> None:
-        is_svg = "svg" in (named.get("format"), Path(str(fname)).suffix[1:].lower())
+    def savefig(self, fname: Any, **options: Any) -> None:
+        is_svg = "svg" in (options.get("format"), Path(str(fname)).suffix[1:].lower())
         words = [(word, word.get_path_effects()) for word in (self.findobj(Text) if is_svg else ())]
         try:
             for word, _ in words:
                 word.set_path_effects([])
             with matplotlib.rc_context({"svg.fonttype": "none", "pdf.fonttype": 42}):
-                Figure.savefig(self, fname, **named)
+                Figure.savefig(self, fname, **options)
         finally:
             for word, halo in words:
                 word.set_path_effects(halo)
@@ -248,10 +248,10 @@ class _Picture(Figure):
 def new_figure(size: tuple[float, float], layout: Any = "constrained") -> Figure:
     """Return a figure that no window manager knows, of the size that is asked for; fonts grow with it."""
     own = tuple(_SETTINGS["figure.figsize"])
-    wanted = asked("size", size if own == tuple(_USUAL["figure.figsize"]) else own)
+    inches = option("size", size if own == tuple(_USUAL["figure.figsize"]) else own)
     if _SETTINGS["font.size"] == _USUAL["font.size"]:
-        _set_fonts(max(_SMALLEST, min(wanted[0] / size[0], wanted[1] / size[1])))
-    return _Picture(figsize=wanted, layout=layout)
+        _set_fonts(max(_SMALLEST, min(inches[0] / size[0], inches[1] / size[1])))
+    return _Picture(figsize=inches, layout=layout)
 
 
 def axes_or_new(axes: Axes | None, size: tuple[float, float] = (6.0, 5.0), projection: str | None = None) -> Axes:
@@ -268,30 +268,30 @@ def begin(axes: Axes) -> None:
     figure: Any = axes.get_figure(root=False)
     front, back = to_rgba(axes.get_facecolor()), to_rgb(figure.get_facecolor())
     paper = tuple(front[3] * over + (1 - front[3]) * under for over, under in zip(front, back, strict=False))
-    _settle(asked("dark", None), paper)
+    _settle(option("dark", None), paper)
     _DRAWING.get().words[axes] = list(axes.texts)
 
 
 def _choose_words(drawing: _Drawing) -> None:
     """Hide new words inside axes if none are wanted, and those that the axes have already, there or elsewhere."""
     for axes, before in drawing.words.items():
-        said = {old.get_text() for old in before}
-        taken = {old.get_position() for old in before if old.get_transform() is axes.transAxes}
+        texts = {old.get_text() for old in before}
+        places = {old.get_position() for old in before if old.get_transform() is axes.transAxes}
         for new in axes.texts[len(before) :]:
-            hides = new.get_transform() is axes.transAxes and new.get_position() in taken
-            if new.get_text() and (hides or new.get_text() in said or not drawing.look.get("annotate", True)):
+            hides = new.get_transform() is axes.transAxes and new.get_position() in places
+            if new.get_text() and (hides or new.get_text() in texts or not drawing.look.get("annotate", True)):
                 new.set_visible(False)
 
 
 def write_title(axes: Axes, words: str, **look: Any) -> None:
     """Write the title of a picture at the left, unless the caller has one; one that comes later replaces it."""
-    own = asked("title", None)
+    own = option("title", None)
     others = (axes.get_title(place) not in ("", _TITLES.get(axes)) for place in ("left", "center", "right"))
     if own is None and (axes in _ASKED or any(others)):
         return
     if axes not in _TITLES:
-        watched = weakref.ref(axes)
-        axes.title.add_callback(lambda _: _withdraw(watched()))
+        reference = weakref.ref(axes)
+        axes.title.add_callback(lambda _: _withdraw(reference()))
     if own is not None:
         _ASKED.add(axes)
         axes.set_title("", loc="center")
@@ -319,9 +319,9 @@ def time_scale(orbit: AbstractOrbit) -> Normalize:
     momentum = orbit.reduced_momentum if isinstance(orbit, Orbit) else orbit.body_velocity
     near = _SETTLED * np.abs(momentum).max(initial=0.0)
     left = np.flatnonzero(np.abs(momentum - momentum[0]).max(axis=1, initial=0.0) > near)
-    settled = np.flatnonzero(np.abs(momentum - momentum[-1]).max(axis=1, initial=0.0) > near)
-    if len(left) and len(settled) and left[0] <= settled[-1]:
-        begin, end = sorted((float(orbit.time[left[0]]), float(orbit.time[settled[-1]])))
+    moving = np.flatnonzero(np.abs(momentum - momentum[-1]).max(axis=1, initial=0.0) > near)
+    if len(left) and len(moving) and left[0] <= moving[-1]:
+        begin, end = sorted((float(orbit.time[left[0]]), float(orbit.time[moving[-1]])))
         half = (end - begin) / 2
         first, last = max(first, begin - half), min(last, end + half)
     return Normalize(first, last if last > first else first + 1.0, clip=True)
@@ -330,7 +330,7 @@ def time_scale(orbit: AbstractOrbit) -> Normalize:
 def time_colors(orbit: AbstractOrbit, time: Float[np.ndarray, "K"]) -> Float[np.ndarray, "K 4"]:
     """Return the colors of an orbit at these times: of time, or the one that is asked for."""
     shades = __getattr__("TIME")(time_scale(orbit)(time))
-    return np.broadcast_to(to_rgba(asked("color", None)), shades.shape).copy() if asked("color", None) else shades
+    return np.broadcast_to(to_rgba(option("color", None)), shades.shape).copy() if option("color", None) else shades
 
 
 def component_colors(count: int) -> list[Any]:
@@ -353,11 +353,11 @@ component_colours, end_colours = component_colors, end_colors  # names they had,
 
 def mark_time(axes: Axes, orbit: AbstractOrbit) -> LineCollection | None:
     """Lay the colors of time along the bottom of axes whose abscissa is time: the key to the other panels."""
-    if len(orbit) < 2 or asked("color", None):
+    if len(orbit) < 2 or option("color", None):
         return None
     scale = time_scale(orbit)
-    colored = scale.inverse(np.linspace(0.0, 1.0, 129))
-    ends = np.unique(np.concatenate([orbit.time[[0, -1]], colored]))
+    times = scale.inverse(np.linspace(0.0, 1.0, 129))
+    ends = np.unique(np.concatenate([orbit.time[[0, -1]], times]))
     ground = np.stack([ends, np.zeros_like(ends)], axis=-1)
     look: Any = {"linewidth": 4, "capstyle": "butt", "clip_on": False, "zorder": 5}
     strip = LineCollection(pieces(ground), transform=axes.get_xaxis_transform())
@@ -390,7 +390,7 @@ def legend_above(axes: Axes) -> None:
     Where both do not fit into one line the title moves up; of one that is the caller's the legend keeps clear inside.
     """
     labels = list(dict.fromkeys(axes.get_legend_handles_labels()[1]))
-    if not labels or not asked("legend", True):
+    if not labels or not option("legend", True):
         return
     ours = axes.get_title(loc="left") + axes.get_title()
     fits = _fits(axes, labels)
@@ -408,15 +408,15 @@ def _fits(axes: Axes, labels: list[str]) -> bool:
     """Tell whether a title, at the left or in the middle, and a legend in one line do not meet."""
     left, middle = axes.get_title(loc="left"), axes.get_title()
     width = axes.get_window_extent().width / axes.figure.dpi / _scale()
-    seen = (_SIGNS.sub("", _COMMANDS.sub("x", label)) for label in labels)
-    beside = (2 if middle else 1) * sum(0.067 * len(label) + 0.3 for label in seen)
+    plain = (_SIGNS.sub("", _COMMANDS.sub("x", label)) for label in labels)
+    beside = (2 if middle else 1) * sum(0.067 * len(label) + 0.3 for label in plain)
     return not left + middle or 0.085 * len(left + middle) <= width - beside
 
 
 def legend(axes: Axes, **look: Any) -> None:
     """Write the legend, if one is wanted: each name once, where several pictures share the axes."""
-    named = {}
+    handles = {}
     for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
-        named.setdefault(label, handle)
-    if named and asked("legend", True):
-        axes.legend(list(named.values()), list(named), **look)
+        handles.setdefault(label, handle)
+    if handles and option("legend", True):
+        axes.legend(list(handles.values()), list(handles), **look)

@@ -46,7 +46,7 @@ def into_store(run: Run, first: First, path: Path, checkpoint_every: int | None,
     numbers = 1 + run.stepper.width
     within_disk("simulate(store=...)", 8.0 * (1 + run.steps // run.every) * numbers, path, remedy)
     stream = io.create_stream(path, there, plan, _checkpoint(start), events, scenario)
-    with io.locked(stream.path):
+    with io.write_lock(stream.path):
         return continue_run(run, stream)
 
 
@@ -54,7 +54,9 @@ def continue_run(run: Run, stream: "Stream") -> Any:
     """Compute what a locked store lacks, block after block, and return the orbit."""
     stream.prepare()
     _warn_of_other_versions(stream)
-    with io.reporting_how_to_resume(stream.path, "The run", lambda: f"step {stream.reached()} of {stream.plan.steps}"):
+    with io.reporting_how_to_resume(
+        stream.path, "The run", lambda: f"step {stream.steps_done()} of {stream.plan.steps}"
+    ):
         end = _complete(run, stream)
     return run.finish(_load(run, stream, end), end.done)
 
@@ -69,7 +71,7 @@ def _warn_of_other_versions(stream: "Stream") -> None:
 
 def _complete(run: Run, stream: "Stream") -> Checkpoint:
     """Compute every block that is missing or damaged; return the end of the run."""
-    last_mark, is_computed = max(stream.marked(), default=-1), not stream.is_finished
+    last_mark, is_computed = max(stream.block_numbers(), default=-1), not stream.is_finished
 
     @functools.cache
     def look_up(number: int) -> Reached | None:
@@ -115,7 +117,7 @@ def _first(stream: "Stream") -> Checkpoint:
 
 def _load(run: Run, stream: "Stream", end: Checkpoint) -> Any:
     """Return the orbit, of one that would fill the memory the last block."""
-    states = 1 + end.done // run.every + (0 if end.seen is None else int(end.seen.counts.sum()))
+    states = 1 + end.done // run.every + (0 if end.of_events is None else int(end.of_events.counts.sum()))
     if states * (2 + run.stepper.width) <= _LOADED:
         return io.load_orbit(stream.path, discrete=run.stepper.motion)
     return io.load_last_block(stream.path, run.stepper.motion)
@@ -145,9 +147,9 @@ def seen_by(watch: Watch) -> Seen:
 
 def reached_at(run: Run, checkpoint: Checkpoint) -> Reached:
     """Return the state of a run at a checkpoint of its store."""
-    watch, memory = run.watch, checkpoint.seen
+    watch, memory = run.watch, checkpoint.of_events
     if watch is not None and memory is not None:
-        stopper = tuple(watch.events)[memory.stopped] if checkpoint.is_stopped else None
+        stopper = tuple(watch.events)[memory.last_event] if checkpoint.is_stopped else None
         facts = {"counts": tuple(map(int, memory.counts)), "values": memory.values[:, None], "heading": memory.heading}
         watch = dataclasses.replace(watch, stopped_by=stopper, **facts)
     return Reached(checkpoint.done, checkpoint.outcome, checkpoint.vector, watch)
@@ -170,14 +172,14 @@ def watch_of_store(owner: str, stream: "Stream", stepper: AbstractStepper[Any], 
     request, record = [] if events is None else events, json.loads(text or "[]")
     if text is None and not checked_events(owner, request):
         return None
-    requirement = f"be the events of the store, {io.described(record)}"
+    requirement = f"be the events of the store, {io.events_text(record)}"
     if events is None and record:
         remedy = "Pass events=[...] again, in that order with these directions and stops: a store holds no functions."
         raise error(where, requirement, f"None for '{stream.path}'", remedy)
     watch = watch_for(owner, stepper, request)
     own = descriptions(watch.events)
     if own != record:
-        raise error(where, requirement, io.described(own), "Pass the ones it was run with.")
+        raise error(where, requirement, io.events_text(own), "Pass the ones it was run with.")
     _refuse_other_values(where, stream, stepper, watch)
     return watch
 
@@ -188,10 +190,10 @@ def _refuse_other_values(where: str, stream: "Stream", stepper: AbstractStepper[
         first = stream.checkpoint(0)
     except io.DamagedError:
         return  # whoever needs it to continue says so
-    if first.seen is None:
+    if first.of_events is None:
         return
     first_watch, _ = search(watch, orbit_at(stepper, first.vector, 0))
-    for name, now, then in zip(watch.events, seen_by(first_watch).values, first.seen.values, strict=True):
+    for name, now, then in zip(watch.events, seen_by(first_watch).values, first.of_events.values, strict=True):
         if abs(now - then) > _SAME * (1 + abs(then)):
             got = f"another one of {name!r}: {now:.17g} instead of {then:.17g} at the first state"
             raise error(where, "be the functions of the store", got, "Pass those it was run with.")
@@ -234,7 +236,7 @@ def _difference(now: np.ndarray, then: np.ndarray) -> float:
 
 def _last_sound(stream: "Stream") -> int | None:
     """Return the last block that took steps and is sound."""
-    for block in sorted(stream.marked(), reverse=True):
+    for block in sorted(stream.block_numbers(), reverse=True):
         try:
             if stream.sound(block).done > stream.checkpoint(block).done:
                 return block
@@ -246,7 +248,7 @@ def _last_sound(stream: "Stream") -> int | None:
 def resume_run(store: str | Path, *, discrete: Any, events: Any, throw: bool, progress: bool) -> Any:
     """Resume the run of a store: what `resume` does once it has asked the store, and found no sweep."""
     stream, run = _open("resume", store, discrete, events, throw=throw, progress=progress)
-    with io.locked(stream.path):
+    with io.write_lock(stream.path):
         return continue_run(run, io.open_stream(stream.path))
 
 
@@ -295,12 +297,12 @@ def extend(
         raise error("extend(task=...)", "come with the store of a sweep", shown(task), "Leave it out for an orbit.")
     steps = count("extend(steps=...)", steps, "Pass how many steps more.")
     stream, run = _open("extend", store, discrete, events, throw=throw, progress=progress)
-    with io.locked(stream.path):
+    with io.write_lock(stream.path):
         _refuse_ended(io.read_attributes(stream.path))
         numbers, remedy = 1 + sum(run.stepper.columns.values()), "Pass fewer steps."
         size = 8.0 * (steps // run.every) * numbers
         within_disk("extend(steps=...)", size, stream.path, remedy)
-        longer = io.open_stream(stream.path).lengthened(steps)
+        longer = io.open_stream(stream.path).longer(steps)
         check_forces("extend", run.stepper.motion, longer.plan.steps)
         longer.announce(steps)
         return continue_run(run._replace(steps=longer.plan.steps), longer)

@@ -15,7 +15,7 @@ from nonholo.base.checks import error, instance, is_traced, shape_of, trailing
 from nonholo.base.html import table
 from nonholo.base.limits import within_memory
 from nonholo.base.memo import Keeper, system_memo
-from nonholo.base.numerics import Factors, applied, factors_of, solved
+from nonholo.base.numerics import Factors, applied, factors_of, solve_by_factors
 from nonholo.base.types import Array, Bool, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._equilibria import Equilibria, equilibria_of, transverse_rates
@@ -245,7 +245,7 @@ class AbstractSystem(Keeper, abc.ABC):
         del configuration
         momentum, inertia = self._along("restricted_momentum", restricted_momentum), self.inertia_along
         if isinstance(momentum, np.ndarray) and self.inertia_factors is not None:
-            return solved(self.inertia_factors, momentum)
+            return solve_by_factors(self.inertia_factors, momentum)
         return inertia.velocities(momentum) if isinstance(inertia, WideInertia) else _solve(inertia, momentum)
 
     def restricted_momentum(

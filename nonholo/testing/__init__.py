@@ -1,8 +1,7 @@
 """The properties that groups, systems and discretizations must have, checked for ours and for users' own."""
 
-from nonholo.testing._discretizations import check_discretization
+from nonholo.testing._discretizations import check_discretization, check_order
 from nonholo.testing._groups import check_group
-from nonholo.testing._order import check_order
 from nonholo.testing._report import Report, Result
 from nonholo.testing._systems import check_system
 

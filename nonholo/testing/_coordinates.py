@@ -10,9 +10,8 @@ import numpy as np
 from nonholo.base.checks import error, shown
 from nonholo.base.types import Float
 from nonholo.simulation import flow, simulate
-from nonholo.testing._measures import derivative, gap, largest, relative
-from nonholo.testing._orbit_samples import COUNTS, made, off_two, raised
-from nonholo.testing._report import Check, measures, need
+from nonholo.testing._orbit_samples import COUNTS, off_two, result_of, result_or_raise
+from nonholo.testing._report import Check, derivative, gap, largest, measures, need, relative
 
 SYSTEM: list[Check] = []
 MAP: list[Check] = []
@@ -63,13 +62,13 @@ class CoordinateSamples:
 
     def forms(self, q: np.ndarray, t: float) -> Float[np.ndarray, "s n"]:
         """Return the rows of the constraint, before the last ones of prescribed coordinates those of holonomic ones."""
-        system, fixed = self.system.plain, [i for i, _ in self.system.prescribed]
+        system, driven = self.system.plain, [i for i, _ in self.system.prescribed]
         rows = np.zeros((0, system.dimension))
         if system.constraint_forms is not None:
             rows = self._value(system.constraint_forms, q, *([t] if system.takes_time("constraint_forms") else []))
         if system.holonomic is not None:
             rows = np.concatenate([rows, self.gradient(lambda x: self.holonomic(x, t), q).T])
-        return np.concatenate([rows, np.eye(system.dimension)[fixed]])
+        return np.concatenate([rows, np.eye(system.dimension)[driven]])
 
     def holonomic(self, q: np.ndarray, t: float) -> Float[np.ndarray, "m"]:
         """Return what holonomic constraints leave."""
@@ -122,7 +121,7 @@ class CoordinateSamples:
     @property
     def orbit(self) -> Any:
         """The orbit."""
-        return made(self.run, "the orbit failed")
+        return result_of(self.run, "the orbit failed")
 
     def _run(self, time_step: float, steps: int, **start: Any) -> Any:
         start = start or {"configuration": self.q, "momentum": self.momentum}
@@ -136,7 +135,7 @@ class CoordinateSamples:
     @functools.cached_property
     def paths(self) -> list[Any]:
         """One path in more and more steps."""
-        made(self.run, "the orbit failed")
+        result_of(self.run, "the orbit failed")
         need(not getattr(self.system.discrete_lagrangian, "is_of_one_step", False), "made for one time step")
         return [self._run(self.span / n, n) for n in COUNTS]
 
@@ -155,8 +154,8 @@ def _momentum(s: CoordinateSamples) -> float:
 @measures(SYSTEM, "energy", "E = v p - L", 1e-11)
 def _energy(s: CoordinateSamples) -> float:
     q, v, t, p = _middle(s)
-    expected = v @ p - s.lagrangian(q, v, t)
-    return abs(s.near.energy[2] - expected) / (abs(expected) + abs(v @ p))
+    energy = v @ p - s.lagrangian(q, v, t)
+    return abs(s.near.energy[2] - energy) / (abs(energy) + abs(v @ p))
 
 
 @measures(SYSTEM, "velocity", "the flow moves with its velocity", 1e-8)
@@ -192,7 +191,7 @@ def _slope(rows: Float[np.ndarray, "5 n"]) -> Float[np.ndarray, "n"]:
 
 @measures(MAP, "orbit", "a run goes through: steps that are missing", 0.0)
 def _orbit(s: CoordinateSamples) -> float:
-    return float(s.steps + 1 - len(raised(s.run)))
+    return float(s.steps + 1 - len(result_or_raise(s.run)))
 
 
 @measures(MAP, "discrete constraint", "F(q_k, q_(k+1)) = 0", 1e-11)
@@ -201,7 +200,7 @@ def _discrete_constraint(s: CoordinateSamples) -> float:
 
 
 @measures(MAP, "prescribed", "prescribed coordinates are where they have to be", 1e-12)
-def _prescribed(s: CoordinateSamples) -> float:
+def _drivers(s: CoordinateSamples) -> float:
     need(s.system.prescribed, "nothing is prescribed")
     pairs = ((s.orbit.configuration[:, i], motion) for i, motion in s.system.plain.prescribed)
     return max(gap(rows, [s._value(motion, t) for t in s.orbit.time]) for rows, motion in pairs)
@@ -217,9 +216,9 @@ def _holonomic(s: CoordinateSamples) -> float:
 @measures(MAP, "start", "the first momentum along the constraint is that of the start", 1e-11)
 def _start(s: CoordinateSamples) -> float:
     rows = s.forms(s.orbit.configuration[0], 0.0)
-    missed = s.orbit.momentum[0] - s.momentum
-    across = np.linalg.lstsq(rows.T, missed)[0] @ rows
-    return largest(missed - across) / (1 + largest(s.momentum))
+    gap_of_momenta = s.orbit.momentum[0] - s.momentum
+    across = np.linalg.lstsq(rows.T, gap_of_momenta)[0] @ rows
+    return largest(gap_of_momenta - across) / (1 + largest(s.momentum))
 
 
 @measures(MAP, "discrete principle", "P_(k+1) - P+_k = sum lambda_j A^j, by differences of the Lagrangian", 1e-7)

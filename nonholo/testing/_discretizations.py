@@ -1,19 +1,89 @@
-"""Whether a discretization follows its equations and keeps what it should."""
+"""Whether a discretization follows its equations and keeps what it should, and has the order that it claims."""
 
 import dataclasses
 from typing import Any
 
 import numpy as np
 
-from nonholo.analysis import invariants
-from nonholo.base.checks import count, error, flags, refuse_given
+from nonholo.analysis import Convergence, compare, invariants
+from nonholo.base.checks import count, error, flags, instance, positive, refuse_given
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization, discrete_legendre, refuse_composition
-from nonholo.simulation import refuse_many_matrices, simulate
+from nonholo.simulation import flow, refuse_many_matrices, simulate
 from nonholo.systems import AbstractCoordinateDiscretization, Forced, refuse_slip
 from nonholo.testing._coordinates import MAP, CoordinateSamples
-from nonholo.testing._measures import derivative, gap, largest, relative, seeded
-from nonholo.testing._orbit_samples import COUNTS, EXACT, STEP, OrbitSamples, off_two, raised, slope
-from nonholo.testing._report import Check, Report, measures, need, run_checks
+from nonholo.testing._orbit_samples import COUNTS, EXACT, STEP, OrbitSamples, off_two, result_or_raise, slope
+from nonholo.testing._report import (
+    Check,
+    Report,
+    derivative,
+    gap,
+    generator_of,
+    largest,
+    measures,
+    need,
+    relative,
+    run_checks,
+)
+
+_MANY = 1000  # halvings; more than any memory holds
+
+
+def check_order(
+    discrete: Discretization,
+    body_velocity: Float[np.ndarray, "dim"],
+    *,
+    steps: int = 20,
+    halvings: int = 2,
+    tolerance: float = 0.2,
+    throw: bool = True,
+) -> Convergence:
+    r"""Check that momenta and poses converge to the continuous motion with the order of a discretization.
+
+    $$ \max_k|r_k - r(t_k)| = O(h^p), \qquad \max_k\|g_k^{-1}g(t_k) - I\| = O(h^p), \qquad p = 2, 4, 6, 8. $$
+
+    The same motion is run with the time step, a half of it, a fourth and so on, and compared with `nh.flow`. Errors
+    that are only rounding have no order and pass; take larger steps to see one. `plot()` of what is returned draws the
+    errors over the time step.
+
+    Args:
+        discrete: Made by `discretize` for a system on a group, with the largest time step.
+        body_velocity: The start; it satisfies the constraint.
+        steps: Length of the run with the largest time step.
+        halvings: How often the time step is halved.
+        tolerance: How far the slopes of $\log$ error over $\log h$ may be from the order.
+        throw: Raise if they are farther; otherwise only what is returned says so.
+
+    Returns:
+        The errors of all runs, with `order` and `plot`.
+
+    Raises:
+        ValueError: `discrete` is no discretization of a system on a group, or the start is refused.
+        OutcomeError: A run cannot continue: take a smaller time step.
+        AssertionError: With `throw`: an order that is not the one claimed.
+
+    Example:
+        >>> sleigh = nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5)
+        >>> nh.testing.check_order(nh.discretize(sleigh, 0.2), (1.0, 0.5, 0.0))
+        <Convergence over 3 time steps, order: momentum 2.01, pose 2.00, energy at rounding>
+    """
+    where, remedy = "check_order(discrete=...)", "Pass `discretize(system, time_step)` of a system on a group."
+    instance(where, discrete, Discretization, "be a discretization of a system on a group", remedy)
+    number = count("check_order(steps=...)", steps, "Pass the length of the first run.")
+    finer = count("check_order(halvings=...)", halvings, "Pass 1 or more.")
+    most = float(positive("check_order(tolerance=...)", tolerance, "Pass a positive number."))
+    flags("check_order", throw=throw)
+    where, all_steps = "check_order(steps=..., halvings=...)", number * 2 ** (min(finer, _MANY) + 1)
+    refuse_many_matrices(where, discrete, all_steps, "Pass fewer of them.")
+    h = float(discrete.time_step)
+    exact = flow(discrete.system, body_velocity=body_velocity, times=(0.0, number * h))
+    maps = [dataclasses.replace(discrete, time_step=h / 2**k) for k in range(finer + 1)]
+    runs = [simulate(each, body_velocity=body_velocity, steps=number * 2**k) for k, each in enumerate(maps)]
+    study = compare(runs, exact)
+    wrong = [slope for slope in (study.order.momentum, study.order.pose) if abs(slope - discrete.order) > most]
+    if throw and wrong:
+        raise AssertionError(f"`check_order(...)` must find order {discrete.order} +- {most:g}. Got {study}.")
+    return study
 
 
 def check_discretization(
@@ -68,9 +138,9 @@ def check_discretization(
     number = max(count(f"{owner}(steps=...)", steps, "Pass the length of the orbit."), 4)
     if isinstance(discrete, AbstractCoordinateDiscretization):
         system, h = discrete.system, discrete.time_step
-        there = CoordinateSamples(owner, system, seeded(rng), configuration, h, number)
-        named = f"{owner}({there.system.name}, time_step={h:g}, {there.system.rule})"
-        return run_checks(named, MAP, there, tolerance_factor, throw)
+        there = CoordinateSamples(owner, system, generator_of(rng), configuration, h, number)
+        title = f"{owner}({there.system.name}, time_step={h:g}, {there.system.rule})"
+        return run_checks(title, MAP, there, tolerance_factor, throw)
     refuse_given(owner, "be left out on a group", "Leave it out.", configuration=(configuration, None))
     if not isinstance(discrete, Discretization):
         remedy = "Pass `discretize(system, time_step)`."
@@ -78,9 +148,9 @@ def check_discretization(
     refuse_composition(where, discrete, "Check the discretization of order 2.")
     refuse_slip(where, discrete.system)
     refuse_many_matrices(f"{owner}(steps=...)", discrete, number, "Pass fewer steps.")
-    samples = OrbitSamples(discrete, seeded(rng), number)
+    samples = OrbitSamples(discrete, generator_of(rng), number)
     forced = FORCED if discrete.system.is_forced else []
-    checks = (*CHECKS, *forced, *claimed(samples), *((DEFINITION,) if definition else ()))
+    checks = (*CHECKS, *forced, *checks_of_claims(samples), *((DEFINITION,) if definition else ()))
     return run_checks(_owner(discrete), checks, samples, tolerance_factor, throw)
 
 
@@ -102,10 +172,10 @@ _AGREE = ("momentum", "displacement", "configuration")
 def inertia(s: OrbitSamples) -> float:
     """Return how far the second derivative of the discrete Lagrangian along the constraint is from the inertia."""
     eye, D, h = s.group.identity, s.directions, s.discrete.time_step
-    expected = D @ s.system.inertia_operator @ D.T
+    exact = D @ s.system.inertia_operator @ D.T
     need(len(D), "the constraint forbids all motion")
     slope = derivative(lambda t: s.momentum(s.group.exp(t * D))) @ D.T * h
-    return max(relative(slope, expected), largest(s.momentum(eye) @ D.T) * h / largest(expected))
+    return max(relative(slope, exact), largest(s.momentum(eye) @ D.T) * h / largest(exact))
 
 
 @measures(CHECKS, "left momentum", "<P(W), x> = d/dt l_d(exp(t x) W)", 1e-8)
@@ -119,8 +189,8 @@ def left_momentum(s: OrbitSamples) -> float:
 def right_momentum(s: OrbitSamples) -> float:
     """Compare with the derivative of l_d(W exp(t x))."""
     W, x = s.W[:3, None], np.eye(s.group.dim)
-    found = discrete_legendre(s.free, s.W[:3], "right")
-    return relative(found, derivative(lambda t: s.lagrangian(W @ s.group.exp(t * x))))
+    momentum = discrete_legendre(s.free, s.W[:3], "right")
+    return relative(momentum, derivative(lambda t: s.lagrangian(W @ s.group.exp(t * x))))
 
 
 @measures(CHECKS, "self-adjoint", "l_d(W^-1) = l_d(W): not required", None)
@@ -158,13 +228,13 @@ def transversality(s: OrbitSamples) -> float:
 @measures(CHECKS, "orbit", f"a run with steps of norm {STEP} goes through, or with a part of that: the divisor", 32.0)
 def runs(s: OrbitSamples) -> float:
     """Return the share of the intended path that a short run covers, inverted; raise what it raised."""
-    return s.steps * s.step / raised(s.run)[1]
+    return s.steps * s.step / result_or_raise(s.run)[1]
 
 
 @measures(CHECKS, "finer orbits", f"one path in {COUNTS} steps goes through, or a part of it: the divisor", 32.0)
 def runs_finer(s: OrbitSamples) -> float:
     """Return the same of runs in finer and finer steps."""
-    return s.path / raised(s.finer)[1]
+    return s.path / result_or_raise(s.finer)[1]
 
 
 @measures(CHECKS, "start", "P(W_0) along d is the momentum of the velocity", 1e-11)
@@ -197,14 +267,14 @@ def reconstruction(s: OrbitSamples) -> float:
 @measures(CHECKS, "momentum equation", "P_(k+1) - Ad*_(W_k) P_k vanishes on d", 1e-11)
 def momentum_equation(s: OrbitSamples) -> float:
     """Return the part of the impulses along the constraint, relative to the momenta."""
-    impulses = s.impulse(s.W[:-1], s.W[1:], s.orbit.configuration[1:], s.pushed)
+    impulses = s.impulse(s.W[:-1], s.W[1:], s.orbit.configuration[1:], s.node_kicks)
     return largest(impulses @ s.S.T) / largest(s.momentum(s.W))
 
 
 @measures(CHECKS, "multipliers", "P_(k+1) - Ad*_(W_k) P_k = sum lambda_j a^j", 1e-11)
 def multipliers(s: OrbitSamples) -> float:
     """Compare impulses with the sum over the multipliers, relative to the momenta."""
-    impulses = s.impulse(s.W[:-1], s.W[1:], s.orbit.configuration[1:], s.pushed)
+    impulses = s.impulse(s.W[:-1], s.W[1:], s.orbit.configuration[1:], s.node_kicks)
     return largest(impulses - s.orbit.multipliers @ s.A) / largest(s.momentum(s.W))
 
 
@@ -215,16 +285,16 @@ def reversal(s: OrbitSamples) -> float:
         back = simulate(s.discrete, steps=len(g) - 1, momentum=-r[-1], configuration=g[-1])
         return max(gap(back.configuration[::-1], g), relative(-back.restricted_momentum[::-1], r))
     g, back = s.orbit.configuration, np.linalg.inv(s.W)
-    missed = s.impulse(back[1:], back[:-1], g[1:], 0.0) @ s.S.T
-    return max(largest(missed) / largest(s.momentum(s.W)), largest(s.forbidden(back, g @ s.W)))
+    defect = s.impulse(back[1:], back[:-1], g[1:], 0.0) @ s.S.T
+    return max(largest(defect) / largest(s.momentum(s.W)), largest(s.forbidden(back, g @ s.W)))
 
 
 def compiled_reversal(s: OrbitSamples) -> float:
     """Return how far one compiled step forward and back misses its start."""
     need(s.discrete.route.compiled_route is not None, "the step is not compiled")
     need(s.discrete.forces is None, "forces act")
-    found = invariants(s.orbit).reversal_defect
-    return float("nan") if found is None else found
+    defect = invariants(s.orbit).reversal_defect
+    return float("nan") if defect is None else defect
 
 
 def energy_drift(s: OrbitSamples) -> float:
@@ -286,18 +356,18 @@ def friction(s: OrbitSamples) -> float:
     return float(np.diff(s.orbit.energy).max() / s.orbit.energy[0])
 
 
-def claimed(samples: OrbitSamples) -> tuple[Check, ...]:
+def checks_of_claims(samples: OrbitSamples) -> tuple[Check, ...]:
     """Return the checks that depend on what the discretization claims."""
     discrete = samples.discrete
-    named = isinstance(discrete.difference, str) and discrete.constraint in ("skew", "exponential")
+    is_named = isinstance(discrete.difference, str) and discrete.constraint in ("skew", "exponential")
     claims = (
-        ("reversal", "the way back solves the equations", named and samples.reverses, 1e-11, reversal),
-        ("compiled reversal", "one compiled step and one back lead home", named, 1e-11, compiled_reversal),
+        ("reversal", "the way back solves the equations", is_named and samples.reverses, 1e-11, reversal),
+        ("compiled reversal", "one compiled step and one back lead home", is_named, 1e-11, compiled_reversal),
         ("energy", "the constrained energy is constant", discrete.conserves_energy, 1e-12, energy_drift),
     )
     return tuple(
-        Check(name, words if is_claimed else f"{words}: not required", tolerance if is_claimed else None, measured)
-        for name, words, is_claimed, tolerance, measured in claims
+        Check(name, words if is_claimed else f"{words}: not required", tolerance if is_claimed else None, measure)
+        for name, words, is_claimed, tolerance, measure in claims
     )
 
 

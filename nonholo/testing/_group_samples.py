@@ -55,7 +55,7 @@ class GroupSamples:
         return x[most], turn[most]
 
     @functools.cached_property
-    def drawn(self) -> Float[np.ndarray, "4 N N"]:
+    def elements(self) -> Float[np.ndarray, "4 N N"]:
         """Elements that the group draws."""
         return np.stack([self.group.random(self._rng) for _ in range(_COUNT)])
 
@@ -73,7 +73,7 @@ class GroupSamples:
         """Return the exponential by SciPy."""
         return scipy.linalg.expm(self.matrix(x))
 
-    def conjugated(self, g: np.ndarray, x: np.ndarray) -> Float[np.ndarray, "... dim"]:
+    def conjugate(self, g: np.ndarray, x: np.ndarray) -> Float[np.ndarray, "... dim"]:
         """Return the coordinates of g X g^-1."""
         return self.coordinates(g @ self.matrix(x) @ np.linalg.inv(g))
 

@@ -11,8 +11,17 @@ from nonholo.base.limits import within_memory
 from nonholo.base.numerics import double_precision
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.testing._group_samples import GroupSamples
-from nonholo.testing._measures import derivative, gap, largest, seeded
-from nonholo.testing._report import Check, NotApplicableError, Report, need, run_checks
+from nonholo.testing._report import (
+    Check,
+    NotApplicableError,
+    Report,
+    derivative,
+    gap,
+    generator_of,
+    largest,
+    need,
+    run_checks,
+)
 
 
 def check_group(
@@ -57,7 +66,7 @@ def check_group(
         raise error("check_group(group=...)", "be a group", type(group).__name__, remedy)
     flags("check_group", compiled=compiled, throw=throw)
     within_memory("check_group(group=...)", 8.0 * group.dim**2 * group.size**2, "Check a smaller group of its kind.")
-    samples = GroupSamples(group, seeded(rng))
+    samples = GroupSamples(group, generator_of(rng))
     checks = (*ALGEBRA, *MAPS, *((COMPILED,) if compiled else ()))
     return run_checks(f"check_group({group!r})", checks, samples, tolerance_factor, throw)
 
@@ -68,13 +77,13 @@ _BLIND = 1e3  # a residual is sound if it sees at least this part of the distanc
 
 def _sizes(s: GroupSamples) -> float:
     group = s.group
-    expected = [
+    sizes = [
         (group.basis, (group.dim, group.size, group.size)),
         (group.identity, (group.size, group.size)),
         (group.exp(s.x), (len(s.x), group.size, group.size)),
         (group.pose_from_matrix(group.identity), (group.pose_size,)),
     ]
-    return sum(np.shape(array) != shape or np.asarray(array).dtype != np.float64 for array, shape in expected)
+    return sum(np.shape(array) != shape or np.asarray(array).dtype != np.float64 for array, shape in sizes)
 
 
 def _basis(s: GroupSamples) -> float:
@@ -108,12 +117,12 @@ def _ad(s: GroupSamples) -> float:
 
 
 def _coad(s: GroupSamples) -> float:
-    found = np.sum(s.group.coad(s.x, s.p) * s.y, axis=-1)
-    return gap(found, np.sum(s.p * s.coordinates(s.commutator(s.x, s.y)), axis=-1))
+    pairing = np.sum(s.group.coad(s.x, s.p) * s.y, axis=-1)
+    return gap(pairing, np.sum(s.p * s.coordinates(s.commutator(s.x, s.y)), axis=-1))
 
 
 def _adjoint(s: GroupSamples) -> float:
-    return gap((s.group.adjoint(s.g) @ s.y[:, :, None])[:, :, 0], s.conjugated(s.g, s.y))
+    return gap((s.group.adjoint(s.g) @ s.y[:, :, None])[:, :, 0], s.conjugate(s.g, s.y))
 
 
 def _adjoint_of_products(s: GroupSamples) -> float:
@@ -126,8 +135,8 @@ def _adjoint_of_exp(s: GroupSamples) -> float:
 
 
 def _coadjoint(s: GroupSamples) -> float:
-    found = np.sum(s.group.coadjoint(s.g, s.p) * s.y, axis=-1)
-    return gap(found, np.sum(s.p * s.conjugated(s.g, s.y), axis=-1))
+    pairing = np.sum(s.group.coadjoint(s.g, s.p) * s.y, axis=-1)
+    return gap(pairing, np.sum(s.p * s.conjugate(s.g, s.y), axis=-1))
 
 
 def _inverse(s: GroupSamples) -> float:
@@ -144,8 +153,8 @@ def _blindness(s: GroupSamples) -> float:
     normal = scipy.linalg.null_space(s.group.basis.reshape(s.group.dim, -1))
     need(normal.shape[1], "every invertible matrix near the group lies in it")
     away = normal.T.reshape(-1, s.group.size, s.group.size)
-    seen = s.group.residual(s.g[0] @ (s.group.identity + _OFF * away))
-    return float(np.max(_OFF / np.maximum(seen, np.finfo(float).tiny)))
+    residual = s.group.residual(s.g[0] @ (s.group.identity + _OFF * away))
+    return float(np.max(_OFF / np.maximum(residual, np.finfo(float).tiny)))
 
 
 ALGEBRA = (
@@ -164,7 +173,7 @@ ALGEBRA = (
     Check("adjoint of products", "adjoint(g h) = adjoint(g) adjoint(h)", 1e-11, _adjoint_of_products),
     Check("adjoint of exp", "adjoint(exp(x)) = expm(ad(x))", 1e-11, _adjoint_of_exp),
     Check("coadjoint", "<coadjoint(g, p), x> = <p, adjoint(g) x>", 1e-11, _coadjoint),
-    Check("random", "residual(random(rng)) = 0", 1e-11, lambda s: largest(s.group.residual(s.drawn))),
+    Check("random", "residual(random(rng)) = 0", 1e-11, lambda s: largest(s.group.residual(s.elements))),
     Check("products", "residual(g h) = 0", 1e-11, _products),
     Check("residual", "distance / residual of matrices off the group is bounded", _BLIND, _blindness),
 )
@@ -201,7 +210,7 @@ def _log_large(s: GroupSamples) -> float:
 
 
 def _exp_of_log(s: GroupSamples) -> float:
-    return gap(s.group.exp(s.group.log(s.drawn)), s.drawn)
+    return gap(s.group.exp(s.group.log(s.elements)), s.elements)
 
 
 def _cayley_of(s: GroupSamples, x: np.ndarray) -> np.ndarray:
@@ -245,8 +254,8 @@ def _dexp_of_log(s: GroupSamples) -> float:
     def logarithm(t: float) -> np.ndarray:
         return s.group.log(s.element(t * s.y / 2) @ s.element(s.x / 2))
 
-    expected = (s.group.dexp_inverse(s.x / 2) @ s.y[:, :, None])[:, :, 0] / 2
-    return gap(derivative(logarithm), expected)
+    exact = (s.group.dexp_inverse(s.x / 2) @ s.y[:, :, None])[:, :, 0] / 2
+    return gap(derivative(logarithm), exact)
 
 
 def _angle(s: GroupSamples) -> float:
@@ -254,25 +263,25 @@ def _angle(s: GroupSamples) -> float:
 
 
 def _poses(s: GroupSamples) -> float:
-    return gap(s.group.matrix_from_pose(s.group.pose_from_matrix(s.drawn)), s.drawn)
+    return gap(s.group.matrix_from_pose(s.group.pose_from_matrix(s.elements)), s.elements)
 
 
 def _pose_product(s: GroupSamples) -> float:
-    group, others = s.group, s.drawn[::-1]
-    product = group.pose_product(group.pose_from_matrix(s.drawn), group.pose_from_matrix(others))
-    return gap(group.matrix_from_pose(product), s.drawn @ others)
+    group, others = s.group, s.elements[::-1]
+    product = group.pose_product(group.pose_from_matrix(s.elements), group.pose_from_matrix(others))
+    return gap(group.matrix_from_pose(product), s.elements @ others)
 
 
 def _normalize(s: GroupSamples) -> float:
-    pose = s.group.pose_from_matrix(s.drawn)
+    pose = s.group.pose_from_matrix(s.elements)
     return gap(s.group.normalize_pose(pose), pose)
 
 
 def _pose_rate(s: GroupSamples) -> float:
     """Differentiate matrices, since several poses may have the same one."""
-    pose = s.group.pose_from_matrix(s.drawn)
+    pose = s.group.pose_from_matrix(s.elements)
     rate = s.group.pose_rate(pose, s.x)
-    return gap(derivative(lambda t: s.group.matrix_from_pose(pose + t * rate)), s.drawn @ s.matrix(s.x))
+    return gap(derivative(lambda t: s.group.matrix_from_pose(pose + t * rate)), s.elements @ s.matrix(s.x))
 
 
 def _everything(group: Any, x: Any) -> dict[str, Any]:
@@ -297,9 +306,9 @@ def _everything(group: Any, x: Any) -> dict[str, Any]:
 
 def _broadcast(s: GroupSamples) -> float:
     """Compare a stack of two by two with its entries one by one."""
-    stacked = _everything(s.group, s.x.reshape(2, 2, -1))
+    whole = _everything(s.group, s.x.reshape(2, 2, -1))
     single = [_everything(s.group, x) for x in s.x]
-    flat = {name: np.reshape(array, (4, *np.shape(array)[2:])) for name, array in stacked.items()}
+    flat = {name: np.reshape(array, (4, *np.shape(array)[2:])) for name, array in whole.items()}
     return max(gap(flat[name], np.stack([each[name] for each in single])) for name in flat)
 
 
@@ -308,9 +317,9 @@ def _jax(s: GroupSamples) -> float:
         import jax
 
         with double_precision():
-            traced = jax.jit(lambda x: _everything(s.group, x))(jax.numpy.asarray(s.x))
-            found = {name: np.asarray(array) for name, array in traced.items()}
-        return max(gap(found[name], expected) for name, expected in _everything(s.group, s.x).items())
+            arrays = jax.jit(lambda x: _everything(s.group, x))(jax.numpy.asarray(s.x))
+            values = {name: np.asarray(array) for name, array in arrays.items()}
+        return max(gap(values[name], exact) for name, exact in _everything(s.group, s.x).items())
     raise NotApplicableError("JAX is not installed")
 
 

@@ -72,17 +72,17 @@ class OrbitSamples:
     @functools.cached_property
     def run(self) -> tuple[list[Orbit], float] | Exception:
         """An orbit of moderate energy and the norm of its path, or why there is none."""
-        return self._tried([self.steps], self.steps * self.step)
+        return self._try([self.steps], self.steps * self.step)
 
     @property
     def orbit(self) -> Orbit:
         """The orbit."""
-        return made(self.run, "the orbit failed")[0][0]
+        return result_of(self.run, "the orbit failed")[0][0]
 
     @property
     def first(self) -> dict[str, Any]:
         """The start of the orbit."""
-        return self.start(made(self.run, "the orbit failed")[1] / self.steps)
+        return self.start(result_of(self.run, "the orbit failed")[1] / self.steps)
 
     @functools.cached_property
     def W(self) -> Float[np.ndarray, "K N N"]:
@@ -92,19 +92,19 @@ class OrbitSamples:
     @functools.cached_property
     def finer(self) -> tuple[list[Orbit], float] | Exception:
         """One path in more and more steps and its norm, or why there is none."""
-        return self._tried(list(COUNTS), self.path)
+        return self._try(list(COUNTS), self.path)
 
     @property
     def paths(self) -> list[Orbit]:
         """The path in more and more steps."""
-        return made(self.finer, "the finer orbits failed")[0]
+        return result_of(self.finer, "the finer orbits failed")[0]
 
-    def _tried(self, counts: list[int], norm: float, halvings: int = 5) -> Any:
+    def _try(self, counts: list[int], norm: float, halvings: int = 5) -> Any:
         """Run a path of a norm in several numbers of steps; where it meets a fold, one of half the norm."""
         try:
             return [self._path(n, norm, len(counts) > 1) for n in counts], norm
         except OutcomeError as fold:
-            return self._tried(counts, norm / 2, halvings - 1) if halvings else fold
+            return self._try(counts, norm / 2, halvings - 1) if halvings else fold
         except Exception as other:  # the code under test is a user's and may raise anything
             return other
 
@@ -117,8 +117,8 @@ class OrbitSamples:
             return simulate(self.discrete, steps=count, **self.start(norm / count))
         forced = self.forced
         if forced.table is not None:
-            repeated = np.repeat(forced.rows(np.arange(COUNTS[0])), count // COUNTS[0], axis=0)
-            forced = dataclasses.replace(forced, force=force_of(forced.parts | {"table": repeated}))
+            rows = np.repeat(forced.rows(np.arange(COUNTS[0])), count // COUNTS[0], axis=0)
+            forced = dataclasses.replace(forced, force=force_of(forced.parts | {"table": rows}))
         discrete = dataclasses.replace(self.discrete, system=forced, time_step=np.float64(self.span / count))
         return simulate(discrete, steps=count, **self.moving(norm / self.span))
 
@@ -131,7 +131,7 @@ class OrbitSamples:
         return impulses_of(self.forced, orbit, self.momentum(self.W), float(self.discrete.time_step))
 
     @property
-    def pushed(self) -> Float[np.ndarray, "K dim"]:
+    def node_kicks(self) -> Float[np.ndarray, "K dim"]:
         """The impulses of forces at the nodes between two steps."""
         return self.kicks[0][1:] + self.kicks[1][:-1]
 
@@ -147,19 +147,19 @@ class OrbitSamples:
     @functools.cached_property
     def exact(self) -> tuple[Float[np.ndarray, "3 N N"], Float[np.ndarray, "k"], Float[np.ndarray, "N N"]]:
         """The continuous path: its first displacements, one for each count, its last momentum and pose."""
-        norm = made(self.finer, "the finer orbits failed")[1]
+        norm = result_of(self.finer, "the finer orbits failed")[1]
         k, h, start = len(self.S), self.span, self.moving(norm / self.span)
         velocity = start["restricted_velocity"] @ self.directions
         r = self.directions @ (self.system.inertia_operator @ velocity)
         times = [h / n for n in reversed(COUNTS)]
         options: Any = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-13 * (1 + np.abs(r).max())}
-        state, found = np.concatenate([r, self.pose.ravel()]), np.zeros((0, k + self.pose.size))
+        state, states = np.concatenate([r, self.pose.ravel()]), np.zeros((0, k + self.pose.size))
         for field, ends in fields_of(self.system, times, h):
             rows = scipy.integrate.solve_ivp(field, (ends[0], ends[-1]), state, t_eval=ends[1:], **options).y.T
-            state, found = rows[-1], np.concatenate([found, rows])
-        found = found[[0, 1, 2, -1]]
-        poses = found[:, k:].reshape(-1, *self.pose.shape)
-        return np.linalg.inv(self.pose) @ poses[-2::-1], found[-1, :k], poses[-1]
+            state, states = rows[-1], np.concatenate([states, rows])
+        states = states[[0, 1, 2, -1]]
+        poses = states[:, k:].reshape(-1, *self.pose.shape)
+        return np.linalg.inv(self.pose) @ poses[-2::-1], states[-1, :k], poses[-1]
 
     def lagrangian(self, W: Float[np.ndarray, "... N N"]) -> Float[np.ndarray, "..."]:
         """Return the discrete Lagrangian by its definition."""
@@ -185,12 +185,12 @@ class OrbitSamples:
             return group.log(D) @ self.A.T
         return group.vee((D - np.linalg.inv(D)) / 2 if kind == "skew" else D - group.identity) @ self.A.T
 
-    def impulse(self, before: np.ndarray, after: np.ndarray, g: np.ndarray, pushed: Any) -> Float[np.ndarray, "K dim"]:
+    def impulse(self, before: np.ndarray, after: np.ndarray, g: np.ndarray, kick: Any) -> Float[np.ndarray, "K dim"]:
         """Return P(after) - Ad* P(before), less impulses of forces, of displacements that meet at g.
 
         In space if the constraint is.
         """
-        arriving = self.group.coadjoint(before, self.momentum(before)) + pushed
+        arriving = self.group.coadjoint(before, self.momentum(before)) + kick
         jump = self.momentum(after) - arriving
         return self.group.coadjoint(np.linalg.inv(g), jump) if self.spatial else jump
 
@@ -199,18 +199,18 @@ class OrbitSamples:
         return discrete_legendre(self.free, W)
 
 
-def made(found: Any, otherwise: str) -> Any:
+def result_of(outcome: Any, otherwise: str) -> Any:
     """Return what a run made; where it failed, one check has failed, and the others have nothing to judge."""
-    if isinstance(found, Exception):
-        raise NotApplicableError(str(found) if isinstance(found, NotApplicableError) else otherwise)
-    return found
+    if isinstance(outcome, Exception):
+        raise NotApplicableError(str(outcome) if isinstance(outcome, NotApplicableError) else otherwise)
+    return outcome
 
 
-def raised(found: Any) -> Any:
+def result_or_raise(outcome: Any) -> Any:
     """Return what a run made, or raise what it raised."""
-    if isinstance(found, Exception):
-        raise found
-    return found
+    if isinstance(outcome, Exception):
+        raise outcome
+    return outcome
 
 
 def _of_jax(function: Callable[[Any], Any], W: Float[np.ndarray, "... N N"]) -> Float[np.ndarray, "..."]:

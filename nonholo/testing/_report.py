@@ -1,10 +1,75 @@
-"""Reports of property checks: what was measured against which tolerance, and one error that names all that failed."""
+"""Measures and reports of property checks: what was measured against which tolerance, one error for all that failed."""
 
 import dataclasses
 from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
-from nonholo.base.checks import positive
+import numpy as np
+
+from nonholo.base.checks import error, positive, shown
+
+
+def gap(value: Any, target: Any) -> float:
+    """Return the largest difference between arrays of one shape, relative to one plus the largest entry expected.
+
+    Example:
+        >>> gap([0.0, 3.5], [0.0, 3.0])
+        0.125
+    """
+    return _difference(value, target) / (1 + largest(target))
+
+
+def relative(value: Any, target: Any) -> float:
+    """Return the largest difference between arrays of one shape, relative to the largest entry expected.
+
+    Example:
+        >>> relative([0.0, 3.5], [0.0, 4.0])
+        0.125
+    """
+    return _difference(value, target) / max(largest(target), np.finfo(np.float64).tiny)
+
+
+def _difference(value: Any, target: Any) -> float:
+    value, target = np.asarray(value), np.asarray(target)
+    if value.shape != target.shape:
+        raise ValueError(f"shape {value.shape} where {target.shape} is expected")
+    return largest(value - target)
+
+
+def largest(values: Any) -> float:
+    """Return the largest absolute value, zero of none.
+
+    Example:
+        >>> largest([1.0, -2.0])
+        2.0
+    """
+    return float(np.abs(values).max(initial=0.0))
+
+
+def derivative(function: Callable[[float], Any], step: float = 1e-3) -> np.ndarray:
+    """Return the derivative at zero by the central difference of order four.
+
+    Example:
+        >>> bool(abs(derivative(np.exp) - 1) < 1e-12)
+        True
+    """
+    near = np.asarray(function(step)) - np.asarray(function(-step))
+    far = np.asarray(function(2 * step)) - np.asarray(function(-2 * step))
+    return (8 * near - far) / (12 * step)
+
+
+def generator_of(rng: Any) -> np.random.Generator:
+    """Return a generator from a seed or a generator, and always the same one from None.
+
+    Example:
+        >>> float(generator_of(None).normal()) == float(generator_of(0).normal())
+        True
+    """
+    try:
+        return np.random.default_rng(0 if rng is None else rng)
+    except (TypeError, ValueError):
+        raise error("check_...(rng=...)", "be a seed or a generator", shown(rng), "Pass an integer >= 0.") from None
+
 
 Measure = TypeVar("Measure", bound=Callable[[Any], float])
 _HEADINGS = ("", "measured", "allowed", "", "what must hold")
@@ -85,9 +150,9 @@ class Result:
 
     def __str__(self) -> str:
         """Return what is required and what was found."""
-        found = f"raised {self.note}" if self.value is None else f"measured {self.value:.3g}"
-        allowed = "" if self.tolerance is None else f", allowed {self.tolerance:.3g}"
-        return f"{self.name}: must satisfy {self.requirement}; {found}{allowed}"
+        words = f"raised {self.note}" if self.value is None else f"measured {self.value:.3g}"
+        limit = "" if self.tolerance is None else f", allowed {self.tolerance:.3g}"
+        return f"{self.name}: must satisfy {self.requirement}; {words}{limit}"
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
@@ -125,8 +190,8 @@ class Report:
         return {result.name: result for result in self.results}[name]
 
     def __repr__(self) -> str:
-        judged = sum(result.status in ("ok", "FAILED") for result in self.results)
-        verdict = f"{len(self.failed)} of {judged} checks FAILED" if self.failed else f"all {judged} checks passed"
+        count = sum(result.status in ("ok", "FAILED") for result in self.results)
+        verdict = f"{len(self.failed)} of {count} checks FAILED" if self.failed else f"all {count} checks passed"
         rows = [_HEADINGS, *map(_cells, self.results)]
         widths = [max(len(row[i]) for row in rows) for i in range(4)]
         lines = ["  ".join([*map(str.ljust, row, widths), row[4]]).rstrip() for row in rows]
@@ -135,9 +200,9 @@ class Report:
 
 def _cells(result: Result) -> tuple[str, ...]:
     value = "" if result.value is None else f"{result.value:.2g}"
-    allowed = "" if result.tolerance is None or result.value is None else f"{result.tolerance:.2g}"
+    limit = "" if result.tolerance is None or result.value is None else f"{result.tolerance:.2g}"
     note = f" ({result.note})" if result.note else ""
-    return result.name, value, allowed, result.status, result.requirement + note
+    return result.name, value, limit, result.status, result.requirement + note
 
 
 def run_checks(owner: str, checks: Sequence[Check], subject: Any, factor: float, throw: bool) -> Report:
@@ -154,14 +219,14 @@ def run_checks(owner: str, checks: Sequence[Check], subject: Any, factor: float,
         AssertionError: With `throw`: names every check that failed.
     """
     factor = float(positive("check_...(tolerance_factor=...)", factor, "Pass a positive factor on every tolerance."))
-    report = Report(owner, tuple(_measured(check, subject, factor) for check in checks))
+    report = Report(owner, tuple(_result_of(check, subject, factor) for check in checks))
     if throw and report.failed:
         lines = "\n  ".join(map(str, report.failed))
         raise AssertionError(f"`{owner}` failed {len(report.failed)} of {len(checks)} checks.\n  {lines}")
     return report
 
 
-def _measured(check: Check, subject: Any, factor: float) -> Result:
+def _result_of(check: Check, subject: Any, factor: float) -> Result:
     tolerance = None if check.tolerance is None else factor * check.tolerance
     try:
         value = float(check.measure(subject))

@@ -12,8 +12,19 @@ from nonholo.base.types import Float
 from nonholo.continuous import vector_field
 from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, Equilibria, Forced, refuse_slip
 from nonholo.testing._coordinates import SYSTEM, CoordinateSamples
-from nonholo.testing._measures import derivative, gap, largest, relative, seeded
-from nonholo.testing._report import Check, NotApplicableError, Report, measures, need, run_checks
+from nonholo.testing._report import (
+    Check,
+    NotApplicableError,
+    Report,
+    derivative,
+    gap,
+    generator_of,
+    largest,
+    measures,
+    need,
+    relative,
+    run_checks,
+)
 
 _COUNT = 4
 CHECKS: list[Check] = []
@@ -90,8 +101,8 @@ class SystemSamples:
     def force(self) -> Float[np.ndarray, "4 dim"]:
         """What a function or friction exerts on them at time zero."""
         states = zip(self.g, self.body_velocity, strict=True)
-        given = [] if self.forced is None else [self.forced.applied_force(0.0, *state) for state in states]
-        return np.reshape(given or np.zeros_like(self.momentum), self.momentum.shape)
+        rows = [] if self.forced is None else [self.forced.applied_force(0.0, *state) for state in states]
+        return np.reshape(rows or np.zeros_like(self.momentum), self.momentum.shape)
 
     @property
     def forced(self) -> Forced | None:
@@ -228,8 +239,8 @@ def _frame_of_momenta(s: SystemSamples) -> float:
 @measures(CHECKS, "frame and energy", "the canonical energy is the energy", 1e-11)
 def _frame_of_energy(s: SystemSamples) -> float:
     _into_canonical(s)
-    found = s.system.canonical.constrained_energy(s.restricted @ s.system.frame_map.T)  # type: ignore[attr-defined]
-    return relative(found, s.energy(s.restricted, s.g))
+    energy = s.system.canonical.constrained_energy(s.restricted @ s.system.frame_map.T)  # type: ignore[attr-defined]
+    return relative(energy, s.energy(s.restricted, s.g))
 
 
 def need_motion(s: SystemSamples) -> None:
@@ -277,18 +288,18 @@ def check_system(
     """
     flags("check_system", throw=throw)
     if isinstance(system, AbstractCoordinateSystem):
-        there = CoordinateSamples("check_system", system, seeded(rng), configuration)
+        there = CoordinateSamples("check_system", system, generator_of(rng), configuration)
         return run_checks(f"check_system({there.system.name})", SYSTEM, there, tolerance_factor, throw)
     refuse_given("check_system", "be left out on a group", "Leave it out.", configuration=(configuration, None))
     if not isinstance(system, AbstractSystem):
-        raise error("check_system(system=...)", "be a system", _named(system), "Pass an LLSystem or your own class.")
+        raise error("check_system(system=...)", "be a system", _name_of(system), "Pass an LLSystem or your own class.")
     refuse_slip("check_system(system=...)", system)
-    samples = SystemSamples(system, seeded(rng))
-    owner = f"check_system({_named(system)} on {system.group!r})"
+    samples = SystemSamples(system, generator_of(rng))
+    owner = f"check_system({_name_of(system)} on {system.group!r})"
     return run_checks(owner, CHECKS, samples, tolerance_factor, throw)
 
 
-def _named(thing: Any) -> str:
+def _name_of(thing: Any) -> str:
     return type(thing).__name__
 
 
@@ -297,11 +308,11 @@ def _equations(s: SystemSamples) -> float:
     """Compare with <p, [omega, S_i]>, zero along a constraint fixed in space, and forces along the directions."""
     need_motion(s)
     brackets = s.group.bracket(s.body_velocity[:, None, :], s.directions)
-    expected = 0 * s.restricted if s.spatial else (brackets @ s.momentum[:, :, None])[:, :, 0]
+    exact = 0 * s.restricted if s.spatial else (brackets @ s.momentum[:, :, None])[:, :, 0]
     if s.forced is not None:
-        pushed = s.force + s.forced.potential_force(s.g)
-        expected = expected + (s.directions @ pushed[:, :, None])[:, :, 0]
-    return largest(s.rate[0] - expected) / largest(s.momentum)
+        push = s.force + s.forced.potential_force(s.g)
+        exact = exact + (s.directions @ push[:, :, None])[:, :, 0]
+    return largest(s.rate[0] - exact) / largest(s.momentum)
 
 
 @measures(CHECKS, "reconstruction", "g' = g hat(omega)", 1e-11)
@@ -347,10 +358,10 @@ def _equilibria(s: SystemSamples) -> tuple[Equilibria, ...]:
     need(not s.spatial, "a right-invariant constraint")
     need(not s.moving.is_forced, "forces act")
     try:
-        known = system.equilibria()
+        family = system.equilibria()
     except ValueError:
         raise NotApplicableError("the system refuses to name its equilibria") from None
-    return known, *known.others
+    return family, *family.others
 
 
 def _rate_at(s: SystemSamples, velocity: np.ndarray) -> np.ndarray:
@@ -363,29 +374,29 @@ def _rate_at(s: SystemSamples, velocity: np.ndarray) -> np.ndarray:
 
 @measures(CHECKS, "equilibria", "equilibria are admissible and their velocities constant", 1e-11)
 def _at_rest(s: SystemSamples) -> float:
-    spaces = [known.subspace for known in _equilibria(s)]
-    mixed = np.concatenate([*spaces, *(rows.sum(axis=0)[None] for rows in spaces)])
-    forbidden = largest(mixed @ s.A.T)
-    return max(forbidden, largest(_rate_at(s, mixed)))
+    spaces = [family.subspace for family in _equilibria(s)]
+    velocities = np.concatenate([*spaces, *(rows.sum(axis=0)[None] for rows in spaces)])
+    forbidden = largest(velocities @ s.A.T)
+    return max(forbidden, largest(_rate_at(s, velocities)))
 
 
 @measures(CHECKS, "attraction", "small deviations from the attracting equilibrium decay: negative growth rate", -1e-9)
 def _growth(s: SystemSamples) -> float:
     """Return the largest growth rate across the equilibria that attract, relative to the velocity."""
-    attracting = [known for known in _equilibria(s) if known.attracting is not None]
+    attracting = [family for family in _equilibria(s) if family.attracting is not None]
     need(attracting, "no equilibrium attracts")
-    return max(_growth_beside(s, known) for known in attracting)
+    return max(_growth_beside(s, family) for family in attracting)
 
 
-def _growth_beside(s: SystemSamples, known: Equilibria) -> float:
-    velocity = np.asarray(known.attracting)
+def _growth_beside(s: SystemSamples, family: Equilibria) -> float:
+    velocity = np.asarray(family.attracting)
     w = velocity @ np.linalg.pinv(s.S)
 
     def nearby(t: float) -> np.ndarray:
         return _rate_at(s, (w + t * np.eye(len(w))) @ s.S)
 
     rates = np.sort(np.linalg.eigvals(derivative(nearby, 0.1).T).real)
-    across = len(w) - len(known.subspace)
+    across = len(w) - len(family.subspace)
     return float(rates[across - 1] / np.linalg.norm(velocity))
 
 

@@ -44,7 +44,7 @@ class Sketch:
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> Sketch:
     """Draw it; points of the body are moved by a matrix of SE(2)."""
     axes = MatplotlibFigure(figsize=(7.2, 5.4), layout="constrained").add_subplot()

@@ -49,7 +49,7 @@ def poses() -> tuple[Float[np.ndarray, "3 3"], Float[np.ndarray, "3 3"]]:
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> Geometry:
     """Draw it."""
     axes = MatplotlibFigure(figsize=(7.6, 6.2), layout="constrained").add_subplot()

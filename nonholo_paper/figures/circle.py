@@ -25,7 +25,7 @@ def orbit() -> Orbit:
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> tuple[BladeTrack, Line2D]:
     """Draw it, and the circle of the flow with the same momentum."""
     drawn = blade_track(orbit())

@@ -66,7 +66,7 @@ def _lifted(angle: np.ndarray, ruling: np.ndarray) -> Float[np.ndarray, "... 3"]
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> Surface:
     """Draw it."""
     axes = space(

@@ -31,7 +31,7 @@ def continuous() -> Orbit:
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> BladeTrack:
     """Draw it."""
     times = np.linspace(0.0, _SPAN, 1201)

@@ -17,7 +17,7 @@ _SHIFT = 2 * BODY[0] * BODY[2] ** 2  # of p_hat, a p_1 + 2 m a^2
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> BranchCounts:
     """Draw it, with the scale of p_hat at the right."""
     drawn = branch_counts(SLEIGH)

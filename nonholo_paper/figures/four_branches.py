@@ -17,7 +17,7 @@ START = (-0.25, -0.375)  # the half-angle tangents of an equilibrium
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> BranchesPicture:
     """Draw it."""
     top = nh.discretize(nh.SuslovTop(data.BODIES["four branches"]), 1.0)

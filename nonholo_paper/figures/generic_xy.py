@@ -40,7 +40,7 @@ def orbits() -> tuple[Orbit, Orbit]:
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> tuple[MatplotlibFigure, tuple[BladeTrack, ...]]:
     """Draw both panels."""
     figure = MatplotlibFigure(figsize=(11.0, 5.6), layout="constrained")

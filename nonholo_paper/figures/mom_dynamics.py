@@ -20,7 +20,7 @@ TITLES = (r"$a \neq 0$, $b \neq 0$", r"$a \neq 0$, $b = 0$")
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> tuple[MatplotlibFigure, tuple[Portrait, ...]]:
     """Draw both panels."""
     figure = MatplotlibFigure(figsize=(10.0, 4.9), layout="constrained")

@@ -32,7 +32,7 @@ def positions(constraint: str) -> Float[np.ndarray, "K 2"]:
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> tuple[Axes, PathCollection, Line2D]:
     """Draw points of both constraints, and the spiral through those of the naive one."""
     axes = MatplotlibFigure(figsize=(6.4, 6.2), layout="constrained").add_subplot()

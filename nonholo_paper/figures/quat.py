@@ -46,7 +46,7 @@ class Foliation:
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> Foliation:
     """Draw it."""
     axes = MatplotlibFigure(figsize=(7.6, 6.0), layout="constrained").add_subplot()

@@ -44,7 +44,7 @@ class Orbits:
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> Orbits:
     """Draw it."""
     axes = MatplotlibFigure(figsize=(7.2, 6.2), layout="constrained").add_subplot()

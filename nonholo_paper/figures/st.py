@@ -24,7 +24,7 @@ def locus() -> MomentumLocus:
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> MomentumLocusPicture:
     """Draw it."""
     drawn = momentum_locus(locus())

@@ -33,7 +33,7 @@ def momenta() -> Float[np.ndarray, "R C 3"]:
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> tuple[Any, list[Any]]:
     """Draw it, on the axes of the whole surface, with its two rims."""
     axes = space("Circular section of the momentum surface", ("$M_1$", "$M_2$", "$M_3$"), (32.0, -60.0))

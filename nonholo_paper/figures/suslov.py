@@ -23,7 +23,7 @@ _SETTLED = 300.0  # time after which a motion of these energies has come to roun
 
 
 @functools.cache
-@theme.styled
+@theme.in_style
 def picture() -> tuple[Axes, Portrait]:
     """Draw it."""
     axes = MatplotlibFigure(figsize=(6.2, 5.6), layout="constrained").add_subplot()

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.analysis.limits._flow_obstruction import _ends
+from nonholo.analysis._heteroclinic import _ends
 
 CASES = {"heavy": (0.2, 1.0, 2.25), "light": (1.0, 0.3, (1.9 * 0.3) ** 2)}  # J, m a^2, level g at m = h = 1
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.analysis.energies._critical import Directions, fold_energy
+from nonholo.analysis._critical_energies import Directions, fold_energy
 
 BODIES = {  # the first three have D/|c|^2 between 2 and 3; the last two are outside the regular regime
     "three inner values": [

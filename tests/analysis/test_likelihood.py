@@ -5,9 +5,8 @@ import pytest
 from scipy import stats
 from scipy.optimize import minimize
 
-from nonholo.analysis.inverse._likelihood import bent
-from nonholo.analysis.inverse._problem import Problem
-from nonholo.analysis.inverse._search import Found, Ranges, Search
+from nonholo.analysis.inverse._likelihood import Problem, bent
+from nonholo.analysis.inverse._search import Ranges, Search, Solution
 
 FREE = Ranges(np.full(2, -np.inf), np.full(2, np.inf))
 
@@ -33,7 +32,7 @@ def _search(y: np.ndarray, few: int, known: tuple[float, ...], loss: str = "line
     return Search(problem, FREE, lambda _: None, loss, np.array(known)), columns
 
 
-def _run(y: np.ndarray, few: int, known: tuple[float, ...]) -> tuple[Found, np.ndarray]:
+def _run(y: np.ndarray, few: int, known: tuple[float, ...]) -> tuple[Solution, np.ndarray]:
     search, columns = _search(y, few, known)
     return search.run(np.zeros(2)), columns
 

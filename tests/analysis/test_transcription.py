@@ -8,10 +8,9 @@ import pytest
 
 import nonholo as nh
 from nonholo.analysis.steering import Steering
-from nonholo.analysis.steering._nodes import CoordinateNodes, GroupNodes
+from nonholo.analysis.steering._arguments import StateBounds, Way, body_numbers, body_states, resample
+from nonholo.analysis.steering._problems import CoordinateNodes, GroupNodes
 from nonholo.analysis.steering._program import Program, Steps
-from nonholo.analysis.steering._state_bounds import StateBounds, body_numbers, body_states
-from nonholo.analysis.steering._way import Way, resampled
 from nonholo.systems import Forced
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.2), 0.25)
@@ -332,15 +331,15 @@ def test_a_leap_over_a_disc_is_missed() -> None:
     """States on both sides of a disc are clear of it, but not the line between them; a cut of its edge is let pass."""
     way = Way.of(2, 2, ([(0.0, 0.0)], 0.5), None, None)
     leap, edge = (np.array([[-1.0, y], [1.0, y]]) for y in (0.1, 0.4))
-    np.testing.assert_allclose([way.missed(each[:, None], each) for each in (leap, edge)], [0.4, 0.0], rtol=1e-15)
+    np.testing.assert_allclose([way.gap(each[:, None], each) for each in (leap, edge)], [0.4, 0.0], rtol=1e-15)
     inside = np.array([[0.0, 0.2], [1.0, 0.2]])
-    np.testing.assert_allclose(way.missed(inside[:, None], inside), 0.3, rtol=1e-15)
+    np.testing.assert_allclose(way.gap(inside[:, None], inside), 0.3, rtol=1e-15)
 
 
 def test_a_path_is_resampled_evenly() -> None:
     """Points at equal distances along a bent path."""
     path = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 3.0]])
-    np.testing.assert_allclose(resampled(path, 4), [[0, 0], [1, 0], [1, 1], [1, 2], [1, 3]], atol=1e-15)
+    np.testing.assert_allclose(resample(path, 4), [[0, 0], [1, 0], [1, 1], [1, 2], [1, 3]], atol=1e-15)
 
 
 BOARD = {"start": {"configuration": np.zeros(5)}, "goal": {"configuration": {"x": 1.0}}}

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from nonholo.base.numerics._bernoulli import cotangent_deficit
-from nonholo.base.numerics._matrix_functions import (
+from nonholo.base.numerics._functions import (
     block_diagonal,
+    cotangent_deficit,
     exponential_increment,
     integrated_exponential,
     of_skew,

@@ -5,7 +5,7 @@ from typing import Any, cast
 import mpmath
 import numpy as np
 
-from nonholo.base.numerics import factors_of, solved
+from nonholo.base.numerics import factors_of, solve_by_factors
 
 
 def test_energies_of_uneven_bodies_have_all_their_digits() -> None:
@@ -19,7 +19,7 @@ def test_energies_of_uneven_bodies_have_all_their_digits() -> None:
         with mpmath.workdps(60):
             x = mpmath.lu_solve(mpmath.matrix(inertia.tolist()), mpmath.matrix(p.tolist()))
             energy = mpmath.fdot(x, mpmath.matrix(p.tolist()))
-            both = p @ solved(cast(Any, factors_of(inertia)), p[None])[0], p @ np.linalg.inv(inertia) @ p
+            both = p @ solve_by_factors(cast(Any, factors_of(inertia)), p[None])[0], p @ np.linalg.inv(inertia) @ p
             error[:] = [float(abs(mpmath.mpf(float(value)) - energy) / energy) for value in both]
     assert errors[0].max() < 1e-14  # a few dozen roundings
     assert errors[1].max() > 1e-14
@@ -31,7 +31,7 @@ def test_solutions_of_a_row_are_those_of_many() -> None:
     A, rows = rng.normal(size=(5, 5)), rng.normal(size=(30, 5))
     A = A @ A.T + np.eye(5)
     of_one = cast(Any, factors_of(A))
-    alone = np.concatenate([solved(of_one, row[None]) for row in rows])
-    assert np.array_equal(solved(of_one, rows), alone)
-    assert np.array_equal(solved(cast(Any, factors_of(np.tile(A, (30, 1, 1)))), rows), alone)
+    alone = np.concatenate([solve_by_factors(of_one, row[None]) for row in rows])
+    assert np.array_equal(solve_by_factors(of_one, rows), alone)
+    assert np.array_equal(solve_by_factors(cast(Any, factors_of(np.tile(A, (30, 1, 1)))), rows), alone)
     assert np.abs(A @ alone[..., None] - rows[..., None]).max() < 1e-13

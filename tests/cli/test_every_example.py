@@ -69,7 +69,7 @@ def test_every_example(name: str, nonholo: Command) -> None:
 
 
 def test_another_speed_keeps_the_pose_of_the_example() -> None:
-    """A start that gives a speed alone begins where the example does; one that gives a place, at its speed."""
+    """A start that says how fast alone begins at the pose of the example; one that says where, at its speed."""
     ready = nh.examples.snakeboard()
     for name in ("momentum", "body_velocity"):
         start = load_scenario("snakeboard", [parse_setting(f"start.{name}=[1.0, 0.0, 0.0, 0.0, 0.0]")]).scenario.start

@@ -50,7 +50,7 @@ def test_kinds_are_the_same_everywhere() -> None:
     """
     assert set(SHORT) == set(built_in())
     assert {tomllib.loads(text)["body"]["kind"] for text in built_in().values()} == set(SHORT)
-    assert {type(load_scenario(kind, []).scenario.body.made) for kind in SHORT} == (
+    assert {type(load_scenario(kind, []).scenario.body.product) for kind in SHORT} == (
         set(SYSTEMS) - {ArrowheadTop, ArrowheadSleigh}
     )
     assert {body_table(kind).make for kind in own_kinds()} == set(SYSTEMS)
@@ -151,7 +151,7 @@ def test_own_group_is_read_and_written() -> None:
     """A group given by its basis survives the text that a store keeps, exactly."""
     Path("my.toml").write_text(OWN)
     scenario = load_scenario("my.toml", []).scenario
-    system = scenario.body.made
+    system = scenario.body.product
     assert system.group == nh.MatrixGroup(tomllib.loads(OWN)["body"]["group"]["basis"])
     assert type(scenario).model_validate(tomllib.loads(effective_text(scenario))) == scenario
 

@@ -11,7 +11,7 @@ from stopping import failing_at, stopped_at
 from typer.testing import Result
 
 import nonholo as nh
-from nonholo.io import Stream, locked
+from nonholo.io import Stream, write_lock
 from nonholo.simulation import _run, _stored
 
 Command = Callable[..., Result]
@@ -138,7 +138,7 @@ def test_ctrl_c_does_not_hide_damage(stopped: Path, nonholo: Command, monkeypatc
 
 def test_locked_and_foreign_stores_are_refused(stopped: Path, nonholo: Command) -> None:
     """A store that another process writes and one that does not exist end in a sentence and exit code 2."""
-    with locked(stopped):
+    with write_lock(stopped):
         (stopped / "run" / "lock.json").write_text('{"pid": 1, "host": "elsewhere", "since": "today"}')
         refused = nonholo("resume", stopped)
         assert refused.exit_code == 2

@@ -25,7 +25,7 @@ from nonholo.cli.scenario.problems import ScenarioError
 from nonholo.cli.scenario.sweep_files import load_sweep_scenario, sweep_text
 from nonholo.ensembles import standing_of
 from nonholo.ensembles.stores._store import SweepStore
-from nonholo.io import locked
+from nonholo.io import write_lock
 
 Command = Callable[..., Result]
 BODY = """
@@ -347,7 +347,7 @@ def stopped(monkeypatch: pytest.MonkeyPatch, nonholo: Command) -> Path:
     """A sweep of 12 members, one a block, that Ctrl-C stopped after some blocks."""
     from nonholo.ensembles import EnsembleTask, _blocks
 
-    done, do = [], _blocks.attempted
+    done, do = [], _blocks.attempt
 
     def interrupted(*arguments: Any) -> Any:
         done.append(arguments)
@@ -357,7 +357,7 @@ def stopped(monkeypatch: pytest.MonkeyPatch, nonholo: Command) -> Path:
 
     with monkeypatch.context() as patch:
         patch.setattr(EnsembleTask, "block", property(lambda _: 1))
-        patch.setattr(_blocks, "attempted", interrupted)
+        patch.setattr(_blocks, "attempt", interrupted)
         result = nonholo("sweep", _written(RANDOM), "-o", "s.zarr", "--scheduler", "synchronous")
     assert result.exit_code == 1
     assert "Stopped at 4 of 12 members" in result.stderr
@@ -374,7 +374,7 @@ def test_info_of_a_stopped_sweep(stopped: Path, nonholo: Command) -> None:
 
 def test_info_names_who_writes(stopped: Path, nonholo: Command) -> None:
     """While a process writes a sweep, `info` names it, and `resume` by another one is refused."""
-    with locked(stopped):
+    with write_lock(stopped):
         shown = nonholo("info", stopped).stdout
         assert f"written by process {os.getpid()} on" in " ".join(shown.split())
         result = nonholo("resume", stopped)

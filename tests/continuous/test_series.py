@@ -51,7 +51,7 @@ def _rate(f: Quadratic, x: np.ndarray) -> np.ndarray:
         w = f.velocities @ x[len(x) - len(f.velocities) :]
     z = np.append(np.concatenate([w, x[f.order]]), np.zeros(7))
     (left, eight), right = f.rows[:, :, None], np.arange(8)
-    terms = f.factors[0] * np.append(z[left] * z[np.minimum(8 * eight + right, len(z) - 1)], w)[f.found]
+    terms = f.factors[0] * np.append(z[left] * z[np.minimum(8 * eight + right, len(z) - 1)], w)[f.sources]
     rates = [terms[begin:end].sum() for begin, end in itertools.pairwise(f.first)]
     return np.array(rates)[np.argsort(f.order)]
 

@@ -13,8 +13,8 @@ import nonholo as nh
 from nonholo.discrete.routes import make_route
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.kernels import GeneralBody
-from nonholo.kernels.general._step import displaced, workspace
-from nonholo.kernels.general.root import certified, newton, principal
+from nonholo.kernels.general._step import displace, workspace
+from nonholo.kernels.general.run import is_certain, newton, principal
 
 GROUPS = [nh.SO(3), nh.SO(4), nh.SO(5), nh.SE(2), nh.SE(3)]
 INSIDE = 1 - 1e-5  # a difference quotient with a step of 1e-5 radii stays in the ball
@@ -93,8 +93,8 @@ def test_roots_on_the_level_are_principal_and_certified(index: int) -> None:
             work = workspace(body)
             y = np.empty(len(body.stretch))
             assert principal(body, work, m, y) == 0
-            assert certified(body, work, m, y)
-            displaced(body, work, y)
+            assert is_certain(body, work, m, y)
+            displace(body, work, y)
             X = work.X
             K = (X - (system.group.inverse(X + system.group.identity) - system.group.identity)) / 2
             fixed = np.einsum("a,aij", np.linalg.solve(root.T, x), body.directions)
@@ -114,5 +114,5 @@ def test_no_other_root_is_certified(index: int) -> None:
                 good, _ = newton(body, work, 1.0, m, y)
                 if good and np.abs(y - first).max() > 1e-6 * (1 + np.abs(first).max()):
                     others += 1
-                    assert not certified(body, work, m, y)
+                    assert not is_certain(body, work, m, y)
     assert others >= 10  # otherwise nothing was tried

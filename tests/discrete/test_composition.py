@@ -185,7 +185,7 @@ def test_a_run_can_stop_and_go_on(name: str) -> None:
         _, state = kernels.runs_of(body).start(body, 0.05 * velocity, pose)
         rows = np.empty((10, k)), np.empty((10, m)), np.empty((10, len(pose)))
         for steps in parts:
-            kernels.runs_of(body).advance(body, state, steps, 1, *rows)
+            kernels.runs_of(body).advance(body, state, steps, 1, rows)
         found.append(state)
     assert np.array_equal(*found)
 

@@ -55,8 +55,8 @@ def test_a_symmetric_pair_of_rank_two(constraint: str) -> None:
 def test_all_branches_conserve_energy() -> None:
     """No energy is left to choose a root by: Newton from random guesses on SO(4) finds others of the same energy."""
     from nonholo.discrete.routes import make_route
-    from nonholo.kernels.general._step import displaced, increments, workspace
-    from nonholo.kernels.general.root import newton
+    from nonholo.kernels.general._step import displace, increments, workspace
+    from nonholo.kernels.general.run import newton
 
     rng = np.random.default_rng(4)
     system = nh.SuslovTop(mass_tensor(nh.SO(4), rng))
@@ -67,7 +67,7 @@ def test_all_branches_conserve_energy() -> None:
     for y in rng.normal(size=(200, 3)) * 3:
         good, _ = newton(body, work, 1.0, m, y)
         if good:
-            displaced(body, work, y)
+            displace(body, work, y)
             increments(body, work, term)
             after = m + term
             assert abs(after @ body.metric @ after / (m @ body.metric @ m) - 1) < 1e-9

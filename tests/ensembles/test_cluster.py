@@ -261,3 +261,14 @@ def test_import_loads_no_dask(tmp_path: Path) -> None:
     """Neither the package nor the names of sweeps load Dask."""
     code = "import sys, nonholo; nonholo.sweep; print({'dask', 'distributed', 'cloudpickle'} & set(sys.modules))"
     assert _printed(code, tmp_path) == "set()\n"
+
+
+def test_the_users_client(running: Cluster, undisturbed: xarray.Dataset, tmp_path: Path) -> None:
+    """A client may be passed: the result is that of threads, and the client stays open; a closed one is refused."""
+    distributed = pytest.importorskip("distributed")
+    with distributed.Client(running.address, set_as_default=False) as client:
+        found = nh.sweep(slow, DESIGN, tmp_path / "a.zarr", client, block=BLOCK).load()
+        assert found.equals(undisturbed)
+        assert client.status == "running"
+    with pytest.raises(ValueError, match="must be a client that is connected"):
+        nh.sweep(slow, DESIGN, tmp_path / "b.zarr", client)

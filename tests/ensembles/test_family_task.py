@@ -150,3 +150,15 @@ def test_systems_that_differ_by_parameters_run_as_one_ensemble(tmp_path: Path) -
         orbit = nh.simulate(alone, configuration=[1.0], body_velocity=[0.0], steps=20)
         member = found.sel(mass=mass, stiffness=3.0)
         assert np.array_equal(member.final_configuration.values, orbit.configuration[-1])
+
+
+def test_components_have_the_names_of_coordinates(tmp_path: Path) -> None:
+    """A result has the names of coordinates along its components, those of the algebra for velocities on groups."""
+    task = nh.FamilyTask(nh.examples.particle, time_step=0.1, steps=3)
+    found = nh.sweep(task, nh.Grid({"mass": [1.0, 2.0]}), tmp_path / "a.zarr")
+    assert found["coordinate"].values.tolist() == found["component"].values.tolist() == ["x", "y", "z"]
+    orbit = nh.examples.particle(mass=2.0).simulate(time_step=0.1, steps=3)
+    assert float(found["final_configuration"].sel(mass=2.0, coordinate="y")) == orbit.configuration[-1, 1]
+    top = nh.FamilyTask(nh.examples.heavy_suslov_top, time_step=0.1, steps=3)
+    turned = nh.sweep(top, nh.Grid({"velocity_0": [0.5]}), tmp_path / "b.zarr")
+    assert turned["component"].values.tolist() == ["omega1", "omega2", "omega3"]

@@ -107,7 +107,7 @@ def test_end_between_the_last_two_writes(tmp_path: Path, monkeypatch: pytest.Mon
     """A sweep that was killed before its metadata were consolidated is finished by resuming it."""
     path = tmp_path / "run.zarr"
     with monkeypatch.context() as patch:
-        patch.setattr("nonholo.io.blocks._block_store.consolidate", lambda _: (_ for _ in ()).throw(KeyboardInterrupt))
+        patch.setattr("nonholo.io._block_store.consolidate", lambda _: (_ for _ in ()).throw(KeyboardInterrupt))
         with pytest.raises(KeyboardInterrupt, match="Stopped at 6 of 6"):
             swept(path)
     with pytest.raises(ValueError, match="must be a finished sweep"):

@@ -113,7 +113,7 @@ def test_members_that_raise_are_recorded(block: int, tmp_path: Path) -> None:
     assert np.isnan(found["noise"].values[bad]).all()
     now = standing_of(tmp_path / "run.zarr")
     assert sorted(now.messages) == [[3, "ZeroDivisionError: at 3"], [8, "ZeroDivisionError: at 8"]]
-    assert (now.done, now.failed, now.outcomes) == (12, 2, {"successful": 10, "raised": 2})
+    assert (now.done, now.failure_count, now.outcomes) == (12, 2, {"successful": 10, "raised": 2})
 
 
 def test_tasks_that_always_raise_are_refused(tmp_path: Path) -> None:
@@ -367,3 +367,62 @@ def test_dask_is_loaded_when_it_is_needed() -> None:
     program = "import sys, nonholo as nh; nh.Grid({'a': [1.0]}); nh.sweep; print(sorted({'dask'} & {*sys.modules}))"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)  # noqa: S603
     assert done.stdout.strip() == "[]"
+
+
+def _drawn_twice(block: nh.MemberBlock) -> dict[str, Any]:
+    return {"twice": 2 * block["x"], "noise": block.random(1)[:, 0]}
+
+
+@pytest.mark.parametrize("block", [4, 7, 100])
+def test_a_random_design_grows(block: int, tmp_path: Path) -> None:
+    """With more members, once and again, a store has the bits of a sweep of all of them; what is there is not done."""
+    few, many = (nh.RandomDesign(size, {"x": nh.Uniform(0.0, 1.0)}, seed=3) for size in (10, 29))
+    whole = _swept(_drawn_twice, tmp_path / "whole", many)
+    _swept(_drawn_twice, tmp_path, few, block=block)
+    calls = []
+
+    def counted(members: nh.MemberBlock) -> dict[str, Any]:
+        calls.extend(members.index)
+        return _drawn_twice(members)
+
+    counted.__module__, counted.__qualname__ = _drawn_twice.__module__, _drawn_twice.__qualname__
+    path, how = tmp_path / "run.zarr", {"task": counted, "scheduler": "synchronous"}
+    assert nh.resume(path, members=17, **how).sizes == {"member": 17}
+    grown = nh.resume(path, members=29, **how).load()
+    assert same(grown, whole)
+    assert same(nh.load_sweep(path).load(), whole)
+    first = 10 // min(block, 10) * min(block, 10)
+    assert min(calls) == first
+    assert standing_of(path).done == 29
+
+
+def test_a_growth_that_was_killed_continues(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Killed as soon as the store says how many members it is to have, a growth is done by a plain `resume`."""
+    few, many = (nh.RandomDesign(size, {"x": nh.Uniform(0.0, 1.0)}, seed=3) for size in (10, 23))
+    _swept(_drawn_twice, tmp_path, few, block=4)
+    path, how = tmp_path / "run.zarr", {"task": _drawn_twice, "scheduler": "synchronous"}
+    with monkeypatch.context() as patch:
+        patch.setattr("nonholo.ensembles._sweep.continue_sweep", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+        with pytest.raises(KeyboardInterrupt):
+            nh.resume(path, members=23, **how)
+    assert not standing_of(path).finished
+    assert same(nh.resume(path, **how).load(), _swept(_drawn_twice, tmp_path / "whole", many))
+
+
+@pytest.mark.parametrize(
+    ("design", "members", "told"),
+    [
+        (GRID, 20, "must come with a random design"),
+        (FEW, 49, "must not be below the 50 members that there are. Got 49"),
+        (FEW, 1.5, r"resume\(members=...\)"),
+    ],
+)
+def test_growth_that_is_refused(design: Any, members: Any, told: str, tmp_path: Path) -> None:
+    """A grid has no more members, a random design never fewer."""
+
+    def task(block: nh.MemberBlock) -> dict[str, Any]:
+        return {"one": np.ones(block.count)}
+
+    _swept(task, tmp_path, design)
+    with pytest.raises(ValueError, match=told):
+        nh.resume(tmp_path / "run.zarr", task=task, members=members)

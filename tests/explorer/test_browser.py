@@ -297,7 +297,7 @@ def test_ten_thousand(visit: Callable, files: dict, name: str) -> None:
             code, state = kernels.runs_of(body).start(body, np.array(member["first"]), np.array([1.0, 0.0, 0.0, 0.0]))
             assert code == 0
             rows = np.empty((1, 2)), np.empty((1, 2)), np.empty((1, 4))
-            kernels.runs_of(body).advance(body, state, step, step, *rows)
+            kernels.runs_of(body).advance(body, state, step, step, rows)
             assert (member["now"], member["outcome"], member["step"]) == (rows[0][0].tolist(), 0, step)
     assert page.errors == []
 

@@ -6,7 +6,7 @@ from explorer.webassembly import Module
 
 import nonholo as nh
 from nonholo import kernels
-from nonholo.base.compiled.webassembly import module_of
+from nonholo.base.compiled.wasm import module_of
 from nonholo.explorer import kernel
 from nonholo.explorer._kernel import KINDS
 
@@ -31,7 +31,7 @@ def _native(body: kernels.AnyBody, momentum: np.ndarray, pose: np.ndarray) -> tu
     rows = tuple(np.empty((_STEPS, size)) for size in kernels.sizes(body))
     done = 0
     if code == 0:
-        done, code = kernels.runs_of(body).advance(body, state, _STEPS, 1, *rows)
+        done, code = kernels.runs_of(body).advance(body, state, _STEPS, 1, rows)
     return done, code, np.hstack(rows)[:done]
 
 

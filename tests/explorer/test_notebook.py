@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.explorer._motion import shown_motion, simulated
+from nonholo.explorer._motion import shown_motion, simulate_state
 
 NOTEBOOKS = sorted((Path(__file__).parents[2] / "docs/notebooks").glob("*.ipynb"))
 SLEIGH = nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5)
@@ -94,7 +94,7 @@ def test_odd_states_are_refused(odd: str) -> None:
     change = ODD[odd]
     state = {**_first_state(), **change} if isinstance(change, dict) and change else change
     with pytest.raises(ValueError, match=r"^`[^`]+` must .+ Got .+\."):
-        simulated("Page.orbit()", state)
+        simulate_state("Page.orbit()", state)
 
 
 @pytest.mark.parametrize("missing", ["kind", "parameters", "momentum", "pose", "time_step", "steps"])
@@ -102,7 +102,7 @@ def test_states_with_gaps_are_refused(missing: str) -> None:
     """Every entry has to be there."""
     state = {name: value for name, value in _first_state().items() if name != missing}
     with pytest.raises(ValueError, match=f"Got {missing}: Field required"):
-        simulated("Page.orbit()", state)
+        simulate_state("Page.orbit()", state)
 
 
 EXTREME = {

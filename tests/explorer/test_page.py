@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 import nonholo as nh
 from nonholo.cli._app import app
 from nonholo.explorer import explore
-from nonholo.explorer._motion import simulated
+from nonholo.explorer._motion import simulate_state
 from nonholo.lagrange_dalembert import CoordinateOrbit
 
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
@@ -101,8 +101,8 @@ def test_data_of_a_table() -> None:
         np.testing.assert_allclose(page.orbit().reduced_momentum, orbit.reduced_momentum[first:], atol=1e-13)
     for change in ({"steps": 10**12}, {"steps": "x"}, {"parameters": {**data["state"]["parameters"], "s": "x"}}):
         with pytest.raises(ValueError, match="a state that the page can show"):
-            simulated("Page.orbit()", {**data["state"], **change}, data["table"])
-    longer = simulated("Page.orbit()", {**data["state"], "steps": 60}, data["table"])
+            simulate_state("Page.orbit()", {**data["state"], **change}, data["table"])
+    longer = simulate_state("Page.orbit()", {**data["state"], "steps": 60}, data["table"])
     assert (np.diff(longer.energy[31:]) < 0).all()  # friction alone, after the last row
     assert np.diff(longer.energy[:31]).max() > 0
     assert (explore(discrete).orbit().time[-1], explore(TOP).table) == (4.0, None)

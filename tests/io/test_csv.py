@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 from stopping import stopped_at
 
 import nonholo as nh
-from nonholo.io import checksum, locked, store_to_csv
+from nonholo.io import checksum, store_to_csv, write_lock
 
 EPS = np.finfo(float).eps
 SPINNING = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0, 0.3), 0.1)  # turns forever
@@ -208,7 +208,7 @@ def test_run_that_is_being_written_is_exported(tmp_path: Path) -> None:
     with stopped_at(2):
         nh.simulate(SPINNING, steps=99, store=path, checkpoint_every=16, **SPIN)
     with (
-        locked(path),
+        write_lock(path),
         pytest.warns(RuntimeWarning, match=rf"step 31 of 99\. It is being written by process {os.getpid()}"),
     ):
         assert len(_of_store(path).splitlines()) == 33

@@ -163,7 +163,7 @@ def test_marked_blocks_are_listed_once(tmp_path: Path, monkeypatch: pytest.Monke
     stream, seen = open_stream(store), []
     listed: Callable[..., list[str]] = os.listdir
     monkeypatch.setattr(os, "listdir", lambda *folders: seen.append(folders) or listed(*folders))
-    assert stream.marked() == {*range(4), 98}
+    assert stream.block_numbers() == {*range(4), 98}
     assert stream.finished_blocks() == 4
     assert len(seen) == 2
 

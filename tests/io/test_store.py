@@ -19,7 +19,7 @@ from problems import PROBLEMS
 
 import nonholo as nh
 from nonholo.base.compiled import way_of_kernels
-from nonholo.io import BlockStore, _orbit_store, checksum, locked, orbit_to_dataset, read_attributes
+from nonholo.io import BlockStore, _orbit_store, checksum, orbit_to_dataset, read_attributes, write_lock
 from nonholo.io.datasets._dataset import stored_variables
 
 NAMES = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
@@ -467,7 +467,7 @@ def test_only_what_is_ours_is_replaced(store: Path) -> None:
     with pytest.raises(FileExistsError, match=r"holds 'thesis.tex', which is no part of a store"):
         nh.save_orbit(orbit, store, overwrite=True)
     (store / "thesis.tex").unlink()
-    with locked(store), pytest.raises(BlockingIOError, match=r"is being written by process \d+ .* not replaced"):
+    with write_lock(store), pytest.raises(BlockingIOError, match=r"is being written by process \d+ .* not replaced"):
         nh.save_orbit(orbit, store, overwrite=True)
     nh.save_orbit(orbit, store, overwrite=True)
     assert nh.load_orbit(store).canonical_pose.tobytes() == orbit.canonical_pose.tobytes()

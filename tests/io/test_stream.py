@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from nonholo.io import locked, owner_of
+from nonholo.io import owner_of, write_lock
 from nonholo.orbit import Plan
 
 
@@ -29,8 +29,8 @@ CONTAINER = ["unshare", "--pid", "--fork", "--kill-child", "--mount-proc"]
 
 
 def _hold(store: Path, inside: str) -> str:
-    start = "import os, pathlib, time\nfrom nonholo.io import locked\n"
-    return f"{start}with locked(pathlib.Path({str(store)!r})):\n    {inside}"
+    start = "import os, pathlib, time\nfrom nonholo.io import write_lock\n"
+    return f"{start}with write_lock(pathlib.Path({str(store)!r})):\n    {inside}"
 
 
 @contextlib.contextmanager
@@ -50,7 +50,7 @@ def test_lock_names_its_owner_and_goes(store: Path) -> None:
     owners = []
 
     def fail_inside() -> None:
-        with locked(store):
+        with write_lock(store):
             owners.append(owner_of(store))
             raise KeyError
 
@@ -63,8 +63,8 @@ def test_lock_names_its_owner_and_goes(store: Path) -> None:
 
 def test_held_lock_is_refused(store: Path) -> None:
     """A second owner is refused, the first one is named, and its lock stays."""
-    with locked(store):
-        with pytest.raises(BlockingIOError, match=f"being written by process {os.getpid()} on"), locked(store):
+    with write_lock(store):
+        with pytest.raises(BlockingIOError, match=f"being written by process {os.getpid()} on"), write_lock(store):
             pass
         assert owner_of(store) is not None
 
@@ -75,7 +75,7 @@ def test_what_is_left_does_not_lock(left: str, store: Path) -> None:
     (store / "run" / "lock.json").write_text(left)
     (store / "run" / "lock").touch()
     assert owner_of(store) is None
-    with locked(store):
+    with write_lock(store):
         assert str(os.getpid()) in str(owner_of(store))
     assert list((store / "run").iterdir()) == []
 
@@ -83,9 +83,9 @@ def test_what_is_left_does_not_lock(left: str, store: Path) -> None:
 @pytest.mark.parametrize("told", [b"", b"{", b"[]", b"\xff\xfe", b"[" * 100_000, b'{"host": {}}'])
 def test_held_lock_needs_no_name(told: bytes, store: Path) -> None:
     """A lock is held also if what tells its owner cannot be read, and a terminal is not controlled by it."""
-    with locked(store):
+    with write_lock(store):
         (store / "run" / "lock.json").write_bytes(told)
-        with pytest.raises(BlockingIOError, match="an unknown process"), locked(store):
+        with pytest.raises(BlockingIOError, match="an unknown process"), write_lock(store):
             pass
         (store / "run" / "lock.json").write_text(json.dumps({"pid": "\x1b]0;x\x07", "host": "h", "since": 1}))
         assert owner_of(store) == "process ?]0;x? on h since 1"
@@ -95,11 +95,11 @@ def test_lock_ends_with_its_process(store: Path) -> None:
     """A lock holds as long as its process, and not longer, though that is killed."""
     with _holder(store) as holder:
         assert f"process {holder.pid} on {socket.gethostname()}" in str(owner_of(store))
-        with pytest.raises(BlockingIOError), locked(store):
+        with pytest.raises(BlockingIOError), write_lock(store):
             pass
     assert (store / "run" / "lock").exists()
     assert owner_of(store) is None
-    with locked(store):
+    with write_lock(store):
         pass
 
 
@@ -122,7 +122,7 @@ def test_file_systems_without_locks_are_named(store: Path, monkeypatch: pytest.M
 
     monkeypatch.setattr(fcntl, "flock", missing)
     with pytest.raises(OSError, match=r"cannot be locked.*Function not implemented.*write it elsewhere.*run\.zarr"):
-        _ = locked(store).__enter__()
+        _ = write_lock(store).__enter__()
 
 
 def test_one_of_many_takes_a_lock(store: Path) -> None:
@@ -130,7 +130,7 @@ def test_one_of_many_takes_a_lock(store: Path) -> None:
     (store / "run" / "lock").touch()
     script = f"""
 import os, pathlib, time
-from nonholo.io import locked
+from nonholo.io import write_lock
 store, held = pathlib.Path({str(store)!r}), pathlib.Path({str(store)!r}) / "held"
 inside = refused = 0
 for trial in range(6):
@@ -138,7 +138,7 @@ for trial in range(6):
     if child == 0:
         code = 1
         try:
-            with locked(store):
+            with write_lock(store):
                 os.close(os.open(held, os.O_CREAT | os.O_EXCL))  # fails if another one is inside
                 time.sleep(1.5)
                 held.unlink()

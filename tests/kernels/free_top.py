@@ -17,8 +17,7 @@ import numpy as np
 import nonholo as nh
 from nonholo.base.compiled import njit
 from nonholo.discrete.routes import _normal_forms
-from nonholo.kernels._interface import Body
-from nonholo.kernels._scalar import COMPILED, scalar, sqrt
+from nonholo.kernels._scalar import COMPILED, Body, scalar, sqrt
 from nonholo.kernels._suslov import move as moved
 from nonholo.systems import NormalForm
 
@@ -54,7 +53,7 @@ def correction(p: FreeTopBody, m1: float, m2: float, y1: float, y2: float) -> tu
 
 
 @scalar
-def certified(p: FreeTopBody, m1: float, m2: float, y1: float, y2: float) -> bool:
+def is_certain(p: FreeTopBody, m1: float, m2: float, y1: float, y2: float) -> bool:
     """Every real root of this branch is the principal one."""
     return y1 * y1 + y2 * y2 < 1
 

@@ -17,7 +17,7 @@ from nonholo.continuous import _forced, _series
 from nonholo.kernels import Quadratic
 from nonholo.kernels._scalar import COMPILED
 from nonholo.kernels.lanes import EIGHT, ONE
-from nonholo.kernels.taylor import _compiled, _expansion, _members
+from nonholo.kernels.taylor import _expansion, _solve
 from nonholo.kernels.taylor.emission import code_of
 from nonholo.systems import AbstractSystem
 
@@ -64,7 +64,7 @@ def equations(system: AbstractSystem, lanes: tuple[int, ...]) -> Quadratic:
     f = _forced.quadratic_under(system.forces) if system.forces else _series.quadratic(system.canonical)
     if lanes == ONE:
         return f._replace(momentum=RNG.normal(size=len(f.velocities))) if len(f.forms) else f
-    wide = f._replace(**_members.one_by_one(f.rows, f.found))
+    wide = f._replace(**_solve.one_by_one(f.rows, f.sources))
     own = {"velocities": RNG.normal(size=(len(f.velocities), len(f.velocities) * 8))}
     return wide._replace(**own, factors=RNG.normal(size=(1, f.factors.size * 8)))
 
@@ -72,7 +72,7 @@ def equations(system: AbstractSystem, lanes: tuple[int, ...]) -> Quadratic:
 def structure_of(f: Quadratic, lanes: tuple[int, ...]) -> str:
     """Return the structure of equations."""
     counts = len(lanes), len(f.velocities), f.forms.size and f.tensor.size
-    return _compiled.structure_of(counts, f.rows.ravel(), f.first, f.found)
+    return _expansion.structure_of(counts, f.rows.ravel(), f.first, f.sources)
 
 
 @njit(**COMPILED)
@@ -97,7 +97,7 @@ def _bits(f: Quadratic, lanes: tuple[int, ...], expansion: int, state: np.ndarra
 def test_emitted_code_has_the_bits_of_the_general_kernel(name: str, lanes: tuple[int, ...]) -> None:
     """At random states, with zeros of both signs, tiny and huge numbers, and at any order."""
     f = equations(BODIES[name], lanes)
-    expansion = emission.compiled(code_of(structure_of(f, lanes), "expansion"), "expansion")
+    expansion = emission.compile_text(code_of(structure_of(f, lanes), "expansion"), "expansion")
     for order in (1, 2, 3, 8, 29, 30):
         for scale in (1.0, 1e-200, 1e30):
             state = scale * RNG.normal(size=(2, (len(f.blocks) + 1) * len(lanes)))
@@ -116,10 +116,10 @@ def test_emitted_code_of_random_structures(seed: int) -> None:
     rows = np.stack([rng.integers(0, k, products), rng.integers(0, -(-before // 8), products)])
     found = rng.integers(0, 8 * products + k, terms)
     f = _series.quadratic(USUAL["top"].canonical)._replace(
-        velocities=rng.normal(size=(k, k)), rows=rows, first=np.append(0, np.cumsum(counts)), found=found,
+        velocities=rng.normal(size=(k, k)), rows=rows, first=np.append(0, np.cumsum(counts)), sources=found,
         factors=rng.normal(size=(1, terms)), blocks=np.zeros(size, dtype=np.int64),
     )  # fmt: skip
-    expansion = emission.compiled(code_of(structure_of(f, ONE), "expansion"), "expansion")
+    expansion = emission.compile_text(code_of(structure_of(f, ONE), "expansion"), "expansion")
     state = rng.normal(size=(2, size + 1))
     general, emitted = (_bits(f, ONE, code, state, 20) for code in (0, expansion))
     assert np.array_equal(general, emitted)
@@ -127,25 +127,25 @@ def test_emitted_code_of_random_structures(seed: int) -> None:
 
 def test_usual_bodies_are_in_the_library() -> None:
     """Their expansions for one motion and for eight are listed, and there; the address is that of the library."""
-    lines = (Path(_compiled.__file__).parents[1] / "ahead.txt").read_text(encoding="utf-8").splitlines()
+    lines = (Path(_expansion.__file__).parents[1] / "ahead.txt").read_text(encoding="utf-8").splitlines()
     usual = [(equations(USUAL[name], lanes), lanes) for name, lanes in cases(USUAL)]
-    wanted = {f"{_compiled.EMITTER} {structure_of(*case)}" for case in usual}
-    assert {line for line in lines if line.startswith(_compiled.EMITTER)} == wanted
+    wanted = {f"{_expansion.EMITTER} {structure_of(*case)}" for case in usual}
+    assert {line for line in lines if line.startswith(_expansion.EMITTER)} == wanted
     if way_of_kernels() == "library":
         library = library_of_kernels()
         assert library is not None
-        addresses = [library.address(_compiled.EMITTER, structure_of(*case)) for case in usual]
+        addresses = [library.address(_expansion.EMITTER, structure_of(*case)) for case in usual]
         assert addresses == [_expansion.expansion_of(*case) for case in usual]
         assert all(addresses)
     library = library_of_kernels()
-    assert library is None or library.address(_compiled.EMITTER, "1,1,0;;0;") == 0
+    assert library is None or library.address(_expansion.EMITTER, "1,1,0;;0;") == 0
 
 
 def test_python_calls_compiled_code_too() -> None:
     """The function at an address is the same for plain Python."""
     f, order = equations(USUAL["top"], ONE), 12
     state = RNG.normal(size=(2, len(f.blocks) + 1))
-    expansion = emission.compiled(code_of(structure_of(f, ONE), "expansion"), "expansion")
+    expansion = emission.compile_text(code_of(structure_of(f, ONE), "expansion"), "expansion")
     rooms = [_expansion.make_room(f, order, ONE) for _ in range(2)]
     _expansion.expand(f, 0, state, rooms[0], ONE)
     _expansion.expand(f, expansion, state, rooms[1], ONE)
@@ -159,8 +159,8 @@ def test_without_the_extra_the_general_kernel_does_the_rest(monkeypatch: pytest.
     velocity = np.cos(np.arange(system.rank))
     flows = [nh.flow(system, restricted_velocity=velocity, times=(0.0, 3.0)).configuration]
     monkeypatch.setitem(sys.modules, "nonholo.kernels.taylor.emission", None)
-    _compiled.address_of.cache_clear()
+    _expansion.address_of.cache_clear()
     flows.append(nh.flow(system, restricted_velocity=velocity, times=(0.0, 3.0)).configuration)
     assert _expansion.expansion_of(equations(system, ONE), ONE) == 0
-    _compiled.address_of.cache_clear()
+    _expansion.address_of.cache_clear()
     assert np.array_equal(flows[0], flows[1])

@@ -7,10 +7,19 @@ from bodies import GENERAL
 
 import nonholo as nh
 from nonholo import kernels
-from nonholo.kernels._interface import corrections, residual
-from nonholo.kernels._substeps import at_rest, charted, prepared, pushed, solved
-from nonholo.kernels.forced._kick import linear, pulled_by_weight, seen
-from nonholo.kernels.forced._two import RENEWED, _numbers, _root, kicked_two, leaned, turned
+from nonholo.kernels._composition import at_rest, find_root, prepare, push_and_move, write_chart
+from nonholo.kernels._scalar import corrections, residual
+from nonholo.kernels.forced._kick import (
+    RENEWED,
+    _numbers,
+    _root,
+    apply_arms,
+    kicked_two,
+    linear,
+    pulled_by_weight,
+    to_body,
+    turn_weight,
+)
 from nonholo.kernels.forced.run import add_compensated
 from nonholo.systems import AbstractSystem
 
@@ -47,8 +56,8 @@ def _run(forced: kernels.ForcedBody, m: np.ndarray, pose: np.ndarray, steps: int
     lost, pose, found, force = np.zeros_like(m), pose.copy(), [], np.empty_like(m)
     y = u = v = t = at_rest(body)
     n, _, F, L, _ = _numbers.py_func(kick) if len(m) == 2 else (0, False, (), (), ())
-    weight = seen(n, F, *pose) if len(m) == 2 else ()
-    force[:] = leaned(L, *weight) if len(m) == 2 else 0.0
+    weight = to_body(n, F, *pose) if len(m) == 2 else ()
+    force[:] = apply_arms(L, *weight) if len(m) == 2 else 0.0
     for k in range(steps + 1):
         if len(m) > 2:
             pulled_by_weight(kick, force, pose)
@@ -59,19 +68,19 @@ def _run(forced: kernels.ForcedBody, m: np.ndarray, pose: np.ndarray, steps: int
             code, *root[:] = _root.py_func(body, n > 0, *s, *guess)  # type: ignore[misc]
             chart[:] = root
         else:
-            w = prepared(body, s, np.ones(1))
-            code, chart = solved(body, w, 0, s, guess, pose, root), np.empty(kernels.sizes(body)[1])
-            charted(body, s, root, chart)
+            w = prepare(body, s, np.ones(1))
+            code, chart = find_root(body, w, 0, s, guess, pose, root), np.empty(kernels.sizes(body)[1])
+            write_chart(body, s, root, chart)
         assert code == 0
         t, v, u, y = (v, u, y, root) if k else (root, root, root, root)
         found.append((m, chart, pose.copy()))
         if len(m) == 2:
-            *force[:], weight = turned(n, L, *root, weight)
+            *force[:], weight = turn_weight(n, L, *root, weight)
             change[:], pose[:] = kernels.increment(body, *s, *root), kernels.move(body, *root, *pose)
             if n and (k + 1) % RENEWED == 0:
-                weight = seen(n, F, *pose)
+                weight = to_body(n, F, *pose)
         else:
-            pushed(body, w, s, root, change, pose)
+            push_and_move(body, w, s, root, change, pose)
             pulled_by_weight(kick, force, pose)
         add_compensated(s, lost, change)
         m = _kicked(kick, k, s, force)
@@ -85,13 +94,13 @@ def test_weights_seen_from_the_body_are_those_of_matrices() -> None:
         for group, n in ((nh.SO(3), 3), (nh.SE(2), 2)):
             pose = np.pad(group.pose_from_matrix(group.random(rng)), (0, 4 - group.pose_size))
             body = nh.discretize(BODIES["top" if n == 3 else "sleigh"][0], 0.1).route.compiled_route.body  # type: ignore[union-attr]
-            here = seen(n, F, *pose)
+            here = to_body(n, F, *pose)
             R, after = (
                 group.matrix_from_pose(q[: group.pose_size])[:n, :n]
                 for q in (pose, np.array(kernels.move(body, *y, *pose)))
             )
             assert np.abs(here[:n] - R.T @ F[:n]).max() < 1e-15
-            assert np.abs(turned(n, np.ones(6), *y, here)[2][:n] - after.T @ F[:n]).max() < 2e-15
+            assert np.abs(turn_weight(n, np.ones(6), *y, here)[2][:n] - after.T @ F[:n]).max() < 2e-15
 
 
 @pytest.mark.parametrize("kind", ["weight", "friction", "table", "both"])
@@ -111,7 +120,7 @@ def test_the_loop_has_the_bits_of_plain_python(name: str, kind: str) -> None:
         found, done = tuple(np.empty((STEPS, width)) for width in route.sizes), 0
         for piece in pieces:
             room = (found[0][done:], found[1][done:], found[2][done:])
-            assert kernels.runs_of(route.body).advance(route.body, state, piece, 1, *room) == (piece, 0)
+            assert kernels.runs_of(route.body).advance(route.body, state, piece, 1, room) == (piece, 0)
             done += piece
         for mine, theirs in zip(found, wanted, strict=True):
             assert np.array_equal(mine, theirs[1:])
@@ -147,7 +156,7 @@ def test_friction_of_two_momenta_is_an_exponential(stiffness: float) -> None:
             D = mpmath.matrix(C.tolist()) * mpmath.matrix([[b11, b12], [b12, b22]]) ** -1
             wanted = mpmath.expm(-0.7 * D)
             push = D**-1 * (mpmath.eye(2) - wanted)
-        left, pushed = (np.reshape(X, (2, 2)) for X in kernels.rubbed(body, C.ravel().tolist(), 0.7))
+        left, pushed = (np.reshape(X, (2, 2)) for X in kernels.friction_flow(body, C.ravel().tolist(), 0.7))
         scale = 1 + 0.7 * stiffness  # of the condition of an exponential
         np.testing.assert_allclose(left, np.array(wanted.tolist(), float), rtol=0, atol=4e-16 * scale)
         np.testing.assert_allclose(pushed, np.array(push.tolist(), float), rtol=2e-15 * scale)

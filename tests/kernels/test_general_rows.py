@@ -8,9 +8,9 @@ import nonholo as nh
 from nonholo.discrete.routes import make_route
 from nonholo.kernels.general._rows import decompose, solve_rows
 from nonholo.kernels.general._step import (
+    displace,
     displace_by_elimination,
     displace_by_squares,
-    displaced,
     jacobian,
     residual,
     workspace,
@@ -39,13 +39,13 @@ def test_jacobian_is_the_derivative_of_the_residual(group: nh.SO) -> None:
         system = nh.LLSystem(group, mass_tensor(group, rng), random_rows(group, k, rng))
         body = make_route(nh.discretize(system, 1.0), "matrix").body
         w, m, y = workspace(body), rng.normal(size=k), 0.3 * rng.normal(size=len(body.stretch))
-        displaced(body, w, y)
+        displace(body, w, y)
         residual(body, w, 0.7, m)
         jacobian(body, w)
         found, at = w.slope.copy(), []
         for a in range(len(y)):
             for sign in (1, -1):
-                displaced(body, w, y + sign * 1e-5 * np.eye(len(y))[a])
+                displace(body, w, y + sign * 1e-5 * np.eye(len(y))[a])
                 residual(body, w, 0.7, m)
                 at.append(w.sums[0].copy())
         quotients = (np.array(at[::2]) - np.array(at[1::2])) / 2e-5

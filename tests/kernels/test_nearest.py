@@ -41,7 +41,7 @@ def test_the_kernel_has_the_equations(name: str, balanced: bool) -> None:
     x, out, J, after = rng.normal(size=m), np.empty((m, 1)), np.empty((m, m)), np.empty(m - 1)
     _nearest.residual(body, _goal(equations), x, out)
     _nearest.slope(body, x, J)
-    _nearest.kicked(body, _goal(equations), x, after)
+    _nearest.kick(body, _goal(equations), x, after)
     np.testing.assert_allclose(out[:, 0], equations.residual(x)[0], rtol=0, atol=1e-14)
     np.testing.assert_allclose(J, equations.slope(x), rtol=0, atol=1e-14)
     target, push = equations.kick(x)

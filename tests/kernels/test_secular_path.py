@@ -10,9 +10,8 @@ import nonholo as nh
 from nonholo import kernels
 from nonholo.discrete.branching._equations import frame_of
 from nonholo.discrete.routes import SecularRoute, make_route
-from nonholo.kernels.secular._box import holds, write_bends, write_box
-from nonholo.kernels.secular._linear import solve_linear
-from nonholo.kernels.secular._path import on_the_sphere, principal
+from nonholo.kernels.secular._root import on_the_sphere, principal
+from nonholo.kernels.secular._sphere import holds, solve_linear, write_bends, write_box
 from nonholo.kernels.secular._step import room_for_sums, secular_sleigh, secular_top
 
 PAST_PI = [

@@ -13,9 +13,8 @@ from jax import lax
 from nonholo.base.numerics import double_precision
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.lagrange_dalembert.compiled import _run
-from nonholo.lagrange_dalembert.compiled._operations import LOGIC, OPERATIONS
 from nonholo.lagrange_dalembert.compiled._run import machine_code
-from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError
+from nonholo.lagrange_dalembert.compiled._scalars import LOGIC, OPERATIONS, Formulas, Scalar, UntranslatableError
 
 EPS = np.finfo(float).eps
 CYCLE = np.array([2, 0, 1])

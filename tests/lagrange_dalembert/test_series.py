@@ -10,10 +10,9 @@ import pytest
 from llvmlite import ir
 
 import nonholo as nh
-from nonholo.base.compiled.emission import compiled
-from nonholo.kernels.taylor._compiled import call
-from nonholo.lagrange_dalembert.compiled._derivatives import Elimination
-from nonholo.lagrange_dalembert.compiled._expansion import Expansion
+from nonholo.base.compiled.emission import compile_text
+from nonholo.kernels.taylor._expansion import call
+from nonholo.lagrange_dalembert.compiled._expansion import Elimination, Expansion
 from nonholo.lagrange_dalembert.compiled._flow import formulation
 from nonholo.lagrange_dalembert.compiled._run import machine_code
 from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError
@@ -60,7 +59,7 @@ def _series(build: Any, start: list[float]) -> np.ndarray:
     expansion.write(module, "expansion", width)
     series, room, none = np.zeros((ORDER + 1, width)), np.zeros(expansion.room), np.zeros(1)
     series[0, : len(start)] = start
-    call(compiled(str(module), "expansion"), (none, room, series, none, none), ORDER)
+    call(compile_text(str(module), "expansion"), (none, room, series, none, none), ORDER)
     return series
 
 

@@ -107,6 +107,7 @@ def _ready(name: str, *traits: str, parameter: str = "mass", values: tuple[Any, 
         lambda value: getattr(nh.examples, name)(**{parameter: value}).system,
         parameter,
         values,
+        {"kind": name, parameter: values[0]},
         traits=frozenset({"ready system", *traits}),
     )
 

@@ -15,7 +15,7 @@ import nonholo as nh
 from nonholo.lagrange_dalembert import CoordinateOrbit, LagrangeDAlembert
 from nonholo.plot.animation._in_plane import _outline
 from nonholo.plot.animation._in_space import _box
-from nonholo.plot.animation._on_sphere import _scaled
+from nonholo.plot.animation._on_sphere import _box_in_sphere
 from nonholo.plot.animation._part import part_of, part_of_flow, shown_states
 
 
@@ -71,7 +71,7 @@ def test_a_trail_ends_where_the_body_is(top_orbit: nh.Orbit) -> None:
 
 def test_box_of_a_top_has_its_mass_tensor(top_orbit: nh.Orbit) -> None:
     """The drawn box has the principal axes of the mass tensor and sides as the roots of its moments."""
-    tensor, box = np.asarray(top_orbit.system.mass_tensor), _scaled(top_orbit)
+    tensor, box = np.asarray(top_orbit.system.mass_tensor), _box_in_sphere(top_orbit)
     scaled = box.axes @ np.diag(box.half**2) @ box.axes.T
     assert np.allclose(scaled / scaled[0, 0], tensor / tensor[0, 0])
     corners = box.corners(np.eye(3)).reshape(-1, 3) @ box.axes

@@ -16,7 +16,7 @@ from matplotlib.text import Text
 from plot.runs import MASS_TENSOR, run_of, sleigh_run, top_run
 
 import nonholo as nh
-import nonholo.plot.geometry._locus_section
+import nonholo.plot.geometry._locus
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.plot import theme
 
@@ -65,7 +65,7 @@ PICTURES: dict[str, Callable[..., Any]] = {
 @pytest.fixture(autouse=True)
 def _coarse(monkeypatch: pytest.MonkeyPatch) -> None:
     """Sections of a locus need not be smooth here."""
-    monkeypatch.setattr(nonholo.plot.geometry._locus_section, "_GRID", 31)
+    monkeypatch.setattr(nonholo.plot.geometry._locus, "_GRID", 31)
 
 
 def _axes(drawn: Any) -> Any:
@@ -140,7 +140,7 @@ def test_dark_palette() -> None:
     """Every color that lines, dots and words can have on a dark background has a contrast of 4.5 or more."""
     colors: list[Any] = []
 
-    @theme.styled
+    @theme.in_style
     def collect(axes: Axes) -> None:
         theme.begin(axes)
         names = ("STABLE", "UNSTABLE", "DISCRETE", "CONTINUOUS", "LEVEL", "INK", "QUIET", "MUTED")

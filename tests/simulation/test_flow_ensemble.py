@@ -8,6 +8,7 @@ from bodies import mass_tensor
 
 import nonholo as nh
 from nonholo.continuous._series import body_numbers, by_series
+from nonholo.continuous._solution import Problem
 from nonholo.simulation.members._members import Members, inertias_of
 from nonholo.systems import AbstractSystem
 
@@ -123,7 +124,8 @@ def test_numbers_of_members_are_those_of_each_alone(name: str) -> None:
             body_numbers(group, S, inertias), body_numbers(group, S, inertias[member]), strict=True
         ):
             assert np.array_equal(made[member], expected)
-        solved = by_series(seen, batch.first_momentum[member], alone.frame_pose, np.array([0.0, 2.0]), (1e-14, 1.0))
+        problem = Problem(batch.first_momentum[member], alone.frame_pose, np.array([0.0, 2.0]), (1e-14, 1.0))
+        solved = by_series(seen, problem)
         assert np.array_equal(batch.reduced_momentum[member], solved.states.momenta)
         assert np.array_equal(np.asarray(batch.canonical_pose)[member], solved.states.poses)
 

@@ -96,9 +96,7 @@ def cut(path: Path, monkeypatch: pytest.MonkeyPatch, block: int, late: bool, run
 
     def failing(self: Stream, number: int, *rest: Any) -> None:
         if number == block:
-            patch.setattr(
-                f"nonholo.io.blocks._block_store.{'write_whole' if late else 'require_identity'}", interrupted
-            )
+            patch.setattr(f"nonholo.io._block_store.{'write_whole' if late else 'require_identity'}", interrupted)
         write(self, number, *rest)
 
     with monkeypatch.context() as patch:

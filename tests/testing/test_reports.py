@@ -5,8 +5,7 @@ import pytest
 
 import nonholo as nh
 from nonholo.testing import check_group
-from nonholo.testing._measures import derivative, gap, relative
-from nonholo.testing._report import Check, NotApplicableError, Report, run_checks
+from nonholo.testing._report import Check, NotApplicableError, Report, derivative, gap, relative, run_checks
 
 
 def unfit(_: object) -> float:

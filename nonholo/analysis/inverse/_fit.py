@@ -9,11 +9,10 @@ from typing import Any
 import numpy as np
 from scipy.special import stdtrit
 
-from nonholo.analysis.inverse._likelihood import LOSSES, Estimate
+from nonholo.analysis.inverse._likelihood import LOSSES, Estimate, Problem, Shapes, by_name
 from nonholo.analysis.inverse._measurements import WHERE, kinds_of
-from nonholo.analysis.inverse._problem import Problem, Shapes, named
 from nonholo.analysis.inverse._profile import Minimum, Profile, profile_of
-from nonholo.analysis.inverse._search import Found, Ranges, Search, outcome_of
+from nonholo.analysis.inverse._search import Ranges, Search, Solution, outcome_of
 from nonholo.base.checks import array, choice, error, function, instance, needs, number, pair, scale, shown
 from nonholo.base.types import Array, Float
 from nonholo.orbit import Orbit
@@ -68,11 +67,11 @@ class Fit:
         They are those of the linearized model, with Student's quantile at the `degrees` of each parameter. `profile`
         has those of the likelihood itself.
         """
-        half, found, at = stdtrit(self.degrees, 0.975) * np.sqrt(self.covariance.diagonal()), {}, 0
+        half, ends, at = stdtrit(self.degrees, 0.975) * np.sqrt(self.covariance.diagonal()), {}, 0
         for name, value in self.parameters.items():
             width = half[at : at + np.size(value)].reshape(np.shape(value))
-            found[name], at = (value - width, value + width), at + np.size(value)
-        return found
+            ends[name], at = (value - width, value + width), at + np.size(value)
+        return ends
 
     def profile(self, name: str, level: float = 0.95) -> Profile:
         r"""Return the likelihood profile of a parameter, and the interval that it gives.
@@ -194,10 +193,10 @@ def fit(
     trials = [{kind: rows[i] for kind, rows in kinds.items()} for i in range(len(next(iter(kinds.values()))))]
     starting = functools.partial(model.first, h, is_robust=loss != LOSSES[0])
     poses, starts = map(np.array, zip(*map(starting, trials), strict=True))
-    problem = Problem(functools.partial(model.missed, system_of, shapes, h), poses, kinds, len(numbers), starts.shape)
-    search = Search(
-        problem, ranges, lambda point: system_of(named(shapes, point[: len(numbers)])), loss, _known(noise, problem)
-    )
+    residuals_of = functools.partial(model.residuals, system_of, shapes, h)
+    problem = Problem(residuals_of, poses, kinds, len(numbers), starts.shape)
+    levels = _noise_levels(noise, problem)
+    search = Search(problem, ranges, lambda point: system_of(by_name(shapes, point[: len(numbers)])), loss, levels)
     begin = np.concatenate([numbers, starts.ravel()])
     _check_begin(problem, begin)
     return _result(search, search.run(begin), begin, shapes, functools.partial(model.orbit, h=h))
@@ -213,15 +212,15 @@ def _check_begin(problem: Problem, point: np.ndarray) -> None:
         raise error("fit(guess=...)", "have a motion through the measurements", "an orbit that ends", remedy)
 
 
-def _known(noise: Any, problem: Problem) -> np.ndarray:
+def _noise_levels(noise: Any, problem: Problem) -> np.ndarray:
     """Return the noise levels that are given by kind, NaN for those to be estimated."""
     where, remedy, kinds = "fit(noise=...)", "Pass a number, or numbers by kind.", list(problem.there)
     if noise is None:
         return np.full(len(kinds), np.nan)
-    given = noise if isinstance(noise, Mapping) else dict.fromkeys(kinds, noise)
-    for kind in given:
+    levels = noise if isinstance(noise, Mapping) else dict.fromkeys(kinds, noise)
+    for kind in levels:
         choice(where, kind, tuple(kinds), "Name kinds that are measured.")
-    return np.array([float(scale(where, given[kind], remedy)) if kind in given else np.nan for kind in kinds])
+    return np.array([float(scale(where, levels[kind], remedy)) if kind in levels else np.nan for kind in kinds])
 
 
 def _ranges(bounds: Any, shapes: Shapes, numbers: np.ndarray) -> Ranges:
@@ -238,52 +237,53 @@ def _ranges(bounds: Any, shapes: Shapes, numbers: np.ndarray) -> Ranges:
     return Ranges(low, high)
 
 
-def _result(search: Search, found: Found, begin: np.ndarray, shapes: Shapes, orbit_of: Callable[..., Any]) -> Fit:
-    problem, point, P = search.problem, found.point, search.problem.count
-    _check_levels(search, found)
-    _check_determined(found.estimate, shapes, P)
-    covariance, plain, degrees = (x[..., :P] for x in found.estimate.covariance(~np.isfinite(search.known)))
+def _result(search: Search, solution: Solution, begin: np.ndarray, shapes: Shapes, orbit_of: Callable[..., Any]) -> Fit:
+    problem, point, P = search.problem, solution.point, search.problem.count
+    _check_levels(search, solution)
+    _check_determined(solution.estimate, shapes, P)
+    covariance, plain, degrees = (x[..., :P] for x in solution.estimate.covariance(~np.isfinite(search.levels)))
     covariance, plain = covariance[:P], plain[:P].diagonal()
-    system, parameters = search.system_at(point), named(shapes, point[:P])
+    system, parameters = search.system_at(point), by_name(shapes, point[:P])
     parameters = {name: x if np.ndim(x) else float(x) for name, x in parameters.items()}
     rows = {kind: np.where(there, problem.at(point)[kind][0], np.nan) for kind, there in problem.there.items()}
     residuals = tuple({kind: part[i] for kind, part in rows.items()} for i in range(len(problem.poses)))
     starts, steps = point[P:].reshape(problem.shape), next(iter(problem.kinds.values())).shape[1] - 1
     rows_of = zip(starts, problem.poses, strict=True)
     orbits = [orbit_of(system, start=start, pose=pose, steps=steps) for start, pose in rows_of]
-    levels = {kind: float(x) for kind, x in zip(rows, found.noise, strict=True)}
-    minimum = search.minimum(found, degrees, np.sqrt(plain), np.sqrt(covariance.diagonal() / plain))
-    outcome = outcome_of(search, found, begin[:P], np.sqrt(covariance.diagonal()))
+    levels = {kind: float(x) for kind, x in zip(rows, solution.noise, strict=True)}
+    minimum = search.minimum(solution, degrees, np.sqrt(plain), np.sqrt(covariance.diagonal() / plain))
+    outcome = outcome_of(search, solution, begin[:P], np.sqrt(covariance.diagonal()))
     orbit = tuple(orbits) if len(orbits) > 1 else orbits[0]
     free = len(problem.kind_of) - len(point)
     return Fit(parameters, covariance, system, orbit, residuals, levels, outcome, degrees, free, minimum)
 
 
-def _check_determined(found: Estimate, shapes: Any, count: int) -> None:
+def _check_determined(estimate: Estimate, shapes: Any, count: int) -> None:
     """Refuse a record where a combination of numbers changes nothing."""
-    if _is_flat(found):
-        directions = np.linalg.svd(found.triangle)[2]
-        flat = np.abs(directions[-1] if found.lengths.all() else found.lengths == 0)[:count]
+    if _is_flat(estimate):
+        directions = np.linalg.svd(estimate.triangle)[2]
+        flat = np.abs(directions[-1] if estimate.lengths.all() else estimate.lengths == 0)[:count]
         got = ", ".join(np.array(_names(shapes))[flat > 0.1 * flat.max()]) or "a start"
         remedy = "Fix one of them in system_of, such as a mass: a free motion does not know its unit."
         raise error(WHERE, "determine all parameters", f"none of {got} alone", remedy)
 
 
-def _is_flat(found: Estimate) -> bool:
-    sizes = np.linalg.svd(found.triangle, compute_uv=False)
-    return not found.lengths.all() or bool(sizes[-1] < _FLAT * sizes[0])
+def _is_flat(estimate: Estimate) -> bool:
+    sizes = np.linalg.svd(estimate.triangle, compute_uv=False)
+    return not estimate.lengths.all() or bool(sizes[-1] < _FLAT * sizes[0])
 
 
-def _check_levels(search: Search, found: Found) -> None:
+def _check_levels(search: Search, solution: Solution) -> None:
     """Refuse a kind of which all numbers are used up by the fit: its noise cannot be seen.
 
     The search for such a noise may end anywhere, also where nothing is determined.
     """
-    used = _is_flat(found.estimate) & (found.estimate.counts <= len(found.point))
-    free = np.where(np.isfinite(search.known), np.inf, np.where(used, 0.0, found.estimate.free))
+    is_used_up = _is_flat(solution.estimate) & (solution.estimate.counts <= len(solution.point))
+    free = np.where(np.isfinite(search.levels), np.inf, np.where(is_used_up, 0.0, solution.estimate.free))
     if free.min() < _LEAST_FREE:
-        kind = list(search.problem.there)[int(free.argmin())]
-        got = f"{found.estimate.counts[free.argmin()]} numbers of {kind}, of which {free.min():.2g} are left by the fit"
+        at = int(free.argmin())
+        kind, count = list(search.problem.there)[at], solution.estimate.counts[at]
+        got = f"{count} numbers of {kind}, of which {free[at]:.2g} are left by the fit"
         raise error(WHERE, "tell the noise of each kind", got, f"Pass noise={{{kind!r}: ...}}, or measure longer.")
 
 
@@ -304,12 +304,11 @@ def _names(shapes: Any) -> list[str]:
 def _model(system_of: Callable[..., Any], numbers: np.ndarray, shapes: Any) -> Any:
     """Return the motions of the system of the guess."""
     with needs("jax", "fit"):
-        from nonholo.analysis.inverse._in_coordinates import coordinate_model
-        from nonholo.analysis.inverse._residuals import GroupModel
+        from nonholo.analysis.inverse._models import GroupModel, coordinate_model
 
-    system = system_of(named(shapes, numbers))
+    system = system_of(by_name(shapes, numbers))
     if isinstance(system, AbstractCoordinateSystem):
-        return coordinate_model(system, system_of(named(shapes, numbers)))
+        return coordinate_model(system, system_of(by_name(shapes, numbers)))
     if not isinstance(system, AbstractSystem) or system.is_spatial:
         remedy = "Return a SuslovTop, a sleigh, an LLSystem or a LagrangeDAlembert."
         raise error("fit(system_of=...)", "return a system with a left-invariant constraint", shown(system), remedy)

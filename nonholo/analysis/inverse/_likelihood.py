@@ -1,10 +1,78 @@
-r"""Noise levels and covariances at a point, by restricted likelihood, for squares and for a loss that outliers bear."""
+"""Residuals with derivatives as least squares take them; noise levels and covariances by restricted likelihood."""
 
-from typing import NamedTuple
+import dataclasses
+import functools
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from nonholo.analysis.inverse._problem import Problem
+from nonholo.base.types import Array, Float
+
+Shapes = tuple[tuple[str, tuple[int, ...]], ...]
+
+
+def by_name(shapes: Shapes, numbers: Array) -> dict[str, Array]:
+    """Return the parameters in a vector by name, traced ones too."""
+    cuts = np.cumsum([0, *(int(np.prod(shape)) for _, shape in shapes)])
+    return {name: numbers[i:j].reshape(shape)[()] for (name, shape), i, j in zip(shapes, cuts, cuts[1:], strict=False)}
+
+
+@dataclasses.dataclass(eq=False)
+class Problem:
+    """Residuals and derivatives at a point: parameters, then the start of each trial.
+
+    Attributes:
+        residuals: Residuals with derivatives, of parameters, starts, poses and kinds.
+        poses: Where the changes of pose in the starts begin.
+        kinds: What was measured.
+        count: How many parameters there are.
+        shape: Of the starts: trials, numbers of each.
+        last: The last point with its residuals.
+    """
+
+    residuals: Callable[..., Any]
+    poses: Float[np.ndarray, "T N N"]
+    kinds: dict[str, Float[np.ndarray, "T K _"]]
+    count: int
+    shape: tuple[int, int]
+    last: tuple[np.ndarray, Any] | None = None
+
+    @functools.cached_property
+    def there(self) -> dict[str, np.ndarray]:
+        """Which residuals belong to measured numbers, of the kinds that have some."""
+        masks = {kind: np.isfinite(rows) for kind, rows in self.kinds.items()}
+        return {k: x[..., :3] if k == "turn" else x for k, x in masks.items() if x.any()}
+
+    def at(self, point: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        """Return by kind the residuals and both derivatives, computed once for each point."""
+        if self.last is None or not np.array_equal(self.last[0], point):
+            starts = point[self.count :].reshape(self.shape)
+            self.last = point.copy(), self.residuals(point[: self.count], starts, self.poses, self.kinds)
+        return self.last[1]
+
+    def rows(self, point: np.ndarray) -> np.ndarray:
+        """Return the residuals of measured numbers, kind after kind."""
+        by_kind = self.at(point)
+        return np.concatenate([by_kind[kind][0][there] for kind, there in self.there.items()])
+
+    def slope(self, point: np.ndarray) -> np.ndarray:
+        """Return their derivatives: a trial depends on its own start alone."""
+        by_kind, parts, (T, width) = self.at(point), [], self.shape
+        for kind, there in self.there.items():
+            _, by_numbers, by_starts = by_kind[kind]
+            whole = np.zeros((*there.shape, self.count + T * width))
+            whole[..., : self.count] = by_numbers
+            for i in range(T):
+                whole[i, ..., self.count + i * width : self.count + (i + 1) * width] = by_starts[i]
+            parts.append(whole[there])
+        return np.concatenate(parts)
+
+    @functools.cached_property
+    def kind_of(self) -> np.ndarray:
+        """The kind of each measured number, as a position in `there`."""
+        return np.repeat(np.arange(len(self.there)), [np.count_nonzero(x) for x in self.there.values()])
+
 
 LOSSES = "linear", "soft_l1"
 _NORMAL = {"linear": 1.0, "soft_l1": 0.34432045758120155}
@@ -39,7 +107,7 @@ class Estimate(NamedTuple):
         lengths: Of the columns of J.
         triangle: R, of columns of length 1.
         units: In which the growth of the loss is distributed as that of squares is, for each kind.
-        missed: The cosine between the residuals and the nearest direction in which they change: 0 at a minimum.
+        cosine: That between the residuals and the nearest direction in which they change: 0 at a minimum.
     """
 
     levels: np.ndarray
@@ -48,7 +116,7 @@ class Estimate(NamedTuple):
     lengths: np.ndarray
     triangle: np.ndarray
     units: np.ndarray
-    missed: float
+    cosine: float
 
     @property
     def free(self) -> np.ndarray:
@@ -89,5 +157,5 @@ def estimate(problem: Problem, point: np.ndarray, noise: np.ndarray, loss: str) 
     levels = noise * np.sqrt(np.bincount(kind_of, at.first**2) / _NORMAL[loss] / free)
     left = at.first / efficiency[kind_of]
     units = np.sqrt(efficiency / np.sqrt(_NORMAL[loss]))
-    missed = float(np.linalg.norm(Q.T @ left) / (np.linalg.norm(left) or 1.0))
-    return Estimate(levels, counts, shares, lengths, R, units, missed)
+    cosine = float(np.linalg.norm(Q.T @ left) / (np.linalg.norm(left) or 1.0))
+    return Estimate(levels, counts, shares, lengths, R, units, cosine)

@@ -6,8 +6,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from scipy.optimize import least_squares
 
-from nonholo.analysis.inverse._likelihood import Estimate, bent, estimate
-from nonholo.analysis.inverse._problem import Problem
+from nonholo.analysis.inverse._likelihood import Estimate, Problem, bent, estimate
 from nonholo.analysis.inverse._profile import Minimum
 
 _ROUNDS = 60  # of noise levels that follow from residuals, and residuals from noise levels
@@ -34,7 +33,7 @@ class Ranges(NamedTuple):
         return (self.low == 0) & np.isposinf(self.high)
 
 
-class Found(NamedTuple):
+class Solution(NamedTuple):
     """What a search came to: a point, noise levels, what residuals tell there, and whether both have settled."""
 
     point: np.ndarray
@@ -51,32 +50,32 @@ class Search(NamedTuple):
         ranges: Bounds of the parameters.
         system_at: The body at a point, a ValueError where there is none: the search never leaves the bodies.
         loss: Of residuals in units of their noise.
-        known: The noise levels that are given, NaN where they are estimated.
+        levels: The noise levels that are given, NaN where they are estimated.
     """
 
     problem: Problem
     ranges: Ranges
     system_at: Callable[[np.ndarray], Any]
     loss: str
-    known: np.ndarray
+    levels: np.ndarray
 
-    def run(self, point: np.ndarray) -> Found:
+    def run(self, point: np.ndarray) -> Solution:
         """Return the best point, and the noise levels of the kinds, each from the other until both have settled."""
-        is_known, kinds = np.isfinite(self.known), self.problem.kinds
+        is_known, kinds = np.isfinite(self.levels), self.problem.kinds
         least = [_EXACT * np.abs(kinds[kind][..., :3][there]).max() for kind, there in self.problem.there.items()]
-        noise, tolerance = np.where(is_known, self.known, 1.0), _COARSE
+        noise, tolerance = np.where(is_known, self.levels, 1.0), _COARSE
         for _ in range(_ROUNDS):
             point = self.least(point, noise, tolerance)
-            found = estimate(self.problem, point, noise, self.loss)
+            now = estimate(self.problem, point, noise, self.loss)
             before, noise = (
                 noise,
-                np.where(is_known, self.known, np.maximum(found.levels, [x or _EXACT for x in least])),
+                np.where(is_known, self.levels, np.maximum(now.levels, [x or _EXACT for x in least])),
             )
             is_settled = np.abs(noise / before - 1).max() < _SETTLED
             if is_settled and tolerance == _FINE:
-                return Found(point, noise, found, found.missed < _MISSED or bool((noise <= least).all()))
+                return Solution(point, noise, now, now.cosine < _MISSED or bool((noise <= least).all()))
             tolerance = _FINE if is_settled else _COARSE
-        return Found(point, noise, found, False)
+        return Solution(point, noise, now, False)
 
     def least(self, point: np.ndarray, noise: np.ndarray, tolerance: float) -> np.ndarray:
         """Return the point where the loss is least under noise levels."""
@@ -94,7 +93,7 @@ class Search(NamedTuple):
             return self.slope(np.where(is_log, growth, x), scale) * growth
 
         with np.errstate(all="ignore"):  # far from a minimum
-            found = least_squares(
+            result = least_squares(
                 rows,
                 np.where(is_log, np.log(point), point),
                 cast(Any, slope),
@@ -105,7 +104,7 @@ class Search(NamedTuple):
                 gtol=tolerance,
                 max_nfev=_MOST if tolerance == _COARSE else None,
             )
-            return np.where(is_log, np.exp(found.x), found.x)
+            return np.where(is_log, np.exp(result.x), result.x)
 
     def exists(self, point: np.ndarray) -> bool:
         """Tell whether there is a body at a point."""
@@ -123,38 +122,38 @@ class Search(NamedTuple):
         """Return their derivatives."""
         return self.problem.slope(point) * (bent(self.problem.rows(point) / scale, self.loss).slope / scale)[:, None]
 
-    def minimum(self, found: Found, *widths: np.ndarray) -> Minimum:
+    def minimum(self, solution: Solution, *widths: np.ndarray) -> Minimum:
         """Return what profiles need of the best point, with degrees of freedom, errors, and how they grow."""
         kind_of, P, (low, high) = self.problem.kind_of, self.problem.count, self.ranges
-        scale, units = found.noise[kind_of], found.estimate.units[kind_of]
+        scale, units = solution.noise[kind_of], solution.estimate.units[kind_of]
         return Minimum(
             lambda x: self.rows(x, scale) * units,
             lambda x: self.slope(x, scale) * units[:, None],
             lambda x: bool(((low < x[:P]) & (x[:P] < high)).all()) and self.exists(x),
-            found.point,
+            solution.point,
             *widths,
         )
 
 
-def outcome_of(search: Search, found: Found, guess: np.ndarray, errors: np.ndarray) -> str:
+def outcome_of(search: Search, solution: Solution, guess: np.ndarray, errors: np.ndarray) -> str:
     """Return in a word what became of a search: see `Fit.outcome`."""
-    problem, values = search.problem, found.point[: search.problem.count]
+    problem, values = search.problem, solution.point[: search.problem.count]
     far = (np.abs(values) > _FAR * np.abs(guess)) & (guess != 0) & (errors > 100 * np.abs(values))
-    if far.any() or any(_is_lost(search, found, kind) for kind in problem.there):
+    if far.any() or any(_is_lost(search, solution, kind) for kind in problem.there):
         return "lost"
-    return "converged" if found.is_settled else "not_converged"
+    return "converged" if solution.is_settled else "not_converged"
 
 
-def _is_lost(search: Search, found: Found, kind: str) -> bool:
+def _is_lost(search: Search, solution: Solution, kind: str) -> bool:
     """Tell whether residuals of a kind are many times the noise, which is given or that from sample to sample."""
-    there, rows = search.problem.there[kind], search.problem.at(found.point)[kind][0]
+    there, rows = search.problem.there[kind], search.problem.at(solution.point)[kind][0]
     columns = [rows[t, there[t, :, c], c] for t in range(len(rows)) for c in range(rows.shape[2])]
     typical, step = (
         float(np.median(np.abs(np.concatenate(parts)))) / _MEDIAN
         for parts in (columns, [np.diff(column) / np.sqrt(2) for column in columns])
     )
-    known = float(search.known[list(search.problem.there).index(kind)])
-    if np.isfinite(known):
-        return typical > _LOST * known
+    level = float(search.levels[list(search.problem.there).index(kind)])
+    if np.isfinite(level):
+        return typical > _LOST * level
     most = 1.0 if kind == "turn" else float(np.abs(search.problem.kinds[kind][there]).max())
     return (typical > _LOST * step and typical > _PART * most) or (kind == "turn" and typical > most)

@@ -48,7 +48,7 @@ class Reduced(NamedTuple):
     Attributes:
         states: Numbers of these states.
         matrix: Derivatives of their changes.
-        missed: Their changes, which vanish in a steady motion.
+        defect: Their changes, which vanish in a steady motion.
         directions: Changes of the whole state, a column for each of these states.
         is_steady: Whether they do, and the derivatives stay the same.
         ignorable: Numbers of the coordinates that are left out.
@@ -56,7 +56,7 @@ class Reduced(NamedTuple):
 
     states: Int[np.ndarray, "d"]
     matrix: Float[np.ndarray, "d d"]
-    missed: Float[np.ndarray, "d"]
+    defect: Float[np.ndarray, "d"]
     directions: Float[np.ndarray, "m d"]
     is_steady: bool
     ignorable: Int[np.ndarray, "_"]
@@ -66,10 +66,10 @@ def reduced(local: Local) -> Reduced:
     """Return the equations in the velocities that leave the fewest coordinates, steady if there are such."""
     rows, places = local.rows[0], local.places
     of_places = ~rows[:, places:].any(axis=1)  # holonomic constraints
-    fixed = list(next(_choices(rows[of_places, :places])))
+    holonomic = list(next(_choices(rows[of_places, :places])))
     choices = _choices(rows[~of_places, places:])
-    found = (_without(local, fixed + [places + i for i in dependent]) for dependent in choices)
-    return min(found, key=lambda each: (not each.is_steady, len(each.states)))
+    equations = (_without(local, holonomic + [places + i for i in dependent]) for dependent in choices)
+    return min(equations, key=lambda each: (not each.is_steady, len(each.states)))
 
 
 def _choices(rows: Float[np.ndarray, "s n"]) -> Iterator[tuple[int, ...]]:
@@ -85,20 +85,20 @@ def _choices(rows: Float[np.ndarray, "s n"]) -> Iterator[tuple[int, ...]]:
 
 def _without(local: Local, dependent: list[int]) -> Reduced:
     independent = np.setdiff1d(np.arange(len(local.state)), dependent)
-    tied = -np.linalg.solve(local.rows[:, :, dependent], local.rows[:, :, independent])
-    slope = local.slope[:, independent][:, :, independent] + local.slope[:, independent][:, :, dependent] @ tied
+    dependence = -np.linalg.solve(local.rows[:, :, dependent], local.rows[:, :, independent])
+    slope = local.slope[:, independent][:, :, independent] + local.slope[:, independent][:, :, dependent] @ dependence
     change, count = local.change[:, independent], 1 + local.later
     matters = _influences(_depends(slope), int((independent < local.places).sum()))
     states = independent[matters]
-    matrix, missed = slope[:count, matters][:, :, matters], change[:count, matters]
+    matrix, defects = slope[:count, matters][:, :, matters], change[:count, matters]
     largest, z = np.abs(local.slope[0]).max(), 1 + np.abs(local.state[states])
     bound = _STEADY * np.abs(matrix[0]) @ z + _UNSEEN * largest * z.max(initial=0.0)
     same = np.abs(matrix - matrix[0]).max(initial=0.0) <= _STEADY * largest
-    is_steady = bool(same and np.all(np.abs(missed) <= bound))
-    worst = missed[np.argmax(np.abs(missed).max(axis=1, initial=0.0))]
+    is_steady = bool(same and np.all(np.abs(defects) <= bound))
+    worst = defects[np.argmax(np.abs(defects).max(axis=1, initial=0.0))]
     free = independent[independent < local.places]
     directions = np.eye(len(local.state))[:, independent]
-    directions[dependent] = tied[0]
+    directions[dependent] = dependence[0]
     return Reduced(states, matrix[0], worst, directions[:, matters], is_steady, np.setdiff1d(free, states))
 
 

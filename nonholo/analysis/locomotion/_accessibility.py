@@ -57,10 +57,11 @@ def accessibility(system: Any, configuration: Any, *, depth: int | None = None) 
     """
     with needs("jax", "accessibility"):
         from nonholo.analysis.locomotion import _brackets, _reduction
-    shaped = hasattr(system, "shape_coordinates")
-    names = system.shape_coordinates if shaped else checked_names("accessibility", system)
+    has_shape = hasattr(system, "shape_coordinates")
+    names = system.shape_coordinates if has_shape else checked_names("accessibility", system)
     q = array("accessibility(configuration=...)", configuration, (len(names),), f"Pass {len(names)} coordinates.")
-    system, q = (_reduction.Reduced(system), np.append(np.zeros(system.group.dim), q)) if shaped else (system.plain, q)
+    q = np.append(np.zeros(system.group.dim), q) if has_shape else q
+    system = _reduction.Reduced(system) if has_shape else system.plain
     n = len(q)
     forms = _brackets.forms_at(system, q)
     rank = np.linalg.matrix_rank(forms) if np.isfinite(forms).all() else -1

@@ -51,12 +51,12 @@ def _basis(forms: Float[np.ndarray, "s n"], rows: Polynomial, order: int) -> Pol
     inverse = np.linalg.inv(rows[()][:, dependent])
     rows = {power: inverse @ row for power, row in rows.items()}
     change = {power: row[:, dependent] for power, row in rows.items() if power}
-    found = constant = {power: -row[:, free] for power, row in rows.items()}
+    solution = constant = {power: -row[:, free] for power, row in rows.items()}
     for _ in range(order):
-        later = _product(change, found, order)
-        found = {power: row - later.get(power, 0.0) for power, row in constant.items()}
-    basis = {power: np.zeros((forms.shape[1], len(free))) for power in found}
-    for power, row in found.items():
+        later = _product(change, solution, order)
+        solution = {power: row - later.get(power, 0.0) for power, row in constant.items()}
+    basis = {power: np.zeros((forms.shape[1], len(free))) for power in solution}
+    for power, row in solution.items():
         basis[power][dependent] = row
     basis[()][free] = np.eye(len(free))
     return basis
@@ -64,23 +64,23 @@ def _basis(forms: Float[np.ndarray, "s n"], rows: Polynomial, order: int) -> Pol
 
 def _slopes(p: Polynomial, n: int) -> Polynomial:
     """Return the derivatives by all coordinates, along a last axis."""
-    found = {}
+    slopes = {}
     for power, value in p.items():
         for i, times in Counter(power).items():
             left = list(power)
             left.remove(i)
-            found.setdefault(tuple(left), np.zeros((*value.shape, n)))[..., i] += times * value
-    return found
+            slopes.setdefault(tuple(left), np.zeros((*value.shape, n)))[..., i] += times * value
+    return slopes
 
 
 def _product(a: Polynomial, b: Polynomial, order: int) -> Polynomial:
     """Return the product of arrays a, along their last axis, with matrices b; what is beyond an order is dropped."""
-    found: Polynomial = {}
+    product: Polynomial = {}
     for (power, value), (other, factor) in itertools.product(a.items(), b.items()):
         if len(power) + len(other) <= order:
             whole = tuple(sorted(power + other))
-            found[whole] = found.get(whole, 0.0) + value @ factor
-    return found
+            product[whole] = product.get(whole, 0.0) + value @ factor
+    return product
 
 
 @double_precision()
@@ -99,10 +99,10 @@ def _derivatives(system: Any, order: int) -> Callable[[Array], list[Array]]:
     """Return the compiled derivatives of the constraint forms up to an order."""
 
     def forms(q: Array) -> Array:
-        given = system.constraint_forms
-        return jnp.zeros((0, len(q))) if given is None else jnp.asarray(given(q), float)
+        function = system.constraint_forms
+        return jnp.zeros((0, len(q))) if function is None else jnp.asarray(function(q), float)
 
-    nested = [forms]
+    derivatives = [forms]
     for _ in range(order):
-        nested.append(jax.jacfwd(nested[-1]))
-    return jax.jit(lambda q: [each(q) for each in nested])
+        derivatives.append(jax.jacfwd(derivatives[-1]))
+    return jax.jit(lambda q: [each(q) for each in derivatives])

@@ -1,17 +1,18 @@
-"""`local_connection`: the body velocity that a change of shape causes."""
+"""`local_connection`, the body velocity that a change of shape causes, and `ShapedBody`, a body with such a shape."""
 
 import dataclasses
 import functools
 import itertools
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from nonholo.analysis.locomotion import _equations
-from nonholo.base.checks import choice, error, instance, needs, shown, trailing
+from nonholo.base.checks import choice, error, instance, names, needs, shown, trailing
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup, components_of
-from nonholo.systems import AbstractCoordinateSystem
+from nonholo.systems import AbstractCoordinateSystem, checked_group
 
 _SAMPLES = 8  # shapes and poses at which the symmetry is checked
 _SYMMETRIC = 1e-9  # relative
@@ -147,16 +148,16 @@ class LocalConnection:
 
     def terms(self, shape: Float[np.ndarray, "... m"]) -> _equations.Terms:
         """Return the equations at shapes, for this room."""
-        traced = _door()
-        W = traced.called(traced.constraint_terms, self._reduction, shape)
-        M = traced.called(traced.inertia_terms, self._reduction, shape) if self._free else W
+        functions = _door()
+        W = functions.call(functions.constraint_terms, self._reduction, shape)
+        M = functions.call(functions.inertia_terms, self._reduction, shape) if self._free else W
         return _equations.terms(self._free, *W, *M)
 
     def checked_momentum(self, owner: str, momentum: Any) -> Array:
         """Return momenta p, zero for None."""
         k = len(self.momentum_components)
-        named = f"Pass {k} numbers: momenta of {', '.join(self.momentum_components)}."
-        remedy = named if k else "Leave it out: the constraints alone determine the motion."
+        numbers = f"Pass {k} numbers: momenta of {', '.join(self.momentum_components)}."
+        remedy = numbers if k else "Leave it out: the constraints alone determine the motion."
         return (
             np.zeros(k) if momentum is None else trailing(f"{owner}(momentum=...)", momentum, (k,), remedy, real=True)
         )
@@ -203,10 +204,10 @@ def local_connection(system: Any, *, pose: tuple[str, str, str] = ("x", "y", "th
     if hasattr(system, "shape_coordinates"):
         return _connection(_door().Reduced(system), system, system.shape_coordinates)
     names = checked_names("local_connection", system)
-    where, asked, remedy = "local_connection(system=...)", "local_connection(pose=...)", "Name x, y and the heading."
-    chosen = [choice(asked, name, names, remedy) for name in instance(asked, pose, tuple, "be three names", remedy)]
-    if len(set(chosen)) != 3 or len(chosen) != 3:
-        raise error(asked, "be three different names", shown(pose), remedy)
+    where, argument, remedy = "local_connection(system=...)", "local_connection(pose=...)", "Name x, y and the heading."
+    axes = [choice(argument, name, names, remedy) for name in instance(argument, pose, tuple, "be three names", remedy)]
+    if len(set(axes)) != 3 or len(axes) != 3:
+        raise error(argument, "be three different names", shown(pose), remedy)
     shape = tuple(i for i, name in enumerate(names) if name not in pose)
     if not shape:
         raise error(where, "have a shape beside its pose", shown(names), "A rigid body has no connection.")
@@ -245,7 +246,7 @@ def checked_names(owner: str, system: Any) -> tuple[str, ...]:
 
 def _free_components(where: str, reduction: Any, shapes: Array, poses: Array) -> tuple[int, ...]:
     """Return the components of the body velocity that the constraints leave free, of those choices the best one."""
-    at_identity, elsewhere = (_door().called(_door().rows, reduction, g, shapes) for g in (np.zeros(3), poses))
+    at_identity, elsewhere = (_door().call(_door().rows, reduction, g, shapes) for g in (np.zeros(3), poses))
     usable = np.isfinite(at_identity).all((1, 2)) & np.isfinite(elsewhere).all((1, 2))
     at_identity, elsewhere = _unit(at_identity[usable]), _unit(elsewhere[usable])
     d = reduction.group.dim
@@ -264,12 +265,12 @@ def _free_components(where: str, reduction: Any, shapes: Array, poses: Array) ->
 
 def _check_energy(where: str, reduction: Any, shapes: Array, poses: Array, u: Array) -> None:
     """Refuse a Lagrangian that depends on the pose, or that is not quadratic in the velocities."""
-    here, there = (_door().called(_door().lagrangian, reduction, g, shapes, u) for g in (np.zeros(3), poses))
+    here, there = (_door().call(_door().lagrangian, reduction, g, shapes, u) for g in (np.zeros(3), poses))
     if np.nanmax(np.abs(there - here) / (1 + np.abs(here))) > _SYMMETRIC:
         got = "one that changes where it is moved and turned"
         raise error(where, "have a Lagrangian that is the same at every pose", got, "Leave potentials of the pose out.")
-    M = _door().called(_door().inertia_terms, reduction, shapes)[0]
-    momenta, quadratic = _door().called(_door().momenta, reduction, shapes, u), np.einsum("...ab,...b->...a", M, u)
+    M = _door().call(_door().inertia_terms, reduction, shapes)[0]
+    momenta, quadratic = _door().call(_door().momenta, reduction, shapes, u), np.einsum("...ab,...b->...a", M, u)
     if np.nanmax(np.abs(momenta - quadratic) / (1 + np.abs(quadratic))) > _SYMMETRIC:
         raise error(where, "have a kinetic energy quadratic in velocities", "another one", "Leave other terms out.")
 
@@ -284,3 +285,59 @@ def _door() -> Any:
     with needs("jax", "local_connection"):
         from nonholo.analysis.locomotion import _reduction
     return _reduction
+
+
+_NAMES = "ShapedBody(shape_coordinates=...)"
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class ShapedBody:
+    r"""A body on a matrix group G with a shape s, seen from itself: for `local_connection` and what follows from it.
+
+    $$ l(s, \xi, \dot s), \qquad W(s)\begin{pmatrix}\xi\\\dot s\end{pmatrix} = 0, \qquad \dot g = g\,\xi . $$
+
+    Nothing depends on the pose g. A falling cat, a satellite with rotors, a fish, a rover on a ball are of this kind.
+    Systems in the plane that are given in coordinates need it not.
+
+    Attributes:
+        group: G.
+        shape_coordinates: Names of the shape variables s.
+        lagrangian: `lagrangian(shape, body_velocity, shape_velocity)` -> scalar, quadratic in the velocities, written
+            with `jax.numpy`; None if the constraints determine the body velocity.
+        constraint_forms: `constraint_forms(shape)` -> (c, dim + m), the rows W; None for none.
+        name: For pictures and messages.
+
+    Raises:
+        ValueError: Something that is no group or no function, no shape, values of wrong shapes.
+
+    Example:
+        A satellite with two rotors, of inertia 0.5 about its first two axes: $A = (I + j)^{-1}j$ for each.
+
+        >>> import jax.numpy as jnp
+        >>> def lagrangian(s, xi, ds):
+        ...     return (jnp.array([1.0, 1.5, 2.0]) @ xi**2 + 0.5 * ((xi[:2] + ds) ** 2).sum()) / 2
+        >>> body = ShapedBody(nh.SO(3), ("a", "b"), lagrangian)
+        >>> nh.local_connection(body).matrix((0.0, 0.0)).round(4)
+        array([[0.3333, 0.    ],
+               [0.    , 0.25  ],
+               [0.    , 0.    ]])
+    """
+
+    group: Any
+    shape_coordinates: tuple[str, ...]
+    lagrangian: Callable[[Array, Array, Array], Array] | None = None
+    constraint_forms: Callable[[Array], Array] | None = None
+    name: str = "Body with a shape"
+
+    def __post_init__(self) -> None:
+        checked_group("ShapedBody(group=...)", self.group)
+        names(_NAMES, instance(_NAMES, self.shape_coordinates, tuple, "be names", "Pass a tuple of strings."))
+        if self.lagrangian is None and self.constraint_forms is None:
+            remedy = "Pass lagrangian=, constraint_forms= or both."
+            raise error("ShapedBody(...)", "have a Lagrangian or constraints", "neither", remedy)
+        with needs("jax", "ShapedBody"):
+            from nonholo.analysis.locomotion import _reduction
+        _reduction.check_functions(self)
+
+    def __repr__(self) -> str:
+        return f"<ShapedBody {self.name!r} on {self.group}: shape {', '.join(self.shape_coordinates)}>"

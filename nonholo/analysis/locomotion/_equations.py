@@ -33,8 +33,8 @@ def terms(free: tuple[int, ...], W: Array, dW: Array, M: Array, dM: Array) -> Te
     pivots, B, dB = np.setdiff1d(np.arange(d), free), W[..., :d], dW[..., :d, :]
     E[..., list(free), :] = np.eye(k)
     E[..., pivots, :] = -solve(B[..., pivots], B[..., list(free)])
-    turned = np.einsum("...caj,...ab->...cbj", dB, E)  # B E = 0, so B dE = -dB E
-    dE[..., pivots, :, :] = -_solve_each(B[..., pivots], turned)
+    change = np.einsum("...caj,...ab->...cbj", dB, E)  # B E = 0, so B dE = -dB E
+    dE[..., pivots, :, :] = -_solve_each(B[..., pivots], change)
     P = np.swapaxes(E, -1, -2) @ M[..., :d, :]
     dP = np.einsum("...abj,...ac->...bcj", dE, M[..., :d, :]) + np.einsum("...ab,...acj->...bcj", E, dM[..., :d, :, :])
     return Terms(np.concatenate([P, W], -2), np.concatenate([dP, dW], -3), E, dE, M)
@@ -90,6 +90,6 @@ def motion(group: AbstractMatrixGroup, at: Terms, ds: Array, p: Array) -> tuple[
     if not p.shape[-1]:
         return xi, np.zeros((*xi.shape[:-1], 0))
     mu = np.einsum("...ab,...b->...a", at.inertia[..., :d, :], np.concatenate([xi, ds], -1))
-    moved = np.swapaxes(np.einsum("...abj,...j->...ab", at.coasting_slopes, ds), -1, -2)
-    carried = moved + group.bracket(xi[..., None, :], np.swapaxes(at.coasting, -1, -2))
-    return xi, np.einsum("...ba,...a->...b", carried, mu)
+    rates = np.swapaxes(np.einsum("...abj,...j->...ab", at.coasting_slopes, ds), -1, -2)
+    transport = rates + group.bracket(xi[..., None, :], np.swapaxes(at.coasting, -1, -2))
+    return xi, np.einsum("...ba,...a->...b", transport, mu)

@@ -99,18 +99,18 @@ def geometric_phase(
     breaks = array("geometric_phase(corners=...)", corners, (None,), "Pass times, or () for a smooth gait.")
     p = connection.checked_momentum("geometric_phase", momentum)
     p = array("geometric_phase(momentum=...)", p, (len(connection.momentum_components),))
-    shape_at = functools.partial(_reduction.called, _reduction.moving_shape, gait)
+    shape_at = functools.partial(_reduction.call, _reduction.moving_shape, gait)
     _check_closed(connection, shape_at(np.linspace(0.0, end, _LOOKS)[:, None])[0])
     panels, coarse = _PANELS, None
     while True:
         edges = np.union1d(np.linspace(0.0, end, panels + 1), breaks[(breaks > 0) & (breaks < end)])
         with np.errstate(all="ignore"):  # beside singular shapes
             fine = _displacement(connection, shape_at, edges, p)
-        moved, inside = (np.inf, np.inf) if coarse is None else _distances(coarse, fine)
-        if moved < _AGREED and inside < _AGREED:
+        gap, inside = (np.inf, np.inf) if coarse is None else _distances(coarse, fine)
+        if gap < _AGREED and inside < _AGREED:
             return fine
         if panels == _MOST:
-            return _unresolved(fine, moved)
+            return _without_area_rule(fine, gap)
         panels, coarse = 2 * panels, fine
 
 
@@ -152,8 +152,8 @@ def _poses(
     speed, one = h[:, None, None, None] * group.hat(xi), group.identity
     pieces, k, N = speed.shape[:3]
     steps = np.einsum("jl,tlba->tjalb", _TO_NODES, speed).reshape(pieces, k * N, k * N)
-    found = np.linalg.solve(np.eye(k * N) - steps, np.tile(one, (k, 1)))
-    inside = np.swapaxes(found.reshape(pieces, k, N, N), -1, -2)
+    matrices = np.linalg.solve(np.eye(k * N) - steps, np.tile(one, (k, 1)))
+    inside = np.swapaxes(matrices.reshape(pieces, k, N, N), -1, -2)
     across = one + np.einsum("l,tlab,tlbc->tac", _WEIGHTS, inside, speed)
     before = [one]
     for each in across:
@@ -165,17 +165,17 @@ def _momenta(
     group: AbstractMatrixGroup, at: _equations.Terms, ds: Array, h: Array, p: Array
 ) -> tuple[Float[np.ndarray, "t k p"], Array]:
     """Return the momenta at the nodes and at the end, piece by piece by Picard's iteration."""
-    found = np.zeros((*ds.shape[:-1], len(p)))
+    momenta = np.zeros((*ds.shape[:-1], len(p)))
     for i in range(len(h) if len(p) else 0):
         here = _equations.Terms(*(values[i] for values in at))
-        found[i] = p
+        momenta[i] = p
         for _ in range(_ITERATIONS):
-            rates = _equations.motion(group, here, ds[i], found[i])[1]
-            before, found[i] = found[i].copy(), p + h[i] * _TO_NODES @ rates
-            if not np.abs(found[i] - before).max() > _ROUNDING * np.abs(found[i]).max():
+            rates = _equations.motion(group, here, ds[i], momenta[i])[1]
+            before, momenta[i] = momenta[i].copy(), p + h[i] * _TO_NODES @ rates
+            if not np.abs(momenta[i] - before).max() > _ROUNDING * np.abs(momenta[i]).max():
                 break
         p = p + h[i] * _WEIGHTS @ rates
-    return found, p
+    return momenta, p
 
 
 def _distances(one: GeometricPhase, other: GeometricPhase) -> tuple[float, float]:
@@ -185,9 +185,9 @@ def _distances(one: GeometricPhase, other: GeometricPhase) -> tuple[float, float
     return float(np.max(gaps[:3])), float(gaps[3])
 
 
-def _unresolved(phase: GeometricPhase, moved: float) -> GeometricPhase:
+def _without_area_rule(phase: GeometricPhase, gap: float) -> GeometricPhase:
     """Return a phase without area rule, if there are singular shapes inside the gait alone."""
-    if moved < _AGREED:
+    if gap < _AGREED:
         return dataclasses.replace(phase, area_rule=np.full_like(phase.area_rule, np.nan))
     at = _nearest(phase.connection, phase.shape)
     got = f"one that {_MOST} pieces do not resolve, next to a singular shape at {at}"

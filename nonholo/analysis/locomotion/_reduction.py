@@ -88,22 +88,22 @@ class Reduced:
 Reduction: TypeAlias = Planar | Reduced
 
 
-def called(function: Callable[..., Any], reduction: Any, *points: Array) -> Any:
+def call(function: Callable[..., Any], reduction: Any, *points: Array) -> Any:
     """Return the values of a function at points, whose leading axes are free, as NumPy arrays in 64 bits."""
     leading = np.broadcast_shapes(*(point.shape[:-1] for point in points))
     count = int(np.prod(leading))
     flat = [np.broadcast_to(p, (*leading, p.shape[-1])).reshape(count, p.shape[-1]) for p in points]
     blocks = max(1, -(-count // _BLOCK))
-    padded = [np.concatenate([p, np.zeros((blocks * _BLOCK - count, p.shape[1]))]) for p in flat]
-    run = _compiled(function, reduction)
+    whole = [np.concatenate([p, np.zeros((blocks * _BLOCK - count, p.shape[1]))]) for p in flat]
+    run = _compile(function, reduction)
     with double_precision():
-        parts = zip(*(np.split(p, blocks) for p in padded), strict=True)
-        found = [jax.tree.map(np.asarray, run(*part)) for part in parts]
-    return jax.tree.map(lambda *x: np.concatenate(x)[:count].reshape((*leading, *x[0].shape[1:])), *found)
+        parts = zip(*(np.split(p, blocks) for p in whole), strict=True)
+        values = [jax.tree.map(np.asarray, run(*part)) for part in parts]
+    return jax.tree.map(lambda *x: np.concatenate(x)[:count].reshape((*leading, *x[0].shape[1:])), *values)
 
 
 @functools.cache
-def _compiled(function: Callable[..., Any], reduction: Any) -> Callable[..., Any]:
+def _compile(function: Callable[..., Any], reduction: Any) -> Callable[..., Any]:
     return jax.jit(jax.vmap(functools.partial(function, reduction)))
 
 

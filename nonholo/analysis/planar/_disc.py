@@ -20,8 +20,7 @@ import itertools
 
 import numpy as np
 
-from nonholo.analysis.planar._base import AbstractPlanarVariety, HalfPlanes
-from nonholo.analysis.planar._level_arcs import EQUATOR, FOLD, Arc, closed_curves
+from nonholo.analysis.planar._base import EQUATOR, FOLD, AbstractPlanarVariety, Arc, HalfPlanes, closed_curves
 from nonholo.base.types import Array, Float
 
 
@@ -36,8 +35,8 @@ class DiscLevel:
     def over(self, direction: float) -> Float[np.ndarray, "m 3"]:
         """Return the points over a direction, the inner one first."""
         angle = np.array([direction])
-        found = [self._points(sign, angle, 1) for sign in (-1, 1) if self._valid(sign, direction)]
-        return np.concatenate([np.empty((0, 3)), *found])
+        points = [self._points(sign, angle, 1) for sign in (-1, 1) if self._valid(sign, direction)]
+        return np.concatenate([np.empty((0, 3)), *points])
 
     def components(self, count: int) -> tuple[Float[np.ndarray, "K 3"], ...]:
         """Return the connected curves, lifted to the sphere."""
@@ -51,8 +50,8 @@ class DiscLevel:
             whole = all(self._valid(sign, angle) for angle in (0.0, 1.0, 2.0, 3.0))
             return [Arc(sign, 0.0, 2 * np.pi)] if whole else []
         breaks.sort()
-        turned = [(angle + turn, kind) for turn in (0.0, np.pi, 2 * np.pi) for angle, kind in breaks]
-        pairs = list(itertools.pairwise(turned))[: 2 * len(breaks)]
+        around = [(angle + turn, kind) for turn in (0.0, np.pi, 2 * np.pi) for angle, kind in breaks]
+        pairs = list(itertools.pairwise(around))[: 2 * len(breaks)]
         return [Arc(sign, p, q, (s, t)) for (p, s), (q, t) in pairs if self._valid(sign, (p + q) / 2)]
 
     def _shape(self, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -145,7 +144,7 @@ class SteinerSurface:
         X = _matrix(four @ np.linalg.pinv(_four(self.forms)).T)
         first, second = self.pencil
         free = self._without_squares()
-        columns = [_mixed(X, X) / 2, _mixed(X, first), _mixed(X, second)]
+        columns = [_bilinear(X, X) / 2, _bilinear(X, first), _bilinear(X, second)]
         return np.linalg.det(np.stack([_vector(column) @ free.T for column in columns], axis=-1))
 
     def double_lines(self) -> Float[np.ndarray, "L 2 3"]:
@@ -178,7 +177,7 @@ class SteinerSurface:
 
     def _without_squares(self) -> Float[np.ndarray, "3 6"]:
         first, second = self.pencil
-        squares = [_mixed(first, first) / 2, _mixed(first, second), _mixed(second, second) / 2]
+        squares = [_bilinear(first, first) / 2, _bilinear(first, second), _bilinear(second, second) / 2]
         return np.linalg.svd(np.stack([_vector(square) for square in squares], axis=-1))[0][:, 3:].T
 
 
@@ -199,8 +198,8 @@ def steiner_surface(
         ]
     )
     size = np.linalg.norm(forms, 2, axis=(1, 2)).max() / 2
-    unscaled = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]) @ frame.T
-    return SteinerSurface(forms / (2 * size), _pencil(forms / (2 * size)), unscaled * time_step / (2 * size))
+    axes = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]) @ frame.T
+    return SteinerSurface(forms / (2 * size), _pencil(forms / (2 * size)), axes * time_step / (2 * size))
 
 
 def _pencil(forms: Float[np.ndarray, "3 3 3"]) -> Float[np.ndarray, "m 3 3"]:
@@ -211,11 +210,11 @@ def _pencil(forms: Float[np.ndarray, "3 3 3"]) -> Float[np.ndarray, "m 3 3"]:
 def _singular(pencil: Float[np.ndarray, "2 3 3"]) -> list[np.ndarray]:
     """Return the real singular matrices of a pencil; the basis is turned so that none is at infinity."""
     turns = np.pi * np.arange(7) / 7
-    turned = [np.cos(a) * pencil[1] + np.sin(a) * pencil[0] for a in turns]
-    best = turns[np.argmax(np.abs(np.linalg.det(turned)))]
+    candidates = [np.cos(a) * pencil[1] + np.sin(a) * pencil[0] for a in turns]
+    best = turns[np.argmax(np.abs(np.linalg.det(candidates)))]
     base = np.cos(best) * pencil[0] - np.sin(best) * pencil[1]
     step = np.cos(best) * pencil[1] + np.sin(best) * pencil[0]
-    adjugates = [_mixed(S, S) / 2 for S in (base, step)]
+    adjugates = [_bilinear(S, S) / 2 for S in (base, step)]
     middle = (np.trace(adjugates[1] @ base), np.trace(adjugates[0] @ step))
     roots = np.roots([np.linalg.det(step), *middle, np.linalg.det(base)])
     return [base + t.real * step for t in roots if abs(t.imag) <= _REAL * (1 + abs(t))]
@@ -225,7 +224,7 @@ def _four(forms: Float[np.ndarray, "3 3 3"]) -> Float[np.ndarray, "4 6"]:
     return _vector(np.concatenate([np.eye(3)[None], forms]))
 
 
-def _mixed(X: np.ndarray, Y: np.ndarray) -> np.ndarray:
+def _bilinear(X: np.ndarray, Y: np.ndarray) -> np.ndarray:
     """Return the symmetric bilinear form that is twice the adjugate where X = Y."""
     tx, ty = (np.trace(Z, axis1=-2, axis2=-1)[..., None, None] for Z in (X, Y))
     product = X @ Y

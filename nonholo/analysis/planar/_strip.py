@@ -21,8 +21,7 @@ import dataclasses
 
 import numpy as np
 
-from nonholo.analysis.planar._base import AbstractPlanarVariety, HalfPlanes
-from nonholo.analysis.planar._level_arcs import FOLD, Arc
+from nonholo.analysis.planar._base import FOLD, AbstractPlanarVariety, Arc, HalfPlanes
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE
 
@@ -85,13 +84,13 @@ class StripLevel:
         """Return the connected curves; those of a balanced sleigh that go to infinity are cut."""
         folds = [float(2 * np.arcsin(np.sqrt(x))) for x in self._turning()]
         if self.whole == self.inertia:
-            return self._balanced(folds, count)
+            return self._balanced_components(folds, count)
         if not folds:  # the two solutions are one curve, which closes after two turns
             return (self._points(1, np.linspace(-np.pi, 3 * np.pi, 2 * count)),)
         around = [(-folds[0], folds[0])] + [(last, 2 * np.pi - last) for last in folds[1:]]
         return tuple(self._oval(start, stop, count) for start, stop in around)
 
-    def _balanced(self, folds: list[float], count: int) -> tuple[Float[np.ndarray, "K 2"], ...]:
+    def _balanced_components(self, folds: list[float], count: int) -> tuple[Float[np.ndarray, "K 2"], ...]:
         end = np.pi - _NEAR_HALF_TURN
         if not folds:
             return tuple(self._points(sign, np.linspace(-end, end, count)) for sign in (1, -1))

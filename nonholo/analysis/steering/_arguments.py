@@ -1,12 +1,13 @@
-"""Ends and bounds of `steer` on groups, checked, and its guesses."""
+"""Arguments of `steer`, checked: ends, limits and guesses; bounds of states; obstacles and places on the way."""
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple, Self, cast
 
 import numpy as np
 
-from nonholo.base.checks import array, error, pair, shape_of, shown
-from nonholo.base.types import Float
+from nonholo.base.checks import array, error, is_integer, pair, shape_of, shown
+from nonholo.base.types import Array, Float
+from nonholo.groups import SE
 from nonholo.systems import System, in_group
 
 Ends = tuple[np.ndarray, np.ndarray, np.ndarray | None, np.ndarray | None]
@@ -64,10 +65,10 @@ def limits_of_steps(bounds: Any, steps: int, k: int) -> Limits:
     return np.tile(low, steps), np.tile(high, steps)
 
 
-def check_names(where: str, end: Any) -> None:
+def check_names(where: str, end: Any, velocity: str = "restricted_velocity") -> None:
     """Refuse an end of a motion that is no dictionary of a configuration and a velocity."""
-    if not isinstance(end, Mapping) or not set(end) <= {"configuration", "restricted_velocity"}:
-        raise error(where, "name only configuration and restricted_velocity", shown(end), "Pass a dictionary of them.")
+    if not isinstance(end, Mapping) or not set(end) <= {"configuration", velocity}:
+        raise error(where, f"name only configuration and {velocity}", shown(end), "Pass a dictionary of them.")
 
 
 def checked_ends(system: System, start: Any, goal: Any, is_free: bool) -> tuple[Ends, bool]:
@@ -81,10 +82,10 @@ def checked_ends(system: System, start: Any, goal: Any, is_free: bool) -> tuple[
     return _members((*first, to_pose, to_velocity))
 
 
-def _end(where: str, system: System, given: Any) -> tuple[np.ndarray | None, np.ndarray | None]:
+def _end(where: str, system: System, end: Any) -> tuple[np.ndarray | None, np.ndarray | None]:
     """Return the velocities along the constraint and the poses that an end names, one or many of them."""
-    check_names(where, given)
-    w, g = given.get("restricted_velocity"), given.get("configuration")
+    check_names(where, end)
+    w, g = end.get("restricted_velocity"), end.get("configuration")
     if w is not None:
         shape = (None,) * (len(shape_of(w)) - 1) + (system.rank,)
         w = array(f"{where}['restricted_velocity']", w, shape[-2:], "Pass one number for each admissible direction.")
@@ -107,3 +108,218 @@ def _members(ends: tuple[np.ndarray | None, ...]) -> tuple[Ends, bool]:
     count = max(sizes, default=1)
     each = (x if x is None else np.broadcast_to(x, (count, *x.shape[-n:])) for x, n in zip(ends, axes, strict=True))
     return cast(Any, tuple(each)), not sizes
+
+
+_WHERE = "steer(state_bounds=...)"
+_OUTSIDE = 1e-8  # by which a start or a goal may miss them
+
+
+class StateBounds(NamedTuple):
+    """What is bounded: low <= rows @ numbers <= high, of every state after the start.
+
+    Attributes:
+        rows: Coefficients of the numbers of a state.
+        low: Least values, some of them infinite.
+        high: Largest values.
+    """
+
+    rows: Float[np.ndarray, "b x"]
+    low: Float[np.ndarray, "b"]
+    high: Float[np.ndarray, "b"]
+
+    @classmethod
+    def of(cls, bounds: Any, names: Mapping[str, np.ndarray], ends: Mapping[str, np.ndarray]) -> Self | None:
+        """Return checked bounds of rows by name, None where there are none.
+
+        Ends are start and goal, (..., x), NaN in what they leave free. A complex row is of an angle: cosine and sine.
+        """
+        if bounds is None:
+            return None
+        remedy = f"Pass {{name: (least, largest)}} of {', '.join(names)}."
+        if not isinstance(bounds, Mapping) or not set(bounds) <= set(names):
+            raise error(_WHERE, "name what a state has", shown(bounds), remedy)
+        parts = {name: cls._one(name, both, names[name]) for name, both in bounds.items()}
+        for name, part in parts.items():
+            for end, numbers in ends.items():
+                if (off := part.outside(numbers)) > _OUTSIDE:
+                    got, remedy = f"{name} outside by {off:.3g}", "Move it, or make the bounds wider."
+                    raise error(f"steer({end}=...)", "lie within state_bounds", got, remedy)
+        none = cls(np.zeros((0, next(iter(names.values())).shape[1])), np.zeros(0), np.zeros(0))
+        return cls(*map(np.concatenate, zip(none, *parts.values(), strict=True)))
+
+    @classmethod
+    def _one(cls, name: str, both: Any, rows: np.ndarray) -> Self:
+        """Return the bounds of one name: of an angle those of the cosine of its distance from their middle."""
+        where = f"{_WHERE}['{name}']"
+        low, high = (_limit(where, end, len(rows)) for end in pair(where, both))
+        if not (low < high).all():
+            raise error(where, "leave room between them", shown(both), "Pass the least and the largest value.")
+        if not np.iscomplexobj(rows):
+            return cls(rows, low, high)
+        middle, half = (low + high) / 2, (high - low) / 2
+        if not (half < np.pi).all():
+            raise error(where, "be less than a turn apart", shown(both), "Leave a heading out that may be any.")
+        size = np.sin(np.minimum(half, np.pi / 2))  # which makes what is outside an angle, to first order
+        return cls((np.exp(-1j * middle) / size * rows).real, np.cos(half) / size, np.full(1, np.inf))
+
+    def outside(self, numbers: Float[np.ndarray, "... x"]) -> float:
+        """Return by how much states are outside, at most; what is NaN is not."""
+        values = np.nan_to_num(numbers) @ self.rows.T
+        is_free = (np.isnan(numbers)[..., None, :] & (self.rows != 0)).any(axis=-1)
+        excess = np.where(is_free, 0.0, np.maximum(self.low - values, values - self.high))
+        return float(excess.max(initial=0.0))
+
+
+def _limit(where: str, value: Any, count: int) -> np.ndarray:
+    """Return the least or largest value of each row; infinite ones, which bound nothing, are allowed."""
+    remedy = "Pass the least and the largest value, numbers or one for each row; infinity for none."
+    try:
+        infinite = np.where(np.isinf(value), value, 0.0)
+    except (TypeError, ValueError):
+        infinite = np.zeros(())
+    finite = np.where(infinite, 0.0, value) if infinite.any() else value
+    return array(where, finite, (count,) if np.ndim(finite) else (), remedy) + infinite + np.zeros(count)
+
+
+def body_numbers(system: System) -> dict[str, np.ndarray]:
+    """Return rows by name for the entries of a pose, then momenta along the constraint."""
+    group, N = system.group, system.group.size
+    unit = np.eye(N * N + system.rank)
+    entries, momenta = unit[: N * N].reshape(N, N, -1), unit[N * N :]
+    names = {"restricted_velocity": np.linalg.inv(system.constrained_inertia) @ momenta}
+    if group.is_affine:
+        names |= {name: entries[i, -1:] for i, name in zip(range(N - 1), "xyz", strict=False)}
+    return names | ({"theta": entries[:1, 0] + 1j * entries[1:2, 0]} if group == SE(2) else {})
+
+
+def bounds_of_body(bounds: Any, system: System, ends: Ends) -> StateBounds | None:
+    """Return checked bounds of states on a group, in which all starts and goals lie."""
+    w, g, to_pose, to_velocity = ends
+    pose = np.full_like(g, np.nan) if to_pose is None else to_pose
+    velocity = np.full_like(w, np.nan) if to_velocity is None else to_velocity
+    numbers = [
+        body_states(*x) for x in ((g, system.restricted_momentum(w)), (pose, system.restricted_momentum(velocity)))
+    ]
+    return StateBounds.of(bounds, body_numbers(system), dict(zip(("start", "goal"), numbers, strict=True)))
+
+
+def body_states(poses: Float[np.ndarray, "... N N"], momenta: Float[np.ndarray, "... k"]) -> np.ndarray:
+    """Return the numbers of states on a group."""
+    return np.concatenate([poses.reshape(*poses.shape[:-2], -1), momenta], axis=-1)
+
+
+def coordinate_numbers(system: Any) -> dict[str, np.ndarray]:
+    """Return rows by name for velocities, then coordinates."""
+    unit, n = np.eye(2 * system.dimension), system.dimension
+    return {"body_velocity": unit[:n]} | {name: unit[n + i, None] for i, name in enumerate(system.coordinates)}
+
+
+class Way(NamedTuple):
+    """Discs or balls to keep clear of, places to pass, and bounds of all states.
+
+    Attributes:
+        centers: Of obstacles.
+        radii: Of obstacles.
+        outline: Body points that keep clear of them.
+        via: Places of the body frame, by number of the step after which it is there.
+        bounds: Of states; None where they are free.
+    """
+
+    centers: Float[np.ndarray, "obstacles n"]
+    radii: Float[np.ndarray, "obstacles"]
+    outline: Float[np.ndarray, "points n"]
+    via: dict[int, Float[np.ndarray, "n"]]
+    bounds: StateBounds | None = None
+
+    @classmethod
+    def of(cls, n: int | None, steps: int, obstacles: Any, outline: Any, via: Any) -> "Way":
+        """Return checked arguments of `steer`, for positions of n numbers; None where bodies have none."""
+        if n is None:
+            if not (obstacles is None and outline is None and via is None):
+                remedy = "Leave obstacles, outline and via out: only bodies on SE(n) or with x and y are somewhere."
+                raise error("steer(discrete=...)", "have a position", "a system without", remedy)
+            return cls(np.zeros((0, 0)), np.zeros(0), np.zeros((1, 0)), {})
+        where, remedy = "steer(obstacles=...)", f"Pass centers (obstacles, {n}), and one radius or one for each."
+        centers, radii = pair(where, ((np.zeros((0, n)), 1.0) if obstacles is None else obstacles))
+        centers = array(where, centers, (None, n), remedy)
+        radii = array(where, radii, () if shape_of(radii) == () else (len(centers),), remedy)
+        if not (radii > 0).all():
+            raise error(where, "have positive radii", shown(radii), remedy)
+        where = "steer(outline=...)"
+        outline = array(where, np.zeros((1, n)) if outline is None else outline, (None, n), "Pass points of the body.")
+        if not len(outline):
+            raise error(where, "have a point", "none", "Leave it out for the origin of the body frame.")
+        return cls(centers, np.broadcast_to(radii, len(centers)), outline, _places(n, steps, via))
+
+    def penetration(self, points: Float[np.ndarray, "... points n"]) -> float:
+        """Return how deep points of the outline lie in an obstacle; zero where all are clear."""
+        apart = np.linalg.norm(points[..., None, :] - self.centers, axis=-1) - self.radii
+        return max(0.0, -float(apart.min(initial=np.inf)))
+
+    def outside(self, numbers: Float[np.ndarray, "... x"]) -> float:
+        """Return by how much states are out of their bounds, at most."""
+        return 0.0 if self.bounds is None else self.bounds.outside(numbers)
+
+    def gap(self, points: Float[np.ndarray, "K points n"], positions: Float[np.ndarray, "K n"]) -> float:
+        """Return by how much a motion comes too near to an obstacle, or misses a place, whichever is more.
+
+        States are clear of obstacles; a step over one, by half of its radius on a straight line, comes too near too.
+        """
+        depth = self.radii - _apart(points[:-1, :, None], points[1:, :, None], self.centers)
+        leaps = float(np.where(depth > self.radii / 2, depth, 0.0).max(initial=0.0))
+        off = [float(np.abs(positions[step] - place).max()) for step, place in self.via.items()]
+        return max(self.penetration(points), leaps, *off, 0.0)
+
+    def check(self, name: str, points: Float[np.ndarray, "... points n"] | None) -> None:
+        """Refuse a start or a goal inside of an obstacle."""
+        if points is not None and (depth := self.penetration(points)) > 0:
+            got = f"a point {depth:.3g} inside of one"
+            raise error(f"steer({name}=...)", "be clear of obstacles", got, "Move it, or make the obstacle smaller.")
+
+
+def _apart(begin: np.ndarray, end: np.ndarray, centers: np.ndarray) -> np.ndarray:
+    """Return the distances of points from the straight lines between others."""
+    along, off = end - begin, centers - begin
+    square = (along**2).sum(axis=-1)
+    part = np.clip((off * along).sum(axis=-1) / np.where(square > 0, square, 1.0), 0.0, 1.0)
+    return np.linalg.norm(off - part[..., None] * along, axis=-1)
+
+
+def _places(n: int, steps: int, via: Any) -> dict[int, np.ndarray]:
+    where, remedy = "steer(via=...)", f"Pass {{step: position}}, steps from 1 to {steps}."
+    if via is None:
+        return {}
+    if not isinstance(via, Mapping) or not all(is_integer(step) and 0 < step <= steps for step in via):
+        raise error(where, "name places by the number of a step", shown(via), remedy)
+    return {int(step): array(where, place, (n,), remedy) for step, place in via.items()}
+
+
+def evenly(at: Mapping[int, Float[np.ndarray, "n"]], steps: int) -> Float[np.ndarray, "K n"]:
+    """Return a path that is evenly between points at some steps."""
+    order = sorted(at)
+    columns = np.array([at[step] for step in order]).T
+    return np.array([np.interp(np.arange(steps + 1), order, column) for column in columns]).T
+
+
+def resample(path: Float[np.ndarray, "P n"], steps: int) -> Float[np.ndarray, "K n"]:
+    """Return as many points of a path as there are states, at equal distances along it."""
+    far = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1)))
+    return np.array([np.interp(np.linspace(0, far[-1], steps + 1), far, column) for column in path.T]).T
+
+
+def body_points(g: Float[Array, "... N N"], outline: Float[Array, "points n"]) -> Float[Array, "... points n"]:
+    """Return where points of a body are at poses."""
+    n = outline.shape[-1]
+    return g[..., None, :n, -1] + outline @ g[..., :n, :n].swapaxes(-1, -2)
+
+
+def planar_points(
+    system: Any, q: Float[Array, "... n"], outline: Float[Array, "points 2"]
+) -> Float[Array, "... points 2"]:
+    """Return where points of a body with coordinates x and y are, turned by the heading where it has one."""
+    names, xp = system.coordinates, q.__array_namespace__()
+    x, y = (q[..., names.index(name)] for name in ("x", "y"))
+    turn = xp.zeros_like(x) if system.heading is None else q[..., names.index(system.heading)]
+    c, s = xp.cos(turn), xp.sin(turn)
+    rows = xp.stack([xp.stack([c, s], axis=-1), xp.stack([-s, c], axis=-1)], axis=-2)
+    return xp.stack([x, y], axis=-1)[..., None, :] + outline @ rows

@@ -86,21 +86,21 @@ class Feedback(Keeper):
             ValueError: A bad argument.
         """
         with needs("jax", "Feedback.simulate"):
-            from nonholo.analysis.steering._closed_loop import closed_loop
+            from nonholo.analysis.steering._motions import closed_loop
         where, nodes = "Feedback.simulate", _states(self.discrete, self.reference)
         S = self.discrete.system.constraint_subspace
 
-        def checked(name: str, value: Any, default: np.ndarray) -> np.ndarray:
+        def table(name: str, value: Any, default: np.ndarray) -> np.ndarray:
             return default if value is None else array(f"{where}({name}=...)", value, default.shape)
 
-        w, g = checked("restricted_velocity", restricted_velocity, nodes[0][0]), nodes[1][0]
+        w, g = table("restricted_velocity", restricted_velocity, nodes[0][0]), nodes[1][0]
         if configuration is not None:
             g = in_group(f"{where}(configuration=...)", self.discrete.system.group, configuration)
-        push = checked("disturbance", disturbance, np.zeros_like(self.controls))
-        misread = checked("misreading", misreading, np.zeros_like(self.gains[:, 0]))
+        push = table("disturbance", disturbance, np.zeros_like(self.controls))
+        misread = table("misreading", misreading, np.zeros_like(self.gains[:, 0]))
         tables = self.controls @ S.T, self.gains, push, misread
-        orbit, used, missed = closed_loop(self.discrete, nodes, (w, g), tables, self.limits)
-        return Tracking(orbit, used @ np.linalg.pinv(S).T, missed)
+        orbit, forces, gaps = closed_loop(self.discrete, nodes, (w, g), tables, self.limits)
+        return Tracking(orbit, forces @ np.linalg.pinv(S).T, gaps)
 
 
 def tracking_feedback(
@@ -170,13 +170,13 @@ def tracking_feedback(
     limits = checked_limits(f"{where}(bounds=...)", bounds, k)
     refuse_many_matrices(f"{where}(controls=...)", discrete, len(table), "Pass fewer.", derivatives=dim + 2 * k)
     with needs("jax", where):
-        from nonholo.analysis.steering._closed_loop import linearized
+        from nonholo.analysis.steering._motions import linearize_steps
         from nonholo.simulation.traced import rollout
     first = {"restricted_velocity": np.zeros(k), **start}
     reference = rollout(discrete, **first, controls=table, steps=len(table))
     if reference.outcome != 0:
         raise error(f"{where}(controls=...)", "give a motion to the end", "one that ends early", "Take shorter steps.")
-    A, B = interruptibly(lambda: linearized(discrete, _states(discrete, reference), table))
+    A, B = interruptibly(lambda: linearize_steps(discrete, _states(discrete, reference), table))
     h = float(discrete.time_step)
     return Feedback(discrete, table, reference, riccati_gains(A, B, (h * Q, h * R, F)), (A, B), limits)
 

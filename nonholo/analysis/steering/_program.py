@@ -15,7 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 from scipy import sparse
 
-from nonholo.analysis.steering._state_bounds import StateBounds
+from nonholo.analysis.steering._arguments import StateBounds
 from nonholo.base.types import Array, Float
 from nonholo.discrete.definition import in_double
 
@@ -47,8 +47,8 @@ class Steps(NamedTuple):
     def conditions(self, window: Array, row: Array) -> Array:
         r"""Return equations of a step, clearances $(|x - c|^2 - \rho^2)/2\rho$ after it, and what is bounded."""
         x, z, f, after = self.parts(window)
-        bounded = jnp.zeros(0) if self.bounds is None else self.bounds.rows @ self.nodes.numbers(z, after)
-        return jnp.concatenate([self.nodes.residual(x, z, f, after, row), self.clearances(after), bounded])
+        states = jnp.zeros(0) if self.bounds is None else self.bounds.rows @ self.nodes.numbers(z, after)
+        return jnp.concatenate([self.nodes.residual(x, z, f, after, row), self.clearances(after), states])
 
     def clearances(self, x: Array) -> Array:
         """Return how far points are outside of obstacles, exact in the first order where that is little."""
@@ -67,29 +67,29 @@ class Steps(NamedTuple):
         return weight * self.cost(window) + weights @ self.conditions(window, row)
 
 
-def _weighted(steps: Steps, last: Array, weights: Array) -> Array:
-    return weights @ steps.nodes.missed(last)
+def _weighted_goal(steps: Steps, last: Array, weights: Array) -> Array:
+    return weights @ steps.nodes.goal_gap(last)
 
 
 @equinox.filter_jit
 def _values(steps: Steps, windows: Array, rows: Array, last: Array) -> Any:
-    return jax.vmap(steps.conditions)(windows, rows), steps.nodes.missed(last)
+    return jax.vmap(steps.conditions)(windows, rows), steps.nodes.goal_gap(last)
 
 
 @equinox.filter_jit
-def _missed(steps: Steps, last: Array) -> Array:
-    return steps.nodes.missed(last)
+def _goal_gap(steps: Steps, last: Array) -> Array:
+    return steps.nodes.goal_gap(last)
 
 
 @equinox.filter_jit
 def _slopes(steps: Steps, windows: Array, rows: Array, last: Array) -> Any:
-    return jax.vmap(jax.jacfwd(steps.conditions))(windows, rows), jax.jacfwd(steps.nodes.missed)(last)
+    return jax.vmap(jax.jacfwd(steps.conditions))(windows, rows), jax.jacfwd(steps.nodes.goal_gap)(last)
 
 
 @equinox.filter_jit
 def _curvatures(steps: Steps, windows: Array, rows: Array, last: Array, weights: Any, weight: Array) -> Any:
     hessian = jax.vmap(jax.hessian(steps.lagrangian), in_axes=(0, 0, 0, None))
-    return hessian(windows, rows, weights[0], weight), jax.hessian(_weighted, argnums=1)(steps, last, weights[1])
+    return hessian(windows, rows, weights[0], weight), jax.hessian(_weighted_goal, argnums=1)(steps, last, weights[1])
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -114,7 +114,7 @@ class Program:
     @functools.cached_property
     def shape(self) -> tuple[int, int]:
         """Numbers of conditions of a step and of conditions at the end."""
-        values, end = self._called(_values, np.zeros(self.unknowns))
+        values, end = self._call(_values, np.zeros(self.unknowns))
         return values.shape[1], len(end)
 
     @functools.cached_property
@@ -145,12 +145,12 @@ class Program:
 
     def conditions(self, u: Float[np.ndarray, "n"]) -> Float[np.ndarray, "c"]:
         """Return equations and clearances, step by step, then what is missed at the end."""
-        values, end = self._called(_values, u)
+        values, end = self._call(_values, u)
         return np.concatenate([values.ravel(), end])
 
-    def missed(self, state: Float[np.ndarray, "x"]) -> Float[np.ndarray, "e"]:
+    def goal_gap(self, state: Float[np.ndarray, "x"]) -> Float[np.ndarray, "e"]:
         """Return what vanishes at the goal, of a last state."""
-        return in_double(_missed, self.steps, state)
+        return in_double(_goal_gap, self.steps, state)
 
     def cost(self, u: Float[np.ndarray, "n"]) -> tuple[float, Float[np.ndarray, "n"]]:
         """Return the effort and its derivative."""
@@ -161,22 +161,22 @@ class Program:
 
     def slopes(self, u: Float[np.ndarray, "n"]) -> sparse.csc_array:
         """Return the derivatives of the conditions."""
-        return self._laid(self.slope_places, self._called(_slopes, u))
+        return self._laid(self.slope_places, self._call(_slopes, u))
 
     def curvatures(self, u: Float[np.ndarray, "n"], weights: np.ndarray, weight: float) -> sparse.csc_array:
         """Return the upper triangle of the second derivatives of a weighted sum of cost and conditions."""
         ends = self.shape[1]
         both = weights[: len(weights) - ends].reshape(len(self.rows), -1), weights[len(weights) - ends :]
-        return self._laid(self.curvature_places, self._called(_curvatures, u, both, np.float64(weight)))
+        return self._laid(self.curvature_places, self._call(_curvatures, u, both, np.float64(weight)))
 
-    def _called(self, function: Any, u: np.ndarray, *more: Any) -> Any:
+    def _call(self, function: Any, u: np.ndarray, *more: Any) -> Any:
         whole = np.concatenate([self.first, u])
         return in_double(
             function, self.steps, whole[self.windows + len(self.first)], self.rows, whole[-len(self.first) :], *more
         )
 
     def _laid(self, places: "_Places", entries: tuple[np.ndarray, np.ndarray]) -> sparse.csc_array:
-        values = np.concatenate([each.ravel() for each in entries])[places.chosen]
+        values = np.concatenate([each.ravel() for each in entries])[places.at]
         data = np.bincount(places.entry, values, minlength=len(places.rows))
         return sparse.csc_array((data, places.rows, places.columns), shape=places.shape)
 
@@ -208,24 +208,24 @@ class Program:
     def _pattern(self, function: Any, more: tuple[Any, ...]) -> tuple[np.ndarray, np.ndarray]:
         """Return which entries of the derivatives of a step, and at the end, do not vanish everywhere."""
         rng = np.random.default_rng(0)
-        found = [self._called(function, rng.normal(size=self.unknowns), *more) for _ in range(_SAMPLES)]
-        step = np.any([np.any(part != 0, axis=0) for part, _ in found], axis=0)
-        end = np.any([part != 0 for _, part in found], axis=0)
-        return np.broadcast_to(step, found[0][0].shape), end
+        samples = [self._call(function, rng.normal(size=self.unknowns), *more) for _ in range(_SAMPLES)]
+        step = np.any([np.any(part != 0, axis=0) for part, _ in samples], axis=0)
+        end = np.any([part != 0 for _, part in samples], axis=0)
+        return np.broadcast_to(step, samples[0][0].shape), end
 
 
 class _Places(NamedTuple):
     """Where the entries of the derivatives of steps stand in a sparse matrix, by columns.
 
     Attributes:
-        chosen: Indices of the entries that are laid out.
+        at: Indices of the entries that are laid out.
         entry: The entry of the matrix that each of them is added to.
         rows: Of the entries of the matrix.
         columns: Where columns begin.
         shape: Of the matrix.
     """
 
-    chosen: np.ndarray
+    at: np.ndarray
     entry: np.ndarray
     rows: np.ndarray
     columns: np.ndarray
@@ -233,10 +233,10 @@ class _Places(NamedTuple):
 
     @classmethod
     def of(cls, steps: Any, end: Any, pattern: Any, shape: tuple[int, int], upper: bool = False) -> "_Places":
-        both = [np.broadcast_arrays(*places, shown) for places, shown in zip((steps, end), pattern, strict=True)]
-        row, column, shown = (np.concatenate([part[i].ravel() for part in both]) for i in range(3))
-        kept = shown & (column >= 0) & (row >= 0)
-        chosen = np.flatnonzero(kept & (row <= column) if upper else kept)
-        keys, entry = np.unique(column[chosen] * shape[0] + row[chosen], return_inverse=True)
+        both = [np.broadcast_arrays(*places, mask) for places, mask in zip((steps, end), pattern, strict=True)]
+        row, column, mask = (np.concatenate([part[i].ravel() for part in both]) for i in range(3))
+        is_inside = mask & (column >= 0) & (row >= 0)
+        at = np.flatnonzero(is_inside & (row <= column) if upper else is_inside)
+        keys, entry = np.unique(column[at] * shape[0] + row[at], return_inverse=True)
         begins = np.searchsorted(keys, np.arange(shape[1] + 1) * shape[0])
-        return cls(chosen, entry, keys % shape[0], begins, shape)
+        return cls(at, entry, keys % shape[0], begins, shape)

@@ -1,18 +1,177 @@
-"""Forces of many members at once that lead to goals, by shooting from random controls."""
+r"""Forces of least effort that meet goals, of many members at once, by shooting from random controls.
 
+With $c(f) = 0$ and $l \le f \le u$ the least of $\tfrac12|f|^2$ obeys $f = \mathrm{clip}(J^T\lambda, l, u)$,
+$J = \partial c/\partial f$. A step of Newton's method goes to the bounds that this names and meets the linearized goal
+with what is left; conjugate gradients then move along the goal, with second derivatives from differences of J.
+"""
+
+import dataclasses
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from nonholo.analysis.steering._arguments import BLOCK, Ends, Limits
-from nonholo.analysis.steering._ends import missed_goals
-from nonholo.analysis.steering._least_effort import Missed, least_effort
+from nonholo.analysis.steering._motions import goal_gaps
 from nonholo.base.progress import go_on
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization
+
+_ROUNDS = 40  # of Newton's method
+_PRODUCTS = 12  # with second derivatives, in each of them
+_HALVINGS = 8  # of a step
+_FORCING = 0.1  # part of the gradient that conjugate gradients leave
+_OFFSET = 1e-6  # of the length of forces, for differences
+_SETS = 20  # of forces at bounds that are tried
+_BENT = 1e-3  # curvature below which a direction is not trusted
+_REACH = 3.0  # the longest step, in lengths of forces
+_MET, _LEVEL = 1e-10, 1e-6  # gap and gradient, in lengths of forces, of a minimum
+_LEAST = 1e-300  # a length that may divide
+
+Gaps = Callable[[Float[np.ndarray, "m n"], np.ndarray], tuple[Float[np.ndarray, "m c"], Float[np.ndarray, "m c n"]]]
+"""From forces of members, and which members these are, to c and J; NaN where there is none."""
+
+
+def least_effort(
+    gaps: Gaps, f: Float[np.ndarray, "M n"], limits: tuple[np.ndarray, np.ndarray]
+) -> tuple[Float[np.ndarray, "M n"], Float[np.ndarray, "M"], Float[np.ndarray, "M"]]:
+    """Return forces near given ones, what they miss at most, and how far they are from least effort, relative."""
+    f, going = np.clip(f, *limits), np.arange(len(f))
+    c, J = gaps(f, going)
+    gap, rest, penalty = np.abs(c).max(axis=1), np.full(len(f), np.inf), np.zeros(len(f))
+    going = going[np.isfinite(gap)]
+    first = np.linalg.norm(f, axis=1)
+    for _ in range(_ROUNDS):
+        length = np.maximum(np.linalg.norm(f[going], axis=1), first[going] + _LEAST)
+        plane, jump, weights = _plane(f[going], c[going], J[going], limits)
+        rest[going] = np.linalg.norm(plane.along(f[going]) + jump, axis=1) / length
+        on = (gap[going] > _MET) | (rest[going] > _LEVEL)
+        going, plane, jump, weights, length = going[on], plane[on], jump[on], weights[on], length[on]
+        if not len(going):
+            break
+        step = jump - plane.across(c[going] + _times(J[going], jump))
+        step += _along(gaps, (f[going], J[going], weights), plane, length, going)
+        step *= np.minimum(1, _REACH * length / (np.linalg.norm(step, axis=1) + _LEAST))[:, None]
+        penalty[going] = np.maximum(penalty[going], 2 * np.abs(weights).max(axis=1))
+        point = f[going], c[going], J[going]
+        (f[going], c[going], J[going]), fell = _shorten(gaps, point, step, penalty[going], limits, going)
+        gap[going] = np.abs(c[going]).max(axis=1)
+        going = going[fell]
+    return f, gap, rest
+
+
+def _plane(
+    f: np.ndarray, c: np.ndarray, J: np.ndarray, limits: tuple[np.ndarray, np.ndarray]
+) -> tuple["_Plane", np.ndarray, np.ndarray]:
+    """Return the directions that bounds leave free, the ways to these bounds, and the multipliers that name them."""
+    bound = np.where(limits[0] == limits[1], limits[0], np.full_like(f, np.nan))
+    for _ in range(_SETS):
+        plane, jump = _Plane.of(J, np.isnan(bound)), np.nan_to_num(bound - f)
+        weights = _times(plane.inverse, _times(plane.slopes, f) - _times(J, jump) - c)
+        pull = (J * weights[:, :, None]).sum(axis=1)
+        following = np.where(pull >= limits[1], limits[1], np.where(pull <= limits[0], limits[0], np.nan))
+        if np.array_equal(bound, following, equal_nan=True):
+            break
+        bound = following
+    return plane, jump, weights
+
+
+@dataclasses.dataclass(frozen=True)
+class _Plane:
+    """The directions in which free forces of members keep their linearized goals, and those across.
+
+    Attributes:
+        free: Which forces are free.
+        slopes: J of these, zero elsewhere.
+        inverse: Of slopes times their transpose.
+    """
+
+    free: Float[np.ndarray, "m n"]
+    slopes: Float[np.ndarray, "m c n"]
+    inverse: Float[np.ndarray, "m c c"]
+
+    @classmethod
+    def of(cls, J: np.ndarray, free: np.ndarray) -> "_Plane":
+        slopes = np.where(free[:, None], np.nan_to_num(J), 0.0)
+        return cls(free, slopes, np.linalg.pinv(slopes @ slopes.swapaxes(1, 2), rcond=1e-14, hermitian=True))
+
+    def __getitem__(self, at: np.ndarray) -> "_Plane":
+        return _Plane(self.free[at], self.slopes[at], self.inverse[at])
+
+    def weights(self, v: np.ndarray) -> np.ndarray:
+        """Return the multipliers whose forces are nearest to v."""
+        return _times(self.inverse, _times(self.slopes, v))
+
+    def across(self, c: np.ndarray) -> np.ndarray:
+        """Return the least forces that change the goal by c."""
+        return _times(self.slopes.swapaxes(1, 2), _times(self.inverse, c))
+
+    def along(self, v: np.ndarray) -> np.ndarray:
+        """Return the part of free forces that does not change the goal."""
+        return np.where(self.free, v, 0.0) - _times(self.slopes.swapaxes(1, 2), self.weights(v))
+
+
+def _times(A: np.ndarray, x: np.ndarray) -> np.ndarray:
+    return (A @ x[..., None])[..., 0]
+
+
+def _dot(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    return (x * y).sum(axis=1)[:, None]
+
+
+def _along(
+    gaps: Gaps, point: tuple[np.ndarray, ...], plane: _Plane, length: np.ndarray, members: np.ndarray
+) -> Float[np.ndarray, "m n"]:
+    """Return steps along the linearized goal to less effort, by conjugate gradients; down the gradient where bent."""
+    f, J, weights = point
+    at, r = np.arange(len(f)), -plane.along(f)
+    total, p, aim = np.zeros_like(f), r.copy(), np.maximum(_FORCING * np.linalg.norm(r, axis=1), 1e-14 * length)
+    for count in range(_PRODUCTS):
+        at = at[np.linalg.norm(r[at], axis=1) > aim[at]]
+        if not len(at):
+            break
+        size = (_OFFSET * length[at] / np.linalg.norm(p[at], axis=1))[:, None]
+        change = (gaps(f[at] + size * p[at], members[at])[1] - J[at]) * weights[at, :, None]
+        Hp = plane[at].along(p[at] - np.nan_to_num(change.sum(axis=1)) / size)
+        good = (_dot(p[at], Hp) > _BENT * _dot(p[at], p[at]))[:, 0]
+        total[at[~good]] += (count == 0) * p[at[~good]]
+        at, Hp, square = at[good], Hp[good], _dot(r[at], r[at])[good]
+        size = square / _dot(p[at], Hp)
+        total[at] += size * p[at]
+        r[at] -= size * Hp
+        p[at] = r[at] + _dot(r[at], r[at]) / square * p[at]
+    return total
+
+
+def _shorten(
+    gaps: Gaps,
+    point: tuple[np.ndarray, ...],
+    step: np.ndarray,
+    penalty: np.ndarray,
+    limits: tuple[np.ndarray, np.ndarray],
+    members: np.ndarray,
+) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
+    """Return forces, c and J after steps that are halved until effort and gap fall together, and where they do."""
+    now, fell = tuple(x.copy() for x in point), np.zeros(len(step), dtype=bool)
+
+    def merit(at: np.ndarray, f: np.ndarray, c: np.ndarray) -> np.ndarray:
+        return _dot(f, f)[:, 0] / 2 + penalty[at] * np.abs(c).sum(axis=1)
+
+    for count in range(_HALVINGS + 1):
+        at = np.flatnonzero(~fell)
+        if not len(at):
+            break
+        f = np.clip(point[0][at] + 0.5**count * step[at], *limits)
+        there = (f, *gaps(f, members[at]))
+        fell[at] = good = merit(at, f, there[1]) <= merit(at, point[0][at], point[1][at]) * (1 + 1e-12)
+        for whole, part in zip(now, there, strict=True):
+            whole[at[good]] = part[good]
+    return now, fell
+
 
 SPREAD = (1.0, 2.0, 0.5, 4.0, 1.0, 2.0, 0.5, 4.0)  # of the random controls from which a goal is looked for, in turn
 TOLERANCE = 1e-8  # of the goal
-_LEVEL = 1e-4  # of the gradient at a minimum
+_GRADIENT = 1e-4  # of the gradient at a minimum
 
 
 def shot(discrete: Discretization, ends: Ends, limits: Limits) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -20,11 +179,11 @@ def shot(discrete: Discretization, ends: Ends, limits: Limits) -> tuple[np.ndarr
     k, block = discrete.system.rank, min(BLOCK, len(ends[0]))
     steps = len(limits[0]) // k
 
-    def missed(forces: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def gaps(forces: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         go_on()
-        return missed_goals(discrete, forces.reshape(-1, steps, k), chosen(ends, at), block)
+        return goal_gaps(discrete, forces.reshape(-1, steps, k), members_of(ends, at), block)
 
-    return best(missed, sizes(discrete, steps), len(ends[0]), limits)
+    return best(gaps, sizes(discrete, steps), len(ends[0]), limits)
 
 
 def sizes(discrete: Discretization, steps: int) -> np.ndarray:
@@ -33,24 +192,24 @@ def sizes(discrete: Discretization, steps: int) -> np.ndarray:
     return np.tile(np.sqrt(steps) * each / (steps * float(discrete.time_step)) ** 2, steps)
 
 
-def best(missed: Missed, size: np.ndarray, members: int, limits: Limits) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def best(gaps: Gaps, size: np.ndarray, members: int, limits: Limits) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the forces of least effort, or those that come nearest, what they miss, and whether they are least."""
     rng, left = np.random.default_rng(0), np.arange(members)
     forces, gap, is_least = np.zeros((members, len(size))), np.full(members, np.inf), np.zeros(members, dtype=bool)
     for spread in SPREAD:
         first = spread * size * rng.normal(size=(len(left), len(size)))
         there = left
-        near, miss, rest = least_effort(lambda f, at, there=there: missed(f, there[at]), first, limits)
+        near, miss, rest = least_effort(lambda f, at, there=there: gaps(f, there[at]), first, limits)
         better = miss < gap[left]
         now = left[better]
         forces[now], gap[now] = near[better], miss[better]
-        is_least[now] = (miss < TOLERANCE)[better] & (rest < _LEVEL)[better]
+        is_least[now] = (miss < TOLERANCE)[better] & (rest < _GRADIENT)[better]
         left = left[~is_least[left]]
         if not len(left):
             break
     return forces, gap, is_least
 
 
-def chosen(parts: Any, at: Any) -> Any:
+def members_of(parts: Any, at: Any) -> Any:
     """Return members of arrays."""
-    return parts if parts is None else parts[at] if hasattr(parts, "shape") else tuple(chosen(x, at) for x in parts)
+    return parts if parts is None else parts[at] if hasattr(parts, "shape") else tuple(members_of(x, at) for x in parts)

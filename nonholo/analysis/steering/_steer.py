@@ -12,12 +12,15 @@ from nonholo.analysis.steering._arguments import (
     Ends,
     Guess,
     Limits,
+    StateBounds,
+    Way,
+    body_points,
+    bounds_of_body,
     checked_ends,
     checked_guess,
+    coordinate_numbers,
     limits_of_steps,
 )
-from nonholo.analysis.steering._state_bounds import StateBounds, bounds_of_body, coordinate_numbers
-from nonholo.analysis.steering._way import Way, body_points
 from nonholo.base.checks import choice, count, error, flag, needs, refuse_given
 from nonholo.base.limits import within_memory
 from nonholo.base.memo import Keeper
@@ -67,9 +70,9 @@ class Steering(Keeper):
     def orbit(self) -> Any:
         """The motion under the controls, a `Rollout`; an orbit in coordinates."""
         with needs("jax", "Steering.orbit"):
-            from nonholo.analysis.steering._ends import driven
+            from nonholo.analysis.steering._motions import driven
         if in_coordinates(self.discrete):
-            from nonholo.analysis.steering._in_coordinates import driven_in_coordinates
+            from nonholo.analysis.steering._problems import driven_in_coordinates
 
             return driven_in_coordinates(cast(Any, self.discrete), self.start, self.controls)
         w, g = self.start
@@ -163,8 +166,8 @@ def steer(
     flag("steer(progress=...)", progress)
     n = _size_of_positions(discrete)
     way, hints = Way.of(n, steps, obstacles, outline, via), checked_guess(guess, steps, n)
-    asked = {"obstacles": obstacles, "outline": outline, "via": via, "state_bounds": state_bounds, "guess": guess}
-    method = _method(discrete, method, asked)
+    extras = {"obstacles": obstacles, "outline": outline, "via": via, "state_bounds": state_bounds, "guess": guess}
+    method = _method(discrete, method, extras)
     if in_coordinates(discrete):
         return _steered_in_coordinates(discrete, (start, goal), bounds, way, steps, hints, state_bounds)
     _check(discrete, steps)
@@ -177,22 +180,22 @@ def steer(
         forces, gap, outcome = interruptibly(lambda: by(discrete, ends, limits))
     controls = forces @ np.linalg.pinv(discrete.system.constraint_subspace).T
     effort = float(discrete.time_step) * (forces**2).sum(axis=(-2, -1)) / 2
-    found = *ends[:2], controls, effort, gap, outcome
-    w, g, *rest = (np.asarray(each[0]) for each in found) if is_one else found
+    results = *ends[:2], controls, effort, gap, outcome
+    w, g, *rest = (np.asarray(each[0]) for each in results) if is_one else results
     return Steering(discrete, (w, g), *rest)
 
 
-def _method(discrete: Any, method: Any, asked: dict[str, Any]) -> str:
+def _method(discrete: Any, method: Any, extras: dict[str, Any]) -> str:
     """Return the method that can do what is asked, or refuse the one that is named."""
     where = "steer(method=...)"
     choice(where, method, (None, "shooting", "ipopt"))
     if method == "shooting":
-        for name, value in asked.items():
+        for name, value in extras.items():
             refuse_given("steer", "be left out of shooting", 'Use method="ipopt".', **{name: (value, None)})
     if in_coordinates(discrete):
         choice(where, method, (None, "ipopt"), "Systems in coordinates are steered by IPOPT.")
         return "ipopt"
-    return method or ("shooting" if all(each is None for each in asked.values()) else "ipopt")
+    return method or ("shooting" if all(each is None for each in extras.values()) else "ipopt")
 
 
 def _check(discrete: Discretization, steps: int) -> None:
@@ -239,16 +242,16 @@ def _by_ipopt(
 ) -> tuple[Any, ...]:
     """Return forces along the rows, what is missed, and outcomes of members, one after the other."""
     with needs("steer", "steer(method='ipopt')"):
-        from nonholo.analysis.steering._on_groups import group_problem
-        from nonholo.analysis.steering._transcription import transcribed
+        from nonholo.analysis.steering._problems import group_problem
+        from nonholo.analysis.steering._transcription import transcribe
     for name, poses in (("start", ends[1]), ("goal", ends[2])):
         way.check(name, poses if poses is None else body_points(poses, way.outline))
-    found = []
+    results = []
     for member in range(len(ends[0])):
         one = tuple(each if each is None else each[member] for each in ends)
-        found.append(transcribed(group_problem(discrete, one, limits, way, guess)))
+        results.append(transcribe(group_problem(discrete, one, limits, way, guess)))
         report(member + 1, len(ends[0]))
-    forces, gap, outcome = (np.array(part) for part in zip(*found, strict=True))
+    forces, gap, outcome = (np.array(part) for part in zip(*results, strict=True))
     return forces, gap, outcome
 
 
@@ -257,8 +260,8 @@ def _steered_in_coordinates(
 ) -> Steering:
     """Return the result for a system in coordinates."""
     with needs("steer", "steer"):
-        from nonholo.analysis.steering._in_coordinates import checked_goal, checked_start, coordinate_problem
-        from nonholo.analysis.steering._transcription import transcribed
+        from nonholo.analysis.steering._problems import checked_goal, checked_start, coordinate_problem
+        from nonholo.analysis.steering._transcription import transcribe
     n, (x, v) = discrete.system.dimension, checked_start(discrete, ends[0])
     within_memory("steer(steps=...)", _PER_ENTRY * steps * (7.0 * n) ** 2, "Pass fewer steps.")
     limits = limits_of_steps(bounds, steps, n)
@@ -266,7 +269,7 @@ def _steered_in_coordinates(
     both = {"start": np.append(v, x[:n]), "goal": goal.numbers(n)}
     way = way._replace(bounds=StateBounds.of(state_bounds, coordinate_numbers(discrete.system), both))
     problem = coordinate_problem(discrete, ((x, v), goal), limits, way, steps, guess)
-    forces, gap, outcome = interruptibly(lambda: transcribed(problem))
+    forces, gap, outcome = interruptibly(lambda: transcribe(problem))
     effort = float(discrete.time_step) * (forces**2).sum() / 2
     start = v, x[:n]
     return Steering(discrete, start, forces, *map(np.asarray, (effort, gap, outcome)))

@@ -41,27 +41,27 @@ class Problem(NamedTuple):
         program: Equations of all steps, and the cost.
         bounds: The least and the largest value of each unknown.
         guess: From random numbers and a spread to unknowns.
-        missed: By what the orbit under forces, (steps, k), misses goal, obstacles and places.
+        gap_of: By what the orbit under forces, (steps, k), misses goal, obstacles and places.
     """
 
     program: Program
     bounds: tuple[np.ndarray, np.ndarray]
     guess: Callable[[np.random.Generator, float], np.ndarray]
-    missed: Callable[[np.ndarray], float]
+    gap_of: Callable[[np.ndarray], float]
 
 
-def transcribed(problem: Problem) -> tuple[Float[np.ndarray, "steps k"], float, str]:
+def transcribe(problem: Problem) -> tuple[Float[np.ndarray, "steps k"], float, str]:
     """Return forces, what their orbit misses, and in a word what became of the search: see `Steering.outcome`."""
-    rng, found = np.random.default_rng(0), []
+    rng, searches = np.random.default_rng(0), []
     for spread in _SPREADS:
-        solution = minimized(problem.program, problem.guess(rng, spread), problem.bounds, _ITERATIONS)
+        solution = minimize(problem.program, problem.guess(rng, spread), problem.bounds, _ITERATIONS)
         forces = problem.program.split(solution.unknowns)[1]
-        gap = problem.missed(forces)
-        found.append((gap, forces, outcome_of(solution.status, gap)))
-        if found[-1][2] == "converged":
+        gap = problem.gap_of(forces)
+        searches.append((gap, forces, outcome_of(solution.status, gap)))
+        if searches[-1][2] == "converged":
             break
-    gap, forces, outcome = min(found, key=lambda each: (each[2] != "converged", each[0]))
-    agree = all(each[2] == outcome for each in found)
+    gap, forces, outcome = min(searches, key=lambda each: (each[2] != "converged", each[0]))
+    agree = all(each[2] == outcome for each in searches)
     return forces, gap, "not found" if outcome == "infeasible" and not agree else outcome
 
 
@@ -72,14 +72,14 @@ def outcome_of(status: str, gap: float) -> str:
     return "infeasible" if status == "Infeasible_Problem_Detected" else "not found"
 
 
-def bounded(program: Program, limits: tuple[np.ndarray, np.ndarray], fixed: dict[int, dict[int, Any]]) -> Any:
+def bounds_of(program: Program, limits: tuple[np.ndarray, np.ndarray], pins: dict[int, dict[int, Any]]) -> Any:
     """Return bounds of all unknowns: those of forces, and of numbers of states that are fixed after a step."""
     inner, forces, states = (program.steps.nodes.sizes[i] for i in (1, 2, 0))
     both = []
     for limit, free in zip(limits, (-np.inf, np.inf), strict=True):
         each = np.full((len(program.rows), inner + forces + states), free)
         each[:, inner : inner + forces] = limit.reshape(-1, forces)
-        for step, numbers in fixed.items():
+        for step, numbers in pins.items():
             each[step - 1, [inner + forces + at for at in numbers]] = list(numbers.values())
         both.append(each.ravel())
     return tuple(both)
@@ -93,7 +93,7 @@ class Solution(NamedTuple):
     iterations: int
 
 
-def minimized(
+def minimize(
     program: Program, guess: Float[np.ndarray, "n"], bounds: tuple[np.ndarray, np.ndarray], iterations: int
 ) -> Solution:
     """Return unknowns between bounds that meet the conditions of a program with least effort, from a guess."""
@@ -101,30 +101,30 @@ def minimized(
     conditions = casadi.Sparsity.dense(len(program.limits[0]))
     slopes, curvatures = map(_sparsity, (program.slope_places, program.curvature_places))
 
-    def valued(u: np.ndarray, _: Any) -> tuple[Any, ...]:
+    def slope_values(u: np.ndarray, _: Any) -> tuple[Any, ...]:
         return program.conditions(u), program.slopes(u).data
 
-    def curved(u: np.ndarray, _: Any, weight: np.ndarray, weights: np.ndarray) -> tuple[Any, ...]:
+    def curvature_values(u: np.ndarray, _: Any, weight: np.ndarray, weights: np.ndarray) -> tuple[Any, ...]:
         return (program.curvatures(u, weights, weight[0]).data,)
 
     f = _Call("f", (numbers,), (one,), lambda u: program.cost(u)[:1])
     g = _Call("g", (numbers,), (conditions,), lambda u: (program.conditions(u),))
     calls = {
         "grad_f": _Call("grad_f", (numbers, nothing), (one, numbers), lambda u, _: program.cost(u)),
-        "jac_g": _Call("jac_g", (numbers, nothing), (conditions, slopes), valued),
-        "hess_lag": _Call("hess_lag", (numbers, nothing, one, conditions), (curvatures,), curved),
+        "jac_g": _Call("jac_g", (numbers, nothing), (conditions, slopes), slope_values),
+        "hess_lag": _Call("hess_lag", (numbers, nothing, one, conditions), (curvatures,), curvature_values),
     }
     state = numbers, one, conditions, numbers, conditions, nothing
     calls["iteration_callback"] = _Call("stop", state, (one,), lambda *_: (float(is_over()),))
     u = casadi.MX.sym("u", program.unknowns)
     options = {**_OPTIONS, **calls, "ipopt.max_iter": iterations}
     solver = casadi.nlpsol("steer", "ipopt", {"x": u, "f": f(u), "g": g(u)}, options)
-    found = solver(x0=guess, lbx=bounds[0], ubx=bounds[1], lbg=program.limits[0], ubg=program.limits[1])
+    result = solver(x0=guess, lbx=bounds[0], ubx=bounds[1], lbg=program.limits[0], ubg=program.limits[1])
     stats = solver.stats()
     go_on()
     if stats["return_status"] == "NonIpopt_Exception_Thrown":  # by a call back, or by the keyboard
         raise next((call.failure for call in (f, g, *calls.values()) if call.failure), KeyboardInterrupt())
-    return Solution(np.array(found["x"]).ravel(), stats["return_status"], stats["iter_count"])
+    return Solution(np.array(result["x"]).ravel(), stats["return_status"], stats["iter_count"])
 
 
 def _sparsity(places: Any) -> Any:

@@ -1,17 +1,7 @@
 """Kernels: by the library that is compiled ahead, by numba, or as they are."""
 
 from nonholo.base.compiled._kernel import (
-    ABOUT,
-    AXES,
-    DATA,
-    DTYPES,
-    FLAGS,
     FUNCTION,
-    LETTER,
-    ORDER,
-    ORDERED,
-    SHAPE,
-    SIZE,
     Kernel,
     Library,
     compiled_in,

@@ -203,17 +203,17 @@ def _result_of(shape: list[str], release: Any) -> Callable[[tuple[Any, ...]], An
         return operator.itemgetter(1)
     if shape[0] == "(" and all(each in _FORMATS and each != "n" for each in shape[1:-1]):
         return operator.itemgetter(slice(1, None))
-    return lambda values: _nested(iter(shape), iter(values[1:]), release)[0]
+    return lambda values: _nest(iter(shape), iter(values[1:]), release)[0]
 
 
-def _nested(kinds: Iterator[str], words: Iterator[Any], release: Any) -> list[Any]:
+def _nest(kinds: Iterator[str], words: Iterator[Any], release: Any) -> list[Any]:
     """Return numbers, arrays and tuples up to the bracket that ends a tuple, or to the end."""
     values: list[Any] = []
     for kind in kinds:
         if kind == ")":
             break
         if kind.endswith("("):
-            parts = _nested(kinds, words, release)
+            parts = _nest(kinds, words, release)
             values.append(tuple(parts) if kind == "(" else _class_of(kind[:-1])(*parts))
         elif kind == "n":
             values.append(None)

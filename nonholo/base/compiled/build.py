@@ -34,8 +34,8 @@ from numba.extending import intrinsic
 from numba.np.arrayobj import populate_array
 
 from nonholo.base import compiled
-from nonholo.base.compiled import wasm
-from nonholo.base.compiled.emission import emitted, for_any_machine, machine_for
+from nonholo.base.compiled import _kernel, wasm
+from nonholo.base.compiled.emission import emit_object, for_any_machine, machine_for
 from nonholo.base.compiled.library import name_of_library, name_of_module, this_machine
 
 _KERNELS = Path(__file__).parents[2] / "kernels"
@@ -109,21 +109,21 @@ def flat(kernel: compiled.Kernel, kinds: list[Any]) -> tuple[Any, list[str]]:
     returns: list[str] = []
     options: Any = {name: option for name, option in kernel.options.items() if name != "inline"}
     function: Any = numba.njit(**options)(kernel.py_func) if "inline" in kernel.options else kernel
-    given = types.BaseTuple.from_types(kinds)
+    tuple_kind = types.BaseTuple.from_types(kinds)
 
     @intrinsic
     def fits(_typing: Any, words: Any) -> Any:
         def code(_context: Any, builder: Any, _signature: Any, values: Any) -> Any:
-            return _fits(builder, given, _words(builder, values[0]))
+            return _fits(builder, tuple_kind, _words(builder, values[0]))
 
         return types.boolean(words), code
 
     @intrinsic
     def arguments(_typing: Any, words: Any) -> Any:
         def code(context: Any, builder: Any, _signature: Any, values: Any) -> Any:
-            return _value(context, builder, given, _words(builder, values[0]))
+            return _value(context, builder, tuple_kind, _words(builder, values[0]))
 
-        return given(words), code  # pyright: ignore
+        return tuple_kind(words), code  # pyright: ignore
 
     @intrinsic
     def give(_typing: Any, room: Any, result: Any) -> Any:
@@ -166,16 +166,16 @@ def _fits(builder: Any, kind: Any, word: Callable[[], Any]) -> Any:
     array = word()
     if not isinstance(kind, types.Array):
         return ir.IntType(1)(1)
-    flags = builder.and_(_field(builder, array, compiled.FLAGS, _INT), _INT(compiled.ORDERED))
-    about, numbers = _field(builder, array, compiled.ABOUT, _WORD), compiled.DTYPES[_LETTERS[kind.dtype]]
-    letter, order = (_field(builder, about, at, ir.IntType(8)) for at in (compiled.LETTER, compiled.ORDER))
-    size = _field(builder, about, compiled.SIZE, _WORD)
-    axes = builder.icmp_unsigned("==", _field(builder, array, compiled.AXES, _INT), _INT(kind.ndim))
-    ordered = builder.icmp_unsigned("==", flags, _INT(compiled.ORDERED))
-    named = builder.icmp_unsigned("==", letter, letter.type(ord(numbers.kind)))
-    sized = builder.icmp_unsigned("==", size, _WORD(numbers.itemsize))
+    flags = builder.and_(_field(builder, array, _kernel.FLAGS, _INT), _INT(_kernel.ORDERED))
+    about, numbers = _field(builder, array, _kernel.ABOUT, _WORD), _kernel.DTYPES[_LETTERS[kind.dtype]]
+    letter, order = (_field(builder, about, at, ir.IntType(8)) for at in (_kernel.LETTER, _kernel.ORDER))
+    size = _field(builder, about, _kernel.SIZE, _WORD)
+    axes = builder.icmp_unsigned("==", _field(builder, array, _kernel.AXES, _INT), _INT(kind.ndim))
+    has_order = builder.icmp_unsigned("==", flags, _INT(_kernel.ORDERED))
+    has_letter = builder.icmp_unsigned("==", letter, letter.type(ord(numbers.kind)))
+    has_size = builder.icmp_unsigned("==", size, _WORD(numbers.itemsize))
     native = builder.icmp_unsigned("!=", order, order.type(ord(">")))
-    return functools.reduce(builder.and_, [axes, ordered, named, sized, native])
+    return functools.reduce(builder.and_, [axes, has_order, has_letter, has_size, native])
 
 
 def _value(context: Any, builder: Any, kind: Any, word: Callable[[], Any]) -> Any:
@@ -183,17 +183,7 @@ def _value(context: Any, builder: Any, kind: Any, word: Callable[[], Any]) -> An
     if isinstance(kind, types.BaseTuple):
         return context.make_tuple(builder, kind, [_value(context, builder, each, word) for each in _parts(kind)])
     if isinstance(kind, types.Array):
-        array = context.make_array(kind)(context, builder)
-        record = word()
-        data = builder.inttoptr(_field(builder, record, compiled.DATA, _WORD), array.data.type)
-        lengths = _field(builder, record, compiled.SHAPE, _WORD)
-        shape = [_field(builder, lengths, 8 * axis, _WORD) for axis in range(kind.ndim)]
-        size = context.get_abi_sizeof(context.get_data_type(kind.dtype))
-        strides = [_WORD(size)]
-        for length in shape[:0:-1]:
-            strides.insert(0, builder.mul(strides[0], length))
-        populate_array(array, data, shape, strides[-kind.ndim :] if kind.ndim else [], _WORD(size), None)
-        return array._getvalue()  # pyright: ignore
+        return _array_value(context, builder, kind, word())
     if kind == types.none:
         return context.get_dummy_value()
     if isinstance(kind, types.ExternalFunctionPointer):
@@ -201,6 +191,20 @@ def _value(context: Any, builder: Any, kind: Any, word: Callable[[], Any]) -> An
     if kind == types.float64:
         return builder.bitcast(word(), ir.DoubleType())
     return builder.icmp_unsigned("!=", word(), _WORD(0)) if kind == types.boolean else word()
+
+
+def _array_value(context: Any, builder: Any, kind: Any, record: Any) -> Any:
+    """Return an array from the address of its record."""
+    array = context.make_array(kind)(context, builder)
+    data = builder.inttoptr(_field(builder, record, _kernel.DATA, _WORD), array.data.type)
+    lengths = _field(builder, record, _kernel.SHAPE, _WORD)
+    shape = [_field(builder, lengths, 8 * axis, _WORD) for axis in range(kind.ndim)]
+    size = context.get_abi_sizeof(context.get_data_type(kind.dtype))
+    strides = [_WORD(size)]
+    for length in shape[:0:-1]:
+        strides.insert(0, builder.mul(strides[0], length))
+    populate_array(array, data, shape, strides[-kind.ndim :] if kind.ndim else [], _WORD(size), None)
+    return array._getvalue()
 
 
 def _results(context: Any, builder: Any, kind: Any, value: Any) -> Iterator[Any]:
@@ -251,7 +255,7 @@ def _processors(name: str) -> dict[str, str]:
 def _object(text: str, name: str, processor: str, public: str) -> bytes:
     """Compile LLVM text for a machine; only names that begin as the public one are seen."""
     machine = machine_for(MACHINES[name][0] if name in MACHINES else llvm.get_process_triple(), processor, "pic")
-    return emitted(text, _RUNTIME, machine, str(machine.target_data), lambda name: name.startswith(public))
+    return emit_object(text, _RUNTIME, machine, str(machine.target_data), lambda name: name.startswith(public))
 
 
 @functools.cache
@@ -299,10 +303,10 @@ def build(target: Path, *names: str) -> None:
         for name, folder in folders.items():
             file = folder / "release.o"
             file.write_bytes(_object("", name, _processors(name)[""], "nonholo_release"))
-            linked, part = folder / "library", target / f".{os.getpid()}.part"
+            output, part = folder / "library", target / f".{os.getpid()}.part"
             objects = map(str, sorted(folder.glob("*.o")))
-            subprocess.run([*linker(name), "-shared", "-s", "-o", str(linked), *objects], check=True)  # noqa: S603
-            shutil.copy(linked, part)
+            subprocess.run([*linker(name), "-shared", "-s", "-o", str(output), *objects], check=True)  # noqa: S603
+            shutil.copy(output, part)
             part.replace(target / name_of_library(name))  # in one go: runs from an old one continue
 
 

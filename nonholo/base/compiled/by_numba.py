@@ -30,12 +30,12 @@ _REMEDY = "Set NUMBA_CACHE_DIR to a folder that can be written."
 
 def dispatcher_of(function: Callable[..., Any], options: dict[str, Any]) -> Any:
     """Compile a kernel when it is first called, and keep the code on disk where that is possible."""
-    made: Any = numba.njit(**options, no_cfunc_wrapper=True)(function)  # pyright: ignore  # nothing calls it from C
+    dispatcher: Any = numba.njit(**options, no_cfunc_wrapper=True)(function)  # pyright: ignore  # nothing calls it from C
     try:
-        made._cache = _Cache(function)  # pyright: ignore
+        dispatcher._cache = _Cache(function)  # pyright: ignore
     except RuntimeError:  # numba has tried all places
         say_once(f"Compiled code is not kept on disk: each process compiles for itself. {_REMEDY}")
-    return made
+    return dispatcher
 
 
 @functools.cache

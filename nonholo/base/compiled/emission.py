@@ -23,7 +23,7 @@ def machine_for(triple: str, processor: str, reloc: str) -> llvm.TargetMachine:
     return llvm.Target.from_triple(triple).create_target_machine(cpu=processor, opt=3, reloc=reloc)
 
 
-def compiled(text: str, name: str, *, is_long: bool = False) -> int:
+def compile_text(text: str, name: str, *, is_long: bool = False) -> int:
     """Return the address of a function of LLVM text, compiled for this processor, which stays as long as the process.
 
     Nothing in it is reordered or fused: as with numba, arithmetic is strict. For long code there is less search for
@@ -51,7 +51,7 @@ def _optimize(code: llvm.ModuleRef, machine: llvm.TargetMachine, level: int) -> 
     passes.getModulePassManager().run(code, passes)
 
 
-def emitted(
+def emit_object(
     text: str, runtime: Path, machine: llvm.TargetMachine, layout: str, is_public: Callable[[str], bool]
 ) -> bytes:
     """Return the object of LLVM text and the runtime that it asks; only public names are seen from outside."""

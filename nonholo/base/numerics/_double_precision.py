@@ -8,12 +8,12 @@ from collections.abc import Iterator
 
 from nonholo.base.compiled.library import cache_folder
 
-_orphaned = False  # whether JAX was in use when this process was forked
+_is_orphan = False  # whether JAX was in use when this process was forked
 
 
 def _note() -> None:
-    global _orphaned
-    _orphaned = bool(getattr(sys.modules.get("jax._src.xla_bridge"), "_backends", None))
+    global _is_orphan
+    _is_orphan = bool(getattr(sys.modules.get("jax._src.xla_bridge"), "_backends", None))
 
 
 if hasattr(os, "register_at_fork"):
@@ -26,8 +26,8 @@ def keep_programs() -> None:
     import jax
 
     folder = cache_folder() / "jax"
-    named = getattr(jax.config, "jax_compilation_cache_dir", None)
-    if named is not None or not folder.is_absolute():  # there is no home
+    own_folder = getattr(jax.config, "jax_compilation_cache_dir", None)
+    if own_folder is not None or not folder.is_absolute():  # there is no home
         return
     with contextlib.suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
@@ -50,7 +50,7 @@ def double_precision() -> Iterator[None]:
     """
     import jax
 
-    if _orphaned:
+    if _is_orphan:
         raise RuntimeError(
             "`nonholo` must compute with JAX in a process that was not forked from one that had used JAX: it would "
             f"wait forever for threads of its parent. Got process {os.getpid()}, which was. "

@@ -1,7 +1,10 @@
-"""Products of a matrix with many vectors, and with twice the digits: what rounding took off beside the product."""
+"""Many vectors: products with a matrix, also with twice the digits (what rounding takes beside them); unit length."""
+
+import math
 
 import numpy as np
 
+from nonholo.base.compiled import njit
 from nonholo.base.types import Array, Float, Inexact
 
 _SPLIT = 2.0**27 + 1  # halves the digits of a 64-bit number
@@ -45,14 +48,14 @@ def factors_of(matrix: Float[np.ndarray, "... k k"]) -> Factors | None:
     return T, d
 
 
-def solved(factors: Factors, vectors: Float[np.ndarray, "... k"]) -> Float[np.ndarray, "... k"]:
+def solve_by_factors(factors: Factors, vectors: Float[np.ndarray, "... k"]) -> Float[np.ndarray, "... k"]:
     r"""Return the solutions x of A x = v, of one matrix or of one for each: the same bits in any company.
 
     $x = T^T D^{-1} T v$ loses less than the inverse where A is uneven, and nothing where it is diagonal.
 
     Example:
-        >>> from nonholo.base.numerics import factors_of, solved
-        >>> solved(factors_of(np.array([[4.0, 2.0], [2.0, 2.0]])), np.array([[6.0, 4.0], [2.0, 0.0]]))
+        >>> from nonholo.base.numerics import factors_of, solve_by_factors
+        >>> solve_by_factors(factors_of(np.array([[4.0, 2.0], [2.0, 2.0]])), np.array([[6.0, 4.0], [2.0, 0.0]]))
         array([[ 1.,  1.],
                [ 1., -1.]])
     """
@@ -83,9 +86,9 @@ def product_and_remainder(
     """
     high = low = np.zeros((*A.shape[:-1], B.shape[1]))
     for j in range(len(B)):
-        term, lost = _product(A[..., j, None], B[j])
-        high, rounded = _sum(high, term)
-        low = low + (lost + rounded)
+        term, error = _product(A[..., j, None], B[j])
+        high, sum_error = _sum(high, term)
+        low = low + (error + sum_error)
     return _sum(high, low)
 
 
@@ -106,3 +109,30 @@ def _halves(a: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     large = _SPLIT * a
     first = large - (large - a)
     return first, a - first
+
+
+def of_length_one(x: Float[Array, "... n"], count: int) -> Float[Array, "... n"]:
+    """Return arrays whose first `count` numbers are divided by their length, by JAX where it traces them.
+
+    Example:
+        >>> of_length_one(np.array([3.0, 4.0, 7.0]), 2)
+        array([0.6, 0.8, 7. ])
+    """
+    if isinstance(x, np.ndarray) and x.dtype.char == "d":
+        rows = np.ascontiguousarray(x)
+        quotients = np.empty(rows.shape)
+        _divide_by_lengths(rows.reshape(-1, x.shape[-1]), count, quotients.reshape(-1, x.shape[-1]))
+        return quotients
+    xp, head = x.__array_namespace__(), x[..., :count]
+    return xp.concatenate([head / xp.sqrt((head * head).sum(axis=-1, keepdims=True)), x[..., count:]], axis=-1)
+
+
+@njit(nogil=True, error_model="numpy")
+def _divide_by_lengths(rows: np.ndarray, count: int, quotients: np.ndarray) -> None:
+    for i in range(len(rows)):
+        total = rows[i, 0] * rows[i, 0]
+        for m in range(1, count):
+            total += rows[i, m] * rows[i, m]
+        length = math.sqrt(total)
+        for m in range(rows.shape[1]):
+            quotients[i, m] = rows[i, m] / length if m < count else rows[i, m]

@@ -19,7 +19,7 @@ _SMALLEST_STEP = 1e-13  # of an interval; below it a solve is given up
 State = tuple[Array, ...]
 
 
-def padded(rows: np.ndarray) -> np.ndarray:
+def pad(rows: np.ndarray) -> np.ndarray:
     """Repeat the last row until there are 65, 129, 257... rows: few sizes are compiled, and one for most flows."""
     missing = (1 << max(len(rows) - 2, _FEWEST - 1).bit_length()) + 1 - len(rows)
     return np.concatenate([rows, np.broadcast_to(rows[-1:], (missing, *rows.shape[1:]))])
@@ -27,23 +27,23 @@ def padded(rows: np.ndarray) -> np.ndarray:
 
 def sweep(
     rate: Callable[[Array, State], State],
-    settled: Callable[[State], State],
+    settle: Callable[[State], State],
     state: State,
     times: Array,
     tolerances: tuple[Array, Array],
 ) -> tuple[State, Array]:
     """Carry a state from each time to the next; return all states but the first, and which solves succeeded.
 
-    `rate` takes time and state; `settled` takes the state at the end of an interval to the one that continues.
+    `rate` takes time and state; `settle` takes the state at the end of an interval to the one that continues.
     """
 
-    def scaled(fraction: Array, current: State, span: tuple[Array, Array]) -> State:
+    def scaled_rate(fraction: Array, current: State, span: tuple[Array, Array]) -> State:
         time, length = span
         return jax.tree.map(lambda x: length * x, rate(time + length * fraction, current))
 
     def advance(current: State, span: tuple[Array, Array]) -> tuple[State, tuple[State, Array]]:
         solution = diffrax.diffeqsolve(
-            diffrax.ODETerm(scaled),
+            diffrax.ODETerm(scaled_rate),
             diffrax.Dopri8(),
             t0=0.0,
             t1=1.0,
@@ -55,14 +55,14 @@ def sweep(
             max_steps=None,
             throw=False,
         )
-        following = settled(jax.tree.map(lambda rows: rows[-1], solution.ys))
+        following = settle(jax.tree.map(lambda rows: rows[-1], solution.ys))
         return following, (following, solution.result == diffrax.RESULTS.successful)
 
     return jax.lax.scan(advance, state, (times[:-1], times[1:] - times[:-1]))[1]
 
 
-def reached(first: State, rest: Any, good: Any, count: int) -> list[np.ndarray]:
+def good_rows(first: State, rest: Any, good: Any, count: int) -> list[np.ndarray]:
     """Return the rows of the first `count` states, up to the first solve that failed."""
-    failed = ~np.asarray(good)
-    count = 1 + int(np.argmax(failed)) if failed.any() else count
+    is_failure = ~np.asarray(good)
+    count = 1 + int(np.argmax(is_failure)) if is_failure.any() else count
     return [np.concatenate([x[None], np.asarray(more)])[:count] for x, more in zip(first, rest, strict=True)]

@@ -103,20 +103,17 @@ def continue_and_report(store: Path, module: Path | None, resume: Callable[..., 
         leave(f"Stopped early; the good steps are kept. {reason}", FAILED)
 
 
-def resume_sweep(
-    store: Path, module: Path | None, scheduler: str | None, workers: int | None, *, trust: bool, json: bool
-) -> None:
+def resume_sweep(store: Path, module: Path | None, how: dict[str, Any], *, json: bool) -> None:
     """Do what a sweep lacks, report what the store holds now; name what is trusted first."""
     with store_errors(USAGE):
         before, names = ensembles.standing_of(store).done, ensembles.functions_of(store)
     with scenario_errors(), reporting_warnings():
         task = stored_scenario(attributes_of(store), module, SweepScenario).task() if module else None
-    if trust and names:
+    if how["trust"] and names:
         warn(f"trusted, and run with your rights: {', '.join(names)}")
     begin = time.perf_counter()
-    how: Any = {"scheduler": scheduler, "workers": workers, "trust": trust, "task": task}
     with store_errors(USAGE), reporting_stops(store):
-        result = ensembles.resume(store, **how, progress=sys.stderr.isatty())
+        result = ensembles.resume(store, **how, task=task, progress=sys.stderr.isatty())
     figures = sweep_figures(store, result, time.perf_counter() - begin, before)
     show_sweep(store, figures, {"title": str(store)}, {}, json=json)
     leave_if_all_raised(figures)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from nonholo.cli.commands.simulate import Module
+from nonholo.cli.commands.run import Module
 
 if TYPE_CHECKING:
     from nonholo.examples import Example
@@ -82,8 +82,8 @@ def examples(
     import tomllib
 
     from nonholo.cli.scenario.bodies import examples as ready_ones
+    from nonholo.cli.scenario.bodies import summary
     from nonholo.cli.scenario.files import built_in
-    from nonholo.cli.scenario.makers import summary
     from nonholo.cli.scenario.sections import suggestion
     from nonholo.cli.screen.errors import USAGE, leave, store_errors
 
@@ -124,7 +124,7 @@ def _show_tables(tables: dict[str, dict[str, str]]) -> None:
 def _show(example: "Example") -> None:
     """Print the start, the facts and the conserved quantities of a system, and how to run it."""
     from nonholo.cli.scenario.bodies import examples as ready_ones
-    from nonholo.cli.scenario.makers import summary
+    from nonholo.cli.scenario.bodies import summary
 
     parts: dict[str, list[Any]] = {
         "Start": [

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from nonholo.cli.commands.simulate import Quiet
+from nonholo.cli.commands.run import Quiet
 
 
 def dataset(
@@ -70,8 +70,8 @@ def _show_all() -> None:
 
     from nonholo.ensembles import DEFINITIONS
 
-    named = Column("name", no_wrap=True)
-    table = Table(named, "what moves", "energies", "version", title="Data sets", title_justify="left")
+    names = Column("name", no_wrap=True)
+    table = Table(names, "what moves", "energies", "version", title="Data sets", title_justify="left")
     for name, each in DEFINITIONS.items():
         table.add_row(name, each.title, "{:g} to {:g}".format(*each.energy), str(each.version))
     Console().print(table)

@@ -17,7 +17,7 @@ def paper(
         list[str] | None,
         typer.Option("--only", metavar="LABEL", help="A label, a row of the errata or a figure; repeatable."),
     ] = None,
-    listed: Annotated[
+    is_list: Annotated[
         bool, typer.Option("--list", help="List labels and verdicts; measure and write nothing.")
     ] = False,
 ) -> None:
@@ -38,30 +38,30 @@ def paper(
     with store_errors(USAGE), needs("paper", "nonholo paper"):
         from nonholo_paper import check_folder, entries, evaluate_all, select, write_folder
 
-        chosen = select(only) if only else entries()
-        if listed:
-            _list(chosen)
+        selection = select(only) if only else entries()
+        if is_list:
+            _list(selection)
             return
         check_folder(output)
     with progress_bar("findings", sys.stderr.isatty()) as report:
-        results = evaluate_all(chosen, report)
+        results = evaluate_all(selection, report)
     with store_errors(FAILED):
         remark = f"Only a part, chosen with --only: {', '.join(only)}." if only else ""
         write_folder(output, results, remark)
     _show(results, each=bool(only))
     typer.echo(output / "index.html")
-    failed = [result.entry.finding.label for result in results if not result.holds]
-    if failed:
-        leave(f"{len(failed)} of {len(results)} findings fail: {', '.join(failed)}.", FAILED)
+    failures = [result.entry.finding.label for result in results if not result.holds]
+    if failures:
+        leave(f"{len(failures)} of {len(results)} findings fail: {', '.join(failures)}.", FAILED)
 
 
-def _list(chosen: "tuple[Entry, ...]") -> None:
+def _list(selection: "tuple[Entry, ...]") -> None:
     """Print a line for each finding: by what it is chosen, what it is, the verdict, where the paper has it."""
     from rich.console import Console
     from rich.table import Table
 
     table = Table("--only", "kind", "verdict", "where")
-    for each in chosen:
+    for each in selection:
         table.add_row(", ".join(each.names), each.finding.kind, each.finding.verdict, each.finding.source)
     Console().print(table)
 

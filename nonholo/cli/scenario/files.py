@@ -11,9 +11,8 @@ from typing import Any, Generic, NamedTuple, TypeVar
 from pydantic import ValidationError
 
 from nonholo.base.limits import read_text
-from nonholo.cli.scenario.bodies import body_table, import_own, is_example, kinds
+from nonholo.cli.scenario.bodies import body_table, import_own, is_example, kinds, summary
 from nonholo.cli.scenario.forces import read_table
-from nonholo.cli.scenario.makers import summary
 from nonholo.cli.scenario.motion import Scenario, complete_ready, moving
 from nonholo.cli.scenario.problems import Problem, ScenarioError, problem, problems_of
 from nonholo.cli.scenario.sections import Section, suggestion
@@ -78,7 +77,7 @@ def load_scenario(name: str, settings: list[Setting], module: Path | None = None
     for setting in settings:
         assign(document, setting)
     complete(document, name, source, settings)
-    return validated(document, Scenario, Path(name).stem, source, settings)._replace(module=module)
+    return validate(document, Scenario, Path(name).stem, source, settings)._replace(module=module)
 
 
 def take_module(module: Path | None) -> None:
@@ -102,8 +101,8 @@ def by_table(document: dict[str, Any]) -> None:
 
 def table_in(document: dict[str, Any], name: str) -> dict[str, Any]:
     """Return a table of a document; an empty one where there is none, or a value, which is refused later."""
-    held = document.get(name)
-    return held if isinstance(held, dict) else {}
+    inner = document.get(name)
+    return inner if isinstance(inner, dict) else {}
 
 
 def stored_scenario(attributes: dict[str, Any], module: Path | None, model: type[Model]) -> Model:
@@ -113,7 +112,7 @@ def stored_scenario(attributes: dict[str, Any], module: Path | None, model: type
         raise ScenarioError([Problem(f"--module {module}", "", "is for stores that were made from a scenario")])
     document = parse_toml(attributes["scenario"])
     by_table(document)
-    return validated(document, model, "", "the scenario of the store", []).scenario
+    return validate(document, model, "", "the scenario of the store", []).scenario
 
 
 def complete(document: dict[str, Any], name: str, source: str, settings: list[Setting], *, start: bool = True) -> None:
@@ -136,7 +135,9 @@ def complete(document: dict[str, Any], name: str, source: str, settings: list[Se
 def _directions(document: dict[str, Any]) -> tuple[str, ...] | None:
     """Return the names of the directions of the body of a document; None if it is no body, which is reported later."""
     try:
-        return components_of(moving(body_table(document["body"]["kind"]).model_validate(document["body"]).made).group)
+        return components_of(
+            moving(body_table(document["body"]["kind"]).model_validate(document["body"]).product).group
+        )
     except (AttributeError, KeyError, TypeError, ValueError):
         return None
 
@@ -150,7 +151,7 @@ def read_document(name: str, own: dict[str, str]) -> tuple[str, dict[str, Any]]:
         raise ScenarioError([Problem(source, "", f"is not valid TOML: {failure}")]) from None
 
 
-def validated(
+def validate(
     document: dict[str, Any], model: type[Model], name: str, source: str, settings: list[Setting]
 ) -> Loaded[Model]:
     """Return a scenario of that model, or raise with all its problems."""
@@ -161,10 +162,10 @@ def validated(
         raise ScenarioError(problems_of(failure, source, options)) from None
 
 
-def given_settings(chosen: dict[str, tuple[str, Any]], texts: list[str]) -> list[Setting]:
+def given_settings(options: dict[str, tuple[str, Any]], texts: list[str]) -> list[Setting]:
     """Return the settings of a command line: its options by key path, those that are given, then those of `--set`."""
-    given = [Setting(f"{option} {value}", key, value) for key, (option, value) in chosen.items() if value is not None]
-    return given + [parse_setting(text) for text in texts]
+    own = [Setting(f"{option} {value}", key, value) for key, (option, value) in options.items() if value is not None]
+    return own + [parse_setting(text) for text in texts]
 
 
 def parse_setting(text: str) -> Setting:
@@ -180,13 +181,13 @@ def parse_setting(text: str) -> Setting:
     if not equals or not all(key.split(".")):
         raise ScenarioError([Problem(option, "", "must be KEY=VALUE, for example --set body.a=0.3")])
     try:
-        found = parse_toml(f"value = {value}")
+        document = parse_toml(f"value = {value}")
     except ValueError:
-        found = {}
-    if set(found) != {"value"}:
+        document = {}
+    if set(document) != {"value"}:
         remedy = f"a number, true, [1, 2] or a quoted string: --set '{key}=\"{value}\"'"
         raise ScenarioError([Problem(option, "", f"must have a TOML value: {remedy}")])
-    return Setting(option, key, found["value"])
+    return Setting(option, key, document["value"])
 
 
 def built_in(kind: str = "") -> dict[str, str]:

@@ -8,7 +8,7 @@ from pydantic import Field, create_model
 import nonholo
 from nonholo.base.checks import shown
 from nonholo.base.limits import read_text
-from nonholo.cli.scenario.makers import Maker, arguments, summary, table_of
+from nonholo.cli.scenario.bodies import Maker, arguments, summary, table_of
 from nonholo.cli.scenario.sections import Numbers, Section, checked_by
 from nonholo.groups import components_of
 
@@ -65,7 +65,7 @@ def _requirement(failure: ValueError) -> str:
 def _part(word: str, table: Any) -> Any:
     """Return the force of a table; one with a single argument is written without its name."""
     if isinstance(table, Section):
-        return cast(Any, table).made
+        return cast(Any, table).product
     return _CLASSES[word](table) if word in _CLASSES else table
 
 
@@ -130,12 +130,12 @@ def rows_of(text: str, names: tuple[str, ...] | None) -> list[list[float]]:
 
     lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
     number, first = lines[0] if lines else (0, "")
-    named = bool(lines) and not any(map(_is_number, first.split(",")))
-    if named and names is not None and tuple(word.strip() for word in first.split(",")) != names:
+    has_names = bool(lines) and not any(map(_is_number, first.split(",")))
+    if has_names and names is not None and tuple(word.strip() for word in first.split(",")) != names:
         raise ValueError(f"line {number} is {shown(first)}, neither numbers nor the names {','.join(names)}")
-    if len(lines) <= named:
+    if len(lines) <= has_names:
         raise ValueError("it has no rows")
-    return np.loadtxt([line for _, line in lines[named:]], delimiter=",", ndmin=2, comments=None).tolist()
+    return np.loadtxt([line for _, line in lines[has_names:]], delimiter=",", ndmin=2, comments=None).tolist()
 
 
 def _is_number(text: str) -> bool:

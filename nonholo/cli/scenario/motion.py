@@ -1,5 +1,6 @@
 """The contents of a scenario: a body, its start, a run, forces, its output. The file itself is read in `files`."""
 
+import contextlib
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
@@ -77,12 +78,12 @@ class AbstractScenario(Section):
     @classmethod
     def _can_act(cls, forces: Forces, rest: ValidationInfo) -> Forces:
         if {"body", "run"} <= rest.data.keys():
-            forces.check(moving(rest.data["body"].made), rest.data["run"].steps)
+            forces.check(moving(rest.data["body"].product), rest.data["run"].steps)
         return forces
 
     def system(self) -> "System":
         """Return the body under its forces."""
-        return self.forces.on(moving(self.body.made))
+        return self.forces.on(moving(self.body.product))
 
     def discretization(self) -> "Discretization":
         """Return the discretized body."""
@@ -107,14 +108,14 @@ class Scenario(AbstractScenario):
         return {**self.start.model_dump(exclude_none=True), "save_every": self.run.save_every, **branch}
 
 
-def is_ready(made: Any) -> bool:
+def is_ready(product: Any) -> bool:
     """Tell whether what a body made comes with a start, as the examples do."""
-    return hasattr(made, "configuration") and hasattr(made, "body_velocity")
+    return hasattr(product, "configuration") and hasattr(product, "body_velocity")
 
 
-def moving(made: Any) -> Any:
+def moving(product: Any) -> Any:
     """Return the system of what a body made."""
-    return made.system if is_ready(made) else made
+    return product.system if is_ready(product) else product
 
 
 def complete_ready(document: dict[str, Any], *, start: bool = True) -> None:
@@ -123,19 +124,19 @@ def complete_ready(document: dict[str, Any], *, start: bool = True) -> None:
     Raises:
         ValidationError: The body is none.
     """
-    body = document.get("body")
-    if not (isinstance(body, dict) and isinstance(body.get("kind"), str) and is_example(body["kind"])):
-        return
-    try:
-        made = body_table(body["kind"]).model_validate(body).made
-    except KeyError:
-        return  # reported with the rest
-    if not is_ready(made):
-        return
+    match document:
+        case {"body": {"kind": str(kind)} as body} if is_example(kind):
+            with contextlib.suppress(KeyError):  # of an unknown kind, which is reported with the rest
+                product = body_table(kind).model_validate(body).product
+                if is_ready(product):
+                    _complete_by(product, document, start=start)
+
+
+def _complete_by(example: Any, document: dict[str, Any], *, start: bool) -> None:
     run, own = document.setdefault("run", {}), document.setdefault("start", {}) if start else None
     if isinstance(run, dict):
-        known = {name: getattr(made, name, None) for name in ("time_step", "steps")}
-        run |= {name: value for name, value in known.items() if value is not None and name not in run}
+        own_run = {name: getattr(example, name, None) for name in ("time_step", "steps")}
+        run |= {name: value for name, value in own_run.items() if value is not None and name not in run}
     if isinstance(own, dict):
         names = ("configuration",) if own.keys() & {*SPEEDS} else ("configuration", "body_velocity")
-        own |= {name: np.asarray(getattr(made, name)).tolist() for name in names if name not in own}
+        own |= {name: np.asarray(getattr(example, name)).tolist() for name in names if name not in own}

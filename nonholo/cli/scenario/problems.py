@@ -62,5 +62,5 @@ def _problem(entry: dict[str, Any], table: Key) -> tuple[str, str]:
 
 
 def _split_core(section: str, message: str) -> tuple[str, str]:
-    named = _CORE.fullmatch(message)
-    return (f"{section}.{named[1]}", named[2]) if named else (section, message)
+    match = _CORE.fullmatch(message)
+    return (f"{section}.{match[1]}", match[2]) if match else (section, message)

@@ -69,11 +69,11 @@ class Section(BaseModel):
         try:
             return handler(table)
         except ValidationError as failure:
-            flaws = [_detailed(entry, cls.model_fields) for entry in failure.errors(include_url=False)]
+            flaws = [_details_of(entry, cls.model_fields) for entry in failure.errors(include_url=False)]
             raise ValidationError.from_exception_data(cls.__name__, flaws) from None
 
 
-def _detailed(entry: Any, keys: Iterable[str]) -> InitErrorDetails:
+def _details_of(entry: Any, keys: Iterable[str]) -> InitErrorDetails:
     flaw: Any = {"type": entry["type"], "loc": entry["loc"], "input": entry["input"], "ctx": entry.get("ctx", {})}
     if entry["type"] == "extra_forbidden" and len(entry["loc"]) == 1:
         text = f"is not a known key. {suggestion(str(entry['loc'][0]), keys)}"
@@ -85,9 +85,9 @@ def _detailed(entry: Any, keys: Iterable[str]) -> InitErrorDetails:
 
 def exactly_one(section: Section, names: tuple[str, ...]) -> None:
     """Refuse a table that holds none or several of the keys."""
-    held = [name for name in names if getattr(section, name) is not None]
-    if len(held) != 1:
-        raise ValueError(f"must hold exactly one of {', '.join(names)}. Got {' and '.join(held) or 'none'}.")
+    own = [name for name in names if getattr(section, name) is not None]
+    if len(own) != 1:
+        raise ValueError(f"must hold exactly one of {', '.join(names)}. Got {' and '.join(own) or 'none'}.")
 
 
 def by_kind(table_of: Callable[[str], type[Section]], kinds: Callable[[], Iterable[str]]) -> AfterValidator:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.cli.scenario.bodies import is_example
+from nonholo.cli.scenario.bodies import arguments, is_example
 from nonholo.cli.scenario.files import (
     Loaded,
     Setting,
@@ -19,12 +19,11 @@ from nonholo.cli.scenario.files import (
     table_in,
     take_module,
     toml_text,
-    validated,
+    validate,
 )
-from nonholo.cli.scenario.makers import arguments
 from nonholo.cli.scenario.problems import ScenarioError, problem
 from nonholo.cli.scenario.sections import suggestion
-from nonholo.cli.scenario.sweeps import TABLES, SweepScenario, along, drawn, library_name, needs_size
+from nonholo.cli.scenario.sweeps import TABLES, SweepScenario, along, distribution_of, library_name, needs_size
 from nonholo.ensembles import component_of, force_numbers
 
 _STARTS = ("body_velocity", "restricted_velocity", "momentum")
@@ -43,11 +42,11 @@ def load_sweep_scenario(name: str, settings: list[Setting], module: Path | None 
     if not (isinstance(body, str) and is_example(body)):
         _complete(document)
     complete(document, name, source, settings, start=False)
-    request = validated(document, SweepScenario, Path(name).stem, source, settings)
+    request = validate(document, SweepScenario, Path(name).stem, source, settings)
     if flaws := [problem(*flaw, source, request.options) for flaw in _refusals(request.scenario)]:
         raise ScenarioError(flaws)
     try:
-        design = request.scenario.design.scaled()
+        design = request.scenario.design.with_members()
     except ValueError as failure:
         raise ScenarioError([problem("design.members", str(failure), source, request.options)]) from None
     return request._replace(scenario=request.scenario.model_copy(update={"design": design}))
@@ -101,7 +100,7 @@ def _complete_start(own: dict[str, Any], values: dict[str, Any]) -> None:
 def _typical(value: Any) -> Any:
     if isinstance(value, list) or "count" in value:
         return along(value)[0].tolist()
-    distribution = drawn(value)
+    distribution = distribution_of(value)
     return distribution.draw(np.random.default_rng(0).random((1, distribution.width)))[0].tolist()
 
 
@@ -125,16 +124,26 @@ def _refused_values(scenario: SweepScenario) -> list[tuple[str, str]]:
     entries = [(table, name) for table in TABLES for name in getattr(values, table)]
     if not entries:
         return [("design.values", 'must name what is varied, for example "body.a" = [0.1, 0.2]')]
-    names, flaws = _varied_names(scenario), []
-    for table, name in entries:
-        own = library_name(f"{table}.{name}")
-        part = component_of(own)
-        whole = part[0] if part and own not in names[table] else own
-        if whole not in names[table] or (whole != own and table == "body" and not scenario.is_family):
-            flaws.append((f"design.values.{table}.{name}", f"cannot be varied. {suggestion(own, names[table])}"))
-        elif scenario.start and whole != own and table == "start" and getattr(scenario.start, whole) is None:
-            flaws.append((f"start.{whole}", f"is missing: {name} is varied, the other components are given here"))
-    return flaws
+    names = _varied_names(scenario)
+    return [flaw for table, name in entries if (flaw := _flaw(scenario, table, name, names[table]))]
+
+
+def _flaw(scenario: SweepScenario, table: str, name: str, names: tuple[str, ...]) -> tuple[str, str] | None:
+    """Return what is wrong with a value that is varied, and where; None of one that can be."""
+    own = library_name(f"{table}.{name}")
+    whole = _whole(own, names)
+    is_part = whole != own
+    if whole not in names or (is_part and table == "body" and not scenario.is_family):
+        return f"design.values.{table}.{name}", f"cannot be varied. {suggestion(own, names)}"
+    if is_part and table == "start" and scenario.start and getattr(scenario.start, whole) is None:
+        return f"start.{whole}", f"is missing: {name} is varied, the other components are given here"
+    return None
+
+
+def _whole(name: str, names: tuple[str, ...]) -> str:
+    """Return what a name is a component of, where it is none of its own."""
+    part = component_of(name)
+    return part[0] if part and name not in names else name
 
 
 def _varied_names(scenario: SweepScenario) -> dict[str, tuple[str, ...]]:

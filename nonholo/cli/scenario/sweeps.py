@@ -14,7 +14,7 @@ from pydantic import Field, model_validator
 import nonholo
 from nonholo.base.checks import is_integer, shown
 from nonholo.base.limits import bounded_count
-from nonholo.cli.scenario.makers import arguments
+from nonholo.cli.scenario.bodies import arguments
 from nonholo.cli.scenario.motion import AbstractScenario, Start, is_ready
 from nonholo.cli.scenario.sections import Count, Section, by_kind, checked_by, is_finite
 from nonholo.ensembles import REDUCTIONS
@@ -88,19 +88,16 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and is_finite(value)
 
 
-def drawn(table: Any) -> "AbstractDistribution":
+def distribution_of(table: Any) -> "AbstractDistribution":
     """Return the distribution that a table describes.
 
     Example:
-        >>> drawn({"uniform": [0.1, 1.0]})
+        >>> distribution_of({"uniform": [0.1, 1.0]})
         Uniform(low=0.1, high=1.0)
-        >>> drawn({"direction": 0.3, "size": 2})
+        >>> distribution_of({"direction": 0.3, "size": 2})
         Direction(size=2, length=0.3)
     """
-    words = [word for word in table if word in _WORDS] if isinstance(table, dict) else []
-    if len(words) != 1:
-        raise ValueError(f"must hold one of {', '.join(_WORDS)}, as in {{uniform = [0.1, 1.0]}}. Got {table!r}")
-    word, make = words[0], _WORDS[words[0]]
+    word = _word_in(table)
     own, sizes = _arguments(word)
     _check_keys(table, [word, "size"] if sizes else [word], [word], f"{{{word} = ...}}")
     values = [table[word]] if len(own) == 1 else table[word]
@@ -110,9 +107,16 @@ def drawn(table: Any) -> "AbstractDistribution":
         raise ValueError(f"needs size = ..., the length of the {_SIZES[sizes[0]]}, or a value in its own table")
     size = {name: table["size"] for name in sizes if "size" in table}
     try:
-        return make(**dict(zip(own, values, strict=True)), **size)
+        return _WORDS[word](**dict(zip(own, values, strict=True)), **size)
     except ValueError as failure:
         raise ValueError(f"{word}: {str(failure).partition('` ')[2] or failure}") from None
+
+
+def _word_in(table: Any) -> str:
+    words = [word for word in table if word in _WORDS] if isinstance(table, dict) else []
+    if len(words) != 1:
+        raise ValueError(f"must hold one of {', '.join(_WORDS)}, as in {{uniform = [0.1, 1.0]}}. Got {table!r}")
+    return words[0]
 
 
 def _arguments(word: str) -> tuple[list[str], list[str]]:
@@ -129,8 +133,8 @@ def needs_size(table: Any) -> bool:
     return any(argument.default is argument.empty for argument in each)
 
 
-def _check_keys(table: dict[str, Any], keys: list[str], needed: list[str], example: str) -> None:
-    unknown, missing = [key for key in table if key not in keys], [key for key in needed if key not in table]
+def _check_keys(table: dict[str, Any], keys: list[str], necessary: list[str], example: str) -> None:
+    unknown, missing = [key for key in table if key not in keys], [key for key in necessary if key not in table]
     if unknown or missing:
         fault = f"without {', '.join(missing)}" if missing else f"with {', '.join(unknown)}"
         raise ValueError(f"must have the keys of {example}. Got a table {fault}")
@@ -162,7 +166,7 @@ class GridDesign(Section):
     values: Values[Annotated[Any, checked_by(along)]]
     """What is varied, by key path, and its values: a list, or a range with a count."""
 
-    def scaled(self) -> Self:
+    def with_members(self) -> Self:
         """Return the design with the counts of its ranges multiplied by one factor, for the members asked for."""
         if self.members is None:
             return self
@@ -189,16 +193,16 @@ class RandomMembers(Section):
     """How many."""
     seed: Seed = 0
     """Of random numbers."""
-    values: Values[Annotated[Any, checked_by(drawn)]]
+    values: Values[Annotated[Any, checked_by(distribution_of)]]
     """What is varied, by key path, and its distribution."""
 
-    def scaled(self) -> Self:
+    def with_members(self) -> Self:
         """Return the design itself: it has the members asked for."""
         return self
 
     def design(self) -> "RandomDesign":
         """Return the design under the names of the library."""
-        drawings = {name: drawn(value) for name, value in self.values.by_name()}
+        drawings = {name: distribution_of(value) for name, value in self.values.by_name()}
         return nonholo.RandomDesign(self.members, drawings, seed=self.seed)
 
 
@@ -249,7 +253,7 @@ class SweepScenario(AbstractScenario):
     @property
     def is_family(self) -> bool:
         """Whether members are made by a function, with their start."""
-        return is_ready(self.body.made)
+        return is_ready(self.body.product)
 
     def task(self) -> Any:
         """Return what is done with every member."""

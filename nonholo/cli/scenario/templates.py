@@ -33,34 +33,34 @@ def template(kind: str) -> str:
     about = inspect.getdoc(table.make) or ""
     heading = _comment(about.split("\n\n")[0])
     is_whole = not any(field.is_required() for name, field in table.model_fields.items() if name != "kind")
-    made = None
+    example = None
     if is_whole:
         with contextlib.suppress(ValueError):  # running the template says why
-            made = table.model_validate({"kind": kind}).made
-    own = ("configuration", "body_velocity") if is_ready(made) else ()
-    starts = {name: np.asarray(getattr(made, name)).tolist() for name in own}
-    run = {name: getattr(made, name) for name in ("time_step", "steps") if hasattr(made, name)}
+            example = table.model_validate({"kind": kind}).product
+    own = ("configuration", "body_velocity") if is_ready(example) else ()
+    starts = {name: np.asarray(getattr(example, name)).tolist() for name in own}
+    run = {name: getattr(example, name) for name in ("time_step", "steps") if hasattr(example, name)}
     parts = [
         heading,
         f"title = {json.dumps(kind)}",
         _section("body", table, {"kind": kind}),
-        _section("start", Start, starts, hidden=bool(starts)),
+        _section("start", Start, starts, as_comments=bool(starts)),
         _section("run", Run, run),
         _section("output", Output, {}),
     ]
     return "\n\n".join(parts) + "\n"
 
 
-def _section(name: str, table: type[Section], values: dict[str, Any], *, hidden: bool = False) -> str:
+def _section(name: str, table: type[Section], values: dict[str, Any], *, as_comments: bool = False) -> str:
     """Return a table: keys with a value, its own or by default, then as comments those without; or all as comments."""
-    lines = [f"# [{name}]  # the start of the example, unless this one is given" if hidden else f"[{name}]"]
+    lines = [f"# [{name}]  # the start of the example, unless this one is given" if as_comments else f"[{name}]"]
     for key, field in table.model_fields.items():
         value = values.get(key, None if field.is_required() else field.default)
         meaning = field.description or ""
         if value is None:
             lines.append(_entry(f"# {key} = ...", f"needed: {meaning}" if field.is_required() else meaning))
         else:
-            lines.append(_entry(f"{'# ' if hidden else ''}{key} = {as_toml(value)}", meaning))
+            lines.append(_entry(f"{'# ' if as_comments else ''}{key} = {as_toml(value)}", meaning))
     return "\n".join(lines)
 
 

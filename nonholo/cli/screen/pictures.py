@@ -46,11 +46,11 @@ def kinds() -> dict[str, Callable[..., Any]]:
     from nonholo import plot
 
     functions = {name: getattr(plot, name) for name in dir(plot) if name.islower() and name not in _OTHER}
-    of_orbits = [name for name, make in functions.items() if _needed(make) <= {*_GIVEN, *_ASKED}]
+    of_orbits = [name for name, make in functions.items() if _necessary(make) <= {*_GIVEN, *_ASKED}]
     return {name.replace("_", "-"): functions[name] for name in sorted(of_orbits, key=lambda name: name != OVERVIEW)}
 
 
-def _needed(make: Callable[..., Any]) -> set[str]:
+def _necessary(make: Callable[..., Any]) -> set[str]:
     parameters = inspect.signature(make).parameters.values()
     return {each.name for each in parameters if each.default is each.empty and each.kind is not each.VAR_KEYWORD}
 
@@ -58,8 +58,8 @@ def _needed(make: Callable[..., Any]) -> set[str]:
 def figure_of(kind: str, orbit: "Orbit", look: dict[str, Any], **names: str | None) -> Any:
     """Return the figure of one kind, of named quantities: with the orbit on it, and the flow beside it."""
     make = kinds()[kind]
-    known = {*inspect.signature(make).parameters} | ({"displacement"} if kind == "branches" else set())
-    own = {name: give(orbit) for name, give in _GIVEN.items() if name in known}
+    parameters = {*inspect.signature(make).parameters} | ({"displacement"} if kind == "branches" else set())
+    own = {name: give(orbit) for name, give in _GIVEN.items() if name in parameters}
     quantities = {side: _quantity(side, name) for side, name in names.items()}
     picture = make(**own, **quantities, **look)
     return picture if kind == OVERVIEW else (picture.axes if hasattr(picture, "axes") else picture.plane).figure
@@ -125,7 +125,7 @@ def draw_all(orbit: Any, picture: Path, *, progress: bool, look: dict[str, Any],
         path = picture.with_stem(f"{picture.stem}-{kind}")
         try:
             with waiting(f"drawing {kind}", progress):
-                figure = None if _needed(make) & {*_ASKED} else figure_of(kind, orbit, look)
+                figure = None if _necessary(make) & {*_ASKED} else figure_of(kind, orbit, look)
         except (AttributeError, TypeError, ValueError):
             figure = None
         if figure is None:

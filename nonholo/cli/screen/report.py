@@ -25,8 +25,8 @@ _LABELS = {"mass_tensor": "mass tensor J", "inertia_tensor": "inertia tensor tr(
 
 def figures(orbit: AbstractOrbit) -> dict[str, Any]:
     """Return the invariants of an orbit and its body as plain numbers; None where a figure is not defined."""
-    measured = dataclasses.asdict(invariants(orbit))
-    plain = {name: _plain(value) for name, value in measured.items()}
+    quantities = dataclasses.asdict(invariants(orbit))
+    plain = {name: _plain(value) for name, value in quantities.items()}
     return {
         **plain,
         "energy_is_exact": orbit.conserves_energy,
@@ -82,7 +82,7 @@ def duration(seconds: float) -> str:
 
 def _rows(figures: dict[str, Any]) -> list[tuple[str, str, str]]:
     """Return label, value and expectation of the figures that are defined for the orbit."""
-    expected = {
+    expectations = {
         "energy_drift": ("relative energy drift", "", _expected_energy(figures["energy_is_exact"])),
         "constraint_residual": ("constraint residual", "", ROUNDING),
         "group_residual": ("group residual", "", ROUNDING),
@@ -90,9 +90,9 @@ def _rows(figures: dict[str, Any]) -> list[tuple[str, str, str]]:
         "largest_step_angle": ("largest step angle", " degrees", "well below 90 degrees"),
     }
     if figures["work"] is not None:
-        expected["energy_drift"] = ("energy less work of forces", "", "of order 2 in the time step")
-        expected["work"] = ("work of forces", "", "")
-    rows = [(figures[name], *entry) for name, entry in expected.items()]
+        expectations["energy_drift"] = ("energy less work of forces", "", "of order 2 in the time step")
+        expectations["work"] = ("work of forces", "", "")
+    rows = [(figures[name], *entry) for name, entry in expectations.items()]
     lines = [(label, f"{value:.3g}{unit}", note) for value, label, unit, note in rows if value is not None]
     return [*lines, ("outcome", figures["outcome"], "successful")]
 
@@ -109,13 +109,13 @@ def _body(orbit: AbstractOrbit) -> dict[str, Any]:
         about = {"coordinates": ", ".join(orbit.coordinates)} if "orbits" in parameters else parameters
         about = {name: value for name, value in about.items() if value is not None}
         return {"system": kind, "name": system.name, **about}
-    given = {name: value for name, value in fields_of(system).items() if name != "group" and value is not None}
+    fields = {name: value for name, value in fields_of(system).items() if name != "group" and value is not None}
     if system.group.dim > _LARGE:
-        return {"system": type(system).__name__, "group": repr(system.group), **given}
+        return {"system": type(system).__name__, "group": repr(system.group), **fields}
     inertia = np.asarray(system.inertia_operator).tolist()
-    name = "inertia_tensor" if "mass_tensor" in given and system.group == SO(3) else "inertia_operator"
-    given.pop("given_inertia", None)
-    return {"system": type(system).__name__, "group": repr(system.group), **given, name: inertia}
+    name = "inertia_tensor" if "mass_tensor" in fields and system.group == SO(3) else "inertia_operator"
+    fields.pop("given_inertia", None)
+    return {"system": type(system).__name__, "group": repr(system.group), **fields, name: inertia}
 
 
 def _plain(value: Any) -> Any:

@@ -27,67 +27,67 @@ _MOST_BLOCKS = 1000  # of a sweep that are read, some milliseconds each
 _NESTED = ("parameters", "motion", "versions", "arrays", "run", "sweep")
 
 
-def show_provenance(store: Path, stored: dict[str, Any], orbit: AbstractOrbit | None, *, json: bool) -> None:
+def show_provenance(store: Path, attributes: dict[str, Any], orbit: AbstractOrbit | None, *, json: bool) -> None:
     """Print attributes and, where the orbit could be loaded, invariants, as tables or as one JSON object."""
-    record = _record(stored)
+    record = _record(attributes)
     with waiting("measuring", sys.stderr.isatty()):
-        measured = {} if orbit is None else figures(orbit)
+        numbers = {} if orbit is None else figures(orbit)
     if json:
-        typer.echo(as_json({"store": str(store), "provenance": record, **measured}))
+        typer.echo(as_json({"store": str(store), "provenance": record, **numbers}))
         return
-    thinned = "" if record["save_every"] == 1 else f", one in {record['save_every']} steps"
-    heading = {"title": str(store), "states": f"{record['arrays']['time'][0]}{thinned}"}
-    show(measured, heading | _made(record))
+    thinning = "" if record["save_every"] == 1 else f", one in {record['save_every']} steps"
+    heading = {"title": str(store), "states": f"{record['arrays']['time'][0]}{thinning}"}
+    show(numbers, heading | _origin(record))
 
 
-def show_standing(store: Path, stored: dict[str, Any], standing: Standing, *, json: bool) -> None:
+def show_standing(store: Path, attributes: dict[str, Any], standing: Standing, *, json: bool) -> None:
     """Print how far an unfinished run came, and who is writing it."""
-    record, now = _record(stored), standing._asdict()
+    record, now = _record(attributes), standing._asdict()
     if json:
         typer.echo(as_json({"store": str(store), "unfinished": now, "provenance": record}))
         return
     came = f"{standing.done} of {standing.steps}, {100 * standing.done / standing.steps:.1f} %"
     next_one = f"written by {standing.owner}" if standing.owner else f"stopped; resume with: nonholo resume {store}"
-    show({}, {"title": str(store), "steps": came, "run": next_one} | _made(record))
+    show({}, {"title": str(store), "steps": came, "run": next_one} | _origin(record))
 
 
-def show_sweep_standing(store: Path, stored: dict[str, Any], *, json: bool) -> None:
+def show_sweep_standing(store: Path, attributes: dict[str, Any], *, json: bool) -> None:
     """Print how far a sweep came and, if it is finished, sound and not too large, the ranges of its quantities."""
-    record = _record(stored)
+    record = _record(attributes)
     result = failure = None
     with store_errors(USAGE):
-        opened = open_store(store)
-        if opened.is_finished and opened.layout.blocks <= _MOST_BLOCKS:
+        sweep = open_store(store)
+        if sweep.is_finished and sweep.layout.blocks <= _MOST_BLOCKS:
             try:
                 result = load_sweep(store)
             except ValueError as caught:
                 failure = caught
-        measured = sweep_figures(store, result)
+        numbers = sweep_figures(store, result)
     task, design = record["sweep"]["task"], record["sweep"]["design"]
-    made = {"task": task["name"]} if "name" in task else {"system": task["system"], "steps": f"{task['steps']:,}"}
-    made |= {"design": f"{design['kind']}, seed {design['seed']}", **_scenario(record)}
+    heading = {"task": task["name"]} if "name" in task else {"system": task["system"], "steps": f"{task['steps']:,}"}
+    heading |= {"design": f"{design['kind']}, seed {design['seed']}", **_scenario(record)}
     provenance = {name: value for name, value in record.items() if name != "sweep"} | record["sweep"]
-    show_sweep(store, measured, {"title": str(store)} | made, {"provenance": provenance} if json else {}, json=json)
+    show_sweep(store, numbers, {"title": str(store)} | heading, {"provenance": provenance} if json else {}, json=json)
     if failure:
         leave(str(failure), FAILED)
 
 
-def _record(stored: dict[str, Any]) -> dict[str, Any]:
-    return {name: jsonlib.loads(value) if name in _NESTED else value for name, value in stored.items()}
+def _record(attributes: dict[str, Any]) -> dict[str, Any]:
+    return {name: jsonlib.loads(value) if name in _NESTED else value for name, value in attributes.items()}
 
 
-def _made(record: dict[str, Any]) -> dict[str, str]:
-    return {"motion": _listed(record["motion"]), **_scenario(record)}
+def _origin(record: dict[str, Any]) -> dict[str, str]:
+    return {"motion": _list_of(record["motion"]), **_scenario(record)}
 
 
 def _scenario(record: dict[str, Any]) -> dict[str, str]:
     return {
-        "made with": _listed(record["versions"] | {"kernels": record.get("kernels", "not recorded")}),
+        "made with": _list_of(record["versions"] | {"kernels": record.get("kernels", "not recorded")}),
         "scenario": f"sha256 {record['scenario_sha256'][:16]}" if "scenario" in record else "none",
     }
 
 
-def _listed(entries: dict[str, Any]) -> str:
+def _list_of(entries: dict[str, Any]) -> str:
     return ", ".join(f"{key} {value}" for key, value in entries.items())
 
 
@@ -108,13 +108,13 @@ def sweep_figures(
     return {
         "members": standing.members,
         "done": standing.done,
-        "failed": standing.failed,
+        "failed": standing.failure_count,
         "outcomes": dict(sorted(standing.outcomes.items(), key=lambda entry: -entry[1])),
         "ranges": {} if result is None else _ranges(result),
         "seconds": seconds,
         "members_per_second": (standing.done - before) / seconds if seconds else None,
         "members_per_second_of_one_worker": rate,
-        "steps_per_second_of_one_worker": rate * steps if rate and steps and not standing.failed else None,
+        "steps_per_second_of_one_worker": rate * steps if rate and steps and not standing.failure_count else None,
         "bytes": sum(file.stat().st_size for file in store.rglob("*") if file.is_file()),
         "messages": [list(message) for message in standing.messages[:_MESSAGES]],
         "state": _state(standing),
@@ -150,8 +150,12 @@ def _state(standing: SweepStanding) -> str:
 
 
 def _rows(store: Path, figures: dict[str, Any]) -> dict[str, str]:
-    members, done = figures["members"], figures["done"]
-    came = f"{members:,}" if done == members else f"{done:,} of {members:,}, {100 * done / members:.1f} %"
+    members, count_done = figures["members"], figures["done"]
+    came = (
+        f"{members:,}"
+        if count_done == members
+        else f"{count_done:,} of {members:,}, {100 * count_done / members:.1f} %"
+    )
     state = figures["state"] + (f"; resume with: nonholo resume {store}" if figures["state"] == "stopped" else "")
     speeds = {"members_per_second_of_one_worker": "members/s", "steps_per_second_of_one_worker": "steps/s"}
     rates = [f"{figures[key]:,.3g} {unit}" for key, unit in speeds.items() if figures[key]]
@@ -159,7 +163,7 @@ def _rows(store: Path, figures: dict[str, Any]) -> dict[str, str]:
     time = {"time": f"{duration(figures['seconds'])}, {speed:,.3g} members/s"} if speed else {}
     rows = {"members": came} | ({} if state == "finished" else {"sweep": state})
     for name, count in figures["outcomes"].items():
-        rows[f"  {name}"] = f"{count:,}  ({100 * count / done:.3g} %)"
+        rows[f"  {name}"] = f"{count:,}  ({100 * count / count_done:.3g} %)"
     for name, (least, most, meaning) in figures["ranges"].items():
         rows[name] = f"{least:.6g} to {most:.6g}  {meaning}"
     return rows | time | {"one worker": ", ".join(rates) or "unknown", "size on disk": size_text(figures["bytes"])}
@@ -167,19 +171,19 @@ def _rows(store: Path, figures: dict[str, Any]) -> dict[str, str]:
 
 def _ranges(result: xarray.Dataset) -> dict[str, tuple[float, float, str]]:
     """Return least and largest number of each quantity over the members that succeeded, and what it means."""
-    found: dict[str, tuple[float, float, str]] = {}
+    ranges: dict[str, tuple[float, float, str]] = {}
     for part in _slabs(result):
         good = part[_OUTCOME] == 0
         for name, values in part.data_vars.items():
             if name == _OUTCOME or values.attrs.get("long_name") == _DRAWN or values.dtype.kind not in "if":
                 continue
-            kept = values.where(good).values
-            kept = kept[np.isfinite(kept)]
-            if kept.size:
+            finite = values.where(good).values
+            finite = finite[np.isfinite(finite)]
+            if finite.size:
                 meaning = str(values.attrs.get("long_name", ""))
-                least, most, _ = found.get(str(name), (math.inf, -math.inf, ""))
-                found[str(name)] = (min(least, float(kept.min())), max(most, float(kept.max())), meaning)
-    return found
+                least, most, _ = ranges.get(str(name), (math.inf, -math.inf, ""))
+                ranges[str(name)] = (min(least, float(finite.min())), max(most, float(finite.max())), meaning)
+    return ranges
 
 
 def _slabs(result: xarray.Dataset) -> Iterator[xarray.Dataset]:

@@ -187,7 +187,7 @@ def kernel_root(body: kernels.Body, m: Float[Array, "2"], guess: Array | None = 
     def residual(y: Array, m: Array) -> Array:
         return jnp.stack(kernels.residual(body, *m, *y))
 
-    return principal_root(residual, m, 2, lambda y, m: kernels.certified(body, *m, *y), guess)
+    return principal_root(residual, m, 2, lambda y, m: kernels.is_certain(body, *m, *y), guess)
 
 
 def principal_of(discrete: Scheme, scalar: ScalarStep | None, r: Float[Array, "k"], g: Array) -> tuple[Array, Array]:

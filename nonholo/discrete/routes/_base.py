@@ -231,7 +231,7 @@ class AbstractCompiledRoute(AbstractRoute):
 
     def advance(self, state: np.ndarray, steps: int, every: int, rows: Compact) -> tuple[int, int]:
         """Take up to `steps` steps into rows of the kernel; return how many were good and the outcome."""
-        return self.runs.advance(self.body, state, steps, every, *rows)
+        return self.runs.advance(self.body, state, steps, every, rows)
 
     def step_each(
         self, states: tuple[np.ndarray, np.ndarray, np.ndarray | None], guesses: np.ndarray, *, principal_only: bool

@@ -199,7 +199,7 @@ class FunctionRoute(AbstractForcedRoute, AbstractOuterRoute):
                 place = ahead[2 * n : 2 * n + size].copy()
                 m = ahead[:n] + self._impulse(number + 1, number, ahead[:n], place)
                 ahead[:n] = m + self._impulse(number + 1, number + 1, m, place)
-                _, code = self.runs.advance(self.body, ahead, 1, 1, *room)
+                _, code = self.runs.advance(self.body, ahead, 1, 1, room)
                 if code != 0:
                     return good, code
                 state[:] = np.append(ahead, number + 1)
@@ -284,7 +284,7 @@ def functions_of(forced: Forced, potential: Callable[..., Any] | None, faults: d
     shape = (forced.group.size, forced.group.dim)
     if not forced.needs_function:
         return 0, 0
-    from nonholo.kernels.forced.addresses import function_of
+    from nonholo.kernels.addresses import function_of
 
     _check_compiled(forced)
     force = 0 if forced.function is None else function_of(forced.function, shape, 3)
@@ -349,7 +349,7 @@ def _half_step(free: AbstractCompiledRoute, forced: Forced) -> tuple[np.ndarray,
     if forced.friction is not None and free.is_scalar:
         rows, scale = (to_kernel / free.scale).T @ S, float(free.scale)
         C = rows @ forced.friction.matrix @ rows.T
-        keep, push = np.reshape(kernels.rubbed(free.body, C.ravel().tolist(), half), (2, 2, 2))
+        keep, push = np.reshape(kernels.friction_flow(free.body, C.ravel().tolist(), half), (2, 2, 2))
         return keep, rows.T @ (scale * push).T
     keep, push, _ = forced.propagator(S.T, half)
     remainder = np.zeros((0, 0)) if forced.friction is None else np.linalg.solve(to_kernel, keep.T @ to_kernel).T

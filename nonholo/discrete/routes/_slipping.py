@@ -319,7 +319,7 @@ class SlipStepper(AbstractBodyStepper):
         (r, pose, places), hold, kernel = self._own(state), self.route.hold, self._kernel(state)
         number, since, run = int(places[0]), int(places[1]), kernel.copy()
         rows = tuple(np.empty((most, size)) for size in hold.sizes)
-        good, code = hold.runs.advance(hold.body_from(since), run, most, 1, *rows)
+        good, code = hold.runs.advance(hold.body_from(since), run, most, 1, rows)
         m, charts, poses = (column[:good] for column in rows)
         impulses = self.route.reaction(charts, poses, number + np.arange(good))
         ends = np.flatnonzero(~self.route.holds(impulses))

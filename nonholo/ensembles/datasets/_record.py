@@ -1,16 +1,18 @@
-"""What is said of a data set: the record for programs, and the card for people."""
+"""What is written of a data set: tables, the record for programs, and the card for people."""
 
 import hashlib
 import json
 import shlex
+from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from nonholo import io
-from nonholo.ensembles.datasets._definitions import DEFINITIONS, system_of
-from nonholo.ensembles.datasets._task import SPLITS, DatasetTask
-from nonholo.ensembles.stores import SweepStore, standing_of
+from nonholo.base.limits import within_disk
+from nonholo.ensembles.datasets._definitions import DEFINITIONS, SPLITS, DatasetTask, system_of
+from nonholo.ensembles.stores import Output, SweepStore, standing_of
 
 _STARTS = (
     "First kinetic energies are uniform in the range of the definition. First momenta are p = s D u: u is uniform on "
@@ -81,7 +83,7 @@ def card(record: dict[str, Any]) -> str:
     fields = "\n".join(f"| `{name}` | {_row(each)} |" for name, each in record["fields"].items())
     parts = ", ".join(f"{part} {begin} to {end - 1}" for part, (begin, end) in record["split"].items() if begin < end)
     last = record["split"]["train"][1]
-    ended = ", ".join(f"{number} {outcome}" for outcome, number in record["outcomes"].items())
+    endings = ", ".join(f"{number} {outcome}" for outcome, number in record["outcomes"].items())
     definition = "\n".join(f"- {name}: {value}" for name, value in record["definition"].items() if value is not None)
     system = record["system"]
     parameters = "\n".join(f"- {name}: {value}" for name, value in system["parameters"].items())
@@ -89,7 +91,7 @@ def card(record: dict[str, Any]) -> str:
 
 Orbits of the data set `{record["name"]}`, version {record["definition"]["version"]}, computed by the discrete
 map of nonholo {record["versions"]["nonholo"]} with time step {record["time_step"]:g}.
-Row k of an orbit is a state, row k + 1 the next one. How they ended: {ended}; rows after an early end are NaN.
+Row k of an orbit is a state, row k + 1 the next one. How they ended: {endings}; rows after an early end are NaN.
 
 Parts (`split`): {parts}. Orbits are independent draws, so parts are.
 Noise: {record["noise"]:g} (standard deviation of the fields `observed_...`; none if 0). License: {record["license"]}.
@@ -143,3 +145,45 @@ _LOADING = {
     import pandas
     train = pandas.read_csv("train.csv")  # a row for each state: orbit, time, fields""",
 }
+
+
+_BYTES = 24.0  # of a number as text
+
+
+def write_tables(store: SweepStore, folder: Path, ends: tuple[int, ...]) -> None:
+    """Write the orbits of a finished store, those of each part to a file: their number, the time, all that varies."""
+    names = [name for name, each in store.outputs.items() if each.dimensions[:1] == ("step",)]
+    names.sort(key=lambda name: name != "time")
+    columns = ["orbit", *(column for name in names for column in _columns(name, store.outputs[name]))]
+    states = store.outputs["time"].shape[0] * store.design.members
+    within_disk("dataset(file_format='csv')", _BYTES * states * len(columns), folder, "Free space, then call it again.")
+    for part, begin, end in zip(SPLITS, (0, *ends), ends, strict=False):
+        if begin < end:
+            with io.new_file(folder / f"{part}.csv", overwrite=True) as file:
+                file.writelines(io.table_lines(columns, _rows(store, names, begin, end)))
+
+
+def _columns(name: str, output: Output) -> Iterator[str]:
+    """Give the names of the numbers of a field: those of coordinates alone, others with that of the field."""
+    if len(output.shape) == 1:
+        yield name
+        return
+    labels = output.attributes.get("components") or [str(i) for i in range(output.shape[1])]
+    for place in np.ndindex(output.shape[1:]):
+        own = [labels[place[0]], *map(str, place[1:])]
+        yield "_".join(own if name == "configuration" else [name.replace("_configuration", ""), *own])
+
+
+def _rows(store: SweepStore, names: list[str], begin: int, end: int) -> Iterator[np.ndarray]:
+    """Give the states of some orbits, block by block; rows after the end of an orbit are left out."""
+    for block in range(store.layout.blocks):
+        piece = store.layout.piece(block)
+        members = np.arange(piece.first, piece.first + piece.count)
+        is_within = (members >= begin) & (members < end)
+        if not is_within.any():
+            continue
+        fields = [store.rows(name, piece)[is_within] for name in names]
+        states = np.concatenate([each.reshape(*each.shape[:2], -1) for each in fields], axis=2)
+        rows = np.empty((*states.shape[:2], 1 + states.shape[2]), dtype=object)  # whole numbers are written as such
+        rows[..., 0], rows[..., 1:] = members[is_within, None], states
+        yield rows[np.isfinite(states[..., 0])]

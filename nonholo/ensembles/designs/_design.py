@@ -16,7 +16,7 @@ from nonholo.base.checks import count, error, natural, shown
 from nonholo.base.checks import name as checked_name
 from nonholo.base.types import Float
 from nonholo.ensembles._names import OUTCOME, component_name
-from nonholo.ensembles.designs._distributions import AbstractDistribution, listed
+from nonholo.ensembles.designs._distributions import AbstractDistribution, checked_list
 from nonholo.io import TAKEN
 
 _COLUMNS = TAKEN | {"member", OUTCOME, "t", "time"}  # which tables of results have of their own
@@ -98,14 +98,14 @@ class Grid(AbstractDesign):
     def __init__(self, axes: Any, seed: int = 0) -> None:
         if not isinstance(axes, Mapping) or not axes:
             raise error("Grid(axes=...)", "be a mapping of names to values", shown(axes), f"{_REMEDY} values.")
-        kept = {
-            name: listed(f"Grid({{{name!r}: ...}})", axes[given])
-            for name, given in _named("Grid(axes=...)", axes).items()
+        axes_by_name = {
+            name: checked_list(f"Grid({{{name!r}: ...}})", axes[name_given])
+            for name, name_given in _own_names("Grid(axes=...)", axes).items()
         }
-        if len({axis_dimension(name, values) for name, values in kept.items()}) < len(kept):
+        if len({axis_dimension(name, values) for name, values in axes_by_name.items()}) < len(axes_by_name):
             requirement = "have other names than its vectors and matrices"
-            raise error("Grid(axes=...)", requirement, ", ".join(kept), "Rename one.")
-        object.__setattr__(self, "values_along", kept)
+            raise error("Grid(axes=...)", requirement, ", ".join(axes_by_name), "Rename one.")
+        object.__setattr__(self, "values_along", axes_by_name)
         object.__setattr__(self, "seed", natural("Grid(seed=...)", seed, _SEED))
 
     def __repr__(self) -> str:
@@ -150,18 +150,20 @@ class RandomDesign(AbstractDesign):
         if not isinstance(distributions, Mapping) or not distributions:
             got = shown(distributions)
             raise error("RandomDesign(distributions=...)", "be a mapping", got, f"{_REMEDY} distributions.")
-        named = _named("RandomDesign(distributions=...)", distributions)
+        names = _own_names("RandomDesign(distributions=...)", distributions)
         for name, value in distributions.items():
             if not isinstance(value, AbstractDistribution):
                 remedy = "Pass nh.Uniform(low, high), ...; what all members share belongs to the task."
                 raise error(f"RandomDesign({{{name!r}: ...}})", "be a distribution", shown(value), remedy)
         object.__setattr__(self, "count", count("RandomDesign(members=...)", members, "Pass how many."))
-        object.__setattr__(self, "distributions", {name: distributions[given] for name, given in named.items()})
+        object.__setattr__(
+            self, "distributions", {name: distributions[name_given] for name, name_given in names.items()}
+        )
         object.__setattr__(self, "seed", natural("RandomDesign(seed=...)", seed, _SEED))
 
     def __repr__(self) -> str:
-        drawn = ", ".join(f"{name} {value!r}" for name, value in self.distributions.items())
-        return f"<RandomDesign of {self.members} members, seed {self.seed}: {drawn}>"
+        draws = ", ".join(f"{name} {value!r}" for name, value in self.distributions.items())
+        return f"<RandomDesign of {self.members} members, seed {self.seed}: {draws}>"
 
     @property
     def sizes(self) -> dict[str, int]:
@@ -203,10 +205,10 @@ def axis_dimensions(name: str, values: Float[np.ndarray, "count ..."]) -> tuple[
     return (axis_dimension(name, values), *(f"{name}_{axis}" for axis in range(1, values.ndim)))
 
 
-def _named(where: str, given: Mapping[Any, Any]) -> dict[str, str]:
+def _own_names(where: str, names: Mapping[Any, Any]) -> dict[str, str]:
     """Return the given names by those of the result, refused if two are one."""
-    plain = {name: component_name(name) if isinstance(name, str) else name for name in given}
-    named = {checked_name(where, own, _COLUMNS): name for name, own in plain.items()}
-    if len(named) < len(given):
-        raise error(where, "name each value once", ", ".join(given), "Leave one out.")
-    return named
+    plain = {name: component_name(name) if isinstance(name, str) else name for name in names}
+    own_by_name = {checked_name(where, own, _COLUMNS): name for name, own in plain.items()}
+    if len(own_by_name) < len(names):
+        raise error(where, "name each value once", ", ".join(names), "Leave one out.")
+    return own_by_name

@@ -189,7 +189,7 @@ class Choice(AbstractDistribution):
     values: Any
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "values", listed("Choice(values=...)", self.values).tolist())
+        object.__setattr__(self, "values", checked_list("Choice(values=...)", self.values).tolist())
 
     @property
     def width(self) -> int:
@@ -207,13 +207,13 @@ class Choice(AbstractDistribution):
 DISTRIBUTIONS = {kind.__name__: kind for kind in (Uniform, LogUniform, Normal, Direction, MassTensor, Choice)}
 
 
-def listed(where: str, values: Any) -> Float[np.ndarray, "count ..."]:
+def checked_list(where: str, values: Any) -> Float[np.ndarray, "count ..."]:
     """Return a list of numbers, vectors or matrices, at least one, as an array."""
     remedy = "Pass a list of values."
-    checked = array(where, values, (None,) * max(1, len(shape_of(values))), remedy)
-    if not len(checked):
+    values_checked = array(where, values, (None,) * max(1, len(shape_of(values))), remedy)
+    if not len(values_checked):
         raise error(where, "hold at least one value", "none", remedy)
-    return checked
+    return values_checked
 
 
 def _bounds(owner: Any) -> None:
@@ -235,9 +235,9 @@ def _bounds(owner: Any) -> None:
 
 def _orthonormal(rows: Float[np.ndarray, "n n count"]) -> list[Float[np.ndarray, "n count"]]:
     """Return orthonormal rows of the same flags by Gram-Schmidt, which has the same bits in any company."""
-    done: list[np.ndarray] = []
+    rows_before: list[np.ndarray] = []
     for x in rows:
-        for y in 2 * done:  # twice is enough
+        for y in 2 * rows_before:  # twice is enough
             x = x - (x * y).sum(axis=0) * y
-        done.append(x / np.sqrt((x * x).sum(axis=0)))
-    return done
+        rows_before.append(x / np.sqrt((x * x).sum(axis=0)))
+    return rows_before

@@ -11,8 +11,7 @@ from nonholo import io
 from nonholo.base.checks import error, path
 from nonholo.ensembles._block import MemberBlock, block_of
 from nonholo.ensembles._ensemble_task import EnsembleTask, ensemble_task_from
-from nonholo.ensembles.stores._standing import standing_of
-from nonholo.ensembles.stores._store import SweepStore, open_store
+from nonholo.ensembles.stores._store import SweepStore, open_store, standing_of
 
 _WHERE = "sweep_to_csv(store=...)"
 _WANTED = ("outcome", "final_time", "final_pose")
@@ -37,15 +36,17 @@ def sweep_to_csv(store: str | Path, target: str | Path | TextIO, *, overwrite: b
     Example:
         >>> sweep_to_csv("sweep.zarr", "poses.csv")  # doctest: +SKIP
     """
-    opened = open_store(path("sweep_to_csv(store=...)", store))
-    task = _task(opened)
+    sweep_store = open_store(path("sweep_to_csv(store=...)", store))
+    task = _task(sweep_store)
     io.check_file(target, overwrite=overwrite)
-    blocks = [block for block, _ in opened.marks() if block < opened.layout.blocks]
-    opened.check(_WHERE, blocks)
-    if len(blocks) < opened.layout.blocks:
+    blocks = [block for block, _ in sweep_store.marks() if block < sweep_store.layout.blocks]
+    sweep_store.check(_WHERE, blocks)
+    if len(blocks) < sweep_store.layout.blocks:
         warnings.warn(f"The sweep in '{store}' is not finished: {standing_of(store)}.", RuntimeWarning, stacklevel=2)
     with io.new_file(target, overwrite=overwrite) as file:
-        file.writelines(io.table_lines(_names(opened, task), (_rows(opened, task, block) for block in blocks)))
+        file.writelines(
+            io.table_lines(_names(sweep_store, task), (_rows(sweep_store, task, block) for block in blocks))
+        )
 
 
 def _task(store: SweepStore) -> EnsembleTask:

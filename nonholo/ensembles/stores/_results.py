@@ -49,20 +49,20 @@ class Results(NamedTuple):
     messages: list[tuple[int, str]]
 
 
-def attempted(task: Task, block: MemberBlock, outputs: dict[str, Output]) -> Results:
+def attempt(task: Task, block: MemberBlock, outputs: dict[str, Output]) -> Results:
     """Run a task; members for which it raises have no numbers and the outcome `RAISED`."""
     try:
-        return Results(_checked(_named(task(block), block.count), outputs, block.count), [])
+        return Results(_check(_entries(task(block), block.count), outputs, block.count), [])
     except Exception as failure:
         if block.count == 1:
             return Results(_nothing(outputs), [(block.first, f"{type(failure).__name__}: {failure}")])
     middle = block.count // 2
-    halves = [attempted(task, part, outputs) for part in (block.part(0, middle), block.part(middle, block.count))]
+    halves = [attempt(task, part, outputs) for part in (block.part(0, middle), block.part(middle, block.count))]
     arrays = {name: np.concatenate([half.arrays[name] for half in halves]) for name in outputs}
     return Results(arrays, (halves[0].messages + halves[1].messages)[:_MOST_MESSAGES])
 
 
-def probed(task: Task, block_at: Callable[[int, int], MemberBlock], members: int) -> dict[str, Output]:
+def probe_outputs(task: Task, block_at: Callable[[int, int], MemberBlock], members: int) -> dict[str, Output]:
     """Return what a task returns, from a few members spread over the design: the first for which it does not raise.
 
     A task that takes two members and returns something else than two rows is refused.
@@ -70,7 +70,7 @@ def probed(task: Task, block_at: Callable[[int, int], MemberBlock], members: int
     first_failure = None
     for member in dict.fromkeys((members - 1) * probe // (_PROBES - 1) for probe in range(_PROBES)):
         try:
-            outputs = _outputs(_named(task(block_at(member, 1)), 1))
+            outputs = _outputs(_entries(task(block_at(member, 1)), 1))
         except Exception as failure:
             first_failure = first_failure or failure
             continue
@@ -83,16 +83,16 @@ def probed(task: Task, block_at: Callable[[int, int], MemberBlock], members: int
 def _check_two(task: Task, block: MemberBlock, outputs: dict[str, Output]) -> None:
     """Refuse a task that is wrong for blocks, which would be done member by member and take long."""
     try:
-        returned = task(block)
+        own = task(block)
     except Exception:  # of some members: these are found when it runs
         return
-    _checked(_named(returned, block.count), outputs, block.count)
+    _check(_entries(own, block.count), outputs, block.count)
 
 
-def _outputs(named: dict[str, Any]) -> dict[str, Output]:
-    found = {name: _output(*entry) for name, entry in named.items()}
+def _outputs(entries: dict[str, Any]) -> dict[str, Output]:
+    outputs = {name: _output(*entry) for name, entry in entries.items()}
     labels = {"long_name": "how the member ended", **flags()}
-    return {**found, OUTCOME: Output((), (), "int8", labels)}
+    return {**outputs, OUTCOME: Output((), (), "int8", labels)}
 
 
 def flags() -> dict[str, Any]:
@@ -109,11 +109,11 @@ def _type_on_disk(rows: np.ndarray) -> str:
     return {"b": "int8", "i": "int64", "u": "uint64", "c": "complex128"}.get(rows.dtype.kind, "float64")
 
 
-def _named(returned: Any, count: int) -> dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, Any]]]:
+def _entries(result: Any, count: int) -> dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, Any]]]:
     """Return dimensions, rows and attributes of all that a task returned, by name."""
-    if not isinstance(returned, Mapping):
-        returned = {"result": returned}
-    return {array_name("task(...)", name): _entry(name, value, count) for name, value in returned.items()}
+    if not isinstance(result, Mapping):
+        result = {"result": result}
+    return {array_name("task(...)", name): _entry(name, value, count) for name, value in result.items()}
 
 
 def _entry(name: str, value: Any, count: int) -> tuple[tuple[str, ...], np.ndarray, dict[str, Any]]:
@@ -151,21 +151,21 @@ def _codes(rows: np.ndarray) -> np.ndarray:
     return rows.astype(np.int8)
 
 
-def _checked(named: dict[str, Any], outputs: dict[str, Output], count: int) -> dict[str, np.ndarray]:
+def _check(entries: dict[str, Any], outputs: dict[str, Output], count: int) -> dict[str, np.ndarray]:
     """Return the rows of a block as they are written, refused if they are not what the first members had."""
-    found = {name: rows for name, (_, rows, _) in named.items()}
-    found.setdefault(OUTCOME, np.zeros(count, dtype=np.int8))
-    if found.keys() != outputs.keys():
-        got = f"{sorted(found)} instead of {sorted(outputs)}"
+    rows_by_name = {name: rows for name, (_, rows, _) in entries.items()}
+    rows_by_name.setdefault(OUTCOME, np.zeros(count, dtype=np.int8))
+    if rows_by_name.keys() != outputs.keys():
+        got = f"{sorted(rows_by_name)} instead of {sorted(outputs)}"
         raise error("task(...)", "return the same names for all members", got, "Return them always.")
-    for name, rows in found.items():
+    for name, rows in rows_by_name.items():
         if rows.shape[1:] != outputs[name].shape:
             got = f"{rows.shape[1:]} instead of {outputs[name].shape}"
             raise error(f"task(...)[{name!r}]", "have one shape for all members", got, "Pad it with NaN.")
         if not (name == OUTCOME or np.can_cast(_type_on_disk(rows), outputs[name].dtype)):
             got = f"{rows.dtype} after {outputs[name].dtype}"
             raise error(f"task(...)[{name!r}]", "have one type for all members", got, "Return floats always.")
-    return {name: found[name].astype(output.dtype) for name, output in outputs.items()}
+    return {name: rows_by_name[name].astype(output.dtype) for name, output in outputs.items()}
 
 
 def _nothing(outputs: dict[str, Output]) -> dict[str, np.ndarray]:

@@ -4,15 +4,18 @@ Writes are atomic, so whoever writes can be killed at any moment. What a block h
 the design, so two writers of one block write the same.
 """
 
+import collections
 import dataclasses
 import functools
 import json
+import math
 import uuid
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
+import xarray
 import zarr
 from pydantic import Field, TypeAdapter, ValidationError
 from zarr.codecs import BloscCodec, Crc32cCodec
@@ -23,6 +26,7 @@ from nonholo.base.compiled import way_of_kernels
 from nonholo.ensembles._describe import design_from
 from nonholo.ensembles.designs import Design, axis_dimensions
 from nonholo.ensembles.stores._results import Output, Results
+from nonholo.io import owner_of
 
 
 def layout_of(sizes: tuple[int, ...], block: int) -> io.Layout:
@@ -118,7 +122,7 @@ class SweepStore:
 
     def marks(self) -> Iterator[tuple[int, Mark]]:
         """Return the numbers of finished blocks in order with their marks, those that can be read."""
-        for block in sorted(self._blocks.marked()):
+        for block in sorted(self._blocks.block_numbers()):
             try:
                 mark = self.mark(block)
             except io.DamagedError:
@@ -146,8 +150,8 @@ class SweepStore:
 
     def rows(self, name: str, piece: io.Piece) -> np.ndarray:
         """Return an array of a block, one row for each member."""
-        found = self._blocks.rows(name, piece.place)
-        return found.reshape(piece.count, *found.shape[len(piece.place) :])
+        rows_of_block = self._blocks.rows(name, piece.place)
+        return rows_of_block.reshape(piece.count, *rows_of_block.shape[len(piece.place) :])
 
     def prepare(self) -> None:
         """Remove what killed writers left and show that every array can be opened."""
@@ -158,17 +162,27 @@ class SweepStore:
         """Say that the sweep came to its end, and consolidate the metadata."""
         self._blocks.finish({"finished": True})
 
+    def grow(self, members: int) -> "SweepStore":
+        """Return the store with more members to do; a last block that was not full is computed again."""
+        _ = self._blocks  # whose arrays have the length of an earlier growth
+        content, before = self._content, list(self.layout.sizes)
+        changes = {"design": content["design"] | {"members": members}, "before": before}
+        changes["layout"] = [[members], list(self.layout.chunk)]
+        identity = uuid.uuid4().hex  # whoever still writes the smaller one is refused
+        io.edit_attributes(self.path, {"made": identity, "sweep": json.dumps(content | changes), "finished": False})
+        return SweepStore(self.path, identity)
+
     def _axis(self, name: str) -> np.ndarray:
         array = io.writable_array(self.path, name)
         try:
-            found = io.read_chunk(self.path, name, array, (0,) * array.ndim)
+            values = io.read_chunk(self.path, name, array, (0,) * array.ndim)
         except io.DamagedError as flaw:
             got = f"{flaw}, in '{self.path}'"
             raise error("resume(store=...)", f"hold the axis {name}", got, _AGAIN) from None
-        expected = list(axis_dimensions(name, found)), _AXIS
-        if (list(array.metadata.dimension_names or ()), array.metadata.attributes) != expected:  # type: ignore[union-attr]
+        description = list(axis_dimensions(name, values)), _AXIS
+        if (list(array.metadata.dimension_names or ()), array.metadata.attributes) != description:  # type: ignore[union-attr]
             raise error("resume(store=...)", f"hold the axis {name}", f"another one in '{self.path}'", _AGAIN)
-        return found
+        return values
 
     @functools.cached_property
     def _content(self) -> dict[str, Any]:
@@ -177,6 +191,9 @@ class SweepStore:
     @functools.cached_property
     def _blocks(self) -> io.BlockStore:
         arrays = {name: io.writable_array(self.path, name) for name in self.outputs}
+        for array in arrays.values():
+            if [*array.shape[:1]] == self._content.get("before"):  # a sweep that has grown since it was made
+                array.resize((*self.layout.sizes, *array.shape[1:]))
         for name, array in arrays.items():
             self._check_described(name, array)
         return io.BlockStore(self.path, self.made, self.layout, arrays, holds_nan=True)
@@ -185,10 +202,10 @@ class SweepStore:
         """Refuse an array that is not the one of the description, of which the attributes have a checksum."""
         output, chunk = self.outputs[name], self.layout.chunk
         shape, chunks = (*self.layout.sizes, *output.shape), (*chunk, *(max(1, size) for size in output.shape))
-        expected = [list(shape), list(chunks), output.dtype, json.dumps(output.attributes)]
-        found = [list(array.shape), list(array.chunks), str(array.dtype), json.dumps(array.metadata.attributes)]
+        description = [list(shape), list(chunks), output.dtype, json.dumps(output.attributes)]
+        array_text = [list(array.shape), list(array.chunks), str(array.dtype), json.dumps(array.metadata.attributes)]
         dimensions = [*self.design.sizes, *output.dimensions]
-        if [*found, list(array.metadata.dimension_names or ())] != [*expected, dimensions]:  # type: ignore[union-attr]
+        if [*array_text, list(array.metadata.dimension_names or ())] != [*description, dimensions]:  # type: ignore[union-attr]
             got = f"another one in '{self.path}'"
             raise error("resume(store=...)", f"hold the array {name} of its description", got, _AGAIN)
 
@@ -221,11 +238,11 @@ def create_store(
     extra: dict[str, Any],
 ) -> SweepStore:
     """Make a store without rows; it appears at the path only when it is complete."""
-    target, made = path.resolve(), uuid.uuid4().hex
+    target, identity = path.resolve(), uuid.uuid4().hex
     if target.exists():
         raise _exists(path)
     content = description | {"layout": layout, "outputs": {name: dataclasses.astuple(o) for name, o in outputs.items()}}
-    about = {"format": FORMAT, "schema": SCHEMA, "made": made, "finished": False, "sweep": json.dumps(content)}
+    about = {"format": FORMAT, "schema": SCHEMA, "made": identity, "finished": False, "sweep": json.dumps(content)}
     with io.new_beside(path) as part:
         made_with = {"versions": io.versions_text(), "kernels": way_of_kernels()}
         group = io.new_group(part, about | made_with | extra, io.SweepMetadata)
@@ -235,7 +252,7 @@ def create_store(
             io.put_in_place(part, target, overwrite=False)
         except FileExistsError:
             raise _exists(path) from None
-    return SweepStore(target, made)
+    return SweepStore(target, identity)
 
 
 def _exists(path: Path) -> FileExistsError:
@@ -245,8 +262,8 @@ def _exists(path: Path) -> FileExistsError:
 
 def open_store(path: str | Path) -> SweepStore:
     """Return the store of a sweep."""
-    stored = attributes_of(path)
-    return SweepStore(Path(path).resolve(), stored["made"])
+    attributes = attributes_of(path)
+    return SweepStore(Path(path).resolve(), attributes["made"])
 
 
 def attributes_of(path: str | Path) -> dict[str, Any]:
@@ -269,3 +286,67 @@ def _create_arrays(group: zarr.Group, design: Design, layout: io.Layout, outputs
             dimension_names=[*design.sizes, *output.dimensions],
             attributes=output.attributes,
         )
+
+
+class SweepStanding(NamedTuple):
+    """The progress of a sweep.
+
+    Attributes:
+        done: Members of finished blocks.
+        members: Members in total.
+        outcomes: How many ended how, by name.
+        rate: Members in a second of work of one worker; NaN before the first block.
+        messages: Some of those for which the task raised, with what it said.
+        owner: Who is writing the store, if anybody.
+        finished: Whether the sweep came to its end.
+    """
+
+    done: int
+    members: int
+    outcomes: dict[str, int]
+    rate: float
+    messages: list[list[Any]]
+    owner: str | None
+    finished: bool
+
+    @property
+    def failure_count(self) -> int:
+        """Members that did not succeed."""
+        return self.done - self.outcomes.get("successful", 0)
+
+    def __str__(self) -> str:
+        return f"{self.done} of {self.members} members, {self.failure_count} of them failed"
+
+
+def standing_of(path: str | Path) -> SweepStanding:
+    """Say how far the sweep of a store came."""
+    store = open_store(path)
+    marks = [mark for _, mark in store.marks()]
+    outcomes: collections.Counter[str] = collections.Counter()
+    for mark in marks:
+        outcomes.update(mark.outcomes)
+    count, seconds = sum(mark.members for mark in marks), sum(mark.seconds for mark in marks)
+    messages = [message for mark in marks for message in mark.messages]
+    rate = count / seconds if seconds else math.nan
+    owner = owner_of(store.path)
+    return SweepStanding(count, math.prod(store.layout.sizes), dict(outcomes), rate, messages, owner, store.is_finished)
+
+
+def opened_result(store: SweepStore) -> xarray.Dataset:
+    """Return the result as a dataset that is loaded lazily, by the metadata of its arrays, which were checked."""
+    try:
+        dataset = xarray.open_zarr(store.path, chunks=None, consolidated=False)
+    except Exception as failure:
+        got = f"'{store.path}', where xarray cannot read them: {failure}"
+        raise error("load_sweep(store=...)", "hold sound metadata", got, "Copy it again from its source.") from failure
+    return _with_labels(dataset[sorted(map(str, dataset.data_vars))])  # a disk lists files in any order
+
+
+def _with_labels(dataset: xarray.Dataset) -> xarray.Dataset:
+    """Return a result whose components have names along their dimension, where all of a dimension have the same."""
+    names: dict[str, set[tuple[str, ...]]] = {}
+    for variable in dataset.data_vars.values():
+        if components := variable.attrs.get("components"):
+            names.setdefault(str(variable.dims[-1]), set()).add(tuple(components))
+    own = {dim: list(*each) for dim, each in names.items() if len(each) == 1 and len(*each) == dataset.sizes[dim]}
+    return dataset.assign_coords(own)

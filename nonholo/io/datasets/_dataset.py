@@ -3,12 +3,14 @@
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+import xarray
 
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization
+from nonholo.groups import AbstractMatrixGroup
 from nonholo.io._attributes import attributes
-from nonholo.io.datasets._pose_variables import pose_variables
-from nonholo.orbit import STATES, Orbit
+from nonholo.io.datasets._pose_variables import pose_variables, separate_variables
+from nonholo.orbit import STATES, AbstractOrbit, Orbit
 from nonholo.systems import System
 
 if TYPE_CHECKING:
@@ -101,15 +103,15 @@ def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> "xarray.Dataset"
     """
     import xarray
 
-    wanted = (*_KNOWN, *_MATRICES) if decoded else tuple(_KNOWN)
-    known = {name: _variable(orbit, name) for name in wanted if _is_known(orbit, name)}
-    found = {"time": _variable(orbit, "time")} | known | _posed(orbit, None)
+    names = (*_KNOWN, *_MATRICES) if decoded else tuple(_KNOWN)
+    states = {name: _variable(orbit, name) for name in names if _is_known(orbit, name)}
+    columns = {"time": _variable(orbit, "time")} | states | _posed(orbit, None)
     if decoded and _has_multipliers(orbit):
         rows = orbit.multipliers
         missing = np.full((len(orbit) - len(rows), rows.shape[1]), np.nan)
-        found["multipliers"] = _variable(orbit, "multipliers", np.concatenate([rows, missing]))
+        columns["multipliers"] = _variable(orbit, "multipliers", np.concatenate([rows, missing]))
     number = ("step", orbit.step, {"long_name": "number of the step", "units": "1"})
-    return xarray.Dataset(found, {"step": number}, attributes(orbit)).set_coords("time").copy(deep=True)
+    return xarray.Dataset(columns, {"step": number}, attributes(orbit)).set_coords("time").copy(deep=True)
 
 
 def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None) -> dict[str, Variable]:
@@ -120,16 +122,16 @@ def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None)
         before: The heading or the quaternion of the state before the first one, in a row.
     """
     if not orbit.is_compact:
-        return _told(orbit)
+        return _variables(orbit)
     compact = {
         CANONICAL + name: _variable(orbit, name, getattr(orbit, state))
         for name, state in zip(_COMPACT, STATES[1:], strict=True)
         if getattr(orbit, state) is not None
     }
-    known = {name: _variable(orbit, name) for name in _STORED if _is_known(orbit, name)} | _posed(orbit, before)
-    for variable in known.values():
+    states = {name: _variable(orbit, name) for name in _STORED if _is_known(orbit, name)} | _posed(orbit, before)
+    for variable in states.values():
         variable.attrs["coordinates"] = "time"  # those of the group canonical need none
-    return {"time": _variable(orbit, "time")} | known | compact
+    return {"time": _variable(orbit, "time")} | states | compact
 
 
 def steps_apart(orbit: Any) -> dict[str, Variable]:
@@ -139,12 +141,12 @@ def steps_apart(orbit: Any) -> dict[str, Variable]:
     return {STEP: Variable(("step",), orbit.step, {"long_name": "number of the step"})}
 
 
-def _told(orbit: Any) -> dict[str, Variable]:
+def _variables(orbit: Any) -> dict[str, Variable]:
     """Return what an orbit tells, but for empty rows; names along axes are texts, which are attributes of a store."""
     dataset = orbit.to_dataset()
     for variable in dataset.data_vars.values():
-        named = {"components": list(orbit.coordinates)} if "coordinate" in variable.dims else {}
-        variable.attrs |= {"coordinates": "time"} | named
+        own_labels = {"components": list(orbit.coordinates)} if "coordinate" in variable.dims else {}
+        variable.attrs |= {"coordinates": "time"} | own_labels
     variables = {
         str(name): Variable(tuple(map(str, each.dims)), each.values, each.attrs)
         for name, each in dataset.reset_coords("time").data_vars.items()
@@ -190,3 +192,43 @@ def _has_multipliers(orbit: Orbit) -> bool:
 def _variable(orbit: Orbit, name: str, values: np.ndarray | None = None) -> Variable:
     axes, labels = labels_of(orbit.system, name)
     return Variable(("step", *axes), getattr(orbit, name) if values is None else values, labels)
+
+
+_PARTS = {"quaternion": tuple("wxyz")}
+
+
+def orbit_to_pandas(orbit: AbstractOrbit) -> Any:
+    """Return an orbit as a `pandas.DataFrame` in the user's body frame, indexed by time.
+
+    Columns are the variables of `orbit_to_dataset`; those of several numbers have their numbers in the name, from 0 on,
+    quaternions the letters w, x, y, z. Coordinates of a Lagrange-d'Alembert system have their names, such as `x`; what
+    belongs to one has its name too, such as `momentum_x`.
+
+    Example:
+        >>> orbit = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), body_velocity=(1, 0, 0), steps=3)
+        >>> table = orbit.to_pandas()
+        >>> table.shape, list(table.columns[-5:])
+        ((4, 12), ['momentum_1', 'momentum_2', 'x', 'y', 'heading'])
+    """
+    columns: dict[str, tuple[str, np.ndarray]] = {}
+    dataset = orbit.to_dataset()
+    if not orbit.coordinates and "configuration" in dataset:
+        dataset = _with_named_poses(dataset, orbit.space, orbit.configuration)
+    for name, variable in dataset.data_vars.items():
+        labels = [_labels(dataset, str(name), axis) for axis in variable.dims[1:]]
+        for place in np.ndindex(variable.shape[1:]):
+            parts = [str(words[i]) for words, i in zip(labels, place, strict=True)]
+            whole = parts if name == "configuration" and "coordinate" in variable.dims else [str(name), *parts]
+            columns["_".join(whole)] = "time", variable.values[:, *place]
+    return xarray.Dataset(columns, coords={"time": orbit.time}).to_dataframe()
+
+
+def _labels(dataset: xarray.Dataset, name: str, axis: Any) -> Any:
+    """Return what the numbers along an axis are called: their names, or from 0 on."""
+    return dataset.coords[axis].values if axis in dataset.coords else _PARTS.get(name, range(dataset.sizes[axis]))
+
+
+def _with_named_poses(dataset: xarray.Dataset, group: AbstractMatrixGroup, g: np.ndarray) -> xarray.Dataset:
+    """Replace matrices by what people know: positions, headings, quaternions."""
+    posed = {name: (("step", *axes), rows) for name, (axes, rows, _) in separate_variables(group, g).items()}
+    return dataset.drop_vars(["configuration", "displacement"], errors="ignore").assign(posed)

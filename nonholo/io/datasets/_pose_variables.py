@@ -41,7 +41,7 @@ def pose_variables(orbit: Orbit, before: Float[np.ndarray, "1 c"] | None = None)
     if isinstance(group, ProductGroup):
         return separate_variables(group, configurations(orbit.system, stretch.pose))
     (rows,) = rows_of(orbit.system, [stretch], 1, before)
-    return _named(group, rows[:, 1:])
+    return _variables_of(group, rows[:, 1:])
 
 
 def separate_variables(group: AbstractMatrixGroup, g: Float[np.ndarray, "... K N N"]) -> Variables:
@@ -55,15 +55,15 @@ def separate_variables(group: AbstractMatrixGroup, g: Float[np.ndarray, "... K N
         ['x', 'y', 'heading', 'shape']
     """
     if not isinstance(group, ProductGroup):
-        return _named(group, joined_rows(group, g))
-    found: Variables = {}
+        return _variables_of(group, joined_rows(group, g))
+    variables: Variables = {}
     begin = 0
     for number, factor in enumerate(group.factors, start=1):
         part = slice(begin, begin := begin + factor.size)
         for name, entry in separate_variables(factor, g[..., part, part]).items():
             name = "shape" if isinstance(factor, Translations) else name
-            found[f"{name}_{number}" if name in found else name] = entry
-    return found
+            variables[f"{name}_{number}" if name in variables else name] = entry
+    return variables
 
 
 def joined_rows(group: AbstractMatrixGroup, g: Float[np.ndarray, "... K N N"]) -> Float[np.ndarray, "... K c"]:
@@ -77,33 +77,33 @@ def _joined_turns(turn: list[str], rows: np.ndarray) -> np.ndarray:
     if turn == HEADING:
         rows[..., -1] = np.unwrap(rows[..., -1], axis=-1)
     if turn == QUATERNION:
-        rows[..., -4:] = continued(rows[..., -4:])
+        rows[..., -4:] = continuous(rows[..., -4:])
     return rows
 
 
-def _named(group: AbstractMatrixGroup, rows: Float[np.ndarray, "... c"]) -> Variables:
+def _variables_of(group: AbstractMatrixGroup, rows: Float[np.ndarray, "... c"]) -> Variables:
     """Return the columns of `layout` by name."""
     position, turn = layout(group)
-    where, turned = rows[..., : len(position)], rows[..., len(position) :]
-    found: Variables = {}
+    where, turns = rows[..., : len(position)], rows[..., len(position) :]
+    variables: Variables = {}
     if position and set(position) <= set("xyz"):
-        found |= {name: ((), where[..., i], _labels("position", "length unit")) for i, name in enumerate(position)}
+        variables |= {name: ((), where[..., i], _labels("position", "length unit")) for i, name in enumerate(position)}
     elif position:
-        found["position"] = _AXIS, where, _labels("position", "length unit")
-    return found | _turn(group, turn, turned)
+        variables["position"] = _AXIS, where, _labels("position", "length unit")
+    return variables | _turn(group, turn, turns)
 
 
-def _turn(group: AbstractMatrixGroup, turn: list[str], turned: np.ndarray) -> Variables:
+def _turn(group: AbstractMatrixGroup, turn: list[str], turns: np.ndarray) -> Variables:
     if not turn:
         return {}
     if turn == HEADING:
-        return {"heading": ((), turned[..., 0], _labels("angle of the body", "rad"))}
+        return {"heading": ((), turns[..., 0], _labels("angle of the body", "rad"))}
     if turn == QUATERNION:
         labels = _labels("unit quaternion w, x, y, z of the body, Hamilton's product", "1")
-        return {"quaternion": (("quaternion_component",), turned, labels)}
-    size = round(np.sqrt(turned.shape[-1]))
+        return {"quaternion": (("quaternion_component",), turns, labels)}
+    size = round(np.sqrt(turns.shape[-1]))
     name, meaning = ("rotation", "rotation") if group.is_rigid else ("configuration", "pose")
-    return {name: (_ENTRIES, turned.reshape(*turned.shape[:-1], size, size), _labels(f"{meaning} as a matrix", "1"))}
+    return {name: (_ENTRIES, turns.reshape(*turns.shape[:-1], size, size), _labels(f"{meaning} as a matrix", "1"))}
 
 
 def _labels(meaning: str, units: str) -> dict[str, str]:
@@ -138,8 +138,8 @@ def separate_rows(group: AbstractMatrixGroup, g: Float[np.ndarray, "R N N"]) -> 
     Angles are between -pi and pi, quaternions have a scalar that is not negative.
     """
     position, turn = layout(group)
-    turned = np.arctan2(g[:, 1, 0], g[:, 0, 0])[:, None] if turn == HEADING else _turned(g, turn)
-    return np.concatenate([g[:, : len(position), len(position)], turned], axis=1)
+    turns = np.arctan2(g[:, 1, 0], g[:, 0, 0])[:, None] if turn == HEADING else _turns(g, turn)
+    return np.concatenate([g[:, : len(position), len(position)], turns], axis=1)
 
 
 def rows_of(
@@ -151,25 +151,25 @@ def rows_of(
     """
     position, turn = layout(system.group)
     first = 0
-    for time, pose, headings in _headed(stretches, before) if turn == HEADING else stretches:
-        kept = slice(-first % every, None, every)
-        place, turned = _placed(system, pose[kept], len(position), turn)
+    for time, pose, headings in _with_headings(stretches, before) if turn == HEADING else stretches:
+        own_rows = slice(-first % every, None, every)
+        place, turns = _places_and_turns(system, pose[own_rows], len(position), turn)
         if turn == HEADING:
-            turned = np.asarray(headings)[kept, None]
+            turns = np.asarray(headings)[own_rows, None]
         if turn == QUATERNION:
-            turned = continued(turned, None if before is None else before[:, -4:])
-        rows = np.concatenate([time[kept, None], place, turned], axis=1)
+            turns = continuous(turns, None if before is None else before[:, -4:])
+        rows = np.concatenate([time[own_rows, None], place, turns], axis=1)
         first, before = first + len(time), rows[-1:] if len(rows) else before
         yield rows
 
 
-def _placed(system: Any, pose: np.ndarray, n: int, turn: list[str]) -> tuple[np.ndarray, np.ndarray]:
+def _places_and_turns(system: Any, pose: np.ndarray, n: int, turn: list[str]) -> tuple[np.ndarray, np.ndarray]:
     """Return n numbers of the positions, and the turns, of poses: compact ones with the turn first, or matrices."""
     if pose.shape[1:] == (4,) and turn in (HEADING, QUATERNION):
         compact = poses(system, pose)
         return compact[:, 4 - n :], compact
     g = pose if pose.ndim == 3 else configurations(system, pose)
-    return g[:, :n, n], _turned(g, turn)
+    return g[:, :n, n], _turns(g, turn)
 
 
 def coordinate_rows(stretches: Iterable[Stretch], every: int) -> Iterator[Float[np.ndarray, "R c"]]:
@@ -182,17 +182,17 @@ def coordinate_rows(stretches: Iterable[Stretch], every: int) -> Iterator[Float[
 
 def layout(group: AbstractMatrixGroup) -> tuple[list[str], list[str]]:
     """Return the columns of the position and of the turn; groups that are none of ours have all entries as turn."""
-    described = describe_group(group)
-    kind, n = described["group"], described.get("n", 0)
+    text = describe_group(group)
+    kind, n = text["group"], text.get("n", 0)
     if kind == "Translations":
-        return _numbered(n), []
-    position = [] if kind != "SE" else list("xyz"[:n]) if n <= 3 else _numbered(n)
+        return _numbers(n), []
+    position = [] if kind != "SE" else list("xyz"[:n]) if n <= 3 else _numbers(n)
     if (kind, n) == ("SE", 2):
         return position, HEADING
     return position, QUATERNION if n == 3 else _entries(n or group.size)
 
 
-def _numbered(n: int) -> list[str]:
+def _numbers(n: int) -> list[str]:
     return [f"x{i}" for i in range(1, n + 1)]
 
 
@@ -201,17 +201,17 @@ def _entries(size: int) -> list[str]:
     return [f"r{i}{between}{j}" for i in range(1, size + 1) for j in range(1, size + 1)]
 
 
-def _headed(stretches: Iterable[Stretch], row: Float[np.ndarray, "1 c"] | None) -> Iterator[Stretch]:
+def _with_headings(stretches: Iterable[Stretch], row: Float[np.ndarray, "1 c"] | None) -> Iterator[Stretch]:
     """Give stretches on SE(2) headings, each continuing the one before, the first that at the end of a row."""
     before = None if row is None else float(row[0, -1])
     for stretch in stretches:
-        turned = stretch.pose[:, :2, 0] if stretch.pose.ndim == 3 else stretch.pose  # cosine and sine first
-        headings = unwrap(turned, before) if stretch.headings is None else stretch.headings
+        turns = stretch.pose[:, :2, 0] if stretch.pose.ndim == 3 else stretch.pose  # cosine and sine first
+        headings = unwrap(turns, before) if stretch.headings is None else stretch.headings
         before = headings[-1] if len(headings) else before
         yield stretch._replace(headings=headings)
 
 
-def _turned(g: np.ndarray, names: list[str]) -> Float[np.ndarray, "R c"]:
+def _turns(g: np.ndarray, names: list[str]) -> Float[np.ndarray, "R c"]:
     """Return the rotations as quaternions or, row by row, as matrices."""
     if names == QUATERNION:
         return quaternion_from_matrix(g[:, :3, :3])
@@ -219,7 +219,7 @@ def _turned(g: np.ndarray, names: list[str]) -> Float[np.ndarray, "R c"]:
     return g[:, :size, :size].reshape(len(g), len(names))
 
 
-def continued(
+def continuous(
     q: Float[np.ndarray, "... R 4"], before: Float[np.ndarray, "... 1 4"] | None = None
 ) -> Float[np.ndarray, "... R 4"]:
     """Return the quaternions, each with the sign that is nearer to the one before it."""

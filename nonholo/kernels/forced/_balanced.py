@@ -12,16 +12,16 @@ a step is the step of length $\tau h$.
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from nonholo.base.compiled import njit
-from nonholo.kernels._driver import SETTLED, _compensated
-from nonholo.kernels._scalar import BORROWING, COMPILED, borrowing, scalar
+from nonholo.kernels._composition import find_root, prepare, push_and_move, write_chart
+from nonholo.kernels._driver import floor_of, kahan_sum
+from nonholo.kernels._scalar import BORROWING, COMPILED, Rows, borrowing, function_at, scalar
 from nonholo.kernels._small import assign, eliminate, multiply
-from nonholo.kernels._substeps import charted, prepared, pushed, solved
-from nonholo.kernels.forced._driven import function_at, largest
+from nonholo.kernels.forced._driven import largest
 
 _CORRECTIONS = 30  # of momenta between two half impulses
 _EXACT = 4e-16  # relative
@@ -32,6 +32,9 @@ _PIECES = 1000  # most of a path
 _FOLDED = 100.0  # of the inverse slope
 _DIFFERENCE = 1e-7  # relative, of momenta
 _SMALLEST = 1e-6  # part of a step by which its path is followed
+
+When: TypeAlias = tuple[float, float, int]
+"""A part of a step, its time in the middle, and the row of a table."""
 
 
 class Impulses(NamedTuple):
@@ -90,7 +93,7 @@ class Balanced(NamedTuple):
     potential: Any
 
 
-class ImpulseRoom(NamedTuple):
+class Scratch(NamedTuple):
     """What half impulses write to.
 
     Attributes:
@@ -115,23 +118,23 @@ class ImpulseRoom(NamedTuple):
 
 
 @scalar
-def room_of(c: Impulses, size: int) -> ImpulseRoom:
+def room_of(c: Impulses, size: int) -> Scratch:
     """Return room for the half impulses of one run."""
     (k, dim), n = c.along.shape, len(c.turn)
     poses, covectors, momenta = np.zeros((8, n, n)), np.zeros((3, dim)), np.zeros((8, k))
     chart, pose = np.zeros(len(c.directions)), np.zeros(size)
-    return ImpulseRoom(poses, covectors, momenta, np.zeros(1), np.zeros((k, k)), np.zeros((k, k)), chart, pose)
+    return Scratch(poses, covectors, momenta, np.zeros(1), np.zeros((k, k)), np.zeros((k, k)), chart, pose)
 
 
 @njit(**BORROWING)
-def see_pose(c: Impulses, room: ImpulseRoom, pose: np.ndarray, out: np.ndarray) -> None:
+def see_pose(c: Impulses, room: Scratch, pose: np.ndarray, out: np.ndarray) -> None:
     """Write the user's pose from that of the kernel."""
     assign(room.poses[7].reshape(-1), pose)
     multiply(room.poses[7], c.turn, out)
 
 
 @njit(**BORROWING)
-def lean(c: Impulses, room: ImpulseRoom) -> None:
+def lean(c: Impulses, room: Scratch) -> None:
     """Write g (I + Y) from the chart and the pose before."""
     Y, n = room.poses[3], len(c.turn)
     for i in range(n):
@@ -143,7 +146,7 @@ def lean(c: Impulses, room: ImpulseRoom) -> None:
 
 
 @njit(**BORROWING)
-def pull(c: Impulses, room: ImpulseRoom, out: np.ndarray) -> None:
+def pull(c: Impulses, room: Scratch, out: np.ndarray) -> None:
     """Add half impulses of potentials that are linear and of springs, which are linear in the leaning pose."""
     A, leaning, product, n = room.poses[3], room.poses[4], room.poses[5], len(c.turn)
     lean(c, room)
@@ -160,7 +163,7 @@ def pull(c: Impulses, room: ImpulseRoom, out: np.ndarray) -> None:
 
 
 @njit(**BORROWING)
-def stretch(spring: np.ndarray, room: ImpulseRoom, A: np.ndarray) -> None:
+def stretch(spring: np.ndarray, room: Scratch, A: np.ndarray) -> None:
     """Add x v^T of a spring: U = k/2 (d - L)^2 changes by v . (g' x - g x), v along the mean of both ends."""
     n = len(A)
     before, after, mean = 0.0, 0.0, room.poses[6, 0]
@@ -179,10 +182,10 @@ def stretch(spring: np.ndarray, room: ImpulseRoom, A: np.ndarray) -> None:
 
 
 @njit(**BORROWING)
-def halve(room: ImpulseRoom, n: int) -> None:
+def halve(room: Scratch, n: int) -> None:
     """Write the pose in the middle, g W^(1/2), by the iteration of Denman and Beavers."""
     g, after, middle, root = room.poses[0], room.poses[1], room.poses[2], room.poses[3]
-    other, held, scratch = room.poses[5], room.poses[6], room.poses[7]
+    other, later, scratch = room.poses[5], room.poses[6], room.poses[7]
     assign(scratch.reshape(-1), g.reshape(-1))
     assign(root.reshape(-1), after.reshape(-1))
     eliminate(scratch, root)
@@ -190,14 +193,14 @@ def halve(room: ImpulseRoom, n: int) -> None:
     for i in range(n):
         other[i, i] = 1.0
     for _ in range(50):
-        moved = 0.0
-        inverse_mean(root, other, held, middle, scratch)
+        change = 0.0
+        inverse_mean(root, other, later, middle, scratch)
         for i in range(n):
             for j in range(n):
-                moved = max(moved, abs(middle[i, j] - root[i, j]))
+                change = max(change, abs(middle[i, j] - root[i, j]))
         assign(root.reshape(-1), middle.reshape(-1))
-        assign(other.reshape(-1), held.reshape(-1))
-        if not moved > 1e-15:
+        assign(other.reshape(-1), later.reshape(-1))
+        if not change > 1e-15:
             break
     multiply(g, root, middle)
 
@@ -217,14 +220,14 @@ def inverse_mean(P: np.ndarray, Q: np.ndarray, out: np.ndarray, other: np.ndarra
 
 
 @borrowing
-def value_at(f: Balanced, room: ImpulseRoom, g: np.ndarray) -> float:
+def value_at(f: Balanced, room: Scratch, g: np.ndarray) -> float:
     """Return U of a function at a pose."""
     function_at(f.potential, 0.0, g, room.covectors[0], room.covectors[1])
     return room.covectors[1, 0]
 
 
 @borrowing
-def differentiate(f: Balanced, room: ImpulseRoom) -> None:
+def differentiate(f: Balanced, room: Scratch) -> None:
     """Write dU of a function in the middle, by differences."""
     dU, bent = room.covectors[2], room.poses[3]
     for i in range(len(dU)):
@@ -236,7 +239,7 @@ def differentiate(f: Balanced, room: ImpulseRoom) -> None:
 
 
 @borrowing
-def sloped(f: Balanced, room: ImpulseRoom, part: float, out: np.ndarray) -> None:
+def add_potential(f: Balanced, room: Scratch, part: float, out: np.ndarray) -> None:
     """Add half impulses of a potential that is a function, h/2 times -dU - (U' - U - <dU, X>)/<BX, X> BX.
 
     A difference below rounding is none; above it its rounding is that of half impulses, however short the step is.
@@ -270,7 +273,7 @@ def see_velocity(c: Impulses, mean: np.ndarray, velocity: np.ndarray) -> None:
 
 
 @borrowing
-def driven(f: Balanced, room: ImpulseRoom, part: float, time: float, out: np.ndarray) -> None:
+def add_force(f: Balanced, room: Scratch, part: float, time: float, out: np.ndarray) -> None:
     """Add half impulses of a force that is a function, in the middle of the step."""
     velocity, value = room.covectors[0], room.covectors[1]
     see_velocity(f.c, room.momenta[0], velocity)
@@ -281,7 +284,7 @@ def driven(f: Balanced, room: ImpulseRoom, part: float, time: float, out: np.nda
 
 
 @borrowing
-def half_impulse(f: Balanced, room: ImpulseRoom, part: float, time: float, row: int) -> None:
+def half_impulse(f: Balanced, room: Scratch, part: float, time: float, row: int) -> None:
     """Write the half impulse of a part of a step from what stands in the room: poses, chart, momenta of the middle."""
     mean, out = room.momenta[0], room.momenta[1]
     out[:] = 0.0
@@ -295,37 +298,29 @@ def half_impulse(f: Balanced, room: ImpulseRoom, part: float, time: float, row: 
     if f.has[0] or f.has[1]:
         halve(room, len(f.c.turn))
     if f.has[1]:
-        sloped(f, room, part, out)
+        add_potential(f, room, part, out)
     if f.has[0]:
-        driven(f, room, part, time, out)
+        add_force(f, room, part, time, out)
 
 
 @scalar
-def displace(
-    p: Any,
-    f: Balanced,
-    room: ImpulseRoom,
-    when: tuple[float, float, int],
-    s: np.ndarray,
-    guess: np.ndarray,
-    pose: np.ndarray,
-) -> int:
+def displace(p: Any, f: Balanced, room: Scratch, when: When, s: np.ndarray, guess: np.ndarray, pose: np.ndarray) -> int:
     """Write the displacement over momenta, the change of the free step, and the half impulse; return the outcome.
 
-    A part of a step, its time in the middle, and the row of a table say when; the guess becomes the root.
+    The guess becomes the root.
     """
-    part, scaled, change, mean = when[0], room.momenta[6], room.momenta[4], room.momenta[0]
+    part, momenta, change, mean = when[0], room.momenta[6], room.momenta[4], room.momenta[0]
     one, root = np.zeros(1), guess.copy()
     one[0] = 1.0
     for i in range(len(s)):
-        scaled[i] = part * s[i]
-    w = prepared(p, scaled, one)
+        momenta[i] = part * s[i]
+    w = prepare(p, momenta, one)
     assign(room.pose, pose)
-    code = solved(p, w, 0, scaled, root, room.pose, guess)
+    code = find_root(p, w, 0, momenta, root, room.pose, guess)
     if code != 0:
         return code
-    charted(p, scaled, guess, room.chart)
-    pushed(p, w, scaled, guess, change, room.pose)
+    write_chart(p, momenta, guess, room.chart)
+    push_and_move(p, w, momenta, guess, change, room.pose)
     for i in range(len(s)):
         change[i] /= part
         mean[i] = s[i] + change[i] / 2
@@ -335,7 +330,7 @@ def displace(
 
 
 @njit(**BORROWING)
-def missed(room: ImpulseRoom, m: np.ndarray, s: np.ndarray) -> float:
+def write_gap(room: Scratch, m: np.ndarray, s: np.ndarray) -> float:
     """Write what momenta miss, m + J - s; return the largest of it."""
     gap = room.momenta[2]
     for i in range(len(m)):
@@ -345,14 +340,7 @@ def missed(room: ImpulseRoom, m: np.ndarray, s: np.ndarray) -> float:
 
 @scalar
 def settle(
-    p: Any,
-    f: Balanced,
-    room: ImpulseRoom,
-    when: tuple[float, float, int],
-    m: np.ndarray,
-    s: np.ndarray,
-    root: np.ndarray,
-    pose: np.ndarray,
+    p: Any, f: Balanced, room: Scratch, when: When, m: np.ndarray, s: np.ndarray, root: np.ndarray, pose: np.ndarray
 ) -> int:
     """Correct momenta s until s = m + J, by Broyden's method from the inverse slope in the room; return the outcome.
 
@@ -364,7 +352,7 @@ def settle(
         code = displace(p, f, room, when, s, root, pose)
         if code != 0:
             return code
-        left, size = missed(room, m, s), largest(m, s)
+        left, size = write_gap(room, m, s), largest(m, s)
         if not left < math.inf:
             return 5
         if left <= _EXACT * size or (left <= _SETTLED * size + room.noise[0] and not left < before / 2):
@@ -379,10 +367,10 @@ def settle(
 
 
 @njit(**BORROWING)
-def correct(room: ImpulseRoom, s: np.ndarray) -> None:
+def correct(room: Scratch, s: np.ndarray) -> None:
     """Correct momenta by what they miss, and keep both."""
-    begun, last, H = room.momenta[3], room.momenta[5], room.slopes
-    assign(begun, s)
+    origin, last, H = room.momenta[3], room.momenta[5], room.slopes
+    assign(origin, s)
     assign(last, room.momenta[2])
     for i in range(len(s)):
         for j in range(len(s)):
@@ -390,27 +378,27 @@ def correct(room: ImpulseRoom, s: np.ndarray) -> None:
 
 
 @njit(**BORROWING)
-def renew(room: ImpulseRoom, s: np.ndarray) -> None:
+def renew(room: Scratch, s: np.ndarray) -> None:
     """Let the inverse slope know the last correction, and what it changed: H y = s for both."""
-    gap, begun, last, H, scratch = room.momenta[2], room.momenta[3], room.momenta[5], room.slopes, room.momenta[7]
+    gap, origin, last, H, scratch = room.momenta[2], room.momenta[3], room.momenta[5], room.slopes, room.momenta[7]
     below = 0.0
     for i in range(len(s)):
         scratch[i] = 0.0
         for j in range(len(s)):
             scratch[i] += H[i, j] * (last[j] - gap[j])
-        below += (s[i] - begun[i]) * scratch[i]
+        below += (s[i] - origin[i]) * scratch[i]
     if not abs(below) > 0.0:
         return
     for j in range(len(s)):
         along = 0.0
         for i in range(len(s)):
-            along += (s[i] - begun[i]) * H[i, j]
+            along += (s[i] - origin[i]) * H[i, j]
         for i in range(len(s)):
-            H[i, j] += (s[i] - begun[i] - scratch[i]) * along / below
+            H[i, j] += (s[i] - origin[i] - scratch[i]) * along / below
 
 
 @njit(**BORROWING)
-def rub(c: Impulses, room: ImpulseRoom, part: float) -> None:
+def rub(c: Impulses, room: Scratch, part: float) -> None:
     """Write the inverse slope of what is missed that friction alone has, (I + K)^-1."""
     slope, H = room.slope, room.slopes
     for i in range(len(H)):
@@ -422,13 +410,7 @@ def rub(c: Impulses, room: ImpulseRoom, part: float) -> None:
 
 @scalar
 def see_slope(
-    p: Any,
-    f: Balanced,
-    room: ImpulseRoom,
-    when: tuple[float, float, int],
-    s: np.ndarray,
-    root: np.ndarray,
-    pose: np.ndarray,
+    p: Any, f: Balanced, room: Scratch, when: When, s: np.ndarray, root: np.ndarray, pose: np.ndarray
 ) -> None:
     """Write the inverse slope of what is missed at momenta, by differences."""
     slope, H, place, guess, first = room.slope, room.slopes, s.copy(), root.copy(), s.copy()
@@ -450,34 +432,30 @@ def see_slope(
 
 
 @njit(**BORROWING)
-def is_folded(room: ImpulseRoom) -> bool:
+def is_folded(room: Scratch) -> bool:
     """Tell whether what is missed hardly depends on momenta in some direction, by the inverse slope."""
     rows = room.slopes.reshape(-1)
     return not largest(rows, rows) < _FOLDED
 
 
 @scalar
+def why_lost(room: Scratch, code: int, reach: float) -> int:
+    """Return the outcome of a path that is lost after a part of the step: 1 at a fold."""
+    return 1 if code == 7 and (reach == 0.0 or is_folded(room)) else code
+
+
+@scalar
 def solve(
-    p: Any,
-    f: Balanced,
-    room: ImpulseRoom,
-    when: tuple[float, float, int],
-    m: np.ndarray,
-    s: np.ndarray,
-    root: np.ndarray,
-    pose: np.ndarray,
+    p: Any, f: Balanced, room: Scratch, when: When, m: np.ndarray, s: np.ndarray, root: np.ndarray, pose: np.ndarray
 ) -> int:
     """Correct momenta and root; where that is not certain, follow them over growing parts; return the outcome."""
     part, middle, row = when
-    done, size, at, guess, tried = 0.0, 0.25, m.copy(), np.zeros_like(root), False
+    reach, size, at, guess = 0.0, 1.0, m.copy(), np.zeros_like(root)
     begin = middle - part * f.c.time_step / 2
     for _ in range(_PIECES):
-        goal = min(1.0, done + size) if tried else 1.0
-        if tried:
-            assign(s, at)
-            assign(root, guess)
-        if done > 0.0:
-            see_slope(p, f, room, (part * done, begin + part * done * f.c.time_step / 2, row), at, guess, pose)
+        goal = min(1.0, reach + size)
+        if reach > 0.0:
+            see_slope(p, f, room, (part * reach, begin + part * reach * f.c.time_step / 2, row), at, guess, pose)
         else:
             rub(f.c, room, part * goal)
         code = settle(p, f, room, (part * goal, begin + part * goal * f.c.time_step / 2, row), m, s, root, pose)
@@ -486,35 +464,27 @@ def solve(
         if code == 0:
             assign(at, s)
             assign(guess, root)
-            done, size = goal, 2 * size
-        elif tried:
+            reach, size = goal, 2 * size
+        else:
             size /= 4
+            assign(s, at)
+            assign(root, guess)
         if size < _SMALLEST:
-            return 1 if code == 7 and (done == 0.0 or is_folded(room)) else code
-        tried = True
+            return why_lost(room, code, reach)
     return 3
 
 
 @scalar
 def step(
-    p: Any,
-    f: Balanced,
-    room: ImpulseRoom,
-    row: int,
-    now: tuple[np.ndarray, np.ndarray, np.ndarray],
-    past: np.ndarray,
-    pushes: np.ndarray,
-    first: np.ndarray,
+    p: Any, f: Balanced, room: Scratch, row: int, now: Rows, past: np.ndarray, pushes: np.ndarray, first: np.ndarray
 ) -> int:
     """Take all stages of a step from momenta, compensations and pose, in place; return the outcome.
 
     The chart of the first stage is written.
     """
-    m, lost, pose = now
-    s, root, settled, begin, code = m.copy(), past[0, 0].copy(), 0.0, f.c.begin + row * f.c.time_step, 0
+    m, carry, pose = now
+    s, root, floor, begin, code = m.copy(), past[0, 0].copy(), floor_of(m), f.c.begin + row * f.c.time_step, 0
     at = min(row, len(f.c.rows) - 1)
-    for x in m:
-        settled = max(settled, SETTLED * abs(x))
     for i in range(len(f.c.stages)):
         part = f.c.stages[i]
         when = part, begin + part * f.c.time_step / 2, row
@@ -535,16 +505,14 @@ def step(
             push = room.momenta[1, j]
             rest = push - part * f.c.rows[at, j]
             pushes[i, 2, j], pushes[i, 1, j], pushes[i, 0, j] = pushes[i, 1, j], pushes[i, 0, j], rest
-            m[j], lost[j] = _compensated(m[j], lost[j], room.momenta[4, j] + 2 * push, settled)
+            m[j], carry[j] = kahan_sum(m[j], carry[j], room.momenta[4, j] + 2 * push, floor)
         assign(pose, room.pose)
         begin += part * f.c.time_step
     return 0
 
 
 @njit(nogil=True, **COMPILED)
-def advance_balanced(
-    p: Any, f: Balanced, state: np.ndarray, steps: int, every: int, rows: tuple[np.ndarray, np.ndarray, np.ndarray]
-) -> tuple[int, int]:
+def advance_balanced(p: Any, f: Balanced, state: np.ndarray, steps: int, every: int, rows: Rows) -> tuple[int, int]:
     """Advance any body under any force.
 
     The state holds momenta, compensations, the pose, the last three roots and half impulses of each stage, the number
@@ -552,33 +520,33 @@ def advance_balanced(
     """
     momenta, charts, poses = rows
     k, size, stages = momenta.shape[1], poses.shape[1], len(f.c.stages)
-    m, lost, pose = state[:k].copy(), state[k : 2 * k].copy(), state[2 * k : 2 * k + size].copy()
+    m, carry, pose = state[:k].copy(), state[k : 2 * k].copy(), state[2 * k : 2 * k + size].copy()
     rest = state[2 * k + size : len(state) - 1]
     past, pushes = rest[: len(rest) - 3 * k * stages].copy(), rest[len(rest) - 3 * k * stages :].copy()
     roots, halves = past.reshape(stages, 3, -1), pushes.reshape(stages, 3, k)
-    room, first, row, done, code = room_of(f.c, size), np.zeros(charts.shape[1]), int(state[len(state) - 1]), 0, 0
-    while done < steps:
-        after, left, moved = m.copy(), lost.copy(), pose.copy()
-        code = step(p, f, room, row, (after, left, moved), roots, halves, first)
+    room, first, row, count, code = room_of(f.c, size), np.zeros(charts.shape[1]), int(state[len(state) - 1]), 0, 0
+    while count < steps:
+        after, left, next_pose = m.copy(), carry.copy(), pose.copy()
+        code = step(p, f, room, row, (after, left, next_pose), roots, halves, first)
         if code != 0:
             break
-        done += 1
+        count += 1
         row += 1
-        if done % every == 0:
-            at = done // every - 1
+        if count % every == 0:
+            at = count // every - 1
             assign(momenta[at], m)
             assign(poses[at], pose)
             assign(charts[at], first)
         assign(m, after)
-        assign(lost, left)
-        assign(pose, moved)
+        assign(carry, left)
+        assign(pose, next_pose)
     for begin, part in (
         (0, m),
-        (k, lost),
+        (k, carry),
         (2 * k, pose),
         (2 * k + size, past),
         (len(state) - 1 - 3 * k * stages, pushes),
     ):
         assign(state[begin:], part)
     state[len(state) - 1] = row
-    return done, code
+    return count, code

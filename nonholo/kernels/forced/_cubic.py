@@ -6,7 +6,16 @@ affine in y, $L\,(I - \hat y)\,R^TF = f + N y$, those of friction $-K y/w$: so t
 $$ (B + K)\,y + (c\cdot y')\,y' = w(y)\,(m + r_k + f + N y), \qquad m' = m + 2 J + \Delta, \quad
    \Delta = -2\,(c\cdot y')\,y'/w . $$
 
-A root is certain below a level of momenta; else it is followed over growing parts of the step.
+A root is certainly the principal one where it is the only one in a region that no part of the step leads out of
+(docs/theory/forces.md, Proposition 18.3); else it is followed over growing parts of the step. Tops: the disc
+|y|_B <= R with
+
+$$ 1 - \frac{|c|R}{b^{3/2}} - \frac{2R}{b}\Bigl((1 + \tfrac{|K|}b)R + \frac{|c|R^2}{b^{3/2}}\Bigr)
+   - \Bigl(1 + \frac{R^2}b\Bigr)\frac\nu b > 0, \qquad
+   |m|,\ |m + a| < \frac R{1 + R^2/b} - \frac{\nu R}b, $$
+
+b the least eigenvalue of B, |N| <= nu, half impulses a + N y, momenta in the dual norm. Sleighs: the strip |y_1| <= T,
+in which the second equation gives y_2 and the first one grows with y_1.
 """
 
 import math
@@ -15,13 +24,58 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from nonholo.base.compiled import njit
-from nonholo.kernels._driver import CORRECTIONS, SETTLED, _compensated, _unpack, converged
-from nonholo.kernels._interface import Body, move, quadratic
-from nonholo.kernels._scalar import BORROWING, COMPILED, PIECES, scalar, sqrt
+from nonholo.kernels._driver import CORRECTIONS, SETTLED, _unpack, converged, kahan_sum
+from nonholo.kernels._scalar import BORROWING, COMPILED, PIECES, Body, Rows, move, quadratic, scalar, sqrt
 from nonholo.kernels._small import assign
-from nonholo.kernels.forced._certain import STRIP, certain_disc, is_in_strip
-from nonholo.kernels.forced._kick import Kick, seen
-from nonholo.kernels.forced._two import RENEWED, Rows, _numbers, leaned, swept
+from nonholo.kernels.forced._kick import RENEWED, Kick, _numbers, apply_arms, to_body, turn_terms
+
+_HALVINGS = 24
+STRIP = 0.5
+"""T: 53 degrees to either side."""
+
+
+@scalar
+def is_alone(b: float, c: float, K: float, nu: float, R: float) -> bool:
+    """Tell whether there is at most one root of a top within a radius."""
+    pull = c * R / (b * sqrt(b))
+    return 1 - pull - 2 * R / b * ((1 + K / b) * R + pull * R) - (1 + R * R / b) * nu / b > 0
+
+
+@scalar
+def certain_disc(B: Any, c: float, K: float, nu: float) -> tuple[float, float]:
+    """Return R^2, and the square of the dual norm of momenta up to which a root in it is certain, -1 if there is none.
+
+    B is given by its three numbers, c and K by their sizes.
+    """
+    half = (B[0] - B[2]) / 2
+    least = (B[0] + B[2]) / 2 - sqrt(half * half + B[1] * B[1])
+    low, high = 0.0, sqrt(least)
+    for _ in range(_HALVINGS):
+        R = (low + high) / 2
+        if is_alone(least, c, K, nu, R):
+            low = R
+        else:
+            high = R
+    level = low / (1 + low * low / least) - nu * low / least
+    return low * low, (level * level if level > 0 else -1.0)
+
+
+@scalar
+def is_in_strip(B: Any, c: float, K: Any, m: Any, r: Any, N: Any) -> bool:
+    """Tell whether all parts of the step of a sleigh have one root each in the strip: of momenta m and r + N y_1.
+
+    What the second equation gives to y_2 is put into the first one, whose least slope in the strip is bounded; a slide
+    that adds to it does no harm.
+    """
+    T, W = STRIP, 1 + STRIP * STRIP
+    a1, a2, n1, n2, size = abs(m[0]) + abs(r[0]), abs(m[1]) + abs(r[1]), abs(N[0]), abs(N[2]), abs(c)
+    rate = (2 * T * (a2 + n2 * T) + W * n2 + abs(K[2]) + 2 * size * T) / B[2]
+    against = m[1] if c > 0 else -m[1]
+    slide = ((against if against > 0 else 0.0) + abs(r[1])) * (1 + 3 * T * T)
+    bent = size * (slide + 2 * T * (W + T * T) * n2 + 2 * T * abs(K[2])) / B[2]
+    growth = B[0] - abs(K[1]) * rate - bent - 2 * T * (a1 + n1 * T) - W * n1
+    return growth > 0 and T * growth > a1 + abs(K[1]) * a2 / B[2]
+
 
 _BENT = 0.25  # most change of a Jacobian in one piece of a path, squared
 _SHORTEST = 1e-7  # piece
@@ -80,10 +134,10 @@ def cubic_of(p: Body, n: int, F: Any, L: Any, K: Any) -> Cubic:
 def lean(n: int, L: Any, u: Any) -> tuple[float, float, float, float]:
     """Return N: half impulses of the weight u, as the body sees it, are L u + N y."""
     if n == 3:
-        a1, a2 = leaned(L, -u[2], 0.0, u[0])
-        b1, b2 = leaned(L, 0.0, -u[2], u[1])
+        a1, a2 = apply_arms(L, -u[2], 0.0, u[0])
+        b1, b2 = apply_arms(L, 0.0, -u[2], u[1])
         return a1, b1, a2, b2
-    a1, a2 = leaned(L, u[1], -u[0], 0.0)
+    a1, a2 = apply_arms(L, u[1], -u[0], 0.0)
     return a1, 0.0, a2, 0.0
 
 
@@ -132,8 +186,8 @@ def follow(q: Cubic, m: Any, r: Any, N: Any) -> tuple[int, float, float]:
     Friction, which bends nothing, acts in full at all parts.
     """
     A, y1, y2, t, size = q.A, 0.0, 0.0, 0.0, 0.25
-    J, begun = A, A[0] * A[3] - A[1] * A[2]
-    det = begun
+    J, det_at_rest = A, A[0] * A[3] - A[1] * A[2]
+    det = det_at_rest
     for _ in range(PIECES):
         goal = t + size if t + size < 1.0 else 1.0
         square = goal * goal
@@ -148,7 +202,7 @@ def follow(q: Cubic, m: Any, r: Any, N: Any) -> tuple[int, float, float]:
             det = J[0] * J[3] - J[1] * J[2]
         elif size > _SHORTEST:
             size /= 4
-        elif math.isfinite(H[0] + H[1] + H[2] + H[3]) and det > _FOLDED * begun:
+        elif math.isfinite(H[0] + H[1] + H[2] + H[3]) and det > _FOLDED * det_at_rest:
             return 3, math.nan, math.nan
         else:
             return (1 if math.isfinite(a[0] + a[1]) else 5), math.nan, math.nan
@@ -242,12 +296,12 @@ def advance_cubic(
     momenta, charts, poses = rows
     m1, m2, l1, l2, q0, q1, q2, q3, y1, y2, u1, u2, v1, v2 = _unpack(state)
     t1, t2, weight = state[14], state[15], (state[18], state[19], state[20])
-    last, row, code, done, pose = len(table) - 1, int(state[21]), 0, 0, (q0, q1, q2, q3)
+    last, row, code, count, pose = len(table) - 1, int(state[21]), 0, 0, (q0, q1, q2, q3)
     disc = disc_of(q)
-    while done < steps:
+    while count < steps:
         if q.n > 0 and row % RENEWED == 0:
-            weight = seen(q.n, q.F, *pose)
-        f1, f2 = leaned(q.L, *weight)
+            weight = to_body(q.n, q.F, *pose)
+        f1, f2 = apply_arms(q.L, *weight)
         at = min(row, last)
         r, N = (table[at, 0] + f1, table[at, 1] + f2), lean(q.n, q.L, weight)
         g1, g2 = 4 * (y1 + v1) - (6 * u1 + t1), 4 * (y2 + v2) - (6 * u2 + t2)
@@ -255,22 +309,22 @@ def advance_cubic(
         if code != 0:
             break
         t1, t2, v1, v2, u1, u2, y1, y2 = v1, v2, u1, u2, y1, y2, w1, w2
-        done += 1
+        count += 1
         row += 1
-        if done % every == 0:
-            at = done // every - 1
+        if count % every == 0:
+            at = count // every - 1
             momenta[at, 0], momenta[at, 1], charts[at, 0], charts[at, 1] = m1, m2, w1, w2
             poses[at, 0], poses[at, 1], poses[at, 2], poses[at, 3] = pose
         share = 1 / (1 + w1 * w1 + q.e * w2 * w2)
         push, K = 2 * (q.c[1] * w1 - q.c[0] * w2) * share, q.K
         j1 = r[0] + (N[0] * w1 + N[1] * w2) - (K[0] * w1 + K[1] * w2) * share
         j2 = r[1] + (N[2] * w1 + N[3] * w2) - (K[2] * w1 + K[3] * w2) * share
-        settled = SETTLED * max(abs(m1), abs(m2))
-        m1, l1 = _compensated(m1, l1, 2 * j1 + push * w2, settled)
-        m2, l2 = _compensated(m2, l2, 2 * j2 - push * w1, settled)
+        floor = SETTLED * max(abs(m1), abs(m2))
+        m1, l1 = kahan_sum(m1, l1, 2 * j1 + push * w2, floor)
+        m2, l2 = kahan_sum(m2, l2, 2 * j2 - push * w1, floor)
         if q.n > 0:
-            a, x, y, z = swept(q.n, w1, w2, *weight)
+            a, x, y, z = turn_terms(q.n, w1, w2, *weight)
             weight = (weight[0] - a * x, weight[1] - a * y, weight[2] - a * z)
         pose = move(p, w1, w2, *pose)
     assign(state, (m1, m2, l1, l2, *pose, y1, y2, u1, u2, v1, v2, t1, t2, 0.0, 0.0, *weight, float(row)))
-    return done, code
+    return count, code

@@ -11,15 +11,13 @@ whose loop is the same.
 """
 
 import math
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from nonholo.base.compiled import compiled_in
-from nonholo.kernels._scalar import inlined, scalar
+from nonholo.kernels._scalar import function_at, inlining, scalar
 from nonholo.kernels._small import assign, eliminate, multiply
-from nonholo.kernels.forced._kick import Kick, kept, linear, pulled_by_weight, seen
+from nonholo.kernels.forced._kick import Kick, after_friction, linear, pulled_by_weight, to_body
 
 _ITERATIONS = 30  # of Newton's method with one slope
 _MOST, _SHORTEST = 100, 1e-12  # with new slopes; part of a correction
@@ -67,7 +65,7 @@ class DriveRoom(NamedTuple):
         rows: The same numbers, (2, N N).
         covectors: A body velocity, what a function writes, and -dU, (3, dim).
         momenta: Momenta on the way, (5, k).
-        missed: What they lack, a column, (k, 1).
+        gap: What they lack, a column, (k, 1).
         slopes: The slope of the midpoint rule, and one to be destroyed, (2, k, k).
     """
 
@@ -76,7 +74,7 @@ class DriveRoom(NamedTuple):
     rows: np.ndarray
     covectors: np.ndarray
     momenta: np.ndarray
-    missed: np.ndarray
+    gap: np.ndarray
     slopes: np.ndarray
 
 
@@ -91,15 +89,7 @@ def room_for_drive(drive: Drive) -> DriveRoom:
     )
 
 
-def function_at(address: Callable[..., None], time: float, g: np.ndarray, w: np.ndarray, out: np.ndarray) -> None:
-    """Call a function of a drive."""
-    address(time, g, w, out)
-
-
-compiled_in("nonholo.kernels.forced.addresses")
-
-
-@inlined
+@inlining
 def place(drive: Drive, room: DriveRoom, pose: np.ndarray) -> None:
     """Write the user's pose from that of the kernel."""
     P, n = room.poses[1], drive.planar
@@ -107,15 +97,15 @@ def place(drive: Drive, room: DriveRoom, pose: np.ndarray) -> None:
         assign(room.rows[1], pose)
     else:
         q0, q1, q2, q3 = pose[0], pose[1], pose[2], pose[3]
-        P[0, 0], P[0, 1], P[0, 2] = seen(n, (1.0, 0.0, 0.0), q0, q1, q2, q3)
-        P[1, 0], P[1, 1], P[1, 2] = seen(n, (0.0, 1.0, 0.0), q0, q1, q2, q3)
-        P[2, 0], P[2, 1], P[2, 2] = seen(n, (0.0, 0.0, 1.0), q0, q1, q2, q3)
+        P[0, 0], P[0, 1], P[0, 2] = to_body(n, (1.0, 0.0, 0.0), q0, q1, q2, q3)
+        P[1, 0], P[1, 1], P[1, 2] = to_body(n, (0.0, 1.0, 0.0), q0, q1, q2, q3)
+        P[2, 0], P[2, 1], P[2, 2] = to_body(n, (0.0, 0.0, 1.0), q0, q1, q2, q3)
         if n == 2:
             P[0, 2], P[1, 2], P[2, 0], P[2, 1], P[2, 2] = q2, q3, 0.0, 0.0, 1.0
     multiply(P, drive.turn, room.poses[0])
 
 
-@inlined
+@inlining
 def pulled_by_functions(drive: Drive, room: DriveRoom, pose: np.ndarray) -> None:
     """Write what the weight and the potential add to momenta at a pose."""
     place(drive, room, pose)
@@ -136,7 +126,7 @@ def pulled_by_functions(drive: Drive, room: DriveRoom, pose: np.ndarray) -> None
             force[i] += drive.along[i, j] * slope[j]
 
 
-@inlined
+@inlining
 def pushed_by_function(
     drive: Drive, room: DriveRoom, when: tuple[float, int], m: np.ndarray, after: np.ndarray, out: np.ndarray
 ) -> None:
@@ -156,7 +146,7 @@ def pushed_by_function(
             out[i] += drive.along[i, j] * value[j]
 
 
-@inlined
+@inlining
 def largest(a: np.ndarray, b: np.ndarray) -> float:
     """Return the largest size of the numbers of two rows; NaN or infinity if there is one among them."""
     total = 0.0
@@ -166,8 +156,8 @@ def largest(a: np.ndarray, b: np.ndarray) -> float:
     return total
 
 
-@inlined
-def driven(drive: Drive, room: DriveRoom, node: int, row: int, m: np.ndarray, out: np.ndarray) -> int:
+@inlining
+def drive_momenta(drive: Drive, room: DriveRoom, node: int, row: int, m: np.ndarray, out: np.ndarray) -> int:
     """Write the momenta after half an impulse; return the outcome: 7 if it is not found, 5 if it is not finite.
 
     A force that does not depend on the velocity is asked twice: then the momenta are explicit.
@@ -178,7 +168,7 @@ def driven(drive: Drive, room: DriveRoom, node: int, row: int, m: np.ndarray, ou
     when = node * drive.time_step, min(row, len(drive.kick.rows) - 1)
     pushed_by_function(drive, room, when, m, m, first)
     for i in range(len(m)):
-        out[i] = kept(drive.kick, m, i) + first[i]
+        out[i] = after_friction(drive.kick, m, i) + first[i]
     if not largest(out, out) < math.inf:
         return 5
     code = 0
@@ -195,7 +185,7 @@ def driven(drive: Drive, room: DriveRoom, node: int, row: int, m: np.ndarray, ou
     return code
 
 
-@inlined
+@inlining
 def see_slopes(drive: Drive, room: DriveRoom, when: tuple[float, int], m: np.ndarray, out: np.ndarray) -> None:
     """Write the slopes of m' - A m - j((m + m') / 2), by differences from the second impulse on the way."""
     first, second, third, slopes = room.momenta[0], room.momenta[1], room.momenta[2], room.slopes[0]
@@ -210,9 +200,9 @@ def see_slopes(drive: Drive, room: DriveRoom, when: tuple[float, int], m: np.nda
         out[j] = before
 
 
-@inlined
+@inlining
 def midpoint(
-    drive: Drive, room: DriveRoom, when: tuple[float, int], m: np.ndarray, out: np.ndarray, renewed: bool
+    drive: Drive, room: DriveRoom, when: tuple[float, int], m: np.ndarray, out: np.ndarray, is_new: bool
 ) -> int:
     """Solve m' = A m + j((m + m') / 2) by Newton's method; return the outcome.
 
@@ -220,55 +210,55 @@ def midpoint(
     corrections until less is missed than before. Those lead to the root that a half impulse over a growing time comes
     to, unless it has met another one.
     """
-    begun, change, used = room.momenta[3], room.momenta[4], room.slopes[1]
+    origin, change, matrix = room.momenta[3], room.momenta[4], room.slopes[1]
     left = gap(drive, room, m, out)
-    for step in range(_MOST if renewed else _ITERATIONS):
-        if step == 0 or renewed:
+    for step in range(_MOST if is_new else _ITERATIONS):
+        if step == 0 or is_new:
             see_slopes(drive, room, when, m, out)
         if not left < math.inf:
             return 5
-        assign(used.reshape(-1), room.slopes[0].reshape(-1))
+        assign(matrix.reshape(-1), room.slopes[0].reshape(-1))
         small = left <= _ROUNDING * largest(m, out)
-        if eliminate(used, room.missed) == 0:
+        if eliminate(matrix, room.gap) == 0:
             return 7
-        assign(begun, out)
-        assign(change, room.missed[:, 0])
-        corrected(out, begun, 1.0, change)
+        assign(origin, out)
+        assign(change, room.gap[:, 0])
+        add_part(out, origin, 1.0, change)
         if small:
             return 0
         before = left
-        left = shortened(drive, room, when, m, out, before, renewed)
-        if renewed and not left < before:
+        left = shorten(drive, room, when, m, out, before, is_new)
+        if is_new and not left < before:
             return 7
     return 7
 
 
-@inlined
-def shortened(
-    drive: Drive, room: DriveRoom, when: tuple[float, int], m: np.ndarray, out: np.ndarray, before: float, renewed: bool
+@inlining
+def shorten(
+    drive: Drive, room: DriveRoom, when: tuple[float, int], m: np.ndarray, out: np.ndarray, before: float, is_new: bool
 ) -> float:
     """Return what momenta miss after a correction; if slopes are renewed, it is halved until they miss less."""
     part = 1.0
     while True:
         pushed_by_function(drive, room, when, m, out, room.momenta[1])
         left = gap(drive, room, m, out)
-        if left < before or not renewed or part <= _SHORTEST:
+        if left < before or not is_new or part <= _SHORTEST:
             break
         part /= 2
-        corrected(out, room.momenta[3], part, room.momenta[4])
+        add_part(out, room.momenta[3], part, room.momenta[4])
     return left
 
 
-@inlined
-def corrected(out: np.ndarray, begun: np.ndarray, part: float, change: np.ndarray) -> None:
+@inlining
+def add_part(out: np.ndarray, origin: np.ndarray, part: float, change: np.ndarray) -> None:
     """Write momenta with a part of a correction."""
     for i in range(len(out)):
-        out[i] = begun[i] + part * change[i]
+        out[i] = origin[i] + part * change[i]
 
 
-@inlined
+@inlining
 def gap(drive: Drive, room: DriveRoom, m: np.ndarray, out: np.ndarray) -> float:
     """Write what momenta miss whose impulse stands in the room; return the largest of it."""
     for i in range(len(m)):
-        room.missed[i, 0] = kept(drive.kick, m, i) + room.momenta[1, i] - out[i]
-    return largest(room.missed[:, 0], room.missed[:, 0])
+        room.gap[i, 0] = after_friction(drive.kick, m, i) + room.momenta[1, i] - out[i]
+    return largest(room.gap[:, 0], room.gap[:, 0])

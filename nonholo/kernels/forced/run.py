@@ -17,15 +17,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from nonholo.base.compiled import njit, overload
-from nonholo.kernels._driver import SETTLED, _compensated
-from nonholo.kernels._scalar import COMPILED, INLINED
+from nonholo.kernels._composition import at_rest, find_root, prepare, push_and_move, write_chart
+from nonholo.kernels._driver import floor_of, kahan_sum
+from nonholo.kernels._scalar import COMPILED, INLINED, Rows
 from nonholo.kernels._small import assign
-from nonholo.kernels._substeps import at_rest, charted, prepared, pushed, solved
 from nonholo.kernels.forced._balanced import Balanced, advance_balanced
 from nonholo.kernels.forced._cubic import Pull, advance_pulled
-from nonholo.kernels.forced._driven import Drive, driven, pulled_by_functions, room_for_drive
-from nonholo.kernels.forced._kick import Kick, linear, pulled_by_weight, room_for_kick
-from nonholo.kernels.forced._two import Rows, advance_two
+from nonholo.kernels.forced._driven import Drive, drive_momenta, pulled_by_functions, room_for_drive
+from nonholo.kernels.forced._kick import Kick, advance_two, linear, pulled_by_weight, room_for_kick
 from nonholo.kernels.general import GeneralBody
 from nonholo.kernels.secular import SecularBody
 
@@ -38,7 +37,7 @@ class ForcedBody(NamedTuple):
 
 
 def _either(of_kick: Any, of_drive: Any, options: Any = INLINED) -> Callable[..., Any]:
-    """Return the function that calls one or the other by the type of its first argument, as `_substeps.chosen` does."""
+    """Return the function that calls one or the other by the type of its first argument, as `choose_by_body` does."""
 
     def piece(kick: Any, *rest: Any) -> Any:
         return (of_kick if type(kick) is Kick else of_drive)(kick, *rest)
@@ -51,9 +50,9 @@ def _either(of_kick: Any, of_drive: Any, options: Any = INLINED) -> Callable[...
 
 room_of = _either(room_for_kick, room_for_drive, COMPILED)
 """(kick): room for the other pieces."""
-pulled = _either(pulled_by_weight, pulled_by_functions)
+see_node = _either(pulled_by_weight, pulled_by_functions)
 """(kick, room, pose): see the pose of a node."""
-kicked = _either(linear, driven)
+half_kick = _either(linear, drive_momenta)
 """(kick, room, node, row, m, out): write momenta after half the impulse of a step, a row, at a node; the outcome."""
 
 
@@ -62,49 +61,47 @@ def advance_many(p: Any, kick: Any, state: np.ndarray, steps: int, every: int, r
     """Advance any body, under any force: that of a node is asked when its step is taken, not before."""
     momenta, charts, poses = rows
     k, size = momenta.shape[1], poses.shape[1]
-    before, lost, pose = state[:k].copy(), state[k : 2 * k].copy(), state[2 * k : 2 * k + size].copy()
+    before, carry, pose = state[:k].copy(), state[k : 2 * k].copy(), state[2 * k : 2 * k + size].copy()
     roots = state[2 * k + size : len(state) - 6].copy().reshape(4, -1)
     m, s, change, root, guess = before.copy(), np.empty(k), np.empty(k), roots[0].copy(), roots[0].copy()
-    room, row, code, done, one = room_of(kick), int(state[len(state) - 1]), 0, 0, np.zeros(1)
+    room, row, code, count, one = room_of(kick), int(state[len(state) - 1]), 0, 0, np.zeros(1)
     one[0] = 1.0
-    while done < steps:
-        pulled(kick, room, pose)
-        code = kicked(kick, room, row, row - 1, before, m) if row > 0 else 0
-        code = kicked(kick, room, row, row, m, s) if code == 0 else code
+    while count < steps:
+        see_node(kick, room, pose)
+        code = half_kick(kick, room, row, row - 1, before, m) if row > 0 else 0
+        code = half_kick(kick, room, row, row, m, s) if code == 0 else code
         if code != 0:
             break
-        w = prepared(p, s, one)  # a certificate may be for momenta of one energy
+        w = prepare(p, s, one)  # a certificate may be for momenta of one energy
         for j in range(len(guess)):
             guess[j] = 3 * (roots[0, j] - roots[1, j]) + roots[2, j]
-        code = solved(p, w, 0, s, guess, pose, root)
+        code = find_root(p, w, 0, s, guess, pose, root)
         if code != 0:
             break
         for j in range(len(root)):
             roots[2, j], roots[1, j], roots[0, j] = roots[1, j], roots[0, j], root[j]
-        done += 1
+        count += 1
         row += 1
-        if done % every == 0:
-            at = done // every - 1
+        if count % every == 0:
+            at = count // every - 1
             assign(momenta[at], m)
             assign(poses[at], pose)
-            charted(p, s, root, charts[at])
-        pushed(p, w, s, root, change, pose)
-        add_compensated(s, lost, change)
+            write_chart(p, s, root, charts[at])
+        push_and_move(p, w, s, root, change, pose)
+        add_compensated(s, carry, change)
         assign(before, s)
-    for begin, part in ((0, before), (k, lost), (2 * k, pose), (2 * k + size, roots.reshape(-1))):
+    for begin, part in ((0, before), (k, carry), (2 * k, pose), (2 * k + size, roots.reshape(-1))):
         assign(state[begin:], part)
     state[len(state) - 1] = row
-    return done, code
+    return count, code
 
 
 @njit(**COMPILED)
-def add_compensated(s: np.ndarray, lost: np.ndarray, change: np.ndarray) -> None:
+def add_compensated(s: np.ndarray, carry: np.ndarray, change: np.ndarray) -> None:
     """Add a change to momenta in place, by Kahan's summation."""
-    settled = 0.0
-    for x in s:
-        settled = max(settled, SETTLED * abs(x))
+    floor = floor_of(s)
     for i in range(len(s)):
-        s[i], lost[i] = _compensated(s[i], lost[i], change[i], settled)
+        s[i], carry[i] = kahan_sum(s[i], carry[i], change[i], floor)
 
 
 def start(forced: ForcedBody, momentum: np.ndarray, pose: np.ndarray, sizes: Any) -> tuple[int, np.ndarray]:
@@ -117,7 +114,7 @@ def start(forced: ForcedBody, momentum: np.ndarray, pose: np.ndarray, sizes: Any
     more = np.zeros((1 if stages else 6) + sizes[1])
     state = np.concatenate((momentum, np.zeros_like(momentum), pose, *map(np.ravel, past), more))
     momenta, chart, poses = np.empty((1, k)), np.empty((1, sizes[1])), np.empty((1, len(pose)))
-    _, code = advance(forced, state, 1, 1, momenta, chart, poses)
+    _, code = advance(forced, state, 1, 1, (momenta, chart, poses))
     state[len(state) - sizes[1] :] = chart[0] if code == 0 else np.nan
     for each in past:  # what is known so far stands for all that came before
         history = state[begin : begin + each.size].reshape(each.shape)
@@ -126,7 +123,7 @@ def start(forced: ForcedBody, momentum: np.ndarray, pose: np.ndarray, sizes: Any
     return code, state
 
 
-def advance(forced: ForcedBody, state: np.ndarray, steps: int, every: int, *rows: np.ndarray) -> tuple[int, int]:
+def advance(forced: ForcedBody, state: np.ndarray, steps: int, every: int, rows: Rows) -> tuple[int, int]:
     """Take up to `steps` steps, saving each `every`-th one; return how many were good and the outcome.
 
     After a failure the state is that of the last good step.

@@ -35,7 +35,7 @@ def pair_twice(
     N = len(X)
     for b in range(sums.shape[1] // len(EIGHT)):
         first, second = load(kinds, 0, b, EIGHT), load(kinds, 1, b, EIGHT)
-        total, lost = load(sums, 0, b, EIGHT), spread(0.0, EIGHT)
+        total, error_sum = load(sums, 0, b, EIGHT), spread(0.0, EIGHT)
         for i in range(n):
             for j in range(N):
                 B = first * spread(X[i, j], EIGHT) + second * spread(K[i, j], EIGHT)
@@ -44,8 +44,8 @@ def pair_twice(
                 total = before + term
                 part = total - before
                 rest = error + load(rests, i * N + j, b, EIGHT) * B
-                lost = lost + (rest + ((before - (total - part)) + (term - part)))
-        store(sums, 0, b, EIGHT, total + lost)
+                error_sum = error_sum + (rest + ((before - (total - part)) + (term - part)))
+        store(sums, 0, b, EIGHT, total + error_sum)
 
 
 @njit(inline="always", **BORROWING)
@@ -102,10 +102,7 @@ def decompose(A: np.ndarray, order: np.ndarray, inverses: np.ndarray, others: np
     for c in range(n):
         order[c] = c
     for c in range(n):
-        best = c
-        for i in range(c + 1, n):
-            if abs(A[c, order[i]]) > abs(A[c, order[best]]):
-                best = i
+        best: int = _largest(A, order, c)
         pivot = order[best]
         if best != c:
             order[best], order[c], det = order[c], pivot, -det
@@ -121,6 +118,16 @@ def decompose(A: np.ndarray, order: np.ndarray, inverses: np.ndarray, others: np
         for j in range(c + 1, n):
             _leave(A, c, A, j, A[j, pivot])
     return det
+
+
+@njit(inline="always", **BORROWING)
+def _largest(A: np.ndarray, order: np.ndarray, c: int) -> int:
+    """Return which of the equations left has the largest coefficient of an unknown."""
+    best = c
+    for i in range(c + 1, len(A)):
+        if abs(A[c, order[i]]) > abs(A[c, order[best]]):
+            best = i
+    return best
 
 
 @njit(inline="always", **BORROWING)

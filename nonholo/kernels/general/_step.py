@@ -22,7 +22,7 @@ import numpy as np
 
 from nonholo.base.compiled import njit
 from nonholo.kernels._scalar import BORROWING, COMPILED, INLINED
-from nonholo.kernels._small import assign, eliminate, multiply, paired, transpose
+from nonholo.kernels._small import assign, eliminate, multiply, pair, transpose
 from nonholo.kernels.general._rows import add_slopes, pair_twice, put
 from nonholo.kernels.lanes import EIGHT
 
@@ -169,18 +169,18 @@ def see_tensor(p: GeneralBody, w: Workspace, J: np.ndarray) -> None:
 
 
 @njit(**INLINED)
-def displaced(p: GeneralBody, w: Workspace, y: np.ndarray) -> float:
+def displace(p: GeneralBody, w: Workspace, y: np.ndarray) -> float:
     """Compute X = 2 (I - Y)^{-1} Y and G = I + X / 2; return how far it turns, the sum of tan^2(angle / 2).
 
     Beyond `LOST`, where I - Y may be singular to rounding, they are not computed; nor where its determinant is not
     positive, beyond the edge of the chart on groups with boosts.
     """
     small = p.size <= 4 and len(p.form) == 0
-    return _displaced(p.places, p.entries, p.size, small, y, w.X, w.G, w.scratch)
+    return _displace(p.places, p.entries, p.size, small, y, w.X, w.G, w.scratch)
 
 
 @njit(**BORROWING)
-def _displaced(
+def _displace(
     places: np.ndarray,
     entries: np.ndarray,
     n: int,
@@ -317,14 +317,14 @@ def increments(p: GeneralBody, w: Workspace, term: np.ndarray) -> None:
 
     Where boosts make X large, $X^*X = -(X + X^*)$ cancels less than the product.
     """
-    X, transposed, square = w.X, w.V, w.scratch
-    _adjoint(p, X, w.half, transposed)
-    if len(p.form) > 0 and paired(X, X) > 1.0:
+    X, adjoint, square = w.X, w.V, w.scratch
+    _adjoint(p, X, w.half, adjoint)
+    if len(p.form) > 0 and pair(X, X) > 1.0:
         for i in range(len(X)):
             for j in range(len(X)):
-                square[i, j] = -(X[i, j] + transposed[i, j])
+                square[i, j] = -(X[i, j] + adjoint[i, j])
     else:
-        multiply(transposed, X, square)
+        multiply(adjoint, X, square)
     w.terms[:] = 0.0
     pair_twice(w.rows, w.rests, w.kinds, p.size, square, square, w.terms)
     assign(term, w.terms[0, : len(term)])

@@ -33,11 +33,11 @@ class CoordinateBody(NamedTuple):
         correct: The equations.
         departure: What `arrive` reads.
         arrival: What `arrive` writes, and `settle` reads.
-        settled: What `settle` writes; with the root what `correct` reads.
-        root: Velocity and multipliers, a part of `settled`.
+        constants: What `settle` writes; with the root what `correct` reads.
+        root: Velocity and multipliers, a part of `constants`.
         equations: What `correct` writes.
         matrix: The scaled matrix, a part of `equations`.
-        missed: What the scaled equations miss, a part of them.
+        gap: What the scaled equations miss, a part of them.
         units: Units of the root, a part of them.
         solution: The correction, and the inverse of the matrix.
         place: Count of the numbers of a place.
@@ -49,11 +49,11 @@ class CoordinateBody(NamedTuple):
     correct: Any
     departure: np.ndarray
     arrival: np.ndarray
-    settled: np.ndarray
+    constants: np.ndarray
     root: np.ndarray
     equations: np.ndarray
     matrix: np.ndarray
-    missed: np.ndarray
+    gap: np.ndarray
     units: np.ndarray
     solution: np.ndarray
     place: int
@@ -65,7 +65,7 @@ def _settle(body: CoordinateBody, near: np.ndarray, before: np.ndarray) -> None:
     """Write what is settled at the place of arrival, and the guess."""
     n, first = body.velocity, body.place + body.velocity + 1
     assign(body.arrival[first : first + n], near)
-    body.settle(body.arrival.ctypes, body.settled.ctypes)
+    body.settle(body.arrival.ctypes, body.constants.ctypes)
     for i in range(len(body.root)):
         body.root[i] = 2 * near[i] - before[i] if i < n else 0.0
 
@@ -77,21 +77,21 @@ def _correct(body: CoordinateBody) -> tuple[float, float, float]:
     They are those of the correction of the velocity, in its unit, and of the inverse of the matrix.
     """
     n, size = body.velocity, len(body.root)
-    body.correct(body.settled.ctypes, body.equations.ctypes)
+    body.correct(body.constants.ctypes, body.equations.ctypes)
     scale, doubt = body.equations[-2], body.equations[-1]
     for i in range(size):
-        body.solution[i, 0] = body.missed[i]
+        body.solution[i, 0] = body.gap[i]
         for j in range(size):
             body.solution[i, 1 + j] = 1.0 if i == j else 0.0
     det = eliminate(body.matrix, body.solution)
-    moved = inverse = 0.0
+    square = inverse = 0.0
     for i in range(size):
         step = body.solution[i, 0]
-        moved += step * step if i < n else 0.0
+        square += step * step if i < n else 0.0
         body.root[i] -= step * body.units[i] if i < n else step / body.units[i]
         for j in range(size):
             inverse += body.solution[i, 1 + j] * body.solution[i, 1 + j]
-    return det if doubt == 0 else 0.0, moved / (scale * scale) if moved > 0 else moved, inverse
+    return det if doubt == 0 else 0.0, square / (scale * scale) if square > 0 else square, inverse
 
 
 @njit(**BORROWING)
@@ -102,13 +102,13 @@ def newton(body: CoordinateBody, sign: float) -> float:
     """
     before = math.inf
     for _ in range(ITERATIONS):
-        det, moved, inverse = _correct(body)
+        det, square, inverse = _correct(body)
         sign = sign if sign != 0 else 1.0 if det > 0 else -1.0
-        if moved <= TOLERANCE * TOLERANCE:
+        if square <= TOLERANCE * TOLERANCE:
             return sign if det * sign > 0 and inverse * SINGULAR * SINGULAR <= 1 else 0.0
-        if not (abs(det) > 0 and moved <= CONTRACTION * CONTRACTION * before):
+        if not (abs(det) > 0 and square <= CONTRACTION * CONTRACTION * before):
             return 0.0
-        before = moved
+        before = square
     return 0.0
 
 
@@ -181,7 +181,7 @@ def each_root(body: CoordinateBody, places: np.ndarray, velocities: np.ndarray, 
 
 
 @njit(nogil=True, **BORROWING)
-def each_row(function: Any, given: np.ndarray, found: np.ndarray) -> None:
+def each_row(function: Any, rows: np.ndarray, values: np.ndarray) -> None:
     """Write the values of a C function for each row."""
-    for i in range(len(given)):
-        function(given[i].ctypes, found[i].ctypes)
+    for i in range(len(rows)):
+        function(rows[i].ctypes, values[i].ctypes)

@@ -65,8 +65,8 @@ def secular_sleigh(b: np.ndarray, coupling: np.ndarray, mass: float, arm: float,
 def coordinate(b: float, c: float, m: float, nu: float, tau: float) -> tuple[float, float, float]:
     """Return y, its derivative by tau and 1 / (b + nu)."""
     inverse = 1 / (b + nu)
-    pushed = m + c
-    return (m + tau * pushed) * inverse, pushed * inverse, inverse
+    rate = m + c
+    return (m + tau * rate) * inverse, rate * inverse, inverse
 
 
 @scalar
@@ -113,7 +113,7 @@ def _in_order(
     """Return sums to which the terms from the first one on are added."""
     for i in range(first, len(b)):
         k = np.uint64(i)  # a signed index would be tested for counting from the end
-        sums = _added(sums, _terms(b[k], c[k], share * m[k], nu, tau))
+        sums = _add(sums, _terms(b[k], c[k], share * m[k], nu, tau))
     return sums
 
 
@@ -148,7 +148,7 @@ def _terms(b: float, c: float, m: float, nu: float, tau: float) -> Sums:
 
 
 @scalar
-def _added(s: Sums, t: Sums) -> Sums:
+def _add(s: Sums, t: Sums) -> Sums:
     return s[0] + t[0], s[1] + t[1], s[2] + t[2], s[3] + t[3], s[4] + t[4], s[5] + t[5], s[6] + t[6]
 
 

@@ -62,8 +62,8 @@ def residual(p: NearestBody, goal: np.ndarray, x: np.ndarray, out: np.ndarray) -
     k = len(p.stiffness)
     along, square, u = _sums(p, x)
     for i in range(k):
-        turned = x[0] * p.stiffness[i] * x[1 + i] + square * p.coupling[i] - along * x[1 + i]
-        out[i, 0] = turned + p.arm / 2 * u * x[1 + i] - goal[i]
+        force = x[0] * p.stiffness[i] * x[1 + i] + square * p.coupling[i] - along * x[1 + i]
+        out[i, 0] = force + p.arm / 2 * u * x[1 + i] - goal[i]
     if p.slides:
         out[k, 0] = u * x[0] - 2 * p.arm * square - goal[k]
     out[len(x) - 1, 0] = x[0] * x[0] + square - 1
@@ -90,7 +90,7 @@ def slope(p: NearestBody, x: np.ndarray, J: np.ndarray) -> None:
 
 
 @njit()
-def kicked(p: NearestBody, goal: np.ndarray, x: np.ndarray, out: np.ndarray) -> None:
+def kick(p: NearestBody, goal: np.ndarray, x: np.ndarray, out: np.ndarray) -> None:
     """Write the goal of the step after a point."""
     k = len(p.stiffness)
     along, square, u = _sums(p, x)
@@ -116,6 +116,8 @@ def _is_clear(p: NearestBody, J: np.ndarray, det: float) -> bool:
 
     It is at least the determinant over the product of the others, each of which is at most the Frobenius norm.
     """
+    if not (np.isfinite(det) and det != 0):
+        return False
     k, m = len(p.stiffness), len(J)
     square = last = 0.0
     least = abs(det)
@@ -133,11 +135,11 @@ def _is_clear(p: NearestBody, J: np.ndarray, det: float) -> bool:
 
 
 @njit()
-def _corrected(p: NearestBody, goal: np.ndarray, guess: np.ndarray, predicted: float, x: np.ndarray) -> bool:
+def _correct(p: NearestBody, goal: np.ndarray, guess: np.ndarray, prediction: float, x: np.ndarray) -> bool:
     """Write the root next to a guess; false if it is further away than the prediction allows."""
     m = len(guess)
     J, correction = np.empty((m, m)), np.empty((m, 1))
-    allowed = max(p.close * predicted, min(p.small, predicted))
+    most = max(p.close * prediction, min(p.small, prediction))
     assign(x, guess)
     for _ in range(p.corrections):
         slope(p, x, J)
@@ -146,7 +148,7 @@ def _corrected(p: NearestBody, goal: np.ndarray, guess: np.ndarray, predicted: f
         if not (np.isfinite(det) and det != 0):
             return False
         x -= correction[:, 0]
-        if not _length(x - guess, guess) <= allowed + p.converged:
+        if not _length(x - guess, guess) <= most + p.converged:
             return False
         if _length(correction[:, 0], x) <= p.converged:
             return True
@@ -164,13 +166,19 @@ def _tangent(p: NearestBody, x: np.ndarray, direction: np.ndarray, out: np.ndarr
 
 
 @njit()
+def _keeps(det: float, positive: bool) -> bool:
+    """Tell whether a determinant keeps its sign."""
+    return det != 0 and np.isfinite(det) and (det > 0) == positive
+
+
+@njit()
 def follow(p: NearestBody, start: np.ndarray, end: np.ndarray, x: np.ndarray) -> bool:
     """Follow a root from one goal to another; false, with the point as it was, if the path is not clear."""
     m, here = len(x), x.copy()
     J, tangent, there = np.empty((m, m)), np.empty((m, 1)), np.empty(m)
     direction = end - start
     det = _tangent(p, here, direction, tangent, J)
-    if not (np.isfinite(det) and det != 0 and _is_clear(p, J, det)):
+    if not _is_clear(p, J, det):
         return False
     positive, s, size = det > 0, 0.0, 1.0
     while s < 1.0:
@@ -178,10 +186,9 @@ def follow(p: NearestBody, start: np.ndarray, end: np.ndarray, x: np.ndarray) ->
         size = min(size, 1.0 - s, p.longest / pace if pace > 0 else 1.0)
         ahead = 1.0 if size == 1.0 - s else s + size
         goal = end if ahead == 1.0 else start + ahead * direction
-        clear = _corrected(p, goal, here + size * tangent[:, 0], size * pace, there)
+        clear = _correct(p, goal, here + size * tangent[:, 0], size * pace, there)
         if clear:
-            det = _tangent(p, there, direction, tangent, J)
-            clear = det != 0 and np.isfinite(det) and (det > 0) == positive
+            clear = _keeps(_tangent(p, there, direction, tangent, J), positive)
         if clear:
             assign(here, there)
             s, size = ahead, 2 * size
@@ -199,7 +206,7 @@ def advance(p: NearestBody, goal: np.ndarray, x: np.ndarray, goals: np.ndarray, 
     """Take as many steps as there are rows for goals and points; return how many were clear."""
     for step in range(len(points)):
         now, here = (goal, x) if step == 0 else (goals[step - 1], points[step - 1])
-        kicked(p, now, here, goals[step])
+        kick(p, now, here, goals[step])
         assign(points[step], here)
         if not follow(p, now, goals[step], points[step]):
             return step

@@ -9,13 +9,11 @@ import math
 import numpy as np
 
 from nonholo.base.compiled import njit
-from nonholo.kernels._scalar import COMPILED, scalar
+from nonholo.kernels._driver import floor_of
+from nonholo.kernels._scalar import COMPILED, Rows, scalar
 from nonholo.kernels._small import assign
-from nonholo.kernels.secular._path import principal
-from nonholo.kernels.secular._root import certain_radius, level_of
+from nonholo.kernels.secular._root import certain_radius, level_of, principal
 from nonholo.kernels.secular._step import SecularBody, coordinate, newton, room_for_sums, term
-
-_SETTLED = 1e-150  # of the scale of the momenta; squares below it underflow
 
 
 @njit(nogil=True, **COMPILED)
@@ -44,34 +42,25 @@ def solve(
 
 
 @njit(**COMPILED)
-def _compensated(total: float, lost: float, change: float, settled: float) -> tuple[float, float]:
-    """Add by Kahan's summation; a sum that has decayed below `settled` is put on the equilibrium."""
-    change = change - lost
+def _kahan_sum(total: float, carry: float, change: float, floor: float) -> tuple[float, float]:
+    """Add by Kahan's summation; a sum that has decayed below `floor` is put on the equilibrium."""
+    change = change - carry
     result = total + change
-    if abs(result) < settled and abs(result) < abs(total):
+    if abs(result) < floor and abs(result) < abs(total):
         return 0.0, 0.0
     return result, (result - total) - change
 
 
-@njit(**COMPILED)
-def _settled(m: np.ndarray) -> float:
-    """Return below what momenta count as zero."""
-    largest = 0.0
-    for i in range(len(m)):
-        largest = max(largest, abs(m[i]))
-    return _SETTLED * largest
-
-
 @njit(nogil=True, **COMPILED)
-def push(p: SecularBody, m: np.ndarray, lost: np.ndarray, nu: float, tau: float, settled: float) -> None:
+def push(p: SecularBody, m: np.ndarray, carry: np.ndarray, nu: float, tau: float, floor: float) -> None:
     """Replace the momenta, and their compensations, by those after one step."""
     lever = p.mass * p.arm * p.arm
     for i in range(len(p.b)):
         k = np.uint64(i)  # a signed index would be tested for counting from the end
         y, _, _ = coordinate(p.b[k], p.c[k], m[k], nu, tau)
-        m[k], lost[k] = _compensated(m[k], lost[k], term(p.c[k], y, nu, tau, lever), settled)
+        m[k], carry[k] = _kahan_sum(m[k], carry[k], term(p.c[k], y, nu, tau, lever), floor)
     for i in range(len(p.b), len(m)):
-        m[i], lost[i] = _compensated(m[i], lost[i], 2 * p.mass * p.arm * tau / (1 + tau), settled)
+        m[i], carry[i] = _kahan_sum(m[i], carry[i], 2 * p.mass * p.arm * tau / (1 + tau), floor)
 
 
 @njit(nogil=True, **COMPILED)
@@ -112,13 +101,13 @@ def move(p: SecularBody, m0: float, nu: float, tau: float, y: np.ndarray, pose: 
     length = 2 * slide(p, m0, nu, tau, y) * z0 if p.slides else 0.0
     for begin in range(0, len(pose), width):
         row = pose[begin : begin + width]
-        along = _reflected(row, first, axis, z0, sign, y)
+        along = _reflect(row, first, axis, z0, sign, y)
         if p.slides:
             row[k + 1] += length * along
 
 
 @njit(nogil=True, **COMPILED)
-def _reflected(row: np.ndarray, first: int, axis: int, z0: float, sign: float, y: np.ndarray) -> float:
+def _reflect(row: np.ndarray, first: int, axis: int, z0: float, sign: float, y: np.ndarray) -> float:
     """Reflect the turning entries of a row in (z0, sign z0 y), keep their length; return their part along it."""
     k = len(y)
     along, square = z0 * row[axis], 0.0
@@ -167,63 +156,54 @@ def chart_in(p: SecularBody, state: np.ndarray) -> np.ndarray:
 
 
 @njit(nogil=True, **COMPILED)
-def advance(
-    p: SecularBody,
-    state: np.ndarray,
-    steps: int,
-    every: int,
-    momenta: np.ndarray,
-    charts: np.ndarray,
-    poses: np.ndarray,
-) -> tuple[int, int]:
+def advance(p: SecularBody, state: np.ndarray, steps: int, every: int, rows: Rows) -> tuple[int, int]:
     """Take up to `steps` steps, saving each `every`-th one; return how many were good and the outcome.
 
     After a failure the state is that of the last good step.
     """
     first = state.copy()
-    done, code = _take(p, state, steps, every, momenta, charts, poses)
+    count, code = _take(p, state, steps, every, rows)
     if code != 0:  # the state before the last push is gone: what led to it is done again
         assign(state, first)
-        _take(p, state, done, every, momenta, charts, poses)
-    return done, code
+        _take(p, state, count, every, rows)
+    return count, code
 
 
 @njit(nogil=True, **COMPILED)
-def _take(
-    p: SecularBody, s: np.ndarray, steps: int, every: int, momenta: np.ndarray, charts: np.ndarray, poses: np.ndarray
-) -> tuple[int, int]:
+def _take(p: SecularBody, s: np.ndarray, steps: int, every: int, rows: Rows) -> tuple[int, int]:
     """Take steps; where a root is missing the state is good for nothing."""
+    momenta, charts, poses = rows
     k, size = len(p.b), len(p.b) + (1 if p.slides else 0)
-    m, lost, pose, room = s[:size], s[size : 2 * size], s[2 * size + 7 :], room_for_sums()
+    m, carry, pose, room = s[:size], s[size : 2 * size], s[2 * size + 7 :], room_for_sums()
     nu, tau, nu1, tau1, nu2, tau2, certain = s[2 * size : 2 * size + 7]
-    y, settled, lever = np.zeros(k if len(pose) else 0), _settled(m), p.mass * p.arm * p.arm
-    code, done = 0, 0
-    while done < steps:
+    y, floor, lever = np.zeros(k if len(pose) else 0), floor_of(m), p.mass * p.arm * p.arm
+    code, count = 0, 0
+    while count < steps:
         if len(pose):
             coordinates(p, m, nu, tau, y)
             move(p, m[-1], nu, tau, y, pose)
-        push(p, m, lost, nu, tau, settled)
+        push(p, m, carry, nu, tau, floor)
         m0, guess = m[-1] if p.slides else 0.0, max(3 * (tau - tau1) + tau2, 0.0)
-        good, nu3, tau3, moved = newton(p, m, m0, 1.0, 3 * (nu - nu1) + nu2, guess, False, room)
-        if not _is_principal(good, moved, tau3, lever, certain):
+        good, nu3, tau3, square = newton(p, m, m0, 1.0, 3 * (nu - nu1) + nu2, guess, False, room)
+        if not _is_principal(good, square, tau3, lever, certain):
             code, nu3, tau3 = principal(p, m, m0, room)
             if code != 0:
                 break
         nu2, tau2, nu1, tau1, nu, tau = nu1, tau1, nu, tau, nu3, tau3
-        done += 1
-        if done % every == 0:
-            row = done // every - 1
+        count += 1
+        if count % every == 0:
+            row = count // every - 1
             assign(momenta[row], m)
             chart_of(p, m, nu, tau, charts[row])
             assign(poses[row], pose)
     assign(s[2 * size :], np.array((nu, tau, nu1, tau1, nu2, tau2)))
-    return done, code
+    return count, code
 
 
 @njit(nogil=True, **COMPILED)
 def step_each(
     p: SecularBody, momenta: np.ndarray, charts: np.ndarray, guesses: np.ndarray, principal_only: bool
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+) -> Rows:
     """Take one step from each row; return momenta, charts and outcomes.
 
     The root is the principal one or else that value of the map which Newton's method reaches from the guess.

@@ -75,19 +75,19 @@ def solve_arrowhead(
         end: The last time of the solve, which bounds the steps.
         tolerance: Of a step.
     """
-    size, taken, stride = len(f.rates), 0, 1
+    size, steps, stride = len(f.rates), 0, 1
     p = room_for_steps(f, end, tolerance, terms_for(tolerance))
-    state, nodes, rows, reached, going = node.copy(), [node], np.empty((len(times), size)), 0, True
-    while going and reached < len(times):
-        reached, going = take_step(p, state, times, reached, rows)
-        taken += 1
-        if taken % _LOOK == 0:
+    state, nodes, rows, count, going = node.copy(), [node], np.empty((len(times), size)), 0, True
+    while going and count < len(times):
+        count, going = take_step(p, state, times, count, rows)
+        steps += 1
+        if steps % _LOOK == 0:
             tell(abs(state[0, -1] - node[0, -1]), abs(end - node[0, -1]))
-        if going and reached < len(times) and taken % stride == 0:
+        if going and count < len(times) and steps % stride == 0:
             nodes.append(state.copy())
         if len(nodes) * (state.size + _OWN) > max(_NUMBERS, 4 * state.size):
             nodes, stride = nodes[::2], 2 * stride
-    return rows[:reached], nodes
+    return rows[:count], nodes
 
 
 def terms_for(tolerance: float) -> int:
@@ -104,23 +104,23 @@ def room_for_steps(f: Arrowhead, end: float, tolerance: float, terms: int) -> _W
 
 
 @njit(nogil=True, **COMPILED)
-def take_step(p: _Work, state: np.ndarray, times: np.ndarray, reached: int, rows: np.ndarray) -> tuple[int, bool]:
+def take_step(p: _Work, state: np.ndarray, times: np.ndarray, count: int, rows: np.ndarray) -> tuple[int, bool]:
     """Write the rows whose times lie within a step, and take it; return how many are written, and if all went well."""
     left = p.end - state[0, -1]
     _expand(p, state[0, : len(p.rates)])
     step = _step(p, 2 * abs(left))
-    going = step >= _SMALLEST_STEP * abs(since(state, times[reached], 0, ONE))
-    while going and reached < len(times) and abs(since(state, times[reached], 0, ONE)) <= step:
-        _sum(p.series, since(state, times[reached], 0, ONE), p.change)
+    going = step >= _SMALLEST_STEP * abs(since(state, times[count], 0, ONE))
+    while going and count < len(times) and abs(since(state, times[count], 0, ONE)) <= step:
+        _sum(p.series, since(state, times[count], 0, ONE), p.change)
         for m in range(rows.shape[1]):
-            rows[reached, m] = state[0, m] + (p.change[m] + state[1, m])
-        reached += 1
+            rows[count, m] = state[0, m] + (p.change[m] + state[1, m])
+        count += 1
     _sum(p.series, math.copysign(step, left), p.change)
     for m in range(len(p.change)):
         before, term = state[0, m], p.change[m] + state[1, m]
         state[0, m] = before + term
         state[1, m] = term - (state[0, m] - before)
-    return reached, going
+    return count, going
 
 
 @njit(**COMPILED)

@@ -6,21 +6,49 @@ fixed in space, x ends with the inertia tensor $\mathbb{J}_g = g\mathbb{J}g^T$, 
 linear map B and constant r: a division of series. Taylor coefficients of products are Cauchy products.
 
 A single motion has eight places of z side by side, several motions have one place of all of them; in both, the terms
-of a sum are added in the same order.
+of a sum are added in the same order. Code may be compiled for the structure of equations: all tops on one group share
+one.
 """
 
 import functools
 import threading
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from nonholo.base.compiled import overload
+from nonholo.base.compiled import library_of_kernels, overload, way_of_kernels
 from nonholo.base.types import Int
-from nonholo.kernels._scalar import COMPILED, scalar
+from nonholo.kernels._scalar import COMPILED, expand_at, scalar
 from nonholo.kernels._small import eliminate
 from nonholo.kernels.lanes import EIGHT, load, spread, store
-from nonholo.kernels.taylor._compiled import address_of, call
+
+EMITTER = "nonholo.kernels.taylor.emission.code_of"
+_MOST = 8  # velocities, if they take a division
+
+
+def structure_of(counts: tuple[int, int, int], *arrays: Iterable[int]) -> str:
+    """Return what code depends on: counts of motions, velocities and numbers of J; `rows`, `first` and `sources`."""
+    return ";".join(",".join(map(str, part)) for part in (counts, *arrays))
+
+
+@functools.cache
+def address_of(counts: tuple[int, int, int], *arrays: bytes) -> int:
+    """Return the address of the expansion of a structure, from the library or compiled now; 0 if there is none."""
+    if counts[2] and counts[1] > _MOST:
+        return 0
+    structure = structure_of(counts, *(np.frombuffer(each, dtype=np.int64) for each in arrays))
+    library, way = library_of_kernels(), way_of_kernels()
+    address = library.address(EMITTER, structure) if library else 0
+    if address or way == "python":
+        return address
+    try:
+        from nonholo.base.compiled.emission import compile_text
+        from nonholo.kernels.taylor.emission import code_of
+    except ModuleNotFoundError:  # without the extra `compile` the general kernel does it
+        return 0
+    return compile_text(code_of(structure, "expansion"), "expansion")
+
 
 _SMALL = 128  # components, below which rooms are kept
 
@@ -33,11 +61,11 @@ class Quadratic(NamedTuple):
         rows: Which products are taken: the place in z of a velocity, and which eight places of z, or, of several
             motions side by side, which place, (2, R).
         first: Where the terms of each row of C and c begin, and the last one ends, (size + 1,).
-        found: Which of the products, or of the velocities behind them, each term needs, (Q,).
+        sources: Which of the products, or of the velocities behind them, each term needs, (Q,).
         factors: The value of C or c in each term, (1, Q L).
         order: The component of the state of a solution that each component of x is, (size,).
         blocks: The block of each component of x, whose errors are measured together, (size,).
-        closed: Whether nothing outside moves a block, (blocks,).
+        is_closed: Whether nothing outside moves a block, (blocks,).
         forms: The coefficients of B, (k, k, N N), or none, (0,), if the constraint is fixed in the body.
         tensor: J, (N, N).
         momentum: r, (k,), of a constraint fixed in space.
@@ -46,11 +74,11 @@ class Quadratic(NamedTuple):
     velocities: np.ndarray
     rows: np.ndarray
     first: np.ndarray
-    found: np.ndarray
+    sources: np.ndarray
     factors: np.ndarray
     order: np.ndarray
     blocks: np.ndarray
-    closed: np.ndarray
+    is_closed: np.ndarray
     forms: np.ndarray
     tensor: np.ndarray
     momentum: np.ndarray
@@ -92,7 +120,7 @@ def kept_room(f: Quadratic, order: int) -> Room:
 
 
 def _sizes(f: Quadratic, order: int) -> tuple[int, ...]:
-    return len(f.velocities), len(f.blocks), f.rows.shape[1], len(f.forms), len(f.closed), order
+    return len(f.velocities), len(f.blocks), f.rows.shape[1], len(f.forms), len(f.is_closed), order
 
 
 def _room(sizes: tuple[int, ...], L: int) -> Room:
@@ -100,8 +128,8 @@ def _room(sizes: tuple[int, ...], L: int) -> Room:
     places = k + size
     width = L * (places if L > 1 else places + -places % len(EIGHT))
     return Room(
-        _aligned(order + 1, width),
-        _aligned(1, len(EIGHT) * products + k * L),
+        _aligned_zeros(order + 1, width),
+        _aligned_zeros(1, len(EIGHT) * products + k * L),
         np.zeros((order + 1, forms, max(forms, len(EIGHT)))),
         np.zeros((forms, forms)),
         np.zeros((forms, forms)),
@@ -116,11 +144,11 @@ def _room_of(_thread: int, sizes: tuple[int, ...]) -> Room:
     return _room(sizes, 1)
 
 
-def _aligned(rows: int, width: int) -> np.ndarray:
+def _aligned_zeros(rows: int, width: int) -> np.ndarray:
     """Return zeros that begin where eight numbers do that a processor loads at once."""
     room = np.zeros(rows * width + len(EIGHT))
-    skipped = -(room.ctypes.data // room.itemsize) % len(EIGHT)
-    return room[skipped : skipped + rows * width].reshape(rows, width)
+    offset = -(room.ctypes.data // room.itemsize) % len(EIGHT)
+    return room[offset : offset + rows * width].reshape(rows, width)
 
 
 def sparse_products(
@@ -133,14 +161,14 @@ def sparse_products(
         right: The place of the other factor.
         width: How many places stand side by side.
     """
-    rows, found = np.unique(np.stack([left, right // width]), axis=1, return_inverse=True)
-    return np.ascontiguousarray(rows), found.reshape(-1) * width + right % width
+    rows, sources = np.unique(np.stack([left, right // width]), axis=1, return_inverse=True)
+    return np.ascontiguousarray(rows), sources.reshape(-1) * width + right % width
 
 
 def expansion_of(f: Quadratic, lanes: tuple[int, ...]) -> int:
     """Return the address of the code that is compiled for the structure of equations; 0 if there is none."""
     counts = len(lanes), len(f.velocities), f.forms.size and f.tensor.size
-    return address_of(counts, f.rows.tobytes(), f.first.tobytes(), f.found.tobytes())
+    return address_of(counts, f.rows.tobytes(), f.first.tobytes(), f.sources.tobytes())
 
 
 @scalar
@@ -154,7 +182,7 @@ def expand(f: Quadratic, expansion: int, state: np.ndarray, room: Room, lanes: t
     if expansion != 0:
         _write_velocities(f, 0, room, lanes)
         matrix = room.inverse if len(f.forms) > 0 else f.velocities
-        call(expansion, (matrix, f.factors, series, f.forms, room.inertia), len(series) - 1)
+        expand_at(expansion, (matrix, f.factors, series, f.forms, room.inertia), len(series) - 1)
         return
     for j in range(len(series) - 1):
         _write_velocities(f, j, room, lanes)
@@ -162,7 +190,7 @@ def expand(f: Quadratic, expansion: int, state: np.ndarray, room: Room, lanes: t
             _convolve(f.rows, q, series, j, lanes, room.sums)
         for a in range(before):
             store(room.sums, 0, room.sums.shape[1] // len(lanes) - before + a, lanes, load(series, j, a, lanes))
-        _collect(f.first, f.found, f.factors, room.sums, j, before, series, lanes)
+        _collect(f, room.sums, j, series, lanes)
 
 
 @scalar
@@ -171,13 +199,13 @@ def _see_tensor(tensor: np.ndarray, before: int, state: np.ndarray) -> None:
     N, g = len(tensor), state[0]
     for i in range(N):
         for j in range(N):
-            seen = 0.0
+            total = 0.0
             for a in range(N):
                 half = 0.0
                 for b in range(N):
                     half += tensor[a, b] * g[j * N + b]
-                seen += g[i * N + a] * half
-            state[0, before + i * N + j], state[1, before + i * N + j] = seen, 0.0
+                total += g[i * N + a] * half
+            state[0, before + i * N + j], state[1, before + i * N + j] = total, 0.0
 
 
 def _write_velocities(f: Any, order: Any, room: Any, lanes: Any) -> Any:
@@ -266,20 +294,11 @@ def _product(series: np.ndarray, i: int, a: int, j: int, b: int, lanes: tuple[in
 
 
 @scalar
-def _collect(
-    first: np.ndarray,
-    found: np.ndarray,
-    factors: np.ndarray,
-    sums: np.ndarray,
-    order: int,
-    before: int,
-    series: np.ndarray,
-    lanes: tuple[int, ...],
-) -> None:
+def _collect(f: Quadratic, sums: np.ndarray, order: int, series: np.ndarray, lanes: tuple[int, ...]) -> None:
     """Write the next coefficients of x: those of its rates, divided."""
-    divisor = spread(order + 1.0, lanes)
+    before, first, divisor = len(f.velocities), f.first, spread(order + 1.0, lanes)
     for m in range(len(first) - 1):
         rate = spread(0.0, lanes)
         for i in range(first[m], first[m + 1]):
-            rate = rate + load(factors, 0, i, lanes) * load(sums, 0, found[i], lanes)
+            rate = rate + load(f.factors, 0, i, lanes) * load(sums, 0, f.sources[i], lanes)
         store(series, order + 1, before + m, lanes, rate / divisor)

@@ -34,23 +34,23 @@ def write_steps(
     f: Quadratic, state: np.ndarray, ends: np.ndarray, tolerance: float, room: Room, lanes: tuple[int, ...]
 ) -> None:
     """Write the lengths of the steps, not much longer than is left; NaN where the series is not finite."""
-    L, closed, sizes = len(lanes), f.closed, room.sizes
+    L, is_closed, sizes = len(lanes), f.is_closed, room.sizes
     _measure(f, room, lanes)
     for lane in range(L):
         left = ends[lane] - state[0, len(f.blocks) * L + lane]
-        step, power = _limited(closed, sizes, tolerance, 2 * abs(left), lane, L), 0.0
-        for block in range(len(closed)):
-            if not closed[block]:
-                step, power = _repaired(sizes, block * L + lane, tolerance, step, power)
+        step, power = _limit(is_closed, sizes, tolerance, 2 * abs(left), lane, L), 0.0
+        for block in range(len(is_closed)):
+            if not is_closed[block]:
+                step, power = _repair(sizes, block * L + lane, tolerance, step, power)
         room.steps[0, lane] = step
 
 
 @scalar
-def _limited(closed: np.ndarray, sizes: np.ndarray, tolerance: float, step: float, lane: int, L: int) -> float:
+def _limit(is_closed: np.ndarray, sizes: np.ndarray, tolerance: float, step: float, lane: int, L: int) -> float:
     """Return a step, shortened until the last terms of all closed blocks are small enough; NaN if nothing helps."""
     order = len(sizes) - 1
     for late in range(order - 1, order + 1):
-        share = _late_share(closed, sizes, late, lane, L)
+        share = _late_share(is_closed, sizes, late, lane, L)
         if share > 0:
             step = min(step, root(tolerance / share, late))
         elif share != 0:
@@ -61,16 +61,16 @@ def _limited(closed: np.ndarray, sizes: np.ndarray, tolerance: float, step: floa
 @scalar
 def _measure(f: Quadratic, room: Room, lanes: tuple[int, ...]) -> None:
     """Write the sizes of each block's coefficients: of all orders where it is driven, else of those that are needed."""
-    sizes, series, blocks, closed = room.sizes, room.series, f.blocks, f.closed
+    sizes, series, blocks, is_closed = room.sizes, room.series, f.blocks, f.is_closed
     before, order = len(f.velocities), len(series) - 1
-    for block in range(len(closed)):
+    for block in range(len(is_closed)):
         store(sizes, 0, block, lanes, spread(0.0, lanes))
-        for j in range(order - 1 if closed[block] else 1, order + 1):
+        for j in range(order - 1 if is_closed[block] else 1, order + 1):
             store(sizes, j, block, lanes, spread(0.0, lanes))
     for m in range(len(blocks)):
         block = blocks[m]
         _add_size(sizes, 0, block, series, before + m, lanes)
-        for j in range(order - 1 if closed[block] else 1, order + 1):
+        for j in range(order - 1 if is_closed[block] else 1, order + 1):
             _add_size(sizes, j, block, series, before + m, lanes)
 
 
@@ -81,12 +81,12 @@ def _add_size(sizes: np.ndarray, j: int, block: int, series: np.ndarray, at: int
 
 
 @scalar
-def _late_share(closed: np.ndarray, sizes: np.ndarray, late: int, lane: int, L: int) -> float:
+def _late_share(is_closed: np.ndarray, sizes: np.ndarray, late: int, lane: int, L: int) -> float:
     """Return the largest ratio of a late coefficient to the first one of its closed block; NaN if one is not finite."""
     share = 0.0
-    for block in range(len(closed)):
+    for block in range(len(is_closed)):
         at = block * L + lane
-        if closed[block] and sizes[late, at] != 0:
+        if is_closed[block] and sizes[late, at] != 0:
             ratio = sizes[late, at] / sizes[0, at]
             share = ratio if ratio > share else share
             if not math.isfinite(ratio):
@@ -95,7 +95,7 @@ def _late_share(closed: np.ndarray, sizes: np.ndarray, late: int, lane: int, L: 
 
 
 @scalar
-def _repaired(sizes: np.ndarray, at: int, tolerance: float, step: float, high: float) -> tuple[float, float]:
+def _repair(sizes: np.ndarray, at: int, tolerance: float, step: float, high: float) -> tuple[float, float]:
     """Return a step, shortened until the last terms of a driven block are within the tolerance of its largest one.
 
     The largest term is often an early one. `high` is the power of the step in the last but one, or 0, and comes back.
@@ -127,14 +127,14 @@ def _power(step: float, exponent: int) -> float:
 @scalar
 def root(x: float, degree: int) -> float:
     """Return the root of a positive number to two digits, from its bits; of zero a number that is small."""
-    raised = 0
+    exponent = 0
     if x < _SMALLEST:
-        x, raised = max(x * _SCALE, _SMALLEST), _RAISED
+        x, exponent = max(x * _SCALE, _SMALLEST), _RAISED
     if not math.isfinite(x):
         return math.inf
     bits = np.float64(x).view(np.int64)
     part = np.int64((bits & _FRACTION) | (_UNIT << 52)).view(np.float64) - 1
-    power = ((bits >> 52) - _UNIT - raised + part + _BEND * part * (1 - part)) / degree
+    power = ((bits >> 52) - _UNIT - exponent + part + _BEND * part * (1 - part)) / degree
     whole = int(power + _UNIT)  # rounds toward zero, so from a positive number
     part = power + _UNIT - whole
     return np.int64(whole << 52).view(np.float64) * (1 + part - _BEND * part * (1 - part))

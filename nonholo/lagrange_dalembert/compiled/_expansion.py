@@ -4,15 +4,137 @@ Every operation has a recurrence for its coefficients, by which they come order 
 quotients that of Cauchy, and y = s(a) by integration of $y' = a'g$, so that
 $k\,y_k = \sum_{j=1}^k j\,a_j\,g_{k-j}$, where g may depend on y. The code is called as that of quadratic equations,
 by `nonholo.kernels.solve_series`.
+
+Derivatives of functions, and linear equations by elimination, are formulas, too.
 """
 
+import math
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from llvmlite import ir
 
-from nonholo.lagrange_dalembert.compiled._derivatives import BILINEAR, LINEAR, Rates, rates_of
-from nonholo.lagrange_dalembert.compiled._operations import DOUBLE, OPERATIONS
-from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, needed
+from nonholo.lagrange_dalembert.compiled._scalars import (
+    DOUBLE,
+    OPERATIONS,
+    Formulas,
+    Scalar,
+    UntranslatableError,
+    operations_between,
+)
+
+LINEAR = {"add", "sub", "neg"}
+BILINEAR = {"mul", "div"}
+Rates = list[tuple[Scalar, Scalar]]
+"""Arguments a and g in the rate of a function, the sum of a' g."""
+
+
+def _over(f: Formulas, above: float, below: Scalar) -> Scalar:
+    return f("div", f.constant(above), below)
+
+
+def _squares(f: Formulas, constant: float, sign: str, x: Scalar) -> Scalar:
+    return f(sign, f.constant(constant), f("mul", x, x))
+
+
+def _root(f: Formulas, x: Scalar) -> Scalar:
+    return f("sqrt", x)
+
+
+_SLOPES: dict[str, Callable[[Formulas, Scalar, Scalar], Scalar]] = {
+    "exp": lambda _, _x, y: y,
+    "expm1": lambda f, _, y: f("add", y, f.constant(1.0)),
+    "log": lambda f, x, _: _over(f, 1.0, x),
+    "log1p": lambda f, x, _: _over(f, 1.0, f("add", x, f.constant(1.0))),
+    "sqrt": lambda f, _, y: _over(f, 0.5, y),
+    "cbrt": lambda f, x, y: f("div", y, f("mul", f.constant(3.0), x)),
+    "sin": lambda f, x, _: f("cos", x),
+    "cos": lambda f, x, _: f("neg", f("sin", x)),
+    "tan": lambda f, _, y: _squares(f, 1.0, "add", y),
+    "asin": lambda f, x, _: _over(f, 1.0, _root(f, _squares(f, 1.0, "sub", x))),
+    "acos": lambda f, x, _: _over(f, -1.0, _root(f, _squares(f, 1.0, "sub", x))),
+    "atan": lambda f, x, _: _over(f, 1.0, _squares(f, 1.0, "add", x)),
+    "sinh": lambda f, x, _: f("cosh", x),
+    "cosh": lambda f, x, _: f("sinh", x),
+    "tanh": lambda f, _, y: _squares(f, 1.0, "sub", y),
+    "asinh": lambda f, x, _: _over(f, 1.0, _root(f, _squares(f, 1.0, "add", x))),
+    "acosh": lambda f, x, _: _over(f, 1.0, _root(f, f("sub", f("mul", x, x), f.constant(1.0)))),
+    "atanh": lambda f, x, _: _over(f, 1.0, _squares(f, 1.0, "sub", x)),
+    "erf": lambda f, x, _: f("mul", f.constant(2 / math.sqrt(math.pi)), f("exp", f("neg", f("mul", x, x)))),
+}
+
+
+def rates_of(f: Formulas, y: Scalar) -> Rates:
+    """Return how the result of a function moves with its arguments.
+
+    Raises:
+        UntranslatableError: It has kinks, as a choice, a comparison and a rounding do.
+    """
+    if y.operation in _SLOPES:
+        rates = [(y.arguments[0], _SLOPES[y.operation](f, y.arguments[0], y))]
+    elif y.operation == "pow":
+        x, power = y.arguments
+        rates = [(x, f("div", f("mul", power, y), x))]
+        if power.value is None:
+            rates.append((power, f("mul", y, f("log", x))))
+    elif y.operation == "atan2":
+        above, right = y.arguments
+        square = f("add", f("mul", above, above), f("mul", right, right))
+        rates = [(above, f("div", right, square)), (right, f("neg", f("div", above, square)))]
+    else:
+        raise UntranslatableError(y.operation)
+    return [(x, slope) for x, slope in rates if x.value is None]
+
+
+class Elimination:
+    r"""Symmetric equations $Kx = b$ of formulas by $K = LDL^T$, without exchange of rows.
+
+    For $K = \begin{pmatrix} M & A^T \\ A & 0 \end{pmatrix}$ it exists if M is positive definite and the rows of A are
+    independent; some pivot vanishes otherwise.
+    """
+
+    def __init__(self, f: Formulas, matrix: Sequence[Sequence[Scalar]]) -> None:
+        self.f, self.lower, self.pivots = f, [], []
+        for j, row in enumerate(matrix):
+            lower: list[Scalar] = []
+            products: list[Scalar] = []
+            for i in range(j + 1):
+                before = self.lower[i] if i < j else lower
+                products.append(self._less(row[i], products, before))
+                if i < j:
+                    lower.append(self._quotient(products[i], self.pivots[i]))
+            if products[j].value == 0:
+                raise UntranslatableError("a pivot is zero")
+            self.lower.append(lower)
+            self.pivots.append(products[j])
+
+    def _less(self, x: Scalar, left: Sequence[Scalar], right: Sequence[Scalar]) -> Scalar:
+        """Return x less a sum of products; those with zero are left out."""
+        for a, b in zip(left, right, strict=False):
+            x = x if a.value == 0 or b.value == 0 else self.f("sub", x, self.f("mul", a, b))
+        return x
+
+    def _quotient(self, x: Scalar, pivot: Scalar) -> Scalar:
+        return x if x.value == 0 else self.f("div", x, pivot)
+
+    def solution(self, b: Sequence[Scalar]) -> list[Scalar]:
+        """Return x."""
+        ahead: list[Scalar] = []
+        for i, x in enumerate(b):
+            ahead.append(self._less(x, self.lower[i], ahead))
+        x = [self._quotient(each, pivot) for each, pivot in zip(ahead, self.pivots, strict=True)]
+        for i in reversed(range(len(x))):
+            below = range(i + 1, len(x))
+            x[i] = self._less(x[i], [self.lower[k][i] for k in below], [x[k] for k in below])
+        return x
+
+
+def bordered_elimination(f: Formulas, mass: Any, rows: Any) -> Elimination:
+    """Return the elimination of the matrix of kinetic energy bordered by rows of constraints."""
+    below = [[*row, *[f.constant(0.0)] * len(rows)] for row in rows]
+    above = [[*row, *(each[i] for each in rows)] for i, row in enumerate(mass)]
+    return Elimination(f, [*above, *below])
+
 
 ORDERS = 48
 """Room for coefficients of a number."""
@@ -41,21 +163,21 @@ class Expansion:
 
     def __init__(self, f: Formulas, inputs: list[Scalar], rates: list[Scalar]) -> None:
         self.inputs, self.rates, self.functions = inputs, rates, dict[Scalar, Rates]()
-        self.order = self._ordered(f, [each for each in rates if each.value is None])
+        self.order = self._order_of(f, [each for each in rates if each.value is None])
         moving = [a for pairs in self.functions.values() for a, _ in pairs]
         self.places = {each: i for i, each in enumerate([*inputs, *self.order])}
         self.moves = {a: len(self.places) + i for i, a in enumerate(dict.fromkeys(moving))}
         self.room = ORDERS * (len(self.places) + len(self.moves))
 
-    def _ordered(self, f: Formulas, results: list[Scalar]) -> list[Scalar]:
+    def _order_of(self, f: Formulas, results: list[Scalar]) -> list[Scalar]:
         """Return the operations that results need, and note the rates of functions among them."""
-        order = needed(results, self.inputs)
+        order = operations_between(results, self.inputs)
         new = [x for x in order if x.operation not in LINEAR | BILINEAR and x not in self.functions]
         if not new:
             return order
         self.functions |= {each: rates_of(f, each) for each in new}
         slopes = [slope for each in new for _, slope in self.functions[each]]
-        return self._ordered(f, [*results, *(slope for slope in slopes if slope.value is None)])
+        return self._order_of(f, [*results, *(slope for slope in slopes if slope.value is None)])
 
     def write(self, module: Any, name: str, width: int) -> None:
         """Write the function to a module; `width` numbers stand in a row of its series.
@@ -145,7 +267,7 @@ class Expansion:
         b, (above, below) = self.builder, x.arguments
         if below.value is not None:
             return b.fdiv(self._of(above, self.k), _number(below.value))
-        earlier = self._sum(self.places[below], self.places[x], self.k, skipped=1)
+        earlier = self._sum(self.places[below], self.places[x], self.k, skip=1)
         left = b.fneg(earlier) if above.value is not None else b.fsub(self._of(above, self.k), earlier)
         return b.fdiv(left, self._of(below, _word(0)))
 
@@ -159,9 +281,9 @@ class Expansion:
             total = b.fadd(total, term)
         return b.fdiv(total, divisor)
 
-    def _sum(self, first: int, last: int, terms: Any, skipped: int = 0) -> Any:
+    def _sum(self, first: int, last: int, terms: Any, skip: int = 0) -> Any:
         """Write a sum of products of coefficients, the first ones of one number with the last ones of another."""
-        places = _word(ORDERS * first + skipped), _word(ORDERS * last)
+        places = _word(ORDERS * first + skip), _word(ORDERS * last)
         return self.builder.call(self.dot, [self.coefficients, *places, terms])
 
     def _at(self, place: int, order: Any) -> Any:
@@ -179,7 +301,7 @@ def _dot(module: Any, name: str) -> Any:
     full = b.and_(n, _word(-_SIDE))
     b.cbranch(b.icmp_signed(">", full, _word(0)), wide, middle)
     b.position_at_end(wide)
-    i, sums = _joined(b, {entry: _word(0)}), _joined(b, {entry: zero})
+    i, sums = _phi(b, {entry: _word(0)}), _phi(b, {entry: zero})
     left = b.load(b.bitcast(b.gep(a, [i]), _VECTOR.as_pointer()), align=8)
     right = b.load(b.bitcast(b.gep(other, [b.sub(b.sub(n, i), _word(_SIDE))]), _VECTOR.as_pointer()), align=8)
     backward = ir.Constant(ir.VectorType(_LANE, _SIDE), list(range(_SIDE))[::-1])
@@ -189,19 +311,19 @@ def _dot(module: Any, name: str) -> Any:
     sums.add_incoming(total, wide)
     b.cbranch(b.icmp_signed("<", following, full), wide, middle)
     b.position_at_end(middle)
-    lanes = _joined(b, {entry: zero, wide: total})
+    lanes = _phi(b, {entry: zero, wide: total})
     each: list[Any] = [b.extract_element(lanes, _LANE(at)) for at in range(_SIDE)]
-    begun: Any = b.fadd(b.fadd(each[0], each[2]), b.fadd(each[1], each[3]))
+    lane_sum: Any = b.fadd(b.fadd(each[0], each[2]), b.fadd(each[1], each[3]))
     b.cbranch(b.icmp_signed("<", full, n), narrow, end)
     b.position_at_end(narrow)
-    j, sofar = _joined(b, {middle: full}), _joined(b, {middle: begun})
+    j, sofar = _phi(b, {middle: full}), _phi(b, {middle: lane_sum})
     product = b.fmul(b.load(b.gep(a, [j])), b.load(b.gep(other, [b.sub(b.sub(n, j), _word(1))])))
     longer, after = b.fadd(sofar, product), b.add(j, _word(1))
     j.add_incoming(after, narrow)
     sofar.add_incoming(longer, narrow)
     b.cbranch(b.icmp_signed("<", after, n), narrow, end)
     b.position_at_end(end)
-    b.ret(_joined(b, {middle: begun, narrow: longer}))
+    b.ret(_phi(b, {middle: lane_sum, narrow: longer}))
     return function
 
 
@@ -213,7 +335,7 @@ def _internal(module: Any, name: str, result: Any, arguments: list[Any]) -> Any:
     return function
 
 
-def _joined(builder: Any, values: dict[Any, Any]) -> Any:
+def _phi(builder: Any, values: dict[Any, Any]) -> Any:
     """Return a value that depends on the block before."""
     phi = builder.phi(next(iter(values.values())).type)
     for block, value in values.items():

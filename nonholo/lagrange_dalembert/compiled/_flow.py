@@ -10,15 +10,14 @@ import jax
 import numpy as np
 from llvmlite import ir
 
-from nonholo.base.compiled.emission import compiled
+from nonholo.base.compiled.emission import compile_text
 from nonholo.base.types import Array
 from nonholo.kernels import Quadratic, revisit_series, solve_series
 from nonholo.lagrange_dalembert._room import compiling, equations_of
-from nonholo.lagrange_dalembert.compiled._derivatives import bordered
-from nonholo.lagrange_dalembert.compiled._expansion import Expansion
-from nonholo.lagrange_dalembert.compiled._run import Values, evaluated, machine_code, program
+from nonholo.lagrange_dalembert.compiled._expansion import Expansion, bordered_elimination
+from nonholo.lagrange_dalembert.compiled._run import Values, evaluate, machine_code, program
 from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError
-from nonholo.lagrange_dalembert.compiled._windows import array_of
+from nonholo.lagrange_dalembert.compiled._translation import array_of
 from nonholo.orbit import looked_at
 
 _MOST = 100_000  # steps; what needs more is stiff
@@ -55,38 +54,38 @@ def formulation(family: Any, place: tuple[int, ...], n: int) -> Formulation | No
     def at(x: Array, v: Array, *numbers: Array) -> tuple[Array, ...]:
         system = family.bound(*numbers)
         rate = equations.rate(system, x, v)
-        missed, turned = jax.jvp(lambda y: equations.constraint(system, y, v), (x,), (rate,))
+        residual, constraint_rate = jax.jvp(lambda y: equations.constraint(system, y, v), (x,), (rate,))
         away = jax.jvp(lambda y: equations.holonomic_residual(system, y), (x,), (rate,))
-        columns = equations.momentum(system, x, v), equations.energy(system, x, v), missed, *away
+        columns = equations.momentum(system, x, v), equations.energy(system, x, v), residual, *away
         matrices = equations.mass_matrix(system, x, v), equations.forms(system, x)
-        return *matrices, equations.force(system, x, v), -turned, rate, *columns
+        return *matrices, equations.force(system, x, v), -constraint_rate, rate, *columns
 
     try:
         whole = program(at, place, (n,), *map(np.shape, family.parameters.values()))
         f, parts = whole.formulas, iter(whole.results)
-        mass, A, force, off, rate, momentum, energy, missed, away, leaving = (
+        mass, A, force, off, rate, momentum, energy, residual, away, leaving = (
             array_of(list(itertools.islice(parts, math.prod(shape))), shape) for shape in whole.shapes
         )
-        matrix = bordered(f, mass, A)
-        zero, moved = f.constant(0.0), matrix.solution([*force, *off])
-        across, back, drift = (matrix.solution([*[zero] * n, *rows])[:n] for rows in (missed, away, leaving))
+        matrix = bordered_elimination(f, mass, A)
+        zero, acceleration = f.constant(0.0), matrix.solution([*force, *off])
+        across, back, drift = (matrix.solution([*[zero] * n, *rows])[:n] for rows in (residual, away, leaving))
         still = [zero] * (len(whole.inputs) - size - n)
-        expansion = Expansion(f, whole.inputs, [*_less(f, rate.ravel(), drift), *moved[:n], *still])
+        expansion = Expansion(f, whole.inputs, [*_less(f, rate.ravel(), drift), *acceleration[:n], *still])
     except UntranslatableError:
         return None
     module = ir.Module()
     expansion.write(module, "expansion", -(-len(whole.inputs) // _SIDE) * _SIDE)
-    settled = [*_less(f, whole.inputs[:size], back), *_less(f, whole.inputs[size : size + n], across)]
-    forces, pivots = (f("neg", each) for each in moved[n:]), matrix.pivots[:n]
-    told = [*momentum, *forces, energy.item(), *missed, *pivots, *np.diagonal(mass)]
+    admissible = [*_less(f, whole.inputs[:size], back), *_less(f, whole.inputs[size : size + n], across)]
+    forces, pivots = (f("neg", each) for each in acceleration[n:]), matrix.pivots[:n]
+    columns_out = [*momentum, *forces, energy.item(), *residual, *pivots, *np.diagonal(mass)]
     shapes = [(n,), (len(A),), (), (len(A),), (n,), (n,)]
 
     def values(results: list[Scalar], shapes: list[tuple[int, ...]]) -> Values:
         doubt = functools.reduce(functools.partial(f, "add"), f.doubts, f.constant(0.0))
         return Values(machine_code(whole.inputs, [*results, doubt]), shapes)
 
-    address = compiled(str(module), "expansion", is_long=True)
-    return Formulation(address, expansion.room, values(settled, [place, (n,)]), values(told, shapes))
+    address = compile_text(str(module), "expansion", is_long=True)
+    return Formulation(address, expansion.room, values(admissible, [place, (n,)]), values(columns_out, shapes))
 
 
 def _less(f: Formulas, numbers: Iterable[Scalar], others: list[Scalar]) -> list[Scalar]:
@@ -120,14 +119,14 @@ class Series(NamedTuple):
     def __call__(self, times: np.ndarray) -> list[np.ndarray]:
         """Return places and velocities at times in the order in which the motion was solved."""
         f, code = _equations(self.code, self.shapes, self.nodes.shape[2] - 1), self.code
-        return self.settled(revisit_series(f, self.nodes, times, self.end, self.tolerance, code.expansion))
+        return self.settle(revisit_series(f, self.nodes, times, self.end, self.tolerance, code.expansion))
 
-    def settled(self, rows: np.ndarray) -> list[np.ndarray]:
+    def settle(self, rows: np.ndarray) -> list[np.ndarray]:
         """Return places and admissible velocities of states of the series."""
         place, (n,) = self.shapes
         size = math.prod(place)
-        x = equations_of(self.system).normalized(self.system, rows[:, :size].reshape(-1, *place))
-        return cast(Any, _evaluated(self.code.settle, self.system, x, rows[:, size : size + n]))
+        x = equations_of(self.system).normalize(self.system, rows[:, :size].reshape(-1, *place))
+        return cast(Any, _values(self.code.settle, self.system, x, rows[:, size : size + n]))
 
     @property
     def span(self) -> tuple[float, float]:
@@ -144,7 +143,7 @@ def flow(system: Any, first: tuple[Any, Any], times: np.ndarray, rtol: float) ->
     x, v = map(np.asarray, first)
     with compiling(system):
         code = formulation(system.family, x.shape, len(v))
-    start = code and _evaluated(code.decode, system, x[None], v[None])
+    start = code and _values(code.decode, system, x[None], v[None])
     if not code or start is None or not np.all(start[-2] > _SMALLEST * start[-1]):
         return None
     shapes, tolerance = (x.shape, v.shape), rtol * _GUARD
@@ -154,7 +153,7 @@ def flow(system: Any, first: tuple[Any, Any], times: np.ndarray, rtol: float) ->
     if len(rows) < len(times):
         return None
     series = Series(system, shapes, nodes, float(times[-1]), tolerance)
-    return series.settled(rows), series
+    return series.settle(rows), series
 
 
 def _equations(code: Formulation, shapes: tuple[tuple[int, ...], tuple[int, ...]], size: int) -> Quadratic:
@@ -172,13 +171,13 @@ def _equations(code: Formulation, shapes: tuple[tuple[int, ...], tuple[int, ...]
 def flow_rows(system: Any, x: np.ndarray, v: np.ndarray) -> list[np.ndarray] | None:
     """Return momenta, forces of constraint, energies and residuals of states; None if JAX must compute them."""
     code = formulation(system.family, x.shape[1:], v.shape[1])
-    columns = _evaluated(code.decode, system, x, v) if code else None
+    columns = _values(code.decode, system, x, v) if code else None
     if columns is None:
         return None
-    momentum, force, energy, missed, *_ = columns
-    return [momentum, force, energy, np.abs(missed).max(axis=1, initial=0.0)]
+    momentum, force, energy, residual, *_ = columns
+    return [momentum, force, energy, np.abs(residual).max(axis=1, initial=0.0)]
 
 
-def _evaluated(code: Values, system: Any, x: np.ndarray, v: np.ndarray) -> list[np.ndarray] | None:
-    shared = (np.broadcast_to(number, (len(x), *np.shape(number))) for number in system.parameters.values())
-    return evaluated(code, x, v, *shared)
+def _values(code: Values, system: Any, x: np.ndarray, v: np.ndarray) -> list[np.ndarray] | None:
+    numbers = (np.broadcast_to(number, (len(x), *np.shape(number))) for number in system.parameters.values())
+    return evaluate(code, x, v, *numbers)

@@ -27,10 +27,16 @@ from nonholo.kernels import (
 )
 from nonholo.lagrange_dalembert import _newton
 from nonholo.lagrange_dalembert._room import compiling, equations_of
-from nonholo.lagrange_dalembert.compiled._operations import DOUBLE, OPERATIONS, TRUTH
-from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError, needed
-from nonholo.lagrange_dalembert.compiled._translation import translated
-from nonholo.lagrange_dalembert.compiled._windows import array_of
+from nonholo.lagrange_dalembert.compiled._scalars import (
+    DOUBLE,
+    OPERATIONS,
+    TRUTH,
+    Formulas,
+    Scalar,
+    UntranslatableError,
+    operations_between,
+)
+from nonholo.lagrange_dalembert.compiled._translation import array_of, translate
 
 State = tuple[Any, Any, Any]
 ROWS = 1024
@@ -68,7 +74,7 @@ class Programs(NamedTuple):
     arrive: Any
     settle: Any
     correct: Any
-    settled: int
+    border: int
 
 
 def program(function: Callable[..., Any], *shapes: tuple[int, ...], varying: int = 0) -> Program:
@@ -80,9 +86,9 @@ def program(function: Callable[..., Any], *shapes: tuple[int, ...], varying: int
     f, first = Formulas(), len(shapes) - varying
     inputs = [[Scalar("input", varies=i >= first) for _ in range(math.prod(shape))] for i, shape in enumerate(shapes)]
     with double_precision():
-        traced = jax.make_jaxpr(function)(*(jax.ShapeDtypeStruct(shape, float) for shape in shapes))
+        jaxpr = jax.make_jaxpr(function)(*(jax.ShapeDtypeStruct(shape, float) for shape in shapes))
     try:
-        arrays = translated(f, traced, list(map(array_of, inputs, shapes)))
+        arrays = translate(f, jaxpr, list(map(array_of, inputs, shapes)))
     except (AttributeError, KeyError, TypeError, ValueError) as failure:
         raise UntranslatableError(repr(failure)) from failure
     doubts = sorted(f.doubts, key=lambda each: each.varies)
@@ -112,8 +118,8 @@ def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
         *numbers, v, multipliers = rest
         system = family.bound(*numbers)
         matrix_at, rows = matrix_of(system, x, near, h), equations.forms(system, x)
-        matrix, missed, units, size = _newton.equations(matrix_at, rows, p, v, multipliers, jnp.zeros(n + s))
-        return matrix, missed, units.velocity, units.forms, size, doubt
+        matrix, residual, units, size = _newton.equations(matrix_at, rows, p, v, multipliers, jnp.zeros(n + s))
+        return matrix, residual, units.velocity, units.forms, size, doubt
 
     try:
         own = [np.shape(number) for number in family.parameters.values()]
@@ -123,10 +129,10 @@ def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
         return None
     *results, doubt = whole.results
     outputs = [*results, whole.formulas("add", doubt, whole.doubt)]
-    fixed, varying = ([each for each in whole.inputs if each.varies is kind] for kind in (False, True))
-    kept = _border(outputs)
-    settle, corrections = machine_code(fixed, kept), machine_code([*kept, *varying], outputs)
-    return Programs(machine_code(first.inputs, [*first.results, first.doubt]), settle, corrections, len(kept))
+    constants, varying = ([each for each in whole.inputs if each.varies is kind] for kind in (False, True))
+    border = _border(outputs)
+    settle, corrections = machine_code(constants, border), machine_code([*border, *varying], outputs)
+    return Programs(machine_code(first.inputs, [*first.results, first.doubt]), settle, corrections, len(border))
 
 
 @functools.lru_cache(maxsize=64)  # a sweep makes a system for each member
@@ -146,8 +152,8 @@ def values(function: Callable[..., Any], family: Any, *shapes: tuple[int, ...]) 
 
 def _border(results: list[Scalar]) -> list[Scalar]:
     """Return the numbers that stay the same and are used by such that vary, or are results."""
-    used = [other for each in needed(results, ()) if each.varies for other in each.arguments]
-    return list(dict.fromkeys(each for each in [*used, *results] if not each.varies and each.value is None))
+    operands = [other for each in operations_between(results, ()) if each.varies for other in each.arguments]
+    return list(dict.fromkeys(each for each in [*operands, *results] if not each.varies and each.value is None))
 
 
 @global_compiler_lock
@@ -164,9 +170,9 @@ def machine_code(inputs: list[Scalar], results: list[Scalar]) -> Any:
     _write(ir.IRBuilder(function.append_basic_block()), function.args, inputs, results)
     library.add_ir_module(module)
     library.finalize()
-    called: Any = FUNCTION(library.get_pointer_to_function(function.name))
-    called.memory = library  # which lives as long as the function
-    return called
+    pointer: Any = FUNCTION(library.get_pointer_to_function(function.name))
+    pointer.memory = library  # which lives as long as the function
+    return pointer
 
 
 def _write(builder: ir.IRBuilder, arrays: Any, inputs: list[Scalar], results: list[Scalar]) -> None:
@@ -180,9 +186,9 @@ def _write(builder: ir.IRBuilder, arrays: Any, inputs: list[Scalar], results: li
             return values[each]
         return ir.Constant(TRUTH, int(each.value)) if each.is_truth else ir.Constant(DOUBLE, float(each.value))
 
-    order = needed(results, inputs)
-    used = {other for each in order for other in each.arguments}.union(results)
-    values = {each: builder.load(at(source, i)) for i, each in enumerate(inputs) if each in used}
+    order = operations_between(results, inputs)
+    operands = {other for each in order for other in each.arguments}.union(results)
+    values = {each: builder.load(at(source, i)) for i, each in enumerate(inputs) if each in operands}
     for each in order:
         values[each] = OPERATIONS[each.operation].emit(builder, *map(value, each.arguments))
     for i, each in enumerate(results):
@@ -195,12 +201,12 @@ def _body(system: Any, h: Any, q: Any, v: Any, *, at_node: bool = False) -> Coor
     code, place, n = programs(system.family, np.shape(q), len(v), at_node=at_node), np.size(q), len(v)
     if code is None:
         return None
-    size, fixed = n + system.constraints, [np.ravel(x) for x in (float(h), *system.parameters.values())]
-    departure, arrival = (np.concatenate([np.zeros(room), *fixed]) for room in (place + n, place + 2 * n + 1))
-    given, equations = np.zeros(code.settled + size), np.zeros(size * size + 2 * size + 2)
-    matrix, missed, units, _ = np.split(equations, np.cumsum([size * size, size, size]))
-    parts = given[code.settled :], equations, matrix.reshape(size, size), missed, units, np.zeros((size, size + 1))
-    return CoordinateBody(*code[:3], departure, arrival, given, *parts, place, n)
+    size, constants = n + system.constraints, [np.ravel(x) for x in (float(h), *system.parameters.values())]
+    departure, arrival = (np.concatenate([np.zeros(room), *constants]) for room in (place + n, place + 2 * n + 1))
+    inputs, equations = np.zeros(code.border + size), np.zeros(size * size + 2 * size + 2)
+    matrix, residual, units, _ = np.split(equations, np.cumsum([size * size, size, size]))
+    parts = inputs[code.border :], equations, matrix.reshape(size, size), residual, units, np.zeros((size, size + 1))
+    return CoordinateBody(*code[:3], departure, arrival, inputs, *parts, place, n)
 
 
 def set_out(definition: Callable[..., Any], system: Any, h: Any, q: Any, v: Any, p: Any) -> Any:
@@ -232,27 +238,27 @@ def advance(
     if body is None:
         rows = min(rows, ROWS)
         good, after, code, columns = definition(state, sign, np.int64(rows), np.int64(every))
-        begun = min(rows, int(good) // every + 1)
+        row_count = min(rows, int(good) // every + 1)
         for column, entries in zip(table, columns, strict=True):
-            column[:begun] = entries[:begun].reshape(begun, column.shape[1])
+            column[:row_count] = entries[:row_count].reshape(row_count, column.shape[1])
         return int(good), after, code
     shape, ends = np.shape(state[0]), [body.place, body.place + body.velocity]
 
-    def unpacked(flat: np.ndarray) -> State:
+    def unpack(flat: np.ndarray) -> State:
         q, v, before = np.split(flat, ends)
         return q.reshape(shape), v, before
 
     flat, total, code = np.concatenate([np.ravel(x) for x in state]), rows * every, np.int64(0)
-    done = advance_coordinates(body, flat, float(sign), 0, total, every, *table)
-    while done < total:
-        _, after, code, (*_, impulses) = definition(unpacked(flat), sign, np.int64(1), np.int64(1))
+    count = advance_coordinates(body, flat, float(sign), 0, total, every, *table)
+    while count < total:
+        _, after, code, (*_, impulses) = definition(unpack(flat), sign, np.int64(1), np.int64(1))
         if code:
             break
-        if done % every == 0:
-            table[2][done // every] = impulses[0]
+        if count % every == 0:
+            table[2][count // every] = impulses[0]
         flat = np.concatenate([np.ravel(x) for x in after])
-        done = advance_coordinates(body, flat, float(sign), done + 1, total, every, *table)
-    return int(done), unpacked(flat), code
+        count = advance_coordinates(body, flat, float(sign), count + 1, total, every, *table)
+    return int(count), unpack(flat), code
 
 
 def decoded(function: Callable[..., Any], system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> list[Any] | None:
@@ -264,20 +270,20 @@ def decoded(function: Callable[..., Any], system: Any, h: Any, q: np.ndarray, v:
     nodes = _nodes(system, h, q, v) if system.is_driven and len(q) else ()
     if nodes is None:
         return None
-    shared = [np.broadcast_to(x, (len(q), *np.shape(x))) for x in (*system.parameters.values(), float(h))]
-    columns = [*shared, q, v, *nodes]
+    numbers = [np.broadcast_to(x, (len(q), *np.shape(x))) for x in (*system.parameters.values(), float(h))]
+    columns = [*numbers, q, v, *nodes]
     code = values(function, system.family, *(column.shape[1:] for column in columns))
     if code is None:
         return None
-    return evaluated(code, *columns)
+    return evaluate(code, *columns)
 
 
-def evaluated(code: Values, *columns: np.ndarray) -> list[Any] | None:
+def evaluate(code: Values, *columns: np.ndarray) -> list[Any] | None:
     """Return the values of each row of columns; None where they may not be trusted."""
     sizes, count = [math.prod(shape) for shape in code.shapes], len(columns[0])
     table = np.empty((count, sum(sizes) + 1))
-    given = np.column_stack([x.reshape(count, math.prod(x.shape[1:])) for x in columns])
-    each_row(code.function, np.ascontiguousarray(given), table)  # of repeated rows the stack has another layout
+    inputs = np.column_stack([x.reshape(count, math.prod(x.shape[1:])) for x in columns])
+    each_row(code.function, np.ascontiguousarray(inputs), table)  # of repeated rows the stack has another layout
     if np.any(table[:, -1] != 0):
         return None
     parts = np.split(table[:, :-1], np.cumsum(sizes)[:-1], axis=1)

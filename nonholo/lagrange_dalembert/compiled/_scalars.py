@@ -1,11 +1,88 @@
-"""Formulas of single numbers: each operation made once, constants computed, zeros left out."""
+"""Formulas of single numbers: operations, each result made once, constants computed, zeros left out."""
 
-from collections.abc import Collection
-from typing import Any
+import operator
+from collections.abc import Callable, Collection
+from typing import Any, NamedTuple
 
 import numpy as np
+import scipy.special
+from llvmlite import ir
 
-from nonholo.lagrange_dalembert.compiled._operations import OPERATIONS, TRUTHS
+DOUBLE, TRUTH = ir.DoubleType(), ir.IntType(1)
+
+
+class Operation(NamedTuple):
+    """An operation.
+
+    Attributes:
+        evaluate: The function of constants.
+        emit: Maps a builder of LLVM code and arguments to the result.
+        is_total: Whether finite arguments have a finite result, overflow apart.
+    """
+
+    evaluate: Callable[..., Any]
+    emit: Callable[..., Any]
+    is_total: bool = True
+
+
+def _instruction(name: str) -> Callable[..., Any]:
+    return lambda builder, *arguments: getattr(builder, name)(*arguments)
+
+
+def _function(name: str) -> Callable[..., Any]:
+    """Call a function of the C library, or what LLVM knows as an instruction."""
+
+    def emit(builder: ir.IRBuilder, *arguments: Any) -> Any:
+        kind = ir.FunctionType(DOUBLE, [DOUBLE] * len(arguments))
+        return builder.call(builder.module.globals.get(name) or ir.Function(builder.module, kind, name), arguments)
+
+    return emit
+
+
+def _comparison(sign: str) -> Callable[..., Any]:
+    name = "fcmp_unordered" if sign == "!=" else "fcmp_ordered"
+    return lambda builder, a, b: getattr(builder, "icmp_unsigned" if a.type == TRUTH else name)(sign, a, b)
+
+
+_COMPARISONS = {"lt": "<", "le": "<=", "gt": ">", "ge": ">=", "eq": "==", "ne": "!="}
+LOGIC = {"and", "or", "not"}
+TRUTHS = LOGIC.union(_COMPARISONS)
+
+_TOTAL = {"sin": np.sin, "cos": np.cos, "tanh": np.tanh, "atan": np.arctan, "atan2": np.arctan2, "asinh": np.arcsinh}
+_TOTAL |= {"cbrt": np.cbrt, "erf": scipy.special.erf, "floor": np.floor, "ceil": np.ceil, "rint": np.rint}
+_PARTIAL = {"exp": np.exp, "log": np.log, "pow": np.power, "sqrt": np.sqrt, "tan": np.tan, "asin": np.arcsin}
+_PARTIAL |= {"acos": np.arccos, "sinh": np.sinh, "cosh": np.cosh, "acosh": np.arccosh, "atanh": np.arctanh}
+_PARTIAL |= {"expm1": np.expm1, "log1p": np.log1p}
+_OF_LLVM = {"sin", "cos", "exp", "log", "pow", "sqrt", "floor", "ceil", "rint"}
+
+
+def _functions(table: dict[str, Callable[..., Any]], is_total: bool) -> dict[str, Operation]:
+    names = {name: f"llvm.{name}.f64" if name in _OF_LLVM else name for name in table}
+    return {name: Operation(table[name], _function(symbol), is_total) for name, symbol in names.items()}
+
+
+OPERATIONS: dict[str, Operation] = {
+    "add": Operation(operator.add, _instruction("fadd")),
+    "sub": Operation(operator.sub, _instruction("fsub")),
+    "mul": Operation(operator.mul, _instruction("fmul")),
+    "div": Operation(np.true_divide, _instruction("fdiv"), is_total=False),
+    "rem": Operation(np.fmod, _instruction("frem"), is_total=False),
+    "neg": Operation(operator.neg, _instruction("fneg")),
+    "abs": Operation(abs, _function("llvm.fabs.f64")),
+    "max": Operation(np.maximum, _function("llvm.maximum.f64")),
+    "min": Operation(np.minimum, _function("llvm.minimum.f64")),
+    "not": Operation(operator.not_, _instruction("not_")),
+    "float": Operation(float, lambda builder, truth: builder.uitofp(truth, DOUBLE)),
+    "select": Operation(
+        lambda which, no, yes: yes if which else no, lambda builder, which, no, yes: builder.select(which, yes, no)
+    ),
+    **{name: Operation(getattr(operator, name), _comparison(sign)) for name, sign in _COMPARISONS.items()},
+    "and": Operation(operator.and_, _instruction("and_")),
+    "or": Operation(operator.or_, _instruction("or_")),
+    **_functions(_TOTAL, True),
+    **_functions(_PARTIAL, False),
+}
+
 
 _MOST = 200_000  # operations asked for: those of 50 coordinates; beyond, JAX is sooner ready
 
@@ -36,8 +113,8 @@ class Scalar:
         self.is_total = operation not in OPERATIONS or (
             OPERATIONS[operation].is_total and all(each.is_total for each in arguments)
         )
-        chosen = operation == "select" and arguments[1].is_truth
-        self.is_truth = chosen or operation in TRUTHS or value is True or value is False
+        chooses_truth = operation == "select" and arguments[1].is_truth
+        self.is_truth = chooses_truth or operation in TRUTHS or value is True or value is False
 
 
 class Formulas:
@@ -98,16 +175,16 @@ _IF_LAST: dict[Any, Any] = {
 }
 
 
-def needed(results: Collection[Scalar], given: Collection[Scalar]) -> list[Scalar]:
+def operations_between(results: Collection[Scalar], inputs: Collection[Scalar]) -> list[Scalar]:
     """Return the operations between given numbers and results, each after those that it acts on."""
     order: dict[Scalar, None] = {}
-    known, stack = set(given), list(results)
+    start, stack = set(inputs), list(results)
     while stack:
         each = stack[-1]
-        waiting = [] if each in known else [other for other in each.arguments if other not in order]
-        waiting = [other for other in waiting if other not in known]
+        waiting = [] if each in start else [other for other in each.arguments if other not in order]
+        waiting = [other for other in waiting if other not in start]
         if waiting:
             stack += waiting
         else:
             order.setdefault(stack.pop())
-    return [each for each in order if each.arguments and each not in known]
+    return [each for each in order if each.arguments and each not in start]

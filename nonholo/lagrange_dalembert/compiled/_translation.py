@@ -1,4 +1,8 @@
-"""JAX programs as formulas: arrays become arrays of single numbers, and each primitive acts on these."""
+"""JAX programs as formulas: arrays become arrays of single numbers, and each primitive acts on these.
+
+Gather and scatter with indices that are constants say which numbers of an array windows hold. The meaning of their
+dimension numbers: https://openxla.org/xla/operation_semantics, "Gather" and "Scatter".
+"""
 
 import functools
 import math
@@ -6,11 +10,9 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from jax.lax import RoundingMethod
+from jax.lax import GatherScatterMode, RoundingMethod
 
-from nonholo.lagrange_dalembert.compiled._operations import LOGIC, OPERATIONS, TRUTHS
-from nonholo.lagrange_dalembert.compiled._scalars import Formulas, UntranslatableError
-from nonholo.lagrange_dalembert.compiled._windows import array_of, fixed, gathered, scattered
+from nonholo.lagrange_dalembert.compiled._scalars import LOGIC, OPERATIONS, TRUTHS, Formulas, UntranslatableError
 
 _CALLS = {"jit", "pjit", "closed_call", "remat", "checkpoint", "custom_jvp_call", "custom_vjp_call"}
 _KINDS = {
@@ -23,7 +25,7 @@ Rule = Callable[..., Any]
 """Maps formulas, arrays of numbers and the parameters of a primitive, by name, to its result."""
 
 
-def translated(f: Formulas, program: Any, arguments: list[np.ndarray]) -> list[np.ndarray]:
+def translate(f: Formulas, program: Any, arguments: list[np.ndarray]) -> list[np.ndarray]:
     """Return the results of a JAX program of arrays of numbers."""
     jaxpr = getattr(program, "jaxpr", program)
     values = dict(zip(jaxpr.invars, arguments, strict=True))
@@ -43,9 +45,9 @@ def _applied(f: Formulas, step: Any, arguments: list[np.ndarray]) -> list[np.nda
     name, parameters = step.primitive.name, step.params
     if name in _CALLS:
         inner = next(parameters[key] for key in ("jaxpr", "call_jaxpr", "fun_jaxpr") if key in parameters)
-        return translated(f, inner, arguments)
+        return translate(f, inner, arguments)
     if name == "cond":
-        return translated(f, parameters["branches"][fixed(arguments[0]).item()], arguments[1:])
+        return translate(f, parameters["branches"][constants_of(arguments[0]).item()], arguments[1:])
     if name not in _TABLE or (name in OPERATIONS and name not in _KINDS.get(step.invars[0].aval.dtype.kind, ())):
         raise UntranslatableError(name)
     result = _TABLE[name](f, *arguments, **parameters)
@@ -88,13 +90,13 @@ def _power(f: Formulas, x: np.ndarray, *, y: int, **_: Any) -> np.ndarray:
     return _each(lambda number: power(number, y), x)
 
 
-def _rounded(f: Formulas, x: np.ndarray, *, rounding_method: Any) -> np.ndarray:
+def _round(f: Formulas, x: np.ndarray, *, rounding_method: Any) -> np.ndarray:
     if rounding_method != RoundingMethod.TO_NEAREST_EVEN:
         raise UntranslatableError("round half away from zero")
     return _each(functools.partial(f, "rint"), x)
 
 
-def _converted(f: Formulas, x: np.ndarray, *, new_dtype: Any, **_: Any) -> np.ndarray:
+def _convert(f: Formulas, x: np.ndarray, *, new_dtype: Any, **_: Any) -> np.ndarray:
     name = np.dtype(new_dtype).name
     if name == "float64":
         return _each(lambda x: f("float", x) if x.is_truth or x.value is not None else x, x)
@@ -102,10 +104,10 @@ def _converted(f: Formulas, x: np.ndarray, *, new_dtype: Any, **_: Any) -> np.nd
         return x
     if name not in ("bool", "int32", "int64"):
         raise UntranslatableError(name)
-    return _constants(f, fixed(x).astype(name))
+    return _constants(f, constants_of(x).astype(name))
 
 
-def _chosen(f: Formulas, which: np.ndarray, *cases: np.ndarray) -> np.ndarray:
+def _choose(f: Formulas, which: np.ndarray, *cases: np.ndarray) -> np.ndarray:
     if len(cases) != 2:
         raise UntranslatableError("a choice of many")
     return _each(functools.partial(f, "select"), which, *cases)
@@ -115,9 +117,9 @@ def _reduction(name: str, of_none: float) -> Rule:
     """Take the numbers along axes one after another, in rising order; `of_none` is the value of none."""
 
     def reduce(f: Formulas, x: np.ndarray, *, axes: Any, **_: Any) -> np.ndarray:
-        ordered = np.moveaxis(x, axes, range(-len(axes), 0))
-        shape = ordered.shape[: x.ndim - len(axes)]
-        rows = ordered.reshape(math.prod(shape), math.prod(ordered.shape[len(shape) :]))
+        arrange = np.moveaxis(x, axes, range(-len(axes), 0))
+        shape = arrange.shape[: x.ndim - len(axes)]
+        rows = arrange.reshape(math.prod(shape), math.prod(arrange.shape[len(shape) :]))
         none = [] if rows.shape[1] else [f.constant(of_none)]
         return array_of([functools.reduce(functools.partial(f, name), row, *none) for row in rows], shape)
 
@@ -127,7 +129,7 @@ def _reduction(name: str, of_none: float) -> Rule:
 _sum = _reduction("add", 0.0)
 
 
-def _cumulated(f: Formulas, x: np.ndarray, *, axis: int, reverse: bool) -> np.ndarray:
+def _cumulate(f: Formulas, x: np.ndarray, *, axis: int, reverse: bool) -> np.ndarray:
     forward = np.flip(x, axis) if reverse else x
     sums = np.frompyfunc(functools.partial(f, "add"), 2, 1).accumulate(forward, axis=axis)
     return np.flip(sums, axis) if reverse else sums
@@ -136,12 +138,12 @@ def _cumulated(f: Formulas, x: np.ndarray, *, axis: int, reverse: bool) -> np.nd
 def _product(f: Formulas, x: np.ndarray, y: np.ndarray, *, dimension_numbers: Any, **_: Any) -> np.ndarray:
     (along_x, along_y), (batch_x, batch_y) = dimension_numbers
 
-    def ordered(array: np.ndarray, batch: Any, along: Any) -> tuple[np.ndarray, list[tuple[int, ...]]]:
+    def columns(array: np.ndarray, batch: Any, along: Any) -> tuple[np.ndarray, list[tuple[int, ...]]]:
         free = [axis for axis in range(array.ndim) if axis not in (*batch, *along)]
         shapes = [tuple(array.shape[axis] for axis in axes) for axes in (batch, free, along)]
         return array.transpose([*batch, *free, *along]).reshape(list(map(math.prod, shapes))), shapes
 
-    (a, shapes), (b, others) = ordered(x, batch_x, along_x), ordered(y, batch_y, along_y)
+    (a, shapes), (b, others) = columns(x, batch_x, along_x), columns(y, batch_y, along_y)
     terms = _each(functools.partial(f, "mul"), a[:, :, None], b[:, None])
     return _sum(f, terms, axes=(3,)).reshape(shapes[0] + shapes[1] + others[1])
 
@@ -151,7 +153,7 @@ def _broadcast(_f: Formulas, x: np.ndarray, *, shape: Any, broadcast_dimensions:
     return np.broadcast_to(x.reshape([sizes.get(axis, 1) for axis in range(len(shape))]), shape)
 
 
-def _padded(_f: Formulas, x: np.ndarray, value: np.ndarray, *, padding_config: Any) -> np.ndarray:
+def _pad(_f: Formulas, x: np.ndarray, value: np.ndarray, *, padding_config: Any) -> np.ndarray:
     """Return an array between copies of a value; where there are less than none of them, it is cut."""
     low, high, inner = np.reshape(padding_config, (-1, 3)).astype(int).T
     begin = np.maximum(low, 0)
@@ -170,14 +172,82 @@ def _platform(f: Formulas, *, platforms: Any) -> np.ndarray:
 
 
 def _window(x: np.ndarray, starts: Any, sizes: Any) -> tuple[slice, ...]:
-    corner = np.clip([int(fixed(each)) for each in starts], 0, np.subtract(x.shape, sizes))
+    corner = np.clip([int(constants_of(each)) for each in starts], 0, np.subtract(x.shape, sizes))
     return tuple(map(slice, corner, corner + sizes))
 
 
-def _pasted(_f: Formulas, x: np.ndarray, part: np.ndarray, *starts: np.ndarray) -> np.ndarray:
+def _paste(_f: Formulas, x: np.ndarray, part: np.ndarray, *starts: np.ndarray) -> np.ndarray:
     result = x.copy()
     result[_window(x, starts, part.shape)] = part
     return result
+
+
+def array_of(numbers: list[Any], shape: tuple[int, ...]) -> np.ndarray:
+    """Return numbers in an array with a shape."""
+    result = np.empty(len(numbers), dtype=object)
+    result[:] = numbers
+    return result.reshape(shape)
+
+
+def constants_of(array: np.ndarray) -> Any:
+    """Return the values of an array of constants."""
+    values = [each.value for each in array.ravel()]
+    if None in values:
+        raise UntranslatableError("an index that is computed")
+    return np.array(values).reshape(array.shape)
+
+
+def gather(
+    _f: Formulas, x: np.ndarray, indices: np.ndarray, *, dimension_numbers: Any, slice_sizes: Any, mode: Any, **_: Any
+) -> np.ndarray:
+    """Return the numbers of windows of an array."""
+    d, batch = dimension_numbers, indices.ndim - 1
+    batching = d.operand_batching_dims, d.start_indices_batching_dims
+    places = _places(x.shape, constants_of(indices), d.start_index_map, batching, slice_sizes, mode)
+    unit_axes = (*d.collapsed_slice_dims, *d.operand_batching_dims)
+    result = np.squeeze(x.ravel()[places], tuple(batch + axis for axis in unit_axes))
+    return np.moveaxis(result, range(batch, result.ndim), d.offset_dims)
+
+
+def scatter(
+    f: Formulas,
+    x: np.ndarray,
+    indices: np.ndarray,
+    updates: np.ndarray,
+    *,
+    dimension_numbers: Any,
+    mode: Any,
+    adds: bool = False,
+    **_: Any,
+) -> np.ndarray:
+    """Return an array with windows replaced, or with numbers added to them."""
+    d, batch, numbers = dimension_numbers, indices.ndim - 1, x.ravel().tolist()
+    unit_axes, windows = (*d.inserted_window_dims, *d.operand_batching_dims), iter(d.update_window_dims)
+    sizes = [1 if axis in unit_axes else updates.shape[next(windows)] for axis in range(x.ndim)]
+    batching = d.operand_batching_dims, d.scatter_indices_batching_dims
+    places = _places(x.shape, constants_of(indices), d.scatter_dims_to_operand_dims, batching, sizes, mode)
+    rows = np.moveaxis(updates, d.update_window_dims, range(batch, updates.ndim))
+    for place, number in zip(places.ravel().tolist(), rows.ravel().tolist(), strict=True):
+        numbers[place] = f("add", numbers[place], number) if adds else number
+    return array_of(numbers, x.shape)
+
+
+def _places(
+    shape: tuple[int, ...], indices: np.ndarray, axes: Any, batching: tuple[Any, Any], sizes: Any, mode: Any
+) -> np.ndarray:
+    """Return the flat places of windows of these sizes, whose corners have the indices along axes."""
+    batch = indices.shape[:-1]
+    corners = np.zeros((*batch, len(shape)), dtype=int)
+    corners[..., list(axes)] = indices
+    for axis, along in zip(*batching, strict=True):
+        corners[..., axis] = np.indices(batch)[along]
+    most = np.array(shape) - sizes
+    inside = np.clip(corners, 0, most)
+    if mode != GatherScatterMode.CLIP and not np.array_equal(inside, corners):
+        raise UntranslatableError("an index out of bounds")
+    offsets = np.moveaxis(np.indices(tuple(sizes)), 0, -1)
+    windows = inside.reshape(*batch, *(1 for _ in shape), len(shape)) + offsets
+    return np.asarray(np.ravel_multi_index(tuple(np.moveaxis(windows, -1, 0)), shape))
 
 
 _TABLE: dict[str, Rule] = {
@@ -191,23 +261,23 @@ _TABLE: dict[str, Rule] = {
     "logistic": _numberwise(_logistic),
     **dict.fromkeys(("copy", "stop_gradient"), _numberwise(lambda _f, x: x)),
     "integer_pow": _power,
-    "round": _rounded,
-    "select_n": _chosen,
-    "convert_element_type": _converted,
+    "round": _round,
+    "select_n": _choose,
+    "convert_element_type": _convert,
     "reduce_sum": _sum,
     "reduce_prod": _reduction("mul", 1.0),
     "reduce_max": _reduction("max", -math.inf),
     "reduce_min": _reduction("min", math.inf),
-    "cumsum": _cumulated,
+    "cumsum": _cumulate,
     "dot_general": _product,
     "iota": _counting,
     "platform_index": _platform,
     "broadcast_in_dim": _broadcast,
-    "pad": _padded,
-    "gather": gathered,
-    "scatter": scattered,
-    "scatter-add": functools.partial(scattered, adds=True),
-    "dynamic_update_slice": _pasted,
+    "pad": _pad,
+    "gather": gather,
+    "scatter": scatter,
+    "scatter-add": functools.partial(scatter, adds=True),
+    "dynamic_update_slice": _paste,
     "dynamic_slice": lambda _f, x, *starts, slice_sizes: x[_window(x, starts, slice_sizes)],
     "slice": lambda _f, x, *, start_indices, limit_indices, strides: x[
         tuple(map(slice, start_indices, limit_indices, strides or (1,) * x.ndim))

@@ -12,8 +12,8 @@ from nonholo.base.checks import instance
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
+from nonholo.lagrange_dalembert._functions import check_forms, check_value, count_of
 from nonholo.lagrange_dalembert._room import room
-from nonholo.lagrange_dalembert.functions import check_forms, check_value, count_of
 from nonholo.systems import AbstractCoordinateSystem, checked_group, group_mass_tensor, inertia_form
 
 if TYPE_CHECKING:
@@ -78,19 +78,19 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
     coordinates: ClassVar[tuple[str, ...]] = ()
     name: ClassVar[str] = "System with constraints that depend on the pose"
     orbits: ClassVar[str] = "GroupOrbit"
-    recorded: ClassVar[tuple[str, ...]] = ("constraints", "coordinates", "is_driven", "name", "orbits", "shapes")
+    in_stores: ClassVar[tuple[str, ...]] = ("constraints", "coordinates", "is_driven", "name", "orbits", "shapes")
     _equations: ClassVar[str] = "on_groups._equations"
-    _start: ClassVar[str] = "on_groups._start"
+    _start: ClassVar[str] = "on_groups._equations"
 
     def __post_init__(self) -> None:
         remedy = "Pass nonholo.SO(n), SE(n), MatrixGroup or a product."
-        instance(_named("group"), self.group, AbstractMatrixGroup, "be a matrix group", remedy)
+        instance(_argument("group"), self.group, AbstractMatrixGroup, "be a matrix group", remedy)
         with double_precision():
             g = jax.ShapeDtypeStruct((self.group.size, self.group.size), float)
             w, h = jax.ShapeDtypeStruct((self.group.dim,), float), jax.ShapeDtypeStruct((), float)
             self._check("discrete_lagrangian", (), g, h)
             if self.constraint_forms is not None:
-                where = _named("constraint_forms")
+                where = _argument("constraint_forms")
                 remedy = "Stack one row per constraint, in body coordinates; pass None for no constraint."
                 check_forms(where, self.constraint_forms, self.group.dim, (g,), repr(self.group), remedy)
             if self.discrete_constraints is not None:
@@ -99,8 +99,8 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
                 self._check("lagrangian", (), w)
 
     def _check(self, name: str, shape: tuple[int, ...], *arguments: Any) -> None:
-        called = f"shapes {[x.shape for x in arguments]}"
-        check_value(_named(name), getattr(self, name), shape, arguments, repr(self.group), called)
+        arrays = f"shapes {[x.shape for x in arguments]}"
+        check_value(_argument(name), getattr(self, name), shape, arguments, repr(self.group), arrays)
 
     @property
     def constraints(self) -> int:
@@ -174,7 +174,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
         return room("_flow").flow(self, configuration, starts, times, rtol, atol, project=project)
 
 
-def _named(argument: str) -> str:
+def _argument(argument: str) -> str:
     return f"GroupLagrangeDAlembert({argument}=...)"
 
 

@@ -32,7 +32,7 @@ from nonholo.plot.animation import _in_plane, _in_space, _on_sphere
 from nonholo.plot.animation._part import part_of, part_of_flow, shown_states
 from nonholo.plot.motion import track_of
 from nonholo.plot.overviews import name_of
-from nonholo.plot.parts import drawable_in_time, posed
+from nonholo.plot.parts import drawable_in_time, with_poses
 
 _SIZE = 4.8  # inches; 480 pixels
 
@@ -47,7 +47,7 @@ _CODECS = {  # of constant quality: lines of one color need few bits
 }
 
 
-@theme.styled
+@theme.in_style
 def animate(
     orbit: AbstractOrbit,
     path: str | Path,
@@ -101,17 +101,17 @@ def animate(
     if progress is not None:
         function("animate(progress=...)", progress)
     rate = float(positive("animate(fps=...)", fps, "Pass frames per second."))
-    shown = shown_states(orbit, motion(orbit), total)
-    figure, axes, set_clock = _stage(orbit, orbit.time[shown])
-    others = [] if flow is None else [part_of_flow(flow, orbit.time[shown])]
-    show = scene(axes, orbit, [part_of(orbit, shown), *others])
+    frame_states = shown_states(orbit, motion(orbit), total)
+    figure, axes, set_clock = _stage(orbit, orbit.time[frame_states])
+    others = [] if flow is None else [part_of_flow(flow, orbit.time[frame_states])]
+    show = scene(axes, orbit, [part_of(orbit, frame_states), *others])
 
     def draw(frame: int) -> None:
         set_clock(frame)
         show(frame)
 
     with complete_file(target) as part:
-        write_film(part, figure, draw, len(shown), rate, progress)
+        write_film(part, figure, draw, len(frame_states), rate, progress)
     return target
 
 
@@ -120,7 +120,7 @@ def _scene_of(where: str, orbit: AbstractOrbit) -> tuple[Callable[[Any], float],
     if orbit.coordinates:
         track = cast(Any, track_of(orbit))
         return lambda _: 0.0, functools.partial((_in_plane if len(track.names) == 2 else _in_space).draw_path, track)
-    group = posed(where, orbit).system.group
+    group = with_poses(where, orbit).system.group
     scenes = {SO(3): _on_sphere, SE(2): _in_plane, SE(3): _in_space}
     if group not in scenes:
         raise error(where, "move on SO(3), SE(2) or SE(3)", f"{group}", "Use `overview` for a still picture.")
@@ -128,7 +128,7 @@ def _scene_of(where: str, orbit: AbstractOrbit) -> tuple[Callable[[Any], float],
 
 
 def _same_space(where: str, flow: Any, orbit: AbstractOrbit) -> Any:
-    flow = drawable_in_time(where, flow) if orbit.coordinates else posed(where, flow)
+    flow = drawable_in_time(where, flow) if orbit.coordinates else with_poses(where, flow)
     if flow.space != orbit.space:
         raise error(where, f"move in {orbit.space}", f"{flow.space}", "Pass a motion of the same body.")
     return flow
@@ -138,7 +138,7 @@ def _stage(orbit: AbstractOrbit, times: Float[np.ndarray, "F"]) -> tuple[Figure,
     """Return a figure with a title, the time and a strip that shows how far it has come; its axes; what sets both."""
     figure = theme.new_figure((_SIZE, _SIZE), None)
     axes = figure.add_axes((0.02, 0.05, 0.96, 0.88))
-    title = theme.asked("title", name_of(orbit))
+    title = theme.option("title", name_of(orbit))
     figure.text(0.03, 0.965, title, va="center", fontsize="large", fontweight="bold")
     clock = figure.text(0.97, 0.965, "", va="center", ha="right", family="monospace", color=theme.QUIET)
     strip = figure.add_axes((0.03, 0.022, 0.94, 0.012), xlim=(0, 1), ylim=(0, 1))
@@ -148,8 +148,8 @@ def _stage(orbit: AbstractOrbit, times: Float[np.ndarray, "F"]) -> tuple[Figure,
     cover = strip.axvspan(0.0, 1.0, color=theme.LEVEL, linewidth=0)
 
     def set_clock(frame: int) -> None:
-        done = (frame + 1) / len(times)
-        cover.set(x=done, width=1 - done)
+        part = (frame + 1) / len(times)
+        cover.set(x=part, width=1 - part)
         clock.set_text(f"t = {times[frame]:.4g}")
 
     return figure, axes, set_clock
@@ -195,8 +195,8 @@ def _write_gif(
 ) -> None:
     figure.set_dpi(_DPI)
     canvas = FigureCanvasAgg(figure)
-    held = float(total) * math.prod(canvas.get_width_height())
-    within_memory("animate(frames=...)", held, "Ask for fewer, or write a .mp4.")
+    size = float(total) * math.prod(canvas.get_width_height())
+    within_memory("animate(frames=...)", size, "Ask for fewer, or write a .mp4.")
 
     def photograph() -> Image.Image:
         canvas.draw()

@@ -75,9 +75,9 @@ def _outline(system: System) -> list[Float[np.ndarray, "P 2"]]:
     angle = np.linspace(0, 2 * np.pi, 121)
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     middle = (SE(2).inverse(frame) @ [*center, 1.0])[:2]
-    drawn = [middle + length * circle * [1.0, 1 / _SLENDER], middle + 0.05 * length * circle]
+    outline = [middle + length * circle * [1.0, 1 / _SLENDER], middle + 0.05 * length * circle]
     stroke = np.array([[-0.4, -0.025], [0.4, -0.025], [0.4, 0.025], [-0.4, 0.025]])
-    return drawn if blade_of_system(system) is None else [*drawn, length * stroke]
+    return outline if blade_of_system(system) is None else [*outline, length * stroke]
 
 
 def _draw(
@@ -89,10 +89,10 @@ def _draw(
     *,
     is_place: bool = True,
 ) -> Show:
-    drawn = [(part, points(part.path), bodies(part.frames)) for part in parts]
-    _ground(axes, np.concatenate([path if at is None else at.with_corners(path) for _, path, at in drawn]), is_place)
+    motions = [(part, points(part.path), bodies(part.frames)) for part in parts]
+    _ground(axes, np.concatenate([path if at is None else at.with_corners(path) for _, path, at in motions]), is_place)
     shows = []
-    for part, path, at in drawn:
+    for part, path, at in motions:
         shows.append(draw_trail(axes, orbit, part, path, label=name_of_trail(part)))
         shows.append(draw_point(axes, part, points(part.frames)) if at is None else _draw_body(axes, part, at))
     theme.legend(axes, loc="best")
@@ -115,18 +115,18 @@ def _ground(axes: Axes, points: Float[np.ndarray, "L 2"], is_place: bool) -> Non
 
 def _draw_body(axes: Axes, part: Part, bodies: Bodies) -> Show:
     """Return what draws the outline of a frame: the body in a light shade, what it carries in a dark one."""
-    edge: Any = theme.CONTINUOUS if part.is_flow else theme.asked("color", theme.INK)
+    edge: Any = theme.CONTINUOUS if part.is_flow else theme.option("color", theme.INK)
     look: Any = {"edgecolors": [edge], "linewidths": 1.2}
     faces = ("none", "none") if part.is_flow else (theme.INSIDE, edge)
     layers = (2.2, 2.2) if part.is_flow else (1.0, 3.0)  # below the trail and above it
-    body, carried = (
+    body, cargo = (
         PolyCollection([], facecolors=[face], zorder=layer, **look) for face, layer in zip(faces, layers, strict=True)
     )
-    for collection in (body, carried):
+    for collection in (body, cargo):
         axes.add_collection(collection, autolim=False)
 
     def show(frame: int) -> None:
         body.set_verts(bodies.outlines[frame][:1])
-        carried.set_verts(bodies.outlines[frame][1:])
+        cargo.set_verts(bodies.outlines[frame][1:])
 
     return show

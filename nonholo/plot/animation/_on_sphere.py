@@ -11,7 +11,7 @@ from matplotlib.colors import to_rgba
 from nonholo.base.types import Float
 from nonholo.orbit import Orbit
 from nonholo.plot import theme
-from nonholo.plot.animation._box import box_of, draw_box
+from nonholo.plot.animation._in_space import box_of, draw_box
 from nonholo.plot.animation._part import Part, Show, together
 from nonholo.plot.motion import known_axes, rotation_axes
 from nonholo.plot.parts import (
@@ -56,9 +56,9 @@ def _sticks(axes: Axes, view: View, frames: Orbit, gamma: Float[np.ndarray, "3"]
     poses = frames.configuration
     spins = frames.body_velocity
     spins = spins * 1.12 / (np.linalg.norm(spins, axis=1).max() or 1.0)
-    box = _scaled(frames)
+    box = _box_in_sphere(frames)
     show_box = draw_box(axes, view, box, zorder=4)
-    show_axis = _stick(axes, view, color=theme.INK, label=theme.asked("label", name), **_AXIS)
+    show_axis = _stick(axes, view, color=theme.INK, label=theme.option("label", name), **_AXIS)
     show_spin = _stick(axes, view, color=theme.UNSTABLE, **_SPIN)
 
     def show(frame: int) -> None:
@@ -70,7 +70,7 @@ def _sticks(axes: Axes, view: View, frames: Orbit, gamma: Float[np.ndarray, "3"]
     return show
 
 
-def _scaled(frames: Orbit) -> Any:
+def _box_in_sphere(frames: Orbit) -> Any:
     box = box_of(np.asarray(frames.system.inertia_operator), 1.0)
     return box._replace(half=_LONGEST * box.half / np.linalg.norm(box.half))
 
@@ -79,7 +79,7 @@ def _beside(axes: Axes, view: View, other: Part, gamma: Float[np.ndarray, "3"]) 
     colors = np.broadcast_to(to_rgba(theme.CONTINUOUS), (len(other.path) - 1, 4))
     axes.plot([], [], color=theme.CONTINUOUS, label="continuous")
     show_trace = _trace(axes, view, other, gamma, colors, 1.2)
-    show_box = draw_box(axes, view, _scaled(other.frames), zorder=4.5, ghost=True)
+    show_box = draw_box(axes, view, _box_in_sphere(other.frames), zorder=4.5, ghost=True)
     poses = other.frames.configuration
 
     def show(frame: int) -> None:

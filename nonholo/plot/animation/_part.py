@@ -47,9 +47,9 @@ def shown_states(orbit: AbstractOrbit, motion: float, total: int) -> Int[np.ndar
     return np.arange(len(orbit))[window(cast(Orbit, orbit), motion, 1.0, total)]
 
 
-def part_of(orbit: AbstractOrbit, shown: Int[np.ndarray, "F"]) -> Part:
+def part_of(orbit: AbstractOrbit, states: Int[np.ndarray, "F"]) -> Part:
     """Return the part of an orbit between the states of the frames."""
-    return Part(orbit.chosen(slice(shown[0], shown[-1] + 1)), orbit.chosen(shown), shown - shown[0] + 1)
+    return Part(orbit.chosen(slice(states[0], states[-1] + 1)), orbit.chosen(states), states - states[0] + 1)
 
 
 def part_of_flow(flow: AbstractOrbit, times: Float[np.ndarray, "F"]) -> Part:
@@ -93,10 +93,10 @@ def draw_trail(
     axes: Axes, orbit: AbstractOrbit, part: Part, path: Float[np.ndarray, "L 2"], *, color: Any = None, **look: Any
 ) -> Show:
     """Return what draws the points of a path up to a frame, in the colors of time, or as the line of a flow."""
-    kept = evenly_spread(path, _MOST_PIECES)
-    pieces, past = theme.pieces(path[kept]), np.searchsorted(kept, part.past - 1, side="right")
+    at = evenly_spread(path, _MOST_PIECES)
+    pieces, past = theme.pieces(path[at]), np.searchsorted(at, part.past - 1, side="right")
     if color is None:
-        color = theme.CONTINUOUS if part.is_flow else theme.time_colors(orbit, part.path.time[kept][1:])
+        color = theme.CONTINUOUS if part.is_flow else theme.time_colors(orbit, part.path.time[at][1:])
     look = {"linewidth": 1.2 if part.is_flow else 2, "zorder": 2} | look
     trail = LineCollection(pieces, colors=color, **look)
     axes.add_collection(trail, autolim=False)
@@ -105,7 +105,7 @@ def draw_trail(
 
 def draw_point(axes: Axes, part: Part, points: Float[np.ndarray, "F 2"]) -> Show:
     """Return what draws the point of a frame, as a ring for a flow."""
-    color = theme.CONTINUOUS if part.is_flow else theme.asked("color", theme.INK)
+    color = theme.CONTINUOUS if part.is_flow else theme.option("color", theme.INK)
     face = "none" if part.is_flow else color
     dot = axes.plot([], [], "o", markersize=8, markerfacecolor=face, color=color, zorder=4)[0]
     return lambda frame: dot.set_data(*points[frame : frame + 1].T)
@@ -113,4 +113,4 @@ def draw_point(axes: Axes, part: Part, points: Float[np.ndarray, "F 2"]) -> Show
 
 def name_of_trail(part: Part) -> str | None:
     """Return what the legend calls a trail."""
-    return "continuous" if part.is_flow else theme.asked("label", None)
+    return "continuous" if part.is_flow else theme.option("label", None)

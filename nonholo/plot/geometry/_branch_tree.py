@@ -1,7 +1,6 @@
 """The tree of all images under the multivalued map: real images in the plane of momenta, and how many there are."""
 
-import dataclasses
-from typing import Any, Unpack
+from typing import Any, NamedTuple, Unpack
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,8 +18,7 @@ _EARLY, _LATE = 0.05, 0.9  # ends of the shades of the generations
 _LARGEST, _SMALLEST = 150.0, 26.0  # areas of the dots of the first and the last generation
 
 
-@dataclasses.dataclass(frozen=True)
-class BranchTreePicture:
+class BranchTreePicture(NamedTuple):
     """The artists of `branch_tree`.
 
     Attributes:
@@ -42,7 +40,7 @@ class BranchTreePicture:
     real: Line2D
 
 
-@theme.styled
+@theme.in_style
 def branch_tree(
     discrete: Discretization, tree: BranchTree, axes: tuple[Axes, Axes] | None = None, **look: Unpack[theme.Look]
 ) -> BranchTreePicture:
@@ -72,7 +70,7 @@ def branch_tree(
         >>> picture.counts.get_ydata()
         array([ 1,  3,  9, 27, 81])
     """
-    system = _checked(discrete, tree)
+    system = _system_of(discrete, tree)
     if axes is None:
         plane, growth = theme.new_figure((10.4, 4.8)).subplots(1, 2, width_ratios=(1.25, 1.0))
     else:
@@ -92,7 +90,7 @@ def branch_tree(
     return BranchTreePicture(plane, growth, edges, images, *_growth(growth, tree))
 
 
-def _checked(discrete: Any, tree: Any) -> Any:
+def _system_of(discrete: Any, tree: Any) -> Any:
     where = "plot.branch_tree(tree=...)"
     system = as_discretization("plot.branch_tree(discrete=...)", discrete).system
     instance(where, tree, BranchTree, "be a tree", "Pass what `nh.branch_tree` returned.")
@@ -108,9 +106,9 @@ def _edges(
     axes: Axes, tree: BranchTree, momentum: Float[np.ndarray, "T 2"], colors: Float[np.ndarray, "L 4"]
 ) -> LineCollection:
     parent = np.maximum(tree.parent, 0)
-    drawn = np.flatnonzero((tree.parent >= 0) & tree.is_real & tree.is_real[parent])
-    ends = np.stack([momentum[parent[drawn]], momentum[drawn]], axis=1)
-    edges = LineCollection(list(ends), colors=colors[tree.level[drawn]], linewidths=0.7, zorder=2)
+    at = np.flatnonzero((tree.parent >= 0) & tree.is_real & tree.is_real[parent])
+    ends = np.stack([momentum[parent[at]], momentum[at]], axis=1)
+    edges = LineCollection(list(ends), colors=colors[tree.level[at]], linewidths=0.7, zorder=2)
     axes.add_collection(edges)
     return edges
 
@@ -118,17 +116,17 @@ def _edges(
 def _images(
     axes: Axes, tree: BranchTree, momentum: Float[np.ndarray, "T 2"], level: int, color: Float[np.ndarray, "4"]
 ) -> PathCollection:
-    chosen = tree.is_real & (tree.level == level)
+    at = tree.is_real & (tree.level == level)
     size = np.geomspace(_LARGEST, _SMALLEST, len(tree.counts))[level]
     look: Any = {"color": color, "edgecolors": theme.PAPER, "linewidths": 0.6, "zorder": 4 + level / 100}
-    return axes.scatter(*momentum[chosen].T, s=size, label=str(level), **look)
+    return axes.scatter(*momentum[at].T, s=size, label=str(level), **look)
 
 
 def _growth(axes: Axes, tree: BranchTree) -> tuple[Line2D, Line2D, Line2D]:
     level, images = np.arange(len(tree.counts)), int(tree.counts[1])
     real = np.bincount(tree.level[tree.is_real], minlength=len(level))
     bound = axes.plot(level, images**level, color=theme.MUTED, dashes=(4, 3), label=f"${images}^k$", zorder=1)[0]
-    own = theme.named(theme.DISCRETE, "distinct images")
+    own = theme.own_look(theme.DISCRETE, "distinct images")
     counts = axes.plot(level, tree.counts, "o", markersize=7, **own)[0]
     look: Any = {"markerfacecolor": theme.PAPER, "markeredgewidth": 1.6, "linestyle": "none"}
     reals = axes.plot(level, real, "o", color=theme.UNSTABLE, markersize=7, label="real ones", **look)[0]

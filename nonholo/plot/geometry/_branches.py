@@ -5,8 +5,7 @@ The number of real values of the discrete sleigh, over the plane of its restrict
 Coordinates are those of the canonical frame, pi = p_theta + b p_1 and p_1.
 """
 
-import dataclasses
-from typing import Any, Unpack, cast
+from typing import Any, NamedTuple, Unpack, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -27,25 +26,26 @@ from nonholo.plot.parts import draw_orbit, own_orbit
 from nonholo.plot.sheets import AbstractSheet, ellipse, momenta_on_plane, on_plane, sheet_of
 
 
-def draw_deltoid(axes: Axes, found: Deltoid) -> tuple[Polygon, Line2D, PathCollection]:
+def draw_deltoid(axes: Axes, region: Deltoid) -> tuple[Polygon, Line2D, PathCollection]:
     """Draw the region with three real values, its boundary and its cusps."""
-    around, cusps = on_plane(found.discrete.system, found.boundary(601)), on_plane(found.discrete.system, found.cusps)
+    system = region.discrete.system
+    around, cusps = on_plane(system, region.boundary(601)), on_plane(system, region.cusps)
     inside = axes.fill(*around.T, color=theme.INSIDE, linewidth=0, zorder=1)[0]
     boundary = axes.plot(*around.T, color=theme.DISCRETE, linewidth=1.8, zorder=2, label="two meet")[0]
     dots = axes.scatter(*cusps.T, s=34, color=theme.DISCRETE, zorder=4, label="three meet")
     return inside, boundary, dots
 
 
-def name_inside(axes: Axes, found: Deltoid, words: str) -> None:
+def name_inside(axes: Axes, region: Deltoid, words: str) -> None:
     """Write words into the region with three real values."""
-    x, y = on_plane(found.discrete.system, found.cusps).T @ [0.4, 0.3, 0.3]
+    x, y = on_plane(region.discrete.system, region.cusps).T @ [0.4, 0.3, 0.3]
     look: Any = {"ha": "center", "va": "center", "color": theme.DISCRETE, "fontweight": "bold", "zorder": 5}
     axes.annotate(words, (x, y), **look)
 
 
-def dress_momenta(axes: Axes, found: Deltoid, title: str) -> None:
+def dress_momenta(axes: Axes, region: Deltoid, title: str) -> None:
     """Name the axes; the corners beside the long cusp are free, for the legend and for words."""
-    cusps = on_plane(found.discrete.system, found.cusps)
+    cusps = on_plane(region.discrete.system, region.cusps)
     points_down = bool(cusps[0, 1] < cusps[1, 1])
     side, anchor = (0.03, "left") if points_down else (0.97, "right")
     axes.margins(0.1)
@@ -55,8 +55,7 @@ def dress_momenta(axes: Axes, found: Deltoid, title: str) -> None:
     theme.legend(axes, loc="lower left" if points_down else "upper left")
 
 
-@dataclasses.dataclass(frozen=True)
-class BranchCounts:
+class BranchCounts(NamedTuple):
     """The artists of `branch_counts`; None where there was nothing to draw.
 
     Attributes:
@@ -78,7 +77,7 @@ class BranchCounts:
     orbit: PathCollection | None
 
 
-@theme.styled
+@theme.in_style
 def branch_counts(
     discrete: Discretization, orbit: Orbit | None = None, axes: Axes | None = None, **look: Unpack[theme.Look]
 ) -> BranchCounts:
@@ -101,19 +100,19 @@ def branch_counts(
         >>> picture.cusps.get_offsets().shape
         (3, 2)
     """
-    found = deltoid(discrete)
+    region = deltoid(discrete)
     own_orbit("plot.branch_counts(orbit=...)", orbit, discrete)
     axes = theme.axes_or_new(axes, (6.4, 5.4))
-    inside, boundary, dots = draw_deltoid(axes, found)
-    dashed: Any = {"color": theme.MUTED, "linewidth": 1.3, "dashes": (4, 3), "zorder": 2}
-    resting = axes.plot(*on_plane(discrete.system, found.resting()).T, label="no translation", **dashed)[0]
+    inside, boundary, dots = draw_deltoid(axes, region)
+    thin: Any = {"color": theme.MUTED, "linewidth": 1.3, "dashes": (4, 3), "zorder": 2}
+    resting = axes.plot(*on_plane(discrete.system, region.resting()).T, label="no translation", **thin)[0]
     level = path = None
     if orbit is not None:
         around = ellipse(orbit.system, float(orbit.energy[0]))
         level = axes.plot(*around.T, color=theme.MUTED, linewidth=1.2, zorder=2, label="energy")[0]
         path = draw_orbit(axes, orbit, momenta_on_plane(orbit))
-    name_inside(axes, found, "3 real values")
-    dress_momenta(axes, found, "Real values")
+    name_inside(axes, region, "3 real values")
+    dress_momenta(axes, region, "Real values")
     return BranchCounts(axes, inside, boundary, dots, resting, level, path)
 
 
@@ -121,8 +120,7 @@ _BEYOND = 0.3  # how far a tangent continues beyond its ends, in its length
 _AWAY = 12.0  # from a dot to its label, in points
 
 
-@dataclasses.dataclass(frozen=True)
-class BranchesPicture:
+class BranchesPicture(NamedTuple):
     """The artists of `branches`; None where there was nothing to draw.
 
     Attributes:
@@ -146,7 +144,7 @@ class BranchesPicture:
     labels: tuple[Annotation, ...]
 
 
-@theme.styled
+@theme.in_style
 def branches(
     discrete: Discretization,
     *,
@@ -189,15 +187,15 @@ def branches(
         (3, '0: 49°')
     """
     where = "plot.branches"
-    checked = planar_map(f"{where}(discrete=...)", discrete)[0]
-    on_momenta = _chosen(checked, plane)
-    found = values_of(checked, momentum=momentum, displacement=displacement)
-    W = _present(checked, momentum) if displacement is None else np.asarray(displacement, dtype=float)
+    discrete = planar_map(f"{where}(discrete=...)", discrete)[0]
+    on_momenta = _is_over_momenta(discrete, plane)
+    values = values_of(discrete, momentum=momentum, displacement=displacement)
+    W = _present(discrete, momentum) if displacement is None else np.asarray(displacement, dtype=float)
     axes = theme.axes_or_new(axes, (6.4, 5.6))
-    return (_over_momenta if on_momenta else _on_displacements)(axes, checked, found, W)
+    return (_over_momenta if on_momenta else _on_displacements)(axes, discrete, values, W)
 
 
-def _chosen(discrete: Discretization, plane: str | None) -> bool:
+def _is_over_momenta(discrete: Discretization, plane: str | None) -> bool:
     """Tell whether to draw on the plane of momenta."""
     has_deltoid = _sheet(discrete).has_deltoid
     if plane is None:
@@ -213,48 +211,48 @@ def _present(discrete: Discretization, momentum: Any) -> Float[np.ndarray, "N N"
     """Return the displacement of a momentum that has one."""
     if shape_of(momentum) == (discrete.system.group.dim,):
         return inverse_discrete_legendre(discrete, momentum)
-    found = displacements_over(discrete, momentum)
-    return found.displacement[found.principal].real
+    values = displacements_over(discrete, momentum)
+    return values.displacement[values.principal].real
 
 
-def _on_displacements(axes: Axes, discrete: Discretization, found: Branches, W: np.ndarray) -> BranchesPicture:
+def _on_displacements(axes: Axes, discrete: Discretization, values: Branches, W: np.ndarray) -> BranchesPicture:
     curves, level, sheet = [], None, _sheet(discrete)
-    if found.energy > 0:
-        curves = [invariant_curve(discrete, found.energy)]
+    if values.energy > 0:
+        curves = [invariant_curve(discrete, values.energy)]
         look = {"color": theme.DISCRETE, "linewidth": 1.5, "zorder": 2}
         level = sheet.draw_level(axes, curves[0], label="its energy", **look)
-    real = np.flatnonzero(found.is_real)
-    places = sheet.places(sheet.variety.points(found.displacement[real].real))
+    real = np.flatnonzero(values.is_real)
+    places = sheet.places(sheet.variety.points(values.displacement[real].real))
     here = sheet.places(sheet.variety.points(W[None]))
-    dots = _dots(axes, found, places, here)
-    labels = _labels(axes, sheet, found, places, places * sheet.inwards(places))
-    theme.write_title(axes, _title(found))
+    dots = _dots(axes, values, places, here)
+    labels = _labels(axes, sheet, values, places, places * sheet.inwards(places))
+    theme.write_title(axes, _title(values))
     sheet.dress(axes, curves, places)
-    return BranchesPicture(axes, found, *dots, level, (), labels)
+    return BranchesPicture(axes, values, *dots, level, (), labels)
 
 
-def _over_momenta(axes: Axes, discrete: Discretization, found: Branches, W: np.ndarray) -> BranchesPicture:
+def _over_momenta(axes: Axes, discrete: Discretization, values: Branches, W: np.ndarray) -> BranchesPicture:
     region, system, sheet = deltoid(discrete), discrete.system, _sheet(discrete)
     draw_deltoid(axes, region)
-    before, after = system.restrict(discrete_legendre(discrete, W)), system.restrict(found.momentum[0].real)
+    before, after = system.restrict(discrete_legendre(discrete, W)), system.restrict(values.momentum[0].real)
     here, there = on_plane(system, np.stack([before, after]))
-    real = np.flatnonzero(found.is_real)
-    places = on_plane(system, region.touching(_angles(sheet, found)[real]))
-    tangents = tuple(_tangent(axes, there, place, i == found.principal) for i, place in zip(real, places, strict=True))
+    real = np.flatnonzero(values.is_real)
+    places = on_plane(system, region.touching(_angles(sheet, values)[real]))
+    tangents = tuple(_tangent(axes, there, place, i == values.principal) for i, place in zip(real, places, strict=True))
     axes.scatter(*there, marker="D", s=40, color=theme.UNSTABLE, zorder=6, label="new momentum")
-    dots = _dots(axes, found, places, here[None])
-    labels = _labels(axes, sheet, found, places, places - there)
+    dots = _dots(axes, values, places, here[None])
+    labels = _labels(axes, sheet, values, places, places - there)
     name_inside(axes, region, "3 real values")
-    dress_momenta(axes, region, _title(found))
-    return BranchesPicture(axes, found, *dots, None, tangents, labels)
+    dress_momenta(axes, region, _title(values))
+    return BranchesPicture(axes, values, *dots, None, tangents, labels)
 
 
 def _sheet(discrete: Discretization) -> AbstractSheet:
     return cast(AbstractSheet, sheet_of(discrete.system))
 
 
-def _angles(sheet: AbstractSheet, found: Branches) -> Float[np.ndarray, "B"]:
-    return sheet.step_angles(sheet.variety.points(found.displacement.real))
+def _angles(sheet: AbstractSheet, values: Branches) -> Float[np.ndarray, "B"]:
+    return sheet.step_angles(sheet.variety.points(values.displacement.real))
 
 
 def _tangent(axes: Axes, there: np.ndarray, place: np.ndarray, is_principal: bool) -> Line2D:
@@ -263,11 +261,11 @@ def _tangent(axes: Axes, there: np.ndarray, place: np.ndarray, is_principal: boo
     return axes.plot(*ends.T, color=theme.STABLE, zorder=3, **style)[0]
 
 
-def _dots(axes: Axes, found: Branches, places: np.ndarray, here: np.ndarray) -> tuple[Any, Any, Any]:
+def _dots(axes: Axes, values: Branches, places: np.ndarray, here: np.ndarray) -> tuple[Any, Any, Any]:
     """Draw the values and the present displacement; count the complex values in the legend."""
-    real = np.flatnonzero(found.is_real)
-    is_principal = real == found.principal if found.principal is not None else np.zeros(len(real), dtype=bool)
-    own, look = theme.named(theme.STABLE, "principal"), {"linewidths": 1.6, "s": 58, "zorder": 7}
+    real = np.flatnonzero(values.is_real)
+    is_principal = real == values.principal if values.principal is not None else np.zeros(len(real), dtype=bool)
+    own, look = theme.own_look(theme.STABLE, "principal"), {"linewidths": 1.6, "s": 58, "zorder": 7}
     principal = others = None
     if is_principal.any():
         principal = axes.scatter(*places[is_principal].T, **look, **own)
@@ -276,18 +274,18 @@ def _dots(axes: Axes, found: Branches, places: np.ndarray, here: np.ndarray) -> 
             *places[~is_principal].T, facecolors=theme.PAPER, edgecolors=own["color"], label="other real", **look
         )
     present = axes.scatter(*here.T, marker="x", s=70, color=theme.UNSTABLE, linewidths=2.2, zorder=8, label="present")
-    if not found.is_real.all():
-        axes.plot([], [], " ", label=f"and {np.count_nonzero(~found.is_real)} complex")
+    if not values.is_real.all():
+        axes.plot([], [], " ", label=f"and {np.count_nonzero(~values.is_real)} complex")
     return principal, others, present
 
 
 def _labels(
-    axes: Axes, sheet: AbstractSheet, found: Branches, places: np.ndarray, away: np.ndarray
+    axes: Axes, sheet: AbstractSheet, values: Branches, places: np.ndarray, away: np.ndarray
 ) -> tuple[Annotation, ...]:
     """Write index and step angle beside each real value, in a direction."""
-    angles = np.degrees(_angles(sheet, found))
+    angles = np.degrees(_angles(sheet, values))
     labels = []
-    for i, place, direction in zip(np.flatnonzero(found.is_real), places, away, strict=True):
+    for i, place, direction in zip(np.flatnonzero(values.is_real), places, away, strict=True):
         size = np.linalg.norm(direction)
         x, y = direction / size if size > 0 else np.array([0.0, 1.0])
         text = f"{i}: {angles[i]:.0f}°".replace("-", "\u2212")
@@ -297,6 +295,6 @@ def _labels(
     return tuple(labels)
 
 
-def _title(found: Branches) -> str:
-    real, others = int(np.count_nonzero(found.is_real)), int(np.count_nonzero(~found.is_real))
+def _title(values: Branches) -> str:
+    real, others = int(np.count_nonzero(values.is_real)), int(np.count_nonzero(~values.is_real))
     return f"Values: {real} real" + (f", {others} complex" if others else "")

@@ -1,7 +1,6 @@
 """The curvature of a local connection over two shape variables: what a small gait around a shape gains, by its area."""
 
-import dataclasses
-from typing import Any, Unpack
+from typing import Any, NamedTuple, Unpack
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -22,8 +21,7 @@ _REACH = 1.2  # of each shape variable, by default
 _REACHED = 3  # by the colors, in units of the median: near singular shapes values have no bound
 
 
-@dataclasses.dataclass(frozen=True)
-class CurvaturePicture:
+class CurvaturePicture(NamedTuple):
     """The artists of `curvature`; None where there was nothing to draw.
 
     Attributes:
@@ -41,7 +39,7 @@ class CurvaturePicture:
     colorbar: Colorbar
 
 
-@theme.styled
+@theme.in_style
 def curvature(
     connection: LocalConnection,
     component: str = "omega",
@@ -85,18 +83,18 @@ def curvature(
     if len(names) < 2:
         raise error("plot.curvature(connection=...)", "have two shape variables", shown(names), "One encloses no area.")
     choice("plot.curvature(component=...)", component, connection.components)
-    chosen = [names.index(choice("plot.curvature(along=...)", name, names)) for name in _two(along, names)]
-    if chosen[0] == chosen[1]:
+    shapes = [names.index(choice("plot.curvature(along=...)", name, names)) for name in _two(along, names)]
+    if shapes[0] == shapes[1]:
         raise error("plot.curvature(along=...)", "name two shape variables", shown(along), "Name another one.")
     path = None if phase is None else np.asarray(phase.shape)
-    sides = _sides(bounds, path, chosen)
+    sides = _sides(bounds, path, shapes)
     middle = np.zeros(len(names)) if path is None else (path.min(0) + path.max(0)) / 2
     at = middle if shape is None else array("plot.curvature(shape=...)", shape, (len(names),))
-    values = _values(connection, component, chosen, sides, at)
+    values = _values(connection, component, shapes, sides, at)
     axes = theme.axes_or_new(axes, (6.4, 5.2))
     mesh, zero, bar = _map(axes, component, sides, values)
-    gait = None if path is None else _draw_gait(axes, path[:, chosen])
-    axes.set(xlabel=symbol(names[chosen[0]]), ylabel=symbol(names[chosen[1]]), xlim=sides[0], ylim=sides[1])
+    gait = None if path is None else _draw_gait(axes, path[:, shapes])
+    axes.set(xlabel=symbol(names[shapes[0]]), ylabel=symbol(names[shapes[1]]), xlim=sides[0], ylim=sides[1])
     theme.write_title(axes, f"{connection.system.name}: curvature, {symbol(component)}")
     theme.legend_above(axes)
     return CurvaturePicture(axes, mesh, zero, gait, bar)
@@ -106,11 +104,11 @@ def _two(along: Any, names: tuple[str, ...]) -> tuple[Any, Any]:
     return (names[0], names[1]) if along is None else pair("plot.curvature(along=...)", along)
 
 
-def _sides(bounds: Any, path: Array | None, chosen: list[int]) -> Float[np.ndarray, "2 2"]:
+def _sides(bounds: Any, path: Array | None, shapes: list[int]) -> Float[np.ndarray, "2 2"]:
     """Return the least and the greatest value of both variables."""
     where, remedy = "plot.curvature(bounds=...)", "Pass ((from, to), (from, to))."
     if bounds is None and path is not None:
-        low, high = path[:, chosen].min(0), path[:, chosen].max(0)
+        low, high = path[:, shapes].min(0), path[:, shapes].max(0)
         margin = _MARGIN * np.maximum(high - low, 1e-3)
         return np.stack([low - margin, high + margin], -1)
     sides = array(where, ((-_REACH, _REACH),) * 2 if bounds is None else bounds, (2, 2), remedy)
@@ -119,11 +117,11 @@ def _sides(bounds: Any, path: Array | None, chosen: list[int]) -> Float[np.ndarr
     return sides
 
 
-def _values(connection: LocalConnection, component: str, chosen: list[int], sides: Array, at: Array) -> Array:
+def _values(connection: LocalConnection, component: str, shapes: list[int], sides: Array, at: Array) -> Array:
     """Return minus the curvature in the middle of cells."""
     points = np.broadcast_to(at, (_POINTS - 1, _POINTS - 1, len(at))).copy()
-    points[..., chosen[0]], points[..., chosen[1]] = np.meshgrid(*_middles(sides))
-    values = -connection.curvature(points)[..., connection.components.index(component), chosen[0], chosen[1]]
+    points[..., shapes[0]], points[..., shapes[1]] = np.meshgrid(*_middles(sides))
+    values = -connection.curvature(points)[..., connection.components.index(component), shapes[0], shapes[1]]
     if not np.isfinite(values).any():
         raise error("plot.curvature(bounds=...)", "hold regular shapes", shown(sides.tolist()), "Choose other ranges.")
     return values
@@ -154,7 +152,7 @@ def _map(axes: Axes, component: str, sides: Array, values: Array) -> tuple[QuadM
 
 def _draw_gait(axes: Axes, path: Float[np.ndarray, "K 2"]) -> Line2D:
     """Draw a gait, with an arrow that shows its sense."""
-    look: Any = theme.named(theme.INK, "gait")
+    look: Any = theme.own_look(theme.INK, "gait")
     line = axes.plot(*path.T, linewidth=2.0, zorder=4, **look)[0]
     k = int(np.argmax(np.abs(np.diff(path, axis=0)).sum(-1)))
     arrow: Any = {"arrowstyle": "-|>", "color": line.get_color(), "mutation_scale": 18, "linewidth": 0}

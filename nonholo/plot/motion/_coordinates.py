@@ -1,5 +1,6 @@
-"""An orbit in coordinates, or on a group with forms that depend on the pose: its path, coordinates and velocities."""
+"""Orbits in coordinates, or on groups with forms that depend on the pose: path, outline of the body, coordinates."""
 
+import dataclasses
 import functools
 import re
 from collections.abc import Callable
@@ -8,14 +9,138 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.ticker import MaxNLocator
 
 from nonholo.base.types import Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.orbit import AbstractOrbit
 from nonholo.plot import parts, theme
-from nonholo.plot.motion._bodies import bodies_of
-from nonholo.plot.motion._path import dress_path, mark_path_ends
 from nonholo.plot.motion._time_series import draw_components, velocity_names
+
+_THIN = 0.35  # shortest side of the box in space, in parts of its longest
+
+
+def dress_path(axes: Any, points: Float[np.ndarray, "L d"], names: list[str]) -> Float[np.ndarray, "d 2"]:
+    """Set up axes of the plane or of space, with one unit, about the points of a path; return what they show."""
+    if len(names) == 2:
+        view = parts.fit_view(axes, points)
+        axes.set(xlabel=names[0], ylabel=names[1])
+        return view
+    limits = _box_about(points)
+    if axes.has_data():
+        before = np.array([axes.get_xlim(), axes.get_ylim(), axes.get_zlim()])
+        limits = np.column_stack([np.minimum(before, limits)[:, 0], np.maximum(before, limits)[:, 1]])
+    axes.set(xlim=limits[0], ylim=limits[1], zlim=limits[2])
+    axes.set(xlabel=names[0], ylabel=names[1], zlabel=names[2])
+    axes.view_init(elev=24, azim=-58)
+    sides = np.ptp(limits, axis=1)
+    axes.set_box_aspect(sides, zoom=0.88)
+    for axis, side in zip((axes.xaxis, axes.yaxis, axes.zaxis), sides / sides.max(), strict=True):
+        axis.pane.set(facecolor=theme.PAPER, edgecolor=theme.LEVEL)
+        axis.set_major_locator(MaxNLocator(max(2, round(5 * side))))
+        axis.labelpad = 4 + (14 if side == 1.0 else -7) * (1 - sides.min() / sides.max())  # away from numbers
+    floor = np.column_stack([points[:, :2], np.full(len(points), limits[2, 0])])
+    axes.plot(*floor.T, color=theme.LEVEL, linewidth=1.2, zorder=1)
+    return limits
+
+
+def _box_about(points: Float[np.ndarray, "L 3"]) -> Float[np.ndarray, "3 2"]:
+    """Return a box with a margin about the points, no side much shorter than the longest."""
+    square, extent = parts.square_about(points), np.ptp(points, axis=0)
+    half = np.maximum(0.57 * extent, _THIN * np.ptp(square[0]) / 2)
+    return square.mean(axis=1)[:, None] + half[:, None] * [-1.0, 1.0]
+
+
+def mark_path_ends(axes: Any, points: Float[np.ndarray, "L d"], orbit: AbstractOrbit) -> None:
+    """Mark and name the first and the last point of a path."""
+    parts.draw_ends(axes, points, orbit)
+    axes.text(*points[0], "  start", zorder=9, path_effects=theme.HALO)
+    if not np.allclose(points[0], points[-1]):
+        axes.text(*points[-1], "  end", zorder=9, path_effects=theme.HALO)
+
+
+_MOST = 9  # bodies
+_APART = 2.2  # of neighbors along the path, in radii of the body
+_SMALL, _ENLARGED = 0.02, 0.035  # radius of a body that is too small to be seen, and as it is drawn then, of the path
+_ARROW = 0.6  # from the front of the body, in its radii
+
+
+@dataclasses.dataclass(frozen=True)
+class Bodies:
+    """A body at some of its poses, each seen from its reference point.
+
+    Attributes:
+        place: The reference points.
+        ahead: Unit vectors along the heading.
+        outlines: For each of them the corners of its parts, the body first.
+        radius: Distance of the farthest corner from the reference point, as drawn.
+        larger: How many times larger than it is the body is drawn.
+    """
+
+    place: Float[np.ndarray, "B 2"]
+    ahead: Float[np.ndarray, "B 2"]
+    outlines: list[list[Float[np.ndarray, "P 2"]]]
+    radius: float
+    larger: float
+
+    def with_corners(self, points: Float[np.ndarray, "L 2"]) -> Float[np.ndarray, "M 2"]:
+        """Return the points of a path with the ends of boxes about the bodies, and of their arrows."""
+        return np.concatenate([points, self.place - self.radius, self.place + self.radius, self.place + self.arrows])
+
+    @property
+    def arrows(self) -> Float[np.ndarray, "B 2"]:
+        """The arrows, from the reference points."""
+        return self.ahead * self.radius * (1 + _ARROW)
+
+    def draw(self, axes: Axes) -> tuple[Artist, ...]:
+        """Draw them: the body in a light shade, the parts that it carries in a dark one."""
+        ink: Any = theme.option("color", theme.INK)
+        look: Any = {"edgecolors": [ink], "linewidths": 0.9}
+        bodies, cargo = ([part for outline in self.outlines for part in outline[layer]] for layer in _LAYERS)
+        size = f"body, {self.larger:.2g} times as large" if self.larger > 1 else None
+        layers: list[Artist] = [
+            axes.add_collection(PolyCollection(bodies, facecolors=theme.INSIDE, zorder=2.0, label=size, **look)),
+            axes.add_collection(PolyCollection(cargo, facecolors=[ink], zorder=2.2, **look)),
+        ]
+        arrow: Any = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.0028, "color": [ink], "zorder": 4.5}
+        return *layers, axes.quiver(*self.place.T, *self.arrows.T, **arrow)
+
+
+_LAYERS = slice(0, 1), slice(1, None)
+
+
+def bodies_of(
+    orbit: AbstractOrbit, points: Float[np.ndarray, "K d"], states: AbstractOrbit | None = None
+) -> Bodies | None:
+    """Return the bodies to draw along the points of a path in the plane; None of a system that shows no heading.
+
+    They are at some of the points, or at all states that are given.
+    """
+    system = orbit.system
+    if not orbit.coordinates or system.heading is None:
+        return None
+    extent = float(np.ptp(points, axis=0).max())
+    corners = np.concatenate([np.zeros((1, 2)), *system.parts(orbit.configuration[0])])
+    radius = float(np.linalg.norm(corners, axis=1).max())
+    size = (radius if radius > _SMALL * extent else _ENLARGED * extent) or 1.0
+    q = (states or _some(orbit, points, size)).configuration
+    angle, larger = q[:, orbit.coordinates.index(system.heading)], size / radius if radius else 1.0
+    ahead = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    place = q[:, [orbit.coordinates.index(name) for name in ("x", "y")]]
+    turns = np.stack([ahead, ahead[:, ::-1] * [-1.0, 1.0]], axis=1)  # body axes, a row each
+    outlines = [
+        [foot + larger * part @ turn for part in system.parts(row)]
+        for foot, turn, row in zip(place, turns, q, strict=True)
+    ]
+    return Bodies(place, ahead, outlines, size, larger)
+
+
+def _some(orbit: AbstractOrbit, points: Float[np.ndarray, "K d"], radius: float) -> AbstractOrbit:
+    """Return states along the points of a path at which bodies stay apart."""
+    way = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+    return orbit.chosen(parts.evenly_spread(points, int(np.clip(way / (_APART * radius), 1, _MOST - 1))))
+
 
 _GREEK = (
     *("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu"),
@@ -54,53 +179,53 @@ def track_of(orbit: AbstractOrbit) -> Track | None:
         )
     places = [name for name in _PLACES if name in space]
     is_place = places[:2] == ["x", "y"]
-    shown = places if is_place else list(space[:2])
-    names = [symbol(name) for name in shown]
+    columns = places if is_place else list(space[:2])
+    names = [symbol(name) for name in columns]
     title = "Path" if is_place else f"Plane of {names[0]} and {names[1]}"
-    return Track(title, names, functools.partial(_columns, [space.index(name) for name in shown]), is_place)
+    return Track(title, names, functools.partial(_columns, [space.index(name) for name in columns]), is_place)
 
 
 def draw_track(track: Track, orbit: AbstractOrbit, flow: AbstractOrbit | None, axes: Any) -> Drawn:
     """Draw the path in the colors of time, its ends, the body now and then, and the path of a flow beside it."""
     points = track.points(orbit)
-    chosen = parts.evenly_in_box(points)
+    at = parts.evenly_in_box(points)
     theme.write_title(axes, track.title)
     bodies = bodies_of(orbit, points) if track.is_place else None
     if track.is_place:
-        dress_path(axes, points[chosen] if bodies is None else bodies.with_corners(points), track.names)
+        dress_path(axes, points[at] if bodies is None else bodies.with_corners(points), track.names)
     else:
         axes.set(xlabel=track.names[0], ylabel=track.names[1])
         axes.margins(0.1)
-    drawn = parts.draw_in_time(axes, orbit, points, chosen, zorder=3)
+    path = parts.draw_in_time(axes, orbit, points, at, zorder=3)
     curve = None if flow is None else parts.draw_flow(axes, track.points(flow))
     artists = () if bodies is None else bodies.draw(axes)
     mark_path_ends(axes, points, orbit)
     theme.legend_above(axes)
-    return drawn, artists, curve
+    return path, artists, curve
 
 
-draw_path = theme.styled(draw_track)
+draw_path = theme.in_style(draw_track)
 """The same as a part of another picture, whose title it does not have."""
 
 
-@theme.styled
+@theme.in_style
 def draw_shape(orbit: AbstractOrbit, flow: AbstractOrbit | None, axes: Axes) -> None:
     """Draw the coordinates that the path does not show against time; all if it shows all."""
     names = orbit.coordinates
     places = [name for name in _PLACES if name in names]
-    shown = places if places[:2] == ["x", "y"] else list(names[:2])
-    others = [i for i, name in enumerate(names) if name not in shown] or list(range(len(names)))
+    first = places if places[:2] == ["x", "y"] else list(names[:2])
+    others = [i for i, name in enumerate(names) if name not in first] or list(range(len(names)))
     theme.write_title(axes, "Coordinates")
     draw_components(axes, orbit, flow, functools.partial(_columns, others), [symbol(names[i]) for i in others])
     axes.set_ylabel("coordinates")
 
 
-@theme.styled
+@theme.in_style
 def draw_velocity(orbit: AbstractOrbit, flow: AbstractOrbit | None, axes: Axes) -> None:
     """Draw the velocities against time."""
-    named = [symbol(name, is_rate=True) for name in orbit.coordinates]
-    names = named or velocity_names(orbit.space)
-    theme.write_title(axes, "Velocity" if named else "Body velocity")
+    symbols = [symbol(name, is_rate=True) for name in orbit.coordinates]
+    names = symbols or velocity_names(orbit.space)
+    theme.write_title(axes, "Velocity" if symbols else "Body velocity")
     draw_components(axes, orbit, flow, lambda states: states.body_velocity, names)
     axes.set_ylabel("velocity")
 
@@ -115,12 +240,12 @@ def symbol(name: str, *, is_rate: bool = False) -> str:
     letters, index = re.fullmatch(r"(.*?)_?(\d*)", name).groups()  # pyright: ignore[reportOptionalMemberAccess]
     base = rf"\{letters}" if letters in _GREEK else letters if len(letters) == 1 else rf"\mathrm{{{letters}}}"
     base = base.replace("_", r"\_")
-    dotted = rf"\dot{{{base}}}" if is_rate else base
-    return f"${dotted}_{{{index}}}$" if index else f"${dotted}$"
+    formula = rf"\dot{{{base}}}" if is_rate else base
+    return f"${formula}_{{{index}}}$" if index else f"${formula}$"
 
 
-def _columns(chosen: list[int], orbit: Any) -> np.ndarray:
-    return orbit.configuration[:, chosen]
+def _columns(at: list[int], orbit: Any) -> np.ndarray:
+    return orbit.configuration[:, at]
 
 
 def _track_on(group: AbstractMatrixGroup) -> Track | None:

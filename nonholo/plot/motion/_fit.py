@@ -10,12 +10,12 @@ import numpy as np
 from nonholo.plot import theme
 
 if TYPE_CHECKING:
-    from nonholo.analysis.inverse import Profile
+    from nonholo.analysis.inverse import Fit, Profile
 
 _WIDE = 6.0  # standard deviations that are drawn of a side without bound
 
 
-@theme.styled
+@theme.in_style
 def fit_profile(profile: "Profile") -> Any:
     r"""Draw $\tau^2$, the growth of the sum of squares in units of the noise, with the parabola, and the interval.
 
@@ -47,13 +47,10 @@ def fit_profile(profile: "Profile") -> Any:
     return figure
 
 
-if TYPE_CHECKING:
-    from nonholo.analysis.inverse import Fit
-
 _UNITS = {"position": "position, length", "turn": "turn, rad", "rate": "angular velocity, rad / time"}
 
 
-@theme.styled
+@theme.in_style
 def fit_residuals(fit: "Fit") -> Any:
     """Draw the residuals of a fit against time, a panel for each kind of number, with a band of two noise levels.
 

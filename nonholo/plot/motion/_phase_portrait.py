@@ -1,10 +1,10 @@
-"""Phase portraits: the momenta along a two-dimensional constraint subspace, on their energy ellipses.
+"""Phase portraits, momenta along a two-dimensional subspace on their energy ellipses, and Poincare sections.
 
 [fedorov-zenkov-2004], figures suslov and mom_dynamics.
 """
 
-import dataclasses
-from typing import Any, Unpack
+from collections.abc import Callable
+from typing import Any, NamedTuple, Unpack
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,7 +12,8 @@ from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch
 
-from nonholo.base.checks import choice, error, instance, shown
+from nonholo.base.calls import call, check_result
+from nonholo.base.checks import choice, error, function, instance, pair, shown, text
 from nonholo.base.checks import energies as checked_energies
 from nonholo.base.types import Float
 from nonholo.discrete import BranchTree, Discretization, branch_tree
@@ -20,6 +21,7 @@ from nonholo.orbit import Orbit
 from nonholo.plot import parts, theme
 from nonholo.plot.parts import evenly_in_box
 from nonholo.plot.sheets import ellipse, half_axes, momenta_on_plane, name_axes, on_plane, plane_inertia
+from nonholo.simulation import Crossings
 from nonholo.systems import AbstractLLSystem, AbstractSystem, refuse_forces
 
 _SEEDS = 3  # states of the orbit whose images are drawn
@@ -35,14 +37,14 @@ def _trees_of(orbit: Orbit | None, branches: str) -> list[BranchTree]:
     if orbit is None or not isinstance(orbit.motion, Discretization):
         got = "a system alone" if orbit is None else shown(orbit)
         raise error(where, "be 'principal' without a discrete orbit", got, "Pass what `nh.simulate` returned.")
-    chosen = evenly_in_box(orbit.reduced_momentum, _SEEDS + 1)[:_SEEDS]
-    return [branch_tree(orbit.motion, W, _GENERATIONS) for W in orbit.displacement[chosen]]
+    at = evenly_in_box(orbit.reduced_momentum, _SEEDS + 1)[:_SEEDS]
+    return [branch_tree(orbit.motion, W, _GENERATIONS) for W in orbit.displacement[at]]
 
 
 def _draw_images(axes: Axes, orbit: Orbit, trees: list[BranchTree]) -> tuple[PathCollection, LineCollection]:
     """Draw the real images that are not on the orbit, later generations smaller, and lines that lead to them."""
-    found = [_other_images(orbit, tree) for tree in trees]
-    ends, level = (np.concatenate(column) for column in zip(*found, strict=True))
+    images = [_other_images(orbit, tree) for tree in trees]
+    ends, level = (np.concatenate(column) for column in zip(*images, strict=True))
     edges = LineCollection(list(ends), colors=theme.COMPONENTS[1], linewidths=0.8, zorder=4)
     axes.add_collection(edges)
     look: Any = {"facecolors": theme.PAPER, "edgecolors": theme.COMPONENTS[1], "linewidths": 1.4, "zorder": 7}
@@ -53,14 +55,13 @@ def _other_images(orbit: Orbit, tree: BranchTree) -> tuple[np.ndarray, np.ndarra
     """Return the momenta of the parents and of the real images that differ from the orbit's, and their generations."""
     system: Any = orbit.system
     momentum = on_plane(system, system.restrict(tree.momentum.real))
-    missed = np.linalg.norm(momentum[:, None] - momenta_on_plane(orbit), axis=2).min(axis=1)
-    apart = missed > _SAME * np.linalg.norm(momentum[0])
-    chosen = np.flatnonzero(tree.is_real & tree.is_real[tree.parent] & (tree.level > 0) & apart)
-    return np.stack([momentum[tree.parent[chosen]], momentum[chosen]], axis=1), tree.level[chosen]
+    distance = np.linalg.norm(momentum[:, None] - momenta_on_plane(orbit), axis=2).min(axis=1)
+    apart = distance > _SAME * np.linalg.norm(momentum[0])
+    at = np.flatnonzero(tree.is_real & tree.is_real[tree.parent] & (tree.level > 0) & apart)
+    return np.stack([momentum[tree.parent[at]], momentum[at]], axis=1), tree.level[at]
 
 
-@dataclasses.dataclass(frozen=True)
-class PhasePortrait:
+class PhasePortrait(NamedTuple):
     """The artists of `phase_portrait`; None where there was nothing to draw.
 
     Attributes:
@@ -86,7 +87,7 @@ class PhasePortrait:
     edges: LineCollection | None
 
 
-@theme.styled
+@theme.in_style
 def phase_portrait(
     system: AbstractLLSystem,
     orbit: Orbit | None = None,
@@ -136,14 +137,14 @@ def phase_portrait(
     levels = _energies(system, orbit, energies)
     axes = theme.axes_or_new(axes)
     thin: Any = {"color": theme.LEVEL, "linewidth": 1.1, "zorder": 1}
-    drawn = tuple(axes.plot(*ellipse(system, level).T, **thin)[0] for level in levels)
+    lines = tuple(axes.plot(*ellipse(system, level).T, **thin)[0] for level in levels)
     stable, unstable, neutral, arrows = _equilibria(axes, system, half_axes(system), np.sqrt(2 * levels))
     path = None if orbit is None else _orbit(axes, orbit)
     images, edges = _draw_images(axes, orbit, trees) if orbit is not None and trees else (None, None)
     name_axes(axes, system)
     theme.write_title(axes, "Phase portrait")
     theme.legend_above(axes)
-    return PhasePortrait(axes, drawn, stable, unstable, neutral, arrows, path, images, edges)
+    return PhasePortrait(axes, lines, stable, unstable, neutral, arrows, path, images, edges)
 
 
 def _check(system: AbstractLLSystem, orbit: Orbit | None) -> None:
@@ -205,5 +206,90 @@ def _arrow(axes: Axes, half_axes: Float[np.ndarray, "2 2"], u: Float[np.ndarray,
 def _orbit(axes: Axes, orbit: Orbit) -> PathCollection | LineCollection:
     momentum = momenta_on_plane(orbit)
     stays = np.ptp(momentum, axis=0).max() <= 1e-6 * np.abs(momentum).max()
-    chosen = parts.evenly_in_box(momentum)
-    return parts.draw_in_time(axes, orbit, momentum, chosen, zorder=6, size=60 if stays else None)
+    at = parts.evenly_in_box(momentum)
+    return parts.draw_in_time(axes, orbit, momentum, at, zorder=6, size=60 if stays else None)
+
+
+_FEW, _LARGE, _SMALL = 500, 14.0, 4.0  # up to this many dots are large; areas of dots
+
+Quantity = Callable[[Orbit], Float[np.ndarray, "C"]]
+
+
+class Section(NamedTuple):
+    """The artists of `section`.
+
+    Attributes:
+        axes: The axes.
+        points: The drawn points.
+        dots: One dot for each crossing, colored by its time.
+    """
+
+    axes: Axes
+    points: Float[np.ndarray, "C 2"]
+    dots: PathCollection
+
+
+@theme.in_style
+def section(
+    crossings: Crossings,
+    across: Quantity,
+    up: Quantity,
+    axes: Axes | None = None,
+    labels: tuple[str, str] = ("", ""),
+    **look: Unpack[theme.Look],
+) -> Section:
+    """Draw a Poincare section: one dot for each crossing of an event, colored from early to late.
+
+    Args:
+        crossings: What an event found: `orbit.events["name"]` or `nh.crossings(orbit, event)`.
+        across: The abscissa, a function of an orbit that returns one number for each of its states.
+        up: The ordinate.
+        axes: Where to draw; a new figure by default.
+        labels: Names of the axes; by default those of the functions.
+        **look: Title, label, color and more: `nh.plot.Look`.
+
+    Raises:
+        ValueError: No crossings at all, or quantities of the wrong shape.
+
+    Example:
+        >>> top = nh.discretize(nh.VeselovaTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.1)
+        >>> level = nh.Event(lambda states: states.configuration[:, 2, 2], direction=1, stop=20)
+        >>> orbit = nh.simulate(top, restricted_velocity=(1.0, -0.6), steps=10_000, events=[level])
+        >>> picture = nh.plot.section(
+        ...     orbit.events[0], lambda states: states.body_velocity[:, 0], lambda states: states.body_velocity[:, 1]
+        ... )
+        >>> picture.points.shape
+        (20, 2)
+    """
+    if not isinstance(crossings, Crossings) or not len(crossings):
+        remedy = "Pass `orbit.events[...]` of a run that crosses."
+        raise error("section(crossings=...)", "hold crossings of an event", shown(crossings), remedy)
+    function("section(across=...)", across)
+    function("section(up=...)", up)
+    names = [text("section(labels=...)", label) for label in pair("section(labels=...)", labels)]
+    across_label, up_label = names[0] or _name_of(across, "across"), names[1] or _name_of(up, "up")
+    points = np.stack([_values("across", across, crossings), _values("up", up, crossings)], axis=1)
+    axes = theme.axes_or_new(axes, (6.0, 5.0))
+    area = _LARGE if len(points) <= _FEW else _SMALL
+    color = theme.option("color", None)
+    colors: Any = {"c": crossings.time, "cmap": theme.TIME} if color is None else {"color": color}
+    dots = axes.scatter(*points.T, s=area, linewidths=0, label=theme.option("label", None), **colors)
+    axes.set(xlabel=across_label, ylabel=up_label)
+    axes.margins(0.06)
+    theme.write_title(axes, f"{len(points)} crossings")
+    theme.legend_above(axes)
+    return Section(axes, points, dots)
+
+
+def _name_of(quantity: Quantity, otherwise: str) -> str:
+    name = getattr(quantity, "__name__", "<lambda>")
+    return otherwise if name == "<lambda>" else name.strip("_").replace("_", " ")
+
+
+def _values(name: str, quantity: Quantity, crossings: Crossings) -> Float[np.ndarray, "C"]:
+    where, remedy = (
+        f"section({name}=...)",
+        "It gets an `Orbit`: return an array with one number for each of its states.",
+    )
+    values, words = call(where, quantity, crossings.states), ("one number for each crossing", remedy)
+    return check_result(where, quantity, values, (len(crossings),), words, lambda at: f"time {crossings.time[at]:.17g}")

@@ -1,17 +1,23 @@
-"""An orbit in time: velocity, momentum, heading and speed. These are panels of the overview."""
+"""Orbits in time: velocity, momentum, heading and speed; errors of energy and constraint, beside those of rounding."""
 
 import itertools
+import math
 from collections.abc import Callable
-from typing import Any, TypeVar, cast
+from typing import Any, NamedTuple, TypeVar, Unpack, cast
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection, PolyCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
+from matplotlib.text import Text
 
 from nonholo.base.types import Float
+from nonholo.discrete import Discretization
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plot import theme
-from nonholo.plot.parts import evenly_in_box
+from nonholo.plot.parts import drawable_in_time, evenly_in_box, with_poses
 from nonholo.plot.sheets import Blade, blade_of_system
 
 AnyOrbit = TypeVar("AnyOrbit", bound=AbstractOrbit)
@@ -19,19 +25,19 @@ _MOST_POINTS = 2000
 _MOST_LINES = 60  # momenta in one panel
 
 
-@theme.styled
+@theme.in_style
 def velocity_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> None:
     """Draw the components of the body velocity that the constraint leaves free, against time."""
     system = orbit.system
-    allowed = np.eye(system.group.dim) if system.is_spatial else system.constraint_subspace
-    free = np.flatnonzero(np.abs(allowed).max(axis=0, initial=0.0) > 0)
+    directions = np.eye(system.group.dim) if system.is_spatial else system.constraint_subspace
+    free = np.flatnonzero(np.abs(directions).max(axis=0, initial=0.0) > 0)
     names = velocity_names(system.group)
     theme.write_title(axes, "Body velocity")
     draw_components(axes, orbit, flow, lambda states: states.body_velocity[:, free], [names[i] for i in free])
     axes.set_ylabel("velocity")
 
 
-@theme.styled
+@theme.in_style
 def momentum_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> None:
     """Draw the momenta along the rows of the constraint subspace, in space for a right-invariant one, against time.
 
@@ -39,16 +45,16 @@ def momentum_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> 
     """
     momentum = orbit.restricted_momentum
     k = momentum.shape[1]
-    shown = np.sort(np.argsort(-np.abs(momentum).max(axis=0, initial=0.0), kind="stable")[:_MOST_LINES])
+    largest = np.sort(np.argsort(-np.abs(momentum).max(axis=0, initial=0.0), kind="stable")[:_MOST_LINES])
     kind = "Spatial momentum" if orbit.system.is_spatial else "Momentum"
     of_many = "" if k <= _MOST_LINES else f", the {_MOST_LINES} largest of {k}"
     theme.write_title(axes, f"{kind} along the constraint{of_many}")
-    names = [f"$r_{{{i + 1}}}$" for i in shown]
-    draw_components(axes, orbit, flow, lambda states: states.restricted_momentum[:, shown], names)
+    names = [f"$r_{{{i + 1}}}$" for i in largest]
+    draw_components(axes, orbit, flow, lambda states: states.restricted_momentum[:, largest], names)
     axes.set_ylabel("momentum")
 
 
-@theme.styled
+@theme.in_style
 def heading_and_speed(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> None:
     """Draw the heading of a sleigh (left scale) and the speed along its blade (right scale) against time."""
     right = axes.twinx()
@@ -56,7 +62,7 @@ def heading_and_speed(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> No
     for (one, name, values), color in zip(scales, theme.COMPONENTS, strict=False):
         _line(one, orbit.time, values(orbit), color=color, linewidth=2.0, zorder=3)
         if flow is not None:
-            _flow(one, flow.time, values(flow), named=one is right)
+            _flow(one, flow.time, values(flow), has_label=one is right)
         one.set_ylabel(name, color=color)
         one.tick_params(axis="y", labelcolor=color)
         one.margins(y=0.12)
@@ -76,13 +82,13 @@ def _speed(orbit: Orbit) -> Float[np.ndarray, "K"]:
 
 
 def _line(axes: Axes, time: Float[np.ndarray, "K"], values: Float[np.ndarray, "K"], **look: Any) -> None:
-    chosen = evenly_in_box(np.stack([time, values], axis=1), _MOST_POINTS)
-    axes.plot(time[chosen], values[chosen], marker="o" if len(time) == 1 else None, **look)
+    at = evenly_in_box(np.stack([time, values], axis=1), _MOST_POINTS)
+    axes.plot(time[at], values[at], marker="o" if len(time) == 1 else None, **look)
 
 
-def _flow(axes: Axes, time: Float[np.ndarray, "K"], values: Float[np.ndarray, "K"], named: bool) -> None:
+def _flow(axes: Axes, time: Float[np.ndarray, "K"], values: Float[np.ndarray, "K"], has_label: bool) -> None:
     look: Any = {"color": theme.CONTINUOUS, "linewidth": 1.3, "dashes": (3, 3), "zorder": 4}
-    _line(axes, time, values, label="continuous" if named else None, **look)
+    _line(axes, time, values, label="continuous" if has_label else None, **look)
 
 
 def draw_components(
@@ -97,7 +103,7 @@ def draw_components(
         axes.text(0.99, 0.97, f"{names[0]} to {names[-1]}", transform=axes.transAxes, ha="right", va="top")
     if flow is not None:
         for number, values in enumerate(quantity(flow).T, start=1):
-            _flow(axes, flow.time, values, named=number == len(names))
+            _flow(axes, flow.time, values, has_label=number == len(names))
     axes.axhline(0.0, color=theme.LEVEL, linewidth=0.8, zorder=1)
     if not any(np.any(line.get_ydata()) for line in axes.lines):
         axes.set_ylim(-1.0, 1.0)
@@ -117,3 +123,137 @@ def velocity_names(group: AbstractMatrixGroup) -> list[str]:
     comma = "" if n < 10 else ","
     planes = ["1", "2", "3"] if n == 3 else [f"{i}{comma}{j}" for i, j in itertools.combinations(range(1, n + 1), 2)]
     return [rf"$\omega_{{{plane}}}$" for plane in planes] + [f"$v_{{{i + 1}}}$" for i in range(n * moves)]
+
+
+_MOST_DOTS = 2000
+_COLUMNS = 600
+_EPS = float(np.finfo(np.float64).eps)
+_VISIBLE = 1e-3  # half-width of the band, in units of the axis, from which it is wider than a hairline
+_EXPECTED = {
+    True: "exact by theorem, up to rounding",
+    False: "not exact for this discretization",
+    None: "error of the solver",
+}
+_THINNED = "with the work of forces, which no thinned run knows"
+
+
+class EnergyError(NamedTuple):
+    """The artists of `energy_error`.
+
+    Attributes:
+        axes: The axes.
+        error: Dots, or for long orbits the band between the smallest and the
+            largest error in each column; a line for a flow.
+        rounding: The band of relative errors up to machine epsilon.
+        unit: What 1 on the axis means.
+        expected: Whether the error should be zero but for rounding, in words.
+    """
+
+    axes: Axes
+    error: PathCollection | PolyCollection | Line2D
+    rounding: Rectangle
+    unit: float
+    expected: Text
+
+
+@theme.in_style
+def energy_error(orbit: AbstractOrbit, axes: Axes | None = None, **look: Unpack[theme.Look]) -> EnergyError:
+    r"""Draw the relative error of the reduced constrained energy, under forces that of their balance, against time.
+
+    $$ (E_k - E_0)/E_0, \qquad (E_k - E_0 - W_k)/\max_j|E_j| \text{ under forces that do the work } W_k, $$
+
+    in units of 1e-16, or of a larger power of ten where rounding is not what is seen. The shaded band is the machine
+    epsilon 2.2e-16 of double precision to either side. At rest, where E_0 = 0, the error is absolute. A line of
+    text says whether a theorem makes the energy of this discretization exact (`Discretization.conserves_energy`).
+
+    Args:
+        orbit: The orbit.
+        axes: Where to draw; a new figure by default.
+        **look: Title, label, color and more: `nh.plot.Look`.
+
+    Raises:
+        ValueError: No orbit, one without states, or one without poses whose energy depends on them.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+        >>> orbit = nh.simulate(sleigh, body_velocity=(1, 0, 0), steps=50)
+        >>> nh.plot.energy_error(orbit).unit
+        1e-16
+    """
+    orbit = drawable_in_time("energy_error(orbit=...)", orbit)
+    if not orbit.has_poses and orbit.system.is_spatial:
+        with_poses("energy_error(orbit=...)", orbit)
+    axes = theme.axes_or_new(axes, (6.0, 2.6))
+    work, is_known = np.nan_to_num(orbit.known_work), bool(np.isfinite(orbit.known_work).all())
+    has_work = bool(work.any())
+    energy, name = orbit.energy - work, "(E - W)" if has_work else "E"
+    size = np.abs(orbit.energy).max()
+    error = (energy - energy[0]) / (size or 1.0)
+    unit = _unit(float(np.abs(error).max()))
+    rounding, dots = _over_rounding(orbit, axes, error / unit, unit)
+    theme.write_title(axes, "Energy less work" if has_work else "Energy error" if is_known else "Change of energy")
+    _dress(axes, orbit.time, error / unit, unit, rf"\Delta {name}{'/E' if size else ''}")
+    small: Any = {"color": theme.QUIET, "fontsize": "medium", "va": "top", "path_effects": theme.HALO, "zorder": 6}
+    words = axes.text(
+        0.012, 0.97, _expectation(orbit, has_work) if is_known else _THINNED, transform=axes.transAxes, **small
+    )
+    return EnergyError(axes, dots, rounding, unit, words)
+
+
+@theme.in_style
+def draw_residual(orbit: Any, axes: Axes) -> None:
+    """Draw the residual of the constraint of an orbit that knows it, in the same way."""
+    residual = orbit.constraint_residual
+    unit = _unit(float(np.abs(residual).max()))
+    _over_rounding(orbit, axes, residual / unit, unit)
+    theme.write_title(axes, "Residual of the constraint")
+    _dress(axes, orbit.time, residual / unit, unit, "|F|" if orbit.is_discrete else r"|A\,v|")
+    axes.set_ylim(bottom=0.0)
+
+
+def _over_rounding(
+    orbit: AbstractOrbit, axes: Axes, error: Float[np.ndarray, "K"], unit: float
+) -> tuple[Rectangle, PathCollection | PolyCollection | Line2D]:
+    """Draw errors in a unit over the band of rounding."""
+    label = "machine epsilon" if _EPS / unit > _VISIBLE else "_machine epsilon"  # a legend of what can be seen
+    band: Any = {"color": theme.LEVEL, "alpha": 0.45, "linewidth": 0, "zorder": 0, "label": label}
+    rounding = axes.axhspan(-_EPS / unit, _EPS / unit, **band)
+    axes.axhline(0.0, color=theme.LEVEL, linewidth=0.8, zorder=1)
+    return rounding, (_error if orbit.is_discrete else _curve)(axes, orbit.time, error)
+
+
+def _expectation(orbit: AbstractOrbit, has_work: bool) -> str:
+    if orbit.is_measured:
+        return "of given poses"
+    motion = orbit.motion
+    exact = isinstance(motion, Discretization) and motion.is_balanced and motion.order == 2 and orbit.has_every_step
+    if not has_work or exact:
+        return _EXPECTED[exact or orbit.conserves_energy]
+    return "of order 2 in the time between states"
+
+
+def _unit(largest: float) -> float:
+    return 1e-16 if largest < 1e-13 else float(f"1e{math.floor(math.log10(largest))}")
+
+
+def _error(axes: Axes, time: Float[np.ndarray, "K"], error: Float[np.ndarray, "K"]) -> PathCollection | PolyCollection:
+    if len(time) <= _MOST_DOTS:
+        return axes.scatter(time, error, s=5, linewidths=0, zorder=3, **theme.own_look(theme.DISCRETE))
+    starts = np.arange(0, len(time), math.ceil(len(time) / _COLUMNS))
+    low, high = np.minimum.reduceat(error, starts), np.maximum.reduceat(error, starts)
+    return axes.fill_between(time[starts], low, high, linewidth=0.8, zorder=3, **theme.own_look(theme.DISCRETE))
+
+
+def _curve(axes: Axes, time: Float[np.ndarray, "K"], error: Float[np.ndarray, "K"]) -> Line2D:
+    at = evenly_in_box(np.stack([time, error], axis=1), _MOST_DOTS)
+    return axes.plot(time[at], error[at], linewidth=1.0, zorder=3, **theme.own_look(theme.CONTINUOUS))[0]
+
+
+def _dress(axes: Axes, time: Any, error: Float[np.ndarray, "K"], unit: float, name: str) -> None:
+    exponent = math.floor(math.log10(unit) + 0.5)
+    reach = 1.4 * max(float(np.abs(error).max()), 1.6 * _EPS / unit)
+    axes.set(xlabel="time", ylabel=rf"${name}$   [$10^{{{exponent}}}$]")
+    axes.margins(y=0.0)
+    axes.update_datalim([(time[0], -reach), (time[-1], reach)])
+    axes.autoscale_view()
+    theme.legend_above(axes)

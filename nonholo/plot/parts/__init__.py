@@ -1,10 +1,42 @@
 """The common parts of pictures: which orbits are drawn, which of their states, marks, spheres, enlarged corners."""
 
-from nonholo.plot.parts._enlargement import Square, corner_axes, detail, fit_view, remove_detail, square_about
-from nonholo.plot.parts._marks import draw_ends, draw_equilibria, draw_flow, draw_in_time, draw_orbit, segments
-from nonholo.plot.parts._page import finish_page, new_page
-from nonholo.plot.parts._sphere import View, arcs, best_view, draw_curve, draw_globe, opacity, set_curve, view_of
-from nonholo.plot.parts._sphere_path import draw_named_axes, draw_path, mark_ends, name_beside
+from nonholo.plot.parts._marks import (
+    draw_ends,
+    draw_equilibria,
+    draw_flow,
+    draw_in_time,
+    draw_orbit,
+    evenly_in_box,
+    evenly_spread,
+    segments,
+    some_states,
+    turn_per_state,
+    window,
+)
+from nonholo.plot.parts._page import (
+    Square,
+    corner_axes,
+    detail,
+    finish_page,
+    fit_view,
+    new_page,
+    remove_detail,
+    square_about,
+)
+from nonholo.plot.parts._sphere import (
+    View,
+    arcs,
+    best_view,
+    draw_curve,
+    draw_globe,
+    draw_named_axes,
+    draw_path,
+    mark_ends,
+    name_beside,
+    opacity,
+    set_curve,
+    view_of,
+)
 from nonholo.plot.parts._subject import (
     drawable,
     drawable_in_time,
@@ -14,13 +46,6 @@ from nonholo.plot.parts._subject import (
     known_equilibria,
     own_orbit,
     permanent_velocity,
-    posed,
     same_group,
-)
-from nonholo.plot.parts._thinning import (
-    evenly_in_box,
-    evenly_spread,
-    some_states,
-    turn_per_state,
-    window,
+    with_poses,
 )

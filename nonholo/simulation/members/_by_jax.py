@@ -41,7 +41,7 @@ def advance_by_jax(
             target[:, 0] = start.T
         if target.shape[1]:
             target[:, 1 if every else 0 :] = np.moveaxis(later, (0, 2), (1, 0))
-    rows.done[:] = steps
+    rows.counts[:] = steps
     return ~certain
 
 
@@ -106,4 +106,4 @@ def _root(body: kernels.Body, m: jax.Array, guess: jax.Array) -> tuple[jax.Array
     _, y, further = jax.lax.while_loop(
         is_unfinished, correct, (jnp.asarray(0), guess, jnp.ones(m.shape[1], dtype=bool))
     )
-    return y, ~further & kernels.certified(body, *m, *y)
+    return y, ~further & kernels.is_certain(body, *m, *y)

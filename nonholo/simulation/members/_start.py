@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from nonholo.base.checks import array, error, shape_of
-from nonholo.base.numerics import applied, factors_of, solved
+from nonholo.base.numerics import applied, factors_of, solve_by_factors
 from nonholo.base.types import Bool, Float
 from nonholo.orbit import First
 from nonholo.simulation.members._members import Members, ScalarMembers, refusal
@@ -148,7 +148,9 @@ def _momenta_of_part(members: Members, name: str, rows: np.ndarray) -> tuple[np.
 def energies(scalar: ScalarMembers, momenta: Float[np.ndarray, "M ... 2"]) -> Float[np.ndarray, "M ..."]:
     """Return the reduced constrained energies of canonical momenta."""
     factors = factors_of(scalar.inertia.reshape(-1, *(1,) * (momenta.ndim - 2), 2, 2))
-    return np.full(momenta.shape[:-1], np.nan) if factors is None else (momenta * solved(factors, momenta)).sum(-1) / 2
+    if factors is None:
+        return np.full(momenta.shape[:-1], np.nan)
+    return (momenta * solve_by_factors(factors, momenta)).sum(-1) / 2
 
 
 def are_others(demand: Float[np.ndarray, "M ..."], full: Float[np.ndarray, "M ..."]) -> Bool[np.ndarray, "M"]:

@@ -15,7 +15,7 @@ import numpy as np
 
 from nonholo.base.calls import name_of, note_fault, number_of, numbers_of
 from nonholo.base.checks import array, choice, error, shown, trailing
-from nonholo.base.numerics import applied, exponential_increment, inverted
+from nonholo.base.numerics import applied, exponential_increment, inverse_of
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
 from nonholo.systems._base import AbstractSystem
@@ -349,7 +349,7 @@ class Forced(AbstractSystem):
         r"""Return A, V and W of $\dot r = a - Dr$, friction over a time: $r' = Ar + Va$ and $\int r\,dt = Vr + Wa$."""
         k, along = E.shape[-1], E.swapaxes(-1, -2)
         C = np.zeros((self.group.dim,) * 2) if self.friction is None else self.friction.matrix
-        D = along @ C @ E @ inverted(along @ self.inertia_operator @ E)
+        D = along @ C @ E @ inverse_of(along @ self.inertia_operator @ E)
         xp, nothing = D.__array_namespace__(), 0 * D
         one = nothing + np.eye(k)
         rows = (-D, one, nothing), (nothing, nothing, one), (nothing, nothing, nothing)
@@ -367,7 +367,7 @@ class Forced(AbstractSystem):
         along = E.swapaxes(-1, -2)
         _, push, gather = self.propagator(E, tau) if propagator is None else propagator
         integral = push @ r[..., None] + gather @ (along @ constant[..., None])
-        velocity = E @ inverted(along @ self.inertia_operator @ E) @ integral
+        velocity = E @ inverse_of(along @ self.inertia_operator @ E) @ integral
         return tau * constant + self.friction.covector(velocity[..., 0])
 
     def impulses(
@@ -398,7 +398,7 @@ class Forced(AbstractSystem):
         if self.function is None:
             return self.impulse(r, g, constant, tau)
         E = self.directions(g)
-        to_velocity = E @ inverted(E.swapaxes(-1, -2) @ self.inertia_operator @ E)
+        to_velocity = E @ inverse_of(E.swapaxes(-1, -2) @ self.inertia_operator @ E)
         covectors = np.empty((len(r), self.group.dim))
         E, to_velocity = (np.broadcast_to(x, (len(r), *x.shape[-2:])) for x in (E, to_velocity))
         for k in range(len(r)):

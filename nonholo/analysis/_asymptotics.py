@@ -1,0 +1,291 @@
+"""Limits that a motion comes from and tends to: velocities, axes in body and in space, how far a sleigh turns.
+
+An orbit is followed backwards and forwards until its velocity has settled. Theory: docs/theory/limits.md.
+"""
+
+import dataclasses
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+
+from nonholo.analysis._critical_energies import critical_energies
+from nonholo.analysis._deltoid import single_valued_region
+from nonholo.analysis._equilibria import EquilibriumSpectrum, equilibria, highest_energy
+from nonholo.base.checks import error
+from nonholo.base.results import OutcomeError
+from nonholo.base.types import Float
+from nonholo.discrete import Discretization
+from nonholo.orbit import Orbit
+from nonholo.simulation import flow, simulate
+from nonholo.systems import AbstractLLSystem, AbstractSystem, NormalForm, refuse_forces
+
+_ROUNDING = 8 * np.finfo(np.float64).eps
+_SETTLED = 34.0  # natural logarithm of the factor by which the distance from the equilibria has fallen: 6e14
+_LONGEST = 1_000_000  # steps
+
+
+class Ends(NamedTuple):
+    """The orbit run backwards (against time, from one step after its first state) and forwards."""
+
+    first: Orbit
+    last: Orbit
+
+
+class Approach(NamedTuple):
+    """The limits of an orbit.
+
+    Attributes:
+        constant: The part of the body velocity that never changes.
+        energy: The energy of the rest.
+        spectrum: The equilibria that the rest tends to.
+        beside: Sine of the distance of the first state from the equilibria: near the repelling ones it leaves late.
+    """
+
+    constant: Float[np.ndarray, "dim"]
+    energy: float
+    spectrum: EquilibriumSpectrum
+    beside: float
+
+
+def approach(orbit: Orbit) -> Approach | None:
+    """Return what an orbit of a top or a sleigh tends to; None if its velocity never changes."""
+    system, velocity = cast("AbstractLLSystem", orbit.system), orbit.body_velocity[0]
+    family = system.equilibria()
+    rows = family.subspace
+    beside = float(np.linalg.norm(velocity - velocity @ np.linalg.pinv(rows) @ rows) / (np.linalg.norm(velocity) or 1))
+    if family.attracting is None or beside <= _ROUNDING:
+        return None
+    constant, energy = kept_velocity(orbit)
+    subject = orbit.motion if isinstance(orbit.motion, Discretization) else system
+    return Approach(constant, energy, equilibria(subject, energy), beside)
+
+
+def kept_velocity(orbit: Orbit) -> tuple[Float[np.ndarray, "dim"], float]:
+    """Return the part of the velocity that never changes, and the energy of the rest."""
+    system, velocity = cast("AbstractLLSystem", orbit.system), orbit.body_velocity[0]
+    form, constant = system.normal_form, np.zeros_like(velocity)
+    if form is not None and form.is_sleigh and form.arm == 0:  # the advance u
+        rows = system.form_map @ system.constraint_subspace
+        w = velocity @ np.linalg.pinv(rows)
+        constant = (w[-1] + form.offset @ w[:-1]) * rows[-1]
+    own = system.constrained_energy(constant @ np.asarray(system.inertia_operator))
+    return constant, float(orbit.energy[0]) - float(own)
+
+
+def follow(orbit: Orbit, limits: Approach, where: str = "asymptotics(subject=...)") -> Ends:
+    """Follow an orbit, from the identity if it has no poses, to both ends; refuse in the name of `where`."""
+    spectrum, decay = limits.spectrum, _SETTLED - float(np.log(limits.beside))
+    if isinstance(orbit.motion, Discretization):
+        return _discrete(orbit, orbit.motion, spectrum, decay, where)
+    start = {"momentum": orbit.restricted_momentum[0], "configuration": _pose(orbit)}
+    time = decay / float(np.abs(spectrum.rates).min())
+    method = "closed_form" if orbit.system.group.dim == 3 else None
+    ends = (flow(orbit.system, **start, times=(0.0, t), rtol=1e-12, atol=1e-13, method=method) for t in (-time, time))
+    return Ends(*ends)
+
+
+def _discrete(orbit: Orbit, discrete: Discretization, spectrum: EquilibriumSpectrum, decay: float, where: str) -> Ends:
+    """Run the map forwards, and backwards from the inverse displacement: the map is reversible.
+
+    A composition goes back from the opposite momentum.
+    """
+    slowest = float(np.abs(np.asarray(spectrum.multipliers)).max())
+    step_count = decay / -np.log(slowest) if slowest < 1 else np.inf
+    if step_count > _LONGEST:
+        remedy = "Take a longer time step, or the limits of the flow."
+        got = f"a slowest multiplier of {slowest:.17g}"
+        raise error(where, f"settle within {_LONGEST} steps", got, remedy)
+    group, W, g = discrete.system.group, orbit.displacement[0], _pose(orbit)
+    steps = int(np.ceil(step_count)) + 1
+    last = simulate(discrete, momentum=orbit.restricted_momentum[0], configuration=g, steps=steps)
+    is_composition = discrete.order > 2
+    back = {"momentum": -last.restricted_momentum[1]} if is_composition else {"displacement": group.inverse(W)}
+    return Ends(simulate(discrete, **back, configuration=g @ W, steps=steps), last)
+
+
+def _pose(orbit: Orbit) -> Float[np.ndarray, "N N"]:
+    return orbit.system.group.identity if orbit.canonical_pose is None else orbit.configuration[0]
+
+
+_SAME = 1e-6  # relative distance of displacements beyond which two orbits are on different branches
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Asymptotics:
+    r"""Limits at $t \to -\infty$ (before) and $t \to \infty$ (after); None where a quantity is not defined.
+
+    Attributes:
+        velocity_before: Limit of the body velocity; for an orbit alone.
+        velocity_after: The same.
+        axis_before: Limit of the unit body velocity, for a top with n = 3: the axis it turns about, as seen in the
+            body; opposite to `axis_after`.
+        axis_after: The same.
+        spatial_axis_before: That axis in space; for an orbit alone.
+        spatial_axis_after: The same.
+        heading_turn: How far a sleigh turns in total; its size alone for a system, with its sign for an orbit.
+        motion_turn: The same for its direction of motion, modulo full turns: the sleigh starts out backwards.
+        persists: Whether the orbit is known to continue forever. It is for a flow, for a principal orbit of a plane
+            sleigh below its `principal_energy` of `single_valued_region` and of a top below its `fold` of
+            `critical_energies`. Elsewhere the limits are those of an orbit that does, on whatever branches.
+    """
+
+    velocity_before: Float[np.ndarray, "dim"] | None = None
+    velocity_after: Float[np.ndarray, "dim"] | None = None
+    axis_before: Float[np.ndarray, "3"] | None = None
+    axis_after: Float[np.ndarray, "3"] | None = None
+    spatial_axis_before: Float[np.ndarray, "3"] | None = None
+    spatial_axis_after: Float[np.ndarray, "3"] | None = None
+    heading_turn: float | None = None
+    motion_turn: float | None = None
+    persists: bool = True
+
+
+def asymptotics(subject: AbstractLLSystem | Orbit) -> Asymptotics:
+    r"""Return where the motions of a system, or one orbit of a flow or of a discrete map, come from and go to.
+
+    Every motion goes from the repelling to the attracting equilibrium of its energy. For the discrete map this holds
+    for every real orbit that continues forever and is not stationary, whatever branches it takes, in every dimension,
+    at every energy; where no equilibrium has the energy (above `line` of `critical_energies`, `highest_energy` of
+    `equilibria`) none continues forever, and there are no limits. The heading of a sleigh turns by
+
+    $$ \theta(\infty) - \theta(-\infty) = \mathrm{sgn}(\omega)\,\pi\sqrt{1 + J/(ma^2)} $$
+
+    along the flow. A discrete orbit has the same limits of the velocity, exactly, and a turn that differs by O(h^2);
+    its turn and the axes in space are found by following the principal orbit of its first state to both ends. They are
+    None if that ends on the way or is another orbit. Of a composition (order > 2) the limits are observed, not proved.
+
+    Reference: [fedorov-zenkov-2004], sections 5 and 6, "bi-asymptotic".
+
+    Args:
+        subject: A top, a sleigh, or an orbit of one. An orbit that starts on an equilibrium, to rounding, stays there.
+
+    Raises:
+        ValueError: Another system or orbit; a discrete orbit that needs more than a million steps.
+
+    Example:
+        >>> print(f"{asymptotics(nh.ChaplyginSleigh(1.0, 0.75, 0.5)).heading_turn / np.pi:.12f}")
+        2.000000000000
+        >>> top = nh.SuslovTop([[1.0, 0.0, 0.5], [0.0, 1.0, 0.0], [0.5, 0.0, 1.0]])
+        >>> asymptotics(top).axis_after
+        array([-0., -1., -0.])
+    """
+    orbit = subject if isinstance(subject, Orbit) else None
+    system = subject if orbit is None else orbit.system
+    refuse_forces("asymptotics(subject=...)", system)
+    if isinstance(subject, Orbit) and subject.has_impacts.any():
+        raise error("asymptotics(subject=...)", "be an orbit without impacts", "some", "Ask it of the system.")
+    form = system.normal_form if isinstance(system, AbstractSystem) else None
+    if form is None:
+        remedy = "Pass a SuslovTop, a sleigh, or an orbit of one."
+        raise error("asymptotics(subject=...)", "be a top or a sleigh, or its orbit", type(subject).__name__, remedy)
+    if orbit is None:
+        return _of_system(cast("AbstractLLSystem", system), form)
+    if len(orbit) == 0:
+        raise error("asymptotics(subject=...)", "have at least one state", "none", "See the orbit's outcome.")
+    return _of_orbit(form, orbit)
+
+
+def turn_of_flow(mass: Any, inertia: Any, a: Any) -> Any:
+    r"""Return how far sleighs turn in total along the flow, $\pi\sqrt{1 + J/(ma^2)}$; of numbers or arrays."""
+    return np.pi * np.sqrt(1 + inertia / mass / a / a)
+
+
+def _of_system(system: AbstractLLSystem, form: NormalForm) -> Asymptotics:
+    attracting = system.equilibria().attracting
+    if attracting is None:
+        return Asymptotics()
+    if form.is_sleigh and form.is_planar:
+        turn = _turn_of_flow(form)
+        return Asymptotics(heading_turn=turn, motion_turn=turn - np.pi)
+    return Asymptotics(axis_before=_axis(form, -attracting), axis_after=_axis(form, attracting))
+
+
+def _turn_of_flow(form: NormalForm) -> float:
+    return float(turn_of_flow(form.mass, form.stiffness[0, 0], form.arm))
+
+
+def _axis(form: NormalForm, velocity: Float[np.ndarray, "dim"]) -> Float[np.ndarray, "3"] | None:
+    """Return the unit vector of a velocity on SO(3); None at rest and in other groups."""
+    size = float(np.linalg.norm(velocity))
+    return velocity / size if form.is_planar and not form.is_sleigh and size > 0 else None
+
+
+def _of_orbit(form: NormalForm, orbit: Orbit) -> Asymptotics:
+    if _is_bound_to_end(orbit):
+        return Asymptotics(persists=False)
+    velocity, limits = orbit.body_velocity[0], approach(orbit)
+    if limits is None:
+        return _resting(form, orbit, velocity)
+    change = np.zeros_like(limits.constant) if limits.spectrum.velocity is None else limits.spectrum.velocity
+    persists = _known_to_persist(form, orbit, limits.energy)
+    before, after = limits.constant - change, limits.constant + change
+    if form.is_sleigh and form.is_planar:
+        turn = _heading_turn(form, orbit, limits)
+        forwards = None if turn is None else turn - float(np.copysign(np.pi, velocity[0]))
+        return Asymptotics(before, after, heading_turn=turn, motion_turn=forwards, persists=persists)
+    axes = _axis(form, before), _axis(form, after)
+    in_space = _in_space(orbit, axes, limits)
+    return Asymptotics(before, after, *axes, *in_space, persists=persists)
+
+
+def _in_space(orbit: Orbit, axes: tuple, limits: Approach) -> tuple:
+    """Return both axes as seen in space; None without axes or poses, or where the orbit is not followed to its ends."""
+    ends = None if axes[1] is None or orbit.canonical_pose is None else _ends(orbit, limits)
+    if ends is None:
+        return None, None
+    return ends.first.configuration[-1] @ axes[0], ends.last.configuration[-1] @ axes[1]
+
+
+def _resting(form: NormalForm, orbit: Orbit, velocity: Float[np.ndarray, "dim"]) -> Asymptotics:
+    """Return the limits of a motion with constant velocity: the heading of a balanced sleigh turns forever."""
+    axis = _axis(form, velocity)
+    in_space = None if axis is None or orbit.canonical_pose is None else orbit.configuration[0] @ axis
+    straight = form.is_sleigh and form.is_planar and form.arm != 0
+    turn = 0.0 if straight else None
+    return Asymptotics(velocity, velocity, axis, axis, in_space, in_space, turn, turn)
+
+
+def _is_bound_to_end(orbit: Orbit) -> bool:
+    """Tell whether an orbit of a map that keeps it has more energy than every equilibrium."""
+    if not isinstance(orbit.motion, Discretization) or not orbit.motion.conserves_energy:
+        return False
+    highest = highest_energy(orbit.motion)
+    return highest is not None and kept_velocity(orbit)[1] > highest
+
+
+def _known_to_persist(form: NormalForm, orbit: Orbit, energy: float) -> bool:
+    discrete = orbit.motion
+    if not isinstance(discrete, Discretization):
+        return True
+    if orbit.branch != "principal" or discrete.order > 2:
+        return False
+    if not form.is_sleigh:
+        return energy < critical_energies(discrete).fold
+    return form.is_planar and energy < single_valued_region(discrete).principal_energy
+
+
+def _ends(orbit: Orbit, limits: Approach) -> Ends | None:
+    """Return both ends of an orbit; None where its principal branch ends, or is not the one that the orbit took."""
+    try:
+        ends = follow(orbit, limits)
+    except OutcomeError:
+        return None
+    return ends if orbit.branch == "principal" or _is_start_of(ends.last, orbit) else None
+
+
+def _is_start_of(principal: Orbit, orbit: Orbit) -> bool:
+    """Tell whether two discrete orbits with one first momentum have the same displacements as far as both go."""
+    both = orbit.chosen(orbit.step < orbit.step[0] + len(principal))
+    again, mine = principal.displacement[both.step - orbit.step[0]], both.displacement
+    return bool(np.abs(again - mine).max() <= _SAME * np.abs(orbit.displacement).max())
+
+
+def _heading_turn(form: NormalForm, orbit: Orbit, limits: Approach) -> float | None:
+    """Return the signed turn: in closed form for a flow, summed over all steps for a discrete orbit."""
+    if not isinstance(orbit.motion, Discretization):
+        return float(np.copysign(_turn_of_flow(form), orbit.body_velocity[0, 0]))
+    ends = _ends(orbit, limits)
+    if ends is None:
+        return None
+    first, last = ends
+    return float(last.heading[-1] - last.heading[0] + first.heading[1] - first.heading[-1])

@@ -1,0 +1,257 @@
+"""What measurements miss of motions on groups and in coordinates, and where motions begin: in JAX, compiled once."""
+
+import dataclasses
+import functools
+from collections.abc import Callable
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from nonholo.analysis.inverse._likelihood import Shapes, by_name
+from nonholo.analysis.inverse._measurements import Names, at_nodes, ends_of, first, measured_rows, names_of
+from nonholo.base.checks import error
+from nonholo.base.types import Array
+from nonholo.discrete import discretize
+from nonholo.discrete.definition import in_double
+from nonholo.groups import SE
+from nonholo.lagrange_dalembert import equations, place
+from nonholo.lagrange_dalembert import in_double as of_system
+from nonholo.orbit import Orbit
+from nonholo.simulation import simulate
+from nonholo.simulation.traced import rollout
+
+_COPIES = 8  # of matrices at a node, and their derivatives
+
+
+@dataclasses.dataclass(frozen=True)
+class GroupModel:
+    """Motions of a body on a group: what can be measured of them, and where they begin.
+
+    Attributes:
+        system: The body of the guess.
+    """
+
+    system: Any
+
+    @property
+    def names(self) -> Names:
+        """The names of columns by kind."""
+        return names_of(self.system.group)
+
+    def each(self, count: int) -> float:
+        """Return the bytes of a node under a number of parameters."""
+        group = self.system.group
+        return _COPIES * 8.0 * (1 + count + self.system.rank + group.dim) * group.size**2
+
+    def first(self, h: float, kinds: dict[str, np.ndarray], *, is_robust: bool) -> tuple[np.ndarray, np.ndarray]:
+        """Return a first pose and a first start."""
+        return first(self.system, h, kinds, is_robust=is_robust)
+
+    def residuals(
+        self, system_of: Callable[..., Any], shapes: Shapes, time_step: float, numbers: Array, starts: Array, *data: Any
+    ) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        """Return by kind residuals (T, K, c), measured minus computed, with derivatives by numbers and by starts."""
+        return in_double(_compile_on_group(system_of, shapes), time_step, numbers, starts, *data)
+
+    def orbit(self, system: Any, h: float, start: np.ndarray, pose: np.ndarray, steps: int) -> Orbit:
+        """Return the motion of a trial."""
+        begin = {"restricted_velocity": start[: system.rank], "configuration": _first_pose(system, start, pose)}
+        return simulate(discretize(system, h), **begin, steps=steps)
+
+
+def _first_pose(system: Any, start: Array, pose: Array) -> Array:
+    """Return the pose that a start changes to; one along the constraint alone changes none."""
+    k, dim, xp = system.rank, system.group.dim, start.__array_namespace__()
+    return pose @ system.group.exp(xp.pad(start[k:], (0, k + dim - len(start)))) if len(start) > k else pose
+
+
+@functools.lru_cache(maxsize=8)
+def _compile_on_group(system_of: Callable[..., Any], shapes: Shapes) -> Callable[..., Any]:
+    def one(time_step: Array, numbers: Array, start: Array, g: Array, kinds: dict[str, Array]) -> tuple[Any, Any]:
+        system = system_of(by_name(shapes, numbers))
+        begin = {"restricted_velocity": start[: system.rank], "configuration": _first_pose(system, start, g)}
+        orbit = rollout(discretize(system, time_step), **begin, steps=len(kinds["turn"]) - 1)
+        inertia = jnp.asarray(system.constrained_inertia)
+        velocity = jnp.linalg.solve(inertia, orbit.restricted_momentum.T).T @ system.constraint_subspace
+        rows = {kind: _gap(system.group, kind, values, orbit, velocity) for kind, values in kinds.items()}
+        return rows, rows
+
+    return _with_slopes(one, (1, 2))
+
+
+def _with_slopes(one: Callable[..., Any], argnums: tuple[int, int]) -> Callable[..., Any]:
+    """Return compiled rows of trials by kind, derived by numbers and starts; these come after what trials share."""
+    each = jax.vmap(jax.jacfwd(one, argnums=argnums, has_aux=True), in_axes=(*argnums[1] * (None,), 0, 0, 0))
+
+    def by_kind(*arguments: Any) -> dict[str, tuple[Array, Array, Array]]:
+        slopes, rows = each(*arguments)
+        return {kind: (rows[kind], *slopes[kind]) for kind in rows}  # JAX sorts a dictionary: only names are kept
+
+    return jax.jit(by_kind)
+
+
+def _gap(group: Any, kind: str, values: Array, orbit: Any, velocity: Array) -> Array:
+    """Return measured minus computed numbers, zero where nothing was measured; of turns the vector of the rotation."""
+    there = jnp.isfinite(values)
+    values, g = jnp.where(there, values, 1.0), orbit.configuration
+    if kind == "position":
+        gap = values - g[:, :-1, -1]
+    elif kind == "rate":
+        gap = values - velocity[:, : values.shape[1]]
+    elif group == SE(2):
+        cos, sin = g[:, 0, 0], g[:, 1, 0]
+        c, s = jnp.cos(values[:, 0]), jnp.sin(values[:, 0])
+        gap = jnp.arctan2(s * cos - c * sin, c * cos + s * sin)[:, None]
+    else:
+        turn = jnp.swapaxes(g[:, :3, :3], 1, 2) @ _rotations(values)
+        odd = (turn - jnp.swapaxes(turn, 1, 2)) / 2
+        gap, there = jnp.stack([odd[:, 2, 1], odd[:, 0, 2], odd[:, 1, 0]], axis=1), there[:, :3]
+    return jnp.where(there, gap, 0.0)
+
+
+def _rotations(q: Array) -> Array:
+    w, x, y, z = (q / jnp.linalg.norm(q, axis=1, keepdims=True)).T
+    rows = (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    )
+    return jnp.moveaxis(jnp.array(rows), -1, 0)
+
+
+_SAMPLES = 3  # states at which coordinates that the equations do not contain are looked for
+
+
+@dataclasses.dataclass(frozen=True)
+class CoordinateModel:
+    """Motions of a system in coordinates: what can be measured of them, and where they begin.
+
+    A start is the momentum along admissible directions at the first state, and by what the first configuration is
+    another one. A pose has beside the latter columns of both.
+
+    Attributes:
+        system: The system of the guess.
+    """
+
+    system: Any
+
+    @property
+    def names(self) -> Names:
+        """The names of columns by kind: positions, and each other coordinate by itself."""
+        own = self.system.coordinates
+        place = tuple(name for name in "xyz" if name in own) if {"x", "y"} <= set(own) else ()
+        kinds: Names = {"position": (place,)} if place else {}
+        for name in (name for name in own if name not in place):
+            kinds[name] = ((name,), ("heading",)) if name == self.system.heading else ((name,),)
+        return kinds
+
+    def each(self, count: int) -> float:
+        """Return the bytes of a node under a number of parameters."""
+        n = self.system.dimension
+        return 8.0 * 8.0 * (1 + count + 2 * n) * 3 * n
+
+    def columns(self, kind: str) -> list[int]:
+        """Return the coordinates of a kind."""
+        return [self.system.coordinates.index(name) for name in self.names[kind][0]]
+
+    def first(self, h: float, kinds: dict[str, np.ndarray], *, is_robust: bool) -> tuple[np.ndarray, np.ndarray]:
+        """Return a first pose and a first start, from straight lines between nodes."""
+        system, heading = self.system, self.system.heading
+        series = {
+            kind: measured_rows(kind, rows, is_robust, is_angle=kind == heading)
+            for kind, rows in kinds.items()
+            if np.isfinite(rows).any()
+        }
+        ends = ends_of(series)
+        if heading and "position" in series and heading not in series:
+            series[heading] = np.array(ends), _course(ends, *series["position"])
+        at = [i for kind in series for i in self.columns(kind)]
+        both = np.concatenate([at_nodes(ends, *rows) for rows in series.values()], axis=1)
+        rates = (both[1] - both[0]) / ((ends[1] - ends[0]) * h)
+        q = np.zeros(system.dimension)
+        q[at] = both[0] - rates * ends[0] * h
+        for index, motion in system.plain.prescribed:
+            q[index] = float(motion(np.float64(0.0)))
+        x = place(system, q, 0.0)
+        A, b = of_system(equations.forms, system, x), -of_system(equations.constraint, system, x, 0 * q)
+        basis, v = np.linalg.svd(A)[2][len(A) :].T, np.linalg.pinv(A) @ b
+        v = v + basis @ np.linalg.lstsq(basis[at], rates - v[at])[0]
+        shifts = np.eye(len(q))[:, self._free(at, x, v, h)]
+        momentum = basis.T @ of_system(equations.momentum, system, x, v)
+        return np.column_stack([q, basis, shifts]), np.append(momentum, np.zeros(shifts.shape[1]))
+
+    def _free(self, at: list[int], x: np.ndarray, v: np.ndarray, h: float) -> list[int]:
+        """Return the coordinates whose beginning is fitted: those measured, and those that the equations contain."""
+        rng, n = np.random.default_rng(0), len(v)
+        xs, vs = x + rng.normal(0.0, 0.3, (_SAMPLES, len(x))), v + rng.normal(0.0, 0.3, (_SAMPLES, n))
+        matters = np.abs(of_system(_slopes, self.system, xs, vs, np.float64(h))).max((0, 1))[:n] > 0
+        driven = {index for index, _ in self.system.prescribed}
+        return [i for i in range(n) if (i in at or matters[i]) and i not in driven]
+
+    def residuals(
+        self, system_of: Callable[..., Any], shapes: Shapes, time_step: float, numbers: Array, starts: Array, *data: Any
+    ) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        """Return by kind residuals (T, K, c), measured minus computed, with derivatives by numbers and by starts."""
+        return in_double(_compile_in_coordinates(self, system_of, shapes, time_step), numbers, starts, *data)
+
+    def orbit(self, system: Any, h: float, start: np.ndarray, pose: np.ndarray, steps: int) -> Any:
+        """Return the motion of a trial."""
+        q, p = _begin(system, start, pose)
+        return simulate(discretize(system, h), momentum=p, configuration=q, steps=steps)
+
+    def gap(self, kind: str, values: Array, q: Array) -> Array:
+        """Return measured minus computed numbers, zero where nothing was measured; of a heading less full turns."""
+        there = jnp.isfinite(values)
+        gap = jnp.where(there, values, 0.0) - q[:, np.array(self.columns(kind))]
+        return jnp.where(there, jnp.arctan2(jnp.sin(gap), jnp.cos(gap)) if kind == self.system.heading else gap, 0.0)
+
+
+def _course(ends: tuple[int, int], nodes: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Return headings at two nodes of what moves forward, from the chords after them."""
+    chords = np.diff(at_nodes((*ends, 2 * ends[1] - ends[0]), nodes, rows), axis=0)
+    first, later = np.unwrap(np.arctan2(chords[:, 1], chords[:, 0]))
+    return np.array([[1.5 * first - 0.5 * later], [0.5 * (first + later)]])
+
+
+def _begin(system: Any, start: Array, pose: Array) -> tuple[Array, Array]:
+    """Return the first configuration and momentum of a trial."""
+    k = system.dimension - system.constraints
+    return pose[:, 0] + pose[:, 1 + k :] @ start[k:], pose[:, 1 : 1 + k] @ start[:k]
+
+
+def _slopes(system: Any, xs: Array, vs: Array, h: Array) -> Array:
+    """Return the derivatives of the equations of steps by their places."""
+
+    def of_step(x: Array, v: Array) -> Array:
+        parts = *equations.momenta(system, x, v, h), equations.discrete_constraints(system, x, v, h)
+        return jnp.concatenate([*parts, equations.forms(system, x).ravel()])
+
+    return jax.vmap(jax.jacfwd(of_step))(xs, vs)
+
+
+@functools.lru_cache(maxsize=8)
+def _compile_in_coordinates(
+    model: CoordinateModel, system_of: Callable[..., Any], shapes: Shapes, time_step: float
+) -> Callable[..., Any]:
+    def one(numbers: Array, start: Array, pose: Array, kinds: dict[str, Array]) -> tuple[Any, Any]:
+        system = system_of(by_name(shapes, numbers))
+        q, p = _begin(system, start, pose)
+        steps = len(next(iter(kinds.values()))) - 1
+        states = rollout(discretize(system, time_step), momentum=p, configuration=q, steps=steps)
+        rows = {kind: model.gap(kind, values, states.configuration) for kind, values in kinds.items()}
+        return rows, rows
+
+    return _with_slopes(one, (0, 1))
+
+
+def coordinate_model(system: Any, again: Any) -> CoordinateModel:
+    """Return the model of a system that a function made twice; refused if it does not vary parameters alone."""
+    if not (system.parameters and system.family == again.family):
+        remedy = "Make the system once, with parameters=..., and return system.with_parameters(**p)."
+        raise error("fit(system_of=...)", "vary the parameters of one system", type(system).__name__, remedy)
+    if system.holonomic is not None:
+        remedy = "Choose coordinates that satisfy them."
+        raise error("fit(system_of=...)", "have no holonomic constraints", "some", remedy)
+    return CoordinateModel(system)

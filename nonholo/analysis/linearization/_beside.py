@@ -1,0 +1,176 @@
+r"""Motions beside a state, on groups and in coordinates. Needs JAX.
+
+On a group the pose is seen from a frame that moves with the body velocity of the state: then
+$\dot\xi = \omega - \omega_0 + [\xi, \omega_0]$ to first order, and a body that moves steadily stays where it is.
+"""
+
+import functools
+from collections.abc import Callable
+from typing import Any
+
+import jax
+import numpy as np
+
+from nonholo.analysis.linearization._reduction import Local
+from nonholo.base.checks import error
+from nonholo.base.types import Array, Float
+from nonholo.continuous import vector_field
+from nonholo.discrete import Discretization
+from nonholo.discrete.definition import compile_double
+from nonholo.lagrange_dalembert import CoordinateFlow, tangents
+from nonholo.simulation import refuse_many_matrices, simulate
+from nonholo.simulation.traced import rollout
+from nonholo.systems import Start, in_coordinates, refuse_slip
+
+_TIMES = np.array([0.0, 0.3719, 0.9173])  # not in a ratio that a rotation may have
+_OTHERS, _SPREAD = 3, 0.3
+_OFFSET = 8e-3  # of a state, for central differences: its sixth power is at rounding
+_WEIGHTS = np.array([45.0, -9.0, 1.0]) / (60 * _OFFSET)  # of order 6, at one, two and three offsets
+
+Move = Callable[[Array, Array, Array], tuple[Array, Array]]
+"""Takes time, pose and momentum to velocity and rate; of a map to the next pose and the change of momentum."""
+
+
+def on_group(owner: str, subject: Any, configuration: Any, velocity: Any) -> tuple[Local, Any]:
+    """Return the changes beside a state of a system on a group, or of its map, and what gives states beside it."""
+    is_map = isinstance(subject, Discretization)
+    system: Any = subject.system if is_map else subject
+    _refuse(f"{owner}(system=...)", system)
+    still = np.zeros(system.group.dim)
+    start = Start.of(owner, configuration, body_velocity=still if velocity is None else velocity)
+    g = start.pose(system.group)
+    r = system.from_canonical(start.momentum(system, g))
+    poses, momenta = _by_steps(subject, g, r) if is_map else _by_flow(system, g, r)
+    rng, dim = np.random.default_rng(0), system.group.dim
+    xi, s = _SPREAD * rng.uniform(-1, 1, (_OTHERS, dim)), _SPREAD * rng.uniform(-1, 1, (_OTHERS, len(r)))
+    count, times = len(_TIMES), np.append(_TIMES, np.zeros(_OTHERS))
+    poses = np.concatenate([poses[:count], g @ system.group.exp(xi)])
+    others = r + (np.abs(r).max() or 1.0) * s
+    take = _by_differences if system.forces is not None and system.forces.needs_function else _by_jax
+    change, slope = take(subject, times, poses, np.concatenate([momenta[:count], others]))
+    if is_map:  # where forces know the times of steps
+        change = change.copy()
+        change[:count, dim:] = np.diff(momenta, axis=0)
+    rows = np.zeros((len(slope), 0, slope.shape[-1]))
+    names = *(f"xi{i}" for i in range(1, 1 + dim)), *(f"r{i}" for i in range(1, 1 + len(r)))
+    local = Local(names, dim, np.append(np.zeros(dim), r), change, slope, rows, count - 1)
+    return local, functools.partial(_pose_beside, system, g, r)
+
+
+def _pose_beside(system: Any, g: Array, r: Array, xi: Array, s: Array) -> tuple[np.ndarray, np.ndarray]:
+    after = g @ system.group.exp(xi)
+    return after, _flowing(system)(np.float64(0), after, r + s)[0]
+
+
+def _by_flow(system: Any, g: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return poses and momenta at later times of a motion that is steady."""
+    velocity, _ = _flowing(system)(np.float64(0), g, r)
+    return g @ system.group.exp(_TIMES[:, None] * velocity), np.tile(r, (len(_TIMES), 1))
+
+
+def _by_steps(discrete: Discretization, g: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return poses and momenta after steps."""
+    refuse_many_matrices("linearize(system=...)", discrete, 6, "Linearize a smaller body.", derivatives=len(r))
+    orbit = simulate(discrete, momentum=r, configuration=g, steps=len(_TIMES))
+    return orbit.configuration, orbit.restricted_momentum
+
+
+def along(orbit: Any) -> Float[np.ndarray, "L d d"]:
+    """Return the derivative of each state of a discrete orbit by the one before; momenta alone if they decide."""
+    discrete, system, r = orbit.motion, orbit.motion.system, orbit.restricted_momentum[:-1]
+    poses = orbit.configuration[:-1] if orbit.has_poses else np.tile(system.group.identity, (len(r), 1, 1))
+    _, slope = _by_jax(discrete, orbit.time[:-1], poses, r)
+    matters = slice(0 if system.forces is not None or system.is_spatial else system.group.dim, None)
+    return (slope + np.eye(slope.shape[-1]))[:, matters, matters]
+
+
+def _refuse(where: str, system: Any) -> None:
+    if system.is_wide:
+        raise error(where, "have matrices", "a system without", "Linearize `system.dense`.")
+    refuse_slip(where, system)
+    if system.forces is not None and system.forces.table is not None:
+        got, remedy = "one force for each step", "Linearize it without the table."
+        raise error(where, "have forces that stay", got, remedy)
+
+
+def _flowing(system: Any) -> Move:
+    field, group, k = vector_field(system), system.group, system.rank
+
+    def move(time: Array, g: Array, r: Array) -> tuple[Array, Array]:
+        rates = field(time, g.__array_namespace__().concatenate([r, g.ravel()]))
+        return group.vee(group.inverse(g) @ rates[k:].reshape(g.shape)), rates[:k]
+
+    return move
+
+
+def _stepping(discrete: Discretization, run: Any) -> Move:
+    def move(_: Array, g: Array, r: Array) -> tuple[Array, Array]:
+        pair = run(discrete, momentum=r, configuration=g, steps=1)
+        return pair.configuration[-1], pair.restricted_momentum[-1] - r
+
+    return move
+
+
+def _beside(
+    subject: Any, run: Any, time: Array, g: Array, r: Array
+) -> tuple[Callable[[Array], Array], Float[Array, "m"]]:
+    """Return the change of a state as a function of what it is beside one, and where it is that state."""
+    is_map = isinstance(subject, Discretization)
+    move = _stepping(subject, run) if is_map else _flowing(subject)
+    group, (first, _), xp = (subject.system if is_map else subject).group, move(time, g, r), g.__array_namespace__()
+
+    def change(z: Array) -> Array:
+        xi, s = z[: group.dim], z[group.dim :]
+        there, rate = move(time, g @ group.exp(xi), s)
+        if is_map:
+            return xp.concatenate([group.log(group.inverse(first) @ there) - xi, rate])
+        return xp.concatenate([there - first + group.bracket(xi, first), rate])
+
+    return change, xp.concatenate([xp.zeros(group.dim), r])
+
+
+@compile_double
+def _by_jax(subject: Any, *states: Array) -> tuple[Array, Array]:
+    def at(*state: Array) -> tuple[Array, Array]:
+        change, z = _beside(subject, rollout, *state)
+        return change(z), jax.jacfwd(change)(z)
+
+    return jax.vmap(at)(*states)
+
+
+def _by_differences(subject: Any, *states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return what a function of the user's leads to, which is not traced."""
+    run = functools.partial(simulate, throw=False)
+    pairs = [_beside(subject, run, *state) for state in zip(*states, strict=True)]
+    return np.stack([change(z) for change, z in pairs]), np.stack([_differences(*pair) for pair in pairs])
+
+
+def _differences(function: Callable[[np.ndarray], np.ndarray], z: np.ndarray) -> Float[np.ndarray, "m m"]:
+    offsets = _OFFSET * np.arange(1, 1 + len(_WEIGHTS))
+    ends = [[function(z + x * e) - function(z - x * e) for x in offsets] for e in np.eye(len(z))]
+    return np.einsum("iwj,w->ji", np.array(ends), _WEIGHTS)
+
+
+def beside_state(owner: str, subject: Any, configuration: Any, velocity: Any) -> tuple[Local, Any]:
+    """Return the changes beside a state of a system or of its map, and the function that gives states beside it."""
+    motion = subject if in_coordinates(subject) else CoordinateFlow(subject)
+    x, v = tangents.begin(motion, owner, configuration, velocity)
+    later = tangents.following(motion, x, v)
+    rng, size = np.random.default_rng(0), len(v) + motion.system.is_driven
+    xi, w = _SPREAD * rng.uniform(-1, 1, (_OTHERS, size)), _SPREAD * rng.uniform(-1, 1, (_OTHERS, len(v)))
+    places, velocities = tangents.beside(motion, x, v, xi, (np.abs(v).max() or 1.0) * w)
+    velocities = np.concatenate([np.tile(v, (1 + len(later), 1)), velocities])
+    slopes = tangents.slopes(motion, np.concatenate([x[None], later, places]), velocities)
+    local = Local(_names_of_coordinates(motion.system, size), size, np.append(np.zeros(size), v), *slopes, len(later))
+    return local, functools.partial(_coordinates_beside, motion, x, v)
+
+
+def _coordinates_beside(motion: Any, x: Array, v: Array, xi: Array, w: Array) -> tuple[np.ndarray, np.ndarray]:
+    places, velocities = tangents.beside(motion, x, v, xi[None], w[None])
+    return places[0][: len(v)] if motion.system.is_driven else places[0], velocities[0]
+
+
+def _names_of_coordinates(system: Any, size: int) -> tuple[str, ...]:
+    if not system.coordinates:
+        return *(f"xi{i}" for i in range(1, 1 + size)), *(f"v{i}" for i in range(1, 1 + size))
+    return *system.coordinates, *("time",) * system.is_driven, *(f"{name}'" for name in system.coordinates)

@@ -1,0 +1,365 @@
+"""The transcription of a motion on a group and in coordinates, from arguments of `steer`.
+
+Both kinds of nodes offer the same functions. A state x is a pose with the momenta of its node, an inner part z what a
+step has besides, a chart of the displacement or a velocity with multipliers; f are the forces of the step.
+"""
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Any, NamedTuple, cast
+
+import jax.numpy as jnp
+import numpy as np
+
+from nonholo.analysis.steering._arguments import (
+    Guess,
+    Limits,
+    Way,
+    body_points,
+    body_states,
+    check_names,
+    evenly,
+    planar_points,
+    resample,
+)
+from nonholo.analysis.steering._motions import driven
+from nonholo.analysis.steering._program import Program, Steps
+from nonholo.analysis.steering._shooting import sizes
+from nonholo.analysis.steering._transcription import Problem, bounds_of
+from nonholo.base.checks import array, error, shown
+from nonholo.base.types import Array, Float
+from nonholo.discrete import Discretization, discretize
+from nonholo.discrete.definition import Rollout, free_rows, step_residual
+from nonholo.groups import SE
+from nonholo.lagrange_dalembert import (
+    CoordinateDiscretization,
+    CoordinateOrbit,
+    LagrangeDAlembert,
+    checked_state,
+    equations,
+    in_double,
+    place,
+)
+from nonholo.systems import Forced
+
+
+class GroupNodes(NamedTuple):
+    """Steps on a group.
+
+    Attributes:
+        free: The discretization without forces.
+        forced: The system with its forces, None where free.
+        outline: Body points that keep clear of obstacles, (points, n).
+        pose: The last pose, None where free.
+    """
+
+    free: Discretization
+    forced: Forced | None
+    outline: Float[Array, "points n"]
+    pose: Array | None
+
+    @property
+    def sizes(self) -> tuple[int, int, int]:
+        """How many numbers a state, an inner part and the forces of a step have."""
+        group, k = self.free.system.group, self.free.system.rank
+        return free_rows(group) * group.size + k, len(self.free.variety.chart), k
+
+    def residual(self, x: Array, z: Array, f: Array, after: Array, row: Array) -> Array:
+        """Return the equations of a step, under the row of a table of forces too."""
+        covector = jnp.linalg.pinv(jnp.asarray(self.free.system.constraint_subspace)) @ f + row
+        return step_residual(self.free, self.forced, self.state(x), z, self.state(after), covector)
+
+    def goal_gap(self, x: Array) -> Array:
+        """Return what vanishes at the goal and is no number of the state."""
+        if self.pose is None:
+            return jnp.zeros(0)
+        group = self.free.system.group
+        return group.log(group.inverse(self.pose) @ self.state(x)[0])
+
+    def places(self, x: Array) -> Array:
+        """Return where the points of the outline are, (points, n)."""
+        return body_points(self.state(x)[0], self.outline)
+
+    def numbers(self, z: Array, x: Array) -> Array:
+        """Return what bounds of states are about: entries of the pose, momenta."""
+        del z
+        g, momenta = self.state(x)
+        return jnp.append(g, momenta)
+
+    def state(self, x: Array) -> tuple[Array, Array]:
+        """Return pose and momenta."""
+        group = self.free.system.group
+        rows = free_rows(group)
+        g = jnp.concatenate([x[: rows * group.size].reshape(rows, -1), jnp.asarray(group.identity[rows:])])
+        return g, x[rows * group.size :]
+
+
+class CoordinateNodes(NamedTuple):
+    """Steps in coordinates.
+
+    Attributes:
+        system: What moves.
+        time_step: h.
+        outline: Points in axes of the body that keep clear of obstacles, (points, 2).
+        directions: Rows span the admissible velocities near the goal; none where its velocity is free.
+        velocity: The last velocity.
+    """
+
+    system: LagrangeDAlembert
+    time_step: Array
+    outline: Float[Array, "points n"]
+    directions: Array
+    velocity: Array
+
+    @property
+    def sizes(self) -> tuple[int, int, int]:
+        """How many numbers a state, an inner part and the forces of a step have."""
+        n = self.system.dimension
+        return 2 * n + self.system.is_driven, n + self.system.constraints, n
+
+    def residual(self, x: Array, z: Array, f: Array, after: Array, row: Array) -> Array:
+        """Return the equations of a step; there is no table of forces."""
+        del row
+        return equations.step_residual(self.system, self.state(x), z, self.state(after), f, self.time_step)
+
+    def goal_gap(self, x: Array) -> Array:
+        """Return by how much the last momentum is missed along the constraint."""
+        if not len(self.directions):
+            return jnp.zeros(0)
+        place, p = self.state(x)
+        rows, off = equations.forms(self.system, place), p - equations.momentum(self.system, place, self.velocity)
+        return self.directions @ (off - rows.T @ jnp.linalg.solve(rows @ rows.T, rows @ off))
+
+    def places(self, x: Array) -> Array:
+        """Return where the points of the outline are, (points, 2)."""
+        return planar_points(self.system, x, self.outline)
+
+    def numbers(self, z: Array, x: Array) -> Array:
+        """Return what bounds of states are about: velocities of the step, coordinates."""
+        return jnp.append(z[: self.system.dimension], x[: self.system.dimension])
+
+    def state(self, x: Array) -> tuple[Array, Array]:
+        """Return place and momentum."""
+        return x[: -self.system.dimension], x[-self.system.dimension :]
+
+
+class Goal(NamedTuple):
+    """What is to be reached: coordinates by index, and a velocity where one is named."""
+
+    coordinates: dict[int, float]
+    velocity: Float[np.ndarray, "n"] | None
+
+    def numbers(self, n: int) -> Float[np.ndarray, "2n"]:
+        """Return velocities and coordinates, NaN where they are free."""
+        both = np.full((2, n), np.nan)
+        both[1, list(self.coordinates)] = list(self.coordinates.values())
+        if self.velocity is not None:
+            both[0] = self.velocity
+        return both.ravel()
+
+
+def checked_start(discrete: CoordinateDiscretization, start: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Return place and velocity of the start."""
+    check_names("steer(start=...)", start, "body_velocity")
+    discrete.system.forced(None, np.zeros((1, discrete.system.dimension)))  # refuses a system that has forces
+    velocity = start.get("body_velocity", np.zeros(discrete.system.dimension))
+    return checked_state(discrete.system, start.get("configuration"), {"body_velocity": velocity}, 0.0, "steer")
+
+
+def checked_goal(discrete: CoordinateDiscretization, goal: Any, is_free: bool) -> Goal:
+    """Return the goal; its configuration may name some coordinates alone, a free one nothing."""
+    where, system = "steer(goal=...)", discrete.system
+    check_names(where, goal, "body_velocity")
+    remedy = f"Pass {system.dimension} numbers, or some of them by name: {', '.join(system.coordinates)}."
+    q, v = goal.get("configuration", {}), goal.get("body_velocity")
+    if not isinstance(q, Mapping):
+        q = dict(zip(system.coordinates, array(where, q, (system.dimension,), remedy), strict=True))
+    if not set(q) <= set(system.coordinates):
+        raise error(where, "name coordinates of the system", shown(sorted(map(str, q))), remedy)
+    if not q and v is None and not is_free:
+        raise error(where, "name coordinates or a velocity", "neither", remedy)
+    numbers = array(where, list(q.values()), (len(q),), remedy)
+    v = None if v is None else array(where, v, (system.dimension,), "Pass a rate for each coordinate.")
+    return Goal(dict(zip(map(system.coordinates.index, q), numbers.tolist(), strict=True)), v)
+
+
+def driven_in_coordinates(
+    discrete: CoordinateDiscretization, start: tuple[np.ndarray, np.ndarray], forces: Float[np.ndarray, "steps n"]
+) -> CoordinateOrbit:
+    """Return the orbit under forces, as far as it goes."""
+    (v, q), table = start, discretize(discrete.system.forced(None, forces), discrete.time_step)
+    return table.simulate(configuration=q, body_velocity=v, steps=len(forces), throw=False)
+
+
+def coordinate_problem(
+    discrete: CoordinateDiscretization,
+    ends: tuple[tuple[np.ndarray, np.ndarray], Goal],
+    limits: Limits,
+    way: Way,
+    steps: int,
+    guess: Guess,
+) -> Problem:
+    """Return the problem of a system in coordinates, from place and velocity at the start and a goal."""
+    ((x, v), goal), system, n = ends, discrete.system, discrete.system.dimension
+    last = place(system, x[:n].copy(), steps * discrete.time_step)
+    last[list(goal.coordinates)] = list(goal.coordinates.values())
+    nodes = _nodes(discrete, way, last, goal.velocity)
+    first = np.append(x, in_double(equations.momentum, system, x, v))
+    program = Program(Steps(nodes, way.centers, way.radii, nodes.time_step, way.bounds), first, np.zeros((steps, n)))
+    pins: dict[int, dict[int, Any]] = {
+        step: dict(zip(map(system.coordinates.index, "xy"), place, strict=True)) for step, place in way.via.items()
+    }
+    pins[steps] = pins.get(steps, {}) | goal.coordinates
+    if way.outline.shape[-1]:
+        way.check("start", planar_points(system, x[:n], way.outline))
+    path, forces = _coordinate_guess(system, (x[:n], last[:n]), way, steps, guess)
+
+    def first_guess(rng: np.random.Generator, spread: float) -> np.ndarray:
+        spread *= guess.trust
+        bow = np.sin(np.linspace(0, np.pi, steps + 1))[:, None]
+        bent = path + spread * bow * rng.normal(size=n)
+        return _coordinate_unknowns(nodes, bent, forces + spread * rng.normal(size=(steps, n)))
+
+    def gap_of(forces: np.ndarray) -> float:
+        return _coordinate_gap(program, goal, way, driven_in_coordinates(discrete, (v, x[:n]), forces))
+
+    return Problem(program, bounds_of(program, limits, pins), first_guess, gap_of)
+
+
+def _nodes(discrete: CoordinateDiscretization, way: Way, last: np.ndarray, velocity: np.ndarray | None) -> Any:
+    """Return the unknowns of steps to a place, where the system is to have a velocity or none."""
+    system, h = discrete.system.plain, np.float64(discrete.time_step)
+    if velocity is None:
+        return CoordinateNodes(system, h, way.outline, np.zeros((0, system.dimension)), np.zeros(system.dimension))
+    directions = np.linalg.svd(in_double(equations.forms, system, last))[2][system.constraints :]
+    return CoordinateNodes(system, h, way.outline, directions, velocity)
+
+
+def _coordinate_gap(program: Program, goal: Goal, way: Way, orbit: CoordinateOrbit) -> float:
+    """Return by what an orbit misses its goal, obstacles and places; infinity where it ends before."""
+    q, system = orbit.configuration, program.steps.nodes.system
+    if len(orbit) <= len(program.rows):
+        return np.inf
+    off = [abs(q[-1, i] - number) for i, number in goal.coordinates.items()]
+    off += np.abs(program.goal_gap(np.append(place(system, q[-1], orbit.time[-1]), orbit.momentum[-1]))).tolist()
+    off.append(way.outside(np.concatenate([orbit.body_velocity[:-1], q[1:]], axis=1)))
+    if way.outline.shape[-1]:
+        at = planar_points(system, q, np.zeros((1, 2)))[:, 0]
+        off.append(way.gap(planar_points(system, q, way.outline), at))
+    return float(max(off, default=0.0))
+
+
+def _coordinate_guess(
+    system: LagrangeDAlembert, ends: tuple[np.ndarray, np.ndarray], way: Way, steps: int, guess: Guess
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return configurations and forces of a guess: by default evenly from the start to the goal, through places."""
+    if guess.configuration is not None and guess.controls is not None:
+        return guess.configuration, guess.controls
+    q = evenly({0: ends[0], steps: ends[1]}, steps)
+    at = [system.coordinates.index(name) for name in "xy"] if way.outline.shape[-1] else []
+    if guess.path is not None:
+        q[:, at] = resample(guess.path, steps)
+    elif at:
+        q[:, at] = evenly({0: ends[0][at], steps: ends[1][at]} | way.via, steps)
+    return q, np.zeros((steps, len(q[0])))
+
+
+def _coordinate_unknowns(nodes: CoordinateNodes, q: np.ndarray, forces: np.ndarray) -> np.ndarray:
+    """Return unknowns whose velocities are those of a path; impulses of constraint are zero."""
+    system, steps, h = nodes.system, len(forces), float(nodes.time_step)
+    times, v = h * np.arange(steps + 1), np.diff(q, axis=0) / h
+    places = np.array([place(system, each, time) for each, time in zip(q, times, strict=True)])
+    momenta = np.array([in_double(equations.momentum, system, *each) for each in zip(places[:-1], v, strict=True)])
+    return np.concatenate([v, np.zeros((steps, system.constraints)), forces, places[1:], momenta], axis=1).ravel()
+
+
+def group_problem(discrete: Discretization, ends: tuple[Any, ...], limits: Limits, way: Way, guess: Guess) -> Problem:
+    """Return the problem of one member, from velocity and pose of the start, pose and velocity of the goal."""
+    (w, g, to_pose, to_velocity), system, free = ends, discrete.system, discrete
+    if system.is_forced:
+        free = dataclasses.replace(discrete, system=cast(Forced, system).system)
+    steps, n = len(limits[0]) // system.rank, system.group.size
+    nodes = GroupNodes(free, discrete.forces, way.outline, to_pose)
+    table = np.zeros((steps, system.group.dim)) if discrete.forces is None else discrete.forces.rows(np.arange(steps))
+    first = np.append(_numbers(nodes, g), system.restricted_momentum(w))
+    steps_alike = Steps(nodes, way.centers, way.radii, np.float64(discrete.time_step), way.bounds)
+    program = Program(steps_alike, first, table)
+    pins = {step: {row * n + n - 1: number for row, number in enumerate(place)} for step, place in way.via.items()}
+    if to_velocity is not None:
+        momenta = enumerate(system.restricted_momentum(to_velocity), len(first) - system.rank)
+        pins[steps] = pins.get(steps, {}) | dict(momenta)
+    poses, forces = _group_guess(discrete, (g, to_pose), way, steps, guess)
+
+    def first_guess(rng: np.random.Generator, spread: float) -> np.ndarray:
+        spread *= guess.trust
+        noise = spread * sizes(discrete, steps).reshape(steps, -1) * rng.normal(size=(steps, system.rank))
+        bent = _bent(discrete, poses, spread * rng.normal(size=system.group.dim), way)
+        return _group_unknowns(nodes, bent, forces + noise)
+
+    def gap_of(forces: np.ndarray) -> float:
+        covectors = forces @ np.linalg.pinv(system.constraint_subspace).T
+        return _group_gap(discrete, ends, way, driven(discrete, covectors[None], (w[None], g[None])))
+
+    return Problem(program, bounds_of(program, limits, pins), first_guess, gap_of)
+
+
+def _group_gap(discrete: Discretization, ends: tuple[Any, ...], way: Way, orbits: Rollout) -> float:
+    """Return by what the orbit of one member misses its goal, obstacles and places; infinity where it ends before."""
+    system, (poses,), last = discrete.system, orbits.configuration, orbits.restricted_momentum[0, -1]
+    off, (_, _, to_pose, to_velocity) = [way.gap(body_points(poses, way.outline), poses[:, :-1, -1])], ends
+    if not np.isfinite(last).all():
+        return np.inf
+    off.append(way.outside(body_states(poses, orbits.restricted_momentum[0])))
+    if to_pose is not None:
+        off.append(np.abs(system.group.log(system.group.inverse(to_pose) @ poses[-1])).max())
+    if to_velocity is not None:
+        off.append(np.abs(system.restricted_velocity(last) - to_velocity).max())
+    return float(max(off))
+
+
+def _numbers(nodes: GroupNodes, poses: Float[np.ndarray, "... N N"]) -> Float[np.ndarray, "... x"]:
+    rows = free_rows(nodes.free.system.group)
+    return poses[..., :rows, :].reshape(*poses.shape[:-2], -1)
+
+
+def _group_guess(
+    discrete: Discretization, ends: tuple[Any, Any], way: Way, steps: int, guess: Guess
+) -> tuple[Float[np.ndarray, "K N N"], Float[np.ndarray, "steps k"]]:
+    """Return poses and forces of a guess: by default evenly from the start to the goal, through places on the way.
+
+    In the plane the body looks along a path.
+    """
+    group, (g, to_pose), rows = discrete.system.group, ends, np.asarray(discrete.system.constraint_subspace)
+    if guess.configuration is not None:
+        return guess.configuration, guess.controls @ rows.T
+    last = g if to_pose is None else to_pose
+    poses = g @ group.exp(np.linspace(0, 1, steps + 1)[:, None] * group.log(group.inverse(g) @ last))
+    if group.is_affine:
+        places = {0: g[:-1, -1]} | ({} if to_pose is None else {steps: last[:-1, -1]})
+        poses[:, :-1, -1] = evenly(places | way.via, steps) if guess.path is None else resample(guess.path, steps)
+    if group == SE(2) and (way.via or guess.path is not None):
+        ahead = np.gradient(poses[:, 0, 2] + 1j * poses[:, 1, 2])
+        poses[:, :2, :2] = group.exp(np.angle(ahead)[:, None] * [1.0, 0.0, 0.0])[:, :2, :2]
+    return poses, np.zeros((steps, len(rows)))
+
+
+def _bent(discrete: Discretization, poses: np.ndarray, aside: np.ndarray, way: Way) -> np.ndarray:
+    """Return poses bent aside between their ends; lengths are in proportion to what there is on the way."""
+    group, scale = discrete.system.group, np.ones(discrete.system.group.dim)
+    if group.is_affine:
+        n = group.size - 1
+        places = np.concatenate([poses[:, :n, n], way.centers])
+        scale[-n:] = np.linalg.norm(np.ptp(places, axis=0)) / 2 or 1.0
+    bow = np.sin(np.linspace(0, np.pi, len(poses)))[:, None]
+    return poses @ group.exp(bow * aside * scale)
+
+
+def _group_unknowns(nodes: GroupNodes, poses: np.ndarray, forces: np.ndarray) -> np.ndarray:
+    """Return unknowns whose charts and momenta are about those of poses."""
+    free = nodes.free
+    system, group, frame = free.system, free.system.group, free.system.frame
+    W = group.inverse(poses[:-1]) @ poses[1:]
+    charts = np.array([free.variety.coordinates(each) for each in group.inverse(frame) @ W @ frame])
+    velocities = group.log(W) @ np.linalg.pinv(system.constraint_subspace) / float(free.time_step)
+    momenta = np.array([system.restricted_momentum(w) for w in velocities])
+    return np.concatenate([charts, forces, _numbers(nodes, poses[1:]), momenta], axis=1).ravel()

@@ -1,0 +1,215 @@
+"""`nonholo simulate`, `explore` and `sweep` run a scenario; `resume` and `extend` continue a run or a sweep."""
+
+import functools
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+Scenario = Annotated[
+    str, typer.Argument(metavar="SCENARIO", help="A TOML file, or a name of `nonholo systems` or `nonholo examples`.")
+]
+RunStore = Annotated[Path | None, typer.Option("-o", "--output", metavar="STORE", help="Where to keep the run.")]
+Steps = Annotated[int | None, typer.Option(metavar="N", help="Instead of run.steps.")]
+TimeStep = Annotated[float | None, typer.Option(metavar="H", help="Instead of run.time_step.")]
+Settings = Annotated[
+    list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change any value, in TOML; repeatable.")
+]
+Plot = Annotated[bool | None, typer.Option("--plot/--no-plot", help="Draw a picture beside the store.")]
+Gif = Annotated[bool | None, typer.Option("--gif/--no-gif", help="Draw an animation beside the store.")]
+Module = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="Run your own Python file, whose functions are kinds of bodies."),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of the table.")]
+Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace what an earlier call wrote there.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print only the path of the store.")]
+
+
+def simulate(
+    scenario: Scenario,
+    output: RunStore = None,
+    steps: Steps = None,
+    time_step: TimeStep = None,
+    settings: Settings = None,
+    plot: Plot = None,
+    gif: Gif = None,
+    module: Module = None,
+    json: Json = False,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    """Run a scenario, keep the orbit and a picture, print how exact it was.
+
+    Without -o each run gets a new store under runs/: nothing is overwritten.
+    A run that cannot continue keeps its good steps, says why, exits with code 1.
+    Long runs go to the store as they are computed: after Ctrl-C or a kill,
+    `nonholo resume STORE` continues. Weight, friction and tables of forces
+    are the table `forces` of a scenario.
+
+    nonholo simulate suslov
+    nonholo simulate particle --set body.mass=2
+    nonholo simulate sleigh --steps 1000 --time-step 0.05 --gif
+    nonholo simulate my.toml --set body.a=0.3 --set 'run.difference="logarithmic"'
+    nonholo simulate my.toml --set 'start={momentum=[0.1, 1.0]}'
+    nonholo simulate my.toml -o study/first.zarr --json
+    nonholo simulate robot.toml --module my_robot.py
+    """
+    from nonholo.cli.commands._runs import simulate_and_keep
+
+    options = {"run.steps": ("--steps", steps), "run.time_step": ("--time-step", time_step)}
+    options |= {"output.plot": ("--plot", plot), "output.gif": ("--gif", gif)}
+    how = {"json": json, "overwrite": overwrite, "quiet": quiet}
+    simulate_and_keep(scenario, options, settings or [], output, module=module, **how)
+
+
+Source = Annotated[
+    str, typer.Argument(metavar="[SCENARIO | STORE]", help="What `nonholo simulate` takes, or a store that it made.")
+]
+Page = Annotated[Path | None, typer.Option("-o", "--output", metavar="FILE", help="Where to write the page.")]
+Browser = Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")]
+
+
+def explore(
+    source: Source = "sleigh",
+    output: Page = None,
+    steps: Steps = None,
+    time_step: TimeStep = None,
+    settings: Settings = None,
+    module: Module = None,
+    browser: Browser = True,
+    overwrite: Overwrite = False,
+) -> None:
+    """Write the live page of a motion, one file, and open it in the browser.
+
+    Tops with n = 3 or 4 and sleighs in the plane run in the page itself, with the
+    same numbers; others are replayed. Without -o the page is a temporary file.
+
+    nonholo explore suslov
+    nonholo explore snakeboard
+    nonholo explore my.toml -o top.html --no-browser
+    nonholo explore runs/sleigh-001.zarr
+    """
+    from nonholo.cli.commands._runs import write_page
+
+    options = {"run.steps": ("--steps", steps), "run.time_step": ("--time-step", time_step)}
+    how = {"module": module, "browser": browser, "overwrite": overwrite}
+    typer.echo(write_page(source, options, settings or [], output, **how))
+
+
+SweepScenario = Annotated[
+    str, typer.Argument(metavar="SCENARIO", help="A TOML file; `nonholo new sweep` writes one, with comments.")
+]
+SweepStore = Annotated[
+    Path | None, typer.Option("-o", "--output", metavar="STORE", help="Where to keep the result; a new path.")
+]
+Members = Annotated[
+    float | None,
+    typer.Option(metavar="N", help="Approximate number of members, such as 1e6: scales every range of a grid alike."),
+]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(metavar="HOW", help="threads (default), processes, or tcp://HOST:PORT of a Dask scheduler."),
+]
+Workers = Annotated[int | None, typer.Option(metavar="N", min=1, help="Threads or processes; by default one a core.")]
+Map = Annotated[bool | None, typer.Option("--plot/--no-plot", help="Draw a map beside the store.")]
+
+
+def sweep(
+    scenario: SweepScenario,
+    output: SweepStore = None,
+    members: Members = None,
+    scheduler: Scheduler = None,
+    workers: Workers = None,
+    settings: Settings = None,
+    plot: Map = None,
+    module: Module = None,
+    json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    r"""Run every member of a design, keep the result and a map, print how members ended.
+
+    A scenario has \[body], \[start], \[run] as for `simulate`, and
+
+    \[design] kind = "grid" or "random"; members; seed
+    \[design.values] what is varied, by key path of the same file:
+      "body.a" = [0.1, 0.2, 0.5]
+      "run.time_step" = {from = 0.1, to = 1.0, count = 9}
+      "forces.gravity.force_2" = [-9.81, -1.6]
+      "body.a" = {uniform = [0.1, 1.0]}       in a random design; also
+      log_uniform, normal, direction, mass_tensor, choice
+    \[keep] reductions = ["final_state"]       or energy_drift, ...
+    \[output] color, x, y                      what the map shows
+
+    Ctrl-C stops it and says how to resume; members that fail do not stop it.
+
+    nonholo sweep my.toml
+    nonholo sweep my.toml --members 1e6 -o large.zarr
+    nonholo sweep my.toml --set design.values.body.a=[0.1,0.2] --no-plot
+    nonholo sweep my.toml --scheduler tcp://127.0.0.1:8786
+    nonholo sweep robots.toml --module my_robot.py
+    nonholo resume large.zarr               resume one that stopped
+    """
+    from nonholo.cli.commands._sweeps import sweep_and_keep
+
+    whole = int(members) if members is not None and members.is_integer() else members  # 1e6 is a whole number
+    options = {"design.members": ("--members", whole), "output.plot": ("--plot", plot)}
+    how = {"scheduler": scheduler, "workers": workers, "json": json, "quiet": quiet}
+    sweep_and_keep(scenario, options, settings or [], output, module=module, **how)
+
+
+Store = Annotated[Path, typer.Argument(metavar="STORE", help="A store made by sweep, or by simulate(..., store=...).")]
+Trust = Annotated[
+    bool, typer.Option("--trust", help="Import the functions that the store of a sweep names, with your rights.")
+]
+
+
+def resume(
+    store: Store,
+    scheduler: Scheduler = None,
+    workers: Workers = None,
+    members: Annotated[int | None, typer.Option(metavar="N", help="So many members: a random design grows.")] = None,
+    module: Module = None,
+    trust: Trust = False,
+    json: Json = False,
+) -> None:
+    """Continue from the last checkpoint of a run, or with the missing blocks of a sweep.
+
+    Damaged blocks are named and computed again. The result has the bits of one
+    that was never stopped. --scheduler, --workers and --trust are for sweeps.
+
+    A sweep whose task or reductions are functions of somebody's own only names
+    them: they are imported and run with --trust alone, after their names are shown.
+
+    nonholo resume run.zarr
+    nonholo resume sweep.zarr --workers 4
+    nonholo resume sweep.zarr --members 10000
+    """
+    from nonholo import ensembles, io
+    from nonholo.cli.commands._sweeps import continue_and_report, resume_sweep
+
+    how = {"scheduler": scheduler, "workers": workers, "members": members, "trust": trust}
+    if io.format_of(store) == io.SWEEP_FORMAT:
+        resume_sweep(store, module, how, json=json)
+        return
+    continue_and_report(store, module, functools.partial(ensembles.resume, store, **how), json=json)
+
+
+def extend(
+    store: Store,
+    steps: Annotated[int, typer.Option("--steps", metavar="N", help="How many steps more.")],
+    module: Module = None,
+    json: Json = False,
+) -> None:
+    """Add steps to a run, with the bits of one that had been that long from the start.
+
+    nonholo extend run.zarr --steps 1000000
+    """
+    from nonholo import io, simulation
+    from nonholo.cli.commands._sweeps import continue_and_report
+    from nonholo.cli.screen.errors import USAGE, leave
+
+    if io.format_of(store) == io.SWEEP_FORMAT:
+        again = f"nonholo info {store} --scenario > more.toml; nonholo sweep more.toml --set run.steps=..."
+        leave(f"'{store}' holds a sweep, whose members are not extended. Run it again, longer: {again}", USAGE)
+    continue_and_report(store, module, functools.partial(simulation.extend, store, steps), json=json)

@@ -1,0 +1,211 @@
+"""`nonholo info`, `export` and `plot`: what a store holds, in figures, as a table of poses, as a picture."""
+
+import contextlib
+import os
+import sys
+from collections.abc import Collection, Iterator
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+
+def info(
+    store: Annotated[Path, typer.Argument(metavar="STORE", help="A store made by simulate, sweep or save_orbit.")],
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    scenario: Annotated[bool, typer.Option("--scenario", help="Print the scenario that was run, as TOML.")] = False,
+) -> None:
+    """Show the provenance of a run and measure again what it should keep.
+
+    Of a sweep: how far it came, how members ended, the first errors, its ranges.
+
+    nonholo info runs/suslov-001.zarr
+    nonholo info runs/suslov-001.zarr --scenario > again.toml
+    """
+    from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
+    from nonholo.cli.screen.stores import show_provenance, show_standing, show_sweep_standing
+    from nonholo.ensembles.stores import attributes_of
+    from nonholo.io import SWEEP_FORMAT, format_of, load_orbit, read_attributes, standing
+
+    is_sweep = format_of(store) == SWEEP_FORMAT
+    with store_errors(USAGE):
+        attributes = attributes_of(store) if is_sweep else read_attributes(store)
+    if scenario:
+        if "scenario" not in attributes:
+            leave("This store was not made from a scenario.", FAILED)
+        typer.echo(attributes["scenario"], nl=False)
+        return
+    if is_sweep:
+        show_sweep_standing(store, attributes, json=json)
+        return
+    if partly := standing(store):
+        show_standing(store, attributes, partly, json=json)
+        return
+    try:
+        orbit, failure = load_orbit(store), None
+    except (OSError, ValueError) as caught:
+        orbit, failure = None, caught
+    show_provenance(store, attributes, orbit, json=json)
+    if failure:
+        leave(f"Its orbit cannot be loaded. {failure}", FAILED)
+
+
+def export(
+    store: Annotated[Path, typer.Argument(metavar="STORE", help="A store of a run or a sweep, finished or not.")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="CSV", help="A new file; by default standard output.")
+    ] = None,
+    every: Annotated[int, typer.Option(metavar="N", min=1, help="Write one in N of the saved states.")] = 1,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace an older file at CSV.")] = False,
+) -> None:
+    """Write the poses of a run as CSV, read back exactly, in the body frame of the scenario.
+
+    Columns: t,x,y,theta in the plane; t,qw,qx,qy,qz for rotations of space;
+    t,x,y,z,qw,qx,qy,qz for motions of space; else the entries of the matrix.
+    Of a run that is not finished, what is there. Of a sweep the last pose of
+    each member, with its number, values, outcome and time.
+
+    nonholo export runs/sleigh-001.zarr -o sleigh.csv
+    nonholo export run.zarr --every 100 | head
+    """
+    from nonholo.cli.screen.errors import FAILED, USAGE, reporting_warnings, store_errors
+    from nonholo.io import SWEEP_FORMAT, check_file, format_of, read_attributes, store_to_csv
+
+    is_sweep = format_of(store) == SWEEP_FORMAT
+    with store_errors(USAGE):
+        if is_sweep and every != 1:
+            raise ValueError("`--every` thins the states of a run. Got it for a sweep. Leave it out.")
+        if not is_sweep:
+            read_attributes(store)
+        if output:
+            check_file(output, overwrite=overwrite)
+    with store_errors(FAILED), reporting_warnings(), _ending_with_the_reader():
+        if is_sweep:
+            from nonholo.ensembles import sweep_to_csv
+
+            sweep_to_csv(store, output or sys.stdout, overwrite=overwrite)
+        else:
+            shown = output is not None and sys.stderr.isatty()
+            store_to_csv(store, output or sys.stdout, every=every, overwrite=overwrite, progress=shown)
+    if output:
+        typer.echo(output)
+
+
+@contextlib.contextmanager
+def _ending_with_the_reader() -> Iterator[None]:
+    """Write to the standard output until its reader has seen enough, as `head` does."""
+    try:
+        yield
+        sys.stdout.flush()
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+Store = Annotated[Path, typer.Argument(metavar="STORE", help="A store made by simulate, sweep or save_orbit.")]
+Output = Annotated[
+    Path | None,
+    typer.Option("-o", "--output", metavar="PICTURE", help="A .png, .svg or .pdf; by default beside STORE."),
+]
+Kind = Annotated[
+    str, typer.Option(metavar="KIND", help="Of a run: a picture of nonholo.plot, such as blade-track; or all of them.")
+]
+Gif = Annotated[bool, typer.Option("--gif", help="Of a run: draw an animation instead.")]
+Color = Annotated[str | None, typer.Option(metavar="NAME", help="Of a sweep: the quantity that is shown.")]
+Across = Annotated[str | None, typer.Option("--x", metavar="NAME", help="Of a sweep or section: what runs across.")]
+Up = Annotated[str | None, typer.Option("--y", metavar="NAME", help="Of a sweep or section: what runs up.")]
+Title = Annotated[str | None, typer.Option(help="Instead of the picture's own; '' for none.")]
+Size = Annotated[str | None, typer.Option(metavar="WxH", help="In inches, as 16x9; fonts grow with it.")]
+Dpi = Annotated[float, typer.Option(min=10, max=1200, help="Dots per inch of a .png.")]
+Dark = Annotated[bool | None, typer.Option("--dark/--light", help="Colors for a dark or a light background.")]
+Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace an older PICTURE.")]
+
+
+def plot(
+    store: Store,
+    output: Output = None,
+    kind: Kind = "overview",
+    gif: Gif = False,
+    color: Color = None,
+    x: Across = None,
+    y: Up = None,
+    title: Title = None,
+    size: Size = None,
+    dpi: Dpi = 150,
+    dark: Dark = None,
+    overwrite: Overwrite = False,
+) -> None:
+    """Draw the overview of a run, another picture or an animation of it, or the map of a sweep.
+
+    The picture beside STORE is drawn anew; one at -o is replaced only with --overwrite.
+
+    nonholo plot runs/sleigh-001.zarr -o sleigh.pdf
+    nonholo plot runs/sleigh-001.zarr --gif
+    nonholo plot runs/sleigh-001.zarr --kind blade-track --title 'A sleigh' --size 16x9 --dark
+    nonholo plot runs/sleigh-001.zarr --kind all
+    nonholo plot crossings.zarr --kind section --x body_velocity.0 --y momentum.1
+    nonholo plot sweep.zarr --color outcome --x body.a --y run.time_step
+    """
+    from nonholo import io
+    from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
+    from nonholo.cli.screen.pictures import OVERVIEW, beside, draw_stored_sweep
+
+    if output is not None:
+        with store_errors(USAGE):
+            io.check_file(output, overwrite=overwrite, where="nonholo plot -o")
+    path, look = output or beside(store, "gif" if gif else "png"), _look(title, size, dark)
+    if io.format_of(store) == io.SWEEP_FORMAT:
+        if gif or kind != OVERVIEW:
+            leave("A sweep has one kind of picture, its map. Leave --kind and --gif out.", USAGE)
+        paths = draw_stored_sweep(store, path, color, x, y, dpi=dpi, **look)
+    else:
+        _check_kind(kind, gif, color, x or y)
+        names = {"across": x, "up": y} if kind == "section" else {}
+        paths = _draw_run(store, path, look, gif=gif, kind=kind, dpi=dpi, **names)
+    if not any(paths):
+        raise typer.Exit(FAILED)
+    typer.echo("\n".join(filter(None, paths)))
+
+
+def _check_kind(kind: str, gif: bool, color: str | None, axis: str | None) -> None:
+    """Refuse options that do not belong to this kind of picture of a run."""
+    from nonholo.cli.screen.errors import USAGE, leave
+    from nonholo.cli.screen.pictures import ALL, OVERVIEW, kinds
+
+    if kind not in (names := [*kinds(), ALL]):
+        leave(f"--kind must be one of {', '.join(names)}. Got '{kind}'.", USAGE)
+    if color or (axis and kind != "section"):
+        leave("--color, --x and --y are for the store of a sweep; --x and --y for --kind section too.", USAGE)
+    if gif and kind != OVERVIEW:
+        leave("--gif is a kind of its own. Leave --kind out.", USAGE)
+
+
+def _look(title: str | None, size: str | None, dark: bool | None) -> dict[str, Any]:
+    """Return what is asked of a picture, as the library takes it."""
+    from nonholo.cli.screen.errors import USAGE, leave
+
+    look: dict[str, Any] = {"title": title, "dark": dark}
+    if size is not None:
+        try:
+            look["size"] = tuple(map(float, size.lower().split("x")))
+        except ValueError:
+            look["size"] = ()
+        if len(look["size"]) != 2 or not all(1 <= side <= 100 for side in look["size"]):
+            leave(f"--size must be width and height in inches, 1 to 100, as 16x9. Got '{size}'.", USAGE)
+    return {name: value for name, value in look.items() if value is not None}
+
+
+def _draw_run(store: Path, path: Path, look: dict[str, Any], *, gif: bool, **options: Any) -> Collection[str | None]:
+    """Draw a picture or the animation of a run, and return the paths of what was drawn."""
+    from nonholo import io
+    from nonholo.base.progress import waiting
+    from nonholo.cli.screen.errors import FAILED, USAGE, store_errors
+    from nonholo.cli.screen.pictures import ALL, draw, draw_all
+
+    with store_errors(USAGE):
+        io.read_attributes(store)
+    progress = sys.stderr.isatty()
+    with store_errors(FAILED), waiting("reading", progress):
+        orbit = io.load_orbit(store)
+    if options["kind"] == ALL:
+        return draw_all(orbit, path, progress=progress, look=look, dpi=options["dpi"])
+    return draw(orbit, None if gif else path, path if gif else None, progress=progress, look=look, **options).values()

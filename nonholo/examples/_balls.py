@@ -1,0 +1,278 @@
+"""Balls that roll without sliding: that of Chaplygin on a plane, uniform ones in a bowl and on a table that turns."""
+
+import functools
+
+import jax.numpy as jnp
+import numpy as np
+
+from nonholo.base.checks import error
+from nonholo.base.types import Array
+from nonholo.examples._example import Example, energy_of, numbers, positives, ready, reals, system_in
+from nonholo.groups import SE, SO
+from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, LagrangeDAlembert, mass_tensor_lagrangian
+from nonholo.systems import mass_tensor_from_inertia
+
+
+@ready("angular_velocity")
+def chaplygin_ball(
+    *,
+    mass: float = 1.0,
+    radius: float = 1.0,
+    inertia: tuple[float, float, float] = (0.3, 0.4, 0.5),
+    angular_velocity: tuple[float, float, float] = (0.4, 0.3, 1.0),
+) -> Example:
+    r"""A ball on SE(3) with principal moments of inertia I about its middle, which rolls without sliding.
+
+    $$ L = \tfrac12\omega\cdot I\omega + \tfrac m2|v|^2, \qquad v = r\,\omega\times\gamma, \qquad \gamma = R^Te_3, $$
+
+    v the velocity of the middle seen from the ball. The constraint depends on the pose, so that the discrete principle
+    is that of `GroupLagrangeDAlembert`. With the angular momentum about the contact,
+
+    $$ M = I\omega + mr^2\,\gamma\times(\omega\times\gamma), \qquad \dot M = M\times\omega, \quad
+       \dot\gamma = \gamma\times\omega: $$
+
+    $R M$ is constant in space, and the energy $\tfrac12\omega\cdot M$.
+
+    Reference: [chaplygin-1903].
+
+    Args:
+        mass: m.
+        radius: r.
+        inertia: Principal moments I.
+        angular_velocity: omega at the start, seen from the ball.
+
+    Raises:
+        ValueError: A mass, radius or moment that is not positive, moments of no body, a wrong shape.
+
+    Example:
+        >>> ready = nh.examples.chaplygin_ball()
+        >>> ready.conserved["momentum along z"](ready.configuration, ready.body_velocity).round(3)
+        np.float64(0.5)
+    """
+    name = "chaplygin_ball"
+    m, r = positives(name, mass=mass, radius=radius)
+    principal = numbers(name, "inertia", inertia, 3, "three moments")
+    moments = tuple(positives(name, **{f"inertia[{i}]": moment for i, moment in enumerate(principal)}))
+    omega = numbers(name, "angular_velocity", angular_velocity, 3, "three components")
+    v = np.append(omega, r * np.cross(omega, (0.0, 0.0, 1.0)))
+
+    def momentum(g: Array, v: Array) -> Array:
+        R = g[..., :3, :3]
+        gamma, omega = R[..., 2, :], v[..., :3]
+        own = omega * moments + m * r**2 * np.cross(gamma, np.cross(omega, gamma))
+        return (R @ own[..., None])[..., 0]
+
+    conserved = {f"momentum along {axis}": functools.partial(_component, momentum, i) for i, axis in enumerate("xyz")}
+    facts = (
+        "The angular momentum about the contact is constant in space, and so is the energy.",
+        "The middle moves at constant height.",
+    )
+    return Example(name, _chaplygin_system(m, r, moments), np.eye(4), v, facts, conserved)
+
+
+def _component(function: Array, index: int, g: Array, v: Array) -> Array:
+    return function(g, v)[..., index]
+
+
+@functools.cache
+def _chaplygin_system(m: float, r: float, moments: tuple[float, ...]) -> GroupLagrangeDAlembert:
+    tensor = np.zeros((4, 4))
+    tensor[:3, :3], tensor[3, 3] = mass_tensor_from_inertia(np.diag(moments)), m
+
+    def forms(g: Array) -> Array:
+        return jnp.concatenate([r * SO(3).hat(g[2, :3]), jnp.eye(3)], axis=1)
+
+    return GroupLagrangeDAlembert(SE(3), mass_tensor_lagrangian(SE(3), tensor), forms)
+
+
+@ready("place", "velocity", "spin")
+def ball_in_bowl(
+    *,
+    mass: float = 1.0,
+    radius: float = 0.2,
+    inertia: float = 0.016,
+    reach: float = 1.0,
+    gravity: float = 1.0,
+    place: tuple[float, float] = (0.6, 0.0),
+    velocity: tuple[float, float] = (0.0, 0.4),
+    spin: float = 3.0,
+) -> Example:
+    r"""A uniform ball that rolls in a round bowl: middle (x, y) seen from above, turns alpha, beta, gamma.
+
+    The turns are integrals of the angular velocity about the axes of space: equations of a uniform ball know no more of
+    its orientation. With the middle at $c = \rho n$ from that of the bowl, in its lower half, and z its height,
+
+    $$ L = \tfrac m2|\dot c|^2 + \tfrac J2|\omega|^2 - mgz, \qquad \dot c = -r\,\omega\times n, $$
+
+    of which the horizontal part suffices. The spin $s = \omega\cdot n$ is constant, and
+
+    $$ n\times\ddot n = \kappa s\,\dot n + \frac{mr^2}{J + mr^2}\,\frac1\rho\,n\times g, \qquad
+       \kappa = \frac{Jr}{\rho\,(J + mr^2)}: $$
+
+    without spin that is a spherical pendulum of the length $\rho$ with five sevenths of the weight. So the energy and
+    $e_z\cdot(n\times\dot n) - \kappa s\,n_z$ are constant, too.
+
+    Reference: [neimark-fufaev-1972].
+
+    Args:
+        mass: m.
+        radius: r.
+        inertia: J, about a diameter.
+        reach: rho, the radius of the bowl less that of the ball.
+        gravity: g.
+        place: (x, y) at the start, less than rho from the axis.
+        velocity: (x', y') at the start.
+        spin: s, about the normal that points down and out.
+
+    Raises:
+        ValueError: A mass, radius, inertia or gravity that is not positive, a place beyond the rim, a wrong shape.
+
+    Example:
+        >>> ready = nh.examples.ball_in_bowl()
+        >>> list(ready.conserved)
+        ['spin', 'momentum', 'energy']
+    """
+    name = "ball_in_bowl"
+    m, r, J, rho, g = positives(name, mass=mass, radius=radius, inertia=inertia, reach=reach, gravity=gravity)
+    c, v = (numbers(name, what, x, 2, "x and y") for what, x in (("place", place), ("velocity", velocity)))
+    (s,) = reals(name, spin=spin)
+    if not c @ c < rho**2:
+        where, demand = f"examples.{name}(place=...)", f"be less than {rho:g} from the axis"
+        raise error(where, demand, str(c.tolist()), "Start in the bowl.")
+    q = np.append(c, np.zeros(3))
+    n, dn = _normal(rho, q, np.append(v, np.zeros(3)))
+    rates = np.append(v, s * n - rho / r * np.cross(n, dn))
+    kappa = J * r / (rho * (J + m * r**2))
+
+    def spinning(q: Array, v: Array) -> Array:
+        return (_normal(rho, q, v)[0] * v[..., 2:]).sum(axis=-1)
+
+    def momentum(q: Array, v: Array) -> Array:
+        n, dn = _normal(rho, q, v)
+        return np.cross(n, dn)[..., 2] - kappa * spinning(q, v) * n[..., 2]
+
+    system = _bowl_system(m, r, J, rho, g)
+    conserved = {"spin": spinning, "momentum": momentum, "energy": energy_of(system.lagrangian)}
+    facts = (
+        "Without spin it moves like a spherical pendulum with five sevenths of its weight.",
+        "Spin, energy and a momentum about the vertical are constant.",
+    )
+    return Example(name, system, q, rates, facts, conserved)
+
+
+def _normal(rho: float, q: Array, v: Array) -> tuple[Array, Array]:
+    """Return the outward normals at places, and their rates."""
+    depth = np.sqrt(rho**2 - q[..., 0] ** 2 - q[..., 1] ** 2)
+    falling = (q[..., 0] * v[..., 0] + q[..., 1] * v[..., 1]) / depth
+    n, dn = (np.stack(each, axis=-1) for each in ((q[..., 0], q[..., 1], -depth), (v[..., 0], v[..., 1], falling)))
+    return n / rho, dn / rho
+
+
+@functools.cache
+def _bowl_system(m: float, r: float, J: float, rho: float, g: float) -> LagrangeDAlembert:
+    def lagrangian(q: Array, v: Array) -> Array:
+        depth = jnp.sqrt(rho**2 - q[0] ** 2 - q[1] ** 2)
+        falling = (q[0] * v[0] + q[1] * v[1]) / depth
+        return (m * (v[0] ** 2 + v[1] ** 2 + falling**2) + J * (v[2:] @ v[2:])) / 2 + m * g * depth
+
+    def forms(q: Array) -> Array:
+        x, y, z = q[0] / rho, q[1] / rho, -jnp.sqrt(rho**2 - q[0] ** 2 - q[1] ** 2) / rho
+        ahead = jnp.stack([1.0 + 0 * x, 0 * x, 0 * x, r * z, -r * y])
+        return jnp.stack([ahead, jnp.stack([0 * x, 1.0 + 0 * x, -r * z, 0 * x, r * x])])
+
+    return system_in("x y alpha beta gamma", "Ball in a bowl", lagrangian, forms)
+
+
+@ready("place", "velocity")
+def ball_on_turntable(
+    *,
+    mass: float = 1.0,
+    radius: float = 1.0,
+    inertia: float = 0.4,
+    table_rate: float = 1.0,
+    place: tuple[float, float] = (1.0, 0.0),
+    velocity: tuple[float, float] = (0.0, 0.5),
+) -> Example:
+    r"""A uniform ball that rolls without sliding on a table which is driven round: middle (x, y), turns alpha, beta.
+
+    The turns are integrals of the angular velocity about the x and y axes of space. They are no coordinates of the
+    orientation, but the equations of a uniform ball know no more of it; its spin about the vertical is constant.
+
+    $$ L = \tfrac m2(\dot x^2 + \dot y^2) + \tfrac J2(\dot\alpha^2 + \dot\beta^2), \qquad
+       \dot x - r\dot\beta = -\Omega y, \quad \dot y + r\dot\alpha = \Omega x . $$
+
+    The constraint moves: the table does work, and the energy is not constant. The middle runs on a circle at the rate
+    $\kappa = \Omega\,J/(J + mr^2)$, two sevenths of that of the table for a solid ball: $\ddot x = -\kappa\dot y$,
+    $\ddot y = \kappa\dot x$. In the midpoint rule it does, too, and each step turns by $2\arctan(h\kappa/2)$.
+
+    Reference: [neimark-fufaev-1972].
+
+    Args:
+        mass: m.
+        radius: r.
+        inertia: J, about a diameter.
+        table_rate: Omega.
+        place: (x, y) of the middle at the start, from the axis of the table.
+        velocity: (x', y') at the start, in space.
+
+    Raises:
+        ValueError: A mass, radius or inertia that is not positive, a wrong shape.
+
+    Example:
+        >>> ready = nh.examples.ball_on_turntable(table_rate=3.5 * np.pi)
+        >>> np.abs(ready.exact(np.array([2.0]))[0, :2] - ready.configuration[:2]).max() < 1e-14
+        np.True_
+    """
+    name = "ball_on_turntable"
+    m, r, J = positives(name, mass=mass, radius=radius, inertia=inertia)
+    (Omega,) = reals(name, table_rate=table_rate)
+    x, y = numbers(name, "place", place, 2, "x and y")
+    u, w = numbers(name, "velocity", velocity, 2, "x' and y'")
+    kappa = Omega * J / (J + m * r**2)
+
+    def exact(time: Array) -> Array:
+        t = np.asarray(time)
+        middle = _circle(x + 1j * y, u + 1j * w, kappa, t)
+        # the constraint, integrated: r (beta - i alpha) = z - z0 - i Omega integral of z
+        turns = (middle - (x + 1j * y) - 1j * Omega * _area(x + 1j * y, u + 1j * w, kappa, t)) / r
+        return np.stack([middle.real, middle.imag, -turns.imag, turns.real], axis=-1)
+
+    conserved = {
+        "x' + kappa y": lambda q, v: v[..., 0] + kappa * q[..., 1],
+        "y' - kappa x": lambda q, v: v[..., 1] - kappa * q[..., 0],
+    }
+    facts = ("The middle runs on a circle, at 2/7 of the rate of the table.", "So it does in the midpoint rule.")
+    q, v = np.array([x, y, 0.0, 0.0]), np.array([u, w, (Omega * x - w) / r, (u + Omega * y) / r])
+    return Example(name, _turntable_system(m, r, J, Omega), q, v, facts, conserved, exact)
+
+
+def _circle(z: complex, velocity: complex, kappa: float, t: Array) -> Array:
+    half = kappa * t / 2
+    return z + velocity * t * np.sinc(half / np.pi) * np.exp(1j * half)
+
+
+def _area(z: complex, velocity: complex, kappa: float, t: Array) -> Array:
+    """Return the integral of the place, accurate also where kappa is zero."""
+    half = kappa * t / 2
+    # (e^{i s} - 1 - i s) / (i s)^2 = (sinc(s/2) e^{is/2} - 1) / (i s), s = kappa t
+    small = np.abs(half) < 1e-4
+    s = np.where(small, 1.0, 2 * half)
+    quotient = np.where(small, 0.5 + 1j * half / 3, (np.sinc(half / np.pi) * np.exp(1j * half) - 1) / (1j * s))
+    return z * t + velocity * t**2 * quotient
+
+
+@functools.cache
+def _turntable_system(m: float, r: float, J: float, Omega: float) -> LagrangeDAlembert:
+    def lagrangian(q: Array, v: Array) -> Array:
+        del q
+        return jnp.array([m, m, J, J]) @ v**2 / 2
+
+    def forms(q: Array) -> Array:
+        del q
+        return jnp.array([[1.0, 0.0, 0.0, -r], [0.0, 1.0, r, 0.0]])
+
+    def velocities(q: Array, _time: Array) -> Array:
+        return Omega * jnp.stack([-q[1], q[0]])
+
+    options = {"constraint_velocities": velocities}
+    return system_in("x y alpha beta", "Ball on a turntable", lagrangian, forms, **options)

@@ -1,0 +1,321 @@
+"""A store of blocks of named arrays: one block is one chunk of each array, then its mark, which is written last.
+
+A mark is a small file under `run/blocks`: a checksum, and as JSON what is said of the block and its seal. A checksum of
+a chunk does not know its place, so the seal is one number of the places and the checksums of all chunks of the block.
+Rows of which a block has any number, such as crossings, are in whole chunks of a log, an array that grows. All writes
+are atomic, so whoever writes can be killed at any moment.
+"""
+
+import asyncio
+import contextlib
+import dataclasses
+import hashlib
+import json
+import math
+import os
+import uuid
+import zlib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+import zarr
+from pydantic import NonNegativeInt, TypeAdapter
+from zarr.core.sync import sync
+
+from nonholo.io._chunks import DamagedError, chunk_name, chunk_path, read_chunk
+from nonholo.io._groups import (
+    consolidate,
+    create_array,
+    create_groups,
+    edit_attributes,
+    new_group,
+    remove_partials,
+    write_whole,
+)
+from nonholo.io._metadata import OrbitMetadata, require_identity
+from nonholo.io._stored_events import EVENTS
+from nonholo.io.datasets import Variable
+
+BEFORE = -1
+"""The number of the mark of what the first block begins with."""
+Variables: TypeAlias = Mapping[str, Variable]
+_MARKS = Path("run", "blocks")
+_CRC, _BITS = 4, 48  # bytes at the end of a chunk; bits of a seal
+
+
+class Piece(NamedTuple):
+    """A block: its number, where it lies in the arrays, its first member and how many it has."""
+
+    number: int
+    place: tuple[slice, ...]
+    first: int
+    count: int
+
+
+class Layout(NamedTuple):
+    """The lengths of the dimensions that are cut into blocks, and of a block.
+
+    Example:
+        >>> layout = Layout(sizes=(3, 5), chunk=(1, 2))
+        >>> layout.blocks, layout.piece(5)
+        (9, Piece(number=5, place=(slice(1, 2, None), slice(4, 5, None)), first=9, count=1))
+    """
+
+    sizes: tuple[int, ...]
+    chunk: tuple[int, ...]
+
+    @property
+    def blocks(self) -> int:
+        """Number of blocks."""
+        return math.prod(self.counts)
+
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """Numbers of blocks along each dimension."""
+        return tuple(-(-size // chunk) for size, chunk in zip(self.sizes, self.chunk, strict=True))
+
+    def index(self, block: int) -> tuple[int, ...]:
+        """Return where a block stands among the blocks."""
+        return tuple(int(at) for at in np.unravel_index(block, self.counts))
+
+    def piece(self, block: int) -> Piece:
+        """Return a block."""
+        begins = [at * chunk for at, chunk in zip(self.index(block), self.chunk, strict=True)]
+        ends = [min(begin + chunk, size) for begin, chunk, size in zip(begins, self.chunk, self.sizes, strict=True)]
+        place = tuple(slice(begin, end) for begin, end in zip(begins, ends, strict=True))
+        first = int(np.ravel_multi_index(begins, self.sizes))
+        return Piece(block, place, first, math.prod(s.stop - s.start for s in place))
+
+
+class BlockMark(NamedTuple):
+    """The mark of a finished block.
+
+    Attributes:
+        about: What is said of the block.
+        has_rows: Whether it has a chunk of each array.
+        log: The first chunk of the log that is its own, and the first one after those.
+        seal: The number of its chunks.
+    """
+
+    about: dict[str, Any]
+    has_rows: bool
+    log: tuple[NonNegativeInt, NonNegativeInt]
+    seal: int
+
+
+_MARK = TypeAdapter(BlockMark)
+
+
+@dataclasses.dataclass(frozen=True)
+class BlockStore:
+    """The blocks of a store; what is wrong with them is a `DamagedError`.
+
+    Attributes:
+        path: Where it is.
+        made: Which one it is: another store at the same path has another number.
+        layout: How the arrays are cut.
+        arrays: The arrays by name, those that the metadata name.
+        log: The array that grows, if there is one.
+        holds_nan: Whether NaN may be a result.
+    """
+
+    path: Path
+    made: str
+    layout: Layout
+    arrays: Mapping[str, zarr.Array]
+    log: zarr.Array | None = None
+    holds_nan: bool = False
+
+    def write(
+        self, block: int, rows: Mapping[str, np.ndarray], about: dict[str, Any], log: np.ndarray | None = None
+    ) -> None:
+        """Write the chunks of a block, of none if there are no rows, and its rows of the log; then its mark."""
+        require_identity(self.path, self.made)
+        before = self.mark(block - 1) if self.log is not None and block > BEFORE else None
+        begin = 0 if before is None else before.log[1]
+        self._mark_file(block).unlink(missing_ok=True)
+        for name in self.arrays if rows else ():
+            self._file(name, block).unlink(missing_ok=True)  # zarr would read a damaged one first
+        end = begin if log is None or not len(log) else self._write_log(begin, log)
+        if rows:
+            sync(self._write_chunks(block, rows))
+        mark = BlockMark(about, bool(rows), (begin, end), 0)
+        text = json.dumps(mark._replace(seal=self._seal(block, mark))._asdict())
+        write_whole(self._mark_file(block), f"{zlib.crc32(text.encode()):08x} {text}")
+
+    async def _write_chunks(self, block: int, rows: Mapping[str, np.ndarray]) -> None:
+        """Write the chunks of a block side by side, which takes half of the time; a failure leaves no writer behind."""
+        place = self.layout.piece(block).place
+        if len(place) == 1:  # a block that ended early has fewer rows
+            place = (slice(place[0].start, place[0].start + len(next(iter(rows.values())))),)
+        lengths = tuple(part.stop - part.start for part in place)
+        writes = [
+            array.async_array.setitem(place, np.ascontiguousarray(rows[name]).reshape(*lengths, *rows[name].shape[1:]))
+            for name, array in self.arrays.items()
+        ]
+        for failure in await asyncio.gather(*writes, return_exceptions=True):
+            if isinstance(failure, BaseException):
+                raise failure
+
+    def _write_log(self, begin: int, rows: np.ndarray) -> int:
+        """Write rows into whole chunks of the log from one on; return the number of the first one after them."""
+        log = self._array(EVENTS)
+        size, width = log.chunks
+        end = begin - (-len(rows) // size)
+        full = np.full(((end - begin) * size, width), np.nan)
+        full[: len(rows)] = rows
+        if log.shape[0] < end * size:
+            log.resize((end * size, width))
+        log[begin * size : end * size] = full
+        return end
+
+    def mark(self, block: int) -> BlockMark | None:
+        """Return the mark of a block, None if the block is not finished.
+
+        Raises:
+            DamagedError: The mark cannot be read, or is not the one that was written.
+        """
+        file = self._mark_file(block)
+        try:
+            line = file.read_text()
+            check, _, text = line.partition(" ")
+            mark = _MARK.validate_python(json.loads(text))
+        except FileNotFoundError:
+            return None
+        except UnicodeDecodeError:
+            raise DamagedError(f"the mark {file.name} cannot be read") from None
+        except (ValueError, RecursionError):
+            check, mark = "", None
+        chunks = 0 if self.log is None else self.log.cdata_shape[0]
+        if mark is None or check != f"{zlib.crc32(text.encode()):08x}" or mark.log[1] > chunks:
+            raise DamagedError(f"the mark {file.name} is damaged")
+        return mark
+
+    def block_numbers(self) -> set[int]:
+        """Return the blocks that have a mark, sound or not; the folder is read once."""
+        folder = self.path / _MARKS
+        stems = (name.removesuffix(".json") for name in os.listdir(folder)) if folder.is_dir() else ()
+        return {int(stem) for stem in stems if stem.isdecimal()}
+
+    def mark_of(self, block: int) -> BlockMark:
+        """Return the mark of a block, which must be there."""
+        mark = self.mark(block)
+        if mark is None:
+            raise DamagedError(f"no mark {self._mark_file(block).name}")
+        return mark
+
+    def checked_mark(self, block: int) -> BlockMark:
+        """Return the mark of a block that holds the chunks that were written.
+
+        That each chunk is sound is looked at where it is read.
+        """
+        mark = self.mark_of(block)
+        self._check_seal(block, mark)
+        return mark
+
+    def sound(self, block: int) -> BlockMark:
+        """Return the mark of a finished block, of which every chunk is sound.
+
+        Raises:
+            DamagedError: One is not, or the mark is not; the message says which, and how.
+        """
+        mark = self.mark_of(block)
+        for name, index in self._chunks(block, mark):
+            array, with_nan = self._array(name), self.holds_nan or name == EVENTS
+            try:
+                read_chunk(self.path, name, array, index, with_nan=with_nan)
+            except DamagedError as wrong:
+                raise DamagedError(f"{wrong}, {chunk_name(name, array, index)}") from None
+        self._check_seal(block, mark)
+        return mark
+
+    def rows(self, name: str, place: tuple[slice, ...]) -> np.ndarray:
+        """Return a part of an array of sound blocks."""
+        return np.asarray(self.arrays[name][place])
+
+    def resize(self, rows: int) -> dict[str, tuple[int, ...]]:
+        """Give all arrays but the log this many rows; return their shapes."""
+        require_identity(self.path, self.made)
+        shapes = {name: (rows, *array.shape[1:]) for name, array in self.arrays.items()}
+        for name, array in self.arrays.items():
+            if array.shape != shapes[name]:
+                array.resize(shapes[name])
+        return shapes
+
+    def cut_log(self, block: int) -> None:
+        """Cut the log to its chunks up to the end of a block."""
+        if self.log is not None:
+            self.log.resize((self.mark_of(block).log[1] * self.log.chunks[0], self.log.shape[1]))
+
+    def prepare(self) -> None:
+        """Remove what killed writers left; nothing here loses data."""
+        (self.path / _MARKS).mkdir(exist_ok=True)  # what copies stores may leave out empty folders
+        remove_partials(self.path)
+
+    def finish(self, changes: dict[str, Any]) -> None:
+        """Add attributes that say that it came to its end, and consolidate the metadata."""
+        require_identity(self.path, self.made)
+        edit_attributes(self.path, changes)
+        consolidate(self.path)
+
+    def _seal(self, block: int, mark: BlockMark) -> int:
+        """Return one number of the places and the checksums of the chunks of a block, and of its own number."""
+        seal = hashlib.sha256(f"{block}".encode())
+        for name, index in self._chunks(block, mark):
+            chunk = chunk_path(self.path, name, self._array(name), index)
+            seal.update(f"\n{chunk.relative_to(self.path).as_posix()} {_crc(chunk).hex()}".encode())
+        return int.from_bytes(seal.digest()[: _BITS // 8])
+
+    def _check_seal(self, block: int, mark: BlockMark) -> None:
+        """Refuse a block of which a chunk is missing, or of another place."""
+        if mark.seal == self._seal(block, mark):
+            return
+        for name, index in self._chunks(block, mark):
+            if not chunk_path(self.path, name, self._array(name), index).is_file():
+                raise DamagedError(f"no such chunk, {chunk_name(name, self._array(name), index)}")
+        raise DamagedError(f"a chunk of another place in block {block}, which {self._mark_file(block).name} seals")
+
+    def _chunks(self, block: int, mark: BlockMark) -> Iterator[tuple[str, tuple[int, ...]]]:
+        """Return the chunks of a block by the names of their arrays."""
+        if mark.has_rows and 0 <= block < self.layout.blocks:  # a mark may be that of another block
+            yield from ((name, self._index(name, block)) for name in sorted(self.arrays))
+        yield from ((EVENTS, (chunk, 0)) for chunk in range(*mark.log))
+
+    def _array(self, name: str) -> zarr.Array:
+        return self.log if name == EVENTS and self.log is not None else self.arrays[name]
+
+    def _index(self, name: str, block: int) -> tuple[int, ...]:
+        index = self.layout.index(block)
+        return index + (0,) * (self.arrays[name].ndim - len(index))
+
+    def _file(self, name: str, block: int) -> Path:
+        return chunk_path(self.path, name, self.arrays[name], self._index(name, block))
+
+    def _mark_file(self, block: int) -> Path:
+        return self.path / _MARKS / ("start.json" if block == BEFORE else f"{block}.json")
+
+
+def new_blocks(path: Path, metadata: dict[str, Any], variables: Variables, rows: int, chunk: int) -> BlockStore:
+    """Make the store of an orbit, whose arrays have this many rows, this many in a block; none is written yet."""
+    identity, shapes = uuid.uuid4().hex, {name: (rows, *variable.shape[1:]) for name, variable in variables.items()}
+    group = new_group(path, metadata | {"made": identity, "arrays": json.dumps(shapes)}, OrbitMetadata)
+    create_groups(group, variables)
+    arrays = {name: create_array(group, name, variable, rows, chunk) for name, variable in variables.items()}
+    make_marks(group, path)
+    return BlockStore(path, identity, Layout((rows,), (chunk,)), arrays)
+
+
+def make_marks(group: zarr.Group, path: Path) -> None:
+    """Make the place of the marks of a new store."""
+    group.create_group("run")  # or xarray would wonder what that folder is
+    (path / _MARKS).mkdir()
+
+
+def _crc(chunk: Path) -> bytes:
+    """Return the CRC32C that a chunk ends with, of which reading a chunk checks that it is right."""
+    with contextlib.suppress(OSError), chunk.open("rb") as file:
+        file.seek(-_CRC, 2)
+        return file.read()
+    return b""  # there is none, or it is too short

@@ -1,0 +1,265 @@
+"""Functions that users pass, with or without the time step, such that JAX can trace them, in 64 bit; and parameters.
+
+Parameters are numbers of a system by name, which all of its functions take last.
+"""
+
+import dataclasses
+import difflib
+import inspect
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, ClassVar
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from nonholo.base.checks import array, error, instance, is_traced, name, number, shape_of, shown
+from nonholo.base.numerics import double_precision
+from nonholo.base.types import Array, Float, Int
+
+_END = 120  # letters of either end of a long message
+
+
+def traced_shape(where: str, function: Any, arguments: tuple[Any, ...], of: str) -> tuple[int, ...]:
+    """Return the shape of a function's value; `of` says in words what it is called with."""
+    if not callable(function):
+        raise error(where, "be a function", shown(function), "Pass a function of jax.numpy arrays.")
+    if arguments and isinstance(arguments[-1], dict):
+        _check_parameters(where, function, len(arguments))
+    program = _trace(where, lambda *x: _array(function(*x)), arguments, of)
+    if any(getattr(constant, "dtype", None) == jnp.float32 for constant in program.consts):
+        remedy = "Keep parameters as Python numbers or NumPy arrays, not as jax.numpy arrays made outside."
+        raise error(where, "use 64-bit numbers", "a captured 32-bit array", remedy)
+    shape, kind = program.out_avals[0].shape, program.out_avals[0].dtype.kind
+    if kind == "c" or (kind != "f" and shape == ()):
+        got = "complex numbers" if kind == "c" else "an integer"
+        raise error(where, "return real numbers that it computes from its arguments", got, "Return a smooth formula.")
+    return shape
+
+
+def _check_parameters(where: str, function: Callable[..., Any], count: int) -> None:
+    """Refuse a function that does not take the parameters of its system, last."""
+    if not _binds(function, count):
+        got, remedy = f"{inspect.signature(function)}", f"Let it take {count} arguments, the last a dict of parameters."
+        raise error(where, "take the parameters of the system as its last argument", got, remedy)
+
+
+def _trace(where: str, function: Callable[..., Any], arguments: tuple[Any, ...], of: str) -> Any:
+    """Return the program of a function, refused where JAX cannot trace it."""
+    try:
+        return jax.make_jaxpr(function)(*arguments)
+    except Exception as failure:
+        words = " ".join(str(failure).split()).rstrip(".")
+        message = words if len(words) <= 2 * _END else f"{words[:_END]} ... {words[-_END:]}"
+        got, columns = f"{type(failure).__name__}: {message}", "`.to_numpy()` of columns of pandas"
+        remedy = f"Write it with jax.numpy, for arrays of {of}; use jnp.where, not `if`, and {columns}."
+        raise error(where, f"be traceable by JAX on {of}", got, remedy) from failure
+
+
+def check_value(
+    where: str, function: Any, shape: tuple[int, ...], arguments: tuple[Any, ...], of: str, arrays: str
+) -> None:
+    """Refuse a function whose value has another shape, or that is to be differentiated, as a scalar is, and cannot be.
+
+    `called` says what arrays it is called with.
+    """
+    result_shape = traced_shape(where, function, arguments, of)
+    if result_shape != shape:
+        demand = "a scalar" if shape == () else f"an array of shape {shape}"
+        raise error(where, f"return {demand}", f"shape {result_shape}", f"It is called with arrays of {arrays}.")
+    if shape == ():
+        _trace(where, jax.grad(lambda *x: _array(function(*x)), tuple(range(len(arguments)))), arguments, of)
+
+
+def check_forms(where: str, forms: Any, n: int, arguments: tuple[Any, ...], of: str, remedy: str) -> None:
+    """Refuse constraint forms that are not s rows of n numbers."""
+    result_shape = traced_shape(where, forms, arguments, of)
+    if len(result_shape) != 2 or result_shape[1] != n or not 0 < result_shape[0] < n:
+        raise error(where, f"return an array of shape (s, {n}) with 0 < s < {n}", f"shape {result_shape}", remedy)
+
+
+def check_rows_of_places(where: str, function: Any, n: int, arguments: tuple[Any, ...]) -> None:
+    """Refuse holonomic constraints that are not m numbers of n coordinates."""
+    result_shape = traced_shape(where, function, arguments, f"{n} coordinates")
+    if len(result_shape) != 1 or not 0 < result_shape[0] <= n:
+        remedy = "Return one number per constraint, jnp.array([...]); pass None for no constraint."
+        raise error(where, f"return an array of shape (m,) with 0 < m <= {n}", f"shape {result_shape}", remedy)
+
+
+def count_of(forms: Any, *shapes: tuple[int, ...]) -> int:
+    """Return the number s of constraint forms, of arguments of given shapes."""
+    if forms is None:
+        return 0
+    with double_precision():
+        return jax.eval_shape(forms, *(jax.ShapeDtypeStruct(shape, float) for shape in shapes)).shape[0]
+
+
+def _array(value: Any) -> Any:
+    """Return a value as an array; lists are refused, because the functions are called again without this help."""
+    if isinstance(value, list | tuple):
+        raise TypeError(f"it returned a {type(value).__name__}, jnp.array makes an array of it")
+    return jnp.asarray(value)
+
+
+def takes_time(function: Any, others: int) -> bool:
+    """Return whether a function must be called with one argument more than the others."""
+    try:
+        parameters = inspect.signature(function).parameters.values()
+    except (TypeError, ValueError):  # a builtin that does not tell
+        return False
+    positional = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    return sum(each.kind in positional and each.default is each.empty for each in parameters) > others
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class ForceTable:
+    """Forces of the steps, one row a step; after the last one nothing acts."""
+
+    rows: Float[np.ndarray, "steps n"]
+    is_of_one_step: ClassVar[bool] = True
+
+    def row(self, step: Array) -> Array:
+        """Return the force of a step, whose number may carry rounding errors."""
+        return jnp.asarray(self._rows_and_zero)[jnp.clip(jnp.rint(step).astype(int), -1, len(self.rows))]
+
+    def acting(self, steps: Int[np.ndarray, "K"]) -> Float[np.ndarray, "K n"]:
+        """Return the forces of steps with these numbers."""
+        return self._rows_and_zero[np.clip(steps, -1, len(self.rows))]
+
+    @property
+    def _rows_and_zero(self) -> Float[np.ndarray, "rows n"]:
+        """The rows with one of zeros, which is the first after them and the last one."""
+        return np.concatenate([self.rows, np.zeros((1, self.rows.shape[1]))])
+
+
+@dataclasses.dataclass(frozen=True)
+class TwoPoint:
+    """A function of two configurations that was made for one time step."""
+
+    function: Callable[[Array, Array], Array]
+    is_of_one_step: ClassVar[bool] = True
+
+    def __call__(self, q: Array, q_next: Array, time_step: Array, *parameters: Any) -> Array:
+        """Return the value, whatever the time step."""
+        del time_step
+        return self.function(q, q_next, *parameters)
+
+
+def with_time_step(function: Any, others: int) -> Any:
+    """Return a function of (q, q_next, time_step) and others: itself, or one without the time step wrapped."""
+    is_shorter = callable(function) and _binds(function, 2 + others) and not _binds(function, 3 + others)
+    return TwoPoint(function) if is_shorter else function
+
+
+def with_parameters(function: Any, others: int) -> Any:
+    """Return a function of others and parameters: itself, or one that does without them wrapped."""
+    if not callable(function) or _binds(function, others + 1):
+        return function
+    return lambda *arguments: function(*arguments[:-1])
+
+
+def _binds(function: Callable[..., Any], count: int) -> bool:
+    """Tell whether a function takes this many arguments; a builtin need not tell, and takes all."""
+    try:
+        inspect.signature(function).bind(*range(count))
+    except TypeError:
+        return False
+    except ValueError:
+        return True
+    return True
+
+
+_WHERE = "LagrangeDAlembert(parameters=...)"
+
+
+class Parameters(Mapping[str, Any]):
+    """Numbers and arrays by name, in an order; equal where names, shapes and numbers are.
+
+    Example:
+        >>> Parameters({"mass": 1.0}) == Parameters({"mass": 1}), Parameters({"mass": 1.0})
+        (True, {'mass': 1.0})
+    """
+
+    def __init__(self, numbers: Any) -> None:
+        instance(_WHERE, numbers, Mapping, "be a mapping of names to numbers", "Pass a dict.")
+        self._hold({name(_WHERE, key, ("time_step",)): _valid_number(_WHERE, key, x) for key, x in numbers.items()})
+
+    def _hold(self, numbers: dict[str, Any]) -> None:
+        self._numbers = numbers
+        self._key = tuple(
+            (key, np.shape(value), id(value) if is_traced(value) else np.asarray(value).tobytes())
+            for key, value in numbers.items()
+        )
+
+    def __getitem__(self, name: str) -> Any:
+        return self._numbers[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._numbers)
+
+    def __len__(self) -> int:
+        return len(self._numbers)
+
+    def __repr__(self) -> str:
+        return f"{{{', '.join(f'{key!r}: {_brief(value)}' for key, value in self.items())}}}"
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Parameters) and self._key == other._key
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+    @property
+    def structure(self) -> dict[str, jax.ShapeDtypeStruct]:
+        """Their shapes."""
+        return {key: jax.ShapeDtypeStruct(np.shape(value), float) for key, value in self.items()}
+
+    @property
+    def nothing(self) -> "Parameters":
+        """Zeros of the same names and shapes."""
+        return Parameters({key: np.zeros(np.shape(value)) for key, value in self.items()})
+
+    def replace(self, where: str, numbers: Mapping[str, Any]) -> "Parameters":
+        """Return them with other numbers of the same names and shapes."""
+        for key in numbers.keys() - self.keys():
+            near = difflib.get_close_matches(key, self, n=1)
+            remedy = f"It has {', '.join(self)}." if self else "It has none: pass LagrangeDAlembert(parameters=...)."
+            raise error(
+                where, "name parameters of the system", shown(key), f"Did you mean {near[0]}?" if near else remedy
+            )
+        other, own = object.__new__(Parameters), self._numbers
+        changes = {key: _valid_number(where, key, value, np.shape(own[key])) for key, value in numbers.items()}
+        other._hold(own | changes)
+        return other
+
+
+def _brief(value: Any) -> str:
+    return f"shape {np.shape(value)}" if is_traced(value) or np.ndim(value) else repr(float(value))
+
+
+def _valid_number(where: str, key: str, value: Any, shape: tuple[int, ...] | None = None) -> Any:
+    """Return a number, or an array of the given shape or any."""
+    where, shape = where.replace("...", f"{{{key!r}: ...}}"), shape_of(value) if shape is None else shape
+    return array(where, value, shape, "Pass real numbers.") if shape else number(where, value)
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Bound:
+    """A function with its last argument put in: parameters by name."""
+
+    function: Callable[..., Any]
+    parameters: Mapping[str, Any]
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Return the value."""
+        return self.function(*arguments, self.parameters)
+
+    @property
+    def __signature__(self) -> inspect.Signature:
+        signature = inspect.signature(self.function)
+        return signature.replace(parameters=[*signature.parameters.values()][:-1])
+
+    @property
+    def is_of_one_step(self) -> bool:
+        """Whether it was made for one time step."""
+        return getattr(self.function, "is_of_one_step", False)
