@@ -290,8 +290,8 @@ class ArrowheadTop(AbstractLLSystem):
     `dense` gives the same top as a `SuslovTop`.
 
     Args:
-        diagonal: d, as for `SuslovTop.arrowhead`.
-        coupling: c.
+        diagonal: d, n numbers, n >= 3.
+        coupling: c, n - 1 numbers.
 
     Raises:
         ValueError: As by `SuslovTop.arrowhead`.
