@@ -47,7 +47,7 @@ def is_participle(name: str) -> bool:
 
 
 def every_name(tree: ast.AST) -> Iterator[tuple[ast.AST, str]]:
-    """Yield the names that a module defines: its functions, their arguments, its variables; each with what defines it."""
+    """Yield the names that a module defines, of functions, arguments and variables, each with its definition."""
     for node in ast.walk(tree):
         if isinstance(node, ast.FunctionDef):
             yield node, node.name

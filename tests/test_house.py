@@ -75,7 +75,7 @@ def test_what_it_counts() -> None:
 
 
 def test_values_have_nouns_and_functions_verbs() -> None:
-    """No name is one bare participle but those that are argued for, which there are; docstrings begin with a noun or a verb."""
+    """No name is one bare participle but those that are argued for; docstrings begin with a noun or a verb."""
     assert list(participles(LIBRARY)) == []
     assert len(ARGUED) + len(MEMBERS) <= MOST
     used = {name.strip("_") for file in FILES for _, name in every_name(_tree(file))}

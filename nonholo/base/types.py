@@ -1,4 +1,4 @@
-"""What every room says of arrays: the array type of annotations, and that nobody writes to some.
+"""Arrays in all rooms: their type in annotations, and those that nobody writes to.
 
 `Array` is a NumPy array or, inside the JAX route, a JAX array or tracer; shapes are written with jaxtyping.
 """

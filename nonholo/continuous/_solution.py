@@ -1,4 +1,4 @@
-"""What a solver of the continuous equations returns."""
+"""Results of the solvers of the continuous equations."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple

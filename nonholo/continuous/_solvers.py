@@ -1,4 +1,4 @@
-"""What solves a flow: of one motion the solver that its method names, of many their series side by side.
+"""Solvers of flows: of one motion the solver that its method names, of many their series side by side.
 
 Series serve where the constraint is in the body and forces are linear. diffrax loads slowly: on first use.
 """

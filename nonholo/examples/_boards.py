@@ -1,4 +1,4 @@
-"""What turns of joints drive along: the roller racer, the snakeboard, the snake of three links."""
+"""Vehicles that turns of joints drive along: the roller racer, the snakeboard, the snake of three links."""
 
 import functools
 

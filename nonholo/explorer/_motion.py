@@ -1,4 +1,4 @@
-"""What a page shows of a motion: a state from which its kernel starts, or the saved states themselves.
+"""The motion that a page shows: a state from which its kernel starts, or the saved states themselves.
 
 Weights, friction and the scale of a table among the numbers of a page, as names of its sliders, and back.
 """

@@ -42,7 +42,7 @@ def _name(text: str) -> str:
 
 
 Name = Annotated[str, AfterValidator(_name)]
-"""What becomes a column, a dimension, a file or a variable; the classes ask `is_name` too."""
+"""A name that becomes a column, a dimension, a file or a variable; the classes ask `is_name` too."""
 Shape = list[Annotated[NonNegativeInt, Field(le=_MOST)]]
 
 

@@ -56,4 +56,4 @@ FLAT_RUNS: dict[str, Callable[[], Callable[..., int]]] = {
     "top4": functools.partial(flat_secular_run, 3),
     "flow4": functools.partial(flat_arrowhead_run, 3, 1e-14 / 64),
 }
-"""What makes runs on bare memory, for hosts without Python: those of a page."""
+"""Functions that make runs on bare memory, for hosts without Python: those of a page."""

@@ -1,4 +1,4 @@
-"""What all files of this room share: modules imported when they are needed, places, and calls of JAX.
+"""Parts that all files of this room share: modules imported when they are needed, places, and calls of JAX.
 
 Every call of JAX is compiled, runs in a local 64-bit scope and gives NumPy arrays.
 """

@@ -1,4 +1,4 @@
-r"""What a motion lets fall, and which densities of restricted momenta it keeps, or certainly does not.
+r"""Quantities that fall along a motion, and which densities of restricted momenta it keeps, or certainly does not.
 
 With $F(W) = P(W)|_\mathfrak{d}$ a step takes $r = F(W)$ to $r' = -F(W^{-1})$, so that along the displacement variety
 volumes change by $\det(\partial r'/\partial r) = \det F'(W^{-1})/\det F'(W)$. Theory: docs/theory/limits.md,

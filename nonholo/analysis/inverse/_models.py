@@ -1,4 +1,4 @@
-"""What measurements miss of motions on groups and in coordinates, and where motions begin: in JAX, compiled once."""
+"""Residuals of measurements of motions, on groups and in coordinates, and first states: in JAX, compiled once."""
 
 import dataclasses
 import functools

@@ -43,7 +43,7 @@ def compile_text(text: str, name: str, *, is_long: bool = False) -> int:
 
 
 _KEPT: list[Any] = []
-"""What owns the compiled functions."""
+"""The engines that own compiled functions."""
 
 
 def _optimize(code: llvm.ModuleRef, machine: llvm.TargetMachine, level: int) -> None:

@@ -1,4 +1,4 @@
-"""What a scenario can let move: systems of the library, its ready examples, what a module of the user's own makes.
+"""Bodies of scenarios: systems of the library, its ready examples, functions in a module of the user's own.
 
 A table is of a class or a function, whose arguments are the keys; its docstring says what they mean.
 """

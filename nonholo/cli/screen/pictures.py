@@ -36,7 +36,7 @@ _GIVEN: dict[str, Callable[[Any], Any]] = {
     "displacement": lambda orbit: orbit.displacement[0],
     "flow": lambda orbit: _flow(orbit),
 }
-"""What an orbit has for the arguments of a picture, by their names."""
+"""Arguments of pictures that an orbit gives, by their names."""
 _ASKED = ("across", "up")  # arguments that the command line has
 _OTHER = ("animate",)  # drawn by --gif
 

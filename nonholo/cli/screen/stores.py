@@ -1,4 +1,4 @@
-"""What a store holds, on the screen: how it was made, its invariants measured again; figures of a sweep."""
+"""The content of a store on the screen: how it was made, its invariants measured again; figures of a sweep."""
 
 import json as jsonlib
 import math

@@ -1,4 +1,4 @@
-r"""What data sets there are: a system, a box of first configurations, weights of first momenta, a range of energies.
+r"""The data sets: a system, a box of first configurations, weights of first momenta, a range of energies.
 
 A first momentum is $p = s\,D u$ with u uniform on the unit sphere and D the diagonal matrix of the weights; s gives the
 kinetic energy that is drawn.

@@ -1,4 +1,4 @@
-"""What is written of a data set: tables, the record for programs, and the card for people."""
+"""Files of a data set: tables, the record for programs, and the card for people."""
 
 import hashlib
 import json

@@ -13,7 +13,7 @@ from nonholo.plot import theme
 from nonholo.plot.parts import evenly_spread, some_states, turn_per_state, window
 
 Show: TypeAlias = Callable[[int], None]
-"""What shows a frame."""
+"""A function that shows a frame."""
 
 _BETWEEN = 8  # states of a flow from frame to frame
 _MOST_PIECES = 1500  # of a trail

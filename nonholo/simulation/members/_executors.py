@@ -1,4 +1,4 @@
-"""What runs a block of members: lanes of a closed form, series of flows, or one by one; pieces of work in threads."""
+"""Executors of a block of members: lanes of a closed form, series of flows, or one by one; work in threads."""
 
 import contextlib
 import contextvars

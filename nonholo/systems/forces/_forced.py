@@ -31,7 +31,7 @@ _SAME = """
     rank canonical frame frame_map inverse_frame_map frame_pose to_canonical from_canonical carried
     moved restrict_at restricted_velocity restricted_momentum constrained_energy
 """
-"""What is that of the body that moves."""
+"""Properties that are those of the body that moves."""
 
 _ITERATIONS = 30  # of Newton's method with one slope
 _MOST, _PARTS = 100, 0.5 ** np.arange(40)  # corrections with new slopes, and parts of one
