@@ -16,7 +16,7 @@ import nonholo as nh
 HOMES = {
     "AbstractSystem": "nonholo.systems",
     "Branches": "nonholo.discrete",
-    "Missed": "nonholo.analysis.steering._shooting",
+    "Gaps": "nonholo.analysis.steering._shooting",
     "REDUCTIONS": "nonholo.ensembles",
     "accelerations": "",  # of the tests
     "advance": "nonholo.lagrange_dalembert.compiled",

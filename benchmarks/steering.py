@@ -25,7 +25,7 @@ import jax.numpy as jnp
 import numpy as np
 from _command import SMOKE, small
 from _command import options as command
-from _inside import Missed, best, in_double
+from _inside import Gaps, best, in_double
 from scipy.integrate import solve_ivp
 
 import nonholo as nh
@@ -101,7 +101,7 @@ def off_goal(z: Any) -> Any:
     return xp.concatenate([nh.SE(2).log(pose), z[3:]])
 
 
-def missed_by(step: Step, first: np.ndarray, steps: int) -> Missed:
+def missed_by(step: Step, first: np.ndarray, steps: int) -> Gaps:
     """Return what forces miss the goal by on orbits of a step, and the derivatives."""
 
     def missed(forces: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -44,7 +44,7 @@ def test_a_fold_does_not_hang_a_pool(pool: str, body: str) -> None:
 
 def test_jax_after_a_fork(monkeypatch: pytest.MonkeyPatch) -> None:
     """What needs JAX refuses where it would wait forever, in words."""
-    monkeypatch.setattr(_double_precision, "_orphaned", True)
+    monkeypatch.setattr(_double_precision, "_is_orphan", True)
     sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
     with pytest.raises(RuntimeError, match="forked from one that had used JAX"):
         nh.step(sleigh, np.array([0.1, 0.1]))

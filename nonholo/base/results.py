@@ -104,8 +104,8 @@ def conclude(orbit: Any, time_step: float, good: int, steps: int, throw: bool) -
     """Return the orbit of a run; with `throw`, raise if it ended early, naming the step."""
     if throw and orbit.outcome != Outcome.successful:
         where = f"Step {good + 1} of {steps}" if len(orbit) else "Start of the run"
-        faults = (
-            getattr(getattr(orbit.motion, "route", None), "notes", {}) if orbit.outcome == Outcome.nonfinite else {}
+        route = getattr(orbit.motion, "route", None) if orbit.outcome == Outcome.nonfinite else None
+        raise OutcomeError(
+            orbit.outcome, f"{where} (time_step {time_step:g})", orbit, " ".join(getattr(route, "faults", {}).values())
         )
-        raise OutcomeError(orbit.outcome, f"{where} (time_step {time_step:g})", orbit, " ".join(faults.values()))
     return orbit

@@ -11,7 +11,7 @@ from llvmlite import ir
 
 import nonholo as nh
 from nonholo.base.compiled.emission import compile_text
-from nonholo.kernels.taylor._expansion import call
+from nonholo.kernels._scalar import expand_at
 from nonholo.lagrange_dalembert.compiled._expansion import Elimination, Expansion
 from nonholo.lagrange_dalembert.compiled._flow import formulation
 from nonholo.lagrange_dalembert.compiled._run import machine_code
@@ -59,7 +59,7 @@ def _series(build: Any, start: list[float]) -> np.ndarray:
     expansion.write(module, "expansion", width)
     series, room, none = np.zeros((ORDER + 1, width)), np.zeros(expansion.room), np.zeros(1)
     series[0, : len(start)] = start
-    call(compile_text(str(module), "expansion"), (none, room, series, none, none), ORDER)
+    expand_at(compile_text(str(module), "expansion"), (none, room, series, none, none), ORDER)
     return series
 
 

@@ -23,11 +23,8 @@ def template(kind: str) -> str:
         KeyError: There is no such kind.
 
     Example:
-        >>> print(template("ArrowheadTop")[107:157])
-        title = "ArrowheadTop"
-        <BLANKLINE>
-        [body]
-        kind = "ArrowheadTop"
+        >>> template("ArrowheadTop").splitlines()[2:6]
+        ['title = "ArrowheadTop"', '', '[body]', 'kind = "ArrowheadTop"']
     """
     table = body_table(kind)
     about = inspect.getdoc(table.make) or ""
