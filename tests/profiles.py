@@ -96,8 +96,8 @@ PROFILES = {
 }
 SOAKS = {"long", "fuzz"}
 """Profiles that take half an hour each: before a release, or after a change of what they guard."""
-EVERY = 3
-"""A change runs every third case of the tests of its profiles, another third at another number of commits."""
+EVERY = 4
+"""A change runs every fourth case of the tests of its profiles, others at another number of commits."""
 
 MARKED = [DEFAULT, *(name for name, profile in PROFILES.items() if not profile.command)]
 _DALEMBERT = "nonholo.lagrange_dalembert."

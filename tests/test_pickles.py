@@ -32,6 +32,8 @@ WITH_A_FUNCTION = {  # of the user's, which the examples define where they stand
     "LagrangeDAlembert: discrete",
     "LagrangeDAlembert: orbit",
     "LagrangeDAlembert: particle",
+    "LagrangeDAlembert: pendulum",
+    "LagrangeDAlembert: swing",
     "LagrangeDAlembert.flow: orbit",
     "LagrangeDAlembert.flow: spring",
     "LagrangeDAlembert.regularity: free",

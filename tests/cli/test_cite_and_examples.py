@@ -59,7 +59,8 @@ def test_facts_are_those_of_the_example(nonholo: Command) -> None:
 @pytest.mark.parametrize("name", sorted({*nh.examples.__all__} - {"Example"}))
 def test_its_lines_of_python_run(nonholo: Command, name: str) -> None:
     """What is printed under "In Python" gives an orbit of 400 steps, or one that says why it ended."""
-    lines = nonholo("examples", name).stdout.split("In Python\n")[1].replace("steps=400", "steps=400, throw=False")
+    lines = nonholo("examples", name).stdout.split("In Python\n")[1].split("\nHere\n")[0]
+    lines = lines.replace("steps=400", "steps=400, throw=False")
     names: dict[str, Any] = {"nh": nh}
     exec(re.sub(r"^  ", "", lines, flags=re.MULTILINE), names)  # noqa: S102
     assert len(names["orbit"]) == 401 or names["orbit"].outcome != nh.Outcome.successful

@@ -28,7 +28,7 @@ VARIED = {
 """What a sweep varies where there is no mass; of the oscillators, whose start says their energy, one velocity."""
 
 
-WITHOUT_PAGE = {"chaotic_quartic_oscillator", "non_reversible"}
+WITHOUT_PAGE = {"chaotic_quartic_oscillator"}
 """Examples that nothing in the plane stands for."""
 
 

@@ -124,7 +124,7 @@ def value_and_slope(lagrangian: Callable[[Array], Array], group: AbstractMatrixG
 
 
 @compile_double
-def map_each(function: Callable[[Array], Array], W: Float[np.ndarray, "K N N"]) -> Any:
+def map_each(function: Callable[[Array], Array], W: Float[Array, "K N N"]) -> Any:
     """Return the values of a function of one matrix at each of several."""
     return jax.vmap(function)(W)
 
