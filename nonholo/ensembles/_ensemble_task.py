@@ -16,7 +16,7 @@ from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretiz
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
 from nonholo.ensembles._force_numbers import force_numbers, is_force_number, with_force_numbers
-from nonholo.ensembles._names import OUTCOME, STARTS, checked_reductions, numbering, start_component
+from nonholo.ensembles._names import OUTCOME, STARTS, checked_reductions, no_component, numbering, start_component
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.io import missing_part
 from nonholo.simulation import Ensemble, check_forces, ensemble, run_in_lanes, stepper_of
@@ -266,8 +266,7 @@ def _check_components(start: Start | None, parts: dict[str, tuple[str, int]]) ->
             remedy = f"Pass EnsembleTask(..., {owner}=...) with what the other components are, or vary each of them."
             raise error("sweep(design=...)", "vary components of the start of the task", shown(name), remedy)
         if component >= len(start[1]):
-            got = f"{name!r} of a start with {len(start[1])}"
-            raise error("sweep(design=...)", "vary components that there are", got, "They are numbering from 0.")
+            raise no_component(f"{name!r} of a start with {len(start[1])}")
 
 
 def _rows_of_starts(start: Start | None, block: MemberBlock) -> dict[str, Float[np.ndarray, "count n"]]:

@@ -13,7 +13,7 @@ from nonholo.base.checks import count, error, function, instance, scale, shown
 from nonholo.discrete import discretize
 from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
-from nonholo.ensembles._names import OUTCOME, checked_reductions, component_of, numbering
+from nonholo.ensembles._names import OUTCOME, checked_reductions, component_of, numbering, with_components
 from nonholo.groups import components_of
 from nonholo.simulation import ensemble
 
@@ -129,10 +129,10 @@ class FamilyTask:
     def _member(self, own: dict[str, Any]) -> tuple[Any, dict[str, np.ndarray]]:
         """Return the system of a member, and what it starts with."""
         arguments = self._arguments
-        values = {name: _value(name, value, own) for name, value in arguments.items()}
+        values = {name: with_components(name, value, own) for name, value in arguments.items()}
         example = self.family(**{name: value for name, value in values.items() if value is not inspect.Parameter.empty})
         rest = {key: value for key, value in own.items() if key not in arguments and _base(key) not in arguments}
-        starts = {name: np.asarray(_value(name, getattr(example, name), rest)) for name in _STARTS}
+        starts = {name: np.asarray(with_components(name, getattr(example, name), rest)) for name in _STARTS}
         return example.system, starts | ({_STEP: np.asarray(own[_STEP])} if _STEP in own else {})
 
     def _ensemble(self, systems: list[Any], starts: dict[str, np.ndarray], numbers: list[int]) -> Any:
@@ -203,21 +203,6 @@ def _where(argument: str) -> str:
 def _base(name: str) -> str:
     part = component_of(name)
     return part[0] if part else name
-
-
-def _value(name: str, value: Any, own: dict[str, Any]) -> Any:
-    """Return the value of a member: its own, or the common one with its own components."""
-    value, parts = own.get(name, value), [key for key in own if key != name and _base(key) == name]
-    if not parts:
-        return value
-    value = np.array(value, dtype=np.float64)
-    for key in parts:
-        _, component = component_of(key) or (name, 0)
-        if value.ndim != 1 or component >= len(value):
-            got = f"{key!r} of {name} with shape {value.shape}"
-            raise error("sweep(design=...)", "vary components that there are", got, "They are numbering from 0.")
-        value[component] = own[key]
-    return value
 
 
 def _labels(name: str, entry: Any) -> tuple[Any, np.ndarray, Any]:

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.checks import error
-from nonholo.ensembles._names import component_of
+from nonholo.ensembles._names import component_of, with_components
 from nonholo.systems import Forced, force_of
 
 
@@ -43,7 +42,7 @@ def is_force_number(system: Any, name: str) -> bool:
 def with_force_numbers(system: Any, values: Mapping[str, Any]) -> Any:
     """Return a system under the same forces with other numbers."""
     numbers = force_numbers(system)
-    own = {name: _value(name, value, values) for name, value in numbers.items()}
+    own = {name: with_components(name, value, values) for name, value in numbers.items()}
 
     def change(part: Any) -> Any:
         fields = {field: own[name] for name, field in _names(part) if name in own}
@@ -52,18 +51,3 @@ def with_force_numbers(system: Any, values: Mapping[str, Any]) -> Any:
     parts = {name: change(part) if dataclasses.is_dataclass(part) else part for name, part in system.parts.items()}
     terms = tuple(change(term) if dataclasses.is_dataclass(term) else term for term in system.terms)
     return Forced(system.system, terms or None, force_of(parts), system.scheme)
-
-
-def _value(name: str, value: Any, values: Mapping[str, Any]) -> Any:
-    if name in values:
-        return values[name]
-    components = {part[1]: x for key, x in values.items() if (part := component_of(key)) and part[0] == name}
-    if not components:
-        return value
-    value = np.array(value, dtype=np.float64)
-    for index, number in components.items():
-        if index >= len(value):
-            got = f"{name}_{index} of {len(value)}"
-            raise error("sweep(design=...)", "vary components that there are", got, "They are counted from 0.")
-        value[index] = number
-    return value

@@ -5,6 +5,8 @@ import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from nonholo.base.checks import error, shown
 from nonholo.base.checks import name as checked_name
 from nonholo.io import TAKEN
@@ -48,6 +50,32 @@ def start_component(name: str) -> tuple[str, int] | None:
     """Return which component of which start a name means; None if it means something else."""
     part = component_of(name)
     return part if part and part[0] in STARTS else None
+
+
+def with_components(name: str, value: Any, own: Mapping[str, Any]) -> Any:
+    """Return the value of a member: its own, or the common one with its own components.
+
+    Example:
+        >>> with_components("a", [1.0, 2.0], {"a_1": 5.0, "b": 3.0})
+        array([1., 5.])
+    """
+    value, parts = (
+        own.get(name, value),
+        [(key, part[1]) for key in own if (part := component_of(key)) and part[0] == name],
+    )
+    if not parts:
+        return value
+    value = np.array(value, dtype=np.float64)
+    for key, component in parts:
+        if value.ndim != 1 or component >= len(value):
+            raise no_component(f"{key} of {len(value) if value.ndim == 1 else f'shape {value.shape}'}")
+        value[component] = own[key]
+    return value
+
+
+def no_component(got: str) -> ValueError:
+    """Return the refusal of a component that a value does not have."""
+    return error("sweep(design=...)", "vary components that there are", got, "They are counted from 0.")
 
 
 def array_name(where: str, name: Any) -> str:
