@@ -62,7 +62,9 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """Keep the tests of the chosen profile."""
     chosen = config.getoption("--profile")
     config.stash[COLLECTED] = list(items)
-    ours = some_cases([item for item in items if runs(item, chosen)], config.getoption("--every"), commits())
+    ours = [item for item in items if runs(item, chosen)]
+    if (every := config.getoption("--every")) > 1:
+        ours = some_cases(ours, every, commits())
     if len(ours) < len(items):
         config.hook.pytest_deselected(items=list(set(items).difference(ours)))
         items[:] = ours
