@@ -20,7 +20,7 @@ from filelock import FileLock, Timeout
 from nonholo.base.checks import path as checked_path
 from nonholo.base.checks import printable
 
-_PATIENCE = 0.2  # seconds to wait for who only asks whether the store is write_lock
+_PATIENCE = 0.2  # seconds to wait for who only asks whether the store is locked
 
 
 @contextlib.contextmanager

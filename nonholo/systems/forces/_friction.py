@@ -223,7 +223,7 @@ class Widened(AbstractLLSystem):
 
     @system_memo
     def frame_map(self) -> Float[Array, "k k"]:
-        """The system inside in its canonical frame; the slip is the same in every frame."""
+        """The frame map of the system inside; the slip is the same in every frame."""
         return beside(np.asarray(self.system.frame_map), np.eye(len(self.rows)))
 
 
