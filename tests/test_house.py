@@ -1,6 +1,7 @@
 """docs/house.md is true: its rooms, floors and files are there, and what it counts is so."""
 
 import ast
+import functools
 import re
 import tomllib
 from pathlib import Path
@@ -22,6 +23,7 @@ def _boxes(folder: Path) -> list[Path]:
     return files + [path for path in folder.iterdir() if (path / "__init__.py").exists()]
 
 
+@functools.cache
 def _tree(file: Path) -> ast.Module:
     return ast.parse(file.read_text())
 
