@@ -16,7 +16,8 @@ import numpy as np
 from nonholo.base.checks import error, flow_times, flow_tolerances, is_traced, number, trailing
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert import _equations, compiled
+from nonholo.lagrange_dalembert import _equations as equations
+from nonholo.lagrange_dalembert import compiled
 from nonholo.lagrange_dalembert._discretization import checked_state
 from nonholo.lagrange_dalembert._equations import solve_bordered
 from nonholo.lagrange_dalembert._orbit import ORBITS
@@ -36,20 +37,19 @@ def acceleration(system: Any, q: Array, v: Array, extra: Any = 0.0) -> tuple[Arr
         v: Its velocity.
         extra: A force beside those of the system: of a table the row that acts.
     """
-    equations = equations_of(system)
-    _, constraint_rate = jax.jvp(lambda x: equations.constraint(system, x, v), (q,), (equations.rate(system, q, v),))
+    _, constraint_rate = jax.jvp(lambda x: equations.constraint(system, x, v), (q,), (system.places.rate(q, v),))
     return bordered_solution(system, q, v, equations.force(system, q, v) + extra, -constraint_rate)
 
 
 def bordered_solution(system: Any, q: Array, v: Array, force: Array, off: Array) -> tuple[Array, Array]:
     r"""Solve $M x - A^T\lambda$ = force, A x = off."""
-    matrix, units = equations_of(system).acceleration_matrix(system, q, v)
+    matrix, units = equations.acceleration_matrix(system, q, v)
     return solve_bordered(matrix, units, force, off)
 
 
 def admissible_velocity(system: Any, q: Array, v: Array) -> Array:
     """Return the admissible velocity next to one in the kinetic energy."""
-    return v - bordered_solution(system, q, v, jnp.zeros_like(v), equations_of(system).constraint(system, q, v))[0]
+    return v - bordered_solution(system, q, v, jnp.zeros_like(v), equations.constraint(system, q, v))[0]
 
 
 def nearest_place(system: Any, x: Array) -> Array:
@@ -57,8 +57,8 @@ def nearest_place(system: Any, x: Array) -> Array:
 
     $M(y - x) = D\Phi(y)^T\lambda$, $\Phi(y) = 0$, by Newton's method from x.
     """
-    equations, n, first = equations_of(system), system.dimension, system.velocity_constraints
-    M = equations.kinetic_matrix(system, x, jnp.zeros(n))
+    n, first = system.dimension, system.velocity_constraints
+    M = equations.mass_matrix(system, x, jnp.zeros(n))
 
     def residual(z: Array) -> Array:
         y = x.at[:n].add(z[:n])
@@ -103,12 +103,12 @@ def vector_field(system: Any) -> Callable[[Array, Float[Array, "size"]], Float[A
 
 
 def _derivative(system: Any, time: Array, state: Float[Array, "... size"]) -> Float[Array, "... size"]:
-    equations, (pose, _) = equations_of(system), system.shapes
+    pose, _ = system.shapes
 
     def one(row: Array) -> Array:
         q, v = jnp.split(row, [int(np.prod(pose))])
         x = jnp.append(q, time) if system.is_driven else q.reshape(pose)
-        place_rate = jnp.ravel(equations.rate(system, x, v))[: len(q)]
+        place_rate = jnp.ravel(system.places.rate(x, v))[: len(q)]
         return jnp.concatenate([place_rate, acceleration(system, x, v)[0]])
 
     return one(state) if state.ndim == 1 else jax.lax.map(one, state.reshape(-1, state.shape[-1])).reshape(state.shape)
@@ -186,10 +186,10 @@ def _powers(system: Any, *columns: Float[np.ndarray, "K n"]) -> Float[np.ndarray
 
 def _power(system: Any, x: Array, p: Array, row: Array) -> Array:
     def one(x: Array, p: Array, row: Array) -> Array:
-        v = _equations.inverse_legendre(system, x, p)
-        force = row + _equations.applied(system, x, v)
-        rates = _equations.forms(system, x) @ v - _equations.constraint(system, x, v)
-        time_slope = jax.grad(_equations.lagrangian, argnums=1)(system, x, v)[-1]
+        v = equations.inverse_legendre(system, x, p)
+        force = row + equations.applied(system, x, v)
+        rates = equations.forms(system, x) @ v - equations.constraint(system, x, v)
+        time_slope = jax.grad(equations.lagrangian, argnums=1)(system, x, v)[-1]
         return force @ v + acceleration(system, x, v, row)[1] @ rates - time_slope
 
     return jax.vmap(one)(x, p, jnp.asarray(row))

@@ -16,7 +16,8 @@ from nonholo.base.memo import memo
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float, Int
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.lagrange_dalembert._room import equations_of, in_double, places, room
+from nonholo.lagrange_dalembert import _equations as equations
+from nonholo.lagrange_dalembert._room import in_double, places, room
 from nonholo.orbit import AbstractOrbit
 from nonholo.systems import AbstractCoordinateSystem
 
@@ -280,7 +281,7 @@ class GroupOrbit(AbstractCoordinateOrbit):
 
 
 def _forms_at(system: Any, q: Array) -> Array:
-    return jax.vmap(lambda x: equations_of(system).forms(system, x))(q)
+    return jax.vmap(lambda x: equations.forms(system, x))(q)
 
 
 ORBITS: dict[str, Any] = {orbit.__name__: orbit for orbit in (CoordinateOrbit, GroupOrbit)}

@@ -4,7 +4,7 @@ import abc
 import importlib
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar
 
 from nonholo.base.checks import error
 from nonholo.base.memo import Keeper
@@ -52,6 +52,19 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
     @property
     def family(self) -> Any:
         """The one system that stands for all numbers of the parameters."""
+        return self
+
+    def _with_fields(self, **fields: Any) -> Self:
+        """Return a system with other fields, which need no check; it does not have a name for stores."""
+        system = object.__new__(type(self))
+        vars(system).update(vars(self), **fields)
+        for name in {"description", "family", "plain", "recipe"} - fields.keys():
+            vars(system).pop(name, None)
+        return system
+
+    @property
+    def plain(self) -> Any:
+        """The same system without parameters."""
         return self
 
     def bound(self, *numbers: Any) -> Any:
