@@ -83,14 +83,11 @@ class Coordinates(NamedTuple):
         """Return the rate of the coordinates xi of a place that moves with the velocity w, from a frame with v."""
         return self.rate(xi, w)
 
-    def checked(self, where: str, configuration: Any) -> np.ndarray:
+    def configuration(self, where: str, value: Any) -> np.ndarray:
         """Return the checked configuration of a start."""
-        n = self.dimension
-        if configuration is None:
-            raise error(
-                where, "be given for a system in coordinates", "none", f"Pass the {n} coordinates of the start."
-            )
-        return array(where, configuration, (n,), f"Pass the {n} coordinates.")
+        if value is None:
+            raise error(where, "be given for a system in coordinates", "none", "Pass the coordinates of the start.")
+        return array(where, value, (self.dimension,), f"Pass the {self.dimension} coordinates.")
 
     def velocity(self, where: str, displacement: Any, h: Any) -> np.ndarray:
         """Return the velocity of a checked displacement."""
@@ -162,9 +159,9 @@ class Poses(NamedTuple):
         r"""Return the rate of a small $\xi$ between poses that move with the body velocities v and w."""
         return w - v + self.group.bracket(xi, v)
 
-    def checked(self, where: str, configuration: Any) -> np.ndarray:
+    def configuration(self, where: str, value: Any) -> np.ndarray:
         """Return the checked configuration of a start, the identity by default."""
-        return self.group.identity if configuration is None else in_group(where, self.group, configuration)
+        return self.group.identity if value is None else in_group(where, self.group, value)
 
     def velocity(self, where: str, displacement: Any, h: Any) -> np.ndarray:
         """Return the velocity of a checked displacement."""

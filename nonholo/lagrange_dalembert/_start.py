@@ -46,7 +46,7 @@ def point(
     With `project` it is the admissible one next to the configuration in the kinetic energy.
     """
     where, n = f"{owner}(configuration=...)", system.dimension
-    q = system.places.checked(where, configuration)
+    q = system.places.configuration(where, configuration)
     if project and system.constraints > system.velocity_constraints:
         nearest = in_double(nearest_place, system, place(system, q, time))[:n]
         q = q if np.isnan(nearest).any() else nearest
