@@ -13,7 +13,7 @@ READ = (".py", ".pyi", ".md", ".toml", ".j2", ".cff", ".c", ".css")
 NOT_READ = ("tests/words.toml", "tests/test_words.py")
 QUOTED = {"docs/references.md": r"\*[^*\n]+\*", "CHANGELOG.md": r"(?s)\n## \[\d.*"}  # titles of works, past releases
 QUOTATION = r"“[^”]*”"
-GENERATED = re.compile(r"api/.*|reference/(?!symbols).*|(tests|paper|reliability)\.md")  # pages that scripts write
+GENERATED = re.compile(r"api/.*|reference/(?!symbols).*|gallery/README\.md|(tests|paper|reliability)\.md")  # by scripts
 MOST = 80_000
 
 
