@@ -78,7 +78,7 @@ def implicit(
     return y, -solve(jax.jacfwd(residual)(y, *at), change[:, None])[:, 0]
 
 
-def padded(controls: Any, steps: int, size: int) -> Array | None:
+def rows_of(controls: Any, steps: int, size: int) -> Array | None:
     """Return the controls of steps, and none after the last one: zeros, to which a policy adds; None without any."""
     if controls is None:
         return None

@@ -8,7 +8,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.traced import NodeState, implicit, marked_rows, padded, run_nodes, with_policy
+from nonholo.base.traced import NodeState, implicit, marked_rows, rows_of, run_nodes, with_policy
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._newton import orientation, solve
 from nonholo.lagrange_dalembert._room import equations_of
@@ -74,7 +74,7 @@ def roll(
     sign, _ = orientation(search_system, x_still, near, h)
 
     def step(x: Array, p: Array, before: tuple[Array, Array], row: Array | None) -> _Node:
-        control = None if row is None else control_of(row, lambda: _seen(system, x, p))
+        control = None if row is None else control_of(row, lambda: _state_at(system, x, p))
         push = 0.0 if control is None else h / 2 * control
         near, last = before
         z, code = step_root(family, (numbers, h, x, p + push), (near, 2 * near - last, sign))
@@ -82,7 +82,7 @@ def roll(
         after = equations.ahead(system, x, v, h), equations.momenta(system, x, v, h)[1] + push
         return _Node(x, (v, near), after, code, jnp.sum(z), control)
 
-    rows, control_of = with_policy(controls, h, padded(controls, steps, n))
+    rows, control_of = with_policy(controls, h, rows_of(controls, steps, n))
     nothing = None if rows is None else jnp.zeros(n)
     begin = _Node(x, (near, near), (x, p), jnp.zeros((), jnp.result_type(int)), jnp.sum(near), nothing)
     nodes = run_nodes(step, begin, rows, sizes, work)
@@ -94,7 +94,7 @@ def roll(
     return CoordinateRollout(h * every * jnp.arange(1 + steps // every), *good, outcome=nodes.code[-1])
 
 
-def _seen(system: Any, x: Array, p: Array) -> NodeState:
+def _state_at(system: Any, x: Array, p: Array) -> NodeState:
     """Return what a policy sees of a place with a momentum."""
     return NodeState(x[: system.dimension], equations_of(system).inverse_legendre(system, x, p))
 

@@ -153,16 +153,16 @@ def _checked_controls(controls: Any, steps: int, size: tuple[int], shape: tuple[
     if not callable(controls):
         return array("rollout(controls=...)", controls, (steps, *size), "Pass a force for each step.")
     where, of = "rollout(policy=...)", "a time and a state"
-    given = jax.ShapeDtypeStruct((), float), NodeState(*(jax.ShapeDtypeStruct(x, float) for x in (shape, size)))
+    point = jax.ShapeDtypeStruct((), float), NodeState(*(jax.ShapeDtypeStruct(x, float) for x in (shape, size)))
     with double_precision():
-        check_value(where, controls, size, given, of, of)
-        apart, captured = jax.closure_convert(lambda *seen: controls(*seen), *given)  # a pytree has no hash
-    return jax.tree_util.Partial(_uncaptured, apart, captured) if captured else controls
+        check_value(where, controls, size, point, of, of)
+        apart, weights = jax.closure_convert(lambda *at: controls(*at), *point)  # a pytree has no hash
+    return jax.tree_util.Partial(_policy_of, apart, weights) if weights else controls
 
 
-def _uncaptured(apart: Callable[..., Array], captured: list[Array], time: Array, state: NodeState) -> Array:
-    """Return the control of a policy whose captured numbers are apart."""
-    return apart(time, state, *captured)
+def _policy_of(apart: Callable[..., Array], weights: list[Array], time: Array, state: NodeState) -> Array:
+    """Return the control of a policy whose numbers are apart."""
+    return apart(time, state, *weights)
 
 
 def _call(run: Callable[..., Any], *arguments: Any, many: bool) -> Any:

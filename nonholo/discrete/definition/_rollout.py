@@ -16,7 +16,7 @@ import numpy as np
 
 from nonholo import kernels
 from nonholo.base.results import Outcome
-from nonholo.base.traced import NodeState, marked_rows, padded, run_nodes, with_policy
+from nonholo.base.traced import NodeState, marked_rows, rows_of, run_nodes, with_policy
 from nonholo.base.types import Array, Float
 from nonholo.discrete._scheme import Scheme, weights
 from nonholo.discrete._variety import free_rows
@@ -109,11 +109,13 @@ def roll_out(
     none = None if rows is None else jnp.zeros(discrete.system.group.dim, m.dtype)
     begin = _Node(m, pose, nothing, (m, pose), code, jnp.sum(nothing), none)
 
-    def controlled(m: Array, g: Array, guess: Array | None, row: Array | None) -> _Node:
-        control = None if row is None else control_of(row, lambda: _seen(discrete, *at(begin._replace(m=m, g=g))[::2]))
+    def closed_step(m: Array, g: Array, guess: Array | None, row: Array | None) -> _Node:
+        control = (
+            None if row is None else control_of(row, lambda: _state_at(discrete, *at(begin._replace(m=m, g=g))[::2]))
+        )
         return step(m, g, guess, control)._replace(control=control)
 
-    nodes = run_nodes(controlled, begin, rows, sizes, work)
+    nodes = run_nodes(closed_step, begin, rows, sizes, work)
     demand = value if name == "momentum" and value.shape == (discrete.system.group.dim,) else None
     time = discrete.time_step * every * jnp.arange(1 + steps // every)
     states = jax.vmap(at)(nodes)
@@ -122,7 +124,7 @@ def roll_out(
     return _decode(discrete, nodes, states, demand, (pushes, potential), time)
 
 
-def _seen(discrete: Scheme, r: Array, g: Array) -> NodeState:
+def _state_at(discrete: Scheme, r: Array, g: Array) -> NodeState:
     """Return what a policy sees of momenta along the constraint and a pose."""
     system = discrete.system
     velocity = system.restricted_velocity(r, g) @ jnp.asarray(system.constraint_subspace)
@@ -163,7 +165,7 @@ def impulse_of(discrete: Scheme, forced: Forced | None, controls: Any, steps: in
     Nothing of them acts over what follows the last step.
     """
     half, dim = discrete.time_step / 2, discrete.system.group.dim
-    rows = padded(controls, steps, dim)
+    rows = rows_of(controls, steps, dim)
     if forced is None:
         return (None, None) if rows is None else (lambda _r, _g, row: half * row, rows)
     rows = (0.0 if rows is None else rows) + forced.rows(np.arange(steps + 1))
