@@ -72,7 +72,7 @@ class SpecialEuclidean2(AbstractRodriguesGroup):
         """Return the angle through which `exp(x)` turns."""
         return abs(self._vector(x)[..., 0])
 
-    def random(self, rng: np.random.Generator) -> Float[np.ndarray, "3 3"]:
+    def random(self, rng: int | np.random.Generator) -> Float[np.ndarray, "3 3"]:
         """Draw a uniform heading and a standard normal position."""
         rng = self._generator(rng)
         angle = rng.uniform(-np.pi, np.pi)
@@ -204,7 +204,7 @@ class SpecialEuclideanN(AbstractMatrixGroup):
         X = self.hat(x)[..., : self.n, : self.n]
         return X.__array_namespace__().linalg.norm(X, ord=2, axis=(-2, -1))
 
-    def random(self, rng: np.random.Generator) -> Float[np.ndarray, "N N"]:
+    def random(self, rng: int | np.random.Generator) -> Float[np.ndarray, "N N"]:
         """Draw a uniformly distributed rotation and a standard normal position."""
         rng = self._generator(rng)
         g = self.identity

@@ -9,9 +9,7 @@ velocity v of the whole step. The whole step from its end begins with the moment
 
 import dataclasses
 import functools
-import importlib
 import math
-from collections.abc import Iterator
 from typing import Any, ClassVar, cast
 
 import jax
@@ -31,7 +29,7 @@ from nonholo.lagrange_dalembert._orbit import (
     CoordinateOrbit,
     GroupOrbit,
 )
-from nonholo.lagrange_dalembert._room import configurations, equations_of, in_double, places, room
+from nonholo.lagrange_dalembert._room import configurations, in_double, places, places_of, room
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
 from nonholo.lagrange_dalembert.compiled import ROWS
 from nonholo.orbit import AbstractStepper, First, Rows, State
@@ -108,14 +106,6 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
         step = states.step + fractions.astype(np.int64)
         return dataclasses.replace(orbit, time=states.time + fractions * h, step=step)
 
-    def simulate(self, **run: Any) -> OrbitT:
-        """Run the map: `nonholo.simulate(self, ...)`."""
-        return importlib.import_module("nonholo.simulation").simulate(self, **run)
-
-    def iterate(self, **run: Any) -> Iterator[OrbitT]:
-        """Run the map block by block: `nonholo.iterate(self, ...)`."""
-        return importlib.import_module("nonholo.simulation").iterate(self, **run)
-
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class CoordinateDiscretization(AbstractLagrangeDAlembertMap[CoordinateOrbit]):
@@ -147,7 +137,7 @@ class CoordinateDiscretization(AbstractLagrangeDAlembertMap[CoordinateOrbit]):
         Example:
             >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
             >>> free = LagrangeDAlembert(lambda q, v: 3 * v @ v, None, dimension=2)
-            >>> round(free.discretize(0.5).regularity((0, 0), (1, 2)), 12)
+            >>> round(nh.discretize(free, 0.5).regularity((0, 0), (1, 2)), 12)
             1.0
         """
         return self.system.regularity(q, q_next, time_step=self.time_step)
@@ -155,7 +145,7 @@ class CoordinateDiscretization(AbstractLagrangeDAlembertMap[CoordinateOrbit]):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class GroupDiscretization(AbstractLagrangeDAlembertMap[GroupOrbit]):
-    """A discretized `GroupLagrangeDAlembert`, made by its `discretize`.
+    """A discretized `GroupLagrangeDAlembert`, made by `nonholo.discretize`.
 
     Attributes:
         system: What moves.
@@ -164,7 +154,7 @@ class GroupDiscretization(AbstractLagrangeDAlembertMap[GroupOrbit]):
     Example:
         >>> from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, mass_tensor_lagrangian
         >>> free = GroupLagrangeDAlembert(nh.SO(3), mass_tensor_lagrangian(nh.SO(3), np.eye(3)), None)
-        >>> free.discretize(0.5).time_step
+        >>> nh.discretize(free, 0.5).time_step
         0.5
     """
 
@@ -216,7 +206,7 @@ class CoordinateStepper(AbstractStepper[AbstractCoordinateOrbit]):
     block = 1 << 18
 
     def __post_init__(self) -> None:
-        equations_of(self.motion.system)  # refused by the system of a store without functions
+        places_of(self.motion.system)  # refused by the system of a store without functions
 
     @functools.cached_property
     def columns(self) -> dict[str, int]:  # type: ignore[override]

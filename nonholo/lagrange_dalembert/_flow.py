@@ -21,7 +21,7 @@ from nonholo.lagrange_dalembert import compiled
 from nonholo.lagrange_dalembert._discretization import checked_state
 from nonholo.lagrange_dalembert._equations import solve_bordered
 from nonholo.lagrange_dalembert._orbit import ORBITS
-from nonholo.lagrange_dalembert._room import configurations, equations_of, in_double, places, room
+from nonholo.lagrange_dalembert._room import configurations, in_double, places, places_of, room
 from nonholo.orbit import times_within
 
 _PROJECTIONS, _NEAR = 50, 1e-14  # corrections of a place, at most, and what the last one may be beside it
@@ -88,7 +88,7 @@ def refuse_table(owner: str, system: Any) -> None:
 
 def vector_field(system: Any) -> Callable[[Array, Float[Array, "size"]], Float[Array, "size"]]:
     """Return the equations of motion as a function (time, state) -> derivative; `nonholo.vector_field` says of what."""
-    equations_of(system)  # refused by the system of a store without functions
+    places_of(system)  # refused by the system of a store without functions
     refuse_table("vector_field", system)
     size = int(np.prod(system.shapes[0]) + np.prod(system.shapes[1]))
 
@@ -122,14 +122,7 @@ _ROWS = 1024  # states whose powers are computed at once: one size, one compilat
 
 
 def flow(
-    system: Any,
-    configuration: Any,
-    starts: dict[str, Any],
-    times: Any,
-    rtol: float | None,
-    atol: float,
-    *,
-    project: bool,
+    system: Any, *, configuration: Any, times: Any, rtol: float | None, atol: float, project: bool, **starts: Any
 ) -> Any:
     """Check the arguments, solve the equations and return the orbit."""
     refuse_table("flow", system)

@@ -85,9 +85,10 @@ class Coordinates(NamedTuple):
 
     def configuration(self, where: str, value: Any) -> np.ndarray:
         """Return the checked configuration of a start."""
+        remedy = f"Pass the {self.dimension} coordinates."
         if value is None:
-            raise error(where, "be given for a system in coordinates", "none", "Pass the coordinates of the start.")
-        return array(where, value, (self.dimension,), f"Pass the {self.dimension} coordinates.")
+            raise error(where, "be given for a system in coordinates", "none", remedy)
+        return array(where, value, (self.dimension,), remedy)
 
     def velocity(self, where: str, displacement: Any, h: Any) -> np.ndarray:
         """Return the velocity of a checked displacement."""

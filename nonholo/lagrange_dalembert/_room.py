@@ -34,9 +34,9 @@ def room(name: str) -> Any:
     return importlib.import_module(f"nonholo.lagrange_dalembert.{name}")
 
 
-def equations_of(system: Any) -> Any:
-    """Return the equations of a system; one of a store, which has no functions, refuses."""
-    return room("_equations") if system.places else None
+def places_of(system: Any) -> Any:
+    """Return where a system moves; one of a store, which has no functions, raises the error that says so."""
+    return system.places
 
 
 def configurations(system: Any, places: Any) -> Any:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from jax import lax
 
+import nonholo as nh
 from nonholo.base.numerics import double_precision
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.lagrange_dalembert.compiled import _run
@@ -203,7 +204,7 @@ def _runs_as_by_jax(seed: int, time_step: float, monkeypatch: pytest.MonkeyPatch
     system = random_system(seed)
     start = started(system, seed)
     steps = 100 if time_step < 0.1 else 30  # large steps of random systems are chaotic
-    run = functools.partial(system.discretize(time_step).simulate, **start, steps=steps, throw=False)
+    run = functools.partial(nh.simulate, nh.discretize(system, time_step), **start, steps=steps, throw=False)
     compiled = run()
     assert _run.programs(system, (system.dimension + system.is_driven,), system.dimension) is not None
     left_to_jax(monkeypatch)

@@ -50,7 +50,9 @@ def both(name: str) -> tuple[GroupOrbit, nh.Orbit]:
     if name == "veselova":
         velocity = system.group.adjoint(system.group.inverse(g)) @ velocity
     start = {"configuration": g, "body_velocity": velocity, "steps": 50}
-    return rewritten(system).discretize(0.15).simulate(**start), nh.simulate(nh.discretize(system, 0.15), **start)
+    return nh.simulate(nh.discretize(rewritten(system), 0.15), **start), nh.simulate(
+        nh.discretize(system, 0.15), **start
+    )
 
 
 @pytest.mark.profile("routes", instead="test_the_equations_hold_with_their_sign")
@@ -85,13 +87,13 @@ def run(h: float, steps: int, **changes) -> GroupOrbit:  # noqa: ANN003
     start = START | {"body_velocity": admissible(0.9, 1.0), "steps": steps}
     if changes.keys() & {"displacement", "momentum"}:
         del start["body_velocity"]
-    return MIXED.discretize(h).simulate(**(start | changes))
+    return nh.simulate(nh.discretize(MIXED, h), **(start | changes))
 
 
 @functools.cache
 def flow() -> GroupOrbit:
     """Return the continuous motion of the mixed system at times 0, 1, 2."""
-    return MIXED.flow(**START, body_velocity=admissible(0.9, 1.0), times=[0.0, 1.0, 2.0], rtol=1e-13, atol=1e-14)
+    return nh.flow(MIXED, **START, body_velocity=admissible(0.9, 1.0), times=[0.0, 1.0, 2.0], rtol=1e-13, atol=1e-14)
 
 
 def rates(_: float, z: np.ndarray) -> np.ndarray:
@@ -261,7 +263,7 @@ def test_compiled_runs_are_those_of_jax(name: str, monkeypatch: pytest.MonkeyPat
 def test_chaplygins_ball_keeps_its_momentum_about_the_contact() -> None:
     """On SO(3) x R^2: with the midpoint rule R I R^T Om + m x e3 x x' in space is constant to rounding."""
     system, start = rolling_ball()
-    orbit = system.discretize(0.1).simulate(**start, steps=2000)
+    orbit = nh.simulate(nh.discretize(system, 0.1), **start, steps=2000)
     angular = np.einsum("kij,kj->ki", orbit.configuration[:, :3, :3], orbit.momentum[:, :3])
     total = angular[:, :2] + orbit.momentum[:, 3:] @ ROLL[:, :2]
     assert np.abs(np.diff(orbit.momentum[:, 3:], axis=0)).max() > 1e-3
@@ -369,7 +371,7 @@ def test_bad_systems_are_refused_at_the_start(arguments: tuple, message: str) ->
     """What only numbers can show is checked at the first pose, before any work."""
     system = GroupLagrangeDAlembert(PLANE, *arguments)
     with pytest.raises(ValueError, match=message):
-        system.discretize(0.1).simulate(**START, body_velocity=admissible(0.9, 1.0), steps=3)
+        nh.simulate(nh.discretize(system, 0.1), **START, body_velocity=admissible(0.9, 1.0), steps=3)
 
 
 def test_a_mass_tensor_needs_a_rigid_body() -> None:
@@ -397,7 +399,7 @@ def test_orbits_on_groups_have_tables_files_and_pictures(tmp_path) -> None:  # n
 def test_blocks_on_groups_are_the_run() -> None:
     """Bit for bit, as in coordinates."""
     start = {**START, "body_velocity": admissible(0.9, 1.0)}
-    blocks = list(nh.iterate(MIXED.discretize(0.1), **start, steps=10, block_steps=4))
+    blocks = list(nh.iterate(nh.discretize(MIXED, 0.1), **start, steps=10, block_steps=4))
     assert [len(block) for block in blocks] == [4, 4, 3]
     for rows in ("time", "configuration", "displacement", "momentum", "multipliers"):
         assert np.array_equal(np.concatenate([getattr(each, rows) for each in blocks]), getattr(run(0.1, 10), rows))
