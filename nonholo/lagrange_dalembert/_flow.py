@@ -126,8 +126,14 @@ def flow(
 ) -> Any:
     """Check the arguments, solve the equations and return the orbit."""
     refuse_table("flow", system)
-    time, errors = flow_times(times), flow_tolerances(_COARSE if rtol is None else rtol, atol)
+    time = flow_times(times)
     first = checked_state(system, configuration, starts, time[0], project=project)
+    return solve(system, first, time, rtol, atol)
+
+
+def solve(system: Any, first: State, time: Float[np.ndarray, "K"], rtol: float | None, atol: float = 1e-12) -> Any:
+    """Return the orbit from a checked place and velocity."""
+    errors = flow_tolerances(_COARSE if rtol is None else rtol, atol)
     motion = compiled.flow(system, first, time, _FINE if rtol is None else errors[0])
     rows, solution = motion or room("_integration").flow(system, first, time, errors)
     count = len(rows[0])

@@ -111,6 +111,10 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
         """Return the equations of motion, see `nonholo.vector_field`."""
         return importlib.import_module("nonholo.lagrange_dalembert").vector_field(self)
 
+    def flow_from(self, begins: float) -> Any:
+        """Return the continuous motion from a time on."""
+        return importlib.import_module("nonholo.lagrange_dalembert").CoordinateFlow(self, begins)
+
     @abc.abstractmethod
     def discrete_map(self, time_step: Any) -> DiscretizationT:
         """Return the discretized system, see `nonholo.discretize`."""
