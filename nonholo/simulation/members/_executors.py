@@ -255,7 +255,7 @@ def run_one_by_one(members: Members, starts: Firsts, plan: Plan, threads: int, r
     each = [orbits[member] for member in range(count)]
     codes = np.array([int(orbit.outcome) for orbit in each])
     columns = stack_rows(each, plan.states) | _times(plan, count)
-    branch = PRINCIPAL.name if stepper is None else stepper.branch
+    branch = getattr(stepper, "branch", PRINCIPAL.name)
     batch = Ensemble(members, plan.steps, plan.every, columns, codes, good, *starts.places, branch=branch)
     return batch if plan.events is None else dataclasses.replace(batch, events=log_of(batch, each))
 
