@@ -11,7 +11,10 @@ TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
 FOLDERS = ("nonholo", "nonholo_paper", "docs", "tests", "benchmarks", "scenarios")
 READ = (".py", ".pyi", ".md", ".toml", ".j2", ".cff", ".c", ".css")
 NOT_READ = ("tests/words.toml", "tests/test_words.py")
-QUOTED = {"docs/references.md": r"\*[^*\n]+\*", "CHANGELOG.md": r"(?s)\n## \[\d.*"}  # titles of works, past releases
+QUOTED = {
+    "docs/references.md": r"\*[^*\n]+\*",
+    "CHANGELOG.md": r"(?s)\n## \[0\.[12]\..*",
+}  # titles of works, past releases
 QUOTATION = r"“[^”]*”"
 GENERATED = re.compile(
     r"api/.*|reference/(?!symbols).*|gallery/README\.md|(errata|paper|reliability|tests)\.md"
