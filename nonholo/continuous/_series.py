@@ -238,15 +238,27 @@ def _matrix_rates(hats: Float[np.ndarray, "k N N"], spatial: bool) -> Rates:
 
 def _blocks(size: int, edges: np.ndarray, lone: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the block of each component, where those are that move each other, and which blocks nothing else moves."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    matrix = coo_array((np.ones(edges.shape[1]), tuple(edges)), (size, size))
-    count, labels = connected_components(matrix, connection="strong")
-    is_closed, (sources, targets) = np.ones(count, dtype=np.bool_), labels[edges]
+    places, labels = np.arange(size), np.full(size, -1)
+    while (is_left := labels < 0).any():
+        sources, targets = edges[:, is_left[edges].all(axis=0)]
+        first = _least_along(places, sources, targets)
+        same = first[sources] == first[targets]
+        is_block = is_left & (_least_along(first != places, targets[same], sources[same]) == 0)
+        labels[is_block] = first[is_block]
+    ordered, labels = np.unique(labels, return_inverse=True)
+    is_closed, (sources, targets) = np.ones(len(ordered), dtype=np.bool_), labels[edges]
     is_closed[targets[sources != targets]] = False
     is_closed[labels[lone]] = False
-    return labels.astype(np.int64), is_closed
+    return labels, is_closed
+
+
+def _least_along(values: np.ndarray, sources: np.ndarray, targets: np.ndarray) -> np.ndarray:
+    """Return the least value at each component and at those from which edges lead to it."""
+    before = None
+    while not np.array_equal(values, before):
+        before, values = values, values.copy()
+        np.minimum.at(values, targets, before[sources])
+    return values
 
 
 _TOLERANCE = 1e-12

@@ -10,10 +10,12 @@ from scipy.integrate import solve_ivp
 
 import nonholo as nh
 from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, GroupOrbit, mass_tensor_lagrangian
+from nonholo.lagrange_dalembert.compiled import _run
 
 TENSOR = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 PLANE, BODY = nh.SE(2), nh.ChaplyginSleigh(mass=1.3, inertia=0.7, a=0.0, b=0.2)
 ACTION = mass_tensor_lagrangian(PLANE, BODY.homogeneous_mass_tensor)
+ROLL = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
 START = {"configuration": PLANE.exp(np.array([0.4, 1.0, -2.0]))}
 
 
@@ -208,26 +210,62 @@ def test_thinning_keeps_the_numbers_and_labels_name_them() -> None:
     assert "displacement" not in flow().to_dataset()
 
 
-@pytest.mark.profile("routes", instead="test_the_equations_hold_with_their_sign")
-def test_chaplygins_ball_keeps_its_momentum_about_the_contact() -> None:
-    """On SO(3) x R^2: with the midpoint rule R I R^T Om + m x e3 x x' in space is constant to rounding."""
+def rolling_ball() -> tuple[GroupLagrangeDAlembert, dict[str, np.ndarray]]:
+    """Return a ball on SO(3) x R^2 that rolls with radius 1, x' = Om x e3, and a start."""
     group, mass, tensor = nh.ProductGroup(nh.SO(3), nh.Translations(2)), 1.5, np.diag([0.2, 0.3, 0.45])
     turning = mass_tensor_lagrangian(nh.SO(3), tensor)
-    roll = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])  # x' = Om x e3 for radius 1
 
     def action(W, h):  # noqa: ANN001, ANN202
         return turning(W[:3, :3], h) + mass * (W[3:5, 5] @ W[3:5, 5]) / (2 * h)
 
     def rolling(g):  # noqa: ANN001, ANN202
-        return jnp.concatenate([-roll @ g[:3, :3], jnp.eye(2)], axis=1)
+        return jnp.concatenate([-ROLL @ g[:3, :3], jnp.eye(2)], axis=1)
 
     g = group.random(np.random.default_rng(1))
     spin = np.array([1.0, -0.4, 0.8])
-    velocity = np.concatenate([spin, roll @ g[:3, :3] @ spin])
-    ball = nh.discretize(GroupLagrangeDAlembert(group, action, rolling), 0.1)
-    orbit = nh.simulate(ball, configuration=g, body_velocity=velocity, steps=2000)
+    start = {"configuration": g, "body_velocity": np.concatenate([spin, ROLL @ g[:3, :3] @ spin])}
+    return GroupLagrangeDAlembert(group, action, rolling), start
+
+
+def turned(speed: float) -> tuple[GroupLagrangeDAlembert, dict[str, np.ndarray]]:
+    """Return a body on SO(3) that may not turn about an axis of space, and a start."""
+    system = GroupLagrangeDAlembert(nh.SO(3), mass_tensor_lagrangian(nh.SO(3), TENSOR), lambda g: g[2:3])
+    g = nh.SO(3).random(np.random.default_rng(3))
+    return system, {"configuration": g, "body_velocity": speed * np.cross(g[2], [1.0, 0.3, -0.5])}
+
+
+RUNS = {
+    "SO(3)": lambda: turned(1.0),
+    "SO(3), fast": lambda: turned(9.0),
+    "SE(2)": lambda: (MIXED, {**START, "body_velocity": admissible(0.9, 1.0)}),
+    "SE(3)": lambda: (nh.examples.chaplygin_ball().system, nh.examples.chaplygin_ball()._start),
+    "SO(3) x R^2": rolling_ball,
+}
+
+
+@pytest.mark.profile("routes", keep=["SO(3)", "SE(2)"])
+@pytest.mark.parametrize("name", RUNS)
+def test_compiled_runs_are_those_of_jax(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Equations on groups are formulas, too: orbits of 50 steps differ by rounding, and so does what is decoded."""
+    system, start = RUNS[name]()
+    orbit = nh.simulate(nh.discretize(system, 0.1), **start, steps=50)
+    assert _run.programs(system, system.shapes[0], system.group.dim) is not None
+    for each in ("programs", "values"):
+        monkeypatch.setattr(_run, each, lambda *_, **__: None)
+    by_jax = nh.simulate(nh.discretize(system, 0.1), **start, steps=50)
+    for name in ("configuration", "displacement", "momentum", "multipliers", "energy"):
+        ours, theirs = getattr(orbit, name), getattr(by_jax, name)
+        assert np.abs(ours - theirs).max() <= 1e-12 * max(1.0, np.abs(theirs).max()), name
+    assert orbit.constraint_residual.max() <= 1e-13 * np.abs(orbit.body_velocity).max()
+
+
+@pytest.mark.profile("routes", instead="test_the_equations_hold_with_their_sign")
+def test_chaplygins_ball_keeps_its_momentum_about_the_contact() -> None:
+    """On SO(3) x R^2: with the midpoint rule R I R^T Om + m x e3 x x' in space is constant to rounding."""
+    system, start = rolling_ball()
+    orbit = nh.simulate(nh.discretize(system, 0.1), **start, steps=2000)
     angular = np.einsum("kij,kj->ki", orbit.configuration[:, :3, :3], orbit.momentum[:, :3])
-    total = angular[:, :2] + orbit.momentum[:, 3:] @ roll[:, :2]
+    total = angular[:, :2] + orbit.momentum[:, 3:] @ ROLL[:, :2]
     assert np.abs(np.diff(orbit.momentum[:, 3:], axis=0)).max() > 1e-3
     assert np.abs(total - total[0]).max() <= 1e-11
     assert np.abs(angular[:, 2] - angular[0, 2]).max() <= 1e-11

@@ -76,7 +76,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
     holonomic: ClassVar[None] = None
     is_driven: ClassVar[bool] = False
     coordinates: ClassVar[tuple[str, ...]] = ()
-    name: ClassVar[str] = "System with constraints that depend on the pose"
+    name: ClassVar[str] = "Constraints that depend on the pose"
     orbits: ClassVar[str] = "GroupOrbit"
     in_stores: ClassVar[tuple[str, ...]] = ("constraints", "coordinates", "is_driven", "name", "orbits", "shapes")
     _equations: ClassVar[str] = "on_groups._equations"
