@@ -13,7 +13,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 from pydantic import ValidationError
 
 from nonholo.base.limits import read_text
-from nonholo.cli.scenario.bodies import body_table, import_own, is_example, kinds, nearest_kind, own_kinds, summary
+from nonholo.cli.scenario.bodies import body_table, import_own, is_example, kinds, nearest_kind, summary
 from nonholo.cli.scenario.forces import read_table
 from nonholo.cli.scenario.motion import Run, Scenario, Start, complete_ready, moving
 from nonholo.cli.scenario.problems import Problem, ScenarioError, problem, problems_of, split_core
@@ -251,7 +251,7 @@ def _text_of(name: str, own: dict[str, str]) -> tuple[str, str]:
         if own == built_in() and name.isidentifier() and is_example(name) and name in kinds():
             return f"{name} (example)", toml_text(summary(body_table(name).make), {"body": {"kind": name}})
         remedy = suggestion(name, own) if own != built_in() or not name.isidentifier() else nearest_kind(name)
-        remedy = f"`nonholo new {name}` writes one." if name in own_kinds() else remedy
+        remedy = f"`nonholo new {name}` writes one." if not is_example(name) else remedy
         text = f"there is no such file, and no built-in scenario of this name. {remedy}"
     except (OSError, UnicodeDecodeError) as failure:
         text = f"cannot be read as a text file: {failure}"
