@@ -21,10 +21,10 @@ import numpy as np
 from nonholo.base.checks import error
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.continuous._solution import PLANE, Problem, Solved, States, first_heading, on_same_turn
+from nonholo.continuous._solution import PLANE, Problem, Solved, States, first_heading
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.kernels import Quadratic, revisit_series, solve_series, sparse_products
-from nonholo.orbit import looked_at
+from nonholo.orbit import looked_at, turned_near
 from nonholo.systems import AbstractSystem
 
 _COMPACT = 40
@@ -90,7 +90,7 @@ class Series(NamedTuple):
             if self.momentum is None
             else np.broadcast_to(self.momentum, (len(rows), len(self.momentum))).copy()
         )
-        return States(momenta, poses, on_same_turn(rows[:, pose_end], poses) if group == PLANE else None)
+        return States(momenta, poses, turned_near(rows[:, pose_end], poses) if group == PLANE else None)
 
 
 def by_series(system: AbstractSystem, problem: Problem) -> Solved:
