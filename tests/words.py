@@ -1,4 +1,4 @@
-"""`python tests/words.py`: the words of the house, listed in words.toml, in code, tests and pages."""
+"""`python tests/words.py`: the words of the house, listed in words.toml, in code, tests and pages; words of pages."""
 
 import re
 import sys
@@ -13,6 +13,8 @@ READ = (".py", ".pyi", ".md", ".toml", ".j2", ".cff", ".c", ".css")
 NOT_READ = ("tests/words.toml", "tests/test_words.py")
 QUOTED = {"docs/references.md": r"\*[^*\n]+\*", "CHANGELOG.md": r"(?s)\n## \[\d.*"}  # titles of works, past releases
 QUOTATION = r"“[^”]*”"
+GENERATED = re.compile(r"api/.*|reference/(?!symbols).*|gallery/README\.md|(tests|paper|reliability)\.md")  # by scripts
+MOST = 80_000
 
 
 def files(root: Path) -> list[str]:
@@ -57,6 +59,13 @@ def complaints(root: Path = ROOT) -> list[str]:
     ]
 
 
+def lengths(root: Path = ROOT) -> dict[str, int]:
+    """Return how many words each handwritten page of the docs has."""
+    pages = {path.relative_to(root / "docs").as_posix(): path for path in sorted((root / "docs").rglob("*.md"))}
+    return {name: len(path.read_text("utf-8").split()) for name, path in pages.items() if not GENERATED.match(name)}
+
+
 if __name__ == "__main__":
     print("\n".join(lines := complaints()))  # noqa: T201
+    print(f"{sum(lengths().values())} words in the handwritten pages of docs, of at most {MOST}")  # noqa: T201
     sys.exit(bool(lines))

@@ -9,9 +9,7 @@ velocity v of the whole step. The whole step from its end begins with the moment
 
 import dataclasses
 import functools
-import importlib
 import math
-from collections.abc import Iterator
 from typing import Any, ClassVar, cast
 
 import jax
@@ -107,14 +105,6 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
         step = states.step + fractions.astype(np.int64)
         return dataclasses.replace(orbit, time=states.time + fractions * h, step=step)
 
-    def simulate(self, **run: Any) -> OrbitT:
-        """Run the map: `nonholo.simulate(self, ...)`."""
-        return importlib.import_module("nonholo.simulation").simulate(self, **run)
-
-    def iterate(self, **run: Any) -> Iterator[OrbitT]:
-        """Run the map block by block: `nonholo.iterate(self, ...)`."""
-        return importlib.import_module("nonholo.simulation").iterate(self, **run)
-
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class CoordinateDiscretization(AbstractLagrangeDAlembertMap[CoordinateOrbit]):
@@ -146,7 +136,7 @@ class CoordinateDiscretization(AbstractLagrangeDAlembertMap[CoordinateOrbit]):
         Example:
             >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
             >>> free = LagrangeDAlembert(lambda q, v: 3 * v @ v, None, dimension=2)
-            >>> round(free.discretize(0.5).regularity((0, 0), (1, 2)), 12)
+            >>> round(nh.discretize(free, 0.5).regularity((0, 0), (1, 2)), 12)
             1.0
         """
         return self.system.regularity(q, q_next, time_step=self.time_step)
@@ -154,7 +144,7 @@ class CoordinateDiscretization(AbstractLagrangeDAlembertMap[CoordinateOrbit]):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class GroupDiscretization(AbstractLagrangeDAlembertMap[GroupOrbit]):
-    """A discretized `GroupLagrangeDAlembert`, made by its `discretize`.
+    """A discretized `GroupLagrangeDAlembert`, made by `nonholo.discretize`.
 
     Attributes:
         system: What moves.
@@ -163,7 +153,7 @@ class GroupDiscretization(AbstractLagrangeDAlembertMap[GroupOrbit]):
     Example:
         >>> from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, mass_tensor_lagrangian
         >>> free = GroupLagrangeDAlembert(nh.SO(3), mass_tensor_lagrangian(nh.SO(3), np.eye(3)), None)
-        >>> free.discretize(0.5).time_step
+        >>> nh.discretize(free, 0.5).time_step
         0.5
     """
 

@@ -122,14 +122,7 @@ _ROWS = 1024  # states whose powers are computed at once: one size, one compilat
 
 
 def flow(
-    system: Any,
-    configuration: Any,
-    starts: dict[str, Any],
-    times: Any,
-    rtol: float | None,
-    atol: float,
-    *,
-    project: bool,
+    system: Any, *, configuration: Any, times: Any, rtol: float | None, atol: float, project: bool, **starts: Any
 ) -> Any:
     """Check the arguments, solve the equations and return the orbit."""
     refuse_table("flow", system)

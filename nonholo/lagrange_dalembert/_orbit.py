@@ -68,7 +68,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     def motion(self) -> Any:
         """The discretization or the flow."""
         flow = CoordinateFlow
-        return flow(self.system) if self.time_step is None else self.system.discretize(self.time_step)
+        return flow(self.system) if self.time_step is None else self.system.discrete_map(self.time_step)
 
     @property
     def span(self) -> tuple[float, float] | None:  # type: ignore[override]
@@ -202,7 +202,7 @@ class CoordinateOrbit(AbstractCoordinateOrbit):
     Example:
         >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
         >>> spring = LagrangeDAlembert(lambda q, v: (v @ v - q @ q) / 2, None, dimension=1)
-        >>> spring.discretize(0.1).simulate(configuration=[1], body_velocity=[0], steps=10)
+        >>> nh.simulate(nh.discretize(spring, 0.1), configuration=[1], body_velocity=[0], steps=10)
         <CoordinateOrbit: 11 states of 1 coordinates, time 0 to 1, successful>
     """
 
@@ -255,7 +255,7 @@ class GroupOrbit(AbstractCoordinateOrbit):
     Example:
         >>> from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, mass_tensor_lagrangian
         >>> free = GroupLagrangeDAlembert(nh.SO(3), mass_tensor_lagrangian(nh.SO(3), np.diag([1.0, 2.0, 3.0])), None)
-        >>> free.discretize(0.1).simulate(body_velocity=(1.0, 0.2, 0.0), steps=10)
+        >>> nh.simulate(nh.discretize(free, 0.1), body_velocity=(1.0, 0.2, 0.0), steps=10)
         <GroupOrbit: 11 states of 3 x 3 matrices, time 0 to 1, successful>
     """
 
@@ -380,12 +380,7 @@ class RecordedSystem(AbstractCoordinateSystem):
         del q
         return ()
 
-    def discretize(self, time_step: Any) -> Any:
+    def discrete_map(self, time_step: Any) -> Any:
         """Return the map of the store, which cannot run."""
         kind = "GroupDiscretization" if "group" in self.record else "CoordinateDiscretization"
         return getattr(room("_discretization"), kind)(self, time_step)
-
-    def flow(self, **arguments: Any) -> Any:
-        """Refuse: there are no functions."""
-        del arguments
-        return self.lagrangian

@@ -46,7 +46,7 @@ def flow(
     system: AbstractCoordinateSystem[Any, OrbitT],
     *,
     times: Any,
-    configuration: Any,
+    configuration: Any = None,
     body_velocity: Any = None,
     momentum: Any = None,
     project: bool = False,
@@ -84,9 +84,10 @@ def flow(
     the body, the series solve it too, or if friction is much faster than the motion Radau of SciPy, with `rtol` of 1e-9
     and more; else DOP853, with `rtol` of 1e-13 and more. These two also give the states between.
 
-    For a `LagrangeDAlembert` these are the equations of its `flow`, with q in place of the pose: it starts at a
-    `configuration`, and takes neither `restricted_velocity` nor `method`. Smooth formulas have Taylor series too; with
-    kinks, as an absolute value has, diffrax solves them.
+    The equations of a `LagrangeDAlembert` stand in its docstring. It starts at a `configuration`, and takes neither
+    `restricted_velocity` nor `method`. The acceleration comes from the constraint differentiated once, a holonomic one
+    twice; velocities and places are projected to the constraints, orthogonally in the kinetic energy, at each requested
+    time. Smooth formulas have Taylor series too; with kinks, as an absolute value has, diffrax solves them.
 
     References: [fedorov-zenkov-2004], sections 2, 4 and 5; [jorba-zou-2005] for order and step of the series.
 

@@ -120,3 +120,33 @@ def test_bad_fits_are_refused(name: str) -> None:
     system_of, columns, words = REFUSED[name]
     with pytest.raises(ValueError, match=words):
         nh.fit(system_of, recorded(0, *columns), {"inertia": 1.0, "arm": 0.3})
+
+
+def swings(seed: int, noise: float) -> tuple[Any, dict[str, np.ndarray]]:
+    """Return how a pendulum in Cartesian coordinates is made, and a record of its places."""
+    rod: Any = nh.LagrangeDAlembert(
+        lambda q, v, p: v @ v / 2 - p["gravity"] * q[1],
+        None,
+        holonomic=lambda q, p: jnp.array([q @ q - p["length"] ** 2]),
+        dimension=2,
+        coordinates=("x", "y"),
+        parameters={"gravity": 9.81, "length": 1.2},
+    )
+    orbit = nh.simulate(nh.discretize(rod, 0.02), configuration=(0.72, -0.96), body_velocity=(0.8, 0.6), steps=80)
+    rows = orbit.configuration + np.random.default_rng(seed).normal(scale=noise, size=(81, 2))
+    return lambda p: rod.with_parameters(**p), {"t": orbit.time, "x": rows[:, 0], "y": rows[:, 1]}
+
+
+def test_a_motion_under_holonomic_constraints_is_fitted() -> None:
+    """Numbers of the energy and of the constraint; errors are as large as the fit says, in both alike."""
+    system_of, record = swings(0, 1e-9)
+    found: Any = nh.fit(system_of, record, {"gravity": 9.0, "length": 1.0})
+    assert found.outcome == "converged"
+    assert found.parameters == {"gravity": pytest.approx(9.81, abs=1e-6), "length": pytest.approx(1.2, abs=1e-8)}
+    assert np.abs(np.linalg.norm(found.orbit.configuration, axis=1) - found.parameters["length"]).max() <= 1e-14
+    errors = []
+    for seed in range(20):
+        noisy = nh.fit(system_of, swings(seed, 1e-3)[1], {"gravity": 9.0, "length": 1.0})
+        off = np.array(list(noisy.parameters.values())) - [9.81, 1.2]
+        errors.append(off @ np.linalg.solve(noisy.covariance, off))
+    assert 20 < sum(errors) < 64  # chi-squared of 40 degrees of freedom, 1 % on either side

@@ -165,7 +165,7 @@ class DatasetTask:
         return simulate(discrete, configuration=q, momentum=p, steps=self.steps, throw=False)
 
     def _observations(self, block: MemberBlock, fields: dict[str, Field]) -> dict[str, Field]:
-        """Return what can be observed with normal noise, which depends on nothing but seed, orbit and name."""
+        """Return what can be observed with normal noise, which depends on nothing but `rng`, orbit and name."""
         observations: dict[str, Field] = {}
         for name in fields.keys() - _EXACT if self.noise else ():
             axes, rows, labels = fields[name]

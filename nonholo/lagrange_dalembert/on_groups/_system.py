@@ -18,11 +18,11 @@ from nonholo.systems import AbstractCoordinateSystem, checked_group, group_mass_
 
 if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._discretization import GroupDiscretization
-    from nonholo.lagrange_dalembert._orbit import GroupOrbit
+    from nonholo.lagrange_dalembert._orbit import GroupOrbit  # noqa: F401  (named by the base class)
 
 
 @dataclasses.dataclass(frozen=True)
-class GroupLagrangeDAlembert(AbstractCoordinateSystem):
+class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "GroupOrbit"]):
     r"""A left-invariant Lagrangian on a matrix group with velocity constraints that may depend on the configuration.
 
     $$ \dot p = \mathrm{ad}^*_\omega p + \sum_j\lambda_j a^j(g), \quad p = \frac{\partial l}{\partial\omega}, \qquad
@@ -63,7 +63,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
         ...     return jnp.array([[0.0, -jnp.sin(g[0, 2]), jnp.cos(g[0, 2])]])
         >>> action = mass_tensor_lagrangian(nh.SE(2), nh.ChaplyginSleigh(1.0, 0.5, a=0.3).homogeneous_mass_tensor)
         >>> sleigh = GroupLagrangeDAlembert(nh.SE(2), action, forms)
-        >>> orbit = sleigh.discretize(0.1).simulate(body_velocity=(0.5, 1.0, 0.0), steps=100)
+        >>> orbit = nh.simulate(nh.discretize(sleigh, 0.1), body_velocity=(0.5, 1.0, 0.0), steps=100)
         >>> orbit.configuration.shape, bool(orbit.constraint_residual.max() < 1e-13)
         ((101, 3, 3), True)
     """
@@ -76,7 +76,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
     holonomic: ClassVar[None] = None
     is_driven: ClassVar[bool] = False
     coordinates: ClassVar[tuple[str, ...]] = ()
-    name: ClassVar[str] = "System with constraints that depend on the pose"
+    name: ClassVar[str] = "Constraints that depend on the pose"
     orbits: ClassVar[str] = "GroupOrbit"
     in_stores: ClassVar[tuple[str, ...]] = ("constraints", "coordinates", "is_driven", "name", "orbits", "shapes")
     _equations: ClassVar[str] = "on_groups._equations"
@@ -112,66 +112,9 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
         """Shapes of a configuration and of a velocity."""
         return self.group.identity.shape, (self.group.dim,)
 
-    def discretize(self, time_step: Any) -> "GroupDiscretization":
-        """Return the discrete map with this time step.
-
-        Args:
-            time_step: h > 0.
-
-        Raises:
-            ValueError: A time step that is not positive.
-
-        Example:
-            >>> from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, mass_tensor_lagrangian
-            >>> action = mass_tensor_lagrangian(nh.SO(3), np.diag([1.0, 2.0, 3.0]))
-            >>> GroupLagrangeDAlembert(nh.SO(3), action, None).discretize(0.1).time_step
-            0.1
-        """
+    def discrete_map(self, time_step: Any) -> "GroupDiscretization":
+        """Return the discretized system, see `nonholo.discretize`."""
         return room("_discretization").GroupDiscretization(self, time_step)
-
-    def flow(
-        self,
-        *,
-        configuration: Any = None,
-        times: Any,
-        body_velocity: Any = None,
-        momentum: Any = None,
-        project: bool = False,
-        rtol: float | None = None,
-        atol: float = 1e-12,
-    ) -> "GroupOrbit":
-        r"""Solve the continuous equations.
-
-        The rate of $\omega$ comes from the constraint differentiated once. Velocities are projected to the constraint,
-        orthogonally in the kinetic energy, at each evaluation and at each requested time; an adaptive Runge-Kutta
-        method of order 8 steps to every requested time, where the pose is put back on the group.
-
-        Args:
-            configuration: The first configuration; the identity by default.
-            times: The times of the states, at least one, increasing or decreasing; the start is at the first.
-            body_velocity: The first velocity, which must satisfy the constraint.
-            momentum: Start with this momentum instead; only its action on admissible velocities counts.
-            project: Take the admissible velocity next to the given one in the kinetic energy.
-            rtol: Relative error of a step, at least 1e-14, which is the default of series; of diffrax 1e-10.
-            atol: Absolute error of a step of diffrax.
-
-        Returns:
-            The orbit. It has no displacements, and its multipliers are the forces at its times.
-
-        Raises:
-            ValueError: A bad argument, before any work.
-            OutcomeError: The solver could not meet the tolerances; its `orbit` holds every good state.
-
-        Example:
-            >>> from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, mass_tensor_lagrangian
-            >>> action = mass_tensor_lagrangian(nh.SO(3), np.eye(3))
-            >>> free = GroupLagrangeDAlembert(nh.SO(3), action, None)
-            >>> orbit = free.flow(body_velocity=(0.0, 0.0, np.pi), times=(0.0, 1.0))
-            >>> print(orbit.configuration[-1].diagonal().round(9))
-            [-1. -1.  1.]
-        """
-        starts = {"body_velocity": body_velocity, "momentum": momentum}
-        return room("_flow").flow(self, configuration, starts, times, rtol, atol, project=project)
 
 
 def _argument(argument: str) -> str:
