@@ -193,13 +193,12 @@ def _refuse_other_starts(batch: Ensemble, demand: np.ndarray, probe: Ensemble) -
 
 def _decode(axes: Any, pieces: kernels.MemberRows) -> None:
     """Take rows of a kernel to canonical axes, in place."""
+    beside = axes.beside(1)
     if axes.rows is not None:
-        beside = axes.beside(1)
         pieces.momenta[:] = beside.canonical_momenta(pieces.momenta)
         pieces.charts[:] = beside.canonical_charts(pieces.charts)
     if axes.frame is not None and pieces.poses.shape[1]:
-        good = np.isfinite(pieces.momenta[..., 0])
-        pieces.poses[good] = axes.at(np.nonzero(good)[0]).canonical_poses(pieces.poses[good])
+        pieces.poses[:] = beside.canonical_poses(pieces.poses)
 
 
 def _rows(count: int, states: int, *, with_poses: bool) -> kernels.MemberRows:
