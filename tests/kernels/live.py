@@ -168,7 +168,7 @@ def in_coordinates() -> Arrays:
     found = []
     for ready in (nh.examples.snakeboard(), nh.examples.driven_sleigh()):
         how = {"configuration": ready.configuration, "body_velocity": ready.body_velocity}
-        orbit = nh.discretize(ready.system, 0.1).simulate(**how, steps=MEMBERS, throw=False)
+        orbit = nh.simulate(nh.discretize(ready.system, 0.1), **how, steps=MEMBERS, throw=False)
         found += [orbit.configuration, orbit.momentum, orbit.multipliers, orbit.energy]
     return found
 
