@@ -82,9 +82,10 @@ class Series(NamedTuple):
         """Return momenta, poses and headings."""
         group, end = self.group, rows.shape[1] - self.head
         pose_end = end - (group == PLANE)
-        numbers = np.ascontiguousarray(rows[:, :pose_end])
-        matrices = numbers.reshape(-1, *group.identity.shape) if not self.compact else None
-        poses = group.normalize_pose(numbers if matrices is None else group.pose_from_matrix(matrices))
+        poses = np.ascontiguousarray(rows[:, :pose_end])
+        if not self.compact:
+            poses = group.pose_from_matrix(poses.reshape(-1, *group.identity.shape))
+        poses = group.normalize_pose(poses)
         momenta = (
             rows[:, end : end + self.rank] * self.unit
             if self.momentum is None
