@@ -65,13 +65,8 @@ def _fractions(split: str) -> list[float]:
 
 
 def _show_all() -> None:
-    from rich.console import Console
-    from rich.table import Column, Table
-
+    from nonholo.cli.screen.tables import show_table
     from nonholo.ensembles import DEFINITIONS
 
-    names = Column("name", no_wrap=True)
-    table = Table(names, "what moves", "energies", "version", title="Data sets", title_justify="left")
-    for name, each in DEFINITIONS.items():
-        table.add_row(name, each.title, "{:g} to {:g}".format(*each.energy), str(each.version))
-    Console().print(table)
+    rows = ((k, each.title, "{:g} to {:g}".format(*each.energy), str(each.version)) for k, each in DEFINITIONS.items())
+    show_table(("name", "what moves", "energies", "version"), rows, "Data sets")

@@ -16,7 +16,7 @@ from nonholo.base.checks import is_integer, shown
 from nonholo.base.limits import bounded_count
 from nonholo.cli.scenario.bodies import arguments
 from nonholo.cli.scenario.motion import AbstractScenario, Start, is_ready
-from nonholo.cli.scenario.sections import Count, Section, by_kind, checked_by, is_finite
+from nonholo.cli.scenario.sections import Count, Section, by_kind, checked_by, is_finite, suggestion
 from nonholo.ensembles import REDUCTIONS
 from nonholo.ensembles.designs import DISTRIBUTIONS
 
@@ -240,7 +240,7 @@ class SweepScenario(AbstractScenario):
     """The scenario of a sweep."""
 
     start: Start | None = None
-    design: Annotated[Any, by_kind(DESIGNS.__getitem__, lambda: DESIGNS)]
+    design: Annotated[Any, by_kind(DESIGNS.__getitem__, lambda name: suggestion(name, DESIGNS))]
     keep: Keep = Keep()
     output: SweepOutput = SweepOutput()
 
