@@ -3,6 +3,7 @@
 import functools
 from typing import Any
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -211,6 +212,46 @@ def test_places_on_the_way_and_the_goal_of_an_outline() -> None:
     ends = poses[:, None, :2, 2] + np.einsum("kij,pj->kpi", poses[:, :2, :2], rod)
     assert np.linalg.norm(ends - disc[0][0], axis=-1).min() > disc[1] - 1e-8
     np.testing.assert_allclose(poses[-1], np.eye(3), rtol=0, atol=1e-8)
+
+
+def trailer_axle(q: Any) -> Any:
+    """Return the axle of the tractor and that of a trailer 0.6 behind it, in axes of the tractor."""
+    bent = q[3] - q[2]
+    return jnp.stack([jnp.zeros(2), -0.6 * jnp.stack([jnp.cos(bent), jnp.sin(bent)])])
+
+
+@pytest.mark.profile("long", instead="test_derivatives_are_those_of_differences")
+def test_a_trailer_keeps_clear_of_a_disc() -> None:
+    """Its axle cuts into the disc that the tractor avoids; as a point of the outline, a function of q, it does not."""
+    pytest.importorskip("casadi")
+    discrete = nh.examples.trailers(hitches=(0.6,)).discretize(0.1)
+    start = {"configuration": (0.0, 0.0, 0.0, 0.0), "body_velocity": (0.8, 0.0, 0.0, 0.0)}
+    goal, disc = {"configuration": {"x": 1.6, "y": 1.6, "theta": np.pi / 2}}, ([(1.0, 0.6)], 0.35)
+    nearest = []
+    for outline in (np.zeros((1, 2)), trailer_axle):
+        found = nh.steer(discrete, start, goal, steps=30, obstacles=disc, outline=outline)
+        assert found.outcome == "converged"
+        q = found.orbit.configuration
+        axles = q[:, :2], q[:, :2] - 0.6 * np.stack([np.cos(q[:, 3]), np.sin(q[:, 3])], axis=1)
+        nearest.append([np.linalg.norm(axle - disc[0][0], axis=1).min() - disc[1] for axle in axles])
+    (tractor, cut), (both, clear) = nearest
+    assert tractor > -1e-8
+    assert cut < -0.01
+    assert min(both, clear) > -1e-8
+
+
+@pytest.mark.parametrize(
+    ("discrete", "outline", "words"),
+    [
+        (SLEIGH, trailer_axle, "be points of a body on a group"),
+        (nh.discretize(nh.examples.kinematic_car().system, 0.1), lambda q: q[:2], r"of shape \(points, 2\)"),
+    ],
+)
+def test_bad_outlines_are_refused(discrete: Any, outline: Any, words: str) -> None:
+    """A function on a group, and one that gives no points."""
+    pytest.importorskip("casadi")
+    with pytest.raises(ValueError, match=rf"steer\(outline=...\).*{words}"):
+        nh.steer(discrete, {"configuration": np.zeros(5)}, {"configuration": np.zeros(5)}, steps=4, outline=outline)
 
 
 @pytest.mark.profile("long", instead="test_derivatives_are_those_of_differences")

@@ -58,18 +58,8 @@ def accessibility(system: Any, configuration: Any, *, depth: int | None = None) 
         (2, 3, 4, 5)
     """
     with needs("jax", "accessibility"):
-        from nonholo.analysis.locomotion import _brackets, _reduction
-        from nonholo.lagrange_dalembert import checked_state, equations
-    where, has_shape = "accessibility(configuration=...)", hasattr(system, "shape_coordinates")
-    own: Any = _reduction.Reduced(system) if has_shape else checked_system("accessibility", system)
-    names = system.shape_coordinates if has_shape else own.coordinates
-    q, integrable = array(where, configuration, (len(names),), f"Pass {len(names)} coordinates."), 0
-    if has_shape:
-        q = np.append(np.zeros(system.group.dim), q)
-    elif own.holonomic is not None:
-        checked_state(own, q, {"body_velocity": np.zeros(len(q))}, 0.0, "accessibility")
-        integrable = own.constraints - own.velocity_constraints
-    rows, whole = (_reduction.Reduced.constraint_forms if has_shape else equations.forms, own), len(q) - integrable
+        from nonholo.analysis.locomotion import _brackets
+    where, (rows, q, whole) = "accessibility(configuration=...)", _constraints(system, configuration)
     forms = _brackets.forms_at(rows, q)
     rank = np.linalg.matrix_rank(forms) if np.isfinite(forms).all() else -1
     if rank < len(forms):
@@ -87,3 +77,20 @@ def accessibility(system: Any, configuration: Any, *, depth: int | None = None) 
             break
     directions = np.linalg.svd(fields)[0][:, : growth[-1]].T
     return Accessibility(tuple(growth), directions, growth[-1] == whole)
+
+
+def _constraints(system: Any, configuration: Any) -> tuple[Any, Float[np.ndarray, "n"], int]:
+    """Return the function of the constraint forms with its system, the checked place, and how far brackets may lead."""
+    from nonholo.analysis.locomotion import _reduction
+    from nonholo.lagrange_dalembert import checked_state, equations
+
+    where, has_shape = "accessibility(configuration=...)", hasattr(system, "shape_coordinates")
+    own: Any = _reduction.Reduced(system) if has_shape else checked_system("accessibility", system)
+    names = system.shape_coordinates if has_shape else own.coordinates
+    q = array(where, configuration, (len(names),), f"Pass {len(names)} coordinates.")
+    if has_shape:
+        q = np.append(np.zeros(system.group.dim), q)
+        return (_reduction.Reduced.constraint_forms, own), q, len(q)
+    if own.holonomic is not None:
+        checked_state(own, q, {"body_velocity": np.zeros(len(q))}, 0.0, "accessibility")
+    return (equations.forms, own), q, len(q) - (own.constraints - own.velocity_constraints)

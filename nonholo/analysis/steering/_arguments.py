@@ -220,14 +220,14 @@ class Way(NamedTuple):
     Attributes:
         centers: Of obstacles.
         radii: Of obstacles.
-        outline: Body points that keep clear of them.
+        outline: Body points that keep clear of them, or a function of the configuration that returns them.
         via: Places of the body frame, by number of the step after which it is there.
         bounds: Of states; None where they are free.
     """
 
     centers: Float[np.ndarray, "obstacles n"]
     radii: Float[np.ndarray, "obstacles"]
-    outline: Float[np.ndarray, "points n"]
+    outline: Any
     via: dict[int, Float[np.ndarray, "n"]]
     bounds: StateBounds | None = None
 
@@ -245,10 +245,7 @@ class Way(NamedTuple):
         radii = array(where, radii, () if shape_of(radii) == () else (len(centers),), remedy)
         if not (radii > 0).all():
             raise error(where, "have positive radii", shown(radii), remedy)
-        where = "steer(outline=...)"
-        outline = array(where, np.zeros((1, n)) if outline is None else outline, (None, n), "Pass points of the body.")
-        if not len(outline):
-            raise error(where, "have a point", "none", "Leave it out for the origin of the body frame.")
+        outline = outline if callable(outline) else _body_points_of(n, outline)
         return cls(centers, np.broadcast_to(radii, len(centers)), outline, _places(n, steps, via))
 
     def penetration(self, points: Float[np.ndarray, "... points n"]) -> float:
@@ -275,6 +272,15 @@ class Way(NamedTuple):
         if points is not None and (depth := self.penetration(points)) > 0:
             got = f"a point {depth:.3g} inside of one"
             raise error(f"steer({name}=...)", "be clear of obstacles", got, "Move it, or make the obstacle smaller.")
+
+
+def _body_points_of(n: int, outline: Any) -> Float[np.ndarray, "points n"]:
+    """Return checked points of the body, by default its origin."""
+    where, origin = "steer(outline=...)", np.zeros((1, n))
+    points = array(where, origin if outline is None else outline, (None, n), "Pass points of the body.")
+    if not len(points):
+        raise error(where, "have a point", "none", "Leave it out for the origin of the body frame.")
+    return points
 
 
 def _apart(begin: np.ndarray, end: np.ndarray, centers: np.ndarray) -> np.ndarray:
@@ -313,13 +319,15 @@ def body_points(g: Float[Array, "... N N"], outline: Float[Array, "points n"]) -
     return g[..., None, :n, -1] + outline @ g[..., :n, :n].swapaxes(-1, -2)
 
 
-def planar_points(
-    system: Any, q: Float[Array, "... n"], outline: Float[Array, "points 2"]
-) -> Float[Array, "... points 2"]:
-    """Return where points of a body with coordinates x and y are, turned by the heading where it has one."""
+def planar_points(system: Any, q: Float[Array, "... n"], outline: Any) -> Float[Array, "... points 2"]:
+    """Return where points of a body with coordinates x and y are, turned by the heading where it has one.
+
+    The points are given, or a function of the configuration.
+    """
     names, xp = system.coordinates, q.__array_namespace__()
     x, y = (q[..., names.index(name)] for name in ("x", "y"))
     turn = xp.zeros_like(x) if system.heading is None else q[..., names.index(system.heading)]
     c, s = xp.cos(turn), xp.sin(turn)
     rows = xp.stack([xp.stack([c, s], axis=-1), xp.stack([-s, c], axis=-1)], axis=-2)
-    return xp.stack([x, y], axis=-1)[..., None, :] + outline @ rows
+    points = outline(q[..., : system.dimension]) if callable(outline) else outline
+    return xp.stack([x, y], axis=-1)[..., None, :] + points @ rows

@@ -5,9 +5,10 @@ step has besides, a chart of the displacement or a velocity with multipliers; f 
 """
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple, cast
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 
@@ -27,6 +28,7 @@ from nonholo.analysis.steering._program import Program, Steps
 from nonholo.analysis.steering._shooting import sizes
 from nonholo.analysis.steering._transcription import Problem, bounds_of
 from nonholo.base.checks import array, error, shown
+from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, discretize
 from nonholo.discrete.definition import Rollout, free_rows, step_residual
@@ -39,6 +41,7 @@ from nonholo.lagrange_dalembert import (
     equations,
     in_double,
     place,
+    traced_shape,
 )
 from nonholo.simulation import simulate
 from nonholo.systems import Forced
@@ -95,20 +98,55 @@ class GroupNodes(NamedTuple):
         return g, x[rows * group.size :]
 
 
+@dataclasses.dataclass(frozen=True)
+class MovingOutline:
+    """Points in axes of the body that depend on the configuration.
+
+    Attributes:
+        function: Of a configuration.
+        shape: Of what it returns.
+    """
+
+    function: Callable[[Array], Array]
+    shape: tuple[int, ...]
+
+    @classmethod
+    def of(cls, system: LagrangeDAlembert, function: Callable[[Array], Array]) -> "MovingOutline":
+        """Return the checked outline of a system."""
+        where, of = "steer(outline=...)", f"{system.dimension} coordinates"
+        with double_precision():
+            shape = traced_shape(where, function, (jax.ShapeDtypeStruct((system.dimension,), float),), of)
+        if len(shape) != 2 or shape[1] != 2 or not shape[0]:
+            remedy = "Return points in axes of the body, x ahead."
+            raise error(where, "return an array of shape (points, 2)", f"shape {shape}", remedy)
+        return cls(function, shape)
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __call__(self, q: Float[Array, "... n"]) -> Float[Array, "... points 2"]:
+        """Return the points at one configuration or many."""
+        if not isinstance(q, np.ndarray):
+            return self.function(q)
+        with double_precision():
+            rows = np.array([self.function(jnp.asarray(row)) for row in q.reshape(-1, q.shape[-1])])
+        return rows.reshape(*q.shape[:-1], *self.shape)
+
+
 class CoordinateNodes(NamedTuple):
     """Steps in coordinates.
 
     Attributes:
         system: What moves.
         time_step: h.
-        outline: Points in axes of the body that keep clear of obstacles, (points, 2).
+        outline: Points in axes of the body that keep clear of obstacles, (points, 2), or a `MovingOutline`.
         directions: Rows span the admissible velocities near the goal; none where its velocity is free.
         velocity: The last velocity.
     """
 
     system: LagrangeDAlembert
     time_step: Array
-    outline: Float[Array, "points n"]
+    outline: Any
     directions: Array
     velocity: Array
 

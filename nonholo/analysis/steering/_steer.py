@@ -128,7 +128,8 @@ def steer(
         method: "shooting" or "ipopt" (extra `steer`); by default "ipopt" where it alone can do what is asked.
         obstacles: Discs or balls: their centers (obstacles, n), and one radius or one for each. States keep clear of
             them; between two states a track may cut into one by up to $s^2/8\rho$ on a step of length s.
-        outline: Body points (points, n) that keep clear; by default the origin of the body frame.
+        outline: Body points (points, n) that keep clear; by default the origin of the body frame. In coordinates also a
+            function of q, written with `jax.numpy`, that returns them: those of a trailer, which must not cut a disc.
         via: Positions of the body frame on the way, by number of steps: {40: (1.0, 0.5)}.
         state_bounds: The least and the largest value of what a state has, by name: {"x": (0, 3), "theta": (-1, 1)}.
             On groups "x", "y", "z"; "theta" in the plane, of the heading whatever its turns; "restricted_velocity", a
@@ -170,7 +171,7 @@ def steer(
     method = _method(discrete, method, extras)
     if in_coordinates(discrete):
         return _steered_in_coordinates(discrete, (start, goal), bounds, way, steps, hints, state_bounds)
-    _check(discrete, steps)
+    _check(discrete, steps, way)
     ends, is_one = checked_ends(discrete.system, start, goal, bool(way.via))
     _refuse_too_many(discrete, steps, method, min(len(ends[0]), BLOCK))
     way = way._replace(bounds=bounds_of_body(state_bounds, discrete.system, ends))
@@ -198,8 +199,11 @@ def _method(discrete: Any, method: Any, extras: dict[str, Any]) -> str:
     return method or ("shooting" if all(each is None for each in extras.values()) else "ipopt")
 
 
-def _check(discrete: Discretization, steps: int) -> None:
-    """Refuse what `rollout` refuses, and constraints that are fixed in space."""
+def _check(discrete: Discretization, steps: int, way: Way) -> None:
+    """Refuse what `rollout` refuses, constraints that are fixed in space, and an outline that is a function."""
+    if callable(way.outline):
+        remedy = "Bodies on groups have no shape: pass points."
+        raise error("steer(outline=...)", "be points of a body on a group", "a function", remedy)
     where, system = "steer(discrete=...)", discrete.system
     if system.is_spatial:
         got = type(system).__name__
@@ -260,9 +264,11 @@ def _steered_in_coordinates(
 ) -> Steering:
     """Return the result for a system in coordinates."""
     with needs("steer", "steer"):
-        from nonholo.analysis.steering._problems import checked_goal, checked_start, coordinate_problem
+        from nonholo.analysis.steering._problems import MovingOutline, checked_goal, checked_start, coordinate_problem
         from nonholo.analysis.steering._transcription import transcribe
     n, (x, v) = discrete.system.dimension, checked_start(discrete, ends[0])
+    if callable(way.outline):
+        way = way._replace(outline=MovingOutline.of(discrete.system, way.outline))
     within_memory("steer(steps=...)", _PER_ENTRY * steps * (7.0 * n) ** 2, "Pass fewer steps.")
     limits = limits_of_steps(bounds, steps, n)
     goal = checked_goal(discrete, ends[1], is_free=bool(way.via))
