@@ -48,7 +48,7 @@ ONE_THREAD = {**os.environ, "OMP_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
 
 def design_of(name: str, members: int) -> nh.RandomDesign:
     """Return random members."""
-    return nh.RandomDesign(members, CASES[name][1], seed=1)
+    return nh.RandomDesign(members, CASES[name][1], rng=1)
 
 
 def swept(name: str, members: int, steps: int = STEPS, reductions: Any = KEPT, **options: Any) -> float:

@@ -83,7 +83,7 @@ Many motions:
     dataset: Write a data set of orbits of a ready system, for people who train models.
     load_sweep: Open the result of a finished sweep, after checking every chunk of it.
     Grid: Every combination of values along axes.
-    RandomDesign: Members drawn from distributions: member i is the same in every design with this seed, however ...
+    RandomDesign: Members drawn from distributions: member i is the same in every design with this `rng`, however ...
     Choice: One of some values, all with the same probability.
     Direction: Vectors of one length that point anywhere with the same probability.
     LogUniform: Positive numbers whose logarithms lie evenly between those of two bounds.

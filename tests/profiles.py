@@ -104,8 +104,6 @@ _DALEMBERT = "nonholo.lagrange_dalembert."
 DOCTESTS = {  # examples that compile for long
     f"{_DALEMBERT}_orbit.GroupOrbit": "routes",
     f"{_DALEMBERT}on_groups._system.GroupLagrangeDAlembert": "routes",
-    f"{_DALEMBERT}on_groups._system.GroupLagrangeDAlembert.flow": "routes",
-    f"{_DALEMBERT}_system.LagrangeDAlembert.flow": "routes",
     f"{_DALEMBERT}_orbit.CoordinateOrbit": "routes",
     "nonholo.examples._points.particle": "routes",
     "nonholo.ensembles._family_task.FamilyTask": "routes",

@@ -28,7 +28,7 @@ BAD: dict[str, tuple[Callable[[Any], Any], str]] = {
     "legendre": (lambda x: nh.discrete_legendre(TOP, x), "discrete_legendre(displacement=...)"),
     "subspace": (lambda x: nh.reference_point_subspace(x, np.eye(3)), "reference_point_subspace(n=...)"),
     "depth": (lambda x: nh.branch_tree(TOP, np.eye(3), x), "branch_tree(depth=...)"),
-    "seed": (lambda x: nh.Grid({"a": [1.0]}, seed=x), "Grid(seed=...)"),
+    "rng": (lambda x: nh.Grid({"a": [1.0]}, rng=x), "Grid(rng=...)"),
     "stop": (lambda x: nh.Event(len, stop=x), "Event(stop=...)"),
     "group": (lambda x: nh.LLSystem(x, J, np.eye(3)), "(group=...)"),
 }

@@ -55,7 +55,7 @@ def test_a_call_for_a_body_is_short() -> None:
 
 def test_a_call_in_coordinates_shares_its_files() -> None:
     """The same run in coordinates is the same call, with other equations."""
-    discrete = LagrangeDAlembert(lambda _, v: v @ v / 2, _forms, dimension=3).discretize(0.1)
+    discrete = nh.discretize(LagrangeDAlembert(lambda _, v: v @ v / 2, _forms, dimension=3), 0.1)
     velocity: dict[str, Any] = {"configuration": (0.0, 0.0, 0.0), "body_velocity": (1.0, 0.0, 0.3)}
     entered = set(_entered(lambda: nh.simulate(discrete, steps=10, **velocity)))
     assert len(entered) <= _IN_COORDINATES

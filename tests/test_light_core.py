@@ -127,11 +127,11 @@ def test_commands_that_need_an_extra(command: list[str], extra: str, tmp_path: P
     ids=["simulate", "flow"],
 )
 def test_a_run_loads_nothing_that_it_does_not_use(run: str) -> None:
-    """A run loads neither JAX and numba nor what makes datasets, stores, pictures and scenarios."""
+    """A run loads neither JAX, numba and sparse matrices nor what makes datasets, stores, pictures and scenarios."""
     program = (
         f"import sys, nonholo as nh; sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.5); o = {run}; o.momentum, o.heading;"
     )
-    program += f"print(sorted({HEAVY | {'numba'}} & set(sys.modules)))"
+    program += f"print(sorted({HEAVY | {'numba', 'scipy.sparse'}} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)  # noqa: S603
     assert done.stdout.strip() == "[]"
 

@@ -312,9 +312,9 @@ PARTICLES = {
 def test_runs_by_the_discrete_principle_are_bounded(name: str) -> None:
     """The states of a run in coordinates or on any group are held in memory."""
     system, start = PARTICLES[name]
-    discrete = system().discretize(0.1)
+    discrete = nh.discretize(system(), 0.1)
     with pytest.raises(ValueError, match=r"simulate\(steps=...\)` must fit into memory"):
-        discrete.simulate(configuration=None, body_velocity=start, steps=10**12)
+        nh.simulate(discrete, configuration=None, body_velocity=start, steps=10**12)
 
 
 @pytest.mark.parametrize("name", TOO_MUCH)

@@ -34,8 +34,6 @@ WITH_A_FUNCTION = {  # of the user's, which the examples define where they stand
     "LagrangeDAlembert: particle",
     "LagrangeDAlembert: pendulum",
     "LagrangeDAlembert: swing",
-    "LagrangeDAlembert.flow: orbit",
-    "LagrangeDAlembert.flow: spring",
     "LagrangeDAlembert.regularity: free",
     "LagrangeDAlembert.with_parameters: heavy",
     "LagrangeDAlembert.with_parameters: orbit",

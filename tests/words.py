@@ -1,4 +1,4 @@
-"""`python tests/words.py`: the words of the house, listed in words.toml, in code, tests and pages."""
+"""`python tests/words.py`: the words of the house, listed in words.toml, in code, tests and pages; words of pages."""
 
 import re
 import sys
@@ -11,8 +11,16 @@ TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
 FOLDERS = ("nonholo", "nonholo_paper", "docs", "tests", "benchmarks", "scenarios")
 READ = (".py", ".pyi", ".md", ".toml", ".j2", ".cff", ".c", ".css")
 NOT_READ = ("tests/words.toml", "tests/test_words.py")
-QUOTED = {"docs/references.md": r"\*[^*\n]+\*", "CHANGELOG.md": r"(?s)\n## \[\d.*"}  # titles of works, past releases
+QUOTED = {
+    "docs/references.md": r"\*[^*\n]+\*",
+    "CHANGELOG.md": r"(?s)\n## \[0\.[12]\..*",
+}  # titles of works, past releases
 QUOTATION = r"“[^”]*”"
+GENERATED = re.compile(
+    r"api/.*|reference/(?!symbols).*|gallery/README\.md|(errata|paper|reliability|tests)\.md"
+)  # by scripts
+NO_PROSE = {"house.md", "references.md", "project/migration.md"}
+MOST = 80_000
 
 
 def files(root: Path) -> list[str]:
@@ -50,13 +58,21 @@ def complaints(root: Path = ROOT) -> list[str]:
     vocabulary = "\n".join(set(re.findall(r"\w+", "\n".join(texts.values()))))
     spelling = {word: to for word, to in TABLE["spelling"].items() if re.search(word, vocabulary, re.IGNORECASE)}
     patterns, cited = spelling | TABLE["phrases"], stems(root)
+    prose = {"README.md", *(f"docs/{name}" for name in lengths(root) if name not in NO_PROSE)}
     return [
         f"{name}:{text.count(chr(10), 0, at) + 1}: {complaint}"
         for name, text in texts.items()
-        for at, complaint in words(name, text, patterns, cited)
+        for at, complaint in words(name, text, patterns | (TABLE["prose"] if name in prose else {}), cited)
     ]
+
+
+def lengths(root: Path = ROOT) -> dict[str, int]:
+    """Return how many words each handwritten page of the docs has."""
+    pages = {path.relative_to(root / "docs").as_posix(): path for path in sorted((root / "docs").rglob("*.md"))}
+    return {name: len(path.read_text("utf-8").split()) for name, path in pages.items() if not GENERATED.match(name)}
 
 
 if __name__ == "__main__":
     print("\n".join(lines := complaints()))  # noqa: T201
+    print(f"{sum(lengths().values())} words in the handwritten pages of docs, of at most {MOST}")  # noqa: T201
     sys.exit(bool(lines))

@@ -5,19 +5,21 @@ are checked for shape alone, since their values are not known yet.
 """
 
 import contextlib
+import functools
 import math
 import numbers
 import os
 import sys
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
 from nonholo.base.types import Array
 
 Kind = TypeVar("Kind")
+Function = TypeVar("Function", bound=Callable[..., Any])
 _LEAST_RTOL = 1e-14
 LARGEST = 1e150  # what a number may be; squares of larger ones overflow
 _LARGEST_SUM = LARGEST**2  # of squares
@@ -395,10 +397,45 @@ def selection(where: str, value: Any) -> slice | np.ndarray:
     return rows
 
 
-def generator(where: str, value: Any) -> np.random.Generator:
-    """Return a random generator."""
-    requirement, remedy = "be a numpy.random.Generator", "Pass np.random.default_rng(seed)."
-    return instance(where, value, np.random.Generator, requirement, remedy)
+def generator(where: str, rng: Any) -> np.random.Generator:
+    """Return a generator of random numbers: the one that is passed, or that of an integer."""
+    return rng if isinstance(rng, np.random.Generator) else np.random.default_rng(seed(where, rng))
+
+
+def seed(where: str, rng: Any) -> int:
+    """Return an integer that random numbers are made of: the one that is passed, or one that a generator draws.
+
+    Example:
+        >>> seed("Grid(rng=...)", 7), seed("Grid(rng=...)", np.random.default_rng(7)) < 2**63
+        (7, True)
+    """
+    if isinstance(rng, np.random.Generator):
+        return int(rng.integers(_MOST_INDEX, endpoint=True))
+    requirement, remedy = "be a natural number or a numpy.random.Generator", "Pass 0, 1, 2, ..., or a generator."
+    return _integer(where, rng, (0, _MOST_INDEX), requirement, remedy)
+
+
+def refuse_former_names(owner: str, **names: str) -> Callable[[Function], Function]:
+    """Return a decorator that refuses the former names of keywords, each with its name of today.
+
+    Example:
+        >>> turn = refuse_former_names("turn", a="angle")(lambda angle: angle)
+        >>> turn(a=1.0)
+        Traceback (most recent call last):
+        ValueError: `turn(a=...)` must be called `angle`. Got 'a'. Pass angle=...; see docs/project/migration.md.
+    """
+
+    def decorate(function: Function) -> Function:
+        @functools.wraps(function)
+        def call(*arguments: Any, **keywords: Any) -> Any:
+            for former in names.keys() & keywords.keys():
+                remedy = f"Pass {names[former]}=...; see docs/project/migration.md."
+                raise error(f"{owner}({former}=...)", f"be called `{names[former]}`", repr(former), remedy)
+            return function(*arguments, **keywords)
+
+        return cast(Function, call)
+
+    return decorate
 
 
 def symmetric(where: str, value: Array, remedy: str) -> Array:

@@ -7,7 +7,7 @@ step fail has moved. A node stays at the last good one.
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -22,6 +22,14 @@ _HUGE = 1e300
 _MANY = 2048  # steps that take much longer than the question whether they are wanted
 _SHORT = 64  # steps between saved states from which on reverse mode keeps checkpoints alone
 _ROOT = "root of a step"  # what a checkpoint keeps, so that no root is searched for twice
+
+
+class NodeState(NamedTuple):
+    """What a policy sees at a node: the configuration, and the velocity that belongs to the momentum there."""
+
+    configuration: Array
+    body_velocity: Array
+
 
 Step = Callable[..., Any]
 """From what a step begins with, a guess of its root and its control to the node."""
@@ -68,6 +76,32 @@ def implicit(
     y = checkpoint_name(root, _ROOT)
     _, change = jax.jvp(lambda *numbers: residual(y, *numbers), at, changes)
     return y, -solve(jax.jacfwd(residual)(y, *at), change[:, None])[:, 0]
+
+
+def rows_of(controls: Any, steps: int, size: int) -> Array | None:
+    """Return the controls of steps, and none after the last one: zeros, to which a policy adds; None without any."""
+    if controls is None:
+        return None
+    return jnp.zeros((steps + 1, size)) if callable(controls) else jnp.pad(controls, ((0, 1), (0, 0)))
+
+
+def with_policy(
+    controls: Any, time_step: Array, rows: Array | None
+) -> tuple[Array | None, Callable[[Array, Callable[[], NodeState]], Array]]:
+    """Return rows of nodes, and the control from a row and a state; rows are controls, to which a policy adds its own.
+
+    Nothing acts over what follows the last step.
+    """
+    if not callable(controls) or rows is None:
+        return rows, lambda row, _: row
+    steps = jnp.arange(len(rows))
+    rows = jnp.column_stack([time_step * steps, steps < len(rows) - 1, rows])
+
+    def control(row: Array, state: Callable[[], NodeState]) -> Array:
+        own = jnp.asarray(controls(row[0], state()), row.dtype)
+        return row[2:] + jnp.where(row[1] > 0, own, 0.0)
+
+    return rows, control
 
 
 def run_nodes(step: Step, begin: Any, controls: Array | None, sizes: tuple[int, int], work: Array | None) -> Any:

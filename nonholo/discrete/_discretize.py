@@ -78,7 +78,7 @@ def discretize(
         refuse_in_coordinates(
             "discretize", difference=(difference, None), constraint=(constraint, None), order=(order, 2)
         )
-        return system.discretize(time_step)
+        return system.discrete_map(time_step)
     as_system("discretize(system=...)", system)
     step = scale("discretize(time_step=...)", time_step, "Pass a positive real time step.")
     lagrangian = _difference(system, difference)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from nonholo import io
-from nonholo.base.checks import array, choice, count, error, flags, natural, number, path, scale, text
+from nonholo.base.checks import array, choice, count, error, flags, number, path, refuse_former_names, scale, seed, text
 from nonholo.ensembles._sweep import sweep
 from nonholo.ensembles.datasets import (
     DEFINITIONS,
@@ -23,9 +23,10 @@ from nonholo.ensembles.designs import RandomDesign
 from nonholo.ensembles.stores import open_store
 
 STORE, METADATA, CARD = "orbits.zarr", "metadata.json", "README.md"
-_FORMATS, _SEED = ("zarr", "csv"), "Pass a natural number: with it every orbit is the same again."
+_FORMATS = ("zarr", "csv")
 
 
+@refuse_former_names("dataset", seed="rng")
 def dataset(
     name: str,
     folder: str | Path,
@@ -33,7 +34,7 @@ def dataset(
     orbits: int = 1000,
     steps: int = 500,
     time_step: float = 0.05,
-    seed: int = 0,
+    rng: int | np.random.Generator = 0,
     noise: float = 0.0,
     split: Any = (0.8, 0.1, 0.1),
     file_format: str = "zarr",
@@ -43,7 +44,7 @@ def dataset(
     """Write a data set of orbits of a ready system, for people who train models.
 
     First configurations and kinetic energies are drawn from the distributions of the definition, which has a version.
-    Orbit i is the same in every data set with this seed, time step and version, however many there are. Each row is a
+    Orbit i is the same in every data set with this `rng`, time step and version, however many there are. Each row is a
     state; the row after it is the next one. An orbit that ends early has NaN in its later rows, and `outcome` says why.
 
     The folder gets `orbits.zarr`, which `xarray.open_zarr` opens, or tables `train.csv`, `validation.csv`, `test.csv`;
@@ -56,7 +57,7 @@ def dataset(
         orbits: How many.
         steps: Number of steps N; there are N + 1 states.
         time_step: h.
-        seed: Of all random numbers.
+        rng: An integer that all random numbers are made of, or a generator that draws it.
         noise: Standard deviation of normal noise, in the unit of each number: fields `observed_...` have it.
         split: Fractions of the orbits for training, validation and test, in this order.
         file_format: "zarr" or "csv".
@@ -88,7 +89,7 @@ def dataset(
     h = float(scale("dataset(time_step=...)", time_step, "Pass a positive time step."))
     steps = count("dataset(steps=...)", steps, "Pass the number of steps.")
     task = DatasetTask(name, definition.version, h, steps, _deviation(noise), _ends(split, members))
-    design = RandomDesign(members, definition.distributions, natural("dataset(seed=...)", seed, _SEED))
+    design = RandomDesign(members, definition.distributions, seed("dataset(rng=...)", rng))
     target = _checked_folder(folder)
     system_of(name)  # which says what extra it needs
     sweep(task, design, target / STORE, resume=True, progress=progress)

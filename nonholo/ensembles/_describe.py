@@ -29,9 +29,9 @@ def design_from(text: dict[str, Any], axis: Callable[[str], np.ndarray]) -> Desi
     """Return the design of a description."""
     if text["kind"] == "Grid":
         along = {name: _sound(name, axis(name), digest) for name, digest in text["axes"].items()}
-        return Grid(along, seed=text["seed"])
+        return Grid(along, rng=text["seed"])
     distributions = {name: _distribution(dict(entry)) for name, entry in text["distributions"].items()}
-    return RandomDesign(text["members"], distributions, seed=text["seed"])
+    return RandomDesign(text["members"], distributions, rng=text["seed"])
 
 
 def function_name(function: Callable[..., Any]) -> str:

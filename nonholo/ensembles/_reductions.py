@@ -2,7 +2,7 @@
 
 import dataclasses
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,10 +12,13 @@ from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.discrete import displacements_over, has_frame, step_jacobians
+from nonholo.groups import components_of
+from nonholo.io import compact_names
 from nonholo.simulation import Ensemble, ScalarMembers, in_lanes, tangents
 from nonholo.systems import AbstractSystem
 
-Reduced = dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]
+Reduced = dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, Any]]]
+_MOST = 100  # components that have names
 
 
 class Reduction(NamedTuple):
@@ -26,16 +29,38 @@ class Reduction(NamedTuple):
 
 
 def _final_state(batch: Ensemble) -> Reduced:
-    last = _last_states(batch)
+    last, system = _last_states(batch), batch.members.discrete.system
     results: Reduced = {
         "final_time": ((), last.time[:, 0], _labels("time of the last good state", "time unit")),
-        "final_momentum": (("component",), last.restricted_momentum[:, 0], _labels("restricted momentum")),
+        "final_momentum": (
+            ("component",),
+            last.restricted_momentum[:, 0],
+            _labels("restricted momentum") | _names(_names_along(system)),
+        ),
         "final_energy": ((), last.energy[:, 0], _labels("reduced constrained energy")),
         "steps_done": ((), batch.steps_done, _labels("good steps", "1")),
     }
     if (pose := last.pose) is not None:
-        results["final_pose"] = ("pose_component",), pose[:, 0], _labels("compact pose")
+        results["final_pose"] = (
+            ("pose_component",),
+            pose[:, 0],
+            _labels("compact pose") | _names(compact_names(system.group)),
+        )
     return results
+
+
+def _names_along(system: AbstractSystem) -> list[str]:
+    """Return the names of the rows of the constraint subspace; none unless each is along an axis or against it."""
+    if system.group.dim > _MOST:
+        return []
+    names, rows = components_of(system.group), np.asarray(system.constraint_subspace)
+    both = [*names, *(f"minus_{name}" for name in names)]
+    is_axis = (rows[:, None] == np.concatenate([np.eye(len(names)), -np.eye(len(names))])).all(axis=2)
+    return [both[place] for place in is_axis.argmax(axis=1)] if is_axis.any(axis=1).all() else []
+
+
+def _names(components: list[str]) -> dict[str, Any]:
+    return {"components": components} if 0 < len(components) <= _MOST else {}
 
 
 def _energy_drift(batch: Ensemble) -> Reduced:

@@ -6,7 +6,7 @@ with needs("jax", "nonholo.examples"):
     from nonholo.examples._balls import ball_in_bowl, ball_on_turntable, chaplygin_ball
     from nonholo.examples._bicycle import bicycle
     from nonholo.examples._blades import driven_sleigh, knife_edge_on_incline, sleigh_in_a_well
-    from nonholo.examples._boards import roller_racer, snake, snakeboard
+    from nonholo.examples._boards import roller_racer, snake, snakeboard, twistcar
     from nonholo.examples._cars import kinematic_car, trailers, two_wheeled_robot
     from nonholo.examples._disks import rolling_disk, tilting_disk
     from nonholo.examples._example import Example
@@ -35,5 +35,6 @@ __all__ = [
     "snakeboard",
     "tilting_disk",
     "trailers",
+    "twistcar",
     "two_wheeled_robot",
 ]

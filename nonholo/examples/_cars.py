@@ -190,9 +190,7 @@ def two_wheeled_robot(
 
     Example:
         >>> ready = nh.examples.two_wheeled_robot()
-        >>> discrete = ready.system.discretize(0.05)
-        >>> orbit = discrete.simulate(
-        ...     configuration=ready.configuration, body_velocity=ready.body_velocity, steps=1000)
+        >>> orbit = ready.simulate(time_step=0.05, steps=1000)
         >>> float(np.ptp(ready.conserved["axle"](orbit.configuration, orbit.body_velocity)).round(9))
         0.0
     """

@@ -39,8 +39,7 @@ def particle(
 
     Example:
         >>> ready = nh.examples.particle()
-        >>> orbit = ready.system.flow(
-        ...     configuration=ready.configuration, body_velocity=ready.body_velocity, times=(0, 5))
+        >>> orbit = ready.flow(times=(0, 5))
         >>> bool(np.allclose(orbit.configuration, ready.exact(orbit.time), rtol=0, atol=1e-9))
         True
     """

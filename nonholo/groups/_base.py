@@ -75,7 +75,7 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
         """Return the angle through which `exp(x)` turns: the largest imaginary part of an eigenvalue of `hat(x)`."""
 
     @abc.abstractmethod
-    def random(self, rng: np.random.Generator) -> Float[np.ndarray, "N N"]:
+    def random(self, rng: int | np.random.Generator) -> Float[np.ndarray, "N N"]:
         """Draw an element: rotations uniformly, translations from the standard normal distribution."""
 
     @abc.abstractmethod

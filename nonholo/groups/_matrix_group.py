@@ -196,7 +196,7 @@ class MatrixGroup(AbstractMatrixGroup):
         xp = X.__array_namespace__()
         return xp.max(abs(xp.imag(xp.linalg.eigvals(X))), axis=-1)
 
-    def random(self, rng: np.random.Generator) -> Float[np.ndarray, "N N"]:
+    def random(self, rng: int | np.random.Generator) -> Float[np.ndarray, "N N"]:
         """Draw the exponential of standard normal coordinates."""
         return self.exp(self._generator(rng).normal(size=self.dim))
 

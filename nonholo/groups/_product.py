@@ -110,7 +110,7 @@ class ProductGroup(AbstractMatrixGroup):
         angles = [factor.angle(part) for factor, part in zip(self.factors, parts, strict=True)]
         return functools.reduce(parts[0].__array_namespace__().maximum, angles)
 
-    def random(self, rng: np.random.Generator) -> Float[np.ndarray, "N N"]:
+    def random(self, rng: int | np.random.Generator) -> Float[np.ndarray, "N N"]:
         """Draw every factor."""
         rng = self._generator(rng)
         return block_diagonal([factor.random(rng) for factor in self.factors])

@@ -2,6 +2,7 @@
 
 import dataclasses
 import functools
+import math
 from typing import ClassVar
 
 import numpy as np
@@ -23,6 +24,8 @@ from nonholo.groups import _rotations
 from nonholo.groups._base import AbstractMatrixGroup
 from nonholo.groups._coordinates import AbstractCoordinates, SeparatedCoordinates, coordinates_of
 from nonholo.groups._special_orthogonal import AbstractRodriguesGroup
+
+_CUBIC = [(-1) ** k / math.factorial(2 * k + 3) for k in range(8, -1, -1)]  # exact to rounding for angles up to 1
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
@@ -69,7 +72,7 @@ class SpecialEuclidean2(AbstractRodriguesGroup):
         """Return the angle through which `exp(x)` turns."""
         return abs(self._vector(x)[..., 0])
 
-    def random(self, rng: np.random.Generator) -> Float[np.ndarray, "3 3"]:
+    def random(self, rng: int | np.random.Generator) -> Float[np.ndarray, "3 3"]:
         """Draw a uniform heading and a standard normal position."""
         rng = self._generator(rng)
         angle = rng.uniform(-np.pi, np.pi)
@@ -156,9 +159,24 @@ class SpecialEuclideanN(AbstractMatrixGroup):
         r"""Return `exp(x)` minus the identity: rotation $e^X - I$, position $\varphi_1(X)v$."""
         X = self.hat(x)
         if not isinstance(X, np.ndarray):
-            return exponential_increment(X)
+            return self._screw(X) if self.n == 3 else exponential_increment(X)
         skew = X[..., : self.n, : self.n]
         return self._assemble(_rotations.exp_increment(skew), of_skew(skew, _mean) @ X[..., : self.n, self.n :])
+
+    def _screw(self, X: Float[Array, "... 4 4"]) -> Float[Array, "... 4 4"]:
+        r"""Return $e^X - I = X + \frac{1-\cos\theta}{\theta^2}X^2 + \frac{\theta-\sin\theta}{\theta^3}X^3$ on se(3).
+
+        The last quotient is a series for small angles; $X^3$ of the rotation is $-\theta^2X$.
+        """
+        xp, skew, v = X.__array_namespace__(), X[..., :3, :3], X[..., :3, 3:]
+        square = (skew * skew).sum(axis=(-2, -1), keepdims=True) / 2
+        small = square < 1
+        inside, outside = xp.where(small, square, 0.0), xp.where(small, 1.0, square)
+        series = functools.reduce(lambda y, c: c + inside * y, _CUBIC, 0.0 * inside)
+        second, third = versine(square), xp.where(small, series, (1 - sinc(outside)) / outside)
+        turn = skew @ v
+        rotation = (1 - third * square) * skew + second * (skew @ skew)
+        return self._assemble(rotation, v + second * turn + third * (skew @ turn))
 
     def log(self, g: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
         r"""Return the body velocity with angles up to pi (JAX: up to 3.14): $X = \log R$, $v = \varphi_1(X)^{-1}x$."""
@@ -186,7 +204,7 @@ class SpecialEuclideanN(AbstractMatrixGroup):
         X = self.hat(x)[..., : self.n, : self.n]
         return X.__array_namespace__().linalg.norm(X, ord=2, axis=(-2, -1))
 
-    def random(self, rng: np.random.Generator) -> Float[np.ndarray, "N N"]:
+    def random(self, rng: int | np.random.Generator) -> Float[np.ndarray, "N N"]:
         """Draw a uniformly distributed rotation and a standard normal position."""
         rng = self._generator(rng)
         g = self.identity

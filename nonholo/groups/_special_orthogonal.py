@@ -130,7 +130,7 @@ class SpecialOrthogonal3(AbstractRodriguesGroup):
         x = self._vector(x)
         return x.__array_namespace__().sqrt((x * x).sum(axis=-1))
 
-    def random(self, rng: np.random.Generator) -> Float[np.ndarray, "3 3"]:
+    def random(self, rng: int | np.random.Generator) -> Float[np.ndarray, "3 3"]:
         """Draw a uniformly distributed rotation."""
         return matrix_from_quaternion(self._generator(rng).normal(size=4))
 
@@ -221,7 +221,7 @@ class SpecialOrthogonalN(AbstractMatrixGroup):
         X = self.hat(x)
         return X.__array_namespace__().linalg.norm(X, ord=2, axis=(-2, -1))
 
-    def random(self, rng: np.random.Generator) -> Float[np.ndarray, "n n"]:
+    def random(self, rng: int | np.random.Generator) -> Float[np.ndarray, "n n"]:
         """Draw a uniformly distributed rotation."""
         return _rotations.random(self.n, self._generator(rng))
 

@@ -99,7 +99,7 @@ class Translations(AbstractMatrixGroup):
         x = self._vector(x)
         return x.__array_namespace__().zeros_like(x[..., 0])
 
-    def random(self, rng: np.random.Generator) -> Float[np.ndarray, "N N"]:
+    def random(self, rng: int | np.random.Generator) -> Float[np.ndarray, "N N"]:
         """Draw a standard normal vector."""
         return self.exp(self._generator(rng).normal(size=self.m))
 

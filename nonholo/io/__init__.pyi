@@ -58,5 +58,6 @@ from .datasets._dataset import labels_of as labels_of
 from .datasets._dataset import orbit_to_dataset as orbit_to_dataset
 from .datasets._dataset import orbit_to_pandas as orbit_to_pandas
 from .datasets._pose_variables import column_names as column_names
+from .datasets._pose_variables import compact_names as compact_names
 from .datasets._pose_variables import separate_rows as separate_rows
 from .datasets._pose_variables import separate_variables as separate_variables

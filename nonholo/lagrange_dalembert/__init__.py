@@ -6,7 +6,7 @@ with needs("jax", "nonholo.lagrange_dalembert"):
     from nonholo.lagrange_dalembert import _equations as equations
     from nonholo.lagrange_dalembert import _tangents as tangents
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization, GroupDiscretization, checked_state
-    from nonholo.lagrange_dalembert._flow import vector_field
+    from nonholo.lagrange_dalembert._flow import flow, vector_field
     from nonholo.lagrange_dalembert._functions import check_forms, check_value
     from nonholo.lagrange_dalembert._orbit import (
         AbstractCoordinateOrbit,

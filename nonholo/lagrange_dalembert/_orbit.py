@@ -16,9 +16,10 @@ from nonholo.base.memo import memo
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float, Int
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.lagrange_dalembert._room import equations_of, in_double, places, room
-from nonholo.orbit import AbstractOrbit
-from nonholo.systems import AbstractCoordinateSystem
+from nonholo.lagrange_dalembert import _equations as equations
+from nonholo.lagrange_dalembert._room import in_double, places, room
+from nonholo.orbit import AbstractOrbit, First
+from nonholo.systems import AbstractCoordinateSystem, Start
 
 Labels = dict[str, tuple[tuple[str, ...], str]]
 """Name: dimensions after `step`, and what the numbers are."""
@@ -68,7 +69,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     def motion(self) -> Any:
         """The discretization or the flow."""
         flow = CoordinateFlow
-        return flow(self.system) if self.time_step is None else self.system.discretize(self.time_step)
+        return flow(self.system) if self.time_step is None else self.system.discrete_map(self.time_step)
 
     @property
     def span(self) -> tuple[float, float] | None:  # type: ignore[override]
@@ -202,7 +203,7 @@ class CoordinateOrbit(AbstractCoordinateOrbit):
     Example:
         >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
         >>> spring = LagrangeDAlembert(lambda q, v: (v @ v - q @ q) / 2, None, dimension=1)
-        >>> spring.discretize(0.1).simulate(configuration=[1], body_velocity=[0], steps=10)
+        >>> nh.simulate(nh.discretize(spring, 0.1), configuration=[1], body_velocity=[0], steps=10)
         <CoordinateOrbit: 11 states of 1 coordinates, time 0 to 1, successful>
     """
 
@@ -255,7 +256,7 @@ class GroupOrbit(AbstractCoordinateOrbit):
     Example:
         >>> from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, mass_tensor_lagrangian
         >>> free = GroupLagrangeDAlembert(nh.SO(3), mass_tensor_lagrangian(nh.SO(3), np.diag([1.0, 2.0, 3.0])), None)
-        >>> free.discretize(0.1).simulate(body_velocity=(1.0, 0.2, 0.0), steps=10)
+        >>> nh.simulate(nh.discretize(free, 0.1), body_velocity=(1.0, 0.2, 0.0), steps=10)
         <GroupOrbit: 11 states of 3 x 3 matrices, time 0 to 1, successful>
     """
 
@@ -280,7 +281,7 @@ class GroupOrbit(AbstractCoordinateOrbit):
 
 
 def _forms_at(system: Any, q: Array) -> Array:
-    return jax.vmap(lambda x: equations_of(system).forms(system, x))(q)
+    return jax.vmap(lambda x: equations.forms(system, x))(q)
 
 
 ORBITS: dict[str, Any] = {orbit.__name__: orbit for orbit in (CoordinateOrbit, GroupOrbit)}
@@ -327,6 +328,7 @@ class CoordinateFlow(CoordinateMotion):
 
     Attributes:
         system: What moves.
+        begins: The first time, where one is set.
 
     Example:
         >>> from nonholo.lagrange_dalembert import CoordinateFlow
@@ -335,8 +337,25 @@ class CoordinateFlow(CoordinateMotion):
     """
 
     system: Any
+    begins: float = dataclasses.field(default=0.0, repr=False, metadata={"stored": False})
     time_step: ClassVar[None] = None
     route_name: ClassVar[None] = None
+    forces: ClassVar[None] = None
+    starts: ClassVar[tuple[str, ...]] = ("body_velocity", "momentum")
+
+    def first(self, start: Start, *, with_poses: bool) -> First:
+        """Return the checked momentum, place and velocity of a start."""
+        del with_poses
+        room("_flow").refuse_table(start.owner, self.system)
+        state = room("_discretization").checked_state(
+            self.system, start.configuration, {start.name: start.value}, self.begins, start.owner, project=start.project
+        )
+        return First((in_double(equations.momentum, self.system, *state), *state))
+
+    def solve(self, first: First, times: Float[np.ndarray, "K"], rtol: float, *, reconstruct: bool) -> Any:
+        """Return the orbit from a checked start, with the default error of its method where `rtol` is 0."""
+        del reconstruct
+        return room("_flow").solve(self.system, first.numbers[1:], times, rtol or None)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -380,12 +399,7 @@ class RecordedSystem(AbstractCoordinateSystem):
         del q
         return ()
 
-    def discretize(self, time_step: Any) -> Any:
+    def discrete_map(self, time_step: Any) -> Any:
         """Return the map of the store, which cannot run."""
         kind = "GroupDiscretization" if "group" in self.record else "CoordinateDiscretization"
         return getattr(room("_discretization"), kind)(self, time_step)
-
-    def flow(self, **arguments: Any) -> Any:
-        """Refuse: there are no functions."""
-        del arguments
-        return self.lagrangian

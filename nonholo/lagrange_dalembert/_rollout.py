@@ -3,14 +3,15 @@
 import functools
 from typing import Any, NamedTuple
 
+import equinox
 import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.traced import implicit, marked_rows, run_nodes
+from nonholo.base.traced import NodeState, implicit, marked_rows, rows_of, run_nodes, with_policy
 from nonholo.base.types import Array, Float
+from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._newton import orientation, solve
-from nonholo.lagrange_dalembert._room import equations_of
 
 
 class CoordinateRollout(NamedTuple):
@@ -22,6 +23,7 @@ class CoordinateRollout(NamedTuple):
         body_velocity: (q_{k+1} - q_k) / time_step, shape (K, n).
         momentum: P_k, shape (K, n).
         energy: Energies, shape (K,).
+        controls: Forces u_k of the step from each state, of controls or a policy, shape (K, n); zero after the last.
         outcome: An `Outcome` as an integer array: the first one that is not successful. From that state on all other
             fields are NaN, and so are their derivatives.
     """
@@ -31,20 +33,22 @@ class CoordinateRollout(NamedTuple):
     body_velocity: Float[Array, "K n"]
     momentum: Float[Array, "K n"]
     energy: Float[Array, "K"]
+    controls: Float[Array, "K n"]
     outcome: Array
 
 
 class _Node(NamedTuple):
-    """A place, the velocity of its step with that of the step before, what follows, outcome and cause of a failure."""
+    """A place, the velocity of its step with that of the step before, what follows, outcome, cause of a failure, u."""
 
     x: Array
     y: tuple[Array, Array]
     after: tuple[Array, Array]
     code: Array
     cause: Array
+    control: Array | None
 
 
-@functools.partial(jax.jit, static_argnums=(0, 1, 2))
+@equinox.filter_jit
 def roll(
     family: Any,
     name: str,
@@ -52,15 +56,16 @@ def roll(
     numbers: tuple[Array, ...],
     h: Array,
     start: tuple[Array, Array],
-    controls: Array | None,
+    controls: Any,
     work: Array | None = None,
 ) -> CoordinateRollout:
     """Return the orbit from a start, which has a name, coordinates and a value; `sizes` are `steps` and `save_every`.
 
-    `work` is the number by which many steps ask whether they are still wanted; None where they are differentiated.
+    Controls are a row for each step, or a policy. `work` is the number by which many steps ask whether they are still
+    wanted; None where they are differentiated.
     """
     system, (q, value), (steps, every) = family.bound(*numbers), start, sizes
-    equations, n = equations_of(system), family.dimension
+    n = family.dimension
     x, value = jnp.append(q, 0.0) if family.is_driven else jnp.asarray(q), jnp.asarray(value)
     p = equations.momentum(system, x, value) if name == "body_velocity" else value
     still, x_still, value_still = jax.lax.stop_gradient((numbers, x, value))
@@ -69,26 +74,33 @@ def roll(
     sign, _ = orientation(search_system, x_still, near, h)
 
     def step(x: Array, p: Array, before: tuple[Array, Array], row: Array | None) -> _Node:
-        push = 0.0 if row is None else h / 2 * row
+        control = None if row is None else control_of(row, lambda: _state_at(system, x, p))
+        push = 0.0 if control is None else h / 2 * control
         near, last = before
         z, code = step_root(family, (numbers, h, x, p + push), (near, 2 * near - last, sign))
         v = z[:n]
         after = equations.ahead(system, x, v, h), equations.momenta(system, x, v, h)[1] + push
-        return _Node(x, (v, near), after, code, jnp.sum(z))
+        return _Node(x, (v, near), after, code, jnp.sum(z), control)
 
-    rows = None if controls is None else jnp.pad(controls, ((0, 1), (0, 0)))
-    begin = _Node(x, (near, near), (x, p), jnp.zeros((), jnp.result_type(int)), jnp.sum(near))
+    rows, control_of = with_policy(controls, h, rows_of(controls, steps, n))
+    nothing = None if rows is None else jnp.zeros(n)
+    begin = _Node(x, (near, near), (x, p), jnp.zeros((), jnp.result_type(int)), jnp.sum(near), nothing)
     nodes = run_nodes(step, begin, rows, sizes, work)
 
     decoded = functools.partial(_decoded, system, h)
-    states = jax.vmap(decoded)(nodes.x, nodes.y[0], None if rows is None else rows[::every])
-    good = (marked_rows(each, nodes.cause, nodes.code == 0) for each in states)
+    states = jax.vmap(decoded)(nodes.x, nodes.y[0], nodes.control)
+    acting = jnp.zeros_like(states[0]) if rows is None else nodes.control
+    good = (marked_rows(each, nodes.cause, nodes.code == 0) for each in (*states, acting))
     return CoordinateRollout(h * every * jnp.arange(1 + steps // every), *good, outcome=nodes.code[-1])
+
+
+def _state_at(system: Any, x: Array, p: Array) -> NodeState:
+    """Return what a policy sees of a place with a momentum."""
+    return NodeState(x[: system.dimension], equations.inverse_legendre(system, x, p))
 
 
 def _decoded(system: Any, h: Array, x: Array, v: Array, row: Array | None) -> tuple[Array, Array, Array, Array]:
     """Return configuration, velocity, momentum and energy of a node."""
-    equations = equations_of(system)
     p = equations.momenta(system, x, v, h)[0] - (0.0 if row is None else h / 2 * row)
     if not system.is_driven and row is None:
         return x, v, p, equations.discrete_energy(system, x, v, h)
@@ -114,7 +126,6 @@ def _implicit(family: Any, primals: Any, tangents: Any) -> tuple[Any, Any]:
 
     def residual(z: Array, numbers: tuple[Array, ...], h: Array, x: Array, p: Array) -> Array:
         system, v = family.bound(*numbers), z[:n]
-        equations = equations_of(system)
         momentum_gap = equations.momenta(system, x, v, h)[0] - p - z[n:] @ equations.forms(system, x)
         return jnp.concatenate([momentum_gap, equations.discrete_constraints(system, x, v, h)])
 

@@ -26,12 +26,13 @@ from nonholo.lagrange_dalembert._functions import (
     with_parameters,
     with_time_step,
 )
+from nonholo.lagrange_dalembert._places import Coordinates
 from nonholo.lagrange_dalembert._room import room
 from nonholo.systems import AbstractCoordinateSystem, force_of, parts_of
 
 if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization
-    from nonholo.lagrange_dalembert._orbit import CoordinateOrbit
+    from nonholo.lagrange_dalembert._orbit import CoordinateOrbit  # noqa: F401  (named by the base class)
 
 Parts = tuple[Float[np.ndarray, "P 2"], ...]
 _FUNCTIONS = (
@@ -110,8 +111,8 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         >>> def forms(q):
         ...     return jnp.array([[-q[1], 0.0, 1.0]])
         >>> particle = LagrangeDAlembert(lambda q, v: v @ v / 2, forms, dimension=3)
-        >>> discrete = particle.discretize(time_step=0.1)
-        >>> orbit = discrete.simulate(configuration=(0, 0, 0), body_velocity=(1, 1, 0), steps=100)
+        >>> discrete = nh.discretize(particle, time_step=0.1)
+        >>> orbit = nh.simulate(discrete, configuration=(0, 0, 0), body_velocity=(1, 1, 0), steps=100)
         >>> orbit.configuration.shape, bool(orbit.constraint_residual.max() < 1e-13)
         ((101, 3), True)
 
@@ -120,7 +121,8 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         >>> def length(q):
         ...     return jnp.array([q @ q - 1.0])
         >>> pendulum = LagrangeDAlembert(lambda q, v: v @ v / 2 - q[1], None, holonomic=length, dimension=2)
-        >>> swing = pendulum.discretize(0.1).simulate(configuration=(0.6, -0.8), body_velocity=(0, 0), steps=1000)
+        >>> start = {"configuration": (0.6, -0.8), "body_velocity": (0, 0)}
+        >>> swing = nh.simulate(nh.discretize(pendulum, 0.1), **start, steps=1000)
         >>> bool(abs((swing.configuration**2).sum(axis=1) - 1).max() < 1e-15)
         True
     """
@@ -140,10 +142,10 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     name: str = dataclasses.field(default="System in coordinates", kw_only=True)
     orbits: ClassVar[str] = "CoordinateOrbit"
     in_stores: ClassVar[tuple[str, ...]] = ("constraints", "is_driven", "orbits", "shapes")
+    energy_argument: ClassVar[str] = "lagrangian"
+    has_limit: ClassVar[bool] = False
     heading: str | None = dataclasses.field(default=None, kw_only=True, compare=False)
     outline: Any = dataclasses.field(default=(), kw_only=True, compare=False, repr=False, metadata={"stored": False})
-    _equations: ClassVar[str] = "_equations"
-    _start: ClassVar[str] = "_start"
 
     def __post_init__(self) -> None:
         dimension = count(_argument("dimension"), self.dimension, "Pass the number of coordinates.")
@@ -220,19 +222,11 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             >>> heavy = spring.with_parameters(mass=4.0)
             >>> heavy.parameters, heavy == spring
             ({'mass': 4.0, 'stiffness': 4.0}, False)
-            >>> orbit = heavy.flow(configuration=[1], body_velocity=[0], times=[0, np.pi])
+            >>> orbit = nh.flow(heavy, configuration=[1], body_velocity=[0], times=[0, np.pi])
             >>> print(orbit.configuration[-1].round(9))
             [-1.]
         """
         return _of_numbers(self, self.parameters.replace("with_parameters(...)", numbers), family=self.family)
-
-    def _with_fields(self, **fields: Any) -> Self:
-        """Return a system with other fields, which need no check; it does not have a name for stores."""
-        system = object.__new__(type(self))
-        vars(system).update(vars(self), **fields)
-        for name in {"description", "family", "plain", "recipe"} - fields.keys():
-            vars(system).pop(name, None)
-        return system
 
     @functools.cached_property
     def family(self) -> Self:
@@ -254,6 +248,11 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         parts |= {"function": Bound(parts["function"], p)} if "function" in parts else {}
         motions = tuple((index, Bound(motion, p)) for index, motion in self.prescribed)
         return self._with_fields(parameters=Parameters({}), force=force_of(parts), prescribed=motions, **functions)
+
+    @property
+    def places(self) -> Coordinates:
+        """Where it moves."""
+        return Coordinates(self.dimension, self.is_driven)
 
     @functools.cached_property
     def plain(self) -> Self:
@@ -349,67 +348,9 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         """
         return room("_start").regularity(self, q, q_next, time_step)
 
-    def discretize(self, time_step: float) -> "CoordinateDiscretization":
-        """Return the discrete map with this time step.
-
-        Args:
-            time_step: h > 0.
-
-        Raises:
-            ValueError: A time step that is not positive.
-
-        Example:
-            >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
-            >>> LagrangeDAlembert(lambda q, v: v @ v, None, dimension=2).discretize(0.1).time_step
-            0.1
-        """
+    def discrete_map(self, time_step: Any) -> "CoordinateDiscretization":
+        """Return the discretized system, see `nonholo.discretize`."""
         return room("_discretization").CoordinateDiscretization(self, time_step)
-
-    def flow(
-        self,
-        *,
-        configuration: Any,
-        times: Any,
-        body_velocity: Any = None,
-        momentum: Any = None,
-        project: bool = False,
-        rtol: float | None = None,
-        atol: float = 1e-12,
-    ) -> "CoordinateOrbit":
-        r"""Solve the continuous Lagrange-d'Alembert equations.
-
-        $$ \dot p = \frac{\partial L}{\partial q} + \sum_j \lambda_j A^j(q), \qquad p = \frac{\partial L}{\partial v},
-           \qquad A(q)\,v = 0. $$
-
-        The acceleration comes from the constraint differentiated once, a holonomic one twice. Velocities are projected
-        to the constraint, orthogonally in the kinetic energy, at each evaluation and at each requested time, and so are
-        places to holonomic constraints; an adaptive Runge-Kutta method of order 8 steps to every requested time.
-
-        Args:
-            configuration: The first configuration.
-            times: The times of the states, at least one, increasing or decreasing; the start is at the first.
-            body_velocity: Start with this velocity, which must satisfy the constraint.
-            momentum: Start with this momentum; only its action on admissible velocities counts.
-            project: Take the admissible configuration and velocity next to the given ones in the kinetic energy.
-            rtol: Relative error of a step, at least 1e-14, which is the default of series; of diffrax 1e-10.
-            atol: Absolute error of a step of diffrax.
-
-        Returns:
-            The orbit. It has no displacements, and its multipliers are the forces at its times.
-
-        Raises:
-            ValueError: A bad argument, before any work.
-            OutcomeError: The solver could not meet the tolerances; its `orbit` holds every good state.
-
-        Example:
-            >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
-            >>> spring = LagrangeDAlembert(lambda q, v: (v @ v - q @ q) / 2, None, dimension=1)
-            >>> orbit = spring.flow(configuration=[1], body_velocity=[0], times=[0, np.pi])
-            >>> print(orbit.configuration[-1].round(9))
-            [-1.]
-        """
-        starts = {"body_velocity": body_velocity, "momentum": momentum}
-        return room("_flow").flow(self, configuration, starts, times, rtol, atol, project=project)
 
 
 def _of_numbers(system: Any, parameters: Parameters, **fields: Any) -> Any:

@@ -2,6 +2,7 @@
 
 import dataclasses
 import functools
+import importlib
 from typing import Any, cast
 
 import numpy as np
@@ -126,12 +127,13 @@ r"""The event of a sleigh whose velocity $v_1$ along the blade changes sign: its
 
 def flow_in_coordinates(system: Any, events: Any, **flow: Any) -> Any:
     """Solve the equations of a system in coordinates; return the orbit with what was found, if there are events."""
+    solve = functools.partial(importlib.import_module("nonholo.lagrange_dalembert").flow, system, **flow)
     if events is None:
-        return system.flow(**flow)
+        return solve()
     refuse_resets("flow", checked_events("flow", events), "those of a system in coordinates")
     by_name = checked_events("flow", events)
     try:
-        orbit, failure = system.flow(**flow), None
+        orbit, failure = solve(), None
     except OutcomeError as early:
         orbit, failure = cast(AbstractOrbit, early.orbit), early
     result = flow_with_events(by_name, orbit, cast(Any, orbit).solution.looks())

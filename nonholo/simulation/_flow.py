@@ -15,6 +15,7 @@ from nonholo.orbit import First, Orbit
 from nonholo.simulation._contact import flow_through_impacts
 from nonholo.simulation._crossings import check_resets, flow_in_coordinates, flow_with_events, refuse_resets
 from nonholo.simulation._event import Event, checked_events, has_resets
+from nonholo.simulation._options import FEW
 from nonholo.simulation._search import values_of
 from nonholo.systems import AbstractCoordinateSystem, OrbitT, Start, System, as_system, refuse_in_coordinates
 
@@ -45,7 +46,7 @@ def flow(
     system: AbstractCoordinateSystem[Any, OrbitT],
     *,
     times: Any,
-    configuration: Any,
+    configuration: Any = None,
     body_velocity: Any = None,
     momentum: Any = None,
     project: bool = False,
@@ -83,9 +84,10 @@ def flow(
     the body, the series solve it too, or if friction is much faster than the motion Radau of SciPy, with `rtol` of 1e-9
     and more; else DOP853, with `rtol` of 1e-13 and more. These two also give the states between.
 
-    For a `LagrangeDAlembert` these are the equations of its `flow`, with q in place of the pose: it starts at a
-    `configuration`, and takes neither `restricted_velocity` nor `method`. Smooth formulas have Taylor series too; with
-    kinks, as an absolute value has, diffrax solves them.
+    The equations of a `LagrangeDAlembert` stand in its docstring. It starts at a `configuration`, and takes neither
+    `restricted_velocity` nor `method`. The acceleration comes from the constraint differentiated once, a holonomic one
+    twice; velocities and places are projected to the constraints, orthogonally in the kinetic energy, at each requested
+    time. Smooth formulas have Taylor series too; with kinks, as an absolute value has, diffrax solves them.
 
     References: [fedorov-zenkov-2004], sections 2, 4 and 5; [jorba-zou-2005] for order and step of the series.
 
@@ -169,9 +171,9 @@ class _Task(NamedTuple):
 
 def _first_state(task: _Task, start: Start, with_poses: bool) -> FirstState:
     """Return the checked momentum at the first time and the pose, where one is solved for."""
-    numbers = task.system.rank + with_poses * task.system.group.pose_size
-    remedy = "Ask for fewer times, or for momenta alone: reconstruct=False without a method."
-    within_memory("flow(times=...)", 32.0 * len(task.time) * numbers, remedy)
+    if (numbers := len(task.time) * (task.system.rank + with_poses * task.system.group.pose_size)) > FEW:
+        remedy = "Ask for fewer times, or for momenta alone: reconstruct=False without a method."
+        within_memory("flow(times=...)", 32.0 * numbers, remedy)
     first = ContinuousFlow(task.system).first(start, with_poses=with_poses)
     reduced, pose = first.numbers[0], first.numbers[1] if with_poses else None
     if first.demand is not None:

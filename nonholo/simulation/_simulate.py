@@ -49,7 +49,7 @@ def simulate(
     energy; of three there the nearest). A function `rule(found, present)` gets the `Branches` and the present W,
     and returns the index of a real one or None. A tie and a double root are `branch_unverified`.
 
-    A discretized `LagrangeDAlembert` runs the map of its `CoordinateDiscretization.simulate`. It starts at a
+    A discretized `LagrangeDAlembert` runs its own map. It starts at a
     `configuration`, its q_0, and takes neither `restricted_velocity` nor `branch`, `reconstruct` and `backend`.
 
     Reference: [fedorov-zenkov-2004], equation (disc.momentum.eqn).

@@ -8,12 +8,14 @@ import equinox
 import jax
 import numpy as np
 
-from nonholo.base.checks import array, count, error, is_traced, shape_of
+from nonholo.base.checks import array, count, error, function, is_traced, shape_of
+from nonholo.base.numerics import double_precision
 from nonholo.base.progress import interruptibly, number_of_work
+from nonholo.base.traced import NodeState
 from nonholo.base.types import Array
 from nonholo.discrete import Discretization, ScalarRoute, as_discretization
 from nonholo.discrete.definition import in_double, roll_out, traceable
-from nonholo.lagrange_dalembert import rolled_in_coordinates
+from nonholo.lagrange_dalembert import check_value, rolled_in_coordinates
 from nonholo.simulation._options import check_forces, refuse_many_matrices
 from nonholo.systems import AbstractCoordinateDiscretization, Forced, Start, in_coordinates, refuse_in_coordinates
 
@@ -30,6 +32,7 @@ def rollout(
     momentum: Any = None,
     configuration: Any = None,
     controls: Any = None,
+    policy: Any = None,
     save_every: int = 1,
 ) -> Any:
     r"""Run the discrete map as `simulate` does, as a pure JAX function of body, start and controls.
@@ -40,8 +43,11 @@ def rollout(
     `Gravity`, `Friction` and the table of a `Forced` system act as in `simulate`, with derivatives by their numbers.
 
     In coordinates the numbers are the `parameters` of a `LagrangeDAlembert`, and controls are forces u_k, half of whose
-    impulse acts at each end of a step as the rows of a table do. A policy is a force that has its weights as
-    parameters.
+    impulse acts at each end of a step as the rows of a table do.
+
+    A policy closes the loop, $u_k = \pi(t_k, x_k)$ with the configuration at node k and the velocity $v_k$ that belongs
+    to the momentum there: u_k is held over step k, as a computer in the loop does. Derivatives by its weights are those
+    of the whole closed loop.
 
     It works under `jax.jit`, `jax.vmap`, `jax.jvp`, `jax.vjp`, `jax.jacfwd`, `jax.grad` and repeated ones, and never
     raises there. Derivatives are those of the implicit function of a step, to rounding, never of the iteration that
@@ -64,10 +70,14 @@ def rollout(
         configuration: First pose, a matrix of the group; the identity by default. In coordinates the first ones.
         controls: Body covectors u_k, (steps, dim), in coordinates forces, constant over a step: half of the impulse
             h u_k acts at each end of step k, along the constraint, beside the forces of the system; none by default.
+        policy: `policy(time, state)` -> control u_k, in place of controls, with `state.configuration` and
+            `state.body_velocity`, written with `jax.numpy`. Its weights may be traced: captured by the function, or the
+            leaves of a pytree that is called, such as `jax.tree_util.Partial(policy, weights)`, which compiles once.
         save_every: Steps between saved states.
 
     Returns:
-        The states, in coordinates a `CoordinateRollout`. Values are those of `simulate` to rounding.
+        The states with their controls, in coordinates a `CoordinateRollout`. Values are those of `simulate` to
+        rounding.
 
     Raises:
         ValueError: A bad argument, before any work; of traced ones the shape alone is known.
@@ -84,6 +94,18 @@ def rollout(
         ...     print(jax.jacfwd(place)(np.array([0.5, 1.0, 0.0])).round(3))
         [[-0.228  1.864 -0.091]
          [ 1.719  0.543  0.688]]
+
+        A controller that steers it along a line, and how its gain moves the last distance from the line:
+
+        >>> def distance(gain):
+        ...     def hold(time, state):
+        ...         pose = state.configuration
+        ...         return -gain * jax.numpy.array([pose[1, 2] + pose[1, 0] + state.body_velocity[0], 0.0, 0.0])
+        ...     states = nh.rollout(sleigh, body_velocity=np.array([0.5, 1.0, 0.0]), steps=100, policy=hold)
+        ...     return states.configuration[-1, 1, 2]
+        >>> with jax.enable_x64(True):
+        ...     print(distance(2.0).round(4), jax.grad(distance)(2.0).round(4))
+        -0.0015 -0.0323
     """
     sizes = tuple(
         count(f"rollout({name}=...)", value, "Pass a number of steps.")
@@ -96,7 +118,12 @@ def rollout(
     else:
         as_discretization("rollout(discrete=...)", discrete, compositions=True, forced=True)
         run, arguments = _roll_out, _on_group
-    own = arguments(discrete, Start.of("rollout", configuration, **starts), sizes, controls)
+    if policy is not None:
+        function("rollout(policy=...)", policy)
+        if controls is not None:
+            raise error("rollout(policy=...)", "be left out beside controls", "both", "Add the controls in the policy.")
+    drive = controls if policy is None else policy
+    own = arguments(discrete, Start.of("rollout", configuration, **starts), sizes, drive)
     return _call(run, *own, many=sizes[0] >= _MANY)
 
 
@@ -107,8 +134,8 @@ def _on_group(discrete: Any, start: Start, sizes: tuple[int, ...], controls: Any
     refuse_many_matrices("rollout(steps=...)", discrete, 1 + sizes[0] // sizes[1], "Raise save_every.")
     value, g = _checked_start(discrete, start)
     if controls is not None:
-        shape = (sizes[0], discrete.system.group.dim)
-        controls = array("rollout(controls=...)", controls, shape, "Pass a body covector for each step.")
+        group = discrete.system.group
+        controls = _checked_controls(controls, sizes[0], (group.dim,), group.identity.shape)
         if discrete.order > 2:
             got = f"order {discrete.order}"
             raise error("rollout(controls=...)", "have a step of order 2", got, "Use discretize(..., order=2).")
@@ -119,6 +146,23 @@ def _on_group(discrete: Any, start: Start, sizes: tuple[int, ...], controls: Any
     route = dataclasses.replace(free, order=2).route
     scalar = jax.tree.map(traceable, route.step) if isinstance(route, ScalarRoute) else None
     return free, scalar, (start.name, value, g), controls, sizes, forced
+
+
+def _checked_controls(controls: Any, steps: int, size: tuple[int], shape: tuple[int, ...]) -> Any:
+    """Return controls as an array, or a policy with all traced numbers among its leaves."""
+    if not callable(controls):
+        return array("rollout(controls=...)", controls, (steps, *size), "Pass a force for each step.")
+    where, of = "rollout(policy=...)", "a time and a state"
+    point = jax.ShapeDtypeStruct((), float), NodeState(*(jax.ShapeDtypeStruct(x, float) for x in (shape, size)))
+    with double_precision():
+        check_value(where, controls, size, point, of, of)
+        apart, weights = jax.closure_convert(lambda *at: controls(*at), *point)  # a pytree has no hash
+    return jax.tree_util.Partial(_policy_of, apart, weights) if weights else controls
+
+
+def _policy_of(apart: Callable[..., Array], weights: list[Array], time: Array, state: NodeState) -> Array:
+    """Return the control of a policy whose numbers are apart."""
+    return apart(time, state, *weights)
 
 
 def _call(run: Callable[..., Any], *arguments: Any, many: bool) -> Any:
@@ -140,13 +184,15 @@ def _in_coordinates(discrete: Any, start: Start, sizes: tuple[int, ...], control
         got, remedy = type(system).__name__, "Use `LLSystem`, `LRSystem` or `LagrangeDAlembert`."
         raise error("rollout(discrete=...)", "be a body on a group, or in coordinates", got, remedy)
     if not any(map(is_traced, (start.value, start.configuration, *numbers))):
-        discrete.first(start, with_poses=True)
+        with jax.ensure_compile_time_eval():  # what is known is checked where jax.jit traces the call, too
+            discrete.first(start, with_poses=True)
     n = system.dimension
     value = array(start.where, start.value, (n,))
     q = array("rollout(configuration=...)", start.configuration, (n,), f"Pass the {n} coordinates of the start.")
     if controls is not None:
-        controls = array("rollout(controls=...)", controls, (sizes[0], n), "Pass a force for each step.")
-    return system.family, start.name, sizes, numbers, np.float64(discrete.time_step), (q, value), controls
+        controls = _checked_controls(controls, sizes[0], (n,), (n,))
+    numbers, h = jax.tree.map(traceable, numbers), np.float64(discrete.time_step)
+    return system.family, start.name, sizes, numbers, h, (q, value), controls
 
 
 def _checked_start(discrete: Discretization, start: Start) -> tuple[Array, Array]:

@@ -1,10 +1,10 @@
-"""The interface of systems in coordinates, which discretize and flow by themselves."""
+"""The interface of systems in coordinates."""
 
 import abc
 import importlib
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, NoReturn, Self, TypeVar
 
 from nonholo.base.checks import error
 from nonholo.base.memo import Keeper
@@ -14,6 +14,20 @@ if TYPE_CHECKING:
 
 OrbitT = TypeVar("OrbitT")
 DiscretizationT = TypeVar("DiscretizationT")
+
+
+class _Former:
+    """A method of earlier versions: asked for it raises an error that names the function in its place."""
+
+    def __init__(self, call: str) -> None:
+        self.call = call
+
+    def __set_name__(self, kind: type, name: str) -> None:
+        self.name = name
+
+    def __get__(self, owner: Any, kind: type) -> NoReturn:
+        page = "docs/project/migration.md"
+        raise AttributeError(f"`{kind.__name__}.{self.name}` is now `{self.call}`: see {page}.")
 
 
 class AbstractCoordinateDiscretization(Keeper, abc.ABC, Generic[OrbitT]):
@@ -33,9 +47,13 @@ class AbstractCoordinateDiscretization(Keeper, abc.ABC, Generic[OrbitT]):
     def stepper(self, *, with_poses: bool) -> Any:
         """Return what takes its steps."""
 
+    if not TYPE_CHECKING:
+        simulate = _Former("nonholo.simulate(discrete, steps=...)")
+        iterate = _Former("nonholo.iterate(discrete, steps=...)")
+
 
 class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]):
-    """A system in coordinates: `nonholo.discretize`, `flow` and `Forced` hand their arguments on to it.
+    """A system in coordinates: `nonholo.discretize` and `Forced` hand their arguments on to it.
 
     Attributes:
         description: What stores say of it in place of its fields: a name and parameters.
@@ -52,6 +70,19 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
     @property
     def family(self) -> Any:
         """The one system that stands for all numbers of the parameters."""
+        return self
+
+    def _with_fields(self, **fields: Any) -> Self:
+        """Return a system with other fields, which need no check; it does not have a name for stores."""
+        system = object.__new__(type(self))
+        vars(system).update(vars(self), **fields)
+        for name in {"description", "family", "plain", "recipe"} - fields.keys():
+            vars(system).pop(name, None)
+        return system
+
+    @property
+    def plain(self) -> Any:
+        """The same system without parameters."""
         return self
 
     def bound(self, *numbers: Any) -> Any:
@@ -80,23 +111,17 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
         """Return the equations of motion, see `nonholo.vector_field`."""
         return importlib.import_module("nonholo.lagrange_dalembert").vector_field(self)
 
-    @abc.abstractmethod
-    def discretize(self, time_step: Any) -> DiscretizationT:
-        """Return the discretized system."""
+    def flow_from(self, begins: float) -> Any:
+        """Return the continuous motion from a time on."""
+        return importlib.import_module("nonholo.lagrange_dalembert").CoordinateFlow(self, begins)
 
     @abc.abstractmethod
-    def flow(
-        self,
-        *,
-        configuration: Any,
-        times: Any,
-        body_velocity: Any = None,
-        momentum: Any = None,
-        project: bool = False,
-        rtol: float | None = None,
-        atol: float = 1e-12,
-    ) -> OrbitT:
-        """Solve the continuous equations."""
+    def discrete_map(self, time_step: Any) -> DiscretizationT:
+        """Return the discretized system, see `nonholo.discretize`."""
+
+    if not TYPE_CHECKING:
+        discretize = _Former("nonholo.discretize(system, time_step)")
+        flow = _Former("nonholo.flow(system, times=...)")
 
 
 def in_coordinates(discrete: Any) -> "TypeIs[AbstractCoordinateDiscretization]":

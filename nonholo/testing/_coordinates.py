@@ -125,7 +125,7 @@ class CoordinateSamples:
 
     def _run(self, time_step: float, steps: int, **start: Any) -> Any:
         start = start or {"configuration": self.q, "momentum": self.momentum}
-        return simulate(self.system.discretize(time_step), steps=steps, **start)
+        return simulate(self.system.discrete_map(time_step), steps=steps, **start)
 
     @functools.cached_property
     def span(self) -> float:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.analysis import Convergence, compare, invariants
-from nonholo.base.checks import count, error, flags, instance, positive, refuse_given
+from nonholo.base.checks import count, error, flags, generator, instance, positive, refuse_given
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization, discrete_legendre, refuse_composition
 from nonholo.simulation import flow, refuse_many_matrices, simulate
@@ -18,7 +18,6 @@ from nonholo.testing._report import (
     Report,
     derivative,
     gap,
-    generator_of,
     largest,
     measures,
     need,
@@ -89,7 +88,7 @@ def check_order(
 def check_discretization(
     discrete: Discretization,
     *,
-    rng: Any = None,
+    rng: int | np.random.Generator = 0,
     steps: int = 20,
     definition: bool = True,
     configuration: Any = None,
@@ -113,7 +112,7 @@ def check_discretization(
 
     Args:
         discrete: Made by `discretize` for a system on a group, or a `LagrangeDAlembert`.
-        rng: Seed or generator of the start; by default a fixed seed.
+        rng: A generator of the start, or an integer that makes one.
         steps: Length of the orbit.
         definition: Also compare compiled steps with the definition; JAX compiles it, which takes seconds.
         configuration: Where motions begin, of a system in coordinates; random by default.
@@ -138,7 +137,7 @@ def check_discretization(
     number = max(count(f"{owner}(steps=...)", steps, "Pass the length of the orbit."), 4)
     if isinstance(discrete, AbstractCoordinateDiscretization):
         system, h = discrete.system, discrete.time_step
-        there = CoordinateSamples(owner, system, generator_of(rng), configuration, h, number)
+        there = CoordinateSamples(owner, system, generator(f"{owner}(rng=...)", rng), configuration, h, number)
         title = f"{owner}({there.system.name}, time_step={h:g}, {there.system.rule})"
         return run_checks(title, MAP, there, tolerance_factor, throw)
     refuse_given(owner, "be left out on a group", "Leave it out.", configuration=(configuration, None))
@@ -148,7 +147,7 @@ def check_discretization(
     refuse_composition(where, discrete, "Check the discretization of order 2.")
     refuse_slip(where, discrete.system)
     refuse_many_matrices(f"{owner}(steps=...)", discrete, number, "Pass fewer steps.")
-    samples = OrbitSamples(discrete, generator_of(rng), number)
+    samples = OrbitSamples(discrete, generator(f"{owner}(rng=...)", rng), number)
     forced = FORCED if discrete.system.is_forced else []
     checks = (*CHECKS, *forced, *checks_of_claims(samples), *((DEFINITION,) if definition else ()))
     return run_checks(_owner(discrete), checks, samples, tolerance_factor, throw)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
-from nonholo.base.checks import error, flags
+from nonholo.base.checks import error, flags, generator
 from nonholo.base.limits import within_memory
 from nonholo.base.numerics import double_precision
 from nonholo.groups import AbstractMatrixGroup
@@ -17,7 +17,6 @@ from nonholo.testing._report import (
     Report,
     derivative,
     gap,
-    generator_of,
     largest,
     need,
     run_checks,
@@ -27,7 +26,7 @@ from nonholo.testing._report import (
 def check_group(
     group: AbstractMatrixGroup,
     *,
-    rng: Any = None,
+    rng: int | np.random.Generator = 0,
     compiled: bool = True,
     tolerance_factor: float = 1.0,
     throw: bool = True,
@@ -45,7 +44,7 @@ def check_group(
 
     Args:
         group: Your group.
-        rng: Seed or generator of the samples; by default a fixed seed.
+        rng: A generator of the samples, or an integer that makes one.
         compiled: Also compare with compiled JAX functions, which takes seconds.
         tolerance_factor: On every tolerance, for a basis of badly scaled matrices.
         throw: Raise if a check fails; otherwise only the report says so.
@@ -66,7 +65,7 @@ def check_group(
         raise error("check_group(group=...)", "be a group", type(group).__name__, remedy)
     flags("check_group", compiled=compiled, throw=throw)
     within_memory("check_group(group=...)", 8.0 * group.dim**2 * group.size**2, "Check a smaller group of its kind.")
-    samples = GroupSamples(group, generator_of(rng))
+    samples = GroupSamples(group, generator("check_group(rng=...)", rng))
     checks = (*ALGEBRA, *MAPS, *((COMPILED,) if compiled else ()))
     return run_checks(f"check_group({group!r})", checks, samples, tolerance_factor, throw)
 

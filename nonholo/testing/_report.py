@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from nonholo.base.checks import error, positive, shown
+from nonholo.base.checks import positive
 
 
 def gap(value: Any, target: Any) -> float:
@@ -56,19 +56,6 @@ def derivative(function: Callable[[float], Any], step: float = 1e-3) -> np.ndarr
     near = np.asarray(function(step)) - np.asarray(function(-step))
     far = np.asarray(function(2 * step)) - np.asarray(function(-2 * step))
     return (8 * near - far) / (12 * step)
-
-
-def generator_of(rng: Any) -> np.random.Generator:
-    """Return a generator from a seed or a generator, and always the same one from None.
-
-    Example:
-        >>> float(generator_of(None).normal()) == float(generator_of(0).normal())
-        True
-    """
-    try:
-        return np.random.default_rng(0 if rng is None else rng)
-    except (TypeError, ValueError):
-        raise error("check_...(rng=...)", "be a seed or a generator", shown(rng), "Pass an integer >= 0.") from None
 
 
 Measure = TypeVar("Measure", bound=Callable[[Any], float])

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.analysis import ConservedMomenta, conserved_momenta
-from nonholo.base.checks import error, flags, refuse_given
+from nonholo.base.checks import error, flags, generator, refuse_given
 from nonholo.base.types import Float
 from nonholo.continuous import vector_field
 from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, Equilibria, Forced, refuse_slip
@@ -18,7 +18,6 @@ from nonholo.testing._report import (
     Report,
     derivative,
     gap,
-    generator_of,
     largest,
     measures,
     need,
@@ -250,7 +249,7 @@ def need_motion(s: SystemSamples) -> None:
 def check_system(
     system: AbstractSystem | AbstractCoordinateSystem,
     *,
-    rng: Any = None,
+    rng: int | np.random.Generator = 0,
     configuration: Any = None,
     tolerance_factor: float = 1.0,
     throw: bool = True,
@@ -269,7 +268,7 @@ def check_system(
 
     Args:
         system: A system on a group, `Forced` or free, or in coordinates.
-        rng: Seed or generator of the samples; by default a fixed seed.
+        rng: A generator of the samples, or an integer that makes one.
         configuration: Where motions begin, of a system in coordinates; random by default.
         tolerance_factor: On every tolerance, for badly scaled units.
         throw: Raise if a check fails; otherwise only the report says so.
@@ -288,13 +287,13 @@ def check_system(
     """
     flags("check_system", throw=throw)
     if isinstance(system, AbstractCoordinateSystem):
-        there = CoordinateSamples("check_system", system, generator_of(rng), configuration)
+        there = CoordinateSamples("check_system", system, generator("check_system(rng=...)", rng), configuration)
         return run_checks(f"check_system({there.system.name})", SYSTEM, there, tolerance_factor, throw)
     refuse_given("check_system", "be left out on a group", "Leave it out.", configuration=(configuration, None))
     if not isinstance(system, AbstractSystem):
         raise error("check_system(system=...)", "be a system", _name_of(system), "Pass an LLSystem or your own class.")
     refuse_slip("check_system(system=...)", system)
-    samples = SystemSamples(system, generator_of(rng))
+    samples = SystemSamples(system, generator("check_system(rng=...)", rng))
     owner = f"check_system({_name_of(system)} on {system.group!r})"
     return run_checks(owner, CHECKS, samples, tolerance_factor, throw)
 

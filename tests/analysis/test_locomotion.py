@@ -6,7 +6,7 @@ snakeboard v1 = (p - (J0 / r) tan(phi) psi') cos(phi)^2 / m, omega = v1 tan(phi)
 
 import dataclasses
 import functools
-from typing import Any
+from typing import Any, cast
 
 import jax.numpy as jnp
 import mpmath
@@ -244,7 +244,13 @@ def with_forms(forms: object, **others: object) -> nh.LagrangeDAlembert:
         (lambda: nh.local_connection(FREE, pose=("x", "y", "s2")), "pose=...\\)` must be one of"),
         (lambda: nh.local_connection(FREE, pose=("x", "y", "x")), "three different names"),
         (lambda: nh.local_connection(nh.examples.chaplygin_ball().system), "be a system in coordinates"),
-        (lambda: nh.local_connection(dataclasses.replace(FREE, force=nh.Friction(np.ones(4)))), "have no force"),
+        (lambda: nh.local_connection(with_forms(lambda _, time: jnp.eye(1, 4) * time)), "not depend on time"),
+        (lambda: nh.local_connection(dataclasses.replace(FREE, holonomic=lambda q: q[:1])), "same at every pose"),
+        (lambda: nh.local_connection(dataclasses.replace(FREE, holonomic=lambda q: q[3:])), "bind the body"),
+        (
+            lambda: nh.accessibility(dataclasses.replace(FREE, holonomic=lambda q: q[:1] - 1), np.zeros(4)),
+            "satisfy the",
+        ),
         (lambda: nh.local_connection(with_forms(lambda q: jnp.array([[q[0], 1.0, 0.0, 0.0]]))), "same at every pose"),
         (lambda: nh.local_connection(with_forms(lambda q: jnp.array([[0.0, 0.0, 0.0, 1 + q[3]]]))), "bind the body"),
         (lambda: nh.geometric_phase(car(), lambda t: jnp.array([t, 0.0])), "be closed"),
@@ -296,3 +302,35 @@ def test_the_curvature_of_two_wheels_is_a_bracket() -> None:
     at = _equations.terms((), W, np.zeros((3, 5, 2)), W, W)
     F = _equations.curvature(nh.SE(2), at)[:, 0, 1]
     np.testing.assert_allclose(F, [0, 0, -2 * turn * ahead], rtol=0, atol=1e-16)
+
+
+def test_forces_leave_the_connection_as_it_is() -> None:
+    """Under friction and a push a car whose shape is driven has the body velocity that the connection says."""
+    ready = nh.examples.kinematic_car(wheel_radius=RADIUS, wheelbase=BASE)
+    force = nh.Friction(np.linspace(0.5, 1.0, 5)), lambda time, q, v, _: jnp.cos(time + q) - v * jnp.abs(v)
+    rubbed = dataclasses.replace(cast(Any, ready.system), force=force)
+    connection = nh.local_connection(rubbed)
+    np.testing.assert_array_equal(connection.matrix((0.1, 0.3)), car().matrix((0.1, 0.3)))
+    orbit = nh.flow(rubbed, configuration=ready.configuration, body_velocity=ready.body_velocity, times=(0, 0.5, 1.0))
+    theta, v = orbit.configuration[:, 2], orbit.body_velocity
+    cos, sin = np.cos(theta), np.sin(theta)
+    xi = np.stack([v[:, 2], cos * v[:, 0] + sin * v[:, 1], cos * v[:, 1] - sin * v[:, 0]], axis=1)
+    np.testing.assert_allclose(connection.body_velocity(orbit.configuration[:, 3:], v[:, 3:]), xi, 0, 1e-12)
+
+
+def test_gradients_of_holonomic_constraints_are_rows() -> None:
+    """A blade whose heading is geared to its shape: connection, curvature and brackets are those of the rows."""
+    blade = lambda q: jnp.array([[-jnp.sin(q[2]), jnp.cos(q[2]), 0.0, 0.0], [jnp.cos(q[2]), jnp.sin(q[2]), 0.0, -0.5]])  # noqa: E731
+    geared = with_forms(blade, holonomic=lambda q: jnp.array([q[2] - jnp.sin(q[3])]))
+    gear = lambda q: jnp.concatenate([blade(q), jnp.array([[0.0, 0.0, 1.0, -jnp.cos(q[3])]])])  # noqa: E731
+    rows, ours, s = nh.local_connection(with_forms(gear)), nh.local_connection(geared), np.linspace(-1, 1, 5)[:, None]
+    assert ours.momentum_components == rows.momentum_components == ()
+    np.testing.assert_allclose(ours.matrix(s), rows.matrix(s), 0, 1e-15)
+    np.testing.assert_allclose(ours.matrix(s)[..., 0], np.stack([-np.cos(s), -0.5 + 0 * s, 0 * s], 1)[..., 0], 0, 1e-15)
+    gear_only = with_forms(lambda q: blade(q)[:1], holonomic=lambda q: jnp.array([q[2] - jnp.sin(q[3])]))
+    found = nh.accessibility(gear_only, np.zeros(4))
+    assert (found.growth, found.is_accessible) == ((2, 3), True)
+    assert np.abs(found.directions @ [0.0, 0.0, 1.0, -1.0]).max() <= 1e-15
+    as_form = with_forms(lambda q: jnp.concatenate([blade(q)[:1], jnp.array([[0.0, 0.0, 1.0, -jnp.cos(q[3])]])]))
+    assert nh.accessibility(as_form, np.zeros(4)).growth[:2] == (2, 3)
+    assert not nh.accessibility(as_form, np.zeros(4)).is_accessible

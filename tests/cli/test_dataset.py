@@ -24,10 +24,10 @@ def test_every_data_set_is_listed(nonholo: Command) -> None:
 
 def test_it_writes_what_python_writes(nonholo: Command, tmp_path: Path) -> None:
     """The command and the function have the same numbers; the command of the record writes them again."""
-    small = ("--orbits", "5", "--steps", "3", "--noise", "0.1", "--split", "0.6/0.2/0.2", "--seed", "2")
+    small = ("--orbits", "5", "--steps", "3", "--noise", "0.1", "--split", "0.6/0.2/0.2", "--rng", "2")
     done = nonholo("dataset", "sleigh", "-o", "command", *small, "-q")
     assert (done.exit_code, done.stdout.strip()) == (0, "command"), done.output
-    nh.dataset("sleigh", "python", orbits=5, steps=3, noise=0.1, split=(0.6, 0.2, 0.2), seed=2)
+    nh.dataset("sleigh", "python", orbits=5, steps=3, noise=0.1, split=(0.6, 0.2, 0.2), rng=2)
     records = [json.loads((tmp_path / each / "metadata.json").read_text()) for each in ("command", "python")]
     assert records[0]["fields"] == records[1]["fields"]
     again = records[0]["command"].split()[1:]

@@ -185,11 +185,12 @@ def test_a_sweep_over_a_body_of_ones_own(robot: Path, nonholo: Command) -> None:
     ("arguments", "told"),
     [
         (("simulate", "cart"), "there is no such file, and no built-in scenario of this name"),
+        (("simulate", "LLSystem"), "`nonholo new LLSystem` writes one."),
         (("simulate", "cart", "--module", "none.py"), "must be the path of a Python file. Got 'none.py'"),
         (("simulate", "cart", "--module", "json.py"), "but there is a module json at"),
         (("simulate", "cart", "--module", "broken.py"), "cannot be used. SyntaxError"),
         (("simulate", "cart", "--module", "cart_of_mine.py", "--set", "body.mas=1"), "Did you mean mass?"),
-        (("simulate", "snakebord"), "Did you mean snakeboard?"),
+        (("simulate", "snakebord"), "Did you mean snakeboard or snake? Your own functions are kinds with --module"),
         (("simulate", "particle", "--set", "body.mass=-1"), "body.mass: must be positive. Got -1"),
         (("simulate", "particle", "--set", "body.planar_velocity=[1]"), "body.planar_velocity: must have shape (2,)"),
         (("new", "snakebord"), "Did you mean snakeboard or snake?"),

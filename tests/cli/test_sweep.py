@@ -61,7 +61,7 @@ RANDOM = (
 [design]
 kind = "random"
 members = 12
-seed = 3
+rng = 3
 [design.values]
 "body.a" = {uniform = [0.2, 1.0]}
 "start.restricted_velocity" = {direction = 1.0}
@@ -95,6 +95,12 @@ def _design(text: str, *settings: str, members: int | None = None) -> nh.Grid | 
 def _told(result: Result) -> dict[str, Any]:
     assert result.exit_code == 0, result.output
     return json.loads(result.stdout)
+
+
+def test_the_former_word_for_random_numbers_is_read() -> None:
+    """Scenarios that stores hold say `seed` where new ones say `rng`; both at once are refused."""
+    assert _design(RANDOM.replace("rng = 3", "seed = 3")).seed == _design(RANDOM).seed == 3
+    assert _problems(RANDOM.replace("rng = 3", "rng = 3\nseed = 3"))
 
 
 def test_a_sweep_holds_the_orbits_of_simulate(nonholo: Command) -> None:

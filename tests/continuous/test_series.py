@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 from bodies import GENERAL, mass_tensor
 from problems import PROBLEMS
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 import nonholo as nh
 from nonholo.continuous import _series
@@ -96,6 +98,20 @@ def test_compact_poses_and_matrices_arrive_at_the_same_states(name: str, monkeyp
     for value in ("momentum", "configuration"):
         one, other = (getattr(orbit, value) for orbit in found)
         assert np.abs(one - other).max(initial=0.0) <= 1e-12 * (1 + np.abs(one).max(initial=0.0))
+
+
+def test_blocks_are_the_components_that_reach_each_other() -> None:
+    """Blocks of random edges are the strong components that SciPy finds; closed are those that nothing else moves."""
+    rng = np.random.default_rng(3)
+    for size in rng.integers(1, 20, 300):
+        edges, lone = rng.integers(0, size, (2, rng.integers(0, 2 * size))), rng.integers(0, size, rng.integers(0, 3))
+        labels, is_closed = _series._blocks(size, edges, lone)
+        matrix = coo_array((np.ones(edges.shape[1]), tuple(edges)), (size, size))
+        count, expected = connected_components(matrix, connection="strong")
+        assert len(set(zip(labels.tolist(), expected.tolist(), strict=True))) == count == len(is_closed)
+        for block in range(count):
+            comes_from = labels[edges[0, labels[edges[1]] == block]]
+            assert is_closed[block] == (not np.isin(block, labels[lone]) and bool((comes_from == block).all()))
 
 
 @pytest.mark.parametrize("system", [TOP, SLEIGH], ids=["top", "sleigh"])

@@ -17,7 +17,7 @@ from waiting import wait_for
 import nonholo as nh
 
 HERE = pathlib.Path(__file__).parents[1]
-DESIGN = nh.RandomDesign(240, {"x": nh.Uniform(0.0, 1.0)}, seed=5)
+DESIGN = nh.RandomDesign(240, {"x": nh.Uniform(0.0, 1.0)}, rng=5)
 BLOCK = 4
 
 

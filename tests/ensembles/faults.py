@@ -26,8 +26,8 @@ def noisy(block: nh.MemberBlock) -> dict[str, Any]:
 
 
 SWEEPS: dict[str, tuple[Any, Any, int]] = {
-    "noisy": (noisy, nh.Grid({"x": np.arange(60.0), "y": np.arange(40.0)}, seed=3), 8),
-    "tops": (TOPS, nh.RandomDesign(100_000, TOP_DESIGN, seed=4), 500),
+    "noisy": (noisy, nh.Grid({"x": np.arange(60.0), "y": np.arange(40.0)}, rng=3), 8),
+    "tops": (TOPS, nh.RandomDesign(100_000, TOP_DESIGN, rng=4), 500),
 }
 
 

@@ -13,7 +13,7 @@ import nonholo as nh
 from nonholo.ensembles.stores._store import SweepStore
 from nonholo.io import Piece
 
-DESIGN = nh.Grid({"x": [1.0, 2.0, 3.0], "start": [[0.0, 1.0], [2.0, 3.0]]}, seed=1)
+DESIGN = nh.Grid({"x": [1.0, 2.0, 3.0], "start": [[0.0, 1.0], [2.0, 3.0]]}, rng=1)
 
 
 def simple(block: nh.MemberBlock) -> dict[str, Any]:

@@ -43,7 +43,7 @@ def test_damaged_chunk_is_named_and_computed_again(array: str, damage: str, tmp_
 @pytest.mark.parametrize("name", ["x", "restricted_velocity"])
 def test_damaged_draws_are_computed_again(name: str, tmp_path: Path) -> None:
     """What a random design drew is kept beside the results, and is as safe; also in a last chunk that is not full."""
-    path, design = tmp_path / "run.zarr", nh.RandomDesign(5, {name: nh.Uniform(0.0, 1.0)}, seed=2)
+    path, design = tmp_path / "run.zarr", nh.RandomDesign(5, {name: nh.Uniform(0.0, 1.0)}, rng=2)
     task: Callable[[nh.MemberBlock], Any] = lambda block: block[name] ** 2  # noqa: E731
     whole = nh.sweep(task, design, path, block=2).load()
     _damage(path / name / "c" / "2", "flipped")

@@ -26,17 +26,17 @@ def _written(folder: Path, name: str = "sleigh", **options: Any) -> tuple[xarray
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A small data set with noise."""
-    return nh.dataset("sleigh", tmp_path_factory.mktemp("data") / "sleighs", orbits=10, steps=6, noise=0.01, seed=3)
+    return nh.dataset("sleigh", tmp_path_factory.mktemp("data") / "sleighs", orbits=10, steps=6, noise=0.01, rng=3)
 
 
 def test_the_same_seed_gives_the_same_bits(folder: Path, tmp_path: Path) -> None:
     """Another call has the same hashes; fewer orbits are the first of them; another seed has others."""
-    again, record = _written(tmp_path / "again", noise=0.01, seed=3)
+    again, record = _written(tmp_path / "again", noise=0.01, rng=3)
     assert record["fields"] == json.loads((folder / "metadata.json").read_text())["fields"]
-    few, _ = _written(tmp_path / "few", noise=0.01, seed=3, orbits=4)
+    few, _ = _written(tmp_path / "few", noise=0.01, rng=3, orbits=4)
     for name in set(few.variables) - {"split"}:
         assert few[name].values.tobytes() == again[name].values[:4].tobytes()
-    other, _ = _written(tmp_path / "other", seed=4)
+    other, _ = _written(tmp_path / "other", rng=4)
     assert not (other.start_energy == again.start_energy).any()
 
 
@@ -108,7 +108,7 @@ def test_parts_are_disjoint_and_of_the_sizes_asked_for(tmp_path: Path) -> None:
 
 def test_noise_is_beside_the_exact_numbers(folder: Path, tmp_path: Path) -> None:
     """Observed fields differ by the deviation asked for, independently; without noise there are none."""
-    exact, _ = _written(tmp_path / "exact", seed=3)
+    exact, _ = _written(tmp_path / "exact", rng=3)
     noisy = nh.load_sweep(folder / "orbits.zarr").load()
     assert set(noisy) - set(exact) == {f"observed_{name}" for name in ("x", "y", "heading", "body_velocity")}
     assert all(noisy[name].equals(exact[name]) for name in exact)
@@ -121,7 +121,7 @@ def test_noise_is_beside_the_exact_numbers(folder: Path, tmp_path: Path) -> None
 
 def test_tables_have_the_numbers_of_the_store(folder: Path, tmp_path: Path) -> None:
     """A row for each state, every number read back exactly, each part in its own file; no store stays."""
-    tables = nh.dataset("sleigh", tmp_path / "t", orbits=10, steps=6, noise=0.01, seed=3, file_format="csv")
+    tables = nh.dataset("sleigh", tmp_path / "t", orbits=10, steps=6, noise=0.01, rng=3, file_format="csv")
     assert {each.name for each in tables.iterdir()} == {
         *("train.csv", "validation.csv", "test.csv"),
         *("README.md", "metadata.json"),
@@ -138,7 +138,7 @@ def test_tables_have_the_numbers_of_the_store(folder: Path, tmp_path: Path) -> N
 
 def test_a_stopped_call_is_resumed(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A call that was stopped when blocks were missing is resumed by the same call, with the same bits."""
-    options: dict[str, Any] = {"orbits": 10, "steps": 6, "noise": 0.01, "seed": 3}
+    options: dict[str, Any] = {"orbits": 10, "steps": 6, "noise": 0.01, "rng": 3}
     with monkeypatch.context() as stop:
         stop.setattr("nonholo.ensembles._dataset.record_of", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
         with pytest.raises(KeyboardInterrupt):

@@ -29,7 +29,7 @@ EACH = pytest.mark.parametrize("distribution", DISTRIBUTIONS.values(), ids=DISTR
 
 
 def _drawn(distribution: AbstractDistribution, members: int = MEMBERS, seed: int = 3) -> np.ndarray:
-    return nh.RandomDesign(members, {"x": distribution}, seed=seed).values(0, members)["x"]
+    return nh.RandomDesign(members, {"x": distribution}, rng=seed).values(0, members)["x"]
 
 
 def _assert_mean(samples: np.ndarray, mean: Any) -> None:
@@ -70,9 +70,9 @@ def test_random_members_do_not_depend_on_blocks(distribution: AbstractDistributi
 @EACH
 def test_random_members_do_not_depend_on_the_rest(distribution: AbstractDistribution) -> None:
     """A member is the same among more members and beside other names, bit by bit."""
-    few = nh.RandomDesign(10, {"x": distribution}, seed=5).values(3, 4)["x"]
+    few = nh.RandomDesign(10, {"x": distribution}, rng=5).values(3, 4)["x"]
     others: dict[str, Any] = {"w": nh.Normal(), "x": distribution, "y": nh.Uniform(0, 1)}
-    assert nh.RandomDesign(10**12, others, seed=5).values(3, 4)["x"].tobytes() == few.tobytes()
+    assert nh.RandomDesign(10**12, others, rng=5).values(3, 4)["x"].tobytes() == few.tobytes()
 
 
 @pytest.mark.parametrize(
@@ -83,7 +83,7 @@ def test_random_members_do_not_depend_on_the_rest(distribution: AbstractDistribu
 def test_names_and_seeds_are_independent(one: tuple[str, int], other: tuple[str, int]) -> None:
     """Numbers of different names or seeds are not correlated, nor are those of neighbors: five standard errors."""
     first, second = (
-        nh.RandomDesign(MEMBERS, {name: nh.Uniform(-1, 1)}, seed=seed).values(0, MEMBERS)[name]
+        nh.RandomDesign(MEMBERS, {name: nh.Uniform(-1, 1)}, rng=seed).values(0, MEMBERS)[name]
         for name, seed in (one, other)
     )
     for shift in (0, 1, -1):
@@ -170,7 +170,7 @@ def test_choices_are_the_values() -> None:
 
 def test_blocks_know_their_members() -> None:
     """A block and a part of it have the numbers, the values and the random numbers of their members."""
-    design = nh.RandomDesign(100, {"x": nh.Uniform(0, 1), "start": nh.Direction(2)}, seed=8)
+    design = nh.RandomDesign(100, {"x": nh.Uniform(0, 1), "start": nh.Direction(2)}, rng=8)
     whole, block = block_of(design, 0, 100), block_of(design, 40, 20)
     for piece, members in ((block, slice(40, 60)), (block.part(5, 9), slice(45, 49))):
         assert piece.index.tolist() == list(range(100))[members]
@@ -216,11 +216,11 @@ def test_blocks_are_not_small(block: int) -> None:
         (lambda: nh.Grid({"run": [1.0]}), "taken: member, outcome, run, t, time"),
         (lambda: nh.Grid({"outcome": [1.0]}), "taken: member, outcome, run, t, time"),
         (lambda: nh.Grid({"a": [[1.0, 2.0]], "a_number": [1.0]}), "other names than its vectors"),
-        (lambda: nh.Grid({"a": [1.0]}, seed=-1), "be a natural number|be at most"),
+        (lambda: nh.Grid({"a": [1.0]}, rng=-1), "be a natural number|be at most"),
         (lambda: nh.RandomDesign(0, {"a": nh.Normal()}), "must be a positive integer"),
         (lambda: nh.RandomDesign(5, {"a": 1.0}), "be a distribution. Got 1.0. Pass nh.Uniform"),
         (lambda: nh.RandomDesign(5, {}), "must be a mapping"),
-        (lambda: nh.RandomDesign(5, {"a": nh.Normal()}, seed=True), "be a natural number|be at most"),
+        (lambda: nh.RandomDesign(5, {"a": nh.Normal()}, rng=True), "be a natural number|be at most"),
         (lambda: nh.Uniform(2.0, 1.0), "not be below `low`"),
         (lambda: nh.LogUniform([], 1.0), r"LogUniform\(low=...\)` must have a number. Got none"),
         (lambda: nh.LogUniform(0.0, 1.0), r"LogUniform\(low=...\)` must be positive"),
@@ -239,7 +239,29 @@ def test_bad_designs_are_refused(make: Callable[[], Any], match: str) -> None:
 def test_draws_do_not_depend_on_the_spelling_of_components() -> None:
     """A component of a start has the same random numbers under both of its names."""
     drawn = [
-        nh.RandomDesign(5, {name: nh.Uniform(0, 1)}, seed=3).values(0, 5)["momentum_1"]
+        nh.RandomDesign(5, {name: nh.Uniform(0, 1)}, rng=3).values(0, 5)["momentum_1"]
         for name in ("momentum[1]", "momentum_1")
     ]
     assert np.array_equal(*drawn)
+
+
+def test_an_integer_draws_what_it_always_drew() -> None:
+    """The bits of `rng=5` are those that version 0.2 drew from `seed=5`."""
+    drawn = nh.RandomDesign(10**6, {"x": nh.Uniform(0, 1)}, rng=5).values(3, 2)["x"]
+    assert [number.hex() for number in drawn.tolist()] == ["0x1.ae059de331ec2p-2", "0x1.aebe25230f6b5p-1"]
+
+
+def test_a_generator_draws_the_integer() -> None:
+    """Equal generators make equal designs, the next design of one is another, and each is that of its integer."""
+    generator, distributions = np.random.default_rng(2), {"x": nh.Uniform(0, 1)}
+    first, second = (nh.RandomDesign(4, distributions, rng=generator) for _ in range(2))
+    assert first.seed == nh.Grid({"x": [1.0]}, rng=np.random.default_rng(2)).seed != second.seed
+    again = nh.RandomDesign(4, distributions, rng=first.seed)
+    assert again.values(0, 4)["x"].tobytes() == first.values(0, 4)["x"].tobytes()
+
+
+@pytest.mark.parametrize("make", [nh.Grid, nh.RandomDesign, nh.dataset])
+def test_the_former_keyword_names_the_new_one(make: Callable[..., Any]) -> None:
+    """`seed=` is refused with the word of today and the page that lists such changes."""
+    with pytest.raises(ValueError, match=rf"{make.__name__}\(seed=...\)` must be called `rng`.*migration"):
+        make(seed=3)

@@ -44,7 +44,7 @@ def test_plane(tmp_path: Path, name: str) -> None:
 
 def test_space(tmp_path: Path) -> None:
     """Rows of a sweep of tops hold the quaternion, scalar first, in the user's frame whatever the forbidden axis is."""
-    design = nh.RandomDesign(3, {"restricted_velocity": nh.Direction(2)}, seed=5)
+    design = nh.RandomDesign(3, {"restricted_velocity": nh.Direction(2)}, rng=5)
     found = nh.sweep(_task(TOP), design, tmp_path / "t.zarr")
     result = CliRunner().invoke(app, ["export", str(tmp_path / "t.zarr"), "-o", str(tmp_path / "poses.csv")])
     assert result.exit_code == 0, result.output

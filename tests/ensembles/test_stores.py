@@ -112,12 +112,12 @@ def _functions(path: Path) -> None:
 
 def _another_seed(path: Path) -> None:
     swept(path)
-    nh.sweep(simple, nh.Grid(DESIGN.axes, seed=2), path, resume=True)
+    nh.sweep(simple, nh.Grid(DESIGN.axes, rng=2), path, resume=True)
 
 
 def _another_kind_of_design(path: Path) -> None:
     swept(path)
-    nh.sweep(simple, nh.RandomDesign(6, {"x": nh.Normal()}, seed=1), path, resume=True)
+    nh.sweep(simple, nh.RandomDesign(6, {"x": nh.Normal()}, rng=1), path, resume=True)
 
 
 def _another_schema(path: Path) -> None:

@@ -19,8 +19,8 @@ from nonholo.base.results import Outcome
 from nonholo.ensembles import standing_of
 from nonholo.ensembles.stores._results import ABSENT, RAISED
 
-GRID = nh.Grid({"x": [1.0, 2.0, 3.0], "y": [10.0, 20.0, 30.0, 40.0]}, seed=7)
-FEW = nh.RandomDesign(50, faults.TOP_DESIGN, seed=6)
+GRID = nh.Grid({"x": [1.0, 2.0, 3.0], "y": [10.0, 20.0, 30.0, 40.0]}, rng=7)
+FEW = nh.RandomDesign(50, faults.TOP_DESIGN, rng=6)
 
 
 def _swept(task: Any, path: Path, design: Any = GRID, **options: Any) -> xarray.Dataset:
@@ -254,7 +254,7 @@ def test_bad_arguments_are_refused(options: dict[str, Any], match: str, tmp_path
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("design", [GRID, nh.RandomDesign(12, {"x": nh.Normal(), "y": nh.Uniform(0, 1)}, seed=7)])
+@pytest.mark.parametrize("design", [GRID, nh.RandomDesign(12, {"x": nh.Normal(), "y": nh.Uniform(0, 1)}, rng=7)])
 @pytest.mark.parametrize("block", [1, 7, 64])
 @pytest.mark.parametrize("scheduler", ["threads", "synchronous"])
 def test_bits_do_not_depend_on_blocks(scheduler: str, block: int, design: Any, tmp_path: Path) -> None:
@@ -376,7 +376,7 @@ def _drawn_twice(block: nh.MemberBlock) -> dict[str, Any]:
 @pytest.mark.parametrize("block", [4, 7, 100])
 def test_a_random_design_grows(block: int, tmp_path: Path) -> None:
     """With more members, once and again, a store has the bits of a sweep of all of them; what is there is not done."""
-    few, many = (nh.RandomDesign(size, {"x": nh.Uniform(0.0, 1.0)}, seed=3) for size in (10, 29))
+    few, many = (nh.RandomDesign(size, {"x": nh.Uniform(0.0, 1.0)}, rng=3) for size in (10, 29))
     whole = _swept(_drawn_twice, tmp_path / "whole", many)
     _swept(_drawn_twice, tmp_path, few, block=block)
     calls = []
@@ -398,7 +398,7 @@ def test_a_random_design_grows(block: int, tmp_path: Path) -> None:
 
 def test_a_growth_that_was_killed_continues(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Killed as soon as the store says how many members it is to have, a growth is done by a plain `resume`."""
-    few, many = (nh.RandomDesign(size, {"x": nh.Uniform(0.0, 1.0)}, seed=3) for size in (10, 23))
+    few, many = (nh.RandomDesign(size, {"x": nh.Uniform(0.0, 1.0)}, rng=3) for size in (10, 23))
     _swept(_drawn_twice, tmp_path, few, block=4)
     path, how = tmp_path / "run.zarr", {"task": _drawn_twice, "scheduler": "synchronous"}
     with monkeypatch.context() as patch:

@@ -247,3 +247,22 @@ def test_blocks_know_components_under_both_names() -> None:
     assert block["speed[2]"].tolist() == block["speed_2"].tolist() == [1.0, 2.0]
     with pytest.raises(ValueError, match="name each value once"):
         nh.Grid({"speed[2]": [1.0], "speed_2": [1.0]})
+
+
+OBLIQUE = nh.LLSystem(nh.SE(2), np.eye(3), [[1.0, 0.0, 0.0], [0.0, 0.6, 0.8]])
+NAMES: dict[str, tuple[Any, list[str] | None, list[str] | None]] = {
+    "sleigh": (SLEIGH, ["omega", "v1"], ["cos", "sin", "x", "y"]),
+    "top": (TOP, ["omega2", "minus_omega1"], ["qw", "qx", "qy", "qz"]),
+    "oblique rows": (nh.discretize(OBLIQUE, 0.1), None, ["cos", "sin", "x", "y"]),
+}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_components_of_results_have_names(name: str, tmp_path: Path) -> None:
+    """Momenta bear the names of the axes they are along, compact poses those of their numbers."""
+    discrete, along, of_poses = NAMES[name]
+    found = nh.sweep(_task(discrete), nh.Grid({"restricted_velocity": [[0.3, 0.4]]}), tmp_path / "a.zarr")
+    for dimension, names in (("component", along), ("pose_component", of_poses)):
+        assert (found[dimension].values.tolist() if dimension in found.coords else None) == names
+    if along:
+        assert float(found["final_momentum"].sel(component=along[1])[0]) == found["final_momentum"].values[0, 1]

@@ -50,6 +50,7 @@ def test_every_public_example_is_tested() -> None:
     by_hand = {
         "driven_sleigh",
         "roller_racer",
+        "twistcar",
         "chaplygin_ball",
         "heavy_suslov_top",
         "sleigh_in_a_well",  # test_driven.py

@@ -154,7 +154,7 @@ def test_custom_systems_are_described_by_data() -> None:
     for system, group in ((own().system, None), (turning(), nh.SE(2))):
         kind, parameters = described_system(system)
         again = recorded_system(kind, json.loads(json.dumps(parameters)), group)
-        assert again.discretize(0.1).columns == system.discretize(0.1).columns
+        assert nh.discretize(again, 0.1).columns == nh.discretize(system, 0.1).columns
         for name in ("name", "coordinates", "shapes", "constraints", "is_driven", "orbits"):
             assert getattr(again, name) == getattr(system, name)
 
@@ -163,7 +163,7 @@ def test_custom_systems_are_described_by_data() -> None:
 def test_a_custom_system_on_a_group_opens_as_data(tmp_path: Path) -> None:
     """Its headings count full turns across blocks, as those of the orbit do."""
     run, path = {"body_velocity": (2.5, 1.0, 0.0), "steps": 40}, tmp_path / "run.zarr"
-    whole, moved = nh.simulate(turning().discretize(0.3), **run), turning().discretize(0.3)
+    whole, moved = nh.simulate(nh.discretize(turning(), 0.3), **run), nh.discretize(turning(), 0.3)
     with stopped_at(4):
         nh.simulate(moved, **run, store=path, checkpoint_every=3)
     assert same(nh.resume(path, discrete=moved), whole)

@@ -46,7 +46,7 @@ def _sweeps() -> list[Call]:
     family = {"family": function(_family), "time_step": positive(0.1), "steps": count(3)}
     family_names = {name: argument for name, argument in names.items() if name != "reconstruct"}
     family_names |= {"parameters": anything({"a": 2.0})}
-    data = {"orbits": count(3), "steps": count(3), "time_step": positive(0.1), "seed": integer(0)}
+    data = {"orbits": count(3), "steps": count(3), "time_step": positive(0.1), "rng": integer(0)}
     labels = {
         "noise": number(0.1),
         "split": array([0.5, 0.25, 0.25]),
@@ -65,14 +65,14 @@ def _sweeps() -> list[Call]:
 
 def _designs() -> list[Call]:
     axis, normal = array([1.0, 2.0], "any"), {"mean": number(0.0), "deviation": positive(1.0)}
-    grid = lambda x, y, seed: nh.Grid({"x": x, "y": y}, seed)  # noqa: E731
+    grid = lambda x, y, rng: nh.Grid({"x": x, "y": y}, rng)  # noqa: E731
     uniform = thing(nh.Uniform(0.0, 1.0))
-    drawn = lambda members, x, seed: nh.RandomDesign(members, {"x": x}, seed)  # noqa: E731
+    drawn = lambda members, x, rng: nh.RandomDesign(members, {"x": x}, rng)  # noqa: E731
     width = {"low": positive(0.5), "high": positive(2.0)}
     return [
-        call("Grid", grid, x=axis, y=array([[0.0, 1.0], [1.0, 2.0]], "any"), seed=integer(0)),
-        call("Grid [axes]", nh.Grid, axes=anything({"x": [1.0]}), seed=integer(0)),
-        call("RandomDesign", drawn, members=count(4), x=uniform, seed=integer(0)),
+        call("Grid", grid, x=axis, y=array([[0.0, 1.0], [1.0, 2.0]], "any"), rng=integer(0)),
+        call("Grid [axes]", nh.Grid, axes=anything({"x": [1.0]}), rng=integer(0)),
+        call("RandomDesign", drawn, members=count(4), x=uniform, rng=integer(0)),
         call(
             "RandomDesign [distributions]",
             nh.RandomDesign,

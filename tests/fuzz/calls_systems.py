@@ -146,18 +146,19 @@ def _in_coordinates() -> list[Call]:
     times = array([0.0, 0.1, 0.2], "any")
     tolerances = {"rtol": positive(1e-8), "atol": positive(1e-10)}
     pair = {"q": array([0.0, 0.0]), "q_next": array([1.0, 2.0]), "time_step": positive(0.5)}
-    discrete, blocks = free.discretize(0.1), {"steps": count(3), "block_steps": count(2, none=True)}
+    discrete, blocks = nh.discretize(free, 0.1), {"steps": count(3), "block_steps": count(2, none=True)}
     members = {"discrete": thing(discrete), "body_velocity": array([[0.5, 1.0], [1.0, 0.0]], "rows")}
     found = {"discrete": thing(discrete), "events": anything(None)}
     return [
         call("LagrangeDAlembert", nh.LagrangeDAlembert, **given, dimension=count(2), rule=text("midpoint"), **named),
         call("LagrangeDAlembert.regularity", free.regularity, **pair, slow=True),
-        call("LagrangeDAlembert.discretize", free.discretize, time_step=positive(0.1), slow=True),
-        call("LagrangeDAlembert.flow", free.flow, **spring, **moving, times=times, **tolerances, slow=True),
-        call("LagrangeDAlembert.iterate", discrete.iterate, **spring, **moving, **blocks, slow=True),
+        call("discretize [coordinates]", nh.discretize, system=thing(free), time_step=positive(0.1), slow=True),
+        call(
+            "flow [coordinates]", nh.flow, system=thing(free), **spring, **moving, times=times, **tolerances, slow=True
+        ),
+        call("iterate [coordinates]", nh.iterate, discrete=thing(discrete), **spring, **moving, **blocks, slow=True),
         call("ensemble [coordinates]", nh.ensemble, **members, **spring, steps=count(3), slow=True),
         call("simulate [coordinates]", nh.simulate, **found, **spring, **moving, steps=count(3), slow=True),
-        call("LagrangeDAlembert.simulate", discrete.simulate, **spring, **moving, steps=count(3), slow=True),
         call(
             "GroupLagrangeDAlembert",
             make,
@@ -238,6 +239,7 @@ def _examples() -> list[Call]:
         call("examples.sleigh_in_a_well", made.sleigh_in_a_well, **common, stiffness=number(0.3), slow=True),
         call("examples.driven_sleigh", made.driven_sleigh, **driven, slow=True),
         call("examples.roller_racer", made.roller_racer, **racer, slow=True),
+        call("examples.twistcar", made.twistcar, **racer, handle_mass=positive(0.2), slow=True),
         call("examples.chaotic_quartic_oscillator", made.chaotic_quartic_oscillator, pairs=count(3), slow=True),
         call("examples.kinematic_car", made.kinematic_car, **common, **car, slow=True),
         call("examples.knife_edge_on_incline", made.knife_edge_on_incline, **common, configuration=place, slow=True),

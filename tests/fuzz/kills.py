@@ -34,8 +34,8 @@ import nonholo as nh
 from nonholo.io import owner_of
 
 SWEEPS: dict[str, Any] = {
-    "noisy": (faults.noisy, nh.Grid({"x": np.arange(20.0), "y": np.arange(20.0)}, seed=3), 8),
-    "tops": (faults.TOPS, nh.RandomDesign(20_000, faults.TOP_DESIGN, seed=4), 500),
+    "noisy": (faults.noisy, nh.Grid({"x": np.arange(20.0), "y": np.arange(20.0)}, rng=3), 8),
+    "tops": (faults.TOPS, nh.RandomDesign(20_000, faults.TOP_DESIGN, rng=4), 500),
 }
 FAMILIES = {"orbit": ("sleigh", "events"), "sweep": tuple(SWEEPS)}
 _SHORTER = 5  # this many times shorter than the runs of the tests of kills at chosen blocks

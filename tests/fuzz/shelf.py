@@ -12,7 +12,7 @@ import nonholo as nh
 ORBIT, RUN, UNFINISHED = "orbit.zarr", "run.zarr", "unfinished.zarr"
 SWEEP, SWEEP_UNFINISHED = "sweep.zarr", "unfinished_sweep.zarr"
 DISCRETE = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.2)
-DESIGN = nh.Grid({"x": [1.0, 2.0, 3.0], "start": [[0.0, 1.0], [2.0, 3.0]]}, seed=1)
+DESIGN = nh.Grid({"x": [1.0, 2.0, 3.0], "start": [[0.0, 1.0], [2.0, 3.0]]}, rng=1)
 _STEPS, _BLOCK = 60, 10
 _stops: list[int] = []
 

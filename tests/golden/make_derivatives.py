@@ -51,10 +51,11 @@ class Case:
     time_step: float = 0.3
     friction: tuple[float, ...] = ()  # coefficients
     weight: tuple[float, ...] = ()  # the force, and the body point where it acts
+    gains: tuple[float, ...] = ()  # of a policy that steers a sleigh along the axis of x
 
     def numbers(self) -> list[Any]:
         """Return all numbers, exactly."""
-        flat = [*(x for row in self.controls for x in row), *self.friction, *self.weight]
+        flat = [*(x for row in self.controls for x in row), *self.friction, *self.weight, *self.gains]
         return [mpf(x) for x in (*self.body, self.time_step, *self.velocity, *flat)]
 
     def tensor(self, body: list[Any]) -> Array:
@@ -94,6 +95,7 @@ def end(case: Case, numbers: list[Any], roots: Roots) -> Array:
     size = len(case.basis)
     controls = np.array(rest[: size * len(case.controls)], dtype=object).reshape(-1, size)
     others = np.array(rest[size * len(case.controls) :], dtype=object)
+    others, gains = np.split(others, [len(case.friction) + len(case.weight)])
     basis, rows = exact(case.basis), exact(case.rows)
     skew = exact(int(case.skew))
     equations = Equations(basis, tensor, exact(h), rows, exact(case.annihilator).reshape(-1, len(basis)), skew)
@@ -102,6 +104,8 @@ def end(case: Case, numbers: list[Any], roots: Roots) -> Array:
     to_velocity = np.array(mp.inverse(mp.matrix((rows @ inertia @ rows.T).tolist())).tolist())
     for step in range(STEPS):
         control = controls[step] if len(controls) else exact([0] * size)
+        if case.gains:
+            control = steering(gains, (g, to_velocity @ r), h * step)
         pushed = kicked(case, (rows, basis, to_velocity), (r, g), (control, others), h / 2)
         if step == len(roots):
             x = solve(equations, pushed, principal(equations, pushed))
@@ -112,6 +116,13 @@ def end(case: Case, numbers: list[Any], roots: Roots) -> Array:
         arriving = rows @ adjoint(basis, w, displacement(basis, -x)).T @ momentum(equations, w)
         r = kicked(case, (rows, basis, to_velocity), (arriving, g), (control, others), h / 2)
     return np.concatenate([r, g.ravel()])
+
+
+def steering(gains: Array, state: tuple[Array, Array], time: Any) -> Array:
+    """Return the control of the policy."""
+    (turning, damping, driving), (g, (omega, speed)) = gains, state
+    torque = -turning * mp.cos(time) * (g[1, 2] + g[1, 0]) - damping * omega
+    return np.array([torque, driving * (1 - speed), mpf(0)], dtype=object)
 
 
 def kicked(case: Case, body: Any, state: Any, forces: Any, tau: Any) -> Array:
@@ -143,6 +154,7 @@ def make_case(case: Case) -> dict[str, Any]:
     print(case.name, len(rows), flush=True)
     given = {"body": case.body, "time_step": case.time_step, "velocity": case.velocity, "controls": case.controls}
     given |= {"friction": case.friction, "weight": case.weight} if case.friction else {}
+    given |= {"gains": case.gains} if case.gains else {}
     found = {"end": decimals(here.tolist()), "derivative": decimals(np.array(rows).tolist())}
     return {"name": case.name, "steps": STEPS, **given, **found}
 
@@ -156,7 +168,7 @@ TILTED_ROWS, TILTED_AXIS = [[0.0, 1.0, 0.0], [-0.8, 0.0, 0.6]], [[0.6, 0.0, 0.8]
 
 
 def cases() -> list[Case]:
-    """Return seven bodies, each in motion and at rest, where the displacement is the identity."""
+    """Return seven bodies, each in motion and at rest, where the displacement is the identity, and a closed loop."""
     so3, so4, se3 = special_orthogonal(3), special_orthogonal(4), special_euclidean(3)
     pushes = [[0.3, -0.5, 0.2], [-0.4, 0.6, 0.1], [0.2, 0.3, -0.3], [0.5, -0.1, 0.4]]
     moving = [
@@ -179,8 +191,10 @@ def cases() -> list[Case]:
             weight=(0.4, -1.0, 0.5, 0.3),
         ),
     ]
+    plane = SE2, sleigh_rows_of_plane(), [[0, 0, 1]], SLEIGH
     return [
         *moving,
+        Case("steered sleigh", *plane, [0.8, -0.5], [], False, gains=(0.7, 0.2, 0.5)),
         *(replace(case, name=f"{case.name} at rest", velocity=[0.0] * len(case.velocity)) for case in moving),
     ]
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from groups.examples import HEISENBERG, OTHERS, RIGID, SL2, SL3, TWO_BODIES, close, vectors
 
+from nonholo.base.numerics import exponential_increment
 from nonholo.groups import SE, SO, AbstractMatrixGroup, ProductGroup, Translations
 
 # SO(5), SO(6), SE(4) and SE(5) run the code of SO(4) and SE(3)
@@ -47,6 +48,19 @@ def test_compiled_functions_agree_with_numpy(group: AbstractMatrixGroup) -> None
     found = jax.jit(_everything, static_argnums=0)(group, jnp.asarray(x))
     for name, expected in _everything(group, x).items():
         assert close(np.asarray(found[name]), expected, 300), name
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-9, 1e-3, 0.9999, 1.0001, np.pi, 2 * np.pi, 30.0])
+def test_the_closed_form_of_screws_is_the_series(angle: float) -> None:
+    """On se(3) exp(x) - I and its derivatives are those of the exponential of matrices, to rounding of each entry."""
+    group, x = SE(3), np.array([0.6, -0.48, 0.64, 0.3, -2.0, 0.7])
+    x[:3] *= angle
+    functions = group.exp_increment, lambda x: exponential_increment(group.hat(x))
+    for of in (lambda f: f, jax.jacfwd, lambda f: jax.jacrev(jax.jacfwd(f))):
+        ours, series = (np.asarray(jax.jit(of(f))(jnp.asarray(x))) for f in functions)
+        assert np.abs(ours - series).max() <= 2e-15 * max(1.0, angle) ** 2 * np.abs(series).max()
+    tiny = jax.jit(functions[0])(jnp.asarray(1e-12 * x))[:3, :3]
+    assert np.abs(tiny - group.hat(1e-12 * x)[:3, :3]).max() <= 1e-24 * angle**2
 
 
 @pytest.mark.profile("routes", keep=["*-SE(3)"])

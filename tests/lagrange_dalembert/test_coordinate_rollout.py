@@ -131,14 +131,14 @@ def test_derivatives_have_nine_digits_of_fifty() -> None:
 def test_values_are_those_of_simulate(system: LagrangeDAlembert) -> None:
     """All that a rollout tells is what an orbit tells, to rounding; a table of controls acts as that of a force."""
     discrete, start = nh.discretize(system, H), {"configuration": Q, "momentum": V, "steps": 30}
-    states, orbit = nh.rollout(discrete, **start), discrete.simulate(**start)
+    states, orbit = nh.rollout(discrete, **start), nh.simulate(discrete, **start)
     for row in ROWS:
         assert np.abs(getattr(states, row) - getattr(orbit, row)).max() <= 1e-13, row
     assert states.outcome == Outcome.successful
     if system is SYSTEM:
         controls = np.random.default_rng(1).normal(size=(30, 3))
         driven = nh.rollout(discrete, **start, controls=controls, save_every=3)
-        table = nh.discretize(nh.Forced(system, force=controls), H).simulate(**start, save_every=3)
+        table = nh.simulate(nh.discretize(nh.Forced(system, force=controls), H), **start, save_every=3)
         for row in ROWS:
             assert np.abs(getattr(driven, row) - getattr(table, row)).max() <= 1e-13, row
 
@@ -150,7 +150,7 @@ def test_a_long_rollout_goes_between_saved_states() -> None:
         nh.discretize(SYSTEM, 0.01),
         {"configuration": Q, "momentum": V, "steps": 10_000, "save_every": 10_000},
     )
-    states, orbit = nh.rollout(discrete, **start), discrete.simulate(**start)
+    states, orbit = nh.rollout(discrete, **start), nh.simulate(discrete, **start)
     assert np.abs(states.configuration - orbit.configuration).max() <= 1e-9
     assert np.array_equal(states.time, orbit.time)
 
@@ -179,7 +179,7 @@ def test_beyond_a_fold_there_is_nothing() -> None:
     given = {"dimension": 1, "discrete_lagrangian": folded, "parameters": {"slope": 0.15}}
     system = LagrangeDAlembert(lagrangian, None, **given)
     start = {"configuration": np.zeros(1), "momentum": np.array([0.6]), "steps": 12}
-    orbit = nh.discretize(system, 1.0).simulate(**start, throw=False)
+    orbit = nh.simulate(nh.discretize(system, 1.0), **start, throw=False)
     states = nh.rollout(nh.discretize(system, 1.0), **start)
     assert states.outcome == orbit.outcome == Outcome.no_real_branch
     good = len(orbit)

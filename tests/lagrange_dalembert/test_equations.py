@@ -7,6 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+import nonholo as nh
 from nonholo.lagrange_dalembert import CoordinateOrbit, LagrangeDAlembert
 
 MASS = np.array([1.0, 2.0, 0.5])
@@ -46,7 +47,7 @@ def by_definition(rule: str, h: float):  # noqa: ANN201
 
 def run(rule: str, h: float, steps: int, **changes) -> CoordinateOrbit:  # noqa: ANN003
     """Return an orbit of the system with a rule."""
-    return dataclasses.replace(SYSTEM, rule=rule).discretize(h).simulate(**(START | {"steps": steps} | changes))
+    return nh.simulate(nh.discretize(dataclasses.replace(SYSTEM, rule=rule), h), **(START | {"steps": steps} | changes))
 
 
 @pytest.mark.profile("routes", keep=["midpoint"])
@@ -91,8 +92,11 @@ def test_blocks_join_without_a_seam() -> None:
     """A run longer than one compiled block is the run of its parts: it can be taken up by displacement."""
     whole = run("midpoint", 0.05, 2500)
     at = 1500
-    rest = SYSTEM.discretize(0.05).simulate(
-        configuration=whole.configuration[at], displacement=whole.displacement[at], steps=50
+    rest = nh.simulate(
+        nh.discretize(SYSTEM, 0.05),
+        configuration=whole.configuration[at],
+        displacement=whole.displacement[at],
+        steps=50,
     )
     assert whole.configuration.shape == (2501, 3)
     assert whole.multipliers.shape == (2500, 1)
@@ -105,7 +109,7 @@ def test_momentum_starts_where_the_velocity_does() -> None:
     q, v = START["configuration"], START["body_velocity"]
     with jax.enable_x64(True):
         p = np.asarray(jax.grad(lagrangian, argnums=1)(q, v)) + 3.0 * np.array([-q[1], 0.0, 1.0])
-    orbit = SYSTEM.discretize(0.1).simulate(configuration=q, momentum=p, steps=5)
+    orbit = nh.simulate(nh.discretize(SYSTEM, 0.1), configuration=q, momentum=p, steps=5)
     assert np.abs(orbit.configuration - run("midpoint", 0.1, 5).configuration).max() <= 1e-14
 
 
@@ -114,7 +118,7 @@ def test_momentum_starts_where_the_velocity_does() -> None:
 def test_the_start_is_second_order_in_momentum(rule: str) -> None:
     """Along admissible directions P_k is the momentum of the flow to second order: slope 2.0 +- 0.1."""
     time, counts = 1.0, (20, 40, 80, 160)
-    flow = SYSTEM.flow(**START, times=[0.0, time], rtol=1e-13, atol=1e-14)
+    flow = nh.flow(SYSTEM, **START, times=[0.0, time], rtol=1e-13, atol=1e-14)
     errors = []
     for n in counts:
         orbit = run(rule, time / n, n)
@@ -132,9 +136,9 @@ def test_without_gyroscopic_terms_the_map_is_reversible(rule: str) -> None:
     def even(q, v):  # noqa: ANN001, ANN202
         return lagrangian(q, v) - 0.3 * q[0] * v[1]
 
-    discrete = LagrangeDAlembert(even, forms, dimension=3, rule=rule).discretize(0.1)
-    there = discrete.simulate(**START, steps=100)
-    back = discrete.simulate(configuration=there.configuration[-1], displacement=-there.displacement[-2], steps=99)
+    discrete = nh.discretize(LagrangeDAlembert(even, forms, dimension=3, rule=rule), 0.1)
+    there = nh.simulate(discrete, **START, steps=100)
+    back = nh.simulate(discrete, configuration=there.configuration[-1], displacement=-there.displacement[-2], steps=99)
     # errors of 200 steps, each of a few rounding units, on a motion that is not unstable
     assert np.abs(back.configuration - there.configuration[:0:-1]).max() <= 1e-12
 
@@ -143,7 +147,7 @@ def test_without_gyroscopic_terms_the_map_is_reversible(rule: str) -> None:
 def test_unconstrained_midpoint_conserves_quadratic_invariants() -> None:
     """Without constraints the rule is the implicit midpoint rule: a plane oscillator keeps q_0 p_1 - q_1 p_0."""
     free = LagrangeDAlembert(lambda q, v: (v @ v - q @ q) / 2, None, dimension=2)
-    orbit = free.discretize(0.2).simulate(configuration=[1.0, 0.0], body_velocity=[0.2, 0.9], steps=1000)
+    orbit = nh.simulate(nh.discretize(free, 0.2), configuration=[1.0, 0.0], body_velocity=[0.2, 0.9], steps=1000)
     q, p = orbit.configuration, orbit.momentum
     assert orbit.multipliers.shape == (1000, 0)
     assert np.ptp(q[:, 0] * p[:, 1] - q[:, 1] * p[:, 0]) <= 1e-12
@@ -183,9 +187,9 @@ def test_functions_of_two_configurations_are_taken_too() -> None:
         return SYSTEM.constraint_forms((q + r) / 2) @ (r - q) / h
 
     options = {"dimension": 3, "discrete_lagrangian": action, "discrete_constraints": constraint}
-    found = LagrangeDAlembert(SYSTEM.lagrangian, SYSTEM.constraint_forms, **options).discretize(h)
-    expected = SYSTEM.discretize(h).simulate(**START, steps=20)
-    orbit = found.simulate(**START, steps=20)
+    found = nh.discretize(LagrangeDAlembert(SYSTEM.lagrangian, SYSTEM.constraint_forms, **options), h)
+    expected = nh.simulate(nh.discretize(SYSTEM, h), **START, steps=20)
+    orbit = nh.simulate(found, **START, steps=20)
     assert np.abs(orbit.configuration - expected.configuration).max() <= 1e-12
     assert np.abs(orbit.multipliers - expected.multipliers).max() <= 1e-12
     assert np.abs(orbit.energy - expected.energy).max() <= 0.01 * np.abs(expected.energy).max()

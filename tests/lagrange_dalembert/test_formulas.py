@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from jax import lax
 
+import nonholo as nh
 from nonholo.base.numerics import double_precision
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.lagrange_dalembert.compiled import _run
@@ -46,6 +47,7 @@ OTHERS: dict[str, Callable[..., Any]] = {
     "loop": lambda x, y: lax.fori_loop(0, 3, lambda _, z: z * y, x),
     "solver": lambda x, y: jnp.linalg.solve(jnp.eye(3) + jnp.outer(x, x), y),
     "index that is computed": lambda x, _: x[jnp.argmax(x)],
+    "place that is computed": lambda x, y: x.at[jnp.argmax(x)].set(y[0]),
     "branch that is computed": lambda x, y: lax.cond(x[0] > 0, lambda z: z, lambda z: 2 * z, y),
     "32 bits": lambda x, y: x.astype(jnp.float32) * y.astype(jnp.float32),
 }
@@ -85,9 +87,24 @@ def test_primitives(order: str, name: str) -> None:
 
 @pytest.mark.parametrize("name", OTHERS)
 def test_what_has_no_formulas_is_refused(name: str) -> None:
-    """Loops, linear solvers and computed indices are left to JAX."""
+    """Loops, linear solvers, slices and writing at computed places are left to JAX."""
     with pytest.raises(UntranslatableError):
         _run.program(OTHERS[name], (3,), (3,))
+
+
+@pytest.mark.parametrize("at", range(3))
+def test_computed_indices_choose_among_all_rows(at: int) -> None:
+    """The first of the greatest numbers picks a row and a column; so do its derivatives."""
+    x, y = np.roll([2.0, 2.0, -1.0], at), np.array([0.3, -0.7, 0.2])
+
+    def chosen(x: Any, y: Any) -> Any:
+        outer, k = jnp.outer(x, y), jnp.argmax(x)[None]
+        return jnp.concatenate([outer[k][0] * x, outer[:, k][:, 0], outer[jnp.argmax(-y)[None], k]])
+
+    for function in (chosen, jax.jacfwd(chosen, argnums=(0, 1))):
+        values, doubt = computed(function, x, y)
+        assert doubt == 0
+        assert np.array_equal(values, by_jax(function, x, y))
 
 
 def test_constants_have_the_values_of_the_code() -> None:
@@ -187,7 +204,7 @@ def _runs_as_by_jax(seed: int, time_step: float, monkeypatch: pytest.MonkeyPatch
     system = random_system(seed)
     start = started(system, seed)
     steps = 100 if time_step < 0.1 else 30  # large steps of random systems are chaotic
-    run = functools.partial(system.discretize(time_step).simulate, **start, steps=steps, throw=False)
+    run = functools.partial(nh.simulate, nh.discretize(system, time_step), **start, steps=steps, throw=False)
     compiled = run()
     assert _run.programs(system, (system.dimension + system.is_driven,), system.dimension) is not None
     left_to_jax(monkeypatch)

@@ -10,10 +10,12 @@ from scipy.integrate import solve_ivp
 
 import nonholo as nh
 from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, GroupOrbit, mass_tensor_lagrangian
+from nonholo.lagrange_dalembert.compiled import _run
 
 TENSOR = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 PLANE, BODY = nh.SE(2), nh.ChaplyginSleigh(mass=1.3, inertia=0.7, a=0.0, b=0.2)
 ACTION = mass_tensor_lagrangian(PLANE, BODY.homogeneous_mass_tensor)
+ROLL = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
 START = {"configuration": PLANE.exp(np.array([0.4, 1.0, -2.0]))}
 
 
@@ -48,7 +50,9 @@ def both(name: str) -> tuple[GroupOrbit, nh.Orbit]:
     if name == "veselova":
         velocity = system.group.adjoint(system.group.inverse(g)) @ velocity
     start = {"configuration": g, "body_velocity": velocity, "steps": 50}
-    return rewritten(system).discretize(0.15).simulate(**start), nh.simulate(nh.discretize(system, 0.15), **start)
+    return nh.simulate(nh.discretize(rewritten(system), 0.15), **start), nh.simulate(
+        nh.discretize(system, 0.15), **start
+    )
 
 
 @pytest.mark.profile("routes", instead="test_the_equations_hold_with_their_sign")
@@ -83,13 +87,13 @@ def run(h: float, steps: int, **changes) -> GroupOrbit:  # noqa: ANN003
     start = START | {"body_velocity": admissible(0.9, 1.0), "steps": steps}
     if changes.keys() & {"displacement", "momentum"}:
         del start["body_velocity"]
-    return MIXED.discretize(h).simulate(**(start | changes))
+    return nh.simulate(nh.discretize(MIXED, h), **(start | changes))
 
 
 @functools.cache
 def flow() -> GroupOrbit:
     """Return the continuous motion of the mixed system at times 0, 1, 2."""
-    return MIXED.flow(**START, body_velocity=admissible(0.9, 1.0), times=[0.0, 1.0, 2.0], rtol=1e-13, atol=1e-14)
+    return nh.flow(MIXED, **START, body_velocity=admissible(0.9, 1.0), times=[0.0, 1.0, 2.0], rtol=1e-13, atol=1e-14)
 
 
 def rates(_: float, z: np.ndarray) -> np.ndarray:
@@ -206,26 +210,62 @@ def test_thinning_keeps_the_numbers_and_labels_name_them() -> None:
     assert "displacement" not in flow().to_dataset()
 
 
-@pytest.mark.profile("routes", instead="test_the_equations_hold_with_their_sign")
-def test_chaplygins_ball_keeps_its_momentum_about_the_contact() -> None:
-    """On SO(3) x R^2: with the midpoint rule R I R^T Om + m x e3 x x' in space is constant to rounding."""
+def rolling_ball() -> tuple[GroupLagrangeDAlembert, dict[str, np.ndarray]]:
+    """Return a ball on SO(3) x R^2 that rolls with radius 1, x' = Om x e3, and a start."""
     group, mass, tensor = nh.ProductGroup(nh.SO(3), nh.Translations(2)), 1.5, np.diag([0.2, 0.3, 0.45])
     turning = mass_tensor_lagrangian(nh.SO(3), tensor)
-    roll = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])  # x' = Om x e3 for radius 1
 
     def action(W, h):  # noqa: ANN001, ANN202
         return turning(W[:3, :3], h) + mass * (W[3:5, 5] @ W[3:5, 5]) / (2 * h)
 
     def rolling(g):  # noqa: ANN001, ANN202
-        return jnp.concatenate([-roll @ g[:3, :3], jnp.eye(2)], axis=1)
+        return jnp.concatenate([-ROLL @ g[:3, :3], jnp.eye(2)], axis=1)
 
     g = group.random(np.random.default_rng(1))
     spin = np.array([1.0, -0.4, 0.8])
-    velocity = np.concatenate([spin, roll @ g[:3, :3] @ spin])
-    ball = GroupLagrangeDAlembert(group, action, rolling).discretize(0.1)
-    orbit = ball.simulate(configuration=g, body_velocity=velocity, steps=2000)
+    start = {"configuration": g, "body_velocity": np.concatenate([spin, ROLL @ g[:3, :3] @ spin])}
+    return GroupLagrangeDAlembert(group, action, rolling), start
+
+
+def turned(speed: float) -> tuple[GroupLagrangeDAlembert, dict[str, np.ndarray]]:
+    """Return a body on SO(3) that may not turn about an axis of space, and a start."""
+    system = GroupLagrangeDAlembert(nh.SO(3), mass_tensor_lagrangian(nh.SO(3), TENSOR), lambda g: g[2:3])
+    g = nh.SO(3).random(np.random.default_rng(3))
+    return system, {"configuration": g, "body_velocity": speed * np.cross(g[2], [1.0, 0.3, -0.5])}
+
+
+RUNS = {
+    "SO(3)": lambda: turned(1.0),
+    "SO(3), fast": lambda: turned(9.0),
+    "SE(2)": lambda: (MIXED, {**START, "body_velocity": admissible(0.9, 1.0)}),
+    "SE(3)": lambda: (nh.examples.chaplygin_ball().system, nh.examples.chaplygin_ball()._start),
+    "SO(3) x R^2": rolling_ball,
+}
+
+
+@pytest.mark.profile("routes", keep=["SO(3)", "SE(2)"])
+@pytest.mark.parametrize("name", RUNS)
+def test_compiled_runs_are_those_of_jax(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Equations on groups are formulas, too: orbits of 50 steps differ by rounding, and so does what is decoded."""
+    system, start = RUNS[name]()
+    orbit = nh.simulate(nh.discretize(system, 0.1), **start, steps=50)
+    assert _run.programs(system, system.shapes[0], system.group.dim) is not None
+    for each in ("programs", "values"):
+        monkeypatch.setattr(_run, each, lambda *_, **__: None)
+    by_jax = nh.simulate(nh.discretize(system, 0.1), **start, steps=50)
+    for name in ("configuration", "displacement", "momentum", "multipliers", "energy"):
+        ours, theirs = getattr(orbit, name), getattr(by_jax, name)
+        assert np.abs(ours - theirs).max() <= 1e-12 * max(1.0, np.abs(theirs).max()), name
+    assert orbit.constraint_residual.max() <= 1e-13 * np.abs(orbit.body_velocity).max()
+
+
+@pytest.mark.profile("routes", instead="test_the_equations_hold_with_their_sign")
+def test_chaplygins_ball_keeps_its_momentum_about_the_contact() -> None:
+    """On SO(3) x R^2: with the midpoint rule R I R^T Om + m x e3 x x' in space is constant to rounding."""
+    system, start = rolling_ball()
+    orbit = nh.simulate(nh.discretize(system, 0.1), **start, steps=2000)
     angular = np.einsum("kij,kj->ki", orbit.configuration[:, :3, :3], orbit.momentum[:, :3])
-    total = angular[:, :2] + orbit.momentum[:, 3:] @ roll[:, :2]
+    total = angular[:, :2] + orbit.momentum[:, 3:] @ ROLL[:, :2]
     assert np.abs(np.diff(orbit.momentum[:, 3:], axis=0)).max() > 1e-3
     assert np.abs(total - total[0]).max() <= 1e-11
     assert np.abs(angular[:, 2] - angular[0, 2]).max() <= 1e-11
@@ -331,7 +371,7 @@ def test_bad_systems_are_refused_at_the_start(arguments: tuple, message: str) ->
     """What only numbers can show is checked at the first pose, before any work."""
     system = GroupLagrangeDAlembert(PLANE, *arguments)
     with pytest.raises(ValueError, match=message):
-        system.discretize(0.1).simulate(**START, body_velocity=admissible(0.9, 1.0), steps=3)
+        nh.simulate(nh.discretize(system, 0.1), **START, body_velocity=admissible(0.9, 1.0), steps=3)
 
 
 def test_a_mass_tensor_needs_a_rigid_body() -> None:
@@ -359,7 +399,7 @@ def test_orbits_on_groups_have_tables_files_and_pictures(tmp_path) -> None:  # n
 def test_blocks_on_groups_are_the_run() -> None:
     """Bit for bit, as in coordinates."""
     start = {**START, "body_velocity": admissible(0.9, 1.0)}
-    blocks = list(nh.iterate(MIXED.discretize(0.1), **start, steps=10, block_steps=4))
+    blocks = list(nh.iterate(nh.discretize(MIXED, 0.1), **start, steps=10, block_steps=4))
     assert [len(block) for block in blocks] == [4, 4, 3]
     for rows in ("time", "configuration", "displacement", "momentum", "multipliers"):
         assert np.array_equal(np.concatenate([getattr(each, rows) for each in blocks]), getattr(run(0.1, 10), rows))

@@ -31,7 +31,7 @@ FOLDING = LagrangeDAlembert(pushed, None, dimension=1, discrete_lagrangian=folde
 
 def test_a_run_ends_where_the_branch_folds() -> None:
     """sin(d_k) = sin(d_0) + k F exceeds 1 at a known step; the steps before it are kept."""
-    orbit = FOLDING.discretize(1.0).simulate(configuration=[0.0], body_velocity=[0.1], steps=20, throw=False)
+    orbit = nh.simulate(nh.discretize(FOLDING, 1.0), configuration=[0.0], body_velocity=[0.1], steps=20, throw=False)
     sines = 0.1 + FORCE / 2 + FORCE * np.arange(20)
     assert orbit.outcome == nh.Outcome.no_real_branch
     assert len(orbit) == np.sum(sines < 1)
@@ -41,21 +41,21 @@ def test_a_run_ends_where_the_branch_folds() -> None:
 def test_the_error_names_the_step_and_carries_the_orbit() -> None:
     """With throw the same run raises, with the good steps."""
     with pytest.raises(nh.OutcomeError, match=r"Step 6 of 20 \(time_step 1\): no_real_branch") as caught:
-        FOLDING.discretize(1.0).simulate(configuration=[0.0], body_velocity=[0.1], steps=20)
+        nh.simulate(nh.discretize(FOLDING, 1.0), configuration=[0.0], body_velocity=[0.1], steps=20)
     assert len(caught.value.orbit) == 6
 
 
 def test_blocks_end_where_the_branch_folds() -> None:
     """The good steps come first; then the run raises, or the last block says why it ends."""
     how = {"configuration": [0.0], "body_velocity": [0.1], "steps": 20, "block_steps": 4}
-    blocks = FOLDING.discretize(1.0).iterate(**how)
+    blocks = nh.iterate(nh.discretize(FOLDING, 1.0), **how)
     assert [len(next(blocks)), len(next(blocks))] == [4, 2]
     with pytest.raises(nh.OutcomeError, match=r"Step 6 of 20 \(time_step 1\): no_real_branch"):
         next(blocks)
-    *good, last = FOLDING.discretize(1.0).iterate(**how, throw=False)
+    *good, last = nh.iterate(nh.discretize(FOLDING, 1.0), **how, throw=False)
     assert [each.outcome for each in (*good, last)] == [nh.Outcome.successful, nh.Outcome.no_real_branch]
     with pytest.raises(nh.OutcomeError, match=r"Start of the run.*no_real_branch"):
-        next(FOLDING.discretize(1.0).iterate(**how | {"body_velocity": [1.5]}))
+        next(nh.iterate(nh.discretize(FOLDING, 1.0), **how | {"body_velocity": [1.5]}))
 
 
 def test_a_step_that_is_not_trusted_is_taken_by_continuation(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -69,7 +69,7 @@ def test_a_step_that_is_not_trusted_is_taken_by_continuation(monkeypatch: pytest
     monkeypatch.setattr(_discretization, "in_double", noted)
     last = 1 - 1e-8
     how = {"configuration": [0.0], "displacement": [np.arcsin(last - 6 * FORCE)], "steps": 6}
-    orbits = [FOLDING.discretize(1.0).simulate(**how, save_every=every) for every in (1, 2, 3)]
+    orbits = [nh.simulate(nh.discretize(FOLDING, 1.0), **how, save_every=every) for every in (1, 2, 3)]
     assert steps.count("_advance") == len(orbits)
     assert abs(orbits[0].displacement[-1, 0] - np.arcsin(last)) <= 1e-14 / np.sqrt(1 - last**2)
     for every, orbit in zip((2, 3), orbits[1:], strict=True):
@@ -81,7 +81,7 @@ def test_a_step_that_is_not_trusted_is_taken_by_continuation(monkeypatch: pytest
 def test_a_start_at_or_beyond_the_fold_has_no_branch(start: dict) -> None:
     """A momentum above the largest one, and the fold itself, where the matrix is singular to rounding."""
     with pytest.raises(nh.OutcomeError, match=r"Start of the run.*no_real_branch"):
-        FOLDING.discretize(1.0).simulate(configuration=[0.0], steps=3, **start)
+        nh.simulate(nh.discretize(FOLDING, 1.0), configuration=[0.0], steps=3, **start)
 
 
 def test_regularity_vanishes_at_the_fold() -> None:
@@ -98,14 +98,14 @@ def test_a_momentum_in_a_gap_is_not_a_fold() -> None:
         dimension=1,
         discrete_lagrangian=lambda q, r, h: jnp.sum((r - q) ** 2 / (2 * h) + jnp.abs(r - q)),
     )
-    orbit = kinked.discretize(1.0).simulate(configuration=[0.0], momentum=[0.5], steps=3, throw=False)
+    orbit = nh.simulate(nh.discretize(kinked, 1.0), configuration=[0.0], momentum=[0.5], steps=3, throw=False)
     assert orbit.outcome == nh.Outcome.not_converged
 
 
 def test_leaving_the_domain_is_nonfinite() -> None:
     """A potential that is undefined beyond 1 ends the run with the states before."""
     walled = LagrangeDAlembert(lambda q, v: v @ v / 2 + jnp.sqrt(1 - q @ q), None, dimension=1)
-    orbit = walled.discretize(0.1).simulate(configuration=[0.0], body_velocity=[3.0], steps=30, throw=False)
+    orbit = nh.simulate(nh.discretize(walled, 0.1), configuration=[0.0], body_velocity=[3.0], steps=30, throw=False)
     assert orbit.outcome == nh.Outcome.nonfinite
     assert 1 <= len(orbit) <= 4
     assert np.all(np.isfinite(orbit.configuration))

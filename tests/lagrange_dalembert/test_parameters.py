@@ -118,7 +118,7 @@ def made(name: str, numbers: dict[str, Any] | None = None) -> LagrangeDAlembert:
 def test_parameters_are_numbers_within_the_functions(name: str) -> None:
     """A run has what it has with the numbers within, but for constants that were computed before: to rounding."""
     system = made(name).with_parameters(**OTHERS)
-    orbit, plain = (nh.discretize(each, 0.05).simulate(**START, steps=40) for each in (system, made(name, OTHERS)))
+    orbit, plain = (nh.simulate(nh.discretize(each, 0.05), **START, steps=40) for each in (system, made(name, OTHERS)))
     for row in ROWS:
         ours, theirs = getattr(orbit, row), getattr(plain, row)
         assert np.abs(ours - theirs).max(initial=0.0) <= 1e-13 * (1 + np.abs(theirs).max(initial=0.0)), row
@@ -161,7 +161,9 @@ def test_a_force_and_friction_go_with_parameters() -> None:
     system = nh.Forced(made("midpoint"), potential=well, force=(pushed, friction, table))
     given = within(pushed, OTHERS), friction, table
     plain = nh.Forced(made("midpoint", OTHERS), potential=lambda q: OTHERS["mass"] * q @ q, force=given)
-    runs = [nh.discretize(each, 0.05).simulate(**START, steps=40) for each in (system.with_parameters(**OTHERS), plain)]
+    runs = [
+        nh.simulate(nh.discretize(each, 0.05), **START, steps=40) for each in (system.with_parameters(**OTHERS), plain)
+    ]
     assert np.abs(runs[0].configuration - runs[1].configuration).max() <= 1e-13
     assert np.abs(runs[0].work - runs[1].work).max() <= 1e-13
 
@@ -170,7 +172,7 @@ def test_a_force_of_the_time_goes_with_parameters() -> None:
     """`Forced` keeps the time of a Lagrangian between velocity and parameters."""
     system = nh.Forced(made("of time"), potential=lambda q, p: p["mass"] * q @ q)
     plain = nh.Forced(made("of time", NUMBERS), potential=lambda q: NUMBERS["mass"] * q @ q)
-    ends = [nh.discretize(each, 0.05).simulate(**START, steps=9).configuration[-1] for each in (system, plain)]
+    ends = [nh.simulate(nh.discretize(each, 0.05), **START, steps=9).configuration[-1] for each in (system, plain)]
     assert np.abs(ends[0] - ends[1]).max() <= 1e-14
 
 
@@ -213,7 +215,7 @@ def test_other_questions_see_the_parameters() -> None:
 def test_stores_tell_the_parameters(tmp_path: Path) -> None:
     """A store holds them, an orbit from it tells them, and a run continues with the same numbers alone."""
     system, path = made("midpoint").with_parameters(**OTHERS), tmp_path / "run.zarr"
-    whole = nh.discretize(system, 0.05).simulate(**START, steps=30)
+    whole = nh.simulate(nh.discretize(system, 0.05), **START, steps=30)
     nh.simulate(nh.discretize(system, 0.05), **START, steps=10, store=path, checkpoint_every=5)
     stored = nh.load_orbit(path).system.parameters
     assert stored == {"mass": 0.6, "inertia": 1.1, "arm": 0.25, "pull": [-0.3, 0.4, 0.2]}
@@ -279,7 +281,7 @@ def test_members_with_parameters_are_runs_alone() -> None:
     for member in range(4):
         own = {name: values[member] for name, values in varied.items()}
         alone = nh.discretize(made("force").with_parameters(mass=own["mass"], pull=own["pull"]), own["time_step"])
-        orbit = alone.simulate(**START, steps=30, save_every=10)
+        orbit = nh.simulate(alone, **START, steps=30, save_every=10)
         for row in ("configuration", "momentum", "energy", "body_velocity", "restricted_momentum"):
             assert np.array_equal(getattr(batch, row)[member], getattr(orbit, row)), row
         assert batch.orbit(member).system == alone.system
@@ -316,7 +318,7 @@ def test_forces_need_not_take_the_parameters() -> None:
     """`Forced` takes a potential and a force with the parameters of the system, and without."""
     system = made("midpoint")
     runs = [
-        nh.discretize(nh.Forced(system, potential=potential, force=force), 0.05).simulate(**START, steps=9)
+        nh.simulate(nh.discretize(nh.Forced(system, potential=potential, force=force), 0.05), **START, steps=9)
         for potential, force in (
             (lambda q: q @ q, lambda time, q, v: -0.1 * v + 0 * q * time),
             (lambda q, p: q @ q + 0 * p["mass"], lambda time, q, v, p: -0.1 * v + 0 * q * time * p["mass"]),

@@ -116,10 +116,12 @@ def test_a_blade_that_depends_on_position_has_slope_two() -> None:
     bend = 0.3
     q, v = np.array([0.4, 1.0, -2.0]), in_space((0.7, 1.0, 0.0), 0.4 + bend)
     v[0], time, counts = 0.7, 2.0, (50, 100, 200, 400)
-    exact = sleigh(bend).flow(configuration=q, body_velocity=v, times=[0.0, time], rtol=1e-13, atol=1e-14)
+    exact = nh.flow(sleigh(bend), configuration=q, body_velocity=v, times=[0.0, time], rtol=1e-13, atol=1e-14)
     errors = []
     for n in counts:
-        orbit = sleigh(bend).discretize(time / n).simulate(configuration=q, body_velocity=v, steps=n, save_every=n)
+        orbit = nh.simulate(
+            nh.discretize(sleigh(bend), time / n), configuration=q, body_velocity=v, steps=n, save_every=n
+        )
         errors.append(np.abs(orbit.configuration[-1] - exact.configuration[-1]).max())
     slope = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
     assert abs(slope - 2.0) <= 0.1
@@ -129,7 +131,8 @@ def test_a_blade_that_depends_on_position_is_another_motion() -> None:
     """The constraint that depends on position is not that of the group route, and energy is no longer exact."""
     q, v = np.array([0.0, 0.0, 0.0]), np.array([0.7, 1.0, 0.0])
     straight, bent = (
-        sleigh(bend).discretize(STEP).simulate(configuration=q, body_velocity=v, steps=STEPS) for bend in (0.0, 0.3)
+        nh.simulate(nh.discretize(sleigh(bend), STEP), configuration=q, body_velocity=v, steps=STEPS)
+        for bend in (0.0, 0.3)
     )
     assert np.abs(straight.configuration - bent.configuration).max() > 0.1
     assert bent.constraint_residual.max() <= 1e-12

@@ -64,7 +64,7 @@ class Kind:
         branch: The branch rule.
         traits: What rules of abilities ask for: "composition", "table", "rule", "coordinates", "ready system",
             "function" (of the user's), "opaque" (a function that JAX does not see into), "wide" (hundreds of
-            dimensions), "no film" (neither plane nor space), "on a group" (by functions of matrices).
+            dimensions), "on a group" (by functions of matrices).
     """
 
     about: str
@@ -118,13 +118,13 @@ def _arrow(diagonal: Any) -> Any:
 
 KINDS: dict[str, Kind] = {
     "top, n = 3": _tensor("`nh.SuslovTop(J)`", nh.SuslovTop, _TOP, "suslov"),
-    "top, n = 5": _tensor("the same on SO(5)", nh.SuslovTop, _FIVE, "suslov", traits=frozenset({"no film"})),
+    "top, n = 5": _tensor("the same on SO(5)", nh.SuslovTop, _FIVE, "suslov"),
     "arrowhead, n = 300": Kind(
         "`nh.SuslovTop.arrowhead`",
         _arrow,
         "diagonal",
         (np.linspace(1, 2, 300), np.linspace(1.2, 2, 300)),
-        traits=frozenset({"wide", "no film"}),
+        traits=frozenset({"wide"}),
     ),
     "sleigh, SE(2)": _plane("`nh.ChaplyginSleigh`", lambda sleigh: sleigh),
     "sleigh, SE(3)": _tensor(
@@ -151,7 +151,6 @@ KINDS: dict[str, Kind] = {
         np.diag([2.0, 1.0, 1.5]),
         "left_invariant",
         "inertia_operator",
-        traits=frozenset({"no film"}),
         body={"group": {"basis": _LORENTZ}, "constraint_subspace": np.eye(3)[:2].tolist()},
     ),
     "logarithmic": _tensor(

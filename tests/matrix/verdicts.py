@@ -65,10 +65,7 @@ RULES: tuple[Rule, ...] = (
         "A discrete Lagrangian of the user's own includes its time step.",
         "includes its time step",
     ),
-    Rule("film", "no film", "Films show bodies of the plane and of space.", "must move on", is_broken=True),
-    Rule("film", "on a group", "Films of bodies on groups by functions are not there.", "Got", is_broken=True),
     Rule("multipliers|checks", "on a group", "No checks for systems on groups by functions.", "Got", is_broken=True),
-    Rule("flow ensemble", "coordinates", "Members in coordinates are maps.", "be left out", is_broken=True),
     Rule("scenario file", "function", "A file holds numbers, not the functions of a user.", "cannot be run"),
     Rule(
         "ensemble of parameters|gradient",

@@ -48,7 +48,7 @@ def _drawn(block: nh.MemberBlock) -> dict[str, Any]:
 @pytest.fixture(scope="module")
 def draws(tmp_path_factory: pytest.TempPathFactory) -> xarray.Dataset:
     """Four hundred random members."""
-    design = nh.RandomDesign(400, {"a": nh.Uniform(0, 4), "b": nh.Uniform(0, 3)}, seed=2)
+    design = nh.RandomDesign(400, {"a": nh.Uniform(0, 4), "b": nh.Uniform(0, 3)}, rng=2)
     return nh.sweep(_drawn, design, tmp_path_factory.mktemp("draws") / "s.zarr").load()
 
 

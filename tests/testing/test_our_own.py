@@ -104,7 +104,7 @@ def test_callables_in_place_of_names() -> None:
         (check_system, nh.SE(2)),
         (check_discretization, ON_SL2),
         (check_system, nh.examples.chaplygin_ball().system),
-        (check_discretization, nh.examples.chaplygin_ball().system.discretize(0.1)),
+        (check_discretization, nh.discretize(nh.examples.chaplygin_ball().system, 0.1)),
     ],
 )
 def test_other_things_are_refused(check: object, thing: object) -> None:

@@ -16,7 +16,7 @@ from nonholo.base.types import Array
 from nonholo.discrete import discretize
 from nonholo.discrete.definition import in_double
 from nonholo.groups import SE
-from nonholo.lagrange_dalembert import equations, place
+from nonholo.lagrange_dalembert import checked_state, equations, place
 from nonholo.lagrange_dalembert import in_double as of_system
 from nonholo.orbit import Orbit
 from nonholo.simulation import simulate
@@ -121,6 +121,7 @@ def _rotations(q: Array) -> Array:
     return jnp.moveaxis(jnp.array(rows), -1, 0)
 
 
+_CORRECTIONS = 12  # of a first configuration, to holonomic constraints
 _SAMPLES = 3  # states at which coordinates that the equations do not contain are looked for
 
 
@@ -129,7 +130,7 @@ class CoordinateModel:
     """Motions of a system in coordinates: what can be measured of them, and where they begin.
 
     A start is the momentum along admissible directions at the first state, and by what the first configuration is
-    another one. A pose has beside the latter columns of both.
+    another one, along holonomic constraints. A pose has beside the latter columns of both, and of ways back to these.
 
     Attributes:
         system: The system of the guess.
@@ -174,13 +175,17 @@ class CoordinateModel:
         q[at] = both[0] - rates * ends[0] * h
         for index, motion in system.plain.prescribed:
             q[index] = float(motion(np.float64(0.0)))
+        if system.holonomic is not None:
+            q = checked_state(system, q, {"body_velocity": 0 * q}, 0.0, "fit", project=True)[0][: len(q)]
         x = place(system, q, 0.0)
         A, b = of_system(equations.forms, system, x), -of_system(equations.constraint, system, x, 0 * q)
         basis, v = np.linalg.svd(A)[2][len(A) :].T, np.linalg.pinv(A) @ b
         v = v + basis @ np.linalg.lstsq(basis[at], rates - v[at])[0]
-        shifts = np.eye(len(q))[:, self._free(at, x, v, h)]
+        free = np.eye(len(q))[:, self._free(at, x, v, h)]
+        gradients = A[system.velocity_constraints : len(A) - len(system.prescribed)] @ free
+        shifts, back = free @ np.linalg.svd(gradients)[2][len(gradients) :].T, free @ np.linalg.pinv(gradients)
         momentum = basis.T @ of_system(equations.momentum, system, x, v)
-        return np.column_stack([q, basis, shifts]), np.append(momentum, np.zeros(shifts.shape[1]))
+        return np.column_stack([q, basis, shifts, back]), np.append(momentum, np.zeros(shifts.shape[1]))
 
     def _free(self, at: list[int], x: np.ndarray, v: np.ndarray, h: float) -> list[int]:
         """Return the coordinates whose beginning is fitted: those measured, and those that the equations contain."""
@@ -198,7 +203,7 @@ class CoordinateModel:
 
     def orbit(self, system: Any, h: float, start: np.ndarray, pose: np.ndarray, steps: int) -> Any:
         """Return the motion of a trial."""
-        q, p = _begin(system, start, pose)
+        q, p = of_system(_begin, system, start, pose)
         return simulate(discretize(system, h), momentum=p, configuration=q, steps=steps)
 
     def gap(self, kind: str, values: Array, q: Array) -> Array:
@@ -217,8 +222,18 @@ def _course(ends: tuple[int, int], nodes: np.ndarray, rows: np.ndarray) -> np.nd
 
 def _begin(system: Any, start: Array, pose: Array) -> tuple[Array, Array]:
     """Return the first configuration and momentum of a trial."""
-    k = system.dimension - system.constraints
-    return pose[:, 0] + pose[:, 1 + k :] @ start[k:], pose[:, 1 : 1 + k] @ start[:k]
+    k, n = system.dimension - system.constraints, system.dimension
+    _, basis, shifts, back = jnp.split(pose, [1, 1 + k, 1 + len(start)], axis=1)
+    q, p = pose[:, 0] + shifts @ start[k:], basis @ start[:k]
+    if system.holonomic is None:
+        return q, p
+
+    def onward(_: Any, q: Array) -> Array:
+        x = jnp.append(q, 0.0) if system.is_driven else q
+        slope = jax.lax.stop_gradient(jax.jacfwd(equations.holonomic, argnums=1)(system, x)[:, :n] @ back)
+        return q - back @ jnp.linalg.solve(slope, equations.holonomic(system, x))
+
+    return jax.lax.fori_loop(0, _CORRECTIONS, onward, q), p  # the last correction has the derivative of the root
 
 
 def _slopes(system: Any, xs: Array, vs: Array, h: Array) -> Array:
@@ -237,7 +252,7 @@ def _compile_in_coordinates(
 ) -> Callable[..., Any]:
     def one(numbers: Array, start: Array, pose: Array, kinds: dict[str, Array]) -> tuple[Any, Any]:
         system = system_of(by_name(shapes, numbers))
-        q, p = _begin(system, start, pose)
+        q, p = _begin(system.plain, start, pose)
         steps = len(next(iter(kinds.values()))) - 1
         states = rollout(discretize(system, time_step), momentum=p, configuration=q, steps=steps)
         rows = {kind: model.gap(kind, values, states.configuration) for kind, values in kinds.items()}
@@ -251,7 +266,4 @@ def coordinate_model(system: Any, again: Any) -> CoordinateModel:
     if not (system.parameters and system.family == again.family):
         remedy = "Make the system once, with parameters=..., and return system.with_parameters(**p)."
         raise error("fit(system_of=...)", "vary the parameters of one system", type(system).__name__, remedy)
-    if system.holonomic is not None:
-        remedy = "Choose coordinates that satisfy them."
-        raise error("fit(system_of=...)", "have no holonomic constraints", "some", remedy)
     return CoordinateModel(system)

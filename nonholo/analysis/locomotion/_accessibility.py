@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.analysis.locomotion._connection import checked_names
+from nonholo.analysis.locomotion._connection import checked_system
 from nonholo.base.checks import array, count, error, needs
 from nonholo.base.types import Float
 
@@ -20,7 +20,7 @@ class Accessibility:
     Attributes:
         growth: The ranks of $D \subset D + [D, D] \subset \dots$, as far as they were computed.
         directions: An orthonormal basis of the last of them, in rows.
-        is_accessible: Whether every direction is among them.
+        is_accessible: Whether every direction is among them; under holonomic constraints every one along their surface.
     """
 
     growth: tuple[int, ...]
@@ -36,19 +36,21 @@ def accessibility(system: Any, configuration: Any, *, depth: int | None = None) 
 
     If some $D_i$ is all of $\mathbb R^n$, motions along the constraint lead to every neighbor (Chow and Rashevskii). Of
     a kinematic system, whose shape moves as its owner likes, this is controllability. Otherwise it says that no
-    part of the constraint is integrable; what can be reached with forces on the shape alone is another question.
+    part of the constraint is integrable; what can be reached with forces on the shape alone is another question. The
+    gradients of holonomic constraints are rows of A.
 
     Derivatives of the constraints are by JAX; ranks count singular values above $10^{-9}$ of the largest, so
     choose units in which coordinates are of one size.
 
     Args:
-        system: A `LagrangeDAlembert` system without forces whose constraints do not depend on time, or a `ShapedBody`,
-            whose directions are $(\xi, \dot s)$. Prescribed motions are left aside.
+        system: A `LagrangeDAlembert` system whose constraints do not depend on time, or a `ShapedBody`, whose
+            directions are $(\xi, \dot s)$. Prescribed motions and forces are left aside.
         configuration: q; of a `ShapedBody` the shape s, which is all that matters.
         depth: The longest brackets, at most 8; by default n - dim D + 1, enough wherever the ranks are constant nearby.
 
     Raises:
-        ValueError: Another system, a wrong shape, constraints that are dependent or infinite at q.
+        ValueError: Another system, a wrong shape, constraints that are dependent or infinite at q, or holonomic ones
+            that q does not satisfy.
 
     Example:
         >>> ready = nh.examples.kinematic_car()
@@ -57,26 +59,31 @@ def accessibility(system: Any, configuration: Any, *, depth: int | None = None) 
     """
     with needs("jax", "accessibility"):
         from nonholo.analysis.locomotion import _brackets, _reduction
-    has_shape = hasattr(system, "shape_coordinates")
-    names = system.shape_coordinates if has_shape else checked_names("accessibility", system)
-    q = array("accessibility(configuration=...)", configuration, (len(names),), f"Pass {len(names)} coordinates.")
-    q = np.append(np.zeros(system.group.dim), q) if has_shape else q
-    system = _reduction.Reduced(system) if has_shape else system.plain
-    n = len(q)
-    forms = _brackets.forms_at(system, q)
+        from nonholo.lagrange_dalembert import checked_state, equations
+    where, has_shape = "accessibility(configuration=...)", hasattr(system, "shape_coordinates")
+    own: Any = _reduction.Reduced(system) if has_shape else checked_system("accessibility", system)
+    names = system.shape_coordinates if has_shape else own.coordinates
+    q, integrable = array(where, configuration, (len(names),), f"Pass {len(names)} coordinates."), 0
+    if has_shape:
+        q = np.append(np.zeros(system.group.dim), q)
+    elif own.holonomic is not None:
+        checked_state(own, q, {"body_velocity": np.zeros(len(q))}, 0.0, "accessibility")
+        integrable = own.constraints - own.velocity_constraints
+    rows, whole = (_reduction.Reduced.constraint_forms if has_shape else equations.forms, own), len(q) - integrable
+    forms = _brackets.forms_at(rows, q)
     rank = np.linalg.matrix_rank(forms) if np.isfinite(forms).all() else -1
     if rank < len(forms):
         remedy = "Choose another configuration, or drop constraints that follow from others."
-        raise error("accessibility(configuration=...)", "have independent constraints", f"{forms.tolist()}", remedy)
+        raise error(where, "have independent constraints", f"{forms.tolist()}", remedy)
     longest = rank + 1 if depth is None else count("accessibility(depth=...)", depth, "Pass a length of brackets.")
     if longest > _MOST:
         remedy = "Pass a smaller `depth=`: higher derivatives grow too large."
         raise error("accessibility(depth=...)", f"be at most {_MOST}", str(longest), remedy)
-    growth, fields = [], np.zeros((n, 0))
-    for longer in _brackets.brackets(system, q, longest):
+    growth, fields = [], np.zeros((len(q), 0))
+    for longer in _brackets.brackets(rows, q, longest):
         fields = np.hstack([fields, longer])
         growth.append(int(np.linalg.matrix_rank(fields, rtol=_RANK)))
-        if growth[-1] == n:
+        if growth[-1] == whole:
             break
     directions = np.linalg.svd(fields)[0][:, : growth[-1]].T
-    return Accessibility(tuple(growth), directions, growth[-1] == n)
+    return Accessibility(tuple(growth), directions, growth[-1] == whole)

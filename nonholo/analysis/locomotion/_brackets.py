@@ -19,21 +19,23 @@ from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 
 Polynomial = dict[tuple[int, ...], Array]
+Rows = tuple[Callable[[Any, Array], Array], Any]
+"""A function of a system and a configuration, and the system, whose constraint forms it gives."""
 
 
-def forms_at(system: Any, q: Float[np.ndarray, "n"]) -> Float[np.ndarray, "s n"]:
+def forms_at(forms: Rows, q: Float[np.ndarray, "n"]) -> Float[np.ndarray, "s n"]:
     """Return the constraint forms as rows of length one."""
-    rows = _taylor(system, q, 0)[()]
+    rows = _taylor(forms, q, 0)[()]
     return rows / np.maximum(np.linalg.norm(rows, axis=1, keepdims=True), np.finfo(float).tiny)
 
 
-def brackets(system: Any, q: Float[np.ndarray, "n"], longest: int) -> Iterator[Float[np.ndarray, "n words"]]:
+def brackets(forms: Rows, q: Float[np.ndarray, "n"], longest: int) -> Iterator[Float[np.ndarray, "n words"]]:
     """Yield the brackets [X_i, [X_j, ... ]] of each length, one for each word, as columns.
 
     The basis is X = (I, Y(q)), the identity in coordinates that the constraints leave free at q.
     """
     n, order = len(q), longest - 1
-    basis = _basis(forms_at(system, q), _taylor(system, q, order), order)
+    basis = _basis(forms_at(forms, q), _taylor(forms, q, order), order)
     fields, slopes = basis, _slopes(basis, n)
     yield basis[()]
     for _ in range(order):
@@ -84,9 +86,9 @@ def _product(a: Polynomial, b: Polynomial, order: int) -> Polynomial:
 
 
 @double_precision()
-def _taylor(system: Any, q: Float[np.ndarray, "n"], order: int) -> Polynomial:
+def _taylor(forms: Rows, q: Float[np.ndarray, "n"], order: int) -> Polynomial:
     """Return the constraint forms as a polynomial about q."""
-    derivatives = [np.asarray(tensor) for tensor in _derivatives(system, order)(jnp.asarray(q))]
+    derivatives = [np.asarray(tensor) for tensor in _derivatives(forms, order)(jnp.asarray(q))]
     return {
         power: derivatives[degree][(..., *power)] / math.prod(map(math.factorial, Counter(power).values()))
         for degree in range(order + 1)
@@ -95,14 +97,10 @@ def _taylor(system: Any, q: Float[np.ndarray, "n"], order: int) -> Polynomial:
 
 
 @functools.cache
-def _derivatives(system: Any, order: int) -> Callable[[Array], list[Array]]:
+def _derivatives(forms: Rows, order: int) -> Callable[[Array], list[Array]]:
     """Return the compiled derivatives of the constraint forms up to an order."""
-
-    def forms(q: Array) -> Array:
-        function = system.constraint_forms
-        return jnp.zeros((0, len(q))) if function is None else jnp.asarray(function(q), float)
-
-    derivatives = [forms]
+    rows, system = forms
+    derivatives: list[Callable[..., Any]] = [functools.partial(rows, system)]
     for _ in range(order):
         derivatives.append(jax.jacfwd(derivatives[-1]))
     return jax.jit(lambda q: [each(q) for each in derivatives])

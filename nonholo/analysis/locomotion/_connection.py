@@ -114,7 +114,7 @@ class LocalConnection:
         return self._motion("body_velocity", shape, shape_velocity, momentum)[0]
 
     def momentum_rate(self, shape: Any, shape_velocity: Any, momentum: Any = None) -> Float[np.ndarray, "... k"]:
-        r"""Return the right-hand side of the nonholonomic momentum equation.
+        r"""Return the right-hand side of the nonholonomic momentum equation, without forces.
 
         $$ p_a = \Bigl\langle\frac{\partial l}{\partial\xi}, e_a(s)\Bigr\rangle, \qquad
            \dot p_a = \Bigl\langle\frac{\partial l}{\partial\xi}, [\xi, e_a] + \dot e_a\Bigr\rangle , $$
@@ -181,14 +181,15 @@ def local_connection(system: Any, *, pose: tuple[str, str, str] = ("x", "y", "th
     $p_a = \langle\partial l/\partial\xi, e_a\rangle$ complete the equations, $\xi = -A(s)\dot s + \Gamma(s)p$. Without
     constraints A is the mechanical connection, and p the momentum in the body.
 
-    Prescribed motions of the shape are left aside: the connection holds for every motion of it. That constraints and,
+    Prescribed motions of the shape are left aside: the connection holds for every motion of it. So are forces, friction
+    among them, which change p beside what `momentum_rate` says and nothing else. The gradients of holonomic constraints
+    are rows of B and C. That constraints and,
     where there are momenta, Lagrangian do not depend on the pose is checked at 8 random shapes and poses.
 
     Reference: [bloch-krishnaprasad-marsden-murray-1996], [kelly-murray-1995]; signs are derived in the how-to "Gaits".
 
     Args:
-        system: A `LagrangeDAlembert` system without forces whose constraints and Lagrangian do not depend on time, or
-            a `ShapedBody`.
+        system: A `LagrangeDAlembert` system whose constraints and Lagrangian do not depend on time, or a `ShapedBody`.
         pose: Names of position and heading among its coordinates; a `ShapedBody` has its pose apart.
 
     Raises:
@@ -203,7 +204,8 @@ def local_connection(system: Any, *, pose: tuple[str, str, str] = ("x", "y", "th
     """
     if hasattr(system, "shape_coordinates"):
         return _connection(_door().Reduced(system), system, system.shape_coordinates)
-    names = checked_names("local_connection", system)
+    free = checked_system("local_connection", system)
+    names = free.coordinates
     where, argument, remedy = "local_connection(system=...)", "local_connection(pose=...)", "Name x, y and the heading."
     axes = [choice(argument, name, names, remedy) for name in instance(argument, pose, tuple, "be three names", remedy)]
     if len(set(axes)) != 3 or len(axes) != 3:
@@ -212,7 +214,7 @@ def local_connection(system: Any, *, pose: tuple[str, str, str] = ("x", "y", "th
     if not shape:
         raise error(where, "have a shape beside its pose", shown(names), "A rigid body has no connection.")
     x, y, theta = (names.index(name) for name in pose)
-    return _connection(_door().Planar(system.plain, (x, y, theta), shape), system, tuple(names[i] for i in shape))
+    return _connection(_door().Planar(free, (x, y, theta), shape), system, tuple(names[i] for i in shape))
 
 
 def _connection(reduction: Any, system: Any, shape: tuple[str, ...]) -> LocalConnection:
@@ -228,20 +230,19 @@ def _connection(reduction: Any, system: Any, shape: tuple[str, ...]) -> LocalCon
     return LocalConnection(system, shape, tuple(names[i] for i in free), reduction, free)
 
 
-def checked_names(owner: str, system: Any) -> tuple[str, ...]:
-    """Return the coordinates of a system whose constraints are linear and do not depend on time."""
+def checked_system(owner: str, system: Any) -> Any:
+    """Return a system without parameters, forces and prescribed motions, refused where anything depends on time."""
     where = f"{owner}(system=...)"
     remedy = "Pass a `LagrangeDAlembert`, of a ready example its `.system`; on a group a `ShapedBody`."
     instance(where, system, AbstractCoordinateSystem, "be a system in coordinates", remedy)
-    names: tuple[str, ...] = getattr(system, "coordinates", ())
-    if not names:
+    if not getattr(system, "coordinates", ()):
         raise error(where, "be a system in coordinates", "one on a group", remedy)
-    if system.force is not None or dataclasses.replace(system, prescribed=()).is_driven:
-        got = "a force, moving constraints or functions of time"
-        raise error(where, "not depend on time, and have no force", got, "Leave these out.")
-    if system.holonomic is not None:
-        raise error(where, "have no holonomic constraints", "some", "Choose coordinates that satisfy them.")
-    return names
+    free = system.plain
+    if free.force is not None or free.prescribed:
+        free = dataclasses.replace(free, force=None, prescribed=())
+    if free.is_driven:
+        raise error(where, "not depend on time", "moving constraints or functions of time", "Leave these out.")
+    return free
 
 
 def _free_components(where: str, reduction: Any, shapes: Array, poses: Array) -> tuple[int, ...]:

@@ -15,7 +15,7 @@ import numpy as np
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array
 from nonholo.groups import SE, AbstractMatrixGroup
-from nonholo.lagrange_dalembert import check_forms, check_value
+from nonholo.lagrange_dalembert import check_forms, check_value, equations
 
 _HERE = np.zeros(3)  # the identity, where it is asked for
 _TERMS = 8  # as many as the longest brackets need
@@ -39,11 +39,8 @@ class Planar:
 
     def rows(self, pose: Array, s: Array) -> Array:
         """Return the constraints at a pose (x, y, theta) as rows W = (B, C)."""
-        n = 3 + len(s)
-        if self.system.constraint_forms is None:
-            return jnp.zeros((0, n))
-        columns = jax.vmap(functools.partial(_velocities, self, pose), out_axes=1)(jnp.eye(n))
-        return jnp.asarray(self.system.constraint_forms(_coordinates(self, pose, s)), float) @ columns
+        columns = jax.vmap(functools.partial(_velocities, self, pose), out_axes=1)(jnp.eye(3 + len(s)))
+        return equations.forms(self.system, _coordinates(self, pose, s)) @ columns
 
     def lagrangian(self, pose: Array, s: Array, u: Array) -> Array:
         r"""Return the Lagrangian at a pose, of u = $(\xi, \dot s)$."""

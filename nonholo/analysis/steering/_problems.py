@@ -40,6 +40,7 @@ from nonholo.lagrange_dalembert import (
     in_double,
     place,
 )
+from nonholo.simulation import simulate
 from nonholo.systems import Forced
 
 
@@ -188,7 +189,7 @@ def driven_in_coordinates(
 ) -> CoordinateOrbit:
     """Return the orbit under forces, as far as it goes."""
     (v, q), table = start, discretize(discrete.system.forced(None, forces), discrete.time_step)
-    return table.simulate(configuration=q, body_velocity=v, steps=len(forces), throw=False)
+    return simulate(table, configuration=q, body_velocity=v, steps=len(forces), throw=False)
 
 
 def coordinate_problem(

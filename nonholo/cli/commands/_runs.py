@@ -20,10 +20,9 @@ from nonholo.base.limits import within_disk
 from nonholo.base.progress import waiting
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.cli.scenario.files import Loaded, built_in, effective_text, given_settings, load_scenario
-from nonholo.cli.scenario.problems import ScenarioError, problem_of_value
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, scenario_errors, store_errors
 from nonholo.cli.screen.pictures import beside, draw, warn_of_older
-from nonholo.cli.screen.report import as_json, duration, figures, show
+from nonholo.cli.screen.report import duration, figures, show, show_json
 from nonholo.orbit import AbstractOrbit
 from nonholo.simulation import resume_run, simulate, size_in_blocks
 
@@ -106,7 +105,7 @@ def _report(
     each, scenario = ran.seconds / max(1, numbers["steps"]), request.scenario
     if json:
         times = {"seconds": ran.seconds, "seconds_per_step": each}
-        typer.echo(as_json({"scenario": request.name, **paths, **times, **numbers, "stopped": ran.reason}))
+        show_json({"scenario": request.name, **paths, **times, **numbers, "stopped": ran.reason})
         return
     length = f"{numbers['steps']} of {scenario.run.steps}, time step {scenario.run.time_step:g}"
     heading = {"title": scenario.title or request.name, "steps": length}
@@ -173,13 +172,10 @@ def _try(request: Loaded) -> tuple[Any, bool]:
     """Return the discretized body of a scenario after a first step, which compiles, and whether there is a start."""
     discrete = _discretize(request)
     try:
-        first = simulate(discrete, steps=1, throw=False, **request.scenario.options())
+        with request.reporting("start"):
+            return discrete, len(simulate(discrete, steps=1, throw=False, **request.scenario.options())) > 0
     except OutcomeError:
         return discrete, False  # off the principal branch: the run proper says so
-    except ValueError as failure:
-        section = "run" if str(failure).startswith("`simulate(branch=") else "start"
-        raise ScenarioError([problem_of_value(failure, section, request.source, request.options)]) from None
-    return discrete, len(first) > 0
 
 
 def _run(task: Callable[..., AbstractOrbit], **place: Any) -> Ran:
@@ -194,10 +190,8 @@ def _run(task: Callable[..., AbstractOrbit], **place: Any) -> Ran:
 
 
 def _discretize(request: Loaded) -> Any:
-    try:
+    with request.reporting():
         return request.scenario.discretization()
-    except ValueError as failure:
-        raise ScenarioError([problem_of_value(failure, "run", request.source, request.options)]) from None
 
 
 def check_output(store: Path | None, *, overwrite: bool) -> None:

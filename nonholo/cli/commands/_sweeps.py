@@ -15,9 +15,8 @@ import xarray
 from nonholo import ensembles, io
 from nonholo.base.results import OutcomeError
 from nonholo.cli.commands._runs import Chosen, at_free_path, check_output, is_stopped
-from nonholo.cli.scenario.files import Loaded, given_settings, stored_scenario
+from nonholo.cli.scenario.files import given_settings, stored_scenario
 from nonholo.cli.scenario.motion import Scenario
-from nonholo.cli.scenario.problems import ScenarioError, problem_of_value
 from nonholo.cli.scenario.sweep_files import load_sweep_scenario, sweep_text
 from nonholo.cli.scenario.sweeps import SweepScenario
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, scenario_errors, store_errors, warn
@@ -44,7 +43,8 @@ def sweep_and_keep(
     """Load, run, draw, report; options of the command line come before the settings of `--set`."""
     with scenario_errors(), reporting_warnings():
         request = load_sweep_scenario(name, given_settings(options, settings), module)
-        task = _task(request)
+        with request.reporting():
+            task = request.scenario.task()
     scenario, begin = request.scenario, time.perf_counter()
     text = sweep_text(scenario if scenario.is_family else scenario.in_force(task.discrete))
     again = _is_stopped(output, text, scenario.output.plot)
@@ -72,14 +72,6 @@ def _is_stopped(output: Path | None, text: str, has_picture: bool) -> bool:
     with store_errors(USAGE):
         check_output(None if again else output, overwrite=False)
     return again
-
-
-def _task(request: Loaded[SweepScenario]) -> Any:
-    try:
-        return request.scenario.task()
-    except ValueError as failure:
-        section = "start" if "velocity" in str(failure) or "momentum" in str(failure) else "run"
-        raise ScenarioError([problem_of_value(failure, section, request.source, request.options)]) from None
 
 
 def _kept_in(run: Callable[..., xarray.Dataset], store: Path) -> xarray.Dataset:

@@ -10,8 +10,7 @@ from nonholo.cli.commands.run import Module
 if TYPE_CHECKING:
     from nonholo.examples import Example
 
-_SWEEP = "sweep"
-_NICKNAMES = {"top": ("suslov", "veselova"), "body": ("rigid_body",), "skate": ("sleigh",)}
+_ABOUT = "name", "what it is"
 
 
 def cite(
@@ -79,27 +78,23 @@ def examples(
     nonholo examples snakeboard
     nonholo examples suslov
     """
-    import tomllib
-
     from nonholo.cli.scenario.bodies import examples as ready_ones
     from nonholo.cli.scenario.bodies import summary
-    from nonholo.cli.scenario.files import built_in
+    from nonholo.cli.scenario.files import built_in_titles
     from nonholo.cli.scenario.sections import suggestion
     from nonholo.cli.screen.errors import USAGE, leave, store_errors
+    from nonholo.cli.screen.tables import show_table
 
-    scenarios = {each: tomllib.loads(text)["title"] for each, text in built_in().items()}
+    scenarios = built_in_titles()
     if name in scenarios:
         typer.echo(f"{name}: {scenarios[name]}\n\n{_commands(name)}")
         return
     with store_errors(USAGE):
         ready = ready_ones()
     if name is None:
-        _show_tables(
-            {
-                "Ready systems, nonholo.examples": {each: summary(make) for each, make in ready.items()},
-                "Built-in scenarios": scenarios,
-            }
-        )
+        own = ((each, summary(make)) for each, make in ready.items())
+        show_table(_ABOUT, own, "Ready systems, nonholo.examples")
+        show_table(_ABOUT, scenarios.items(), "Built-in scenarios")
     elif name in ready:
         _show(ready[name]())
     else:
@@ -108,17 +103,6 @@ def examples(
 
 def _commands(name: str) -> str:
     return "\n".join(f"  nonholo {command} {name}" for command in ("simulate", "explore", "new"))
-
-
-def _show_tables(tables: dict[str, dict[str, str]]) -> None:
-    from rich.console import Console
-    from rich.table import Table
-
-    for title, rows in tables.items():
-        table = Table("name", "what it is", title=title, title_justify="left")
-        for row in rows.items():
-            table.add_row(*row)
-        Console().print(table)
 
 
 def _show(example: "Example") -> None:
@@ -170,22 +154,13 @@ def new(
     if kind in own:
         typer.echo(own[kind], nl=False)
         return
+    from nonholo.cli.scenario.bodies import nearest_kind
     from nonholo.cli.scenario.templates import template
 
     try:
         typer.echo(template(kind), nl=False)
     except KeyError:
-        raise typer.BadParameter(f"there is no kind {kind!r}. {_nearest(kind)}") from None
-
-
-def _nearest(kind: str) -> str:
-    import difflib
-
-    from nonholo.cli.scenario.bodies import kinds
-
-    names = [*kinds(), _SWEEP]
-    near = (*_NICKNAMES.get(kind.lower(), ()), *difflib.get_close_matches(kind.lower(), names))
-    return f"Did you mean {' or '.join(dict.fromkeys(near))}?" if near else f"Known: {', '.join(names)}."
+        raise typer.BadParameter(f"there is no kind {kind!r}. {nearest_kind(kind)}") from None
 
 
 def systems(module: Module = None) -> None:
@@ -195,21 +170,15 @@ def systems(module: Module = None) -> None:
     nonholo new suslov > my.toml        a scenario to edit
     nonholo systems --module my_robot.py
     """
-    import tomllib
-
-    from rich.console import Console
-    from rich.table import Table
-
     from nonholo.cli.scenario.bodies import body_table, own_kinds
-    from nonholo.cli.scenario.files import built_in, take_module
+    from nonholo.cli.scenario.files import built_in_titles, take_module
     from nonholo.cli.screen.errors import scenario_errors
+    from nonholo.cli.screen.tables import show_table
 
     with scenario_errors():
         take_module(module)
-    bodies = Table("kind", "what it is", "parameters", title="Bodies", title_justify="left")
-    for kind in own_kinds():
-        body = body_table(kind)
-        bodies.add_row(kind, body.__doc__, ", ".join(name for name in body.model_fields if name != "kind"))
-    Console().print(bodies)
-    _show_tables({"Built-in scenarios": {name: tomllib.loads(text)["title"] for name, text in built_in().items()}})
+    tables = ((kind, body_table(kind)) for kind in own_kinds())
+    rows = ((kind, body.__doc__ or "", ", ".join([*body.model_fields][1:])) for kind, body in tables)
+    show_table(("kind", "what it is", "parameters"), rows, "Bodies")
+    show_table(_ABOUT, built_in_titles().items(), "Built-in scenarios")
     typer.echo("And every ready system of `nonholo examples`.")

@@ -15,7 +15,7 @@ def dataset(
     orbits: Annotated[int, typer.Option(metavar="N", min=1, help="How many orbits.")] = 1000,
     steps: Annotated[int, typer.Option(metavar="N", min=1, help="Steps of each; there is one state more.")] = 500,
     time_step: Annotated[float, typer.Option(metavar="H", help="Time between states.")] = 0.05,
-    seed: Annotated[int, typer.Option(metavar="N", min=0, help="The same seed gives the same numbers.")] = 0,
+    rng: Annotated[int, typer.Option(metavar="N", min=0, help="The same integer gives the same numbers.")] = 0,
     noise: Annotated[float, typer.Option(metavar="SIGMA", help="Also write fields `observed_...` with noise.")] = 0.0,
     split: Annotated[str, typer.Option(metavar="A/B/C", help="For training, validation, test.")] = "0.8/0.1/0.1",
     file_format: Annotated[str, typer.Option("--format", metavar="HOW", help="zarr, or csv: tables.")] = "zarr",
@@ -36,7 +36,7 @@ def dataset(
     nonholo dataset --list
     nonholo dataset sleigh -o sleighs
     nonholo dataset snakeboard -o boards --orbits 200 --noise 0.01
-    nonholo dataset top -o tops --seed 7 --format csv
+    nonholo dataset top -o tops --rng 7 --format csv
     """
     from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, store_errors
 
@@ -45,7 +45,7 @@ def dataset(
         return
     if name is None or output is None:
         leave("Pass a name and -o FOLDER; `nonholo dataset --list` lists the names.", USAGE)
-    options = {"orbits": orbits, "steps": steps, "time_step": time_step, "seed": seed, "noise": noise}
+    options = {"orbits": orbits, "steps": steps, "time_step": time_step, "rng": rng, "noise": noise}
     with store_errors(USAGE), reporting_warnings():
         from nonholo.ensembles import dataset as write
 
@@ -65,13 +65,8 @@ def _fractions(split: str) -> list[float]:
 
 
 def _show_all() -> None:
-    from rich.console import Console
-    from rich.table import Column, Table
-
+    from nonholo.cli.screen.tables import show_table
     from nonholo.ensembles import DEFINITIONS
 
-    names = Column("name", no_wrap=True)
-    table = Table(names, "what moves", "energies", "version", title="Data sets", title_justify="left")
-    for name, each in DEFINITIONS.items():
-        table.add_row(name, each.title, "{:g} to {:g}".format(*each.energy), str(each.version))
-    Console().print(table)
+    rows = ((k, each.title, "{:g} to {:g}".format(*each.energy), str(each.version)) for k, each in DEFINITIONS.items())
+    show_table(("name", "what moves", "energies", "version"), rows, "Data sets")

@@ -57,29 +57,21 @@ def paper(
 
 def _list(selection: "tuple[Entry, ...]") -> None:
     """Print a line for each finding: by what it is chosen, what it is, the verdict, where the paper has it."""
-    from rich.console import Console
-    from rich.table import Table
+    from nonholo.cli.screen.tables import show_table
 
-    table = Table("--only", "kind", "verdict", "where")
-    for each in selection:
-        table.add_row(", ".join(each.names), each.finding.kind, each.finding.verdict, each.finding.source)
-    Console().print(table)
+    rows = ((", ".join(e.names), e.finding.kind, e.finding.verdict, e.finding.source) for e in selection)
+    show_table(("--only", "kind", "verdict", "where"), rows)
 
 
 def _show(results: "list[Result]", *, each: bool) -> None:
     """Print a line for each section, or for each finding."""
-    from rich.console import Console
-    from rich.table import Table
+    from nonholo.cli.screen.tables import show_table
 
-    heading = (
-        ("label", "verdict", "defect", "of what is denied", "tolerance", "holds")
-        if each
-        else ("section", "findings", "hold")
-    )
-    table = Table(*heading, "seconds")
-    for row in _findings(results) if each else _sections(results):
-        table.add_row(*row)
-    Console().print(table)
+    if each:
+        columns = "label", "verdict", "defect", "of what is denied", "tolerance", "holds", "seconds"
+        show_table(columns, _findings(results))
+    else:
+        show_table(("section", "findings", "hold", "seconds"), _sections(results))
 
 
 def _findings(results: "list[Result]") -> list[tuple[str, ...]]:

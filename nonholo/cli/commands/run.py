@@ -131,7 +131,7 @@ def sweep(
 
     A scenario has \[body], \[start], \[run] as for `simulate`, and
 
-    \[design] kind = "grid" or "random"; members; seed
+    \[design] kind = "grid" or "random"; members; rng
     \[design.values] what is varied, by key path of the same file:
       "body.a" = [0.1, 0.2, 0.5]
       "run.time_step" = {from = 0.1, to = 1.0, count = 9}

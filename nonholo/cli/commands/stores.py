@@ -9,10 +9,14 @@ from typing import Annotated, Any
 
 import typer
 
+from nonholo.cli.commands.run import Json, Overwrite
+
+Store = Annotated[Path, typer.Argument(metavar="STORE", help="A store made by simulate, sweep or save_orbit.")]
+
 
 def info(
-    store: Annotated[Path, typer.Argument(metavar="STORE", help="A store made by simulate, sweep or save_orbit.")],
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    store: Store,
+    json: Json = False,
     scenario: Annotated[bool, typer.Option("--scenario", help="Print the scenario that was run, as TOML.")] = False,
 ) -> None:
     """Show the provenance of a run and measure again what it should keep.
@@ -56,7 +60,7 @@ def export(
         Path | None, typer.Option("-o", "--output", metavar="CSV", help="A new file; by default standard output.")
     ] = None,
     every: Annotated[int, typer.Option(metavar="N", min=1, help="Write one in N of the saved states.")] = 1,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace an older file at CSV.")] = False,
+    overwrite: Overwrite = False,
 ) -> None:
     """Write the poses of a run as CSV, read back exactly, in the body frame of the scenario.
 
@@ -101,7 +105,6 @@ def _ending_with_the_reader() -> Iterator[None]:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-Store = Annotated[Path, typer.Argument(metavar="STORE", help="A store made by simulate, sweep or save_orbit.")]
 Output = Annotated[
     Path | None,
     typer.Option("-o", "--output", metavar="PICTURE", help="A .png, .svg or .pdf; by default beside STORE."),
@@ -117,7 +120,6 @@ Title = Annotated[str | None, typer.Option(help="Instead of the picture's own; '
 Size = Annotated[str | None, typer.Option(metavar="WxH", help="In inches, as 16x9; fonts grow with it.")]
 Dpi = Annotated[float, typer.Option(min=10, max=1200, help="Dots per inch of a .png.")]
 Dark = Annotated[bool | None, typer.Option("--dark/--light", help="Colors for a dark or a light background.")]
-Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace an older PICTURE.")]
 
 
 def plot(

@@ -16,7 +16,7 @@ from pydantic import Field, WithJsonSchema, create_model, model_validator
 
 import nonholo
 from nonholo.base.checks import needs
-from nonholo.cli.scenario.sections import Numbers, Section, checked_by
+from nonholo.cli.scenario.sections import Numbers, Section, checked_by, suggestion
 
 if TYPE_CHECKING:
     from nonholo.groups import AbstractMatrixGroup
@@ -164,12 +164,20 @@ SHORT = {
     "right_invariant": "LRSystem",
 }
 """Kinds that are called by another word than their class."""
+_NICKNAMES = {"top": "suslov or veselova", "body": "rigid_body", "skate": "sleigh"}
 _OWN: dict[str, Maker] = {}
 
 
 def kinds() -> list[str]:
     """Return every kind of body that there is; those of the examples load JAX."""
     return [*_OWN, *SHORT, *_systems(), *examples()]
+
+
+def nearest_kind(name: str) -> str:
+    """Return which kind was probably meant, or all of them, and how a kind of the user's own is asked for."""
+    near = _NICKNAMES.get(name.lower())
+    remedy = f"Did you mean {near}?" if near else suggestion(name.lower(), kinds(), most=2)
+    return remedy if _OWN else f"{remedy} Your own functions are kinds with --module my_robot.py."
 
 
 def own_kinds() -> list[str]:

@@ -1,9 +1,11 @@
 """Reading a scenario: a file, a built-in name or an example, changed by options, checked as a whole; and writing it."""
 
+import contextlib
 import json
 import operator
 import re
 import tomllib
+from collections.abc import Iterator
 from importlib import resources
 from pathlib import Path
 from typing import Any, Generic, NamedTuple, TypeVar
@@ -11,10 +13,10 @@ from typing import Any, Generic, NamedTuple, TypeVar
 from pydantic import ValidationError
 
 from nonholo.base.limits import read_text
-from nonholo.cli.scenario.bodies import body_table, import_own, is_example, kinds, summary
+from nonholo.cli.scenario.bodies import body_table, import_own, is_example, kinds, nearest_kind, summary
 from nonholo.cli.scenario.forces import read_table
-from nonholo.cli.scenario.motion import Scenario, complete_ready, moving
-from nonholo.cli.scenario.problems import Problem, ScenarioError, problem, problems_of
+from nonholo.cli.scenario.motion import Run, Scenario, Start, complete_ready, moving
+from nonholo.cli.scenario.problems import Problem, ScenarioError, problem, problems_of, split_core
 from nonholo.cli.scenario.sections import Section, suggestion
 from nonholo.groups import components_of
 
@@ -38,6 +40,18 @@ class Loaded(NamedTuple, Generic[Model]):
     source: str
     options: dict[str, str]
     module: Path | None = None
+
+    @contextlib.contextmanager
+    def reporting(self, section: str = "run") -> Iterator[None]:
+        """Report an error of the library where the scenario has its argument, by default in a section."""
+        try:
+            yield
+        except ValueError as failure:
+            key, text = split_core(section, str(failure))
+            _, _, name = key.partition(".")
+            own = [each for each, model in (("run", Run), ("start", Start)) if name in model.model_fields]
+            key = f"{own[0]}.{name}" if own else key
+            raise ScenarioError([problem(key, text, self.source, self.options)]) from None
 
 
 def parse_toml(text: str) -> dict[str, Any]:
@@ -197,6 +211,11 @@ def built_in(kind: str = "") -> dict[str, str]:
     return {file.name.removesuffix(".toml"): file.read_text("utf-8") for file in files}
 
 
+def built_in_titles() -> dict[str, str]:
+    """Return the titles of the scenarios of one motion that come with the package, by name."""
+    return {name: parse_toml(text)["title"] for name, text in built_in().items()}
+
+
 def effective_text(scenario: Scenario) -> str:
     """Return a scenario as TOML with every value that was in force; running it again repeats the run."""
     document = scenario.model_dump(exclude_none=True, serialize_as_any=True)
@@ -231,8 +250,9 @@ def _text_of(name: str, own: dict[str, str]) -> tuple[str, str]:
     except FileNotFoundError:
         if own == built_in() and name.isidentifier() and is_example(name) and name in kinds():
             return f"{name} (example)", toml_text(summary(body_table(name).make), {"body": {"kind": name}})
-        names = [*own, *(kinds() if name.isidentifier() else ())]
-        text = f"there is no such file, and no built-in scenario of this name. {suggestion(name, names)}"
+        remedy = suggestion(name, own) if own != built_in() or not name.isidentifier() else nearest_kind(name)
+        remedy = f"`nonholo new {name}` writes one." if not is_example(name) else remedy
+        text = f"there is no such file, and no built-in scenario of this name. {remedy}"
     except (OSError, UnicodeDecodeError) as failure:
         text = f"cannot be read as a text file: {failure}"
     raise ScenarioError([Problem(name, "", text)])

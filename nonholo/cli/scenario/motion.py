@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import ValidationInfo, field_validator, model_validator
 
 import nonholo
-from nonholo.cli.scenario.bodies import body_table, is_example, kinds
+from nonholo.cli.scenario.bodies import body_table, is_example, nearest_kind
 from nonholo.cli.scenario.forces import Forces
 from nonholo.cli.scenario.sections import Count, Numbers, Positive, Section, by_kind, exactly_one
 
@@ -70,7 +70,7 @@ class AbstractScenario(Section):
     """The tables that scenarios of one motion and of sweeps share."""
 
     title: str = ""
-    body: Annotated[Any, by_kind(body_table, kinds)]
+    body: Annotated[Any, by_kind(body_table, nearest_kind)]
     run: Run
     forces: Forces = Forces()
 

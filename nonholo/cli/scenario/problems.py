@@ -38,11 +38,6 @@ def problems_of(failure: ValidationError, source: str, options: dict[str, str], 
     return [problem(key, text, source, options) for key, text in entries]
 
 
-def problem_of_value(failure: ValueError, section: str, source: str, options: dict[str, str]) -> Problem:
-    """Return the problem behind an error of the library about an argument that a section gave."""
-    return problem(*_split_core(section, str(failure)), source, options)
-
-
 def problem(key: str, text: str, source: str, options: dict[str, str]) -> Problem:
     """Return what is wrong at a key path, with the option that gave it, or the file."""
     for path, option in options.items():
@@ -54,13 +49,14 @@ def problem(key: str, text: str, source: str, options: dict[str, str]) -> Proble
 def _problem(entry: dict[str, Any], table: Key) -> tuple[str, str]:
     key = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in (*table, *entry["loc"])).lstrip(".")
     if entry["type"] == "value_error":
-        return _split_core(key, str(entry["ctx"]["error"]))
+        return split_core(key, str(entry["ctx"]["error"]))
     if entry["type"] == UNKNOWN:
         return key, entry["msg"]
     text = _TEXTS.get(entry["type"]) or entry["msg"].replace("Input should", "must", 1)
     return key, text if entry["type"] == "missing" else f"{text}. Got {reprlib.repr(entry['input'])}"
 
 
-def _split_core(section: str, message: str) -> tuple[str, str]:
+def split_core(section: str, message: str) -> tuple[str, str]:
+    """Return the key path of the argument that an error of the library names, and what it says; else the section."""
     match = _CORE.fullmatch(message)
     return (f"{section}.{match[1]}", match[2]) if match else (section, message)

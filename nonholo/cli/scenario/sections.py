@@ -13,10 +13,10 @@ Count = Annotated[int, Field(gt=0, le=10**15)]
 UNKNOWN = "unknown_key"
 
 
-def suggestion(name: str, names: Iterable[str]) -> str:
-    """Return the name that was probably meant, or all of them."""
-    close = difflib.get_close_matches(name, names := list(names), n=1)
-    return f"Did you mean {close[0]}?" if close else f"Known: {', '.join(names)}."
+def suggestion(name: str, names: Iterable[str], most: int = 1) -> str:
+    """Return the name that was probably meant, or a few, or all of them."""
+    close = difflib.get_close_matches(name, names := list(names), n=most)
+    return f"Did you mean {' or '.join(close)}?" if close else f"Known: {', '.join(names)}."
 
 
 def checked_by(make: Callable[[Any], object]) -> AfterValidator:
@@ -90,7 +90,7 @@ def exactly_one(section: Section, names: tuple[str, ...]) -> None:
         raise ValueError(f"must hold exactly one of {', '.join(names)}. Got {' and '.join(own) or 'none'}.")
 
 
-def by_kind(table_of: Callable[[str], type[Section]], kinds: Callable[[], Iterable[str]]) -> AfterValidator:
+def by_kind(table_of: Callable[[str], type[Section]], remedy: Callable[[str], str]) -> AfterValidator:
     """Return the check of a table by its kind; `table_of` raises a `KeyError` for an unknown one."""
 
     def read(table: Any) -> Any:
@@ -107,7 +107,7 @@ def by_kind(table_of: Callable[[str], type[Section]], kinds: Callable[[], Iterab
             model = None
         if model is None:
             got = "none" if kind is None else repr(kind)
-            raise ValueError(f"must have a kind that there is. Got {got}. {suggestion(str(kind), kinds())}")
+            raise ValueError(f"must have a kind that there is. Got {got}. {remedy(str(kind))}")
         return model.model_validate(table)
 
     return AfterValidator(read)

@@ -9,14 +9,14 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, Any, Generic, Literal, Self, TypeVar
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import AliasChoices, Field, model_validator
 
 import nonholo
 from nonholo.base.checks import is_integer, shown
 from nonholo.base.limits import bounded_count
 from nonholo.cli.scenario.bodies import arguments
 from nonholo.cli.scenario.motion import AbstractScenario, Start, is_ready
-from nonholo.cli.scenario.sections import Count, Section, by_kind, checked_by, is_finite
+from nonholo.cli.scenario.sections import Count, Section, by_kind, checked_by, is_finite, suggestion
 from nonholo.ensembles import REDUCTIONS
 from nonholo.ensembles.designs import DISTRIBUTIONS
 
@@ -29,7 +29,7 @@ _SPACINGS = ("linear", "logarithmic")
 _SIZES = {"size": "vectors", "n": "matrices"}  # what a distribution calls the length of what it draws
 _WORDS = {re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower(): make for name, make in DISTRIBUTIONS.items()}
 TABLES = ("body", "start", "run", "forces")
-Seed = Annotated[int, Field(ge=0, lt=2**63)]
+Rng = Annotated[int, Field(ge=0, lt=2**63, validation_alias=AliasChoices("rng", "seed"))]  # stores have "seed" too
 Value = TypeVar("Value")
 
 
@@ -161,8 +161,8 @@ class GridDesign(Section):
     kind: Literal["grid"]
     members: Count | None = None
     """About this many: counts of ranges are scaled alike."""
-    seed: Seed = 0
-    """Of random numbers."""
+    rng: Rng = 0
+    """The integer that random numbers are made of."""
     values: Values[Annotated[Any, checked_by(along)]]
     """The varied keys, by path, and their values: a list, or a range with a count."""
 
@@ -182,7 +182,7 @@ class GridDesign(Section):
 
     def design(self) -> "Grid":
         """Return the design under the names of the library."""
-        return nonholo.Grid({name: along(value) for name, value in self.values.by_name()}, seed=self.seed)
+        return nonholo.Grid({name: along(value) for name, value in self.values.by_name()}, rng=self.rng)
 
 
 class RandomMembers(Section):
@@ -191,8 +191,8 @@ class RandomMembers(Section):
     kind: Literal["random"]
     members: Count
     """How many."""
-    seed: Seed = 0
-    """Of random numbers."""
+    rng: Rng = 0
+    """The integer that random numbers are made of."""
     values: Values[Annotated[Any, checked_by(distribution_of)]]
     """The varied keys, by path, and their distributions."""
 
@@ -203,7 +203,7 @@ class RandomMembers(Section):
     def design(self) -> "RandomDesign":
         """Return the design under the names of the library."""
         drawings = {name: distribution_of(value) for name, value in self.values.by_name()}
-        return nonholo.RandomDesign(self.members, drawings, seed=self.seed)
+        return nonholo.RandomDesign(self.members, drawings, rng=self.rng)
 
 
 DESIGNS: dict[str, type[Section]] = {"grid": GridDesign, "random": RandomMembers}
@@ -240,7 +240,7 @@ class SweepScenario(AbstractScenario):
     """The scenario of a sweep."""
 
     start: Start | None = None
-    design: Annotated[Any, by_kind(DESIGNS.__getitem__, lambda: DESIGNS)]
+    design: Annotated[Any, by_kind(DESIGNS.__getitem__, lambda name: suggestion(name, DESIGNS))]
     keep: Keep = Keep()
     output: SweepOutput = SweepOutput()
 

@@ -3,10 +3,12 @@
 Pictures of a run are the functions of `nonholo.plot` that an orbit has every argument of.
 """
 
+import contextlib
+import functools
 import inspect
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -43,8 +45,7 @@ _OTHER = ("animate",)  # drawn by --gif
 
 def kinds() -> dict[str, Callable[..., Any]]:
     """Return the pictures of a run, by the names of the command line, the overview first."""
-    from nonholo import plot
-
+    plot = nonholo.plot
     functions = {name: getattr(plot, name) for name in dir(plot) if name.islower() and name not in _OTHER}
     of_orbits = [name for name, make in functions.items() if _necessary(make) <= {*_GIVEN, *_ASKED}]
     return {name.replace("_", "-"): functions[name] for name in sorted(of_orbits, key=lambda name: name != OVERVIEW)}
@@ -84,6 +85,23 @@ def beside(store: Path, suffix: str) -> Path:
     return store.with_name(f"{store.name.removesuffix('.zarr')}.{suffix}")
 
 
+@contextlib.contextmanager
+def _at_no_cost() -> Iterator[None]:
+    """Warn of a picture that fails, which never costs the result."""
+    os.environ.setdefault("MPLBACKEND", "agg")
+    try:
+        yield
+    except Exception as failure:
+        warn(f"no picture: {type(failure).__name__}: {failure}")
+
+
+def _save(picture: Path, make: Callable[[], Any], dpi: float, *, progress: bool, what: str = "drawing") -> str:
+    """Save the figure that is made; the file appears when it is complete."""
+    with complete_file(picture) as part, waiting(what, progress):
+        make().savefig(part, dpi=dpi)
+    return str(picture)
+
+
 def draw(
     orbit: Any,
     picture: Path | None,
@@ -98,22 +116,14 @@ def draw(
     """Draw what is asked for, with progress if wanted; return the paths of what was drawn, None for the rest."""
     look = look or {}
     paths: dict[str, str | None] = {"picture": None, "animation": None}
-    if picture is None and animation is None:
-        return paths
-    os.environ.setdefault("MPLBACKEND", "agg")
-    try:
-        from nonholo import plot
-
+    with _at_no_cost():
         if picture is not None:
-            with complete_file(picture) as part, waiting("drawing", progress):
-                figure_of(kind, orbit, look, **names).savefig(part, dpi=dpi)
-            paths["picture"] = str(picture)
+            make = functools.partial(figure_of, kind, orbit, look, **names)
+            paths["picture"] = _save(picture, make, dpi, progress=progress)
         if animation is not None:
             with progress_bar("frames", progress) as report:
-                plot.animate(orbit, animation, progress=report, overwrite=True, **look)
+                nonholo.plot.animate(orbit, animation, progress=report, overwrite=True, **look)
             paths["animation"] = str(animation)
-    except Exception as failure:
-        warn(f"no picture: {type(failure).__name__}: {failure}")
     return paths
 
 
@@ -122,18 +132,13 @@ def draw_all(orbit: Any, picture: Path, *, progress: bool, look: dict[str, Any],
     os.environ.setdefault("MPLBACKEND", "agg")
     paths, others = [], []
     for kind, make in kinds().items():
-        path = picture.with_stem(f"{picture.stem}-{kind}")
+        path, figure = picture.with_stem(f"{picture.stem}-{kind}"), functools.partial(figure_of, kind, orbit, look)
         try:
-            with waiting(f"drawing {kind}", progress):
-                figure = None if _necessary(make) & {*_ASKED} else figure_of(kind, orbit, look)
+            if _necessary(make) & {*_ASKED}:
+                raise ValueError(kind)
+            paths.append(_save(path, figure, dpi, progress=progress, what=f"drawing {kind}"))
         except (AttributeError, TypeError, ValueError):
-            figure = None
-        if figure is None:
             others.append(kind)
-            continue
-        with complete_file(path) as part:
-            figure.savefig(part, dpi=dpi)
-        paths.append(str(path))
     if others:
         warn(f"of this run there is no {', '.join(others)}; --kind {others[0]} says why.")
     return paths
@@ -167,18 +172,11 @@ def draw_sweep(
     result: "xarray.Dataset", picture: Path, *names: str | None, dpi: float = 150, **look: Any
 ) -> str | None:
     """Draw a quantity over the design; return the path of the picture, None if there is none."""
-    os.environ.setdefault("MPLBACKEND", "agg")
-    quantity, across, up = (None if name is None else _name_of(name) for name in names)
-    try:
-        from nonholo import plot
-
-        figure: Any = plot.sweep_map(result, quantity, across, up, **look).axes.figure
-        with complete_file(picture) as part, waiting("drawing", sys.stderr.isatty()):
-            figure.savefig(part, dpi=dpi)
-    except Exception as failure:
-        warn(f"no picture: {type(failure).__name__}: {failure}")
-        return None
-    return str(picture)
+    own: Any = [None if name is None else _name_of(name) for name in names]
+    with _at_no_cost():
+        figure: Any = nonholo.plot.sweep_map(result, *own, **look).axes.figure
+        return _save(picture, lambda: figure, dpi, progress=sys.stderr.isatty())
+    return None
 
 
 def _name_of(path: str) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
+import typer
 from rich import box
 from rich.console import Console
 from rich.markup import escape
@@ -62,9 +63,9 @@ def _expected_energy(exact: bool | None) -> str:
     return "exact by theorem" if exact else "not exact for this discretization"
 
 
-def as_json(document: dict[str, Any]) -> str:
-    """Return one JSON object."""
-    return json.dumps(document, indent=2, allow_nan=False)
+def show_json(document: dict[str, Any]) -> None:
+    """Print one JSON object."""
+    typer.echo(json.dumps(document, indent=2, allow_nan=False))
 
 
 def duration(seconds: float) -> str:

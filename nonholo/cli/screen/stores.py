@@ -14,7 +14,7 @@ import xarray
 from nonholo.base.limits import size_text
 from nonholo.base.progress import waiting
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
-from nonholo.cli.screen.report import as_json, duration, figures, show
+from nonholo.cli.screen.report import duration, figures, show, show_json
 from nonholo.ensembles import SweepStanding, load_sweep, standing_of
 from nonholo.ensembles.stores import attributes_of, open_store
 from nonholo.io import Standing
@@ -33,7 +33,7 @@ def show_provenance(store: Path, attributes: dict[str, Any], orbit: AbstractOrbi
     with waiting("measuring", sys.stderr.isatty()):
         numbers = {} if orbit is None else figures(orbit)
     if json:
-        typer.echo(as_json({"store": str(store), "provenance": record, **numbers}))
+        show_json({"store": str(store), "provenance": record, **numbers})
         return
     thinning = "" if record["save_every"] == 1 else f", one in {record['save_every']} steps"
     heading = {"title": str(store), "states": f"{record['arrays']['time'][0]}{thinning}"}
@@ -44,7 +44,7 @@ def show_standing(store: Path, attributes: dict[str, Any], standing: Standing, *
     """Print how far an unfinished run came, and who is writing it."""
     record, now = _record(attributes), standing._asdict()
     if json:
-        typer.echo(as_json({"store": str(store), "unfinished": now, "provenance": record}))
+        show_json({"store": str(store), "unfinished": now, "provenance": record})
         return
     came = f"{standing.done} of {standing.steps}, {100 * standing.done / standing.steps:.1f} %"
     next_one = f"written by {standing.owner}" if standing.owner else f"stopped; resume with: nonholo resume {store}"
@@ -126,7 +126,7 @@ def show_sweep(
 ) -> None:
     """Print figures of a sweep as a table or as one JSON object, with what else is to be reported."""
     if json:
-        typer.echo(as_json({"store": str(store), **more, **figures}))
+        show_json({"store": str(store), **more, **figures})
         return
     show({}, heading | _rows(store, figures))
     for member, message in figures["messages"]:

@@ -16,7 +16,7 @@ import numpy as np
 
 from nonholo import kernels
 from nonholo.base.results import Outcome
-from nonholo.base.traced import marked_rows, run_nodes
+from nonholo.base.traced import NodeState, marked_rows, rows_of, run_nodes, with_policy
 from nonholo.base.types import Array, Float
 from nonholo.discrete._scheme import Scheme, weights
 from nonholo.discrete._variety import free_rows
@@ -47,6 +47,8 @@ class Rollout(NamedTuple):
         displacement: W_k, shape (K, N, N).
         configuration: g_k, shape (K, N, N).
         energy: Reduced constrained energies, shape (K,).
+        controls: Body covectors u_k of the step from each state, of controls or a policy, with the table of the
+            system, shape (K, dim); after the last step that of the table alone.
         outcome: An `Outcome` as an integer array: the first one that is not successful. From that state on all other
             fields are NaN, and so are their derivatives.
     """
@@ -57,6 +59,7 @@ class Rollout(NamedTuple):
     displacement: Float[Array, "K N N"]
     configuration: Float[Array, "K N N"]
     energy: Float[Array, "K"]
+    controls: Float[Array, "K dim"]
     outcome: Array
 
 
@@ -72,6 +75,7 @@ class _Node(NamedTuple):
     after: tuple[Array, Array]
     code: Array
     cause: Array
+    control: Array | None = None
 
 
 _Step = Callable[[Array, Array, Array | None, Array | None], _Node]
@@ -84,14 +88,15 @@ def roll_out(
     discrete: Scheme,
     scalar: ScalarStep | None,
     start: tuple[str, Array, Array],
-    controls: Array | None,
+    controls: Any,
     sizes: tuple[int, int],
     forced: Forced | None,
     work: Array | None = None,
 ) -> Rollout:
     """Return the orbit from a start, which has a name, a value and a pose; `sizes` are `steps` and `save_every`.
 
-    The discretization is that of the free system, `forced` the system with its forces. `work` is the number by which
+    The discretization is that of the free system, `forced` the system with its forces. Controls are a row for each
+    step, or a policy. `work` is the number by which
     many steps ask whether they are still wanted; None where they are differentiated.
     """
     (name, value, g), (steps, every) = start, sizes
@@ -99,14 +104,33 @@ def roll_out(
     impulse, rows = impulse_of(discrete, forced, controls, steps)
     balance = forced if is_balanced(discrete, forced) else None
     step, at, (m, pose, size) = _step_from(discrete, scalar, (impulse, balance), r, g)
+    rows, control_of = with_policy(controls, discrete.time_step, rows)
     code, nothing = jnp.zeros((), jnp.result_type(int)), jnp.zeros(size, m.dtype)
-    nodes = run_nodes(step, _Node(m, pose, nothing, (m, pose), code, jnp.sum(nothing)), rows, sizes, work)
+    none = None if rows is None else jnp.zeros(discrete.system.group.dim, m.dtype)
+    begin = _Node(m, pose, nothing, (m, pose), code, jnp.sum(nothing), none)
+
+    def closed_step(m: Array, g: Array, guess: Array | None, row: Array | None) -> _Node:
+        control = (
+            None if row is None else control_of(row, lambda: _state_at(discrete, *at(begin._replace(m=m, g=g))[::2]))
+        )
+        return step(m, g, guess, control)._replace(control=control)
+
+    nodes = run_nodes(closed_step, begin, rows, sizes, work)
     demand = value if name == "momentum" and value.shape == (discrete.system.group.dim,) else None
     time = discrete.time_step * every * jnp.arange(1 + steps // every)
     states = jax.vmap(at)(nodes)
-    pushes = _half_impulses(discrete, (impulse, balance), states, None if rows is None else rows[::every])
+    pushes = _half_impulses(discrete, (impulse, balance), states, nodes.control)
     potential = jnp.zeros(()) if forced is None else forced.potential_energy(states[2])
     return _decode(discrete, nodes, states, demand, (pushes, potential), time)
+
+
+def _state_at(discrete: Scheme, r: Array, g: Array) -> NodeState:
+    """Return what a policy sees of momenta along the constraint and a pose."""
+    system = discrete.system
+    velocity = system.restricted_velocity(r, g) @ jnp.asarray(system.constraint_subspace)
+    if system.is_spatial:
+        velocity = system.group.adjoint(system.group.inverse(g)) @ velocity
+    return NodeState(g, velocity)
 
 
 def _step_from(
@@ -135,16 +159,16 @@ def _half_impulses(
     return jnp.zeros(()) if impulse is None else jax.vmap(impulse)(states[0], states[2], rows)
 
 
-def impulse_of(discrete: Scheme, forced: Forced | None, controls: Array | None, steps: int) -> tuple[Any, Any]:
+def impulse_of(discrete: Scheme, forced: Forced | None, controls: Any, steps: int) -> tuple[Any, Any]:
     """Return the function of kicks, half the impulse of a step, and the body covectors of steps; None where free.
 
     Nothing of them acts over what follows the last step.
     """
     half, dim = discrete.time_step / 2, discrete.system.group.dim
-    rows = jnp.zeros((steps + 1, dim)) if controls is None else jnp.pad(controls, ((0, 1), (0, 0)))
+    rows = rows_of(controls, steps, dim)
     if forced is None:
-        return (None, None) if controls is None else (lambda _r, _g, row: half * row, rows)
-    rows = rows + forced.rows(np.arange(steps + 1))
+        return (None, None) if rows is None else (lambda _r, _g, row: half * row, rows)
+    rows = (0.0 if rows is None else rows) + forced.rows(np.arange(steps + 1))
     if is_balanced(discrete, forced):
         return None, rows
     propagator = None
@@ -345,7 +369,8 @@ def _decode(
         is_off = jnp.sum((P[0] - momentum) ** 2) > ON_LOCUS**2 * jnp.sum(momentum**2)
         code = jnp.where((code == 0) & is_off, int(Outcome.off_momentum_locus), code)
 
-    rows = (marked_rows(each, nodes.cause, code == 0) for each in (r, P, W, g, energy))
+    acting = jnp.zeros_like(P) if nodes.control is None else nodes.control
+    rows = (marked_rows(each, nodes.cause, code == 0) for each in (r, P, W, g, energy, acting))
     return Rollout(time, *rows, outcome=code[-1])
 
 

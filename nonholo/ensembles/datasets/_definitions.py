@@ -84,6 +84,7 @@ DEFINITIONS = {
     "snakeboard": Definition(
         "Snakeboard", (1.0, 1.0, 1.0, 1.0, 1e-4), (*_PLANE, _PI, 0.3), center=(0.0, 0.0, 0.0, 0.0, 1.0), version=2
     ),
+    "twistcar": Definition("Twistcar", (1.0, 1.0, 1.0, 0.0), (*_PLANE, 0.0)),
     "two_wheeled_robot": Definition("Robot with two wheels", 5 * (1.0,), (*_PLANE, _PI, _PI)),
 }
 """Data sets by name: bodies, then `nonholo.examples`."""
@@ -165,7 +166,7 @@ class DatasetTask:
         return simulate(discrete, configuration=q, momentum=p, steps=self.steps, throw=False)
 
     def _observations(self, block: MemberBlock, fields: dict[str, Field]) -> dict[str, Field]:
-        """Return what can be observed with normal noise, which depends on nothing but seed, orbit and name."""
+        """Return what can be observed with normal noise, which depends on nothing but `rng`, orbit and name."""
         observations: dict[str, Field] = {}
         for name in fields.keys() - _EXACT if self.noise else ():
             axes, rows, labels = fields[name]

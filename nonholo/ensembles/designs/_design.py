@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from nonholo.base.checks import count, error, natural, shown
+from nonholo.base.checks import count, error, natural, refuse_former_names, seed, shown
 from nonholo.base.checks import name as checked_name
 from nonholo.base.types import Float
 from nonholo.ensembles._names import OUTCOME, component_name
@@ -39,7 +39,7 @@ def uniform_numbers(seed: int, stream: str, first: int, count: int, width: int) 
     return np.random.Generator(bits).random((count, _WORDS * rounds))[:, :width]
 
 
-_REMEDY, _SEED = "Pass a dictionary of names to", "Pass 0, 1, 2, ..."
+_REMEDY = "Pass a dictionary of names to"
 Values = dict[str, np.ndarray]
 
 
@@ -48,7 +48,7 @@ class AbstractDesign(abc.ABC):
     """The members of a sweep.
 
     Attributes:
-        seed: What random numbers are made of, those of tasks too.
+        seed: The integer that random numbers are made of, those of tasks too.
     """
 
     seed: int
@@ -86,6 +86,7 @@ class Grid(AbstractDesign):
     "restricted_velocity", "momentum") or one component of it ("restricted_velocity_0"); for a custom function
     whatever it reads. A component may be written "restricted_velocity[0]"; the result calls it as Python and xarray
     can. Values are numbers, or along the first axis vectors or matrices. The result has a dimension for each axis.
+    Random numbers of a task are made of `rng`, as those of a `RandomDesign`.
 
     Example:
         >>> design = Grid({"a": [0.1, 0.2], "time_step": np.linspace(0.1, 0.5, 5)})
@@ -95,7 +96,8 @@ class Grid(AbstractDesign):
 
     values_along: dict[str, np.ndarray]
 
-    def __init__(self, axes: Any, seed: int = 0) -> None:
+    @refuse_former_names("Grid", seed="rng")
+    def __init__(self, axes: Any, rng: int | np.random.Generator = 0) -> None:
         if not isinstance(axes, Mapping) or not axes:
             raise error("Grid(axes=...)", "be a mapping of names to values", shown(axes), f"{_REMEDY} values.")
         axes_by_name = {
@@ -106,7 +108,7 @@ class Grid(AbstractDesign):
             requirement = "have other names than its vectors and matrices"
             raise error("Grid(axes=...)", requirement, ", ".join(axes_by_name), "Rename one.")
         object.__setattr__(self, "values_along", axes_by_name)
-        object.__setattr__(self, "seed", natural("Grid(seed=...)", seed, _SEED))
+        object.__setattr__(self, "seed", seed("Grid(rng=...)", rng))
 
     def __repr__(self) -> str:
         sizes = " x ".join(f"{size} {name}" for name, size in self.sizes.items())
@@ -133,12 +135,12 @@ class Grid(AbstractDesign):
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class RandomDesign(AbstractDesign):
-    """Members drawn from distributions: member i is the same in every design with this seed, however many there are.
+    """Members drawn from distributions: member i is the same in every design with this `rng`, however many there are.
 
-    Names are those of a `Grid`.
+    Names are those of a `Grid`. All random numbers are made of one integer: `rng`, or one that this generator draws.
 
     Example:
-        >>> design = RandomDesign(1_000_000, {"a": Uniform(0.1, 1.0), "restricted_velocity": Direction(2)}, seed=3)
+        >>> design = RandomDesign(1_000_000, {"a": Uniform(0.1, 1.0), "restricted_velocity": Direction(2)}, rng=3)
         >>> design.values(first=999_998, count=2)["a"].shape
         (2,)
     """
@@ -146,7 +148,8 @@ class RandomDesign(AbstractDesign):
     count: int
     distributions: dict[str, AbstractDistribution]
 
-    def __init__(self, members: int, distributions: Any, seed: int = 0) -> None:
+    @refuse_former_names("RandomDesign", seed="rng")
+    def __init__(self, members: int, distributions: Any, rng: int | np.random.Generator = 0) -> None:
         if not isinstance(distributions, Mapping) or not distributions:
             got = shown(distributions)
             raise error("RandomDesign(distributions=...)", "be a mapping", got, f"{_REMEDY} distributions.")
@@ -159,7 +162,7 @@ class RandomDesign(AbstractDesign):
         object.__setattr__(
             self, "distributions", {name: distributions[name_given] for name, name_given in names.items()}
         )
-        object.__setattr__(self, "seed", natural("RandomDesign(seed=...)", seed, _SEED))
+        object.__setattr__(self, "seed", seed("RandomDesign(rng=...)", rng))
 
     def __repr__(self) -> str:
         draws = ", ".join(f"{name} {value!r}" for name, value in self.distributions.items())

@@ -132,6 +132,21 @@ def column_names(group: AbstractMatrixGroup) -> list[str]:
     return ["t", *position, *turn]
 
 
+def compact_names(group: AbstractMatrixGroup) -> list[str]:
+    """Return the names of the numbers of a compact pose; none for products, whose factors may share them.
+
+    Example:
+        >>> compact_names(nh.SE(2)), compact_names(nh.SO(3))
+        (['cos', 'sin', 'x', 'y'], ['qw', 'qx', 'qy', 'qz'])
+    """
+    if isinstance(group, ProductGroup):
+        return []
+    position, turn = layout(group)
+    if turn == HEADING:
+        return ["cos", "sin", *position]
+    return [*(_entries(3) if turn == QUATERNION and position else turn), *position]
+
+
 def separate_rows(group: AbstractMatrixGroup, g: Float[np.ndarray, "R N N"]) -> Float[np.ndarray, "R c"]:
     """Return poses that do not follow one another as rows of the columns but for the time.
 

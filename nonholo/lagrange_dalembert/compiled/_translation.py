@@ -50,7 +50,8 @@ def _applied(f: Formulas, step: Any, arguments: list[np.ndarray]) -> list[np.nda
         return translate(f, parameters["branches"][constants_of(arguments[0]).item()], arguments[1:])
     if name not in _TABLE or (name in OPERATIONS and name not in _KINDS.get(step.invars[0].aval.dtype.kind, ())):
         raise UntranslatableError(name)
-    result = _TABLE[name](f, *arguments, **parameters)
+    kind = {"old": step.invars[0].aval.dtype.kind} if name == "convert_element_type" else {}
+    result = _TABLE[name](f, *arguments, **parameters, **kind)
     return [np.asarray(each, dtype=object) for each in (result if step.primitive.multiple_results else [result])]
 
 
@@ -96,18 +97,18 @@ def _round(f: Formulas, x: np.ndarray, *, rounding_method: Any) -> np.ndarray:
     return _each(functools.partial(f, "rint"), x)
 
 
-def _convert(f: Formulas, x: np.ndarray, *, new_dtype: Any, **_: Any) -> np.ndarray:
+def _convert(f: Formulas, x: np.ndarray, *, old: str, new_dtype: Any, **_: Any) -> np.ndarray:
     name = np.dtype(new_dtype).name
     if name == "float64":
         return _each(lambda x: f("float", x) if x.is_truth or x.value is not None else x, x)
-    if name == "bool" and all(number.is_truth for number in x.ravel()):
+    if old in "bi" and old == np.dtype(new_dtype).kind:
         return x
     if name not in ("bool", "int32", "int64"):
         raise UntranslatableError(name)
     return _constants(f, constants_of(x).astype(name))
 
 
-def _choose(f: Formulas, which: np.ndarray, *cases: np.ndarray) -> np.ndarray:
+def _choose(f: Formulas, which: Any, *cases: Any) -> np.ndarray:
     if len(cases) != 2:
         raise UntranslatableError("a choice of many")
     return _each(functools.partial(f, "select"), which, *cases)
@@ -197,11 +198,30 @@ def constants_of(array: np.ndarray) -> Any:
     return np.array(values).reshape(array.shape)
 
 
+def _greatest(f: Formulas, x: np.ndarray, *, axes: Any, **_: Any) -> np.ndarray:
+    """Return the indices of the first of the greatest numbers along an axis."""
+    best, *others = np.moveaxis(x, axes[0], 0)
+    result = np.full_like(best, f.constant(0))
+    for index, row in enumerate(others, 1):
+        above = _each(functools.partial(f, "gt"), row, best)
+        best, result = (_choose(f, above, *pair) for pair in ((best, row), (result, f.constant(index))))
+    return result
+
+
 def gather(
-    _f: Formulas, x: np.ndarray, indices: np.ndarray, *, dimension_numbers: Any, slice_sizes: Any, mode: Any, **_: Any
+    f: Formulas, x: np.ndarray, indices: np.ndarray, *, dimension_numbers: Any, slice_sizes: Any, mode: Any, **_: Any
 ) -> np.ndarray:
-    """Return the numbers of windows of an array."""
+    """Return the numbers of windows of an array; an index that is computed chooses among those of all its values."""
     d, batch = dimension_numbers, indices.ndim - 1
+    at = next((at for at in np.ndindex(indices.shape) if indices.item(at).value is None), None)
+    if at and mode == GatherScatterMode.PROMISE_IN_BOUNDS:
+        rest, axis = {"dimension_numbers": d, "slice_sizes": slice_sizes, "mode": mode}, d.start_index_map[at[-1]]
+        cases = []
+        for value in map(f.constant, range(x.shape[axis] - slice_sizes[axis] + 1)):
+            constants = indices.copy()
+            constants[at] = value
+            cases.append((f("eq", indices.item(at), value), gather(f, x, constants, **rest)))
+        return functools.reduce(lambda result, case: _choose(f, case[0], result, case[1]), cases, cases[0][1])
     batching = d.operand_batching_dims, d.start_indices_batching_dims
     places = _places(x.shape, constants_of(indices), d.start_index_map, batching, slice_sizes, mode)
     unit_axes = (*d.collapsed_slice_dims, *d.operand_batching_dims)
@@ -268,6 +288,7 @@ _TABLE: dict[str, Rule] = {
     "reduce_prod": _reduction("mul", 1.0),
     "reduce_max": _reduction("max", -math.inf),
     "reduce_min": _reduction("min", math.inf),
+    "argmax": _greatest,
     "cumsum": _cumulate,
     "dot_general": _product,
     "iota": _counting,

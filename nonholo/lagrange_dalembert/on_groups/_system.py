@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.checks import instance
@@ -13,16 +14,17 @@ from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert._functions import check_forms, check_value, count_of
+from nonholo.lagrange_dalembert._places import Poses
 from nonholo.lagrange_dalembert._room import room
 from nonholo.systems import AbstractCoordinateSystem, checked_group, group_mass_tensor, inertia_form
 
 if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._discretization import GroupDiscretization
-    from nonholo.lagrange_dalembert._orbit import GroupOrbit
+    from nonholo.lagrange_dalembert._orbit import GroupOrbit  # noqa: F401  (named by the base class)
 
 
 @dataclasses.dataclass(frozen=True)
-class GroupLagrangeDAlembert(AbstractCoordinateSystem):
+class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "GroupOrbit"]):
     r"""A left-invariant Lagrangian on a matrix group with velocity constraints that may depend on the configuration.
 
     $$ \dot p = \mathrm{ad}^*_\omega p + \sum_j\lambda_j a^j(g), \quad p = \frac{\partial l}{\partial\omega}, \qquad
@@ -63,7 +65,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
         ...     return jnp.array([[0.0, -jnp.sin(g[0, 2]), jnp.cos(g[0, 2])]])
         >>> action = mass_tensor_lagrangian(nh.SE(2), nh.ChaplyginSleigh(1.0, 0.5, a=0.3).homogeneous_mass_tensor)
         >>> sleigh = GroupLagrangeDAlembert(nh.SE(2), action, forms)
-        >>> orbit = sleigh.discretize(0.1).simulate(body_velocity=(0.5, 1.0, 0.0), steps=100)
+        >>> orbit = nh.simulate(nh.discretize(sleigh, 0.1), body_velocity=(0.5, 1.0, 0.0), steps=100)
         >>> orbit.configuration.shape, bool(orbit.constraint_residual.max() < 1e-13)
         ((101, 3, 3), True)
     """
@@ -76,11 +78,15 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
     holonomic: ClassVar[None] = None
     is_driven: ClassVar[bool] = False
     coordinates: ClassVar[tuple[str, ...]] = ()
-    name: ClassVar[str] = "System with constraints that depend on the pose"
+    name: ClassVar[str] = "Constraints that depend on the pose"
     orbits: ClassVar[str] = "GroupOrbit"
     in_stores: ClassVar[tuple[str, ...]] = ("constraints", "coordinates", "is_driven", "name", "orbits", "shapes")
-    _equations: ClassVar[str] = "on_groups._equations"
-    _start: ClassVar[str] = "on_groups._equations"
+    rule: ClassVar[str] = "midpoint"
+    has_limit: ClassVar[bool] = True
+    prescribed: ClassVar[tuple[()]] = ()
+    force: ClassVar[None] = None
+    applied: ClassVar[None] = None
+    constraint_velocities: ClassVar[None] = None
 
     def __post_init__(self) -> None:
         remedy = "Pass nonholo.SO(n), SE(n), MatrixGroup or a product."
@@ -107,71 +113,54 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem):
         """The number s of constraints."""
         return count_of(self.constraint_forms, (self.group.size, self.group.size))
 
+    velocity_constraints = constraints
+
+    @property
+    def dimension(self) -> int:
+        """The dimension of the group."""
+        return self.group.dim
+
+    @property
+    def places(self) -> Poses:
+        """Where it moves."""
+        return Poses(self.group)
+
+    @property
+    def energy_argument(self) -> str:
+        """The name of the argument that gives the energy."""
+        return "discrete_lagrangian" if self.lagrangian is None else "lagrangian"
+
+    def bound(self, *numbers: Any) -> Any:
+        """Return the system as the equations see it: Lagrangians of the pose and the velocity or displacement."""
+        del numbers
+        return self._with_fields(lagrangian=self._lagrangian, discrete_lagrangian=self._discrete_lagrangian)
+
+    def _lagrangian(self, _g: Array, w: Array) -> Array:
+        r"""Return $l(\omega)$: the given one, or the quadratic form that belongs to l_d."""
+        return w @ _inertia(self) @ w / 2 if self.lagrangian is None else self.lagrangian(w)
+
+    def _discrete_lagrangian(self, _g: Array, W: Array, time_step: Array) -> Array:
+        return self.discrete_lagrangian(W, time_step)
+
     @property
     def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
         """Shapes of a configuration and of a velocity."""
         return self.group.identity.shape, (self.group.dim,)
 
-    def discretize(self, time_step: Any) -> "GroupDiscretization":
-        """Return the discrete map with this time step.
-
-        Args:
-            time_step: h > 0.
-
-        Raises:
-            ValueError: A time step that is not positive.
-
-        Example:
-            >>> from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, mass_tensor_lagrangian
-            >>> action = mass_tensor_lagrangian(nh.SO(3), np.diag([1.0, 2.0, 3.0]))
-            >>> GroupLagrangeDAlembert(nh.SO(3), action, None).discretize(0.1).time_step
-            0.1
-        """
+    def discrete_map(self, time_step: Any) -> "GroupDiscretization":
+        """Return the discretized system, see `nonholo.discretize`."""
         return room("_discretization").GroupDiscretization(self, time_step)
 
-    def flow(
-        self,
-        *,
-        configuration: Any = None,
-        times: Any,
-        body_velocity: Any = None,
-        momentum: Any = None,
-        project: bool = False,
-        rtol: float | None = None,
-        atol: float = 1e-12,
-    ) -> "GroupOrbit":
-        r"""Solve the continuous equations.
 
-        The rate of $\omega$ comes from the constraint differentiated once. Velocities are projected to the constraint,
-        orthogonally in the kinetic energy, at each evaluation and at each requested time; an adaptive Runge-Kutta
-        method of order 8 steps to every requested time, where the pose is put back on the group.
+@functools.lru_cache(maxsize=64)
+def _inertia(system: GroupLagrangeDAlembert) -> Any:
+    """Return the inertia operator as numbers: h times the second derivative of $l_d(e^x)$ at x = 0, for h = 1."""
 
-        Args:
-            configuration: The first configuration; the identity by default.
-            times: The times of the states, at least one, increasing or decreasing; the start is at the first.
-            body_velocity: The first velocity, which must satisfy the constraint.
-            momentum: Start with this momentum instead; only its action on admissible velocities counts.
-            project: Take the admissible velocity next to the given one in the kinetic energy.
-            rtol: Relative error of a step, at least 1e-14, which is the default of series; of diffrax 1e-10.
-            atol: Absolute error of a step of diffrax.
+    def at(x: Array) -> Array:
+        return system.discrete_lagrangian(system.group.exp(x), jnp.ones(()))
 
-        Returns:
-            The orbit. It has no displacements, and its multipliers are the forces at its times.
-
-        Raises:
-            ValueError: A bad argument, before any work.
-            OutcomeError: The solver could not meet the tolerances; its `orbit` holds every good state.
-
-        Example:
-            >>> from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, mass_tensor_lagrangian
-            >>> action = mass_tensor_lagrangian(nh.SO(3), np.eye(3))
-            >>> free = GroupLagrangeDAlembert(nh.SO(3), action, None)
-            >>> orbit = free.flow(body_velocity=(0.0, 0.0, np.pi), times=(0.0, 1.0))
-            >>> print(orbit.configuration[-1].diagonal().round(9))
-            [-1. -1.  1.]
-        """
-        starts = {"body_velocity": body_velocity, "momentum": momentum}
-        return room("_flow").flow(self, configuration, starts, times, rtol, atol, project=project)
+    with jax.ensure_compile_time_eval(), double_precision():
+        return np.asarray(jax.jit(jax.hessian(at))(jnp.zeros(system.group.dim)))
 
 
 def _argument(argument: str) -> str:

@@ -26,11 +26,11 @@ from nonholo.base.limits import within_memory
 from nonholo.base.types import Float
 from nonholo.groups import SE, SO
 from nonholo.io import check_file, complete_file
-from nonholo.orbit import AbstractOrbit
+from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plot import theme
 from nonholo.plot.animation import _in_plane, _in_space, _on_sphere
 from nonholo.plot.animation._part import part_of, part_of_flow, shown_states
-from nonholo.plot.motion import track_of
+from nonholo.plot.motion import momentum_track, track_of
 from nonholo.plot.overviews import name_of
 from nonholo.plot.parts import drawable_in_time, with_poses
 
@@ -64,11 +64,12 @@ def animate(
     On SO(3) the body turns within the sphere on which its forbidden axis, otherwise body axis 3, leaves a trace. It is
     drawn as the box whose mass tensor is proportional to its own; on SE(3) as the box that has its mass tensor; on
     SE(2) as the ellipse that has its mass and moment of inertia. In coordinates it is the `outline` of its system, or
-    a point where there is none. Of a long orbit on a group the part about the transition is shown, so that the body
-    visibly moves but does not flicker.
+    a point where there is none. A motion on another group is a point in the plane of its two largest momenta along
+    the constraint. Of a long orbit of a body the part about the transition is shown, so that the body visibly moves
+    but does not flicker.
 
     Args:
-        orbit: An orbit on SO(3), SE(2) or SE(3), with poses, or one in coordinates.
+        orbit: An orbit of any system; with poses on SO(3), SE(2) or SE(3).
         path: Where to write, a new file; ends in .gif, .mp4 or .webm.
         frames: Number of frames; fewer if the orbit has fewer states.
         fps: Frames per second.
@@ -82,7 +83,7 @@ def animate(
 
     Raises:
         FileExistsError: The path exists, and is not to be replaced.
-        ValueError: An orbit on another group or without poses, a flow of another body, another suffix or one that
+        ValueError: An orbit of a body without poses, a flow of another body, another suffix or one that
             needs ffmpeg, a number that is not positive.
 
     Example:
@@ -117,20 +118,19 @@ def animate(
 
 def _scene_of(where: str, orbit: AbstractOrbit) -> tuple[Callable[[Any], float], Callable[..., Callable[[int], None]]]:
     """Return how far an orbit moves between saved states, in units of what the eye can follow, and what draws it."""
-    if orbit.coordinates:
-        track = cast(Any, track_of(orbit))
-        return lambda _: 0.0, functools.partial((_in_plane if len(track.names) == 2 else _in_space).draw_path, track)
-    group = with_poses(where, orbit).system.group
     scenes = {SO(3): _on_sphere, SE(2): _in_plane, SE(3): _in_space}
-    if group not in scenes:
-        raise error(where, "move on SO(3), SE(2) or SE(3)", f"{group}", "Use `overview` for a still picture.")
-    return scenes[group].motion, scenes[group].draw_body
+    if isinstance(orbit, Orbit) and orbit.system.group in scenes:
+        scene = scenes[with_poses(where, orbit).system.group]
+        return scene.motion, scene.draw_body
+    track = track_of(orbit) or momentum_track(orbit)
+    return lambda _: 0.0, functools.partial((_in_plane if len(track.names) == 2 else _in_space).draw_path, track)
 
 
 def _same_space(where: str, flow: Any, orbit: AbstractOrbit) -> Any:
-    flow = drawable_in_time(where, flow) if orbit.coordinates else with_poses(where, flow)
+    flow = drawable_in_time(where, flow)
     if flow.space != orbit.space:
         raise error(where, f"move in {orbit.space}", f"{flow.space}", "Pass a motion of the same body.")
+    _scene_of(where, flow)
     return flow
 
 

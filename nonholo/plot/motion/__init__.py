@@ -7,6 +7,7 @@ from nonholo.plot.motion._coordinates import (
     draw_path,
     draw_shape,
     draw_velocity,
+    momentum_track,
     symbol,
     track_of,
 )

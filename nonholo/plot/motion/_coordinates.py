@@ -185,6 +185,20 @@ def track_of(orbit: AbstractOrbit) -> Track | None:
     return Track(title, names, functools.partial(_columns, [space.index(name) for name in columns]), is_place)
 
 
+def momentum_track(orbit: AbstractOrbit) -> Track:
+    """Return the path in the plane of the two largest momenta along the constraint; of one, against time."""
+    size = np.abs(orbit.restricted_momentum).max(axis=0, initial=0.0)
+    largest = np.sort(np.argsort(-size, kind="stable")[:2])
+    names = [f"$r_{{{i + 1}}}$" for i in largest]
+    if len(names) == 2:
+        return Track("Plane of momenta", names, lambda of: of.restricted_momentum[:, largest], is_place=False)
+
+    def against_time(of: AbstractOrbit) -> Float[np.ndarray, "K 2"]:
+        return np.column_stack([of.time, of.restricted_momentum.sum(axis=1)])
+
+    return Track("Momentum", ["time", *names, ""][:2], against_time, is_place=False)
+
+
 def draw_track(track: Track, orbit: AbstractOrbit, flow: AbstractOrbit | None, axes: Any) -> Drawn:
     """Draw the path in the colors of time, its ends, the body now and then, and the path of a flow beside it."""
     points = track.points(orbit)
