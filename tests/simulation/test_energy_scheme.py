@@ -153,6 +153,19 @@ def test_compositions_keep_the_energy_and_have_their_order(name: str, order: int
     assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.2 if order == 2 else 0.5)
 
 
+@pytest.mark.parametrize("step", [0.1, 0.5])
+@pytest.mark.parametrize("name", ["sleigh", "sleigh with its mass behind", "knife edge"])
+def test_bodies_that_fall_keep_their_energy(name: str, step: float) -> None:
+    """1e5 steps down a slope, far beyond the first place, or until the branch ends: places lose no work to rounding."""
+    system = SYSTEMS.get(name) or nh.ChaplyginSleigh(1.0, 1.0, 0.0)
+    forced = nh.Forced(system, nh.Gravity([0.4, -0.2], [0.5, 0.1]))
+    run = nh.simulate(nh.discretize(forced, step), body_velocity=(0.7, 0.2, 0.0), steps=10**5, throw=False)
+    potential = forced.potential_energy(run.configuration)
+    turned = (run.energy - potential + np.abs(potential - potential[0])).max()
+    assert np.abs(run.energy - run.energy[0]).max() < 1e-13 * turned
+    assert len(run) > 10**5 or run.outcome == nh.Outcome.no_real_branch
+
+
 def test_functions_by_numba_have_the_bits_of_python() -> None:
     """A force and a potential that numba compiled run in the compiled loop, with the bits of the same in Python."""
 

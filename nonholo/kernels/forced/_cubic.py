@@ -288,14 +288,26 @@ def advance_pulled(p: Body, pull: Pull, state: np.ndarray, steps: int, every: in
     return advance_cubic(p, numbers_of(p, pull), pull.rows, state, steps, every, rows)
 
 
+@scalar
+def move_exactly(p: Body, q: Cubic, y1: float, y2: float, pose: Any, carry: Any) -> tuple[Any, Any]:
+    """Return the pose after a displacement, and what rounding took from a sleigh's place: a weight would see work."""
+    if q.e != 0.0:
+        return move(p, y1, y2, *pose), carry
+    r0, r1, x, y = move(p, y1, y2, pose[0], pose[1], 0.0, 0.0)
+    x, first = kahan_sum(pose[2], carry[0], x, 0.0)
+    y, second = kahan_sum(pose[3], carry[1], y, 0.0)
+    return (r0, r1, x, y), (first, second)
+
+
 @njit(nogil=True, **BORROWING)
 def advance_cubic(
     p: Body, q: Cubic, table: np.ndarray, state: np.ndarray, steps: int, every: int, rows: Rows
 ) -> tuple[int, int]:
     """Do the same, with the rows of a table; the state is that of `advance_two`."""
     momenta, charts, poses = rows
+    q = Cubic(q.A, q.B, q.c, quadratic(p)[5], q.n, q.F, q.L, q.K)  # e is a constant of the kind of body
     m1, m2, l1, l2, q0, q1, q2, q3, y1, y2, u1, u2, v1, v2 = _unpack(state)
-    t1, t2, weight = state[14], state[15], (state[18], state[19], state[20])
+    t1, t2, carry, weight = state[14], state[15], (state[16], state[17]), (state[18], state[19], state[20])
     last, row, code, count, pose = len(table) - 1, int(state[21]), 0, 0, (q0, q1, q2, q3)
     disc = disc_of(q)
     while count < steps:
@@ -325,6 +337,6 @@ def advance_cubic(
         if q.n > 0:
             a, x, y, z = turn_terms(q.n, w1, w2, *weight)
             weight = (weight[0] - a * x, weight[1] - a * y, weight[2] - a * z)
-        pose = move(p, w1, w2, *pose)
-    assign(state, (m1, m2, l1, l2, *pose, y1, y2, u1, u2, v1, v2, t1, t2, 0.0, 0.0, *weight, float(row)))
+        pose, carry = move_exactly(p, q, w1, w2, pose, carry)
+    assign(state, (m1, m2, l1, l2, *pose, y1, y2, u1, u2, v1, v2, t1, t2, *carry, *weight, float(row)))
     return count, code
