@@ -43,6 +43,7 @@ SECTIONS = {
         "trailers",
         "snake",
         "roller_racer",
+        "twistcar",
         "driven_sleigh",
         "chaplygin_ball",
         "ball_on_turntable",

@@ -41,6 +41,43 @@ def test_phrases_are_noticed_over_line_ends() -> None:
     assert len(_complaints("a run that cannot be gone\n    on with, of your\nown; told")) == 2
 
 
+DIALECT = (
+    "What is kept has names.",
+    "It says why.",
+    "in whatever case",
+    "a body of its own",
+    "in the place of",
+    "done anew",
+)
+PLAIN = (
+    "Cases. That body",
+    "about one of its own axes",
+    "What works with what",
+    "How far does it turn?",
+    "It is asked.",
+)
+
+
+@pytest.mark.parametrize("sentence", DIALECT)
+def test_dialect_is_noticed_on_pages(sentence: str) -> None:
+    """The dialect of the list is noticed, once."""
+    assert len(list(words.words("docs/a.md", sentence, words.TABLE["prose"]))) == 1
+
+
+@pytest.mark.parametrize("sentence", PLAIN)
+def test_plain_sentences_are_left_alone(sentence: str) -> None:
+    """Sentences that only begin like one of the list are none."""
+    assert list(words.words("docs/a.md", sentence, words.TABLE["prose"])) == []
+
+
+def test_handwritten_pages_stay_short() -> None:
+    """The pages that no script writes have no more words than their limit; pages of scripts are not among them."""
+    lengths = words.lengths()
+    assert sum(lengths.values()) <= words.MOST
+    assert "conventions.md" in lengths
+    assert not {"paper.md", "errata.md", "api/index.md", "reference/scenarios.md", "gallery/README.md"} & set(lengths)
+
+
 @pytest.mark.parametrize("word", OTHERS.split())
 def test_other_words_are_left_alone(word: str) -> None:
     """Words that only look like one of the list are none."""

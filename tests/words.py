@@ -11,9 +11,15 @@ TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
 FOLDERS = ("nonholo", "nonholo_paper", "docs", "tests", "benchmarks", "scenarios")
 READ = (".py", ".pyi", ".md", ".toml", ".j2", ".cff", ".c", ".css")
 NOT_READ = ("tests/words.toml", "tests/test_words.py")
-QUOTED = {"docs/references.md": r"\*[^*\n]+\*", "CHANGELOG.md": r"(?s)\n## \[\d.*"}  # titles of works, past releases
+QUOTED = {
+    "docs/references.md": r"\*[^*\n]+\*",
+    "CHANGELOG.md": r"(?s)\n## \[0\.[12]\..*",
+}  # titles of works, past releases
 QUOTATION = r"“[^”]*”"
-GENERATED = re.compile(r"api/.*|reference/(?!symbols).*|gallery/README\.md|(tests|paper|reliability)\.md")  # by scripts
+GENERATED = re.compile(
+    r"api/.*|reference/(?!symbols).*|gallery/README\.md|(errata|paper|reliability|tests)\.md"
+)  # by scripts
+NO_PROSE = {"house.md", "references.md", "project/migration.md"}
 MOST = 80_000
 
 
@@ -52,10 +58,11 @@ def complaints(root: Path = ROOT) -> list[str]:
     vocabulary = "\n".join(set(re.findall(r"\w+", "\n".join(texts.values()))))
     spelling = {word: to for word, to in TABLE["spelling"].items() if re.search(word, vocabulary, re.IGNORECASE)}
     patterns, cited = spelling | TABLE["phrases"], stems(root)
+    prose = {"README.md", *(f"docs/{name}" for name in lengths(root) if name not in NO_PROSE)}
     return [
         f"{name}:{text.count(chr(10), 0, at) + 1}: {complaint}"
         for name, text in texts.items()
-        for at, complaint in words(name, text, patterns, cited)
+        for at, complaint in words(name, text, patterns | (TABLE["prose"] if name in prose else {}), cited)
     ]
 
 

@@ -31,9 +31,9 @@ from nonholo.base.progress import late_bar
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.continuous._series import body_equations, body_numbers, solve
-from nonholo.continuous._solution import PLANE, Problem, Solved, States, first_heading, on_same_turn
+from nonholo.continuous._solution import PLANE, Problem, Solved, States, first_heading
 from nonholo.kernels import Quadratic
-from nonholo.orbit import Orbit
+from nonholo.orbit import Orbit, turned_near
 from nonholo.systems import Forced
 
 _LEAST_RTOL, _SHARE = 1e-13, 1e-3  # SciPy allows no less; absolute errors are that part of the relative ones
@@ -257,7 +257,7 @@ def _states(forced: Forced, rows: Float[np.ndarray, "K size"]) -> States:
     group, k, N = forced.group, forced.rank, forced.group.size
     g = rows[:, k : k + N * N].reshape(-1, N, N)
     poses = group.normalize_pose(group.pose_from_matrix(g @ forced.frame))
-    headings = on_same_turn(rows[:, -1], poses) if group == PLANE else None
+    headings = turned_near(rows[:, -1], poses) if group == PLANE else None
     return States(forced.to_canonical(rows[:, :k]), poses, headings)
 
 

@@ -13,8 +13,9 @@ from nonholo.base.progress import interruptibly
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array
 from nonholo.continuous._equations import Body, body_of, momentum_rate, spatial_velocity
-from nonholo.continuous._solution import PLANE, Problem, Solved, States, first_heading, on_same_turn
+from nonholo.continuous._solution import PLANE, Problem, Solved, States, first_heading
 from nonholo.groups import AbstractMatrixGroup
+from nonholo.orbit import turned_near
 from nonholo.systems import AbstractSystem
 
 Rate = Callable[[AbstractMatrixGroup, Array, State, Any], State]
@@ -33,7 +34,7 @@ def integrate_by_diffrax(system: AbstractSystem, problem: Problem) -> Solved:
     momenta, poses, headings = rows
     poses = system.group.normalize_pose(poses)
     at = functools.partial(_solved_again, system, problem)
-    return Solved(States(momenta, poses, on_same_turn(headings[:, 0], poses) if planar else None), outcome, at)
+    return Solved(States(momenta, poses, turned_near(headings[:, 0], poses) if planar else None), outcome, at)
 
 
 def _solved_again(system: AbstractSystem, problem: Problem, elapsed: np.ndarray) -> States:

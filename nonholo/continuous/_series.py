@@ -11,7 +11,6 @@ Variations of momenta move as a pose does: the rates $\sum_{ab}T_{ab}w_aw_b$ cha
 $$ \delta r' = \sum_a w_a\sum_b(T_{ab} + T_{ba})(V\,\delta r)_b, \qquad w = Vr. $$
 """
 
-import dataclasses
 import functools
 import math
 from collections.abc import Sequence
@@ -22,10 +21,10 @@ import numpy as np
 from nonholo.base.checks import error
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.continuous._solution import PLANE, Problem, Solved, States, first_heading, on_same_turn
+from nonholo.continuous._solution import PLANE, Problem, Solved, States, first_heading
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.kernels import Quadratic, revisit_series, solve_series, sparse_products
-from nonholo.orbit import looked_at
+from nonholo.orbit import looked_at, turned_near
 from nonholo.systems import AbstractSystem
 
 _COMPACT = 40
@@ -42,8 +41,7 @@ class Rates(NamedTuple):
     lone: np.ndarray
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class Series:
+class Series(NamedTuple):
     """A solved motion: its equations, and from where their series can be expanded again.
 
     Attributes:
@@ -84,15 +82,16 @@ class Series:
         """Return momenta, poses and headings."""
         group, end = self.group, rows.shape[1] - self.head
         pose_end = end - (group == PLANE)
-        numbers = np.ascontiguousarray(rows[:, :pose_end])
-        matrices = numbers.reshape(-1, *group.identity.shape) if not self.compact else None
-        poses = group.normalize_pose(numbers if matrices is None else group.pose_from_matrix(matrices))
+        poses = np.ascontiguousarray(rows[:, :pose_end])
+        if not self.compact:
+            poses = group.pose_from_matrix(poses.reshape(-1, *group.identity.shape))
+        poses = group.normalize_pose(poses)
         momenta = (
             rows[:, end : end + self.rank] * self.unit
             if self.momentum is None
             else np.broadcast_to(self.momentum, (len(rows), len(self.momentum))).copy()
         )
-        return States(momenta, poses, on_same_turn(rows[:, pose_end], poses) if group == PLANE else None)
+        return States(momenta, poses, turned_near(rows[:, pose_end], poses) if group == PLANE else None)
 
 
 def by_series(system: AbstractSystem, problem: Problem) -> Solved:
@@ -114,7 +113,7 @@ def is_compact(group: AbstractMatrixGroup) -> bool:
 
 def power_of_two(velocities: np.ndarray) -> float:
     """Return the next power of two above the largest velocity."""
-    return math.ldexp(1.0, math.frexp(np.abs(velocities).max(initial=0.0))[1])
+    return math.ldexp(1.0, math.frexp(np.maximum.reduce(np.abs(velocities), None, initial=0.0))[1])
 
 
 def solve(
@@ -245,8 +244,8 @@ def _blocks(size: int, edges: np.ndarray, lone: np.ndarray) -> tuple[np.ndarray,
         same = first[sources] == first[targets]
         is_block = is_left & (_least_along(first != places, targets[same], sources[same]) == 0)
         labels[is_block] = first[is_block]
-    ordered, labels = np.unique(labels, return_inverse=True)
-    is_closed, (sources, targets) = np.ones(len(ordered), dtype=np.bool_), labels[edges]
+    roots, labels = np.unique(labels, return_inverse=True)
+    is_closed, (sources, targets) = np.ones(len(roots), dtype=np.bool_), labels[edges]
     is_closed[targets[sources != targets]] = False
     is_closed[labels[lone]] = False
     return labels, is_closed
@@ -254,7 +253,7 @@ def _blocks(size: int, edges: np.ndarray, lone: np.ndarray) -> tuple[np.ndarray,
 
 def _least_along(values: np.ndarray, sources: np.ndarray, targets: np.ndarray) -> np.ndarray:
     """Return the least value at each component and at those from which edges lead to it."""
-    before = None
+    before = np.zeros(0)
     while not np.array_equal(values, before):
         before, values = values, values.copy()
         np.minimum.at(values, targets, before[sources])

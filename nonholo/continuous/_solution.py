@@ -69,11 +69,3 @@ class Solved(NamedTuple):
 def first_heading(group: AbstractMatrixGroup, pose: Float[np.ndarray, "... size"]) -> Float[np.ndarray, "... j"]:
     """Return the angle of a pose in the plane as one number; none of other groups."""
     return np.arctan2(pose[..., 1:2], pose[..., :1]) if group == PLANE else pose[..., :0]
-
-
-def on_same_turn(
-    headings: Float[np.ndarray, "... K"], poses: Float[np.ndarray, "... K 4"]
-) -> Float[np.ndarray, "... K"]:
-    """Return the angles of the poses, each on the turn that the integrated heading tells."""
-    angles = np.arctan2(poses[..., 1], poses[..., 0])
-    return angles + 2 * np.pi * np.rint((headings - angles) / (2 * np.pi))

@@ -22,8 +22,9 @@ from nonholo.continuous._series import (
     power_of_two,
     quadratic,
 )
-from nonholo.continuous._solution import PLANE, Problem, Solved, States, first_heading, on_same_turn
+from nonholo.continuous._solution import PLANE, Problem, Solved, States, first_heading
 from nonholo.kernels import Quadratic, solve_members
+from nonholo.orbit import turned_near
 from nonholo.systems import AbstractSystem, System, refuse_slip
 
 
@@ -85,7 +86,7 @@ def members_by_series(
     rows = np.full((len(momenta), len(elapsed), starts.shape[1]), np.nan)
     counts = solve_members(f, (velocities, factors), starts, (elapsed, units), tolerance * GUARD, rows, stop)
     path = group.normalize_pose(rows[..., : poses.shape[1]])
-    headings = on_same_turn(rows[..., poses.shape[1]], path) if group == PLANE else None
+    headings = turned_near(rows[..., poses.shape[1]], path) if group == PLANE else None
     first = starts.shape[1] - head.shape[1]
     return States(rows[..., first : first + k] * units[:, None, None], path, headings), counts
 

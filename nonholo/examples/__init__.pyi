@@ -8,6 +8,7 @@ from ._blades import sleigh_in_a_well as sleigh_in_a_well
 from ._boards import roller_racer as roller_racer
 from ._boards import snake as snake
 from ._boards import snakeboard as snakeboard
+from ._boards import twistcar as twistcar
 from ._cars import kinematic_car as kinematic_car
 from ._cars import trailers as trailers
 from ._cars import two_wheeled_robot as two_wheeled_robot

@@ -1,6 +1,7 @@
-"""Vehicles that turns of joints drive along: the roller racer, the snakeboard, the snake of three links."""
+"""Vehicles that turns of joints drive along: roller racer, Twistcar, snakeboard, snake of three links."""
 
 import functools
+from typing import Any, cast
 
 import jax.numpy as jnp
 import numpy as np
@@ -76,56 +77,122 @@ def roller_racer(
         >>> ready.coordinates, ready.system.constraints
         (('x', 'y', 'theta', 'phi'), 3)
     """
-    name = "roller_racer"
     sizes = {"mass": mass, "inertia": inertia, "handle_inertia": handle_inertia, "joint": joint, "handle": handle}
-    body = positives(name, **sizes, frequency=frequency)
-    c, u = reals(name, center=center, speed=speed)
-    A = None if amplitude is None else reals(name, amplitude=amplitude)[0]
-    q = numbers(name, "configuration", configuration, 3, "x, y and theta")
-    turning = 0.5 if A is None else A * body[5]
+    body = positives("roller_racer", **sizes, frequency=frequency)
+    body += reals("roller_racer", center=center, handle_mass=0.0, handle_center=0.0)
+    return _of_handle("roller_racer", "Roller racer", body, amplitude, configuration, speed)
+
+
+@ready("configuration", "speed")
+def twistcar(
+    *,
+    mass: float = 1.0,
+    inertia: float = 0.1,
+    handle_mass: float = 0.2,
+    handle_inertia: float = 0.01,
+    center: float = 0.3,
+    handle_center: float = 0.1,
+    joint: float = 1.0,
+    handle: float = 0.2,
+    amplitude: float = 0.5,
+    frequency: float = 2.0,
+    configuration: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    speed: float = 0.0,
+) -> Example:
+    r"""The toy that turns of its handle drive: a `roller_racer` whose handle has a mass, forwards or backwards.
+
+    $$ L = \tfrac m2|\dot c|^2 + \tfrac I2\dot\theta^2 + \tfrac{m_h}2|\dot d|^2
+         + \tfrac J2(\dot\theta + \dot\varphi)^2, $$
+
+    constraints and coordinates as there; the center of the handle d lies d beyond the pivot, on the line to its axle.
+    From rest, turned by $\varphi = A\sin\Omega t$ with a small A, it gains in the mean of a period
+
+    $$ (m + m_h)\,\overline{\dot u} = \tfrac12A^2\Omega^2\Bigl(\frac{\Lambda}{\ell + k}
+         - \kappa\Pi\Bigr) + O(A^4), \quad \kappa = \frac k{\ell + k}, \quad
+       \Pi = (1 - \kappa)m_hd - \kappa(mc + m_h\ell), $$
+
+    $$ \Lambda = (1 - \kappa)J - \kappa(I + mc^2) + m_h(\ell + d)\bigl((1 - \kappa)d - \kappa\ell\bigr), $$
+
+    whose sign depends on lengths and masses: it goes backwards with these, forwards with a handle of the inertia 0.1.
+
+    Reference: [chakon-or-2017]; this model and its mean acceleration are derived in the tests.
+
+    Args:
+        mass: m, of the body with its rider.
+        inertia: I, of the body about its center of mass.
+        handle_mass: m_h.
+        handle_inertia: J, of the handle about its center of mass.
+        center: c, of the center of mass of the body in front of the rear axle.
+        handle_center: d, of the center of mass of the handle beyond the pivot.
+        joint: l, of the pivot in front of the rear axle.
+        handle: k, from the pivot to the axle of the handle.
+        amplitude: A; None for a handle that turns freely.
+        frequency: Omega; of a free handle its first turning rate is 0.5.
+        configuration: (x, y, theta) at the start.
+        speed: u at the start.
+
+    Raises:
+        ValueError: A length, mass or inertia that is not positive, a wrong shape.
+
+    Example:
+        >>> ready = nh.examples.twistcar()
+        >>> ready.coordinates, ready.system.constraints
+        (('x', 'y', 'theta', 'phi'), 3)
+    """
+    sizes = {"mass": mass, "inertia": inertia, "handle_inertia": handle_inertia, "joint": joint, "handle": handle}
+    body = positives("twistcar", **sizes, frequency=frequency) + reals("twistcar", center=center)
+    body += positives("twistcar", handle_mass=handle_mass) + reals("twistcar", handle_center=handle_center)
+    return _of_handle("twistcar", "Twistcar", body, amplitude, configuration, speed)
+
+
+_HANDLE = (
+    *("mass", "inertia", "handle_inertia", "joint", "handle"),
+    *("frequency", "center", "handle_mass", "handle_center", "amplitude"),
+)
+
+
+def _of_handle(name: str, title: str, body: list[float], amplitude: float | None, place: Any, speed: float) -> Example:
+    """Return a vehicle with a handle that drives it."""
+    u, A = reals(name, speed=speed, amplitude=0.0 if amplitude is None else amplitude)
+    q = numbers(name, "configuration", place, 3, "x, y and theta")
+    turning = 0.5 if amplitude is None else A * body[5]
     heading = -body[4] * turning / (body[3] + body[4])
     v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), heading, turning])
-    system = _racer_system(*body, c, A)
+    system = with_numbers(functools.partial(_handle_system, title, amplitude is None), *body, A)
     facts = (
         "Turning the handle to and fro drives it from rest.",
         "There is a momentum along the constraint, and it is not conserved.",
     )
-    conserved = {} if system.is_driven else {"energy": lambda q, v: _energy(body, c, q, v)}
+    conserved = {} if system.is_driven else {"energy": energy_of(cast(Any, system).plain.lagrangian)}
     return Example(name, system, np.append(q, 0.0), v, facts, conserved)
 
 
-def _energy(body: list[float], c: float, q: Array, v: Array) -> Array:
-    m, seat, J, *_ = body
-    u = np.cos(q[..., 2]) * v[..., 0] + np.sin(q[..., 2]) * v[..., 1]
-    return (m * u**2 + (seat + m * c**2) * v[..., 2] ** 2 + J * (v[..., 2] + v[..., 3]) ** 2) / 2
-
-
 @functools.cache
-def _racer_system(
-    m: float, seat_inertia: float, J: float, ell: float, k: float, Omega: float, c: float, A: float | None
-) -> LagrangeDAlembert:
-    def lagrangian(q: Array, v: Array) -> Array:
-        cos, sin = jnp.cos(q[2]), jnp.sin(q[2])
+def _handle_system(title: str, is_free: bool) -> LagrangeDAlembert:
+    def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
+        cos, sin, turning = jnp.cos(q[2]), jnp.sin(q[2]), v[2] + v[3]
         u, w = cos * v[0] + sin * v[1], cos * v[1] - sin * v[0]
-        return (m * (u**2 + (w + c * v[2]) ** 2) + seat_inertia * v[2] ** 2 + J * (v[2] + v[3]) ** 2) / 2
+        seat = p["mass"] * (u**2 + (w + p["center"] * v[2]) ** 2) + p["inertia"] * v[2] ** 2
+        along = u - p["handle_center"] * turning * jnp.sin(q[3])
+        across = w + p["joint"] * v[2] + p["handle_center"] * turning * jnp.cos(q[3])
+        return (seat + p["handle_inertia"] * turning**2 + p["handle_mass"] * (along**2 + across**2)) / 2
 
-    def axles(q: Array) -> Array:
-        cos, sin = jnp.cos(q[2]), jnp.sin(q[2])
-        bent = jnp.sin(q[3])
-        front = jnp.array([-bent * cos, -bent * sin, ell * jnp.cos(q[3]) + k, k])
+    def axles(q: Array, p: Numbers) -> Array:
+        cos, sin, bent, k = jnp.cos(q[2]), jnp.sin(q[2]), jnp.sin(q[3]), p["handle"]
+        front = jnp.array([-bent * cos, -bent * sin, p["joint"] * jnp.cos(q[3]) + k, k])
         return jnp.stack([jnp.array([-sin, cos, 0.0, 0.0]), front])
 
-    half = 0.3 * ell
-    seat = np.array([[-0.1 * ell, -0.6 * half], [ell, 0.0], [-0.1 * ell, 0.6 * half]])
-
-    def outline(q: Array) -> list[Array]:
-        pivot, front = np.array([ell, 0.0]), np.array([ell, 0.0]) + k * turn(q[3])[0]
+    def outline(q: Array, p: Numbers) -> list[Array]:
+        ell, half = p["joint"], 0.3 * p["joint"]
+        seat = np.array([[-0.1 * ell, -0.6 * half], [ell, 0.0], [-0.1 * ell, 0.6 * half]])
+        pivot = np.array([ell, 0.0])
+        front = pivot + p["handle"] * turn(q[3])[0]
         bar = np.stack([pivot, front])
         return [seat, *pair((0.0, 0.0), half, 0.5 * half), bar, *pair((front[0], front[1]), half, 0.5 * half, q[3])]
 
-    driver = {} if A is None else {3: lambda time: A * jnp.sin(Omega * time)}
-    options = {"heading": "theta", "outline": outline, "prescribed": driver}
-    return system_in("x y theta phi", "Roller racer", lagrangian, axles, **options)
+    driver = {} if is_free else {3: lambda time, p: p["amplitude"] * jnp.sin(p["frequency"] * time)}
+    options = {"heading": "theta", "outline": outline, "prescribed": driver, "parameters": dict.fromkeys(_HANDLE, 1.0)}
+    return system_in("x y theta phi", title, lagrangian, axles, **options)
 
 
 _BOARD = ("mass", "half_length", "rotor_inertia", "wheel_inertia")

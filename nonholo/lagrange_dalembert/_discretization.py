@@ -19,6 +19,7 @@ import numpy as np
 from nonholo.base.checks import error, is_traced, scale
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
+from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import compiled
 from nonholo.lagrange_dalembert._newton import orientation, solve
 from nonholo.lagrange_dalembert._orbit import (
@@ -28,7 +29,7 @@ from nonholo.lagrange_dalembert._orbit import (
     CoordinateOrbit,
     GroupOrbit,
 )
-from nonholo.lagrange_dalembert._room import configurations, equations_of, in_double, places, room
+from nonholo.lagrange_dalembert._room import configurations, in_double, places, places_of, room
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
 from nonholo.lagrange_dalembert.compiled import ROWS
 from nonholo.orbit import AbstractStepper, First, Rows, State
@@ -69,7 +70,7 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
         """Return the checked momentum, place and velocity of a start."""
         del with_poses
         system, h, subject = self.system, np.float64(self.time_step), (start.owner, self.system)
-        checks, equations = room(system._start), equations_of(system)
+        checks = room("_start")
         q = checks.point(*subject, start.configuration, project=start.project)
         checks.consistent(system, q, h)
         if start.name == "momentum":
@@ -171,7 +172,7 @@ def checked_state(
     project: bool = False,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the checked start of a flow, or another place and velocity."""
-    checks, name = room(system._start), one_start(owner, **starts)
+    checks, name = room("_start"), one_start(owner, **starts)
     q = checks.point(owner, system, configuration, time, project=project)
     if name == "momentum":
         return checks.of_momentum(owner, system, q, starts[name])[1:]
@@ -205,7 +206,7 @@ class CoordinateStepper(AbstractStepper[AbstractCoordinateOrbit]):
     block = 1 << 18
 
     def __post_init__(self) -> None:
-        equations_of(self.motion.system)  # refused by the system of a store without functions
+        places_of(self.motion.system)  # refused by the system of a store without functions
 
     @functools.cached_property
     def columns(self) -> dict[str, int]:  # type: ignore[override]
@@ -252,8 +253,8 @@ class CoordinateStepper(AbstractStepper[AbstractCoordinateOrbit]):
     ) -> Any:
         """Return states that were reached, with all that they tell, as an orbit."""
         system, h = self.motion.system, np.float64(self.motion.time_step)
-        *displacements, momentum, energy, residual = _decoded(system, h, q, v)
-        displacement, number = displacements[0] if displacements else h * v, step + every * np.arange(len(q))
+        displacement, momentum, energy, residual = _decoded(system, h, q, v)
+        number = step + every * np.arange(len(q))
         arrays = h * number, configurations(system, q), displacement, v, momentum, impulses, energy, residual
         return ORBITS[system.orbits](*arrays, outcome, system, float(h), every, step=number)
 
@@ -283,7 +284,6 @@ def set_out(system: Any, h: Array, q: Array, v: Array, p: Array) -> tuple[Motion
 def _step(system: Any, h: Array, state: Motion, sign: Array) -> tuple[Motion, Array, Array]:
     """Return the next state, the impulses and the outcome."""
     q, v, before = state
-    equations = equations_of(system)
     _, arriving = equations.momenta(system, q, v, h)
     ahead = equations.ahead(system, q, v, h)
     following, multipliers, code = solve(system, h, ahead, arriving, v, 2 * v - before, sign)
@@ -336,10 +336,9 @@ def _decode_all(system: Any, h: Array, q: Array, v: Array) -> tuple[Array, ...]:
 
 
 def _decode(system: Any, h: Array, q: Array, v: Array, *node: Array) -> tuple[Array, ...]:
-    equations = equations_of(system)
     residual = jnp.max(jnp.abs(equations.discrete_constraints(system, q, v, h)), initial=0.0)
     momentum, energy = equations.momenta(system, q, v, h)[0], equations.discrete_energy(system, q, v, h, *node)
-    return *equations.displacements(system, v, h), momentum, energy, residual
+    return system.places.displacement(v, h), momentum, energy, residual
 
 
 def _pad(rows: np.ndarray) -> np.ndarray:
@@ -351,7 +350,6 @@ def _after_parts(
     system: Any, h: Array, count: Array, fractions: Array, x: Array, v: Array, p: Array
 ) -> tuple[Array, Array]:
     """Return the places after parts of steps, and the velocities of the whole steps that begin there."""
-    equations = equations_of(system)
 
     def leg(carry: tuple[Array, Array, Array], length: Array) -> tuple[tuple[Array, Array, Array], tuple]:
         begin, near, p = carry

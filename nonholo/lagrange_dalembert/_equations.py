@@ -1,7 +1,7 @@
 r"""The equations: discrete Lagrangian and constraints by rule, momenta as their derivatives, the scaled matrix.
 
-Steps are described by (x, v) with $v = (q' - q)/h$, not by (q, q'), so that rules do not lose digits in q' - q. A place
-x is the configuration q, of a driven system (q, t): time is one more coordinate, whose rate is one.
+They are the same in coordinates and on groups; `system.places` has what differs. Steps are described by a place x and a
+velocity v with $q' = q + hv$ or $g' = g\,e^{hv}$.
 """
 
 from typing import Any, NamedTuple
@@ -20,7 +20,8 @@ _CORRECTIONS = 8  # of a velocity that belongs to a momentum: Newton's, one wher
 def _value_at(function: Any, system: LagrangeDAlembert, x: Array, *velocity: Array) -> Array:
     """Return the value of a user's function at a place, with the time if it takes it."""
     time = (x[-1],) if takes_time(function, 1 + len(velocity)) else ()
-    return jnp.asarray(function(x[: system.dimension], *velocity, *time), dtype=x.dtype)
+    q = x[:-1] if system.is_driven else x
+    return jnp.asarray(function(q, *velocity, *time), dtype=x.dtype)
 
 
 def lagrangian(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
@@ -57,7 +58,7 @@ def forms(system: LagrangeDAlembert, x: Array) -> Array:
 
 def constraint(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
     """Return A v - b."""
-    _, rates = jax.jvp(lambda y: holonomic(system, y), (x,), (rate(system, x, v),))
+    _, rates = jax.jvp(lambda y: holonomic(system, y), (x,), (system.places.rate(x, v),))
     return jnp.concatenate(
         [_velocity_constraint(system, x, v), rates, *(v[i : i + 1] - jax.grad(s)(x[-1]) for i, s in system.prescribed)]
     )
@@ -74,12 +75,13 @@ def _velocity_constraint(system: LagrangeDAlembert, x: Array, v: Array) -> Array
 
 
 def discrete_lagrangian(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> Array:
-    """Return L_d(q, q + h v)."""
+    """Return L_d of a place and what stands for the displacement: v, on a group W."""
+    places = system.places
     if system.discrete_lagrangian is not None:
-        return jnp.asarray(system.discrete_lagrangian(x, x + h * v, h))
+        return jnp.asarray(system.discrete_lagrangian(*places.ends(x, v, h), h))
     if system.rule == "midpoint":
-        return h * lagrangian(system, ahead(system, x, v, h / 2), v)
-    return h * (lagrangian(system, x, v) + lagrangian(system, ahead(system, x, v, h), v)) / 2
+        return h * lagrangian(system, places.ahead(x, v, h / 2), v)
+    return h * (lagrangian(system, x, v) + lagrangian(system, places.ahead(x, v, h), v)) / 2
 
 
 def discrete_constraints(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> Array:
@@ -88,23 +90,24 @@ def discrete_constraints(system: LagrangeDAlembert, x: Array, v: Array, h: Array
     Holonomic constraints hold at the end of the step, prescribed coordinates move by exactly what is prescribed.
     """
     steps = (v[i : i + 1] - (s(x[-1] + h) - s(x[-1])) / h for i, s in system.prescribed)
-    at_end = holonomic(system, ahead(system, x, v, h)) / h
-    return jnp.concatenate([_discrete_velocity_constraint(system, x, v, h), at_end, *steps])
+    at_end = [] if system.holonomic is None else [holonomic(system, system.places.ahead(x, v, h)) / h]
+    return jnp.concatenate([_discrete_velocity_constraint(system, x, v, h), *at_end, *steps])
 
 
 def _discrete_velocity_constraint(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> Array:
+    places = system.places
     if system.discrete_constraints is not None:
-        return jnp.asarray(system.discrete_constraints(x, x + h * v, h))
+        return jnp.asarray(system.discrete_constraints(*places.ends(x, places.step(v, h), h), h))
     if system.rule == "midpoint":
-        return _velocity_constraint(system, ahead(system, x, v, h / 2), v)
-    return (_velocity_constraint(system, x, v) + _velocity_constraint(system, ahead(system, x, v, h), v)) / 2
+        return _velocity_constraint(system, places.ahead(x, v, h / 2), v)
+    return (_velocity_constraint(system, x, v) + _velocity_constraint(system, places.ahead(x, v, h), v)) / 2
 
 
 def momenta(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[Array, Array]:
     r"""Return $P = -D_1 L_d - f^-$ and $P^+ = D_2 L_d + f^+$."""
-    along_x, along_v = jax.grad(discrete_lagrangian, argnums=(1, 2))(system, x, v, h)
-    arriving = along_v / h  # at fixed q the end point moves by h times the change of v
-    leaving = arriving - along_x[: system.dimension]
+    step = system.places.step(v, h)
+    slopes = jax.grad(discrete_lagrangian, argnums=(1, 2))(system, x, step, h)
+    leaving, arriving = system.places.momenta(x, step, h, *slopes)
     if system.force is None:
         return leaving, arriving
     at_start, at_end = _impulses(system, x, v, h)
@@ -129,7 +132,8 @@ def _impulses(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[
     row = 0.0 if system.table is None else system.table.row(x[-1] / h)
     if system.applied is None:
         return h / 2 * row, h / 2 * row
-    return h / 2 * (row + applied(system, x, v)), h / 2 * (row + applied(system, ahead(system, x, v, h), v))
+    end = system.places.ahead(x, v, h)
+    return h / 2 * (row + applied(system, x, v)), h / 2 * (row + applied(system, end, v))
 
 
 def applied(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
@@ -151,10 +155,10 @@ def discrete_energy(system: LagrangeDAlembert, x: Array, v: Array, h: Array, nod
     if system.is_driven:
         w = inverse_legendre(system, x, momenta(system, x, v, h)[0]) if node is None else node
         return energy(system, x, w)
-    d = h * v
     if getattr(system.discrete_lagrangian, "is_of_one_step", False):
-        return energy(system, x + d / 2, v)
-    return -jax.grad(lambda step: discrete_lagrangian(system, x, d / step, step))(h)
+        return energy(system, x + h * v / 2, v)
+    displacement, of = system.places.displacement(v, h), system.places.step_of
+    return -jax.grad(lambda step: discrete_lagrangian(system, x, of(displacement, step), step))(h)
 
 
 def energy(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
@@ -163,50 +167,15 @@ def energy(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
 
 
 def ahead(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> Array:
-    """Return the place after a step."""
-    return x + h * rate(system, x, v)
-
-
-def displacements(*_: object) -> tuple[()]:
-    """Return nothing: the displacement is h v."""
-    return ()
-
-
-def rate(system: LagrangeDAlembert, _x: Array, v: Array) -> Array:
-    """Return the rate of change of a place."""
-    return jnp.append(v, 1.0) if system.is_driven else v
-
-
-def beside(_: LagrangeDAlembert, x: Array, xi: Array) -> Array:
-    """Return the place with the coordinates xi as seen from x."""
-    return x + xi
-
-
-def frame(_system: LagrangeDAlembert, x: Array, _v: Array, _time: Array) -> Array:
-    """Return from where places are seen after a time: it stays."""
-    return x
-
-
-def departure(_: LagrangeDAlembert, x: Array, after: Array) -> Array:
-    """Return the coordinates of a place as seen from x."""
-    return after - x
-
-
-def departure_rate(system: LagrangeDAlembert, _v: Array, xi: Array, w: Array) -> Array:
-    """Return the rate of the coordinates xi of a place that moves with the velocity w, from a frame with velocity v."""
-    return rate(system, xi, w)
-
-
-def normalize(_: LagrangeDAlembert, x: Array) -> Array:
-    """Return the place as it is: rounding errors lead to another one."""
-    return x
+    """Return the place after a step, without the rounding errors that lead away from a group."""
+    return system.places.normalize(system.places.ahead(x, v, h))
 
 
 def force(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
     r"""Return $\partial L/\partial q + f$ less the change of $\partial L/\partial v$ with q and t."""
-    along_q = jax.grad(lagrangian, argnums=1)(system, x, v)[: system.dimension]
-    _, momentum_drift = jax.jvp(lambda y: momentum(system, y, v), (x,), (rate(system, x, v),))
-    return along_q - momentum_drift + applied(system, x, v)
+    p, momentum_drift = jax.jvp(lambda y: momentum(system, y, v), (x,), (system.places.rate(x, v),))
+    along_x = jax.grad(lagrangian, argnums=1)(system, x, v)
+    return system.places.force(v, p, x, along_x) - momentum_drift + applied(system, x, v)
 
 
 def inverse_legendre(system: LagrangeDAlembert, x: Array, p: Array) -> Array:
@@ -251,15 +220,12 @@ def solve_bordered(matrix: Array, units: Scaled, force: Array, off: Array) -> tu
     return solution[:n] * units.velocity, solution[n:] / units.forms
 
 
-def kinetic_matrix(system: LagrangeDAlembert, q: Array, v: Array, _h: Any = None) -> Array:
+def mass_matrix(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
     r"""Return $\partial^2 L/\partial v^2$."""
-    return jax.hessian(lagrangian, argnums=2)(system, q, v)
-
-
-mass_matrix = kinetic_matrix
+    return jax.hessian(lagrangian, argnums=2)(system, x, v)
 
 
 def acceleration_matrix(system: LagrangeDAlembert, q: Array, v: Array) -> tuple[Array, Scaled]:
     """Return the scaled matrix of the continuous equations: the regularity matrix for h -> 0."""
-    kinetic, A = kinetic_matrix(system, q, v), forms(system, q)
+    kinetic, A = mass_matrix(system, q, v), forms(system, q)
     return bordered_matrix(kinetic, A, A, kinetic)

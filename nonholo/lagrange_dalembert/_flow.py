@@ -16,11 +16,12 @@ import numpy as np
 from nonholo.base.checks import error, flow_times, flow_tolerances, is_traced, number, trailing
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert import _equations, compiled
+from nonholo.lagrange_dalembert import _equations as equations
+from nonholo.lagrange_dalembert import compiled
 from nonholo.lagrange_dalembert._discretization import checked_state
 from nonholo.lagrange_dalembert._equations import solve_bordered
 from nonholo.lagrange_dalembert._orbit import ORBITS
-from nonholo.lagrange_dalembert._room import configurations, equations_of, in_double, places, room
+from nonholo.lagrange_dalembert._room import configurations, in_double, places, places_of, room
 from nonholo.orbit import times_within
 
 _PROJECTIONS, _NEAR = 50, 1e-14  # corrections of a place, at most, and what the last one may be beside it
@@ -36,20 +37,19 @@ def acceleration(system: Any, q: Array, v: Array, extra: Any = 0.0) -> tuple[Arr
         v: Its velocity.
         extra: A force beside those of the system: of a table the row that acts.
     """
-    equations = equations_of(system)
-    _, constraint_rate = jax.jvp(lambda x: equations.constraint(system, x, v), (q,), (equations.rate(system, q, v),))
+    _, constraint_rate = jax.jvp(lambda x: equations.constraint(system, x, v), (q,), (system.places.rate(q, v),))
     return bordered_solution(system, q, v, equations.force(system, q, v) + extra, -constraint_rate)
 
 
 def bordered_solution(system: Any, q: Array, v: Array, force: Array, off: Array) -> tuple[Array, Array]:
     r"""Solve $M x - A^T\lambda$ = force, A x = off."""
-    matrix, units = equations_of(system).acceleration_matrix(system, q, v)
+    matrix, units = equations.acceleration_matrix(system, q, v)
     return solve_bordered(matrix, units, force, off)
 
 
 def admissible_velocity(system: Any, q: Array, v: Array) -> Array:
     """Return the admissible velocity next to one in the kinetic energy."""
-    return v - bordered_solution(system, q, v, jnp.zeros_like(v), equations_of(system).constraint(system, q, v))[0]
+    return v - bordered_solution(system, q, v, jnp.zeros_like(v), equations.constraint(system, q, v))[0]
 
 
 def nearest_place(system: Any, x: Array) -> Array:
@@ -57,8 +57,8 @@ def nearest_place(system: Any, x: Array) -> Array:
 
     $M(y - x) = D\Phi(y)^T\lambda$, $\Phi(y) = 0$, by Newton's method from x.
     """
-    equations, n, first = equations_of(system), system.dimension, system.velocity_constraints
-    M = equations.kinetic_matrix(system, x, jnp.zeros(n))
+    n, first = system.dimension, system.velocity_constraints
+    M = equations.mass_matrix(system, x, jnp.zeros(n))
 
     def residual(z: Array) -> Array:
         y = x.at[:n].add(z[:n])
@@ -88,7 +88,7 @@ def refuse_table(owner: str, system: Any) -> None:
 
 def vector_field(system: Any) -> Callable[[Array, Float[Array, "size"]], Float[Array, "size"]]:
     """Return the equations of motion as a function (time, state) -> derivative; `nonholo.vector_field` says of what."""
-    equations_of(system)  # refused by the system of a store without functions
+    places_of(system)  # refused by the system of a store without functions
     refuse_table("vector_field", system)
     size = int(np.prod(system.shapes[0]) + np.prod(system.shapes[1]))
 
@@ -103,12 +103,12 @@ def vector_field(system: Any) -> Callable[[Array, Float[Array, "size"]], Float[A
 
 
 def _derivative(system: Any, time: Array, state: Float[Array, "... size"]) -> Float[Array, "... size"]:
-    equations, (pose, _) = equations_of(system), system.shapes
+    pose, _ = system.shapes
 
     def one(row: Array) -> Array:
         q, v = jnp.split(row, [int(np.prod(pose))])
         x = jnp.append(q, time) if system.is_driven else q.reshape(pose)
-        place_rate = jnp.ravel(equations.rate(system, x, v))[: len(q)]
+        place_rate = jnp.ravel(system.places.rate(x, v))[: len(q)]
         return jnp.concatenate([place_rate, acceleration(system, x, v)[0]])
 
     return one(state) if state.ndim == 1 else jax.lax.map(one, state.reshape(-1, state.shape[-1])).reshape(state.shape)
@@ -126,8 +126,14 @@ def flow(
 ) -> Any:
     """Check the arguments, solve the equations and return the orbit."""
     refuse_table("flow", system)
-    time, errors = flow_times(times), flow_tolerances(_COARSE if rtol is None else rtol, atol)
+    time = flow_times(times)
     first = checked_state(system, configuration, starts, time[0], project=project)
+    return solve(system, first, time, rtol, atol)
+
+
+def solve(system: Any, first: State, time: Float[np.ndarray, "K"], rtol: float | None, atol: float = 1e-12) -> Any:
+    """Return the orbit from a checked place and velocity."""
+    errors = flow_tolerances(_COARSE if rtol is None else rtol, atol)
     motion = compiled.flow(system, first, time, _FINE if rtol is None else errors[0])
     rows, solution = motion or room("_integration").flow(system, first, time, errors)
     count = len(rows[0])
@@ -179,10 +185,10 @@ def _powers(system: Any, *columns: Float[np.ndarray, "K n"]) -> Float[np.ndarray
 
 def _power(system: Any, x: Array, p: Array, row: Array) -> Array:
     def one(x: Array, p: Array, row: Array) -> Array:
-        v = _equations.inverse_legendre(system, x, p)
-        force = row + _equations.applied(system, x, v)
-        rates = _equations.forms(system, x) @ v - _equations.constraint(system, x, v)
-        time_slope = jax.grad(_equations.lagrangian, argnums=1)(system, x, v)[-1]
+        v = equations.inverse_legendre(system, x, p)
+        force = row + equations.applied(system, x, v)
+        rates = equations.forms(system, x) @ v - equations.constraint(system, x, v)
+        time_slope = jax.grad(equations.lagrangian, argnums=1)(system, x, v)[-1]
         return force @ v + acceleration(system, x, v, row)[1] @ rates - time_slope
 
     return jax.vmap(one)(x, p, jnp.asarray(row))

@@ -9,8 +9,9 @@ import numpy as np
 from nonholo.base.numerics.time_sweep import good_rows, pad, sweep
 from nonholo.base.progress import interruptibly
 from nonholo.base.types import Array, Float
+from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._flow import State, acceleration, admissible_velocity, bordered_solution
-from nonholo.lagrange_dalembert._room import equations_of, in_double
+from nonholo.lagrange_dalembert._room import in_double
 from nonholo.lagrange_dalembert._tangents import flow_slopes
 
 _RTOL, _ATOL = 1e-12, 1e-13  # of the equations of variation
@@ -65,18 +66,17 @@ class Pieces(NamedTuple):
 
 
 def _sweep(system: Any, state: State, times: Array, errors: tuple[Array, Array]) -> tuple[State, Array]:
-    equations = equations_of(system)
 
     def settle(current: State) -> State:
         """Return the admissible state next to one in the kinetic energy."""
-        q, v = equations.normalize(system, current[0]), current[1]
+        q, v = system.places.normalize(current[0]), current[1]
         if system.holonomic is not None:
             back = bordered_solution(system, q, v, jnp.zeros_like(v), equations.holonomic_residual(system, q))[0]
             q = q - jnp.pad(back, (0, system.is_driven))
         return q, admissible_velocity(system, q, v)
 
     def rate(current: State) -> State:
-        return equations.rate(system, *current), acceleration(system, *current)[0]
+        return system.places.rate(*current), acceleration(system, *current)[0]
 
     return sweep(lambda _, current: rate(settle(current)), settle, state, times, errors)
 
@@ -88,7 +88,6 @@ def columns(system: Any, rows: list[np.ndarray]) -> list[np.ndarray]:
 
 def _decode(system: Any, q: Array, v: Array) -> tuple[Array, ...]:
     """Return momenta, forces of constraint, energies and residuals of many states."""
-    equations = equations_of(system)
 
     def one(q: Array, v: Array) -> tuple[Array, ...]:
         residual = jnp.max(jnp.abs(equations.constraint(system, q, v)), initial=0.0)
@@ -111,7 +110,7 @@ def transitions(system: Any, x: np.ndarray, v: np.ndarray, time: Float[np.ndarra
 def _transitions(system: Any, xs: Array, vs: Array, spans: Array) -> Array:
     def rate(_: Array, current: tuple[Array, ...]) -> tuple[Array, ...]:
         x, v, D = current
-        return equations_of(system).rate(system, x, v), acceleration(system, x, v)[0], flow_slopes(system, x, v)[1] @ D
+        return system.places.rate(x, v), acceleration(system, x, v)[0], flow_slopes(system, x, v)[1] @ D
 
     def one(state: tuple[Array, Array, Array]) -> Array:
         x, v, span = state

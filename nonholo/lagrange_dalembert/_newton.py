@@ -13,8 +13,8 @@ import jax.numpy as jnp
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array
 from nonholo.kernels import CONTRACTION, ITERATIONS, SINGULAR, TOLERANCE
+from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._equations import Scaled, bordered_matrix
-from nonholo.lagrange_dalembert._room import equations_of
 
 _ROUNDING = 1e-15  # of a place
 _SMALLEST = 2.0**-20  # of the path; below it the continuation is given up
@@ -59,8 +59,7 @@ Correction = Callable[[Array, Array, Array], tuple[Array, Array, Array, Array, A
 
 def orientation(system: Any, q: Array, v: Array, h: Array) -> tuple[Array, Array]:
     """Return the sign of the determinant of the scaled regularity matrix and its least singular value."""
-    equations = equations_of(system)
-    matrix, _, _ = newton_matrix(system, q, v, h, equations.kinetic_matrix(system, q, v, h))
+    matrix, _, _ = newton_matrix(system, q, v, h, equations.mass_matrix(system, q, v))
     return jnp.sign(jnp.linalg.det(matrix)), jnp.linalg.svd(matrix, compute_uv=False)[-1]
 
 
@@ -68,7 +67,7 @@ def solve(
     system: Any, h: Array, q: Array, p: Array, near: Array, guess: Array, sign: Array
 ) -> tuple[Array, Array, Array]:
     """Return velocity, multipliers and outcome of the root with this orientation next to `near`."""
-    rows = equations_of(system).forms(system, q)
+    rows = equations.forms(system, q)
     return root(of_step(system, q, near, h), rows, p, near, guess, sign, rounding_of_step(system, q, h))
 
 
@@ -82,7 +81,7 @@ def rounding_of_step(system: Any, q: Array, h: Array) -> Array | None:
 
 def of_step(system: Any, q: Array, near: Array, h: Array) -> Matrix:
     """Return the equations of a step from q, in the units of the velocity `near`."""
-    kinetic = equations_of(system).kinetic_matrix(system, q, near, h)
+    kinetic = equations.mass_matrix(system, q, near)
     return lambda v: newton_matrix(system, q, v, h, kinetic)
 
 
@@ -90,7 +89,6 @@ def newton_matrix(
     system: Any, q: Array, v: Array, h: Array, kinetic: Array
 ) -> tuple[Array, Scaled, tuple[Array, Array]]:
     """Return the scaled regularity matrix of a step, its units, and P and F at the step."""
-    equations = equations_of(system)
 
     def values(w: Array) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
         both = equations.momenta(system, q, w, h)[0], equations.discrete_constraints(system, q, w, h)
@@ -103,7 +101,6 @@ def newton_matrix(
 
 def of_node(system: Any, q: Array, _near: Array, _h: Array) -> Matrix:
     """Return the equations of the velocity that belongs to a momentum."""
-    equations = equations_of(system)
 
     def matrix_at(v: Array) -> tuple[Array, Scaled, tuple[Array, Array]]:
         matrix, units = equations.acceleration_matrix(system, q, v)
@@ -159,7 +156,7 @@ def _outcome(path: _Path) -> Array:
     return jnp.where((path.s == 1) & ~singular, int(Outcome.successful), code)
 
 
-def equations(
+def scaled_equations(
     matrix_at: Matrix,
     rows: Array,
     p: Array,
@@ -186,7 +183,7 @@ def _correction(
     n = len(p)
 
     def correct(v: Array, multipliers: Array, offset: Array) -> tuple[Array, Array, Array, Array, Array]:
-        matrix, scaled_residual, units, scale = equations(matrix_at, rows, p, v, multipliers, offset, rounding)
+        matrix, scaled_residual, units, scale = scaled_equations(matrix_at, rows, p, v, multipliers, offset, rounding)
         factors, pivots = jax.scipy.linalg.lu_factor(matrix)
         inverse = jax.scipy.linalg.lu_solve((factors, pivots), jnp.eye(len(scaled_residual)))
         step = -(inverse @ scaled_residual)

@@ -16,9 +16,10 @@ from nonholo.base.memo import memo
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float, Int
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.lagrange_dalembert._room import equations_of, in_double, places, room
-from nonholo.orbit import AbstractOrbit
-from nonholo.systems import AbstractCoordinateSystem
+from nonholo.lagrange_dalembert import _equations as equations
+from nonholo.lagrange_dalembert._room import in_double, places, room
+from nonholo.orbit import AbstractOrbit, First
+from nonholo.systems import AbstractCoordinateSystem, Start
 
 Labels = dict[str, tuple[tuple[str, ...], str]]
 """Name: dimensions after `step`, and what the numbers are."""
@@ -280,7 +281,7 @@ class GroupOrbit(AbstractCoordinateOrbit):
 
 
 def _forms_at(system: Any, q: Array) -> Array:
-    return jax.vmap(lambda x: equations_of(system).forms(system, x))(q)
+    return jax.vmap(lambda x: equations.forms(system, x))(q)
 
 
 ORBITS: dict[str, Any] = {orbit.__name__: orbit for orbit in (CoordinateOrbit, GroupOrbit)}
@@ -327,6 +328,7 @@ class CoordinateFlow(CoordinateMotion):
 
     Attributes:
         system: What moves.
+        begins: The first time, where one is set.
 
     Example:
         >>> from nonholo.lagrange_dalembert import CoordinateFlow
@@ -335,8 +337,25 @@ class CoordinateFlow(CoordinateMotion):
     """
 
     system: Any
+    begins: float = dataclasses.field(default=0.0, repr=False, metadata={"stored": False})
     time_step: ClassVar[None] = None
     route_name: ClassVar[None] = None
+    forces: ClassVar[None] = None
+    starts: ClassVar[tuple[str, ...]] = ("body_velocity", "momentum")
+
+    def first(self, start: Start, *, with_poses: bool) -> First:
+        """Return the checked momentum, place and velocity of a start."""
+        del with_poses
+        room("_flow").refuse_table(start.owner, self.system)
+        state = room("_discretization").checked_state(
+            self.system, start.configuration, {start.name: start.value}, self.begins, start.owner, project=start.project
+        )
+        return First((in_double(equations.momentum, self.system, *state), *state))
+
+    def solve(self, first: First, times: Float[np.ndarray, "K"], rtol: float, *, reconstruct: bool) -> Any:
+        """Return the orbit from a checked start, with the default error of its method where `rtol` is 0."""
+        del reconstruct
+        return room("_flow").solve(self.system, first.numbers[1:], times, rtol or None)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

@@ -10,8 +10,8 @@ import numpy as np
 
 from nonholo.base.traced import NodeState, implicit, marked_rows, rows_of, run_nodes, with_policy
 from nonholo.base.types import Array, Float
+from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._newton import orientation, solve
-from nonholo.lagrange_dalembert._room import equations_of
 
 
 class CoordinateRollout(NamedTuple):
@@ -65,7 +65,7 @@ def roll(
     wanted; None where they are differentiated.
     """
     system, (q, value), (steps, every) = family.bound(*numbers), start, sizes
-    equations, n = equations_of(system), family.dimension
+    n = family.dimension
     x, value = jnp.append(q, 0.0) if family.is_driven else jnp.asarray(q), jnp.asarray(value)
     p = equations.momentum(system, x, value) if name == "body_velocity" else value
     still, x_still, value_still = jax.lax.stop_gradient((numbers, x, value))
@@ -96,12 +96,11 @@ def roll(
 
 def _state_at(system: Any, x: Array, p: Array) -> NodeState:
     """Return what a policy sees of a place with a momentum."""
-    return NodeState(x[: system.dimension], equations_of(system).inverse_legendre(system, x, p))
+    return NodeState(x[: system.dimension], equations.inverse_legendre(system, x, p))
 
 
 def _decoded(system: Any, h: Array, x: Array, v: Array, row: Array | None) -> tuple[Array, Array, Array, Array]:
     """Return configuration, velocity, momentum and energy of a node."""
-    equations = equations_of(system)
     p = equations.momenta(system, x, v, h)[0] - (0.0 if row is None else h / 2 * row)
     if not system.is_driven and row is None:
         return x, v, p, equations.discrete_energy(system, x, v, h)
@@ -127,7 +126,6 @@ def _implicit(family: Any, primals: Any, tangents: Any) -> tuple[Any, Any]:
 
     def residual(z: Array, numbers: tuple[Array, ...], h: Array, x: Array, p: Array) -> Array:
         system, v = family.bound(*numbers), z[:n]
-        equations = equations_of(system)
         momentum_gap = equations.momenta(system, x, v, h)[0] - p - z[n:] @ equations.forms(system, x)
         return jnp.concatenate([momentum_gap, equations.discrete_constraints(system, x, v, h)])
 

@@ -34,9 +34,9 @@ def room(name: str) -> Any:
     return importlib.import_module(f"nonholo.lagrange_dalembert.{name}")
 
 
-def equations_of(system: Any) -> Any:
-    """Return the module with the equations of a system; those of coordinates and of groups offer the same functions."""
-    return room(system._equations)
+def places_of(system: Any) -> Any:
+    """Return where a system moves; one of a store, which has no functions, raises the error that says so."""
+    return system.places
 
 
 def configurations(system: Any, places: Any) -> Any:

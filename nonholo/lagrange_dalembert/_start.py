@@ -12,35 +12,41 @@ from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._equations import (
     acceleration_matrix,
     constraint,
+    discrete_constraints,
     forms,
     holonomic,
     holonomic_residual,
     inverse_legendre,
     lagrangian,
+    momenta,
+    momentum,
 )
 from nonholo.lagrange_dalembert._flow import admissible_velocity, nearest_place
 from nonholo.lagrange_dalembert._newton import orientation
-from nonholo.lagrange_dalembert._room import equations_of, in_double, place
-from nonholo.lagrange_dalembert._system import LagrangeDAlembert
+from nonholo.lagrange_dalembert._room import in_double, place
 from nonholo.systems import inadmissible
 
 _TOLERANCE = 1e-9  # relative, for velocities and displacements that a user computed in floating point
-DEGENERATE = 1e-10  # least singular value of scaled matrices, below which they are called singular
+_DEGENERATE = 1e-10  # least singular value of scaled matrices, below which they are called singular
 _CONSISTENT = 1e-7  # relative; looser, since the functions may difference numerically
 _CORRECTIONS = 8  # of a displacement
+_SMALL = 1e-6  # length of the displacement at which l_d is compared with its limit
+_CLOSE = 1e-4  # what the comparison must reach: far above rounding and the error of the limit
+
+
+def _argument(system: Any, name: str) -> str:
+    return f"{type(system).__name__}({name}=...)"
 
 
 def point(
-    owner: str, system: LagrangeDAlembert, configuration: Any, time: float = 0.0, *, project: bool = False
+    owner: str, system: Any, configuration: Any, time: float = 0.0, *, project: bool = False
 ) -> Float[np.ndarray, "x"]:
     """Return the place of an admissible configuration at which the constraint forms are finite and independent.
 
     With `project` it is the admissible one next to the configuration in the kinetic energy.
     """
     where, n = f"{owner}(configuration=...)", system.dimension
-    if configuration is None:
-        raise error(where, "be given for a system in coordinates", "none", f"Pass the {n} coordinates of the start.")
-    q = array(where, configuration, (n,), f"Pass the {n} coordinates.")
+    q = system.places.configuration(where, configuration)
     if project and system.constraints > system.velocity_constraints:
         nearest = in_double(nearest_place, system, place(system, q, time))[:n]
         q = q if np.isnan(nearest).any() else nearest
@@ -54,11 +60,11 @@ def point(
     A = in_double(forms, system, x)
     if system.holonomic is not None:
         _check_holonomic(where, system, x, A)
-    check_rows(f"LagrangeDAlembert({'constraint_forms' if system.holonomic is None else 'holonomic'}=...)", A, q)
+    _check_rows(_argument(system, "constraint_forms" if system.holonomic is None else "holonomic"), A, q)
     return x
 
 
-def _check_holonomic(where: str, system: LagrangeDAlembert, x: np.ndarray, A: Float[np.ndarray, "s n"]) -> None:
+def _check_holonomic(where: str, system: Any, x: np.ndarray, A: Float[np.ndarray, "s n"]) -> None:
     """Refuse a place that holonomic constraints do not allow, with the residual and the nearest one that they do."""
     n, residual = system.dimension, in_double(holonomic_residual, system, x)
     if np.all(np.abs(residual) <= _TOLERANCE * np.linalg.norm(A, axis=1) * (1 + np.linalg.norm(x[:n]))):
@@ -69,45 +75,45 @@ def _check_holonomic(where: str, system: LagrangeDAlembert, x: np.ndarray, A: Fl
     raise error(where, "satisfy the holonomic constraints", got, remedy)
 
 
-def check_rows(what: str, A: Float[np.ndarray, "s n"], at: np.ndarray) -> None:
+def _check_rows(what: str, A: Float[np.ndarray, "s n"], at: np.ndarray) -> None:
     """Refuse constraint forms that are not finite, or not independent, at a configuration."""
     if not np.all(np.isfinite(A)):
         raise error(what, "be finite at the start", f"{A.tolist()}", "Start where the constraint is defined.")
-    if len(A) > A.shape[1] or least_value(A) < DEGENERATE:
+    if len(A) > A.shape[1] or _least_value(A) < _DEGENERATE:
         got = f"rank {np.linalg.matrix_rank(A)} of {len(A)} rows at {at.tolist()}"
         raise error(what, "have independent rows", got, "Drop the constraints that follow from others.")
 
 
-def unit_rows(rows: Float[np.ndarray, "s n"]) -> Float[np.ndarray, "s n"]:
+def _unit_rows(rows: Float[np.ndarray, "s n"]) -> Float[np.ndarray, "s n"]:
     """Return rows of length one; zeros stay."""
     lengths = np.linalg.norm(rows, axis=1, keepdims=True)
     return rows / np.where(lengths == 0, 1, lengths)
 
 
-def least_value(rows: Float[np.ndarray, "s n"]) -> float:
+def _least_value(rows: Float[np.ndarray, "s n"]) -> float:
     """Return the least singular value of rows of length one."""
-    return float(np.linalg.svd(unit_rows(rows), compute_uv=False)[-1]) if len(rows) else 1.0
+    return float(np.linalg.svd(_unit_rows(rows), compute_uv=False)[-1]) if len(rows) else 1.0
 
 
-def consistent(system: LagrangeDAlembert, q: Float[np.ndarray, "n"], h: Any) -> None:
+def consistent(system: Any, q: np.ndarray, h: Any) -> None:
     """Refuse discrete constraints that short steps along the constraint do not satisfy."""
     if system.discrete_constraints is None:
         return
-    where = "LagrangeDAlembert(discrete_constraints=...)"
-    at_rest, slope = in_double(constraint_slope, system, q, np.zeros_like(q), h)
+    where, rest = _argument(system, "discrete_constraints"), system.places.at_rest
+    at_rest, slope = in_double(_constraint_slope, system, q, np.zeros(system.dimension), h)
     if not np.all(np.isfinite(at_rest)) or np.abs(at_rest).max() > _TOLERANCE * (1 + np.abs(slope).max()):
-        raise error(where, "vanish for q_next = q", f"{at_rest.tolist()} at {q.tolist()}", "Subtract its value there.")
+        raise error(where, f"vanish {rest}", f"{at_rest.tolist()} at {q.tolist()}", "Subtract its value there.")
     A = in_double(forms, system, q)
     directions = np.linalg.svd(A)[2][len(A) :]
     span_gap = np.abs(slope @ directions.T)
     if not span_gap.max() <= _CONSISTENT * np.linalg.norm(slope, axis=1).max() or np.linalg.matrix_rank(slope) < len(A):
         got = f"derivatives {slope.tolist()} beside the forms {A.tolist()} at {q.tolist()}"
         remedy = "Discretize the same forms, or change the forms."
-        raise error(where, "have derivatives along q_next that span the constraint forms", got, remedy)
+        raise error(where, "have derivatives along the displacement that span the constraint forms", got, remedy)
 
 
 def velocity(
-    owner: str, system: LagrangeDAlembert, q: Float[np.ndarray, "x"], value: Any, *, project: bool
+    owner: str, system: Any, q: Float[np.ndarray, "x"], value: Any, *, project: bool
 ) -> Float[np.ndarray, "n"]:
     """Return a velocity that satisfies the constraint, at which the Lagrangian is regular.
 
@@ -115,64 +121,68 @@ def velocity(
     """
     where = f"{owner}(body_velocity=...)"
     v = array(where, value, (system.dimension,), f"Pass the {system.dimension} velocities.")
-    regular(system, q, v)
+    _check_regular(system, q, v)
     if project:
         return in_double(admissible_velocity, system, q, v)
-    return admissible(where, in_double(forms, system, q), v, in_double(constraint, system, q, v))
-
-
-def admissible(
-    where: str, A: Float[np.ndarray, "s n"], v: Float[np.ndarray, "n"], residual: Float[np.ndarray, "s"]
-) -> Float[np.ndarray, "n"]:
-    """Return a velocity that misses A v = b by nothing, refused with its residual and the nearest one that does."""
+    A, residual = in_double(forms, system, q), in_double(constraint, system, q, v)
     rounding = np.finfo(float).eps * np.linalg.norm(A, axis=1) * np.linalg.norm(v)  # of forms where their terms vanish
     if np.any(np.abs(residual) > _TOLERANCE * (np.abs(A) @ np.abs(v) + np.abs(A @ v - residual)) + rounding):
         raise inadmissible(where, residual, v - np.linalg.pinv(A) @ residual)
     return v
 
 
-def regular(system: LagrangeDAlembert, q: np.ndarray, v: np.ndarray) -> None:
-    """Refuse a Lagrangian without finite derivatives, or one that does not determine accelerations."""
-    what, at = "LagrangeDAlembert(lagrangian=...)", f"at {q.tolist()}, velocity {v.tolist()}"
+def _check_regular(system: Any, q: np.ndarray, v: np.ndarray) -> None:
+    """Refuse Lagrangians that have no finite derivatives, leave accelerations open or contradict each other."""
+    what, at = _argument(system, system.energy_argument), f"at {q.tolist()}, velocity {v.tolist()}"
     value, gradients = in_double(_value_and_gradients, system, q, v)
     if not all(np.all(np.isfinite(x)) for x in (value, *gradients)):
         got = f"value {value.tolist()}, gradients {[x.tolist() for x in gradients]} {at}"
         raise error(what, "be finite and differentiable", got, "Start elsewhere, or smooth it with jnp.where.")
     least = in_double(_least, system, q, v)
-    if not least > DEGENERATE:
+    if not least > _DEGENERATE:
         got = f"least singular value {float(least):.3g} of the equations {at}"
         raise error(what, "determine the accelerations", got, "Give every admissible direction a kinetic energy.")
+    if system.has_limit and np.any(v):
+        _check_limit(system, q, v)
 
 
-def of_momentum(
-    owner: str, system: LagrangeDAlembert, q: np.ndarray, value: Any
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _check_limit(system: Any, q: np.ndarray, v: np.ndarray) -> None:
+    """Refuse a discrete Lagrangian that is not about h times the Lagrangian in short steps."""
+    h, limit = _SMALL / np.linalg.norm(v), in_double(momentum, system, q, v)
+    p = np.mean(in_double(momenta, system, q, v, h), axis=0)
+    if not np.linalg.norm(p - limit) <= _CLOSE * np.linalg.norm(limit):
+        got = f"momentum {p.tolist()} at the small step {h:.3g}, in the limit {limit.tolist()}"
+        remedy = "Include the factor time_step; pass lagrangian= if it is not a quadratic form."
+        where = _argument(system, "discrete_lagrangian")
+        raise error(where, "tend to time_step times the Lagrangian", got, remedy)
+
+
+def of_momentum(owner: str, system: Any, q: np.ndarray, value: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return a checked momentum, the place and the admissible velocity that has its part along the constraint."""
     n = system.dimension
     where = f"{owner}(momentum=...)"
     p = array(where, value, (n,), f"Pass the {n} momenta; only their action on admissible velocities counts.")
-    regular(system, q, np.zeros(n))
+    _check_regular(system, q, np.zeros(n))
     v = in_double(inverse_legendre, system, q, p)
-    regular(system, q, v)
+    _check_regular(system, q, v)
     return p, q, v
 
 
-def velocity_of_displacement(system: LagrangeDAlembert, q: np.ndarray, value: Any, h: float) -> np.ndarray:
+def velocity_of_displacement(system: Any, q: np.ndarray, value: Any, h: float) -> np.ndarray:
     """Return the velocity d/h of a displacement that satisfies the discrete constraint."""
     where = "simulate(displacement=...)"
-    d = array(where, value, (system.dimension,), "Pass q_1 - q_0.")
-    v = d / h
-    regular(system, q, v)
-    residual, slope = in_double(constraint_slope, system, q, v, h)
+    v = system.places.velocity(where, value, h)
+    _check_regular(system, q, v)
+    residual, slope = in_double(_constraint_slope, system, q, v, h)
     if np.any(np.abs(residual) > _TOLERANCE * (np.abs(slope) @ np.abs(v) + np.abs(slope @ v - residual))):
-        nearest = h * in_double(_admissible, system, q, v, h)
+        nearest = system.places.displacement(in_double(_admissible, system, q, v, h), h)
         got = f"residual {np.array2string(residual, precision=6)}"
         remedy = f"The nearest admissible displacement is {nearest.tolist()}."
         raise error(where, "satisfy the discrete constraint", got, remedy)
     return v
 
 
-def regularity(system: LagrangeDAlembert, q: Any, q_next: Any, time_step: Any) -> float:
+def regularity(system: Any, q: Any, q_next: Any, time_step: Any) -> float:
     """Return the least singular value of the scaled regularity matrix of a step."""
     owner, n = "regularity", system.dimension
     h = scale(f"{owner}(time_step=...)", time_step, "Pass a positive time step.")
@@ -181,24 +191,23 @@ def regularity(system: LagrangeDAlembert, q: Any, q_next: Any, time_step: Any) -
     return float(in_double(orientation, system, place(system, first, 0.0), (second - first) / h, h)[1])
 
 
-def constraint_slope(system: Any, q: Array, v: Array, h: Array) -> tuple[Array, Array]:
+def _constraint_slope(system: Any, q: Array, v: Array, h: Array) -> tuple[Array, Array]:
     """Return the discrete constraints of a step and their derivatives along its velocity."""
-    constraints = equations_of(system).discrete_constraints
-    slope = jax.jacfwd(constraints, argnums=2)(system, q, v, h)
-    return constraints(system, q, v, h), slope
+    slope = jax.jacfwd(discrete_constraints, argnums=2)(system, q, v, h)
+    return discrete_constraints(system, q, v, h), slope
 
 
-def _value_and_gradients(system: LagrangeDAlembert, q: Array, v: Array) -> tuple[Array, tuple[Array, Array]]:
+def _value_and_gradients(system: Any, q: Array, v: Array) -> tuple[Array, tuple[Array, Array]]:
     return jax.value_and_grad(lagrangian, argnums=(1, 2))(system, q, v)
 
 
-def _least(system: LagrangeDAlembert, q: Array, v: Array) -> Array:
+def _least(system: Any, q: Array, v: Array) -> Array:
     return jnp.linalg.svd(acceleration_matrix(system, q, v)[0], compute_uv=False)[-1]
 
 
-def _admissible(system: LagrangeDAlembert, q: Array, v: Array, h: Array) -> Array:
+def _admissible(system: Any, q: Array, v: Array, h: Array) -> Array:
     def correct(_: Array, w: Array) -> Array:
-        residual, slope = constraint_slope(system, q, w, h)
+        residual, slope = _constraint_slope(system, q, w, h)
         return w - jnp.linalg.pinv(slope) @ residual
 
     return jax.lax.fori_loop(0, _CORRECTIONS, correct, v)

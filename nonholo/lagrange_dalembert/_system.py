@@ -26,6 +26,7 @@ from nonholo.lagrange_dalembert._functions import (
     with_parameters,
     with_time_step,
 )
+from nonholo.lagrange_dalembert._places import Coordinates
 from nonholo.lagrange_dalembert._room import room
 from nonholo.systems import AbstractCoordinateSystem, force_of, parts_of
 
@@ -141,10 +142,10 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     name: str = dataclasses.field(default="System in coordinates", kw_only=True)
     orbits: ClassVar[str] = "CoordinateOrbit"
     in_stores: ClassVar[tuple[str, ...]] = ("constraints", "is_driven", "orbits", "shapes")
+    energy_argument: ClassVar[str] = "lagrangian"
+    has_limit: ClassVar[bool] = False
     heading: str | None = dataclasses.field(default=None, kw_only=True, compare=False)
     outline: Any = dataclasses.field(default=(), kw_only=True, compare=False, repr=False, metadata={"stored": False})
-    _equations: ClassVar[str] = "_equations"
-    _start: ClassVar[str] = "_start"
 
     def __post_init__(self) -> None:
         dimension = count(_argument("dimension"), self.dimension, "Pass the number of coordinates.")
@@ -227,14 +228,6 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         """
         return _of_numbers(self, self.parameters.replace("with_parameters(...)", numbers), family=self.family)
 
-    def _with_fields(self, **fields: Any) -> Self:
-        """Return a system with other fields, which need no check; it does not have a name for stores."""
-        system = object.__new__(type(self))
-        vars(system).update(vars(self), **fields)
-        for name in {"description", "family", "plain", "recipe"} - fields.keys():
-            vars(system).pop(name, None)
-        return system
-
     @functools.cached_property
     def family(self) -> Self:
         """The system with zeros as parameters, which stands for all their numbers."""
@@ -255,6 +248,11 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         parts |= {"function": Bound(parts["function"], p)} if "function" in parts else {}
         motions = tuple((index, Bound(motion, p)) for index, motion in self.prescribed)
         return self._with_fields(parameters=Parameters({}), force=force_of(parts), prescribed=motions, **functions)
+
+    @property
+    def places(self) -> Coordinates:
+        """Where it moves."""
+        return Coordinates(self.dimension, self.is_driven)
 
     @functools.cached_property
     def plain(self) -> Self:

@@ -13,11 +13,12 @@ import numpy as np
 
 from nonholo.base.checks import error
 from nonholo.base.types import Array, Float
+from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._discretization import checked_state, set_out
 from nonholo.lagrange_dalembert._flow import acceleration, nearest_place, refuse_table
 from nonholo.lagrange_dalembert._newton import orientation
 from nonholo.lagrange_dalembert._rollout import step_root
-from nonholo.lagrange_dalembert._room import equations_of, in_double, places, room
+from nonholo.lagrange_dalembert._room import in_double, places, room
 
 _CORRECTIONS = 8  # of a velocity beside another one
 LATER = np.array([0.3719, 0.9173])  # times, not in a ratio that a rotation may have
@@ -35,7 +36,7 @@ def begin(motion: Any, owner: str, configuration: Any, velocity: Any) -> tuple[n
     if motion.time_step is None:
         return x, v
     h = np.float64(motion.time_step)
-    p = in_double(equations_of(system).momentum, system, x, v)
+    p = in_double(equations.momentum, system, x, v)
     (_, v, _), _, code = in_double(set_out, system, h, x, v, p)
     return x, np.where(code == 0, v, np.nan)
 
@@ -49,7 +50,11 @@ def following(motion: Any, x: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Return where the frame of a steady motion is at later times, of a map after steps."""
     h = motion.time_step
     times = LATER if h is None else h * np.arange(1.0, 1 + len(LATER))
-    return np.stack([in_double(equations_of(motion.system).frame, motion.system, x, v, t) for t in times])
+    return np.stack([in_double(_frame, motion.system, x, v, t) for t in times])
+
+
+def _frame(system: Any, x: Array, v: Array, time: Array) -> Array:
+    return system.places.frame(x, v, time)
 
 
 def slopes(
@@ -87,7 +92,6 @@ def _step_of(motion: Any) -> tuple[np.float64, ...]:
 
 
 def _constraint(system: Any, x: Array, v: Array, *h: Array) -> Array:
-    equations = equations_of(system)
     return equations.discrete_constraints(system, x, v, *h) if h else equations.constraint(system, x, v)
 
 
@@ -96,7 +100,7 @@ def _beside(system: Any, *arguments: Array) -> tuple[Array, Array]:
 
     def one(offset: tuple[Array, Array]) -> tuple[Array, Array]:
         xi, w = offset
-        place = equations_of(system).beside(system, x, xi)
+        place = system.places.beside(x, xi)
         if system.holonomic is not None:
             place = nearest_place(system, place)
 
@@ -111,21 +115,19 @@ def _beside(system: Any, *arguments: Array) -> tuple[Array, Array]:
 
 def flow_slopes(system: Any, x: Array, v: Array) -> Slopes:
     """Return the rates beside a state of the flow, their derivatives, and those of the constraint."""
-    equations = equations_of(system)
 
     def change(xi: Array, w: Array) -> Array:
-        beside = equations.beside(system, x, xi)
-        return jnp.concatenate([equations.departure_rate(system, v, xi, w), acceleration(system, beside, w)[0]])
+        beside = system.places.beside(x, xi)
+        return jnp.concatenate([system.places.departure_rate(v, xi, w), acceleration(system, beside, w)[0]])
 
     return _slopes_of(system, change, x, v)
 
 
 def _step_slopes(system: Any, h: Array, x: Array, v: Array) -> Slopes:
-    equations = equations_of(system)
 
     def change(xi: Array, w: Array) -> Array:
-        after, w_after = _after_step(system, h, equations.beside(system, x, xi), w)
-        xi_after = equations.departure(system, equations.frame(system, x, v, h), after)
+        after, w_after = _after_step(system, h, system.places.beside(x, xi), w)
+        xi_after = system.places.departure(system.places.frame(x, v, h), after)
         return jnp.concatenate([xi_after - xi, w_after - w])
 
     return _slopes_of(system, change, x, v, h)
@@ -142,11 +144,11 @@ def _each(system: Any, *arguments: Array) -> Slopes:
 
 
 def _slopes_of(system: Any, change: Callable[[Array, Array], Array], x: Array, v: Array, *h: Array) -> Slopes:
-    equations, size = equations_of(system), len(v) + system.is_driven
+    size = len(v) + system.is_driven
 
     def both(z: Array) -> tuple[tuple[Array, Array], Array]:
         xi, w = z[:size], z[size:]
-        value, place = change(xi, w), equations.beside(system, x, xi)
+        value, place = change(xi, w), system.places.beside(x, xi)
         return (value, jnp.concatenate([_constraint(system, place, w, *h), equations.holonomic(system, place)])), value
 
     (slope, rows), value = jax.jacfwd(both, has_aux=True)(jnp.append(jnp.zeros(size), v))
@@ -155,7 +157,6 @@ def _slopes_of(system: Any, change: Callable[[Array, Array], Array], x: Array, v
 
 def _after_step(system: Any, h: Array, x: Array, v: Array) -> tuple[Array, Array]:
     """Return the state after a step, with the derivatives of the implicit function."""
-    equations = equations_of(system)
     _, p = equations.momenta(system, x, v, h)
     after = equations.ahead(system, x, v, h)
     place, near = jax.lax.stop_gradient((x, v))

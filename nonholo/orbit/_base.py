@@ -121,7 +121,7 @@ class AbstractOrbit(Keeper, abc.ABC):
                 if rows is not None and not is_moderate(rows, most):
                     object.__setattr__(self, "outcome", Outcome.nonfinite)
         if self.step is None or len(self.step) != len(self.time):
-            object.__setattr__(self, "step", self.save_every * np.arange(len(self.time)))
+            object.__setattr__(self, "step", np.arange(0, self.save_every * len(self.time), self.save_every))
 
     @property
     @abc.abstractmethod

@@ -77,14 +77,14 @@ def unwrap(pose: Float[np.ndarray, "K 4"], before: float | None = None) -> Float
     return angle - _TURN * np.cumsum(turns)
 
 
-def turned_near(headings: Float[np.ndarray, "K"], pose: Float[np.ndarray, "K 4"]) -> Float[np.ndarray, "K"]:
+def turned_near(headings: Float[np.ndarray, "... K"], pose: Float[np.ndarray, "... K 4"]) -> Float[np.ndarray, "... K"]:
     """Return the headings at compact poses on SE(2) that are less than half a turn from given ones.
 
     Example:
         >>> turned_near(np.array([6.3]), np.array([[1.0, 0.0, 0.0, 0.0]])).round(2)
         array([6.28])
     """
-    angle = np.arctan2(pose[:, 1], pose[:, 0])
+    angle = np.arctan2(pose[..., 1], pose[..., 0])
     return angle + _TURN * np.rint((headings - angle) / _TURN)
 
 

@@ -15,6 +15,7 @@ from nonholo.orbit import First, Orbit
 from nonholo.simulation._contact import flow_through_impacts
 from nonholo.simulation._crossings import check_resets, flow_in_coordinates, flow_with_events, refuse_resets
 from nonholo.simulation._event import Event, checked_events, has_resets
+from nonholo.simulation._options import FEW
 from nonholo.simulation._search import values_of
 from nonholo.systems import AbstractCoordinateSystem, OrbitT, Start, System, as_system, refuse_in_coordinates
 
@@ -170,9 +171,9 @@ class _Task(NamedTuple):
 
 def _first_state(task: _Task, start: Start, with_poses: bool) -> FirstState:
     """Return the checked momentum at the first time and the pose, where one is solved for."""
-    numbers = task.system.rank + with_poses * task.system.group.pose_size
-    remedy = "Ask for fewer times, or for momenta alone: reconstruct=False without a method."
-    within_memory("flow(times=...)", 32.0 * len(task.time) * numbers, remedy)
+    if (numbers := len(task.time) * (task.system.rank + with_poses * task.system.group.pose_size)) > FEW:
+        remedy = "Ask for fewer times, or for momenta alone: reconstruct=False without a method."
+        within_memory("flow(times=...)", 32.0 * numbers, remedy)
     first = ContinuousFlow(task.system).first(start, with_poses=with_poses)
     reduced, pose = first.numbers[0], first.numbers[1] if with_poses else None
     if first.demand is not None:

@@ -4,7 +4,7 @@ import abc
 import importlib
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, NoReturn
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, NoReturn, Self
 
 from nonholo.base.checks import error
 from nonholo.base.memo import Keeper
@@ -76,6 +76,19 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
         """The one system that stands for all numbers of the parameters."""
         return self
 
+    def _with_fields(self, **fields: Any) -> Self:
+        """Return a system with other fields, which need no check; it does not have a name for stores."""
+        system = object.__new__(type(self))
+        vars(system).update(vars(self), **fields)
+        for name in {"description", "family", "plain", "recipe"} - fields.keys():
+            vars(system).pop(name, None)
+        return system
+
+    @property
+    def plain(self) -> Any:
+        """The same system without parameters."""
+        return self
+
     def bound(self, *numbers: Any) -> Any:
         """Return the system whose functions have numbers of its parameters within."""
         del numbers
@@ -101,6 +114,10 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
     def vector_field(self) -> Any:
         """Return the equations of motion, see `nonholo.vector_field`."""
         return importlib.import_module("nonholo.lagrange_dalembert").vector_field(self)
+
+    def flow_from(self, begins: float) -> Any:
+        """Return the continuous motion from a time on."""
+        return importlib.import_module("nonholo.lagrange_dalembert").CoordinateFlow(self, begins)
 
     @abc.abstractmethod
     def discrete_map(self, time_step: Any) -> DiscretizationT:

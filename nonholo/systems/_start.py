@@ -152,10 +152,10 @@ def _of_coordinates(start: Start, system: System, g: np.ndarray | None) -> np.nd
     return of_finite_energy(start.owner, system, g, along, (along, rows))
 
 
-def _check_admissible(where: str, system: System, g: np.ndarray | None, velocity: np.ndarray) -> None:
-    pose = system.group.identity if g is None else g
-    frame_velocity = system.carried(pose) @ velocity if system.is_spatial else velocity
+def _check_admissible(where: str, system: System, g: Any, velocity: np.ndarray) -> None:
+    frame_velocity = system.carried(g) @ velocity if system.is_spatial else velocity
     forbidden = system.annihilator @ frame_velocity
     if np.count_nonzero(forbidden) and np.abs(forbidden).max() > _TOLERANCE * np.abs(frame_velocity).max():
         nearest = frame_velocity - np.linalg.pinv(system.annihilator) @ forbidden
-        raise inadmissible(where, forbidden, system.carried(system.group.inverse(pose)) @ nearest)
+        back = system.carried(system.group.inverse(g)) if system.is_spatial else np.eye(len(frame_velocity))
+        raise inadmissible(where, forbidden, back @ nearest)

@@ -23,6 +23,7 @@ ROLLING = {
     "snakeboard": [3, 4, 6, 7],
     "tilting_disk": [1],
     "trailers": [2, 3, 7, 8, 12, 13, 17, 18],
+    "twistcar": [2, 3, 6, 7],
     "two_wheeled_robot": [1, 2],
 }
 """Which parts of the outline of an example are on the ground: blades, and wheels that roll along their first edge."""

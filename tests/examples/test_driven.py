@@ -75,6 +75,63 @@ def test_the_roller_racer_moves_as_derived_by_hand() -> None:
     assert np.abs(found.configuration[:, :3] - by_hand[1:].T).max() <= 1e-10
 
 
+def _twistcar_by_hand(time: float, z: np.ndarray) -> np.ndarray:
+    """Newton's and Euler's equations of both bodies of the Twistcar, with forces of wheels and pivot as unknowns."""
+    (m, J, c), (mh, Jh, d), ell, k, A, Om = (1.0, 0.1, 0.3), (0.2, 0.01, 0.1), 1.0, 0.2, 0.5, 2.0
+    rate, w, phi = z[3:5], z[5], A * np.sin(Om * time)
+    turning, ddphi, theta = w + A * Om * np.cos(Om * time), -A * Om**2 * np.sin(Om * time), z[2]
+
+    def arm(length: float, angle: float, rate: float) -> np.ndarray:
+        """Return a vector, its derivative by the angle, and its centripetal acceleration."""
+        e = np.array([np.cos(angle), np.sin(angle)])
+        return length * np.array([e, [-e[1], e[0]], -(rate**2) * e])
+
+    n, m_h = arm(1.0, theta, w)[1], arm(1.0, theta + phi, turning)[1]
+    (rc, nc, ac), (rl, nl, al) = arm(c, theta, w), arm(ell, theta, w)
+    (rd, nd, ad), (rk, nk, ak) = arm(d, theta + phi, turning), arm(k, theta + phi, turning)
+    pivot = rate + w * nl  # velocities
+    rows, right = np.zeros((8, 8)), np.zeros(8)  # x'', y'', theta'', rear force, pivot force, torque, front force
+    rows[:2, :2], rows[:2, 2], rows[:2, 3], rows[:2, 4:6], right[:2] = m * np.eye(2), m * nc, -n, -np.eye(2), -m * ac
+    lever = rl - rc
+    rows[2, 2:7] = [J, rc[0] * n[1] - rc[1] * n[0], lever[1], -lever[0], 1.0]
+    rows[3:5, :2], rows[3:5, 2], rows[3:5, 4:6], rows[3:5, 7] = mh * np.eye(2), mh * (nl + nd), np.eye(2), -m_h
+    right[3:5] = -mh * (al + ad + ddphi * nd)
+    lever = rk - rd
+    rows[5, 2], rows[5, 4:] = Jh, [rd[1], -rd[0], -1.0, -(lever[0] * m_h[1] - lever[1] * m_h[0])]
+    right[5] = -Jh * ddphi
+    rows[6, :2], right[6] = n, w * np.array([n[1], -n[0]]) @ rate
+    rows[7, :2], rows[7, 2] = m_h, m_h @ (nl + nk)
+    ahead = np.array([m_h[1], -m_h[0]])
+    right[7] = -m_h @ (al + ak + ddphi * nk) + turning * ahead @ (pivot + turning * nk)
+    return np.concatenate([z[3:], np.linalg.solve(rows, right)[:3]])
+
+
+@pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")
+def test_the_twistcar_moves_as_derived_by_hand() -> None:
+    """Path and heading of the flow are those of two bodies by Newton and Euler, to 1e-10."""
+    ready = nh.examples.twistcar()
+    by_hand = _solved(_twistcar_by_hand, [*ready.configuration[:3], *ready.body_velocity[:3]])
+    found = nh.flow(ready.system, **_start(ready), times=TIMES, rtol=1e-13, atol=1e-14)
+    assert np.abs(found.configuration[:, :3] - by_hand[:3].T).max() <= 1e-10
+
+
+@pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")
+@pytest.mark.parametrize(("handle_inertia", "sign"), [(0.01, -1.0), (0.1, 1.0)])
+def test_the_twistcar_goes_where_masses_send_it(handle_inertia: float, sign: float) -> None:
+    """In the mean of periods it gains speed as the docstring says, up to the fourth power of the amplitude."""
+    ready = nh.examples.twistcar(amplitude=0.01, handle_inertia=handle_inertia)
+    m, J, mh, Jh, c, d, ell, k = 1.0, 0.1, 0.2, handle_inertia, 0.3, 0.1, 1.0, 0.2
+    kappa = k / (ell + k)
+    push = (1 - kappa) * mh * d - kappa * (m * c + mh * ell)
+    turn = (1 - kappa) * Jh - kappa * (J + m * c**2) + mh * (ell + d) * ((1 - kappa) * d - kappa * ell)
+    gain = 0.01**2 * 4.0 / 2 * (turn / (ell + k) - kappa * push) / (m + mh)
+    assert gain * sign > 0
+    orbit = ready.flow(times=np.pi * np.arange(11))  # whole periods
+    speed = orbit.body_velocity[:, 0] * np.cos(orbit.configuration[:, 2])
+    speed += orbit.body_velocity[:, 1] * np.sin(orbit.configuration[:, 2])
+    np.testing.assert_allclose(np.diff(speed) / np.pi, gain, 1e-3)
+
+
 def _robot_by_hand(time: float, z: np.ndarray) -> list[float]:
     """Speed and turning rate of the two-wheeled robot with its default parameters, torques and friction; the pose."""
     m, J, ell, c, R, Jw, d = 1.0, 0.5, 0.3, 0.5, 0.25, 0.01, 0.02

@@ -12,6 +12,7 @@ from nonholo.lagrange_dalembert import CoordinateOrbit
 BY_HAND = {
     "driven_sleigh",
     "roller_racer",
+    "twistcar",
     "chaplygin_ball",
     "heavy_suslov_top",
     "sleigh_in_a_well",  # test_driven.py

@@ -9,7 +9,7 @@ import nonholo as nh
 from nonholo.examples import Example
 
 NAMES = sorted(set(nh.examples.__all__) - {"Example"})
-DRIVEN = {"driven_sleigh": 0, "roller_racer": 0, "ball_on_turntable": 2}
+DRIVEN = {"driven_sleigh": 0, "roller_racer": 0, "twistcar": 0, "ball_on_turntable": 2}
 """Their velocities are not to be scaled: some are prescribed. They are moved along a coordinate without influence."""
 BODIES = {"heavy_suslov_top", "sleigh_in_a_well"}  # on groups, under potentials
 STEPS, MEMBERS = 30, 1000

@@ -13,7 +13,7 @@ from nonholo.lagrange_dalembert import CoordinateOrbit
 FORCED = {"heavy_suslov_top", "sleigh_in_a_well"}  # bodies, whose orbits are those of nh.Orbit: test_driven.py
 NAMES = sorted(set(nh.examples.__all__) - {"Example"} - FORCED)
 COORDINATES = [name for name in NAMES if name != "chaplygin_ball"]
-DRIVEN = {"driven_sleigh", "roller_racer", "ball_on_turntable"}
+DRIVEN = {"driven_sleigh", "roller_racer", "twistcar", "ball_on_turntable"}
 HERE = pytest.mark.profile("routes", keep=["particle"])
 PATHS = {
     "particle": ("Path", 3),

@@ -241,6 +241,7 @@ def _examples() -> list[Call]:
         call("examples.sleigh_in_a_well", made.sleigh_in_a_well, **common, stiffness=number(0.3), slow=True),
         call("examples.driven_sleigh", made.driven_sleigh, **driven, slow=True),
         call("examples.roller_racer", made.roller_racer, **racer, slow=True),
+        call("examples.twistcar", made.twistcar, **racer, handle_mass=positive(0.2), slow=True),
         call("examples.chaotic_quartic_oscillator", made.chaotic_quartic_oscillator, pairs=count(3), slow=True),
         call("examples.kinematic_car", made.kinematic_car, **common, **car, slow=True),
         call("examples.knife_edge_on_incline", made.knife_edge_on_incline, **common, configuration=place, slow=True),

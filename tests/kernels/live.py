@@ -20,6 +20,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from bodies import GENERAL, mass_tensor, random_rows
 
 import nonholo as nh
+from nonholo.kernels.forced import _balanced
 
 Arrays: TypeAlias = list[np.ndarray]
 
@@ -27,8 +28,8 @@ SIZE, STEP = 2.0, 0.5  # of velocities and of the time step: motions that turn f
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5)
 SLOPE = nh.Gravity([1.0, -0.5], [0.5, 0.25])
-MEMBERS, STEPS, SHARES, WIDE = (
-    (40, 2, (1.0,), 0.2) if sys.argv[1:2] == ["calls"] else (4000, 100, (0.1, 0.5, 1.0), SIZE)
+MEMBERS, STEPS, SHARES, WIDE, LONG = (
+    (40, 2, (1.0,), 0.2, (0.8,)) if sys.argv[1:2] == ["calls"] else (4000, 100, (0.1, 0.5, 1.0), SIZE, (0.8, 3.0))
 )
 
 
@@ -71,19 +72,13 @@ def balanced(system: Any) -> Arrays:
     """Run single orbits under springs, by kicks, and in steps so long that roots are followed, some to their end."""
     n = system.group.size - system.group.is_affine
     heavy, spring = nh.Gravity(np.ones(n), np.ones(n)), nh.Spring(np.ones(n), np.zeros(n), 2.0, 0.3)
+    cases = (spring, None, 0.1), (heavy, "variational", 0.05), *itertools.product((heavy, spring), (None,), LONG)
     runs = []
-    for potential, scheme, step in (
-        (spring, None, 0.1),
-        (heavy, "variational", 0.05),
-        (heavy, None, 0.8),
-        (heavy, None, 3.0),
-        (spring, None, 0.8),
-        (spring, None, 3.0),
-    ):
+    for potential, scheme, step in cases:
         discrete = nh.discretize(nh.Forced(system, potential, scheme=scheme), step)
         for size in (0.3, 1.5):
             start = {"restricted_velocity": size * np.linspace(1.0, -0.7, system.rank)}
-            orbit = nh.simulate(discrete, **start, steps=80, throw=False)
+            orbit = nh.simulate(discrete, **start, steps=STEPS, throw=False)
             runs += [orbit.restricted_momentum, orbit.cayley, orbit.canonical_pose]
     return runs
 
@@ -173,7 +168,7 @@ def in_coordinates() -> Arrays:
     found = []
     for ready in (nh.examples.snakeboard(), nh.examples.driven_sleigh()):
         how = {"configuration": ready.configuration, "body_velocity": ready.body_velocity}
-        orbit = nh.discretize(ready.system, 0.1).simulate(**how, steps=MEMBERS, throw=False)
+        orbit = nh.simulate(nh.discretize(ready.system, 0.1), **how, steps=MEMBERS, throw=False)
         found += [orbit.configuration, orbit.momentum, orbit.multipliers, orbit.energy]
     return found
 
@@ -258,6 +253,7 @@ def digest(arrays: Arrays) -> str:
 def called() -> list[str]:
     """Run everything as plain Python and return the places of the functions that were called."""
     places = set()
+    _balanced._PIECES, _balanced._SMALLEST = 40, 1e-3  # paths that are lost are given up sooner, by the same functions
 
     def note(frame: Any, event: str, _: Any) -> None:
         if event == "call" and "nonholo" in frame.f_code.co_filename:

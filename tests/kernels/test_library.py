@@ -1,8 +1,10 @@
 """The library of kernels that are compiled ahead: what it has, what it leaves to numba, and when it is not used."""
 
+import gzip
 import importlib
 import json
 import os
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -11,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from bodies import GENERAL
+from scripts import script
 
 import nonholo as nh
 from nonholo.base import compiled
@@ -69,6 +72,18 @@ def test_three_ways_have_the_same_bits() -> None:
     assert by_numba[:2] == ["numba", True]
     assert by_python[:2] == ["python", False]
     assert by_library[2] == by_numba[2] == by_python[2]
+
+
+def test_calls_are_replayed_elsewhere(tmp_path: Path) -> None:
+    """Calls that the library answered have the same digests in another process, by another way, flows among them."""
+    replay = script("tests/kernels/replay.py")
+    calls = replay.recorded(len(replay.KINDS))
+    (tmp_path / "calls.gz").write_bytes(gzip.compress(pickle.dumps(calls)))
+    command = [sys.executable, replay.__file__, "bits", "calls.gz"]
+    environment = {**os.environ, "NONHOLO_KERNELS": "python", "PYTHONPATH": str(Path(nh.__file__).parents[1])}
+    elsewhere = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=True)  # noqa: S603
+    assert json.loads(elsewhere.stdout) == ["python", *map(replay.digest, calls)]
+    assert any("taylor" in digest for digest in json.loads(elsewhere.stdout))
 
 
 @pytest.mark.parametrize("way", ["nmba", "", "Library"])

@@ -66,7 +66,6 @@ RULES: tuple[Rule, ...] = (
         "includes its time step",
     ),
     Rule("multipliers|checks", "on a group", "No checks for systems on groups by functions.", "Got", is_broken=True),
-    Rule("flow ensemble", "coordinates", "Members in coordinates are maps.", "be left out", is_broken=True),
     Rule("scenario file", "function", "A file holds numbers, not the functions of a user.", "cannot be run"),
     Rule(
         "ensemble of parameters|gradient",

@@ -16,6 +16,7 @@ PLANAR = {
     "roller_racer": "theta",
     "rolling_disk": "phi",
     "snakeboard": "theta",
+    "twistcar": "theta",
     "two_wheeled_robot": "theta",
 }
 CART = [[(-0.1, -0.2), (0.3, 0.0), (-0.1, 0.2)], [(0.0, 0.2), (0.1, 0.2)]]

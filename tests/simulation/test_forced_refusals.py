@@ -21,8 +21,9 @@ _PUSHED = nh.discretize(nh.Forced(TOP, force=np.ones((5, 3))), 0.1)
 _PAIR = nh.Forced(TOP, force=lambda *state: state[2][:2])
 _REFUSED: dict[str, Callable[[], Any]] = {
     "step": lambda: nh.step(_MAP, [0.1, 0.2]),
-    "branches": lambda: nh.branches(_MAP, momentum=[0.1, 0.2]),
-    "displacements_over": lambda: nh.displacements_over(_MAP, [0.1, 0.2]),
+    "certified branches": lambda: nh.branches(_MAP, momentum=[0.1, 0.2], certify=True),
+    "inverse_discrete_legendre": lambda: nh.inverse_discrete_legendre(_MAP, np.zeros(3)),
+    "fold_distance": lambda: nh.fold_distance(_MAP, np.eye(3)),
     "discrete_legendre": lambda: nh.discrete_legendre(_MAP, np.eye(3)),
     "momentum_locus": lambda: nh.momentum_locus(_MAP),
     "invariant_curve": lambda: nh.invariant_curve(_MAP, 0.1),

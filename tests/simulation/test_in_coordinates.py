@@ -154,6 +154,58 @@ def test_members_are_runs_alone_however_they_end() -> None:
         batch.orbit(4)
 
 
+BALL = nh.examples.chaplygin_ball()
+KINKED = LagrangeDAlembert(lambda q, v: v @ v / 2 - jnp.sum(jnp.abs(q)), None, dimension=1)
+SPRING = LagrangeDAlembert(
+    lambda q, v, p: (p["mass"] * v @ v - q @ q) / 2,
+    None,
+    dimension=1,
+    force=lambda time, q, v, p: jnp.sin(p["rate"] * time) - 0 * v,  # noqa: ARG005
+    parameters={"mass": 1.0, "rate": 2.0},
+)
+FLOWS = {
+    "on a group": (BALL.system, {"body_velocity": BALL.body_velocity * np.array([[1.0], [-2.0]])}, {}),
+    "driven": (SPRING, {"configuration": [0.5], "momentum": [[1.0], [2.0]]}, {"mass": [1.0, 3.0]}),
+    "by diffrax": (KINKED, {"configuration": [[0.5], [1.0]], "body_velocity": [0.2]}, {}),
+}
+
+
+@pytest.mark.parametrize("name", FLOWS)
+@pytest.mark.parametrize("rtol", [None, 1e-9])
+def test_members_of_flows_are_flows_alone(name: str, rtol: float | None) -> None:
+    """Bit for bit, by series or not, from the first time of a driven system back in time, with parameters."""
+    system, start, parameters = FLOWS[name]
+    times = [0.5, 0.2, -0.3] if name == "driven" else [0.0, 0.4, 1.0]
+    batch = nh.ensemble(system, times=times, rtol=rtol, **start, parameters=parameters)
+    energies = nh.ensemble(system, times=times, rtol=rtol, **start, parameters=parameters, reduce=lambda x: x.energy)
+    for member in range(2):
+        own = {what: np.asarray(value)[member] for what, value in parameters.items()}
+        alone = system.with_parameters(**own) if own else system
+        first = {what: np.asarray(x)[member if np.ndim(x) == 2 else ...] for what, x in start.items()}
+        orbit = nh.flow(alone, times=times, rtol=rtol, **first)
+        for what in ("time", "configuration", "body_velocity", "momentum", "multipliers", "energy"):
+            assert np.array_equal(getattr(batch, what)[member], getattr(orbit, what)), what
+        assert np.array_equal(energies[member], orbit.energy)
+        assert np.array_equal(batch.orbit(member).configuration, orbit.configuration)
+    assert batch.to_dataset().configuration.shape[:2] == (2, 3)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"reconstruct": False}, r"ensemble\(reconstruct=...\)` must keep its default"),
+        ({"steps": 3}, r"ensemble\(steps=...\)` must be left out for a flow"),
+        ({"parameters": {"time_step": [0.1]}}, "must name fields of the system"),
+        ({"rtol": -1.0}, "rtol"),
+        ({"configuration": [[1.0], [np.nan]]}, "finite"),
+    ],
+)
+def test_flows_of_members_that_cannot_be_solved_are_refused(given: dict, words: str) -> None:
+    """Each refusal says what is wrong before any work."""
+    with pytest.raises(ValueError, match=words):
+        nh.ensemble(SPRING, **{"times": [0.0, 1.0], "configuration": [[1.0]], "body_velocity": [0.0]} | given)
+
+
 @PROFILE
 def test_members_have_the_crossings_of_their_runs() -> None:
     """How many, the first and the last, and who is stopped; with time steps of their own."""

@@ -62,10 +62,11 @@ def geometric_phase(
        \dot g = g\,(-A(s)\,\dot s + \Gamma(s)\,p) \quad\text{(configuration)}, \qquad
        g_{\mathrm{area}} = \exp\Bigl(-\int_\Sigma F\Bigr), $$
 
-    with the momentum equation of `LocalConnection.momentum_rate`, which has no forces. The surface $\Sigma$ is the cone over the gait from
-    its mean shape: in a plane, the inside with its sense of rotation, counted as often as the gait runs around it. The
-    area rule is right to second order in the size of the gait: its error is of third order. Equations are solved by
-    polynomials of degree 20 on pieces of the period, which are halved until the result agrees to 1e-12.
+    with the momentum equation of `LocalConnection.momentum_rate`, which has no forces. The surface $\Sigma$ is the cone
+    over the gait from its mean shape: in a plane, the inside with its sense of rotation, counted as often as the gait
+    runs around it. The area rule is right to second order in the size of the gait: its error is of third order.
+    Equations are solved by polynomials of degree 20 on pieces of the period, which are halved until the result agrees
+    to 1e-12.
 
     Reference: [kelly-murray-1995], [bloch-krishnaprasad-marsden-murray-1996]; the area rule with the bracket in it is
     that of [hatton-choset-2011].

@@ -10,13 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.checks import array, error, flags, needs, shape_of
+from nonholo.base.checks import array, error, flags, natural, needs, shape_of
 from nonholo.base.types import Array, Float
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._scheme import legendre
 from nonholo.discrete.branching._equations import Frame, frame_of
+from nonholo.discrete.branching._forces import Node, node_of
 from nonholo.discrete.branching._roots import Root, place
-from nonholo.discrete.branching._values import SAME, Branches, Roots, branches_of, point_over, values_over
+from nonholo.discrete.branching._values import SAME, Branches, Roots, branches_of, point_over, values_at, values_over
 from nonholo.groups import AbstractMatrixGroup
 
 
@@ -46,7 +47,14 @@ def _enclosures(owner: str) -> Callable[..., Any]:
 _ROUNDING = 1e-13
 
 
-def displacements_over(discrete: Discretization, restricted_momentum: Any, certify: bool = False) -> Branches:
+def displacements_over(
+    discrete: Discretization,
+    restricted_momentum: Any,
+    certify: bool = False,
+    *,
+    configuration: Any = None,
+    step: int = 0,
+) -> Branches:
     r"""Find every displacement whose discrete momentum has given components along the constraint subspace.
 
     Solves, on the displacement variety $S$, for real and complex matrices,
@@ -57,6 +65,10 @@ def displacements_over(discrete: Discretization, restricted_momentum: Any, certi
     counted with multiplicity. Fewer if some are at infinity (a balanced body: 2) or not isolated. Matrices of angle
     $\pi$ that satisfy $(W - W^{-1})/2 \in \mathfrak{d}$ without lying on the variety are no solutions.
 
+    Under forces of the scheme "energy" it solves $\langle P(W) - \tfrac h2f(g, W), e_i\rangle = r_i$, for weights and
+    other `Linear` potentials, `Friction` and tables on tops with n = 3 and sleighs with n = 2, 3, of a table alone for
+    every n. Under a weight a top has 7 solutions, sleighs have 4 and 8, and T + U after the step is the same for all.
+
     Reference: [fedorov-zenkov-2004], section 3, item 3; docs/theory/branches.md.
 
     Args:
@@ -66,11 +78,13 @@ def displacements_over(discrete: Discretization, restricted_momentum: Any, certi
         certify: Also prove that these are all of them, with exact multiplicities and enclosures; needs the extra
             `certify` (python-flint). The statement is about the polynomial equations with the doubles of the canonical
             body (`system.canonical`), of the time step and of the canonical r as exact numbers. Where it is not
-            decided, `certified` is False and `uncertified` says why.
+            decided, `certified` is False and `uncertified` says why. Of free motions only.
+        configuration: g at the beginning of the step, by default the identity; only forces depend on it.
+        step: Number of the step, whose row of a table of forces acts.
 
     Raises:
-        ValueError: Another system or difference, a wrong shape, a value that is not finite, `certify=True` without
-            python-flint.
+        ValueError: Another system, difference or force, a wrong shape, a value that is not finite, `certify=True`
+            without python-flint or under forces.
 
     Example:
         A top has four values, here two of them complex:
@@ -84,8 +98,16 @@ def displacements_over(discrete: Discretization, restricted_momentum: Any, certi
         >>> certified = displacements_over(top, [0.1, -0.05], certify=True)
         >>> certified.is_real, bool(certified.radius.max() < 1e-14)
         (array([ True,  True, False, False]), True)
+
+        The same top under a weight:
+
+        >>> heavy = nh.Forced(top.system, nh.Gravity([0.2, 0.1, -1.0], [0.1, 0.2, 0.3]))
+        >>> displacements_over(nh.discretize(heavy, 0.5), [0.1, -0.05])
+        <Branches: 7 values, 3 real, number 0 is principal, energy 0.00308891>
     """
     where = "displacements_over"
+    if (node := _node(where, discrete, certify, configuration, step)) is not None:
+        return values_at(node, _restricted(f"{where}(restricted_momentum=...)", node.free, restricted_momentum))
     frame = _frame_for(where, discrete)
     flags(where, certify=certify)
     r = _restricted(f"{where}(restricted_momentum=...)", discrete, restricted_momentum)
@@ -93,20 +115,30 @@ def displacements_over(discrete: Discretization, restricted_momentum: Any, certi
 
 
 def branches(
-    discrete: Discretization, *, momentum: Any = None, displacement: Any = None, certify: bool = False
+    discrete: Discretization,
+    *,
+    momentum: Any = None,
+    displacement: Any = None,
+    certify: bool = False,
+    configuration: Any = None,
+    step: int = 0,
 ) -> Branches:
     r"""Find every value of the discrete map: all $W'$ that may follow a displacement $W$.
 
     $$ P(W')|_{\mathfrak{d}} = (\mathrm{Ad}^*_W P(W))|_{\mathfrak{d}}, \qquad W' \in S. $$
+
+    Under forces, as in `displacements_over`, half the impulses of both steps act between W and W'.
 
     Reference: [fedorov-zenkov-2004], equation (disc.momentum.eqn); docs/theory/branches.md.
 
     Args:
         discrete: As in `displacements_over`.
         momentum: A full momentum on the locus, whose W is `inverse_discrete_legendre`, or components along the
-            constraint subspace, whose W is the principal displacement.
+            constraint subspace, whose W is the principal displacement; under forces these.
         displacement: W itself, real and on the displacement variety.
         certify: As in `displacements_over`, for the restricted momentum that arrives with W, as it is computed here.
+        configuration: g before W, as in `displacements_over`.
+        step: Number of the step of W.
 
     Raises:
         ValueError: As `displacements_over` and `inverse_discrete_legendre`; none or both of momentum and displacement;
@@ -119,18 +151,23 @@ def branches(
         >>> bool(np.allclose(values.momentum[values.principal], after.momentum))
         True
     """
-    frame = _frame_for("branches", discrete)
+    node = _node("branches", discrete, certify, configuration, step)
+    frame = _frame_for("branches", discrete) if node is None else node.frame
     flags("branches", certify=certify)
     if (momentum is None) == (displacement is None):
         got = "none" if momentum is None else "both"
         raise error("branches(...)", "be given momentum or displacement", got, "Choose one.")
-    group = discrete.system.group
+    group, where = discrete.system.group, "branches(displacement=...)"
     if displacement is not None:
-        where = "branches(displacement=...)"
         X = array(where, displacement, group.identity.shape, f"Pass an element of {group}.") - group.identity
-        point_over(where, discrete, frame, X + group.identity)
+        point_over(where, discrete if node is None else node.free, frame, X + group.identity)
+    elif node is not None:
+        where = "branches(momentum=...)"
+        X = _increment(where, discrete, values_at(node, _restricted(where, discrete, momentum)))
     else:
         X = _before("branches(momentum=...)", discrete, frame, momentum)
+    if node is not None:
+        return values_at(*node.following(X))
     r = discrete.system.restrict(legendre(discrete, X, "right"))
     return certified_over("branches", discrete, frame, r) if certify else values_over(discrete, frame, r)
 
@@ -188,6 +225,17 @@ def fold_distance(discrete: Discretization, displacement: Any) -> float:
     return float(frame.equations(np.zeros(len(discrete.system.constraint_subspace))).regularity(x))
 
 
+def _node(owner: str, discrete: Any, certify: bool, configuration: Any, step: Any) -> Node | None:
+    """Return where a step under forces begins; None of a free motion."""
+    discrete = as_discretization(f"{owner}(discrete=...)", discrete, forced=True)
+    number = natural(f"{owner}(step=...)", step, "Pass the number of a step.")
+    if discrete.forces is None:
+        return None
+    if certify:
+        raise error(f"{owner}(certify=...)", "be asked of a free motion", "forces", "Leave it out.")
+    return node_of(owner, discrete, configuration, number)
+
+
 def _frame_for(owner: str, discrete: Discretization) -> Frame:
     return frame_of(f"{owner}(discrete=...)", as_discretization(f"{owner}(discrete=...)", discrete))
 
@@ -201,7 +249,11 @@ def _before(where: str, discrete: Discretization, frame: Frame, momentum: Any) -
     """Return the displacement minus the identity that a full or restricted momentum belongs to."""
     if shape_of(momentum) != (len(discrete.system.constraint_subspace),):
         return _inverse(where, discrete, frame, momentum)
-    values = values_over(discrete, frame, _restricted(where, discrete, momentum))
+    return _increment(where, discrete, values_over(discrete, frame, _restricted(where, discrete, momentum)))
+
+
+def _increment(where: str, discrete: Discretization, values: Branches) -> Float[np.ndarray, "N N"]:
+    """Return the principal displacement minus the identity."""
     if values.principal is None:
         remedy = "Pass a full momentum or the displacement, or take a smaller time_step."
         raise error(where, "have a principal displacement", "components that it does not reach", remedy)

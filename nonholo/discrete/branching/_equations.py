@@ -9,7 +9,7 @@ Reference: docs/theory/branches.md, "Following a value".
 
 import dataclasses
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, ClassVar, cast
 
 import numpy as np
 
@@ -44,6 +44,7 @@ class Equations:
     target: Inexact[Array, "k"]
     lever: float | None = None
     push: Array = 0.0
+    parameters: ClassVar[tuple[str, ...]] = ("stiffness", "coupling", "target", "push")
 
     @property
     def arm(self) -> float:
@@ -64,6 +65,10 @@ class Equations:
     def points(self, rows: Sequence[Inexact[Array, "m"]]) -> Inexact[np.ndarray, "B m"]:
         """Stack points, none as well."""
         return np.array(rows).reshape(-1, 1 + len(self.stiffness) + (self.lever is not None))
+
+    def starts(self) -> Inexact[np.ndarray, "B m"] | None:
+        """Return approximate roots; None where the secular polynomial has them."""
+        return None
 
     def residual(self, x: Inexact[Array, "... m"]) -> tuple[Inexact[Array, "... m"], Inexact[Array, "... m"]]:
         """Return the equations, the last one that of the sphere, and the sizes of their terms."""

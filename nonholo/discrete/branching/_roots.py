@@ -8,6 +8,7 @@ Reference: docs/theory/branches.md.
 
 import dataclasses
 import functools
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -19,14 +20,16 @@ from nonholo.discrete.branching._equations import Equations
 def candidates(equations: Equations) -> Inexact[Array, "B m"]:
     """Return approximate roots, only finite ones."""
     with np.errstate(all="ignore"):
-        if equations.is_balanced:
-            vectors = _odd(equations)
-        elif len(equations.stiffness) == 1:
-            vectors = _planar(equations)
-        else:
-            vectors = _generic(equations)
-        points = equations.points([_with_length(equations, v) for v in vectors])
+        if (points := equations.starts()) is None:
+            points = equations.points([_with_length(equations, v) for v in _vectors(equations)])
     return points[np.isfinite(points).all(axis=1)]
+
+
+def _vectors(equations: Equations) -> Sequence[Array]:
+    """Return approximate (z_0, z) by the secular polynomial, or the one of a special case."""
+    if equations.is_balanced:
+        return _odd(equations)
+    return _planar(equations) if len(equations.stiffness) == 1 else list(_generic(equations))
 
 
 def _generic(equations: Equations) -> Array:
@@ -129,7 +132,7 @@ def roots_of(equations: Equations) -> list[Root]:
     complete = equations.is_balanced or _count(roots) == equations.count
     if not complete or _is_crowded(equations, roots):
         by_path = _merge(equations, _by_continuation(equations))
-        roots = by_path if not complete or _count(by_path) == equations.count else roots
+        roots = by_path if _count(by_path) >= min(_count(roots), equations.count) else roots
     if not np.iscomplexobj(equations.target) and not np.iscomplexobj(equations.push):
         roots = _mark_real(equations, roots)
     return sorted(roots, key=place)
@@ -251,14 +254,12 @@ def _disturb(equations: Equations, rng: np.random.Generator) -> Equations:
         noise = rng.normal(size=np.shape(value)) + 1j * rng.normal(size=np.shape(value))
         return value + 0.2 * (1 + np.abs(value).max()) * noise
 
-    names = ("stiffness", "coupling", "target", "push")
-    values = {name: near(np.asarray(getattr(equations, name))) for name in names}
+    values = {name: near(np.asarray(getattr(equations, name))) for name in equations.parameters}
     return dataclasses.replace(equations, **values)
 
 
 def _between(start: Equations, end: Equations, t: float) -> Equations:
-    names = ("stiffness", "coupling", "target", "push")
-    values = {name: (1 - t) * getattr(end, name) + t * getattr(start, name) for name in names}
+    values = {name: (1 - t) * getattr(end, name) + t * getattr(start, name) for name in end.parameters}
     return dataclasses.replace(end, **values)
 
 

@@ -19,6 +19,7 @@ from nonholo.base.types import Array, Bool, Float, Inexact, Int
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._scheme import legendre
 from nonholo.discrete.branching._equations import Equations, Frame
+from nonholo.discrete.branching._forces import Node
 from nonholo.discrete.branching._roots import Root, roots_of
 from nonholo.systems import AbstractLLSystem, NormalForm
 
@@ -158,6 +159,15 @@ def values_over(discrete: Discretization, frame: Frame, r: Inexact[np.ndarray, "
     return branches_of(discrete, canonical, roots_over(discrete, frame, canonical))
 
 
+def values_at(node: Node, r: Inexact[np.ndarray, "k"]) -> Branches:
+    """Return all values of a step under forces over a restricted momentum in the user's frame."""
+    canonical = node.free.system.to_canonical(r)
+    values = branches_of(node.free, canonical, _roots_of(node.free, node.frame, node.equations(canonical)))
+    code, increment = node.principal(canonical)
+    principal = _index_of(node.free, code, increment, values.displacement, values.is_real)
+    return dataclasses.replace(values, region=np.full(len(values), ""), principal=principal)
+
+
 class Roots(NamedTuple):
     """The roots of the equations of a restricted momentum, and the displacements minus the identity over them."""
 
@@ -168,9 +178,11 @@ class Roots(NamedTuple):
 
 def roots_over(discrete: Discretization, frame: Frame, canonical: Inexact[np.ndarray, "k"]) -> Roots:
     """Return the roots over a canonical restricted momentum, real or complex."""
-    system = discrete.system
-    equations = frame.equations(discrete.time_step * canonical)
-    zeros = roots_of(equations)
+    return _roots_of(discrete, frame, frame.equations(discrete.time_step * canonical))
+
+
+def _roots_of(discrete: Discretization, frame: Frame, equations: Equations) -> Roots:
+    system, zeros = discrete.system, roots_of(equations)
     back = system.group.inverse(system.frame)
     increments = [system.frame @ frame.increment(root.point.astype(complex)) @ back for root in zeros]
     return Roots(equations, zeros, np.array(increments).reshape(-1, *system.group.identity.shape))
@@ -189,7 +201,7 @@ def branches_of(discrete: Discretization, canonical: Inexact[np.ndarray, "k"], r
         fold_distance=equations.regularity(equations.points([root.point for root in zeros])),
         energy=float(system.canonical.constrained_energy(canonical)),
         region=np.where(is_real, regions(discrete, X + system.group.identity), ""),
-        principal=_principal(discrete, canonical, X, is_real),
+        principal=_index_of(discrete, *principal_increment(discrete, canonical), X + system.group.identity, is_real),
     )
 
 
@@ -214,13 +226,13 @@ def principal_increment(discrete: Discretization, canonical: Float[np.ndarray, "
     return outcome, discrete.variety.increment(chart) if outcome == Outcome.successful else None
 
 
-def _principal(discrete: Discretization, canonical: np.ndarray, X: np.ndarray, is_real: np.ndarray) -> int | None:
-    """Return the index of the verified principal root among displacements minus the identity."""
-    code, increment = principal_increment(discrete, canonical)
+def _index_of(discrete: Discretization, code: int, increment: Array, W: np.ndarray, is_real: np.ndarray) -> int | None:
+    """Return the index of the verified principal root, canonical and minus the identity, among displacements."""
     if code != 0:
         return None
     frame = discrete.system.frame
     principal = frame @ increment @ discrete.system.group.inverse(frame)
-    distances = np.where(is_real, np.linalg.norm(X - principal, axis=(1, 2)), np.inf)
+    away = np.linalg.norm(W - discrete.system.group.identity - principal, axis=(1, 2))
+    distances = np.where(is_real, away, np.inf)
     best = int(np.argmin(distances))
     return best if distances[best] <= SAME * max(1.0, float(np.linalg.norm(principal))) else None

@@ -348,14 +348,12 @@ class Axes:
 
     def at(self, members: Any) -> "Axes":
         """Return the axes of some members, by slice or numbers, where they differ: with an axis of members in front."""
-        own = (x if x is None or x.ndim == 2 else x[members] for x in (self.frame, self.rows))
-        return Axes(self.group, *own)
+        frame, rows = (x if x is None or x.ndim == 2 else x[members] for x in (self.frame, self.rows))
+        return self if frame is self.frame and rows is self.rows else Axes(self.group, frame, rows)
 
     def beside(self, more: int) -> "Axes":
         """Return the axes for numbers of members that have more axes behind that of members."""
-        shape = (slice(None), *(None,) * more)
-        own = (x if x is None or x.ndim == 2 else x[shape] for x in (self.frame, self.rows))
-        return Axes(self.group, *own)
+        return self.at((slice(None), *(None,) * more))
 
     def momenta(self, canonical: np.ndarray) -> np.ndarray:
         """Return momenta along the kernel's rows."""

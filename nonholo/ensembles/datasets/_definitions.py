@@ -84,6 +84,7 @@ DEFINITIONS = {
     "snakeboard": Definition(
         "Snakeboard", (1.0, 1.0, 1.0, 1.0, 1e-4), (*_PLANE, _PI, 0.3), center=(0.0, 0.0, 0.0, 0.0, 1.0), version=2
     ),
+    "twistcar": Definition("Twistcar", (1.0, 1.0, 1.0, 0.0), (*_PLANE, 0.0)),
     "two_wheeled_robot": Definition("Robot with two wheels", 5 * (1.0,), (*_PLANE, _PI, _PI)),
 }
 """Data sets by name: bodies, then `nonholo.examples`."""

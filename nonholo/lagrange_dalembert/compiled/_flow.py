@@ -13,7 +13,8 @@ from llvmlite import ir
 from nonholo.base.compiled.emission import compile_text
 from nonholo.base.types import Array
 from nonholo.kernels import Quadratic, revisit_series, solve_series
-from nonholo.lagrange_dalembert._room import compiling, equations_of
+from nonholo.lagrange_dalembert import _equations as equations
+from nonholo.lagrange_dalembert._room import compiling
 from nonholo.lagrange_dalembert.compiled._expansion import Expansion, bordered_elimination
 from nonholo.lagrange_dalembert.compiled._run import Values, evaluate, machine_code, program
 from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError
@@ -49,11 +50,11 @@ def formulation(family: Any, place: tuple[int, ...], n: int) -> Formulation | No
     Parameters are numbers of the state that stay as they are. A place moves with the velocity that keeps holonomic
     constraints, so that what rounding takes from the velocity does not gather in the place.
     """
-    equations, size = equations_of(family), math.prod(place)
+    size = math.prod(place)
 
     def at(x: Array, v: Array, *numbers: Array) -> tuple[Array, ...]:
         system = family.bound(*numbers)
-        rate = equations.rate(system, x, v)
+        rate = system.places.rate(x, v)
         residual, constraint_rate = jax.jvp(lambda y: equations.constraint(system, y, v), (x,), (rate,))
         away = jax.jvp(lambda y: equations.holonomic_residual(system, y), (x,), (rate,))
         columns = equations.momentum(system, x, v), equations.energy(system, x, v), residual, *away
@@ -125,7 +126,7 @@ class Series(NamedTuple):
         """Return places and admissible velocities of states of the series."""
         place, (n,) = self.shapes
         size = math.prod(place)
-        x = equations_of(self.system).normalize(self.system, rows[:, :size].reshape(-1, *place))
+        x = self.system.places.normalize(rows[:, :size].reshape(-1, *place))
         return cast(Any, _values(self.code.settle, self.system, x, rows[:, size : size + n]))
 
     @property

@@ -25,8 +25,9 @@ from nonholo.kernels import (
     each_row,
     set_out_coordinates,
 )
+from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import _newton
-from nonholo.lagrange_dalembert._room import compiling, equations_of
+from nonholo.lagrange_dalembert._room import compiling
 from nonholo.lagrange_dalembert.compiled._scalars import (
     DOUBLE,
     OPERATIONS,
@@ -106,7 +107,7 @@ def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
     Returns:
         None if JAX must solve them.
     """
-    equations, s = equations_of(family), family.constraints
+    s = family.constraints
     matrix_of = _newton.of_node if at_node else _newton.of_step
 
     def arrive(x: Array, v: Array, h: Array, *numbers: Array) -> tuple[Array, Array]:
@@ -119,7 +120,7 @@ def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
         system = family.bound(*numbers)
         matrix_at, rows = matrix_of(system, x, near, h), equations.forms(system, x)
         rounding = None if at_node else _newton.rounding_of_step(system, x, h)
-        matrix, residual, units, size = _newton.equations(
+        matrix, residual, units, size = _newton.scaled_equations(
             matrix_at, rows, p, v, multipliers, jnp.zeros(n + s), rounding
         )
         return matrix, residual, units.velocity, units.forms, size, doubt

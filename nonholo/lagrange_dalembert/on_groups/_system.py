@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.checks import instance
@@ -13,6 +14,7 @@ from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert._functions import check_forms, check_value, count_of
+from nonholo.lagrange_dalembert._places import Poses
 from nonholo.lagrange_dalembert._room import room
 from nonholo.systems import AbstractCoordinateSystem, checked_group, group_mass_tensor, inertia_form
 
@@ -79,8 +81,12 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
     name: ClassVar[str] = "Constraints that depend on the pose"
     orbits: ClassVar[str] = "GroupOrbit"
     in_stores: ClassVar[tuple[str, ...]] = ("constraints", "coordinates", "is_driven", "name", "orbits", "shapes")
-    _equations: ClassVar[str] = "on_groups._equations"
-    _start: ClassVar[str] = "on_groups._equations"
+    rule: ClassVar[str] = "midpoint"
+    has_limit: ClassVar[bool] = True
+    prescribed: ClassVar[tuple[()]] = ()
+    force: ClassVar[None] = None
+    applied: ClassVar[None] = None
+    constraint_velocities: ClassVar[None] = None
 
     def __post_init__(self) -> None:
         remedy = "Pass nonholo.SO(n), SE(n), MatrixGroup or a product."
@@ -107,6 +113,35 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
         """The number s of constraints."""
         return count_of(self.constraint_forms, (self.group.size, self.group.size))
 
+    velocity_constraints = constraints
+
+    @property
+    def dimension(self) -> int:
+        """The dimension of the group."""
+        return self.group.dim
+
+    @property
+    def places(self) -> Poses:
+        """Where it moves."""
+        return Poses(self.group)
+
+    @property
+    def energy_argument(self) -> str:
+        """The name of the argument that gives the energy."""
+        return "discrete_lagrangian" if self.lagrangian is None else "lagrangian"
+
+    def bound(self, *numbers: Any) -> Any:
+        """Return the system as the equations see it: Lagrangians of the pose and the velocity or displacement."""
+        del numbers
+        return self._with_fields(lagrangian=self._lagrangian, discrete_lagrangian=self._discrete_lagrangian)
+
+    def _lagrangian(self, _g: Array, w: Array) -> Array:
+        r"""Return $l(\omega)$: the given one, or the quadratic form that belongs to l_d."""
+        return w @ _inertia(self) @ w / 2 if self.lagrangian is None else self.lagrangian(w)
+
+    def _discrete_lagrangian(self, _g: Array, W: Array, time_step: Array) -> Array:
+        return self.discrete_lagrangian(W, time_step)
+
     @property
     def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
         """Shapes of a configuration and of a velocity."""
@@ -115,6 +150,17 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
     def discrete_map(self, time_step: Any) -> "GroupDiscretization":
         """Return the discretized system, see `nonholo.discretize`."""
         return room("_discretization").GroupDiscretization(self, time_step)
+
+
+@functools.lru_cache(maxsize=64)
+def _inertia(system: GroupLagrangeDAlembert) -> Any:
+    """Return the inertia operator as numbers: h times the second derivative of $l_d(e^x)$ at x = 0, for h = 1."""
+
+    def at(x: Array) -> Array:
+        return system.discrete_lagrangian(system.group.exp(x), jnp.ones(()))
+
+    with jax.ensure_compile_time_eval(), double_precision():
+        return np.asarray(jax.jit(jax.hessian(at))(jnp.zeros(system.group.dim)))
 
 
 def _argument(argument: str) -> str:

@@ -4,6 +4,7 @@ Joining what a user's reduction made of blocks of members.
 """
 
 import functools
+import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeAlias
 
@@ -24,6 +25,7 @@ from nonholo.simulation.members._result import Ensemble
 from nonholo.simulation.members._start import Firsts, are_others, firsts, in_rows
 from nonholo.systems import (
     AbstractCoordinateDiscretization,
+    AbstractCoordinateSystem,
     AbstractSystem,
     Start,
     System,
@@ -41,7 +43,7 @@ _ONE = ""  # the name of an array that comes without one
 
 
 def ensemble(
-    discrete: Discretization | System | AbstractCoordinateDiscretization,
+    discrete: Discretization | System | AbstractCoordinateDiscretization | AbstractCoordinateSystem,
     *,
     steps: int | None = None,
     times: Any = None,
@@ -71,7 +73,7 @@ def ensemble(
     Of a system in place of a discretization the flows are solved, by the series of `flow`: from one canonical momentum
     each has the bits of a flow alone.
 
-    Systems in coordinates run one member after another, in one thread: each has the bits of its run by `simulate`.
+    Systems in coordinates run one member after another, in one thread: each has the bits of `simulate` or `flow` alone.
 
     The start and the `configuration` may come as one row for each member, or one may be that of all.
 
@@ -132,7 +134,7 @@ def ensemble(
     starts |= {"displacement": displacement, "momentum": momentum}
     of_steps = {"steps": steps, "save_every": save_every, "events": events, "branch": branch, "backend": backend}
     of_steps["reconstruct"] = reconstruct
-    make: Any = _of_times if isinstance(discrete, AbstractSystem) else _of_steps
+    make: Any = _of_times if isinstance(discrete, AbstractSystem | AbstractCoordinateSystem) else _of_steps
     motion, plan, widths = make(discrete, {"times": times, "rtol": rtol}, of_steps, starts)
     start = Start.of("ensemble", configuration, choices=motion.starts, project=project, **starts)
     start, several = in_rows(motion, start, numbers := checked_parameters(motion, parameters))
@@ -152,12 +154,18 @@ def _refuse(what: str, **arguments: Any) -> None:
 
 
 def _of_times(
-    system: System, of_flow: dict[str, Any], of_steps: dict[str, Any], starts: dict[str, Any]
+    system: Any, of_flow: dict[str, Any], of_steps: dict[str, Any], starts: dict[str, Any]
 ) -> tuple[Any, Plan, tuple[int, ...]]:
     """Return the motion of flows, their plan, and how wide their columns are."""
     reconstruct = bool(of_steps.pop("reconstruct"))
     _refuse("for a flow", displacement=starts.pop("displacement"), **of_steps)
-    time, rtol = flow_times(of_flow["times"]), 1e-14 if of_flow["rtol"] is None else of_flow["rtol"]
+    time, rtol = flow_times(of_flow["times"]), of_flow["rtol"]
+    if isinstance(system, AbstractCoordinateSystem):
+        refuse_in_coordinates("ensemble", reconstruct=(reconstruct, True))
+        motion, error = system.flow_from(float(time[0])), 0.0 if rtol is None else flow_tolerances(rtol, 1.0)[0]
+        widths = 1, *map(math.prod, motion.system.shapes)
+        return motion, Plan(len(time) - 1, 1, times=time, rtol=error), widths
+    rtol = 1e-14 if rtol is None else rtol
     plan = Plan(len(time) - 1, 1, reconstruct, times=time, rtol=flow_tolerances(rtol, 1.0)[0])
     with_poses = solver_of(system, None, float(time[0]), reconstruct=reconstruct)[1]
     return ContinuousFlow(system), plan, (1, system.rank, system.group.pose_size * with_poses)

@@ -25,7 +25,14 @@ from nonholo.simulation._options import stepper_of
 from nonholo.simulation._run import Run, run_to_end
 from nonholo.simulation._search import Watch
 from nonholo.simulation.members._events import log_of, watched_block
-from nonholo.simulation.members._members import Members, ScalarMembers, in_lanes, inertias_of, refusal
+from nonholo.simulation.members._members import (
+    Members,
+    ScalarMembers,
+    in_lanes,
+    inertias_of,
+    is_in_coordinates,
+    refusal,
+)
 from nonholo.simulation.members._result import Ensemble, stack_rows
 from nonholo.simulation.members._start import Firsts, are_others
 
@@ -86,7 +93,7 @@ class Plan(NamedTuple):
         backend: "auto", "numba" or "jax".
         events: What the runs look for, by name; None if for nothing.
         times: Those of a flow.
-        rtol: The relative error of its steps.
+        rtol: The relative error of its steps; 0 for the default of each motion.
     """
 
     steps: int
@@ -126,6 +133,8 @@ def executor_of(members: Members, plan: Plan) -> Callable[..., Ensemble]:
 def _has_series(members: Members, plan: Plan) -> bool:
     """Tell whether flows are solved side by side; under forces those of one body are."""
     system, times = members.discrete.system, cast(np.ndarray, plan.times)
+    if members.in_coordinates:
+        return False
     alike = system.forces is None or not members.of_system
     return plan.with_poses and alike and has_series(system, times[-1] - times[0])
 
@@ -184,13 +193,12 @@ def _refuse_other_starts(batch: Ensemble, demand: np.ndarray, probe: Ensemble) -
 
 def _decode(axes: Any, pieces: kernels.MemberRows) -> None:
     """Take rows of a kernel to canonical axes, in place."""
+    beside = axes.beside(1)
     if axes.rows is not None:
-        beside = axes.beside(1)
         pieces.momenta[:] = beside.canonical_momenta(pieces.momenta)
         pieces.charts[:] = beside.canonical_charts(pieces.charts)
     if axes.frame is not None and pieces.poses.shape[1]:
-        good = np.isfinite(pieces.momenta[..., 0])
-        pieces.poses[good] = axes.at(np.nonzero(good)[0]).canonical_poses(pieces.poses[good])
+        pieces.poses[:] = beside.canonical_poses(pieces.poses)
 
 
 def _rows(count: int, states: int, *, with_poses: bool) -> kernels.MemberRows:
@@ -240,13 +248,13 @@ def run_one_by_one(members: Members, starts: Firsts, plan: Plan, threads: int, r
         orbits[part.start], good[part.start] = _alone(members, starts, plan, part.start)
 
     stepper = None if plan.times is not None else _stepper_of(members.discrete, plan)
-    if stepper is not None and (not stepper.in_threads or count * plan.steps <= _SOON_ALONE):
-        threads = 0
+    is_soon = stepper is not None and (not stepper.in_threads or count * plan.steps <= _SOON_ALONE)
+    threads = 0 if is_soon or members.in_coordinates else threads
     in_threads(work, [slice(i, i + 1) for i in range(count)], threads, report)
     each = [orbits[member] for member in range(count)]
     codes = np.array([int(orbit.outcome) for orbit in each])
     columns = stack_rows(each, plan.states) | _times(plan, count)
-    branch = PRINCIPAL.name if stepper is None else stepper.branch
+    branch = getattr(stepper, "branch", PRINCIPAL.name)
     batch = Ensemble(members, plan.steps, plan.every, columns, codes, good, *starts.places, branch=branch)
     return batch if plan.events is None else dataclasses.replace(batch, events=log_of(batch, each))
 
@@ -278,7 +286,8 @@ def _flow_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
     """Return the flow of one member up to its end, and the number of good times after the first."""
     try:
         times = cast(np.ndarray, plan.times)
-        orbit = flow_from(motion.system, first, times, plan.rtol, reconstruct=plan.with_poses)
+        flow = motion.solve if is_in_coordinates(motion) else functools.partial(flow_from, motion.system)
+        orbit = flow(first, times, plan.rtol, reconstruct=plan.with_poses)
     except OutcomeError as early:
         orbit = cast(Any, early.orbit)
     return orbit, len(orbit) - 1

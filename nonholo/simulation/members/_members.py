@@ -12,7 +12,7 @@ from nonholo.base.checks import array, error, shown
 from nonholo.base.memo import Keeper
 from nonholo.base.types import Bool, Float
 from nonholo.discrete import Discretization, discretize
-from nonholo.systems import AbstractCoordinateSystem, System, in_coordinates
+from nonholo.systems import AbstractCoordinateSystem, System
 
 STEP = "time_step"
 _ARGUMENTS = {"given_inertia": "inertia_operator"}  # fields that the constructor calls otherwise
@@ -36,6 +36,11 @@ class Members(Keeper):
         return self.count
 
     @property
+    def in_coordinates(self) -> bool:
+        """Whether they move in coordinates, which have no closed forms."""
+        return is_in_coordinates(self.discrete)
+
+    @property
     def time_step(self) -> Float[np.ndarray, "m"]:
         """The time step of each member, or that of all as one number; NaN of flows."""
         return self.values(STEP)
@@ -43,9 +48,10 @@ class Members(Keeper):
     @functools.cached_property
     def route(self) -> Any:
         """How steps of the shared motion are computed; of a flow those of its map, None in coordinates."""
-        if self.discrete.time_step is None:
-            return discretize(self.discrete.system, 1.0).route  # never stepped: it knows closed forms
-        return getattr(self.discrete, "route", None)
+        if self.in_coordinates:
+            return None
+        is_flow = self.discrete.time_step is None
+        return (discretize(self.discrete.system, 1.0) if is_flow else self.discrete).route  # it knows closed forms
 
     def values(self, name: str) -> Float[np.ndarray, "m ..."]:
         """Return a parameter of each member, or with an axis of length 1 that of all."""
@@ -76,7 +82,7 @@ class Members(Keeper):
         """
         if not self.of_system:
             return self.discrete.system
-        if in_coordinates(self.discrete):
+        if self.in_coordinates:
             return None
         system = _inside(self.discrete.system)
         values = {name: self.values(_ARGUMENTS.get(name, name)) for name in _leaves(system)}
@@ -102,6 +108,11 @@ class Members(Keeper):
         return Members(self.discrete, numbers, len(range(*which.indices(self.count))))
 
 
+def is_in_coordinates(motion: Any) -> bool:
+    """Tell whether a map or a flow is one of a system in coordinates."""
+    return isinstance(motion.system, AbstractCoordinateSystem)
+
+
 def _inside(system: Any) -> Any:
     """Return the body on which forces act, or the system itself."""
     return system.system if system.is_forced else system
@@ -124,7 +135,7 @@ def _leaves(system: System) -> list[str]:
 
 def _numbers(motion: Any) -> Mapping[str, Any]:
     """Return what may differ from member to member, by the name that its constructor has for it."""
-    if in_coordinates(motion):
+    if is_in_coordinates(motion):
         return motion.system.parameters
     system = _inside(motion.system)
     return {_ARGUMENTS.get(name, name): getattr(system, name) for name in _leaves(system)}
@@ -137,7 +148,7 @@ def checked_parameters(motion: Any, parameters: Any) -> dict[str, Any]:
     if not isinstance(parameters, Mapping):
         raise error("ensemble(parameters=...)", "be a mapping of names to arrays", shown(parameters), "Pass a dict.")
     numbers = dict(_numbers(motion)) | ({} if motion.time_step is None else {STEP: motion.time_step})
-    kind, arrays = type(motion.system if in_coordinates(motion) else _inside(motion.system)).__name__, {}
+    kind, arrays = type(motion.system if is_in_coordinates(motion) else _inside(motion.system)).__name__, {}
     for name, value in parameters.items():
         if name not in numbers:
             raise _unknown(name, kind, [*numbers])
