@@ -103,7 +103,7 @@ MARKED = [DEFAULT, *(name for name, profile in PROFILES.items() if not profile.c
 _DALEMBERT = "nonholo.lagrange_dalembert."
 DOCTESTS = {  # examples that compile for long
     f"{_DALEMBERT}_orbit.GroupOrbit": "routes",
-    f"{_DALEMBERT}on_groups._system.GroupLagrangeDAlembert": "routes",
+    f"{_DALEMBERT}_group_system.GroupLagrangeDAlembert": "routes",
     f"{_DALEMBERT}_orbit.CoordinateOrbit": "routes",
     "nonholo.examples._points.particle": "routes",
     "nonholo.ensembles._family_task.FamilyTask": "routes",

@@ -1,4 +1,4 @@
-"""Mechanics in coordinates: the discrete Lagrange-d'Alembert principle on R^n, and the flow it discretizes."""
+"""The discrete Lagrange-d'Alembert principle on R^n and on groups, and the flow it discretizes."""
 
 from nonholo.base.checks import needs
 
@@ -8,18 +8,15 @@ with needs("jax", "nonholo.lagrange_dalembert"):
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization, GroupDiscretization, checked_state
     from nonholo.lagrange_dalembert._flow import flow, vector_field
     from nonholo.lagrange_dalembert._functions import check_forms, check_value
+    from nonholo.lagrange_dalembert._group_system import GroupLagrangeDAlembert, mass_tensor_lagrangian
     from nonholo.lagrange_dalembert._orbit import (
         AbstractCoordinateOrbit,
         CoordinateFlow,
         CoordinateOrbit,
+        GroupOrbit,
         RecordedSystem,
     )
     from nonholo.lagrange_dalembert._rollout import CoordinateRollout
     from nonholo.lagrange_dalembert._rollout import roll as rolled_in_coordinates
     from nonholo.lagrange_dalembert._room import in_double, place
     from nonholo.lagrange_dalembert._system import LagrangeDAlembert
-    from nonholo.lagrange_dalembert.on_groups import (
-        GroupLagrangeDAlembert,
-        GroupOrbit,
-        mass_tensor_lagrangian,
-    )

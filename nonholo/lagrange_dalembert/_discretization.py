@@ -158,9 +158,6 @@ class GroupDiscretization(AbstractLagrangeDAlembertMap[GroupOrbit]):
         0.5
     """
 
-    system: Any
-    time_step: float
-
 
 def checked_state(
     system: Any,

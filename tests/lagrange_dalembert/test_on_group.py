@@ -259,6 +259,55 @@ def test_compiled_runs_are_those_of_jax(name: str, monkeypatch: pytest.MonkeyPat
     assert orbit.constraint_residual.max() <= 1e-13 * np.abs(orbit.body_velocity).max()
 
 
+def height(g):  # noqa: ANN001, ANN201
+    """Return the potential of a spring to a place and of a body that is heavy on one side."""
+    return 0.4 * (g[0, 2] - 0.3) ** 2 + 0.7 * g[1, 2] + 0.2 * g[0, 0] * g[1, 2]
+
+
+@pytest.mark.parametrize("step", [0.05, 0.4])
+def test_a_free_body_in_a_potential_is_that_of_the_forced_map(step: float) -> None:
+    """The trapezoidal rule in the action: half a kick at each node, as `nh.Forced` has it, which differences U."""
+    body = nh.LLSystem(PLANE, BODY.homogeneous_mass_tensor, np.eye(3))
+    kicked = nh.discretize(nh.Forced(body, lambda g: float(height(g)), scheme="variational"), step)
+    ours = nh.discretize(nh.Forced(GroupLagrangeDAlembert(PLANE, ACTION, None), height), step)
+    start = {**START, "body_velocity": (0.3, 0.5, -0.2), "steps": 30}
+    orbit, known = nh.simulate(ours, **start), nh.simulate(kicked, **start)
+    assert np.abs(orbit.configuration - known.configuration).max() <= 1e-10
+    assert _run.programs(ours.system, (3, 3), 3) is not None  # compiled
+
+
+def test_a_blade_in_a_potential_keeps_its_energy_and_converges() -> None:
+    """The flow keeps T + U; its momenta are ad* p - dU + a, written out by differences; the map has order two."""
+    system = nh.Forced(MIXED, height)
+    start = {**START, "body_velocity": admissible(0.9, 1.0)}
+    exact = nh.flow(system, **start, times=np.linspace(0.0, 2.0, 401))
+    assert np.ptp(exact.energy) <= 1e-12
+    p, w, g, d, free = exact.momentum, exact.body_velocity, exact.configuration, 1e-5, np.s_[1:-1]
+    along = [(height(x @ PLANE.exp(d * e)) - height(x @ PLANE.exp(-d * e))) / (2 * d) for x in g for e in np.eye(3)]
+    with jax.enable_x64(True):
+        forms = np.stack([np.asarray(blade(jnp.asarray(x)))[0] for x in g])
+    rate = (p[2:] - p[:-2]) / (exact.time[2:] - exact.time[:-2])[:, None]
+    balance = rate - (PLANE.coad(w, p) - np.reshape(along, p.shape) + exact.multipliers * forms)[free]
+    assert np.abs(balance).max() <= 1e-4 * np.abs(p).max()  # of differences with 0.005 between
+    errors = [
+        np.abs(nh.simulate(nh.discretize(system, 2 / n), **start, steps=n).configuration[-1] - g[-1]).max()
+        for n in (50, 100, 200)
+    ]
+    assert np.abs(np.log2(np.divide(errors[:-1], errors[1:])) - 2).max() <= 0.15
+
+
+def test_other_forces_on_a_group_are_refused() -> None:
+    """A potential comes once, forces not at all, a vector is no potential."""
+    for system, arguments in (
+        (MIXED, {"force": lambda _t, _g, w: w}),
+        (nh.Forced(MIXED, height), {"potential": height}),
+    ):
+        with pytest.raises(ValueError, match="at most a potential"):
+            nh.Forced(system, **arguments)
+    with pytest.raises(ValueError, match=r"potential=\.\.\..* scalar"):
+        nh.Forced(MIXED, lambda g: g[0])
+
+
 @pytest.mark.profile("routes", instead="test_the_equations_hold_with_their_sign")
 def test_chaplygins_ball_keeps_its_momentum_about_the_contact() -> None:
     """On SO(3) x R^2: with the midpoint rule R I R^T Om + m x e3 x x' in space is constant to rounding."""

@@ -9,7 +9,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import instance
+from nonholo.base.checks import error, instance
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
@@ -52,6 +52,8 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
         discrete_constraints: `discrete_constraints(g, W, time_step)` -> (s,), in place of the midpoint rule.
         lagrangian: `lagrangian(body_velocity)` -> scalar, the limit of $l_d(e^{h\omega})/h$; only needed for `flow`
             and for starts from a velocity or a momentum, and only if it is not a quadratic form.
+        potential: `potential(g)` -> scalar, U; steps take it at both ends, $l_d(W) - \tfrac h2(U(g) + U(gW))$.
+            `nonholo.Forced(system, potential)` adds it.
 
     Raises:
         ValueError: Something that is no group; a function that JAX cannot trace, or whose value has the wrong shape.
@@ -75,6 +77,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
     constraint_forms: Callable[[Array], Array] | None = dataclasses.field(repr=False)
     discrete_constraints: Callable[[Array, Array, Array], Array] | None = dataclasses.field(default=None, repr=False)
     lagrangian: Callable[[Array], Array] | None = dataclasses.field(default=None, kw_only=True, repr=False)
+    potential: Callable[[Array], Array] | None = dataclasses.field(default=None, kw_only=True, repr=False)
     holonomic: ClassVar[None] = None
     is_driven: ClassVar[bool] = False
     coordinates: ClassVar[tuple[str, ...]] = ()
@@ -103,6 +106,8 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
                 self._check("discrete_constraints", (self.constraints,), g, g, h)
             if self.lagrangian is not None:
                 self._check("lagrangian", (), w)
+            if self.potential is not None:
+                self._check("potential", (), g)
 
     def _check(self, name: str, shape: tuple[int, ...], *arguments: Any) -> None:
         arrays = f"shapes {[x.shape for x in arguments]}"
@@ -135,12 +140,23 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
         del numbers
         return self._with_fields(lagrangian=self._lagrangian, discrete_lagrangian=self._discrete_lagrangian)
 
-    def _lagrangian(self, _g: Array, w: Array) -> Array:
-        r"""Return $l(\omega)$: the given one, or the quadratic form that belongs to l_d."""
-        return w @ _inertia(self) @ w / 2 if self.lagrangian is None else self.lagrangian(w)
+    def _lagrangian(self, g: Array, w: Array) -> Array:
+        r"""Return $l(\omega) - U(g)$ with the given l, or the quadratic form that belongs to l_d."""
+        kinetic = w @ _inertia(self) @ w / 2 if self.lagrangian is None else self.lagrangian(w)
+        return kinetic if self.potential is None else kinetic - self.potential(g)
 
-    def _discrete_lagrangian(self, _g: Array, W: Array, time_step: Array) -> Array:
-        return self.discrete_lagrangian(W, time_step)
+    def _discrete_lagrangian(self, g: Array, W: Array, time_step: Array) -> Array:
+        r"""Return $l_d(W) - \tfrac h2(U(g) + U(gW))$."""
+        if self.potential is None:
+            return self.discrete_lagrangian(W, time_step)
+        return self.discrete_lagrangian(W, time_step) - time_step / 2 * (self.potential(g) + self.potential(g @ W))
+
+    def forced(self, potential: Any, force: Any) -> "GroupLagrangeDAlembert":
+        """Return the system with a potential U(g); `nonholo.Forced` calls it. Other forces have no way in yet."""
+        if force is not None or (potential is not None and self.potential is not None):
+            got, remedy = repr(force or self), "Pass one potential; write a system with forces as an LLSystem."
+            raise error("Forced(system=...)", "have at most a potential, as a GroupLagrangeDAlembert", got, remedy)
+        return dataclasses.replace(self, potential=potential) if potential is not None else self
 
     @property
     def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
