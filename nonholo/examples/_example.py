@@ -18,9 +18,8 @@ from nonholo.base.memo import Keeper
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.discrete import discretize
-from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, LagrangeDAlembert
+from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.simulation import flow, simulate
-from nonholo.systems import AbstractSystem
 
 
 def wheel(
@@ -70,7 +69,7 @@ class Example(Keeper):
     """
 
     name: str
-    system: LagrangeDAlembert | GroupLagrangeDAlembert | AbstractSystem
+    system: Any
     configuration: Float[np.ndarray, "n"]
     body_velocity: Float[np.ndarray, "n"]
     facts: tuple[str, ...]

@@ -82,10 +82,10 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
         return First((in_double(equations.momentum, system, q, v), q, v))
 
     @functools.cached_property
-    def _stepper(self) -> AbstractStepper[Any]:
+    def _stepper(self) -> AbstractStepper[OrbitT]:
         return cast(Any, CoordinateStepper(self))
 
-    def stepper(self, *, with_poses: bool) -> AbstractStepper[Any]:
+    def stepper(self, *, with_poses: bool) -> AbstractStepper[OrbitT]:
         """Return what takes its steps."""
         del with_poses
         return self._stepper

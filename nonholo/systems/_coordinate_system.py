@@ -4,16 +4,20 @@ import abc
 import importlib
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, NoReturn, Self, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, NoReturn, Self
 
 from nonholo.base.checks import error
 from nonholo.base.memo import Keeper
 
 if TYPE_CHECKING:
-    from typing_extensions import TypeIs
+    from typing_extensions import TypeIs, TypeVar
 
-OrbitT = TypeVar("OrbitT")
-DiscretizationT = TypeVar("DiscretizationT")
+    OrbitT = TypeVar("OrbitT", default=Any)
+    DiscretizationT = TypeVar("DiscretizationT", default=Any)
+else:
+    from typing import TypeVar
+
+    OrbitT, DiscretizationT = TypeVar("OrbitT"), TypeVar("DiscretizationT")
 
 
 class _Former:

@@ -11,15 +11,11 @@ from nonholo.ensembles import DEFINITIONS
 
 Command = Callable[..., Result]
 
-WITHOUT = {"bicycle", "tilting_disk", "rattleback", "ball_on_turntable", "ball_in_bowl", "trailers", "snake"}
-"""Ready systems without a data set: most of them fall, or hardly leave the motion that they are known for."""
-
 
 def test_every_data_set_is_listed(nonholo: Command) -> None:
     """The list has each name and what moves."""
     shown = nonholo("dataset", "--list").stdout
     assert all(name in shown for name in DEFINITIONS)
-    assert set(nh.examples.__all__) - {"Example"} - WITHOUT < DEFINITIONS.keys()
 
 
 def test_it_writes_what_python_writes(nonholo: Command, tmp_path: Path) -> None:

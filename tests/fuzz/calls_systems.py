@@ -1,6 +1,8 @@
 """Calls that make systems, ready ones of the literature included, and methods of systems."""
 
 import functools
+import inspect
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -224,7 +226,7 @@ def _examples() -> list[Call]:
     car = {"wheelbase": positive(1.0), "wheel_radius": positive(0.25), "steering_rate": number(0.1)}
     racer = {"mass": positive(1.0), "inertia": positive(0.2), "joint": positive(1.0), "amplitude": number(0.5)}
     driven = {**common, "moving_mass": positive(0.3), "ahead": number(-0.3), "frequency": positive(1.0)}
-    return [
+    calls = [
         call(
             "examples.ball_on_turntable", made.ball_on_turntable, table_rate=number(1.0), velocity=velocity, slow=True
         ),
@@ -249,3 +251,11 @@ def _examples() -> list[Call]:
         call("examples.snakeboard", made.snakeboard, mass=positive(1.0), **board, slow=True),
         call("examples.two_wheeled_robot", made.two_wheeled_robot, **common, **robot, slow=True),
     ]
+    others = {*made.__all__} - {"Example"} - {each.name.removeprefix("examples.") for each in calls}
+    return calls + [_by_signature(f"examples.{name}", getattr(made, name)) for name in sorted(others)]
+
+
+def _by_signature(name: str, make: Callable[..., Any]) -> Call:
+    """Return a call of which nothing but the defaults is known."""
+    arguments = inspect.signature(make).parameters.values()
+    return call(name, make, **{each.name: anything(each.default) for each in arguments}, slow=True)

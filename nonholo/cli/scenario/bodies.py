@@ -214,7 +214,7 @@ def _systems() -> dict[str, Maker]:
 def examples() -> dict[str, Maker]:
     """Return the functions of the ready examples by name."""
     with needs("jax", "nonholo.examples"):
-        ready = nonholo.examples
+        ready: Any = nonholo.examples
         return {name: getattr(ready, name) for name in ready.__all__ if name.islower()}
 
 
