@@ -25,7 +25,7 @@ _ROOT = "root of a step"  # what a checkpoint keeps, so that no root is searched
 
 
 class NodeState(NamedTuple):
-    """The state that a policy sees at a node: the configuration, and the velocity that belongs to the momentum there."""
+    """The state that a policy sees at a node: the configuration, and the velocity of the momentum there."""
 
     configuration: Array
     body_velocity: Array
