@@ -7,7 +7,7 @@ with needs("jax", "nonholo.lagrange_dalembert"):
     from nonholo.lagrange_dalembert import _tangents as tangents
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization, GroupDiscretization, checked_state
     from nonholo.lagrange_dalembert._flow import flow, vector_field
-    from nonholo.lagrange_dalembert._functions import check_forms, check_value, traced_shape
+    from nonholo.lagrange_dalembert._functions import check_forms, check_value, in_double, place, traced_shape
     from nonholo.lagrange_dalembert._group_system import GroupLagrangeDAlembert, mass_tensor_lagrangian
     from nonholo.lagrange_dalembert._orbit import (
         AbstractCoordinateOrbit,
@@ -18,5 +18,4 @@ with needs("jax", "nonholo.lagrange_dalembert"):
     )
     from nonholo.lagrange_dalembert._rollout import CoordinateRollout
     from nonholo.lagrange_dalembert._rollout import roll as rolled_in_coordinates
-    from nonholo.lagrange_dalembert._room import in_double, place
     from nonholo.lagrange_dalembert._system import LagrangeDAlembert

@@ -21,6 +21,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import compiled
+from nonholo.lagrange_dalembert._functions import configurations, in_double, places, places_of, room
 from nonholo.lagrange_dalembert._newton import orientation, solve
 from nonholo.lagrange_dalembert._orbit import (
     ORBITS,
@@ -29,7 +30,6 @@ from nonholo.lagrange_dalembert._orbit import (
     CoordinateOrbit,
     GroupOrbit,
 )
-from nonholo.lagrange_dalembert._room import configurations, in_double, places, places_of, room
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
 from nonholo.lagrange_dalembert.compiled import ROWS
 from nonholo.orbit import AbstractStepper, First, Rows, State

@@ -13,9 +13,8 @@ from nonholo.base.checks import error, instance
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.lagrange_dalembert._functions import check_forms, check_value, count_of
+from nonholo.lagrange_dalembert._functions import check_forms, check_value, count_of, room
 from nonholo.lagrange_dalembert._places import Poses
-from nonholo.lagrange_dalembert._room import room
 from nonholo.systems import AbstractCoordinateSystem, checked_group, group_mass_tensor, inertia_form
 
 if TYPE_CHECKING:

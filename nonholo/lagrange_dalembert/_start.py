@@ -22,8 +22,8 @@ from nonholo.lagrange_dalembert._equations import (
     momentum,
 )
 from nonholo.lagrange_dalembert._flow import admissible_velocity, nearest_place
+from nonholo.lagrange_dalembert._functions import in_double, place
 from nonholo.lagrange_dalembert._newton import orientation
-from nonholo.lagrange_dalembert._room import in_double, place
 from nonholo.systems import inadmissible
 
 _TOLERANCE = 1e-9  # relative, for velocities and displacements that a user computed in floating point

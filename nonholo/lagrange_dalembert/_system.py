@@ -11,7 +11,6 @@ import numpy as np
 from nonholo.base.calls import call
 from nonholo.base.checks import array, choice, count, error, names, shown, text
 from nonholo.base.limits import within_memory
-from nonholo.base.memo import system_memo
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._functions import (
@@ -22,12 +21,12 @@ from nonholo.lagrange_dalembert._functions import (
     check_rows_of_places,
     check_value,
     count_of,
+    room,
     takes_time,
     with_parameters,
     with_time_step,
 )
 from nonholo.lagrange_dalembert._places import Coordinates
-from nonholo.lagrange_dalembert._room import room
 from nonholo.systems import AbstractCoordinateSystem, force_of, parts_of
 
 if TYPE_CHECKING:
@@ -291,7 +290,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     def _rows_of(self, name: str) -> int:
         return count_of(getattr(self.plain, name), (self.dimension,), *(() for _ in self._time(name)))
 
-    @system_memo
+    @property
     def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
         """Shapes of a configuration and of a velocity."""
         return (self.dimension,), (self.dimension,)

@@ -195,7 +195,7 @@ def test_the_twistcar_is_fitted_from_poses() -> None:
     assert 0.3 <= np.sqrt(np.mean(off**2)) <= 1.7  # 18 numbers: 1 with a deviation of 0.17
 
 
-@pytest.mark.profile("long", instead="test_the_twistcar_is_fitted_from_poses")
+@pytest.mark.profile("long", instead="test_noisy_positions_tell_two_numbers")
 def test_95_of_100_twistcars_are_within_three_deviations() -> None:
     """All three numbers of a record are within three standard deviations, in 95 of 100 records and more."""
     off = np.array([misses(1000 + seed) for seed in range(100)])

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.lagrange_dalembert import _room
+from nonholo.lagrange_dalembert import _functions
 
 
 def lagrangian(q, v):  # noqa: ANN001, ANN201, ARG001
@@ -173,7 +173,7 @@ def test_discrete_constraints_must_fit_the_forms(function: object, words: str) -
 
 def test_long_compiling_is_said_once(capsys, monkeypatch) -> None:  # noqa: ANN001
     """A line on standard error at the first call, none at the second."""
-    monkeypatch.setattr(_room, "_PATIENCE", 0.0)
+    monkeypatch.setattr(_functions, "_PATIENCE", 0.0)
     system = nh.LagrangeDAlembert(lambda q, v: (v @ v - q @ q) / 2, None, dimension=1)
     system.regularity([0.0], [1.0])
     assert capsys.readouterr().err.startswith("compiling a system in coordinates, once")

@@ -10,8 +10,8 @@ import pytest
 
 import nonholo as nh
 from nonholo.lagrange_dalembert import LagrangeDAlembert, _discretization
+from nonholo.lagrange_dalembert._functions import in_double
 from nonholo.lagrange_dalembert._newton import solve
-from nonholo.lagrange_dalembert._room import in_double
 
 FORCE = 0.15
 

@@ -348,7 +348,7 @@ _REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
         lambda: nh.testing.check_discretization(nh.discretize(CASES["sleigh"][0], 0.1)),
         "never yields",
     ),
-    "branches": (lambda: nh.branches(nh.discretize(CASES["sleigh"][0], 0.1), momentum=FAST), "without forces"),
+    "branches": (lambda: nh.branches(nh.discretize(CASES["sleigh"][0], 0.1), momentum=FAST), "rows that yield"),
 }
 
 

@@ -14,7 +14,7 @@ from nonholo.base.compiled.emission import compile_text
 from nonholo.base.types import Array
 from nonholo.kernels import Quadratic, revisit_series, solve_series
 from nonholo.lagrange_dalembert import _equations as equations
-from nonholo.lagrange_dalembert._room import compiling
+from nonholo.lagrange_dalembert._functions import compiling
 from nonholo.lagrange_dalembert.compiled._expansion import Expansion, bordered_elimination
 from nonholo.lagrange_dalembert.compiled._run import Values, evaluate, machine_code, program
 from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError

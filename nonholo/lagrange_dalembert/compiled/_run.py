@@ -27,7 +27,7 @@ from nonholo.kernels import (
 )
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import _newton
-from nonholo.lagrange_dalembert._room import compiling
+from nonholo.lagrange_dalembert._functions import compiling
 from nonholo.lagrange_dalembert.compiled._scalars import (
     DOUBLE,
     OPERATIONS,
