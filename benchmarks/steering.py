@@ -205,14 +205,14 @@ def among_obstacles(rounds: int) -> None:
     x, y = (0.2, 1.2, 1.0, 2.2, 2.0, 3.1, 3.2, 4.2, 2.9, 4.3), (1.0, 0.3, 1.6, 1.0, 2.3, 0.2, 1.9, 1.1, 3.0, 2.6)
     radii = 0.2 + np.array([0.3, 0.4, 0.35, 0.4, 0.35, 0.45, 0.4, 0.4, 0.4, 0.3])
     there = {"configuration": [[1, 0, 5], [0, 1, 3], [0, 0, 1]], "restricted_velocity": (0.0, 0.0)}
-    solve = transcription.minimized
+    solve = transcription.minimize
 
     def counted(*arguments: Any) -> Any:
         solution = solve(*arguments)
         counts.append(solution.iterations)
         return solution
 
-    transcription.minimized = counted
+    transcription.minimize = counted
     for steps in small((100, 200, 400, 800), (50,)):
         robot = nh.discretize(body, 10.0 / steps)
         for name, guess in {"straight": None, "path": [(0.0, 0.0), (1.6, 1.6), (3.0, 1.2), (5.0, 3.0)]}.items():

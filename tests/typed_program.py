@@ -1,4 +1,4 @@
-"""A program with a call of each kind, which pyright reads in its strict mode: `test_types.py`."""
+"""A program with a call of each kind, which `pyright` reads in its strict mode, with the types of results."""
 
 from collections.abc import Mapping
 from typing import Any, assert_type
@@ -25,7 +25,9 @@ assert_type(nh.flow(top, body_velocity=(0.4, 0.9, 0.0), times=(0.0, 1.0)), nh.Or
 for block in nh.iterate(discrete, body_velocity=(0.4, 0.9, 0.0), steps=10):
     assert_type(block, nh.Orbit)
 batch = nh.ensemble(discrete, restricted_velocity=[[0.1, 0.2]], steps=10)
-compared = nh.compare(batch.orbit(0), nh.flow(top, momentum=(0.1, 0.2), times=(0.0, 1.0)))
+compared = nh.compare(
+    nh.simulate(discrete, momentum=(0.1, 0.2), steps=10), nh.flow(top, momentum=(0.1, 0.2), times=(0.0, 1.0))
+)
 equations, report = nh.vector_field(top), nh.testing.check_system(top)
 assert_type(nh.flow(nh.VeselovaTop(np.eye(3)), momentum=(0.1, 0.2), times=(0.0, 1.0)), nh.Orbit)
 

@@ -137,6 +137,8 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
     def bound(self, *numbers: Any) -> Any:
         """Return the system as the equations see it: Lagrangians of the pose and the velocity or displacement."""
         del numbers
+        if getattr(self.discrete_lagrangian, "__func__", None) is GroupLagrangeDAlembert._discrete_lagrangian:
+            return self  # a bound one
         return self._with_fields(lagrangian=self._lagrangian, discrete_lagrangian=self._discrete_lagrangian)
 
     def _lagrangian(self, g: Array, w: Array) -> Array:

@@ -4,7 +4,7 @@ import abc
 import importlib
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, NoReturn, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, NoReturn
 
 from nonholo.base.checks import error
 from nonholo.base.memo import Keeper
@@ -76,7 +76,7 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
         """The one system that stands for all numbers of the parameters."""
         return self
 
-    def _with_fields(self, **fields: Any) -> Self:
+    def _with_fields(self, **fields: Any) -> Any:
         """Return a system with other fields, which need no check; it does not have a name for stores."""
         system = object.__new__(type(self))
         vars(system).update(vars(self), **fields)

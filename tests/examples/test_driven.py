@@ -312,7 +312,7 @@ def test_forced_in_coordinates() -> None:
     assert nh.Forced(free) is free
     with pytest.raises(ValueError, match="have no force yet"):
         nh.Forced(forced, None, nh.Friction([0.1, 0.1, 0.1]))
-    with pytest.raises(ValueError, match="be a system that forces act on"):
+    with pytest.raises(ValueError, match="have at most a potential"):
         nh.Forced(nh.examples.chaplygin_ball().system, None, nh.Friction([0.1, 0.1, 0.1]))
 
 

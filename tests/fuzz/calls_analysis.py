@@ -156,7 +156,7 @@ def _of_results() -> list[Call]:
 
 
 def _checks() -> list[Call]:
-    rng, check = anything(None), nh.testing
+    rng, check = integer(0), nh.testing
     short = {"steps": count(2), "definition": flag(False), "tolerance_factor": positive(10.0), "throw": flag(True)}
     few = {"steps": count(4), "halvings": count(1), "tolerance": positive(0.5), "throw": flag(True)}
     velocity = array([0.4, 0.9, 0.0], "start")

@@ -74,6 +74,7 @@ def test_three_ways_have_the_same_bits() -> None:
     assert by_library[2] == by_numba[2] == by_python[2]
 
 
+@pytest.mark.usefixtures("known")
 def test_calls_are_replayed_elsewhere(tmp_path: Path) -> None:
     """Calls that the library answered have the same digests in another process, by another way, flows among them."""
     replay = script("tests/kernels/replay.py")

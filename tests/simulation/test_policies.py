@@ -133,6 +133,7 @@ class Network(equinox.Module):
         return self.layers[1] @ jnp.tanh(self.layers[0] @ seen)
 
 
+@pytest.mark.profile("routes", instead="test_derivatives_of_a_closed_loop_agree_with_40_digits")
 def test_a_network_learns() -> None:
     """The gradient by the weights of a pytree is that of the same weights captured, and a step along it gains."""
     rng, discrete = np.random.default_rng(0), nh.discretize(SLEIGH, 0.1)

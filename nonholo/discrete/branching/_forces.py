@@ -219,7 +219,8 @@ class Node:
         m, drag = forced.rank, np.zeros((forced.rank, forced.rank))
         W = self.free.displaced(np.concatenate([np.zeros((1, m)), np.eye(m)]))
         row = np.repeat(forced.rows(np.array([self.step])), m + 1, axis=0)
-        still = dataclasses.replace(forced, force=None).mean_force(self.configuration[None], W, h, row)
+        poses = np.repeat(self.configuration[None], m + 1, axis=0)
+        still = dataclasses.replace(forced, force=None).mean_force(poses, W, h, row)
         along = forced.to_canonical(forced.restrict(still))
         if forced.friction is not None:
             Y = self.free.system.frame @ group.hat(self.free.variety.chart) @ group.inverse(self.free.system.frame)
