@@ -6,10 +6,10 @@ import numpy as np
 
 import nonholo as nh
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._sleigh_twin import BODIES, PLANE, TURNS, Body, admissible, lagrangian, points, pose, poses
 from nonholo_paper._twin import Matrix, Number, ctx, worst
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import sleigh_continuous as continuous
 from nonholo_paper.formulas import sleigh_discrete as formulas
 
@@ -29,16 +29,7 @@ def _gaps(left: Iterable, right: Iterable) -> list:
     return [x - y for x, y in zip(left, right, strict=True)]
 
 
-@finding(
-    "Om_k",
-    "equation",
-    "Section 7, equation (Om_k)",
-    r"“$\Delta\theta_k = \theta_{k+1} - \cos\theta_k$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$\Delta\theta_k = \theta_{k+1} - \theta_k$.",
-    errata=("C15",),
-    tolerance=1e-45,
-)
+@statement
 def om_k() -> Measured:
     """Compare with the product of the matrices."""
     right, wrong = [], []
@@ -49,18 +40,7 @@ def om_k() -> Measured:
     return Measured(worst(right), worst(wrong), "6 pairs of poses, one of equal ones, one half a turn apart")
 
 
-@finding(
-    "sl",
-    "equation",
-    "Section 7, equation (sl)",
-    r"“$L_d(X_{k+1}, X_k) = \frac12\mathrm{tr}(\Omega_k\mathbb{J}\Omega_k^T) - "
-    r"\frac12\mathrm{tr}(\mathbb{J}\Omega_k^T + \Omega_k\mathbb{I})$” with the entry “$J2 + mb^2$” of $\mathbb{J}$, "
-    r"where “$J$ is its scalar moment of inertia with respect to the origin $A$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"The last product is $\Omega\mathbb{J}$, the entry $J/2 + mb^2$, and $J$ is about the center of mass.",
-    errata=("C16",),
-    tolerance=1e-45,
-)
+@statement
 def trace_form() -> Measured:
     """Compare with half the sum of m |(W - 1) r|^2 over mass points."""
     right, wrong, identity = [], [], ctx.eye(3)
@@ -79,15 +59,7 @@ def trace_form() -> Measured:
     return Measured(worst(right), worst(wrong), "8 bodies, 6 displacements")
 
 
-@finding(
-    "discr.L2",
-    "equation",
-    "Section 7, equation (discr.L2)",
-    r"$L_d = \frac m2\Delta y^2 + \frac m2\Delta x^2 + (J + ma^2 + mb^2)(1 - \cos\Delta\theta) + "
-    r"am[\Delta\sin\theta\,\Delta y + \Delta\cos\theta\,\Delta x] + bm[\Delta\cos\theta\,\Delta y - "
-    r"\Delta\sin\theta\,\Delta x]$, where $\Delta f = f_{k+1} - f_k$.",
-    tolerance=1e-45,
-)
+@statement
 def discr_L2() -> Measured:
     """Compare with half the sum of m |(W - 1) r|^2 over mass points."""
     gaps = []
@@ -97,17 +69,7 @@ def discr_L2() -> Measured:
     return Measured(worst(gaps), note="8 bodies, 6 pairs of poses")
 
 
-@finding(
-    "cont.lim",
-    "equation",
-    "Section 7, equation (cont.lim) and the words after it",
-    r"“expression (discr.L2) divided by $\varepsilon$ transforms to the continuous Lagrangian (Caplag) plus higher "
-    r"order terms in $\varepsilon$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$L_d/\varepsilon^2$ tends to it.",
-    errata=("C17",),
-    tolerance=1e-40,
-)
+@statement
 def cont_lim() -> Measured:
     """Differentiate the discrete Lagrangian along poses that start with a velocity."""
     right, wrong = [], []
@@ -126,14 +88,7 @@ def _line(at: list, velocity: list) -> Callable[[Number], list]:
     return lambda e: [x + e * v for x, v in zip(at, velocity, strict=True)]
 
 
-@finding(
-    "disc.mom.sl",
-    "equation",
-    "Section 7, equation (disc.mom.sl)",
-    r"$p_\theta = (J + ma^2 + mb^2)\sin\Delta\theta + amV_2 - bmV_1$, $p_1 = mV_1 - am(1 - \cos\Delta\theta) - "
-    r"bm\sin\Delta\theta$, $p_2 = mV_2 + am\sin\Delta\theta - bm(1 - \cos\Delta\theta)$.",
-    tolerance=1e-45,
-)
+@statement
 def disc_mom_sl() -> Measured:
     """Compare with the derivatives of L_d along the group and in coordinates, and with the library on the variety."""
     gaps, library = [], []
@@ -158,14 +113,7 @@ def _in_coordinates(body: Body, before: list, after: list) -> list:
     return [-ctx.diff(lambda e, way=way: formulas.scalar_lagrangian(body, way(e), after), 0) for way in ways]
 
 
-@finding(
-    "discr.vel",
-    "equation",
-    "Section 7, equation (discr.vel)",
-    r"$V_1 = \Omega_{13} = \Delta x\cos\theta + \Delta y\sin\theta$, $V_2 = \Omega_{23} = -\Delta x\sin\theta + "
-    r"\Delta y\cos\theta$.",
-    tolerance=1e-45,
-)
+@statement
 def discr_vel() -> Measured:
     """Compare with the entries of the product of the matrices."""
     gaps = []
@@ -175,16 +123,7 @@ def discr_vel() -> Measured:
     return Measured(worst(gaps), note="6 pairs of poses")
 
 
-@finding(
-    "discr.ad.sl",
-    "equation",
-    "Section 7, equation (discr.ad.sl)",
-    r"“$p_{\omega,k} - p_{2,k}V_{1,k} + p_{1,k}V_{2,k}$”, the first row of $\mathrm{Ad}^*_{\Omega_k}P_k$",
-    verdict=Verdict.MISPRINT,
-    corrected=r"The first letter is $p_\theta$; the formula is right.",
-    errata=("C18",),
-    tolerance=1e-45,
-)
+@statement
 def discr_ad_sl() -> Measured:
     """Compare with the transpose of Ad and with the library; printed counts letters that P does not have."""
     gaps, library = [], []
@@ -198,13 +137,7 @@ def discr_ad_sl() -> Measured:
     return Measured(twin.both(worst(gaps), worst(library)), float(len(unknown)), "6 displacements, random momenta")
 
 
-@finding(
-    "discrete.free.se2.eqn",
-    "equation",
-    "Section 7, equation (discrete.free.se2.eqn)",
-    r"Without constraints $P_{k+1} = \mathrm{Ad}^*_{\Omega_k}P_k$, which is the conservation of momentum in space.",
-    tolerance=1e-45,
-)
+@statement
 def discrete_free() -> Measured:
     """Vary the middle pose of two steps, and carry the momenta before and after a step to space."""
     gaps = []
@@ -228,15 +161,7 @@ def _action(value: Callable, W: Matrix, following: Matrix, E: Matrix) -> Callabl
     return moved
 
 
-@finding(
-    "free-motion",
-    "equation",
-    "Section 7, after equation (discrete.free.se2.eqn)",
-    r"For $a = b = 0$: $\sin(\theta_{k+1} - \theta_k) = \sin(\theta_k - \theta_{k-1})$, and $(\Delta x_{k+1}, \Delta "
-    r"y_{k+1})$ and $(\Delta x_k, \Delta y_k)$ have the same components at $\theta_{k+1}$. For small angles all three "
-    r"differences are constant.",
-    tolerance=1e-45,
-)
+@statement
 def free_motion() -> Measured:
     """Compare transported momenta with the printed right sides, and with the momenta of the same step made again."""
     gaps = []
