@@ -1,7 +1,5 @@
 """Section 5: the equations of the body momentum of the sleigh, their integral and their phase portrait."""
 
-from collections.abc import Iterable
-
 import numpy as np
 
 import nonholo as nh
@@ -35,10 +33,6 @@ def _turning_rate(body: Body, turning: Number, p_1: Number) -> Number:
     return rate[0] + body.b * rate[1]
 
 
-def _gaps(left: Iterable, right: Iterable) -> list:
-    return [x - y for x, y in zip(left, right, strict=True)]
-
-
 @statement
 def eps_se2() -> Measured:
     """Compare with the pairing of the momentum with the brackets of the velocity and the basis, on and off v2 = 0."""
@@ -47,14 +41,14 @@ def eps_se2() -> Measured:
         for v in ([*twin.numbers(541 + k, 3, -3, 3)], [*twin.numbers(551 + k, 2, -3, 3), ctx.zero]):
             velocity = twin.hat(PLANE, v)
             defined = rates(PLANE, points(body), EVERY, velocity)
-            gaps += _gaps(formulas.momentum_rates(momenta_at(PLANE, points(body), velocity), v), defined)
+            gaps += twin.differences(formulas.momentum_rates(momenta_at(PLANE, points(body), velocity), v), defined)
     return Measured(worst(gaps), note="8 bodies, 16 velocities")
 
 
 @statement
 def ch_sl_1() -> Measured:
     """Compare with the equations at the admissible velocity that has these momenta."""
-    gaps = [_gaps(formulas.momentum_equation(body, *p), _rates(body, p)) for body in BODIES for p in MOMENTA]
+    gaps = [twin.differences(formulas.momentum_equation(body, *p), _rates(body, p)) for body in BODIES for p in MOMENTA]
     return Measured(max(map(worst, gaps)), note="8 bodies, 6 momenta")
 
 
@@ -80,7 +74,11 @@ def cont_sl_int() -> Measured:
 def sleqns() -> Measured:
     """Compare with the equations of bodies whose center of mass is on the axis of the blade."""
     centered = [body._replace(b=ctx.zero) for body in BODIES]
-    gaps = [_gaps(formulas.momentum_equation_centered(body, *p), _rates(body, p)) for body in centered for p in MOMENTA]
+    gaps = [
+        twin.differences(formulas.momentum_equation_centered(body, *p), _rates(body, p))
+        for body in centered
+        for p in MOMENTA
+    ]
     return Measured(max(map(worst, gaps)), note="8 bodies, 6 momenta")
 
 
@@ -92,7 +90,7 @@ def b_irrelevant() -> Measured:
         for turning, p_1 in MOMENTA:
             rate = _rates(body, [turning - body.b * p_1, p_1])
             centered = _rates(body._replace(b=ctx.zero), [turning, p_1])
-            gaps += _gaps([rate[0] + body.b * rate[1], rate[1]], centered)
+            gaps += twin.differences([rate[0] + body.b * rate[1], rate[1]], centered)
     return Measured(worst(gaps), note="8 bodies, 6 momenta")
 
 
@@ -109,7 +107,7 @@ def suslov_portrait() -> Measured:
             omega = twin.hat(group, [turning / inertia[0, 0], p_1 / m, 0])
             top = [twin.inner(omega * tensor, omega * E - E * omega) for E in brackets]
             rate = _rates(body, [turning - b * p_1, p_1])
-            gaps += _gaps([rate[0] + b * rate[1], rate[1]], top)
+            gaps += twin.differences([rate[0] + b * rate[1], rate[1]], top)
     return Measured(worst(gaps), note="8 bodies and their tops, 6 momenta: the same equations")
 
 

@@ -138,14 +138,14 @@ def stationary_center() -> Measured:
     J, half = data.body("aligned"), ctx.sqrt(ctx.mpf(1) / 2)
     q = [half, ctx.mpf(0), half]
     W = data.rotation(q)
-    moved = data.differences(data.turned(J, W)[:2], data.momentum(J, W)[:2])
+    moved = twin.differences(data.turned(J, W)[:2], data.momentum(J, W)[:2])
     right = [*moved, *_slopes(J, q)]
     facts = []
     for name in GENERIC:
         J = data.body(name)
         for _, point in critical_points(J):
             W = data.rotation(point)
-            change = data.differences(data.turned(J, W)[:2], data.momentum(J, W)[:2])
+            change = twin.differences(data.turned(J, W)[:2], data.momentum(J, W)[:2])
             facts.append(twin.worst(change) > 1e-6)
         center = data.array(data.rotation(critical_points(J)[1][1]))
         facts.append(not nh.branches(data.discrete(J), displacement=center).is_real.any())

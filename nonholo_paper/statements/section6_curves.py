@@ -102,7 +102,7 @@ def meeting_ovals() -> Measured:
         low = critical_roots(J)[0] / 4
         for pair in itertools.chain(*(_double_points(J, ctx.mpf(angle)) for angle in (0.01, 0.2, 0.5, 0.7))):
             momenta = [data.momentum(J, _reflected(n)) for n in pair]
-            exact += data.differences(*momenta)
+            exact += twin.differences(*momenta)
             sides, level = [_outside(J, n) for n in pair], data.reduced_energy(J, momenta[0]) / low
             if level < 1 and sides[0] * sides[1] < 0:
                 apart.append(float(min(map(abs, sides))))

@@ -36,7 +36,7 @@ def equations() -> Measured:
     group, lagrangian = SO(3), twin.trace_lagrangian(data.body("generic"))
     J, W, after = _steps()[0]
     carried = twin.coadjoint(group, W, twin.momentum(group, lagrangian, W))
-    moved = twin.hat(group, data.differences(twin.momentum(group, lagrangian, after), carried))
+    moved = twin.hat(group, twin.differences(twin.momentum(group, lagrangian, after), carried))
     exact += list(moved - ctx.matrix(formulas.multiplier_matrix(_multiplier(J, W, after))))
     orbit = nh.simulate(data.discrete(J), displacement=data.array(W), steps=1)
     library += list((orbit.displacement[1] - data.array(after)).ravel())
@@ -50,8 +50,8 @@ def arriving() -> Measured:
     exact, library = [], []
     for J, q, W in data.samples():
         turned, vector = data.turned(J, W), W.T * ctx.matrix(data.momentum(J, W))
-        exact += data.differences(turned, formulas.arriving(J, q)) + data.differences(turned, list(vector))
-        exact += data.differences(turned, twin.vee(SO(3), formulas.turned_difference(W, J)))
+        exact += twin.differences(turned, formulas.arriving(J, q)) + twin.differences(turned, list(vector))
+        exact += twin.differences(turned, twin.vee(SO(3), formulas.turned_difference(W, J)))
         P = nh.discrete_legendre(data.discrete(J), data.array(W), side="right")
         library += list(P - [float(x) for x in turned])
     return Measured(twin.both(twin.worst(exact), twin.worst(library)), note="8 bodies, 12 displacements")
@@ -65,9 +65,9 @@ def vector_form() -> Measured:
         J, W, q = data.body(name), data.cayley(y), data.point_of([ctx.mpf(v) for v in y])
         for tangents in data.successors(name, y):
             after = data.cayley(tangents)
-            moved, mu = data.differences(data.momentum(J, after), data.momentum(J, W)), _multiplier(J, W, after)
-            right += data.differences(moved, formulas.change(J, q, formulas.multiplier_of_vector(mu)))
-            wrong += data.differences(moved, formulas.change(J, q, formulas.printed_multiplier_of_vector(mu)))
+            moved, mu = twin.differences(data.momentum(J, after), data.momentum(J, W)), _multiplier(J, W, after)
+            right += twin.differences(moved, formulas.change(J, q, formulas.multiplier_of_vector(mu)))
+            wrong += twin.differences(moved, formulas.change(J, q, formulas.printed_multiplier_of_vector(mu)))
     return Measured(twin.worst(right), twin.worst(wrong), NOTE)
 
 
@@ -76,7 +76,7 @@ def orthogonal_change() -> Measured:
     """Multiply the change, of matrices and of the formula, with the axis."""
     right = []
     for J, q, W in data.samples():
-        moved = data.differences(data.turned(J, W), data.momentum(J, W))
+        moved = twin.differences(data.turned(J, W), data.momentum(J, W))
         right += [moved[0] * q[1] + moved[1] * q[2]]
         change = formulas.change(J, q, 1)
         right += [change[0] * q[1] + change[1] * q[2]]

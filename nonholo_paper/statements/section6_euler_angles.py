@@ -117,7 +117,7 @@ def kinetic_energy() -> Measured:
     for angles, rates in _motions():
         R = _attitude(angles)
         X = R.T * data.slope(lambda t, a=angles, r=rates: _attitude(_moved(a, r, t)))
-        missed += data.differences(twin.vee(SO(3), X), formulas.body_velocity(angles, rates))
+        missed += twin.differences(twin.vee(SO(3), X), formulas.body_velocity(angles, rates))
         for masses in data.MASSES:
             J = ctx.diag(masses)
             A = [J[1, 1] + J[2, 2], J[0, 0] + J[2, 2], J[0, 0] + J[1, 1]]

@@ -7,6 +7,7 @@ from nonholo_paper import _twin as twin
 from nonholo_paper._claims import statement
 from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, ctx
+from nonholo_paper.formulas import general
 from nonholo_paper.formulas import suslov_displacements as formulas
 
 
@@ -43,7 +44,7 @@ def lagrangian() -> Measured:
         printed = twin.momentum(group, lambda X, J=J: formulas.printed_lagrangian(X, J), W)
         right.append(formulas.lagrangian(W, J) - twin.trace_lagrangian(J)(W))
         right += [2 * p + m for p, m in zip(printed, M, strict=True)]
-        wrong += data.differences(printed, M)
+        wrong += twin.differences(printed, M)
     return Measured(twin.worst(right), twin.worst(wrong), "n = 3, 4, 5, admissible and other rotations")
 
 
@@ -53,9 +54,9 @@ def momentum() -> Measured:
     exact, library = [], []
     for J, W in _tops():
         group = SO(W.rows)
-        M = twin.vee(group, formulas.momentum(W, J))
+        M = twin.vee(group, general.matrix_momentum(W, J))
         P = twin.momentum(group, twin.trace_lagrangian(J), W)
-        exact += data.differences(P, M)
+        exact += twin.differences(P, M)
         library += list(nh.discrete_legendre(data.discrete(J), data.array(W)) - data.array(ctx.matrix(M)).ravel())
     return Measured(twin.both(twin.worst(exact, *_limit()), twin.worst(library)), note="n = 3, 4, 5, all rotations")
 
@@ -65,6 +66,6 @@ def _limit() -> list[Matrix]:
     missed = []
     for n in (3, 4):
         J, velocity = data.random_body(n, n), twin.hat(SO(n), twin.numbers(n + 5, SO(n).dim))
-        slope = data.slope(lambda e, J=J, X=velocity: formulas.momentum(twin.exp(e * X), J))
+        slope = data.slope(lambda e, J=J, X=velocity: general.matrix_momentum(twin.exp(e * X), J))
         missed.append(slope - formulas.small_momentum(velocity, J))
     return missed

@@ -19,8 +19,8 @@ def system() -> Measured:
         target = data.turned(J, data.cayley(y))
         for after in data.successors(name, y):
             q, M = data.point_of(after), data.momentum(J, data.cayley(after))
-            right += data.differences([*formulas.restricted(J, q), formulas.last(J, q)], [*target[:2], M[2]])
-            wrong += data.differences(
+            right += twin.differences([*formulas.restricted(J, q), formulas.last(J, q)], [*target[:2], M[2]])
+            wrong += twin.differences(
                 [*formulas.printed_restricted(J, q), formulas.printed_last(J, q)], [*target[:2], M[2]]
             )
     return Measured(twin.worst(right), twin.worst(wrong), NOTE)
@@ -32,7 +32,7 @@ def last_momentum() -> Measured:
     right, lacking = [], []
     for J, q, W in data.samples():
         M = data.momentum(J, W)
-        right += data.differences([*formulas.restricted(J, q), formulas.last(J, q)], formulas.momentum(J, q))
+        right += twin.differences([*formulas.restricted(J, q), formulas.last(J, q)], formulas.momentum(J, q))
         right.append(formulas.last(J, q) - M[2])
         lacking.append(len(M) - len(formulas.printed_restricted(J, q)))
     return Measured(twin.worst(right), max(lacking), "8 bodies, 12 displacements")

@@ -27,7 +27,7 @@ def diagonal_momentum() -> Measured:
         for q, W in data.turns():
             X = W * ctx.diag(masses) - ctx.diag(masses) * W.T
             vector = [-X[1, 2], X[0, 2], -X[0, 1]]
-            missed += data.differences(vector, formulas.diagonal_momentum(masses, q))
+            missed += twin.differences(vector, formulas.diagonal_momentum(masses, q))
     return Measured(twin.worst(missed), note="4 diagonal bodies, 12 displacements")
 
 
@@ -62,7 +62,7 @@ def full() -> Measured:
     exact, library = [], []
     for J, q, W in data.samples():
         M = formulas.momentum(J, q)
-        exact += data.differences(data.momentum(J, W), M)
+        exact += twin.differences(data.momentum(J, W), M)
         library += list(nh.discrete_legendre(data.discrete(J), data.array(W)) - [float(x) for x in M])
     return Measured(twin.both(twin.worst(exact), twin.worst(library)), note=NOTE)
 
@@ -120,7 +120,7 @@ def singularities() -> Measured:
             first, second, pinch, across = ([ctx.mpf(0)] * 3 for _ in range(4))
             first[i], first[j], second[i], second[j] = ctx.mpf("0.6"), ctx.mpf("0.8"), ctx.mpf("0.8"), ctx.mpf("0.6")
             pinch[i], pinch[j], across[i], across[j] = root, root, root, -root
-            exact += data.differences(formulas.momentum(J, first), formulas.momentum(J, second))
+            exact += twin.differences(formulas.momentum(J, first), formulas.momentum(J, second))
             turned = data.slope(lambda e, p=pinch, d=across, J=J: ctx.matrix(_along(J, p, d, e)))
             exact += list(turned)
             library.append(_distances(J, formulas.momentum(J, pinch)).min())
@@ -148,7 +148,7 @@ def four_images() -> Measured:
     target = data.momentum(J, data.cayley(y))
     rational = [[ctx.mpf(-1) / 4, ctx.mpf(-3) / 8], [ctx.mpf(-16) / 13, ctx.mpf(-24) / 13]]
     momenta = [formulas.momentum(J, data.point_of(v)) for v in found + rational]
-    missed = [x for M in momenta for x in data.differences(M[:2], target[:2])]
+    missed = [x for M in momenta for x in twin.differences(M[:2], target[:2])]
     B = (twin.trace(J) * ctx.eye(3) - J)[:2, :2]
     different = all(twin.worst([a[i] - b[i] for i in (0, 1)]) > 0.1 for k, a in enumerate(found) for b in found[:k])
     real = sum(ctx.im(v[0]) == 0 and ctx.im(v[1]) == 0 for v in found)

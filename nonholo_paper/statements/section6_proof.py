@@ -6,6 +6,7 @@ from nonholo_paper._claims import statement
 from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Number, Vector, ctx
 from nonholo_paper.formulas import suslov_integrals as formulas
+from nonholo_paper.formulas import suslov_momenta
 from nonholo_paper.statements.section6_critical_values import critical_points, critical_roots
 
 NOTE = "8 bodies, balanced, tilted, with J1 = J2 among them; 12 displacements, half-turns among them"
@@ -37,11 +38,7 @@ def _growth(J: Matrix, W: Matrix) -> tuple[Vector, Vector]:
     """Return what a step adds to the combinations of half the momenta, and their new values."""
     before = formulas.combinations(J, formulas.scaled(data.momentum(J, W)))
     after = formulas.combinations(J, formulas.scaled(data.turned(J, W)))
-    return data.differences(after, before), after
-
-
-def _side(J: Matrix, q: Vector) -> Number:
-    return J[0, 2] * q[1] + J[1, 2] * q[2]
+    return twin.differences(after, before), after
 
 
 @statement
@@ -50,8 +47,8 @@ def growth_of_second() -> Measured:
     right, wrong = [], []
     for J, q, W in data.samples():
         grown = _growth(J, W)[0][1]
-        right.append(grown - formulas.growth_of_second(_side(J, q)))
-        wrong.append(grown - formulas.printed_growth_of_second(_side(J, q)))
+        right.append(grown - formulas.growth_of_second(suslov_momenta.slope(J, q)))
+        wrong.append(grown - formulas.printed_growth_of_second(suslov_momenta.slope(J, q)))
     return Measured(twin.worst(right), twin.worst(wrong), NOTE)
 
 
@@ -61,7 +58,7 @@ def growth_of_first() -> Measured:
     right, wrong = [], []
     for J, q, W in data.samples():
         (grown, _), (after, _) = _growth(J, W)
-        s, Q = _side(J, q), formulas.stability_form(J, q)
+        s, Q = suslov_momenta.slope(J, q), formulas.stability_form(J, q)
         right += [grown - formulas.growth_of_first(s, Q), after - formulas.next_first(J, q)]
         wrong += [grown - formulas.printed_growth_of_first(s, Q), after - formulas.printed_next_first(J, q)]
     return Measured(twin.worst(right), twin.worst(wrong), NOTE)

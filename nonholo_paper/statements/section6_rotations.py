@@ -78,7 +78,7 @@ def admissible() -> Measured:
         z = [q[2], -q[1]]
         exact += [
             W - formulas.displacement(q[0], z),
-            data.differences(formulas.quaternion(z), q[1:]),
+            twin.differences(formulas.quaternion(z), q[1:]),
         ]
         library.append(float(not nh.in_exp_d(data.array(formulas.admissible(*q)), tolerance=1e-14)))
     return Measured(twin.both(twin.worst(*exact), twin.worst(library)), note=NOTE)

@@ -30,7 +30,7 @@ def mirror() -> Measured:
     right = []
     for J, q, W in _equilibria():
         M = data.momentum(J, W)
-        right += [suslov_momenta.slope(J, q), *data.differences(data.turned(J, W), [M[0], M[1], -M[2]])]
+        right += [suslov_momenta.slope(J, q), *twin.differences(data.turned(J, W), [M[0], M[1], -M[2]])]
     return Measured(twin.worst(right), note="four bodies, three points of the line each")
 
 
@@ -50,7 +50,7 @@ def no_other_equilibria() -> Measured:
     r"""Compare the change along the constraint with $4|J_{13}q_1 + J_{23}q_2|\,|(q_1, q_2)|$, and the library too."""
     exact, library = [], []
     for J, q, W in data.samples():
-        moved = data.differences(data.turned(J, W), data.momentum(J, W))
+        moved = twin.differences(data.turned(J, W), data.momentum(J, W))
         exact.append(ctx.hypot(*moved[:2]) - 4 * abs(suslov_momenta.slope(J, q)) * ctx.hypot(q[1], q[2]))
     for name in (*data.REGULAR, "tilted rod"):
         J = data.body(name)
@@ -66,12 +66,12 @@ def balanced() -> Measured:
     for name in ("balanced", "J1 = J2"):
         J = data.body(name)
         for q, W in data.turns():
-            right += data.differences(data.turned(J, W)[:2], data.momentum(J, W)[:2])
-            right += data.differences(suslov_momenta.arriving(J, q)[:2], suslov_momenta.momentum(J, q)[:2])
+            right += twin.differences(data.turned(J, W)[:2], data.momentum(J, W)[:2])
+            right += twin.differences(suslov_momenta.arriving(J, q)[:2], suslov_momenta.momentum(J, q)[:2])
             sine = ctx.hypot(q[1], q[2])
             if sine > 0.01 and q[0] > 0.01:
                 other = data.rotation([sine, q[1] * q[0] / sine, q[2] * q[0] / sine])
-                changes = data.differences(data.momentum(J, other), data.turned(J, W))
+                changes = twin.differences(data.momentum(J, other), data.turned(J, W))
                 right += changes[:2]
                 jumps.append(data.momentum(J, other)[2] - data.momentum(J, W)[2])
         orbit = nh.simulate(data.discrete(J), displacement=data.array(data.rotation(data.points()[0])), steps=20)

@@ -1,6 +1,6 @@
 """Section 7: displacements of the sleigh, discrete Lagrangian, discrete momentum and its coadjoint transport."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 
 import numpy as np
 
@@ -8,8 +8,8 @@ import nonholo as nh
 from nonholo_paper import _twin as twin
 from nonholo_paper._claims import statement
 from nonholo_paper._finding import Measured
-from nonholo_paper._sleigh_twin import BODIES, PLANE, TURNS, Body, admissible, lagrangian, points, pose, poses
-from nonholo_paper._twin import Matrix, Number, ctx, worst
+from nonholo_paper._sleigh_twin import BODIES, PLANE, TURNS, Body, admissible, lagrangian, momentum, points, pose, poses
+from nonholo_paper._twin import Matrix, Number, ctx, differences, worst
 from nonholo_paper.formulas import sleigh_continuous as continuous
 from nonholo_paper.formulas import sleigh_discrete as formulas
 
@@ -19,14 +19,6 @@ PAIRS = poses(701, 4)
 def _between(before: list, after: list) -> Matrix:
     """Return the displacement by its definition."""
     return pose(*before) ** -1 * pose(*after)
-
-
-def _momentum(body: Body, W: Matrix) -> list:
-    return twin.momentum(PLANE, lagrangian(points(body)), W)
-
-
-def _gaps(left: Iterable, right: Iterable) -> list:
-    return [x - y for x, y in zip(left, right, strict=True)]
 
 
 @statement
@@ -96,12 +88,14 @@ def disc_mom_sl() -> Measured:
         before, after = PAIRS[k % len(PAIRS)]
         velocities = formulas.discrete_velocities(before, after)
         p = formulas.momentum(body, formulas.step_angle(before, after), *velocities)
-        gaps += _gaps(p, _momentum(body, _between(before, after))) + _gaps(p, _in_coordinates(body, before, after))
+        gaps += differences(p, momentum(body, _between(before, after))) + differences(
+            p, _in_coordinates(body, before, after)
+        )
         discrete = nh.discretize(nh.ChaplyginSleigh(*map(float, body)), 1.0)
         W = admissible(TURNS[k])
         p = formulas.momentum(body, TURNS[k][0], W[0, 2], W[1, 2])
         found = nh.discrete_legendre(discrete, np.array(W.tolist(), dtype=float))
-        library += _gaps([*map(float, p)], found)
+        library += differences([*map(float, p)], found)
     return Measured(twin.both(worst(gaps), worst(library) / 100), note="8 bodies and displacements; momenta up to 100")
 
 
@@ -119,7 +113,7 @@ def discr_vel() -> Measured:
     gaps = []
     for before, after in PAIRS:
         W = _between(before, after)
-        gaps += _gaps(formulas.discrete_velocities(before, after), [W[0, 2], W[1, 2]])
+        gaps += differences(formulas.discrete_velocities(before, after), [W[0, 2], W[1, 2]])
     return Measured(worst(gaps), note="6 pairs of poses")
 
 
@@ -130,9 +124,9 @@ def discr_ad_sl() -> Measured:
     for k, (before, after) in enumerate(PAIRS):
         W, p = _between(before, after), twin.numbers(721 + k, 3, -2, 2)
         found = formulas.coadjoint(p, formulas.step_angle(before, after), W[0, 2], W[1, 2])
-        gaps += _gaps(found, twin.coadjoint(PLANE, W, p))
+        gaps += differences(found, twin.coadjoint(PLANE, W, p))
         double = PLANE.coadjoint(np.array(W.tolist(), dtype=float), np.array(p, dtype=float))
-        library += _gaps([*map(float, found)], double)
+        library += differences([*map(float, found)], double)
     unknown = {"p_omega", "p_1", "p_2"} - {"p_theta", "p_1", "p_2"}
     return Measured(twin.both(worst(gaps), worst(library)), float(len(unknown)), "6 displacements, random momenta")
 
@@ -143,12 +137,12 @@ def discrete_free() -> Measured:
     gaps = []
     for body, (before, after) in zip(BODIES[:6], PAIRS, strict=True):
         value, W, following = lagrangian(points(body)), _between(before, after), admissible(TURNS[0])
-        carried = twin.coadjoint(PLANE, W, _momentum(body, W))
-        for E, left, right in zip(twin.basis(PLANE), carried, _momentum(body, following), strict=True):
+        carried = twin.coadjoint(PLANE, W, momentum(body, W))
+        for E, left, right in zip(twin.basis(PLANE), carried, momentum(body, following), strict=True):
             gaps.append(ctx.diff(_action(value, W, following, E), 0) - (left - right))
-        spatial = [twin.coadjoint(PLANE, pose(*before) ** -1, _momentum(body, W))]
+        spatial = [twin.coadjoint(PLANE, pose(*before) ** -1, momentum(body, W))]
         spatial.append(twin.coadjoint(PLANE, pose(*after) ** -1, carried))
-        gaps += _gaps(*spatial)
+        gaps += differences(*spatial)
     return Measured(worst(gaps), note="6 bodies and displacements")
 
 
@@ -167,9 +161,9 @@ def free_motion() -> Measured:
     gaps = []
     for body, (before, after) in zip(BODIES[:6], PAIRS, strict=True):
         centered = Body(body.m, body.J, ctx.zero, ctx.zero)
-        carried = twin.coadjoint(PLANE, _between(before, after), _momentum(centered, _between(before, after)))
+        carried = twin.coadjoint(PLANE, _between(before, after), momentum(centered, _between(before, after)))
         along, back = formulas.tangent_velocities(before, after)
-        gaps += _gaps(carried, [body.J * ctx.sin(after[0] - before[0]), body.m * along, -body.m * back])
+        gaps += differences(carried, [body.J * ctx.sin(after[0] - before[0]), body.m * along, -body.m * back])
         following = [2 * y - x for x, y in zip(before, after, strict=True)]
-        gaps += _gaps(carried, _momentum(centered, _between(after, following)))
+        gaps += differences(carried, momentum(centered, _between(after, following)))
     return Measured(worst(gaps), note="6 bodies and steps; for large angles the supplementary angle solves it too")

@@ -8,26 +8,20 @@ from nonholo_paper._claims import statement
 from nonholo_paper._finding import Measured
 from nonholo_paper._sleigh_twin import (
     BODIES,
-    PLANE,
     TURNS,
     UNBALANCED,
     Body,
     admissible,
-    lagrangian,
-    points,
+    momentum,
     real_tangents,
     tangents,
 )
-from nonholo_paper._twin import Matrix, Number, ctx, worst
+from nonholo_paper._twin import Number, ctx, worst
 from nonholo_paper.formulas import sleigh_discrete as formulas
 
 CENTERED = [body._replace(b=ctx.zero) for body in BODIES]
 DRAWN = list(zip(twin.numbers(751, 70, -4, 4), twin.numbers(752, 70, -4, 4), strict=True))
 SMALL = list(zip(twin.numbers(753, 90, -1, 1), twin.numbers(754, 90, -2.2, 0.4), strict=True))
-
-
-def _momentum(body: Body, W: Matrix) -> list:
-    return twin.momentum(PLANE, lagrangian(points(body)), W)
 
 
 def _shifted(body: Body, p: list) -> tuple[Number, Number]:
@@ -41,7 +35,7 @@ def quartic() -> Measured:
     gaps = []
     for body in CENTERED:
         for turn in TURNS:
-            p = _momentum(body, admissible(turn))
+            p = momentum(body, admissible(turn))
             gaps.append(formulas.quartic(body, p[0], p[1], turn[0]))
         gaps += [formulas.quartic(body, ctx.mpf(3), ctx.mpf(-2), angle) for angle in (ctx.zero, 2 * ctx.pi)]
     return Measured(worst(gaps), note="8 bodies, 9 displacements")
@@ -53,7 +47,7 @@ def det_delta_phi() -> Measured:
     gaps = []
     for body in [*CENTERED[:3], *BODIES]:
         for turn in TURNS:
-            turning, p_hat = _shifted(body, _momentum(body, admissible(turn)))
+            turning, p_hat = _shifted(body, momentum(body, admissible(turn)))
             size = 1 + body.J**2 + turning**2 + p_hat**2
             gaps.append(formulas.cubic_in_sine(body.J, turning, p_hat, ctx.sin(turn[0])) / size)
     return Measured(worst(gaps), note="8 bodies, 3 of them also with b = 0, 9 displacements")
@@ -67,7 +61,7 @@ def _polynomial_gaps(body: Body, p_1: Number, turning: Number) -> list:
         sine, V_1, V_2 = formulas.third_step(body, p_1, t)
         cosine = (1 - t**2) / (1 + t**2)
         W = ctx.matrix([[cosine, -sine, V_1], [sine, cosine, V_2], [0, 0, 1]])
-        p = _momentum(body, W)
+        p = momentum(body, W)
         excess = (1 + t**2) * (p[0] + body.b * p[1] - turning)
         gaps += [excess - twin.polynomial(formulas.cubic(body.J, turning, p_hat), t), p[1] - p_1]
         gaps.append(formulas.conoid(body.J, *_shifted(body, p), body.a * p[2]))
@@ -80,7 +74,7 @@ def three_preimages() -> Measured:
     gaps, counts = [], []
     for body, (p_1, turning) in zip(UNBALANCED, DRAWN, strict=False):
         gaps += _polynomial_gaps(body, p_1, turning)
-        p = _momentum(body, ctx.matrix([[1, 0, p_1], [0, 1, turning], [0, 0, 1]]))
+        p = momentum(body, ctx.matrix([[1, 0, p_1], [0, 1, turning], [0, 0, 1]]))
         gaps.append(_shifted(body, p)[0] - body.a * p[2])
         discrete = nh.discretize(nh.ChaplyginSleigh(*map(float, body)), 1.0)
         found = nh.displacements_over(discrete, [float(turning - body.b * p_1), float(p_1)])
@@ -200,10 +194,10 @@ def ell() -> Measured:
     gaps, wrong = [], 0
     for body in (body for body in CENTERED if body.a != 0):
         for angle in (0.3, 1.7, -2.9, 6):
-            p = _momentum(body, admissible((ctx.mpf(angle), 0)))
+            p = momentum(body, admissible((ctx.mpf(angle), 0)))
             gaps += [x - y for x, y in zip(formulas.ellipse(body, ctx.mpf(angle)), _shifted(body, p), strict=True)]
         half_turn = ctx.matrix([[-1, 0, 0], [0, -1, 3], [0, 0, 1]])
-        gaps.append(_shifted(body, _momentum(body, half_turn))[1])
+        gaps.append(_shifted(body, momentum(body, half_turn))[1])
         wrong += sum(_contradicts(body, p_theta, p_hat) for p_theta, p_hat in SMALL[:20])
     body, angle, nu = CENTERED[0], ctx.mpf("3.5"), 10
     p = formulas.momentum(body, angle, nu * ctx.cos(angle / 2), nu * ctx.sin(angle / 2))

@@ -16,8 +16,9 @@ from nonholo_paper._sleigh_twin import (
     UNBALANCED,
     Body,
     admissible,
+    arriving,
     kinetic,
-    lagrangian,
+    momentum,
     points,
     pose,
     poses,
@@ -31,14 +32,6 @@ from nonholo_paper.formulas import sleigh_discrete as formulas
 
 CASES = list(zip(BODIES, TURNS, strict=False))
 SLOW = list(zip(UNBALANCED, TURNS, strict=False))
-
-
-def _momentum(body: Body, W: Matrix) -> list:
-    return twin.momentum(PLANE, lagrangian(points(body)), W)
-
-
-def _arriving(body: Body, W: Matrix) -> list:
-    return twin.arriving(PLANE, lagrangian(points(body)), W)
 
 
 def _matrix(t: Number, V_1: Number, V_2: Number) -> Matrix:
@@ -70,9 +63,9 @@ def ep_sleigh() -> Measured:
     """Vary the pose between two steps of every branch, complex ones too; and take a step of the library."""
     gaps, library = [], []
     for body, turn in SLOW:
-        carried = _arriving(body, admissible(turn))
+        carried = arriving(body, admissible(turn))
         for following in _after(body, turn)[1]:
-            p = _momentum(body, following)
+            p = momentum(body, following)
             gaps += [(carried[i] - p[i]) / (1 + abs(p[i])) for i in range(2)]
     for body, turn in SLOW[:4]:
         orbit = nh.simulate(_discrete(body), displacement=_double(admissible(turn)), steps=1)
@@ -89,7 +82,7 @@ def transported_in_space() -> Measured:
     for (body, turn), (start, _) in zip(CASES, poses(761, 6), strict=True):
         moved = pose(*start) * admissible(turn)
         after = [start[0] + turn[0], moved[0, 2], moved[1, 2]]
-        carried = _arriving(body, admissible(turn))[:2]
+        carried = arriving(body, admissible(turn))[:2]
         shown = formulas.next_in_space(body, start, after)
         right += [shown[0] - carried[0], formulas.printed_next_in_space(body, start, after)[0] - carried[0]]
         right.append(formulas.next_in_space(body, start, after)[1] - carried[1])
@@ -103,7 +96,7 @@ def discrete_constr() -> Measured:
     gaps, library = [], []
     for body, turn in CASES:
         W = admissible(turn)
-        p, carried = _momentum(body, W), _arriving(body, W)
+        p, carried = momentum(body, W), arriving(body, W)
         found = formulas.next_momenta(body, p[0], p[1], turn[0], W[1, 2])
         gaps += [x - y for x, y in zip(found, carried, strict=False)]
         if body.a != 0 and abs(turn[0]) < 1.5:
@@ -118,7 +111,7 @@ def three_steps() -> Measured:
     gaps = []
     for body, turn in SLOW:
         wanted, found = _after(body, turn)
-        gaps += [(p - q) / (1 + abs(q)) for W in found for p, q in zip(_momentum(body, W), wanted, strict=False)]
+        gaps += [(p - q) / (1 + abs(q)) for W in found for p, q in zip(momentum(body, W), wanted, strict=False)]
     letters = {"V_x", "p_x"} - {"V_1", "V_2", "p_theta", "p_1", "p_2"}
     wrong = letters | ({"p_theta", "p_2"} - {"p_theta", "p_1"})
     return Measured(worst(gaps), float(len(wrong)), "7 bodies, 3 branches each")
@@ -181,10 +174,10 @@ def dis_chapl_int() -> Measured:
         scale = 2 * body.m * (body.J + body.m * body.a**2)
         _, branches = _after(body, turn)
         for W in branches:
-            before, after = _momentum(body, W), _arriving(body, W)
+            before, after = momentum(body, W), arriving(body, W)
             value = continuous.energy_integral(body, before[0], before[1])
             gaps.append((continuous.energy_integral(body, after[0], after[1]) - value) / (1 + worst(after) ** 2))
-        p = _momentum(body, admissible(turn))
+        p = momentum(body, admissible(turn))
         energy = kinetic(points(body))(velocity_of(PLANE, points(body), ALONG, p[:2]))
         gaps.append((scale * energy - continuous.energy_integral(body, p[0], p[1])) / (1 + scale * energy))
     return Measured(worst(gaps), note="7 bodies, 3 branches each; relative to the squares of the momenta")
@@ -206,8 +199,8 @@ def stationary_line() -> Measured:
     """Put shifts along the blade into the map and into the library."""
     gaps, library = [], []
     for body in UNBALANCED:
-        p = _momentum(body, admissible((0, ctx.mpf("0.4"))))
-        carried = _arriving(body, admissible((0, ctx.mpf("0.4"))))
+        p = momentum(body, admissible((0, ctx.mpf("0.4"))))
+        carried = arriving(body, admissible((0, ctx.mpf("0.4"))))
         gaps += [p[0] + body.b * p[1], p[2], *(x - y for x, y in zip(carried, p, strict=True))]
         gaps += [x - y for x, y in zip(formulas.next_momenta(body, p[0], p[1], 0, 0), p, strict=False)]
         orbit = nh.simulate(_discrete(body), displacement=_double(admissible((0, ctx.mpf("0.4")))), steps=5)
@@ -221,15 +214,15 @@ def multiplier_of_branch() -> Measured:
     gaps = []
     for body, turn in SLOW:
         W = admissible(turn)
-        p, carried = _momentum(body, W), _arriving(body, W)
+        p, carried = momentum(body, W), arriving(body, W)
         for following in _after(body, turn)[1]:
-            p_2 = _momentum(body, following)[2]
+            p_2 = momentum(body, following)[2]
             gaps.append((p_2 - carried[2] - formulas.multiplier(body, turn[0], p[2], p_2)) / (1 + abs(p_2)))
     body = BODIES[3]
     p_1 = -(body.J + 2 * body.m * body.a**2) / body.a
     t = max(real_tangents(body.J, 0, -body.J), key=abs)
     other = _matrix(t, *formulas.third_step(body, p_1, t)[1:])
-    p = _momentum(body, other)
+    p = momentum(body, other)
     gaps += [p[0] + body.b * p[1], p[1] - p_1]
     return Measured(worst(gaps), float(abs(p[2])), "7 bodies, 3 branches each")
 
@@ -244,9 +237,9 @@ def balanced_branches() -> Measured:
     for body in BALANCED:
         angle = ctx.mpf("0.8")
         W = admissible((angle, ctx.mpf("0.5")))
-        p, carried = _momentum(body, W), _arriving(body, W)
+        p, carried = momentum(body, W), arriving(body, W)
         t = ctx.tan((ctx.pi - angle) / 2)
-        other = _momentum(body, _matrix(t, *formulas.third_step(body, p[1], t)[1:]))
+        other = momentum(body, _matrix(t, *formulas.third_step(body, p[1], t)[1:]))
         for momenta in (carried, other, formulas.next_momenta(body, p[0], p[1], angle, W[1, 2])):
             gaps += [x - y for x, y in zip(momenta[:2], p, strict=False)]
         gaps.append(body.J * ctx.sin(angle) - p[0] - body.b * p[1])
@@ -279,7 +272,7 @@ def footnote_spiral() -> Measured:
         shifts = [ctx.mpf("0.7") * ctx.cos(angle) ** k for k in range(6)]
         steps = [pose(angle, shift, 0) for shift in shifts]
         for W, following in itertools.pairwise(steps):
-            pairs = zip(_arriving(centered, W)[:2], _momentum(centered, following), strict=False)
+            pairs = zip(arriving(centered, W)[:2], momentum(centered, following), strict=False)
             gaps += [x - y for x, y in pairs]
         place = ctx.eye(3)
         for k, W in enumerate(steps):
