@@ -151,7 +151,7 @@ def compare(orbit: AbstractOrbit | Sequence[AbstractOrbit], flow: AbstractOrbit)
 
     $$ |r_k - r(t_k)|, \qquad \|g_k^{-1}g(t_k) - I\| \ \text{or}\ |q_k - q(t_k)|, \qquad E_k - E(t_k). $$
 
-    A flow of a body on a group is asked for its states at the times of the other orbit (`Orbit.at`). Of two orbits of
+    The states of a flow of a body on a group are those at the times of the other orbit (`Orbit.at`). Of two orbits of
     which saved states are all there is, states at equal times are compared. Momenta are those along admissible
     directions, which approach the flow's with the order of the map; the full momentum of a discrete orbit contains
     half an impulse of the constraint. The Frobenius norm is defined for each group and all angles: for a turn by

@@ -31,7 +31,7 @@ Difference = str | Callable[[Array], Array]
 class Scheme:
     """A system, a time step, a discrete Lagrangian and a displacement variety.
 
-    A class of its own, not a protocol: to try whether an object obeys one would ask it for its variety, whose matrices
+    A class, not a protocol: to try whether an object obeys one would ask it for its variety, whose matrices
     fill the memory for wide bodies.
 
     Attributes:

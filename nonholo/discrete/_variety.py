@@ -112,7 +112,7 @@ def _variety(group: AbstractMatrixGroup, rows: tuple, constraint: str) -> Variet
 
 
 def _cubes_stay(group: AbstractMatrixGroup, subspace: np.ndarray, annihilator: np.ndarray) -> bool:
-    """Tell whether X^3 lies in the subspace for every X in it; a polynomial identity, tried on random X."""
+    """Return whether X^3 lies in the subspace for every X in it; a polynomial identity, tried on random X."""
     X = group.hat(np.random.default_rng(0).normal(size=(4, len(subspace))) @ subspace)
     forbidden = forbidden_matrices(group, annihilator)
     escape = np.einsum("jab,iab->ij", forbidden, X @ X @ X)

@@ -34,7 +34,7 @@ def sweep(
     """Run a task for every member of a design and keep what it returns in one store.
 
     The result does not depend on how members are cut in blocks, on workers or on what was interrupted: members take
-    their random numbers by their index. `outcome` says how each member ended; a member for which the task raises has
+    their random numbers by their index. `outcome` has the end of each member; a member for which the task raises has
     no numbers (NaN, the least integer) and the outcome 100, and the others are done.
 
     Args:
@@ -124,7 +124,7 @@ def resume(
     """Resume the run or the sweep of a store, with the bits of one that was never stopped.
 
     Every finished block is read first. A missing, cut or changed chunk is reported by name in a `RuntimeWarning`, and
-    its block is computed again, an orbit's from its last checkpoint. What is finished and sound is only opened.
+    its block is computed again, an orbit's from its last checkpoint. A store that is finished and sound is only opened.
 
     Args:
         store: A store that `simulate(..., store=...)` or `sweep` began.
@@ -136,8 +136,8 @@ def resume(
         task: The task of a sweep; needed if it is, or holds, a custom function, which a store only names.
         members: How many members a random design is to have, more than it has: it grows by those that are missing, in
             blocks as large as before. Those that are there stay; the result has the bits of a sweep of all of them.
-        trust: Import those functions by the names that the store gives. They run with your rights, whatever they are,
-            so only for a store whose maker you trust; without it nothing runs that you did not pass.
+        trust: Import those functions by the names that the store gives. They run with your rights: name only
+            functions of a store whose maker you trust; without it nothing runs that you did not pass.
         scheduler: As in `sweep`.
         workers: As in `sweep`.
         throw: Raise if an orbit cannot continue; otherwise return the good steps and the outcome.
@@ -161,7 +161,7 @@ def resume(
     store = path("resume(store=...)", store)
     kind = io.format_of(store)
     if kind is None and store.exists():
-        got, remedy = f"'{store}', whose zarr.json does not say so", "Check the path, or run it again."
+        got, remedy = f"'{store}', whose zarr.json does not record it", "Check the path, or run it again."
         raise error("resume(store=...)", "be a store of a run or a sweep", got, remedy)
     if kind == io.SWEEP_FORMAT:
         others, owner, remedy = {"discrete": discrete, "events": events}, "an orbit", "Pass task=..., or nothing."

@@ -75,7 +75,7 @@ def store_to_csv(
 ) -> None:
     """Write the poses of a store as `orbit_to_csv` does, chunk by chunk: an orbit of any length needs little memory.
 
-    Of a run that is not finished the finished blocks are written, and a `RuntimeWarning` says how far they go. The
+    Of a run that is not finished the finished blocks are written, and a `RuntimeWarning` names the last step. The
     store is read twice: damage is found before the first row is written.
 
     Args:

@@ -43,7 +43,7 @@ Motion = tuple[Array, Array, Array]
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretization[OrbitT]):
-    r"""A discretized system: it says how a run starts.
+    r"""A discretized system, which checks the start of a run.
 
     $$ D_1 L_d(q_k, q_{k+1}) + D_2 L_d(q_{k-1}, q_k) = -\sum_j \lambda_j A^j(q_k), \qquad F(q_k, q_{k+1}) = 0, $$
 

@@ -59,7 +59,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
 
     @abc.abstractmethod
     def _configurations(self) -> str:
-        """Say what configurations are."""
+        """Return in words what configurations are."""
 
     def __repr__(self) -> str:
         span = f", time {self.time[0]:g} to {self.time[-1]:g}" if len(self) else ""
@@ -106,8 +106,8 @@ class AbstractCoordinateOrbit(AbstractOrbit):
 
         $$ \dot W = f\cdot v + \lambda\cdot b - \partial L/\partial t: $$
 
-        that of the force, of moving constraints and driven joints, and of a Lagrangian of the time. The energy less
-        this work is constant up to an error of order 2 in the time between states.
+        the power of the force, of moving constraints and driven joints, and of a Lagrangian of the time. The energy
+        less this work is constant up to an error of order 2 in the time between states.
         """
         if not self.system.has_functions:
             return np.full(len(self), np.nan if self.system.is_driven else 0.0)
@@ -130,9 +130,9 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     def tangent(self) -> Float[np.ndarray, "L d d"]:
         r"""Derivative of each state by the one before, in orthonormal bases of the admissible changes of (q, v).
 
-        Those of (q, v) that keep $A(q)v = b$, of a map the discrete constraint, and m holonomic ones, d = 2 n - s - m;
-        on a group $\xi$ of $g\,e^\xi$ stands for q. Of a map by the implicit function of the step, of a flow by its
-        equation of variation.
+        Admissible changes of (q, v) keep $A(q)v = b$, of a map the discrete constraint, and m holonomic ones, d = 2 n -
+        s - m; on a group $\xi$ of $g\,e^\xi$ stands for q. Of a map by the implicit function of the step, of a flow by
+        its equation of variation.
         """
         return room("_tangents").tangent_map(self)
 
@@ -197,8 +197,8 @@ class CoordinateOrbit(AbstractCoordinateOrbit):
         time_step: h; None for a flow.
         save_every: Steps between saved states.
         events: What `events=` of the run found, an `EventLog`; None without.
-        step: The number of the step of each state, from 0 at the start of the run, whatever rows are taken, shape (K,);
-            of a state within a step that of its beginning. Of a flow it is the number of the requested time.
+        step: The number of the step of each state, counted from 0 at the start of the run, for all rows, shape (K,); of
+            a state within a step the number of its beginning. Of a flow it is the number of the requested time.
 
     Example:
         >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
@@ -250,8 +250,8 @@ class GroupOrbit(AbstractCoordinateOrbit):
         time_step: h; None for a flow.
         save_every: Steps between saved states.
         events: What `events=` of the run found, an `EventLog`; None without.
-        step: The number of the step of each state, from 0 at the start of the run, whatever rows are taken, shape (K,);
-            of a state within a step that of its beginning. Of a flow it is the number of the requested time.
+        step: The number of the step of each state, counted from 0 at the start of the run, for all rows, shape (K,); of
+            a state within a step the number of its beginning. Of a flow it is the number of the requested time.
 
     Example:
         >>> from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, mass_tensor_lagrangian

@@ -99,7 +99,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
 
     Raises:
         ValueError: A function that JAX cannot trace, that does not take the parameters there are, or whose result is
-            not real or has the wrong shape; an unknown rule; a driven system with discrete functions of its own; names
+            not real or has the wrong shape; an unknown rule; a driven system with its own discrete functions; names
             that are not n different words; a heading that is not among them, an outline that is no drawing.
 
     Example:
@@ -206,7 +206,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         return acts or any(map(self.takes_time, _OTHERS))
 
     def with_parameters(self, **numbers: Any) -> Self:
-        r"""Return the same system with other numbers of some of its parameters; nothing is compiled anew.
+        r"""Return the same system with other numbers of some of its parameters; nothing is compiled again.
 
         Args:
             numbers: Numbers or arrays by name, as in `parameters`; JAX may trace them (`nonholo.rollout`).

@@ -28,7 +28,7 @@ class Impact:
     $$ r^+ = r - (1 + e)\,\frac{\nu\cdot B^{-1}r}{\nu\cdot B^{-1}\nu}\,\nu, \qquad
        \nu\cdot B^{-1}r^+ = -e\,\nu\cdot B^{-1}r. $$
 
-    So the constraint holds after it, and with restitution $e = 1$ the kinetic energy is the same, whatever n is; in
+    So the constraint holds after it, and with restitution $e = 1$ the kinetic energy is the same for every n; in
     general it falls by $\tfrac12(1 - e^2)(\nu\cdot B^{-1}r)^2/(\nu\cdot B^{-1}\nu)$. In a discrete map the step is cut
     there: the part of it that leads to the wall, the reflection, then the part of the length that is left, in which
     there may be more impacts. `orbit.events[name].states` are the states before the impacts, `.after` those after them.
@@ -206,7 +206,7 @@ def checked_events(owner: str, events: Any) -> dict[str, Event]:
 
 
 def has_resets(events: dict[str, Event]) -> bool:
-    """Tell whether an event changes the motion."""
+    """Return whether an event changes the motion."""
     return any(event.reset is not None for event in events.values())
 
 

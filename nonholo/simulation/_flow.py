@@ -110,7 +110,7 @@ def flow(
             to the next are found, and located on the solution; see `Orbit.events`. Two of them between two such times
             are not seen: ask for more times. A stopping event ends the orbit with the last requested time before it.
             One with a `reset` changes the motion: the flow begins again at each `Impact`.
-        progress: Show on standard error how far the time has come.
+        progress: Show the time on standard error.
 
     Returns:
         The orbit. It has no displacements, and its multipliers are the forces at its times. Of a system in coordinates
@@ -153,7 +153,7 @@ def flow(
 
 
 class _Task(NamedTuple):
-    """The equations of a system at times, by a method, and whether poses are asked for."""
+    """The equations of a system at times, by a method, and whether with poses."""
 
     system: System
     time: np.ndarray
@@ -209,9 +209,9 @@ def _solve_flow(
 def _flow_between_walls(task: _Task, first: FirstState, events: dict[str, Event]) -> Orbit:
     """Return the orbit from a first state, with impacts."""
     if not task.reconstruct:
-        refuse_resets("flow", events, "those of a flow without poses: reconstruct=False")
+        refuse_resets("flow", events, "impacts of a flow without poses: reconstruct=False")
     if task.time[-1] < task.time[0]:
-        refuse_resets("flow", events, "those of a flow back in time, which has other impacts")
+        refuse_resets("flow", events, "impacts of a flow back in time, which has other impacts")
     opening = task.opening(first)
     values_of(events, opening)
     check_resets(events, opening)

@@ -109,7 +109,7 @@ class Watch:
         return dataclasses.replace(self, values=values, heading=None if there.turned is None else there.turned[-1])
 
     def is_beyond(self, values: Float[np.ndarray, "E 1"]) -> Bool[np.ndarray, "E 1"]:
-        """Tell of which events values mean that the body is beyond a wall, or at one, before which it was last."""
+        """Return the events whose values mean that the body is beyond a wall, or at one, before which it was last."""
         side = np.sign(self.values)  # type: ignore[call-overload]
         guards = [(event.reset is not None, event.direction) for event in self.events.values()]
         has_wall, direction = np.array(guards).T[:, :, None]
@@ -265,7 +265,7 @@ def _cut_ends(
 
 
 def changes(event: Event, values: Float[np.ndarray, "... K"]) -> Bool[np.ndarray, "... L"]:
-    """Tell for each state but the last whether the motion crosses in the step from there."""
+    """Return for each state but the last whether the motion crosses in the step from there."""
     sign = np.sign(values)
     before, after = sign[..., :-1], sign[..., 1:]
     crosses = (before != 0) & (after != before)

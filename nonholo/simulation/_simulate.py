@@ -79,7 +79,7 @@ def simulate(
             as its last block.
         checkpoint_every: Steps between two checkpoints of the store, a multiple of `save_every`; by default blocks of a
             few megabytes. A run that is stopped loses at most this many steps.
-        scenario: A text that says how the orbit is made, kept in the store.
+        scenario: A text that describes the making of the orbit, kept in the store.
 
     Returns:
         The orbit; of a system in coordinates a `nonholo.lagrange_dalembert.CoordinateOrbit`.
@@ -163,7 +163,7 @@ def iterate(
         backend: As in `simulate`.
         events: As in `simulate`; the `events` of a block are those after the last step of the block before. The block
             in which an event stops the run is the last one.
-        throw: Raise if the run cannot continue, after its last good block; otherwise that block's outcome says so.
+        throw: Raise if the run cannot continue, after its last good block; otherwise that block's outcome reports it.
         progress: Show a progress bar on standard error.
 
     Returns:

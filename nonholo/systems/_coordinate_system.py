@@ -129,7 +129,7 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
 
 
 def in_coordinates(discrete: Any) -> "TypeIs[AbstractCoordinateDiscretization]":
-    """Tell whether something is a discretized system in coordinates.
+    """Return whether something is a discretized system in coordinates.
 
     Example:
         >>> in_coordinates(nh.discretize(nh.examples.particle().system, 0.1)), in_coordinates(None)

@@ -1,4 +1,4 @@
-"""The start of a motion, whatever runs it: exactly one start, a pose of the group, an admissible velocity."""
+"""The start of a motion, for every kind of run: exactly one start, a pose of the group, an admissible velocity."""
 
 import dataclasses
 from typing import Any

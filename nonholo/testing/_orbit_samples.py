@@ -227,7 +227,7 @@ def slope(errors: list[float]) -> float:
 
 
 def off_two(errors: list[float]) -> float:
-    """Return how far the order of errors is from two; zero of rounding."""
+    """Return the distance of the order of errors from two; zero of rounding."""
     return abs(slope(errors) - 2) if errors[-1] > EXACT else 0.0
 
 

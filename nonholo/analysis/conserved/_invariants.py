@@ -58,7 +58,7 @@ def invariants(orbit: AbstractOrbit) -> Invariants:
     Returns:
         `Invariants`, with the fields `states`, `steps`, `energy_drift` (relative), `constraint_residual`,
         `group_residual`, `reversal_defect`, `largest_step_angle` (in degrees), `outcome`, `work`: the last five None
-        where they are not defined. `help(type(nh.invariants(orbit)))` says what each of them is.
+        where they are not defined. `help(type(nh.invariants(orbit)))` describes each of them.
 
     Raises:
         ValueError: The orbit has no states.
@@ -71,7 +71,7 @@ def invariants(orbit: AbstractOrbit) -> Invariants:
     """
     where, remedy = "invariants(orbit=...)", "Pass what `simulate` or `flow` returned."
     if len(instance(where, orbit, AbstractOrbit, "be an orbit", remedy)) == 0:
-        raise error(where, "have at least one state", str(orbit), "Its outcome says why it has none.")
+        raise error(where, "have at least one state", str(orbit), "Its outcome gives the reason.")
     driven = orbit.system.forces is not None if isinstance(orbit, Orbit) else orbit.system.is_driven
     work = orbit.known_work
     return Invariants(
@@ -173,7 +173,7 @@ def conserved_momenta(system: AbstractSystem) -> ConservedMomenta:
     the spatial components always contain $\mathfrak{d}$.
 
     The lists are complete for connected groups: a linear function of p or of $\mu$ that is not in their span changes
-    along some motion. A discrete map keeps the spatial components along ideals inside $\mathfrak{d}$, whatever its
+    along some motion. A discrete map keeps the spatial components along ideals inside $\mathfrak{d}$, for every
     Lagrangian. That it keeps the others is not implied.
 
     Args:

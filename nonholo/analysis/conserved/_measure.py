@@ -180,7 +180,7 @@ class InvariantMeasure:
 
 
 def invariant_measure(motion: AbstractLLSystem | Discretization, energy: Array = 1.0) -> InvariantMeasure:
-    r"""Tell which densities of restricted momenta the flow of a system, or its discrete map, keeps.
+    r"""Return which densities of restricted momenta the flow of a system, or its discrete map, keeps.
 
     - A balanced body keeps its momenta (the principal branch is the identity): every density is invariant.
     - Any other body keeps no density that is continuous and positive near an equilibrium other than rest. An

@@ -28,7 +28,7 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
     series of its equation of variation, between its times.
 
     Args:
-        orbit: Made by `simulate` with every step saved, or by `flow`. One in coordinates has a `tangent` of its own.
+        orbit: Made by `simulate` with every step saved, or by `flow`. An orbit in coordinates has its own `tangent`.
 
     Raises:
         ValueError: Another kind of orbit, a map under a table or a function of Python or numba.
@@ -61,7 +61,7 @@ def _has_closed_derivatives(discrete: Discretization) -> bool:
 
 
 def _acts_from_outside(forces: Any) -> bool:
-    """Tell whether forces do more than the state does: by a table, or by a function that is not traced."""
+    """Return whether forces do more than the state does: by a table, or by a function that is not traced."""
     return forces is not None and (forces.needs_function or forces.table is not None)
 
 

@@ -44,7 +44,7 @@ class Minimum(NamedTuple):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Profile:
-    r"""The likelihood profile of a fitted number: $\tau$ over its values, all others fitted anew at each.
+    r"""The likelihood profile of a fitted number: $\tau$ over its values, all others fitted again at each.
 
     Attributes:
         name: Of the number.
@@ -187,7 +187,7 @@ class _Search(NamedTuple):
         return _Place(value, point, tau, rate)
 
     def holds(self, point: np.ndarray) -> bool:
-        """Tell whether there is a motion at a point."""
+        """Return whether there is a motion at a point."""
         return self.minimum.exists(point) and bool(np.isfinite(self.minimum.rows(point)).all())
 
 

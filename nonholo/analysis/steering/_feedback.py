@@ -71,7 +71,7 @@ class Feedback(Keeper):
         disturbance: Any = None,
         misreading: Any = None,
     ) -> Tracking:
-        """Run the body under the feedback, from a start of its own, with pushes that the feedback does not know.
+        """Run the body under the feedback, from a given start, with pushes that the feedback does not include.
 
         Args:
             restricted_velocity: The first velocity along the constraint; by default that of the reference.

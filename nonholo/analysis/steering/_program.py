@@ -51,7 +51,7 @@ class Steps(NamedTuple):
         return jnp.concatenate([self.nodes.residual(x, z, f, after, row), self.clearances(after), states])
 
     def clearances(self, x: Array) -> Array:
-        """Return how far points are outside of obstacles, exact in the first order where that is little."""
+        """Return the distance of points from obstacles, exact in the first order where that is little."""
         if not len(self.radii):
             return jnp.zeros(0)
         apart = self.nodes.places(x)[:, None] - self.centers

@@ -107,14 +107,14 @@ def steer(
     goal is met to rounding, not to the error of a transcription. Minima are local.
 
     "shooting" has the forces alone as unknowns, of many members at once, by derivatives of `rollout`: Newton's method
-    on the equations of the minimum begins at random controls, anew where it fails. "ipopt" has all states as unknowns
-    too, and the equations of all steps as sparse conditions with exact first and second derivatives, one member after
-    the other; it keeps clear of obstacles, and long motions do not trouble it.
+    on the equations of the minimum begins at random controls, and again where it fails. "ipopt" has all states as
+    unknowns too, and the equations of all steps as sparse conditions with exact first and second derivatives, one
+    member after the other; it keeps clear of obstacles, and long motions do not trouble it.
 
     Starts and goals may be many, with an axis of members in front. One that has no such axis is that of all of them.
 
     A system in coordinates (`LagrangeDAlembert`) is steered by "ipopt", one member, with a force on each coordinate:
-    `bounds` say which of them have motors.
+    `bounds` select those with motors.
 
     Args:
         discrete: The discretized system, of order 2, with a left-invariant constraint; or one in coordinates.
@@ -132,7 +132,7 @@ def steer(
             function of q, written with `jax.numpy`, that returns them: those of a trailer, which must not cut a disc.
         via: Positions of the body frame on the way, by number of steps: {40: (1.0, 0.5)}.
         state_bounds: The least and the largest value of what a state has, by name: {"x": (0, 3), "theta": (-1, 1)}.
-            On groups "x", "y", "z"; "theta" in the plane, of the heading whatever its turns; "restricted_velocity", a
+            On groups "x", "y", "z"; "theta" in the plane, of the heading up to full turns; "restricted_velocity", a
             number or one for each row. In coordinates their names; "body_velocity" of each step, a number or one for
             each coordinate. Infinite ones bound nothing. They hold for every state, of the goal too.
         guess: Where "ipopt" begins: positions (points, n) of a path, or a `Steering` of one member.

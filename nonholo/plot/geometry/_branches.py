@@ -196,7 +196,7 @@ def branches(
 
 
 def _is_over_momenta(discrete: Discretization, plane: str | None) -> bool:
-    """Tell whether to draw on the plane of momenta."""
+    """Return whether to draw on the plane of momenta."""
     has_deltoid = _sheet(discrete).has_deltoid
     if plane is None:
         return has_deltoid

@@ -168,7 +168,7 @@ class Track(NamedTuple):
 
 
 def track_of(orbit: AbstractOrbit) -> Track | None:
-    """Return the path of an orbit: where a body is, if its coordinates or its group say so; two coordinates else."""
+    """Return the path of an orbit: where a body is, if its coordinates or its group have it; two coordinates else."""
     space = orbit.coordinates
     if not space:
         return _track_on(orbit.space)

@@ -1,6 +1,6 @@
 """The likelihood profile of a fitted number beside the parabola of the linearized model.
 
-What measurements miss of a fitted motion, against time.
+Deviations of measurements from a fitted motion, against time.
 """
 
 from typing import TYPE_CHECKING, Any

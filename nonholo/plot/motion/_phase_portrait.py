@@ -105,7 +105,7 @@ def phase_portrait(
     Equilibria are one line through the origin, filled where they attract and empty where they repel; all other
     motions run along their ellipse from one to the other. In a balanced system every point is an equilibrium. Momenta
     of a sleigh are $(p_\theta + b p_1, p_1)$ in the axes of its blade, those of a top $(M_{13}, M_{23})$ in axes whose
-    third one is the forbidden axis, whatever the axes of the body; those of other systems are in its canonical frame.
+    third one is the forbidden axis, in every frame of the body; those of other systems are in its canonical frame.
 
     With `branches="all"` three states of a discrete orbit are followed for three steps along every real branch. All
     images stay on the ellipse. The values from one displacement coincide here, as they have the same momenta along the

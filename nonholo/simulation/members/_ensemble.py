@@ -80,7 +80,7 @@ def ensemble(
     A member that cannot continue keeps its good states: see `Ensemble` for what is where, and `outcome` for why.
 
     Args:
-        discrete: The discretized system, or a system whose flow is asked for.
+        discrete: The discretized system, or a system for its flow.
         steps: Number of steps N.
         times: Of a system instead: the times of the states, as in `flow`.
         configuration: First poses, matrices (M, N, N), in coordinates (M, n); one alone is that of all members. Bodies
@@ -190,7 +190,7 @@ def _of_steps(
     check_forces("ensemble", discrete, steps)
     watch = None if events is None else watch_for("ensemble", stepper, events)
     by_name = None if watch is None else watch.events
-    refuse_resets("ensemble", by_name or {}, "those of many members, whose steps are taken side by side")
+    refuse_resets("ensemble", by_name or {}, "impacts of many members, whose steps are taken side by side")
     plan = Plan(steps, save_every, bool(reconstruct), branch, backend, by_name)
     return discrete, plan, tuple(stepper.columns.values())
 

@@ -131,7 +131,7 @@ def executor_of(members: Members, plan: Plan) -> Callable[..., Ensemble]:
 
 
 def _has_series(members: Members, plan: Plan) -> bool:
-    """Tell whether flows are solved side by side; under forces those of one body are."""
+    """Return whether flows are solved side by side; under forces those of one body are."""
     system, times = members.discrete.system, cast(np.ndarray, plan.times)
     if members.in_coordinates:
         return False
@@ -140,7 +140,7 @@ def _has_series(members: Members, plan: Plan) -> bool:
 
 
 def are_side_by_side(members: Members, plan: Plan) -> bool:
-    """Tell whether members are computed side by side, in numbers of their closed form."""
+    """Return whether members are computed side by side, in numbers of their closed form."""
     return plan.branch == PRINCIPAL.name and in_lanes(members)
 
 

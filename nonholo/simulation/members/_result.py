@@ -74,7 +74,7 @@ class Ensemble:
 
     Attributes:
         members: What moves, and the parameters.
-        steps: Number of steps N that were asked for; of flows that of the times after the first.
+        steps: Number of steps N; of flows the number of times after the first.
         save_every: Steps between saved states; None if only the last one is kept.
         columns: The arrays of the orbits by name, shapes (M, K, ...): `reduced_momentum` and others of bodies, what
             an orbit tells in coordinates.
@@ -294,7 +294,7 @@ class Ensemble:
         return importlib.import_module("nonholo.simulation.members._dataset").ensemble_to_dataset(self, none)
 
     def _decode(self, name: str) -> np.ndarray:
-        """Return a quantity of orbits, NaN after a member's end; in one go where it is the same function for all."""
+        """Return a quantity of orbits, NaN after a member's end; at once where it is the same function for all."""
         if name in self.columns:
             return self.columns[name]
         good = self._good
@@ -304,7 +304,7 @@ class Ensemble:
         return np.stack([_spread(values, rows) for values, rows in zip(each, good, strict=True)])
 
     def _is_shared(self, name: str) -> bool:
-        """Tell whether a quantity is the same function of the state for all members."""
+        """Return whether a quantity is the same function of the state for all members."""
         motion = self.members.discrete
         if name == "multipliers" or motion.forces is not None:
             return False
