@@ -81,7 +81,7 @@ def numbers_of(where: str, function: Callable[..., Any], shape: tuple[int, ...],
     """Return the finite real numbers that a function of a user returns, in float64.
 
     Raises:
-        KindError: What it returns is not made of real numbers.
+        KindError: It returns values that are no real numbers.
         UndefinedError: A number is not finite.
         FunctionError: They have another shape, or it writes to its arguments.
     """

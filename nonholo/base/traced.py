@@ -108,7 +108,7 @@ def run_nodes(step: Step, begin: Any, controls: Array | None, sizes: tuple[int, 
     """Return the saved nodes after one whose `after` is the start.
 
     Args:
-        step: What takes a step.
+        step: The function that takes a step.
         begin: A node with the start.
         controls: A row for each step and one for what follows the last; None without.
         sizes: Number of steps, and of those between saved nodes.

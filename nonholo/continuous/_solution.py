@@ -56,7 +56,7 @@ class Solved(NamedTuple):
         at: Gives the states at times since the start, up to the last good one, in the order of the requested times.
         steps: Gives where steps of the solver begin and, if they are long, times within; none if they do not depend
             on the motion.
-        fault: What a function of the user did that ended it.
+        fault: The failure of a user's function that ended it.
     """
 
     states: States

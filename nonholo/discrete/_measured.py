@@ -31,7 +31,7 @@ class MeasuredMotion(AbstractMotion):
     A state's chart coordinates are those of $\log W_k$ (spatial: $\log U_k$) and $h_k$. Nothing is said between states.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: The time between poses; None where it varies.
     """
 

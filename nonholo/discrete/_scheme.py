@@ -35,7 +35,7 @@ class Scheme:
     fill the memory for wide bodies.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: The time step h.
         difference: The discrete Lagrangian: "matrix", "logarithmic" or a callable.
         constraint: The name of the variety, or its functions.

@@ -159,7 +159,7 @@ def checked_constraint(where: str, system: AbstractSystem, constraint: object) -
         got = f"a derivative {along:.3g} along d"
         raise error(where, "be tangent to d at the identity", got, "Check the functions against constraint_subspace.")
     if np.linalg.matrix_rank(derivative, tol=_ROUNDING * np.abs(derivative).max(initial=0.0)) < s:
-        raise error(where, "be independent at the identity", "dependent derivatives", "Drop what repeats another.")
+        raise error(where, "be independent at the identity", "dependent derivatives", "Drop the dependent ones.")
     return functions
 
 

@@ -62,7 +62,7 @@ def dataset(
         noise: Standard deviation of normal noise, in the unit of each number: fields `observed_...` have it.
         split: Fractions of the orbits for training, validation and test, in this order.
         file_format: "zarr" or "csv".
-        license_name: What the card says.
+        license_name: The license in the data card.
         progress: Show a progress bar on standard error.
 
     Returns:

@@ -54,7 +54,7 @@ class EnsembleTask:
         discrete: The discretized system.
         steps: Number of steps.
         start: Name of the start and its value for all members.
-        reductions: What to keep.
+        reductions: The quantities to keep.
         save_every: Steps between the states that reductions see; None for the last one alone. It is 1 with
             "lyapunov" and with the turn of a sleigh, which take all states.
         branch: The branch rule, as in `ensemble`.

@@ -44,7 +44,7 @@ class FamilyTask:
         time_step: h.
         steps: Number of steps.
         parameters: Arguments of the family that are the same for all members.
-        reductions: What to keep.
+        reductions: The quantities to keep.
         save_every: Steps between the states that reductions see; None for the last one alone.
 
     Raises:
@@ -96,7 +96,9 @@ class FamilyTask:
         for name in names:
             part = component_of(name)
             if name not in own and not (part and part[0] in own):
-                raise error("sweep(design=...)", "name what the family has", shown(name), f"It has {', '.join(own)}.")
+                raise error(
+                    "sweep(design=...)", "name arguments of the family", shown(name), f"It has {', '.join(own)}."
+                )
 
     @property
     def block(self) -> int:

@@ -38,7 +38,7 @@ def orbit_to_csv(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fa
     Numbers have as many digits as they need to be read back exactly. The file appears only when it is complete.
 
     Args:
-        orbit: What to write.
+        orbit: The orbit to write.
         path: A new file.
         overwrite: Replace an older file.
 

@@ -261,7 +261,7 @@ def save_orbit(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fals
     stays as it was.
 
     Args:
-        orbit: What to save.
+        orbit: The orbit to save.
         path: A new directory, usually named `*.zarr`; suffixes of other formats, such as .nc and .csv, are refused.
         overwrite: Replace an older store of an orbit (nothing else is ever replaced).
         scenario: Text of the scenario that was run, kept with its SHA-256.

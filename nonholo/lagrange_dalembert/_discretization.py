@@ -56,7 +56,7 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
     a momentum with itself in place of $\partial L/\partial v$; only its action on admissible velocities counts.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: h.
     """
 
@@ -112,7 +112,7 @@ class CoordinateDiscretization(AbstractLagrangeDAlembertMap[CoordinateOrbit]):
     """A discretized system in coordinates, made by `nonholo.discretize`.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: h.
 
     Example:
@@ -148,7 +148,7 @@ class GroupDiscretization(AbstractLagrangeDAlembertMap[GroupOrbit]):
     """A discretized `GroupLagrangeDAlembert`, made by `nonholo.discretize`.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: h.
 
     Example:

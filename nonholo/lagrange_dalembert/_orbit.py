@@ -193,10 +193,10 @@ class CoordinateOrbit(AbstractCoordinateOrbit):
         constraint_residual: Largest $|F_j(q_k, q_{k+1})|$, of holonomic constraints $|\Phi_j(q_{k+1})|/h$; for a flow
             $|A^j(q) v|$, shape (K,).
         outcome: How the run ended.
-        system: What moves.
+        system: The system.
         time_step: h; None for a flow.
         save_every: Steps between saved states.
-        events: What `events=` of the run found, an `EventLog`; None without.
+        events: Crossings of `events=`, an `EventLog`; None without.
         step: The number of the step of each state, counted from 0 at the start of the run, for all rows, shape (K,); of
             a state within a step the number of its beginning. Of a flow it is the number of the requested time.
 
@@ -246,10 +246,10 @@ class GroupOrbit(AbstractCoordinateOrbit):
         energy: $-\partial l_d/\partial h$ at $W_k$, for a flow $\omega\cdot\partial l/\partial\omega - l$, shape (K,).
         constraint_residual: Largest $|F_j(g_k, W_k)|$, for a flow $|a^j(g)\omega|$, shape (K,).
         outcome: How the run ended.
-        system: What moves.
+        system: The system.
         time_step: h; None for a flow.
         save_every: Steps between saved states.
-        events: What `events=` of the run found, an `EventLog`; None without.
+        events: Crossings of `events=`, an `EventLog`; None without.
         step: The number of the step of each state, counted from 0 at the start of the run, for all rows, shape (K,); of
             a state within a step the number of its beginning. Of a flow it is the number of the requested time.
 
@@ -327,7 +327,7 @@ class CoordinateFlow(CoordinateMotion):
     """The flow of a system in coordinates or on a group, as the motion of its orbits.
 
     Attributes:
-        system: What moves.
+        system: The system.
         begins: The first time, where one is set.
 
     Example:

@@ -126,7 +126,7 @@ class ClosedDecoder:
     """The same of a body with two admissible directions on SO(3) or SE(2).
 
     Attributes:
-        numbers: What the compiled loops read it with.
+        numbers: Its numbers for the compiled loops.
     """
 
     numbers: decoding.Reading

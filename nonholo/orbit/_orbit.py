@@ -125,7 +125,7 @@ class Orbit(AbstractOrbit):
         save_every: Steps between saved states.
         turned: Heading without ambiguity of full turns, where the run knows it, shape (K,).
         branch: The branch rule of a discrete run; "callable" for a function.
-        events: What `events=` of the run found, an `EventLog`: by name or position `Crossings` with their times and
+        events: Crossings of `events=`, an `EventLog`: by name or position `Crossings` with their times and
             states. None without `events=`. It stays whole in slices of the orbit. `save_orbit` does not
             keep it; the store of a run does.
         step: The number of the step of each state, counted from 0 at the start of the run, for all rows, shape (K,); of
@@ -166,7 +166,7 @@ class Orbit(AbstractOrbit):
         `constraint_residual` of `nh.invariants`, a velocity, measures whether the poses are admissible.
 
         Args:
-            system: What moves.
+            system: The system.
             time: Times of the poses, strictly increasing, in steps of any length.
             configuration: The poses, matrices (K, N, N) of the group. Small errors, up to the digits of single
                 precision, are removed: the nearest element of the group is taken.

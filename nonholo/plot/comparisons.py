@@ -27,7 +27,7 @@ def comparison(
     The ring is the largest error.
 
     Args:
-        comparison: What `compare` returned for one orbit.
+        comparison: The result of `compare` for one orbit.
         path: Where to save the figure, a new file; the suffix (.png, .svg, .pdf) chooses the format.
         overwrite: Replace an older picture at the path.
         **look: Title, label, color and more: `nh.plot.Look`.
@@ -66,7 +66,7 @@ def convergence(
     Errors at rounding, whose slope has no meaning, are drawn pale.
 
     Args:
-        convergence: What `compare` returned for several orbits.
+        convergence: The result of `compare` for several orbits.
         path: Where to save the figure, a new file; the suffix (.png, .svg, .pdf) chooses the format.
         overwrite: Replace an older picture at the path.
         **look: Title, label, color and more: `nh.plot.Look`.

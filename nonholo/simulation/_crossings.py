@@ -146,7 +146,7 @@ def flow_with_events(events: dict[str, Event], orbit: Any, steps: Float[np.ndarr
     """Return the states of a flow up to the event that ends it, with what was found.
 
     Args:
-        events: What is looked for, by name.
+        events: The events, by name.
         orbit: The flow.
         steps: Times at which steps of its solver begin: there, too, its states are looked at.
     """

@@ -28,10 +28,10 @@ class Run(NamedTuple):
     """The motion of a run and its options.
 
     Attributes:
-        stepper: What takes its steps.
+        stepper: The stepper that takes its steps.
         steps: Steps in total.
         every: Steps between saved states.
-        watch: What it looks for; None if for nothing.
+        watch: Its search for events; None without.
         throw: Whether a run that cannot continue raises.
         progress: Whether a progress bar is shown.
     """

@@ -25,7 +25,7 @@ class Watch:
     """The state of the search of a motion, stretch by stretch.
 
     Attributes:
-        events: What is looked for, by name.
+        events: The events, by name.
         part: Gives the states after parts of steps.
         begin: Gives states with the displacements of steps that begin there; of a flow the states.
         parts: Crossings of every event in each stretch so far that has some, and in the first one.
@@ -216,7 +216,7 @@ def find_crossings(
     """Return where motions cross, none of it after a crossing that ends one.
 
     Args:
-        events: What is looked for, by name.
+        events: The events, by name.
         states: Consecutive states of one motion after another.
         values: Values of the events there.
         owner: The motion of each state.

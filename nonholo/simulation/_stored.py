@@ -196,7 +196,7 @@ def _refuse_other_values(where: str, stream: "Stream", stepper: AbstractStepper[
     for name, now, then in zip(watch.events, seen_by(first_watch).values, first.of_events.values, strict=True):
         if abs(now - then) > _SAME * (1 + abs(then)):
             got = f"another one of {name!r}: {now:.17g} instead of {then:.17g} at the first state"
-            raise error(where, "be the functions of the store", got, "Pass those it was run with.")
+            raise error(where, "be the functions of the store", got, "Pass the functions of the run.")
 
 
 def refuse_other_functions(owner: str, stream: "Stream", run: Run) -> None:

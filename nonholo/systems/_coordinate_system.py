@@ -60,7 +60,7 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
     """A system in coordinates: `nonholo.discretize` and `Forced` hand their arguments on to it.
 
     Attributes:
-        description: What stores say of it in place of its fields: a name and parameters.
+        description: Its description in stores, instead of its fields: a name and parameters.
         parameters: Numbers that its functions take.
     """
 

@@ -240,7 +240,7 @@ def impulses_of(
     velocity of the mean of both momenta, if need be beside it. Balanced forces give the same impulse twice.
 
     Args:
-        forced: What moves.
+        forced: The system.
         orbit: Its orbit, with all steps; the momenta of its states are those at the nodes.
         leaving: Momenta of the displacements.
         time_step: h.

@@ -78,7 +78,7 @@ class Check:
 
     Attributes:
         name: A short name.
-        requirement: What must hold.
+        requirement: The property.
         tolerance: The largest number that passes; None if the number is reported only.
         measure: The measurement.
     """
@@ -107,7 +107,7 @@ class Result:
 
     Attributes:
         name: A short name.
-        requirement: What must hold.
+        requirement: The property.
         value: The worst value measured; None if nothing could be measured.
         tolerance: The largest value that passes; None if the value is reported only.
         passed: Whether nothing speaks against the property.
@@ -197,8 +197,8 @@ def run_checks(owner: str, checks: Sequence[Check], subject: Any, factor: float,
 
     Args:
         owner: The check and its object, for messages.
-        checks: What to measure.
-        subject: What the measurements take.
+        checks: The measurements.
+        subject: Their argument.
         factor: On every tolerance.
         throw: Raise if a check failed.
 

@@ -37,7 +37,7 @@ class Invariants:
         reversal_defect: Largest relative miss of one step forward and back; not measured in coordinates.
         largest_step_angle: In degrees.
         outcome: How the run ended.
-        work: What forces, and what else drives it, did on the whole, less what friction dissipated; None of a free
+        work: The total work of forces and drives, less the dissipation by friction; None of a free
             system.
     """
 
@@ -53,7 +53,7 @@ class Invariants:
 
 
 def invariants(orbit: AbstractOrbit) -> Invariants:
-    """Measure what an orbit should keep.
+    """Measure the errors of an orbit in its invariants.
 
     Returns:
         `Invariants`, with the fields `states`, `steps`, `energy_drift` (relative), `constraint_residual`,

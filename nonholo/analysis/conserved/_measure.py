@@ -175,7 +175,7 @@ class InvariantMeasure:
         return np.concatenate([np.zeros(min(1, len(orbit))), np.cumsum(steps)])
 
     def _discrete(self, where: str) -> Discretization:
-        remedy = "Pass what `discretize` returned."
+        remedy = "Pass the result of `discretize`."
         return instance(where, self.motion, Discretization, "belong to a discrete map", remedy)
 
 

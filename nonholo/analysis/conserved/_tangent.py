@@ -48,7 +48,7 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
         return flow_tangents(_WHERE, system, orbit.restricted_momentum, orbit.time)
     if not isinstance(discrete, Discretization) or _acts_from_outside(discrete.forces):
         remedy = "Differentiate `nh.rollout` by JAX."
-        raise error(_WHERE, "be asked of a free flow, or of a map whose forces are numbers", shown(discrete), remedy)
+        raise error(_WHERE, "belong to a free flow, or to a map whose forces are numbers", shown(discrete), remedy)
     if not orbit.has_every_step:
         raise error(_WHERE, "have every step", f"{len(orbit)} states with others between", "Run with save_every=1.")
     if _has_closed_derivatives(discrete):

@@ -53,7 +53,7 @@ class Profile:
         level: The probability of the interval, if the noise is normal and the model right.
         cut: The value of $|\tau|$ at its ends, a quantile of Student's distribution.
         interval: The least and the largest number within the level, infinite where there is none.
-        ends: What bounds each side. "level": the profile crosses the level there. "unbounded": it levels off below,
+        ends: The bound on each side. "level": the profile crosses the level there. "unbounded": it levels off below,
             seen up to ten thousand times the number. "model": there is no motion, or no body, beyond, and
             the profile has not reached the level.
         values: Numbers at which the others were fitted, in order, (K,).

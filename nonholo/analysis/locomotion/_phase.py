@@ -79,7 +79,7 @@ def geometric_phase(
         momentum: p at the start; zero by default.
 
     Raises:
-        ValueError: What `local_connection` refuses; a gait that is not closed, or that meets a shape where the
+        ValueError: A system that `local_connection` refuses; a gait that is not closed, or that meets a shape where the
             connection is singular.
 
     Example:

@@ -118,7 +118,7 @@ class Arc:
         sign: Which of the two solutions, -1 or 1.
         start: First direction.
         stop: Last direction.
-        ends: What happens at the two, FOLD or EQUATOR; empty for an arc that closes on itself.
+        ends: The kinds of the two, FOLD or EQUATOR; empty for an arc that closes on itself.
     """
 
     sign: int

@@ -97,7 +97,7 @@ class Program:
     """The least effort under the equations of all steps, clearances and a goal.
 
     Attributes:
-        steps: What all steps share.
+        steps: The data that all steps share.
         first: The state at the start.
         rows: Body covectors that act in the steps beside the forces, (steps, size).
     """

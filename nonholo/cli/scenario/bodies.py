@@ -127,7 +127,7 @@ def table_of(word: str, make: Maker, kind: bool = False, plain: bool = True) -> 
     """Return the table whose keys are the arguments of a class or a function.
 
     Args:
-        word: What it is called in a scenario.
+        word: Its name in a scenario.
         make: The class or function; other constructors of a class, `from_inertia`, give more keys.
         kind: Whether a key of the table names it.
         plain: Whether values are numbers, lists of them or groups, as everywhere in the library.

@@ -98,7 +98,7 @@ def sweep_figures(
 
     Args:
         store: Where it is.
-        result: What it gave, for ranges; None if it is not finished.
+        result: Its results, for ranges; None if it is not finished.
         seconds: How long it took now, with all that comes before the first member.
         before: Members that had been done before.
     """

@@ -232,7 +232,7 @@ def _node(owner: str, discrete: Any, certify: bool, configuration: Any, step: An
     if discrete.forces is None:
         return None
     if certify:
-        raise error(f"{owner}(certify=...)", "be asked of a free motion", "forces", "Leave it out.")
+        raise error(f"{owner}(certify=...)", "be left out under forces", "forces", "Leave it out.")
     return node_of(owner, discrete, configuration, number)
 
 

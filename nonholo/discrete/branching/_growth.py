@@ -70,7 +70,7 @@ class Axis(NamedTuple):
     Attributes:
         turn: $\kappa = \sqrt{ma^2/I}$.
         lift: $\sqrt{2I/E}/h$.
-        numbers: What the two are.
+        numbers: The two numbers.
     """
 
     turn: Any

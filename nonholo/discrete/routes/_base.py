@@ -158,7 +158,7 @@ class AbstractCompiledRoute(AbstractRoute):
     """A route with a compiled kernel, which has separate units and perhaps axes.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: h.
     """
 

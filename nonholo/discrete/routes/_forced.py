@@ -82,7 +82,7 @@ class AbstractForcedRoute(AbstractRoute):
     Attributes:
         free: The route of the free step.
         forced: The system with its forces.
-        faults: What functions of the user said of the end of the last run.
+        faults: Failures of the user's functions at the end of the last run.
     """
 
     free: AbstractCompiledRoute

@@ -92,7 +92,7 @@ def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> "xarray.Dataset"
     Quantities that the orbit does not have, or that are too large in many dimensions, are left out.
 
     Args:
-        orbit: What to label.
+        orbit: The orbit to label.
         decoded: Also poses and displacements as matrices, and `multipliers` of an orbit of which every step is saved,
             NaN after the last state of a discrete one.
 
@@ -118,7 +118,7 @@ def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None)
     """Return the arrays of a store by name: what a person knows, and compact states in a separate group.
 
     Args:
-        orbit: What to store, an orbit or a block of one.
+        orbit: An orbit or a block of one.
         before: The heading or the quaternion of the state before the first one, in a row.
     """
     if not orbit.is_compact:

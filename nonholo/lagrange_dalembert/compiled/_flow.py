@@ -98,7 +98,7 @@ class Series(NamedTuple):
     """A solved motion: its equations, and from where their series can be expanded again.
 
     Attributes:
-        system: What moves.
+        system: The system.
         shapes: Of a place and of a velocity.
         nodes: Beginnings of steps.
         end: The last of the given times.

@@ -163,7 +163,7 @@ def film_path(where: str, path: str | Path, *, overwrite: bool) -> Path:
         raise error(where, "end in .gif, .mp4 or .webm", shown(str(path)), "Use `overview` for a still picture.")
     if suffix in _CODECS and not FFMpegWriter.isAvailable():
         remedy = "Install it (on Debian the package ffmpeg), or write a .gif."
-        raise error(where, "end in .gif where there is no program ffmpeg", shown(str(path)), remedy)
+        raise error(where, "end in .gif without the program ffmpeg", shown(str(path)), remedy)
     check_file(target, overwrite=overwrite, where=where)
     return target
 

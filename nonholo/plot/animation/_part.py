@@ -70,7 +70,7 @@ def motion_of(orbit: Orbit, point: Float[np.ndarray, "n dim"], length: float) ->
 
     Args:
         orbit: The orbit, on SE(n).
-        point: What gives the velocity of the point to follow, of a body velocity.
+        point: The map from a body velocity to the velocity of the point to follow.
         length: Of the body.
     """
     if len(orbit) < 2:

@@ -155,8 +155,8 @@ class Track(NamedTuple):
     """A path that an orbit draws.
 
     Attributes:
-        title: What it is.
-        names: What its axes are, two or three.
+        title: Its title.
+        names: The names of its axes, two or three.
         points: Gives the points of an orbit, (K, d).
         is_place: Whether its axes have one unit.
     """

@@ -36,7 +36,7 @@ def _trees_of(orbit: Orbit | None, branches: str) -> list[BranchTree]:
         return []
     if orbit is None or not isinstance(orbit.motion, Discretization):
         got = "a system alone" if orbit is None else shown(orbit)
-        raise error(where, "be 'principal' without a discrete orbit", got, "Pass what `nh.simulate` returned.")
+        raise error(where, "be 'principal' without a discrete orbit", got, "Pass an orbit of `nh.simulate`.")
     at = evenly_in_box(orbit.reduced_momentum, _SEEDS + 1)[:_SEEDS]
     return [branch_tree(orbit.motion, W, _GENERATIONS) for W in orbit.displacement[at]]
 
@@ -241,7 +241,7 @@ def section(
     """Draw a Poincare section: one dot for each crossing of an event, colored from early to late.
 
     Args:
-        crossings: What an event found: `orbit.events["name"]` or `nh.crossings(orbit, event)`.
+        crossings: The crossings of an event: `orbit.events["name"]` or `nh.crossings(orbit, event)`.
         across: The abscissa, a function of an orbit that returns one number for each of its states.
         up: The ordinate.
         axes: Where to draw; a new figure by default.

@@ -145,7 +145,7 @@ class EnergyError(NamedTuple):
         error: Dots, or for long orbits the band between the smallest and the
             largest error in each column; a line for a flow.
         rounding: The band of relative errors up to machine epsilon.
-        unit: What 1 on the axis means.
+        unit: The meaning of 1 on the axis.
         expected: Whether the error should be zero up to rounding, in words.
     """
 

@@ -95,7 +95,7 @@ def detail(
         position: Points of the curve.
         turning: Angular velocities there.
         cusp: A cusp of the curve.
-        view: What the picture shows.
+        view: The view of the picture.
     """
     fast = np.flatnonzero(np.abs(turning) > 0.1 * np.abs(turning).max())
     turn = slice(fast[0], fast[-1] + 1)

@@ -28,7 +28,7 @@ def drawable_in_time(where: str, orbit: Any) -> Any:
     """Return an orbit of any kind with at least one state; a flow that knows those between with enough for a curve."""
     remedy = "Pass what `simulate` or `flow` returned."
     if len(instance(where, orbit, AbstractOrbit, "be an orbit", remedy)) == 0:
-        raise error(where, "have a state to draw", "none", "See `orbit.outcome` for why the run did not start.")
+        raise error(where, "have a state to draw", "none", "`orbit.outcome` has the reason.")
     if orbit.span is None or not 1 < len(orbit) < _SMOOTH:
         return orbit
     more = np.linspace(orbit.time[0], orbit.time[-1], _SMOOTH)

@@ -91,7 +91,7 @@ class Plan(NamedTuple):
         with_poses: Whether to compute poses.
         branch: The branch rule.
         backend: "auto", "numba" or "jax".
-        events: What the runs look for, by name; None if for nothing.
+        events: The events of the runs, by name; None without.
         times: Those of a flow.
         rtol: The relative error of its steps; 0 for the default of each motion.
     """
@@ -117,7 +117,7 @@ def run_members(members: Members, starts: Firsts, plan: Plan, report: Report = l
     Args:
         members: Who runs.
         starts: Their checked starts.
-        plan: What to do.
+        plan: The plan of the run.
         report: Called with the number of members that are done.
     """
     return executor_of(members, plan)(members, starts, plan, threads_to_use(), report)

@@ -73,7 +73,7 @@ class Ensemble:
     its later rows. A member that cannot start has only NaN. `outcome` tells them apart.
 
     Attributes:
-        members: What moves, and the parameters.
+        members: The system, and the parameters.
         steps: Number of steps N; of flows the number of times after the first.
         save_every: Steps between saved states; None if only the last one is kept.
         columns: The arrays of the orbits by name, shapes (M, K, ...): `reduced_momentum` and others of bodies, what
@@ -82,7 +82,7 @@ class Ensemble:
         steps_done: Good steps of each member, shape (M,); of states at crossings with the fraction of the last one.
         first_momentum: Momenta of the starts, of bodies compact ones in the canonical frame, shape (M, k).
         first_pose: Compact poses of the starts of bodies, canonical frame, places in coordinates, shape (M, ...).
-        events: What `events=` of the run found, a `MemberEvents`: by name or position how many crossings each member
+        events: Crossings of `events=`, a `MemberEvents`: by name or position how many crossings each member
             has, and the states at the first and the last. None without `events=`.
         branch: The branch rule of the steps, as in `Orbit`.
 
