@@ -74,9 +74,9 @@ Pictures and the live page:
     explore: Return the live page of a motion: one file that runs the library's own kernel in the browser.
 
 Many motions:
-    ensemble: Run or solve many members of one system, that differ in where they start, in parameters, or in both.
+    ensemble: Run or solve many members of one system, which differ in their starts, in parameters, or in both.
     Ensemble: Motions of M members at K saved states, from `ensemble`: arrays as in an `Orbit`, with a leading ...
-    sweep: Run a task for every member of a design and keep what it returns in one store.
+    sweep: Run a task for every member of a design and keep its results in one store.
     EnsembleTask: Run the members of a design and keep some numbers of each.
     FamilyTask: Run the members of a family: systems that a function of parameters makes, such as ...
     MemberBlock: Some members of a sweep in order: a mapping of names to arrays whose first axis is that of the members.
@@ -98,7 +98,7 @@ Stores:
     extend: Run past the end of the run of a store, with the bits of one that had been that long from the start.
 
 Conserved quantities:
-    invariants: Measure what an orbit should keep.
+    invariants: Measure the errors of an orbit in its invariants.
     compare: Compare an orbit with another one, state by state: errors of momentum, pose and energy.
     conserved_momenta: Return the components of body and spatial momentum that every motion of a system conserves.
     invariant_measure: Return which densities of restricted momenta the flow of a system, or its discrete map, keeps.

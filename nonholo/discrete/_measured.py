@@ -63,7 +63,7 @@ class MeasuredMotion(AbstractMotion):
     def multipliers(self, states: Orbit) -> Float[np.ndarray, "L s"]:
         """Refuse: poses do not tell forces of constraint from others."""
         remedy = "Compare momenta, `orbit.momentum`, with those of a run."
-        raise error("Orbit.multipliers", "be asked of a run", f"{len(states)} given poses", remedy)
+        raise error("Orbit.multipliers", "be read from a run", f"{len(states)} given poses", remedy)
 
     def constraint_residual(self, states: Orbit) -> Float[np.ndarray, "K j"]:
         """Return the forbidden velocities: parts of (W - W^-1)/2h, or of log W/h where the group has no skew part."""

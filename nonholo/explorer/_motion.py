@@ -212,7 +212,7 @@ def simulate_state(where: str, state: Any, table: dict[str, Any] | None = None) 
         problem = "a motion under another table of forces"
     if problem:
         remedy = "Use the orbit you passed, or make the page again."
-        raise error(where, "be asked of a state that the page can show", problem, remedy)
+        raise error(where, "begin at a state that the page can show", problem, remedy)
     return _run(state, table)
 
 

@@ -60,7 +60,7 @@ def _lines_of(orbit: Any) -> Iterator[str]:
     instance("orbit_to_csv(orbit=...)", orbit, AbstractOrbit, "be an orbit", "Pass what `simulate` or `flow` returned.")
     if not orbit.has_poses:
         remedy = "Run with reconstruct=True."
-        raise error("Orbit.to_csv(...)", "be asked of an orbit with poses", "reconstruct=False", remedy)
+        raise error("Orbit.to_csv(...)", "be called on an orbit with poses", "reconstruct=False", remedy)
     pose, heading = (orbit.canonical_pose, orbit.turned) if orbit.is_compact else (orbit.configuration, None)
     return _lines(orbit.system, [Stretch(orbit.time, np.asarray(pose), heading)], 1)
 

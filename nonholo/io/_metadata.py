@@ -182,7 +182,7 @@ def check_assertions(where: str) -> None:
     """Refuse to read or write a store where Python leaves assertions out: some assertions of zarr do work."""
     if not __debug__:
         got = "python -O or PYTHONOPTIMIZE, which leaves out assertions in which zarr does a part of its work"
-        raise error(where, "be asked of Python with assertions", got, "Run it without -O, and unset PYTHONOPTIMIZE.")
+        raise error(where, "be run by Python with assertions", got, "Run it without -O, and unset PYTHONOPTIMIZE.")
 
 
 def check_array(where: str, name: str, array: zarr.Array) -> None:

@@ -70,7 +70,7 @@ class AbstractMotion(Keeper, abc.ABC):
     def at(self, states: "Orbit", times: Any) -> "Orbit":
         """Return the states at any times in between, where they are known."""
         got = f"a discrete orbit with {len(states)} states; not {shown(times)}"
-        raise error("Orbit.at(...)", "be asked of a flow", got, "Slice the orbit, or run with another time step.")
+        raise error("Orbit.at(...)", "be called on a flow", got, "Slice the orbit, or run with another time step.")
 
     def work(self, states: "Orbit") -> Float[np.ndarray, "K"]:
         """Return the work of the force along states since the first, by the trapezoidal rule."""

@@ -98,7 +98,7 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
         """Return the same system with other numbers of its parameters; refused where there are none."""
         del numbers
         remedy = "Pass parameters= to a LagrangeDAlembert."
-        raise error("with_parameters(...)", "be asked of a system that has parameters", type(self).__name__, remedy)
+        raise error("with_parameters(...)", "be called on a system with parameters", type(self).__name__, remedy)
 
     @property
     def has_parts(self) -> bool:

@@ -217,7 +217,7 @@ class Ensemble:
             return energies(ScalarMembers(self.members), self.first_momentum)
         if "reduced_momentum" not in self.columns:
             got, remedy = type(self.members.discrete.system).__name__, "Save every state, and take energy[:, 0]."
-            raise error("Ensemble.first_energy", "be asked of bodies on a group", got, remedy)
+            raise error("Ensemble.first_energy", "be read from bodies on a group", got, remedy)
         rows = {"reduced_momentum": self.first_momentum[:, None], "canonical_pose": self.first_pose[:, None]}
         rows = {name: column for name, column in rows.items() if column.shape[2]}
         return dataclasses.replace(self, columns=rows, save_every=1).energy[:, 0]
