@@ -22,7 +22,7 @@ QUOTED = {
 }  # titles of works, past releases
 QUOTATION = r"“[^”]*”"
 GENERATED = re.compile(
-    r"api/.*|reference/(?!symbols).*|gallery/README\.md|(errata|paper|reliability|tests)\.md"
+    r"api/.*|reference/(?!symbols).*|gallery/README\.md|(errata|paper|project/figures|tests)\.md"
 )  # by scripts
 NO_PROSE = {"references.md", "project/migration.md"}
 KERNELS = ("nonholo/kernels/", "nonholo/base/compiled/", "nonholo/base/numerics/")  # whose text names the library
