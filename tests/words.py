@@ -77,7 +77,8 @@ def complaints(root: Path = ROOT) -> list[str]:
 
 def in_library(name: str) -> bool:
     """Return whether a file is code of the library with prose to check."""
-    return name.startswith("nonholo/") and name.endswith((".py", ".pyi")) and not name.startswith(KERNELS)
+    is_code = name.startswith(("nonholo/", "nonholo_paper/")) and name.endswith((".py", ".pyi"))
+    return is_code and not name.startswith(KERNELS)
 
 
 def strings(text: str) -> Iterator[tuple[int, str]]:
