@@ -111,11 +111,11 @@ def check_discretization(
     velocity. The order is measured at velocities of norm one, from the given time step on.
 
     Args:
-        discrete: Made by `discretize` for a system on a group, or a `LagrangeDAlembert`.
+        discrete: Made by `discretize` for a system on a group, or one by functions (`LagrangeDAlembert`).
         rng: A generator of the start, or an integer that makes one.
         steps: Length of the orbit.
         definition: Also compare compiled steps with the definition; JAX compiles it, which takes seconds.
-        configuration: Where motions begin, of a system in coordinates; random by default.
+        configuration: Where motions begin, of a system by functions; random by default.
         tolerance_factor: On every tolerance, for badly scaled units.
         throw: Raise if a check fails; otherwise only the report says so.
 
@@ -137,7 +137,7 @@ def check_discretization(
     number = max(count(f"{owner}(steps=...)", steps, "Pass the length of the orbit."), 4)
     if isinstance(discrete, AbstractCoordinateDiscretization):
         system, h = discrete.system, discrete.time_step
-        there = CoordinateSamples(owner, system, generator(f"{owner}(rng=...)", rng), configuration, h, number)
+        there = CoordinateSamples(system, generator(f"{owner}(rng=...)", rng), configuration, h, number)
         title = f"{owner}({there.system.name}, time_step={h:g}, {there.system.rule})"
         return run_checks(title, MAP, there, tolerance_factor, throw)
     refuse_given(owner, "be left out on a group", "Leave it out.", configuration=(configuration, None))

@@ -263,13 +263,14 @@ def check_system(
     Measured on random admissible states: symmetry and positivity of the inertia; subspace and annihilator; restriction
     of momenta and constrained energy against their definitions; the canonical frame; constraint and energy along
     `vector_field`; equilibria and their attraction; `conserved_momenta`; under forces their part in the equations and
-    in the energy. The group is taken as right: `check_group` checks it. Of a `LagrangeDAlembert` momentum, energy,
-    constraint, equations and balance along its flow, against differences of the functions it was made of.
+    in the energy. The group is taken as right: `check_group` checks it. Of a `LagrangeDAlembert` or a
+    `GroupLagrangeDAlembert` momentum, energy, constraint, equations and balance along its flow, against differences of
+    the functions it was made of.
 
     Args:
-        system: A system on a group, `Forced` or free, or in coordinates.
+        system: A system on a group, `Forced` or free, or one by functions.
         rng: A generator of the samples, or an integer that makes one.
-        configuration: Where motions begin, of a system in coordinates; random by default.
+        configuration: Where motions begin, of a system by functions; random by default.
         tolerance_factor: On every tolerance, for badly scaled units.
         throw: Raise if a check fails; otherwise only the report says so.
 
@@ -287,7 +288,7 @@ def check_system(
     """
     flags("check_system", throw=throw)
     if isinstance(system, AbstractCoordinateSystem):
-        there = CoordinateSamples("check_system", system, generator("check_system(rng=...)", rng), configuration)
+        there = CoordinateSamples(system, generator("check_system(rng=...)", rng), configuration)
         return run_checks(f"check_system({there.system.name})", SYSTEM, there, tolerance_factor, throw)
     refuse_given("check_system", "be left out on a group", "Leave it out.", configuration=(configuration, None))
     if not isinstance(system, AbstractSystem):

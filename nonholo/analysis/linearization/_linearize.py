@@ -14,7 +14,7 @@ from nonholo.base.checks import array, count, error, instance, needs, shown
 from nonholo.base.memo import Keeper
 from nonholo.base.types import Float, Inexact
 from nonholo.discrete import Discretization
-from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, in_coordinates
+from nonholo.systems import AbstractCoordinateDiscretization, AbstractCoordinateSystem, AbstractSystem
 
 Shifted = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 """Takes changes of coordinates and of velocities to a configuration and a body velocity."""
@@ -132,7 +132,7 @@ def local_motion(owner: str, system: Any, configuration: Any, velocity: Any) -> 
     """Return the changes beside a state, and the function that gives the states beside it."""
     with needs("jax", owner):
         from nonholo.analysis.linearization import _beside
-    if isinstance(system, AbstractCoordinateSystem) or in_coordinates(system):
+    if isinstance(system, AbstractCoordinateSystem | AbstractCoordinateDiscretization):
         return _beside.beside_state(owner, system, configuration, velocity)
     if not isinstance(system, AbstractSystem | Discretization):
         remedy = "Pass a system, on a group or in coordinates, or what `discretize` returned."

@@ -28,7 +28,7 @@ from nonholo.base.progress import interruptibly, progress_bar
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, as_discretization
 from nonholo.simulation import check_forces, refuse_many_matrices
-from nonholo.systems import in_coordinates
+from nonholo.systems import AbstractCoordinateDiscretization, in_coordinates
 
 _PER_ENTRY = 24.0  # bytes of a second derivative: its value, and where it stands
 
@@ -160,8 +160,8 @@ def steer(
         >>> str(around.outcome), bool(around.cost > parked.cost[0])
         ('converged', True)
     """
-    if not in_coordinates(discrete):
-        as_discretization("steer(discrete=...)", discrete, forced=True)
+    is_on_group = not isinstance(discrete, AbstractCoordinateDiscretization)
+    discrete = as_discretization("steer(discrete=...)", discrete, forced=True) if is_on_group else discrete
     steps = count("steer(steps=...)", steps, "Pass the number of steps.")
     choice("steer(cost=...)", cost, ("effort",))
     flag("steer(progress=...)", progress)
@@ -169,7 +169,7 @@ def steer(
     way, hints = Way.of(n, steps, obstacles, outline, via), checked_guess(guess, steps, n)
     extras = {"obstacles": obstacles, "outline": outline, "via": via, "state_bounds": state_bounds, "guess": guess}
     method = _method(discrete, method, extras)
-    if in_coordinates(discrete):
+    if not is_on_group:
         return _steered_in_coordinates(discrete, (start, goal), bounds, way, steps, hints, state_bounds)
     _check(discrete, steps, way)
     ends, is_one = checked_ends(discrete.system, start, goal, bool(way.via))
