@@ -5,6 +5,7 @@ All functions broadcast over leading axes.
 """
 
 import abc
+import functools
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from nonholo.base.limits import within_memory
 from nonholo.base.memo import Keeper
 from nonholo.base.numerics import identity_like, integrated_exponential, inverse_of
 from nonholo.base.types import Array, Float, Inexact
-from nonholo.groups._coordinates import AbstractCoordinates
+from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of
 
 _WIDE = 1000  # from this size on it is asked whether a matrix fits into memory
 
@@ -31,8 +32,6 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
     """N, the number of rows of a matrix."""
     basis: np.ndarray
     """The basis of the algebra, shape (dim, N, N)."""
-    coordinates: AbstractCoordinates
-    """The maps between coordinate vectors and matrices that the basis defines."""
     pose_size: int
     """Numbers in a compact pose."""
     is_rigid: bool
@@ -41,6 +40,16 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
     """Of the surface whose motions it has: 1 of the sphere, SO(3); 0 of the plane, SE(2); None of other groups."""
     form: np.ndarray | None = None
     """G of a quadratic group, whose inverse is G^-1 W^T G; None for SO(n), where it is the identity, and all others."""
+
+    @functools.cached_property
+    def coordinates(self) -> AbstractCoordinates:
+        """The maps between coordinate vectors and matrices that the basis defines."""
+        return coordinates_of(self.basis)
+
+    def _hold(self, dim: int, size: int, pose_size: int) -> None:
+        """Set the sizes."""
+        for name, value in {"dim": dim, "size": size, "pose_size": pose_size}.items():
+            object.__setattr__(self, name, value)
 
     @abc.abstractmethod
     def exp_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
@@ -74,9 +83,9 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
     def angle(self, x: Float[Array, "... dim"]) -> Float[Array, "..."]:
         """Return the angle through which `exp(x)` turns: the largest imaginary part of an eigenvalue of `hat(x)`."""
 
-    @abc.abstractmethod
     def random(self, rng: int | np.random.Generator) -> Float[np.ndarray, "N N"]:
         """Draw an element: rotations uniformly, translations from the standard normal distribution."""
+        return self.exp(self._generator(rng).normal(size=self.dim))
 
     @abc.abstractmethod
     def matrix_from_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... N N"]:

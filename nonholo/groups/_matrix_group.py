@@ -19,7 +19,7 @@ from nonholo.base.numerics import (
 )
 from nonholo.base.types import Array, Float
 from nonholo.groups._base import AbstractMatrixGroup
-from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of
+from nonholo.groups._coordinates import coordinates_of
 
 _REPRODUCED = 1e-8  # relative error of exp(log(g)) beyond which there is no logarithm
 _KNOWN = 1e-12  # of 1 / (|g| |g^-1|), above which the sign of a determinant is no rounding error
@@ -80,6 +80,8 @@ class MatrixGroup(AbstractMatrixGroup):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "basis", checked_basis("MatrixGroup(basis=...)", self.basis))
+        dim, size, _ = self.basis.shape
+        self._hold(dim, size, size * size)
         if self.form is not None:
             object.__setattr__(self, "form", checked_form("MatrixGroup(form=...)", self.basis, self.form))
 
@@ -95,26 +97,6 @@ class MatrixGroup(AbstractMatrixGroup):
     @functools.cached_property
     def _content(self) -> tuple:
         return self.basis.shape, self.basis.tobytes(), None if self.form is None else self.form.tobytes()
-
-    @property
-    def dim(self) -> int:
-        """Dimension, the number of basis matrices."""
-        return self.basis.shape[0]
-
-    @property
-    def size(self) -> int:
-        """Rows of a matrix."""
-        return self.basis.shape[1]
-
-    @property
-    def pose_size(self) -> int:
-        """Numbers in a compact pose, the entries of the matrix."""
-        return self.size * self.size
-
-    @functools.cached_property
-    def coordinates(self) -> AbstractCoordinates:
-        """The maps between coordinate vectors and matrices of the algebra."""
-        return coordinates_of(self.basis)
 
     @functools.cached_property
     def has_cayley(self) -> bool:
@@ -195,10 +177,6 @@ class MatrixGroup(AbstractMatrixGroup):
         X = self.hat(x)
         xp = X.__array_namespace__()
         return xp.max(abs(xp.imag(xp.linalg.eigvals(X))), axis=-1)
-
-    def random(self, rng: int | np.random.Generator) -> Float[np.ndarray, "N N"]:
-        """Draw the exponential of standard normal coordinates."""
-        return self.exp(self._generator(rng).normal(size=self.dim))
 
     def matrix_from_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... N N"]:
         """Return the matrix with these rows."""

@@ -8,7 +8,6 @@ from typing import ClassVar
 import numpy as np
 
 from nonholo.base.checks import dimension
-from nonholo.base.limits import within_memory
 from nonholo.base.numerics import (
     cayley_increment,
     exponential_increment,
@@ -23,13 +22,25 @@ from nonholo.base.types import Array, Float
 from nonholo.groups import _rotations
 from nonholo.groups._base import AbstractMatrixGroup
 from nonholo.groups._coordinates import AbstractCoordinates, SeparatedCoordinates, coordinates_of
-from nonholo.groups._special_orthogonal import AbstractRodriguesGroup
+from nonholo.groups._special_orthogonal import AbstractBodyGroup, AbstractRodriguesGroup
 
 _CUBIC = [(-1) ** k / math.factorial(2 * k + 3) for k in range(8, -1, -1)]  # exact to rounding for angles up to 1
 
 
+class AbstractMotions(AbstractMatrixGroup):
+    """Motions: a rotation and a translation."""
+
+    def inverse(self, g: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
+        """Return the inverse matrix from the transposed rotation."""
+        return _rotations.motion_inverse(self._matrix(g))
+
+    def residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
+        """Return the residual of the rotation or the largest error of the last row, whichever is larger."""
+        return _rotations.motion_residual(self._matrix(g))
+
+
 @dataclasses.dataclass(frozen=True, repr=False)
-class SpecialEuclidean2(AbstractRodriguesGroup):
+class SpecialEuclidean2(AbstractMotions, AbstractRodriguesGroup):
     r"""Motions of the plane, $\begin{pmatrix} R & x \\ 0 & 1\end{pmatrix}$; coordinates $(\omega, v_1, v_2)$.
 
     `cayley(x)` is the motion with tan(angle / 2) = x[0] / 2 about the same center as `exp(x)`.
@@ -59,14 +70,6 @@ class SpecialEuclidean2(AbstractRodriguesGroup):
         along, across = half_cotangent(angle * angle), angle / 2
         x, y = g[..., 0, 2], g[..., 1, 2]
         return xp.stack([angle, along * x + across * y, along * y - across * x], axis=-1)
-
-    def inverse(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3 3"]:
-        """Return the inverse motion."""
-        return _rotations.motion_inverse(self._matrix(g))
-
-    def residual(self, g: Float[Array, "... 3 3"]) -> Float[Array, "..."]:
-        """Return the residual of the rotation or the largest error of the last row, whichever is larger."""
-        return _rotations.motion_residual(self._matrix(g))
 
     def angle(self, x: Float[Array, "... 3"]) -> Float[Array, "..."]:
         """Return the angle through which `exp(x)` turns."""
@@ -116,29 +119,16 @@ class SpecialEuclidean2(AbstractRodriguesGroup):
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
-class SpecialEuclideanN(AbstractMatrixGroup):
+class SpecialEuclideanN(AbstractMotions, AbstractBodyGroup):
     r"""Motions $\begin{pmatrix} R & x \\ 0 & 1\end{pmatrix}$; coordinates of so(n), then $v_1, \dots, v_n$."""
 
     n: int
-    is_rigid: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        self._hold(self.n * (self.n + 1) // 2, self.n + 1, self.n * (self.n + 1))
 
     def __repr__(self) -> str:
         return f"SE({self.n})"
-
-    @property
-    def dim(self) -> int:
-        """Dimension, n (n + 1) / 2."""
-        return self.n * (self.n + 1) // 2
-
-    @property
-    def size(self) -> int:
-        """Rows of a matrix, n + 1."""
-        return self.n + 1
-
-    @property
-    def pose_size(self) -> int:
-        """Numbers in a compact pose: the entries of the rotation and the position."""
-        return self.n * (self.n + 1)
 
     @functools.cached_property
     def coordinates(self) -> SeparatedCoordinates:
@@ -148,12 +138,6 @@ class SpecialEuclideanN(AbstractMatrixGroup):
         moves = np.stack([axes, axes], axis=1), np.stack([last, last], axis=1), np.tile([1.0, 0.0], (self.n, 1))
         turns = rows, columns, values
         return SeparatedCoordinates(self.size, *(np.concatenate(pair) for pair in zip(turns, moves, strict=True)))
-
-    @functools.cached_property
-    def basis(self) -> np.ndarray:
-        """The basis of the algebra, shape (dim, n + 1, n + 1)."""
-        within_memory(f"{self!r}.basis", 8.0 * self.dim * self.size**2, "Use what needs no basis.")
-        return self.hat(np.eye(self.dim))
 
     def exp_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         r"""Return `exp(x)` minus the identity: rotation $e^X - I$, position $\varphi_1(X)v$."""
@@ -190,19 +174,6 @@ class SpecialEuclideanN(AbstractMatrixGroup):
         """Return `cayley(x)` minus the identity, without cancellation."""
         X = self.hat(x)
         return _rotations.motion_cayley_increment(X) if isinstance(X, np.ndarray) else cayley_increment(X)
-
-    def inverse(self, g: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
-        """Return the inverse motion."""
-        return _rotations.motion_inverse(self._matrix(g))
-
-    def residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
-        """Return the residual of the rotation or the largest error of the last row, whichever is larger."""
-        return _rotations.motion_residual(self._matrix(g))
-
-    def angle(self, x: Float[Array, "... dim"]) -> Float[Array, "..."]:
-        """Return the largest angle through which `exp(x)` turns a plane."""
-        X = self.hat(x)[..., : self.n, : self.n]
-        return X.__array_namespace__().linalg.norm(X, ord=2, axis=(-2, -1))
 
     def random(self, rng: int | np.random.Generator) -> Float[np.ndarray, "N N"]:
         """Draw a uniformly distributed rotation and a standard normal position."""

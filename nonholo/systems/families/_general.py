@@ -104,16 +104,13 @@ class LLSystem(AbstractLLSystem):
             raise error("LLSystem(mass_tensor=...)", "be given, or else inertia_operator=", got, remedy)
         rows, covectors = subspace_and_annihilator("LLSystem", group.dim, constraint_subspace, annihilator)
         if mass_tensor is not None:
-            where = "LLSystem(mass_tensor=...)"
-            mass_tensor = _tensor(where, group, mass_tensor)
+            mass_tensor = _tensor(where := "LLSystem(mass_tensor=...)", group, mass_tensor)
         else:
             where = "LLSystem(inertia_operator=...)"
             shape = (group.dim, group.dim)
             remedy = f"Pass the symmetric {shape} matrix that takes body velocities to body momenta."
             inertia_operator = symmetric(where, array(where, inertia_operator, shape, remedy), remedy)
-        values = (group, mass_tensor, inertia_operator, rows, covectors)
-        for field, value in zip(dataclasses.fields(self), values, strict=True):
-            object.__setattr__(self, field.name, value)
+        self._hold(group, mass_tensor, inertia_operator, rows, covectors)
         if len(rows) and mass_tensor is not None and group.form is not None:
             _refuse_singular(where, self)
         elif len(rows):
@@ -164,11 +161,6 @@ class LLSystem(AbstractLLSystem):
         facts = operator if self.mass_tensor is None else tensors_shown(self.group, self.mass_tensor)
         subspace = {"constraint subspace": np.asarray(self.constraint_subspace)}
         return f"LLSystem({self.group!r},\n  {lines_of(facts | subspace)})"
-
-    @system_memo
-    def homogeneous_mass_tensor(self) -> Float[Array, "... N N"] | None:
-        """The mass tensor; None if the inertia operator was given."""
-        return self.mass_tensor
 
     @system_memo
     def inertia_operator(self) -> Float[Array, "... dim dim"]:
@@ -248,19 +240,13 @@ class LRSystem(AbstractLRSystem):
         spaces = (self.constraint_subspace, self.annihilator)
         rows, covectors = subspace_and_annihilator("LRSystem", self.group.dim, *spaces)
         tensor = group_mass_tensor(where, self.group, self.mass_tensor, instead)
-        for field, value in zip(dataclasses.fields(self), (self.group, tensor, rows, covectors), strict=True):
-            object.__setattr__(self, field.name, value)
+        self._hold(self.group, tensor, rows, covectors)
         positive_definite(where, self.inertia_operator, "the inertia operator", _REMEDY)
 
     def __repr__(self) -> str:
         facts = tensors_shown(self.group, self.mass_tensor)
         subspace = {"constraint subspace": np.asarray(self.constraint_subspace)}
         return f"LRSystem({self.group!r},\n  {lines_of(facts | subspace)})"
-
-    @system_memo
-    def homogeneous_mass_tensor(self) -> Float[Array, "N N"]:
-        """The mass tensor itself."""
-        return self.mass_tensor
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
@@ -289,12 +275,10 @@ class VeselovaTop(AbstractLRSystem):
 
     mass_tensor: Array
     leaves: ClassVar[tuple[str, ...]] = ("mass_tensor",)
-    structure: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         where = "VeselovaTop(mass_tensor=...)"
-        tensor = body_tensor(where, self.mass_tensor, "Pass the mass tensor J, not the inertia tensor.")
-        object.__setattr__(self, "mass_tensor", tensor)
+        self._hold(body_tensor(where, self.mass_tensor, "Pass the mass tensor J, not the inertia tensor."))
         positive_definite(where, self.inertia_operator, "the inertia operator", _REMEDY)
 
     def __repr__(self) -> str:
@@ -304,11 +288,6 @@ class VeselovaTop(AbstractLRSystem):
     def group(self) -> AbstractMatrixGroup:
         """The rotation group SO(n)."""
         return SO(self.mass_tensor.shape[-1])
-
-    @system_memo
-    def homogeneous_mass_tensor(self) -> Float[Array, "n n"]:
-        """The mass tensor itself."""
-        return self.mass_tensor
 
     @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:

@@ -68,12 +68,11 @@ class RigidBody(AbstractLLSystem):
         remedy = "Pass the mass tensor J; `RigidBody.from_inertia` takes the inertia tensor."
         if self.group is None:
             tensor = body_tensor(where, self.mass_tensor, remedy)
-            object.__setattr__(self, "group", SO(tensor.shape[0]))
         else:
             checked_group("RigidBody(group=...)", self.group)
             instead = "`LLSystem` takes an inertia operator on any group."
             tensor = group_mass_tensor(where, self.group, self.mass_tensor, instead)
-        object.__setattr__(self, "mass_tensor", tensor)
+        self._hold(tensor, self.group or SO(len(tensor)))
         positive_definite(where, self.inertia_operator, "the inertia operator", remedy)
 
     @classmethod
@@ -108,19 +107,9 @@ class RigidBody(AbstractLLSystem):
         return f"RigidBody({self.group!r},\n  {lines_of(tensors_shown(self.group, self.mass_tensor))})"
 
     @system_memo
-    def homogeneous_mass_tensor(self) -> Float[Array, "... N N"]:
-        """The mass tensor itself."""
-        return self.mass_tensor
-
-    @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "dim dim"]:
         """All coordinate rows."""
         return np.eye(self.group.dim)
-
-    @system_memo
-    def annihilator(self) -> Float[np.ndarray, "0 dim"]:
-        """No rows."""
-        return np.empty((0, self.group.dim))
 
 
 _E3 = (0.0, 0.0, 1.0)
@@ -168,8 +157,8 @@ class SuslovTop(AbstractLLSystem):
     def __post_init__(self) -> None:
         where = "SuslovTop(mass_tensor=...)"
         remedy = "Pass the mass tensor J, not the inertia tensor; `SuslovTop.from_inertia` takes that one."
-        object.__setattr__(self, "mass_tensor", body_tensor(where, self.mass_tensor, remedy))
-        object.__setattr__(self, "axis", _forbidden_axis("SuslovTop(axis=...)", self.axis, len(self.mass_tensor)))
+        tensor = body_tensor(where, self.mass_tensor, remedy)
+        self._hold(tensor, _forbidden_axis("SuslovTop(axis=...)", self.axis, len(tensor)))
         positive_definite(where, self.constrained_inertia, "the inertia along the constraint", remedy)
 
     @classmethod
@@ -213,11 +202,6 @@ class SuslovTop(AbstractLLSystem):
     def group(self) -> AbstractMatrixGroup:
         """The rotation group SO(n)."""
         return SO(self.mass_tensor.shape[-1])
-
-    @system_memo
-    def homogeneous_mass_tensor(self) -> Float[Array, "... n n"]:
-        """The mass tensor itself."""
-        return self.mass_tensor
 
     @system_memo
     def inertia_operator(self) -> Float[Array, "... dim dim"]:
@@ -307,12 +291,9 @@ class ArrowheadTop(AbstractLLSystem):
     diagonal: Array
     coupling: Array
     leaves: ClassVar[tuple[str, ...]] = ("diagonal", "coupling")
-    structure: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
-        diagonal, coupling = arrow_numbers("SuslovTop.arrowhead", self.diagonal, self.coupling)
-        object.__setattr__(self, "diagonal", diagonal)
-        object.__setattr__(self, "coupling", coupling)
+        self._hold(*arrow_numbers("SuslovTop.arrowhead", self.diagonal, self.coupling))
         refuse_negative("SuslovTop.arrowhead(diagonal=...)", self.inertia_along)
 
     def __repr__(self) -> str:
