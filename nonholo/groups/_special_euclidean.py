@@ -7,17 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
+from nonholo.base import numerics
 from nonholo.base.checks import dimension
-from nonholo.base.numerics import (
-    cayley_increment,
-    exponential_increment,
-    half_cotangent,
-    of_length_one,
-    of_skew,
-    principal_logarithm,
-    sinc,
-    versine,
-)
 from nonholo.base.types import Array, Float
 from nonholo.groups import _rotations
 from nonholo.groups._base import AbstractMatrixGroup
@@ -67,7 +58,7 @@ class SpecialEuclidean2(AbstractMotions, AbstractRodriguesGroup):
         g = self._matrix(g)
         xp = g.__array_namespace__()
         angle = xp.arctan2(g[..., 1, 0], g[..., 0, 0])
-        along, across = half_cotangent(angle * angle), angle / 2
+        along, across = numerics.half_cotangent(angle * angle), angle / 2
         x, y = g[..., 0, 2], g[..., 1, 2]
         return xp.stack([angle, along * x + across * y, along * y - across * x], axis=-1)
 
@@ -99,7 +90,7 @@ class SpecialEuclidean2(AbstractMotions, AbstractRodriguesGroup):
 
     def normalize_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
         """Return the pose with cos^2 + sin^2 = 1."""
-        return of_length_one(self._pose(pose), 2)
+        return numerics.of_length_one(self._pose(pose), 2)
 
     def pose_product(self, pose: Float[Array, "... 4"], other: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
         """Return (cos, sin, x, y) of the product: headings add, and the first one turns the second position."""
@@ -143,9 +134,11 @@ class SpecialEuclideanN(AbstractMotions, AbstractBodyGroup):
         r"""Return `exp(x)` minus the identity: rotation $e^X - I$, position $\varphi_1(X)v$."""
         X = self.hat(x)
         if not isinstance(X, np.ndarray):
-            return self._screw(X) if self.n == 3 else exponential_increment(X)
+            return self._screw(X) if self.n == 3 else numerics.exponential_increment(X)
         skew = X[..., : self.n, : self.n]
-        return self._assemble(_rotations.exp_increment(skew), of_skew(skew, _mean) @ X[..., : self.n, self.n :])
+        return self._assemble(
+            _rotations.exp_increment(skew), numerics.of_skew(skew, _mean) @ X[..., : self.n, self.n :]
+        )
 
     def _screw(self, X: Float[Array, "... 4 4"]) -> Float[Array, "... 4 4"]:
         r"""Return $e^X - I = X + \frac{1-\cos\theta}{\theta^2}X^2 + \frac{\theta-\sin\theta}{\theta^3}X^3$ on se(3).
@@ -157,7 +150,7 @@ class SpecialEuclideanN(AbstractMotions, AbstractBodyGroup):
         small = square < 1
         inside, outside = xp.where(small, square, 0.0), xp.where(small, 1.0, square)
         series = functools.reduce(lambda y, c: c + inside * y, _CUBIC, 0.0 * inside)
-        second, third = versine(square), xp.where(small, series, (1 - sinc(outside)) / outside)
+        second, third = numerics.versine(square), xp.where(small, series, (1 - numerics.sinc(outside)) / outside)
         turn = skew @ v
         rotation = (1 - third * square) * skew + second * (skew @ skew)
         return self._assemble(rotation, v + second * turn + third * (skew @ turn))
@@ -166,14 +159,14 @@ class SpecialEuclideanN(AbstractMotions, AbstractBodyGroup):
         r"""Return the body velocity with angles up to pi (JAX: up to 3.14): $X = \log R$, $v = \varphi_1(X)^{-1}x$."""
         g = self._matrix(g)
         if not isinstance(g, np.ndarray):
-            return self.vee(principal_logarithm(g, halvings=1))
+            return self.vee(numerics.principal_logarithm(g, halvings=1))
         skew = _rotations.logarithm(g[..., : self.n, : self.n], f"{self!r}.log(g=...)")
-        return self.vee(self._assemble(skew, of_skew(skew, _inverse_mean) @ g[..., : self.n, self.n :]))
+        return self.vee(self._assemble(skew, numerics.of_skew(skew, _inverse_mean) @ g[..., : self.n, self.n :]))
 
     def cayley_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         """Return `cayley(x)` minus the identity, without cancellation."""
         X = self.hat(x)
-        return _rotations.motion_cayley_increment(X) if isinstance(X, np.ndarray) else cayley_increment(X)
+        return _rotations.motion_cayley_increment(X) if isinstance(X, np.ndarray) else numerics.cayley_increment(X)
 
     def random(self, rng: int | np.random.Generator) -> Float[np.ndarray, "N N"]:
         """Draw a uniformly distributed rotation and a standard normal position."""
@@ -215,12 +208,12 @@ class SpecialEuclideanN(AbstractMotions, AbstractBodyGroup):
 
 def _mean(angle: np.ndarray) -> np.ndarray:
     r"""The function $\varphi_1(z) = (e^z - 1)/z$ at z = i * angle."""
-    return sinc(angle * angle) + 1j * angle * versine(angle * angle)
+    return numerics.sinc(angle * angle) + 1j * angle * numerics.versine(angle * angle)
 
 
 def _inverse_mean(angle: np.ndarray) -> np.ndarray:
     r"""The function $1/\varphi_1(z) = (z/2)\coth(z/2) - z/2$ at z = i * angle."""
-    return half_cotangent(angle * angle) - 0.5j * angle
+    return numerics.half_cotangent(angle * angle) - 0.5j * angle
 
 
 def SE(n: int) -> AbstractMatrixGroup:

@@ -13,17 +13,7 @@ from nonholo.simulation import flow, refuse_many_matrices, simulate
 from nonholo.systems import AbstractCoordinateDiscretization, Forced, refuse_slip
 from nonholo.testing._coordinates import MAP, CoordinateSamples
 from nonholo.testing._orbit_samples import COUNTS, EXACT, STEP, OrbitSamples, off_two, result_or_raise, slope
-from nonholo.testing._report import (
-    Check,
-    Report,
-    derivative,
-    gap,
-    largest,
-    measures,
-    need,
-    relative,
-    run_checks,
-)
+from nonholo.testing._report import Check, Report, derivative, gap, largest, measures, need, relative, run_checks
 
 _MANY = 1000  # halvings; more than any memory holds
 

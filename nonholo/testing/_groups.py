@@ -11,16 +11,7 @@ from nonholo.base.limits import within_memory
 from nonholo.base.numerics import double_precision
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.testing._group_samples import GroupSamples
-from nonholo.testing._report import (
-    Check,
-    NotApplicableError,
-    Report,
-    derivative,
-    gap,
-    largest,
-    need,
-    run_checks,
-)
+from nonholo.testing._report import Check, NotApplicableError, Report, derivative, gap, largest, need, run_checks
 
 
 def check_group(
