@@ -12,8 +12,7 @@ import numpy as np
 from nonholo.base import numerics
 from nonholo.base.checks import array, error
 from nonholo.base.types import Array, Float
-from nonholo.groups._base import AbstractMatrixGroup
-from nonholo.groups._coordinates import coordinates_of
+from nonholo.groups._base import AbstractMatrixGroup, coordinates_of
 
 _REPRODUCED = 1e-8  # relative error of exp(log(g)) beyond which there is no logarithm
 _KNOWN = 1e-12  # of 1 / (|g| |g^-1|), above which the sign of a determinant is no rounding error

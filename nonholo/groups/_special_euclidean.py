@@ -11,8 +11,7 @@ from nonholo.base import numerics
 from nonholo.base.checks import dimension
 from nonholo.base.types import Array, Float
 from nonholo.groups import _rotations
-from nonholo.groups._base import AbstractMatrixGroup
-from nonholo.groups._coordinates import AbstractCoordinates, SeparatedCoordinates, coordinates_of
+from nonholo.groups._base import AbstractCoordinates, AbstractMatrixGroup, SeparatedCoordinates, coordinates_of
 from nonholo.groups._special_orthogonal import AbstractBodyGroup, AbstractRodriguesGroup
 
 _CUBIC = [(-1) ** k / math.factorial(2 * k + 3) for k in range(8, -1, -1)]  # exact to rounding for angles up to 1

@@ -16,8 +16,7 @@ from nonholo.base.limits import within_memory
 from nonholo.base.numerics import cayley_increment, cotangent_deficit, identity_like, of_length_one, sinc, versine
 from nonholo.base.types import Array, Float
 from nonholo.groups import _rotations
-from nonholo.groups._base import AbstractMatrixGroup
-from nonholo.groups._coordinates import AbstractCoordinates, SeparatedCoordinates
+from nonholo.groups._base import AbstractCoordinates, AbstractMatrixGroup, SeparatedCoordinates
 
 
 class AbstractRotations(AbstractMatrixGroup):

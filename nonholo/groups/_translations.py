@@ -9,8 +9,7 @@ import numpy as np
 from nonholo.base.checks import count
 from nonholo.base.numerics import identity_like
 from nonholo.base.types import Array, Float
-from nonholo.groups._base import AbstractMatrixGroup
-from nonholo.groups._coordinates import SeparatedCoordinates
+from nonholo.groups._base import AbstractMatrixGroup, SeparatedCoordinates
 
 
 @dataclasses.dataclass(frozen=True, repr=False)

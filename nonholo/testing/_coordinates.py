@@ -10,7 +10,7 @@ import numpy as np
 
 from nonholo.base.types import Float
 from nonholo.simulation import flow, simulate
-from nonholo.testing._orbit_samples import COUNTS, off_two, result_of, result_or_raise
+from nonholo.testing import _report as report
 from nonholo.testing._report import Check, derivative, gap, largest, measures, need, relative
 
 SYSTEM: list[Check] = []
@@ -124,7 +124,7 @@ class CoordinateSamples:
     @property
     def orbit(self) -> Any:
         """The orbit."""
-        return result_of(self.run, "the orbit failed")
+        return report.result_of(self.run, "the orbit failed")
 
     def _run(self, time_step: float, steps: int, **start: Any) -> Any:
         start = start or {"configuration": self.q, "momentum": self.momentum}
@@ -133,14 +133,14 @@ class CoordinateSamples:
     @functools.cached_property
     def span(self) -> float:
         """A time in which velocities do not change much, ten time steps at most."""
-        return min(COUNTS[0] * self.time_step, 1.0)
+        return min(report.COUNTS[0] * self.time_step, 1.0)
 
     @functools.cached_property
     def paths(self) -> list[Any]:
         """One path in more and more steps."""
-        result_of(self.run, "the orbit failed")
+        report.result_of(self.run, "the orbit failed")
         need(not getattr(self.system.discrete_lagrangian, "is_of_one_step", False), "made for one time step")
-        return [self._run(self.span / n, n) for n in COUNTS]
+        return [self._run(self.span / n, n) for n in report.COUNTS]
 
     @functools.cached_property
     def end(self) -> Any:
@@ -196,7 +196,7 @@ def _slope(rows: Sequence[np.ndarray]) -> Float[np.ndarray, "n"]:
 
 @measures(MAP, "orbit", "a run goes through: steps that are missing", 0.0)
 def _orbit(s: CoordinateSamples) -> float:
-    return float(s.steps + 1 - len(result_or_raise(s.run)))
+    return float(s.steps + 1 - len(report.result_or_raise(s.run)))
 
 
 @measures(MAP, "discrete constraint", "F(q_k, q_(k+1)) = 0", 1e-11)
@@ -257,15 +257,17 @@ def _reversal(s: CoordinateSamples) -> float:
 
 @measures(MAP, "order of momenta", _SECOND, 0.15)
 def _order_of_momenta(s: CoordinateSamples) -> float:
-    return off_two([relative(orbit.restricted_momentum[-1], s.end.restricted_momentum[-1]) for orbit in s.paths])
+    return report.off_two([relative(orbit.restricted_momentum[-1], s.end.restricted_momentum[-1]) for orbit in s.paths])
 
 
 @measures(MAP, "order of configurations", _SECOND, 0.15)
 def _order_of_configurations(s: CoordinateSamples) -> float:
-    return off_two([gap(orbit.configuration[-1], s.end.configuration[-1]) for orbit in s.paths])
+    return report.off_two([gap(orbit.configuration[-1], s.end.configuration[-1]) for orbit in s.paths])
 
 
 @measures(MAP, "order of the balance", "energy less work changes by the square of the step: |slope - 2|", 0.15)
 def _order_of_balance(s: CoordinateSamples) -> float:
     left = [orbit.energy - orbit.energy[0] - orbit.work for orbit in s.paths]
-    return off_two([largest(each) / (1 + largest(orbit.energy)) for each, orbit in zip(left, s.paths, strict=True)])
+    return report.off_two(
+        [largest(each) / (1 + largest(orbit.energy)) for each, orbit in zip(left, s.paths, strict=True)]
+    )

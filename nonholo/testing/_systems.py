@@ -11,19 +11,9 @@ from nonholo.base.checks import error, flags, generator, refuse_given
 from nonholo.base.types import Float
 from nonholo.continuous import vector_field
 from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, Equilibria, Forced, refuse_slip
+from nonholo.testing import _report as report
 from nonholo.testing._coordinates import SYSTEM, CoordinateSamples
-from nonholo.testing._report import (
-    Check,
-    NotApplicableError,
-    Report,
-    derivative,
-    gap,
-    largest,
-    measures,
-    need,
-    relative,
-    run_checks,
-)
+from nonholo.testing._report import Check, Report, derivative, gap, largest, measures, need, relative, run_checks
 
 _COUNT = 4
 CHECKS: list[Check] = []
@@ -339,7 +329,7 @@ def _energy(s: SystemSamples) -> float:
 def _potential_force(s: SystemSamples) -> float:
     forced, g, x = s.forced, s.g[:, None], np.eye(s.group.dim)
     if forced is None or forced.potential is None:
-        raise NotApplicableError("no potential")
+        raise report.NotApplicableError("no potential")
     slope = derivative(lambda t: forced.potential_energy(g @ s.group.exp(t * x)))
     return relative(forced.potential_force(s.g), -slope)
 
@@ -347,7 +337,7 @@ def _potential_force(s: SystemSamples) -> float:
 @measures(CHECKS, "friction", "friction never adds energy: its largest power", 0.0)
 def _friction(s: SystemSamples) -> float:
     if s.forced is None or s.forced.friction is None:
-        raise NotApplicableError("no friction")
+        raise report.NotApplicableError("no friction")
     return float(np.sum(s.forced.friction.covector(s.body_velocity) * s.body_velocity, axis=-1).max())
 
 
@@ -360,7 +350,7 @@ def _equilibria(s: SystemSamples) -> tuple[Equilibria, ...]:
     try:
         family = system.equilibria()
     except ValueError:
-        raise NotApplicableError("the system refuses to name its equilibria") from None
+        raise report.NotApplicableError("the system refuses to name its equilibria") from None
     return family, *family.others
 
 

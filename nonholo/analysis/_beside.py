@@ -11,7 +11,7 @@ from typing import Any
 import jax
 import numpy as np
 
-from nonholo.analysis.linearization._reduction import Local
+from nonholo.analysis._linearize import Local
 from nonholo.base.checks import error
 from nonholo.base.types import Array, Float
 from nonholo.continuous import vector_field
@@ -111,9 +111,7 @@ def _stepping(discrete: Discretization, run: Any) -> Move:
     return move
 
 
-def _beside(
-    subject: Any, run: Any, time: Array, g: Array, r: Array
-) -> tuple[Callable[[Array], Array], Float[Array, "m"]]:
+def _beside(subject: Any, run: Any, time: Array, g: Array, r: Array) -> tuple[Callable[[Array], Array], Array]:
     """Return the change of a state as a function of what it is beside one, and where it is that state."""
     is_map = isinstance(subject, Discretization)
     move = _stepping(subject, run) if is_map else _flowing(subject)
