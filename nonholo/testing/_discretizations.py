@@ -62,8 +62,7 @@ class OrbitSamples:
     @functools.cached_property
     def directions(self) -> Float[np.ndarray, "k dim"]:
         """The admissible directions in the body at the start."""
-        back = np.linalg.inv(self.pose)
-        return self.S @ self.group.adjoint(back).T if self.spatial else self.S
+        return self.S @ self.system.carried(np.linalg.inv(self.pose)).T
 
     @functools.cached_property
     def run(self) -> tuple[list[Orbit], float] | Exception:
@@ -455,7 +454,7 @@ def tangent_space(s: OrbitSamples) -> float:
 def transversality(s: OrbitSamples) -> float:
     """Return how many forbidden directions the equations of the variety do not see."""
     need(len(s.A), "nothing is forbidden")
-    back = s.group.adjoint(np.linalg.inv(s.pose)) if s.spatial else np.eye(s.group.dim)
+    back = s.system.carried(np.linalg.inv(s.pose))
     g = np.broadcast_to(s.pose, (len(s.A), *s.pose.shape))
     slope = derivative(lambda t: s.forbidden(s.group.exp(t * s.A @ back.T), g))
     return float(len(s.A) - np.linalg.matrix_rank(slope, tol=1e-6 * largest(slope)))

@@ -52,9 +52,8 @@ class SystemSamples:
     @functools.cached_property
     def directions(self) -> Float[np.ndarray, "4 k dim"]:
         """The admissible directions in the body."""
-        if not self.spatial:
-            return np.broadcast_to(self.S, (_COUNT, *self.S.shape))
-        return np.swapaxes(self.group.adjoint(np.linalg.inv(self.g)) @ self.S.T, -1, -2)
+        rows = np.swapaxes(self.system.carried(np.linalg.inv(self.g)) @ self.S.T, -1, -2)
+        return np.broadcast_to(rows, (_COUNT, *self.S.shape))
 
     @functools.cached_property
     def body_velocity(self) -> Float[np.ndarray, "4 dim"]:
@@ -104,16 +103,12 @@ class SystemSamples:
 
     def energy(self, restricted: np.ndarray, g: np.ndarray) -> np.ndarray:
         """Return the constrained energy that the system states: the kinetic one."""
-        system: Any = self.system
-        return system.constrained_energy(restricted, g) if self.spatial else system.constrained_energy(restricted)
+        return self.system.constrained_energy(restricted, g)
 
     def full_momentum(self, restricted: np.ndarray, g: np.ndarray) -> np.ndarray:
         """Return the momentum of the admissible velocity with these momenta along the constraint."""
-        system: Any = self.system
-        if not self.spatial:
-            return system.restricted_velocity(restricted) @ self.S @ self.inertia.T
-        spatial = system.restricted_velocity(restricted, g) @ self.S
-        return (self.group.adjoint(np.linalg.inv(g)) @ spatial[..., None])[..., 0] @ self.inertia.T
+        velocity = self.system.restricted_velocity(restricted, g) @ self.S
+        return (self.system.carried(np.linalg.inv(g)) @ velocity[..., None])[..., 0] @ self.inertia.T
 
 
 @measures(CHECKS, "sizes", "constraint_subspace (k, dim), annihilator (dim - k, dim), inertia_operator (dim, dim)", 0.0)
@@ -170,10 +165,7 @@ def _constrained_inertia(s: SystemSamples) -> float:
 
 @measures(CHECKS, "restriction", "restrict(p) = S p (in space: S coadjoint(g^-1, p))", 1e-12)
 def _restriction(s: SystemSamples) -> float:
-    system = s.system
-    if s.spatial:
-        return relative(system.restrict_in_space(s.momentum, s.g), s.restricted)  # type: ignore[attr-defined]
-    return relative(system.restrict(s.momentum), s.restricted)
+    return relative(s.system.restrict_at(s.momentum, s.g), s.restricted)
 
 
 @measures(CHECKS, "restricted_velocity", "restricted_velocity inverts velocity -> momentum", 1e-11)

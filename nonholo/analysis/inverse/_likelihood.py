@@ -181,11 +181,6 @@ class Ranges(NamedTuple):
     low: np.ndarray
     high: np.ndarray
 
-    @property
-    def is_logarithmic(self) -> np.ndarray:
-        """Which parameters are searched by their logarithm."""
-        return (self.low == 0) & np.isposinf(self.high)
-
 
 class Solution(NamedTuple):
     """The end of a search: a point, noise levels, the likelihood there, and whether both have settled."""
@@ -233,10 +228,9 @@ class Search(NamedTuple):
 
     def least(self, point: np.ndarray, noise: np.ndarray, tolerance: float) -> np.ndarray:
         """Return the point where the loss is least under noise levels."""
-        scale, (low, high), is_log = noise[self.problem.kind_of], self.ranges, self.ranges.is_logarithmic
-        starts = np.zeros(len(point) - self.problem.count)
-        is_log = np.concatenate([is_log, starts > 0])
-        low, high = np.concatenate([low, starts - np.inf]), np.concatenate([high, starts + np.inf])
+        scale, starts = noise[self.problem.kind_of], np.zeros(len(point) - self.problem.count)
+        low, high = np.append(self.ranges.low, starts - np.inf), np.append(self.ranges.high, starts + np.inf)
+        is_log = (low == 0) & np.isposinf(high)  # positive numbers
 
         def rows(x: np.ndarray) -> np.ndarray:
             here = np.where(is_log, np.exp(x), x)
