@@ -107,13 +107,13 @@ def _without(local: Local, dependent: list[int]) -> Reduced:
 
 
 def _depends(slope: Float[np.ndarray, "K d d"]) -> Bool[np.ndarray, "d d"]:
-    """Tell which change depends on which state, at any state where the derivatives are finite."""
+    """Return which change depends on which state, at any state where the derivatives are finite."""
     finite = slope[np.isfinite(slope).all(axis=(1, 2))]
     return np.any(np.abs(finite) > _UNSEEN * np.abs(finite).max(axis=(1, 2), initial=0.0, keepdims=True), axis=0)
 
 
 def _influences(depends: Bool[np.ndarray, "d d"], places: int) -> Bool[np.ndarray, "d"]:
-    """Tell which states the velocities depend on, directly or by other states; velocities are among them."""
+    """Return which states the velocities depend on, directly or by other states; velocities are among them."""
     matters = np.arange(len(depends)) >= places
     while np.any(more := depends[matters].any(axis=0) & ~matters):
         matters |= more
@@ -182,7 +182,7 @@ def linearize(system: Any, *, configuration: Any = None, body_velocity: Any = No
     on the pose $\xi$ of $g\,e^\xi$, seen from a body that moves on steadily. So a top in steady precession is, too.
 
     Derivatives are exact, by JAX; those of forces and potentials that are functions, on groups, are central
-    differences of order 6. What depends on what is seen at the state and three more, up to 1e-11 of the largest
+    differences of order 6. Dependences are seen at the state and three more, up to 1e-11 of the largest
     derivative. The step of a map begins as `simulate` begins, with `body_velocity`.
 
     Args:
@@ -398,7 +398,7 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
     series of its equation of variation, between its times.
 
     Args:
-        orbit: Made by `simulate` with every step saved, or by `flow`. One in coordinates has a `tangent` of its own.
+        orbit: Made by `simulate` with every step saved, or by `flow`. An orbit in coordinates has its own `tangent`.
 
     Raises:
         ValueError: Another kind of orbit, a map under a table or a function of Python or numba.
@@ -418,7 +418,7 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
         return flow_tangents(_WHERE, system, orbit.restricted_momentum, orbit.time)
     if not isinstance(discrete, Discretization) or _acts_from_outside(discrete.forces):
         remedy = "Differentiate `nh.rollout` by JAX."
-        raise error(_WHERE, "be asked of a free flow, or of a map whose forces are numbers", shown(discrete), remedy)
+        raise error(_WHERE, "belong to a free flow, or to a map whose forces are numbers", shown(discrete), remedy)
     if not orbit.has_every_step:
         raise error(_WHERE, "have every step", f"{len(orbit)} states with others between", "Run with save_every=1.")
     if _has_closed_derivatives(discrete):
@@ -433,5 +433,5 @@ def _has_closed_derivatives(discrete: Discretization) -> bool:
 
 
 def _acts_from_outside(forces: Any) -> bool:
-    """Tell whether forces do more than the state does: by a table, or by a function that is not traced."""
+    """Return whether forces do more than the state does: by a table, or by a function that is not traced."""
     return forces is not None and (forces.needs_function or forces.table is not None)

@@ -246,7 +246,7 @@ def _ends(s: CoordinateSamples, k: int) -> tuple[np.ndarray, np.ndarray]:
 @measures(MAP, "reversal", "a motion that nothing drives goes back the way it came", 1e-9)
 def _reversal(s: CoordinateSamples) -> float:
     need(not s.system.is_driven, "forces, or what drives it, act")
-    need(s.system.discrete_constraints is None, "discrete constraints of its own")
+    need(s.system.discrete_constraints is None, "custom discrete constraints")
     q = s.orbit.configuration
     there, back = ([s.action(*ends, 0.0) for ends in itertools.pairwise(x)] for x in (q, q[::-1]))
     need(relative(back[::-1], there) < 1e-12, "L_d is another one backwards")

@@ -27,7 +27,7 @@ class Problem:
     Attributes:
         residuals: Residuals with derivatives, of parameters, starts, poses and kinds.
         poses: Where the changes of pose in the starts begin.
-        kinds: What was measured.
+        kinds: The kinds of measurements.
         count: How many parameters there are.
         shape: Of the starts: trials, numbers of each.
         last: The last point with its residuals.
@@ -255,7 +255,7 @@ class Search(NamedTuple):
             return np.where(is_log, np.exp(result.x), result.x)
 
     def exists(self, point: np.ndarray) -> bool:
-        """Tell whether there is a body at a point."""
+        """Return whether there is a body at a point."""
         try:
             self.system_at(point)
         except ValueError:
@@ -291,7 +291,7 @@ class Search(NamedTuple):
         return "converged" if solution.is_settled else "not_converged"
 
     def _is_lost(self, solution: Solution, kind: str) -> bool:
-        """Tell whether residuals of a kind are many times the noise, which is given or that from sample to sample."""
+        """Return whether residuals of a kind are many times the noise, which is given or that from sample to sample."""
         there, rows = self.problem.there[kind], self.problem.at(solution.point)[kind][0]
         columns = [rows[t, there[t, :, c], c] for t in range(len(rows)) for c in range(rows.shape[2])]
         typical, step = (
