@@ -370,7 +370,7 @@ def test_wheels_are_kept_from_turning_over() -> None:
 
 def test_a_leap_over_a_disc_is_missed() -> None:
     """States on both sides of a disc are clear of it, but not the line between them; a cut of its edge is let pass."""
-    way = Way.of(2, 2, ([(0.0, 0.0)], 0.5), None, None)
+    way = Way.of(2, 2, ([(0.0, 0.0)], 0.5), None, None, None)
     leap, edge = (np.array([[-1.0, y], [1.0, y]]) for y in (0.1, 0.4))
     np.testing.assert_allclose([way.gap(each[:, None], each) for each in (leap, edge)], [0.4, 0.0], rtol=1e-15)
     inside = np.array([[0.0, 0.2], [1.0, 0.2]])
