@@ -39,32 +39,16 @@ def test_kernels_of_each_kind_of_motion() -> None:
     assert _printed("ways") == ALONE
 
 
-@pytest.mark.profile("faults", keep=["quick"])
-@pytest.mark.parametrize(
-    ("which", "asked"),
-    [
-        ("quick", {"branch_growth [certified]": "certify", "branches [certified]": "certify"}),
-        (
-            "all",
-            {
-                "branch_growth [certified]": "certify",
-                "branches [certified]": "certify",
-                "consistency_defect": "jax",
-                "critical_values": "jax",
-                "equilibria [near]": "jax",
-                "linearize": "jax",
-                "fit": "jax",
-                "rollout": "jax",
-                "steer": "jax",
-                "steer [ipopt]": "steer",
-                "step": "jax",
-                "step [flat]": "jax",
-                "tracking_feedback": "jax",
-            },
-        ),
-    ],
-    ids=["quick", "all"],
+CERTIFIED = dict.fromkeys(("branch_growth [certified]", "branches [certified]"), "certify")
+ON_JAX = dict.fromkeys(
+    ("consistency_defect", "critical_values", "equilibria [near]", "fit", "linearize", "rollout", "steer", "step"),
+    "jax",
 )
+ON_JAX |= {"step": "jax", "step [flat]": "jax", "tracking_feedback": "jax", "steer [ipopt]": "steer"}
+
+
+@pytest.mark.profile("faults", keep=["quick*"])
+@pytest.mark.parametrize(("which", "asked"), [("quick", CERTIFIED), ("all", {**CERTIFIED, **ON_JAX})])
 def test_calls_that_need_an_extra(which: str, asked: dict[str, str]) -> None:
     """Each call of each public name works without extras, or asks for the one that it needs."""
     assert _printed("calls", which) == asked
@@ -100,6 +84,7 @@ def test_commands_work(tmp_path: Path) -> None:
         assert done.returncode == 0, f"{command}: {done.stdout}{done.stderr}"
 
 
+@pytest.mark.profile("faults", keep=["paper", "logarithmic difference"])
 @pytest.mark.parametrize(
     ("command", "extra"),
     [
@@ -121,17 +106,15 @@ def test_commands_that_need_an_extra(command: list[str], extra: str, tmp_path: P
 @pytest.mark.parametrize(
     "run",
     [
-        "nh.simulate(nh.discretize(sleigh, 0.1), body_velocity=(1, 0, 0), steps=10)",
-        "nh.flow(sleigh, body_velocity=(1, 0, 0), times=(0, 1))",
+        "nh.Grid({'a': [1]}); nh.sweep; o = nh.simulate(nh.discretize(sleigh, 0.1), body_velocity=(1, 0, 0), steps=9)",
+        "o = nh.flow(sleigh, body_velocity=(1, 0, 0), times=(0, 1))",
     ],
     ids=["simulate", "flow"],
 )
 def test_a_run_loads_nothing_that_it_does_not_use(run: str) -> None:
     """A run loads neither JAX, numba and sparse matrices nor what makes datasets, stores, pictures and scenarios."""
-    program = (
-        f"import sys, nonholo as nh; sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.5); o = {run}; o.momentum, o.heading;"
-    )
-    program += f"print(sorted({HEAVY | {'numba', 'scipy.sparse'}} & set(sys.modules)))"
+    program = f"import sys, nonholo as nh; sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.5); {run}; o.momentum, o.heading;"
+    program += f"nh.invariants(o); print(sorted({HEAVY | {'numba', 'scipy.sparse'}} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)  # noqa: S603
     assert done.stdout.strip() == "[]"
 

@@ -21,20 +21,8 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).parent))
 
 ABSENT = {
-    "anywidget",
-    "casadi",
-    "diffrax",
-    "distributed",
-    "equinox",
-    "flint",
-    "jax",
-    "jaxlib",
-    "latex2mathml",
-    "lineax",
-    "llvmlite",
-    "mpmath",
-    "numba",
-    "optimistix",
+    *("anywidget", "casadi", "diffrax", "distributed", "equinox", "flint", "jax", "jaxlib", "latex2mathml", "lineax"),
+    *("llvmlite", "mpmath", "numba", "optimistix"),
 }
 """The libraries of the extras that users run, and what those bring."""
 
@@ -88,11 +76,7 @@ def calls(which: str) -> dict[str, str]:
 
     for missing in names():  # the table names them when it is made
         vars(nh)[missing] = functools.partial(_home_of, missing)
-    for group in (
-        "_in_coordinates",
-        "_locomotion",
-        "_examples",
-    ):  # systems that cannot be made without an extra: see `names`
+    for group in ("_in_coordinates", "_locomotion", "_examples"):  # that cannot be made without an extra: see `names`
         try:
             getattr(calls_systems, group)()
         except (MissingExtraError, AttributeError):

@@ -76,9 +76,7 @@ def test_random_members_do_not_depend_on_the_rest(distribution: AbstractDistribu
 
 
 @pytest.mark.parametrize(
-    ("one", "other"),
-    [(("x", 0), ("y", 0)), (("x", 0), ("x", 1)), (("x", 1), ("y", 2))],
-    ids=["names", "seeds", "both"],
+    ("one", "other"), [(("x", 0), ("y", 0)), (("x", 0), ("x", 1)), (("x", 1), ("y", 2))], ids=["names", "seeds", "both"]
 )
 def test_names_and_seeds_are_independent(one: tuple[str, int], other: tuple[str, int]) -> None:
     """Numbers of different names or seeds are not correlated, nor are those of neighbors: five standard errors."""

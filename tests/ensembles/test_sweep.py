@@ -1,7 +1,5 @@
 """`sweep` with functions: what they may return, who is recorded as failed, and that blocks change nothing."""
 
-import subprocess
-import sys
 import threading
 import warnings
 from collections.abc import Callable
@@ -360,13 +358,6 @@ def test_progress_counts_members(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
         counted.clear()
         _swept(_calm, tmp_path, block=4, progress=True, resume=True)
         assert counted == [(0, 12), (4, 12), (8, 12), (12, 12)]
-
-
-def test_dask_is_loaded_when_it_is_needed() -> None:
-    """Neither the package nor designs and tasks load Dask; `sweep` does."""
-    program = "import sys, nonholo as nh; nh.Grid({'a': [1.0]}); nh.sweep; print(sorted({'dask'} & {*sys.modules}))"
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)  # noqa: S603
-    assert done.stdout.strip() == "[]"
 
 
 def _drawn_twice(block: nh.MemberBlock) -> dict[str, Any]:

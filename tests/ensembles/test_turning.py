@@ -56,22 +56,6 @@ def test_every_discrete_sleigh_turns_less(tmp_path: Path) -> None:
     assert np.isnan(found["turning_deviation"].values[~good]).all()
 
 
-@pytest.mark.parametrize("inertia", INERTIAS)
-def test_no_sleigh_is_lost_below_the_sides_of_the_deltoid(inertia: float, tmp_path: Path) -> None:
-    """Sleighs turn round up to the time step at which their energy ellipse meets a side that ends the branch."""
-    bound = _bound(inertia)
-    found = _turns(tmp_path, nh.Grid({"inertia": [inertia], "time_step": bound * np.linspace(0.9, 0.999, 40)}), 1500)
-    assert (found["outcome"] == 0).all()
-    found = _turns(tmp_path / "above", nh.Grid({"inertia": [inertia], "time_step": bound * np.array([1.8])}), 1500)
-    assert (found["outcome"] == 1).all()
-
-
-def _bound(inertia: float) -> float:
-    """Return the time step at which the energy 1/2 is the one below which all momenta have a principal value."""
-    unit = nh.discretize(nh.ChaplyginSleigh(1.0, inertia, 1.0), 1.0)
-    return float(np.sqrt(2 * nh.single_valued_region(unit).principal_energy))
-
-
 def test_turn_of_each_step() -> None:
     """On the ellipse of its energy, by the angle phi, a step turns by 2 arctan(L tan(d phi / 2)), L^2 = 1 + J/(m a^2).
 

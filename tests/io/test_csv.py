@@ -264,13 +264,6 @@ def test_damaged_chunk_is_refused_by_name(name: str, store: Path, tmp_path: Path
     assert list(tmp_path.iterdir()) == [store]
 
 
-def test_missing_chunk_is_refused_by_name(store: Path) -> None:
-    """A chunk that is not there is not read as NaN."""
-    (store / "canonical" / "pose" / "c" / "3" / "0").unlink()
-    with pytest.raises(ValueError, match="chunk c/3/0 of the array canonical/pose"):
-        _of_store(store)
-
-
 def test_no_poses_are_refused(tmp_path: Path) -> None:
     """An orbit without poses, in memory or in a store, is refused with the remedy, and nothing is written."""
     orbit = nh.simulate(SPINNING, steps=5, reconstruct=False, **SPIN)

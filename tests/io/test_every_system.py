@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray
+from problems import PROBLEMS
 
 import nonholo as nh
 from nonholo.groups import AbstractMatrixGroup
@@ -53,7 +54,9 @@ MOTIONS: dict[str, Callable[[], Any]] = {
     "nothing moves": lambda: nh.discretize(nh.LLSystem(nh.SO(3), _tensor(3), np.empty((0, 3))), 0.1),
     "one direction": lambda: nh.discretize(nh.LLSystem(nh.SO(3), _tensor(3), [[1.0, 0.0, 0.0]]), 0.1),
     "naive sleigh": lambda: nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1, constraint="naive"),
+    **{f"zoo: {each.name}": lambda system=each.system: nh.discretize(system, 0.1) for each in PROBLEMS},
 }
+COLUMNS = ("time", "reduced_momentum", "cayley", "canonical_pose", "energy", "displacement")
 
 
 def _run(motion: nh.Discretization, **options: Any) -> nh.Orbit:
@@ -71,16 +74,7 @@ def test_round_trip(make: Callable[[], Any], tmp_path: Path) -> None:
     for field in dataclasses.fields(orbit.system):
         assert np.array_equal(getattr(loaded.system, field.name), getattr(orbit.system, field.name)), field.name
     assert (loaded.motion.difference, loaded.motion.constraint) == (orbit.motion.difference, orbit.motion.constraint)
-    for name in (
-        "time",
-        "reduced_momentum",
-        "cayley",
-        "canonical_pose",
-        "energy",
-        "displacement",
-        "multipliers",
-        "momentum",
-    ):
+    for name in (*COLUMNS, "multipliers", "momentum", "configuration"):
         one, two = getattr(orbit, name), getattr(loaded, name)
         assert one.shape == two.shape, name
         assert one.tobytes() == two.tobytes(), name
@@ -115,7 +109,7 @@ def test_round_trip_of_motions_on_jax(make: Callable[[], Any], tmp_path: Path) -
     loaded = nh.load_orbit(tmp_path / "o.zarr")
     assert loaded.system.group == motion.system.group
     assert (loaded.motion.difference, loaded.motion.constraint) == (motion.difference, motion.constraint)
-    for name in ("time", "reduced_momentum", "cayley", "canonical_pose", "energy", "displacement", "configuration"):
+    for name in (*COLUMNS, "configuration"):
         assert getattr(orbit, name).tobytes() == getattr(loaded, name).tobytes(), name
 
 
@@ -141,9 +135,8 @@ def test_flows_round_trip(system: AbstractSystem, tmp_path: Path) -> None:
 
 
 def test_every_system_is_tried() -> None:
-    """No final system is missing from the round trips of this file and of `test_store`."""
-    tried = {type(make().system) for make in MOTIONS.values()} | {nh.SuslovTop, nh.ChaplyginSleigh}
-    assert tried == set(SYSTEMS)
+    """No final system is missing from the round trips."""
+    assert {type(make().system) for make in MOTIONS.values()} == set(SYSTEMS)
 
 
 @pytest.mark.parametrize(

@@ -81,14 +81,8 @@ CASES: dict[str, tuple[Callable[[], nh.Orbit], list[str]]] = {
     "Heisenberg": (lambda: made_up(_any(_HEISENBERG, 2)), [_PORTRAIT, _VELOCITY, _ENERGY]),
     "product": (lambda: made_up(_any(_PRODUCT, 4)), [_MOMENTUM, _VELOCITY, _ENERGY]),
     "translations": (lambda: made_up(_any(nh.Translations(9), 9)), [_MOMENTUM, _VELOCITY, _ENERGY]),
-    "no poses": (
-        lambda: run_of(_left(nh.SE(3), np.eye(6)[:4]), reconstruct=False),
-        [_MOMENTUM, _VELOCITY, _ENERGY],
-    ),
-    "Veselova without poses": (
-        lambda: run_of(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), reconstruct=False),
-        [_SPATIAL],
-    ),
+    "no poses": (lambda: run_of(_left(nh.SE(3), np.eye(6)[:4]), reconstruct=False), [_MOMENTUM, _VELOCITY, _ENERGY]),
+    "Veselova without poses": (lambda: run_of(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), reconstruct=False), [_SPATIAL]),
     "one state": (lambda: run_of(_left(nh.SE(3), np.eye(6)[:4]))[:1], [_POINT, _MOMENTUM, _VELOCITY, _ENERGY]),
 }
 
@@ -127,8 +121,7 @@ def test_a_flow_beside_and_alone() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "words"),
-    [("dart", "exact by theorem, up to rounding"), ("Veselova", "not exact for this discretization")],
+    ("name", "words"), [("dart", "exact by theorem, up to rounding"), ("Veselova", "not exact for this discretization")]
 )
 def test_the_energy_panel_says_what_to_expect(name: str, words: str) -> None:
     """The panel says whether a theorem makes the energy exact, and the measured error agrees with it."""
