@@ -103,18 +103,22 @@ def test_commands_that_need_an_extra(command: list[str], extra: str, tmp_path: P
     assert not list(tmp_path.rglob("*.zarr"))
 
 
+RUN = "o = nh.simulate(nh.discretize(sleigh, 0.1), body_velocity=(1, 0, 0), steps=9)"
+
+
 @pytest.mark.parametrize(
-    "run",
+    ("run", "heavy"),
     [
-        "nh.Grid({'a': [1]}); nh.sweep; o = nh.simulate(nh.discretize(sleigh, 0.1), body_velocity=(1, 0, 0), steps=9)",
-        "o = nh.flow(sleigh, body_velocity=(1, 0, 0), times=(0, 1))",
+        (RUN, {*HEAVY, "numba", "scipy.sparse"}),
+        ("o = nh.flow(sleigh, body_velocity=(1, 0, 0), times=(0, 1))", {*HEAVY, "numba", "scipy.sparse"}),
+        (f"nh.Grid({{'a': [1.0]}}); nh.sweep; {RUN}; nh.invariants(o)", {"dask", "diffrax", "jax", "matplotlib"}),
     ],
-    ids=["simulate", "flow"],
+    ids=["simulate", "flow", "sweep"],
 )
-def test_a_run_loads_nothing_that_it_does_not_use(run: str) -> None:
+def test_a_run_loads_nothing_that_it_does_not_use(run: str, heavy: set[str]) -> None:
     """A run loads neither JAX, numba and sparse matrices nor what makes datasets, stores, pictures and scenarios."""
     program = f"import sys, nonholo as nh; sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.5); {run}; o.momentum, o.heading;"
-    program += f"nh.invariants(o); print(sorted({HEAVY | {'numba', 'scipy.sparse'}} & set(sys.modules)))"
+    program += f"print(sorted({heavy} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)  # noqa: S603
     assert done.stdout.strip() == "[]"
 

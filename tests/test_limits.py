@@ -262,7 +262,7 @@ def test_too_much_is_refused(name: str, tmp_path: Path, monkeypatch: pytest.Monk
     with pytest.raises(ValueError, match=re.escape(told)) as caught:
         call()
     assert re.search(
-        "must (fit into memory|fit on the disk|be at most|have at most|have matrices|settle)", str(caught.value)
+        "must (fit into memory|fit on the disk|be at most|have at most|have matrices|settle|keep)", str(caught.value)
     )
     assert _peak() - before < _MOST
     assert not list(tmp_path.iterdir())

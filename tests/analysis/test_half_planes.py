@@ -2,31 +2,14 @@
 
 import numpy as np
 import pytest
+from bodies import ATTRACTING
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.discrete import Discretization
 
-SYSTEMS = {
-    "top": nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]),
-    "top, tilted": nh.SuslovTop.from_inertia(
-        [[3.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.5]], (2 / 3, -1 / 3, 2 / 3)
-    ),
-    "sleigh": nh.ChaplyginSleigh(1.3, 0.7, 0.4, 0.3),
-    "sleigh, backward": nh.ChaplyginSleigh(1.3, 0.7, -0.4, 0.3),
-}
+SYSTEMS = {name: ATTRACTING[name] for name in ("top 3", "top 3, tilted", "sleigh 2", "sleigh 2, backward")}
 STEP = 0.25
-
-
-def _regular_tops(count: int) -> list[nh.SuslovTop]:
-    """Draw bodies in the regular regime D > 2|c|^2, c not small."""
-    rng, found = np.random.default_rng(5), []
-    while len(found) < count:
-        points = rng.normal(size=(3, 3))
-        top = nh.SuslovTop(points.T @ points)
-        square = top.coupling @ top.coupling
-        if 0.05 < square / np.linalg.det(top.constrained_inertia) < 0.5:
-            found.append(top)
-    return found
 
 
 def _paper(top: nh.SuslovTop, displacement: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -66,7 +49,7 @@ def _orbits(discrete: Discretization, shares: np.ndarray, seed: int = 0) -> list
 
 def test_they_are_the_letters_of_the_paper() -> None:
     """For the axis e3 `side` and `forward` of displacements are s and Q, of momenta twice its two combinations."""
-    top = SYSTEMS["top"]
+    top = SYSTEMS["top 3"]
     discrete = nh.discretize(top, STEP)
     for orbit in _orbits(discrete, np.array([0.1, 0.9])):
         s, Q, _ = _paper(top, orbit.displacement)
@@ -112,20 +95,6 @@ def test_orbits_stay_on_their_side(name: str) -> None:
         assert np.all(np.diff(momentum.forward) > 0)
 
 
-def test_theorem_on_the_discrete_top() -> None:
-    """On random regular bodies s keeps its sign, and both limits are inverse rotations in Theta_- and Theta_+."""
-    for body, top in enumerate(_regular_tops(8)):
-        discrete = nh.discretize(top, STEP)
-        for orbit in _orbits(discrete, np.array([0.05, 0.5, 0.95]), seed=body):
-            whole = nh.heteroclinic(discrete, momentum=orbit.restricted_momentum[0]).orbit
-            s, Q, _ = _paper(top, whole.displacement)
-            clear = np.abs(s) > 1e-12 * np.abs(s).max()  # at the ends rounding decides the sign
-            assert np.all(np.sign(s[clear]) == np.sign(s[len(s) // 2]))
-            assert Q[0] < 0 < Q[-1]
-            assert np.abs(s[[0, -1]]).max() <= 1e-12 * np.abs(s).max()
-            assert np.abs(whole.displacement[0] @ whole.displacement[-1] - np.eye(3)).max() <= 1e-12
-
-
 def test_a_balanced_body_has_no_sides() -> None:
     """All numbers are zero for a balanced top."""
     discrete = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), STEP)
@@ -134,22 +103,19 @@ def test_a_balanced_body_has_no_sides() -> None:
     assert found.side.shape == (4,)
 
 
-@pytest.mark.parametrize(
-    ("discrete", "options", "text"),
+# Other systems and maps, none or two arguments, and wrong shapes are named.
+test_wrong_arguments_are_refused = refusals(
     [
         (nh.discretize(nh.SuslovTop(np.eye(4)), 0.1), {"momentum": np.ones(6)}, "top with n = 3 or of a sleigh"),
-        (nh.discretize(SYSTEMS["top"], 0.1, difference="logarithmic"), {"momentum": np.ones(3)}, "keep energy"),
-        (nh.discretize(SYSTEMS["top"], 0.1), {}, "be given displacement or momentum. Got none"),
+        (nh.discretize(SYSTEMS["top 3"], 0.1, difference="logarithmic"), {"momentum": np.ones(3)}, "keep energy"),
+        (nh.discretize(SYSTEMS["top 3"], 0.1), {}, "be given displacement or momentum. Got none"),
         (
-            nh.discretize(SYSTEMS["top"], 0.1),
+            nh.discretize(SYSTEMS["top 3"], 0.1),
             {"momentum": np.ones(3), "displacement": np.eye(3)},
             "be given displacement or momentum. Got both",
         ),
-        (nh.discretize(SYSTEMS["top"], 0.1), {"momentum": np.ones(4)}, "end in shape"),
-        (nh.discretize(SYSTEMS["top"], 0.1), {"displacement": np.eye(2)}, "end in shape"),
+        (nh.discretize(SYSTEMS["top 3"], 0.1), {"momentum": np.ones(4)}, "end in shape"),
+        (nh.discretize(SYSTEMS["top 3"], 0.1), {"displacement": np.eye(2)}, "end in shape"),
     ],
+    lambda discrete, options: nh.half_planes(discrete, **options),
 )
-def test_wrong_arguments_are_refused(discrete: Discretization, options: dict, text: str) -> None:
-    """Other systems and maps, none or two arguments, and wrong shapes are named."""
-    with pytest.raises(ValueError, match=text):
-        nh.half_planes(discrete, **options)

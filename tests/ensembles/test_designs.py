@@ -8,6 +8,7 @@ import hypothesis
 import numpy as np
 import pytest
 from hypothesis import strategies as st
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.ensembles._block import block_of
@@ -201,8 +202,8 @@ def test_blocks_are_not_small(block: int) -> None:
     assert layout.piece(0).count > block / 2
 
 
-@pytest.mark.parametrize(
-    ("make", "match"),
+# What is no design, no distribution or no name is refused with the reason.
+test_bad_designs_are_refused = refusals(
     [
         (lambda: nh.Grid([1.0, 2.0]), r"Grid\(axes=...\)` must be a mapping"),
         (lambda: nh.Grid({}), "must be a mapping"),
@@ -226,12 +227,8 @@ def test_blocks_are_not_small(block: int) -> None:
         (lambda: nh.Direction(0), "must be a positive integer"),
         (lambda: nh.MassTensor(3, -1.0, 1.0), "be one positive number"),
         (lambda: nh.Choice([]), "hold at least one value"),
-    ],
+    ]
 )
-def test_bad_designs_are_refused(make: Callable[[], Any], match: str) -> None:
-    """What is no design, no distribution or no name is refused with the reason."""
-    with pytest.raises(ValueError, match=match):
-        make()
 
 
 def test_draws_do_not_depend_on_the_spelling_of_components() -> None:

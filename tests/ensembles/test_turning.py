@@ -21,18 +21,6 @@ def _turns(path: Path, design: nh.Grid, steps: int, start: float = START) -> xar
     return nh.sweep(task, design, path / "turns.zarr").load()
 
 
-def test_deviation_from_the_flow(tmp_path: Path) -> None:
-    """Of the turn of the flow h^2 J / (24 (1 + J)^2) is missing (m = a = u = 1), to a part of order h^2."""
-    steps = np.array([0.2, 0.4])
-    found = _turns(tmp_path, nh.Grid({"inertia": INERTIAS, "time_step": steps}), 2200)
-    J = INERTIAS[:, None]
-    leading = steps**2 * J / (24 * (1 + J) ** 2)
-    error = found["turning_deviation"].values / leading - 1
-    assert (np.abs(error) < 0.35 * steps**2 + START * 4 / leading).all()  # 0.32 h^2 at the largest
-    growth = error[:, 1] / error[:, 0]
-    assert np.abs(growth - 4).max() < 0.5
-
-
 @pytest.mark.parametrize("time_step", [0.2, 1.5])
 def test_deviation_of_one_orbit(time_step: float, tmp_path: Path) -> None:
     """The reduction is the one of `asymptotics`, which follows an orbit of `simulate` to both ends."""

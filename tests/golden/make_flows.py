@@ -32,7 +32,7 @@ BODIES: list[tuple[str, Any, list[float]]] = [  # name, mass tensor or (mass, in
 
 
 def table(case: Any, unit: int) -> dict[str, Array]:
-    """Return the columns of the file and the energy, by steps of one in so many of a unit of time."""
+    """Return the columns of the file and the energy, by steps, this many a unit of time."""
     basis, n, tensor = exact(case.basis()), case.n, homogeneous(case.parameters)
     nothing = [0.0] * n
     motion = Motion(("", case.group, tensor.tolist(), case.subspace, [], nothing, nothing, []))
