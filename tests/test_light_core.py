@@ -4,6 +4,7 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from matrix.alone import ALONE
@@ -21,15 +22,10 @@ def _run(*arguments: str, folder: Path | None = None) -> subprocess.CompletedPro
     return subprocess.run(command, cwd=folder, capture_output=True, text=True)  # noqa: S603
 
 
-def _printed(*arguments: str) -> dict[str, str]:
+def _printed(*arguments: str) -> Any:
     done = _run(*arguments)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
-
-
-def test_names_that_need_an_extra() -> None:
-    """Names that only JAX gives a meaning ask for it, by name and with how to install it; all others are there."""
-    assert _printed("names") == dict.fromkeys(WITHOUT_HOME | {"rollout", "step"}, "jax")
 
 
 def test_kernels_of_each_kind_of_motion() -> None:
@@ -50,8 +46,8 @@ ON_JAX |= {"step": "jax", "step [flat]": "jax", "tracking_feedback": "jax", "ste
 @pytest.mark.profile("faults", keep=["quick*"])
 @pytest.mark.parametrize(("which", "asked"), [("quick", CERTIFIED), ("all", {**CERTIFIED, **ON_JAX})])
 def test_calls_that_need_an_extra(which: str, asked: dict[str, str]) -> None:
-    """Each call of each public name works without extras, or asks for the one that it needs."""
-    assert _printed("calls", which) == asked
+    """Each public name is there without extras, or asks for JAX; each call works, or asks for the extra it needs."""
+    assert _printed("calls", which) == [dict.fromkeys(WITHOUT_HOME | {"rollout", "step"}, "jax"), asked]
 
 
 COMMANDS = [

@@ -415,7 +415,7 @@ def test_resume_of_a_damaged_sweep(nonholo: Command) -> None:
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
 def test_stopping_signals(name: str) -> None:
     """Ctrl-C, the end of a container and a closed terminal leave an unlocked store to resume, and exit code 1."""
-    text = RANDOM.replace("members = 12", "members = 2000000").replace("steps = 20", "steps = 500")
+    text = RANDOM.replace("members = 12", "members = 4000000").replace("steps = 20", "steps = 50")
     program = f"{HEED_CTRL_C}\nfrom nonholo.cli import main; main()"
     command = [sys.executable, "-c", program, "sweep", _written(text), "-o", "s.zarr"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)  # noqa: S603
