@@ -51,8 +51,8 @@ def test_all_problems_at_once() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ('kind = "sleigh"', 'kind = "slegh"', "body: must have a kind that there is. Got 'slegh'. Did you mean s"),
-        ('kind = "sleigh"', "", f"body: must have a kind that there is. Got none. Known: {', '.join(SHORT)}, "),
+        ('kind = "sleigh"', 'kind = "slegh"', "body: must have a known kind. Got 'slegh'. Did you mean s"),
+        ('kind = "sleigh"', "", f"body: must have a known kind. Got none. Known: {', '.join(SHORT)}, "),
         ("[run]", "[outptu]\nplot = true\n[run]", "outptu: is not a known key. Did you mean output?"),
         ("[body]", "output = 1\n[body]", "output: must be a table. Got 1"),
         ("mass = 1", "mass = -1", "body.mass: must be positive. Got -1"),

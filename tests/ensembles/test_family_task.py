@@ -121,7 +121,7 @@ def test_bad_tasks_are_refused(name: str) -> None:
 
 # Names that the family does not have, components beyond the last.
 test_bad_designs_are_refused = refusals(
-    [("mass", "name what the family has. Got 'mass'"), ("velocity_2", "vary components that there are")],
+    [("mass", "name arguments of the family. Got 'mass'"), ("velocity_2", "vary existing components")],
     lambda axis: nh.sweep(nh.FamilyTask(sleigh, 0.1, 3), nh.Grid({axis: [1.0]}), Path("bad.zarr")),
 )
 
