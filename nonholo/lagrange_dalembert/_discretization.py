@@ -21,7 +21,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import compiled
-from nonholo.lagrange_dalembert._functions import configurations, in_double, places, places_of, room
+from nonholo.lagrange_dalembert._functions import configurations, in_double, places, room
 from nonholo.lagrange_dalembert._newton import orientation, solve
 from nonholo.lagrange_dalembert._orbit import (
     ORBITS,
@@ -203,7 +203,7 @@ class CoordinateStepper(AbstractStepper[AbstractCoordinateOrbit]):
     block = 1 << 18
 
     def __post_init__(self) -> None:
-        places_of(self.motion.system)  # refused by the system of a store without functions
+        _ = self.motion.system.places  # refused by the system of a store without functions
 
     @functools.cached_property
     def columns(self) -> dict[str, int]:  # type: ignore[override]

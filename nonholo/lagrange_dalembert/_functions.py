@@ -289,11 +289,6 @@ def room(name: str) -> Any:
     return importlib.import_module(f"nonholo.lagrange_dalembert.{name}")
 
 
-def places_of(system: Any) -> Any:
-    """Return where a system moves; one of a store, which has no functions, raises an error."""
-    return system.places
-
-
 def configurations(system: Any, places: Any) -> Any:
     """Return the configurations of places: those of driven systems have the time in a last column."""
     return places[:, :-1] if system.is_driven else places
