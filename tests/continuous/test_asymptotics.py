@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from comparisons import assert_near
 from hypothesis import assume, given, settings
 from problems import sleighs, tops, velocities
 
@@ -123,9 +124,7 @@ def test_closed_form_of_random_sleighs(sleigh: nh.ChaplyginSleigh, velocity: np.
         start = {"restricted_velocity": velocity, "times": np.linspace(0.0, end, 5)}
         numerical = nh.flow(sleigh, **start, rtol=1e-12, atol=1e-14)
         closed = nh.flow(sleigh, **start, method="closed_form")
-        assert np.abs(numerical.configuration - closed.configuration).max() <= 1e-8
-        assert np.abs(numerical.heading - closed.heading).max() <= 1e-8
-        assert np.abs(numerical.body_velocity - closed.body_velocity).max() <= 1e-8
+        assert_near(numerical, closed, 1e-08, "configuration", "heading", "body_velocity")
 
 
 @settings(max_examples=60)
@@ -134,5 +133,4 @@ def test_closed_form_of_random_tops(top: nh.SuslovTop, velocity: np.ndarray) -> 
     """Closed form and numerical flow of tops agree to 1e-8 over two units of time."""
     start = {"restricted_velocity": velocity, "times": (0.0, 1.0, 2.0), "rtol": 1e-12, "atol": 1e-14}
     numerical, closed = nh.flow(top, **start), nh.flow(top, **start, method="closed_form")
-    assert np.abs(numerical.momentum - closed.momentum).max() <= 1e-8
-    assert np.abs(numerical.configuration - closed.configuration).max() <= 1e-8
+    assert_near(numerical, closed, 1e-08, "momentum", "configuration")

@@ -7,6 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from comparisons import assert_near
 from problems import PROBLEMS, Problem
 
 import nonholo as nh
@@ -73,8 +74,7 @@ def test_any_discrete_lagrangian() -> None:
         start = {"restricted_velocity": problem.restricted_velocity, "steps": 5}
         own = nh.simulate(nh.discretize(system, h, difference=lagrangian), **start)
         expected = nh.simulate(nh.discretize(system, h), **start)
-        assert np.abs(own.momentum - expected.momentum).max() < 1e-12
-        assert np.abs(own.configuration - expected.configuration).max() < 1e-12
+        assert_near(own, expected, 1e-12, "momentum", "configuration")
 
 
 def test_logarithmic_momenta_against_the_series() -> None:

@@ -4,6 +4,7 @@ import functools
 
 import numpy as np
 import pytest
+from comparisons import assert_joined
 
 import nonholo as nh
 from nonholo.base.numerics import double_precision
@@ -106,8 +107,7 @@ def test_blocks_together_are_the_run(name: str) -> None:
         whole = nh.simulate(discrete, **start, steps=40, save_every=every)
         blocks = list(nh.iterate(discrete, **start, steps=40, save_every=every, block_steps=block))
         assert [len(each) for each in blocks] == sizes
-        for rows in ("time", "configuration", "displacement", "momentum", "multipliers", "energy"):
-            assert np.array_equal(np.concatenate([getattr(each, rows) for each in blocks]), getattr(whole, rows))
+        assert_joined(blocks, whole, "time", "configuration", "displacement", "momentum", "multipliers", "energy")
 
 
 @HERE

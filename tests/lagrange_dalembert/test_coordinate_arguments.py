@@ -6,6 +6,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.lagrange_dalembert import _functions
@@ -101,45 +102,35 @@ def test_arguments_of_other_systems_are_refused(name: str) -> None:
         call()
 
 
-BAD = {
-    "no configuration": (lambda: run(configuration=None), r"simulate\(configuration=.*Pass the 3 coordinates"),
-    "no configuration of a flow": (lambda: flow(configuration=None), r"flow\(configuration=.*Pass the 3 coordinates"),
-    "no start": (lambda: run(body_velocity=None), "exactly one of body_velocity, displacement, momentum. Got none"),
-    "two starts": (lambda: run(momentum=V), "Got body_velocity and momentum"),
-    "two starts of a flow": (lambda: flow(momentum=V), "Got body_velocity and momentum"),
-    "shape": (lambda: run(configuration=(0.0, 1.0)), r"must have shape \(3,\). Got shape \(2,\)"),
-    "nan": (lambda: run(configuration=(0.0, np.nan, 0.0)), r"must be finite. Got nan at index \(1,\)"),
-    "velocity": (lambda: run(body_velocity=(1.0, 1.0, 0.0)), r"Got residual \[-1.\]. The nearest admissible velocity"),
-    "displacement": (lambda: run(body_velocity=None, displacement=(1.0, 1.0, 0.0)), "nearest admissible displacement"),
-    "steps": (lambda: run(steps=0), "must be a positive integer"),
-    "save_every": (lambda: run(save_every=1.5), "must be a positive integer"),
-    "block of no steps": (lambda: blocks(block_steps=0), r"iterate\(block_steps=...\)` must be a positive integer"),
-    "block": (lambda: blocks(block_steps=5, save_every=2), r"a multiple of save_every = 2. Got 5"),
-    "times": (lambda: flow(times=(0.0, 1.0, 1.0)), "strictly"),
-    "time step": (lambda: nh.discretize(SYSTEM, -0.1), r"discretize\(time_step=...\)` must be positive"),
-    "traced": (lambda: jax.jit(lambda h: nh.discretize(SYSTEM, h).time_step)(0.1), "outside jax.jit"),
-    "not discretized": (lambda: nh.simulate(SYSTEM, steps=3), "Pass what `discretize` returned"),
-    "rule": (lambda: nh.LagrangeDAlembert(lagrangian, forms, dimension=3, rule="simpson"), "'midpoint', 'trapezoidal'"),
-    "raises": (lambda: nh.LagrangeDAlembert(lambda q, v: 1 / 0, forms, dimension=3), "ZeroDivisionError"),  # noqa: ARG005
-    "branches": (
-        lambda: nh.LagrangeDAlembert(lambda q, v: v @ v if q[0] > 0 else 0.0, forms, dimension=3),
-        "jnp.where",
-    ),
-    "vector": (lambda: nh.LagrangeDAlembert(lambda q, v: v, forms, dimension=3), "return a scalar"),  # noqa: ARG005
-    "complex": (lambda: nh.LagrangeDAlembert(lambda q, v: 1j * v @ q, forms, dimension=3), "complex numbers"),
-    "constant": (lambda: nh.LagrangeDAlembert(lambda q, v: 1, forms, dimension=3), "an integer"),  # noqa: ARG005
-    "no lagrangian": (lambda: nh.LagrangeDAlembert(None, forms, dimension=3), r"lagrangian=.*function. Got None"),
-    "list": (lambda: nh.LagrangeDAlembert(lagrangian, lambda q: [[q[0], 0, 1]], dimension=3), "returned a list"),
-    "form": (lambda: nh.LagrangeDAlembert(lagrangian, lambda q: q, dimension=3), r"shape \(s, 3\) with 0 < s < 3"),
-}
-
-
-@pytest.mark.parametrize("name", BAD)
-def test_bad_input_is_refused(name: str) -> None:
-    """Each refusal says what is wrong and what to pass."""
-    call, words = BAD[name]
-    with pytest.raises(ValueError, match=words):
-        call()
+# Each refusal says what is wrong and what to pass.
+test_bad_input_is_refused = refusals(
+    (lambda: run(configuration=None), r"simulate\(configuration=.*Pass the 3 coordinates"),
+    (lambda: flow(configuration=None), r"flow\(configuration=.*Pass the 3 coordinates"),
+    (lambda: run(body_velocity=None), "exactly one of body_velocity, displacement, momentum. Got none"),
+    (lambda: run(momentum=V), "Got body_velocity and momentum"),
+    (lambda: flow(momentum=V), "Got body_velocity and momentum"),
+    (lambda: run(configuration=(0.0, 1.0)), r"must have shape \(3,\). Got shape \(2,\)"),
+    (lambda: run(configuration=(0.0, np.nan, 0.0)), r"must be finite. Got nan at index \(1,\)"),
+    (lambda: run(body_velocity=(1.0, 1.0, 0.0)), r"Got residual \[-1.\]. The nearest admissible velocity"),
+    (lambda: run(body_velocity=None, displacement=(1.0, 1.0, 0.0)), "nearest admissible displacement"),
+    (lambda: run(steps=0), "must be a positive integer"),
+    (lambda: run(save_every=1.5), "must be a positive integer"),
+    (lambda: blocks(block_steps=0), r"iterate\(block_steps=...\)` must be a positive integer"),
+    (lambda: blocks(block_steps=5, save_every=2), r"a multiple of save_every = 2. Got 5"),
+    (lambda: flow(times=(0.0, 1.0, 1.0)), "strictly"),
+    (lambda: nh.discretize(SYSTEM, -0.1), r"discretize\(time_step=...\)` must be positive"),
+    (lambda: jax.jit(lambda h: nh.discretize(SYSTEM, h).time_step)(0.1), "outside jax.jit"),
+    (lambda: nh.simulate(SYSTEM, steps=3), "Pass what `discretize` returned"),
+    (lambda: nh.LagrangeDAlembert(lagrangian, forms, dimension=3, rule="simpson"), "'midpoint', 'trapezoidal'"),
+    (lambda: nh.LagrangeDAlembert(lambda q, v: 1 / 0, forms, dimension=3), "ZeroDivisionError"),  # noqa: ARG005
+    (lambda: nh.LagrangeDAlembert(lambda q, v: v @ v if q[0] > 0 else 0.0, forms, dimension=3), "jnp.where"),
+    (lambda: nh.LagrangeDAlembert(lambda q, v: v, forms, dimension=3), "return a scalar"),  # noqa: ARG005
+    (lambda: nh.LagrangeDAlembert(lambda q, v: 1j * v @ q, forms, dimension=3), "complex numbers"),
+    (lambda: nh.LagrangeDAlembert(lambda q, v: 1, forms, dimension=3), "an integer"),  # noqa: ARG005
+    (lambda: nh.LagrangeDAlembert(None, forms, dimension=3), r"lagrangian=.*function. Got None"),
+    (lambda: nh.LagrangeDAlembert(lagrangian, lambda q: [[q[0], 0, 1]], dimension=3), "returned a list"),
+    (lambda: nh.LagrangeDAlembert(lagrangian, lambda q: q, dimension=3), r"shape \(s, 3\) with 0 < s < 3"),
+)
 
 
 def test_dependent_forms_are_refused_where_they_are() -> None:

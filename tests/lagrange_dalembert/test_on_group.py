@@ -6,6 +6,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from comparisons import assert_joined
+from refusals import refusals
 from scipy.integrate import solve_ivp
 
 import nonholo as nh
@@ -352,41 +354,29 @@ def test_the_lagrangian_of_a_body_needs_its_group_and_tensor(group: object, mass
         mass_tensor_lagrangian(group, mass_tensor)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("SE(2)", ACTION, blade), "matrix group"),
-        ((PLANE, lambda W, h: W[0] / h, blade), "discrete_lagrangian.* scalar"),
-        ((PLANE, branching, blade), "discrete_lagrangian.*traceable"),
-        ((PLANE, ACTION, lambda g: g[0]), "constraint_forms.*shape"),
-        ((PLANE, ACTION, lambda g: g), "0 < s < 3"),
-        ((PLANE, ACTION, blade, lambda g, W, h: g[0] * W[0] * h), "discrete_constraints.*shape"),
-        ((PLANE, ACTION, 3.0), "constraint_forms.*function"),
-    ],
-    ids=["group", "vector", "branch", "form", "square", "constraints", "number"],
+# Each error names the argument and the requirement.
+test_bad_definitions_are_refused = refusals(
+    (("SE(2)", ACTION, blade), "matrix group"),
+    ((PLANE, lambda W, h: W[0] / h, blade), "discrete_lagrangian.* scalar"),
+    ((PLANE, branching, blade), "discrete_lagrangian.*traceable"),
+    ((PLANE, ACTION, lambda g: g[0]), "constraint_forms.*shape"),
+    ((PLANE, ACTION, lambda g: g), "0 < s < 3"),
+    ((PLANE, ACTION, blade, lambda g, W, h: g[0] * W[0] * h), "discrete_constraints.*shape"),
+    ((PLANE, ACTION, 3.0), "constraint_forms.*function"),
+    ask=lambda arguments: GroupLagrangeDAlembert(*arguments),
 )
-def test_bad_definitions_are_refused(arguments: tuple, message: str) -> None:
-    """Each error names the argument and the requirement."""
-    with pytest.raises(ValueError, match=message):
-        GroupLagrangeDAlembert(*arguments)
 
 
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"body_velocity": (1.0, 1.0, 1.0)}, r"satisfy the constraint.*nearest admissible velocity is \["),
-        ({"body_velocity": (1.0, np.nan, 0.0)}, "finite"),
-        ({"configuration": np.diag([1.0, 2.0, 1.0])}, "lie in SE"),
-        ({"displacement": PLANE.exp(np.array([0.1, 0.0, 0.1]))}, "satisfy the discrete constraint"),
-        ({"steps": 0}, "positive integer"),
-        ({"body_velocity": None}, "exactly one of body_velocity, displacement, momentum"),
-    ],
-    ids=["velocity", "nan", "pose", "displacement", "steps", "none"],
+# Each error says what was got and what would do.
+test_bad_starts_are_refused = refusals(
+    ({"body_velocity": (1.0, 1.0, 1.0)}, r"satisfy the constraint.*nearest admissible velocity is \["),
+    ({"body_velocity": (1.0, np.nan, 0.0)}, "finite"),
+    ({"configuration": np.diag([1.0, 2.0, 1.0])}, "lie in SE"),
+    ({"displacement": PLANE.exp(np.array([0.1, 0.0, 0.1]))}, "satisfy the discrete constraint"),
+    ({"steps": 0}, "positive integer"),
+    ({"body_velocity": None}, "exactly one of body_velocity, displacement, momentum"),
+    ask=lambda changes: run(0.1, **({"steps": 3} | changes)),
 )
-def test_bad_starts_are_refused(changes: dict, message: str) -> None:
-    """Each error says what was got and what would do."""
-    with pytest.raises(ValueError, match=message):
-        run(0.1, **({"steps": 3} | changes))
 
 
 def twice(g):  # noqa: ANN001, ANN201
@@ -440,5 +430,4 @@ def test_blocks_on_groups_are_the_run() -> None:
     start = {**START, "body_velocity": admissible(0.9, 1.0)}
     blocks = list(nh.iterate(nh.discretize(MIXED, 0.1), **start, steps=10, block_steps=4))
     assert [len(block) for block in blocks] == [4, 4, 3]
-    for rows in ("time", "configuration", "displacement", "momentum", "multipliers"):
-        assert np.array_equal(np.concatenate([getattr(each, rows) for each in blocks]), getattr(run(0.1, 10), rows))
+    assert_joined(blocks, run(0.1, 10), "time", "configuration", "displacement", "momentum", "multipliers")

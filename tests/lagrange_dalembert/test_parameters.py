@@ -7,7 +7,9 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from comparisons import assert_member, assert_near
 from jax import lax
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.lagrange_dalembert import LagrangeDAlembert
@@ -130,8 +132,7 @@ def test_flows_and_work_have_the_parameters(name: str) -> None:
     """A flow, and the work along it, agree with those of numbers within, to the errors of its steps."""
     system, times = made(name).with_parameters(**OTHERS), np.linspace(0.0, 1.0, 9)
     orbit, plain = (nh.flow(each, **START, times=times) for each in (system, made(name, OTHERS)))
-    for row in ("configuration", "momentum", "multipliers", "energy", "work"):
-        assert np.abs(getattr(orbit, row) - getattr(plain, row)).max() <= 1e-9, row
+    assert_near(orbit, plain, 1e-09, "configuration", "momentum", "multipliers", "energy", "work")
 
 
 @pytest.mark.profile("routes", keep=["midpoint"])
@@ -164,8 +165,7 @@ def test_a_force_and_friction_go_with_parameters() -> None:
     runs = [
         nh.simulate(nh.discretize(each, 0.05), **START, steps=40) for each in (system.with_parameters(**OTHERS), plain)
     ]
-    assert np.abs(runs[0].configuration - runs[1].configuration).max() <= 1e-13
-    assert np.abs(runs[0].work - runs[1].work).max() <= 1e-13
+    assert_near(runs[0], runs[1], 1e-13, "configuration", "work")
 
 
 def test_a_force_of_the_time_goes_with_parameters() -> None:
@@ -226,34 +226,22 @@ def test_stores_tell_the_parameters(tmp_path: Path) -> None:
     del again
 
 
-REFUSED: dict[str, tuple[dict[str, Any], str]] = {
-    "a function without them": (
-        {"lagrangian": lambda q, v: q @ v},
-        r"lagrangian=.* take the parameters .* Got \(q, v\)",
+# Each bad argument is refused by its name.
+test_bad_parameters_are_refused = refusals(
+    ({"lagrangian": lambda q, v: q @ v}, r"lagrangian=.* take the parameters .* Got \(q, v\)"),
+    ({"constraint_forms": lambda q: q[None]}, r"constraint_forms=.* last argument. Got \(q\)"),
+    ({"prescribed": {0: lambda time: time}}, r"prescribed=.* last argument. Got \(time\)"),
+    ({"force": lambda time, q, v: time * q + v}, r"force=.* last argument. Got \(time, q, v\)"),
+    ({"parameters": {"a b": 1.0}}, r"parameters=\.\.\.\)` must be a name"),
+    ({"parameters": {"time_step": 1.0}}, r"must be a name.* taken: time_step"),
+    ({"parameters": [1.0]}, r"must be a mapping of names to numbers"),
+    ({"parameters": {"mass": "heavy"}}, r"parameters=\{'mass': \.\.\.\}\)` must be an array of real numbers"),
+    ({"parameters": {"mass": [1.0, np.nan]}}, r"'mass'.* must be finite"),
+    ({"lagrangian": lambda q, v, p: p["weight"] * v @ q}, r"KeyError: 'weight'"),
+    ask=lambda given: LagrangeDAlembert(
+        **{"lagrangian": sleigh, "constraint_forms": None, "dimension": 3, "parameters": NUMBERS} | given
     ),
-    "forms without them": ({"constraint_forms": lambda q: q[None]}, r"constraint_forms=.* last argument. Got \(q\)"),
-    "a motion without them": ({"prescribed": {0: lambda time: time}}, r"prescribed=.* last argument. Got \(time\)"),
-    "a force without them": ({"force": lambda time, q, v: time * q + v}, r"force=.* last argument. Got \(time, q, v\)"),
-    "a name that is none": ({"parameters": {"a b": 1.0}}, r"parameters=\.\.\.\)` must be a name"),
-    "the time step": ({"parameters": {"time_step": 1.0}}, r"must be a name.* taken: time_step"),
-    "no mapping": ({"parameters": [1.0]}, r"must be a mapping of names to numbers"),
-    "no number": (
-        {"parameters": {"mass": "heavy"}},
-        r"parameters=\{'mass': \.\.\.\}\)` must be an array of real numbers",
-    ),
-    "nan": ({"parameters": {"mass": [1.0, np.nan]}}, r"'mass'.* must be finite"),
-    "unknown": ({"lagrangian": lambda q, v, p: p["weight"] * v @ q}, r"KeyError: 'weight'"),
-}
-
-
-@pytest.mark.parametrize("name", REFUSED)
-def test_bad_parameters_are_refused(name: str) -> None:
-    """Each bad argument is refused by its name."""
-    given, words = REFUSED[name]
-    with pytest.raises(ValueError, match=words):
-        LagrangeDAlembert(
-            **{"lagrangian": sleigh, "constraint_forms": None, "dimension": 3, "parameters": NUMBERS} | given
-        )
+)
 
 
 @pytest.mark.parametrize(
@@ -282,8 +270,9 @@ def test_members_with_parameters_are_runs_alone() -> None:
         own = {name: values[member] for name, values in varied.items()}
         alone = nh.discretize(made("force").with_parameters(mass=own["mass"], pull=own["pull"]), own["time_step"])
         orbit = nh.simulate(alone, **START, steps=30, save_every=10)
-        for row in ("configuration", "momentum", "energy", "body_velocity", "restricted_momentum"):
-            assert np.array_equal(getattr(batch, row)[member], getattr(orbit, row)), row
+        assert_member(
+            batch, member, orbit, "configuration", "momentum", "energy", "body_velocity", "restricted_momentum"
+        )
         assert batch.orbit(member).system == alone.system
     assert np.array_equal(batch.to_dataset()["pull"], varied["pull"])
 
@@ -297,21 +286,16 @@ def test_members_with_parameters_are_compiled_once() -> None:
     assert len(CALLS) == before
 
 
-@pytest.mark.parametrize(
-    ("given", "words"),
-    [
-        (
-            {"mas": [1.0]},
-            r"name fields of the system. Got 'mas'. LagrangeDAlembert has mass, inertia, arm, pull, time_step",
-        ),
-        ({"pull": [1.0, 2.0]}, r"'pull': \.\.\.\}\)` must have shape \(any, 3\)"),
-        ({"mass": [1.0, np.nan]}, "must be finite"),
-    ],
+# Members differ by known names and fitting shapes.
+test_bad_members_are_refused = refusals(
+    (
+        {"mas": [1.0]},
+        r"name fields of the system. Got 'mas'. LagrangeDAlembert has mass, inertia, arm, pull, time_step",
+    ),
+    ({"pull": [1.0, 2.0]}, r"'pull': \.\.\.\}\)` must have shape \(any, 3\)"),
+    ({"mass": [1.0, np.nan]}, "must be finite"),
+    ask=lambda given: nh.ensemble(nh.discretize(made("midpoint"), 0.05), **START, parameters=given, steps=3),
 )
-def test_bad_members_are_refused(given: dict[str, Any], words: str) -> None:
-    """Members differ by known names and fitting shapes."""
-    with pytest.raises(ValueError, match=words):
-        nh.ensemble(nh.discretize(made("midpoint"), 0.05), **START, parameters=given, steps=3)
 
 
 def test_forces_need_not_take_the_parameters() -> None:

@@ -6,6 +6,8 @@ import re
 import mpmath
 import numpy as np
 import pytest
+from comparisons import assert_joined, assert_near, assert_same
+from refusals import refusals
 
 import nonholo as nh
 
@@ -62,8 +64,7 @@ def test_parts_of_steps_join_the_states(name: str) -> None:
     between = MOTIONS[name].after_parts
     for fraction, limit, error in ((1.0, orbit[1:], 2e-14), (1e-10, orbit[:-1], 1e-9)):
         reached = between(orbit[:-1], np.full(8, fraction))
-        for quantity in ("momentum", "configuration", "displacement", "body_velocity"):
-            assert np.abs(getattr(reached, quantity) - getattr(limit, quantity)).max() < error
+        assert_near(reached, limit, error, "momentum", "configuration", "displacement", "body_velocity")
 
 
 @pytest.mark.parametrize("name", MOTIONS)
@@ -75,8 +76,7 @@ def test_events_leave_the_orbit_alone(name: str) -> None:
     for every in (1, 7):
         run = {"restricted_velocity": start(discrete), "steps": 300, "save_every": every}
         orbit, plain = nh.simulate(discrete, **run, events=[event]), nh.simulate(discrete, **run)
-        for field in STATE:
-            assert np.array_equal(getattr(orbit, field), getattr(plain, field))
+        assert_same(orbit, plain, *STATE)
         found.append(orbit.events["middle"])
         assert len(found[-1]) > 0
         assert np.abs(event.function(found[-1].states)).max() < 4e-16
@@ -234,8 +234,7 @@ def test_blocks_of_one_state_are_those_of_the_run(every: int) -> None:
     whole = nh.simulate(ROUND, **run)
     blocks = list(nh.iterate(ROUND, **run, block_steps=every, events=[east]))
     assert [len(block) for block in blocks] == [1] * (1 + 30 // every)
-    for field in STATE:
-        assert np.array_equal(np.concatenate([getattr(block, field) for block in blocks]), getattr(whole, field))
+    assert_joined(blocks, whole, *STATE)
 
 
 def test_a_stored_run_without_start_has_no_crossings(tmp_path: pathlib.Path) -> None:
@@ -297,20 +296,14 @@ def test_functions_that_give_no_number_are_refused(function: object, told: str) 
     assert told in str(refusal.value)
 
 
-@pytest.mark.parametrize(
-    ("options", "told"),
-    [
-        ({"events": east}, "be a list"),
-        ({"events": [3]}, "be a function"),
-        ({"events": [east, east]}, "different names"),
-        ({"events": [east], "branch": "smallest"}, "principal branch"),
-    ],
-    ids=["no list", "number", "one name", "rule"],
+# What cannot be watched is refused before any work.
+test_runs_without_events_are_refused = refusals(
+    ({"events": east}, "be a list"),
+    ({"events": [3]}, "be a function"),
+    ({"events": [east, east]}, "different names"),
+    ({"events": [east], "branch": "smallest"}, "principal branch"),
+    ask=lambda options: nh.simulate(SLEIGH, body_velocity=(1.0, 1.0, 0.0), steps=20, **options),
 )
-def test_runs_without_events_are_refused(options: dict[str, object], told: str) -> None:
-    """What cannot be watched is refused before any work."""
-    with pytest.raises(ValueError, match=told):
-        nh.simulate(SLEIGH, body_velocity=(1.0, 1.0, 0.0), steps=20, **options)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("options", [{"direction": 2}, {"stop": -1}, {"stop": 0.5}], ids=str)

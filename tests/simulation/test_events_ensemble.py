@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from comparisons import assert_same
 
 import nonholo as nh
 from nonholo.simulation.members import _ensemble
@@ -57,8 +58,7 @@ def test_events_leave_members_alone(discrete: nh.Discretization, every: int | No
     """With and without events the states of all members are the same to the last bit."""
     run = {**ROWS, "steps": 60, "save_every": every}
     batch, plain = nh.ensemble(discrete, **run, events=[TILT]), nh.ensemble(discrete, **run)
-    for field in ("reduced_momentum", "cayley", "canonical_pose", "outcome", "steps_done", "time"):
-        assert np.array_equal(getattr(batch, field), getattr(plain, field), equal_nan=True)
+    assert_same(batch, plain, "reduced_momentum", "cayley", "canonical_pose", "outcome", "steps_done", "time")
 
 
 def test_blocks_of_members_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,10 +1,9 @@
 """Ensembles of flows: each member is the flow of its start and parameters, whoever runs beside it."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 from bodies import mass_tensor
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.continuous._series import body_numbers, by_series
@@ -157,28 +156,23 @@ def test_a_member_that_cannot_go_on_has_no_later_states() -> None:
         _ = batch.displacement
 
 
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        ({"steps": np.array([5, 6])}, r"ensemble\(steps=...\)` must be left out for a flow"),
-        ({"steps": 5}, r"ensemble\(steps=...\)` must be left out for a flow"),
-        ({"save_every": 1}, r"ensemble\(save_every=...\)` must be left out"),
-        ({"backend": "jax"}, r"ensemble\(backend=...\)` must be left out"),
-        ({"events": [nh.cusp]}, r"ensemble\(events=...\)` must be left out"),
-        ({"branch": "nearest"}, r"ensemble\(branch=...\)` must be left out"),
-        ({"times": None}, r"flow\(times=...\)"),
-        ({"times": (1.0, 1.0)}, r"flow\(times=...\)"),
-        ({"rtol": 1e-16}, r"flow\(rtol=...\)"),
-        ({"parameters": {"time_step": [0.1, 0.2]}}, "A flow has no time step"),
-        ({"parameters": {"mass": [1.0, 2.0, 3.0]}}, "one value for each member"),
-        ({"parameters": {"mass": [1.0, -2.0]}}, "This is member 1"),
-        ({"reduce": 3}, "be a function"),
-    ],
+# Before any work, by name.
+test_refused_arguments = refusals(
+    ({"steps": np.array([5, 6])}, r"ensemble\(steps=...\)` must be left out for a flow"),
+    ({"steps": 5}, r"ensemble\(steps=...\)` must be left out for a flow"),
+    ({"save_every": 1}, r"ensemble\(save_every=...\)` must be left out"),
+    ({"backend": "jax"}, r"ensemble\(backend=...\)` must be left out"),
+    ({"events": [nh.cusp]}, r"ensemble\(events=...\)` must be left out"),
+    ({"branch": "nearest"}, r"ensemble\(branch=...\)` must be left out"),
+    ({"times": None}, r"flow\(times=...\)"),
+    ({"times": (1.0, 1.0)}, r"flow\(times=...\)"),
+    ({"rtol": 1e-16}, r"flow\(rtol=...\)"),
+    ({"parameters": {"time_step": [0.1, 0.2]}}, "A flow has no time step"),
+    ({"parameters": {"mass": [1.0, 2.0, 3.0]}}, "one value for each member"),
+    ({"parameters": {"mass": [1.0, -2.0]}}, "This is member 1"),
+    ({"reduce": 3}, "be a function"),
+    ask=lambda given: nh.ensemble(SLEIGH, **{"restricted_velocity": np.ones((2, 2)), "times": (0.0, 1.0), **given}),
 )
-def test_refused_arguments(given: dict[str, Any], message: str) -> None:
-    """Before any work, by name."""
-    with pytest.raises(ValueError, match=message):
-        nh.ensemble(SLEIGH, **{"restricted_velocity": np.ones((2, 2)), "times": (0.0, 1.0), **given})
 
 
 def test_other_refused_starts() -> None:

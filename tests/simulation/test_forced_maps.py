@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from bodies import GENERAL
+from comparisons import assert_near, assert_same
 from scipy.integrate import solve_ivp
 
 import nonholo as nh
@@ -121,18 +122,14 @@ def test_no_force_gives_the_bits_of_the_free_map_and_flow() -> None:
     for system in (TOP, SLEIGH, VESELOVA):
         free = nh.simulate(nh.discretize(system, 0.1), **_start(system), steps=50)
         same = nh.simulate(nh.discretize(nh.Forced(system), 0.1), **_start(system), steps=50)
-        assert np.array_equal(free.momentum, same.momentum)
-        assert np.array_equal(free.configuration, same.configuration)
-        assert np.array_equal(free.multipliers, same.multipliers)
+        assert_same(free, same, "momentum", "configuration", "multipliers")
         flows = [nh.flow(s, **_start(system), times=(0.0, 1.0)) for s in (system, nh.Forced(system))]
         assert np.array_equal(flows[0].momentum, flows[1].momentum)
     for system in (TOP, SLEIGH):
         free = nh.simulate(nh.discretize(system, 0.1), **_start(system), steps=50)
         resting = nh.Forced(system, force=np.zeros((50, 3)), scheme="variational")
         same = nh.simulate(nh.discretize(resting, 0.1), **_start(system), steps=50)
-        assert np.array_equal(free.restricted_momentum, same.restricted_momentum)
-        assert np.array_equal(free.pose, same.pose)
-        assert np.array_equal(free.chart, same.chart)
+        assert_same(free, same, "restricted_momentum", "pose", "chart")
 
 
 @pytest.mark.parametrize("name", ["suslov 4", "sleigh 3", "any d on SE(3)", "right-invariant on SE(3)"])
@@ -174,8 +171,7 @@ def test_functions_give_the_impulses_of_what_is_compiled() -> None:
             rows = tuple(np.empty((17, width)) for width in stepper.columns.values())
             assert stepper.advance(state, 16, 1, rows) == (16, 0)
             mine = stepper.orbit(rows, 0, 1, nh.Outcome.successful)
-            for name in ("reduced_momentum", "cayley", "canonical_pose"):
-                assert np.abs(getattr(mine, name) - getattr(orbit, name)).max() < 1e-13
+            assert_near(mine, orbit, 1e-13, "reduced_momentum", "cayley", "canonical_pose")
 
 
 def test_a_differentiated_potential_is_the_weight() -> None:

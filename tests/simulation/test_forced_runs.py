@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import zarr
+from comparisons import assert_member
 
 import nonholo as nh
 from nonholo.orbit import Orbit
@@ -87,9 +88,7 @@ def test_members_are_single_runs(forced: nh.Forced) -> None:
     batch = nh.ensemble(discrete, restricted_velocity=starts, steps=30, save_every=10)
     for member, start in enumerate(starts):
         orbit = nh.simulate(discrete, restricted_velocity=start, steps=30, save_every=10)
-        assert np.array_equal(batch.momentum[member], orbit.momentum)
-        assert np.array_equal(batch.configuration[member], orbit.configuration)
-        assert np.array_equal(batch.energy[member], orbit.energy)
+        assert_member(batch, member, orbit, "momentum", "configuration", "energy")
         assert batch.first_energy[member] == pytest.approx(orbit.energy[0], rel=1e-14)
 
 
@@ -102,9 +101,7 @@ def test_members_of_flows_are_single_flows(forced: nh.Forced) -> None:
     batch = nh.ensemble(forced, restricted_velocity=starts, times=times)
     for member, start in enumerate(starts):
         flow = nh.flow(forced, restricted_velocity=start, times=times)
-        assert np.array_equal(batch.momentum[member], flow.momentum)
-        assert np.array_equal(batch.configuration[member], flow.configuration)
-        assert np.array_equal(batch.energy[member], flow.energy)
+        assert_member(batch, member, flow, "momentum", "configuration", "energy")
 
 
 def test_sweeps_end_where_single_runs_do(tmp_path: Path) -> None:

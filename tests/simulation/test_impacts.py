@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from comparisons import assert_near, assert_same
 from scipy.optimize import brentq
 
 import nonholo as nh
@@ -132,8 +133,7 @@ def test_impacts_are_values() -> None:
     for given in (nh.Impact(), nh.Impact((0.0, 1.0), point=(0.3, 0.0)), nh.Impact(np.cos)):
         other = dataclasses.replace(given, restitution=0.5)
         assert other.restitution == 0.5
-        assert np.array_equal(other.normal, given.normal)
-        assert np.array_equal(other.point, given.point)
+        assert_same(other, given, "normal", "point")
 
 
 @pytest.mark.parametrize("name", MOTIONS)
@@ -168,8 +168,7 @@ def test_impacts_are_roots_of_the_parts_of_steps(name: str) -> None:
             assert abs(wall.function(hit.states)[0]) < 1e-15
             assert abs(wall.function(hit.after)[0]) < 1e-15
             ahead, after = discrete.after_parts(hit.after, 1 - hit.fraction), orbit.chosen(slice(found + 1, found + 2))
-            assert np.abs(ahead.reduced_momentum - after.reduced_momentum).max() < 1e-15
-            assert np.abs(ahead.configuration - after.configuration).max() < 1e-15
+            assert_near(ahead, after, 1e-15, "reduced_momentum", "configuration")
     assert count > 5
 
 

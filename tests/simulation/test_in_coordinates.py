@@ -3,6 +3,8 @@
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from comparisons import assert_member, assert_same
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.lagrange_dalembert import LagrangeDAlembert
@@ -105,8 +107,7 @@ def test_an_event_stops_a_run() -> None:
     assert (orbit.events.stopped_by, len(orbit)) == ("height", 1 + int((1 + np.sqrt(1 - 0.6 * G)) / G / 0.1))
     assert len(orbit.events["rise"]) == 1
     alone = nh.simulate(discrete, **THROWN, steps=len(orbit) - 1)
-    for row in ROWS:
-        assert np.array_equal(getattr(orbit, row), getattr(alone, row)), row
+    assert_same(orbit, alone, *ROWS)
     blocks = list(nh.iterate(discrete, **THROWN, steps=10**6, block_steps=8, events=[down]))
     assert (sum(map(len, blocks)), blocks[-1].events.stopped_by) == (len(orbit), "height")
 
@@ -183,27 +184,25 @@ def test_members_of_flows_are_flows_alone(name: str, rtol: float | None) -> None
         alone = system.with_parameters(**own) if own else system
         first = {what: np.asarray(x)[member if np.ndim(x) == 2 else ...] for what, x in start.items()}
         orbit = nh.flow(alone, times=times, rtol=rtol, **first)
-        for what in ("time", "configuration", "body_velocity", "momentum", "multipliers", "energy"):
-            assert np.array_equal(getattr(batch, what)[member], getattr(orbit, what)), what
+        assert_member(
+            batch, member, orbit, "time", "configuration", "body_velocity", "momentum", "multipliers", "energy"
+        )
         assert np.array_equal(energies[member], orbit.energy)
         assert np.array_equal(batch.orbit(member).configuration, orbit.configuration)
     assert batch.to_dataset().configuration.shape[:2] == (2, 3)
 
 
-@pytest.mark.parametrize(
-    ("given", "words"),
-    [
-        ({"reconstruct": False}, r"ensemble\(reconstruct=...\)` must keep its default"),
-        ({"steps": 3}, r"ensemble\(steps=...\)` must be left out for a flow"),
-        ({"parameters": {"time_step": [0.1]}}, "must name fields of the system"),
-        ({"rtol": -1.0}, "rtol"),
-        ({"configuration": [[1.0], [np.nan]]}, "finite"),
-    ],
+# Each refusal says what is wrong before any work.
+test_flows_of_members_that_cannot_be_solved_are_refused = refusals(
+    ({"reconstruct": False}, r"ensemble\(reconstruct=...\)` must keep its default"),
+    ({"steps": 3}, r"ensemble\(steps=...\)` must be left out for a flow"),
+    ({"parameters": {"time_step": [0.1]}}, "must name fields of the system"),
+    ({"rtol": -1.0}, "rtol"),
+    ({"configuration": [[1.0], [np.nan]]}, "finite"),
+    ask=lambda given: nh.ensemble(
+        SPRING, **{"times": [0.0, 1.0], "configuration": [[1.0]], "body_velocity": [0.0]} | given
+    ),
 )
-def test_flows_of_members_that_cannot_be_solved_are_refused(given: dict, words: str) -> None:
-    """Each refusal says what is wrong before any work."""
-    with pytest.raises(ValueError, match=words):
-        nh.ensemble(SPRING, **{"times": [0.0, 1.0], "configuration": [[1.0]], "body_velocity": [0.0]} | given)
 
 
 @PROFILE
@@ -224,26 +223,20 @@ def test_members_have_the_crossings_of_their_runs() -> None:
     assert np.abs(blocks - (v[:, :1] - G * np.array([[0.0, 3.0, 6.0]]))).max() <= 1e-13
 
 
-REFUSED = {
-    "one start": ({"body_velocity": (1.0, 0.5)}, "have a row for each member. Got one start"),
-    "no rows": ({"body_velocity": np.empty((0, 2))}, "have a row for each member. Got no rows"),
-    "lengths": ({"configuration": np.zeros((2, 2)), "body_velocity": np.zeros((3, 2))}, "Got 2 of configuration, 3 of"),
-    "shape": ({"body_velocity": np.zeros((3, 4))}, r"must have shape \(any, 2\)"),
-    "two starts": ({"body_velocity": np.zeros((3, 2)), "momentum": np.zeros((3, 2))}, "exactly one of"),
-    "parameters": ({"parameters": {"mass": [1.0, 2.0]}, "body_velocity": (1, 0)}, "coordinates that has no parameters"),
-    "member": ({"body_velocity": [(1.0, 0.0), (np.inf, 0.0)]}, "must be finite"),
-    "times": ({"body_velocity": [(1.0, 0.0)], "times": (0.0, 1.0)}, r"ensemble\(times=...\)` must keep its default"),
-    "rows of bodies": ({"restricted_velocity": [(1.0, 0.0)]}, r"ensemble\(restricted_velocity=...\)` must keep"),
-    "no steps": ({"body_velocity": [(1.0, 0.0)], "steps": None}, r"ensemble\(steps=...\)` must be"),
-}
-
-
-@pytest.mark.parametrize("name", REFUSED)
-def test_members_that_cannot_be_run_are_refused(name: str) -> None:
-    """Each refusal says what is wrong and what to pass."""
-    given, words = REFUSED[name]
-    with pytest.raises(ValueError, match=words):
-        nh.ensemble(nh.discretize(FALL, 0.1), **{"configuration": (0.0, 0.0), "steps": 3} | given)
+# Each refusal says what is wrong and what to pass.
+test_members_that_cannot_be_run_are_refused = refusals(
+    ({"body_velocity": (1.0, 0.5)}, "have a row for each member. Got one start"),
+    ({"body_velocity": np.empty((0, 2))}, "have a row for each member. Got no rows"),
+    ({"configuration": np.zeros((2, 2)), "body_velocity": np.zeros((3, 2))}, "Got 2 of configuration, 3 of"),
+    ({"body_velocity": np.zeros((3, 4))}, r"must have shape \(any, 2\)"),
+    ({"body_velocity": np.zeros((3, 2)), "momentum": np.zeros((3, 2))}, "exactly one of"),
+    ({"parameters": {"mass": [1.0, 2.0]}, "body_velocity": (1, 0)}, "coordinates that has no parameters"),
+    ({"body_velocity": [(1.0, 0.0), (np.inf, 0.0)]}, "must be finite"),
+    ({"body_velocity": [(1.0, 0.0)], "times": (0.0, 1.0)}, r"ensemble\(times=...\)` must keep its default"),
+    ({"restricted_velocity": [(1.0, 0.0)]}, r"ensemble\(restricted_velocity=...\)` must keep"),
+    ({"body_velocity": [(1.0, 0.0)], "steps": None}, r"ensemble\(steps=...\)` must be"),
+    ask=lambda given: nh.ensemble(nh.discretize(FALL, 0.1), **{"configuration": (0.0, 0.0), "steps": 3} | given),
+)
 
 
 @PROFILE

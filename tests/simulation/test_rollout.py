@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from groups.examples import HEISENBERG, WHEELED
 from references import golden, numbers
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.discrete.definition import Rollout
@@ -319,28 +320,20 @@ def test_near_half_a_turn_the_derivative_is_finite() -> None:
     np.testing.assert_allclose(found, -4 * t * slope / (1 + t * t) ** 2, rtol=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"steps": 0}, "rollout.steps=....` must be a positive integer"),
-        ({"body_velocity": (1.0, 0.0, 0.0)}, "exactly one of"),
-        ({"controls": np.zeros((2, 3))}, "must have shape .3, 3."),
-        ({"restricted_velocity": (np.nan, 0.0)}, "be finite"),
-        ({"configuration": 2 * np.eye(3)}, "lie in SE"),
-        ({"discrete": nh.discretize(nh.SuslovTop.arrowhead(np.ones(4), np.zeros(3)), 0.1)}, "system.dense"),
-        ({"discrete": TOP}, "discretized system"),
-        ({"discrete": nh.discretize(nh.Forced(TOP, force=np.zeros((2, 3))), 0.1)}, "one for each row of the forces"),
-        ({"discrete": nh.discretize(nh.Forced(TOP, np.trace), 0.1)}, "have forces that are numbers"),
-        (
-            {"discrete": nh.discretize(TOP, 0.1, order=4), "controls": np.zeros((3, 3))},
-            "have a step of order 2",
-        ),
-    ],
+# An argument that does not fit is named before any work.
+test_bad_arguments_are_refused = refusals(
+    ({"steps": 0}, "rollout.steps=....` must be a positive integer"),
+    ({"body_velocity": (1.0, 0.0, 0.0)}, "exactly one of"),
+    ({"controls": np.zeros((2, 3))}, "must have shape .3, 3."),
+    ({"restricted_velocity": (np.nan, 0.0)}, "be finite"),
+    ({"configuration": 2 * np.eye(3)}, "lie in SE"),
+    ({"discrete": nh.discretize(nh.SuslovTop.arrowhead(np.ones(4), np.zeros(3)), 0.1)}, "system.dense"),
+    ({"discrete": TOP}, "discretized system"),
+    ({"discrete": nh.discretize(nh.Forced(TOP, force=np.zeros((2, 3))), 0.1)}, "one for each row of the forces"),
+    ({"discrete": nh.discretize(nh.Forced(TOP, np.trace), 0.1)}, "have forces that are numbers"),
+    ({"discrete": nh.discretize(TOP, 0.1, order=4), "controls": np.zeros((3, 3))}, "have a step of order 2"),
+    ask=lambda change: nh.rollout(**{"discrete": SLEIGH, "restricted_velocity": (0.1, 0.2), "steps": 3} | change),
 )
-def test_bad_arguments_are_refused(change: dict, words: str) -> None:
-    """An argument that does not fit is named before any work."""
-    with pytest.raises(ValueError, match=words):
-        nh.rollout(**{"discrete": SLEIGH, "restricted_velocity": (0.1, 0.2), "steps": 3} | change)
 
 
 def test_traced_single_precision_is_refused() -> None:

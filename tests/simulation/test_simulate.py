@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from problems import PROBLEMS
+from refusals import refusals
 
 import nonholo as nh
 
@@ -144,51 +145,38 @@ def test_a_momentum_off_the_locus_is_refused() -> None:
 GOOD = {"body_velocity": (0.4, 0.9, 0.0), "steps": 3}
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ({**GOOD, "steps": 0}, r"simulate\(steps=...\)` must be a positive integer. Got 0"),
-        ({**GOOD, "steps": 2.5}, "positive integer. Got 2.5"),
-        ({**GOOD, "steps": True}, "positive integer. Got True"),
-        ({**GOOD, "save_every": -1}, r"save_every=...\)` must be a positive integer"),
-        ({"steps": 3}, "exactly one of body_velocity, .*Got none"),
-        ({**GOOD, "momentum": (1, 2)}, "Got body_velocity and momentum"),
-        (
-            {**GOOD, "body_velocity": (0.4, 0.9, 0.1)},
-            r"satisfy the constraint. Got residual \[0.1\].*\[0.4, 0.9, 0.0\]",
-        ),
-        ({**GOOD, "body_velocity": (0.4, 0.9)}, r"shape \(3,\). Got shape \(2,\)"),
-        ({**GOOD, "body_velocity": (0.4, np.nan, 0.0)}, "be finite. Got nan at index"),
-        ({**GOOD, "body_velocity": (0.4, 1j, 0.0)}, "be real. Got complex"),
-        ({**GOOD, "branch": "closest"}, "branch=.*must be one of 'principal', 'nearest', .*Got 'closest'"),
-        ({**GOOD, "backend": "cuda"}, "be one of 'auto', 'numba', 'jax'"),
-        ({**GOOD, "configuration": 2 * np.eye(3)}, r"lie in SO\(3\). Got a matrix at distance"),
-        ({"displacement": nh.SO(3).exp(np.array([0.1, 0.2, 0.3])), "steps": 3}, "displacement variety.*forbidden part"),
-        ({"displacement": np.eye(3) + 0.1, "steps": 3}, r"lie in SO\(3\)"),
-    ],
+# Each names the owner, the requirement, what was got and the remedy, before any work.
+test_bad_arguments_are_refused = refusals(
+    ({**GOOD, "steps": 0}, r"simulate\(steps=...\)` must be a positive integer. Got 0"),
+    ({**GOOD, "steps": 2.5}, "positive integer. Got 2.5"),
+    ({**GOOD, "steps": True}, "positive integer. Got True"),
+    ({**GOOD, "save_every": -1}, r"save_every=...\)` must be a positive integer"),
+    ({"steps": 3}, "exactly one of body_velocity, .*Got none"),
+    ({**GOOD, "momentum": (1, 2)}, "Got body_velocity and momentum"),
+    ({**GOOD, "body_velocity": (0.4, 0.9, 0.1)}, r"satisfy the constraint. Got residual \[0.1\].*\[0.4, 0.9, 0.0\]"),
+    ({**GOOD, "body_velocity": (0.4, 0.9)}, r"shape \(3,\). Got shape \(2,\)"),
+    ({**GOOD, "body_velocity": (0.4, np.nan, 0.0)}, "be finite. Got nan at index"),
+    ({**GOOD, "body_velocity": (0.4, 1j, 0.0)}, "be real. Got complex"),
+    ({**GOOD, "branch": "closest"}, "branch=.*must be one of 'principal', 'nearest', .*Got 'closest'"),
+    ({**GOOD, "backend": "cuda"}, "be one of 'auto', 'numba', 'jax'"),
+    ({**GOOD, "configuration": 2 * np.eye(3)}, r"lie in SO\(3\). Got a matrix at distance"),
+    ({"displacement": nh.SO(3).exp(np.array([0.1, 0.2, 0.3])), "steps": 3}, "displacement variety.*forbidden part"),
+    ({"displacement": np.eye(3) + 0.1, "steps": 3}, r"lie in SO\(3\)"),
+    ask=lambda arguments: nh.simulate(TOP, **arguments),
 )
-def test_bad_arguments_are_refused(arguments: dict, words: str) -> None:
-    """Each names the owner, the requirement, what was got and the remedy, before any work."""
-    with pytest.raises(ValueError, match=words):
-        nh.simulate(TOP, **arguments)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ({"time_step": 0}, "time_step=.*must be positive. Got 0.0"),
-        ({"time_step": -0.1}, "must be positive. Got -0.1"),
-        ({"time_step": 0.1 + 1j}, "must be real"),
-        ({"time_step": np.nan}, "must be finite"),
-        ({"difference": "central"}, "be one of 'matrix', 'logarithmic'. Got 'central'"),
-        ({"constraint": "holonomic"}, "be one of 'skew', 'exponential', 'naive'"),
-        ({"order": 3}, "be one of 2, 4, 6, 8. Got 3"),
-    ],
+# `discretize` says what it accepts.
+test_bad_discretizations_are_refused = refusals(
+    ({"time_step": 0}, "time_step=.*must be positive. Got 0.0"),
+    ({"time_step": -0.1}, "must be positive. Got -0.1"),
+    ({"time_step": 0.1 + 1j}, "must be real"),
+    ({"time_step": np.nan}, "must be finite"),
+    ({"difference": "central"}, "be one of 'matrix', 'logarithmic'. Got 'central'"),
+    ({"constraint": "holonomic"}, "be one of 'skew', 'exponential', 'naive'"),
+    ({"order": 3}, "be one of 2, 4, 6, 8. Got 3"),
+    ask=lambda arguments: nh.discretize(TOP.system, **{"time_step": 0.1, **arguments}),
 )
-def test_bad_discretizations_are_refused(arguments: dict, words: str) -> None:
-    """`discretize` says what it accepts."""
-    with pytest.raises(ValueError, match=words):
-        nh.discretize(TOP.system, **{"time_step": 0.1, **arguments})
 
 
 def test_no_poses_unless_asked() -> None:

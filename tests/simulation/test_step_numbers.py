@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from comparisons import assert_same
 
 import nonholo as nh
 from nonholo.io import load_last_block
@@ -226,8 +227,7 @@ def test_thinned_runs_stores_blocks_and_members_have_the_same_crossings(tmp_path
     ]
     log = blocks[0].events[0].states.joined([block.events[0].states for block in blocks[1:]])
     for states in (log, *(each.states for each in logs)):
-        for quantity in ("time", "step", "reduced_momentum", "cayley", "canonical_pose"):
-            assert np.array_equal(getattr(states, quantity), getattr(whole.states, quantity))
+        assert_same(states, whole.states, "time", "step", "reduced_momentum", "cayley", "canonical_pose")
     member = nh.ensemble(discrete, restricted_velocity=[start["restricted_velocity"]], **steps).events[0]
     assert member.count.tolist() == [len(whole)]
     assert np.abs(member.last.time[0, 0] - whole.time[-1]) < 1e-14
