@@ -1,5 +1,7 @@
 """Bodies on SO(n) and SE(n): random mass tensors and subspaces, and one of each kind of general system."""
 
+from typing import Any
+
 import numpy as np
 
 import nonholo as nh
@@ -19,6 +21,19 @@ def mass_tensor(group: AbstractMatrixGroup, rng: np.random.Generator) -> np.ndar
 def random_rows(group: AbstractMatrixGroup, k: int, rng: np.random.Generator) -> np.ndarray:
     """Draw k orthonormal rows of algebra coordinates."""
     return np.linalg.qr(rng.normal(size=(group.dim, k)))[0].T
+
+
+def tensor(n: int, rng: np.random.Generator) -> np.ndarray:
+    """Draw the tensor of a body that is nowhere flat."""
+    A = rng.normal(size=(n, n))
+    return A @ A.T + np.eye(n)
+
+
+def elsewhere(system: Any, rng: np.random.Generator) -> nh.LLSystem:
+    """Return the same body as an `LLSystem` in random axes, with random rows of its subspace."""
+    group, k, g = system.group, system.rank, system.group.random(rng)
+    rows = (np.eye(k) + 0.3 * rng.normal(size=(k, k))) @ system.constraint_subspace @ group.adjoint(g).T
+    return nh.LLSystem(group, g @ system.homogeneous_mass_tensor @ g.T, rows)
 
 
 def _general() -> dict[str, tuple[AbstractSystem, np.ndarray]]:

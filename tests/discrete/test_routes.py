@@ -1,10 +1,12 @@
 """One route for each discretization: by its normal form, whatever its class; each against the more general ones."""
 
 import dataclasses
+import functools
 from typing import Any
 
 import numpy as np
 import pytest
+from bodies import elsewhere, tensor
 
 import nonholo as nh
 from nonholo.discrete.routes import make_route
@@ -13,30 +15,21 @@ _ANGLES = np.random.default_rng(7)
 _CLOSE = 1e-11  # relative: two routes in 20 steps of bodies of ordinary shape
 
 
-def _tensor(n: int) -> np.ndarray:
-    A = _ANGLES.normal(size=(n, n))
-    return A @ A.T + np.eye(n)
-
-
-def elsewhere(system: Any) -> nh.LLSystem:
-    """Return the same body as an `LLSystem` in random axes, with random rows of its subspace."""
-    group, k = system.group, system.rank
-    g = group.exp(_ANGLES.normal(size=group.dim))
-    rows = (np.eye(k) + 0.3 * _ANGLES.normal(size=(k, k))) @ system.constraint_subspace @ group.adjoint(g).T
-    return nh.LLSystem(group, g @ system.homogeneous_mass_tensor @ g.T, rows)
+_tensor = functools.partial(tensor, rng=_ANGLES)
+_elsewhere = functools.partial(elsewhere, rng=_ANGLES)
 
 
 SYSTEMS = {
-    "top": elsewhere(nh.SuslovTop(_tensor(3))),
-    "balanced top": elsewhere(nh.SuslovTop(np.diag([1.0, 2.0, 3.0]))),
-    "flat top": elsewhere(nh.SuslovTop([[1.0, 0.2, 0.0], [0.2, 2.0, 0.0], [0.0, 0.0, 0.0]])),
-    "plane sleigh": elsewhere(nh.ChaplyginSleigh(1.3, 0.7, 0.5, b=0.3)),
-    "backward sleigh": elsewhere(nh.ChaplyginSleigh(1.3, 0.7, -0.5)),
-    "balanced sleigh": elsewhere(nh.ChaplyginSleigh(1.3, 0.7, 0.0, b=0.3)),
-    "top on SO(4)": elsewhere(nh.SuslovTop(_tensor(4))),
-    "top on SO(6)": elsewhere(nh.SuslovTop(_tensor(6))),
-    "sleigh on SE(3)": elsewhere(nh.MultidimensionalSleigh(1.3, [0.4, 0.2, -0.1], _tensor(3))),
-    "balanced sleigh on SE(4)": elsewhere(nh.MultidimensionalSleigh(1.3, [0.0, 0.3, 0.1, -0.2], _tensor(4))),
+    "top": _elsewhere(nh.SuslovTop(_tensor(3))),
+    "balanced top": _elsewhere(nh.SuslovTop(np.diag([1.0, 2.0, 3.0]))),
+    "flat top": _elsewhere(nh.SuslovTop([[1.0, 0.2, 0.0], [0.2, 2.0, 0.0], [0.0, 0.0, 0.0]])),
+    "plane sleigh": _elsewhere(nh.ChaplyginSleigh(1.3, 0.7, 0.5, b=0.3)),
+    "backward sleigh": _elsewhere(nh.ChaplyginSleigh(1.3, 0.7, -0.5)),
+    "balanced sleigh": _elsewhere(nh.ChaplyginSleigh(1.3, 0.7, 0.0, b=0.3)),
+    "top on SO(4)": _elsewhere(nh.SuslovTop(_tensor(4))),
+    "top on SO(6)": _elsewhere(nh.SuslovTop(_tensor(6))),
+    "sleigh on SE(3)": _elsewhere(nh.MultidimensionalSleigh(1.3, [0.4, 0.2, -0.1], _tensor(3))),
+    "balanced sleigh on SE(4)": _elsewhere(nh.MultidimensionalSleigh(1.3, [0.0, 0.3, 0.1, -0.2], _tensor(4))),
 }
 ROUTES = {name: "scalar" if system.rank == 2 else "secular" for name, system in SYSTEMS.items()}
 

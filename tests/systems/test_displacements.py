@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.systems import SuslovTop, in_exp_d, trace_constraints
@@ -40,11 +41,12 @@ def test_displacements_of_the_top_belong(n: int) -> None:
 
 
 def test_half_turn_about_the_forbidden_axis() -> None:
-    """The matrix diag(-1, -1, 1) satisfies the traces but is not the exponential of an admissible velocity."""
+    """The matrix diag(-1, -1, 1) satisfies the traces but is no exponential of a velocity; scaled ones fail too."""
     W = np.diag([-1.0, -1.0, 1.0])
     assert np.array_equal(trace_constraints(np.eye(3), W), [0.0])
     assert not in_exp_d(W)
     assert in_exp_d(np.diag([1.0, -1.0, -1.0]))
+    assert not in_exp_d(1.001 * _displacement(3))
 
 
 def test_spurious_sheet_in_five_dimensions() -> None:
@@ -58,24 +60,12 @@ def test_spurious_sheet_in_five_dimensions() -> None:
     assert in_exp_d(W_on_the_variety)
 
 
-def test_matrices_that_are_no_rotations_are_refused() -> None:
-    """A scaled displacement is refused by the test, and a vector by an error."""
-    assert not in_exp_d(1.001 * _displacement(3))
-    with pytest.raises(ValueError, match=r"in_exp_d\(displacement=\.\.\.\)` must be a square matrix. Got shape \(3,\)"):
-        in_exp_d(np.ones(3))
-
-
-@pytest.mark.parametrize("pair", [(np.eye(3), np.eye(4)), (np.ones((3, 4)), np.eye(3)), (1.0, 2.0)])
-def test_traces_of_other_than_two_matrices_of_one_size_are_refused(pair: tuple) -> None:
-    """Other shapes are refused by the name of the argument."""
-    with pytest.raises(ValueError, match=r"trace_constraints\(configuration(_next)?=\.\.\.\)` must end in shape"):
-        trace_constraints(*pair)
-
-
-@pytest.mark.parametrize("stack", [False, True])
-def test_constraints_of_complex_matrices_are_refused(stack: bool) -> None:
-    """Both configurations are rotations, which are real, as `in_exp_d` demands."""
-    R = np.stack([np.eye(3)] * 2) if stack else np.eye(3)
-    for name, pair in (("configuration", (R.astype(complex), R)), ("configuration_next", (R, R.astype(complex)))):
-        with pytest.raises(ValueError, match=rf"trace_constraints\({name}=...\)` must be real"):
-            trace_constraints(*pair)
+_STACK, _EYE, _SHAPE = np.stack([np.eye(3)] * 2), np.eye(3), r"configuration(_next)?=\.\.\.\)` must end in shape"
+test_what_are_no_two_real_matrices_of_one_size_is_refused = refusals(
+    (lambda: in_exp_d(np.ones(3)), r"in_exp_d\(displacement=\.\.\.\)` must be a square matrix. Got shape \(3,\)"),
+    (lambda: trace_constraints(_EYE, np.eye(4)), _SHAPE),
+    (lambda: trace_constraints(np.ones((3, 4)), _EYE), _SHAPE),
+    (lambda: trace_constraints(1.0, 2.0), _SHAPE),
+    (lambda: trace_constraints(_EYE + 0j, _EYE), r"trace_constraints\(configuration=...\)` must be real"),
+    (lambda: trace_constraints(_STACK, _STACK + 0j), r"trace_constraints\(configuration_next=...\)` must be real"),
+)

@@ -39,16 +39,11 @@ def _homogeneous(n: int) -> np.ndarray:
     return (masses[:, None] * lifted).T @ lifted
 
 
-def _sleigh(n: int, along: float | None = None, *, straight: bool = False) -> MultidimensionalSleigh:
-    """The sleigh of the mass points, its center of mass moved along axis 1, its axis made principal."""
+def _sleigh(n: int) -> MultidimensionalSleigh:
+    """The sleigh of the mass points."""
     masses, points = _points(n)
     center = masses @ points / masses.sum()
-    tensor = (masses[:, None] * (points - center)).T @ (points - center)
-    if along is not None:
-        center[0] = along
-    if straight:
-        tensor[0, 1:] = tensor[1:, 0] = 0.0
-    return MultidimensionalSleigh(masses.sum(), center, tensor)
+    return MultidimensionalSleigh(masses.sum(), center, (masses[:, None] * (points - center)).T @ (points - center))
 
 
 def _random_rows(k: int, dim: int) -> np.ndarray:
@@ -123,50 +118,6 @@ def test_drift_of_the_sleigh(n: int) -> None:
     expected = (w @ w) * c - (c @ w) * w - m * a[0] * u * w
     assert np.allclose(drift[:-1] - a[1:] * drift[-1], expected, rtol=0, atol=1e-13 * np.abs(sleigh.mass_tensor).max())
     assert drift[-1] == pytest.approx(m * a[0] * (w @ w), rel=1e-12)
-
-
-WITH_EQUILIBRIA = [
-    *(SuslovTop(_mass_tensor(n)) for n in (3, 4, 5)),
-    SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0])),
-    *(_sleigh(n) for n in (3, 4)),
-    *(_sleigh(n, 0.0) for n in (3, 4)),
-    _sleigh(3, -0.4),
-    _sleigh(4, 0.0, straight=True),
-    LLSystem(nh.SE(3), _homogeneous(3), np.eye(6)[3:]),
-    RigidBody(np.eye(4)),
-]
-
-
-@pytest.mark.parametrize("system", WITH_EQUILIBRIA, ids=_name)
-def test_equilibria_are_all_of_them(system: AbstractLLSystem) -> None:
-    """The drift vanishes on the linear space of equilibria, and at random admissible velocities beside it does not."""
-    S, found, rng = system.constraint_subspace, system.equilibria().subspace, np.random.default_rng(3)
-    scale = np.abs(system.inertia_operator).max()
-    assert np.abs(_drift(system, rng.normal(size=len(found)) @ found)).max() < 1e-13 * scale
-    if len(found) < len(S):
-        assert np.abs(_drift(system, rng.normal(size=len(S)) @ S)).max() > 1e-3 * scale
-
-
-@pytest.mark.parametrize("system", [s for s in WITH_EQUILIBRIA if s.equilibria().attracting is not None], ids=_name)
-def test_attracting_half(system: AbstractLLSystem) -> None:
-    """Transverse eigenvalues of the linearization are negative at the attracting velocity, positive at its negative."""
-    S, equilibria = system.constraint_subspace, system.equilibria()
-    for sign in (1, -1):
-        x = sign * equilibria.attracting @ np.linalg.pinv(S)
-        step = 1e-6 * np.linalg.norm(x)
-        rates = [
-            (_drift(system, (x + e) @ S) - _drift(system, (x - e) @ S)) / (2 * step) for e in step * np.eye(len(S))
-        ]
-        values = np.sort(
-            -sign * np.linalg.eigvals(np.linalg.solve(system.constrained_inertia, np.transpose(rates))).real
-        )
-        along = len(equilibria.subspace)  # this many eigenvalues vanish, to the rounding of the quotient
-        assert np.all(values[along:] > 1e-3 * values[-1])
-        assert np.all(np.abs(values[:along]) < 1e-7 * values[-1])
-
-
-def _drift(system: AbstractLLSystem, velocity: np.ndarray) -> np.ndarray:
-    return system.restrict(system.group.coad(velocity, system.inertia_operator @ velocity))
 
 
 def test_documented_rows() -> None:

@@ -41,21 +41,6 @@ def test_spatial_inertia_by_its_definition(system: AbstractLRSystem) -> None:
     assert np.allclose(system.spatial_inertia(group.identity), system.constrained_inertia, rtol=1e-14, atol=0)
 
 
-@pytest.mark.parametrize("system", SYSTEMS, ids=_name)
-def test_energy_is_the_kinetic_energy(system: AbstractLRSystem) -> None:
-    """For an admissible motion 1/2 r.B(g)^-1 r is 1/2 <p, omega>, from the body momentum and from r."""
-    group, S = system.group, system.constraint_subspace
-    g = group.random(_RNG)
-    x = _RNG.normal(size=len(S))
-    omega = group.adjoint(group.inverse(g)) @ (x @ S)
-    p = system.inertia_operator @ omega
-    r = system.restrict_in_space(p, g)
-    assert np.allclose(r, system.spatial_inertia(g) @ x, rtol=1e-12, atol=1e-13)
-    assert np.allclose(system.restricted_velocity(r, g), x, rtol=1e-10, atol=1e-12)
-    assert system.constrained_energy(p, g) == pytest.approx(p @ omega / 2, rel=1e-12)
-    assert system.constrained_energy(r, g) == pytest.approx(p @ omega / 2, rel=1e-12)
-
-
 @pytest.mark.parametrize("system", SYSTEMS[:6], ids=_name)
 def test_kinetic_energy_is_constant_at_constant_spatial_momentum(system: AbstractLRSystem) -> None:
     """With r constant and the spatial velocity xi = B(g)^-1 r the energy does not change: the force has no power."""

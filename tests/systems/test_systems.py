@@ -45,31 +45,6 @@ def test_frames_carry_the_constraint_to_itself(system: AbstractLLSystem) -> None
     assert np.allclose(system.annihilator @ system.constraint_subspace.T, 0, atol=1e-15)
 
 
-@pytest.mark.parametrize("system", SYSTEMS, ids=lambda s: type(s).__name__)
-def test_constrained_energy_is_the_kinetic_energy(system: AbstractLLSystem) -> None:
-    """For an admissible velocity the energy of I omega, or of its restriction, is <omega, I omega>/2."""
-    velocity = np.array([0.3, -0.8]) @ system.constraint_subspace
-    momentum = system.inertia_operator @ velocity
-    expected = velocity @ momentum / 2
-    assert system.constrained_energy(momentum) == pytest.approx(expected, rel=1e-14)
-    assert system.constrained_energy(system.restrict(momentum)) == pytest.approx(expected, rel=1e-14)
-
-
-@pytest.mark.parametrize("system", SYSTEMS, ids=lambda s: type(s).__name__)
-def test_equilibria_stay(system: AbstractLLSystem) -> None:
-    """At an equilibrium the gyroscopic force along the constraint vanishes."""
-    for velocity in system.equilibria().subspace:
-        force = system.group.coad(velocity, system.inertia_operator @ velocity)
-        assert np.allclose(system.restrict(force), 0, atol=1e-15)
-
-
-def test_balanced_systems_rest_everywhere() -> None:
-    """With c = 0 or a = 0 every admissible velocity is an equilibrium and none attracts."""
-    for system in (nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), nh.ChaplyginSleigh(1.0, 1.0, 0.0, 0.5)):
-        assert system.equilibria().subspace.shape == (2, 3)
-        assert system.equilibria().attracting is None
-
-
 def test_from_inertia_keeps_the_documented_rows() -> None:
     """Rows are S(0,1,0), S(-1,0,0) with S the shortest rotation taking e3 to the axis."""
     axis = np.array([2.0, -1.0, 2.0]) / 3
@@ -78,15 +53,6 @@ def test_from_inertia_keeps_the_documented_rows() -> None:
     assert np.allclose(top.constraint_subspace, np.array([[0, 1, 0], [-1, 0, 0]]) @ S.T, atol=1e-15)
     assert np.array_equal(nh.SuslovTop.from_inertia(INERTIA, (0, 0, -1)).frame, np.diag([1.0, -1.0, -1.0]))
     assert np.allclose(top.inertia_operator, INERTIA, atol=1e-15)
-
-
-def test_repr_shows_both_tensors() -> None:
-    """The mass tensor is not given for the inertia tensor: repr shows J and tr(J) Id - J."""
-    shown = repr(SYSTEMS[0])
-    assert "mass tensor J" in shown
-    assert "1.4" in shown
-    assert "inertia tensor" in shown
-    assert "1.9" in shown
 
 
 # Each error names the owner, the requirement, what was got and the remedy.
