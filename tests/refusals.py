@@ -13,15 +13,16 @@ def refusals(
     ask: Callable[[Any], object] = lambda call: call(),
     kind: Kinds = ValueError,
     begin: str = "",
+    end: str = "",
 ) -> Callable[[Any, str], None]:
     """Return the test that each row ends in one clear error, before any work.
 
-    A row is what is asked, by default a call, and words of the error, which may all begin alike.
+    A row is what is asked, by default a call, and words of the error, which may all begin and end alike.
     """
 
     @pytest.mark.parametrize(("given", "words"), rows, ids=[words for _, words in rows])
     def test(given: Any, words: str) -> None:
-        with pytest.raises(kind, match=begin + words):
+        with pytest.raises(kind, match=begin + words + end):
             ask(given)
 
     return test

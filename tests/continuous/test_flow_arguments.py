@@ -1,5 +1,7 @@
 """Times, directions, starts, precision and refusals of `flow` and `vector_field`."""
 
+from typing import Any
+
 import jax
 import numpy as np
 import pytest
@@ -7,7 +9,6 @@ from comparisons import assert_same
 from refusals import refusals
 
 import nonholo as nh
-from nonholo.continuous import ContinuousFlow
 from nonholo.systems import AbstractLLSystem
 
 SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
@@ -83,14 +84,6 @@ def test_precision_is_local() -> None:
     assert jax.numpy.zeros(1).dtype == (np.float64 if before else np.float32)
 
 
-def test_an_orbit_of_a_flow_has_no_displacements() -> None:
-    """A flow's orbit says what it is and refuses displacements."""
-    orbit = nh.flow(SLEIGH, **START, times=(0.0, 1.0))
-    assert isinstance(orbit.motion, ContinuousFlow)
-    with pytest.raises(ValueError, match="continuous flow"):
-        _ = orbit.displacement
-
-
 def test_impossible_tolerance_is_an_outcome() -> None:
     """A solve that cannot meet the tolerances raises with the good states, here the start alone."""
     with pytest.raises(nh.OutcomeError, match=r"from time 0 to 1 \(rtol 1e-14, atol 1e-300\)") as caught:
@@ -123,19 +116,17 @@ test_refusals = refusals(
 )
 
 
-def test_not_a_system() -> None:
-    """What is not a system is refused by both entry points."""
-    with pytest.raises(ValueError, match=r"`flow\(system=...\)` must be a system"):
-        nh.flow(SLEIGH.group, times=(0.0, 1.0), **START)
-    with pytest.raises(ValueError, match=r"`vector_field\(system=...\)` must be a system"):
-        nh.vector_field("sleigh")
-    for function in (lambda ready: nh.discretize(ready, 0.1), lambda ready: nh.flow(ready, times=(0.0, 1.0), **START)):
-        with pytest.raises(ValueError, match=r"of a ready example its `.system`"):
-            function(nh.examples.sleigh_in_a_well())  # type: ignore[arg-type]
-
-
-def test_no_closed_form() -> None:
-    """A system without a closed form is refused with the advice to integrate."""
-    top = nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0]))
-    with pytest.raises(ValueError, match=r"must have a closed-form solution. Got SuslovTop. Leave method out"):
-        nh.flow(top, restricted_velocity=np.ones(3), times=(0.0, 1.0), method="closed_form")
+_NO_CLOSED_FORM = {"restricted_velocity": np.ones(3), "times": (0.0, 1.0), "method": "closed_form"}
+_TIMES: dict[str, Any] = {"times": (0.0, 1.0), **START}
+# What is not a system is refused by both entry points; a system without a closed form with the advice to integrate.
+test_what_has_no_such_flow_is_refused = refusals(
+    (lambda: nh.flow(SLEIGH.group, **_TIMES), r"`flow\(system=...\)` must be a system"),
+    (lambda: nh.vector_field("sleigh"), r"`vector_field\(system=...\)` must be a system"),
+    (lambda: nh.discretize(nh.examples.sleigh_in_a_well(), 0.1), "of a ready example its `.system`"),  # type: ignore[arg-type]
+    (lambda: nh.flow(nh.examples.sleigh_in_a_well(), **_TIMES), "of a ready example its `.system`"),  # type: ignore[arg-type]
+    (
+        lambda: nh.flow(nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0])), **_NO_CLOSED_FORM),
+        "must have a closed-form solution. Got SuslovTop. Leave method out",
+    ),
+    (lambda: nh.flow(SLEIGH, **_TIMES).displacement, "continuous flow"),
+)

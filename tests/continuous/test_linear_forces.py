@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bodies import mass_tensor
+from bodies import OTHERS, mass_tensor
 from comparisons import assert_same
 from references import golden, numbers
 from scipy.integrate import solve_ivp
@@ -17,7 +17,6 @@ from nonholo.systems import AbstractSystem
 RNG = np.random.default_rng(11)
 TILTED = nh.SuslovTop.from_inertia([[3.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.5]], (2 / 3, -1 / 3, 2 / 3))
 SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
-HEISENBERG = nh.MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
 BODIES: dict[str, AbstractSystem] = {
     "tilted top": TILTED,
     "sleigh with b": SLEIGH,
@@ -26,16 +25,11 @@ BODIES: dict[str, AbstractSystem] = {
     "free body": nh.RigidBody(mass_tensor(nh.SO(3), RNG)),
     "any d on SE(3)": nh.LLSystem(nh.SE(3), mass_tensor(nh.SE(3), RNG), RNG.normal(size=(3, 6))),
     "sleigh on SE(3)": nh.MultidimensionalSleigh(2.0, [0.5, 0.25, -0.125], np.diag([1.0, 2.0, 1.5])),
-    "Heisenberg": nh.LLSystem(
-        HEISENBERG, constraint_subspace=[[1.0, 0.0, 0.2], [0.0, 1.0, 0.0]], inertia_operator=np.diag([1.0, 2.0, 3.0])
-    ),
+    **{name: OTHERS[name] for name in ("Heisenberg", "nothing moves")},
     "product": nh.LLSystem(
         nh.ProductGroup(nh.SE(2), nh.SO(3)),
         constraint_subspace=RNG.normal(size=(4, 6)),
         inertia_operator=np.diag(np.arange(1.0, 7.0)),
-    ),
-    "nothing moves": nh.LLSystem(
-        nh.SO(3), constraint_subspace=np.empty((0, 3)), inertia_operator=np.diag([1.0, 2.0, 2.5])
     ),
 }
 TIMES = np.array([0.0, 0.3, 1.0, 4.0])

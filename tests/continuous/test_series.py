@@ -9,8 +9,7 @@ from pathlib import Path
 import mpmath
 import numpy as np
 import pytest
-from bodies import GENERAL, mass_tensor
-from problems import PROBLEMS
+from bodies import EVERY as SYSTEMS
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
@@ -20,26 +19,6 @@ from nonholo.kernels import Quadratic, solve_series
 from nonholo.kernels.taylor import _solve, _steps
 from nonholo.systems import AbstractSystem
 
-RNG = np.random.default_rng(31)
-HEISENBERG = nh.MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
-SYSTEMS: dict[str, AbstractSystem] = {
-    **{problem.name: problem.system for problem in PROBLEMS},
-    **{name: system for name, (system, _) in GENERAL.items()},
-    "top on SO(7)": nh.SuslovTop(mass_tensor(nh.SO(7), RNG)),
-    "free body on SE(3)": nh.RigidBody(mass_tensor(nh.SE(3), RNG), nh.SE(3)),
-    "Heisenberg": nh.LLSystem(
-        HEISENBERG, constraint_subspace=[[1.0, 0.0, 0.2], [0.0, 1.0, 0.0]], inertia_operator=np.diag([1.0, 2.0, 3.0])
-    ),
-    "product": nh.LLSystem(
-        nh.ProductGroup(nh.SE(2), nh.SO(3), nh.Translations(2)),
-        constraint_subspace=RNG.normal(size=(4, 8)),
-        inertia_operator=np.diag(np.arange(1.0, 9.0)),
-    ),
-    "right-invariant on SE(2)": nh.LRSystem(nh.SE(2), mass_tensor(nh.SE(2), RNG), [[1.0, 0.2, 0.0], [0.0, 1.0, 0.3]]),
-    "nothing moves": nh.LLSystem(
-        nh.SO(3), constraint_subspace=np.empty((0, 3)), inertia_operator=np.diag([1.0, 2.0, 2.5])
-    ),
-}
 TOP = nh.SuslovTop.from_inertia([[3.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.5]], (2 / 3, -1 / 3, 2 / 3))
 SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
 START = {"restricted_velocity": (0.8, -0.5)}

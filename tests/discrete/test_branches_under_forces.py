@@ -6,6 +6,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from bodies import magnet, weight
 
 import nonholo as nh
 from nonholo.discrete import Branches
@@ -29,30 +30,18 @@ COUNTS = {  # without forces or with friction or a table, and with a potential
 }
 
 
-def _n(system: AbstractSystem) -> int:
-    return system.group.size - system.group.is_affine
-
-
-def _weight(system: AbstractSystem) -> nh.Gravity:
-    return nh.Gravity(np.linspace(0.4, -1.0, n := _n(system)), np.linspace(0.1, 0.5, n))
-
-
-def _magnet(system: AbstractSystem) -> nh.Linear:
-    return nh.Linear(np.random.default_rng(3).normal(size=(system.group.size,) * 2))
-
-
 def _friction(system: AbstractSystem) -> nh.Friction:
     turning = np.random.default_rng(8).normal(size=(system.group.dim,) * 2)
     return nh.Friction(0.1 * turning @ turning.T + 0.2 * (turning - turning.T))
 
 
 ACTING: dict[str, Callable[[AbstractSystem], nh.Forced]] = {
-    "weight": lambda s: nh.Forced(s, _weight(s)),
-    "magnet": lambda s: nh.Forced(s, (_magnet(s), _weight(s))),
+    "weight": lambda s: nh.Forced(s, weight(s)),
+    "magnet": lambda s: nh.Forced(s, (magnet(s), weight(s))),
     "friction": lambda s: nh.Forced(s, force=_friction(s)),
     "table": lambda s: nh.Forced(s, force=np.random.default_rng(4).normal(size=(9, s.group.dim))),
     "all": lambda s: nh.Forced(
-        s, _weight(s), (_friction(s), np.random.default_rng(4).normal(size=(9, s.group.dim)))
+        s, weight(s), (_friction(s), np.random.default_rng(4).normal(size=(9, s.group.dim)))
     ),
 }  # fmt: skip
 H = 0.4
@@ -206,7 +195,7 @@ def test_folds_are_those_of_the_step() -> None:
     heavy = nh.discretize(ACTING["weight"](top), H)
     low, high = 0.0, 20.0
     counts = [nh.displacements_over(heavy, s * r).is_real.sum() for s in (low, high)]
-    for _ in range(60):
+    for _ in range(40):
         middle = (low + high) / 2
         same = nh.displacements_over(heavy, middle * r).is_real.sum() == counts[0]
         low, high = (middle, high) if same else (low, middle)
@@ -216,13 +205,13 @@ def test_folds_are_those_of_the_step() -> None:
 
 
 _REFUSED: dict[str, tuple[nh.Forced, str]] = {
-    "kicks": (nh.Forced(SYSTEMS["top"], _weight(SYSTEMS["top"]), scheme="variational"), "kick at the nodes"),
+    "kicks": (nh.Forced(SYSTEMS["top"], weight(SYSTEMS["top"]), scheme="variational"), "kick at the nodes"),
     "slip": (nh.Forced(SYSTEMS["sleigh"], force=nh.Slip([[0.0, 0.0, 1.0]], 0.5)), "holds or slides"),
     "spring": (nh.Forced(SYSTEMS["sleigh"], nh.Spring([0.1, 0.2], [1.0, 0.0], 2.0, 0.3)), "rational"),
     "function": (nh.Forced(SYSTEMS["sleigh"], force=lambda *state: -abs(state[2]) * state[2]), "rational"),
-    "four dimensions": (nh.Forced(top4 := nh.SuslovTop(np.diag([1.0, 2.0, 1.5, 0.7])), _weight(top4)), "rational"),
+    "four dimensions": (nh.Forced(top4 := nh.SuslovTop(np.diag([1.0, 2.0, 1.5, 0.7])), weight(top4)), "rational"),
     "free body": (
-        nh.Forced(b := nh.RigidBody(np.diag([1.0, 2.0, 3.0])), _weight(b), None, "energy"),
+        nh.Forced(b := nh.RigidBody(np.diag([1.0, 2.0, 3.0])), weight(b), None, "energy"),
         "top or a sleigh",
     ),
 }

@@ -13,14 +13,18 @@ from nonholo.systems import AbstractLLSystem
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda p: p.name)
 @pytest.mark.parametrize("time_step", [0.01, 0.1, 0.5])
 def test_energy_drift_over_long_runs(problem: Problem, time_step: float) -> None:
-    """Over 1e5 steps the relative energy drift is at most 1e-13; group and constraint hold to rounding."""
+    """Over 1e5 steps the energy drifts by 1e-13 of itself at most; group and constraint are kept; momenta move."""
     discrete = nh.discretize(problem.system, time_step)
-    found = nh.invariants(nh.simulate(discrete, restricted_velocity=problem.restricted_velocity, steps=100_000))
+    orbit = nh.simulate(discrete, restricted_velocity=problem.restricted_velocity, steps=100_000)
+    found = nh.invariants(orbit)
     assert found.outcome == nh.Outcome.successful
     assert found.energy_drift <= 1e-13
     assert found.group_residual <= 1e-14
     assert found.constraint_residual <= 1e-13
     assert found.reversal_defect <= 1e-12
+    if "unbalanced" in problem.tags:
+        assert np.ptp(orbit[:1000].restricted_momentum, axis=0).max() > 1e-2
+        assert np.ptp(orbit[:1000].spatial_momentum, axis=0).max() > 1e-2
 
 
 @settings(max_examples=150, deadline=None)
@@ -64,14 +68,6 @@ def _distance_from_equilibria(system: AbstractLLSystem, orbit: nh.Orbit) -> np.n
     line = system.equilibria().subspace
     projector = np.linalg.pinv(line) @ line
     return np.linalg.norm(orbit.body_velocity @ (np.eye(3) - projector), axis=1) + (len(line) > 1)
-
-
-@pytest.mark.parametrize("problem", [p for p in PROBLEMS if "unbalanced" in p.tags], ids=lambda p: p.name)
-def test_other_quantities_are_not_kept(problem: Problem) -> None:
-    """The momentum along the constraint and the spatial momentum do change: energy is not kept by standing still."""
-    orbit = nh.simulate(nh.discretize(problem.system, 0.1), restricted_velocity=problem.restricted_velocity, steps=200)
-    assert np.ptp(orbit.restricted_momentum, axis=0).max() > 1e-2
-    assert np.ptp(orbit.spatial_momentum, axis=0).max() > 1e-2
 
 
 def test_an_ideal_rod_feels_no_constraint() -> None:

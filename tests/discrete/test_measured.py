@@ -140,15 +140,13 @@ test_bad_data_are_refused = refusals(
 )
 
 
-def test_what_poses_cannot_tell_is_refused() -> None:
-    """Forces of constraint, states between poses, crossings."""
-    orbit = nh.Orbit.from_poses(**GOOD)
-    with pytest.raises(ValueError, match=r"Orbit.multipliers` must be asked of a run"):
-        _ = orbit.multipliers
-    with pytest.raises(ValueError, match=r"Orbit.at\(...\)` must be asked of a flow"):
-        orbit.at(0.05)
-    with pytest.raises(ValueError, match="every single step of a discrete run"):
-        nh.crossings(orbit, nh.cusp)
+# Forces of constraint, states between poses, crossings.
+test_what_poses_cannot_tell_is_refused = refusals(
+    (lambda orbit: orbit.multipliers, r"Orbit.multipliers` must be asked of a run"),
+    (lambda orbit: orbit.at(0.05), r"Orbit.at\(...\)` must be asked of a flow"),
+    (lambda orbit: nh.crossings(orbit, nh.cusp), "every single step of a discrete run"),
+    ask=lambda question: question(nh.Orbit.from_poses(**GOOD)),
+)
 
 
 def _turning(angle: float) -> nh.Orbit:

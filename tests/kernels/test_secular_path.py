@@ -5,6 +5,7 @@ from collections.abc import Callable
 import arcs
 import numpy as np
 import pytest
+from bodies import PAST_PI
 
 import nonholo as nh
 from nonholo import kernels
@@ -14,12 +15,6 @@ from nonholo.kernels.secular._root import on_the_sphere, principal
 from nonholo.kernels.secular._sphere import holds, solve_linear, write_bends, write_box
 from nonholo.kernels.secular._step import room_for_sums, secular_sleigh, secular_top
 
-PAST_PI = [
-    [1.97, 2.24, -1.96, -0.56],
-    [2.24, 2.57, -2.24, -0.64],
-    [-1.96, -2.24, 1.97, 0.56],
-    [-0.56, -0.64, 0.56, 0.17],
-]
 MOMENTUM = np.array([-1.718, -1.87, 1.66])
 KINDS = ("top 4", "top 5", "top 6", "sleigh 3")
 
@@ -222,37 +217,14 @@ def test_a_half_turn_among_all_values() -> None:
     assert np.abs(nh.simulate(discrete, momentum=r, steps=1).displacement[0] - W).max() < 1e-12
 
 
-UNEVEN = [
-    [
-        0.028676609862390286,
-        0.00014396212485831282,
-        -1.4045463232856376e-06,
-        2.1121169113529863e-06,
-        -1.5240129550857e-06,
-    ],
-    [
-        0.00014396212485831282,
-        1.3153847232685495e-05,
-        1.0384784089216e-08,
-        -1.0226104249555853e-08,
-        -2.0097347687898e-08,
-    ],
-    [
-        -1.4045463232856376e-06,
-        1.0384784089216e-08,
-        2.1465163318455576e-10,
-        -4.59177093251508e-11,
-        -2.81105265330166e-11,
-    ],
-    [
-        2.1121169113529863e-06,
-        -1.0226104249555853e-08,
-        -4.59177093251508e-11,
-        7.5121621301812e-10,
-        -5.55532748228859e-10,
-    ],
-    [-1.5240129550857e-06, -2.0097347687898e-08, -2.81105265330166e-11, -5.55532748228859e-10, 1.71851391226951e-09],
-]
+_UNEVEN = np.zeros((5, 5))
+_UNEVEN[np.triu_indices(5)] = [
+    0.028676609862390286, 0.00014396212485831282, -1.4045463232856376e-06, 2.1121169113529863e-06, -1.5240129550857e-06,
+    1.3153847232685495e-05, 1.0384784089216e-08, -1.0226104249555853e-08, -2.0097347687898e-08,
+    2.1465163318455576e-10, -4.59177093251508e-11, -2.81105265330166e-11,
+    7.5121621301812e-10, -5.55532748228859e-10, 1.71851391226951e-09,
+]  # fmt: skip
+UNEVEN = _UNEVEN + np.triu(_UNEVEN, 1).T
 """A tensor whose directions differ by 1e8; by 120 digits its fold lies at 0.05888 of the momentum below."""
 
 

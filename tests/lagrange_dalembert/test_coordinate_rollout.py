@@ -205,10 +205,3 @@ test_bad_arguments_are_refused = refusals(
     ({"momentum": V, "configuration": None}, "must be given for a system in coordinates"),
     ask=lambda given: nh.rollout(nh.discretize(SYSTEM, H), **{"configuration": Q, "steps": STEPS} | given),
 )
-
-
-def test_a_group_with_forms_of_the_pose_is_refused() -> None:
-    """It has no rollout."""
-    ball = nh.examples.chaplygin_ball()
-    with pytest.raises(ValueError, match=r"be a body on a group, or in coordinates. Got GroupLagrangeDAlembert"):
-        nh.rollout(nh.discretize(ball.system, 0.1), configuration=ball.configuration, body_velocity=V, steps=2)

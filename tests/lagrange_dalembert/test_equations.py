@@ -80,15 +80,6 @@ def test_momentum_and_energy_are_derivatives_of_the_action(rule: str) -> None:
     assert abs(orbit.energy[3] + (later - earlier) / 2e-5) <= 1e-7
 
 
-def test_thinned_orbit_is_the_orbit_thinned() -> None:
-    """Saving every third step changes no number, also with steps left over; impulses are those of single steps."""
-    full, thin = run("midpoint", 0.1, 50), run("midpoint", 0.1, 50, save_every=3)
-    assert len(thin) == 17
-    for name in ("time", "configuration", "displacement", "momentum", "energy"):
-        assert np.abs(getattr(thin, name) - getattr(full, name)[::3]).max() <= 1e-14
-    assert np.array_equal(thin.multipliers, full.multipliers[::3][:16])
-
-
 def test_blocks_join_without_a_seam() -> None:
     """A run longer than one compiled block is the run of its parts: it can be taken up by displacement."""
     whole = run("midpoint", 0.05, 2500)

@@ -92,39 +92,20 @@ CASES = [
 ]
 
 
-@pytest.mark.profile("problems", keep=["*-few"])
+@pytest.mark.profile("problems", keep=["*-few-*"])
+@pytest.mark.parametrize("flows", [False, True], ids=["runs", "flows"])
 @pytest.mark.parametrize(("kind", "count"), CASES)
-def test_an_ensemble_has_the_bits_of_each_run(kind: str, count: int) -> None:
-    """Last states after 20 steps, and what is decoded of them, are those of `simulate` from the same momenta."""
-    equal = 0
+def test_an_ensemble_has_the_bits_of_each_run(kind: str, count: int, flows: bool) -> None:
+    """Last states after 20 steps, or those of flows, and what is decoded of them, are those from the same momenta."""
+    names, times = ("reduced_momentum", "canonical_pose", *DECODED), np.linspace(0.0, 2.0, 3)
     for body, momenta in bodies(kind, count):
-        discrete = nh.discretize(body, 0.1)
-        batch = nh.ensemble(discrete, momentum=momenta, steps=20)
-        runs = [nh.simulate(discrete, momentum=momentum, steps=20) for momentum in momenta]
-        names = ("reduced_momentum", "cayley", "canonical_pose", *DECODED)
-        equal += all(
-            np.array_equal(getattr(batch, name)[j][-1], getattr(run, name)[-1])
-            for name in names
-            for j, run in enumerate(runs)
-        )
-    print(f"{kind}: {equal} of {count}")  # noqa: T201
-    assert equal == count
-
-
-@pytest.mark.profile("problems", keep=["*-few"])
-@pytest.mark.parametrize(("kind", "count"), CASES)
-def test_an_ensemble_of_flows_has_the_bits_of_each_flow(kind: str, count: int) -> None:
-    """States, and what is decoded of them, are those of `flow` from the same momenta."""
-    equal, times = 0, np.linspace(0.0, 2.0, 3)
-    for body, momenta in bodies(kind, count):
-        batch = nh.ensemble(body, momentum=momenta, times=times)
-        runs = [nh.flow(body, momentum=momentum, times=times) for momentum in momenta]
-        names = ("reduced_momentum", "canonical_pose", *DECODED)
-        equal += all(
-            np.array_equal(getattr(batch, name)[j], getattr(run, name)) for name in names for j, run in enumerate(runs)
-        )
-    print(f"{kind} flows: {equal} of {count}")  # noqa: T201
-    assert equal == count
+        motion, run = (body, {"times": times}) if flows else (nh.discretize(body, 0.1), {"steps": 20})
+        batch: Any = nh.ensemble(motion, momentum=momenta, **run)
+        for j, momentum in enumerate(momenta):
+            alone = (nh.flow if flows else nh.simulate)(motion, momentum=momentum, **run)
+            for name in names if flows else ("cayley", *names):
+                last = getattr(alone, name)[0 if flows else -1 :]
+                assert np.array_equal(getattr(batch, name)[j], last), (body, name)
 
 
 def test_a_body_of_one_closed_form_runs_side_by_side(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,9 +11,8 @@ from refusals import refusals
 
 import nonholo as nh
 from nonholo import kernels
-from nonholo.kernels import suslov_body
 from nonholo.simulation.members import _ensemble, _executors
-from nonholo.simulation.members._members import Members, ScalarMembers, in_lanes
+from nonholo.simulation.members._members import in_lanes
 
 J = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 TOP = nh.SuslovTop(J, axis=(0.6, 0.0, 0.8))
@@ -191,25 +190,6 @@ def test_parameters_vary_by_member(system: Any) -> None:
         assert np.array_equal(batch.time[member], orbit.time)
         for name in DECODED:
             _assert_close(getattr(batch, name)[member], getattr(orbit, name), 1e-14)
-
-
-@BOTH
-def test_numbers_of_all_members_are_those_of_each(system: Any) -> None:
-    """Inertia, map to the canonical frame, first pose and fields, made in one go, are those of the systems."""
-    members = Members(nh.discretize(system, 0.1), _parameters(system, 5), 5)
-    scalar = ScalarMembers(members)
-    for member in range(5):
-        own = members.of(member).system
-        _assert_close(scalar.inertia[member], own.canonical.constrained_inertia, 1e-15)
-        frame_map = np.broadcast_to(scalar.frame_map, (5, 2, 2))
-        assert np.array_equal(frame_map[member], own.frame_map)
-        pose = np.broadcast_to(scalar.pose, (5, 4))
-        assert np.array_equal(pose[member], own.group.pose_from_matrix(own.frame))
-        if system is TOP:
-            body = suslov_body(own.canonical.constrained_inertia, own.canonical.coupling)
-            assert np.allclose(scalar.fields[:, member], body, rtol=1e-14, atol=0)
-        else:
-            assert scalar.fields[:, member].tolist() == [own.mass, own.inertia, own.a]
 
 
 @pytest.mark.parametrize("name", ["top", "suslov 4", "any d on SE(3)", "flow", "rule"])
@@ -532,26 +512,17 @@ test_bad_arguments_are_refused = refusals(
 )
 
 
-def test_mass_tensors_of_no_top_are_refused() -> None:
-    """A tensor that is not symmetric, and one without positive inertia along the constraint, are named by member."""
-    discrete = nh.discretize(TOP, 0.1)
-    for bad, words in ((J + np.triu(np.ones((3, 3)), 1), "be symmetric"), (-J, "positive definite")):
-        with pytest.raises(ValueError, match=f"{words}.*This is member 1"):
-            nh.ensemble(discrete, **ONE, parameters={"mass_tensor": [J, bad]}, steps=5)
-
-
-def test_numba_without_closed_form_is_refused() -> None:
-    """A discretization that only its definition can run refuses the compiled backend."""
-    discrete = nh.discretize(SLEIGH, 0.1, difference="logarithmic")
-    with pytest.raises(ValueError, match="closed form of the step"):
-        nh.ensemble(discrete, restricted_velocity=[[0.1, 1.0]], steps=3, backend="numba")
-
-
-def test_poses_that_fill_the_memory_are_refused() -> None:
-    """Poses of a top in very many dimensions are refused before anything runs, with the remedy."""
-    top = nh.SuslovTop.arrowhead(np.ones(40_000), np.zeros(39_999))
-    with pytest.raises(ValueError, match=r"`ensemble\(reconstruct=.*reconstruct=False"):
-        nh.ensemble(nh.discretize(top, 0.1), restricted_velocity=np.ones((2, 39_999)), steps=3)
+_WIDE = nh.SuslovTop.arrowhead(np.ones(40_000), np.zeros(39_999))
+# Tensors that are not symmetric or positive, by member; a backend without a closed form; poses beyond the memory.
+test_ensembles_that_cannot_be_are_refused = refusals(
+    ((TOP, {**ONE, "parameters": {"mass_tensor": [J, J + np.triu(np.ones((3, 3)), 1)]}}), "symmetric.*is member 1"),
+    ((TOP, {**ONE, "parameters": {"mass_tensor": [J, -J]}}), "positive definite.*This is member 1"),
+    ((SLEIGH, {"restricted_velocity": [[0.1, 1.0]], "backend": "numba"}), "closed form of the step"),
+    ((_WIDE, {"restricted_velocity": np.ones((2, 39_999))}), r"`ensemble\(reconstruct=.*reconstruct=False"),
+    ask=lambda case: nh.ensemble(
+        nh.discretize(case[0], 0.1, "logarithmic" if "backend" in case[1] else "matrix"), steps=3, **case[1]
+    ),
+)
 
 
 @pytest.mark.parametrize("size", [5e-324, 1e-200, 1e200])

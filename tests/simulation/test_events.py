@@ -1,7 +1,7 @@
 """Events of discrete runs: what counts as a crossing, where it is, and how a run ends there."""
 
 import pathlib
-import re
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -220,13 +220,6 @@ def test_blocks_of_a_run_hold_its_crossings() -> None:
     assert [block.events.stopped_by for block in blocks] == [None] * (len(blocks) - 1) + ["east"]
 
 
-def test_blocks_of_one_state() -> None:
-    """A block that holds the first state alone has no crossings."""
-    run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 20, "events": [east]}
-    blocks = list(nh.iterate(ROUND, **run, block_steps=1))
-    assert sum(len(block.events[0]) for block in blocks) == len(nh.simulate(ROUND, **run).events[0]) == 2
-
-
 @pytest.mark.parametrize("every", [1, 7])
 def test_blocks_of_one_state_are_those_of_the_run(every: int) -> None:
     """With events and one state per block, each state has its own time, and the bits of the run without events."""
@@ -243,13 +236,6 @@ def test_a_stored_run_without_start_has_no_crossings(tmp_path: pathlib.Path) -> 
     orbit = nh.simulate(nh.discretize(TOP.system, 1.0), **beyond, events=[lambda orbit: orbit.time - 1.0])
     assert (len(orbit), orbit.outcome, len(orbit.events[0])) == (0, nh.Outcome.no_real_branch, 0)
     assert not list(tmp_path.iterdir())
-
-
-def test_crossings_of_an_orbit_are_those_of_the_run() -> None:
-    """An orbit that is already there has the same crossings as the run that looks for them."""
-    run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 200}
-    found = nh.crossings(nh.simulate(ROUND, **run), east)
-    assert np.array_equal(found.time, nh.simulate(ROUND, **run, events=[east]).events[0].time)
 
 
 def test_a_run_that_cannot_go_on_keeps_its_crossings() -> None:
@@ -297,28 +283,24 @@ def test_functions_that_give_no_number_are_refused(function: object, told: str) 
 
 
 # What cannot be watched is refused before any work.
-test_runs_without_events_are_refused = refusals(
-    ({"events": east}, "be a list"),
-    ({"events": [3]}, "be a function"),
-    ({"events": [east, east]}, "different names"),
-    ({"events": [east], "branch": "smallest"}, "principal branch"),
-    ask=lambda options: nh.simulate(SLEIGH, body_velocity=(1.0, 1.0, 0.0), steps=20, **options),
+_CIRCLE: dict[str, Any] = {"body_velocity": (4.0, 1.0, 0.0), "steps": 20}
+_ALONG: dict[str, Any] = {"restricted_velocity": (0.7, -0.3), "steps": 5}
+_WITHOUT, _THINNED = {"reconstruct": False}, "one with steps left out"
+# What cannot be watched is refused before any work, orbits with states left out too.
+test_what_cannot_be_watched_is_refused = refusals(
+    (lambda: nh.simulate(SLEIGH, **_CIRCLE, events=east), "be a list"),
+    (lambda: nh.simulate(SLEIGH, **_CIRCLE, events=[3]), "be a function"),
+    (lambda: nh.simulate(SLEIGH, **_CIRCLE, events=[east, east]), "different names"),
+    (lambda: nh.simulate(SLEIGH, **_CIRCLE, events=[east], branch="smallest"), "principal branch"),
+    (lambda: nh.simulate(MOTIONS["right-invariant"], **_ALONG, **_WITHOUT, events=[east]), "reconstruct=True"),
+    (lambda: nh.simulate(ROUND, **_CIRCLE, **_WITHOUT, events=[east]), "reconstruct=True"),
+    (lambda: nh.simulate(TOP, **_ALONG, events=[nh.cusp]), "watch a sleigh"),
+    (lambda: nh.Event(east, direction=2), "Event"),
+    (lambda: nh.Event(east, stop=-1), "Event"),
+    (lambda: nh.Event(east, stop=0.5), "Event"),
+    (lambda: nh.crossings(nh.simulate(ROUND, **_CIRCLE)[::2], east), _THINNED),
+    (lambda: nh.crossings(nh.simulate(ROUND, **_CIRCLE).chosen(np.arange(21) != 5), east), _THINNED),
 )
-
-
-@pytest.mark.parametrize("options", [{"direction": 2}, {"stop": -1}, {"stop": 0.5}], ids=str)
-def test_bad_events_are_refused(options: dict[str, float]) -> None:
-    """A direction is -1, 0 or 1, a stop a number of crossings."""
-    with pytest.raises(ValueError, match="Event"):
-        nh.Event(east, **options)  # type: ignore[arg-type]
-
-
-def test_crossings_of_thinned_orbits_are_refused() -> None:
-    """Between thinned states crossings could be missed."""
-    whole = nh.simulate(ROUND, body_velocity=(4.0, 1.0, 0.0), steps=20)
-    for thinned in (whole[::2], whole.chosen(np.arange(21) != 5)):
-        with pytest.raises(ValueError, match="one with steps left out"):
-            nh.crossings(thinned, east)
 
 
 def test_wide_tops_need_no_poses() -> None:
@@ -330,25 +312,6 @@ def test_wide_tops_need_no_poses() -> None:
     found = nh.simulate(nh.discretize(top, 0.1), **run, reconstruct=False, events=[event]).events[0]
     assert len(found) == 1
     assert abs(event.function(found.states)[0]) < 1e-16
-
-
-def test_right_invariant_constraints_without_poses_are_refused() -> None:
-    """The step of an LR system depends on the pose."""
-    run = {"restricted_velocity": (0.7, -0.3), "steps": 5, "reconstruct": False}
-    with pytest.raises(ValueError, match=r"reconstruct=True"):
-        nh.simulate(MOTIONS["right-invariant"], **run, events=[lambda orbit: orbit.time - 0.1])
-
-
-def test_cusps_of_tops_are_refused() -> None:
-    """A top has no blade."""
-    with pytest.raises(ValueError, match="watch a sleigh"):
-        nh.simulate(TOP, restricted_velocity=(0.7, -0.3), steps=5, events=[nh.cusp])
-
-
-def test_poses_of_runs_without_them_are_refused() -> None:
-    """A function of the pose needs reconstruct=True, and says so."""
-    with pytest.raises(ValueError, match="reconstruct=True"):
-        nh.simulate(ROUND, body_velocity=(4.0, 1.0, 0.0), steps=5, reconstruct=False, events=[east])
 
 
 def test_states_at_crossings_have_the_energy_of_the_run() -> None:
@@ -371,12 +334,3 @@ def test_seen_from_its_end_a_step_has_other_parts_to_third_order() -> None:
         back = top.after_parts(nh.simulate(top, **end, steps=1)[:1], np.array([0.5]))
         gaps.append(np.abs(half.configuration - back.configuration).max())
     assert np.abs(np.log2(np.divide(gaps[:-1], gaps[1:])) - 3).max() < 0.15
-
-
-def test_page(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The examples of the page about events run, and say what is so."""
-    page = pathlib.Path(__file__).parents[2] / "docs" / "how-to" / "events-and-sections.md"
-    names: dict[str, object] = {}
-    monkeypatch.chdir(tmp_path)
-    for block in re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL):
-        exec(block, names)  # noqa: S102

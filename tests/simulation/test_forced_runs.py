@@ -39,27 +39,6 @@ def _same(mine: Orbit, theirs: Orbit) -> bool:
     )
 
 
-@pytest.mark.parametrize("name", FORCED)
-def test_stores_give_the_forces_back(name: str, tmp_path: Path) -> None:
-    """A saved orbit, map or flow, has its forces from data; a run into a store is extended with the same bits."""
-    discrete = nh.discretize(FORCED[name], 0.05)
-    orbit = nh.simulate(discrete, **START, steps=30)
-    nh.save_orbit(orbit, tmp_path / "orbit.zarr")
-    loaded = nh.load_orbit(tmp_path / "orbit.zarr")
-    assert _same(loaded, orbit)
-    assert np.array_equal(loaded.work, orbit.work)
-    nh.simulate(discrete, **START, steps=20, store=tmp_path / "run.zarr")
-    assert _same(nh.extend(tmp_path / "run.zarr", 10), orbit)
-    assert orbit.to_dataset()["energy"].values.tolist() == orbit.energy.tolist()
-    if "table" not in name:
-        flow = nh.flow(FORCED[name], **START, times=(0.0, 1.0))
-        nh.save_orbit(flow, tmp_path / "flow.zarr")
-        assert _same(nh.load_orbit(tmp_path / "flow.zarr"), flow)
-        return
-    with pytest.raises(ValueError, match=r"extend\(steps=...\)"):
-        nh.extend(tmp_path / "run.zarr", 1)
-
-
 def test_a_stored_function_is_not_run(tmp_path: Path) -> None:
     """A store names neither functions nor anything else than our systems and forces; a function has to be passed."""
     discrete = nh.discretize(nh.Forced(TOP, force=_brake), 0.05)
@@ -92,33 +71,21 @@ def test_members_are_single_runs(forced: nh.Forced) -> None:
         assert batch.first_energy[member] == pytest.approx(orbit.energy[0], rel=1e-14)
 
 
-@pytest.mark.parametrize(
-    "forced", [FORCED["weight and friction"], FORCED["a matrix of friction"], nh.Forced(TOP, force=_brake)]
-)
-def test_members_of_flows_are_single_flows(forced: nh.Forced) -> None:
-    """Each member of an ensemble of flows, also one that begins later, is the flow of `flow`, to the last bit."""
-    starts, times = np.random.default_rng(2).normal(size=(3, 2)), (0.5, 1.0, 1.5)
-    batch = nh.ensemble(forced, restricted_velocity=starts, times=times)
-    for member, start in enumerate(starts):
-        flow = nh.flow(forced, restricted_velocity=start, times=times)
-        assert_member(batch, member, flow, "momentum", "configuration", "energy")
-
-
-def test_sweeps_end_where_single_runs_do(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["friction and table", "function"])
+def test_sweeps_end_where_single_runs_do(name: str, tmp_path: Path) -> None:
     """A sweep of starts and time steps keeps the last states of single runs; its store knows forces that are data."""
-    steps = np.array([0.05, 0.025])
-    for name, forced in (FORCED | {"function": nh.Forced(TOP, force=_brake)}).items():
-        task = nh.EnsembleTask(nh.discretize(forced, 0.05), steps=30, **START)
-        found = nh.sweep(task, nh.Grid({"time_step": steps}), tmp_path / f"{name}.zarr")
-        for row, h in enumerate(steps):
-            orbit = nh.simulate(nh.discretize(forced, h), **START, steps=30)
-            assert np.array_equal(found["final_momentum"][row], orbit.restricted_momentum[-1])
-            assert float(found["final_energy"][row]) == orbit.energy[-1]
-        if name == "function":
-            with pytest.raises(ValueError, match="force is a callable"):
-                nh.resume(tmp_path / f"{name}.zarr")
-        else:
-            assert nh.resume(tmp_path / f"{name}.zarr").equals(found)
+    steps, forced = np.array([0.05, 0.025]), (FORCED | {"function": nh.Forced(TOP, force=_brake)})[name]
+    task = nh.EnsembleTask(nh.discretize(forced, 0.05), steps=30, **START)
+    found = nh.sweep(task, nh.Grid({"time_step": steps}), tmp_path / "a.zarr")
+    for row, h in enumerate(steps):
+        orbit = nh.simulate(nh.discretize(forced, h), **START, steps=30)
+        assert np.array_equal(found["final_momentum"][row], orbit.restricted_momentum[-1])
+        assert float(found["final_energy"][row]) == orbit.energy[-1]
+    if name == "function":
+        with pytest.raises(ValueError, match="force is a callable"):
+            nh.resume(tmp_path / "a.zarr")
+    else:
+        assert nh.resume(tmp_path / "a.zarr").equals(found)
 
 
 @pytest.mark.parametrize(
