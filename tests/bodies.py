@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 from groups.examples import HEISENBERG
-from problems import PROBLEMS
 
 import nonholo as nh
 from nonholo.groups import AbstractMatrixGroup
@@ -99,6 +98,3 @@ def _general() -> dict[str, tuple[AbstractSystem, np.ndarray]]:
 
 GENERAL = _general()
 OTHERS = _others()
-EVERY = {problem.name: problem.system for problem in PROBLEMS}
-EVERY |= {name: system for name, (system, _) in GENERAL.items()} | OTHERS
-"""One body of each kind that has a flow."""

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from bodies import EVERY as SYSTEMS
+from problems import EVERY as SYSTEMS
 
 import nonholo as nh
 from nonholo.systems import AbstractSystem

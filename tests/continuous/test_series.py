@@ -9,7 +9,7 @@ from pathlib import Path
 import mpmath
 import numpy as np
 import pytest
-from bodies import EVERY as SYSTEMS
+from problems import EVERY as SYSTEMS
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 

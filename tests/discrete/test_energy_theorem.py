@@ -91,21 +91,6 @@ def test_what_every_system_keeps(name: str) -> None:
         assert np.ptp(orbit.spatial_momentum @ direction) <= 1e-11 * np.abs(orbit.spatial_momentum).max()
 
 
-@pytest.mark.profile("routes", keep=["suslov 4"])
-@pytest.mark.parametrize("name", GENERAL)
-def test_slope_two(name: str) -> None:
-    """Halving the step divides the errors of momentum and pose against the flow by four."""
-    system, velocity = GENERAL[name]
-    start = {"restricted_velocity": velocity, "configuration": system.group.random(np.random.default_rng(6))}
-    exact = nh.flow(system, times=[0.0, 1.0], rtol=1e-12, atol=1e-14, **start)
-    steps = (40, 80, 160)
-    orbits = [nh.simulate(nh.discretize(system, 1 / n), steps=n, save_every=n, **start) for n in steps]
-    for quantity in ("restricted_momentum", "configuration"):
-        errors = [np.abs(getattr(o, quantity)[-1] - getattr(exact, quantity)[-1]).max() for o in orbits]
-        if max(errors) > 1e-11:  # conserved momenta are exact
-            assert abs(-np.polyfit(np.log(steps), np.log(errors), 1)[0] - 2) <= 0.1
-
-
 @pytest.mark.profile("routes", keep=["veselova 3"])
 @pytest.mark.parametrize("name", [name for name in GENERAL if "veselova" in name or "right" in name])
 def test_energy_of_right_invariant_constraints_oscillates(name: str) -> None:

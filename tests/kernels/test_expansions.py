@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from bodies import EVERY, mass_tensor
-from bodies import OTHERS as OTHER_BODIES
+from bodies import mass_tensor
+from problems import EVERY
 
 import nonholo as nh
 from nonholo.base.compiled import emission, library_of_kernels, njit, way_of_kernels
@@ -32,7 +32,7 @@ USUAL: dict[str, AbstractSystem] = {
     "top on SO(4)": nh.SuslovTop(mass_tensor(nh.SO(4), RNG)),
     "sleigh in space": nh.MultidimensionalSleigh(2.0, [0.5, 0.25, -0.125], np.diag([1.0, 2.0, 1.5])),
     "free body on SE(3)": nh.RigidBody(mass_tensor(nh.SE(3), RNG), nh.SE(3)),
-    "Heisenberg": OTHER_BODIES["Heisenberg"],
+    "Heisenberg": EVERY["Heisenberg"],
     "Veselova top": nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])),
 }
 """What is compiled ahead."""

@@ -83,14 +83,6 @@ def test_random_problems(count: int) -> None:
     assert min(reached, folded) > count // 4
 
 
-@pytest.mark.profile("long", instead="test_random_steps_are_right")
-def test_many_random_problems() -> None:
-    """10,000 of them, many with paths through angle pi."""
-    reached, folded, past = agreements(10_000, 5)
-    assert min(reached, folded) > 2500
-    assert past > 100
-
-
 @pytest.mark.profile("problems", instead="test_orbits_of_sleighs_at_angle_pi")
 def test_a_path_through_angle_pi() -> None:
     """A rod on SO(4) whose principal path turns past pi steps there, to a displacement that `branches` has too."""

@@ -10,7 +10,10 @@ from matrix.kinds import KINDS
 from matrix.verdicts import CELLS, RULES
 from scripts import ROOT, script
 
-QUICK = ("sleigh, SE(3)", "LL by matrices", "Veselova top", "order 4", "gravity", "friction, table", "force in Python")
+QUICK = (
+    *("sleigh, SE(3)", "LL by matrices", "Veselova top", "order 4", "rule nearest"),
+    *("gravity", "friction, table", "force in Python"),
+)
 CUT = (
     *("thinned", "iterate", "store", "extend", "resume", "save and load", "ensemble", "flow store", "sweep"),
     *("events", "events in stores", "events in iterators", "crossings", "ensemble with events"),

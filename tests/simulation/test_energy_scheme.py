@@ -10,7 +10,6 @@ from bodies import GENERAL, magnet, weight
 import nonholo as nh
 from nonholo.systems import AbstractSystem
 
-RNG = np.random.default_rng(21)
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 SYSTEMS: dict[str, AbstractSystem] = {
     "top": TOP,

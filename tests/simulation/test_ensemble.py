@@ -46,13 +46,19 @@ def _assert_close(found: np.ndarray, wanted: np.ndarray, tolerance: float) -> No
 
 
 @BOTH
-def test_members_move_as_simulate_moves_them(system: Any) -> None:
-    """Over 1000 steps states agree to rounding, and what is decoded from them; poses gather that of 1000 products."""
-    discrete, velocities = nh.discretize(system, 0.1), _velocities(35)
-    batch = nh.ensemble(discrete, restricted_velocity=velocities, steps=1000, save_every=250)
+@pytest.mark.parametrize("varied", [False, True], ids=["one body", "many bodies"])
+def test_members_move_as_simulate_moves_them(system: Any, varied: bool) -> None:
+    """Over 1000 steps states agree to rounding, and what is decoded; each has its own parameters and time step."""
+    velocities, parameters = _velocities(35), _parameters(system, 35) if varied else {}
+    run = {"restricted_velocity": velocities, "steps": 1000, "save_every": 250}
+    batch = nh.ensemble(nh.discretize(system, 0.1), **run, parameters=parameters)
     assert batch.outcome.tolist() == [0] * 35
     for member in (0, 33):
-        orbit = nh.simulate(discrete, restricted_velocity=velocities[member], steps=1000, save_every=250)
+        body, own = system, {name: values[member] for name, values in parameters.items()}
+        step = own.pop("time_step", 0.1)
+        if varied:
+            body = nh.SuslovTop(**own, axis=TOP.axis) if system is TOP else nh.ChaplyginSleigh(**own)
+        orbit = nh.simulate(nh.discretize(body, step), **run | {"restricted_velocity": velocities[member]})
         assert np.array_equal(batch.time[member], orbit.time)
         for name in DECODED:
             _assert_close(getattr(batch, name)[member], getattr(orbit, name), 1e-14)
@@ -148,7 +154,7 @@ def test_bits_of_simulate(system: Any) -> None:
 @BOTH
 @pytest.mark.parametrize("every", [None, 1], ids=["last", "history"])
 def test_a_failed_member_ends_as_in_simulate(system: Any, every: int | None) -> None:
-    """Outcome, number of good steps and last good state of each member are those of its own run."""
+    """Outcome, good steps and last good state of each member are those of its own run; later rows are NaN."""
     discrete, velocities = nh.discretize(system, 0.7), _velocities(40, 2.0)
     batch = nh.ensemble(discrete, restricted_velocity=velocities, steps=30, save_every=every)
     assert set(batch.outcome) > {0}
@@ -159,37 +165,10 @@ def test_a_failed_member_ends_as_in_simulate(system: Any, every: int | None) -> 
         assert batch.steps_done[member] == max(0, len(orbit) - 1)
         if every:
             assert len(own) == len(orbit)
+            assert np.array_equal(np.isfinite(batch.energy[member]), np.arange(31) < len(orbit))
         if len(orbit):
             assert own.time[-1] == pytest.approx(orbit.time[-1], rel=1e-15)
             _assert_close(own.momentum[-1], orbit.momentum[-1], 1e-14)
-
-
-@BOTH
-def test_later_rows_of_a_failed_member_are_nan(system: Any) -> None:
-    """After its end, and from the start if there is no first root, a member has NaN; others have numbers."""
-    discrete = nh.discretize(system, 0.7)
-    batch = nh.ensemble(discrete, restricted_velocity=_velocities(40, 2.0), steps=30, save_every=3)
-    good = np.isfinite(batch.energy).sum(axis=1)
-    failed = batch.outcome != 0
-    assert (good[~failed] == 11).all()
-    begun = good[failed] > 0
-    assert (good[failed][begun] == 1 + batch.steps_done[failed][begun] // 3).all()
-    assert (batch.steps_done[failed][~begun] == 0).all()
-
-
-@BOTH
-def test_parameters_vary_by_member(system: Any) -> None:
-    """Each member moves as the system with its own parameters and time step does."""
-    discrete, velocities, parameters = nh.discretize(system, 0.1), _velocities(33), _parameters(system, 33)
-    batch = nh.ensemble(discrete, restricted_velocity=velocities, parameters=parameters, steps=100, save_every=50)
-    for member in (0, 32):
-        own = {name: values[member] for name, values in parameters.items() if name != "time_step"}
-        body = nh.SuslovTop(**own, axis=TOP.axis) if system is TOP else nh.ChaplyginSleigh(**own)
-        alone = nh.discretize(body, parameters["time_step"][member])
-        orbit = nh.simulate(alone, restricted_velocity=velocities[member], steps=100, save_every=50)
-        assert np.array_equal(batch.time[member], orbit.time)
-        for name in DECODED:
-            _assert_close(getattr(batch, name)[member], getattr(orbit, name), 1e-14)
 
 
 @pytest.mark.parametrize("name", ["top", "suslov 4", "any d on SE(3)", "flow", "rule"])
@@ -272,17 +251,6 @@ def test_a_member_of_another_system_keeps_its_last_good_state() -> None:
         assert batch.steps_done[member] == max(0, len(orbit) - 1)
         if len(orbit):
             assert np.array_equal(batch.reduced_momentum[member, 0], orbit.reduced_momentum[-1])
-
-
-@BOTH
-def test_a_momentum_off_the_locus_spoils_its_member_alone(system: Any) -> None:
-    """A full momentum that no displacement has gives the outcome off_momentum_locus and NaN."""
-    discrete = nh.discretize(system, 0.1)
-    momenta = nh.ensemble(discrete, restricted_velocity=_velocities(3), steps=1, save_every=1).momentum[:, 0].copy()
-    momenta[1] += 0.1 * system.annihilator[0]
-    batch = nh.ensemble(discrete, momentum=momenta, steps=5)
-    assert batch.outcome.tolist() == [0, nh.Outcome.off_momentum_locus, 0]
-    assert np.isnan(batch.energy[:, 0]).tolist() == [False, True, False]
 
 
 PLACED = {"top": TOP, "sleigh": SLEIGH, "suslov 4": GENERAL["suslov 4"][0], "veselova 3": GENERAL["veselova 3"][0]}
@@ -388,17 +356,22 @@ def test_flows_under_forces_have_parameters() -> None:
 
 
 @pytest.mark.parametrize("name", ["top", "sleigh", "suslov 4"])
-def test_a_displacement_of_another_branch_spoils_its_member_alone(name: str) -> None:
-    """A member that would not start on the principal branch has outcome branch_unverified and NaN."""
+def test_a_start_that_is_none_spoils_its_member_alone(name: str) -> None:
+    """A displacement off the principal branch and a momentum of no displacement give an outcome and NaN."""
     system = PLACED[name]
     discrete = nh.discretize(system, 0.5)
     orbit = nh.simulate(discrete, restricted_velocity=np.full(system.rank, 0.3), steps=1)
-    bad = system.group.exp(3.0 * system.constraint_subspace[0])
-    batch = nh.ensemble(discrete, displacement=[orbit.displacement[0], bad], steps=5, save_every=1)
-    assert batch.outcome.tolist() == [0, nh.Outcome.branch_unverified]
-    assert batch.steps_done.tolist() == [5, 0]
-    assert np.isnan(batch.energy[1]).all()
-    assert len(batch.orbit(1)) == 0
+    other = system.group.exp(3.0 * system.constraint_subspace[0])
+    off = orbit.momentum[0] + 0.5 * np.asarray(system.annihilator)[0]
+    for start, outcome in (
+        ({"displacement": [orbit.displacement[0], other]}, nh.Outcome.branch_unverified),
+        ({"momentum": [orbit.momentum[0], off]}, nh.Outcome.off_momentum_locus),
+    ):
+        batch = nh.ensemble(discrete, **start, steps=5, save_every=1)
+        assert batch.outcome.tolist() == [0, outcome]
+        assert batch.steps_done.tolist() == [5, 0]
+        assert np.isnan(batch.energy[1]).all()
+        assert len(batch.orbit(1)) == 0
 
 
 @BOTH

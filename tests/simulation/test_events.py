@@ -6,7 +6,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from comparisons import assert_joined, assert_near, assert_same
+from comparisons import assert_joined, assert_near
 from refusals import refusals
 
 import nonholo as nh
@@ -65,22 +65,6 @@ def test_parts_of_steps_join_the_states(name: str) -> None:
     for fraction, limit, error in ((1.0, orbit[1:], 2e-14), (1e-10, orbit[:-1], 1e-9)):
         reached = between(orbit[:-1], np.full(8, fraction))
         assert_near(reached, limit, error, "momentum", "configuration", "displacement", "body_velocity")
-
-
-@pytest.mark.parametrize("name", MOTIONS)
-def test_events_leave_the_orbit_alone(name: str) -> None:
-    """With and without events, thinned or not, the states are the same to the last bit; crossings do not depend."""
-    discrete, found = MOTIONS[name], []
-    middle = nh.simulate(discrete, restricted_velocity=start(discrete), steps=15).configuration[15, 0, 1]
-    event = nh.Event(lambda orbit: orbit.configuration[:, 0, 1] - middle / 2, name="middle")
-    for every in (1, 7):
-        run = {"restricted_velocity": start(discrete), "steps": 300, "save_every": every}
-        orbit, plain = nh.simulate(discrete, **run, events=[event]), nh.simulate(discrete, **run)
-        assert_same(orbit, plain, *STATE)
-        found.append(orbit.events["middle"])
-        assert len(found[-1]) > 0
-        assert np.abs(event.function(found[-1].states)).max() < 4e-16
-    assert np.array_equal(found[0].time, found[1].time)
 
 
 def test_a_part_of_a_step_is_a_shorter_step() -> None:

@@ -54,34 +54,26 @@ def _same(member: nh.Orbit, alone: nh.Orbit) -> bool:
 @pytest.mark.parametrize("backward", [False, True])
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_members_are_flows(name: str, backward: bool) -> None:
-    """More members than lanes, at rest and fast; from one canonical momentum the bits of a flow alone."""
+    """More members than lanes, at rest and fast, have the bits of flows alone, with poses and without them."""
     system, times = SYSTEMS[name], TIMES[::-1] if backward else TIMES
     w = np.random.default_rng(1).normal(size=(19, system.rank)) * np.geomspace(1e-3, 3.0, 19)[:, None]
     w[4] = 0.0
     batch = nh.ensemble(system, restricted_velocity=w, times=times)
-    assert isinstance(batch, nh.Ensemble)
+    bare = nh.ensemble(system, restricted_velocity=w[:3], times=times, reconstruct=False)
     assert (batch.outcome == nh.Outcome.successful).all()
+    assert bare.canonical_pose is bare.pose is None
     for member, start in enumerate(w):
         alone = nh.flow(system, restricted_velocity=start, times=times)
         assert _same(batch.orbit(member), alone)
         assert np.abs(batch.configuration[member] - alone.configuration).max() < 1e-12
         assert np.abs(batch.momentum[member] - alone.momentum).max() < 1e-12
+        if member < 3:
+            without = nh.flow(system, restricted_velocity=start, times=times, reconstruct=False)
+            assert not bare.orbit(member).has_poses
+            assert _same(bare.orbit(member), without)
     few = nh.ensemble(system, restricted_velocity=w[7:9], times=times)
     assert np.array_equal(few.reduced_momentum, batch.reduced_momentum[7:9])
     assert np.array_equal(few.canonical_pose, batch.canonical_pose[7:9])
-
-
-@pytest.mark.parametrize("name", SYSTEMS)
-def test_members_without_poses_are_flows_without_them(name: str) -> None:
-    """With the bits of `flow(reconstruct=False)`, which of tops and sleighs solves for the momenta alone."""
-    system, w = SYSTEMS[name], np.random.default_rng(1).normal(size=(3, SYSTEMS[name].rank))
-    batch = nh.ensemble(system, restricted_velocity=w, times=TIMES, reconstruct=False)
-    assert batch.canonical_pose is None
-    assert batch.pose is None
-    for member, start in enumerate(w):
-        alone = nh.flow(system, restricted_velocity=start, times=TIMES, reconstruct=False)
-        assert not batch.orbit(member).has_poses
-        assert _same(batch.orbit(member), alone)
 
 
 @pytest.mark.parametrize("name", OWN)

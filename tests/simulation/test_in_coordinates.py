@@ -78,27 +78,6 @@ def test_flows_cross_where_parabolas_do(system: LagrangeDAlembert) -> None:
 
 
 @PROFILE
-def test_the_states_are_those_of_a_run_without_events() -> None:
-    """Bit for bit, thinned too; blocks together have the states and the crossings of the run."""
-    discrete = nh.discretize(FALL, 0.02)
-    whole = nh.simulate(discrete, **THROWN, steps=300, events=[height, rise])
-    for every in (1, 7):
-        alone = nh.simulate(discrete, **THROWN, steps=300, save_every=every)
-        thinned = nh.simulate(discrete, **THROWN, steps=300, save_every=every, events=[height])
-        blocks = list(nh.iterate(discrete, **THROWN, steps=300, save_every=every, block_steps=14, events=[height]))
-        assert [len(block) for block in blocks[:-1]] == [14 // every] * (len(blocks) - 1)
-        for row in ROWS:
-            assert np.array_equal(getattr(thinned, row), getattr(alone, row)), row
-            assert np.array_equal(np.concatenate([getattr(block, row) for block in blocks]), getattr(alone, row)), row
-        assert np.array_equal(thinned.events["height"].time, whole.events["height"].time)
-        assert np.array_equal(
-            np.concatenate([block.events["height"].time for block in blocks]), whole.events["height"].time
-        )
-        steps = np.concatenate([block.events["height"].step for block in blocks])
-        assert np.array_equal(steps, whole.events["height"].step)
-
-
-@PROFILE
 def test_an_event_stops_a_run() -> None:
     """At its second crossing, with the last saved state before it; an earlier end of the run is its own."""
     discrete = nh.discretize(FALL, 0.1)

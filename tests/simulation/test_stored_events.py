@@ -107,18 +107,6 @@ def cut(path: Path, monkeypatch: pytest.MonkeyPatch, block: int, late: bool, run
         nh.load_orbit(path)
 
 
-@pytest.mark.parametrize("every", [1, 7])
-@pytest.mark.parametrize("name", RUNS)
-def test_stored_run_has_the_crossings(name: str, every: int, tmp_path: Path) -> None:
-    """A stored run in one block has the crossings of the run without a store, bit for bit, also when it is loaded."""
-    discrete, events, start = RUNS[name]
-    run = {"steps": 300, "save_every": every, "events": events, **start}
-    whole, stored = nh.simulate(discrete, **run), nh.simulate(discrete, **run, store=tmp_path / "run.zarr")
-    assert sum(map(len, whole.events.found)) > 0
-    assert same(stored, whole)
-    assert same(nh.load_orbit(tmp_path / "run.zarr"), whole)
-
-
 @pytest.mark.parametrize("name", ["sleigh by heading", "sleigh with a cusp", "top", "order 4"])
 def test_blocks_do_not_change_crossings(name: str, tmp_path: Path) -> None:
     """In blocks of 21 steps the crossings are those of one block: headings and numbers of crossings are carried on."""

@@ -3,7 +3,6 @@
 import errno
 import json
 import os
-import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -21,7 +20,6 @@ import nonholo as nh
 from nonholo.io import Stream, checksum
 from nonholo.systems import AbstractSystem
 
-TOP = nh.discretize(PROBLEMS[0].system, 0.1)
 SLEIGH = nh.discretize(PROBLEMS[7].system, 0.1)
 WIDE = nh.discretize(GENERAL["sleigh 3"][0], 0.05)
 NAMES = ("time", "reduced_momentum", "cayley", "canonical_pose")
@@ -46,27 +44,6 @@ def _begun(path: Path, steps: int = 500, **options: Any) -> nh.Orbit:
 
 def _whole(steps: int = 500) -> nh.Orbit:
     return nh.simulate(SLEIGH, steps=steps, save_every=2, **START)
-
-
-@pytest.mark.parametrize(
-    ("discrete", "start"),
-    [
-        (TOP, START),
-        (SLEIGH, START),
-        (nh.discretize(PROBLEMS[7].system, 0.1, order=4), START),
-        (WIDE, {"restricted_velocity": GENERAL["sleigh 3"][1]}),
-        (nh.discretize(GENERAL["veselova 3"][0], 0.05), {"restricted_velocity": GENERAL["veselova 3"][1]}),
-    ],
-    ids=["top", "sleigh", "composition", "step in O(n)", "right-invariant"],
-)
-@pytest.mark.parametrize("block_steps", [6, 48, None])
-def test_blocks_are_the_orbit(discrete: nh.Discretization, start: dict[str, Any], block_steps: int | None) -> None:
-    """The blocks of `iterate` are the orbit of `simulate`, each state once, bit for bit."""
-    whole = nh.simulate(discrete, steps=200, save_every=3, **start)
-    blocks = list(nh.iterate(discrete, steps=200, save_every=3, block_steps=block_steps, **start))
-    assert len(blocks) == (1 if block_steps is None else -(-len(whole) // (block_steps // 3)))
-    for name in NAMES:
-        assert np.concatenate([getattr(block, name) for block in blocks]).tobytes() == getattr(whole, name).tobytes()
 
 
 @pytest.mark.parametrize("throw", [True, False])
@@ -267,15 +244,6 @@ def test_runs_without_poses(system: AbstractSystem, tmp_path: Path) -> None:
     whole = nh.simulate(discrete, steps=155, reconstruct=False, **start)
     assert np.abs(orbit.reduced_momentum - whole.reduced_momentum).max() < 1e-15  # products of matrices: see `iterate`
     assert np.array_equal(orbit.time, whole.time)
-
-
-def test_the_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The Python blocks of the page on long runs hold what its text says."""
-    page = Path(__file__).parents[2] / "docs" / "how-to" / "run-for-days.md"
-    blocks = re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL)
-    monkeypatch.chdir(tmp_path)
-    exec(compile("\n".join(blocks), page, "exec"), {})  # noqa: S102
-    assert (tmp_path / "run.zarr").is_dir()
 
 
 def test_second_process_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
