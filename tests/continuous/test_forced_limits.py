@@ -30,7 +30,6 @@ ENDLESS: dict[str, tuple[Any, Any, str, str]] = {
     "drag": (None, _drag, "too_stiff", "_drag"),
     "switch": (None, _switch, "too_stiff", "_switch"),
     "weight": (nh.Gravity([1e149, 0.0], [0.1, 0.2]), None, "too_stiff", "Gravity"),
-    "fast": (nh.Gravity([1e60, 0.0], [0.1, 0.2]), None, "too_stiff", "Gravity"),
     "at once": (None, lambda *_: np.array([1e200, 0.0, 0.0]), "nonfinite", "<lambda>"),
 }
 

@@ -2,13 +2,12 @@
 
 import dataclasses
 import math
-import pathlib
 
 import mpmath
 import numpy as np
 import pytest
 from bodies import GENERAL
-from comparisons import assert_near, assert_same
+from comparisons import assert_near
 from refusals import refusals
 
 import nonholo as nh
@@ -173,24 +172,6 @@ def test_momentum_is_that_of_the_first_substep(name: str) -> None:
     assert np.abs(orbit.chart[1] - alone.chart[0]).max() < 1e-14
 
 
-@pytest.mark.profile("routes", cases=["any d*"])
-@pytest.mark.parametrize("name", ["top", "suslov 4", "any d on SE(3)"])
-def test_a_run_can_stop_and_go_on(name: str) -> None:
-    """Ten steps at once and in two parts have the same bits."""
-    system, velocity = BODIES[name]
-    body = nh.discretize(system, 0.1, order=4).route.body
-    k, m, size = kernels.sizes(body)
-    pose = np.eye(system.group.size).ravel() if size != 4 else np.array([1.0, 0.0, 0.0, 0.0])
-    found = []
-    for parts in ((10,), (4, 6)):
-        _, state = kernels.runs_of(body).start(body, 0.05 * velocity, pose)
-        rows = np.empty((10, k)), np.empty((10, m)), np.empty((10, len(pose)))
-        for steps in parts:
-            kernels.runs_of(body).advance(body, state, steps, 1, rows)
-        found.append(state)
-    assert np.array_equal(*found)
-
-
 @pytest.mark.profile("routes", keep=["left"])
 @pytest.mark.parametrize("system", [TOP, GENERAL["veselova 3"][0]], ids=["left", "right"])
 def test_compiled_runs_agree_with_the_definition(system: AbstractSystem) -> None:
@@ -271,15 +252,6 @@ def test_a_start_without_a_root_is_empty() -> None:
         discrete = nh.discretize(TOP, 1.0, order=4)
         orbit = nh.simulate(discrete, body_velocity=(40.0, 0.0, 0.0), steps=3, throw=False, backend=backend)
         assert (len(orbit), orbit.outcome) == (0, nh.Outcome.no_real_branch)
-
-
-def test_a_store_brings_a_composition_back(tmp_path: pathlib.Path) -> None:
-    """A stored orbit is read back with its order, and decodes to the same displacements."""
-    orbit = run("sleigh", 6, 5, 1.0)
-    nh.save_orbit(orbit, tmp_path / "orbit.zarr")
-    again = nh.load_orbit(tmp_path / "orbit.zarr")
-    assert again.motion.order == 6
-    assert_same(again, orbit, "displacement", "momentum")
 
 
 @pytest.mark.profile("routes", cases=["veselova 4"])

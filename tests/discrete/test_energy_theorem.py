@@ -52,29 +52,6 @@ def test_a_symmetric_pair_of_rank_two(constraint: str) -> None:
     )
 
 
-def test_all_branches_conserve_energy() -> None:
-    """No energy is left to choose a root by: Newton from random guesses on SO(4) finds others of the same energy."""
-    from nonholo.discrete.routes import make_route
-    from nonholo.kernels.general._step import displace, increments, workspace
-    from nonholo.kernels.general.run import newton
-
-    rng = np.random.default_rng(4)
-    system = nh.SuslovTop(mass_tensor(nh.SO(4), rng))
-    discrete = nh.discretize(system, 0.5)
-    orbit = nh.simulate(discrete, restricted_velocity=(0.8, -0.5, 0.6), steps=1)
-    body, m = make_route(discrete, "matrix").body, 0.5 * orbit.restricted_momentum[1]
-    found, work, term = set(), workspace(body), np.zeros(3)
-    for y in rng.normal(size=(200, 3)) * 3:
-        good, _ = newton(body, work, 1.0, m, y)
-        if good:
-            displace(body, work, y)
-            increments(body, work, term)
-            after = m + term
-            assert abs(after @ body.metric @ after / (m @ body.metric @ m) - 1) < 1e-9
-            found.add(tuple(y.round(6)))
-    assert len(found) >= 2
-
-
 @pytest.mark.parametrize("name", GENERAL)
 def test_what_every_system_keeps(name: str) -> None:
     """Energy where it is exact, constraint, group, reversal and, in space, momenta to rounding over 1000 steps."""

@@ -17,19 +17,9 @@ LIVE, REPLAY = (Path(__file__).parent / name for name in ("live.py", "replay.py"
 ROUNDED_BY_IEEE = {
     "math": {"copysign", "inf", "isfinite", "nan", "sqrt"},
     "np": {
-        "abs",
-        "all",
-        "array",
-        "concatenate",
-        "empty",
-        "empty_like",
-        "float64",
-        "int64",
-        "isfinite",
-        "nan",
-        "ndarray",
-    }
-    | {"sqrt", "sum", "uint64", "zeros", "zeros_like"},
+        *("abs", "all", "array", "concatenate", "empty", "empty_like", "float64", "int64", "isfinite", "nan"),
+        *("ndarray", "sqrt", "sum", "uint64", "zeros", "zeros_like"),
+    },
 }
 
 

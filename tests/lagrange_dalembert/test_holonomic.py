@@ -355,6 +355,7 @@ def test_common_paths(tmp_path: Path) -> None:
     assert np.array_equal(np.concatenate([each.configuration for each in blocks]), whole.configuration)
 
 
+@pytest.mark.profile("routes", instead="test_constraints_of_places_hold_at_every_node")
 def test_derivatives_see_the_surface_move() -> None:
     """The last place of a rollout by the length of the rod, on which the start depends, too."""
     swing = nh.LagrangeDAlembert(
@@ -377,6 +378,7 @@ def test_derivatives_see_the_surface_move() -> None:
         assert abs(slope - (last(1.0 + step) - last(1.0 - step)) / (2 * step)) <= 1e-8
 
 
+@pytest.mark.profile("routes", instead="test_constraints_of_places_hold_at_every_node")
 def test_checks_and_linearizations_see_the_surface() -> None:
     """`check_system`, `check_discretization`; a pendulum hangs with the frequency sqrt(g), in two states."""
     place = nh.flow(four_bar(), configuration=LOOP[0], momentum=(0, 0, 0), project=True, times=[0.0]).configuration[0]

@@ -3,14 +3,13 @@
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from comparisons import assert_member, assert_same
+from comparisons import assert_member
 from refusals import refusals
 
 import nonholo as nh
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
 G = 0.8
-ROWS = ("time", "configuration", "displacement", "body_velocity", "momentum", "multipliers", "energy")
 PROFILE = pytest.mark.profile("routes", instead="test_a_ready_system_is_first_class")
 
 
@@ -75,41 +74,6 @@ def test_flows_cross_where_parabolas_do(system: LagrangeDAlembert) -> None:
     assert (stopped.time[-1], stopped.outcome) == (0.75, nh.Outcome.successful)
     back = nh.flow(system, **THROWN, times=[0.0, -0.7, -1.5], events=[lambda states: states.configuration[:, 0] + 1.0])
     assert np.abs(back.events[0].time - (1 - np.sqrt(1 + 2 * G)) / G).max() <= 1e-9
-
-
-@PROFILE
-def test_an_event_stops_a_run() -> None:
-    """At its second crossing, with the last saved state before it; an earlier end of the run is its own."""
-    discrete = nh.discretize(FALL, 0.1)
-    down = nh.Event(height, stop=2)
-    orbit = nh.simulate(discrete, **THROWN, steps=10**6, events=[down, rise])
-    assert (orbit.events.stopped_by, len(orbit)) == ("height", 1 + int((1 + np.sqrt(1 - 0.6 * G)) / G / 0.1))
-    assert len(orbit.events["rise"]) == 1
-    alone = nh.simulate(discrete, **THROWN, steps=len(orbit) - 1)
-    assert_same(orbit, alone, *ROWS)
-    blocks = list(nh.iterate(discrete, **THROWN, steps=10**6, block_steps=8, events=[down]))
-    assert (sum(map(len, blocks)), blocks[-1].events.stopped_by) == (len(orbit), "height")
-
-
-@PROFILE
-def test_runs_that_cannot_continue_say_so_with_events() -> None:
-    """The good steps and the outcome are those without events; a stop before the fold is a success."""
-    start = {"configuration": [0.0], "body_velocity": [0.1], "steps": 20}
-    discrete = nh.discretize(FOLDING, 1.0)
-
-    def reached(states) -> np.ndarray:  # noqa: ANN001
-        return states.configuration[:, 0] - 0.5
-
-    plain = nh.simulate(discrete, **start, throw=False)
-    found = nh.simulate(discrete, **start, throw=False, events=[reached])
-    assert (found.outcome, len(found), len(found.events[0])) == (plain.outcome, len(plain), 1)
-    with pytest.raises(nh.OutcomeError, match=r"Step 6 of 20 \(time_step 1\): no_real_branch") as caught:
-        nh.simulate(discrete, **start, events=[reached])
-    assert len(caught.value.orbit.events[0]) == 1
-    stopped = nh.simulate(discrete, **start, events=[nh.Event(reached, stop=True)])
-    assert (stopped.outcome, len(stopped)) == (nh.Outcome.successful, 1 + stopped.events[0].step[0])
-    with pytest.raises(nh.OutcomeError, match="Start of the run"):
-        nh.simulate(discrete, **start | {"body_velocity": [1.5]}, events=[reached])
 
 
 @PROFILE
@@ -182,24 +146,6 @@ test_flows_of_members_that_cannot_be_solved_are_refused = refusals(
         SPRING, **{"times": [0.0, 1.0], "configuration": [[1.0]], "body_velocity": [0.0]} | given
     ),
 )
-
-
-@PROFILE
-def test_members_have_the_crossings_of_their_runs() -> None:
-    """How many, the first and the last, and who is stopped; with time steps of their own."""
-    discrete, v = nh.discretize(FALL, 0.1), np.array([[1.0, 0.5], [0.42, 0.0], [2.0, 0.0]])
-    start = {"configuration": (0.0, 0.0), "body_velocity": v, "steps": 60}
-    batch = nh.ensemble(
-        discrete, **start, events=[height, nh.Event(rise, stop=True)], parameters={"time_step": [0.1, 0.05, 0.02]}
-    )
-    assert batch.events["height"].count.tolist() == [1, 0, 1]
-    assert batch.events.stopped_by.tolist() == [1, 1, -1]
-    assert np.abs(batch.events["rise"].first.time[:2, 0] - [1 / G, 0.42 / G]).max() <= 1e-14
-    assert np.isnan(batch.events["rise"].last.time[2, 0])
-    assert batch.steps_done.tolist() == [12, 10, 60]
-    assert np.array_equal(batch.time[:, 0], [12 * 0.1, 10 * 0.05, 60 * 0.02])
-    blocks = nh.ensemble(discrete, **start, save_every=30, reduce=lambda block: block.momentum[:, :, 0])
-    assert np.abs(blocks - (v[:, :1] - G * np.array([[0.0, 3.0, 6.0]]))).max() <= 1e-13
 
 
 # Each refusal says what is wrong and what to pass.

@@ -74,7 +74,7 @@ READY = {
 }
 
 
-@pytest.mark.profile("routes", keep=["parameters"])
+@pytest.mark.profile("routes", instead="test_a_policy_is_the_table_of_its_controls")
 @pytest.mark.parametrize("name", READY)
 def test_a_policy_in_coordinates_is_the_table_of_its_controls(name: str) -> None:
     """It sees the velocity that belongs to the momentum of the node; what drives a system acts beside it."""

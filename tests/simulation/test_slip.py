@@ -51,6 +51,7 @@ def _drive(time: float, g: np.ndarray, velocity: np.ndarray) -> np.ndarray:
     return np.array([0.4 * np.sin(3 * time), 0.1, 0.3 * g[0, 0] - 0.1 * velocity[2]])
 
 
+@pytest.mark.profile("problems", keep=["sleigh", "top", "cone"])
 @pytest.mark.parametrize("name", CASES)
 def test_orbits_converge_to_the_continuous_motion(name: str) -> None:
     """Velocity and pose have order 2, also across the places where rows yield and come to rest."""
@@ -209,6 +210,7 @@ def test_stiff_viscous_friction_tends_to_the_ideal_map() -> None:
     assert 95 < errors[1] / errors[2] < 105
 
 
+@pytest.mark.profile("problems", keep=["sleigh", "cone"])
 @pytest.mark.parametrize("name", CASES)
 def test_one_motion_however_it_is_run(name: str, tmp_path: Path) -> None:
     """Blocks, thinned rows, ensembles and stores that are extended have the bits of one run."""
@@ -271,24 +273,6 @@ def test_multipliers_are_reactions_and_friction() -> None:
     np.testing.assert_allclose(
         orbit.momentum @ orbit.system.constraint_subspace.T, orbit.restricted_momentum, atol=1e-14
     )
-
-
-def test_friction_of_a_model_is_its_only_root() -> None:
-    """The impulse of friction solves A x = b + j, -j in m d|x| + c x, for matrices that are monotone."""
-    from nonholo.discrete.routes._slipping import friction
-
-    rng = np.random.default_rng(5)
-    for _ in range(300):
-        s = int(rng.integers(1, 4))
-        root, turning = rng.normal(size=(s, s)), rng.normal(size=(s, s))
-        A = root @ root.T + 0.05 * np.eye(s) + turning - turning.T
-        b, m, c = rng.normal(size=s), 10.0 ** rng.uniform(-3, 0.5), (0.0, 10.0 ** rng.uniform(-3, 6))[rng.integers(2)]
-        j = friction(A, b, m, c)
-        x = np.linalg.solve(A, b + j)
-        if np.linalg.norm(b) <= m:
-            assert np.array_equal(j, -b)
-        else:
-            np.testing.assert_allclose(j, -m * x / np.linalg.norm(x) - c * x, rtol=1e-9, atol=1e-9 * (1 + c * 1e-6))
 
 
 # One clear error that names the demand, before any work.
@@ -354,6 +338,7 @@ def test_a_step_without_a_root_is_an_outcome() -> None:
         assert orbit.outcome in (nh.Outcome.no_real_branch, nh.Outcome.branch_unverified, nh.Outcome.not_converged)
 
 
+@pytest.mark.profile("problems", instead="test_no_slip_adds_energy")
 def test_the_grip_of_a_record_is_found_by_least_squares() -> None:
     """`fit` needs derivatives by JAX and refuses a slip; SciPy finds grip and friction from differences of orbits."""
 

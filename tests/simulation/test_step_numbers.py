@@ -132,6 +132,7 @@ def test_motions_without_steps_number_their_rows() -> None:
     assert flows[0].at([0.3, 0.1]).step.tolist() == [0, 1]
 
 
+@pytest.mark.profile("problems", cases=["table fixed in space"])
 @pytest.mark.parametrize("name", [name for name in FORCED if "table" in name])
 def test_work_under_a_table_is_that_of_every_step(name: str) -> None:
     """However rows are taken: that of the whole run at these rows, less that before the first, to rounding."""
@@ -172,6 +173,7 @@ def test_the_whole_part_of_a_step_under_forces_is_the_step(name: str) -> None:
         assert np.abs(mine - theirs).max() <= 4e-15 * max(1.0, np.abs(theirs).max()), quantity  # 4 x 4 products
 
 
+@pytest.mark.profile("problems", keep=["table and*"])
 @pytest.mark.parametrize("name", FORCED)
 def test_events_under_forces_are_where_bisection_finds_them(name: str) -> None:
     """A crossing is where a map with another time step, from the state before and under the forces then, arrives."""
