@@ -112,9 +112,3 @@ def test_no_events_at_all() -> None:
     batch = nh.ensemble(FOUR, restricted_velocity=np.eye(3), steps=20, events=[])
     assert len(batch.events) == 0
     assert np.array_equal(batch.pose, nh.ensemble(FOUR, restricted_velocity=np.eye(3), steps=20).pose)
-
-
-def test_functions_of_the_wrong_shape_are_refused() -> None:
-    """A function must give one number for each state of the block of members."""
-    with pytest.raises(ValueError, match="one real number for each"):
-        nh.ensemble(SLEIGH, **ROWS, steps=10, events=[lambda orbit: orbit.body_velocity])

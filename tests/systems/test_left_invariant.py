@@ -16,6 +16,9 @@ from nonholo.systems import (
     MultidimensionalSleigh,
     RigidBody,
     SuslovTop,
+    inertia_from_mass_tensor,
+    inertia_tensor,
+    mass_tensor_from_inertia,
     reference_point_subspace,
 )
 
@@ -204,12 +207,6 @@ def _rebuilt(system: AbstractLLSystem, leaves: dict[str, jax.Array]) -> Abstract
     return type(system)(**leaves, **structure)
 
 
-def test_constraints_may_not_be_traced() -> None:
-    """A traced subspace is refused with the reason."""
-    with pytest.raises(ValueError, match=r"must be concrete\. Got a traced value"):
-        jax.jit(lambda rows: LLSystem(nh.SO(3), np.eye(3), rows).constrained_inertia)(np.eye(3))
-
-
 def test_every_class_declares_its_fields() -> None:
     """Leaves and structure together are the fields of a system, each once."""
     for kind in SYSTEMS:
@@ -264,6 +261,18 @@ test_bad_input_is_refused = refusals(
     (lambda: MultidimensionalSleigh(1.0, [0, 0, 0], np.diag([-2.0, 1, 1])), "positive definite. Got an eigenvalue -1"),
     (lambda: reference_point_subspace(1, [[1.0]]), "at least 2. Got 1"),
     (lambda: reference_point_subspace(3, [[1.0, 0.0]]), r"plane=\.\.\.\)` must have shape \(any, 3\)"),
+    (lambda: nh.SuslovTop([[1, 0.1, 0], [0.3, 1, 0], [0, 0, 1]]), r"symmetric.*entries 0.1 and 0.3 at \(0, 1\)"),
+    (lambda: nh.SuslovTop(np.eye(2)), r"shape \(n, n\) with n >= 3. Got shape \(2, 2\)"),
+    (lambda: nh.SuslovTop(np.full((3, 3), np.nan)), r"finite. Got nan at index \(0, 0\)"),
+    (lambda: nh.SuslovTop(1j * np.eye(3)), "be real"),
+    (lambda: nh.SuslovTop(np.diag([-2.0, 1.0, 1.0])), "positive definite. Got an eigenvalue -1"),
+    (lambda: nh.SuslovTop(np.eye(3), axis=(0, 0, 2)), "unit vector. Got length 2"),
+    (lambda: nh.SuslovTop.from_inertia(np.eye(3) + np.eye(3, k=1)), r"from_inertia.*symmetric"),
+    (lambda: nh.ChaplyginSleigh(-1.0, 1.0, 0.5), r"mass=\.\.\.\)` must be positive. Got -1.0"),
+    (lambda: nh.ChaplyginSleigh(1.0, 0.0, 0.5), r"inertia=\.\.\.\)` must be positive. Got 0.0.*center of mass"),
+    (lambda: nh.ChaplyginSleigh(1.0, 1.0, np.inf), r"a=\.\.\.\)` must be finite"),
+    (lambda: nh.ChaplyginSleigh(1.0, 1.0, "x"), "real numbers. Got 'x'"),
+    (lambda: jax.jit(lambda S: LLSystem(nh.SO(3), np.eye(3), S).frame)(np.eye(3)), r"be concrete\. Got a traced value"),
 )
 
 
@@ -282,3 +291,58 @@ def test_lengths_in_any_unit(length: float) -> None:
     sleigh = MultidimensionalSleigh(1.0, np.array([0.5, 0.2, 0.1]) * length, np.diag([0.6, 0.4, 0.2]) * length**2)
     unit = np.sqrt(np.diag(sleigh.constrained_inertia))  # eigenvalues of so different sizes have no digits without it
     assert np.all(np.linalg.eigvalsh(sleigh.constrained_inertia / np.outer(unit, unit)) > 0.5)
+
+
+J = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+INERTIA = np.array([[3.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.5]])
+NAMED = [
+    nh.SuslovTop(J),
+    nh.SuslovTop.from_inertia(INERTIA, axis=np.array([1, 2, 2]) / 3),
+    nh.SuslovTop.from_inertia(INERTIA, axis=(0, 0, -1)),
+    nh.ChaplyginSleigh(mass=2.0, inertia=1.0, a=0.5, b=0.3),
+    nh.ChaplyginSleigh(mass=0.7, inertia=2.0, a=-0.4),
+]
+
+
+def test_inertia_operators_against_their_definitions() -> None:
+    """The top's is its inertia tensor, the sleigh's the quadratic form of the kinetic energy of a moving body."""
+    assert np.allclose(NAMED[0].inertia_operator, inertia_from_mass_tensor(nh.SO(3), J), rtol=0, atol=1e-15)
+    m, inertia, a, b = 2.0, 1.0, 0.5, 0.3
+    omega, v1, v2 = velocity = np.array([0.7, -0.4, 0.9])
+    center = np.array([v1 - omega * b, v2 + omega * a])
+    kinetic = (inertia * omega**2 + m * center @ center) / 2
+    assert velocity @ NAMED[3].inertia_operator @ velocity / 2 == pytest.approx(kinetic, rel=1e-15)
+
+
+def test_mass_and_inertia_tensors_convert_both_ways() -> None:
+    """tr(J) Id - J and its inverse."""
+    assert np.allclose(mass_tensor_from_inertia(inertia_tensor(J)), J, rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize("system", NAMED, ids=lambda s: type(s).__name__)
+def test_frames_carry_the_constraint_to_itself(system: AbstractLLSystem) -> None:
+    """The canonical frame maps subspace to subspace, inertia to inertia, and r_canonical = C r."""
+    group, frame, canonical = system.group, system.frame, system.canonical
+    Ad = group.adjoint(frame)
+    assert np.allclose(system.annihilator @ Ad @ canonical.constraint_subspace.T, 0, atol=1e-15)
+    assert np.allclose(Ad.T @ system.inertia_operator @ Ad, canonical.inertia_operator, atol=1e-14)
+    p = np.random.default_rng(0).normal(size=3)
+    assert np.allclose(canonical.restrict(group.coadjoint(frame, p)), system.frame_map @ system.restrict(p), atol=1e-14)
+    assert np.allclose(system.annihilator @ system.constraint_subspace.T, 0, atol=1e-15)
+
+
+def test_from_inertia_keeps_the_documented_rows() -> None:
+    """Rows are S(0,1,0), S(-1,0,0) with S the shortest rotation taking e3 to the axis."""
+    axis = np.array([2.0, -1.0, 2.0]) / 3
+    top = nh.SuslovTop.from_inertia(INERTIA, axis)
+    S = nh.SO(3).exp(np.arccos(axis[2]) * np.cross([0, 0, 1.0], axis) / np.linalg.norm(np.cross([0, 0, 1.0], axis)))
+    assert np.allclose(top.constraint_subspace, np.array([[0, 1, 0], [-1, 0, 0]]) @ S.T, atol=1e-15)
+    assert np.array_equal(nh.SuslovTop.from_inertia(INERTIA, (0, 0, -1)).frame, np.diag([1.0, -1.0, -1.0]))
+    assert np.allclose(top.inertia_operator, INERTIA, atol=1e-15)
+
+
+def test_flat_bodies_are_allowed() -> None:
+    """A flat and a rod-like body have a singular mass tensor but a positive constrained inertia."""
+    nh.SuslovTop(np.diag([1.0, 2.0, 0.0]))
+    rod = np.outer([1.0, 0.5, 1.0], [1.0, 0.5, 1.0])
+    assert np.linalg.matrix_rank(nh.SuslovTop(rod).mass_tensor) == 1
