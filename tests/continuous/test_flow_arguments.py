@@ -48,15 +48,6 @@ def test_single_time(system: AbstractLLSystem, method: str | None) -> None:
     assert orbit.multipliers.shape == (1, 1)
 
 
-@pytest.mark.profile("routes", keep=["top"])
-@BOTH
-def test_states_do_not_depend_on_the_other_times(system: AbstractLLSystem) -> None:
-    """A state among few and among many times is the same to the tolerance: every time is stepped to."""
-    sparse = nh.flow(system, **START, times=(0.0, 4.0), rtol=1e-13, atol=1e-15)
-    dense = nh.flow(system, **START, times=np.linspace(0.0, 4.0, 1001), rtol=1e-13, atol=1e-15)
-    assert np.abs(sparse.configuration[-1] - dense.configuration[-1]).max() <= 1e-12
-
-
 @BOTH
 def test_equal_starts_are_equal(system: AbstractLLSystem) -> None:
     """A velocity, its restriction, its momentum and the restricted momentum start the same motion."""
@@ -66,13 +57,6 @@ def test_equal_starts_are_equal(system: AbstractLLSystem) -> None:
         assert np.abs(same.configuration[-1] - orbit.configuration[-1]).max() <= 1e-10
     same = nh.flow(system, momentum=orbit.restricted_momentum[0], times=(0.0, 2.0))
     assert np.abs(same.configuration[-1] - orbit.configuration[-1]).max() <= 1e-10
-
-
-@BOTH
-def test_units_of_time_do_not_matter(system: AbstractLLSystem) -> None:
-    """A motion 2^40 times slower, observed 2^40 times longer, takes the same path."""
-    slow = nh.flow(system, restricted_velocity=np.array([0.8, -0.5]) / 2.0**40, times=(0.0, 2.0**41), atol=1e-24)
-    assert np.abs(slow.configuration - nh.flow(system, **START, times=(0.0, 2.0)).configuration).max() <= 1e-8
 
 
 def test_precision_is_local() -> None:

@@ -114,14 +114,3 @@ def test_a_blade_that_depends_on_position_has_slope_two() -> None:
         errors.append(np.abs(orbit.configuration[-1] - exact.configuration[-1]).max())
     slope = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
     assert abs(slope - 2.0) <= 0.1
-
-
-def test_a_blade_that_depends_on_position_is_another_motion() -> None:
-    """The constraint that depends on position is not that of the group route, and energy is no longer exact."""
-    q, v = np.array([0.0, 0.0, 0.0]), np.array([0.7, 1.0, 0.0])
-    straight, bent = (
-        nh.simulate(nh.discretize(sleigh(bend), STEP), configuration=q, body_velocity=v, steps=STEPS)
-        for bend in (0.0, 0.3)
-    )
-    assert np.abs(straight.configuration - bent.configuration).max() > 0.1
-    assert bent.constraint_residual.max() <= 1e-12

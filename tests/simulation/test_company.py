@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from bodies import tensor
 
 import nonholo as nh
 from nonholo.base.numerics import applied
@@ -14,15 +15,9 @@ from nonholo.systems import System
 DECODED = ("restricted_momentum", "momentum", "body_velocity", "configuration", "pose", "energy")
 
 
-def tensor(rng: np.random.Generator, n: int) -> np.ndarray:
-    """Return a mass tensor."""
-    A = rng.normal(size=(n, n))
-    return A @ A.T + 0.3 * np.eye(n)
-
-
 def top(rng: np.random.Generator) -> System:
     """Return a top by its inertia, with an oblique axis."""
-    axis, J = rng.normal(size=3), tensor(rng, 3)
+    axis, J = rng.normal(size=3), tensor(3, rng)
     return nh.SuslovTop.from_inertia(np.trace(J) * np.eye(3) - J, axis=axis / np.linalg.norm(axis))
 
 
@@ -34,13 +29,13 @@ def sleigh(rng: np.random.Generator, b: float) -> System:
 BODIES: dict[str, Callable[[np.random.Generator], System]] = {
     "sleigh": functools.partial(sleigh, b=0.0),
     "sleigh-b": functools.partial(sleigh, b=1.0),
-    "top": lambda rng: nh.SuslovTop(tensor(rng, 3)),
+    "top": lambda rng: nh.SuslovTop(tensor(3, rng)),
     "oblique": top,
 }
 WIDER: dict[str, Callable[[np.random.Generator], System]] = {
-    "SO(5)": lambda rng: nh.SuslovTop(tensor(rng, 5)),
-    "SE(3)": lambda rng: nh.MultidimensionalSleigh(1.5, rng.normal(size=3), tensor(rng, 3)),
-    "slanted": lambda rng: nh.LLSystem(nh.SO(3), tensor(rng, 3), annihilator=rng.normal(size=(1, 3))),
+    "SO(5)": lambda rng: nh.SuslovTop(tensor(5, rng)),
+    "SE(3)": lambda rng: nh.MultidimensionalSleigh(1.5, rng.normal(size=3), tensor(3, rng)),
+    "slanted": lambda rng: nh.LLSystem(nh.SO(3), tensor(3, rng), annihilator=rng.normal(size=(1, 3))),
 }
 
 

@@ -92,23 +92,6 @@ def test_runs_by_the_definition_find_the_same(options: dict[str, str]) -> None:
     assert np.array_equal(orbit.pose, plain.pose)
 
 
-@pytest.mark.profile("routes", instead="test_runs_by_the_definition_find_the_same")
-def test_a_callable_lagrangian_has_parts_of_steps() -> None:
-    """The path s r to the principal root is defined without a time step; it gives those of the closed form."""
-    J = TOP.system.mass_tensor
-    discrete = nh.discretize(
-        TOP.system, 0.1, difference=lambda W: ((W - np.eye(3)) @ J @ (W - np.eye(3)).T).trace() / 0.2
-    )
-    run = {
-        "restricted_velocity": (0.7, -0.3),
-        "steps": 8,
-        "events": [lambda orbit: orbit.configuration[:, 0, 0] - 0.95],
-    }
-    slow, fast = nh.simulate(discrete, **run).events[0], nh.simulate(TOP, **run).events[0]
-    assert len(slow) == len(fast) == 1
-    assert np.abs(slow.time - fast.time).max() < 1e-14
-
-
 def test_direction() -> None:
     """Crossings from below and from above together are those in both directions, each marked with its own."""
     run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 60}
