@@ -164,11 +164,16 @@ def test_a_force_and_friction_go_with_parameters() -> None:
 
 
 def test_a_force_of_the_time_goes_with_parameters() -> None:
-    """`Forced` keeps the time of a Lagrangian between velocity and parameters."""
-    system = nh.Forced(made("of time"), potential=lambda q, p: p["mass"] * q @ q)
-    plain = nh.Forced(made("of time", NUMBERS), potential=lambda q: NUMBERS["mass"] * q @ q)
-    ends = [nh.simulate(nh.discretize(each, 0.05), **START, steps=9).configuration[-1] for each in (system, plain)]
-    assert np.abs(ends[0] - ends[1]).max() <= 1e-14
+    """`Forced` keeps the time of a Lagrangian between velocity and parameters; what it adds need not take them."""
+    well, drag = lambda q: NUMBERS["mass"] * q @ q, lambda _time, q, v: -0.1 * v + 0 * q
+    plain = nh.Forced(made("of time", NUMBERS), potential=well, force=drag)
+    for parts in (
+        {"potential": lambda q, p: p["mass"] * q @ q, "force": drag},
+        {"potential": well, "force": lambda time, q, v, p: drag(time, q, v) + 0 * p["mass"]},
+    ):
+        pair = nh.Forced(made("of time"), **parts), plain
+        ends = [nh.simulate(nh.discretize(each, 0.05), **START, steps=9).configuration[-1] for each in pair]
+        assert np.abs(ends[0] - ends[1]).max() <= 1e-14
 
 
 def test_systems_know_their_parameters() -> None:
@@ -285,16 +290,3 @@ test_bad_members_are_refused = refusals(
     ({"mass": [1.0, np.nan]}, "must be finite"),
     ask=lambda given: nh.ensemble(nh.discretize(made("midpoint"), 0.05), **START, parameters=given, steps=3),
 )
-
-
-def test_forces_need_not_take_the_parameters() -> None:
-    """`Forced` takes a potential and a force with the parameters of the system, and without."""
-    system = made("midpoint")
-    runs = [
-        nh.simulate(nh.discretize(nh.Forced(system, potential=potential, force=force), 0.05), **START, steps=9)
-        for potential, force in (
-            (lambda q: q @ q, lambda time, q, v: -0.1 * v + 0 * q * time),
-            (lambda q, p: q @ q + 0 * p["mass"], lambda time, q, v, p: -0.1 * v + 0 * q * time * p["mass"]),
-        )
-    ]
-    assert np.abs(runs[0].configuration - runs[1].configuration).max() <= 1e-14

@@ -19,6 +19,8 @@ TOP = nh.SuslovTop(J, axis=(0.6, 0.0, 0.8))
 SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
 BOTH = pytest.mark.parametrize("system", [TOP, SLEIGH], ids=["top", "sleigh"])
 DECODED = ("momentum", "restricted_momentum", "energy", "body_velocity", "displacement", "configuration")
+PLACED = {"top": TOP, "sleigh": SLEIGH, "suslov 4": GENERAL["suslov 4"][0], "veselova 3": GENERAL["veselova 3"][0]}
+PLACED["plane blade"] = nh.LLSystem(nh.SE(2), SLEIGH.homogeneous_mass_tensor, np.eye(3)[:2])
 
 
 def _velocities(count: int, size: float = 1.0) -> np.ndarray:
@@ -62,17 +64,6 @@ def test_members_move_as_simulate_moves_them(system: Any, varied: bool) -> None:
         assert np.array_equal(batch.time[member], orbit.time)
         for name in DECODED:
             _assert_close(getattr(batch, name)[member], getattr(orbit, name), 1e-14)
-
-
-@BOTH
-def test_last_state_is_that_of_the_history(system: Any) -> None:
-    """By default the one state kept is the last one, at time N h."""
-    discrete, velocities = nh.discretize(system, 0.1), _velocities(3)
-    whole = nh.ensemble(discrete, restricted_velocity=velocities, steps=30, save_every=1)
-    last = nh.ensemble(discrete, restricted_velocity=velocities, steps=30)
-    assert np.array_equal(last.reduced_momentum[:, 0], whole.reduced_momentum[:, -1])
-    assert np.array_equal(last.pose[:, 0], whole.pose[:, -1])
-    assert np.array_equal(last.time[:, 0], whole.time[:, -1])
 
 
 @BOTH
@@ -151,26 +142,6 @@ def test_bits_of_simulate(system: Any) -> None:
             assert np.array_equal(getattr(orbit, name), getattr(batch, name)[member, : len(orbit)]), (member, name)
 
 
-@BOTH
-@pytest.mark.parametrize("every", [None, 1], ids=["last", "history"])
-def test_a_failed_member_ends_as_in_simulate(system: Any, every: int | None) -> None:
-    """Outcome, good steps and last good state of each member are those of its own run; later rows are NaN."""
-    discrete, velocities = nh.discretize(system, 0.7), _velocities(40, 2.0)
-    batch = nh.ensemble(discrete, restricted_velocity=velocities, steps=30, save_every=every)
-    assert set(batch.outcome) > {0}
-    for member in range(40):
-        orbit = nh.simulate(discrete, restricted_velocity=velocities[member], steps=30, throw=False)
-        own = batch.orbit(member)
-        assert (batch.outcome[member], own.outcome) == (orbit.outcome, orbit.outcome)
-        assert batch.steps_done[member] == max(0, len(orbit) - 1)
-        if every:
-            assert len(own) == len(orbit)
-            assert np.array_equal(np.isfinite(batch.energy[member]), np.arange(31) < len(orbit))
-        if len(orbit):
-            assert own.time[-1] == pytest.approx(orbit.time[-1], rel=1e-15)
-            _assert_close(own.momentum[-1], orbit.momentum[-1], 1e-14)
-
-
 @pytest.mark.parametrize("name", ["top", "suslov 4", "any d on SE(3)", "flow", "rule"])
 def test_little_work_starts_no_threads(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Members that are soon done run in the calling thread, all others beside it, where Ctrl-C ends them."""
@@ -237,24 +208,26 @@ def test_other_systems_run_member_by_member(name: str) -> None:
             _assert_close(getattr(batch, quantity)[1, 0], getattr(orbit, quantity)[-1], 1e-14)
 
 
-def test_a_member_of_another_system_keeps_its_last_good_state() -> None:
-    """Where members run one by one a failed one still has the state before its end."""
-    system, w = GENERAL["suslov 4"]
-    discrete = nh.discretize(system, 1.0)
-    velocities = w * np.array([[0.1], [2.3], [40.0]])
-    batch = nh.ensemble(discrete, restricted_velocity=velocities, steps=50)
-    assert batch.outcome[0] == 0
-    assert batch.outcome[2] != 0
-    for member in range(3):
-        orbit = nh.simulate(discrete, restricted_velocity=velocities[member], steps=50, throw=False)
-        assert (batch.outcome[member], len(batch.orbit(member))) == (orbit.outcome, min(1, len(orbit)))
+@pytest.mark.parametrize("name", ["top", "sleigh", "suslov 4"])
+@pytest.mark.parametrize("every", [None, 1], ids=["last", "history"])
+def test_a_failed_member_ends_as_in_simulate(name: str, every: int | None) -> None:
+    """Outcome, good steps and last good state of each member are those of its own run; later rows are NaN."""
+    discrete = nh.discretize(PLACED[name], 0.7)
+    velocities = 2.0 * np.random.default_rng(5).normal(size=(40, discrete.system.rank))
+    batch = nh.ensemble(discrete, restricted_velocity=velocities, steps=30, save_every=every)
+    assert set(batch.outcome) > {0}
+    for member in range(40):
+        orbit = nh.simulate(discrete, restricted_velocity=velocities[member], steps=30, throw=False)
+        own = batch.orbit(member)
+        assert (batch.outcome[member], own.outcome) == (orbit.outcome, orbit.outcome)
         assert batch.steps_done[member] == max(0, len(orbit) - 1)
+        assert len(own) == (len(orbit) if every else min(1, len(orbit)))
+        if every:
+            assert np.array_equal(np.isfinite(batch.energy[member]), np.arange(31) < len(orbit))
         if len(orbit):
-            assert np.array_equal(batch.reduced_momentum[member, 0], orbit.reduced_momentum[-1])
-
-
-PLACED = {"top": TOP, "sleigh": SLEIGH, "suslov 4": GENERAL["suslov 4"][0], "veselova 3": GENERAL["veselova 3"][0]}
-PLACED["plane blade"] = nh.LLSystem(nh.SE(2), SLEIGH.homogeneous_mass_tensor, np.eye(3)[:2])
+            assert own.time[-1] == pytest.approx(orbit.time[-1], rel=1e-15)
+            _assert_close(own.momentum[-1], orbit.momentum[-1], 1e-14)
+            _assert_close(own.configuration[-1], orbit.configuration[-1], 1e-13)
 
 
 def _poses(system: Any, count: int) -> np.ndarray:
@@ -296,15 +269,6 @@ def test_flows_start_where_they_are_put(name: str) -> None:
         assert batch.first_energy[member] == pytest.approx(alone.energy[0], rel=1e-14)
 
 
-def test_members_in_the_air_start_with_their_potential_energy() -> None:
-    """The first energy of members under forces is that at their own poses."""
-    heavy = nh.Forced(TOP, nh.Gravity(force=[0.0, 0.0, -9.81], point=[0.0, 0.0, 0.3]))
-    discrete, poses = nh.discretize(heavy, 0.01), _poses(TOP, 3)
-    batch = nh.ensemble(discrete, restricted_velocity=np.ones((3, 2)), configuration=poses, steps=4, save_every=1)
-    assert np.ptp(batch.first_energy) > 0.1
-    assert np.array_equal(batch.first_energy, batch.energy[:, 0])
-
-
 DRIVEN: dict[str, tuple[Any, dict[str, Any], dict[str, Any]]] = {
     "heavy tops": (
         TOP,
@@ -327,20 +291,21 @@ DRIVEN: dict[str, tuple[Any, dict[str, Any], dict[str, Any]]] = {
 
 @pytest.mark.parametrize("name", DRIVEN)
 def test_bodies_on_which_forces_act_have_parameters(name: str) -> None:
-    """Each member has the bits of the run of the body with its own numbers under the same forces."""
+    """Each member has the bits of the run of the body with its own numbers under the same forces, from its own pose."""
     inside, forces, parameters = DRIVEN[name]
-    system, w = nh.Forced(inside, **forces), _velocities(3, 0.5)
+    system, w, poses = nh.Forced(inside, **forces), _velocities(3, 0.5), _poses(inside, 3)
+    run: dict[str, Any] = {"steps": 20, "save_every": 4}
     batch = nh.ensemble(
-        nh.discretize(system, 0.1), restricted_velocity=w, parameters=parameters, steps=20, save_every=4
+        nh.discretize(system, 0.1), restricted_velocity=w, configuration=poses, parameters=parameters, **run
     )
-    for member in range(3):
+    for member, (velocity, pose) in enumerate(zip(w, poses, strict=True)):
         own = {key: values[member] for key, values in parameters.items()}
         step = own.pop("time_step", 0.1)
         body = nh.SuslovTop(**own, axis=TOP.axis) if inside is TOP else dataclasses.replace(SLEIGH, **own)
-        orbit = nh.simulate(
-            nh.discretize(nh.Forced(body, **forces), step), restricted_velocity=w[member], steps=20, save_every=4
-        )
+        discrete = nh.discretize(nh.Forced(body, **forces), step)
+        orbit = nh.simulate(discrete, restricted_velocity=velocity, configuration=pose, **run)
         assert_member(batch, member, orbit, "time", "reduced_momentum", "canonical_pose", "energy")
+        assert batch.first_energy[member] == pytest.approx(orbit.energy[0], rel=1e-14)
 
 
 def test_flows_under_forces_have_parameters() -> None:

@@ -107,15 +107,6 @@ def cut(path: Path, monkeypatch: pytest.MonkeyPatch, block: int, late: bool, run
         nh.load_orbit(path)
 
 
-@pytest.mark.parametrize("name", ["sleigh by heading", "sleigh with a cusp", "top", "order 4"])
-def test_blocks_do_not_change_crossings(name: str, tmp_path: Path) -> None:
-    """In blocks of 21 steps the crossings are those of one block: headings and numbers of crossings are carried on."""
-    discrete, events, start = RUNS[name]
-    run = {"steps": 300, "save_every": 7, "events": events, **start}
-    stored = nh.simulate(discrete, **run, store=tmp_path / "run.zarr", checkpoint_every=21)
-    assert same(stored, nh.simulate(discrete, **run))
-
-
 @pytest.mark.profile("faults", keep=["sleigh with a cusp"])
 @pytest.mark.parametrize("name", RUNS)
 def test_runs_cut_at_random_blocks_go_on(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
