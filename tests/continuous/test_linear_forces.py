@@ -260,17 +260,6 @@ def test_flows_without_end_are_given_up(name: str) -> None:
     assert (str(ended.value.outcome), len(ended.value.orbit)) == (outcome, 1)
 
 
-def test_stiff_flows_that_come_to_an_end_are_solved() -> None:
-    """A moderate friction takes steps that stability alone keeps short: v' = -c v / m along the blade, exactly."""
-    orbit = nh.flow(
-        nh.Forced(nh.ChaplyginSleigh(1.0, 1.0, 0.0), None, nh.Friction([0.0, 200.0, 0.0])),
-        times=(0.0, 0.1, 0.5),
-        body_velocity=(0.0, 1.0, 0.0),
-    )
-    assert orbit.outcome == nh.Outcome.successful
-    assert np.abs(orbit.body_velocity[:, 1] - np.exp(-200 * orbit.time)).max() < 1e-12
-
-
 def test_ctrl_c_ends_a_flow_under_forces() -> None:
     """Python is asked at every step, so that it comes within a second."""
 

@@ -59,23 +59,6 @@ def _ball_by_hand(_time: float, z: np.ndarray) -> np.ndarray:
     return np.concatenate([np.cross(M, omega), (R @ nh.SO(3).hat(omega)).ravel(), R @ np.cross(omega, gamma)])
 
 
-@pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")
-def test_the_driven_sleigh_moves_as_derived_by_hand() -> None:
-    """Path and heading of the flow, to 1e-10."""
-    ready = nh.examples.driven_sleigh()
-    by_hand = _solved(_sleigh_by_hand, [0.5, 0.3, 0.0, 0.0, 0.0])
-    found = nh.flow(ready.system, **_start(ready), times=TIMES, rtol=1e-13, atol=1e-14)
-    assert np.abs(found.configuration[:, :3] - by_hand[2:].T).max() <= 1e-10
-
-
-def test_the_roller_racer_moves_as_derived_by_hand() -> None:
-    """Path and heading of the flow, to 1e-10; it moves on."""
-    ready = nh.examples.roller_racer()
-    by_hand = _solved(_racer_by_hand, [0.0, 0.0, 0.0, 0.0])
-    found = nh.flow(ready.system, **_start(ready), times=TIMES, rtol=1e-13, atol=1e-14)
-    assert np.abs(found.configuration[:, :3] - by_hand[1:].T).max() <= 1e-10
-
-
 def _twistcar_by_hand(time: float, z: np.ndarray) -> np.ndarray:
     """Newton's and Euler's equations of both bodies of the Twistcar, with forces of wheels and pivot as unknowns."""
     (m, J, c), (mh, Jh, d), ell, k, A, Om = (1.0, 0.1, 0.3), (0.2, 0.01, 0.1), 1.0, 0.2, 0.5, 2.0
@@ -107,16 +90,7 @@ def _twistcar_by_hand(time: float, z: np.ndarray) -> np.ndarray:
     return np.concatenate([z[3:], np.linalg.solve(rows, right)[:3]])
 
 
-@pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")
-def test_the_twistcar_moves_as_derived_by_hand() -> None:
-    """Path and heading of the flow are those of two bodies by Newton and Euler, to 1e-10."""
-    ready = nh.examples.twistcar()
-    by_hand = _solved(_twistcar_by_hand, [*ready.configuration[:3], *ready.body_velocity[:3]])
-    found = nh.flow(ready.system, **_start(ready), times=TIMES, rtol=1e-13, atol=1e-14)
-    assert np.abs(found.configuration[:, :3] - by_hand[:3].T).max() <= 1e-10
-
-
-@pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")
+@pytest.mark.profile("routes", instead="test_paths_are_those_derived_by_hand")
 @pytest.mark.parametrize(("handle_inertia", "sign"), [(0.01, -1.0), (0.1, 1.0)])
 def test_the_twistcar_goes_where_masses_send_it(handle_inertia: float, sign: float) -> None:
     """In the mean of periods it gains speed as the docstring says, up to the fourth power of the amplitude."""
@@ -144,17 +118,34 @@ def _robot_by_hand(time: float, z: np.ndarray) -> list[float]:
     return [du / M, dw / K, u * np.cos(theta), u * np.sin(theta), w]
 
 
-@pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")
-def test_the_robot_moves_as_derived_by_hand() -> None:
-    """Path and heading of the flow under torques and friction, to 1e-10; the axle keeps its angle."""
-    ready = nh.examples.two_wheeled_robot(
-        torques=lambda time: (0.1 + 0.05 * jnp.sin(time), 0.1 - 0.03 * time), friction=0.02
-    )
-    by_hand = _solved(_robot_by_hand, [-0.5, 1.0, 0.0, 0.0, 0.0])
+def _robot() -> Example:
+    torques = lambda time: (0.1 + 0.05 * jnp.sin(time), 0.1 - 0.03 * time)  # noqa: E731
+    return nh.examples.two_wheeled_robot(torques=torques, friction=0.02)
+
+
+BY_HAND: dict[str, tuple[Callable[[], Example], Callable, list[float], slice]] = {
+    "driven sleigh": (nh.examples.driven_sleigh, _sleigh_by_hand, [0.5, 0.3, 0.0, 0.0, 0.0], np.s_[2:]),
+    "roller racer": (nh.examples.roller_racer, _racer_by_hand, [0.0, 0.0, 0.0, 0.0], np.s_[1:]),
+    "Twistcar": (nh.examples.twistcar, _twistcar_by_hand, [], np.s_[:3]),
+    "robot": (_robot, _robot_by_hand, [-0.5, 1.0, 0.0, 0.0, 0.0], np.s_[2:]),
+}
+
+
+@pytest.mark.profile("routes", keep=["roller racer"])
+@pytest.mark.parametrize("name", BY_HAND)
+def test_paths_are_those_derived_by_hand(name: str) -> None:
+    """Path and heading of the flow, to 1e-10: by momenta along the constraint, or Newton's and Euler's equations.
+
+    The axle of the robot keeps its angle.
+    """
+    made, rate, first, path = BY_HAND[name]
+    ready = made()
     found = nh.flow(ready.system, **_start(ready), times=TIMES, rtol=1e-13, atol=1e-14)
-    assert np.abs(found.configuration[:, :3] - by_hand[2:].T).max() <= 1e-10
-    assert list(ready.conserved) == ["axle"]
-    assert np.ptp(ready.conserved["axle"](found.configuration, found.body_velocity)) <= 1e-11
+    by_hand = _solved(rate, first or [*ready.configuration[:3], *ready.body_velocity[:3]])[path]
+    assert np.abs(found.configuration[:, :3] - by_hand.T).max() <= 1e-10
+    if name == "robot":
+        assert list(ready.conserved) == ["axle"]
+        assert np.ptp(ready.conserved["axle"](found.configuration, found.body_velocity)) <= 1e-11
 
 
 def test_torques_of_the_robot() -> None:
@@ -173,7 +164,7 @@ def test_torques_of_the_robot() -> None:
         robot(friction=-0.1)
 
 
-@pytest.mark.profile("long", instead="test_the_roller_racer_moves_as_derived_by_hand")
+@pytest.mark.profile("long", instead="test_paths_are_those_derived_by_hand")
 def test_the_ball_moves_as_derived_by_hand() -> None:
     """Path and rotation of the flow, to 1e-10, momentum in space and energy constant."""
     ready = nh.examples.chaplygin_ball()
@@ -199,7 +190,7 @@ def test_what_drives_them() -> None:
     assert speed[-200:].mean() > 1.5 * speed[:200].mean()
 
 
-@pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")
+@pytest.mark.profile("routes", instead="test_paths_are_those_derived_by_hand")
 @pytest.mark.parametrize("name", ["heavy_suslov_top", "sleigh_in_a_well"])
 def test_integrals_under_a_potential(name: str) -> None:
     """Constant along the flow; of the map off by an error of order two."""

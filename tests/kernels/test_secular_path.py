@@ -83,22 +83,6 @@ def test_random_problems(count: int) -> None:
     assert min(reached, folded) > count // 4
 
 
-@pytest.mark.profile("problems", instead="test_orbits_of_sleighs_at_angle_pi")
-def test_a_path_through_angle_pi() -> None:
-    """A rod on SO(4) whose principal path turns past pi steps there, to a displacement that `branches` has too."""
-    system = nh.SuslovTop(PAST_PI)
-    discrete = nh.discretize(system, 1.0)
-    how, point, least = by_arcs(system, MOMENTUM)
-    assert how == arcs.REACHED
-    assert least < 0
-    found = nh.displacements_over(discrete, MOMENTUM)
-    q = np.append(point[1:], point[0])
-    W = found.displacement[found.principal].real
-    assert np.abs(W - (np.eye(4) - 2 * np.outer(q, q)) * [1, 1, 1, -1]).max() < 1e-12
-    orbit = nh.simulate(discrete, momentum=MOMENTUM, steps=1, throw=False)
-    assert np.abs(orbit.displacement[0] - W).max() < 1e-12
-
-
 @pytest.mark.profile("routes", instead="test_a_half_turn")
 def test_the_end_of_a_chart_is_no_fold() -> None:
     """`step` by the definition and the general kernel follow in Cayley coordinates: beyond pi they are unsure."""
@@ -113,16 +97,25 @@ def test_the_end_of_a_chart_is_no_fold() -> None:
     assert int(nh.step(discrete, 20 * MOMENTUM[::-1]).outcome) == nh.Outcome.no_real_branch
 
 
-def test_a_half_turn() -> None:
-    """Where r is orthogonal to r - c the displacement is a half-turn, z0 = 0: the path ends there as by arc length."""
+@pytest.mark.parametrize("beyond", [False, True])
+def test_a_half_turn(beyond: bool) -> None:
+    """Where r is orthogonal to r - c the path ends at a half-turn, z0 = 0, and elsewhere beyond, as by arc length.
+
+    It is the principal one among all displacements, and that of an orbit.
+    """
     system = nh.SuslovTop(PAST_PI)
-    along = MOMENTUM / np.linalg.norm(MOMENTUM)
-    r = 2 * (along @ system.coupling) * along
-    how, point, _ = by_arcs(system, r)
-    code, found = by_path(nh.discretize(system, 1.0).route, r)
+    discrete, along = nh.discretize(system, 1.0), MOMENTUM / np.linalg.norm(MOMENTUM)
+    r = MOMENTUM if beyond else 2 * (along @ system.coupling) * along
+    how, point, least = by_arcs(system, r)
+    code, found = by_path(discrete.route, r)
     assert (code, how) == (0, arcs.REACHED)
-    assert abs(point[0]) < 1e-12
+    assert least < 0 if beyond else abs(point[0]) < 1e-12
     assert min(np.abs(found - point).max(), np.abs(found + point).max()) < 1e-12
+    values, q = nh.displacements_over(discrete, r), np.append(point[1:], point[0])
+    assert values.principal is not None
+    W = values.displacement[values.principal].real
+    assert np.abs(W - (np.eye(4) - 2 * np.outer(q, q)) * [1, 1, 1, -1]).max() < 1e-12
+    assert np.abs(nh.simulate(discrete, momentum=r, steps=1).displacement[0] - W).max() < 1e-12
 
 
 @pytest.mark.parametrize("past", [0.0, 1e-9, -1e-9, 1e-3])
@@ -195,18 +188,6 @@ def test_linear_equations(kind: str, equal: bool) -> None:
         )
         signs.add(np.sign(det * np.linalg.det(J)))
     assert len(signs) == 1
-
-
-def test_a_half_turn_among_all_values() -> None:
-    """At an exact half-turn the principal value is recognized, and is the displacement of the orbit."""
-    system = nh.SuslovTop(PAST_PI)
-    along = MOMENTUM / np.linalg.norm(MOMENTUM)
-    r, discrete = 2 * (along @ system.coupling) * along, nh.discretize(system, 1.0)
-    found = nh.displacements_over(discrete, r)
-    assert found.principal is not None
-    W = found.displacement[found.principal].real
-    assert np.abs(W @ W - np.eye(4)).max() < 1e-12
-    assert np.abs(nh.simulate(discrete, momentum=r, steps=1).displacement[0] - W).max() < 1e-12
 
 
 _UNEVEN = np.zeros((5, 5))

@@ -119,16 +119,14 @@ def test_the_map_is_of_order_two(system: AbstractSystem, kind: str) -> None:
 def test_no_force_gives_the_bits_of_the_free_map_and_flow() -> None:
     """Forced with neither argument is the free system, and so is one with a table of zeros, to the last bit."""
     for system in (TOP, SLEIGH, VESELOVA):
-        free = nh.simulate(nh.discretize(system, 0.1), **_start(system), steps=50)
-        same = nh.simulate(nh.discretize(nh.Forced(system), 0.1), **_start(system), steps=50)
-        assert_same(free, same, "momentum", "configuration", "multipliers")
-        flows = [nh.flow(s, **_start(system), times=(0.0, 1.0)) for s in (system, nh.Forced(system))]
+        given = [system, nh.Forced(system)]
+        if system is not VESELOVA:
+            given.append(nh.Forced(system, force=np.zeros((50, 3)), scheme="variational"))
+        free, *others = (nh.simulate(nh.discretize(each, 0.1), **_start(system), steps=50) for each in given)
+        for same in others:
+            assert_same(free, same, "momentum", "configuration", "multipliers", "pose")
+        flows = [nh.flow(each, **_start(system), times=(0.0, 1.0)) for each in given[:2]]
         assert np.array_equal(flows[0].momentum, flows[1].momentum)
-    for system in (TOP, SLEIGH):
-        free = nh.simulate(nh.discretize(system, 0.1), **_start(system), steps=50)
-        resting = nh.Forced(system, force=np.zeros((50, 3)), scheme="variational")
-        same = nh.simulate(nh.discretize(resting, 0.1), **_start(system), steps=50)
-        assert_same(free, same, "restricted_momentum", "pose", "chart")
 
 
 @pytest.mark.parametrize("name", ["suslov 4", "sleigh 3", "any d on SE(3)", "right-invariant on SE(3)"])
@@ -171,17 +169,6 @@ def test_functions_give_the_impulses_of_what_is_compiled() -> None:
             assert stepper.advance(state, 16, 1, rows) == (16, 0)
             mine = stepper.orbit(rows, 0, 1, nh.Outcome.successful)
             assert_near(mine, orbit, 1e-13, "reduced_momentum", "cayley", "canonical_pose")
-
-
-def test_a_knife_edge_on_an_incline_is_a_cycloid() -> None:
-    """A balanced sleigh on an incline: turning at w it stays between x = 0 and g/(2 w^2), its known cycloid."""
-    turn, pull = 0.7, 0.4
-    edge = nh.Forced(nh.ChaplyginSleigh(1.0, 1.0, 0.0), nh.Gravity([pull, 0.0], [0.0, 0.0]))
-    orbit = nh.simulate(nh.discretize(edge, 1e-3), body_velocity=(turn, 0.0, 0.0), steps=5000)
-    time = orbit.time
-    x = pull / (2 * turn**2) * np.sin(turn * time) ** 2
-    y = pull / (2 * turn**2) * (turn * time - np.sin(2 * turn * time) / 2)
-    assert np.abs(orbit.position - np.stack([x, y], axis=1)).max() < 1e-6
 
 
 @pytest.mark.profile("problems", keep=["1000 cases"])

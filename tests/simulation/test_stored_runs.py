@@ -106,16 +106,6 @@ def test_interrupted_run_goes_on(tmp_path: Path) -> None:
     assert _same(nh.resume(path), _whole())
 
 
-def test_scenario_is_kept_in_the_store(tmp_path: Path) -> None:
-    """The text that says how a run is made is there from its beginning; without a store it is refused."""
-    with stopped_at(5):
-        _begun(tmp_path / "run.zarr", scenario="mine")
-    assert json.loads((tmp_path / "run.zarr" / "zarr.json").read_text())["attributes"]["scenario"] == "mine"
-    assert _same(nh.resume(tmp_path / "run.zarr"), _whole())
-    with pytest.raises(ValueError, match=r"`simulate\(scenario=\.\.\.\)` must come with a store"):
-        nh.simulate(SLEIGH, steps=5, scenario="mine", **START)
-
-
 def test_full_disk_leaves_a_valid_store(tmp_path: Path) -> None:
     """A full disk is an error that names the store and the remedy; with room again the run continues."""
     path = tmp_path / "run.zarr"
@@ -298,13 +288,6 @@ def test_refused(attempt: Callable[[Path], object], kind: type[Exception], words
     """Bad arguments, foreign stores and stores of other runs are refused with the reason."""
     with pytest.raises(kind, match=words):
         attempt(tmp_path / "run.zarr")
-
-
-def test_refused_run_leaves_nothing(tmp_path: Path) -> None:
-    """A run whose arguments are refused makes no store."""
-    with pytest.raises(ValueError, match="steps"):
-        _begun(tmp_path / "run.zarr", steps=0)
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_replaced_store_is_not_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
