@@ -1,6 +1,6 @@
 """Live motions that reach every compiled function: a program that prints the bits of each, or what each calls.
 
-python live.py bits [NAME ...]       # a digest of the results of each run
+python live.py bits   # a digest of the results of each run
 NUMBA_DISABLE_JIT=1 python live.py calls   # the functions that are called
 """
 
@@ -265,5 +265,4 @@ if __name__ == "__main__":
     if sys.argv[1] == "calls":
         sys.stdout.write(json.dumps(called()))
     else:
-        names = sys.argv[2:] or RUNS
-        sys.stdout.write(json.dumps({name: digest(RUNS[name]()) for name in names}))
+        sys.stdout.write(json.dumps({name: digest(run()) for name, run in RUNS.items()}))

@@ -189,7 +189,7 @@ def test_the_scheme_is_the_one_that_is_asked_for() -> None:
 
 def _followed(forced: nh.Forced, h: float, r: np.ndarray, g: np.ndarray) -> np.ndarray | None:
     """Follow the root of F(W) = t r + t^2 h f/2, in units of h, from t = 0; None where its slope ends."""
-    system, group, y, pieces = forced.system, forced.group, np.zeros(2), 400
+    system, group, y, pieces = forced.system, forced.group, np.zeros(2), 150
     S, around = np.asarray(system.constraint_subspace), 1e-6 * np.concatenate([np.eye(2), -np.eye(2), np.zeros((1, 2))])
     poses, still = np.tile(g, (5, 1, 1)), np.zeros((5, group.dim))
 
