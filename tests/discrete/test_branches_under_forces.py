@@ -223,6 +223,6 @@ test_what_has_no_values_is_refused = refusals(
     *((lambda x=x: nh.branches(nh.discretize(x, 0.1), momentum=np.zeros(x.rank)), why) for x, why in _WITHOUT_VALUES),
     (lambda: nh.displacements_over(_HEAVY, [0, 0], configuration=2 * np.eye(3)), r"n=\.\.\.\)` must lie in"),
     (lambda: nh.displacements_over(_HEAVY, [0, 0], step=-1), r"step=\.\.\.\)` must be a natural number"),
-    (lambda: nh.displacements_over(_HEAVY, [0, 0], certify=True), "must be asked of a free motion"),
+    (lambda: nh.displacements_over(_HEAVY, [0, 0], certify=True), "must be left out under forces"),
     (lambda: nh.branches(_HEAVY, momentum=[0.1, 0.2, 0.3]), "Pass the 2 components"),
 )

@@ -142,8 +142,8 @@ test_bad_data_are_refused = refusals(
 
 # Forces of constraint, states between poses, crossings.
 test_what_poses_cannot_tell_is_refused = refusals(
-    (lambda orbit: orbit.multipliers, r"Orbit.multipliers` must be asked of a run"),
-    (lambda orbit: orbit.at(0.05), r"Orbit.at\(...\)` must be asked of a flow"),
+    (lambda orbit: orbit.multipliers, r"Orbit.multipliers` must be read from a run"),
+    (lambda orbit: orbit.at(0.05), r"Orbit.at\(...\)` must be called on a flow"),
     (lambda orbit: nh.crossings(orbit, nh.cusp), "every single step of a discrete run"),
     ask=lambda question: question(nh.Orbit.from_poses(**GOOD)),
 )

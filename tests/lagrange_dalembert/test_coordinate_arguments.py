@@ -162,7 +162,7 @@ test_bad_input_is_refused = refusals(
     (lambda: flow(times=(0.0, 1.0, 1.0)), "strictly"),
     (lambda: nh.discretize(SYSTEM, -0.1), r"discretize\(time_step=...\)` must be positive"),
     (lambda: jax.jit(lambda h: nh.discretize(SYSTEM, h).time_step)(0.1), "outside jax.jit"),
-    (lambda: nh.simulate(SYSTEM, steps=3), "Pass what `discretize` returned"),
+    (lambda: nh.simulate(SYSTEM, steps=3), "Pass the result of `discretize`"),
 )
 
 

@@ -7,7 +7,7 @@ ends in a fold, where it continues as the other solution, or on the equator, whe
 import abc
 import dataclasses
 from collections.abc import Callable
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -25,34 +25,6 @@ class HalfPlanes(NamedTuple):
 
     side: Float[Array, "..."]
     forward: Float[Array, "..."]
-
-
-class Level(Protocol):
-    """The displacements of one energy."""
-
-    def over(self, direction: float) -> Float[np.ndarray, "m c"]:
-        """Return the points over a direction of the plane."""
-        ...
-
-    def components(self, count: int) -> tuple[Float[np.ndarray, "K c"], ...]:
-        """Return the connected curves, with this many points for each arc."""
-        ...
-
-
-class Surface(Protocol):
-    """The algebra of the momentum locus, in momenta of the user's frame."""
-
-    def implicit(self, momentum: Float[np.ndarray, "... 3"]) -> Float[np.ndarray, "..."]:
-        """Return the polynomial that vanishes on the surface."""
-        ...
-
-    def double_lines(self) -> Float[np.ndarray, "L 2 3"]:
-        """Return the ends of the segments along which the surface meets itself."""
-        ...
-
-    def triple_point(self) -> Float[np.ndarray, "3"] | None:
-        """Return where three such segments meet."""
-        ...
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -98,12 +70,20 @@ class AbstractPlanarVariety(abc.ABC):
         """Return the half-planes of momenta along the user's rows."""
 
     @abc.abstractmethod
-    def level(self, energy: float) -> Level:
-        """Return the level of an energy times the square of the time step."""
+    def level(self, energy: float) -> Any:
+        """Return the level of an energy times the square of the time step.
+
+        Its `over(direction)` are the points over a direction of the plane, its `components(count)` the connected
+        curves, with this many points for each arc.
+        """
 
     @abc.abstractmethod
-    def surface(self, time_step: float) -> Surface:
-        """Return the momentum locus."""
+    def surface(self, time_step: float) -> Any:
+        """Return the algebra of the momentum locus, in momenta of the user's frame.
+
+        Its `implicit(momentum)` is the polynomial that vanishes on the surface, `double_lines()` the ends of the
+        segments along which it meets itself, `triple_point()` where three such segments meet, or None.
+        """
 
 
 FOLD, EQUATOR = "fold", "equator"
@@ -118,7 +98,7 @@ class Arc:
         sign: Which of the two solutions, -1 or 1.
         start: First direction.
         stop: Last direction.
-        ends: What happens at the two, FOLD or EQUATOR; empty for an arc that closes on itself.
+        ends: The kinds of the two, FOLD or EQUATOR; empty for an arc that closes on itself.
     """
 
     sign: int
@@ -155,7 +135,7 @@ class Place:
         return Place(other, self.side, not self.forward)
 
     def is_same(self, other: "Place") -> bool:
-        """Tell whether both are one arc on one side, full turns and the sense apart."""
+        """Return whether both are one arc on one side, full turns and the sense apart."""
         arc, that = self.arc, other.arc
         middles = (arc.start + arc.stop) / 2, (that.start + that.stop) / 2
         same = arc.sign == that.sign and self.side == other.side
@@ -168,15 +148,12 @@ class Place:
         return Place(arc, -self.side, self.forward)
 
 
-def closed_curves(
-    arcs: list[Arc], points: Callable[[Arc, np.ndarray, int], Float[np.ndarray, "K c"]], count: int
-) -> tuple[Float[np.ndarray, "K c"], ...]:
+def closed_curves(arcs: list[Arc], points: Callable[..., Any], count: int) -> tuple[Float[np.ndarray, "K c"], ...]:
     """Return the closed curves that arcs make up, one of each antipodal pair; directions have the period 2 pi.
 
     Arcs beyond the first half turn are copies of the others; `points` gives the points of an arc on a side.
     """
-    curves: list[Float[np.ndarray, "K c"]] = []
-    past: list[Place] = []
+    curves, past = [], []
     for arc in arcs:
         place, pieces = Place(arc, 1, forward=True), []
         while not any(place.is_same(other) for other in past):
