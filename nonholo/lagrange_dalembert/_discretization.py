@@ -281,8 +281,7 @@ def set_out(system: Any, h: Array, q: Array, v: Array, p: Array) -> tuple[Motion
 def _step(system: Any, h: Array, state: Motion, sign: Array) -> tuple[Motion, Array, Array]:
     """Return the next state, the impulses and the outcome."""
     q, v, before = state
-    _, arriving = equations.momenta(system, q, v, h)
-    ahead = equations.ahead(system, q, v, h)
+    ahead, arriving = equations.arrival(system, q, v, h)
     following, multipliers, code = solve(system, h, ahead, arriving, v, 2 * v - before, sign)
     return (ahead, following, v), multipliers, code
 
@@ -351,8 +350,8 @@ def _after_parts(
     def leg(carry: tuple[Array, Array, Array], length: Array) -> tuple[tuple[Array, Array, Array], tuple]:
         begin, near, p = carry
         (_, w, _), _, code = set_out(system, length, begin, near, p)
-        after = equations.ahead(system, begin, w, length), w, equations.momenta(system, begin, w, length)[1]
-        return after, (begin, w, code)
+        ahead, arriving = equations.arrival(system, begin, w, length)
+        return (ahead, w, arriving), (begin, w, code)
 
     def one(carry: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
         i, places, velocities = carry

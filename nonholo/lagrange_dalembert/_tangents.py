@@ -157,8 +157,7 @@ def _slopes_of(system: Any, change: Callable[[Array, Array], Array], x: Array, v
 
 def _after_step(system: Any, h: Array, x: Array, v: Array) -> tuple[Array, Array]:
     """Return the state after a step, with the derivatives of the implicit function."""
-    _, p = equations.momenta(system, x, v, h)
-    after = equations.ahead(system, x, v, h)
+    after, p = equations.arrival(system, x, v, h)
     place, near = jax.lax.stop_gradient((x, v))
     z, code = step_root(system, ((), h, after, p), (near, near, orientation(system, place, near, h)[0]))
     return after, jnp.where(code == 0, z[: len(v)], jnp.nan)

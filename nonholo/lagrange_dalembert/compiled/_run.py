@@ -108,7 +108,7 @@ def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
         None if JAX must solve them.
     """
     s = family.constraints
-    matrix_of = _newton.of_node if at_node else _newton.of_step
+    equations_of = _newton.of_node if at_node else _newton.of_step
 
     def arrive(x: Array, v: Array, h: Array, *numbers: Array) -> tuple[Array, Array]:
         system = family.bound(*numbers)
@@ -117,12 +117,8 @@ def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
 
     def correct(x: Array, p: Array, doubt: Array, near: Array, h: Array, *rest: Array) -> Any:
         *numbers, v, multipliers = rest
-        system = family.bound(*numbers)
-        matrix_at, rows = matrix_of(system, x, near, h), equations.forms(system, x)
-        rounding = None if at_node else _newton.rounding_of_step(system, x, h)
-        matrix, residual, units, size = _newton.scaled_equations(
-            matrix_at, rows, p, v, multipliers, jnp.zeros(n + s), rounding
-        )
+        unknown = equations_of(family.bound(*numbers), x, p, near, h)
+        matrix, residual, units, size = unknown.scaled(v, multipliers, jnp.zeros(n + s))
         return matrix, residual, units.velocity, units.forms, size, doubt
 
     try:
