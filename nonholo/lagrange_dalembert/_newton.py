@@ -80,7 +80,7 @@ class Equations(NamedTuple):
     p: Array
     rounding: Array | None = None
 
-    def scaled(self, v: Array, multipliers: Array, offset: Array) -> tuple[Array, Array, Scaled, Array]:
+    def in_units(self, v: Array, multipliers: Array, offset: Array) -> tuple[Array, Array, Scaled, Array]:
         """Return the scaled matrix, what the scaled equations less an offset lack, units and the size of velocities."""
         n, (matrix, units, values) = len(self.p), self.matrix(v)
         residual = equations.balance(values, self.p, multipliers, self.rows) - offset
@@ -92,7 +92,7 @@ class Equations(NamedTuple):
 
     def correction(self, v: Array, multipliers: Array, offset: Array) -> tuple[Array, Array, Array, Array, Array]:
         """Return Newton's correction of both, its relative size, the orientation and the regularity."""
-        n, (matrix, scaled_residual, units, scale) = len(self.p), self.scaled(v, multipliers, offset)
+        n, (matrix, scaled_residual, units, scale) = len(self.p), self.in_units(v, multipliers, offset)
         factors, pivots = jax.scipy.linalg.lu_factor(matrix)
         inverse = jax.scipy.linalg.lu_solve((factors, pivots), jnp.eye(len(scaled_residual)))
         step = -(inverse @ scaled_residual)

@@ -71,6 +71,8 @@ def tangent_map(orbit: Any) -> Float[np.ndarray, "L d d"]:
     """Return the derivative of each state of an orbit by the one before, in orthonormal bases of admissible changes."""
     motion, system, time = orbit.motion, orbit.system, orbit.time
     where, n = "Orbit.tangent", orbit.body_velocity.shape[1]
+    if orbit.has_impacts.any():
+        raise error(where, "have no impacts", "some", "Ask it of the part of the orbit before the first one.")
     if orbit.is_discrete and not orbit.has_every_step:
         raise error(where, "have every step", f"{len(orbit)} states with others between", "Run with save_every=1.")
     if not len(orbit):

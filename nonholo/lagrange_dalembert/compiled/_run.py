@@ -118,7 +118,7 @@ def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
     def correct(x: Array, p: Array, doubt: Array, near: Array, h: Array, *rest: Array) -> Any:
         *numbers, v, multipliers = rest
         unknown = equations_of(family.bound(*numbers), x, p, near, h)
-        matrix, residual, units, size = unknown.scaled(v, multipliers, jnp.zeros(n + s))
+        matrix, residual, units, size = unknown.in_units(v, multipliers, jnp.zeros(n + s))
         return matrix, residual, units.velocity, units.forms, size, doubt
 
     try:
