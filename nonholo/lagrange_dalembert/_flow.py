@@ -21,7 +21,7 @@ from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import compiled
 from nonholo.lagrange_dalembert._discretization import checked_state
 from nonholo.lagrange_dalembert._equations import solve_bordered
-from nonholo.lagrange_dalembert._functions import configurations, in_double, places, places_of, room
+from nonholo.lagrange_dalembert._functions import configurations, in_blocks, in_double, places, places_of, room
 from nonholo.lagrange_dalembert._orbit import ORBITS
 from nonholo.orbit import times_within
 
@@ -120,7 +120,6 @@ State = tuple[Array, Array]
 """Configuration and velocity."""
 
 _FINE, _COARSE = 1e-14, 1e-10  # relative errors of a step, by series and by diffrax
-_ROWS = 1024  # states whose powers are computed at once: one size, one compilation
 
 
 def flow(system: Any, *, rtol: float | None, atol: float, **start: Any) -> Any:
@@ -296,13 +295,10 @@ def work(orbit: Any) -> Float[np.ndarray, "K"]:
 
 def _powers(system: Any, *columns: Float[np.ndarray, "K n"]) -> Float[np.ndarray, "K"]:
     """Return the power on each state: of places, momenta and rows of a table."""
-    missing = -len(columns[0]) % _ROWS
-    full_columns = [np.concatenate([rows, np.repeat(rows[-1:], missing, axis=0)]) for rows in columns]
-    blocks = zip(*(rows.reshape(-1, _ROWS, rows.shape[1]) for rows in full_columns), strict=True)
-    return np.concatenate([np.empty(0), *(in_double(_power, system, *block) for block in blocks)])[: len(columns[0])]
+    return in_blocks(_power, system, *columns)[0]
 
 
-def _power(system: Any, x: Array, p: Array, row: Array) -> Array:
+def _power(system: Any, x: Array, p: Array, row: Array) -> tuple[Array]:
     def one(x: Array, p: Array, row: Array) -> Array:
         v = equations.inverse_legendre(system, x, p)
         force = row + equations.applied(system, x, v)
@@ -310,4 +306,4 @@ def _power(system: Any, x: Array, p: Array, row: Array) -> Array:
         time_slope = jax.grad(equations.lagrangian, argnums=1)(system, x, v)[-1]
         return force @ v + acceleration(system, x, v, row)[1] @ rates - time_slope
 
-    return jax.vmap(one)(x, p, jnp.asarray(row))
+    return (jax.vmap(one)(x, p, jnp.asarray(row)),)

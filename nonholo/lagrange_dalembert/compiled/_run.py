@@ -27,7 +27,7 @@ from nonholo.kernels import (
 )
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import _newton
-from nonholo.lagrange_dalembert._functions import compiling
+from nonholo.lagrange_dalembert._functions import ROWS, compiling
 from nonholo.lagrange_dalembert.compiled._scalars import (
     DOUBLE,
     OPERATIONS,
@@ -40,8 +40,6 @@ from nonholo.lagrange_dalembert.compiled._scalars import (
 from nonholo.lagrange_dalembert.compiled._translation import array_of, translate
 
 State = tuple[Any, Any, Any]
-ROWS = 1024
-"""Saved states of one call of JAX: one size of table, one compilation."""
 
 
 class Program(NamedTuple):
