@@ -42,3 +42,25 @@ def _general() -> dict[str, tuple[AbstractSystem, np.ndarray]]:
 
 
 GENERAL = _general()
+
+
+def _attracting() -> dict[str, AbstractSystem]:
+    rng, inertia = np.random.default_rng(7), np.diag([0.5, 0.7, 0.4]) + 0.1
+    four, six, tilted = mass_tensor(nh.SO(4), rng), mass_tensor(nh.SO(6), rng), np.diag([3.0, 2.0, 2.5])
+    tilted += [[0.0, 0.1, 0.2], [0.1, 0.0, 0.3], [0.2, 0.3, 0.0]]
+    return {
+        "top 3": nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]),
+        "top 3, tilted": nh.SuslovTop.from_inertia(tilted, (2 / 3, -1 / 3, 2 / 3)),
+        "top 4": nh.SuslovTop(four),
+        "top 6": nh.SuslovTop(six),
+        "sleigh 2": nh.ChaplyginSleigh(1.3, 0.7, 0.4, 0.3),
+        "sleigh 2, backward": nh.ChaplyginSleigh(1.3, 0.7, -0.4, 0.3),
+        "sleigh 3": nh.MultidimensionalSleigh(1.3, [0.3, 0.2, -0.1], inertia),
+        "sleigh 4": nh.MultidimensionalSleigh(0.8, [-0.3, 0.2, 0.1, 0.5], mass_tensor(nh.SO(4), rng)),
+        "turning sleigh 3": nh.MultidimensionalSleigh(1.3, [0.0, 0.2, -0.1], inertia),
+        "turning sleigh 4": nh.MultidimensionalSleigh(1.3, [0.0, 0.2, -0.1, 0.3], mass_tensor(nh.SO(4), rng)),
+    }
+
+
+ATTRACTING = _attracting()
+"""Tops and sleighs with attracting equilibria: in three dimensions and the plane, and in more."""

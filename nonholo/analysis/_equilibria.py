@@ -8,7 +8,7 @@ from typing import Any, cast, overload
 
 import numpy as np
 
-from nonholo.analysis.linearization import SteadyMotion, steady_motion
+from nonholo.analysis._linearize import SteadyMotion, steady_motion
 from nonholo.base.checks import error, positive, refuse_given
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.discrete import Discretization, weights
@@ -103,9 +103,7 @@ def equilibria(
     return _of_form(body, step, body.equilibria(), level)
 
 
-def _of_form(
-    body: AbstractLLSystem, steps: Float[np.ndarray, "S"] | None, family: Equilibria, level: float
-) -> EquilibriumSpectrum:
+def _of_form(body: AbstractLLSystem, steps: np.ndarray | None, family: Equilibria, level: float) -> EquilibriumSpectrum:
     if family.attracting is None:
         nothing = np.zeros(0)
         return EquilibriumSpectrum(family.subspace, None, None, nothing, None if steps is None else nothing)

@@ -21,7 +21,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import compiled
-from nonholo.lagrange_dalembert._functions import ROWS, configurations, in_blocks, in_double, places, places_of, room
+from nonholo.lagrange_dalembert._functions import ROWS, configurations, in_blocks, in_double, places, room
 from nonholo.lagrange_dalembert._newton import orientation, solve
 from nonholo.lagrange_dalembert._orbit import (
     ORBITS,
@@ -42,7 +42,7 @@ Motion = tuple[Array, Array, Array]
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretization[OrbitT]):
-    r"""A discretized system: it says how a run starts.
+    r"""A discretized system, which checks the start of a run.
 
     $$ D_1 L_d(q_k, q_{k+1}) + D_2 L_d(q_{k-1}, q_k) = -\sum_j \lambda_j A^j(q_k), \qquad F(q_k, q_{k+1}) = 0, $$
 
@@ -55,7 +55,7 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
     a momentum with itself in place of $\partial L/\partial v$; only its action on admissible velocities counts.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: h.
     """
 
@@ -111,7 +111,7 @@ class CoordinateDiscretization(AbstractLagrangeDAlembertMap[CoordinateOrbit]):
     """A discretized system in coordinates, made by `nonholo.discretize`.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: h.
 
     Example:
@@ -147,7 +147,7 @@ class GroupDiscretization(AbstractLagrangeDAlembertMap[GroupOrbit]):
     """A discretized `GroupLagrangeDAlembert`, made by `nonholo.discretize`.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: h.
 
     Example:
@@ -202,7 +202,7 @@ class CoordinateStepper(AbstractStepper[AbstractCoordinateOrbit]):
     block = 1 << 18
 
     def __post_init__(self) -> None:
-        places_of(self.motion.system)  # refused by the system of a store without functions
+        _ = self.motion.system.places  # refused by the system of a store without functions
 
     @functools.cached_property
     def columns(self) -> dict[str, int]:  # type: ignore[override]

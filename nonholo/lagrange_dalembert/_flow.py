@@ -21,7 +21,7 @@ from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import compiled
 from nonholo.lagrange_dalembert._discretization import checked_state
 from nonholo.lagrange_dalembert._equations import solve_bordered
-from nonholo.lagrange_dalembert._functions import configurations, in_blocks, in_double, places, places_of, room
+from nonholo.lagrange_dalembert._functions import configurations, in_blocks, in_double, places, room
 from nonholo.lagrange_dalembert._orbit import ORBITS
 from nonholo.orbit import times_within
 
@@ -34,7 +34,7 @@ def acceleration(system: Any, q: Array, v: Array, extra: Any = 0.0) -> tuple[Arr
     r"""Return the rate of v and the forces $\lambda$, from the equations and $\tfrac{d}{dt}(A v - b) = 0$.
 
     Args:
-        system: What moves.
+        system: The system.
         q: Where it is.
         v: Its velocity.
         extra: A force beside those of the system: of a table the row that acts.
@@ -90,7 +90,7 @@ def refuse_table(owner: str, system: Any) -> None:
 
 def vector_field(system: Any) -> Callable[[Array, Float[Array, "size"]], Float[Array, "size"]]:
     """Return the equations of motion as a function (time, state) -> derivative; `nonholo.vector_field` says of what."""
-    places_of(system)  # refused by the system of a store without functions
+    _ = system.places  # refused by the system of a store without functions
     refuse_table("vector_field", system)
     size = int(np.prod(system.shapes[0]) + np.prod(system.shapes[1]))
 

@@ -8,6 +8,7 @@ import jax
 import numpy as np
 import pytest
 from analysis.fit_coverage import CASES, held
+from refusals import refusals
 from scipy.stats import binom, norm
 
 import nonholo as nh
@@ -114,10 +115,10 @@ def test_bodies_are_found_within_their_errors(
 
 
 def test_top_is_found_from_its_gyroscope() -> None:
-    """Of 40 noisy records of angular velocities at least 38 are fitted within 3 sigma."""
+    """Of 10 noisy records of angular velocities all are fitted within 3 sigma."""
     guess = {"c": np.array([0.2, -0.1]), "b": 1.1}
-    errors = np.array([_errors(nh.fit(_top, _top_record(s), guess), [0.3, -0.2, 1.0]) for s in range(40)])
-    assert (np.abs(errors) < 3).all(axis=1).sum() >= 38
+    errors = np.array([_errors(nh.fit(_top, _top_record(s), guess), [0.3, -0.2, 1.0]) for s in range(10)])
+    assert (np.abs(errors) < 3).all()
 
 
 def test_exact_record_is_fitted_exactly() -> None:
@@ -208,6 +209,7 @@ def test_robust_loss_bears_outliers() -> None:
     assert plain.covariance[0, 0] > 100 * found.covariance[0, 0]
 
 
+@pytest.mark.profile("routes", cases=["good", "outlier", "more than the noise"])
 @pytest.mark.parametrize(
     ("change", "options", "outcome"),
     [
@@ -353,8 +355,8 @@ def _with(**columns: object) -> dict[str, object]:
     return {**_sleigh_record(0), **columns}
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
+# What cannot be fitted is named before any work.
+test_bad_arguments_are_refused = refusals(
     [
         ({"guess": {}}, "name the parameters"),
         ({"system_of": lambda _: 3}, "left-invariant"),
@@ -389,13 +391,10 @@ def _with(**columns: object) -> dict[str, object]:
         ({"bounds": {"a": 3}}, "be a pair"),
         ({"loss": "huber"}, "be one of 'linear', 'soft_l1'"),
     ],
+    lambda change: nh.fit(
+        **{"system_of": _sleigh, "measurements": _sleigh_record(0), "guess": {"inertia": 1.0, "a": 0.3}} | change
+    ),
 )
-def test_bad_arguments_are_refused(change: dict, words: str) -> None:
-    """What cannot be fitted is named before any work."""
-    with pytest.raises(ValueError, match=words):
-        nh.fit(
-            **{"system_of": _sleigh, "measurements": _sleigh_record(0), "guess": {"inertia": 1.0, "a": 0.3}} | change
-        )
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,13 @@
 """`EnsembleTask`: the members of a design run as those of `ensemble`, and of `simulate`."""
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from bodies import GENERAL
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.ensembles import standing_of
@@ -172,8 +172,8 @@ def test_refused_members_are_isolated_and_named(tmp_path: Path) -> None:
 START = {"restricted_velocity": (1.0, 0.2)}
 
 
-@pytest.mark.parametrize(
-    ("options", "axes", "match"),
+# A design that the task cannot run is refused before there is a store.
+test_designs_without_a_meaning_are_refused = refusals(
     [
         ({}, {"a": [1.0]}, "have a start. Got none"),
         (START, {"Mass": [1.0]}, "name parameters of the system or starts. Got 'Mass'. ChaplyginSleigh has mass,"),
@@ -189,18 +189,12 @@ START = {"restricted_velocity": (1.0, 0.2)}
         (START, {"mass": [[1.0, 2.0]]}, "run for one of the members tried.*must have shape"),
         ({}, {"momentum": [1.0, 2.0]}, "run for one of the members tried.*must have shape"),
     ],
+    lambda options, axes: nh.sweep(_task(**options), nh.Grid(axes), Path("run.zarr")),
 )
-def test_designs_without_a_meaning_are_refused(
-    options: dict[str, Any], axes: dict[str, Any], match: str, tmp_path: Path
-) -> None:
-    """A design that the task cannot run is refused before there is a store."""
-    with pytest.raises(ValueError, match=match):
-        nh.sweep(_task(**options), nh.Grid(axes), tmp_path / "run.zarr")
-    assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize(
-    ("make", "match"),
+# A task that makes no sense is refused when it is made.
+test_bad_tasks_are_refused = refusals(
     [
         (lambda: nh.EnsembleTask(SLEIGH, steps=0), "must be a positive integer"),
         (lambda: nh.EnsembleTask(SLEIGH, steps=5, save_every=0), "must be a positive integer"),
@@ -213,12 +207,8 @@ def test_designs_without_a_meaning_are_refused(
         (lambda: _task(momentum=STARTS), r"EnsembleTask\(momentum=...\)` must have shape"),
         (lambda: _task(momentum="left"), "array of real numbers"),
         (lambda: _task(momentum=(1.0, 0.0), body_velocity=(1.0, 0.0, 0.0)), "exactly one of"),
-    ],
+    ]
 )
-def test_bad_tasks_are_refused(make: Callable[[], Any], match: str) -> None:
-    """A task that makes no sense is refused when it is made."""
-    with pytest.raises(ValueError, match=match):
-        make()
 
 
 def test_names_that_two_reductions_return_are_refused() -> None:

@@ -69,7 +69,7 @@ def geometric_phase(
     to 1e-12.
 
     Reference: [kelly-murray-1995], [bloch-krishnaprasad-marsden-murray-1996]; the area rule with the bracket in it is
-    that of [hatton-choset-2011].
+    from [hatton-choset-2011].
 
     Args:
         system: A system, or its `local_connection`.
@@ -79,7 +79,7 @@ def geometric_phase(
         momentum: p at the start; zero by default.
 
     Raises:
-        ValueError: What `local_connection` refuses; a gait that is not closed, or that meets a shape where the
+        ValueError: A system that `local_connection` refuses; a gait that is not closed, or that meets a shape where the
             connection is singular.
 
     Example:
@@ -143,9 +143,7 @@ def _displacement(connection: LocalConnection, shape_at: Any, edges: Array, p: A
     return GeometricPhase(connection, times, whole(first, s, last), g, *columns)
 
 
-def _poses(
-    group: AbstractMatrixGroup, h: Array, xi: Float[np.ndarray, "t k d"]
-) -> tuple[Float[np.ndarray, "t k N N"], Float[np.ndarray, "N N"]]:
+def _poses(group: AbstractMatrixGroup, h: Array, xi: Float[np.ndarray, "t k d"]) -> tuple[np.ndarray, np.ndarray]:
     r"""Return the poses of a motion with these body velocities, at the nodes and at the end, by collocation.
 
     In each piece $g_j = 1 + h\sum_l T_{jl}\,g_l\hat\xi_l$ are linear equations.

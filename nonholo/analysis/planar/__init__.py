@@ -1,6 +1,6 @@
 """Bodies with two admissible directions, tops in space and sleighs in the plane, of which all is known.
 
-What differs between the two is in `_disc` and `_strip`, two files of one interface. Theory:
+The differences between the two are in `_disc` and `_strip`, two files of one interface. Theory:
 docs/theory/momentum-locus.md.
 """
 
@@ -12,7 +12,6 @@ from nonholo.analysis.planar._base import AbstractPlanarVariety, HalfPlanes
 from nonholo.analysis.planar._disc import Disc
 from nonholo.analysis.planar._strip import Strip
 from nonholo.base.checks import error, shown
-from nonholo.base.types import Float
 from nonholo.discrete import Discretization, as_discretization, legendre
 from nonholo.systems import AbstractSystem
 
@@ -39,8 +38,6 @@ def planar_map(where: str, value: Any) -> tuple[Discretization, AbstractPlanarVa
     return discrete, variety
 
 
-def momenta_at(
-    discrete: Discretization, variety: AbstractPlanarVariety, points: Float[np.ndarray, "... c"]
-) -> Float[np.ndarray, "... 3"]:
+def momenta_at(discrete: Discretization, variety: AbstractPlanarVariety, points: np.ndarray) -> np.ndarray:
     """Return the momenta, physical and in the user's frame, of the displacements with these coordinates."""
     return legendre(discrete, variety.displacement(points) - discrete.system.group.identity, "left")

@@ -93,9 +93,7 @@ class Solution(NamedTuple):
     iterations: int
 
 
-def minimize(
-    program: Program, guess: Float[np.ndarray, "n"], bounds: tuple[np.ndarray, np.ndarray], iterations: int
-) -> Solution:
+def minimize(program: Program, guess: Float[np.ndarray, "n"], bounds: tuple[Any, Any], iterations: int) -> Solution:
     """Return unknowns between bounds that meet the conditions of a program with least effort, from a guess."""
     numbers, one, nothing = (casadi.Sparsity.dense(size) for size in (program.unknowns, 1, 0))
     conditions = casadi.Sparsity.dense(len(program.limits[0]))
