@@ -12,10 +12,18 @@ import zarr
 from nonholo.base.checks import error
 from nonholo.base.checks import path as checked_path
 from nonholo.base.results import Outcome
-from nonholo.base.types import Float
 from nonholo.io._attributes import FORMAT, SCHEMA, SWEEP_FORMAT, restore_motion
-from nonholo.io._block_store import BlockStore, Layout, checkpoint_of
-from nonholo.io._chunks import AGAIN, WHERE, DamagedError, checked_array, checked_block, opened_array
+from nonholo.io._block_store import (
+    AGAIN,
+    WHERE,
+    BlockStore,
+    DamagedError,
+    Layout,
+    checked_array,
+    checked_block,
+    checkpoint_of,
+    opened_array,
+)
 from nonholo.io._metadata import OrbitMetadata, SweepMetadata, check_assertions, check_metadata
 from nonholo.io._stored_events import EVENTS, log_of, without_padding
 from nonholo.io.datasets import CANONICAL, STEP
@@ -62,14 +70,16 @@ def _load(root: Path, discrete: Any, *, last: bool) -> Any:
         raise error(WHERE, "be a finished run", f"'{root}', which is not", remedy)
     try:
         shapes = json.loads(attributes["arrays"])
-        motion, outcome, every = (
-            restore_motion(attributes, discrete),
-            Outcome[attributes["outcome"]],
-            attributes["save_every"],
-        )
+        motion, every = restore_motion(attributes, discrete), attributes["save_every"]
+        outcome = Outcome[attributes["outcome"]]
     except (KeyError, json.JSONDecodeError) as failure:
         raise error(WHERE, "hold complete attributes", f"'{root}' without {failure}", AGAIN) from failure
-    arrays = {name: _read(root, name, tuple(shape), last) for name, shape in shapes.items()}
+    arrays = {}
+    for name, shape in shapes.items():
+        array = opened_array(root, name, tuple(shape))
+        ends = tuple(count - 1 for count in array.cdata_shape)
+        is_part = last and min(ends) >= 0
+        arrays[name] = checked_block(root, name, array, ends) if is_part else checked_array(root, name, array)
     if not last:  # whoever asks for the last block has looked at the others
         check_seals(root, attributes)
     rows = {name: arrays.get(array) for name, array in stored_names(shapes, motion.columns).items()}
@@ -78,7 +88,8 @@ def _load(root: Path, discrete: Any, *, last: bool) -> Any:
     orbit = motion.orbit(outcome=outcome, save_every=every, branch=attributes["branch"], step=step, **rows)
     if "events" not in attributes:
         return orbit
-    begin = _begin_of_last(attributes, shapes["time"][0]) if last else 0
+    plan = plan_of(attributes)
+    begin = plan.begin((total - 1) // plan.rows) if last else 0
     return dataclasses.replace(orbit, events=_events(root, attributes, orbit, begin))
 
 
@@ -114,20 +125,13 @@ def _events(root: Path, attributes: dict[str, Any], orbit: Orbit, begin: int) ->
     """Return the crossings of a stored run after the state of a step."""
     array = opened_array(root, EVENTS, None)
     events, counts = json.loads(attributes["events"]), json.loads(attributes["crossings"])
-    parts = [np.empty((0, array.shape[1]))]
-    for chunk in range(array.cdata_shape[0]):
-        parts.append(without_padding(checked_block(root, EVENTS, array, (chunk, 0), with_nan=True), begin))
-    log = log_of(np.concatenate(parts), events, orbit, attributes.get("stopped_by"))
+    chunks = (checked_block(root, EVENTS, array, (k, 0), with_nan=True) for k in range(array.cdata_shape[0]))
+    rows = np.concatenate([np.empty((0, array.shape[1])), *(without_padding(chunk, begin) for chunk in chunks)])
+    log = log_of(rows, events, orbit, attributes.get("stopped_by"))
     lengths = [len(crossings) for crossings in log.found]
     if begin == 0 and lengths != counts:
         raise error(WHERE, f"hold {counts} crossings in {EVENTS}", str(lengths), AGAIN)
     return log
-
-
-def _begin_of_last(attributes: dict[str, Any], states: int) -> int:
-    """Return the step at which the last block of states begins."""
-    plan = plan_of(attributes)
-    return plan.begin((states - 1) // plan.rows)
 
 
 def read_attributes(path: str | Path, format_name: str = FORMAT, schema: int = SCHEMA) -> dict[str, Any]:
@@ -168,9 +172,3 @@ def format_of(path: str | Path) -> str | None:
         return json.loads((Path(path) / "zarr.json").read_text())["attributes"]["format"]
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
-
-
-def _read(root: Path, name: str, shape: tuple[int, ...], last: bool) -> Float[np.ndarray, "..."]:
-    array = opened_array(root, name, shape)
-    ends = tuple(count - 1 for count in array.cdata_shape)
-    return checked_block(root, name, array, ends) if last and min(ends) >= 0 else checked_array(root, name, array)

@@ -23,7 +23,7 @@ from waiting import wait_for
 
 import nonholo as nh
 from nonholo.ensembles import _cluster
-from nonholo.ensembles.stores._store import SweepStore
+from nonholo.ensembles.stores import SweepStore
 
 BLOCKS = DESIGN.members // BLOCK
 PAGE = (Path(__file__).parents[2] / "docs" / "how-to" / "beyond-one-machine.md").read_text()

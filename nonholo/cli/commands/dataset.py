@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from nonholo.cli.commands.run import Quiet
+from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, store_errors
 
 
 def dataset(
@@ -38,8 +39,6 @@ def dataset(
     nonholo dataset snakeboard -o boards --orbits 200 --noise 0.01
     nonholo dataset top -o tops --rng 7 --format csv
     """
-    from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, store_errors
-
     if shown:
         _show_all()
         return

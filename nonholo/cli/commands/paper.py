@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
+
 if TYPE_CHECKING:
     from nonholo_paper import Entry, Result
 
@@ -33,7 +35,6 @@ def paper(
 
     from nonholo.base.checks import needs
     from nonholo.base.progress import progress_bar
-    from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
 
     with store_errors(USAGE), needs("paper", "nonholo paper"):
         from nonholo_paper import check_folder, entries, evaluate_all, select, write_folder

@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from nonholo.cli.screen.errors import USAGE, leave
+
 Scenario = Annotated[
     str, typer.Argument(metavar="SCENARIO", help="A TOML file, or a name of `nonholo systems` or `nonholo examples`.")
 ]
@@ -55,12 +57,12 @@ def simulate(
     nonholo simulate my.toml -o study/first.zarr --json
     nonholo simulate robot.toml --module my_robot.py
     """
-    from nonholo.cli.commands._runs import simulate_and_keep
+    from nonholo.cli.commands._runs import request_of, simulate_and_keep
 
     options = {"run.steps": ("--steps", steps), "run.time_step": ("--time-step", time_step)}
     options |= {"output.plot": ("--plot", plot), "output.gif": ("--gif", gif)}
-    how = {"json": json, "overwrite": overwrite, "quiet": quiet}
-    simulate_and_keep(scenario, options, settings or [], output, module=module, **how)
+    request = request_of(scenario, options, settings, module)
+    simulate_and_keep(request, output, json=json, overwrite=overwrite, quiet=quiet)
 
 
 Source = Annotated[
@@ -90,11 +92,11 @@ def explore(
     nonholo explore my.toml -o top.html --no-browser
     nonholo explore runs/sleigh-001.zarr
     """
-    from nonholo.cli.commands._runs import write_page
+    from nonholo.cli.commands._runs import request_of, write_page
 
     options = {"run.steps": ("--steps", steps), "run.time_step": ("--time-step", time_step)}
-    how = {"module": module, "browser": browser, "overwrite": overwrite}
-    typer.echo(write_page(source, options, settings or [], output, **how))
+    ask = functools.partial(request_of, source, options, settings, module)
+    typer.echo(write_page(source, ask, output, browser=browser, overwrite=overwrite))
 
 
 SweepScenario = Annotated[
@@ -150,12 +152,14 @@ def sweep(
     nonholo sweep robots.toml --module my_robot.py
     nonholo resume large.zarr               resume one that stopped
     """
+    from nonholo.cli.commands._runs import request_of
     from nonholo.cli.commands._sweeps import sweep_and_keep
+    from nonholo.cli.scenario.sweeps import load_sweep_scenario
 
     whole = int(members) if members is not None and members.is_integer() else members  # 1e6 is a whole number
     options = {"design.members": ("--members", whole), "output.plot": ("--plot", plot)}
-    how = {"scheduler": scheduler, "workers": workers, "json": json, "quiet": quiet}
-    sweep_and_keep(scenario, options, settings or [], output, module=module, **how)
+    request = request_of(scenario, options, settings, module, load_sweep_scenario)
+    sweep_and_keep(request, output, {"scheduler": scheduler, "workers": workers}, json=json, quiet=quiet)
 
 
 Store = Annotated[Path, typer.Argument(metavar="STORE", help="A store made by sweep, or by simulate(..., store=...).")]
@@ -207,7 +211,6 @@ def extend(
     """
     from nonholo import io, simulation
     from nonholo.cli.commands._sweeps import continue_and_report
-    from nonholo.cli.screen.errors import USAGE, leave
 
     if io.format_of(store) == io.SWEEP_FORMAT:
         again = f"nonholo info {store} --scenario > more.toml; nonholo sweep more.toml --set run.steps=..."

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from nonholo.cli.commands.run import Json, Overwrite
+from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, store_errors
 
 Store = Annotated[Path, typer.Argument(metavar="STORE", help="A store made by simulate, sweep or save_orbit.")]
 
@@ -26,7 +27,6 @@ def info(
     nonholo info runs/suslov-001.zarr
     nonholo info runs/suslov-001.zarr --scenario > again.toml
     """
-    from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
     from nonholo.cli.screen.stores import show_provenance, show_standing, show_sweep_standing
     from nonholo.ensembles.stores import attributes_of
     from nonholo.io import SWEEP_FORMAT, format_of, load_orbit, read_attributes, standing
@@ -72,7 +72,6 @@ def export(
     nonholo export runs/sleigh-001.zarr -o sleigh.csv
     nonholo export run.zarr --every 100 | head
     """
-    from nonholo.cli.screen.errors import FAILED, USAGE, reporting_warnings, store_errors
     from nonholo.io import SWEEP_FORMAT, check_file, format_of, read_attributes, store_to_csv
 
     is_sweep = format_of(store) == SWEEP_FORMAT
@@ -148,7 +147,6 @@ def plot(
     nonholo plot sweep.zarr --color outcome --x body.a --y run.time_step
     """
     from nonholo import io
-    from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
     from nonholo.cli.screen.pictures import OVERVIEW, beside, draw_stored_sweep
 
     if output is not None:
@@ -170,7 +168,6 @@ def plot(
 
 def _check_kind(kind: str, gif: bool, color: str | None, axis: str | None) -> None:
     """Refuse options that do not belong to this kind of picture of a run."""
-    from nonholo.cli.screen.errors import USAGE, leave
     from nonholo.cli.screen.pictures import ALL, OVERVIEW, kinds
 
     if kind not in (names := [*kinds(), ALL]):
@@ -183,8 +180,6 @@ def _check_kind(kind: str, gif: bool, color: str | None, axis: str | None) -> No
 
 def _look(title: str | None, size: str | None, dark: bool | None) -> dict[str, Any]:
     """Return what is asked of a picture, as the library takes it."""
-    from nonholo.cli.screen.errors import USAGE, leave
-
     look: dict[str, Any] = {"title": title, "dark": dark}
     if size is not None:
         try:
@@ -200,7 +195,6 @@ def _draw_run(store: Path, path: Path, look: dict[str, Any], *, gif: bool, **opt
     """Draw a picture or the animation of a run, and return the paths of what was drawn."""
     from nonholo import io
     from nonholo.base.progress import waiting
-    from nonholo.cli.screen.errors import FAILED, USAGE, store_errors
     from nonholo.cli.screen.pictures import ALL, draw, draw_all
 
     with store_errors(USAGE):

@@ -45,6 +45,7 @@ class AbstractBounded(AbstractDistribution):
 
     @property
     def shape(self) -> tuple[int, ...]:
+        """Shape of one draw."""
         return np.shape(self.low)
 
 
@@ -105,6 +106,7 @@ class Normal(AbstractDistribution):
 
     @property
     def shape(self) -> tuple[int, ...]:
+        """Shape of one draw."""
         return () if self.size is None else (self.size,)
 
     def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
@@ -130,6 +132,7 @@ class Direction(AbstractDistribution):
 
     @property
     def shape(self) -> tuple[int, ...]:
+        """Shape of one draw."""
         return (self.size,)
 
     def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
@@ -161,10 +164,12 @@ class MassTensor(AbstractDistribution):
 
     @property
     def width(self) -> int:
+        """Uniform numbers that one draw takes."""
         return self.n * (self.n + 1)
 
     @property
     def shape(self) -> tuple[int, ...]:
+        """Shape of one draw."""
         return (self.n, self.n)
 
     def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
@@ -193,10 +198,12 @@ class Choice(AbstractDistribution):
 
     @property
     def width(self) -> int:
+        """Uniform numbers that one draw takes."""
         return 1
 
     @property
     def shape(self) -> tuple[int, ...]:
+        """Shape of one draw."""
         return np.shape(self.values)[1:]
 
     def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:

@@ -3,7 +3,7 @@
 import itertools
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple, TypeVar, Unpack, cast
+from typing import Any, NamedTuple, Unpack, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -20,7 +20,6 @@ from nonholo.plot import theme
 from nonholo.plot.parts import drawable_in_time, evenly_in_box, with_poses
 from nonholo.plot.sheets import Blade, blade_of_system
 
-AnyOrbit = TypeVar("AnyOrbit", bound=AbstractOrbit)
 _MOST_POINTS = 2000
 _MOST_LINES = 60  # momenta in one panel
 
@@ -58,11 +57,11 @@ def momentum_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> 
 def heading_and_speed(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> None:
     """Draw the heading of a sleigh (left scale) and the speed along its blade (right scale) against time."""
     right = axes.twinx()
-    scales = ((axes, r"heading  $\theta/\pi$", _heading), (right, "speed  $v_1$", _speed))
-    for (one, name, values), color in zip(scales, theme.COMPONENTS, strict=False):
-        _line(one, orbit.time, values(orbit), color=color, linewidth=2.0, zorder=3)
+    scales = ((axes, r"heading  $\theta/\pi$"), (right, "speed  $v_1$"))
+    for row, ((one, name), color) in enumerate(zip(scales, theme.COMPONENTS, strict=False)):
+        _line(one, orbit.time, _turn_and_speed(orbit)[row], color=color, linewidth=2.0, zorder=3)
         if flow is not None:
-            _flow(one, flow.time, values(flow), has_label=one is right)
+            _flow(one, flow.time, _turn_and_speed(flow)[row], has_label=one is right)
         one.set_ylabel(name, color=color)
         one.tick_params(axis="y", labelcolor=color)
         one.margins(y=0.12)
@@ -73,12 +72,9 @@ def heading_and_speed(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> No
     theme.legend_above(right)
 
 
-def _heading(orbit: Orbit) -> Float[np.ndarray, "K"]:
-    return cast(Blade, blade_of_system(orbit.system)).heading(orbit) / np.pi
-
-
-def _speed(orbit: Orbit) -> Float[np.ndarray, "K"]:
-    return cast(Blade, blade_of_system(orbit.system)).speed(orbit)
+def _turn_and_speed(orbit: Orbit) -> tuple[Float[np.ndarray, "K"], Float[np.ndarray, "K"]]:
+    blade = cast(Blade, blade_of_system(orbit.system))
+    return blade.heading(orbit) / np.pi, blade.speed(orbit)
 
 
 def _line(axes: Axes, time: Float[np.ndarray, "K"], values: Float[np.ndarray, "K"], **look: Any) -> None:
@@ -91,9 +87,7 @@ def _flow(axes: Axes, time: Float[np.ndarray, "K"], values: Float[np.ndarray, "K
     _line(axes, time, values, label="continuous" if has_label else None, **look)
 
 
-def draw_components(
-    axes: Axes, orbit: AnyOrbit, flow: AnyOrbit | None, quantity: Callable[[AnyOrbit], np.ndarray], names: list[str]
-) -> None:
+def draw_components(axes: Axes, orbit: Any, flow: Any, quantity: Callable[[Any], np.ndarray], names: list[str]) -> None:
     """Draw one line for each component of a quantity, thin and without names where there are too many to tell apart."""
     few = len(names) <= len(theme.COMPONENTS)
     for values, color, name in zip(quantity(orbit).T, theme.component_colors(len(names)), names, strict=True):
@@ -194,9 +188,8 @@ def energy_error(orbit: AbstractOrbit, axes: Axes | None = None, **look: Unpack[
     theme.write_title(axes, "Energy less work" if has_work else "Energy error" if is_known else "Change of energy")
     _dress(axes, orbit.time, error / unit, unit, rf"\Delta {name}{'/E' if size else ''}")
     small: Any = {"color": theme.QUIET, "fontsize": "medium", "va": "top", "path_effects": theme.HALO, "zorder": 6}
-    words = axes.text(
-        0.012, 0.97, _expectation(orbit, has_work) if is_known else _THINNED, transform=axes.transAxes, **small
-    )
+    outlook = _expectation(orbit, has_work) if is_known else _THINNED
+    words = axes.text(0.012, 0.97, outlook, transform=axes.transAxes, **small)
     return EnergyError(axes, dots, rounding, unit, words)
 
 
@@ -211,15 +204,17 @@ def draw_residual(orbit: Any, axes: Axes) -> None:
     axes.set_ylim(bottom=0.0)
 
 
-def _over_rounding(
-    orbit: AbstractOrbit, axes: Axes, error: Float[np.ndarray, "K"], unit: float
-) -> tuple[Rectangle, PathCollection | PolyCollection | Line2D]:
+def _over_rounding(orbit: Any, axes: Axes, error: Float[np.ndarray, "K"], unit: float) -> tuple[Rectangle, Any]:
     """Draw errors in a unit over the band of rounding."""
     label = "machine epsilon" if _EPS / unit > _VISIBLE else "_machine epsilon"  # a legend of what can be seen
     band: Any = {"color": theme.LEVEL, "alpha": 0.45, "linewidth": 0, "zorder": 0, "label": label}
     rounding = axes.axhspan(-_EPS / unit, _EPS / unit, **band)
     axes.axhline(0.0, color=theme.LEVEL, linewidth=0.8, zorder=1)
-    return rounding, (_error if orbit.is_discrete else _curve)(axes, orbit.time, error)
+    if orbit.is_discrete:
+        return rounding, _error(axes, orbit.time, error)
+    at = evenly_in_box(np.stack([orbit.time, error], axis=1), _MOST_DOTS)
+    look = theme.own_look(theme.CONTINUOUS)
+    return rounding, axes.plot(orbit.time[at], error[at], linewidth=1.0, zorder=3, **look)[0]
 
 
 def _expectation(orbit: AbstractOrbit, has_work: bool) -> str:
@@ -242,11 +237,6 @@ def _error(axes: Axes, time: Float[np.ndarray, "K"], error: Float[np.ndarray, "K
     starts = np.arange(0, len(time), math.ceil(len(time) / _COLUMNS))
     low, high = np.minimum.reduceat(error, starts), np.maximum.reduceat(error, starts)
     return axes.fill_between(time[starts], low, high, linewidth=0.8, zorder=3, **theme.own_look(theme.DISCRETE))
-
-
-def _curve(axes: Axes, time: Float[np.ndarray, "K"], error: Float[np.ndarray, "K"]) -> Line2D:
-    at = evenly_in_box(np.stack([time, error], axis=1), _MOST_DOTS)
-    return axes.plot(time[at], error[at], linewidth=1.0, zorder=3, **theme.own_look(theme.CONTINUOUS))[0]
 
 
 def _dress(axes: Axes, time: Any, error: Float[np.ndarray, "K"], unit: float, name: str) -> None:
