@@ -232,9 +232,9 @@ def _join(members: list[dict[str, Any]]) -> dict[str, Any]:
     """Return the rows of some members that were reduced one by one."""
     together: dict[str, Any] = {}
     for name, first in members[0].items():
-        rows = [each[name][1] if isinstance(first, tuple) else each[name] for each in members]
-        whole = np.concatenate([np.asarray(row) for row in rows])
-        together[name] = (first[0], whole, *first[2:]) if isinstance(first, tuple) else whole
+        is_named = isinstance(first, tuple)
+        whole = np.concatenate([np.asarray(each[name][1] if is_named else each[name]) for each in members])
+        together[name] = (first[0], whole, *first[2:]) if is_named else whole
     return together
 
 

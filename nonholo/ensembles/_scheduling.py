@@ -247,8 +247,9 @@ def do_all(work: Work, scheduler: Any, workers: int | None, take: Take) -> None:
     """Do every block; what becomes of each is taken as soon as it is known, in the thread of the caller."""
     blocks = iter(range(work.store.layout.blocks))
     if _is_remote(scheduler):
-        return do_on_cluster(work, blocks, scheduler, take)
-    return _here(work, blocks, scheduler, workers, take)
+        do_on_cluster(work, blocks, scheduler, take)
+    else:
+        _here(work, blocks, scheduler, workers, take)
 
 
 def _here(work: Work, blocks: Iterator[int], scheduler: str, workers: int | None, take: Take) -> None:
@@ -259,7 +260,9 @@ def _here(work: Work, blocks: Iterator[int], scheduler: str, workers: int | None
         take(result)
 
     one = dask.delayed(functools.partial(do_block, work), name="block", pure=False, traverse=False)  # pyright: ignore
-    pool = _pool(scheduler, workers or CPU_COUNT)
+    pool: Executor | None = ThreadPoolExecutor(workers or CPU_COUNT) if scheduler == "threads" else None
+    if scheduler == "processes":
+        pool = ProcessPoolExecutor(workers or CPU_COUNT, multiprocessing.get_context("spawn"), _begin_worker)
     options = {} if pool is None else {"pool": pool}
     options |= {"chunksize": 1, "callbacks": [(None, None, None, report, None)]}  # of this call, not of all of Dask
     try:
@@ -271,12 +274,6 @@ def _here(work: Work, blocks: Iterator[int], scheduler: str, workers: int | None
     finally:
         if pool is not None:
             pool.shutdown(wait=True, cancel_futures=True)
-
-
-def _pool(scheduler: str, workers: int) -> Executor | None:
-    if scheduler == "processes":
-        return ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _begin_worker)
-    return ThreadPoolExecutor(workers) if scheduler == "threads" else None
 
 
 def _begin_worker() -> None:

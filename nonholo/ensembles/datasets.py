@@ -106,11 +106,8 @@ _LEFT_OUT = {"displacement", "constraint_residual"}
 _EXACT = {"time", "energy", "momentum", "restricted_momentum", "multipliers"}  # what no one observes
 _NUMBERS, _MEMBERS = 1 << 21, 256  # at most in a block
 
-_FLAGS = {
-    "long_name": "part of the data set",
-    "flag_values": list(range(len(SPLITS))),
-    "flag_meanings": " ".join(SPLITS),
-}
+_FLAGS: dict[str, Any] = {"long_name": "part of the data set", "flag_values": list(range(len(SPLITS)))}
+_FLAGS |= {"flag_meanings": " ".join(SPLITS)}
 
 Field: TypeAlias = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
 
@@ -172,13 +169,13 @@ class DatasetTask:
     def _observations(self, block: MemberBlock, fields: dict[str, Field]) -> dict[str, Field]:
         """Return what can be observed with normal noise, which depends on nothing but `rng`, orbit and name."""
         observations: dict[str, Field] = {}
-        for name in fields.keys() - _EXACT if self.noise else ():
+        for name in sorted(fields.keys() - _EXACT) if self.noise else ():
             axes, rows, labels = fields[name]
             uniform = block.random(rows[0].size, f"noise {name}")
             noise = Normal(0.0, self.noise, size=rows[0].size).draw(uniform).reshape(rows.shape)
             meaning = f"{labels['long_name']}, with noise"
             observations[f"observed_{name}"] = axes, rows + noise, labels | {"long_name": meaning}
-        return dict(sorted(observations.items()))
+        return observations
 
     @property
     def block(self) -> int:
@@ -255,16 +252,8 @@ def _command(store: SweepStore, task: DatasetTask, file_format: str, license_nam
     """Return the command that writes it again."""
     ends, orbits = (0, *task.ends), store.design.members
     split = "/".join(repr((end - begin) / orbits) for begin, end in zip(ends, task.ends, strict=False))
-    options = {
-        "orbits": orbits,
-        "steps": task.steps,
-        "time-step": task.time_step,
-        "rng": store.design.seed,
-        "noise": task.noise,
-        "split": split,
-        "format": file_format,
-        "license": license_name,
-    }
+    options = {"orbits": orbits, "steps": task.steps, "time-step": task.time_step, "rng": store.design.seed}
+    options |= {"noise": task.noise, "split": split, "format": file_format, "license": license_name}
     words = [str(word) for name, value in options.items() for word in (f"--{name}", value)]
     return shlex.join(["nonholo", "dataset", task.dataset, "-o", store.path.parent.name, *words])
 

@@ -4,6 +4,7 @@ A task that raises is asked again for halves, until the members that fail are kn
 """
 
 import collections
+import contextlib
 import dataclasses
 import functools
 import json
@@ -34,6 +35,7 @@ _MOST_MESSAGES = 20  # failures of a block whose messages are kept
 _PROBES = 8
 
 Task: TypeAlias = Callable[[MemberBlock], Any]
+Data: TypeAlias = dict[str, Any]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -274,10 +276,9 @@ class SweepStore:
     def marks(self) -> Iterator[tuple[int, Mark]]:
         """Return the numbers of finished blocks in order with their marks, those that can be read."""
         for block in sorted(self._blocks.block_numbers()):
-            try:
+            mark = None
+            with contextlib.suppress(io.DamagedError):
                 mark = self.mark(block)
-            except io.DamagedError:
-                continue
             if mark is not None:
                 yield block, mark
 
@@ -381,7 +382,7 @@ def store_of(store: SweepStore) -> SweepStore:
 
 
 def create_store(
-    path: Path, description: Any, design: Design, layout: io.Layout, outputs: dict[str, Output], extra: dict[str, Any]
+    path: Path, description: Data, design: Design, layout: io.Layout, outputs: dict[str, Output], extra: Data
 ) -> SweepStore:
     """Make a store without rows; it appears at the path only when it is complete."""
     target, identity = path.resolve(), uuid.uuid4().hex

@@ -150,17 +150,14 @@ def _of_discretization(where: str, discrete: Discretization) -> Shown:
         if not len(orbit):
             raise error(where, "be a motion that the page can show", problem, "Run it, and pass the orbit.")
         return _replay(orbit, _BEYOND)
-    preview = _numbers(orbit, _spread(orbit, _RECORDED))[0] if len(orbit) else None
-    data = {"kind": kind, "state": state, "recorded": preview, "table": table}
-    return Shown(data, _name(discrete.system), _frame_note(discrete.system))
+    return _shown_state(orbit, kind, state, table)
 
 
 def _live(orbit: Orbit) -> Shown | None:
     """Return the state that a kernel of the page starts from; None where there is no kernel for it."""
-    discrete = orbit.motion
-    if not isinstance(discrete, Discretization) or orbit.branch != "principal" or orbit.canonical_pose is None:
-        return None
-    if orbit.has_impacts.any():
+    discrete: Any = orbit.motion
+    has_map = isinstance(discrete, Discretization) and orbit.branch == "principal" and not orbit.has_impacts.any()
+    if not has_map or orbit.canonical_pose is None:
         return None
     kind, step_count = _kind(discrete), int(orbit.step[-1] - orbit.step[0])
     if kind is None or step_count < 1:
@@ -171,7 +168,11 @@ def _live(orbit: Orbit) -> Shown | None:
     if _problem(state):
         return _replay(orbit, _BEYOND)
     cut = f" The first {steps:,} of {step_count:,} steps." if steps < step_count else ""
-    preview = _numbers(orbit, _spread(orbit, _RECORDED))[0]
+    return _shown_state(orbit, kind, state, table, cut)
+
+
+def _shown_state(orbit: Orbit, kind: str, state: dict[str, Any], table: Any, cut: str = "") -> Shown:
+    preview = _numbers(orbit, _spread(orbit, _RECORDED))[0] if len(orbit) else None
     data = {"kind": kind, "state": state, "recorded": preview, "table": table}
     return Shown(data, _name(orbit.system), _frame_note(orbit.system) + cut)
 
@@ -222,20 +223,13 @@ def _parameters(system: AbstractSystem) -> dict[str, float]:
 def _state(
     discrete: Discretization, kind: str, momentum: np.ndarray, pose: np.ndarray, steps: int, table: Any
 ) -> dict[str, Any]:
-    name_of_table = {} if table is None else {"table": table["name"]}
     form = cast(NormalForm, _inside(discrete.system).normal_form)
     if kind == "top4" and form.principal[1] is not None:  # a matrix with rows of the pose turned, its last column stays
         momentum, g = form.to_principal(momentum), pose.reshape(4, 4)
         pose = np.column_stack([g[:, :3] @ form.principal[1], g[:, 3]]).ravel()
-    return {
-        "kind": kind,
-        "parameters": _parameters(discrete.system),
-        "momentum": [float(r) for r in momentum],
-        "pose": [float(x) + 0.0 for x in pose],
-        "time_step": float(discrete.time_step),
-        "steps": steps,
-        **name_of_table,
-    }
+    numbers = {"momentum": [float(r) for r in momentum], "pose": [float(x) + 0.0 for x in pose]}
+    run = {"time_step": float(discrete.time_step), "steps": steps} | ({} if table is None else {"table": table["name"]})
+    return {"kind": kind, "parameters": _parameters(discrete.system), **numbers, **run}
 
 
 def simulate_state(where: str, state: Any, table: dict[str, Any] | None = None) -> Orbit:
@@ -368,17 +362,13 @@ def force_numbers(forced: Forced) -> dict[str, float] | None:
     friction, n = forced.friction, forced.group.size - forced.group.is_affine
     gravity = forced.gravity or Gravity(np.zeros(n), np.zeros(n))
     coefficients = np.zeros(2) if friction is None else friction.coefficients
-    if coefficients.ndim > 1 or not _is_plain(forced):
+    others = forced.scheme == "variational" or forced.slip is not None or (forced.terms and forced.gravity is None)
+    is_turned = not np.array_equal(forced.system.frame, forced.group.identity)
+    if coefficients.ndim > 1 or forced.needs_function or others or is_turned:  # a weight is the only potential
         return None
     rows = {"F": gravity.force, "x": gravity.point, "c": coefficients[:2]}
     numbers = {f"{name}{i}": float(x) for name, row in rows.items() for i, x in enumerate(row, 1)}
     return numbers if forced.table is None else {**numbers, "s": 1.0}
-
-
-def _is_plain(forced: Forced) -> bool:
-    """Tell whether a weight is the only potential, no function acts, and the body has the canonical axes."""
-    others = forced.scheme == "variational" or forced.slip is not None or (forced.terms and forced.gravity is None)
-    return not (forced.needs_function or others) and np.array_equal(forced.system.frame, forced.group.identity)
 
 
 def under_forces(system: AbstractSystem, numbers: Mapping[str, float], rows: Float[np.ndarray, "K dim"]) -> Forced:

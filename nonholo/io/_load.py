@@ -151,19 +151,14 @@ def read_attributes(path: str | Path, format_name: str = FORMAT, schema: int = S
         got = f"'{path}', " + (f"a store of {kind_of_store}" if kind_of_store else "made by another program")
         raise error(where, kind, got, "Pass a store of nonholo that is one.")
     if attributes.get("schema") != schema:
-        raise _other_schema(where, attributes, schema)
+        number, versions = attributes.get("schema"), attributes.get("versions")
+        got, remedy = f"schema {number}", f"Upgrade nonholo: {versions} wrote it."
+        if isinstance(number, int) and number < schema:
+            got += ", of before 0.3.0, from which on later versions read stores"
+            remedy = f"Read it with the version that wrote it, {versions}, and save it as CSV, or repeat the run."
+        raise error(where, f"have schema {schema}, the one that this version reads", got, remedy)
     check_metadata(where, str(path), attributes, OrbitMetadata if format_name == FORMAT else SweepMetadata)
     return attributes
-
-
-def _other_schema(where: str, attributes: dict[str, Any], schema: int) -> Exception:
-    """Return what refuses a store of another schema: of a later version, or of before stores were read for good."""
-    number, versions = attributes.get("schema"), attributes.get("versions")
-    got, remedy = f"schema {number}", f"Upgrade nonholo: {versions} wrote it."
-    if isinstance(number, int) and number < schema:
-        got += ", of before 0.3.0, from which on later versions read stores"
-        remedy = f"Read it with the version that wrote it, {versions}, and save it as CSV, or repeat the run."
-    return error(where, f"have schema {schema}, the one that this version reads", got, remedy)
 
 
 def format_of(path: str | Path) -> str | None:

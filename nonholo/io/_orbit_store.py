@@ -416,7 +416,11 @@ def open_poses(path: Path) -> StoredPoses:
         return StoredPoses(path, system, shapes["time"][0], places, arrays)
     stream = open_stream(path)
     rows = _state_count(stream)
-    _warn(path, max(0, rows - 1) * stream.plan.every, stream.plan.steps)
+    owner, steps_done = owner_of(path), max(0, rows - 1) * stream.plan.every
+    resume = f"Resume with nonholo.resume({str(path)!r}) (nonholo resume)."
+    now = f"It is being written by {owner}." if owner else resume
+    message = f"The run in '{path}' is not finished: its poses go up to step {steps_done} of {stream.plan.steps}. {now}"
+    warnings.warn(message, RuntimeWarning, stacklevel=3)
     arrays = {name: opened_array(path, array, None) for name, array in places.items()}
     return StoredPoses(path, system, rows, places, arrays)
 
@@ -431,11 +435,3 @@ def _state_count(stream: Stream) -> int:
         remedy = f"nonholo.resume({str(stream.path)!r}) computes its block again."
         raise error(_WHERE, "hold sound blocks", f"{flaw}, in '{stream.path}'", remedy) from None
     return stream.state_count(full)
-
-
-def _warn(path: Path, steps_done: int, steps: int) -> None:
-    owner = owner_of(path)
-    resume = f"Resume with nonholo.resume({str(path)!r}) (nonholo resume)."
-    now = f"It is being written by {owner}." if owner else resume
-    message = f"The run in '{path}' is not finished: its poses go up to step {steps_done} of {steps}. {now}"
-    warnings.warn(message, RuntimeWarning, stacklevel=4)

@@ -72,11 +72,7 @@ def separate_variables(group: AbstractMatrixGroup, g: Float[np.ndarray, "... K N
 def joined_rows(group: AbstractMatrixGroup, g: Float[np.ndarray, "... K N N"]) -> Float[np.ndarray, "... K c"]:
     """Return poses as rows of the columns but for the time; headings and signs of quaternions continue along K."""
     rows = separate_rows(group, g.reshape(-1, *g.shape[-2:])).reshape(*g.shape[:-2], -1)
-    return _joined_turns(layout(group)[1], rows)
-
-
-def _joined_turns(turn: list[str], rows: np.ndarray) -> np.ndarray:
-    """Return rows whose headings or quaternions continue from each to the next."""
+    turn = layout(group)[1]
     if turn == HEADING:
         rows[..., -1] = np.unwrap(rows[..., -1], axis=-1)
     if turn == QUATERNION:
@@ -333,7 +329,10 @@ def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> xarray.Dataset:
     names = (*_KNOWN, *_MATRICES) if decoded else tuple(_KNOWN)
     states = {name: _variable(orbit, name) for name in names if _is_known(orbit, name)}
     columns = {"time": _variable(orbit, "time")} | states | _posed(orbit, None)
-    if decoded and _has_multipliers(orbit):
+    motion: Any = orbit.motion
+    is_own = not isinstance(motion, Discretization) or (motion.order == 2 and orbit.has_every_step)
+    has_multipliers = is_own and not motion.is_measured and len(orbit) > 0 and _is_known(orbit, "momentum")
+    if decoded and has_multipliers:  # that need no other steps than those of its states
         rows = orbit.multipliers
         missing = np.full((len(orbit) - len(rows), rows.shape[1]), np.nan)
         columns["multipliers"] = _variable(orbit, "multipliers", np.concatenate([rows, missing]))
@@ -407,13 +406,6 @@ def _posed(orbit: Orbit, before: np.ndarray | None) -> dict[str, Variable]:
         return {}
     variables = pose_variables(orbit, before).items()
     return {name: Variable(("step", *axes), values, dict(labels)) for name, (axes, values, labels) in variables}
-
-
-def _has_multipliers(orbit: Orbit) -> bool:
-    """Tell whether an orbit has multipliers that need no other steps than those of its states."""
-    motion = orbit.motion
-    single = not isinstance(motion, Discretization) or (motion.order == 2 and orbit.has_every_step)
-    return single and not motion.is_measured and len(orbit) > 0 and _is_known(orbit, "momentum")
 
 
 def _variable(orbit: Orbit, name: str, values: np.ndarray | None = None) -> Variable:

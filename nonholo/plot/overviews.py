@@ -126,15 +126,12 @@ def _facts(orbit: AbstractOrbit) -> list[str]:
         steps = int(orbit.step[-1] - orbit.step[0])
         run = f"{steps:,} step{'s' * (steps != 1)} of $h$ = {step:g}".replace(",", "\u2009")
     end = [] if orbit.outcome == Outcome.successful else [f"stopped: {orbit.outcome}"]
-    return [_parameters(_inside(orbit.system)) if isinstance(orbit, Orbit) else _form(orbit), run, *end]
-
-
-def _form(orbit: AbstractOrbit) -> str:
-    """Say where an orbit moves that no system of bodies describes, and how many constraints it has."""
+    if isinstance(orbit, Orbit):
+        return [_parameters(_inside(orbit.system)), run, *end]
     names = [coordinates.symbol(name) for name in orbit.coordinates]
     where = ", ".join(names if len(names) <= 7 else [*names[:3], "...", names[-1]]) or str(orbit.space)
     s = orbit.system.constraints
-    return f"{where},  {s or 'no'} constraint{'s' * (s != 1)}"
+    return [f"{where},  {s or 'no'} constraint{'s' * (s != 1)}", run, *end]
 
 
 def name_of(orbit: AbstractOrbit) -> str:

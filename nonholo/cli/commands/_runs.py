@@ -28,6 +28,7 @@ from nonholo.simulation import resume_run, simulate, size_in_blocks
 
 RUNS = Path("runs")
 Chosen = dict[str, tuple[str, Any]]
+Loader = Callable[..., Loaded]
 Result = TypeVar("Result")
 
 
@@ -39,7 +40,9 @@ class Ran(NamedTuple):
     reason: str | None
 
 
-def request_of(name: str, options: Chosen, settings: Any, module: Path | None, load: Any = load_scenario) -> Any:
+def request_of(
+    name: str, options: Chosen, settings: list[str] | None, module: Path | None, load: Loader = load_scenario
+) -> Any:
     """Load a scenario; options of the command line come before the settings of `--set`."""
     with scenario_errors(), reporting_warnings():
         return load(name, given_settings(options, settings or []), module)
@@ -158,11 +161,9 @@ def _complete(request: Loaded, store: Path, *, progress: bool) -> Ran:
 def _try(request: Loaded) -> tuple[Any, bool]:
     """Return the discretized body of a scenario after a first step, which compiles, and whether there is a start."""
     discrete = _discretize(request)
-    try:
-        with request.reporting("start"):
-            return discrete, len(simulate(discrete, steps=1, throw=False, **request.scenario.options())) > 0
-    except OutcomeError:
-        return discrete, False  # off the principal branch: the run proper says so
+    with contextlib.suppress(OutcomeError), request.reporting("start"):
+        return discrete, len(simulate(discrete, steps=1, throw=False, **request.scenario.options())) > 0
+    return discrete, False  # off the principal branch: the run proper says so
 
 
 def _run(task: Callable[..., AbstractOrbit], **place: Any) -> Ran:

@@ -14,7 +14,7 @@ import typer
 from nonholo import ensembles, io
 from nonholo.base.results import OutcomeError
 from nonholo.cli.commands._runs import at_free_path, check_output, is_stopped
-from nonholo.cli.scenario.files import stored_scenario
+from nonholo.cli.scenario.files import Loaded, stored_scenario
 from nonholo.cli.scenario.motion import Scenario
 from nonholo.cli.scenario.sweeps import SweepScenario, sweep_text
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, scenario_errors, store_errors, warn
@@ -26,7 +26,9 @@ from nonholo.orbit import AbstractOrbit
 _MOST_WARNINGS = 5  # warnings of a sweep that are reported
 
 
-def sweep_and_keep(request: Any, output: Path | None, how: dict[str, Any], *, json: bool, quiet: bool) -> None:
+def sweep_and_keep(
+    request: Loaded[SweepScenario], output: Path | None, how: dict[str, Any], *, json: bool, quiet: bool
+) -> None:
     """Run, draw, report; how: scheduler and workers."""
     with scenario_errors(), reporting_warnings(), request.reporting():
         task = request.scenario.task()

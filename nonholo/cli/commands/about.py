@@ -7,6 +7,7 @@ import typer
 
 from nonholo.cli.commands.run import Module
 from nonholo.cli.screen.errors import USAGE, leave, scenario_errors, store_errors
+from nonholo.cli.screen.tables import show_table
 
 if TYPE_CHECKING:
     from nonholo.examples import Example
@@ -78,7 +79,6 @@ def examples(
     from nonholo.cli.scenario.bodies import summary
     from nonholo.cli.scenario.files import built_in_titles
     from nonholo.cli.scenario.sections import suggestion
-    from nonholo.cli.screen.tables import show_table
 
     scenarios = built_in_titles()
     if name in scenarios:
@@ -166,7 +166,6 @@ def systems(module: Module = None) -> None:
     """
     from nonholo.cli.scenario.bodies import body_table, own_kinds
     from nonholo.cli.scenario.files import built_in_titles, take_module
-    from nonholo.cli.screen.tables import show_table
 
     with scenario_errors():
         take_module(module)

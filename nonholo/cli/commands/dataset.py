@@ -8,6 +8,7 @@ import typer
 
 from nonholo.cli.commands.run import Quiet
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, store_errors
+from nonholo.cli.screen.tables import show_table
 
 
 def dataset(
@@ -40,7 +41,11 @@ def dataset(
     nonholo dataset top -o tops --rng 7 --format csv
     """
     if shown:
-        _show_all()
+        from nonholo.ensembles import DEFINITIONS
+
+        data = DEFINITIONS.items()
+        rows = ((k, each.title, "{:g} to {:g}".format(*each.energy), str(each.version)) for k, each in data)
+        show_table(("name", "what moves", "energies", "version"), rows, "Data sets")
         return
     if name is None or output is None:
         leave("Pass a name and -o FOLDER; `nonholo dataset --list` lists the names.", USAGE)
@@ -61,11 +66,3 @@ def _fractions(split: str) -> list[float]:
         return [float(part) for part in split.split("/")]
     except ValueError:
         raise ValueError(f"`--split` must be three numbers such as 0.8/0.1/0.1. Got {split!r}. Mend it.") from None
-
-
-def _show_all() -> None:
-    from nonholo.cli.screen.tables import show_table
-    from nonholo.ensembles import DEFINITIONS
-
-    rows = ((k, each.title, "{:g} to {:g}".format(*each.energy), str(each.version)) for k, each in DEFINITIONS.items())
-    show_table(("name", "what moves", "energies", "version"), rows, "Data sets")

@@ -17,11 +17,8 @@ TimeStep = Annotated[float | None, typer.Option(metavar="H", help="Instead of ru
 Settings = Annotated[
     list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change any value, in TOML; repeatable.")
 ]
-Plot = Annotated[bool | None, typer.Option("--plot/--no-plot", help="Draw a picture beside the store.")]
-Gif = Annotated[bool | None, typer.Option("--gif/--no-gif", help="Draw an animation beside the store.")]
 Module = Annotated[
-    Path | None,
-    typer.Option(metavar="FILE", help="Run your own Python file, whose functions are kinds of bodies."),
+    Path | None, typer.Option(metavar="FILE", help="Run your own Python file, whose functions are kinds of bodies.")
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of the table.")]
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace what an earlier call wrote there.")]
@@ -34,8 +31,8 @@ def simulate(
     steps: Steps = None,
     time_step: TimeStep = None,
     settings: Settings = None,
-    plot: Plot = None,
-    gif: Gif = None,
+    plot: Annotated[bool | None, typer.Option("--plot/--no-plot", help="Draw a picture beside the store.")] = None,
+    gif: Annotated[bool | None, typer.Option("--gif/--no-gif", help="Draw an animation beside the store.")] = None,
     module: Module = None,
     json: Json = False,
     overwrite: Overwrite = False,
@@ -69,7 +66,6 @@ Source = Annotated[
     str, typer.Argument(metavar="[SCENARIO | STORE]", help="What `nonholo simulate` takes, or a store that it made.")
 ]
 Page = Annotated[Path | None, typer.Option("-o", "--output", metavar="FILE", help="Where to write the page.")]
-Browser = Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")]
 
 
 def explore(
@@ -79,7 +75,7 @@ def explore(
     time_step: TimeStep = None,
     settings: Settings = None,
     module: Module = None,
-    browser: Browser = True,
+    browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")] = True,
     overwrite: Overwrite = False,
 ) -> None:
     """Write the live page of a motion, one file, and open it in the browser.
@@ -114,7 +110,6 @@ Scheduler = Annotated[
     typer.Option(metavar="HOW", help="threads (default), processes, or tcp://HOST:PORT of a Dask scheduler."),
 ]
 Workers = Annotated[int | None, typer.Option(metavar="N", min=1, help="Threads or processes; by default one a core.")]
-Map = Annotated[bool | None, typer.Option("--plot/--no-plot", help="Draw a map beside the store.")]
 
 
 def sweep(
@@ -124,7 +119,7 @@ def sweep(
     scheduler: Scheduler = None,
     workers: Workers = None,
     settings: Settings = None,
-    plot: Map = None,
+    plot: Annotated[bool | None, typer.Option("--plot/--no-plot", help="Draw a map beside the store.")] = None,
     module: Module = None,
     json: Json = False,
     quiet: Quiet = False,

@@ -111,13 +111,7 @@ Output = Annotated[
 Kind = Annotated[
     str, typer.Option(metavar="KIND", help="Of a run: a picture of nonholo.plot, such as blade-track; or all of them.")
 ]
-Gif = Annotated[bool, typer.Option("--gif", help="Of a run: draw an animation instead.")]
-Color = Annotated[str | None, typer.Option(metavar="NAME", help="Of a sweep: the quantity that is shown.")]
 Across = Annotated[str | None, typer.Option("--x", metavar="NAME", help="Of a sweep or section: what runs across.")]
-Up = Annotated[str | None, typer.Option("--y", metavar="NAME", help="Of a sweep or section: what runs up.")]
-Title = Annotated[str | None, typer.Option(help="Instead of the picture's own; '' for none.")]
-Size = Annotated[str | None, typer.Option(metavar="WxH", help="In inches, as 16x9; fonts grow with it.")]
-Dpi = Annotated[float, typer.Option(min=10, max=1200, help="Dots per inch of a .png.")]
 Dark = Annotated[bool | None, typer.Option("--dark/--light", help="Colors for a dark or a light background.")]
 
 
@@ -125,13 +119,13 @@ def plot(
     store: Store,
     output: Output = None,
     kind: Kind = "overview",
-    gif: Gif = False,
-    color: Color = None,
+    gif: Annotated[bool, typer.Option("--gif", help="Of a run: draw an animation instead.")] = False,
+    color: Annotated[str | None, typer.Option(metavar="NAME", help="Of a sweep: the quantity that is shown.")] = None,
     x: Across = None,
-    y: Up = None,
-    title: Title = None,
-    size: Size = None,
-    dpi: Dpi = 150,
+    y: Annotated[str | None, typer.Option("--y", metavar="NAME", help="Of a sweep or section: what runs up.")] = None,
+    title: Annotated[str | None, typer.Option(help="Instead of the picture's own; '' for none.")] = None,
+    size: Annotated[str | None, typer.Option(metavar="WxH", help="In inches, as 16x9; fonts grow with it.")] = None,
+    dpi: Annotated[float, typer.Option(min=10, max=1200, help="Dots per inch of a .png.")] = 150,
     dark: Dark = None,
     overwrite: Overwrite = False,
 ) -> None:

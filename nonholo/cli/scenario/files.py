@@ -149,9 +149,8 @@ def complete(document: dict[str, Any], name: str, source: str, settings: list[Se
 def _directions(document: dict[str, Any]) -> tuple[str, ...] | None:
     """Return the names of the directions of the body of a document; None if it is no body, which is reported later."""
     try:
-        return components_of(
-            moving(body_table(document["body"]["kind"]).model_validate(document["body"]).creation).group
-        )
+        body = document["body"]
+        return components_of(moving(body_table(body["kind"]).model_validate(body).creation).group)
     except (AttributeError, KeyError, TypeError, ValueError):
         return None
 
@@ -251,18 +250,12 @@ def _text_of(name: str, own: dict[str, str]) -> tuple[str, str]:
         may_be_kind = own == built_in() and name.isidentifier()
         if may_be_kind and is_example(name) and name in kinds():
             return f"{name} (example)", toml_text(summary(body_table(name).make), {"body": {"kind": name}})
-        remedy = _remedy(name, own, may_be_kind)
+        of_class = None if is_example(name) else f"`nonholo new {name}` writes one."
+        remedy = of_class or (nearest_kind(name) if may_be_kind else suggestion(name, own))
         text = f"there is no such file, and no built-in scenario of this name. {remedy}"
     except (OSError, UnicodeDecodeError) as failure:
         text = f"cannot be read as a text file: {failure}"
     raise ScenarioError([Problem(name, "", text)])
-
-
-def _remedy(name: str, own: dict[str, str], may_be_kind: bool) -> str:
-    """Return the advice for a scenario that is not there."""
-    if not is_example(name):  # a class of systems
-        return f"`nonholo new {name}` writes one."
-    return nearest_kind(name) if may_be_kind else suggestion(name, own)
 
 
 def assign(document: dict[str, Any], setting: Setting) -> None:

@@ -347,9 +347,8 @@ def _complete_one(own: dict[str, Any], name: str, value: Any) -> None:
 
 def _complete_start(own: dict[str, Any], values: dict[str, Any]) -> None:
     """Give a start of which every component is varied, from the first one on, and none is given."""
-    parts = {
-        (part[1], int(part[2] or part[3])): values[name] for name in values if (part := _COMPONENT.fullmatch(name))
-    }
+    matches = ((_COMPONENT.fullmatch(name), value) for name, value in values.items())
+    parts = {(part[1], int(part[2] or part[3])): value for part, value in matches if part}
     if not parts or not set(_STARTS).isdisjoint([*own, *values]):
         return
     owner, _ = next(iter(parts))
@@ -370,12 +369,11 @@ def _typical(value: Any) -> Any:
 def _refusals(scenario: SweepScenario) -> list[tuple[str, str]]:
     """Return key paths and texts of what a scenario of one motion may say, but no sweep."""
     flaws = _refused_values(scenario)
-    if scenario.start is not None:
-        if scenario.is_family:
-            flaws.append(("start", "is not for sweeps of this body, whose keys say how it starts"))
-        for key in ("displacement", "configuration"):
-            if getattr(scenario.start, key) is not None:
-                flaws.append((f"start.{key}", f"is not for sweeps. Start by {', '.join(_STARTS)}"))
+    if scenario.start is not None and scenario.is_family:
+        flaws.append(("start", "is not for sweeps of this body, whose keys say how it starts"))
+    for key in ("displacement", "configuration"):
+        if getattr(scenario.start, key, None) is not None:
+            flaws.append((f"start.{key}", f"is not for sweeps. Start by {', '.join(_STARTS)}"))
     if scenario.run.save_every != 1:
         flaws.append(("run.save_every", "is not for sweeps: [keep] says what is kept"))
     return flaws

@@ -1,6 +1,7 @@
 """Films of bodies in the plane: a sleigh with its blade, center of mass and track, the outline of a system, a point."""
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeAlias
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,6 +18,10 @@ from nonholo.plot.sheets import blade_of_system
 from nonholo.systems import System
 
 _SLENDER = 1.6  # length of the drawn body over its width
+
+
+Drawn: TypeAlias = Callable[[Any], Bodies | None]
+"""A function of states that gives their bodies."""
 
 
 def motion(orbit: Orbit) -> float:
@@ -79,7 +84,9 @@ def _outline(system: System) -> list[Float[np.ndarray, "P 2"]]:
     return outline if blade_of_system(system) is None else [*outline, length * stroke]
 
 
-def _draw(axes: Axes, orbit: Any, parts: list[Part], points: Points, bodies: Any, *, is_place: bool = True) -> Show:
+def _draw(
+    axes: Axes, orbit: AbstractOrbit, parts: list[Part], points: Points, bodies: Drawn, *, is_place: bool = True
+) -> Show:
     motions = [(part, points(part.path), bodies(part.frames)) for part in parts]
     shown = np.concatenate([path if at is None else at.with_corners(path) for _, path, at in motions])
     if is_place:

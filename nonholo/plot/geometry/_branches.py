@@ -198,7 +198,13 @@ def branches(
     discrete = planar_map(f"{where}(discrete=...)", discrete)[0]
     on_momenta = _is_over_momenta(discrete, plane)
     values = values_of(discrete, momentum=momentum, displacement=displacement)
-    W = _present(discrete, momentum) if displacement is None else np.asarray(displacement, dtype=float)
+    if displacement is not None:
+        W = np.asarray(displacement, dtype=float)
+    elif shape_of(momentum) == (discrete.system.group.dim,):
+        W = inverse_discrete_legendre(discrete, momentum)
+    else:
+        over = displacements_over(discrete, momentum)
+        W = over.displacement[over.principal].real
     axes = theme.axes_or_new(axes, (6.4, 5.6))
     return (_over_momenta if on_momenta else _on_displacements)(axes, discrete, values, W)
 
@@ -213,14 +219,6 @@ def _is_over_momenta(discrete: Discretization, plane: str | None) -> bool:
     if plane == "momenta" and not has_deltoid:
         raise error(where, "be 'displacements' where there is no deltoid", shown(discrete.system), "Leave it out.")
     return plane == "momenta"
-
-
-def _present(discrete: Discretization, momentum: Any) -> Float[np.ndarray, "N N"]:
-    """Return the displacement of a momentum that has one."""
-    if shape_of(momentum) == (discrete.system.group.dim,):
-        return inverse_discrete_legendre(discrete, momentum)
-    values = displacements_over(discrete, momentum)
-    return values.displacement[values.principal].real
 
 
 def _on_displacements(axes: Axes, discrete: Discretization, values: Branches, W: np.ndarray) -> BranchesPicture:

@@ -242,7 +242,11 @@ def momentum_sphere(
     axes = theme.axes_or_new(axes, (6.0, 6.0))
     sphere.draw_globe(axes, eye)
     path, dots = sphere.draw_path(axes, eye, orbit[part], points, orbit)
-    _rows(axes, eye, to_sphere)
+    for index, direction in enumerate(to_sphere / np.linalg.norm(to_sphere, axis=1)[:, None]):
+        (pole, tip), depth = eye(np.array([[1.0], [1.16]]) * direction)  # where each component alone points, outwards
+        alpha = float(sphere.opacity(depth[:1])[0])
+        axes.plot(*np.stack([pole, tip], axis=1), color=theme.MUTED, linewidth=1.4, alpha=alpha, zorder=6)
+        sphere.name_beside(axes, f"$r_{index + 1}$", tip, away=tip, color=theme.MUTED)
     sphere.mark_ends(axes, eye, points, part, orbit)
     stable, unstable = _equilibria(axes, eye, attracting)
     theme.write_title(axes, "Momentum on its energy sphere")
@@ -276,16 +280,9 @@ def _attracting(system: AbstractLLSystem, to_sphere: Float[np.ndarray, "3 3"]) -
     return (point / np.linalg.norm(point))[None, :]
 
 
-def _rows(axes: Axes, eye: sphere.View, to_sphere: Float[np.ndarray, "3 3"]) -> None:
-    """Draw where each component of the momentum alone points, out of the sphere."""
-    for index, direction in enumerate(to_sphere / np.linalg.norm(to_sphere, axis=1)[:, None]):
-        (pole, tip), depth = eye(np.array([[1.0], [1.16]]) * direction)
-        alpha = float(sphere.opacity(depth[:1])[0])
-        axes.plot(*np.stack([pole, tip], axis=1), color=theme.MUTED, linewidth=1.4, alpha=alpha, zorder=6)
-        sphere.name_beside(axes, f"$r_{index + 1}$", tip, away=tip, color=theme.MUTED)
-
-
-def _equilibria(axes: Axes, eye: sphere.View, attracting: Float[np.ndarray, "A 3"]) -> tuple[Any, Any]:
+def _equilibria(
+    axes: Axes, eye: sphere.View, attracting: Float[np.ndarray, "A 3"]
+) -> tuple[PathCollection | None, PathCollection | None]:
     if not len(attracting):
         return None, None
     (here, there), depth = eye(np.concatenate([attracting, -attracting]))

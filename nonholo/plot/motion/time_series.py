@@ -3,7 +3,7 @@
 import itertools
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple, Unpack, cast
+from typing import Any, NamedTuple, TypeVar, Unpack, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -20,6 +20,7 @@ from nonholo.plot import theme
 from nonholo.plot.parts import drawable_in_time, evenly_in_box, with_poses
 from nonholo.plot.sheets import Blade, blade_of_system
 
+AnyOrbit = TypeVar("AnyOrbit", bound=AbstractOrbit)
 _MOST_POINTS = 2000
 _MOST_LINES = 60  # momenta in one panel
 
@@ -87,7 +88,9 @@ def _flow(axes: Axes, time: Float[np.ndarray, "K"], values: Float[np.ndarray, "K
     _line(axes, time, values, label="continuous" if has_label else None, **look)
 
 
-def draw_components(axes: Axes, orbit: Any, flow: Any, quantity: Callable[[Any], np.ndarray], names: list[str]) -> None:
+def draw_components(
+    axes: Axes, orbit: AnyOrbit, flow: AnyOrbit | None, quantity: Callable[[AnyOrbit], np.ndarray], names: list[str]
+) -> None:
     """Draw one line for each component of a quantity, thin and without names where there are too many to tell apart."""
     few = len(names) <= len(theme.COMPONENTS)
     for values, color, name in zip(quantity(orbit).T, theme.component_colors(len(names)), names, strict=True):
@@ -204,14 +207,21 @@ def draw_residual(orbit: Any, axes: Axes) -> None:
     axes.set_ylim(bottom=0.0)
 
 
-def _over_rounding(orbit: Any, axes: Axes, error: Float[np.ndarray, "K"], unit: float) -> tuple[Rectangle, Any]:
+def _over_rounding(
+    orbit: AbstractOrbit, axes: Axes, error: Float[np.ndarray, "K"], unit: float
+) -> tuple[Rectangle, PathCollection | PolyCollection | Line2D]:
     """Draw errors in a unit over the band of rounding."""
     label = "machine epsilon" if _EPS / unit > _VISIBLE else "_machine epsilon"  # a legend of what can be seen
     band: Any = {"color": theme.LEVEL, "alpha": 0.45, "linewidth": 0, "zorder": 0, "label": label}
     rounding = axes.axhspan(-_EPS / unit, _EPS / unit, **band)
     axes.axhline(0.0, color=theme.LEVEL, linewidth=0.8, zorder=1)
+    time, own = orbit.time, theme.own_look(theme.DISCRETE)
+    if orbit.is_discrete and len(time) <= _MOST_DOTS:
+        return rounding, axes.scatter(time, error, s=5, linewidths=0, zorder=3, **own)
     if orbit.is_discrete:
-        return rounding, _error(axes, orbit.time, error)
+        starts = np.arange(0, len(time), math.ceil(len(time) / _COLUMNS))
+        low, high = np.minimum.reduceat(error, starts), np.maximum.reduceat(error, starts)
+        return rounding, axes.fill_between(time[starts], low, high, linewidth=0.8, zorder=3, **own)
     at = evenly_in_box(np.stack([orbit.time, error], axis=1), _MOST_DOTS)
     look = theme.own_look(theme.CONTINUOUS)
     return rounding, axes.plot(orbit.time[at], error[at], linewidth=1.0, zorder=3, **look)[0]
@@ -229,14 +239,6 @@ def _expectation(orbit: AbstractOrbit, has_work: bool) -> str:
 
 def _unit(largest: float) -> float:
     return 1e-16 if largest < 1e-13 else float(f"1e{math.floor(math.log10(largest))}")
-
-
-def _error(axes: Axes, time: Float[np.ndarray, "K"], error: Float[np.ndarray, "K"]) -> PathCollection | PolyCollection:
-    if len(time) <= _MOST_DOTS:
-        return axes.scatter(time, error, s=5, linewidths=0, zorder=3, **theme.own_look(theme.DISCRETE))
-    starts = np.arange(0, len(time), math.ceil(len(time) / _COLUMNS))
-    low, high = np.minimum.reduceat(error, starts), np.maximum.reduceat(error, starts)
-    return axes.fill_between(time[starts], low, high, linewidth=0.8, zorder=3, **theme.own_look(theme.DISCRETE))
 
 
 def _dress(axes: Axes, time: Any, error: Float[np.ndarray, "K"], unit: float, name: str) -> None:
