@@ -46,10 +46,10 @@ Start: TypeAlias = tuple[str, Float[np.ndarray, "n"]]
 class EnsembleTask:
     r"""Run the members of a design and keep some numbers of each.
 
-    What the design does not name is as given here. Names of a design are parameters of the system, "time_step", a start
-    or one of its components, such as "restricted_velocity_0". A start need not be given if all of it is varied. Of a
-    system under forces they are also numbers of these, such as "gravity_force", "gravity_force_1", "friction" and
-    "slip_grip": such members run one by one.
+    Arguments that the design does not name are as given here. Names of a design are parameters of the system,
+    "time_step", a start or one of its components, such as "restricted_velocity_0". A start need not be given if all of
+    it is varied. Of a system under forces they are also numbers of these, such as "gravity_force", "gravity_force_1",
+    "friction" and "slip_grip": such members run one by one.
 
     Reductions: "final_state" (restricted momentum, time, energy and compact pose of the last good state that is saved,
     and the number of good steps), "energy_drift" (of that state, relative), "limit_angle" (total turn of a plane
@@ -170,7 +170,7 @@ class EnsembleTask:
         return self._with(io.on_route_of(attributes, self.discrete))
 
     def _member(self, block: MemberBlock, member: int, of_forces: list[str]) -> dict[str, Any]:
-        """Run one member under forces of its own."""
+        """Run one member under its forces."""
         system = with_force_numbers(self.discrete.system, {name: block[name][member] for name in of_forces})
         rest = {name: values for name, values in block.items() if name not in of_forces}
         task = self._with(dataclasses.replace(self.discrete, system=system))

@@ -77,7 +77,7 @@ def with_components(name: str, value: Any, own: Mapping[str, Any]) -> Any:
 
 def no_component(got: str) -> ValueError:
     """Return the refusal of a component that a value does not have."""
-    return error("sweep(design=...)", "vary components that there are", got, "They are counted from 0.")
+    return error("sweep(design=...)", "vary existing components", got, "They are counted from 0.")
 
 
 def array_name(where: str, name: Any) -> str:
@@ -147,7 +147,7 @@ def _names(part: Any) -> Iterator[tuple[str, str]]:
 
 
 def is_force_number(system: Any, name: str) -> bool:
-    """Tell whether a name is a number of a force, or a component of one that is a vector."""
+    """Return whether a name is a number of a force, or a component of one that is a vector."""
     numbers, part = force_numbers(system), component_of(name)
     return name in numbers or (part is not None and np.ndim(numbers.get(part[0], 0.0)) == 1)
 

@@ -46,7 +46,7 @@ class Output:
         dimensions: Names of its axes but for those of the members.
         shape: Their lengths.
         dtype: Type of the numbers on disk.
-        attributes: What is said of it.
+        attributes: Its attributes in the store.
     """
 
     dimensions: tuple[str, ...]
@@ -311,7 +311,7 @@ class SweepStore:
         _ = self.design
 
     def finish(self) -> None:
-        """Say that the sweep came to its end, and consolidate the metadata."""
+        """Mark the sweep as finished, and consolidate the metadata."""
         self._blocks.finish({"finished": True})
 
     def grow(self, members: int) -> "SweepStore":
@@ -466,7 +466,7 @@ class SweepStanding(NamedTuple):
 
 
 def standing_of(path: str | Path) -> SweepStanding:
-    """Say how far the sweep of a store came."""
+    """Return the progress of the sweep of a store."""
     store = open_store(path)
     marks = [mark for _, mark in store.marks()]
     outcomes = sum((collections.Counter(mark.outcomes) for mark in marks), collections.Counter())

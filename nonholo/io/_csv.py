@@ -38,7 +38,7 @@ def orbit_to_csv(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fa
     Numbers have as many digits as they need to be read back exactly. The file appears only when it is complete.
 
     Args:
-        orbit: What to write.
+        orbit: The orbit to write.
         path: A new file.
         overwrite: Replace an older file.
 
@@ -54,7 +54,7 @@ def orbit_to_csv(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fa
     instance("orbit_to_csv(orbit=...)", orbit, AbstractOrbit, "be an orbit", "Pass what `simulate` or `flow` returned.")
     if not orbit.has_poses:
         remedy = "Run with reconstruct=True."
-        raise error("Orbit.to_csv(...)", "be asked of an orbit with poses", "reconstruct=False", remedy)
+        raise error("Orbit.to_csv(...)", "be called on an orbit with poses", "reconstruct=False", remedy)
     own: Any = orbit
     pose, heading = (own.canonical_pose, own.turned) if orbit.is_compact else (own.configuration, None)
     lines = _lines(orbit.system, [Stretch(orbit.time, np.asarray(pose), heading)], 1)
@@ -72,7 +72,7 @@ def store_to_csv(
 ) -> None:
     """Write the poses of a store as `orbit_to_csv` does, chunk by chunk: an orbit of any length needs little memory.
 
-    Of a run that is not finished the finished blocks are written, and a `RuntimeWarning` says how far they go. The
+    Of a run that is not finished the finished blocks are written, and a `RuntimeWarning` names the last step. The
     store is read twice: damage is found before the first row is written.
 
     Args:

@@ -148,7 +148,7 @@ def color_key(axes: Axes, mappable: ScalarMappable, subject: Subject) -> Colorba
 
 
 def is_wide(values: Float[np.ndarray, "..."]) -> bool:
-    """Tell whether positive numbers range over orders of magnitude."""
+    """Return whether positive numbers range over orders of magnitude."""
     if not values.size or not values.min() > 0:
         return False
     low, high = np.quantile(values, [0.05, 0.95])
@@ -161,7 +161,7 @@ def scale_along(values: Float[np.ndarray, "K"]) -> str:
 
 
 def is_geometric(values: Float[np.ndarray, "K"]) -> bool:
-    """Tell whether values along an axis have one quotient, and no one difference."""
+    """Return whether values along an axis have one quotient, and no one difference."""
     if len(values) < 3 or not values.min() > 0:
         return False
     quotients, differences = values[1:] / values[:-1], np.diff(values)
@@ -320,7 +320,7 @@ def sweep_map(
     logarithmic. For random draws: dots over two values, over one, or with neither x nor y a histogram.
 
     Args:
-        result: What `sweep` or `load_sweep` returned, or a part of it, as from `result.sel(...)`.
+        result: The result of `sweep` or `load_sweep`, or a part of it, as from `result.sel(...)`.
         quantity: A number of each member; by default the first that the task returned. "outcome" shows how all ended.
         x: An axis of the grid, by default the first one; for draws any number of each member.
         y: The same, by default the next axis.

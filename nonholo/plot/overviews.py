@@ -1,7 +1,7 @@
 """The picture of an orbit: its panels in one figure with a head, for the screen, a slide or a page.
 
-Which panels it has is chosen by the group, the kind of constraint and the number of free directions. The head says what
-moves, its parameters, how long, and how the run ended.
+Which panels it has is chosen by the group, the kind of constraint and the number of free directions. The head names the
+system, its parameters, the time, and the end of the run.
 """
 
 import functools
@@ -199,7 +199,7 @@ def overview(
     energy need poses, and are left out without them. Color is time in all panels; the strip under a panel against time
     is the key.
 
-    Of a Lagrange-d'Alembert system there are its path, where coordinates named x and y, or a group, say where it is,
+    Of a Lagrange-d'Alembert system there are its path, where coordinates named x and y, or a group, give its place,
     the other coordinates, velocities, the error of the energy and the residual of the constraint.
 
     Args:

@@ -76,8 +76,8 @@ def window(orbit: Orbit, step: float, finest: float, most: int) -> slice:
 
     Args:
         orbit: The orbit.
-        step: How far a picture moves between two states.
-        finest: How far it should move at least.
+        step: The motion in a picture between two states.
+        finest: The least motion between two of them.
         most: Number of states.
     """
     stride = max(1, int(finest / step)) if step > 0 else max(1, len(orbit) // most)
@@ -178,7 +178,7 @@ def new_page(where: str, size: tuple[float, float], path: str | Path | None, *, 
 
 
 def finish_page(figure: Figure, title: str, facts: list[str], path: str | Path | None) -> Figure:
-    """Write the head above the panels, with the title that is asked for, and save the figure."""
+    """Write the head above the panels, with the given title, and save the figure."""
     line = rcParams["font.size"] / 72 / figure.get_figheight()  # in parts of the figure
     title = theme.option("title", title)
     figure.text(0.012, 0.985, title, va="top", fontsize="xx-large", fontweight="bold")
@@ -238,7 +238,7 @@ def detail(
         position: Points of the curve.
         turning: Angular velocities there.
         cusp: A cusp of the curve.
-        view: What the picture shows.
+        view: The view of the picture.
     """
     fast = np.flatnonzero(np.abs(turning) > 0.1 * np.abs(turning).max())
     turn = slice(fast[0], fast[-1] + 1)
@@ -290,7 +290,7 @@ def drawable_in_time(where: str, orbit: Any) -> Any:
     """Return an orbit of any kind with at least one state; a flow that knows those between with enough for a curve."""
     remedy = "Pass what `simulate` or `flow` returned."
     if len(instance(where, orbit, AbstractOrbit, "be an orbit", remedy)) == 0:
-        raise error(where, "have a state to draw", "none", "See `orbit.outcome` for why the run did not start.")
+        raise error(where, "have a state to draw", "none", "`orbit.outcome` has the reason.")
     if orbit.span is None or not 1 < len(orbit) < _SMOOTH:
         return orbit
     more = np.linspace(orbit.time[0], orbit.time[-1], _SMOOTH)
@@ -321,7 +321,7 @@ def same_group(where: str, orbit: Any, other: Orbit) -> Orbit | None:
 
 
 def is_free(system: System) -> bool:
-    """Tell whether nothing constrains the body or acts on it, whose spatial momentum is then conserved."""
+    """Return whether nothing constrains the body or acts on it, whose spatial momentum is then conserved."""
     return system.rank == system.group.dim and not system.is_forced
 
 
@@ -334,7 +334,7 @@ def forbidden_axis(system: AbstractSystem) -> Float[np.ndarray, "3"] | None:
 
 
 def is_same_body(system: System, other: System) -> bool:
-    """Tell whether two systems have the same constraint and inertia, whatever their classes, up to rounding."""
+    """Return whether two systems have the same constraint and inertia, up to rounding, in any classes."""
     if (system.group, system.is_spatial, system.rank) != (other.group, other.is_spatial, other.rank):
         return False
     same_rows = np.allclose(system.constraint_subspace, other.constraint_subspace, rtol=0.0, atol=_ROUNDING)

@@ -3,7 +3,7 @@ r"""Bodies with two admissible directions on paper: their displacements on a dis
 One interface of two classes: discs of tops, whose opposite rim points are one, the projective plane; strips of
 $(\Delta, \nu)$ of sleighs, whose edges are one upside down, a Moebius band. Points are those of
 `nonholo.analysis.planar`. Coordinates of the plane of momenta are those of the normal form of tops and sleighs, of
-others those of the canonical frame. What is drawn on that plane is not decided here.
+others those of the canonical frame. The drawing on that plane is not decided here.
 """
 
 import dataclasses
@@ -270,13 +270,13 @@ def draw_level(axes: Axes, sheet: Sheet, curve: InvariantCurve, **look: Any) -> 
 
 
 def sheet_of(system: AbstractSystem) -> Sheet | None:
-    """Return the sheet of a top in space or a sleigh in the plane, whatever its class; None for other systems."""
+    """Return the sheet of a top in space or a sleigh in the plane, of any class; None for other systems."""
     variety: Any = planar_variety(system)
     return None if variety is None else (StripSheet if variety.form.is_sleigh else DiscSheet)(variety)
 
 
 def blade_of_system(system: AbstractSystem) -> Blade | None:
-    """Return the blade of a sleigh in the plane, whatever acts on it; None for other systems."""
+    """Return the blade of a sleigh in the plane, under any forces; None for other systems."""
     sheet = sheet_of(cast(Any, system).system if system.is_forced else system)
     return None if sheet is None else sheet.blade
 
@@ -360,7 +360,7 @@ def draw_surface(axes: Any, momentum: Float[np.ndarray, "R C 3"]) -> Any:
 
 
 def spans(momentum: Float[np.ndarray, "R C 3"]) -> Float[np.ndarray, "3"]:
-    """Return the extent of each component; that of the largest where a surface is flat but for rounding."""
+    """Return the extent of each component; the largest of them where a surface is flat up to rounding."""
     span = np.ptp(momentum.reshape(-1, 3), axis=0)
     return np.where(span > _FLAT * span.max(), span, span.max())
 

@@ -22,7 +22,7 @@ def dataset(
     split: Annotated[str, typer.Option(metavar="A/B/C", help="For training, validation, test.")] = "0.8/0.1/0.1",
     file_format: Annotated[str, typer.Option("--format", metavar="HOW", help="zarr, or csv: tables.")] = "zarr",
     license_name: Annotated[
-        str, typer.Option("--license", metavar="NAME", help="What the data card says.")
+        str, typer.Option("--license", metavar="NAME", help="The license in the data card.")
     ] = "CC0-1.0",
     shown: Annotated[bool, typer.Option("--list", help="List the data sets.")] = False,
     quiet: Quiet = False,
@@ -45,7 +45,7 @@ def dataset(
 
         data = DEFINITIONS.items()
         rows = ((k, each.title, "{:g} to {:g}".format(*each.energy), str(each.version)) for k, each in data)
-        show_table(("name", "what moves", "energies", "version"), rows, "Data sets")
+        show_table(("name", "system", "energies", "version"), rows, "Data sets")
         return
     if name is None or output is None:
         leave("Pass a name and -o FOLDER; `nonholo dataset --list` lists the names.", USAGE)
@@ -58,7 +58,7 @@ def dataset(
             folder = write(name, output, **options, **how, progress=sys.stderr.isatty() and not quiet)
         except KeyboardInterrupt:
             leave("Stopped; the same command resumes it.", FAILED)
-    typer.echo(folder if quiet else f"{folder / 'README.md'} says what is there.")
+    typer.echo(folder if quiet else f"{folder / 'README.md'} describes the files.")
 
 
 def _fractions(split: str) -> list[float]:

@@ -50,7 +50,7 @@ Value = TypeVar("Value")
 
 
 def is_range(value: Any) -> bool:
-    """Tell whether values of a grid are a range, whose count can be scaled."""
+    """Return whether values of a grid are a range, whose count can be scaled."""
     return isinstance(value, dict)
 
 
@@ -138,7 +138,7 @@ def _arguments(word: str) -> tuple[list[str], list[str]]:
 
 
 def needs_size(table: Any) -> bool:
-    """Tell whether a distribution lacks the size that its own table can give it."""
+    """Return whether a distribution lacks the size that its own table can give it."""
     if not isinstance(table, dict) or "size" in table:
         return False
     each = (arguments(make)[name] for word, make in _WORDS.items() if word in table for name in _arguments(word)[1])
@@ -370,12 +370,12 @@ def _refusals(scenario: SweepScenario) -> list[tuple[str, str]]:
     """Return key paths and texts of what a scenario of one motion may say, but no sweep."""
     flaws = _refused_values(scenario)
     if scenario.start is not None and scenario.is_family:
-        flaws.append(("start", "is not for sweeps of this body, whose keys say how it starts"))
+        flaws.append(("start", "is not for sweeps of this body, whose keys have its start"))
     for key in ("displacement", "configuration"):
         if getattr(scenario.start, key, None) is not None:
             flaws.append((f"start.{key}", f"is not for sweeps. Start by {', '.join(_STARTS)}"))
     if scenario.run.save_every != 1:
-        flaws.append(("run.save_every", "is not for sweeps: [keep] says what is kept"))
+        flaws.append(("run.save_every", "is not for sweeps: [keep] lists what is kept"))
     return flaws
 
 

@@ -25,7 +25,7 @@ Drawn: TypeAlias = Callable[[Any], Bodies | None]
 
 
 def motion(orbit: Orbit) -> float:
-    """Return how far the body moves between saved states, in units of what the eye can follow from frame to frame."""
+    """Return the motion of the body between saved states, in units of what the eye can follow from frame to frame."""
     point = SE(2).adjoint(SE(2).inverse(_axes(orbit.system)))[1:]
     return motion_of(orbit, point, float(np.ptp(_outline(orbit.system)[0][:, 0])))
 

@@ -210,14 +210,14 @@ def branches(
 
 
 def _is_over_momenta(discrete: Discretization, plane: str | None) -> bool:
-    """Tell whether to draw on the plane of momenta."""
+    """Return whether to draw on the plane of momenta."""
     has_deltoid = _sheet(discrete).has_deltoid
     if plane is None:
         return has_deltoid
     where = "plot.branches(plane=...)"
     choice(where, plane, ("displacements", "momenta"), "Leave it out for the usual one.")
     if plane == "momenta" and not has_deltoid:
-        raise error(where, "be 'displacements' where there is no deltoid", shown(discrete.system), "Leave it out.")
+        raise error(where, "be 'displacements' for a system without a deltoid", shown(discrete.system), "Leave it out.")
     return plane == "momenta"
 
 
@@ -342,8 +342,8 @@ def branch_tree(
     Reference: docs/theory/branches.md.
 
     Args:
-        discrete: What the tree was made of; with three or more restricted momenta the first two are drawn.
-        tree: What `nh.branch_tree` returned, with one generation or more.
+        discrete: The discretization of the tree; with three or more restricted momenta the first two are drawn.
+        tree: The result of `nh.branch_tree`, with one generation or more.
         axes: Where to draw the momenta and the counts; a new figure by default.
         **look: Title, label, color and more: `nh.plot.Look`.
 
