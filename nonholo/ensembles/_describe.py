@@ -79,9 +79,12 @@ def differences(ours: Any, theirs: Any, where: str = "") -> Iterator[str]:
             else:
                 yield from differences(ours[name], theirs[name], inner)
     elif ours != theirs:
-        texts = (json.dumps(value) for value in (ours, theirs))
-        one, other = (text if len(text) <= 200 else f"{text[:200]}..." for text in texts)
-        yield f"{where} is {one} instead of {other}"
+        yield f"{where} is {_short(ours)} instead of {_short(theirs)}"
+
+
+def _short(value: Any) -> str:
+    text = json.dumps(value)
+    return text if len(text) <= 200 else f"{text[:200]}..."
 
 
 def _hash(values: np.ndarray) -> str:

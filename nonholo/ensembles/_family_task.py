@@ -112,7 +112,7 @@ class FamilyTask:
         for family in dict.fromkeys(families):
             members = [member for member, other in enumerate(families) if other == family]
             starts = {name: np.stack([each[member][1][name] for member in members]) for name in each[0][1]}
-            numbers = [block.first + member for member in members]
+            numbers = (block.first + np.array(members)).tolist()
             batch = self._ensemble([each[member][0] for member in members], starts, numbers)
             for name, (dimensions, rows, labels) in self._reduced(batch).items():
                 whole = np.empty((block.count, *rows.shape[1:]), rows.dtype)

@@ -286,7 +286,7 @@ class SweepStore:
         """Return the mark of a finished block, of which every chunk is sound.
 
         Raises:
-            DamagedError: One is not, or the mark is not; the message says which, and how.
+            DamagedError: One is not, or the mark is not; the message names it and the damage.
         """
         return _mark_of(block, self._blocks.sound(block).about)
 

@@ -362,13 +362,17 @@ def force_numbers(forced: Forced) -> dict[str, float] | None:
     friction, n = forced.friction, forced.group.size - forced.group.is_affine
     gravity = forced.gravity or Gravity(np.zeros(n), np.zeros(n))
     coefficients = np.zeros(2) if friction is None else friction.coefficients
-    others = forced.scheme == "variational" or forced.slip is not None or (forced.terms and forced.gravity is None)
-    is_turned = not np.array_equal(forced.system.frame, forced.group.identity)
-    if coefficients.ndim > 1 or forced.needs_function or others or is_turned:  # a weight is the only potential
+    if coefficients.ndim > 1 or not _is_plain(forced):
         return None
     rows = {"F": gravity.force, "x": gravity.point, "c": coefficients[:2]}
     numbers = {f"{name}{i}": float(x) for name, row in rows.items() for i, x in enumerate(row, 1)}
     return numbers if forced.table is None else {**numbers, "s": 1.0}
+
+
+def _is_plain(forced: Forced) -> bool:
+    """Return whether a weight is the only potential, no function acts, and the body has the canonical axes."""
+    others = forced.scheme == "variational" or forced.slip is not None or (forced.terms and forced.gravity is None)
+    return not (forced.needs_function or others) and np.array_equal(forced.system.frame, forced.group.identity)
 
 
 def under_forces(system: AbstractSystem, numbers: Mapping[str, float], rows: Float[np.ndarray, "K dim"]) -> Forced:

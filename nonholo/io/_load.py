@@ -12,6 +12,7 @@ import zarr
 from nonholo.base.checks import error
 from nonholo.base.checks import path as checked_path
 from nonholo.base.results import Outcome
+from nonholo.base.types import Float
 from nonholo.io._attributes import FORMAT, SCHEMA, SWEEP_FORMAT, restore_motion
 from nonholo.io._block_store import (
     AGAIN,
@@ -74,12 +75,7 @@ def _load(root: Path, discrete: Any, *, last: bool) -> Any:
         outcome = Outcome[attributes["outcome"]]
     except (KeyError, json.JSONDecodeError) as failure:
         raise error(WHERE, "hold complete attributes", f"'{root}' without {failure}", AGAIN) from failure
-    arrays = {}
-    for name, shape in shapes.items():
-        array = opened_array(root, name, tuple(shape))
-        ends = tuple(count - 1 for count in array.cdata_shape)
-        is_part = last and min(ends) >= 0
-        arrays[name] = checked_block(root, name, array, ends) if is_part else checked_array(root, name, array)
+    arrays = {name: _read(root, name, tuple(shape), last) for name, shape in shapes.items()}
     if not last:  # whoever asks for the last block has looked at the others
         check_seals(root, attributes)
     rows = {name: arrays.get(array) for name, array in stored_names(shapes, motion.columns).items()}
@@ -167,3 +163,9 @@ def format_of(path: str | Path) -> str | None:
         return json.loads((Path(path) / "zarr.json").read_text())["attributes"]["format"]
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
+
+
+def _read(root: Path, name: str, shape: tuple[int, ...], last: bool) -> Float[np.ndarray, "..."]:
+    array = opened_array(root, name, shape)
+    ends = tuple(count - 1 for count in array.cdata_shape)
+    return checked_block(root, name, array, ends) if last and min(ends) >= 0 else checked_array(root, name, array)

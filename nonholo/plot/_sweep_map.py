@@ -74,9 +74,8 @@ def subject_of(result: Any, quantity: str | None) -> Subject:
         raise error(f"{where}(result=...)", "be the result of a sweep", type(result).__name__, remedy)
     codes = result[OUTCOME]
     numbers = [str(name) for name in result.data_vars if result[name].dtype.kind in "biuf"]
-    if quantity is None:  # the first that is one number of each member and no draw
-        own = [name for name in numbers if result[name].attrs.get("long_name") != DRAWN and name != OUTCOME]
-        quantity = next((name for name in own if result[name].dims == codes.dims), OUTCOME)
+    if quantity is None:
+        quantity = _first_of_the_task(result, numbers)
     values = result[choice(f"{where}(quantity=...)", quantity, tuple(numbers))]
     more = [str(name) for name in values.dims if name not in codes.dims]
     if more:
@@ -84,6 +83,12 @@ def subject_of(result: Any, quantity: str | None) -> Subject:
         raise error(f"{where}(quantity=...)", "be one number of each member", got, remedy)
     successes = values.astype(float) if quantity == OUTCOME else values.where(codes == 0)
     return Subject(successes.assign_attrs(values.attrs), codes, values.dtype.kind in "biu")
+
+
+def _first_of_the_task(result: "xarray.Dataset", numbers: list[str]) -> str:
+    """Return the first name that is one number of each member and no draw; the outcome if there is none."""
+    own = [name for name in numbers if result[name].attrs.get("long_name") != DRAWN and name != OUTCOME]
+    return next((name for name in own if result[name].dims == result[OUTCOME].dims), OUTCOME)
 
 
 def label(values: "xarray.DataArray") -> str:

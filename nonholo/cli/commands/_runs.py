@@ -8,7 +8,7 @@ import re
 import sys
 import time
 import webbrowser
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any, NamedTuple, TypeVar
@@ -52,16 +52,11 @@ def simulate_and_keep(request: Loaded, output: Path | None, *, json: bool, overw
     """Run, save, draw, report."""
     part = _part_of(request, output, overwrite=overwrite)
     progress = sys.stderr.isatty() and not quiet
-    try:
-        with store_errors(FAILED), scenario_errors(), reporting_warnings():
-            if part:
-                store, ran = part, _complete(request, part, progress=progress)
-            else:
-                store, ran = run_and_keep(request, output, overwrite=overwrite, progress=progress)
-    except KeyboardInterrupt as stop:
-        leave(str(stop) or "Stopped. A run this short is not kept.", FAILED)
-    except MemoryError:
-        leave("The states do not fit in memory. Keep fewer of them: raise run.save_every.", USAGE)
+    with _reporting_stops(), store_errors(FAILED), scenario_errors(), reporting_warnings():
+        if part:
+            store, ran = part, _complete(request, part, progress=progress)
+        else:
+            store, ran = run_and_keep(request, output, overwrite=overwrite, progress=progress)
     if store is None or ran.orbit is None:
         leave(f"Nothing to keep. {ran.reason}", FAILED)
     wishes = request.scenario.output
@@ -71,6 +66,16 @@ def simulate_and_keep(request: Loaded, output: Path | None, *, json: bool, overw
     _report(request, ran, {"store": str(store), **pictures}, json=json, quiet=quiet)
     if ran.reason:
         leave(f"Stopped early; the good steps are kept. {ran.reason}", FAILED)
+
+
+@contextlib.contextmanager
+def _reporting_stops() -> Iterator[None]:
+    try:
+        yield
+    except KeyboardInterrupt as stop:
+        leave(str(stop) or "Stopped. A run this short is not kept.", FAILED)
+    except MemoryError:
+        leave("The states do not fit in memory. Keep fewer of them: raise run.save_every.", USAGE)
 
 
 def _part_of(request: Loaded, output: Path | None, *, overwrite: bool) -> Path | None:

@@ -138,14 +138,19 @@ def table_of(word: str, make: Maker, kind: bool = False, plain: bool = True) -> 
     for way in (make, *others):
         about = meanings(way)
         for name, each in arguments(way).items():
-            own = [*each.default] if isinstance(each.default, tuple) else each.default  # as TOML writes it
-            default = None if name not in common else ... if own is each.empty else own
+            default = _default_of(each) if name in common else None
             shape = Group if name == "group" else Numbers if plain else Any
             meaning = about.get(name, f"As in `{way.__qualname__}`.")
             fields.setdefault(name, (shape, Field(default, description=meaning)))
     table = create_model(word, __base__=MadeTable, __doc__=summary(make), **fields)
     table.make, table.others = make, others
     return table
+
+
+def _default_of(argument: inspect.Parameter) -> Any:
+    """Return the default of an argument as TOML writes it; `...` for one that must be given."""
+    default = argument.default
+    return ... if default is argument.empty else [*default] if isinstance(default, tuple) else default
 
 
 SHORT = {

@@ -250,12 +250,18 @@ def _text_of(name: str, own: dict[str, str]) -> tuple[str, str]:
         may_be_kind = own == built_in() and name.isidentifier()
         if may_be_kind and is_example(name) and name in kinds():
             return f"{name} (example)", toml_text(summary(body_table(name).make), {"body": {"kind": name}})
-        of_class = None if is_example(name) else f"`nonholo new {name}` writes one."
-        remedy = of_class or (nearest_kind(name) if may_be_kind else suggestion(name, own))
+        remedy = _remedy(name, own, may_be_kind)
         text = f"there is no such file, and no built-in scenario of this name. {remedy}"
     except (OSError, UnicodeDecodeError) as failure:
         text = f"cannot be read as a text file: {failure}"
     raise ScenarioError([Problem(name, "", text)])
+
+
+def _remedy(name: str, own: dict[str, str], may_be_kind: bool) -> str:
+    """Return the advice for a scenario that is not there."""
+    if not is_example(name):  # a class of systems
+        return f"`nonholo new {name}` writes one."
+    return nearest_kind(name) if may_be_kind else suggestion(name, own)
 
 
 def assign(document: dict[str, Any], setting: Setting) -> None:

@@ -113,10 +113,7 @@ def distribution_of(table: Any) -> "AbstractDistribution":
         >>> distribution_of({"direction": 0.3, "size": 2})
         Direction(size=2, length=0.3)
     """
-    words = [word for word in table if word in _WORDS] if isinstance(table, dict) else []
-    if len(words) != 1:
-        raise ValueError(f"must hold one of {', '.join(_WORDS)}, as in {{uniform = [0.1, 1.0]}}. Got {table!r}")
-    word = words[0]
+    word = _word_in(table)
     own, sizes = _arguments(word)
     _check_keys(table, [word, "size"] if sizes else [word], [word], f"{{{word} = ...}}")
     values = [table[word]] if len(own) == 1 else table[word]
@@ -129,6 +126,13 @@ def distribution_of(table: Any) -> "AbstractDistribution":
         return _WORDS[word](**dict(zip(own, values, strict=True)), **size)
     except ValueError as failure:
         raise ValueError(f"{word}: {str(failure).partition('` ')[2] or failure}") from None
+
+
+def _word_in(table: Any) -> str:
+    words = [word for word in table if word in _WORDS] if isinstance(table, dict) else []
+    if len(words) != 1:
+        raise ValueError(f"must hold one of {', '.join(_WORDS)}, as in {{uniform = [0.1, 1.0]}}. Got {table!r}")
+    return words[0]
 
 
 def _arguments(word: str) -> tuple[list[str], list[str]]:
@@ -392,14 +396,19 @@ def _refused_values(scenario: SweepScenario) -> list[tuple[str, str]]:
 def _flaw(scenario: SweepScenario, table: str, name: str, names: tuple[str, ...]) -> tuple[str, str] | None:
     """Return what is wrong with a value that is varied, and where; None of one that can be."""
     own = library_name(f"{table}.{name}")
-    part = component_of(own)
-    is_part = part is not None and own not in names
-    whole = part[0] if part and is_part else own
+    whole = _whole(own, names)
+    is_part = whole != own
     if whole not in names or (is_part and table == "body" and not scenario.is_family):
         return f"design.values.{table}.{name}", f"cannot be varied. {suggestion(own, names)}"
     if is_part and table == "start" and scenario.start and getattr(scenario.start, whole) is None:
         return f"start.{whole}", f"is missing: {name} is varied, the other components are given here"
     return None
+
+
+def _whole(name: str, names: tuple[str, ...]) -> str:
+    """Return the array that a name is a component of, where the name itself is not known."""
+    part = component_of(name)
+    return part[0] if part and name not in names else name
 
 
 def _varied_names(scenario: SweepScenario) -> dict[str, tuple[str, ...]]:

@@ -124,6 +124,10 @@ def _shown(value: Any) -> str:
     shape = np.shape(value)
     if 0 in shape or max(shape, default=0) > _WIDEST:
         return " x ".join(map(str, shape)) if shape != (0,) else "none"
-    cells = [[f"{number:.6g}" for number in row] for row in np.atleast_2d(value)]
+    return _columns(np.atleast_2d(value))
+
+
+def _columns(rows: np.ndarray) -> str:
+    cells = [[f"{number:.6g}" for number in row] for row in rows]
     width = max(len(cell) for row in cells for cell in row)
     return "\n".join("  ".join(cell.rjust(width) for cell in row) for row in cells)

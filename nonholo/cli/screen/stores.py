@@ -14,7 +14,7 @@ from nonholo.base.limits import size_text
 from nonholo.base.progress import waiting
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
 from nonholo.cli.screen.report import duration, figures, show, show_json
-from nonholo.ensembles import load_sweep, standing_of
+from nonholo.ensembles import SweepStanding, load_sweep, standing_of
 from nonholo.ensembles.stores import attributes_of, open_store
 from nonholo.io import Standing
 from nonholo.orbit import AbstractOrbit
@@ -116,7 +116,7 @@ def sweep_figures(
         "steps_per_second_of_one_worker": rate * steps if rate and steps and not standing.failure_count else None,
         "bytes": sum(file.stat().st_size for file in store.rglob("*") if file.is_file()),
         "messages": [list(message) for message in standing.messages[:_MESSAGES]],
-        "state": "finished" if standing.finished else f"written by {standing.owner}" if standing.owner else "stopped",
+        "state": _state(standing),
     }
 
 
@@ -140,6 +140,12 @@ def leave_if_all_raised(figures: dict[str, Any]) -> None:
     if figures["outcomes"].get("raised") == figures["members"]:
         reason = f": {figures['messages'][0][1]}" if figures["messages"] else ""
         leave(f"Every member raised{reason}", FAILED)
+
+
+def _state(standing: SweepStanding) -> str:
+    if standing.finished:
+        return "finished"
+    return f"written by {standing.owner}" if standing.owner else "stopped"
 
 
 def _rows(store: Path, figures: dict[str, Any]) -> dict[str, str]:
