@@ -11,8 +11,8 @@ from refusals import refusals
 
 import nonholo as nh
 from nonholo.ensembles import standing_of
-from nonholo.ensembles._block import block_of
 from nonholo.ensembles._ensemble_task import ensemble_task_from
+from nonholo.ensembles.designs import block_of
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
 TOP = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.1)
