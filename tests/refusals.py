@@ -1,25 +1,31 @@
-"""Tests of refusals as tables: a row holds what is passed and, last, words of the error."""
+"""Refusals as tables: what is asked, and the words of the error that it ends in."""
 
-import re
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+Kinds = type[Exception] | tuple[type[Exception], ...]
 
-def refusals(rows: Collection[Any], call: Callable[..., Any] | None = None) -> Callable[..., None]:
-    """Return a test that calls a function with each row; without one a row begins with what is called.
 
-    Rows may have names, in a dictionary. Each call must end in a `ValueError` before a file is written.
+def refusals(
+    *rows: tuple[Any, ...],
+    ask: Callable[..., object] = lambda call: call(),
+    kind: Kinds = ValueError,
+    begin: str = "",
+    end: str = "",
+) -> Callable[..., None]:
+    """Return the test that each row ends in one clear error, before any work and before a file is written.
+
+    A row holds what is asked, by default a call, and last words of the error, which may all begin and end alike.
     """
-    named = rows if isinstance(rows, dict) else dict(enumerate(rows))
 
-    @pytest.mark.parametrize("row", named.values(), ids=map(str, named))
+    @pytest.mark.parametrize("row", rows, ids=[row[-1] for row in rows])
     def test(row: tuple[Any, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.chdir(tmp_path)
-        with pytest.raises(ValueError, match=re.compile(row[-1])):
-            call(*row[:-1]) if call else row[0]()
+        with pytest.raises(kind, match=begin + row[-1] + end):
+            ask(*row[:-1])
         assert not list(tmp_path.iterdir())
 
     return test

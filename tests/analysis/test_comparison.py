@@ -131,7 +131,7 @@ REFUSED = {
 
 
 # Each message names the argument and what it must be.
-test_what_cannot_be_compared_is_refused = refusals(REFUSED)
+test_what_cannot_be_compared_is_refused = refusals(*REFUSED.values())
 
 
 def test_pictures_draw_the_errors() -> None:

@@ -172,12 +172,10 @@ def test_the_forbidden_axis_does_not_matter() -> None:
 
 # What has no such energies is refused, with the place to look at.
 test_refusals = refusals(
-    [
-        (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), "single_valued_region"),
-        (nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), "discretized Suslov top"),
-        (nh.discretize(nh.SuslovTop(BODIES["generic"]), 0.1, difference="logarithmic"), "conserve the energy"),
-    ],
-    lambda discrete: nh.critical_energies(discrete),
+    (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), "single_valued_region"),
+    (nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), "discretized Suslov top"),
+    (nh.discretize(nh.SuslovTop(BODIES["generic"]), 0.1, difference="logarithmic"), "conserve the energy"),
+    ask=lambda discrete: nh.critical_energies(discrete),
 )
 
 

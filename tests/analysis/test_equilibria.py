@@ -104,11 +104,9 @@ def test_balanced_bodies_have_no_transverse_direction(system: AbstractLLSystem) 
 
 # Systems without such equilibria, energies without a step and other maps are refused.
 test_refusals = refusals(
-    [
-        (nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), {}, "left-invariant"),
-        (SYSTEMS["top 3"], {"energy": 0.0}, "positive"),
-        (nh.discretize(SYSTEMS["top 3"], 2.0), {"energy": 5.0}, "90 degrees"),
-        (nh.discretize(SYSTEMS["top 3"], 0.1, difference="logarithmic"), {}, "conserve the energy"),
-    ],
-    lambda subject, options: nh.equilibria(subject, **options),
+    (nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), {}, "left-invariant"),
+    (SYSTEMS["top 3"], {"energy": 0.0}, "positive"),
+    (nh.discretize(SYSTEMS["top 3"], 2.0), {"energy": 5.0}, "90 degrees"),
+    (nh.discretize(SYSTEMS["top 3"], 0.1, difference="logarithmic"), {}, "conserve the energy"),
+    ask=lambda subject, options: nh.equilibria(subject, **options),
 )

@@ -105,17 +105,15 @@ def test_a_balanced_body_has_no_sides() -> None:
 
 # Other systems and maps, none or two arguments, and wrong shapes are named.
 test_wrong_arguments_are_refused = refusals(
-    [
-        (nh.discretize(nh.SuslovTop(np.eye(4)), 0.1), {"momentum": np.ones(6)}, "top with n = 3 or of a sleigh"),
-        (nh.discretize(SYSTEMS["top 3"], 0.1, difference="logarithmic"), {"momentum": np.ones(3)}, "keep energy"),
-        (nh.discretize(SYSTEMS["top 3"], 0.1), {}, "be given displacement or momentum. Got none"),
-        (
-            nh.discretize(SYSTEMS["top 3"], 0.1),
-            {"momentum": np.ones(3), "displacement": np.eye(3)},
-            "be given displacement or momentum. Got both",
-        ),
-        (nh.discretize(SYSTEMS["top 3"], 0.1), {"momentum": np.ones(4)}, "end in shape"),
-        (nh.discretize(SYSTEMS["top 3"], 0.1), {"displacement": np.eye(2)}, "end in shape"),
-    ],
-    lambda discrete, options: nh.half_planes(discrete, **options),
+    (nh.discretize(nh.SuslovTop(np.eye(4)), 0.1), {"momentum": np.ones(6)}, "top with n = 3 or of a sleigh"),
+    (nh.discretize(SYSTEMS["top 3"], 0.1, difference="logarithmic"), {"momentum": np.ones(3)}, "keep energy"),
+    (nh.discretize(SYSTEMS["top 3"], 0.1), {}, "be given displacement or momentum. Got none"),
+    (
+        nh.discretize(SYSTEMS["top 3"], 0.1),
+        {"momentum": np.ones(3), "displacement": np.eye(3)},
+        "be given displacement or momentum. Got both",
+    ),
+    (nh.discretize(SYSTEMS["top 3"], 0.1), {"momentum": np.ones(4)}, "end in shape"),
+    (nh.discretize(SYSTEMS["top 3"], 0.1), {"displacement": np.eye(2)}, "end in shape"),
+    ask=lambda discrete, options: nh.half_planes(discrete, **options),
 )

@@ -124,11 +124,9 @@ def test_extreme_offsets(a: float) -> None:
 
 # Balanced sleighs and other systems are refused with the reason.
 test_refusals = refusals(
-    [
-        (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1), "two real branches"),
-        (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1, difference="logarithmic"), "three branches"),
-        (nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.1), "discretized Chaplygin sleigh"),
-        (nh.ChaplyginSleigh(1.0, 1.0, 0.5), "discretized Chaplygin sleigh"),
-    ],
-    lambda discrete: nh.single_valued_region(discrete),
+    (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1), "two real branches"),
+    (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1, difference="logarithmic"), "three branches"),
+    (nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.1), "discretized Chaplygin sleigh"),
+    (nh.ChaplyginSleigh(1.0, 1.0, 0.5), "discretized Chaplygin sleigh"),
+    ask=lambda discrete: nh.single_valued_region(discrete),
 )

@@ -85,4 +85,4 @@ REFUSED = {
 
 
 # Where there is no equilibrium, and what is no question, is refused in words.
-test_refusals = refusals(REFUSED, lambda system, given: nh.equilibria(system, **given))
+test_refusals = refusals(*REFUSED.values(), ask=lambda system, given: nh.equilibria(system, **given))

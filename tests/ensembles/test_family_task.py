@@ -121,8 +121,9 @@ def test_bad_tasks_are_refused(name: str) -> None:
 
 # Names that the family does not have, components beyond the last.
 test_bad_designs_are_refused = refusals(
-    [("mass", "name arguments of the family. Got 'mass'"), ("velocity_2", "vary existing components")],
-    lambda axis: nh.sweep(nh.FamilyTask(sleigh, 0.1, 3), nh.Grid({axis: [1.0]}), Path("bad.zarr")),
+    ("mass", "name arguments of the family. Got 'mass'"),
+    ("velocity_2", "vary existing components"),
+    ask=lambda axis: nh.sweep(nh.FamilyTask(sleigh, 0.1, 3), nh.Grid({axis: [1.0]}), Path("bad.zarr")),
 )
 
 

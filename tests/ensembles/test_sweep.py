@@ -237,15 +237,13 @@ def test_names_of_the_design_and_the_result_are_kept_apart(tmp_path: Path) -> No
 
 # Bad arguments are refused before there is a store.
 test_bad_arguments_are_refused = refusals(
-    [
-        ({"task": 5}, r"sweep\(task=...\)` must be callable"),
-        ({"design": {"x": [1.0]}}, r"sweep\(design=...\)` must be a design"),
-        ({"scheduler": "fast"}, "must be one of threads, processes, synchronous or an address"),
-        ({"scheduler": 5}, "must be one of threads"),
-        ({"workers": 0}, r"sweep\(workers=...\)` must be a positive integer"),
-        ({"block": 0}, r"sweep\(block=...\)` must be a positive integer"),
-    ],
-    lambda options: nh.sweep(**{"task": _calm, "design": GRID, "store": Path("run.zarr"), **options}),
+    ({"task": 5}, r"sweep\(task=...\)` must be callable"),
+    ({"design": {"x": [1.0]}}, r"sweep\(design=...\)` must be a design"),
+    ({"scheduler": "fast"}, "must be one of threads, processes, synchronous or an address"),
+    ({"scheduler": 5}, "must be one of threads"),
+    ({"workers": 0}, r"sweep\(workers=...\)` must be a positive integer"),
+    ({"block": 0}, r"sweep\(block=...\)` must be a positive integer"),
+    ask=lambda options: nh.sweep(**{"task": _calm, "design": GRID, "store": Path("run.zarr"), **options}),
 )
 
 

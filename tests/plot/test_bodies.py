@@ -107,12 +107,10 @@ def test_ready_systems_in_the_plane_have_bodies(name: str) -> None:
 
 # Before anything runs, with the argument and what it takes.
 test_what_is_no_drawing_is_refused = refusals(
-    [
-        ({"heading": "b"}, r"heading=...\)` must be a coordinate beside x and y of x, y, a. Got 'b'"),
-        ({"heading": "x"}, r"heading=...\)` must be a coordinate beside"),
-        ({"outline": 3}, r"outline=...\)` must be a list of parts"),
-        ({"outline": [[(0, 0)]]}, r"outline=...\)` must have parts of at least two points"),
-        ({"outline": [[(0, 0, 0), (1, 1, 1)]]}, r"outline=...\)` must have shape"),
-    ],
-    lambda given: _free(**given),
+    ({"heading": "b"}, r"heading=...\)` must be a coordinate beside x and y of x, y, a. Got 'b'"),
+    ({"heading": "x"}, r"heading=...\)` must be a coordinate beside"),
+    ({"outline": 3}, r"outline=...\)` must be a list of parts"),
+    ({"outline": [[(0, 0)]]}, r"outline=...\)` must have parts of at least two points"),
+    ({"outline": [[(0, 0, 0), (1, 1, 1)]]}, r"outline=...\)` must have shape"),
+    ask=lambda given: _free(**given),
 )

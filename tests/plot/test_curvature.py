@@ -66,12 +66,10 @@ def test_a_gait_is_drawn_within_its_range() -> None:
 
 # Errors name the argument.
 test_what_cannot_be_drawn_is_refused = refusals(
-    [
-        ({"component": "v3"}, "component=...\\)` must be one of"),
-        ({"along": ("psi", "psi")}, "name two shape variables"),
-        ({"bounds": ((1, -1), (-1, 1))}, "ascend"),
-    ],
-    lambda asked: nh.plot.curvature(car(), **asked),
+    ({"component": "v3"}, "component=...\\)` must be one of"),
+    ({"along": ("psi", "psi")}, "name two shape variables"),
+    ({"bounds": ((1, -1), (-1, 1))}, "ascend"),
+    ask=lambda asked: nh.plot.curvature(car(), **asked),
 )
 
 
