@@ -135,7 +135,7 @@ def ready(
     def decorator(make: Callable[..., Example]) -> Callable[..., Example]:
         defaults = {name: each.default for name, each in inspect.signature(make).parameters.items()}
 
-        def checked(name: str, value: Any) -> Any:
+        def valid_value(name: str, value: Any) -> Any:
             default: Any = defaults.get(name)
             where = f"examples.{make.__name__}({name}=...)"
             if name in arrays:
@@ -147,7 +147,7 @@ def ready(
 
         @functools.wraps(make)
         def make_ready(**arguments: Any) -> Example:
-            example = make(**{name: checked(name, value) for name, value in (defaults | arguments).items()})
+            example = make(**{name: valid_value(name, value) for name, value in (defaults | arguments).items()})
             if any(map(callable, arguments.values())):
                 return example  # which no data describes
             body = {name: _plain(arguments.get(name, default), default) for name, default in defaults.items()}
