@@ -111,7 +111,9 @@ def _stepping(discrete: Discretization, run: Any) -> Move:
     return move
 
 
-def _beside(subject: Any, run: Any, time: Array, g: Array, r: Array) -> tuple[Callable[[Array], Array], Array]:
+def _beside(
+    subject: Any, run: Any, time: Array, g: Array, r: Array
+) -> tuple[Callable[[Array], Array], Float[Array, "m"]]:
     """Return the change of a state as a function of what it is beside one, and where it is that state."""
     is_map = isinstance(subject, Discretization)
     move = _stepping(subject, run) if is_map else _flowing(subject)

@@ -103,7 +103,9 @@ def equilibria(
     return _of_form(body, step, body.equilibria(), level)
 
 
-def _of_form(body: AbstractLLSystem, steps: np.ndarray | None, family: Equilibria, level: float) -> EquilibriumSpectrum:
+def _of_form(
+    body: AbstractLLSystem, steps: Float[np.ndarray, "S"] | None, family: Equilibria, level: float
+) -> EquilibriumSpectrum:
     if family.attracting is None:
         nothing = np.zeros(0)
         return EquilibriumSpectrum(family.subspace, None, None, nothing, None if steps is None else nothing)

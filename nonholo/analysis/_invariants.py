@@ -220,7 +220,9 @@ def _right(system: AbstractSystem) -> ConservedMomenta:
     return ConservedMomenta(_vanishing(np.concatenate(rates), scale), _vanishing(np.concatenate(reactions), scale))
 
 
-def _reactions(inertia: np.ndarray, rows: np.ndarray, brackets: np.ndarray) -> np.ndarray:
+def _reactions(
+    inertia: Float[np.ndarray, "dim dim"], rows: Float[np.ndarray, "k dim"], brackets: Float[np.ndarray, "k dim dim"]
+) -> Float[np.ndarray, "kk dim"]:
     r"""Return covectors that span the reactions.
 
     They are $\mathbb{I}S^T(S\mathbb{I}S^T)^{-1}S\tau - \tau$ with $\tau = \mathrm{ad}^*_\omega p$, also in space for

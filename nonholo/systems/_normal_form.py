@@ -216,7 +216,9 @@ def _rotation(start: Float[np.ndarray, "n"], axis: Float[np.ndarray, "n"]) -> Fl
     return np.eye(len(start)) - np.outer(middle, middle) / (1 + start @ end) + 2 * np.outer(end, start)
 
 
-def _seen_from(system: "AbstractLLSystem", form: NormalForm, frame: np.ndarray, rows: np.ndarray) -> NormalForm:
+def _seen_from(
+    system: "AbstractLLSystem", form: NormalForm, frame: Float[np.ndarray, "... N N"], rows: Float[np.ndarray, "m dim"]
+) -> NormalForm:
     """Return a form with its frame, and the map of momenta to its rows, as seen from the system."""
     own = None if np.all(frame == system.group.identity) else frame
     if own is None and np.array_equal(rows, system.constraint_subspace):

@@ -143,7 +143,9 @@ def _displacement(connection: LocalConnection, shape_at: Any, edges: Array, p: A
     return GeometricPhase(connection, times, whole(first, s, last), g, *columns)
 
 
-def _poses(group: AbstractMatrixGroup, h: Array, xi: Float[np.ndarray, "t k d"]) -> tuple[np.ndarray, np.ndarray]:
+def _poses(
+    group: AbstractMatrixGroup, h: Array, xi: Float[np.ndarray, "t k d"]
+) -> tuple[Float[np.ndarray, "t k N N"], Float[np.ndarray, "N N"]]:
     r"""Return the poses of a motion with these body velocities, at the nodes and at the end, by collocation.
 
     In each piece $g_j = 1 + h\sum_l T_{jl}\,g_l\hat\xi_l$ are linear equations.

@@ -12,6 +12,7 @@ from nonholo.analysis.planar._base import AbstractPlanarVariety, HalfPlanes
 from nonholo.analysis.planar._disc import Disc
 from nonholo.analysis.planar._strip import Strip
 from nonholo.base.checks import error, shown
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization, as_discretization, legendre
 from nonholo.systems import AbstractSystem
 
@@ -38,6 +39,8 @@ def planar_map(where: str, value: Any) -> tuple[Discretization, AbstractPlanarVa
     return discrete, variety
 
 
-def momenta_at(discrete: Discretization, variety: AbstractPlanarVariety, points: np.ndarray) -> np.ndarray:
+def momenta_at(
+    discrete: Discretization, variety: AbstractPlanarVariety, points: Float[np.ndarray, "... c"]
+) -> Float[np.ndarray, "... 3"]:
     """Return the momenta, physical and in the user's frame, of the displacements with these coordinates."""
     return legendre(discrete, variety.displacement(points) - discrete.system.group.identity, "left")

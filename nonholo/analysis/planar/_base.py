@@ -7,7 +7,7 @@ ends in a fold, where it continues as the other solution, or on the equator, whe
 import abc
 import dataclasses
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -25,6 +25,34 @@ class HalfPlanes(NamedTuple):
 
     side: Float[Array, "..."]
     forward: Float[Array, "..."]
+
+
+class Level(Protocol):
+    """The displacements of one energy."""
+
+    def over(self, direction: float) -> Float[np.ndarray, "m c"]:
+        """Return the points over a direction of the plane."""
+        ...
+
+    def components(self, count: int) -> tuple[Float[np.ndarray, "K c"], ...]:
+        """Return the connected curves, with this many points for each arc."""
+        ...
+
+
+class Surface(Protocol):
+    """The algebra of the momentum locus, in momenta of the user's frame."""
+
+    def implicit(self, momentum: Float[np.ndarray, "... 3"]) -> Float[np.ndarray, "..."]:
+        """Return the polynomial that vanishes on the surface."""
+        ...
+
+    def double_lines(self) -> Float[np.ndarray, "L 2 3"]:
+        """Return the ends of the segments along which the surface meets itself."""
+        ...
+
+    def triple_point(self) -> Float[np.ndarray, "3"] | None:
+        """Return where three such segments meet."""
+        ...
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -70,20 +98,12 @@ class AbstractPlanarVariety(abc.ABC):
         """Return the half-planes of momenta along the user's rows."""
 
     @abc.abstractmethod
-    def level(self, energy: float) -> Any:
-        """Return the level of an energy times the square of the time step.
-
-        Its `over(direction)` are the points over a direction of the plane, its `components(count)` the connected
-        curves, with this many points for each arc.
-        """
+    def level(self, energy: float) -> Level:
+        """Return the level of an energy times the square of the time step."""
 
     @abc.abstractmethod
-    def surface(self, time_step: float) -> Any:
-        """Return the algebra of the momentum locus, in momenta of the user's frame.
-
-        Its `implicit(momentum)` is the polynomial that vanishes on the surface, `double_lines()` the ends of the
-        segments along which it meets itself, `triple_point()` where three such segments meet, or None.
-        """
+    def surface(self, time_step: float) -> Surface:
+        """Return the momentum locus."""
 
 
 FOLD, EQUATOR = "fold", "equator"
@@ -148,7 +168,9 @@ class Place:
         return Place(arc, -self.side, self.forward)
 
 
-def closed_curves(arcs: list[Arc], points: Callable[..., Any], count: int) -> tuple[Float[np.ndarray, "K c"], ...]:
+def closed_curves(
+    arcs: list[Arc], points: Callable[[Arc, np.ndarray, int], Float[np.ndarray, "K c"]], count: int
+) -> tuple[Float[np.ndarray, "K c"], ...]:
     """Return the closed curves that arcs make up, one of each antipodal pair; directions have the period 2 pi.
 
     Arcs beyond the first half turn are copies of the others; `points` gives the points of an arc on a side.

@@ -227,7 +227,9 @@ def driven_in_coordinates(
     return simulate(table, configuration=q, body_velocity=v, steps=len(forces), throw=False)
 
 
-def coordinate_problem(discrete: CoordinateDiscretization, ends: tuple[Any, Goal], limits: Limits, way: Way) -> Problem:
+def coordinate_problem(
+    discrete: CoordinateDiscretization, ends: tuple[tuple[np.ndarray, np.ndarray], Goal], limits: Limits, way: Way
+) -> Problem:
     """Return the problem of a system in coordinates, from place and velocity at the start and a goal."""
     ((x, v), goal), system, n = ends, discrete.system, discrete.system.dimension
     steps = len(limits[0]) // n
@@ -279,9 +281,11 @@ def _coordinate_gap(program: Program, goal: Goal, way: Way, orbit: CoordinateOrb
     return float(max(off, default=0.0))
 
 
-def _coordinate_guess(system: LagrangeDAlembert, ends: tuple[Any, Any], way: Way, steps: int) -> tuple[Any, Any]:
+def _coordinate_guess(
+    system: LagrangeDAlembert, ends: tuple[np.ndarray, np.ndarray], way: Way, steps: int
+) -> tuple[Float[np.ndarray, "K n"], Float[np.ndarray, "steps n"]]:
     """Return configurations and forces of a guess: by default evenly from the start to the goal, through places."""
-    if way.guess.configuration is not None:
+    if way.guess.configuration is not None and way.guess.controls is not None:
         return way.guess.configuration, way.guess.controls
     q = evenly({0: ends[0], steps: ends[1]}, steps)
     if way.outline.shape[-1]:
@@ -348,7 +352,9 @@ def _numbers(nodes: GroupNodes, poses: Float[np.ndarray, "... N N"]) -> Float[np
     return poses[..., :rows, :].reshape(*poses.shape[:-2], -1)
 
 
-def _group_guess(discrete: Discretization, ends: tuple[Any, Any], way: Way, steps: int) -> tuple[Any, Any]:
+def _group_guess(
+    discrete: Discretization, ends: tuple[Any, Any], way: Way, steps: int
+) -> tuple[Float[np.ndarray, "K N N"], Float[np.ndarray, "steps k"]]:
     """Return poses and forces of a guess: by default evenly from the start to the goal, through places on the way.
 
     In the plane the body looks along a path.

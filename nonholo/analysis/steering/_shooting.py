@@ -145,7 +145,9 @@ Gaps = Callable[[Float[np.ndarray, "m n"], np.ndarray], tuple[Float[np.ndarray, 
 """From forces of members, and which members these are, to c and J; NaN where there is none."""
 
 
-def least_effort(gaps: Gaps, f: Float[np.ndarray, "M n"], limits: Limits) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def least_effort(
+    gaps: Gaps, f: Float[np.ndarray, "M n"], limits: Limits
+) -> tuple[Float[np.ndarray, "M n"], Float[np.ndarray, "M"], Float[np.ndarray, "M"]]:
     """Return forces near given ones, their largest miss, and their relative excess over the least effort."""
     f, going = np.clip(f, *limits), np.arange(len(f))
     c, J = gaps(f, going)
@@ -229,7 +231,9 @@ def _dot(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return (x * y).sum(axis=1)[:, None]
 
 
-def _along(gaps: Gaps, point: Point, plane: _Plane, length: np.ndarray, members: np.ndarray) -> np.ndarray:
+def _along(
+    gaps: Gaps, point: Point, plane: _Plane, length: np.ndarray, members: np.ndarray
+) -> Float[np.ndarray, "m n"]:
     """Return steps along the linearized goal to less effort, by conjugate gradients; down the gradient where bent."""
     f, J, weights = point
     at, r = np.arange(len(f)), -plane.along(f)

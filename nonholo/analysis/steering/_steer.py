@@ -239,7 +239,9 @@ def _by_shooting(discrete: Discretization, ends: Ends, limits: Limits) -> tuple[
     return forces.reshape(len(gap), -1, discrete.system.rank), gap, outcome
 
 
-def _by_ipopt(discrete: Discretization, ends: Ends, limits: Limits, way: Way, report: Callable[..., None]) -> Any:
+def _by_ipopt(
+    discrete: Discretization, ends: Ends, limits: Limits, way: Way, report: Callable[[int, int], None]
+) -> tuple[Any, ...]:
     """Return forces along the rows, what is missed, and outcomes of members, one after the other."""
     with needs("steer", "steer(method='ipopt')"):
         from nonholo.analysis.steering._problems import group_problem
@@ -254,7 +256,9 @@ def _by_ipopt(discrete: Discretization, ends: Ends, limits: Limits, way: Way, re
     return tuple(np.array(part) for part in zip(*results, strict=True))
 
 
-def _steered_in_coordinates(discrete: Any, ends: Any, bounds: tuple[Any, Any], way: Way, steps: int) -> Steering:
+def _steered_in_coordinates(
+    discrete: Any, ends: tuple[Any, Any], bounds: tuple[Any, Any], way: Way, steps: int
+) -> Steering:
     """Return the result for a system in coordinates."""
     with needs("steer", "steer"):
         from nonholo.analysis.steering._problems import MovingOutline, checked_goal, checked_start, coordinate_problem

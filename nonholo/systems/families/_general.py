@@ -152,7 +152,7 @@ class LLSystem(AbstractLLSystem):
         operator = {"inertia operator": np.asarray(self.given_inertia)}
         facts = operator if self.mass_tensor is None else _mass.tensors_shown(self.group, self.mass_tensor)
         subspace = {"constraint subspace": np.asarray(self.constraint_subspace)}
-        return f"LLSystem({self.group!r},\n  {lines_of(facts | subspace)})"
+        return f"LLSystem({self.group!r},\n  {_mass.lines_of(facts | subspace)})"
 
     @system_memo
     def inertia_operator(self) -> Float[Array, "... dim dim"]:
@@ -238,7 +238,7 @@ class LRSystem(AbstractLRSystem):
     def __repr__(self) -> str:
         facts = _mass.tensors_shown(self.group, self.mass_tensor)
         subspace = {"constraint subspace": np.asarray(self.constraint_subspace)}
-        return f"LRSystem({self.group!r},\n  {lines_of(facts | subspace)})"
+        return f"LRSystem({self.group!r},\n  {_mass.lines_of(facts | subspace)})"
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
@@ -274,7 +274,7 @@ class VeselovaTop(AbstractLRSystem):
         positive_definite(where, self.inertia_operator, "the inertia operator", _REMEDY)
 
     def __repr__(self) -> str:
-        return f"VeselovaTop({self.group!r},\n  {lines_of(tensors_shown(self.group, self.mass_tensor))})"
+        return f"VeselovaTop({self.group!r},\n  {_mass.lines_of(_mass.tensors_shown(self.group, self.mass_tensor))})"
 
     @system_memo
     def group(self) -> AbstractMatrixGroup:

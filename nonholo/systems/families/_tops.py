@@ -89,7 +89,7 @@ class RigidBody(AbstractLLSystem):
         return cls(_mass.mass_tensor_of_body("RigidBody", mass, inertia, center_of_mass, group), group)
 
     def __repr__(self) -> str:
-        return f"RigidBody({self.group!r},\n  {lines_of(tensors_shown(self.group, self.mass_tensor))})"
+        return f"RigidBody({self.group!r},\n  {_mass.lines_of(_mass.tensors_shown(self.group, self.mass_tensor))})"
 
     @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "dim dim"]:
@@ -181,7 +181,7 @@ class SuslovTop(AbstractLLSystem):
 
     def __repr__(self) -> str:
         head = f"n={self.group.size}" if self.axis is None else f"axis={np.asarray(self.axis).tolist()}"
-        return f"SuslovTop({head},\n  {lines_of(tensors_shown(self.group, self.mass_tensor))})"
+        return f"SuslovTop({head},\n  {_mass.lines_of(_mass.tensors_shown(self.group, self.mass_tensor))})"
 
     @system_memo
     def group(self) -> AbstractMatrixGroup:
