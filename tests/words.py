@@ -1,5 +1,10 @@
-"""`python tests/words.py`: the words of the house, listed in words.toml, in code, tests and pages; words of pages."""
+"""`python tests/words.py`: the words of the house in code, tests and pages; the old dialect in pages and docstrings.
 
+words.toml lists them. In the library messages count as docstrings do.
+"""
+
+import ast
+import inspect
 import re
 import sys
 import tomllib
@@ -19,7 +24,8 @@ QUOTATION = r"“[^”]*”"
 GENERATED = re.compile(
     r"api/.*|reference/(?!symbols).*|gallery/README\.md|(errata|paper|reliability|tests)\.md"
 )  # by scripts
-NO_PROSE = {"house.md", "references.md", "project/migration.md"}
+NO_PROSE = {"references.md", "project/migration.md"}
+KERNELS = ("nonholo/kernels/", "nonholo/base/compiled/", "nonholo/base/numerics/")  # whose text names the library
 MOST = 80_000
 
 
@@ -58,12 +64,27 @@ def complaints(root: Path = ROOT) -> list[str]:
     vocabulary = "\n".join(set(re.findall(r"\w+", "\n".join(texts.values()))))
     spelling = {word: to for word, to in TABLE["spelling"].items() if re.search(word, vocabulary, re.IGNORECASE)}
     patterns, cited = spelling | TABLE["phrases"], stems(root)
-    prose = {"README.md", *(f"docs/{name}" for name in lengths(root) if name not in NO_PROSE)}
+    pages = {"README.md", "CONTRIBUTING.md", *(f"docs/{name}" for name in lengths(root) if name not in NO_PROSE)}
+    checked = [(name, 1, text, patterns) for name, text in texts.items()]
+    checked += [(name, 1, texts[name], TABLE["prose"]) for name in sorted(pages)]
+    checked += [(name, *each, TABLE["prose"]) for name in texts if in_library(name) for each in strings(texts[name])]
     return [
-        f"{name}:{text.count(chr(10), 0, at) + 1}: {complaint}"
-        for name, text in texts.items()
-        for at, complaint in words(name, text, patterns | (TABLE["prose"] if name in prose else {}), cited)
+        f"{name}:{first + text.count(chr(10), 0, at)}: {complaint}"
+        for name, first, text, wanted in checked
+        for at, complaint in words(name, text, wanted, cited)
     ]
+
+
+def in_library(name: str) -> bool:
+    """Return whether a file is code of the library with prose to check."""
+    return name.startswith("nonholo/") and name.endswith((".py", ".pyi")) and not name.startswith(KERNELS)
+
+
+def strings(text: str) -> Iterator[tuple[int, str]]:
+    """Yield the docstrings and messages of a file with their first lines."""
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and " " in node.value:
+            yield node.lineno, inspect.cleandoc(node.value)
 
 
 def lengths(root: Path = ROOT) -> dict[str, int]:

@@ -1,4 +1,4 @@
-"""Limits that a motion comes from and tends to: velocities, axes in body and in space, how far a sleigh turns.
+"""Limits that a motion comes from and tends to: velocities, axes in body and in space, the total turn of a sleigh.
 
 An orbit is followed backwards and forwards until its velocity has settled. Theory: docs/theory/limits.md.
 """
@@ -122,11 +122,11 @@ class Asymptotics:
         axis_after: The same.
         spatial_axis_before: That axis in space; for an orbit alone.
         spatial_axis_after: The same.
-        heading_turn: How far a sleigh turns in total; its size alone for a system, with its sign for an orbit.
+        heading_turn: The total turn of a sleigh; its size alone for a system, with its sign for an orbit.
         motion_turn: The same for its direction of motion, modulo full turns: the sleigh starts out backwards.
         persists: Whether the orbit is known to continue forever. It is for a flow, for a principal orbit of a plane
             sleigh below its `principal_energy` of `single_valued_region` and of a top below its `fold` of
-            `critical_energies`. Elsewhere the limits are those of an orbit that does, on whatever branches.
+            `critical_energies`. Elsewhere the limits are those of an orbit that does, on any branches.
     """
 
     velocity_before: Float[np.ndarray, "dim"] | None = None
@@ -144,7 +144,7 @@ def asymptotics(subject: AbstractLLSystem | Orbit) -> Asymptotics:
     r"""Return where the motions of a system, or one orbit of a flow or of a discrete map, come from and go to.
 
     Every motion goes from the repelling to the attracting equilibrium of its energy. For the discrete map this holds
-    for every real orbit that continues forever and is not stationary, whatever branches it takes, in every dimension,
+    for every real orbit that continues forever and is not stationary, on any branches, in every dimension,
     at every energy; where no equilibrium has the energy (above `line` of `critical_energies`, `highest_energy` of
     `equilibria`) none continues forever, and there are no limits. The heading of a sleigh turns by
 
@@ -186,7 +186,7 @@ def asymptotics(subject: AbstractLLSystem | Orbit) -> Asymptotics:
 
 
 def turn_of_flow(mass: Any, inertia: Any, a: Any) -> Any:
-    r"""Return how far sleighs turn in total along the flow, $\pi\sqrt{1 + J/(ma^2)}$; of numbers or arrays."""
+    r"""Return the total turn of sleighs along the flow, $\pi\sqrt{1 + J/(ma^2)}$; of numbers or arrays."""
     return np.pi * np.sqrt(1 + inertia / mass / a / a)
 
 
@@ -246,7 +246,7 @@ def _resting(form: NormalForm, orbit: Orbit, velocity: Float[np.ndarray, "dim"])
 
 
 def _is_bound_to_end(orbit: Orbit) -> bool:
-    """Tell whether an orbit of a map that keeps it has more energy than every equilibrium."""
+    """Return whether an orbit of a map that keeps it has more energy than every equilibrium."""
     if not isinstance(orbit.motion, Discretization) or not orbit.motion.conserves_energy:
         return False
     highest = highest_energy(orbit.motion)
@@ -274,7 +274,7 @@ def _ends(orbit: Orbit, limits: Approach) -> Ends | None:
 
 
 def _is_start_of(principal: Orbit, orbit: Orbit) -> bool:
-    """Tell whether two discrete orbits with one first momentum have the same displacements as far as both go."""
+    """Return whether two discrete orbits with one first momentum have the same displacements as far as both go."""
     both = orbit.chosen(orbit.step < orbit.step[0] + len(principal))
     again, mine = principal.displacement[both.step - orbit.step[0]], both.displacement
     return bool(np.abs(again - mine).max() <= _SAME * np.abs(orbit.displacement).max())

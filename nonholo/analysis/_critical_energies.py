@@ -70,7 +70,7 @@ class CriticalEnergies:
             $1 - (3\sigma - 1)^3(1 + \sigma)/(16\sigma)$ of that for $\sigma < \tfrac12$. Beyond nothing is known,
             and it is 0.
         line: The highest energy of an equilibrium, $q_c/(2h^2|c|^2)$, which turns by 90 degrees in a step. Above it
-            every real orbit ends, on whatever branches. None for a balanced body, all of whose states are equilibria.
+            every real orbit ends, on any branches. None for a balanced body, all of whose states are equilibria.
         regular: $\det B > 2|c|^2$, for n > 3 $b_1b_2 > 2|c|^2$.
         points: All isolated critical points, the two (on the equator: one) opposite ones once, from low to high.
     """

@@ -31,7 +31,7 @@ class HeteroclinicOrbit:
     Attributes:
         orbit: All states, the past first; the point that was given has time zero. At both ends the distance from the
             equilibria has fallen by 6e14, to rounding.
-        limits: What it comes from and goes to.
+        limits: Its limits in the past and in the future.
     """
 
     orbit: Orbit

@@ -176,7 +176,7 @@ def invariant_curve(discrete: Discretization, energy: Array, resolution: int = 4
 
 
 def half_planes(discrete: Discretization, *, displacement: Any = None, momentum: Any = None) -> HalfPlanes:
-    r"""Tell in which half-planes displacements or momenta lie.
+    r"""Return the half-planes in which displacements or momenta lie.
 
     Of displacements of a top, $\pm(z_0, z)$ with $z_0 \ge 0$, and of a sleigh, with a step angle $\Delta$ up to
     $\pi$ and the translation $\nu$ along the chord,

@@ -99,8 +99,8 @@ def ball_in_bowl(
 ) -> Example:
     r"""A uniform ball that rolls in a round bowl: middle (x, y) seen from above, turns alpha, beta, gamma.
 
-    The turns are integrals of the angular velocity about the axes of space: equations of a uniform ball know no more of
-    its orientation. With the middle at $c = \rho n$ from that of the bowl, in its lower half, and z its height,
+    The turns are integrals of the angular velocity about the axes of space: equations of a uniform ball contain no more
+    of its orientation. With the middle at $c = \rho n$ from that of the bowl, in its lower half, and z its height,
 
     $$ L = \tfrac m2|\dot c|^2 + \tfrac J2|\omega|^2 - mgz, \qquad \dot c = -r\,\omega\times n, $$
 
@@ -196,7 +196,7 @@ def ball_on_turntable(
     r"""A uniform ball that rolls without sliding on a table which is driven round: middle (x, y), turns alpha, beta.
 
     The turns are integrals of the angular velocity about the x and y axes of space. They are no coordinates of the
-    orientation, but the equations of a uniform ball know no more of it; its spin about the vertical is constant.
+    orientation, but the equations of a uniform ball contain no more of it; its spin about the vertical is constant.
 
     $$ L = \tfrac m2(\dot x^2 + \dot y^2) + \tfrac J2(\dot\alpha^2 + \dot\beta^2), \qquad
        \dot x - r\dot\beta = -\Omega y, \quad \dot y + r\dot\alpha = \Omega x . $$

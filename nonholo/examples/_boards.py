@@ -316,7 +316,7 @@ def snake(
     $$ L = \sum_{i=1}^3 \tfrac m2|\dot p_i|^2 + \tfrac J2\dot\theta_i^2, \qquad
        -\dot x_i\sin\theta_i + \dot y_i\cos\theta_i = 0 . $$
 
-    Three constraints leave two rates: a principal kinematic system, whose joints say how it moves. With
+    Three constraints leave two rates: a principal kinematic system, whose joints determine its motion. With
     $\dot x = u\cos\theta$, $\dot y = u\sin\theta$ and $\omega = \dot\theta$
 
     $$ u\sin\alpha_1 - l(1 + \cos\alpha_1)\,\omega + l\,\dot\alpha_1 = 0, \qquad
@@ -358,7 +358,7 @@ def snake(
     v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), omega, *turning])
     system = _snake_system(half, m, J)
     facts = (
-        "The joints say how it moves, but where it is an arc, with both alike: that may roll at any rate.",
+        "The joints determine its motion, but where it is an arc, with both alike: that may roll at any rate.",
         "The energy is constant.",
     )
     return Example(name, system, np.append(q, a), v, facts, {"energy": energy_of(system.lagrangian)})

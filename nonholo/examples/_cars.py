@@ -49,11 +49,11 @@ def kinematic_car(
        -\dot x\sin(\theta + \varphi) + \dot y\cos(\theta + \varphi) + \ell\cos\varphi\,\dot\theta = 0, \qquad
        \dot x\cos\theta + \dot y\sin\theta = \rho\,\dot\psi . $$
 
-    So $\dot\theta = (\rho/\ell)\tan\varphi\,\dot\psi$: the constraints alone say how rolling and steering move the car.
-    Without control $\dot\varphi$ and $u\sqrt{m + J_w/\rho^2 + (J/\ell^2)\tan^2\varphi}$ are constant, u the speed of
-    the rear axle; with the steering at rest the car drives on a circle of radius $\ell/\tan\varphi$. Where the front
-    wheels are across, at $|\varphi| = \pi/2$, the car cannot roll. The angle phi is that of one wheel in the middle;
-    pictures turn each front wheel across the line to the center of the circle, so that none slips.
+    So $\dot\theta = (\rho/\ell)\tan\varphi\,\dot\psi$: the constraints alone determine how rolling and steering move
+    the car. Without control $\dot\varphi$ and $u\sqrt{m + J_w/\rho^2 + (J/\ell^2)\tan^2\varphi}$ are constant, u the
+    speed of the rear axle; with the steering at rest the car drives on a circle of radius $\ell/\tan\varphi$. Where the
+    front wheels are across, at $|\varphi| = \pi/2$, the car cannot roll. The angle phi is that of one wheel in the
+    middle; pictures turn each front wheel across the line to the center of the circle, so that none slips.
 
     Reference: [kelly-murray-1995]; [bloch-2003].
 
@@ -329,7 +329,7 @@ def trailers(
 
     facts = (
         "The turning of the tractor is constant, also in the midpoint rule, and so is the energy of the flow.",
-        "Its speed and turning alone say how all trailers move; they can bring them anywhere.",
+        "Its speed and turning alone determine how all trailers move; they can bring them anywhere.",
     )
     return Example(name, _trailer_system(d, masses, moments), q, v, facts, {"theta'": rate(2), "energy": energy})
 

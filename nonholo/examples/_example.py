@@ -56,7 +56,7 @@ class Example(Keeper):
         system: The system.
         configuration: Where it starts.
         body_velocity: How it starts; it satisfies the constraint.
-        facts: What is known, a sentence each.
+        facts: Known facts, a sentence each.
         conserved: Functions (configuration, velocity) -> number, constant along the continuous motion. On a discrete
             orbit the velocity is that of a step: take the middle of the step, configuration + displacement / 2.
         exact: The configurations at given times, (K,) -> (K, n), from this start; None where no formula is known.

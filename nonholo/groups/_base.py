@@ -68,7 +68,7 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
 
     @abc.abstractmethod
     def residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
-        """Return how far matrices are from the group: zero on it, up to rounding."""
+        """Return the distance of matrices from the group: zero on it, up to rounding."""
 
     @abc.abstractmethod
     def angle(self, x: Float[Array, "... dim"]) -> Float[Array, "..."]:

@@ -168,10 +168,11 @@ class MatrixGroup(AbstractMatrixGroup):
         return inverse_of(g) if self.form is None else self.form_adjoint(g)
 
     def residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
-        """Return how far the logarithm is from the algebra; infinite where there is no logarithm (JAX: undefined).
+        """Return the distance of the logarithm from the algebra; infinite where there is no logarithm (JAX: undefined).
 
-        With a form: the residual of g* g = I relative to |g*| |g|, or how far (g - g*)/2 is from the algebra relative
-        to |g|, whichever is larger; 2 for a negative determinant. Other components of the group are not distinguished.
+        With a form: the residual of g* g = I relative to |g*| |g|, or the distance of (g - g*)/2 from the algebra
+        relative to |g|, whichever is larger; 2 for a negative determinant. Other components of the group are not
+        distinguished.
         """
         g = self._matrix(g)
         xp = g.__array_namespace__()

@@ -43,7 +43,7 @@ Motion = tuple[Array, Array, Array]
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretization[OrbitT]):
-    r"""A discretized system: it says how a run starts.
+    r"""A discretized system, which checks the start of a run.
 
     $$ D_1 L_d(q_k, q_{k+1}) + D_2 L_d(q_{k-1}, q_k) = -\sum_j \lambda_j A^j(q_k), \qquad F(q_k, q_{k+1}) = 0, $$
 
@@ -56,7 +56,7 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
     a momentum with itself in place of $\partial L/\partial v$; only its action on admissible velocities counts.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: h.
     """
 
@@ -112,7 +112,7 @@ class CoordinateDiscretization(AbstractLagrangeDAlembertMap[CoordinateOrbit]):
     """A discretized system in coordinates, made by `nonholo.discretize`.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: h.
 
     Example:
@@ -148,7 +148,7 @@ class GroupDiscretization(AbstractLagrangeDAlembertMap[GroupOrbit]):
     """A discretized `GroupLagrangeDAlembert`, made by `nonholo.discretize`.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: h.
 
     Example:

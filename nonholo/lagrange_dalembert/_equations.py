@@ -35,7 +35,7 @@ def holonomic(system: LagrangeDAlembert, x: Array) -> Array:
 
 
 def place_residual(system: LagrangeDAlembert, x: Array) -> Array:
-    """Return how far a place is from holonomic constraints, then from prescribed coordinates."""
+    """Return the distance of a place from holonomic constraints, then from prescribed coordinates."""
     return jnp.concatenate([holonomic(system, x), *(x[i : i + 1] - s(x[-1]) for i, s in system.prescribed)])
 
 

@@ -32,7 +32,7 @@ def acceleration(system: Any, q: Array, v: Array, extra: Any = 0.0) -> tuple[Arr
     r"""Return the rate of v and the forces $\lambda$, from the equations and $\tfrac{d}{dt}(A v - b) = 0$.
 
     Args:
-        system: What moves.
+        system: The system.
         q: Where it is.
         v: Its velocity.
         extra: A force beside those of the system: of a table the row that acts.

@@ -67,7 +67,7 @@ def check_value(
 ) -> None:
     """Refuse a function whose value has another shape, or that is to be differentiated, as a scalar is, and cannot be.
 
-    `called` says what arrays it is called with.
+    `called` describes the arrays that it is called with.
     """
     result_shape = traced_shape(where, function, arguments, of)
     if result_shape != shape:
@@ -146,7 +146,7 @@ class TwoPoint:
     is_of_one_step: ClassVar[bool] = True
 
     def __call__(self, q: Array, q_next: Array, time_step: Array, *parameters: Any) -> Array:
-        """Return the value, whatever the time step."""
+        """Return the value, which does not depend on the time step."""
         del time_step
         return self.function(q, q_next, *parameters)
 
@@ -165,7 +165,7 @@ def with_parameters(function: Any, others: int) -> Any:
 
 
 def _binds(function: Callable[..., Any], count: int) -> bool:
-    """Tell whether a function takes this many arguments; a builtin need not tell, and takes all."""
+    """Return whether a function takes this many arguments; a builtin need not tell, and takes all."""
     try:
         inspect.signature(function).bind(*range(count))
     except TypeError:
@@ -290,7 +290,7 @@ def room(name: str) -> Any:
 
 
 def places_of(system: Any) -> Any:
-    """Return where a system moves; one of a store, which has no functions, raises the error that says so."""
+    """Return where a system moves; one of a store, which has no functions, raises an error."""
     return system.places
 
 
@@ -320,7 +320,7 @@ def in_double(function: Callable[..., Any], system: Any, *arguments: Any) -> Any
 
 @contextlib.contextmanager
 def compiling(system: Any) -> Iterator[None]:
-    """Say on standard error what is waited for, once for a system: JAX compiles at the first call of each function."""
+    """Report a wait on standard error, once for a system: JAX compiles at the first call of each function."""
 
     def say() -> None:
         if system not in _announcements:

@@ -22,7 +22,7 @@ _NEAR_FOLD = 0.05  # of the regularity at the start of the path, where a continu
 
 
 class Root(NamedTuple):
-    """A velocity, the impulse of constraint, and how far both can be trusted."""
+    """A velocity, the impulse of constraint, and the trust in both."""
 
     velocity: Array
     multipliers: Array
@@ -36,7 +36,7 @@ class _Path(NamedTuple):
 
     Attributes:
         count: Number of attempts.
-        s: How far the residual at the start has been taken away.
+        s: The part of the residual at the start that has been taken away.
         stride: Step of s that is tried next.
         root: The root at s.
         regularity: That at the start.
@@ -148,7 +148,7 @@ def root(
 
 
 def _outcome(path: _Path) -> Array:
-    """Say what ended a path if it did not arrive."""
+    """Return what ended a path if it did not arrive."""
     singular = path.root.regularity < SINGULAR
     is_folded = (path.root.regularity < _NEAR_FOLD * path.regularity) | singular
     code = jnp.where(path.elsewhere, int(Outcome.branch_unverified), int(Outcome.not_converged))

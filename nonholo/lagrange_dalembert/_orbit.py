@@ -59,7 +59,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
 
     @abc.abstractmethod
     def _configurations(self) -> str:
-        """Say what configurations are."""
+        """Return in words what configurations are."""
 
     def __repr__(self) -> str:
         span = f", time {self.time[0]:g} to {self.time[-1]:g}" if len(self) else ""
@@ -106,8 +106,8 @@ class AbstractCoordinateOrbit(AbstractOrbit):
 
         $$ \dot W = f\cdot v + \lambda\cdot b - \partial L/\partial t: $$
 
-        that of the force, of moving constraints and driven joints, and of a Lagrangian of the time. The energy less
-        this work is constant up to an error of order 2 in the time between states.
+        the power of the force, of moving constraints and driven joints, and of a Lagrangian of the time. The energy
+        less this work is constant up to an error of order 2 in the time between states.
         """
         if not self.system.has_functions:
             return np.full(len(self), np.nan if self.system.is_driven else 0.0)
@@ -130,9 +130,9 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     def tangent(self) -> Float[np.ndarray, "L d d"]:
         r"""Derivative of each state by the one before, in orthonormal bases of the admissible changes of (q, v).
 
-        Those of (q, v) that keep $A(q)v = b$, of a map the discrete constraint, and m holonomic ones, d = 2 n - s - m;
-        on a group $\xi$ of $g\,e^\xi$ stands for q. Of a map by the implicit function of the step, of a flow by its
-        equation of variation.
+        Admissible changes of (q, v) keep $A(q)v = b$, of a map the discrete constraint, and m holonomic ones, d = 2 n -
+        s - m; on a group $\xi$ of $g\,e^\xi$ stands for q. Of a map by the implicit function of the step, of a flow by
+        its equation of variation.
         """
         return room("_tangents").tangent_map(self)
 
@@ -148,7 +148,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         if self.solution is None:
             got = f"an orbit in coordinates with {len(self)} states; not {shown(times)}"
             remedy = "Slice it; solve a flow from a file again."
-            raise error("Orbit.at(...)", "be asked of a flow", got, remedy)
+            raise error("Orbit.at(...)", "be called on a flow", got, remedy)
         return room("_flow").at(self, times)
 
     def to_dataset(self) -> Any:
@@ -193,12 +193,12 @@ class CoordinateOrbit(AbstractCoordinateOrbit):
         constraint_residual: Largest $|F_j(q_k, q_{k+1})|$, of holonomic constraints $|\Phi_j(q_{k+1})|/h$; for a flow
             $|A^j(q) v|$, shape (K,).
         outcome: How the run ended.
-        system: What moves.
+        system: The system.
         time_step: h; None for a flow.
         save_every: Steps between saved states.
-        events: What `events=` of the run found, an `EventLog`; None without.
-        step: The number of the step of each state, from 0 at the start of the run, whatever rows are taken, shape (K,);
-            of a state within a step that of its beginning. Of a flow it is the number of the requested time.
+        events: Crossings of `events=`, an `EventLog`; None without.
+        step: The number of the step of each state, counted from 0 at the start of the run, for all rows, shape (K,); of
+            a state within a step the number of its beginning. Of a flow it is the number of the requested time.
 
     Example:
         >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
@@ -246,12 +246,12 @@ class GroupOrbit(AbstractCoordinateOrbit):
         energy: $-\partial l_d/\partial h$ at $W_k$, for a flow $\omega\cdot\partial l/\partial\omega - l$, shape (K,).
         constraint_residual: Largest $|F_j(g_k, W_k)|$, for a flow $|a^j(g)\omega|$, shape (K,).
         outcome: How the run ended.
-        system: What moves.
+        system: The system.
         time_step: h; None for a flow.
         save_every: Steps between saved states.
-        events: What `events=` of the run found, an `EventLog`; None without.
-        step: The number of the step of each state, from 0 at the start of the run, whatever rows are taken, shape (K,);
-            of a state within a step that of its beginning. Of a flow it is the number of the requested time.
+        events: Crossings of `events=`, an `EventLog`; None without.
+        step: The number of the step of each state, counted from 0 at the start of the run, for all rows, shape (K,); of
+            a state within a step the number of its beginning. Of a flow it is the number of the requested time.
 
     Example:
         >>> from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, mass_tensor_lagrangian
@@ -327,7 +327,7 @@ class CoordinateFlow(CoordinateMotion):
     """The flow of a system in coordinates or on a group, as the motion of its orbits.
 
     Attributes:
-        system: What moves.
+        system: The system.
         begins: The first time, where one is set.
 
     Example:

@@ -53,13 +53,14 @@ def looked_at(ends: Sequence[float], unit: float = 1.0) -> Float[np.ndarray, "lo
 
 
 class AbstractOrbit(Keeper, abc.ABC):
-    """A motion at K saved states, of whatever system: times, configurations, momenta, energies, and how it ended.
+    """A motion at K saved states, of any system: times, configurations, momenta, energies, and how it ended.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time: Times of the saved states, shape (K,).
-        step: The number of the step of each state, from 0 at the start of the run, whatever rows are taken; of a state
-            within a step that of its beginning. Of a flow and of given poses: numbers of times and rows. Shape (K,).
+        step: The number of the step of each state, counted from 0 at the start of the run, for all rows; of a state
+            within a step the number of its beginning. Of a flow and of given poses: numbers of times and rows. Shape
+            (K,).
         configuration: Matrices (K, N, N) on a group, (K, n) in coordinates.
         body_velocity: Velocities.
         momentum: Momenta.
@@ -80,7 +81,7 @@ class AbstractOrbit(Keeper, abc.ABC):
         is_compact: Whether it is made of compact states that its motion decodes, or of the numbers that it tells.
         is_measured: Whether configurations were given, and everything else follows from them.
         conserves_energy: Whether its map conserves the energy exactly; None for a flow, and where there is no map.
-        events: What `events=` of the run found, an `EventLog`; None without.
+        events: Crossings of `events=`, an `EventLog`; None without.
         turned: Heading without ambiguity of full turns, where the run knows it, shape (K,).
     """
 

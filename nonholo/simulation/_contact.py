@@ -33,7 +33,7 @@ def after_contact(
 
     Args:
         begin: Gives the state of a run that begins at a state of an orbit, and the outcome.
-        watch: What is known.
+        watch: The search for events.
         there: One state: after the impact, or at the node.
         number: The number of the step.
         share: The part of it that is gone.

@@ -38,11 +38,11 @@ def _check_walls(owner: str, stepper: AbstractStepper[Any], events: dict[str, Ev
     """Refuse impacts of motions whose steps cannot begin at an impact."""
     with_poses, motion = getattr(stepper, "with_poses", None), stepper.motion
     if with_poses is None:
-        refuse_resets(owner, events, "those of a system in coordinates")
+        refuse_resets(owner, events, "impacts of a system in coordinates")
     if not with_poses:
-        refuse_resets(owner, events, "those of a run without poses: reconstruct=False")
+        refuse_resets(owner, events, "impacts of a run without poses: reconstruct=False")
     if (forced := motion.forces) is not None and (forced.table is not None or forced.function is not None):
-        refuse_resets(owner, events, f"those under {forced.names}: a force of the time, whose steps begin at nodes")
+        refuse_resets(owner, events, f"impacts under {forced.names}: a force of the time, whose steps begin at nodes")
 
 
 def check_resets(events: dict[str, Event], there: Any) -> None:
@@ -104,7 +104,7 @@ def crossings(orbit: AbstractOrbit, event: Any) -> Crossings:
     if orbit.branch != stepper.branch:
         got, remedy = f"branch {orbit.branch!r}", "Look for changes of sign in the states yourself."
         raise error("crossings(orbit=...)", "have parts of a step", got, remedy)
-    refuse_resets("crossings", checked_events("crossings", [event]), "one for an orbit that is there")
+    refuse_resets("crossings", checked_events("crossings", [event]), "an impact on a finished orbit")
     watch, piece = watch_for("crossings", stepper, [event]), piece_of(stepper.columns.values())
     for begin in range(0, max(1, len(orbit) - 1), piece):
         watch, _ = search(watch, orbit.chosen(slice(begin, begin + piece + 1)))
@@ -130,7 +130,7 @@ def flow_in_coordinates(system: Any, events: Any, **flow: Any) -> Any:
     solve = functools.partial(importlib.import_module("nonholo.lagrange_dalembert").flow, system, **flow)
     if events is None:
         return solve()
-    refuse_resets("flow", checked_events("flow", events), "those of a system in coordinates")
+    refuse_resets("flow", checked_events("flow", events), "impacts of a system in coordinates")
     by_name = checked_events("flow", events)
     try:
         orbit, failure = solve(), None
@@ -146,7 +146,7 @@ def flow_with_events(events: dict[str, Event], orbit: Any, steps: Float[np.ndarr
     """Return the states of a flow up to the event that ends it, with what was found.
 
     Args:
-        events: What is looked for, by name.
+        events: The events, by name.
         orbit: The flow.
         steps: Times at which steps of its solver begin: there, too, its states are looked at.
     """

@@ -28,7 +28,7 @@ class Impact:
     $$ r^+ = r - (1 + e)\,\frac{\nu\cdot B^{-1}r}{\nu\cdot B^{-1}\nu}\,\nu, \qquad
        \nu\cdot B^{-1}r^+ = -e\,\nu\cdot B^{-1}r. $$
 
-    So the constraint holds after it, and with restitution $e = 1$ the kinetic energy is the same, whatever n is; in
+    So the constraint holds after it, and with restitution $e = 1$ the kinetic energy is the same for every n; in
     general it falls by $\tfrac12(1 - e^2)(\nu\cdot B^{-1}r)^2/(\nu\cdot B^{-1}\nu)$. In a discrete map the step is cut
     there: the part of it that leads to the wall, the reflection, then the part of the length that is left, in which
     there may be more impacts. `orbit.events[name].states` are the states before the impacts, `.after` those after them.
@@ -126,7 +126,7 @@ class Impact:
             return
         if self.covector(gap, states) @ Impact().covector(gap, states) < 0:
             got, remedy = f"its opposite at time {states.time[0]:.17g}", "Pass the other direction."
-            raise error(where, "have the normal in whose direction the function grows", got, remedy)
+            raise error(where, "have a normal in whose direction the function grows", got, remedy)
 
 
 def _place_at(states: Orbit, g: Float[np.ndarray, "N N"]) -> Orbit:
@@ -148,16 +148,17 @@ class Event:
     Attributes:
         function: Takes an `Orbit` with any number of states, with all its quantities, and returns one real number for
             each, which may depend on that state alone.
-        direction: 1 for crossings from below, -1 for those from above, 0 for both.
+        direction: 1 for crossings from below, -1 from above, 0 for both.
         stop: Whether the motion ends at the first crossing, or at which one: stop=10 ends it at the tenth.
-        name: What to call it; a letter, then letters, digits and underscores, all ASCII. By default that of the
-            function, or "event 2" for a lambda at position 2.
+        name: Its name: a letter, then letters, digits and underscores, all ASCII. By default the name of
+            the function, or "event 2" for a lambda at position 2.
         reset: An `Impact`: the function is the gap to a wall, of the pose alone, and at each crossing the momentum is
             reflected. A body that starts at the wall is on the side from which `direction` leads through it, if it is
             not 0. None leaves the motion as it is.
 
     Raises:
-        ValueError: A function that is none, another direction, a stop that is no count, or a reset that is none.
+        ValueError: A function that cannot be called, another direction, a stop that is no count, or a reset that is no
+            `Impact`.
 
     Example:
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1)
@@ -206,7 +207,7 @@ def checked_events(owner: str, events: Any) -> dict[str, Event]:
 
 
 def has_resets(events: dict[str, Event]) -> bool:
-    """Tell whether an event changes the motion."""
+    """Return whether an event changes the motion."""
     return any(event.reset is not None for event in events.values())
 
 

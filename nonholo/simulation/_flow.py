@@ -78,13 +78,14 @@ def flow(
     By default by Taylor series: the equations are quadratic in velocity and pose. Steps do not depend on the requested
     times, where the series are evaluated, and are exact to rounding unless `rtol` allows more. With "closed_form" the
     momentum along the constraint is $r_\perp\,\mathrm{sech}\,s + r_\parallel\tanh s$, $s = s_0 + \nu t$, exact.
-    Exact are also heading and path of the sleigh (a hypergeometric function); the pose of the top is a quadrature.
+    Heading and path of the sleigh are exact too (a hypergeometric function); the pose of the top is a quadrature.
 
-    Of a `Forced` system the force -dU + f stands beside ad*. Under `Gravity` and `Friction`, of a constraint fixed in
-    the body, the series solve it too, or if friction is much faster than the motion Radau of SciPy, with `rtol` of 1e-9
-    and more; else DOP853, with `rtol` of 1e-13 and more. These two also give the states between.
+    For a `Forced` system the force -dU + f is added to ad*. With `Gravity` and `Friction`, and a constraint fixed in
+    the body, the series solve it too; if friction is much faster than the motion, Radau of SciPy does, with `rtol` of
+    1e-9 and more. Other forces are integrated by DOP853, with `rtol` of 1e-13 and more. These two also give the states
+    between.
 
-    The equations of a `LagrangeDAlembert` stand in its docstring. It starts at a `configuration`, and takes neither
+    The docstring of `LagrangeDAlembert` has its equations. It starts at a `configuration`, and takes neither
     `restricted_velocity` nor `method`. The acceleration comes from the constraint differentiated once, a holonomic one
     twice; velocities and places are projected to the constraints, orthogonally in the kinetic energy, at each requested
     time. Smooth formulas have Taylor series too; with kinks, as an absolute value has, diffrax solves them.
@@ -92,7 +93,7 @@ def flow(
     References: [fedorov-zenkov-2004], sections 2, 4 and 5; [jorba-zou-2005] for order and step of the series.
 
     Args:
-        system: What moves.
+        system: The system.
         times: The times of the states, at least one, increasing or decreasing; the start is at the first.
         body_velocity: Start with this velocity, which must satisfy the constraint.
         restricted_velocity: The same, in rows of the constraint subspace.
@@ -110,7 +111,7 @@ def flow(
             to the next are found, and located on the solution; see `Orbit.events`. Two of them between two such times
             are not seen: ask for more times. A stopping event ends the orbit with the last requested time before it.
             One with a `reset` changes the motion: the flow begins again at each `Impact`.
-        progress: Show on standard error how far the time has come.
+        progress: Show the time on standard error.
 
     Returns:
         The orbit. It has no displacements, and its multipliers are the forces at its times. Of a system in coordinates
@@ -153,7 +154,7 @@ def flow(
 
 
 class _Task(NamedTuple):
-    """The equations of a system at times, by a method, and whether poses are asked for."""
+    """The equations of a system at times, by a method, and whether with poses."""
 
     system: System
     time: np.ndarray
@@ -209,9 +210,9 @@ def _solve_flow(
 def _flow_between_walls(task: _Task, first: FirstState, events: dict[str, Event]) -> Orbit:
     """Return the orbit from a first state, with impacts."""
     if not task.reconstruct:
-        refuse_resets("flow", events, "those of a flow without poses: reconstruct=False")
+        refuse_resets("flow", events, "impacts of a flow without poses: reconstruct=False")
     if task.time[-1] < task.time[0]:
-        refuse_resets("flow", events, "those of a flow back in time, which has other impacts")
+        refuse_resets("flow", events, "impacts of a flow back in time, which has other impacts")
     opening = task.opening(first)
     values_of(events, opening)
     check_resets(events, opening)

@@ -53,7 +53,7 @@ def rollout(
     raises there. Derivatives are those of the implicit function of a step, to rounding, never of the iteration that
     finds its root; they are finite at rest, and up to displacements of half a turn. Where roots of the map merge, at a
     fold, the step has no derivative: its Jacobian matrix is singular, and beyond it the principal branch ends. The
-    outcome says so; states from there on are NaN and have the derivative NaN, states before keep theirs.
+    outcome reports it; states from there on are NaN and have the derivative NaN, states before keep theirs.
 
     Eager calls run in 64 bits and return NumPy arrays; traced calls must be 64-bit, or stand inside `allow_float32`.
     The first call compiles, for each number of steps and each kind of system; `jax.jit` around a function of the

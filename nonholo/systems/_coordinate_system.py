@@ -60,7 +60,7 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
     """A system in coordinates: `nonholo.discretize` and `Forced` hand their arguments on to it.
 
     Attributes:
-        description: What stores say of it in place of its fields: a name and parameters.
+        description: Its description in stores, instead of its fields: a name and parameters.
         parameters: Numbers that its functions take.
     """
 
@@ -98,7 +98,7 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
         """Return the same system with other numbers of its parameters; refused where there are none."""
         del numbers
         remedy = "Pass parameters= to a LagrangeDAlembert."
-        raise error("with_parameters(...)", "be asked of a system that has parameters", type(self).__name__, remedy)
+        raise error("with_parameters(...)", "be called on a system with parameters", type(self).__name__, remedy)
 
     @property
     def has_parts(self) -> bool:
@@ -129,7 +129,7 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
 
 
 def in_coordinates(discrete: Any) -> "TypeIs[AbstractCoordinateDiscretization]":
-    """Tell whether something is a discretized system in coordinates.
+    """Return whether something is a discretized system in coordinates.
 
     Example:
         >>> in_coordinates(nh.discretize(nh.examples.particle().system, 0.1)), in_coordinates(None)

@@ -114,7 +114,8 @@ if TYPE_CHECKING:
 class Equilibria:
     """The body velocities that stay constant: a linear space, and the half of it that attracts.
 
-    Those of a system that is neither a top nor a sleigh may be several linear spaces, such as the axes of a free body.
+    Equilibria of a system that is neither a top nor a sleigh may be several linear spaces, such as the axes of a free
+    body.
 
     Attributes:
         subspace: Rows span the equilibria, shape (m, dim).

@@ -223,7 +223,7 @@ def _start(s: CoordinateSamples) -> float:
 
 @measures(MAP, "discrete principle", "P_(k+1) - P+_k = sum lambda_j A^j, by differences of the Lagrangian", 1e-7)
 def _principle(s: CoordinateSamples) -> float:
-    need(s.system.discrete_lagrangian is None, "a discrete Lagrangian of its own")
+    need(s.system.discrete_lagrangian is None, "a custom discrete Lagrangian")
     leaving, arriving = np.array([_ends(s, k) for k in range(s.steps)]).transpose(1, 0, 2)
     nodes = zip(s.orbit.multipliers, s.orbit.configuration[1:], s.orbit.time[1:], strict=True)
     across = np.array([impulse @ s.forms(q, t) for impulse, q, t in nodes])
@@ -250,7 +250,7 @@ def _ends(s: CoordinateSamples, k: int) -> tuple[np.ndarray, np.ndarray]:
 def _reversal(s: CoordinateSamples) -> float:
     need(not s.system.is_driven, "forces, or what drives it, act")
     own = s.system.discrete_lagrangian or s.system.discrete_constraints
-    need(own is None, "discrete functions of its own")
+    need(own is None, "custom discrete functions")
     q, d = s.orbit.configuration, s.orbit.displacement
     back = s._run(s.time_step, s.steps - 1, configuration=q[-1], displacement=-d[-2])
     return gap(back.configuration[::-1], q[1:])

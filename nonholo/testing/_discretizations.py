@@ -50,8 +50,8 @@ def check_order(
         body_velocity: The start; it satisfies the constraint.
         steps: Length of the run with the largest time step.
         halvings: How often the time step is halved.
-        tolerance: How far the slopes of $\log$ error over $\log h$ may be from the order.
-        throw: Raise if they are farther; otherwise only what is returned says so.
+        tolerance: The largest distance of the slopes of $\log$ error over $\log h$ from the order.
+        throw: Raise if they are farther; otherwise only the result reports it.
 
     Returns:
         The errors of all runs, with `order` and `plot`.
@@ -117,7 +117,7 @@ def check_discretization(
         definition: Also compare compiled steps with the definition; JAX compiles it, which takes seconds.
         configuration: Where motions begin, of a system in coordinates; random by default.
         tolerance_factor: On every tolerance, for badly scaled units.
-        throw: Raise if a check fails; otherwise only the report says so.
+        throw: Raise if a check fails; otherwise only the report has it.
 
     Returns:
         What was measured.
@@ -169,7 +169,7 @@ _AGREE = ("momentum", "displacement", "configuration")
 
 @measures(CHECKS, "inertia", "h times the second derivative of l_d at I, along d, is I; P(I) = 0", 1e-8)
 def inertia(s: OrbitSamples) -> float:
-    """Return how far the second derivative of the discrete Lagrangian along the constraint is from the inertia."""
+    """Return the distance of the second derivative of the discrete Lagrangian along the constraint from the inertia."""
     eye, D, h = s.group.identity, s.directions, s.discrete.time_step
     exact = D @ s.system.inertia_operator @ D.T
     need(len(D), "the constraint forbids all motion")
@@ -289,7 +289,7 @@ def reversal(s: OrbitSamples) -> float:
 
 
 def compiled_reversal(s: OrbitSamples) -> float:
-    """Return how far one compiled step forward and back misses its start."""
+    """Return the miss of one compiled step forward and back."""
     need(s.discrete.route.compiled_route is not None, "the step is not compiled")
     need(s.discrete.forces is None, "forces act")
     defect = invariants(s.orbit).reversal_defect
@@ -303,21 +303,21 @@ def energy_drift(s: OrbitSamples) -> float:
 
 @measures(CHECKS, "order of the start", "the first step is exact to second order: 3 - slope", 0.3)
 def order_of_start(s: OrbitSamples) -> float:
-    """Return how far the order of the first displacement falls short of three in one step."""
+    """Return by how much the order of the first displacement falls short of three in one step."""
     errors = [largest(orbit.displacement[0] - W) for orbit, W in zip(s.paths, s.exact[0], strict=True)]
     return max(0.0, 3 - slope(errors)) if errors[-1] > EXACT else 0.0
 
 
 @measures(CHECKS, "order of momenta", _SECOND, 0.15)
 def order_of_momenta(s: OrbitSamples) -> float:
-    """Return how far the order of the momenta is from two."""
+    """Return the distance of the order of the momenta from two."""
     ends = [s.slower(n) * orbit.restricted_momentum[-1] for n, orbit in zip(COUNTS, s.paths, strict=True)]
     return off_two([relative(r, s.exact[1]) for r in ends])
 
 
 @measures(CHECKS, "order of poses", _SECOND, 0.15)
 def order_of_poses(s: OrbitSamples) -> float:
-    """Return how far the order of the poses is from two."""
+    """Return the distance of the order of the poses from two."""
     return off_two([gap(orbit.configuration[-1], s.exact[2]) for orbit in s.paths])
 
 
@@ -341,7 +341,7 @@ def without_forces(s: OrbitSamples) -> float:
 
 @measures(FORCED, "order of the balance", "energy less work changes by the square of the step: |slope - 2|", 0.15)
 def order_of_balance(s: OrbitSamples) -> float:
-    """Return how far the order of what is left of the balance is from two."""
+    """Return the distance of the order of the balance's residual from two."""
     left = [orbit.energy - orbit.energy[0] - orbit.work for orbit in s.paths]
     return off_two([largest(each) / largest(orbit.energy) for each, orbit in zip(left, s.paths, strict=True)])
 

@@ -47,7 +47,7 @@ def check_group(
         rng: A generator of the samples, or an integer that makes one.
         compiled: Also compare with compiled JAX functions, which takes seconds.
         tolerance_factor: On every tolerance, for a basis of badly scaled matrices.
-        throw: Raise if a check fails; otherwise only the report says so.
+        throw: Raise if a check fails; otherwise only the report has it.
 
     Returns:
         What was measured.

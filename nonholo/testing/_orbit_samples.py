@@ -227,7 +227,7 @@ def slope(errors: list[float]) -> float:
 
 
 def off_two(errors: list[float]) -> float:
-    """Return how far the order of errors is from two; zero of rounding."""
+    """Return the distance of the order of errors from two; zero of rounding."""
     return abs(slope(errors) - 2) if errors[-1] > EXACT else 0.0
 
 
@@ -240,7 +240,7 @@ def impulses_of(
     velocity of the mean of both momenta, if need be beside it. Balanced forces give the same impulse twice.
 
     Args:
-        forced: What moves.
+        forced: The system.
         orbit: Its orbit, with all steps; the momenta of its states are those at the nodes.
         leaving: Momenta of the displacements.
         time_step: h.

@@ -271,7 +271,7 @@ def check_system(
         rng: A generator of the samples, or an integer that makes one.
         configuration: Where motions begin, of a system in coordinates; random by default.
         tolerance_factor: On every tolerance, for badly scaled units.
-        throw: Raise if a check fails; otherwise only the report says so.
+        throw: Raise if a check fails; otherwise only the report has it.
 
     Returns:
         What was measured.

@@ -398,7 +398,7 @@ BOARD = {"start": {"configuration": np.zeros(5)}, "goal": {"configuration": {"x"
         ({"via": {0: (1.0, 1.0)}}, "number of a step"),
         ({"via": {2: (1.0, 1.0, 1.0)}}, "shape"),
         ({"guess": [(0.0, 0.0)]}, "two positions or more"),
-        ({"state_bounds": 3}, "name what a state has"),
+        ({"state_bounds": 3}, "name components of a state"),
         ({"state_bounds": {"phi": (0.0, 1.0)}}, "restricted_velocity, x, y, theta"),
         ({"state_bounds": {"x": (1.0, 0.0)}}, "room between"),
         ({"state_bounds": {"x": 1.0}}, "be a pair"),

@@ -286,7 +286,7 @@ def test_sweep_over_numbers_of_forces(file: Path, nonholo: Callable[..., Result]
     ("value", "told"),
     [
         ('"forces.gravity.wight" = [1]', "cannot be varied. Did you mean gravity_point?"),
-        ('"forces.friction_7" = [1.0]', "must vary components that there are. Got friction_7 of 3"),
+        ('"forces.friction_7" = [1.0]', "must vary existing components. Got friction_7 of 3"),
         ('"forces.slip.grip" = [1.0]', "cannot be varied. Known: gravity_force, gravity_point, friction."),
     ],
 )

@@ -53,8 +53,8 @@ def test_all_problems_at_once() -> None:
 @pytest.mark.parametrize(
     ("change", "told"),
     [
-        ('kind = "slegh"', "body: must have a kind that there is. Got 'slegh'. Did you mean sleigh?"),
-        ("", f"body: must have a kind that there is. Got none. Known: {', '.join(SHORT)}, "),
+        ('kind = "slegh"', "body: must have a known kind. Got 'slegh'. Did you mean sleigh?"),
+        ("", f"body: must have a known kind. Got none. Known: {', '.join(SHORT)}, "),
     ],
 )
 def test_kind_of_body(change: str, told: str) -> None:

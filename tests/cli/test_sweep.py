@@ -261,7 +261,7 @@ def test_all_problems_at_once_are_refused() -> None:
         ('"body.a"', '"run.steps"', "design.values.run.steps: cannot be varied. Known: time_step."),
         ('"body.a"', '"bdy.a"', "design.values.bdy: is not a known key. Did you mean body?"),
         ('"body.a"', '"start.momentum[0]"', "start.momentum: is missing: momentum[0] is varied"),
-        ('kind = "grid"', 'kind = "gird"', "design: must have a kind that there is. Got 'gird'. Did you mean grid?"),
+        ('kind = "grid"', 'kind = "gird"', "design: must have a known kind. Got 'gird'. Did you mean grid?"),
         ('kind = "grid"', 'kind = "random"', "design.members: is missing"),
         ("[0.3, 0.5]", "{from = 0.1, to = 1}", "Got a table without count"),
         ("[0.3, 0.5]", "{from = -1, to = 1, count = 3, spacing = 'logarithmic'}", "must have positive bounds"),

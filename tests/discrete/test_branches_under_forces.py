@@ -247,7 +247,7 @@ def test_wrong_arguments_are_named() -> None:
     for wrong, reason in (
         ({"configuration": 2 * np.eye(3)}, r"configuration=\.\.\.\)` must lie in"),
         ({"step": -1}, r"step=\.\.\.\)` must be a natural number"),
-        ({"certify": True}, "must be asked of a free motion"),
+        ({"certify": True}, "must be left out under forces"),
     ):
         with pytest.raises(ValueError, match=reason):
             nh.displacements_over(discrete, [0.1, 0.2], **wrong)

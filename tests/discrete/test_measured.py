@@ -146,9 +146,9 @@ def test_bad_data_are_refused(case: str) -> None:
 def test_what_poses_cannot_tell_is_refused() -> None:
     """Forces of constraint, states between poses, crossings."""
     orbit = nh.Orbit.from_poses(**GOOD)
-    with pytest.raises(ValueError, match=r"Orbit.multipliers` must be asked of a run"):
+    with pytest.raises(ValueError, match=r"Orbit.multipliers` must be read from a run"):
         _ = orbit.multipliers
-    with pytest.raises(ValueError, match=r"Orbit.at\(...\)` must be asked of a flow"):
+    with pytest.raises(ValueError, match=r"Orbit.at\(...\)` must be called on a flow"):
         orbit.at(0.05)
     with pytest.raises(ValueError, match="every single step of a discrete run"):
         nh.crossings(orbit, nh.cusp)

@@ -120,7 +120,7 @@ def test_bad_tasks_are_refused(name: str) -> None:
 
 @pytest.mark.parametrize(
     ("axis", "words"),
-    [("mass", "name what the family has. Got 'mass'"), ("velocity_2", "vary components that there are")],
+    [("mass", "name arguments of the family. Got 'mass'"), ("velocity_2", "vary existing components")],
 )
 def test_bad_designs_are_refused(axis: str, words: str, tmp_path: Path) -> None:
     """Names that the family does not have, components beyond the last."""

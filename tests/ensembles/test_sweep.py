@@ -413,7 +413,7 @@ def test_a_growth_that_was_killed_continues(tmp_path: Path, monkeypatch: pytest.
     ("design", "members", "told"),
     [
         (GRID, 20, "must come with a random design"),
-        (FEW, 49, "must not be below the 50 members that there are. Got 49"),
+        (FEW, 49, "must not be below the 50 members of the design. Got 49"),
         (FEW, 1.5, r"resume\(members=...\)"),
     ],
 )

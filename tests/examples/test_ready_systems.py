@@ -177,5 +177,5 @@ def test_a_flow_is_known_between_its_times() -> None:
         assert np.array_equal(rows[0], getattr(orbit, name)[3])
     with pytest.raises(ValueError, match="lie between"):
         orbit.at(orbit.time[-1] + 1)
-    with pytest.raises(ValueError, match="be asked of a flow"):
+    with pytest.raises(ValueError, match="be called on a flow"):
         run("particle").at(0.1)

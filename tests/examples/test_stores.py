@@ -210,7 +210,7 @@ def test_the_store_of_a_stranger_runs_nothing(tmp_path: Path) -> None:
         (ball | {"motion": '{"kind": "GroupDiscretization", "time_step": 0.1}'}, "hold the columns of"),
         ({"motion": '{"kind": "CoordinateFlow"}'}, "hold the columns of"),
         ({"system": "LagrangeDAlembert"}, "hold a system of this version"),
-        ({"parameters": '{"orbits": "CoordinateOrbit", "force": "callable"}'}, "hold what its system is. Got name"),
+        ({"parameters": '{"orbits": "CoordinateOrbit", "force": "callable"}'}, "describe its system. Got name"),
     ):
         edit_attributes(path, edited)
         with pytest.raises(ValueError, match=match):

@@ -118,7 +118,7 @@ BAD = {
     "times": (lambda: flow(times=(0.0, 1.0, 1.0)), "strictly"),
     "time step": (lambda: nh.discretize(SYSTEM, -0.1), r"discretize\(time_step=...\)` must be positive"),
     "traced": (lambda: jax.jit(lambda h: nh.discretize(SYSTEM, h).time_step)(0.1), "outside jax.jit"),
-    "not discretized": (lambda: nh.simulate(SYSTEM, steps=3), "Pass what `discretize` returned"),
+    "not discretized": (lambda: nh.simulate(SYSTEM, steps=3), "Pass the result of `discretize`"),
     "rule": (lambda: nh.LagrangeDAlembert(lagrangian, forms, dimension=3, rule="simpson"), "'midpoint', 'trapezoidal'"),
     "raises": (lambda: nh.LagrangeDAlembert(lambda q, v: 1 / 0, forms, dimension=3), "ZeroDivisionError"),  # noqa: ARG005
     "branches": (

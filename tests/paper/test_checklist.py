@@ -1,7 +1,9 @@
 """The list of labels, footnotes and errata rows, against the findings."""
 
 import re
+import tomllib
 from collections import Counter
+from importlib import resources
 
 import pytest
 
@@ -40,6 +42,16 @@ def test_every_finding_is_listed() -> None:
     unknown = {entry.finding.label for entry in entries()} - {*LABELS, *CLAIMS, *ERRATA}
     assert not unknown
     assert not {number for entry in entries() for number in entry.finding.errata} - set(ERRATA)
+
+
+def test_every_claim_is_measured() -> None:
+    """Each claim belongs to a function of its module that measures it, and each such function has a claim."""
+    findings = [entry.finding for entry in entries()]
+    measured = {(finding.measure.__module__.rpartition(".")[2], finding.measure.__name__) for finding in findings}
+    files = (resources.files("nonholo_paper") / "claims").iterdir()
+    tables = [table for file in files for table in tomllib.loads(file.read_text("utf-8")).items()]
+    claims = {(module, name) for module, words in tables for name, claim in words.items() if isinstance(claim, dict)}
+    assert claims == measured
 
 
 def test_rows_are_what_is_to_be_corrected() -> None:

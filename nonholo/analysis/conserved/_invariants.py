@@ -37,7 +37,7 @@ class Invariants:
         reversal_defect: Largest relative miss of one step forward and back; not measured in coordinates.
         largest_step_angle: In degrees.
         outcome: How the run ended.
-        work: What forces, and what else drives it, did on the whole, less what friction dissipated; None of a free
+        work: The total work of forces and drives, less the dissipation by friction; None of a free
             system.
     """
 
@@ -53,12 +53,12 @@ class Invariants:
 
 
 def invariants(orbit: AbstractOrbit) -> Invariants:
-    """Measure what an orbit should keep.
+    """Measure the errors of an orbit in its invariants.
 
     Returns:
         `Invariants`, with the fields `states`, `steps`, `energy_drift` (relative), `constraint_residual`,
         `group_residual`, `reversal_defect`, `largest_step_angle` (in degrees), `outcome`, `work`: the last five None
-        where they are not defined. `help(type(nh.invariants(orbit)))` says what each of them is.
+        where they are not defined. `help(type(nh.invariants(orbit)))` describes each of them.
 
     Raises:
         ValueError: The orbit has no states.
@@ -71,7 +71,7 @@ def invariants(orbit: AbstractOrbit) -> Invariants:
     """
     where, remedy = "invariants(orbit=...)", "Pass what `simulate` or `flow` returned."
     if len(instance(where, orbit, AbstractOrbit, "be an orbit", remedy)) == 0:
-        raise error(where, "have at least one state", str(orbit), "Its outcome says why it has none.")
+        raise error(where, "have at least one state", str(orbit), "Its outcome gives the reason.")
     driven = orbit.system.forces is not None if isinstance(orbit, Orbit) else orbit.system.is_driven
     work = orbit.known_work
     return Invariants(
@@ -173,7 +173,7 @@ def conserved_momenta(system: AbstractSystem) -> ConservedMomenta:
     the spatial components always contain $\mathfrak{d}$.
 
     The lists are complete for connected groups: a linear function of p or of $\mu$ that is not in their span changes
-    along some motion. A discrete map keeps the spatial components along ideals inside $\mathfrak{d}$, whatever its
+    along some motion. A discrete map keeps the spatial components along ideals inside $\mathfrak{d}$, for every
     Lagrangian. That it keeps the others is not implied.
 
     Args:

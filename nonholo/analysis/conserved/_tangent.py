@@ -28,7 +28,7 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
     series of its equation of variation, between its times.
 
     Args:
-        orbit: Made by `simulate` with every step saved, or by `flow`. One in coordinates has a `tangent` of its own.
+        orbit: Made by `simulate` with every step saved, or by `flow`. An orbit in coordinates has its own `tangent`.
 
     Raises:
         ValueError: Another kind of orbit, a map under a table or a function of Python or numba.
@@ -48,7 +48,7 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
         return flow_tangents(_WHERE, system, orbit.restricted_momentum, orbit.time)
     if not isinstance(discrete, Discretization) or _acts_from_outside(discrete.forces):
         remedy = "Differentiate `nh.rollout` by JAX."
-        raise error(_WHERE, "be asked of a free flow, or of a map whose forces are numbers", shown(discrete), remedy)
+        raise error(_WHERE, "belong to a free flow, or to a map whose forces are numbers", shown(discrete), remedy)
     if not orbit.has_every_step:
         raise error(_WHERE, "have every step", f"{len(orbit)} states with others between", "Run with save_every=1.")
     if _has_closed_derivatives(discrete):
@@ -61,7 +61,7 @@ def _has_closed_derivatives(discrete: Discretization) -> bool:
 
 
 def _acts_from_outside(forces: Any) -> bool:
-    """Tell whether forces do more than the state does: by a table, or by a function that is not traced."""
+    """Return whether forces do more than the state does: by a table, or by a function that is not traced."""
     return forces is not None and (forces.needs_function or forces.table is not None)
 
 

@@ -25,7 +25,7 @@ class Problem:
     Attributes:
         residuals: Residuals with derivatives, of parameters, starts, poses and kinds.
         poses: Where the changes of pose in the starts begin.
-        kinds: What was measured.
+        kinds: The kinds of measurements.
         count: How many parameters there are.
         shape: Of the starts: trials, numbers of each.
         last: The last point with its residuals.

@@ -107,7 +107,7 @@ class Search(NamedTuple):
             return np.where(is_log, np.exp(result.x), result.x)
 
     def exists(self, point: np.ndarray) -> bool:
-        """Tell whether there is a body at a point."""
+        """Return whether there is a body at a point."""
         try:
             self.system_at(point)
         except ValueError:
@@ -145,7 +145,7 @@ def outcome_of(search: Search, solution: Solution, guess: np.ndarray, errors: np
 
 
 def _is_lost(search: Search, solution: Solution, kind: str) -> bool:
-    """Tell whether residuals of a kind are many times the noise, which is given or that from sample to sample."""
+    """Return whether residuals of a kind are many times the noise, which is given or that from sample to sample."""
     there, rows = search.problem.there[kind], search.problem.at(solution.point)[kind][0]
     columns = [rows[t, there[t, :, c], c] for t in range(len(rows)) for c in range(rows.shape[2])]
     typical, step = (

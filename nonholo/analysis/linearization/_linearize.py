@@ -78,7 +78,7 @@ def linearize(system: Any, *, configuration: Any = None, body_velocity: Any = No
     on the pose $\xi$ of $g\,e^\xi$, seen from a body that moves on steadily. So a top in steady precession is, too.
 
     Derivatives are exact, by JAX; those of forces and potentials that are functions, on groups, are central
-    differences of order 6. What depends on what is seen at the state and three more, up to 1e-11 of the largest
+    differences of order 6. Dependences are seen at the state and three more, up to 1e-11 of the largest
     derivative. The step of a map begins as `simulate` begins, with `body_velocity`.
 
     Args:

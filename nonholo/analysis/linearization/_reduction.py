@@ -103,13 +103,13 @@ def _without(local: Local, dependent: list[int]) -> Reduced:
 
 
 def _depends(slope: Float[np.ndarray, "K d d"]) -> Bool[np.ndarray, "d d"]:
-    """Tell which change depends on which state, at any state where the derivatives are finite."""
+    """Return which change depends on which state, at any state where the derivatives are finite."""
     finite = slope[np.isfinite(slope).all(axis=(1, 2))]
     return np.any(np.abs(finite) > _UNSEEN * np.abs(finite).max(axis=(1, 2), initial=0.0, keepdims=True), axis=0)
 
 
 def _influences(depends: Bool[np.ndarray, "d d"], places: int) -> Bool[np.ndarray, "d"]:
-    """Tell which states the velocities depend on, directly or by other states; velocities are among them."""
+    """Return which states the velocities depend on, directly or by other states; velocities are among them."""
     matters = np.arange(len(depends)) >= places
     while np.any(more := depends[matters].any(axis=0) & ~matters):
         matters |= more

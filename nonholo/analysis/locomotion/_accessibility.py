@@ -29,7 +29,7 @@ class Accessibility:
 
 
 def accessibility(system: Any, configuration: Any, *, depth: int | None = None) -> Accessibility:
-    r"""Return how far brackets of admissible velocities lead from a configuration.
+    r"""Return the directions to which brackets of admissible velocities lead from a configuration.
 
     $$ D_1 = D = \{v : A(q)\,v = 0\}, \qquad D_{i+1} = D_i + [D, D_i], \qquad
        \text{growth} = (\dim D_1, \dim D_2, \dots). $$
@@ -80,7 +80,7 @@ def accessibility(system: Any, configuration: Any, *, depth: int | None = None) 
 
 
 def _constraints(system: Any, configuration: Any) -> tuple[Any, Float[np.ndarray, "n"], int]:
-    """Return the function of the constraint forms with its system, the checked place, and how far brackets may lead."""
+    """Return the function of the constraint forms with its system, the checked place, and the reach of brackets."""
     from nonholo.analysis.locomotion import _reduction
     from nonholo.lagrange_dalembert import checked_state, equations
 

@@ -137,7 +137,7 @@ class StateBounds(NamedTuple):
             return None
         remedy = f"Pass {{name: (least, largest)}} of {', '.join(names)}."
         if not isinstance(bounds, Mapping) or not set(bounds) <= set(names):
-            raise error(_WHERE, "name what a state has", shown(bounds), remedy)
+            raise error(_WHERE, "name components of a state", shown(bounds), remedy)
         parts = {name: cls._one(name, both, names[name]) for name, both in bounds.items()}
         for name, part in parts.items():
             for end, numbers in ends.items():

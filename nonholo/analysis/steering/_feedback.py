@@ -36,7 +36,7 @@ class Feedback(Keeper):
     """A reference orbit and the feedback along it.
 
     Attributes:
-        discrete: What is steered.
+        discrete: The steered system.
         controls: Body covectors of the reference, (steps, dim).
         reference: The reference orbit, a `Rollout`.
         gains: K, (steps, k, n) with n = dim + k.
@@ -71,13 +71,13 @@ class Feedback(Keeper):
         disturbance: Any = None,
         misreading: Any = None,
     ) -> Tracking:
-        """Run the body under the feedback, from a start of its own, with pushes that the feedback does not know.
+        """Run the body under the feedback, from a given start, with pushes that the feedback does not include.
 
         Args:
             restricted_velocity: The first velocity along the constraint; by default that of the reference.
             configuration: The first pose; by default that of the reference.
             disturbance: Body covectors beside the controls, (steps, dim).
-            misreading: What is added to the error of the state where the feedback reads it, (steps, dim + k).
+            misreading: The error added to the state where the feedback reads it, (steps, dim + k).
 
         Returns:
             The motion. Its `orbit.outcome` is not zero where it ends early, NaN from there on.

@@ -137,7 +137,7 @@ class CoordinateNodes(NamedTuple):
     """Steps in coordinates.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: h.
         outline: Points in axes of the body that keep clear of obstacles, (points, 2), or a `MovingOutline`.
         directions: Rows span the admissible velocities near the goal; none where its velocity is free.

@@ -35,7 +35,7 @@ Gaps = Callable[[Float[np.ndarray, "m n"], np.ndarray], tuple[Float[np.ndarray, 
 def least_effort(
     gaps: Gaps, f: Float[np.ndarray, "M n"], limits: tuple[np.ndarray, np.ndarray]
 ) -> tuple[Float[np.ndarray, "M n"], Float[np.ndarray, "M"], Float[np.ndarray, "M"]]:
-    """Return forces near given ones, what they miss at most, and how far they are from least effort, relative."""
+    """Return forces near given ones, their largest miss, and their relative excess over the least effort."""
     f, going = np.clip(f, *limits), np.arange(len(f))
     c, J = gaps(f, going)
     gap, rest, penalty = np.abs(c).max(axis=1), np.full(len(f), np.inf), np.zeros(len(f))

@@ -38,7 +38,7 @@ class Steering(Keeper):
     """Controls that lead to a goal; of many members at once every array has an axis of them in front.
 
     Attributes:
-        discrete: What was steered.
+        discrete: The steered system.
         start: First velocities along the constraint, and poses; in coordinates velocity and configuration.
         controls: Body covectors, (steps, dim), as `rollout` takes them; in coordinates forces on them.
         cost: Half the time integral of the squared forces along the rows of the constraint subspace.
@@ -102,44 +102,44 @@ def steer(
 
     $$ \min_f\ \tfrac h2\sum_k |f_k|^2 \quad\text{with}\quad (g_N, w_N) = \text{goal}, $$
 
-    where $f_k$ are the components of the control of step k along the rows of the constraint subspace: of a sleigh the
-    torque and the thrust along the blade. The orbit is the exact discrete one and its derivatives are exact, so the
+    where $f_k$ are the components of the control of step k along the rows of the constraint subspace: for a sleigh
+    the torque and the thrust along the blade. The orbit is the exact discrete one and its derivatives are exact, so the
     goal is met to rounding, not to the error of a transcription. Minima are local.
 
     "shooting" has the forces alone as unknowns, of many members at once, by derivatives of `rollout`: Newton's method
-    on the equations of the minimum begins at random controls, anew where it fails. "ipopt" has all states as unknowns
-    too, and the equations of all steps as sparse conditions with exact first and second derivatives, one member after
-    the other; it keeps clear of obstacles, and long motions do not trouble it.
+    on the equations of the minimum begins at random controls, and again where it fails. "ipopt" has all states as
+    unknowns too, and the equations of all steps as sparse conditions with exact first and second derivatives, one
+    member after the other; it keeps clear of obstacles, and it also solves long motions.
 
-    Starts and goals may be many, with an axis of members in front. One that has no such axis is that of all of them.
+    Starts and goals may have a leading axis of members. One without it holds for all members.
 
     A system in coordinates (`LagrangeDAlembert`) is steered by "ipopt", one member, with a force on each coordinate:
-    `bounds` say which of them have motors.
+    `bounds` select those with motors.
 
     Args:
         discrete: The discretized system, of order 2, with a left-invariant constraint; or one in coordinates.
         start: `configuration` and `restricted_velocity`; by default the identity, at rest. In coordinates
             `configuration` and `body_velocity`.
-        goal: The same; what it does not name is free. In coordinates a configuration may name some of them alone:
-            {"x": 1.0, "theta": 0.0}.
+        goal: The same; components that it does not name are free. In coordinates a configuration may name some of them
+            alone: {"x": 1.0, "theta": 0.0}.
         steps: Number of steps N.
-        bounds: Least and largest force, numbers or one for each row; zero for both where nothing pushes.
+        bounds: Least and largest force, numbers or one for each row; zero for both where there is no motor.
         cost: "effort".
-        method: "shooting" or "ipopt" (extra `steer`); by default "ipopt" where it alone can do what is asked.
+        method: "shooting" or "ipopt" (extra `steer`); by default "ipopt" where only it can solve the problem.
         obstacles: Discs or balls: their centers (obstacles, n), and one radius or one for each. States keep clear of
             them; between two states a track may cut into one by up to $s^2/8\rho$ on a step of length s.
         outline: Body points (points, n) that keep clear; by default the origin of the body frame. In coordinates also a
             function of q, written with `jax.numpy`, that returns them: those of a trailer, which must not cut a disc.
         via: Positions of the body frame on the way, by number of steps: {40: (1.0, 0.5)}.
-        state_bounds: The least and the largest value of what a state has, by name: {"x": (0, 3), "theta": (-1, 1)}.
-            On groups "x", "y", "z"; "theta" in the plane, of the heading whatever its turns; "restricted_velocity", a
-            number or one for each row. In coordinates their names; "body_velocity" of each step, a number or one for
+        state_bounds: The least and the largest value of components of the state, by name: {"x": (0, 3), "theta": (-1,
+            1)}. On groups "x", "y", "z"; "theta" in the plane, of the heading up to full turns; "restricted_velocity",
+            a number or one for each row. In coordinates their names; "body_velocity" of each step, a number or one for
             each coordinate. Infinite ones bound nothing. They hold for every state, of the goal too.
         guess: Where "ipopt" begins: positions (points, n) of a path, or a `Steering` of one member.
         progress: Show a progress bar of the members on standard error.
 
     Returns:
-        The controls. `converged` is False where no way to the goal was found, and `outcome` says in a word why;
+        The controls. `converged` is False where no way to the goal was found, and `outcome` names the reason;
         `failures` counts these members.
 
     Raises:

@@ -52,7 +52,7 @@ class Program(NamedTuple):
         results: Its values, one after another.
         doubt: Not zero where the formulas may not be trusted.
         shapes: Shapes of the values.
-        formulas: What makes more of them.
+        formulas: The maker of more of them.
     """
 
     inputs: list[Scalar]

@@ -90,7 +90,7 @@ class Members(Keeper):
 
     @functools.cached_property
     def keep_frame(self) -> bool:
-        """Whether all members clearly have the canonical frame of the shared motion, whatever their parameters."""
+        """Whether all members clearly have the canonical frame of the shared motion, with all parameters."""
         return self.joint_system is not None and bool(np.all(self.joint_system.frame == self.discrete.system.frame))
 
     @functools.cached_property
@@ -109,7 +109,7 @@ class Members(Keeper):
 
 
 def is_in_coordinates(motion: Any) -> bool:
-    """Tell whether a map or a flow is one of a system in coordinates."""
+    """Return whether a map or a flow is one of a system in coordinates."""
     return isinstance(motion.system, AbstractCoordinateSystem)
 
 
@@ -224,12 +224,12 @@ class ScalarMembers:
 
 
 def run_in_lanes(discrete: Discretization) -> bool:
-    """Tell whether the members of an ensemble of a discretization are computed side by side."""
+    """Return whether the members of an ensemble of a discretization are computed side by side."""
     return in_lanes(Members(discrete, {}, 1))
 
 
 def in_lanes(members: Members) -> bool:
-    """Tell whether members are computed side by side: those of one closed form."""
+    """Return whether members are computed side by side: those of one closed form."""
     return members.lanes is not None
 
 
@@ -255,7 +255,7 @@ def inertias_of(members: Members) -> Float[np.ndarray, "m dim dim"]:
 
 
 def check_systems(members: Members) -> None:
-    """Refuse parameters of which no system can be made; those that clearly make one are looked through in one go."""
+    """Refuse parameters of which no system can be made; those that clearly make one are checked at once."""
     step = members.parameters.get(STEP)
     if step is not None and callable(getattr(members.discrete, "difference", None)):
         where, got = "ensemble(parameters={'time_step': ...})", "a function"
@@ -273,6 +273,6 @@ def check_systems(members: Members) -> None:
 
 
 def _doubtful(members: Members) -> Bool[np.ndarray, "M"]:
-    """Tell which members have to be built to know that they can be."""
+    """Return which members have to be built to know that they can be."""
     is_clear = not members.of_system or (members.joint_system is not None and members.joint_system.is_clear)
     return np.broadcast_to(~np.asarray(is_clear), len(members))

@@ -134,7 +134,7 @@ class LLSystem(AbstractLLSystem):
         """Build a system from its mass, its inertia about the center of mass, and where that is in the body.
 
         On SO(3) the body turns about the origin of body coordinates, to which Steiner's theorem carries the inertia; on
-        SE(n) the origin is the reference point. An `ImpossibleBodyWarning` says so if no body has the inertia.
+        SE(n) the origin is the reference point. An `ImpossibleBodyWarning` is issued if no body has the inertia.
 
         Args:
             mass: m.
@@ -200,7 +200,7 @@ def _refuse_singular(where: str, system: LLSystem) -> None:
         units = units * np.sqrt((terms / units / units[:, None]).max(axis=1, initial=np.finfo(float).tiny))
     if not np.abs(np.linalg.eigvalsh(inertia / units / units[:, None])).min() > _SINGULAR:
         got = f"eigenvalues {np.linalg.eigvalsh(inertia).tolist()}"
-        remedy = "Every admissible velocity needs a momentum of its own along the constraint."
+        remedy = "Every admissible velocity needs a separate momentum along the constraint."
         raise error(where, "make the inertia along the constraint invertible", got, remedy)
 
 

@@ -1,4 +1,4 @@
-"""The free rigid body, and the Suslov top, which only turns in planes through an axis of its own, in any dimension."""
+"""The free rigid body, and the Suslov top, which only turns in planes through an axis fixed in it, in any dimension."""
 
 import dataclasses
 import functools
@@ -83,7 +83,7 @@ class RigidBody(AbstractLLSystem):
         """Build a body from its mass, its inertia about the center of mass, and where that is in the body.
 
         On SO(3) the body turns about the origin of body coordinates, to which Steiner's theorem carries the inertia; on
-        SE(n) the origin is the reference point. An `ImpossibleBodyWarning` says so if no body has the inertia.
+        SE(n) the origin is the reference point. An `ImpossibleBodyWarning` is issued if no body has the inertia.
 
         Args:
             mass: m.
@@ -176,7 +176,7 @@ class SuslovTop(AbstractLLSystem):
     def from_inertia(cls, inertia: Array, axis: Array = _E3) -> "SuslovTop":
         """Build a top (n = 3) from its inertia tensor and the forbidden body axis, all in the user's body frame.
 
-        The inertia tensor is about the fixed point. An `ImpossibleBodyWarning` says so if no body has it.
+        The inertia tensor is about the fixed point. An `ImpossibleBodyWarning` is issued if no body has it.
 
         Example:
             >>> SuslovTop.from_inertia(np.diag([3.0, 2.0, 1.5]), axis=(0, 1, 0)).annihilator
