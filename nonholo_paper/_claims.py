@@ -1,4 +1,4 @@
-"""The claims: what the paper prints, where, and what is said of it. Functions of `statements`, `figures` measure them.
+"""The claims: what the paper prints, where, and its verdict. Functions of `statements`, `figures` measure them.
 
 The words stand in claims/, a file for each section and one for the figures, under the names of module and function.
 """

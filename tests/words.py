@@ -22,7 +22,7 @@ QUOTED = {
 }  # titles of works, past releases
 QUOTATION = r"“[^”]*”"
 GENERATED = re.compile(
-    r"api/.*|reference/(?!symbols).*|gallery/README\.md|(errata|paper|reliability|tests)\.md"
+    r"api/.*|reference/(?!symbols).*|gallery/README\.md|(errata|paper|project/figures|tests)\.md"
 )  # by scripts
 NO_PROSE = {"references.md", "project/migration.md"}
 KERNELS = ("nonholo/kernels/", "nonholo/base/compiled/", "nonholo/base/numerics/")  # whose text names the library
@@ -51,7 +51,8 @@ def protected(name: str, text: str, cited: Sequence[str] = ()) -> list[tuple[int
 
 def words(name: str, text: str, patterns: dict[str, str], cited: Sequence[str] = ()) -> Iterator[tuple[int, str]]:
     """Yield the places of words on the list, with what to write instead."""
-    matches = [(m, instead) for pattern, instead in patterns.items() for m in re.finditer(pattern, text, re.IGNORECASE)]
+    lowered = text.lower()  # matched much faster than text of both cases
+    matches = [(m, instead) for pattern, instead in patterns.items() for m in re.finditer(pattern, lowered)]
     spans = protected(name, text, cited) if matches else []
     for match, instead in matches:
         if not any(start <= match.start() < end for start, end in spans):
@@ -61,8 +62,8 @@ def words(name: str, text: str, patterns: dict[str, str], cited: Sequence[str] =
 def complaints(root: Path = ROOT) -> list[str]:
     """Return a line for each word on the list, with its place and what to write instead."""
     texts = {name: (root / name).read_text("utf-8") for name in files(root)}
-    vocabulary = "\n".join(set(re.findall(r"\w+", "\n".join(texts.values()))))
-    spelling = {word: to for word, to in TABLE["spelling"].items() if re.search(word, vocabulary, re.IGNORECASE)}
+    vocabulary = "\n".join(set(re.findall(r"\w+", "\n".join(texts.values()).lower())))
+    spelling = {word: to for word, to in TABLE["spelling"].items() if re.search(word, vocabulary)}
     patterns, cited = spelling | TABLE["phrases"], stems(root)
     pages = {"README.md", "CONTRIBUTING.md", *(f"docs/{name}" for name in lengths(root) if name not in NO_PROSE)}
     checked = [(name, 1, text, patterns) for name, text in texts.items()]
@@ -77,7 +78,8 @@ def complaints(root: Path = ROOT) -> list[str]:
 
 def in_library(name: str) -> bool:
     """Return whether a file is code of the library with prose to check."""
-    return name.startswith("nonholo/") and name.endswith((".py", ".pyi")) and not name.startswith(KERNELS)
+    is_code = name.startswith(("nonholo/", "nonholo_paper/")) and name.endswith((".py", ".pyi"))
+    return is_code and not name.startswith(KERNELS)
 
 
 def strings(text: str) -> Iterator[tuple[int, str]]:

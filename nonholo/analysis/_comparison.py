@@ -235,18 +235,14 @@ def _common_rows(orbit: AbstractOrbit, flow: AbstractOrbit) -> tuple[Rows, Rows]
     """Return both orbits and the rows that are at the same times; a flow that knows its states between at new times."""
     for one, other in ((orbit, flow), (flow, orbit)):
         if other.span is not None:
-            rows = np.flatnonzero(_is_within(one.time, other.span))
+            near, (first, last) = _nearness(one.time), sorted(other.span)
+            rows = np.flatnonzero((one.time >= first - near) & (one.time <= last + near))
             _check_common(rows)
-            rest = other.at(np.clip(one.time[rows], min(other.span), max(other.span))), np.arange(len(rows))
+            rest = other.at(np.clip(one.time[rows], first, last)), np.arange(len(rows))
             return ((one, rows), rest) if one is orbit else (rest, (one, rows))
     rows, others = _common(orbit.time, flow.time)
     _check_common(rows)
     return (orbit, rows), (flow, others)
-
-
-def _is_within(time: np.ndarray, span: tuple[float, float]) -> np.ndarray:
-    near = _nearness(time)
-    return (time >= min(span) - near) & (time <= max(span) + near)
 
 
 def _common(first: np.ndarray, second: np.ndarray) -> tuple[Int[np.ndarray, "C"], Int[np.ndarray, "C"]]:

@@ -23,6 +23,8 @@ from nonholo.base.checks import array, error, instance, is_traced, name, number,
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float, Int
 
+ROWS = 1024
+"""Saved states of one call of JAX: one size of table, one compilation."""
 _END = 120  # letters of either end of a long message
 
 
@@ -289,11 +291,6 @@ def room(name: str) -> Any:
     return importlib.import_module(f"nonholo.lagrange_dalembert.{name}")
 
 
-def places_of(system: Any) -> Any:
-    """Return where a system moves; one of a store, which has no functions, raises an error."""
-    return system.places
-
-
 def configurations(system: Any, places: Any) -> Any:
     """Return the configurations of places: those of driven systems have the time in a last column."""
     return places[:, :-1] if system.is_driven else places
@@ -316,6 +313,15 @@ def in_double(function: Callable[..., Any], system: Any, *arguments: Any) -> Any
         result = jax.tree.map(np.asarray, _compile(function)(family, numbers, *arguments))
     _calls.add((function, family))
     return result
+
+
+def in_blocks(function: Callable[..., Any], system: Any, *columns: np.ndarray) -> list[np.ndarray]:
+    """Call a JAX function of a system and many states in blocks of one size, so that it is compiled once."""
+    count = len(columns[0])
+    missing = (-count % ROWS) or (0 if count else ROWS)
+    rows = [np.concatenate([x, np.broadcast_to(x[-1] if count else 0.0, (missing, *x.shape[1:]))]) for x in columns]
+    parts = [in_double(function, system, *(x[i : i + ROWS] for x in rows)) for i in range(0, len(rows[0]), ROWS)]
+    return [np.concatenate(column)[:count] for column in zip(*parts, strict=True)]
 
 
 @contextlib.contextmanager

@@ -373,13 +373,12 @@ def _with_potential(lagrangian: Callable[..., Array], potential: Any, *, last: b
     """Return a Lagrangian less a potential; both may take parameters last."""
     if potential is None:
         return lagrangian
-    if last and takes_time(lagrangian, 3):
-        return lambda q, v, time, p: lagrangian(q, v, time, p) - potential(q, p)
-    if last:
-        return lambda q, v, p: lagrangian(q, v, p) - potential(q, p)
-    if takes_time(lagrangian, 2):
-        return lambda q, v, time: lagrangian(q, v, time) - potential(q)
-    return lambda q, v: lagrangian(q, v) - potential(q)
+
+    @functools.wraps(lagrangian)  # whose signature says whether the time is passed
+    def less(q: Array, v: Array, *rest: Any) -> Array:
+        return lagrangian(q, v, *rest) - potential(q, *(rest[-1:] if last else ()))
+
+    return less
 
 
 def _motions(motions: Any, dimension: int, last: tuple[Any, ...]) -> tuple[tuple[int, Callable[[Array], Array]], ...]:

@@ -5,7 +5,7 @@ import dataclasses
 import functools
 import importlib
 from collections.abc import Sequence
-from typing import Any, TypeVar, cast
+from typing import Any, ClassVar, TypeVar, cast
 
 import numpy as np
 
@@ -110,6 +110,10 @@ class AbstractOrbit(Keeper, abc.ABC):
     conserves_energy: bool | None
     events: Any
     turned: Float[np.ndarray, "K"] | None = None
+    group: Any = None
+    """The group that configurations are matrices of; None in coordinates."""
+    momenta: ClassVar[tuple[str, ...]]
+    """The columns that an impact changes, the momentum first."""
 
     def __post_init__(self) -> None:
         """Number the rows of a whole run; let no orbit be successful with a number that is not finite.
@@ -123,6 +127,34 @@ class AbstractOrbit(Keeper, abc.ABC):
                     object.__setattr__(self, "outcome", Outcome.nonfinite)
         if self.step is None or len(self.step) != len(self.time):
             object.__setattr__(self, "step", np.arange(0, self.save_every * len(self.time), self.save_every))
+
+    @abc.abstractmethod
+    def as_start(self) -> Any:
+        """Return what a run begins with that begins at the first state."""
+
+    @abc.abstractmethod
+    def beside(self: SelfT, offsets: Float[np.ndarray, "K dim"]) -> SelfT:
+        """Return the states at places beside theirs, by coordinates, on a group by body directions."""
+
+    @abc.abstractmethod
+    def with_step(self: SelfT, ahead: SelfT, outcome: Outcome) -> SelfT:
+        """Return one state with the step of a run that began there, as a state of that run, and what became of it."""
+
+    @abc.abstractmethod
+    def reflection(self: SelfT, normal: Float[np.ndarray, "dim"], bounce: float, direction: int) -> SelfT | None:
+        r"""Return one state after the impulse of a wall along a covector, which reverses its speed along that.
+
+        Args:
+            normal: The derivative of the gap.
+            bounce: Which part of the speed is left.
+            direction: That of the gap on the way through the wall.
+
+        Returns:
+            None where the motion is not toward the wall.
+        """
+
+    def refuse_reset(self, where: str) -> None:
+        """Refuse impacts of motions that have no reflection in the energy."""
 
     @property
     @abc.abstractmethod

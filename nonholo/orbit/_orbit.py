@@ -20,7 +20,8 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Float, Int
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.orbit._base import AbstractOrbit
-from nonholo.orbit._decoder import Decoder, decoder_of, poses, unwrap
+from nonholo.orbit._decoder import Decoder, decoder_of, poses, turned_near, unwrap
+from nonholo.orbit._stepper import First
 from nonholo.systems import System
 
 STATES = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
@@ -153,6 +154,7 @@ class Orbit(AbstractOrbit):
     events: Any = None
     step: Int[np.ndarray, "K"] = None  # type: ignore[assignment]
     is_compact: ClassVar[bool] = True
+    momenta: ClassVar[tuple[str, ...]] = ("reduced_momentum",)
 
     @staticmethod
     def from_poses(system: System, time: Any, configuration: Any) -> "Orbit":
@@ -216,6 +218,32 @@ class Orbit(AbstractOrbit):
             return self
         return dataclasses.replace(self, turned=unwrap(pose, before=before))
 
+    def as_start(self) -> First:
+        """Return the momentum and the pose of the first state."""
+        return First((self.reduced_momentum[0], cast(Any, self.canonical_pose)[0]))
+
+    def beside(self, offsets: Float[np.ndarray, "K dim"]) -> "Orbit":
+        """Return the states at poses beside theirs, by body directions."""
+        pose = self.group.pose_from_matrix(self.configuration @ self.group.exp(offsets) @ self.system.frame)
+        headings = None if self.turned is None else turned_near(self.turned, pose)
+        return dataclasses.replace(self, canonical_pose=pose, turned=headings)
+
+    def with_step(self, ahead: "Orbit", outcome: Outcome) -> "Orbit":
+        """Return one state with the displacement of the step of a run that began there; NaN if that failed."""
+        chart = ahead.canonical_chart
+        return dataclasses.replace(self, cayley=chart if outcome == Outcome.successful else np.full_like(chart, np.nan))
+
+    def reflection(self, normal: Float[np.ndarray, "dim"], bounce: float, direction: int) -> "Orbit | None":
+        """Return one state after the impulse of a wall along a covector; None where the motion is not toward it."""
+        system, g = self.system, self.configuration[0]
+        nu = system.restrict_at(normal, g)
+        push = system.restricted_velocity(nu, g)
+        rate = push @ self.restricted_momentum[0]
+        if not rate * direction > 0:
+            return None
+        change = system.to_canonical(-(1 + bounce) * rate / (push @ nu) * nu)
+        return dataclasses.replace(self, reduced_momentum=self.reduced_momentum + change)
+
     def at(self, times: Any) -> "Orbit":
         """Return the states of a flow at any of its times, from its Taylor series or closed form, without a new run.
 
@@ -240,6 +268,11 @@ class Orbit(AbstractOrbit):
     def system(self) -> System:
         """The system that moves."""
         return self.motion.system
+
+    @property
+    def group(self) -> AbstractMatrixGroup:  # type: ignore[override]
+        """The group."""
+        return self.system.group
 
     @property
     def space(self) -> AbstractMatrixGroup:

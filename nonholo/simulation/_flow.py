@@ -1,6 +1,7 @@
 """`flow`: an orbit of the continuous equations, from a checked start to a decoded result."""
 
 import functools
+import importlib
 from collections.abc import Callable
 from typing import Any, NamedTuple, TypeAlias, overload
 
@@ -12,7 +13,7 @@ from nonholo.base.progress import telling
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.continuous import ContinuousFlow, Solved, solver_of
 from nonholo.orbit import First, Orbit
-from nonholo.simulation._contact import flow_through_impacts
+from nonholo.simulation._contact import BodyFlights, Flights, flow_through_impacts
 from nonholo.simulation._crossings import check_resets, flow_in_coordinates, flow_with_events, refuse_resets
 from nonholo.simulation._event import Event, checked_events, has_resets
 from nonholo.simulation._options import FEW
@@ -52,6 +53,7 @@ def flow(
     project: bool = False,
     rtol: float | None = None,
     atol: float = 1e-12,
+    events: Any = None,
     progress: bool = False,
 ) -> OrbitT: ...
 def flow(
@@ -138,7 +140,7 @@ def flow(
         refuse_in_coordinates("flow", **{name: (value, None) for name, value in others.items()}, **no_pose)
         errors = {"rtol": rtol, "atol": atol, "project": project}
         with telling("time", progress):
-            return flow_in_coordinates(system, events, configuration=configuration, times=times, **starts, **errors)
+            return _flow_in_coordinates(system, events, configuration=configuration, times=times, **starts, **errors)
     as_system("flow(system=...)", system)
     time = flow_times(times)
     solver, with_poses = solver_of(system, method, float(time[0]), reconstruct=reconstruct)
@@ -149,8 +151,24 @@ def flow(
     by_name = None if events is None else checked_events("flow", events)
     with telling("time", progress):
         if by_name is not None and has_resets(by_name):
-            return _flow_between_walls(task, first, by_name)
+            if not task.reconstruct:
+                refuse_resets("flow", by_name, "impacts of a flow without poses: reconstruct=False")
+            flights = BodyFlights(functools.partial(_solver_at, task))
+            return _successful(task, *_flow_between_walls(task.opening(first), time, flights, by_name))
         return _solve_flow(task, solver, first, by_name)
+
+
+def _flow_in_coordinates(system: AbstractCoordinateSystem, events: Any, **how: Any) -> Any:
+    """Return the flow of a system in coordinates, with what events found."""
+    room = importlib.import_module("nonholo.lagrange_dalembert")
+    if events is None:
+        return room.flow(system, **how)
+    by_name = checked_events("flow", events)
+    if not has_resets(by_name):
+        return flow_in_coordinates(functools.partial(room.flow, system, **how), by_name)
+    flights, time, opening = room.flights(system, **how)
+    orbit, _ = _flow_between_walls(opening, time, flights, by_name)
+    return flights.successful(orbit, time)
 
 
 class _Task(NamedTuple):
@@ -207,17 +225,13 @@ def _solve_flow(
     return _successful(task, orbit, solution.fault)
 
 
-def _flow_between_walls(task: _Task, first: FirstState, events: dict[str, Event]) -> Orbit:
-    """Return the orbit from a first state, with impacts."""
-    if not task.reconstruct:
-        refuse_resets("flow", events, "impacts of a flow without poses: reconstruct=False")
-    if task.time[-1] < task.time[0]:
+def _flow_between_walls(opening: Any, time: np.ndarray, flights: Flights, events: dict[str, Event]) -> tuple[Any, str]:
+    """Return the orbit from a first state, with impacts, and what a function said that ended it."""
+    if time[-1] < time[0]:
         refuse_resets("flow", events, "impacts of a flow back in time, which has other impacts")
-    opening = task.opening(first)
     values_of(events, opening)
     check_resets(events, opening)
-    solver_at = functools.partial(_solver_at, task)
-    return _successful(task, *flow_through_impacts(opening, task.time, solver_at, events))
+    return flow_through_impacts(opening, time, flights, events)
 
 
 def _solver_at(task: _Task, begins: float) -> Callable[..., Solved]:

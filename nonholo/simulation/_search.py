@@ -79,7 +79,8 @@ class Watch:
         """Whether the last thing that was seen is the crossing of a wall that the motion was not toward."""
         if self.reset_by is None:
             return False
-        return np.array_equal(self.impact.states.reduced_momentum, self.impact.after.reduced_momentum)
+        before, after = self.impact.states, self.impact.after
+        return np.array_equal(getattr(before, before.momenta[0]), getattr(after, after.momenta[0]))
 
     def begun_at(self, last: int) -> tuple[Any, int, float]:
         """Return the state after the impact, the step that is cut, and how much of it is gone; `last` came before it.

@@ -106,10 +106,6 @@ def _orthonormal(system: "AbstractLLSystem", inertia: np.ndarray) -> tuple[np.nd
     return (axes / np.sqrt(np.abs(values))).T @ (rows / units[:, None]), np.sign(values)
 
 
-if TYPE_CHECKING:
-    from nonholo.systems._base import AbstractLLSystem
-
-
 @dataclasses.dataclass(frozen=True)
 class Equilibria:
     """The body velocities that stay constant: a linear space, and the half of it that attracts.

@@ -223,3 +223,31 @@ def _result_of(check: Check, subject: Any, factor: float) -> Result:
         line = (str(failure).splitlines() or [""])[0]
         return Result(check.name, check.requirement, None, tolerance, False, f"{type(failure).__name__}: {line}")
     return Result(check.name, check.requirement, value, tolerance, tolerance is None or value <= tolerance)
+
+
+EXACT = 1e-11  # errors below it are rounding, and have no order
+COUNTS = (10, 20, 40)  # steps for the path whose order is measured
+
+
+def result_of(outcome: Any, otherwise: str) -> Any:
+    """Return what a run made; where it failed, one check has failed, and the others have nothing to judge."""
+    if isinstance(outcome, Exception):
+        raise NotApplicableError(str(outcome) if isinstance(outcome, NotApplicableError) else otherwise)
+    return outcome
+
+
+def result_or_raise(outcome: Any) -> Any:
+    """Return what a run made, or raise what it raised."""
+    if isinstance(outcome, Exception):
+        raise outcome
+    return outcome
+
+
+def slope(errors: list[float]) -> float:
+    """Return the order of errors in the numbers of steps, from the last two."""
+    return float(np.log(errors[-2] / errors[-1]) / np.log(COUNTS[-1] / COUNTS[-2]))
+
+
+def off_two(errors: list[float]) -> float:
+    """Return the distance of the order of errors from two; zero of rounding."""
+    return abs(slope(errors) - 2) if errors[-1] > EXACT else 0.0

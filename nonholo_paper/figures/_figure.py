@@ -1,4 +1,4 @@
-"""A figure: a picture of the paper, drawn anew, and the number that says whether it shows what it should."""
+"""A figure: a picture of the paper, drawn again, and the number that checks it."""
 
 import dataclasses
 from collections.abc import Callable

@@ -27,7 +27,7 @@ _FRAME = 3.4  # length of a body axis
 
 @dataclasses.dataclass(frozen=True)
 class Sketch:
-    """What `picture` drew.
+    """The drawing of `picture`.
 
     Attributes:
         axes: The axes.

@@ -26,7 +26,7 @@ _BLADE = 0.3  # half its length
 
 @dataclasses.dataclass(frozen=True)
 class Geometry:
-    """What `picture` drew.
+    """The drawing of `picture`.
 
     Attributes:
         axes: The axes.

@@ -26,7 +26,7 @@ _FLOOR = -2.6  # height of the projection
 
 @dataclasses.dataclass(frozen=True)
 class Surface:
-    """What `picture` drew.
+    """The drawing of `picture`.
 
     Attributes:
         axes: The axes.

@@ -29,7 +29,7 @@ ENERGIES = [0.02, 0.1, 0.2, 0.3, 0.45, 0.6, 0.75, 0.87, 0.98, 1.06, 1.15, 1.22]
 
 @dataclasses.dataclass(frozen=True)
 class Foliation:
-    """What `picture` drew.
+    """The drawing of `picture`.
 
     Attributes:
         axes: The axes.

@@ -27,7 +27,7 @@ SIDES = {1: theme.DISCRETE, -1: theme.COMPONENTS[1]}
 
 @dataclasses.dataclass(frozen=True)
 class Orbits:
-    """What `picture` drew; one of each for an energy, two orbits.
+    """The drawing of `picture`; one of each for an energy, two orbits.
 
     Attributes:
         axes: The axes.

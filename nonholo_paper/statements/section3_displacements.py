@@ -97,7 +97,7 @@ def _second_coset(body: Body, mirror: Matrix) -> Matrix:
 
 
 def _trace_gap() -> float:
-    """Return how far points of the model near -I, with bc > 0, have traces from those of exponentials, at least -2."""
+    """Return the distance of traces near -I, with bc > 0, from traces of exponentials, at least -2."""
     traces = []
     for b, c in ((1, 2), (1, -2), (-3, 1), (0, 1), (4, 4)):
         X = ctx.matrix([[0, b], [c, 0]])

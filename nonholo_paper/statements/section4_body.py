@@ -37,7 +37,7 @@ def equations() -> Measured:
 
 
 def _library_defect(top: tops.Top, w: Matrix, rate: Matrix) -> float:
-    """Return how far the library's rate of the restricted momenta is from one at 50 digits, relative to w^2."""
+    """Return the distance of the library's rate of the restricted momenta from one at 50 digits, relative to w^2."""
     rows = top.system.constraint_subspace
     state = np.concatenate([rows @ in_double(top.inertia * w), np.eye(3).ravel()])
     found = nh.vector_field(top.system)(0.0, state)[:2]

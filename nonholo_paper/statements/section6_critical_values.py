@@ -92,7 +92,7 @@ def _saddles_of_a_long_body() -> int:
 
 @statement
 def regular_regime() -> Measured:
-    """Look for saddles and centers of regular bodies; printed: how far the squared sine of a rod's saddle exceeds 1."""
+    """Look for saddles and centers of regular bodies; printed: excess over 1 of the squared sine of a rod's saddle."""
     facts = []
     for seed in range(60):
         J = data.random_body(seed, 3)

@@ -113,7 +113,7 @@ def meeting_ovals() -> Measured:
 
 @statement
 def outer_oval() -> Measured:
-    """Evaluate the energy at half-turns, and how far the curve is from them; printed: from the opposite half-turn."""
+    """Evaluate the energy at half-turns, and the distance of the curve from them; printed: from opposite ones."""
     exact, facts, far = [], [], []
     for name in data.REGULAR:
         J = data.body(name)

@@ -62,7 +62,7 @@ def momentum() -> Measured:
 
 
 def _limit() -> list[Matrix]:
-    """Return how far the slope of the momentum at the identity is from the momentum of the continuous top."""
+    """Return the distance of the slope of the momentum at the identity from the momentum of the continuous top."""
     missed = []
     for n in (3, 4):
         J, velocity = data.random_body(n, n), twin.hat(SO(n), twin.numbers(n + 5, SO(n).dim))

@@ -36,7 +36,7 @@ def _steps(body: Body, p_theta: Number, p_1: Number) -> list[tuple]:
 
 
 def _inside(body: Body, p_theta: Number, p_1: Number) -> bool:
-    """Tell whether a point lies inside the ellipse of V_1 = 0."""
+    """Return whether a point lies inside the ellipse of V_1 = 0."""
     m, J, a, _ = body
     return (p_theta / (J + m * a**2)) ** 2 + (_hat(body, p_1) / (m * a**2) - 1) ** 2 < 1
 
@@ -104,7 +104,7 @@ def _level(body: Body, turning: Number, p_hat: Number) -> Number:
 
 @statement
 def inequality_of_the_proof() -> Measured:
-    """Look for points where the printed inequality holds, and for points left over; printed is how far it fails."""
+    """Look for points where the printed inequality holds, and for points left over; printed is its largest failure."""
     against, left_over, excess = 0, 0, []
     for body in SLEIGHS:
         for share in ("0.1", "0.6", "0.97"):

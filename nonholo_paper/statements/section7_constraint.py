@@ -76,7 +76,7 @@ def coverings() -> Measured:
 
 @statement
 def circ_motion() -> Measured:
-    """Write exponentials as points of lines; printed is how far a shift sideways is from any such point."""
+    """Write exponentials as points of lines; printed is the distance of a shift sideways from all such points."""
     gaps = []
     for angle, v1 in ALL_TURNS:
         half = angle / 2

@@ -84,7 +84,7 @@ def three_preimages() -> Measured:
 
 @statement
 def surface_between_planes() -> Measured:
-    """Evaluate the cubic on planes and axes, find its roots at random points; printed is how far the line leaves."""
+    """Evaluate the cubic on planes and axes, find its roots at random points; printed is the distance of the line."""
     gaps, outside = [], 0
     J = ctx.mpf("1.5")
     for p_theta, p_hat in DRAWN:
@@ -212,7 +212,7 @@ def _outside(body: Body, p_theta: Number, p_hat: Number) -> Number:
 
 
 def _contradicts(body: Body, across: Number, along: Number) -> bool:
-    """Tell whether V_1 of the one branch near the origin has another sign than the lemma says."""
+    """Return whether V_1 of the one branch near the origin has another sign than the lemma says."""
     m, J, a, _ = body
     p_theta, p_1 = across * a * m, (along + ctx.mpf("0.9")) / 2 * m * a  # along is in [-2.2, 0.4]
     if m * p_theta**2 + (J + m * a**2) * p_1**2 > formulas.sharp_bound(body):

@@ -142,7 +142,7 @@ def _unit_gap(body: Body, angle: Number, p: tuple) -> Number:
 
 
 def _misses(body: Body, angle: Number, V_1: Number, p: tuple) -> bool:
-    """Tell whether the equations with the quotient have no value or a wrong one."""
+    """Return whether the equations with the quotient have no value or a wrong one."""
     try:
         shown = formulas.printed_third_step(body, angle, V_1)
     except ZeroDivisionError:

@@ -75,7 +75,7 @@ def _sleigh_images(p: State) -> list[tuple[Matrix, State]]:
 
 
 def _wrong_momenta(body: Body, images: Images, unit: int) -> float:
-    """Return how far momenta by definition, before and after all displacements of a start, are from those solved."""
+    """Return the distance of momenta by definition, before and after displacements of a start, from those solved."""
     defects = []
     for W, after in images(_START):
         found = (body.restrict(body.momentum(W)), body.restrict(body.arriving(W)))

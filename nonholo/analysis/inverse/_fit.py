@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 from scipy.special import stdtrit
 
-from nonholo.analysis.inverse._likelihood import LOSSES, Estimate, Problem, Shapes, by_name
+from nonholo.analysis.inverse._likelihood import LOSSES, Estimate, Problem, Ranges, Search, Shapes, Solution, by_name
 from nonholo.analysis.inverse._measurements import WHERE, kinds_of
 from nonholo.analysis.inverse._profile import Minimum, Profile, profile_of
-from nonholo.analysis.inverse._search import Ranges, Search, Solution, outcome_of
 from nonholo.base.checks import array, choice, error, function, instance, needs, number, pair, scale, shown
 from nonholo.base.types import Array, Float
 from nonholo.orbit import Orbit
@@ -252,7 +251,7 @@ def _result(search: Search, solution: Solution, begin: np.ndarray, shapes: Shape
     orbits = [orbit_of(system, start=start, pose=pose, steps=steps) for start, pose in rows_of]
     levels = {kind: float(x) for kind, x in zip(rows, solution.noise, strict=True)}
     minimum = search.minimum(solution, degrees, np.sqrt(plain), np.sqrt(covariance.diagonal() / plain))
-    outcome = outcome_of(search, solution, begin[:P], np.sqrt(covariance.diagonal()))
+    outcome = search.outcome_of(solution, begin[:P], np.sqrt(covariance.diagonal()))
     orbit = tuple(orbits) if len(orbits) > 1 else orbits[0]
     free = len(problem.kind_of) - len(point)
     return Fit(parameters, covariance, system, orbit, residuals, levels, outcome, degrees, free, minimum)

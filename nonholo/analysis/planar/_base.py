@@ -175,8 +175,7 @@ def closed_curves(
 
     Arcs beyond the first half turn are copies of the others; `points` gives the points of an arc on a side.
     """
-    curves: list[Float[np.ndarray, "K c"]] = []
-    past: list[Place] = []
+    curves, past = [], []
     for arc in arcs:
         place, pieces = Place(arc, 1, forward=True), []
         while not any(place.is_same(other) for other in past):

@@ -86,7 +86,7 @@ class Feedback(Keeper):
             ValueError: A bad argument.
         """
         with needs("jax", "Feedback.simulate"):
-            from nonholo.analysis.steering._motions import closed_loop
+            from nonholo.analysis.steering._shooting import closed_loop
         where, nodes = "Feedback.simulate", _states(self.discrete, self.reference)
         S = self.discrete.system.constraint_subspace
 
@@ -170,7 +170,7 @@ def tracking_feedback(
     limits = checked_limits(f"{where}(bounds=...)", bounds, k)
     refuse_many_matrices(f"{where}(controls=...)", discrete, len(table), "Pass fewer.", derivatives=dim + 2 * k)
     with needs("jax", where):
-        from nonholo.analysis.steering._motions import linearize_steps
+        from nonholo.analysis.steering._shooting import linearize_steps
         from nonholo.simulation.traced import rollout
     first = {"restricted_velocity": np.zeros(k), **start}
     reference = rollout(discrete, **first, controls=table, steps=len(table))

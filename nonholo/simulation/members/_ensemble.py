@@ -29,7 +29,6 @@ from nonholo.systems import (
     AbstractSystem,
     Start,
     System,
-    in_coordinates,
     refuse_in_coordinates,
 )
 
@@ -177,7 +176,7 @@ def _of_steps(
     """Return the motion of runs, their plan, and how wide their columns are."""
     del starts
     steps, save_every, events, branch, backend, reconstruct = of_steps.values()
-    if in_coordinates(discrete):
+    if isinstance(discrete, AbstractCoordinateDiscretization):
         absent = {"branch": branch, "backend": backend, "reconstruct": reconstruct, **of_flow}
         refuse_in_coordinates("ensemble", **{name: (value, _DEFAULTS.get(name)) for name, value in absent.items()})
     else:

@@ -30,11 +30,11 @@ from nonholo.simulation.members._members import (
     ScalarMembers,
     in_lanes,
     inertias_of,
-    is_in_coordinates,
     refusal,
 )
 from nonholo.simulation.members._result import Ensemble, stack_rows
 from nonholo.simulation.members._start import Firsts, are_others
+from nonholo.systems import in_coordinates
 
 _PART = 8192  # members in a piece of work of one thread, a multiple of what a compiled block holds
 _FLOWS = 1024  # flows in a piece of work,
@@ -286,7 +286,7 @@ def _flow_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
     """Return the flow of one member up to its end, and the number of good times after the first."""
     try:
         times = cast(np.ndarray, plan.times)
-        flow = motion.solve if is_in_coordinates(motion) else functools.partial(flow_from, motion.system)
+        flow = motion.solve if in_coordinates(motion) else functools.partial(flow_from, motion.system)
         orbit = flow(first, times, plan.rtol, reconstruct=plan.with_poses)
     except OutcomeError as early:
         orbit = cast(Any, early.orbit)

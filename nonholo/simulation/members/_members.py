@@ -12,7 +12,7 @@ from nonholo.base.checks import array, error, shown
 from nonholo.base.memo import Keeper
 from nonholo.base.types import Bool, Float
 from nonholo.discrete import Discretization, discretize
-from nonholo.systems import AbstractCoordinateSystem, System
+from nonholo.systems import AbstractCoordinateSystem, System, in_coordinates
 
 STEP = "time_step"
 _ARGUMENTS = {"given_inertia": "inertia_operator"}  # fields that the constructor calls otherwise
@@ -38,7 +38,7 @@ class Members(Keeper):
     @property
     def in_coordinates(self) -> bool:
         """Whether they move in coordinates, which have no closed forms."""
-        return is_in_coordinates(self.discrete)
+        return in_coordinates(self.discrete)
 
     @property
     def time_step(self) -> Float[np.ndarray, "m"]:
@@ -108,11 +108,6 @@ class Members(Keeper):
         return Members(self.discrete, numbers, len(range(*which.indices(self.count))))
 
 
-def is_in_coordinates(motion: Any) -> bool:
-    """Return whether a map or a flow is one of a system in coordinates."""
-    return isinstance(motion.system, AbstractCoordinateSystem)
-
-
 def _inside(system: Any) -> Any:
     """Return the body on which forces act, or the system itself."""
     return system.system if system.is_forced else system
@@ -135,7 +130,7 @@ def _leaves(system: System) -> list[str]:
 
 def _numbers(motion: Any) -> Mapping[str, Any]:
     """Return what may differ from member to member, by the name that its constructor has for it."""
-    if is_in_coordinates(motion):
+    if in_coordinates(motion):
         return motion.system.parameters
     system = _inside(motion.system)
     return {_ARGUMENTS.get(name, name): getattr(system, name) for name in _leaves(system)}
@@ -148,7 +143,7 @@ def checked_parameters(motion: Any, parameters: Any) -> dict[str, Any]:
     if not isinstance(parameters, Mapping):
         raise error("ensemble(parameters=...)", "be a mapping of names to arrays", shown(parameters), "Pass a dict.")
     numbers = dict(_numbers(motion)) | ({} if motion.time_step is None else {STEP: motion.time_step})
-    kind, arrays = type(motion.system if is_in_coordinates(motion) else _inside(motion.system)).__name__, {}
+    kind, arrays = type(motion.system if in_coordinates(motion) else _inside(motion.system)).__name__, {}
     for name, value in parameters.items():
         if name not in numbers:
             raise _unknown(name, kind, [*numbers])

@@ -255,8 +255,8 @@ class Forced(AbstractSystem):
     @functools.cached_property
     def differences(self) -> tuple[Float[np.ndarray, "dim orders 2 N N"], Float[np.ndarray, "orders"]]:
         """Displacements to and fro along each body direction, and weights: -dU sums what U loses between them."""
-        offsets = _OFFSET * np.arange(1, 1 + len(_DIFFERENCES))[:, None] * np.eye(self.group.dim)[:, None]
-        return np.stack([self.group.exp(offsets), self.group.exp(-offsets)], axis=2), _DIFFERENCES
+        offsets, weights = central_differences(self.group.dim)
+        return self.group.exp(offsets), weights
 
     def potential_energy(self, configuration: Float[Array, "... N N"]) -> Float[Array, "..."]:
         """Return U at configurations; zero without a potential.
@@ -434,6 +434,12 @@ class Forced(AbstractSystem):
         moves, weights = self.differences
         values = _each(self._value, g @ moves)
         return (values[..., 1] - values[..., 0]) @ weights
+
+
+def central_differences(dim: int) -> tuple[Float[np.ndarray, "dim orders 2 dim"], Float[np.ndarray, "orders"]]:
+    """Return offsets to and fro along each direction, and the weights of what a function loses between them."""
+    offsets = _OFFSET * np.arange(1, 1 + len(_DIFFERENCES))[:, None] * np.eye(dim)[:, None]
+    return np.stack([offsets, -offsets], axis=2), _DIFFERENCES
 
 
 def _each(function: Callable[[np.ndarray], Any], g: np.ndarray) -> np.ndarray:

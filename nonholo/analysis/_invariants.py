@@ -262,3 +262,37 @@ def _bracket_scale(group: AbstractMatrixGroup) -> float:
 
 def _brackets(group: AbstractMatrixGroup, x: np.ndarray, y: np.ndarray) -> Float[np.ndarray, "i j dim"]:
     return group.bracket(x[:, None, :], y[None, :, :])
+
+
+def lyapunov_exponents(orbit: AbstractOrbit) -> Float[np.ndarray, "k"]:
+    r"""Return the finite-time Lyapunov exponents along an orbit, largest first.
+
+    $$ \lambda_i = \frac{1}{t_K - t_0}\sum_k \log R^{(k)}_{ii}, \qquad
+       \frac{\partial r_{k+1}}{\partial r_k}\,Q^{(k)} = Q^{(k+1)}R^{(k+1)}, $$
+
+    Benettin's method: an orthonormal frame is carried by the tangent map (`Orbit.tangent`) and made orthonormal again
+    at each step. Their sum is the mean rate at which volumes of states grow: of momenta, where nothing else decides
+    them, in coordinates of configurations with admissible velocities.
+
+    Args:
+        orbit: One that has a `tangent`.
+
+    Raises:
+        ValueError: An orbit without a tangent map, or of a single state.
+
+    Example:
+        A sleigh tends to its straight motion: one momentum keeps what it is, the other decays.
+
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), 0.1)
+        >>> nh.lyapunov_exponents(nh.simulate(sleigh, restricted_velocity=(0.0, 1.0), steps=200)).round(3) + 0.0
+        array([ 0. , -0.4])
+    """
+    remedy = "Pass what `simulate` or `flow` returned."
+    steps = instance("lyapunov_exponents(orbit=...)", orbit, AbstractOrbit, "be an orbit", remedy).tangent
+    if not len(steps):
+        raise error("lyapunov_exponents(orbit=...)", "have a step", "one state", "Run longer.")
+    frame, growth = np.eye(steps.shape[-1]), np.zeros(steps.shape[-1])
+    for step in steps:
+        frame, triangle = np.linalg.qr(step @ frame)
+        growth += np.log(np.abs(triangle.diagonal()))
+    return np.sort(growth / float(orbit.time[-1] - orbit.time[0]))[::-1]
