@@ -179,7 +179,7 @@ def test_a_pull_that_rounding_blurs_is_no_fold() -> None:
     assert run.outcome == nh.Outcome.successful
     far = np.abs(run.configuration).max()
     assert far > 1e4
-    assert np.abs(run.energy - run.energy[0]).max() < 1e-14 * far
+    assert np.abs(run.energy - run.energy[0]).max() < 1e-15 * far
 
 
 def test_a_reversed_motion_comes_back() -> None:
