@@ -180,21 +180,26 @@ class AbstractCompiledRoute(AbstractRoute):
         """The route of a step of order 2 with the same time step: the route itself, if it is one."""
         return self
 
-    @abc.abstractmethod
+    @functools.cached_property
+    def axes(self) -> "Axes":
+        """The change from the canonical axes to those of the kernel; none unless a route has its own."""
+        return Axes(self.system.group, None, None)
+
     def encode(self, momenta: np.ndarray) -> np.ndarray:
         """Return the momenta of the kernel from canonical ones."""
+        return self.scale * self.axes.momenta(momenta)
 
-    @abc.abstractmethod
     def decode(self, momenta: np.ndarray) -> np.ndarray:
         """Return canonical momenta from those of the kernel."""
+        return self.axes.canonical_momenta(momenta / self.scale)
 
-    @abc.abstractmethod
     def to_kernel(self, charts: np.ndarray) -> np.ndarray:
         """Return the chart coordinates of the kernel from canonical ones."""
+        return self.axes.charts(charts)
 
-    @abc.abstractmethod
     def from_kernel(self, charts: np.ndarray) -> np.ndarray:
         """Return canonical chart coordinates from those of the kernel."""
+        return self.axes.canonical_charts(charts)
 
     @abc.abstractmethod
     def encode_poses(self, poses: np.ndarray) -> np.ndarray:
