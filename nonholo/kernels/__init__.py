@@ -39,6 +39,7 @@ from nonholo.kernels.secular.nearest import NearestBody
 from nonholo.kernels.secular.nearest import advance as advance_to_nearest
 from nonholo.kernels.taylor import (
     Arrowhead,
+    Columns,
     Quadratic,
     order_for,
     revisit_series,
