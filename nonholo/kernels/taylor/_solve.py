@@ -5,7 +5,6 @@ time is carried along (Kahan). A lane whose motion has reached its last time tak
 steps that it would take alone, with the same bits.
 """
 
-import itertools
 import math
 from typing import Any, TypeAlias
 
@@ -73,18 +72,14 @@ def solve_series(
         if total * abs(times[-1] - times[0]) / most > come:
             break
     nodes = np.concatenate(nodes) if len(nodes) > 1 else nodes[0] if nodes else state[None]
-    place, heading, head = columns
-    return (place[:count], heading[:count], head[:count]), nodes
+    return (columns[0][:count], columns[1][:count], columns[2][:count]), nodes
 
 
-def _columns(count: int, *widths: int) -> Columns:
+def _columns(count: int, place: int, heading: int, head: int) -> Columns:
     """Return room for states in three parts, side by side: of one large array few pages are touched first."""
-    room, ends = np.empty(count * sum(widths)), [count * end for end in itertools.accumulate(widths, initial=0)]
-    place, heading, head = (
-        room[begin:end].reshape(count, width)
-        for (begin, end), width in zip(itertools.pairwise(ends), widths, strict=True)
-    )
-    return place, heading, head
+    room, first, second = np.empty(count * (place + heading + head)), count * place, count * (place + heading)
+    parts = room[:first].reshape(count, place), room[first:second].reshape(count, heading)
+    return *parts, room[second:].reshape(count, head)
 
 
 def revisit_series(
@@ -127,8 +122,7 @@ def advance(
         write_steps(f, state, times[-1:], tolerance, room, ONE)
         going = room.steps[0, 0] > _SMALLEST_STEP * abs(times[count] - times[count - 1])
         if going:
-            end = _count_within(room, state, times, 1.0, count, 0, ONE)
-            count, going = read(f, room, state, times, 1.0, (count, end), columns, 0, 0, ONE)
+            count, going = read(f, room, state, times, 1.0, count, 0, columns, 0, 0, ONE)
         if going and count < len(times):
             room.steps[0, 0] = math.copysign(room.steps[0, 0], times[-1] - times[0])
             move(f, room, state, ONE)
@@ -163,8 +157,7 @@ def revisit(
             move(f, room, state, ONE)
             expand(f, expansion, state, room, ONE)
             write_steps(f, state, ends, tolerance, room, ONE)
-        end = max(count + 1, _count_within(room, state, times, 1.0, count, 0, ONE))
-        count, going = read(f, room, state, times, 1.0, (count, end), columns, 0, 0, ONE)
+        count, going = read(f, room, state, times, 1.0, count, 1, columns, 0, 0, ONE)
         count += not going
 
 
@@ -176,36 +169,27 @@ def since(state: np.ndarray, time: float, lane: int, lanes: tuple[int, ...]) -> 
 
 
 @scalar
-def _count_within(
-    room: Room, state: np.ndarray, times: np.ndarray, unit: Any, count: Any, lane: int, lanes: tuple[int, ...]
-) -> int:
-    """Return how many times are left behind where those, from `count` on, end that lie within the step of a lane.
-
-    Times are in other units than the state's: `unit` is the factor to them.
-    """
-    while count < len(times) and abs(since(state, times[count] * unit, lane, lanes)) <= room.steps[0, lane]:
-        count += 1
-    return count
-
-
-@scalar
 def read(
     f: Quadratic,
     room: Room,
     state: np.ndarray,
     times: np.ndarray,
     unit: Any,
-    which: tuple[Any, Any],
+    count: Any,
+    least: int,
     columns: Columns,
     first: Any,
     lane: int,
     lanes: tuple[int, ...],
 ) -> tuple[int, bool]:
-    """Write the rows of times, from `first` on; return how many are good, up to one that is not finite, and if all are.
+    """Write the rows, from `first` on, of times within the step of a lane, and at least some more than are there.
 
-    Eight times are read side by side.
+    Times are in other units than the state's: `unit` is the factor to them. Return how many rows are good, up to one
+    that is not finite, and whether all are.
     """
-    (count, end), going = which, True
+    end, going = count + least, True
+    while end < len(times) and abs(since(state, times[end] * unit, lane, lanes)) <= room.steps[0, lane]:
+        end += 1
     while going and count < end:
         rows, good = min(room.ahead.shape[1], end - count), 0
         for k in range(rows):
@@ -420,8 +404,7 @@ def _continue(
         count, unit = counts[at], units[at]
         going = room.steps[0, lane] > _SMALLEST_STEP * unit * abs(times[count] - times[count - 1])
         if going:
-            which = count, _count_within(room, state, times, unit, count, lane, EIGHT)
-            counts[at], going = read(f, room, state, times, unit, which, columns, at * len(times), lane, EIGHT)
+            counts[at], going = read(f, room, state, times, unit, count, 0, columns, at * len(times), lane, EIGHT)
     if going and counts[at] < len(times):
         return True
     members[lane], room.steps[0, lane] = -1, 0.0
