@@ -82,21 +82,21 @@ class Series(NamedTuple):
 
     def decode(self, columns: Columns) -> States:
         """Return momenta, poses and headings, in the place of the columns where they fit."""
-        (poses, headings, head), group = columns, self.group
-        turned = headings[:, 0] if headings.shape[1] else None
+        (poses, angles, head), group = columns, self.group
+        headings = angles[:, 0] if angles.shape[1] else None
         if not self.compact:
             poses = group.pose_from_matrix(poses.reshape(-1, *group.identity.shape))
         for begin in range(0, len(poses), _CHUNK):
             part = slice(begin, begin + _CHUNK)
             poses[part] = group.normalize_pose(poses[part])
-            if turned is not None:
-                turned[part] = turned_near(turned[part], poses[part])
+            if headings is not None:
+                headings[part] = turned_near(headings[part], poses[part])
         if self.momentum is None:
             head *= self.unit
             momenta = np.ascontiguousarray(head[:, : self.rank])
         else:
             momenta = np.broadcast_to(self.momentum, (len(poses), len(self.momentum))).copy()
-        return States(momenta, poses, turned)
+        return States(momenta, poses, headings)
 
 
 def by_series(system: AbstractSystem, problem: Problem) -> Solved:

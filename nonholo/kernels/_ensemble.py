@@ -57,7 +57,7 @@ class MemberAxes(NamedTuple):
 
 
 @scalar
-def turned(pose: tuple[Any, ...], turn: tuple[Any, ...]) -> tuple[Any, Any, Any, Any]:
+def quaternion_product(pose: tuple[Any, ...], turn: tuple[Any, ...]) -> tuple[Any, Any, Any, Any]:
     """Return Hamilton's product of two quaternions, divided by its length, its scalar non-negative."""
     (a, b, c, d), (w, x, y, z) = pose, turn
     s, u = a * w - b * x - c * y - d * z, a * x + b * w + c * z - d * y
@@ -67,7 +67,7 @@ def turned(pose: tuple[Any, ...], turn: tuple[Any, ...]) -> tuple[Any, Any, Any,
 
 
 @scalar
-def turned_in_plane(pose: tuple[Any, ...], turn: tuple[Any, ...]) -> tuple[Any, Any, Any, Any]:
+def motion_product(pose: tuple[Any, ...], turn: tuple[Any, ...]) -> tuple[Any, Any, Any, Any]:
     """Return (cos, sin, x, y) of the product of two motions, whose headings are normalized first."""
     (c, s, x, y), (d, t, u, v) = pose, turn
     length, other = sqrt(c * c + s * s), sqrt(d * d + t * t)
@@ -84,9 +84,9 @@ def canonical(state: tuple[Any, ...], axes: tuple[Any, ...], has_rows: bool, spa
     if has_rows:
         m1, m2, y1, y2 = a * m1 + b * m2, c * m1 + d * m2, e * y1 + f * y2, g * y1 + h * y2
     if space == 3:
-        q0, q1, q2, q3 = turned((q0, q1, q2, q3), (t0, t1, t2, t3))
+        q0, q1, q2, q3 = quaternion_product((q0, q1, q2, q3), (t0, t1, t2, t3))
     if space == 2:
-        q0, q1, q2, q3 = turned_in_plane((q0, q1, q2, q3), (t0, t1, t2, t3))
+        q0, q1, q2, q3 = motion_product((q0, q1, q2, q3), (t0, t1, t2, t3))
     return m1, m2, y1, y2, q0, q1, q2, q3
 
 

@@ -10,7 +10,7 @@ from bodies import GENERAL, mass_tensor
 import nonholo as nh
 from nonholo import kernels
 from nonholo.kernels import suslov_body
-from nonholo.kernels._ensemble import turned, turned_in_plane
+from nonholo.kernels._ensemble import motion_product, quaternion_product
 from nonholo.simulation.members import _ensemble, _executors
 from nonholo.simulation.members._members import Members, ScalarMembers, in_lanes
 
@@ -586,13 +586,13 @@ def test_members_that_cannot_begin_have_no_states(size: float, members: int, mon
 
 
 @pytest.mark.parametrize(
-    ("turned", "group"), [(turned, nh.SO(3)), (turned_in_plane, nh.SE(2))], ids=["quaternions", "motions"]
+    ("product", "group"), [(quaternion_product, nh.SO(3)), (motion_product, nh.SE(2))], ids=["quaternions", "motions"]
 )
-def test_rows_are_turned_as_the_group_multiplies(turned: Any, group: nh.MatrixGroup) -> None:
+def test_rows_are_turned_as_the_group_multiplies(product: Any, group: nh.MatrixGroup) -> None:
     """The product of poses in the kernel has the bits of the group's, for large, small and half turns, and NaN."""
     rng = np.random.default_rng(8)
     one, other = (group.pose_from_matrix(group.exp(rng.normal(size=(200, 3)) * scale)) for scale in (3.0, 1e-9))
     back = group.pose_from_matrix(group.inverse(group.matrix_from_pose(one)))
     for poses, turns in ((one, other), (other, one), (one, one[::-1]), (one, back), (-one, one), (one * np.nan, one)):
-        found = [turned(*pair) for pair in zip(poses.tolist(), turns.tolist(), strict=True)]
+        found = [product(*pair) for pair in zip(poses.tolist(), turns.tolist(), strict=True)]
         assert np.array_equal(found, group.pose_product(poses, turns), equal_nan=True)

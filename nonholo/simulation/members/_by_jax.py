@@ -70,15 +70,15 @@ def _run(
     state = (m, jnp.zeros_like(m), y, y, y, q, certain)
     step = functools.partial(_step, body, with_poses)
 
-    def saved(state: State) -> State:
+    def row_of(state: State) -> State:
         numbers = jnp.stack(kernels.canonical((*state[0], *state[2], *state[5]), tuple(axes), *turns))
         return numbers[:2], numbers[2:4], numbers[4:]
 
     def stretch(state: State, _: None) -> tuple[State, State]:
         state = jax.lax.fori_loop(0, each, step, state)
-        return state, saved(state)
+        return state, row_of(state)
 
-    start = saved(state)
+    start = row_of(state)
     state, history = jax.lax.scan(stretch, state, None, length=save_count)
     state = jax.lax.fori_loop(0, rest, step, state)
     return start, history, state[-1]
