@@ -1,4 +1,4 @@
-"""The library beside everything else a user could pick: prints the tables of docs/benchmarks.md as Markdown.
+"""The library beside everything else a user could pick: prints tables as Markdown, for docs/project/figures.md.
 
     python benchmarks/tables.py [--tables equal precision stored] [--skip exudyn heyoka diffrax pydy scipy] [--rounds 9]
     python benchmarks/tables.py --smoke
@@ -6,42 +6,18 @@
 Peers that are not installed are skipped with a line that says so. `pip install -e '.[bench]'` installs them.
 """
 
-import datetime
-import importlib.metadata
-import os
-import platform
 import warnings
 from collections.abc import Iterable
-from pathlib import Path
 
-from _command import options, small
+from _command import machine, options, small
 from peers import equal_step, stored, work_precision
 from peers.problems import PROBLEMS
-
-PACKAGES = ("nonholo", "numpy", "scipy", "numba", "jax", "diffrax", "heyoka", "exudyn", "pydy", "sympy")
 
 TABLES = {
     "equal": (equal_step, lambda _: f"{equal_step.STEPS} equal steps to time {equal_step.END:g}"),
     "precision": (work_precision, lambda p: f"milliseconds to time {p.end:g} for an error at most"),
     "stored": (stored, lambda p: f"{stored.STATES} states with pose to time {p.end:g}"),
 }
-
-
-def machine() -> str:
-    """Return one line about the machine and one about versions."""
-    about = Path("/proc/cpuinfo")
-    lines = about.read_text().splitlines() if about.exists() else []
-    model = next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), platform.processor())
-    versions = []
-    for package in PACKAGES:
-        try:
-            versions.append(f"{package} {importlib.metadata.version(package)}")
-        except importlib.metadata.PackageNotFoundError:
-            versions.append(f"{package} not installed")
-    load = os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
-    date = datetime.datetime.now(datetime.UTC).date()
-    where = f"{model}, {os.cpu_count()} cores, load {load:.1f} at the start, {platform.system()}, {date}."
-    return f"{where}\n\nPython {platform.python_version()}, {', '.join(versions)}."
 
 
 def markdown(title: str, header: Iterable[str], rows: list[tuple], left_out: list[str]) -> str:

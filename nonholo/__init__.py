@@ -11,7 +11,7 @@ Bodies:
     LLSystem: A system on any matrix group whose body velocity stays in a subspace of the algebra, of any dimension.
     LRSystem: A body on SO(n) or SE(n) whose spatial velocity stays in a subspace that is fixed in space.
     reference_point_subspace: Return the subspace of se(n) in which the velocity of the body's reference point stays ...
-    is_symmetric_pair: Tell whether the algebra has a subalgebra that forms a symmetric pair with the constraint ...
+    is_symmetric_pair: Return whether the algebra has a subalgebra that forms a symmetric pair with the constraint ...
     ImpossibleBodyWarning: An inertia tensor that no distribution of mass has: one principal moment is larger than ...
 
 Groups:
@@ -58,7 +58,7 @@ One motion:
     Orbit: A motion at K saved states, from `simulate` or `flow`.
     AliasingWarning: Given poses of which one is turned by more than 90 degrees from the one before.
     Outcome: The end of a step or a run.
-    OutcomeError: A run that cannot continue; `outcome` says why and `orbit`, where there is one, holds every good step.
+    OutcomeError: A run that cannot continue; `outcome` has the reason and `orbit`, where there is one, every good step.
     vector_field: Return the equations of motion as a function (time, state) -> derivative, for your own solver.
 
 Events:
@@ -74,9 +74,9 @@ Pictures and the live page:
     explore: Return the live page of a motion: one file that runs the library's own kernel in the browser.
 
 Many motions:
-    ensemble: Run or solve many members of one system, that differ in where they start, in parameters, or in both.
+    ensemble: Run or solve many members of one system, which differ in their starts, in parameters, or in both.
     Ensemble: Motions of M members at K saved states, from `ensemble`: arrays as in an `Orbit`, with a leading ...
-    sweep: Run a task for every member of a design and keep what it returns in one store.
+    sweep: Run a task for every member of a design and keep its results in one store.
     EnsembleTask: Run the members of a design and keep some numbers of each.
     FamilyTask: Run the members of a family: systems that a function of parameters makes, such as ...
     MemberBlock: Some members of a sweep in order: a mapping of names to arrays whose first axis is that of the members.
@@ -97,11 +97,11 @@ Stores:
     resume: Resume the run or the sweep of a store, with the bits of one that was never stopped.
     extend: Run past the end of the run of a store, with the bits of one that had been that long from the start.
 
-What is kept, and how exactly:
-    invariants: Measure what an orbit should keep.
+Conserved quantities:
+    invariants: Measure the errors of an orbit in its invariants.
     compare: Compare an orbit with another one, state by state: errors of momentum, pose and energy.
     conserved_momenta: Return the components of body and spatial momentum that every motion of a system conserves.
-    invariant_measure: Tell which densities of restricted momenta the flow of a system, or its discrete map, keeps.
+    invariant_measure: Return which densities of restricted momenta the flow of a system, or its discrete map, keeps.
     lyapunov_function: Return the function of the momentum that falls along every motion that is not an equilibrium.
     lyapunov_exponents: Return the finite-time Lyapunov exponents along an orbit, largest first.
 
@@ -112,7 +112,7 @@ Where motions come from and go to:
     critical_values: Return the values of a parameter at which eigenvalues begin or cease to grow.
     critical_energies: Return the critical values of the energy on the displacement variety of a top.
     heteroclinic: Trace an orbit of the discrete map from near the repelling to near the attracting equilibrium.
-    half_planes: Tell in which half-planes displacements or momenta lie.
+    half_planes: Return the half-planes in which displacements or momenta lie.
     flow_obstruction: Return the periodic function that would be constant if the map were that of a smooth flow.
 
 The surface of discrete momenta:
@@ -123,7 +123,7 @@ Gaits, the geometry of locomotion:
     ShapedBody: A body on a matrix group G with a shape s, seen from itself: for `local_connection` and what follows ...
     local_connection: Return the local connection of a system: the body velocity that a change of shape causes.
     geometric_phase: Return the displacement by a gait: a closed motion s(t) of the shape, which its owner prescribes.
-    accessibility: Return how far brackets of admissible velocities lead from a configuration.
+    accessibility: Return the directions to which brackets of admissible velocities lead from a configuration.
 
 Derivatives, measured motion, control:
     rollout: Run the discrete map as `simulate` does, as a pure JAX function of body, start and controls.
@@ -133,10 +133,10 @@ Derivatives, measured motion, control:
 
 Checks of custom systems:
     testing: The properties that groups, systems and discretizations must have, checked for ours and for users' own.
-    consistency_defect: Return how far a displacement variety is from consistency with a discretization map; zero if ...
+    consistency_defect: Return the distance of a displacement variety from consistency with a discretization map; ...
 
 The paper's own formulas:
-    in_exp_d: Tell whether a rotation is a displacement $\exp(\theta\,u\wedge e_n)$ of the Suslov top in its ...
+    in_exp_d: Return whether a rotation is a displacement $\exp(\theta\,u\wedge e_n)$ of the Suslov top, in ...
     trace_constraints: Return the constraints of the discrete Suslov top between two configurations; they vanish if ...
     euler_angle_discrete_lagrangian: Return $\mathrm{tr}\,J - \mathrm{tr}(R_k^TR_{k+1}J)$ of two rotations given by ...
     moser_veselov_displacement: Return the displacement of the free top on SO(n) with a given momentum, on the ...

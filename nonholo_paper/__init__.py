@@ -1,7 +1,7 @@
 """The paper, recomputed: every numbered statement and every figure, with the measured value beside the claim.
 
 A product about the library, and a user of it: nothing in `nonholo` needs it but the command `nonholo paper`. Findings
-stand in `statements` and `figures`, the formulas that they compare in `formulas`, the definitions in 50 digits in
+stand in `statements` and `figures`, their words in claims/, their formulas in `formulas`, definitions in 50 digits in
 `_twin`.
 """
 

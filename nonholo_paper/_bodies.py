@@ -183,5 +183,5 @@ def in_double(matrix: Matrix) -> np.ndarray:
 
 
 def apart(library: np.ndarray, exact: Matrix) -> float:
-    """Return how far a result of the library is from a matrix or column."""
+    """Return the distance of a result of the library from a matrix or column."""
     return float(np.abs(np.asarray(library) - in_double(exact)).max(initial=0.0))

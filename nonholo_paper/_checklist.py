@@ -1,6 +1,6 @@
 """The list of what has to have a finding: labels, footnotes and errata rows, in the order of the paper.
 
-The names stand in checklist.toml. Which finding decides which of them is said by the findings.
+The names stand in checklist.toml. Each finding names the ones that it decides.
 """
 
 import dataclasses

@@ -11,7 +11,7 @@ Kind = Literal["equation", "lemma", "proposition", "theorem", "remark", "figure"
 
 @dataclasses.dataclass(frozen=True)
 class Measured:
-    """How far two sides of a statement are apart, at worst, over the data that it was evaluated on.
+    """The largest distance between two sides of a statement, over the data that it was evaluated on.
 
     Attributes:
         corrected: Defect of the right statement.
@@ -36,7 +36,7 @@ class Finding:
         source: Place in the paper: "Section 4, equation (ep3.26)".
         claim: What is printed, with formulas between dollar signs: between quotation marks the words of the paper,
             which every verdict but "right as printed" needs; otherwise our words.
-        verdict: What is said of it.
+        verdict: The verdict.
         corrected: The right statement; of remarks and questions what is added, what is answered.
         errata: Rows of the errata that it decides.
         tolerance: Largest defect of a right statement; the one that is denied has to have more than 1000 times as much.
@@ -54,7 +54,7 @@ class Finding:
     measure: Callable[[], Measured]
 
     def holds(self, measured: Measured) -> bool:
-        """Tell whether the right statement holds and the wrong one fails."""
+        """Return whether the right statement holds and the wrong one fails."""
         if not measured.corrected <= self.tolerance:
             return False
         if measured.printed is None:

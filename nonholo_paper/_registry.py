@@ -49,7 +49,7 @@ def select(names: Iterable[str]) -> tuple[Entry, ...]:
     """Return the findings with given labels, rows of the errata or names of pictures.
 
     Raises:
-        UnknownLabelError: No finding has one of the names; the message says which are near.
+        UnknownLabelError: No finding has one of the names; the message lists near ones.
     """
     wanted = set(names)
     known = {name for entry in entries() for name in entry.names}

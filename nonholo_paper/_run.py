@@ -17,7 +17,7 @@ FORMATS = ("png", "svg", "pdf")
 
 @dataclasses.dataclass(frozen=True)
 class Result:
-    """What came of a finding.
+    """The outcome of a finding.
 
     Attributes:
         entry: The finding with its place.
@@ -35,7 +35,7 @@ class Result:
 
     @property
     def holds(self) -> bool:
-        """Tell whether it was measured, and the right statement holds and the wrong one fails."""
+        """Return whether it was measured, and the right statement holds and the wrong one fails."""
         return self.measured is not None and not self.failure and bool(self.entry.finding.holds(self.measured))
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from nonholo.groups import SE, AbstractMatrixGroup
+from nonholo_paper import _twin as twin
 from nonholo_paper._twin import Matrix, Number, Vector, basis, ctx, exp, hat, numbers, roots
 from nonholo_paper.formulas import sleigh_discrete as formulas
 
@@ -82,6 +83,16 @@ def lagrangian(body: list[Point]) -> Callable[[Matrix], Number]:
         return ctx.fsum(m * move[i] ** 2 for m, move in moved for i in range(W.rows)) / 2
 
     return value
+
+
+def momentum(body: Body, W: Matrix) -> Vector:
+    """Return the discrete momentum of a displacement."""
+    return twin.momentum(PLANE, lagrangian(points(body)), W)
+
+
+def arriving(body: Body, W: Matrix) -> Vector:
+    """Return the discrete momentum that arrives at its end."""
+    return twin.arriving(PLANE, lagrangian(points(body)), W)
 
 
 def paired(body: list[Point], X: Matrix, Y: Matrix) -> Number:

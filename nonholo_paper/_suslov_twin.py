@@ -159,11 +159,6 @@ def successors(name: str, y: tuple[float, float]) -> list[Vector]:
 STEPS = [("generic", (0.3, 0.4)), ("generic", (-0.7, 0.55)), ("four branches", (-0.25, -0.375))]
 
 
-def differences(first: Sequence[Number], second: Sequence[Number]) -> list[Number]:
-    """Return the differences of the entries."""
-    return [a - b for a, b in zip(first, second, strict=True)]
-
-
 def slope(curve: Callable[[Number], Matrix]) -> Matrix:
     """Return the derivative of a curve of matrices at 0: a difference quotient with 110 digits."""
     with ctx.workdps(110):

@@ -4,7 +4,7 @@ Pairings and bases are those of the library (docs/conventions.md), time step 1 a
 """
 
 import random
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import mpmath
@@ -82,6 +82,11 @@ def momentum(group: AbstractMatrixGroup, lagrangian: Callable[[Matrix], Number],
 def arriving(group: AbstractMatrixGroup, lagrangian: Callable[[Matrix], Number], W: Matrix) -> Vector:
     """Return Ad*_W P(W) by its definition, the derivatives of l_d(W exp(e E)) at e = 0."""
     return [ctx.diff(lambda e, E=E: lagrangian(W * exp(e * E)), 0) for E in basis(group)]
+
+
+def differences(first: Iterable[Number], second: Iterable[Number]) -> list[Number]:
+    """Return the differences of the entries."""
+    return [a - b for a, b in zip(first, second, strict=True)]
 
 
 def worst(*differences: Any) -> float:

@@ -1,4 +1,4 @@
-"""What is said of a statement of the paper: one word, and what the word means."""
+"""The verdict on a statement of the paper: one word, and its meaning."""
 
 import enum
 
@@ -27,7 +27,7 @@ class Verdict(enum.StrEnum):
 
     @property
     def is_erratum(self) -> bool:
-        """Tell whether the statement needs a correction; its finding then shows that the printed one fails."""
+        """Return whether the statement needs a correction; its finding then shows that the printed one fails."""
         return self in {Verdict.MISPRINT, Verdict.HYPOTHESIS, Verdict.EXCEPTIONS, Verdict.FALSE, Verdict.CONTRADICTED}
 
 

@@ -1,6 +1,9 @@
 """Bodies on SO(n) and SE(n): random mass tensors and subspaces, and one of each kind of general system."""
 
+from typing import Any
+
 import numpy as np
+from groups.examples import HEISENBERG
 
 import nonholo as nh
 from nonholo.groups import AbstractMatrixGroup
@@ -19,6 +22,58 @@ def mass_tensor(group: AbstractMatrixGroup, rng: np.random.Generator) -> np.ndar
 def random_rows(group: AbstractMatrixGroup, k: int, rng: np.random.Generator) -> np.ndarray:
     """Draw k orthonormal rows of algebra coordinates."""
     return np.linalg.qr(rng.normal(size=(group.dim, k)))[0].T
+
+
+PAST_PI = np.array([
+    [1.97, 2.24, -1.96, -0.56], [2.24, 2.57, -2.24, -0.64], [-1.96, -2.24, 1.97, 0.56], [-0.56, -0.64, 0.56, 0.17]
+])  # fmt: skip
+"""The tensor of a rod on SO(4): its principal path turns past pi."""
+
+
+def tensor(n: int, rng: np.random.Generator) -> np.ndarray:
+    """Draw the tensor of a body that is nowhere flat."""
+    A = rng.normal(size=(n, n))
+    return A @ A.T + np.eye(n)
+
+
+def elsewhere(system: Any, rng: np.random.Generator) -> nh.LLSystem:
+    """Return the same body as an `LLSystem` in random axes, with random rows of its subspace."""
+    group, k, g = system.group, system.rank, system.group.random(rng)
+    rows = (np.eye(k) + 0.3 * rng.normal(size=(k, k))) @ system.constraint_subspace @ group.adjoint(g).T
+    return nh.LLSystem(group, g @ system.homogeneous_mass_tensor @ g.T, rows)
+
+
+def weight(system: Any) -> nh.Gravity:
+    """Return a weight that pulls at no axis of a body."""
+    n = system.group.size - system.group.is_affine
+    return nh.Gravity(np.linspace(0.4, -1.0, n), np.linspace(0.1, 0.5, n))
+
+
+def magnet(system: Any) -> nh.Linear:
+    """Return a potential that is linear in all entries of the pose."""
+    return nh.Linear(np.random.default_rng(3).normal(size=(system.group.size,) * 2))
+
+
+def _others() -> dict[str, AbstractSystem]:
+    rng = np.random.default_rng(31)
+    return {
+        "top on SO(7)": nh.SuslovTop(mass_tensor(nh.SO(7), rng)),
+        "free body on SE(3)": nh.RigidBody(mass_tensor(nh.SE(3), rng), nh.SE(3)),
+        "Heisenberg": nh.LLSystem(
+            HEISENBERG, constraint_subspace=[[1, 0, 0.25], [0, 1, 0]], inertia_operator=np.diag([1.0, 2.0, 3.0])
+        ),
+        "product": nh.LLSystem(
+            nh.ProductGroup(nh.SE(2), nh.SO(3), nh.Translations(2)),
+            constraint_subspace=rng.normal(size=(4, 8)),
+            inertia_operator=np.diag(np.arange(1.0, 9.0)),
+        ),
+        "right-invariant on SE(2)": nh.LRSystem(
+            nh.SE(2), mass_tensor(nh.SE(2), rng), [[1.0, 0.2, 0.0], [0.0, 1.0, 0.3]]
+        ),
+        "nothing moves": nh.LLSystem(
+            nh.SO(3), constraint_subspace=np.empty((0, 3)), inertia_operator=np.diag([1.0, 2.0, 2.5])
+        ),
+    }
 
 
 def _general() -> dict[str, tuple[AbstractSystem, np.ndarray]]:
@@ -42,3 +97,26 @@ def _general() -> dict[str, tuple[AbstractSystem, np.ndarray]]:
 
 
 GENERAL = _general()
+OTHERS = _others()
+
+
+def _attracting() -> dict[str, AbstractSystem]:
+    rng, inertia = np.random.default_rng(7), np.diag([0.5, 0.7, 0.4]) + 0.1
+    four, six, tilted = mass_tensor(nh.SO(4), rng), mass_tensor(nh.SO(6), rng), np.diag([3.0, 2.0, 2.5])
+    tilted += [[0.0, 0.1, 0.2], [0.1, 0.0, 0.3], [0.2, 0.3, 0.0]]
+    return {
+        "top 3": nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]),
+        "top 3, tilted": nh.SuslovTop.from_inertia(tilted, (2 / 3, -1 / 3, 2 / 3)),
+        "top 4": nh.SuslovTop(four),
+        "top 6": nh.SuslovTop(six),
+        "sleigh 2": nh.ChaplyginSleigh(1.3, 0.7, 0.4, 0.3),
+        "sleigh 2, backward": nh.ChaplyginSleigh(1.3, 0.7, -0.4, 0.3),
+        "sleigh 3": nh.MultidimensionalSleigh(1.3, [0.3, 0.2, -0.1], inertia),
+        "sleigh 4": nh.MultidimensionalSleigh(0.8, [-0.3, 0.2, 0.1, 0.5], mass_tensor(nh.SO(4), rng)),
+        "turning sleigh 3": nh.MultidimensionalSleigh(1.3, [0.0, 0.2, -0.1], inertia),
+        "turning sleigh 4": nh.MultidimensionalSleigh(1.3, [0.0, 0.2, -0.1, 0.3], mass_tensor(nh.SO(4), rng)),
+    }
+
+
+ATTRACTING = _attracting()
+"""Tops and sleighs with attracting equilibria: in three dimensions and the plane, and in more."""

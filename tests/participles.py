@@ -4,6 +4,7 @@ A value is named by a noun and a function by a verb. What stays is in `ARGUED`, 
 """
 
 import ast
+import functools
 import re
 import sys
 from collections.abc import Iterator
@@ -46,9 +47,15 @@ def is_participle(name: str) -> bool:
     return bare not in _NOUNS and bool(_IRREGULAR.fullmatch(bare) or _REGULAR.fullmatch(bare))
 
 
-def every_name(tree: ast.AST) -> Iterator[tuple[ast.AST, str]]:
+@functools.cache
+def nodes_of(file: Path) -> tuple[ast.AST, ...]:
+    """Return all nodes of a module, which are the same for all who ask in one process."""
+    return tuple(ast.walk(ast.parse(file.read_text())))
+
+
+def every_name(file: Path) -> Iterator[tuple[ast.AST, str]]:
     """Yield the names that a module defines, of functions, arguments and variables, each with its definition."""
-    for node in ast.walk(tree):
+    for node in nodes_of(file):
         if isinstance(node, ast.FunctionDef):
             yield node, node.name
         elif isinstance(node, ast.arg):
@@ -68,9 +75,8 @@ def _members(owner: ast.ClassDef) -> Iterator[ast.AST]:
 def participles(folder: Path) -> Iterator[tuple[str, str]]:
     """Yield each participle below a folder that nobody argues for, with its place."""
     for path in sorted(folder.rglob("*.py")):
-        tree = ast.parse(path.read_text())
-        public = {id(part) for node in ast.walk(tree) if isinstance(node, ast.ClassDef) for part in _members(node)}
-        for node, name in every_name(tree):
+        public = {id(part) for node in nodes_of(path) if isinstance(node, ast.ClassDef) for part in _members(node)}
+        for node, name in every_name(path):
             if is_participle(name) and name.strip("_") not in ARGUED and id(node) not in public:
                 yield f"{path}:{getattr(node, 'lineno', 0)}", name
 

@@ -3,10 +3,11 @@
 import dataclasses
 
 import numpy as np
+from bodies import GENERAL, OTHERS
 from hypothesis import strategies as st
 
 import nonholo as nh
-from nonholo.systems import AbstractLLSystem
+from nonholo.systems import AbstractLLSystem, AbstractSystem
 
 
 @dataclasses.dataclass(frozen=True)
@@ -47,6 +48,10 @@ PROBLEMS = [
     _problem("balanced sleigh", nh.ChaplyginSleigh(1.0, 1.0, 0.0), (0.5, 0.7), "balanced"),
     _problem("sleigh on its normal", nh.ChaplyginSleigh(1.0, 1.0, 0.0, 0.5), (0.5, 0.7), "balanced"),
 ]
+
+EVERY: dict[str, AbstractSystem] = {problem.name: problem.system for problem in PROBLEMS}
+EVERY |= {name: system for name, (system, _) in GENERAL.items()} | OTHERS
+"""One body of each kind that has a flow."""
 
 _entry = st.floats(-1.0, 1.0)
 

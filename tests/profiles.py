@@ -44,8 +44,7 @@ PROFILES = {
         (*_MECHANICS, "lagrange_dalembert", "orbit", "simulation", "analysis", "testing", "examples"),
     ),
     "faults": Profile(
-        "processes and clusters that are killed, disks that are full, blocks that are damaged",
-        (*_RUNS, "cli"),
+        "processes and clusters that are killed, disks that are full, blocks that are damaged", (*_RUNS, "cli")
     ),
     "problems": Profile(
         "many random problems, long orbits, and four times the examples of tests that draw them",
@@ -70,8 +69,7 @@ PROFILES = {
         "tests/simulation/test_ensemble.py tests/simulation/test_flow_ensemble.py",
     ),
     "browser": Profile(
-        "the live page in Chromium, its bundle, made anew by npm; films by ffmpeg",
-        ("explorer", "kernels", "plot"),
+        "the live page in Chromium, its bundle, made anew by npm; films by ffmpeg", ("explorer", "kernels", "plot")
     ),
     "benchmarks": Profile(
         "every script of `benchmarks/` on small numbers, which compiles what it compares with",
@@ -81,10 +79,7 @@ PROFILES = {
         "the pages and the docstrings of public names as a site: unknown names, broken links, requests to elsewhere",
         (*_MECHANICS[2:], *_RUNS[1:], *_QUESTIONS, "lagrange_dalembert", "base", "docs"),
     ),
-    "long": Profile(
-        "the same problems in thousands, and a hundred bodies for 100,000 steps: half an hour",
-        (),
-    ),
+    "long": Profile("the same problems in thousands, and a hundred bodies for 100,000 steps: half an hour", ()),
     "fuzz": Profile(
         "calls with values that nobody expects, damaged stores, kills at random times, random steps; prints figures",
         (),

@@ -2,7 +2,12 @@
 
 from itertools import pairwise
 
+import numpy as np
 from flint import fmpq_poly, fmpz_poly
+
+import nonholo as nh
+from nonholo.discrete.certificate._certificate import locate
+from nonholo.discrete.certificate._roots import problem_of
 
 
 def real_roots(polynomial: fmpz_poly) -> int:
@@ -16,3 +21,10 @@ def real_roots(polynomial: fmpz_poly) -> int:
         return sum(x != y for x, y in pairwise(signs))
 
     return changes(-1) - changes(1)
+
+
+def assert_counted(discrete: nh.Discretization, r: list[float] | np.ndarray) -> None:
+    """Compare the real values over a momentum, in each factor of their polynomial, with the exact count."""
+    canonical = discrete.system.to_canonical(np.array(r))
+    found = locate(problem_of(discrete.system.canonical.normal_form, float(discrete.time_step), canonical))
+    assert [sum(mu.imag == 0 for mu in x.balls) for x in found] == [real_roots(x.factor) for x in found]

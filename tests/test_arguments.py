@@ -44,12 +44,6 @@ def test_no_value_passes_a_check_unseen(name: str, value: str) -> None:
         call(bad_value(value, 1.0))
 
 
-def test_no_generation_is_too_far() -> None:
-    """A tree so deep that its images cannot be counted is refused before one is computed."""
-    with pytest.raises(ValueError, match="Pass depth=8 or less"):
-        nh.branch_tree(nh.discretize(SLEIGH, 0.1), nh.SE(2).exp(np.array([0.3, 0.1, 0.0])), 10**12)
-
-
 @pytest.mark.parametrize("value", ["density", "half-planes"])
 def test_complex_momenta_have_no_side(value: str) -> None:
     """Where only real momenta have a meaning complex ones are refused."""

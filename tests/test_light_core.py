@@ -4,6 +4,7 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from matrix.alone import ALONE
@@ -21,15 +22,10 @@ def _run(*arguments: str, folder: Path | None = None) -> subprocess.CompletedPro
     return subprocess.run(command, cwd=folder, capture_output=True, text=True)  # noqa: S603
 
 
-def _printed(*arguments: str) -> dict[str, str]:
+def _printed(*arguments: str) -> Any:
     done = _run(*arguments)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
-
-
-def test_names_that_need_an_extra() -> None:
-    """Names that only JAX gives a meaning ask for it, by name and with how to install it; all others are there."""
-    assert _printed("names") == dict.fromkeys(WITHOUT_HOME | {"rollout", "step"}, "jax")
 
 
 def test_kernels_of_each_kind_of_motion() -> None:
@@ -39,35 +35,19 @@ def test_kernels_of_each_kind_of_motion() -> None:
     assert _printed("ways") == ALONE
 
 
-@pytest.mark.profile("faults", keep=["quick"])
-@pytest.mark.parametrize(
-    ("which", "asked"),
-    [
-        ("quick", {"branch_growth [certified]": "certify", "branches [certified]": "certify"}),
-        (
-            "all",
-            {
-                "branch_growth [certified]": "certify",
-                "branches [certified]": "certify",
-                "consistency_defect": "jax",
-                "critical_values": "jax",
-                "equilibria [near]": "jax",
-                "linearize": "jax",
-                "fit": "jax",
-                "rollout": "jax",
-                "steer": "jax",
-                "steer [ipopt]": "steer",
-                "step": "jax",
-                "step [flat]": "jax",
-                "tracking_feedback": "jax",
-            },
-        ),
-    ],
-    ids=["quick", "all"],
+CERTIFIED = dict.fromkeys(("branch_growth [certified]", "branches [certified]"), "certify")
+ON_JAX = dict.fromkeys(
+    ("consistency_defect", "critical_values", "equilibria [near]", "fit", "linearize", "rollout", "steer", "step"),
+    "jax",
 )
+ON_JAX |= {"step": "jax", "step [flat]": "jax", "tracking_feedback": "jax", "steer [ipopt]": "steer"}
+
+
+@pytest.mark.profile("faults", keep=["quick*"])
+@pytest.mark.parametrize(("which", "asked"), [("quick", CERTIFIED), ("all", {**CERTIFIED, **ON_JAX})])
 def test_calls_that_need_an_extra(which: str, asked: dict[str, str]) -> None:
-    """Each call of each public name works without extras, or asks for the one that it needs."""
-    assert _printed("calls", which) == asked
+    """Each public name is there without extras, or asks for JAX; each call works, or asks for the extra it needs."""
+    assert _printed("calls", which) == [dict.fromkeys(WITHOUT_HOME | {"rollout", "step"}, "jax"), asked]
 
 
 COMMANDS = [
@@ -100,6 +80,7 @@ def test_commands_work(tmp_path: Path) -> None:
         assert done.returncode == 0, f"{command}: {done.stdout}{done.stderr}"
 
 
+@pytest.mark.profile("faults", keep=["paper", "logarithmic difference"])
 @pytest.mark.parametrize(
     ("command", "extra"),
     [
@@ -118,20 +99,22 @@ def test_commands_that_need_an_extra(command: list[str], extra: str, tmp_path: P
     assert not list(tmp_path.rglob("*.zarr"))
 
 
+RUN = "o = nh.simulate(nh.discretize(sleigh, 0.1), body_velocity=(1, 0, 0), steps=9)"
+
+
 @pytest.mark.parametrize(
-    "run",
+    ("run", "heavy"),
     [
-        "nh.simulate(nh.discretize(sleigh, 0.1), body_velocity=(1, 0, 0), steps=10)",
-        "nh.flow(sleigh, body_velocity=(1, 0, 0), times=(0, 1))",
+        (RUN, {*HEAVY, "numba", "scipy.sparse"}),
+        ("o = nh.flow(sleigh, body_velocity=(1, 0, 0), times=(0, 1))", {*HEAVY, "numba", "scipy.sparse"}),
+        (f"nh.Grid({{'a': [1.0]}}); nh.sweep; {RUN}; nh.invariants(o)", {"dask", "diffrax", "jax", "matplotlib"}),
     ],
-    ids=["simulate", "flow"],
+    ids=["simulate", "flow", "sweep"],
 )
-def test_a_run_loads_nothing_that_it_does_not_use(run: str) -> None:
+def test_a_run_loads_nothing_that_it_does_not_use(run: str, heavy: set[str]) -> None:
     """A run loads neither JAX, numba and sparse matrices nor what makes datasets, stores, pictures and scenarios."""
-    program = (
-        f"import sys, nonholo as nh; sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.5); o = {run}; o.momentum, o.heading;"
-    )
-    program += f"print(sorted({HEAVY | {'numba', 'scipy.sparse'}} & set(sys.modules)))"
+    program = f"import sys, nonholo as nh; sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.5); {run}; o.momentum, o.heading;"
+    program += f"print(sorted({heavy} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)  # noqa: S603
     assert done.stdout.strip() == "[]"
 

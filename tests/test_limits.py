@@ -53,10 +53,6 @@ def _peak() -> float:
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1.0 if sys.platform == "darwin" else 1024.0)
 
 
-def _by_family(steps: int) -> nh.FamilyTask:
-    return nh.FamilyTask(lambda a: nh.ChaplyginSleigh(1.0, 1.0, a), 0.1, steps)
-
-
 def _kinetic(_: Any, v: Any) -> Any:
     return v @ v / 2
 
@@ -72,21 +68,18 @@ def _extended() -> Any:
 TOO_MUCH: dict[str, tuple[Callable[[], Any], str]] = {
     "simulate": (lambda: nh.simulate(TOP, steps=10**12, **START), "fit into memory. Got about 72 TB of"),
     "simulate, steps": (lambda: nh.simulate(TOP, steps=10**30, **START), "be at most 9007199254740992"),
-    "simulate, disk": (
-        lambda: nh.simulate(TOP, steps=10**15, store="a.zarr", **START),
-        "fit on the disk. Got about 72 PB",
-    ),
+    "simulate, disk": (lambda: nh.simulate(TOP, steps=10**15, store="a.zarr", **START), "fit on the disk. Got about"),
     "simulate, poses": (
         lambda: nh.simulate(WIDE, steps=10**7, restricted_velocity=np.full(99, 0.01)),
-        "simulate(reconstruct=...)` must fit into memory",
+        "(reconstruct=...)",
     ),
     "simulate, checkpoint": (
         lambda: nh.simulate(TOP, steps=10**6, store="a.zarr", checkpoint_every=10**14, **START),
-        "checkpoint_every=...)` must fit into memory",
+        "checkpoint_every=...)",
     ),
     "extend": (_extended, "fit on the disk"),
     "iterate": (lambda: nh.iterate(TOP, steps=10**13, block_steps=10**12, **START), "fit into memory"),
-    "rollout": (lambda: nh.rollout(SLEIGH, steps=10**12, **START), "rollout(steps=...)` must fit into memory"),
+    "rollout": (lambda: nh.rollout(SLEIGH, steps=10**12, **START), "rollout(steps=...)"),
     "fit": (
         lambda: nh.fit(
             lambda p: nh.ChaplyginSleigh(1.0, p["inertia"], 0.4),
@@ -96,49 +89,43 @@ TOO_MUCH: dict[str, tuple[Callable[[], Any], str]] = {
         ),
         "fit into memory",
     ),
-    "flow": (lambda: nh.flow(SLEIGH.system, times=_many(10**12), **START), "flow(times=...)` must fit into memory"),
+    "flow": (lambda: nh.flow(SLEIGH.system, times=_many(10**12), **START), "flow(times=...)"),
     "ensemble": (
         lambda: nh.ensemble(TOP, steps=10**8, save_every=1, restricted_velocity=np.full((1000, 2), 0.1)),
-        "ensemble(steps=...)` must fit into memory",
+        "(steps=...)",
     ),
     "ensemble, reduced poses": (
         lambda: nh.ensemble(
             WIDE, steps=10**9, save_every=1, restricted_velocity=np.full((2, 99), 0.01), reduce=lambda _: {}
         ),
-        "ensemble(reconstruct=...)` must fit into memory",
+        "(reconstruct=...)",
     ),
     "ensemble, flows": (
         lambda: nh.ensemble(SLEIGH.system, times=np.arange(1e5), restricted_velocity=np.full((10**5, 2), 0.1)),
-        "ensemble(times=...)` must fit into memory",
+        "(times=...)",
     ),
     "sweep": (lambda: nh.sweep(_sums, _random(10**15), "a.zarr"), "fit on the disk. Got about 21 PB"),
-    "sweep, block": (
-        lambda: nh.sweep(_sums, _random(10**12), "a.zarr", block=10**12),
-        "sweep(block=...)` must fit into memory",
-    ),
+    "sweep, block": (lambda: nh.sweep(_sums, _random(10**12), "a.zarr", block=10**12), "sweep(block=...)"),
     "sweep, files": (lambda: nh.sweep(_sums, _random(10**11), "a.zarr", block=1), "fit on the disk"),
     "EnsembleTask": (
         lambda: nh.sweep(nh.EnsembleTask(SLEIGH, steps=10, **START), _random(10**15, "a"), "a.zarr"),
         "fit on the disk",
     ),
-    "Grid": (
-        lambda: nh.sweep(_sums, nh.Grid({name: np.ones(10**4) for name in "xabc"}), "a.zarr"),
-        "fit on the disk",
-    ),
+    "Grid": (lambda: nh.sweep(_sums, nh.Grid({name: np.ones(10**4) for name in "xabc"}), "a.zarr"), "fit on the disk"),
     "RandomDesign": (lambda: nh.sweep(_sums, _random(10**15), "b.zarr"), "fit on the disk"),
     "dataset": (lambda: nh.dataset("top", "a", orbits=10**15), "fit on the disk"),
-    "Direction": (lambda: nh.Direction(10**14), "Direction(size=...)` must fit into memory"),
-    "Normal": (lambda: nh.Normal(size=10**14), "Normal(size=...)` must fit into memory"),
-    "Uniform": (lambda: nh.Uniform(_many(10**12), 1.0), "Uniform(low=...)` must fit into memory"),
-    "LogUniform": (lambda: nh.LogUniform(_many(10**12), 1.0), "LogUniform(low=...)` must fit into memory"),
-    "Choice": (lambda: nh.Choice(_many(10**12)), "Choice(values=...)` must fit into memory"),
-    "MassTensor": (lambda: nh.MassTensor(10**7, 1.0, 2.0), "MassTensor(n=...)` must fit into memory"),
+    "Direction": (lambda: nh.Direction(10**14), "Direction(size=...)"),
+    "Normal": (lambda: nh.Normal(size=10**14), "Normal(size=...)"),
+    "Uniform": (lambda: nh.Uniform(_many(10**12), 1.0), "Uniform(low=...)"),
+    "LogUniform": (lambda: nh.LogUniform(_many(10**12), 1.0), "LogUniform(low=...)"),
+    "Choice": (lambda: nh.Choice(_many(10**12)), "Choice(values=...)"),
+    "MassTensor": (lambda: nh.MassTensor(10**7, 1.0, 2.0), "MassTensor(n=...)"),
     "SO": (lambda: nh.SO(10**6).identity, "SO(1000000).identity` must fit into memory. Got about 8 TB"),
-    "SO, basis": (lambda: nh.SO(1000).basis, "SO(1000).basis` must fit into memory"),
-    "SE": (lambda: nh.SE(10**6).identity, "identity` must fit into memory"),
-    "Translations": (lambda: nh.Translations(10**6).identity, "identity` must fit into memory"),
-    "ProductGroup": (lambda: nh.ProductGroup(nh.SO(10**6), nh.SO(3)).identity, "identity` must fit into memory"),
-    "MatrixGroup": (lambda: nh.MatrixGroup(_many(10**4, 10**4, 10**4)), "(basis=...)` must fit into memory"),
+    "SO, basis": (lambda: nh.SO(1000).basis, "SO(1000).basis"),
+    "SE": (lambda: nh.SE(10**6).identity, "identity"),
+    "Translations": (lambda: nh.Translations(10**6).identity, "identity"),
+    "ProductGroup": (lambda: nh.ProductGroup(nh.SO(10**6), nh.SO(3)).identity, "identity"),
+    "MatrixGroup": (lambda: nh.MatrixGroup(_many(10**4, 10**4, 10**4)), "(basis=...)"),
     "SuslovTop": (lambda: nh.SuslovTop(np.eye(400)).inertia_operator, "fit into memory"),
     "VeselovaTop": (lambda: nh.VeselovaTop(np.eye(400)).inertia_operator, "fit into memory"),
     "RigidBody": (lambda: nh.RigidBody(np.eye(400)).inertia_operator, "fit into memory"),
@@ -146,51 +133,33 @@ TOO_MUCH: dict[str, tuple[Callable[[], Any], str]] = {
         lambda: nh.MultidimensionalSleigh(1.0, np.ones(400), np.eye(400)).inertia_operator,
         "fit into memory",
     ),
-    "LLSystem": (lambda: nh.LLSystem(*MATRICES), "complement of a subspace in 79800 dimensions` must fit into memory"),
-    "LRSystem": (lambda: nh.LRSystem(*MATRICES), "complement of a subspace in 79800 dimensions` must fit into memory"),
-    "LagrangeDAlembert": (
-        lambda: nh.LagrangeDAlembert(_kinetic, None, dimension=10**9),
-        "LagrangeDAlembert(dimension=...)` must fit into memory",
-    ),
-    "mass_tensor_lagrangian": (
-        lambda: nh.mass_tensor_lagrangian(nh.SO(10**6), _many(10**6, 10**6)),
-        "fit into memory",
-    ),
-    "Linear": (lambda: nh.Linear(_many(10**6, 10**6)), "Linear(matrix=...)` must fit into memory"),
-    "Spring": (lambda: nh.Spring(_many(10**12), _many(10**12), 1.0), "Spring(body_point=...)` must fit into memory"),
-    "Slip": (lambda: nh.Slip(_many(10**6, 10**6), 1.0), "Slip(rows=...)` must fit into memory"),
-    "Friction": (lambda: nh.Friction(np.ones(10**6)), "Friction(coefficients=...)` must fit into memory"),
-    "Forced": (lambda: nh.Forced(SLEIGH.system, None, _many(10**12, 3)), "Forced(force=...)` must fit into memory"),
-    "Gravity": (lambda: nh.Gravity(_many(10**12), _many(10**12)), "Gravity(point=...)` must fit into memory"),
-    "reference_point_subspace": (
-        lambda: nh.reference_point_subspace(10**3, np.eye(10**3)[:1]),
-        "reference_point_subspace(n=...)` must fit into memory",
-    ),
-    "is_symmetric_pair": (
-        lambda: nh.is_symmetric_pair(nh.SO(400), MATRICES[2]),
-        "is_symmetric_pair(group=...)` must fit into memory",
-    ),
+    "LLSystem": (lambda: nh.LLSystem(*MATRICES), "complement of a subspace in 79800 dimensions"),
+    "LRSystem": (lambda: nh.LRSystem(*MATRICES), "complement of a subspace in 79800 dimensions"),
+    "LagrangeDAlembert": (lambda: nh.LagrangeDAlembert(_kinetic, None, dimension=10**9), "(dimension=...)"),
+    "mass_tensor_lagrangian": (lambda: nh.mass_tensor_lagrangian(nh.SO(10**6), _many(10**6, 10**6)), "fit into memory"),
+    "Linear": (lambda: nh.Linear(_many(10**6, 10**6)), "Linear(matrix=...)"),
+    "Spring": (lambda: nh.Spring(_many(10**12), _many(10**12), 1.0), "Spring(body_point=...)"),
+    "Slip": (lambda: nh.Slip(_many(10**6, 10**6), 1.0), "Slip(rows=...)"),
+    "Friction": (lambda: nh.Friction(np.ones(10**6)), "Friction(coefficients=...)"),
+    "Forced": (lambda: nh.Forced(SLEIGH.system, None, _many(10**12, 3)), "Forced(force=...)"),
+    "Gravity": (lambda: nh.Gravity(_many(10**12), _many(10**12)), "Gravity(point=...)"),
+    "reference_point_subspace": (lambda: nh.reference_point_subspace(10**3, np.eye(10**3)[:1]), "(n=...)"),
+    "is_symmetric_pair": (lambda: nh.is_symmetric_pair(nh.SO(400), MATRICES[2]), "is_symmetric_pair(group=...)"),
     "branches": (lambda: nh.branches(BROAD, momentum=ALONG), "fit into memory"),
     "displacements_over": (lambda: nh.displacements_over(BROAD, ALONG), "fit into memory"),
     "branch_tree": (lambda: nh.branch_tree(SLEIGH, np.eye(3), 10**12), "branch_tree(depth=...)"),
     "fold_distance": (lambda: nh.fold_distance(BROAD, np.eye(3)), "fit into memory"),
-    "discrete_legendre": (
-        lambda: nh.discrete_legendre(TOP, _many(10**11, 3, 3)),
-        "discrete_legendre(displacement=...)` must fit into memory",
-    ),
+    "discrete_legendre": (lambda: nh.discrete_legendre(TOP, _many(10**11, 3, 3)), "(displacement=...)"),
     "inverse_discrete_legendre": (lambda: nh.inverse_discrete_legendre(BROAD, ALONG), "fit into memory"),
     "moser_veselov_displacement": (
         lambda: nh.moser_veselov_displacement(_many(10**6, 10**6), np.ones(3), 0.1),
-        "(mass_tensor=...)` must fit into memory",
+        "(mass_tensor=...)",
     ),
-    "in_exp_d": (lambda: nh.in_exp_d(_many(10**11, 3, 3)), "in_exp_d(displacement=...)` must fit into memory"),
-    "trace_constraints": (
-        lambda: nh.trace_constraints(_many(10**11, 3, 3), np.eye(3)),
-        "trace_constraints(configuration=...)` must fit into memory",
-    ),
+    "in_exp_d": (lambda: nh.in_exp_d(_many(10**11, 3, 3)), "in_exp_d(displacement=...)"),
+    "trace_constraints": (lambda: nh.trace_constraints(_many(10**11, 3, 3), np.eye(3)), "(configuration=...)"),
     "euler_angle_discrete_lagrangian": (
         lambda: nh.euler_angle_discrete_lagrangian((1.0, 1.0, 1.0), _many(10**11, 3), np.zeros(3)),
-        "(angles=...)` must fit into memory",
+        "(angles=...)",
     ),
     "step": (lambda: nh.step(BROAD, ALONG), "A dense mass tensor of SuslovTop.arrowhead` must have at most 100000"),
     "vector_field": (lambda: nh.vector_field(WIDEST), "A dense mass tensor of SuslovTop.arrowhead` must have at most"),
@@ -203,68 +172,35 @@ TOO_MUCH: dict[str, tuple[Callable[[], Any], str]] = {
     "equilibria": (lambda: nh.equilibria(WIDEST), "fit into memory"),
     "asymptotics": (lambda: nh.asymptotics(WIDEST), "fit into memory"),
     "heteroclinic": (lambda: nh.heteroclinic(SLEIGH, energy=1e-20), "must settle within 1000000 steps"),
-    "momentum_locus": (lambda: nh.momentum_locus(TOP, 10**6), "resolution=...)` must fit into memory"),
-    "invariant_curve": (lambda: nh.invariant_curve(TOP, 0.01, 10**12), "resolution=...)` must fit into memory"),
-    "flow_obstruction": (
-        lambda: nh.flow_obstruction(SLEIGH, 0.1, samples=10**11),
-        "samples=...)` must fit into memory",
-    ),
+    "momentum_locus": (lambda: nh.momentum_locus(TOP, 10**6), "resolution=...)"),
+    "invariant_curve": (lambda: nh.invariant_curve(TOP, 0.01, 10**12), "resolution=...)"),
+    "flow_obstruction": (lambda: nh.flow_obstruction(SLEIGH, 0.1, samples=10**11), "samples=...)"),
     "accessibility": (
         lambda: nh.accessibility(nh.examples.two_wheeled_robot().system, np.zeros(5), depth=10**9),
-        "accessibility(depth=...)` must be at most",
+        "(depth=...)` must be at most",
     ),
-    "steer": (lambda: nh.steer(SLEIGH, {}, ASIDE, steps=10**12), "steer(steps=...)` must fit into memory"),
-    "steer, ipopt": (
-        lambda: nh.steer(SLEIGH, {}, ASIDE, steps=10**12, method="ipopt"),
-        "steer(steps=...)` must fit into memory",
-    ),
-    "tracking_feedback": (
-        lambda: nh.tracking_feedback(SLEIGH, {}, _many(10**12, 3)),
-        "tracking_feedback(controls=...)` must fit into memory",
-    ),
-    "testing.check_group": (
-        lambda: nh.testing.check_group(nh.SO(1000)),
-        "check_group(group=...)` must fit into memory",
-    ),
-    "testing.check_system": (
-        lambda: nh.testing.check_system(WIDEST),
-        "A dense mass tensor of SuslovTop.arrowhead` must",
-    ),
-    "testing.check_discretization": (
-        lambda: nh.testing.check_discretization(SLEIGH, steps=10**12),
-        "check_discretization(steps=...)` must fit into memory",
-    ),
+    "steer": (lambda: nh.steer(SLEIGH, {}, ASIDE, steps=10**12), "steer(steps=...)"),
+    "steer, ipopt": (lambda: nh.steer(SLEIGH, {}, ASIDE, steps=10**12, method="ipopt"), "steer(steps=...)"),
+    "tracking_feedback": (lambda: nh.tracking_feedback(SLEIGH, {}, _many(10**12, 3)), "(controls=...)"),
+    "testing.check_group": (lambda: nh.testing.check_group(nh.SO(1000)), "check_group(group=...)"),
+    "testing.check_system": (lambda: nh.testing.check_system(WIDEST), "A dense mass tensor of SuslovTop.arrowhead` mu"),
+    "testing.check_discretization": (lambda: nh.testing.check_discretization(SLEIGH, steps=10**12), "(steps=...)"),
     "testing.check_order": (
         lambda: nh.testing.check_order(SLEIGH, (1.0, 0.5, 0.0), halvings=10**6),
-        "check_order(steps=..., halvings=...)` must fit into memory",
+        "(steps=..., halvings=...)",
     ),
     "examples.chaotic_quartic_oscillator": (
         lambda: nh.examples.chaotic_quartic_oscillator(pairs=10**12),
-        "(pairs=...)` must fit into memory",
+        "(pairs=...)",
     ),
 }
 RESULT = "a result, of what was asked of the function that makes it"
 A_FEW = "takes a few numbers"
 GIVEN = "reads what it is given, in room of the same order"
 FEW = {
-    **dict.fromkeys(
-        (
-            "Crossings",
-            "Discretization",
-            "Ensemble",
-            "EventLog",
-            "MemberBlock",
-            "Orbit",
-            "Outcome",
-            "OutcomeError",
-            "AliasingWarning",
-            "ImpossibleBodyWarning",
-            "testing.Report",
-            "testing.Result",
-            "examples.Example",
-        ),
-        RESULT,
-    ),
+    **dict.fromkeys(("Crossings", "Discretization", "Ensemble", "EventLog", "MemberBlock", "Orbit", "Outcome"), RESULT),
+    **dict.fromkeys(("OutcomeError", "AliasingWarning", "ImpossibleBodyWarning"), RESULT),
+    **dict.fromkeys(("testing.Report", "testing.Result", "examples.Example"), RESULT),
     **dict.fromkeys(
         ("ChaplyginSleigh", "Event", "Impact", "cusp", "allow_float32", "discretize", "single_valued_region"), A_FEW
     ),
@@ -323,8 +259,11 @@ def test_too_much_is_refused(name: str, tmp_path: Path, monkeypatch: pytest.Monk
     monkeypatch.chdir(tmp_path)
     call, told = TOO_MUCH[name]
     before = _peak()
-    with pytest.raises(ValueError, match=re.escape(told)):
+    with pytest.raises(ValueError, match=re.escape(told)) as caught:
         call()
+    assert re.search(
+        "must (fit into memory|fit on the disk|be at most|have at most|have matrices|settle|keep)", str(caught.value)
+    )
     assert _peak() - before < _MOST
     assert not list(tmp_path.iterdir())
 

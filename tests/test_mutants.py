@@ -18,14 +18,9 @@ def _rooms() -> set[str]:
 
 @pytest.mark.parametrize("mutant", mutants(), ids=lambda mutant: mutant.name)
 def test_row_applies(mutant: Mutant) -> None:
-    """What a row replaces stands exactly once in its file, and what stands there instead is something else."""
+    """What a row replaces stands once in its file, and something else instead; its tests exist, its room is right."""
     assert mutant.occurrences() == 1
     assert mutant.new != mutant.old
-
-
-@pytest.mark.parametrize("mutant", mutants(), ids=lambda mutant: mutant.name)
-def test_tests_of_a_row_exist(mutant: Mutant) -> None:
-    """A row names tests, and says in its name in which room its file is."""
     assert mutant.tests
     assert all((ROOT / place).exists() for place in mutant.tests)
     assert room_of(mutant.file) == mutant.name.partition(".")[0]

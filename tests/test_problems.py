@@ -2,19 +2,12 @@
 
 import inspect
 import pathlib
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 from problems import PROBLEMS, Problem
 
 import nonholo as nh
-
-
-def _output(code: str) -> str:
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)  # noqa: S603
-    return done.stdout.strip()
 
 
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda p: p.name)
@@ -27,18 +20,6 @@ def test_tags_are_true(problem: Problem) -> None:
         assert ("flat" in problem.tags) == (abs(np.linalg.det(system.mass_tensor)) < 1e-12)
         regular = np.linalg.det(system.constrained_inertia) > 2 * coupling @ coupling
         assert ("irregular" in problem.tags) == (not regular)
-
-
-def test_importing_loads_nothing_heavy() -> None:
-    """`import nonholo` loads neither JAX nor numba nor NumPy; the numba path does not load JAX."""
-    code = "import sys, nonholo; print(sorted({'jax', 'numba', 'numpy'} & set(sys.modules)))"
-    assert _output(code) == "[]"
-    code = (
-        "import sys, nonholo as nh; d = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1);"
-        "o = nh.simulate(d, body_velocity=(1, 0, 0), steps=10); o.momentum, o.multipliers, nh.invariants(o);"
-        "print(sorted({'jax', 'diffrax', 'matplotlib'} & set(sys.modules)))"
-    )
-    assert _output(code) == "[]"
 
 
 def test_no_module_shadows_a_public_name() -> None:

@@ -1,7 +1,6 @@
 """The package where no library of an extra can be imported: a program that prints which extra each thing asks for.
 
-python without_extras.py names               # of each public name that has no home without one
-python without_extras.py calls quick|all     # of each call of the table of the fuzzers
+python without_extras.py calls quick|all     # of each public name without a home, and of each call of the fuzzers
 python without_extras.py ways                # of each kind of motion, or how its kernels run
 python without_extras.py command ARGUMENT... # run a command of `nonholo`
 """
@@ -21,20 +20,8 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).parent))
 
 ABSENT = {
-    "anywidget",
-    "casadi",
-    "diffrax",
-    "distributed",
-    "equinox",
-    "flint",
-    "jax",
-    "jaxlib",
-    "latex2mathml",
-    "lineax",
-    "llvmlite",
-    "mpmath",
-    "numba",
-    "optimistix",
+    *("anywidget", "casadi", "diffrax", "distributed", "equinox", "flint", "jax", "jaxlib", "latex2mathml", "lineax"),
+    *("llvmlite", "mpmath", "numba", "optimistix"),
 }
 """The libraries of the extras that users run, and what those bring."""
 
@@ -81,18 +68,15 @@ def _home_of(name: str, *_: Any, **__: Any) -> Any:
     return getattr(nh, name)
 
 
-def calls(which: str) -> dict[str, str]:
-    """Return the extras that the calls of public names ask for; the rest work."""
+def calls(which: str) -> list[dict[str, str]]:
+    """Return the extras that public names ask for, and those that their calls do; the rest work."""
     from fuzz import calls_systems
     from fuzz.calls import all_calls
 
-    for missing in names():  # the table names them when it is made
+    homeless = names()
+    for missing in homeless:  # the table names them when it is made
         vars(nh)[missing] = functools.partial(_home_of, missing)
-    for group in (
-        "_in_coordinates",
-        "_locomotion",
-        "_examples",
-    ):  # systems that cannot be made without an extra: see `names`
+    for group in ("_in_coordinates", "_locomotion", "_examples"):  # that cannot be made without an extra: see `names`
         try:
             getattr(calls_systems, group)()
         except (MissingExtraError, AttributeError):
@@ -114,7 +98,7 @@ def calls(which: str) -> dict[str, str]:
                     call()
                 except MissingExtraError as missing:
                     asked[name] = extra_of(missing)
-    return asked
+    return [homeless, asked]
 
 
 def ways() -> dict[str, list[str]]:
@@ -156,7 +140,7 @@ if __name__ == "__main__":
         sys.argv[1:] = arguments
         main()
     else:
-        found = {"names": names, "calls": calls, "ways": ways}[kind](*arguments)
+        found = {"calls": calls, "ways": ways}[kind](*arguments)
         sys.stdout.write(json.dumps(found))
         sys.stdout.flush()
         os._exit(0)

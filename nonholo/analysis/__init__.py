@@ -1,32 +1,32 @@
 """Questions asked of systems and orbits."""
 
-from nonholo.analysis._asymptotics import Asymptotics, asymptotics, turn_of_flow
+from nonholo.analysis._asymptotics import (
+    Asymptotics,
+    FlowObstruction,
+    HeteroclinicOrbit,
+    asymptotics,
+    flow_obstruction,
+    heteroclinic,
+    turn_of_flow,
+)
 from nonholo.analysis._comparison import Comparison, Convergence, Errors, compare
 from nonholo.analysis._critical_energies import CriticalEnergies, CriticalPoint, critical_energies
-from nonholo.analysis._deltoid import Deltoid, SingleValuedRegion, deltoid, single_valued_region
 from nonholo.analysis._equilibria import EquilibriumSpectrum, equilibria
-from nonholo.analysis._heteroclinic import FlowObstruction, HeteroclinicOrbit, flow_obstruction, heteroclinic
+from nonholo.analysis._invariants import ConservedMomenta, Invariants, conserved_momenta, invariants, lyapunov_exponents
+from nonholo.analysis._linearize import Linearization, SteadyMotion, critical_values, linearize, tangent
 from nonholo.analysis._loci import (
+    Deltoid,
     HalfPlanes,
     InvariantCurve,
     MomentumLocus,
+    SingleValuedRegion,
+    deltoid,
     half_planes,
     invariant_curve,
     momentum_locus,
+    single_valued_region,
 )
-from nonholo.analysis.conserved import (
-    ConservedMomenta,
-    InvariantMeasure,
-    Invariants,
-    LyapunovFunction,
-    conserved_momenta,
-    invariant_measure,
-    invariants,
-    lyapunov_exponents,
-    lyapunov_function,
-    tangent,
-)
-from nonholo.analysis.linearization import Linearization, SteadyMotion, critical_values, linearize
+from nonholo.analysis._measure import InvariantMeasure, LyapunovFunction, invariant_measure, lyapunov_function
 from nonholo.analysis.locomotion import (
     Accessibility,
     GeometricPhase,

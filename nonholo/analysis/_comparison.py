@@ -151,21 +151,21 @@ def compare(orbit: AbstractOrbit | Sequence[AbstractOrbit], flow: AbstractOrbit)
 
     $$ |r_k - r(t_k)|, \qquad \|g_k^{-1}g(t_k) - I\| \ \text{or}\ |q_k - q(t_k)|, \qquad E_k - E(t_k). $$
 
-    A flow of a body on a group is asked for its states at the times of the other orbit (`Orbit.at`). Of two orbits of
-    which saved states are all there is, states at equal times are compared. Momenta are those along admissible
+    The states of a flow of a body on a group are those at the times of the other orbit (`Orbit.at`). Of two orbits
+    without states in between, states at equal times are compared. Momenta are taken along admissible
     directions, which approach the flow's with the order of the map; the full momentum of a discrete orbit contains
     half an impulse of the constraint. The Frobenius norm is defined for each group and all angles: for a turn by
     $\alpha$ in the plane or in space it is $2\sqrt2\,|\sin\tfrac\alpha2|$, for a translation its length.
 
     Args:
-        orbit: What is compared; or several discrete orbits with different time steps, to see the order.
-        flow: What it is compared with: a flow, or any orbit of the same body.
+        orbit: An orbit; or several discrete orbits with different time steps, to see the order.
+        flow: The other orbit: a flow, or any orbit of the same body.
 
     Returns:
         `Comparison`; for several orbits `Convergence`.
 
     Raises:
-        ValueError: Something that is no orbit; orbits in different spaces, with momenta along different directions,
+        ValueError: An argument that is no orbit; orbits in different spaces, with momenta along different directions,
             or without a common time; several orbits that have no, or equal, time steps.
 
     Example:
@@ -235,18 +235,14 @@ def _common_rows(orbit: AbstractOrbit, flow: AbstractOrbit) -> tuple[Rows, Rows]
     """Return both orbits and the rows that are at the same times; a flow that knows its states between at new times."""
     for one, other in ((orbit, flow), (flow, orbit)):
         if other.span is not None:
-            rows = np.flatnonzero(_is_within(one.time, other.span))
+            near, (first, last) = _nearness(one.time), sorted(other.span)
+            rows = np.flatnonzero((one.time >= first - near) & (one.time <= last + near))
             _check_common(rows)
-            rest = other.at(np.clip(one.time[rows], min(other.span), max(other.span))), np.arange(len(rows))
+            rest = other.at(np.clip(one.time[rows], first, last)), np.arange(len(rows))
             return ((one, rows), rest) if one is orbit else (rest, (one, rows))
     rows, others = _common(orbit.time, flow.time)
     _check_common(rows)
     return (orbit, rows), (flow, others)
-
-
-def _is_within(time: np.ndarray, span: tuple[float, float]) -> np.ndarray:
-    near = _nearness(time)
-    return (time >= min(span) - near) & (time <= max(span) + near)
 
 
 def _common(first: np.ndarray, second: np.ndarray) -> tuple[Int[np.ndarray, "C"], Int[np.ndarray, "C"]]:

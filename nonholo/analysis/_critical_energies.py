@@ -70,7 +70,7 @@ class CriticalEnergies:
             $1 - (3\sigma - 1)^3(1 + \sigma)/(16\sigma)$ of that for $\sigma < \tfrac12$. Beyond nothing is known,
             and it is 0.
         line: The highest energy of an equilibrium, $q_c/(2h^2|c|^2)$, which turns by 90 degrees in a step. Above it
-            every real orbit ends, on whatever branches. None for a balanced body, all of whose states are equilibria.
+            every real orbit ends, on any branches. None for a balanced body, all of whose states are equilibria.
         regular: $\det B > 2|c|^2$, for n > 3 $b_1b_2 > 2|c|^2$.
         points: All isolated critical points, the two (on the equator: one) opposite ones once, from low to high.
     """
@@ -205,7 +205,8 @@ def _on_equator(land: Landscape, unit: float) -> list[CriticalPoint]:
     (p, q), (_, r) = land.inertia
     axes, sharpness = land.axes, land.sharpness
     points = [CriticalPoint(0.0, "minimum", True, True, axes[:, 0])]
-    for s in sorted(_real_roots(np.array([p, 3 * q, 2 * r - p, -q]))):
+    roots = np.roots([p, 3 * q, 2 * r - p, -q])
+    for s in sorted(roots[np.abs(roots.imag) <= 1e-12 * np.maximum(1.0, np.abs(roots))].real.tolist()):
         square = 1 + s * s
         energy = unit * sharpness * float(p * s * s + 2 * q * s + r) / square**2
         curvature = 3 * p * s * s + 6 * q * s + 2 * r - p  # the slope of the cubic: positive where E is greatest
@@ -213,13 +214,6 @@ def _on_equator(land: Landscape, unit: float) -> list[CriticalPoint]:
         kind = "saddle" if highest == convex else ("maximum" if highest else "minimum")
         points.append(CriticalPoint(energy, kind, True, False, axes @ np.array([s, 1.0]) / np.sqrt(square)))
     return points
-
-
-def _real_roots(cubic: np.ndarray) -> list[float]:
-    """Return the simple real roots; a merged pair, where the energy only has an inflection, counts as none."""
-    roots = np.roots(cubic)
-    real = np.abs(roots.imag) <= 1e-12 * np.maximum(1.0, np.abs(roots))
-    return [float(x) for x in roots[real].real]
 
 
 class Directions(NamedTuple):

@@ -8,7 +8,7 @@ from typing import Any, cast, overload
 
 import numpy as np
 
-from nonholo.analysis.linearization import SteadyMotion, steady_motion
+from nonholo.analysis._linearize import SteadyMotion, steady_motion
 from nonholo.base.checks import error, positive, refuse_given
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.discrete import Discretization, weights

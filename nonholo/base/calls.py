@@ -1,6 +1,7 @@
 """The one door to functions of users: read-only copies go in, checked numbers come out, errors name the function.
 
-What JAX traces cannot write to its arguments. What numba compiled is given arrays of its own, compared afterwards.
+A function that JAX traces cannot write to its arguments. A function that numba compiled gets copies, compared
+afterwards.
 """
 
 import contextlib
@@ -80,7 +81,7 @@ def numbers_of(where: str, function: Callable[..., Any], shape: tuple[int, ...],
     """Return the finite real numbers that a function of a user returns, in float64.
 
     Raises:
-        KindError: What it returns is not made of real numbers.
+        KindError: It returns values that are no real numbers.
         UndefinedError: A number is not finite.
         FunctionError: They have another shape, or it writes to its arguments.
     """
@@ -100,9 +101,9 @@ def check_result(
     words: tuple[str, str],
     place: Callable[[int], str],
 ) -> Array:
-    """Return what a function has returned as finite numbers of a shape; words say what it has to return, and a remedy.
+    """Return what a function has returned as finite numbers of a shape; words name the demand and a remedy.
 
-    The place of the first number that is not finite is asked for by its index.
+    The first number that is not finite is read by its index.
     """
     (what, remedy), name = words, name_of(function)
     try:

@@ -59,7 +59,7 @@ def printable(text: str) -> str:
 
 
 def is_traced(value: Any) -> bool:
-    """Tell whether a value is a JAX tracer, without importing JAX."""
+    """Return whether a value is a JAX tracer, without importing JAX."""
     jax = sys.modules.get("jax")
     return jax is not None and isinstance(value, jax.core.Tracer)
 
@@ -105,7 +105,7 @@ def real_or_complex(where: str, value: Any, remedy: str) -> np.ndarray:
 
 
 def shown(value: Any) -> str:
-    """Return what was got as a text of bearable length, whatever it is."""
+    """Return any value as a text of limited length."""
     try:
         text = repr(value)
     except Exception:  # an integer of thousands of digits, nested lists, whatever it is made of
@@ -119,12 +119,12 @@ def _too_large(where: str, value: np.ndarray, remedy: str) -> ValueError:
 
 
 def is_moderate(value: np.ndarray, most: float) -> bool:
-    """Tell whether every number is finite and at most as large."""
+    """Return whether every number is finite and at most as large."""
     return _is_moderate(value) or bool((np.isfinite(value) & (np.abs(value) <= most)).all())
 
 
 def _is_moderate(value: np.ndarray) -> bool:
-    """Tell by one sum of squares, without copies, that no number lies beyond the largest; False says nothing.
+    """Show by one sum of squares, without copies, that no number lies beyond the largest; False decides nothing.
 
     Of many numbers it takes one thread: BLAS would wake all.
     """
@@ -202,7 +202,7 @@ def trailing(where: str, value: Any, shape: tuple[int, ...], remedy: str, *, rea
 
 
 def _is_as_wanted(value: Any, shape: tuple[int, ...]) -> bool:
-    """Tell whether nothing is left to look at: moderate floats in an array that ends in this shape."""
+    """Return whether nothing is left to look at: moderate floats in an array that ends in this shape."""
     is_plain = type(value) is np.ndarray and value.dtype.char == "d" and 0 < len(shape) <= value.ndim <= _MOST_AXES
     return is_plain and value.shape[-len(shape) :] == shape and _is_moderate(value)
 
@@ -269,7 +269,7 @@ def natural(where: str, value: Any, remedy: str) -> int:
 
 
 def is_integer(value: Any) -> bool:
-    """Tell whether a value is an integer; truth values are none, nor spans of time, which NumPy takes for some."""
+    """Return whether a value is an integer; truth values are none, nor spans of time, which NumPy takes for some."""
     return isinstance(value, numbers.Integral) and not isinstance(value, bool | np.timedelta64)
 
 
@@ -328,7 +328,7 @@ def text(where: str, value: Any) -> str:
 
 
 def is_name(value: Any) -> bool:
-    """Tell whether a text can name a column, a dimension, a file or a variable, wherever it comes from.
+    """Return whether a text can name a column, a dimension, a file or a variable, wherever it comes from.
 
     It begins with a letter, continues with letters, digits and underscores, all ASCII, and is not long.
 
@@ -341,7 +341,7 @@ def is_name(value: Any) -> bool:
 
 
 def name(where: str, value: Any, others: Collection[str] = ()) -> str:
-    """Return a name (`is_name`), refused if it is one of those with a meaning of their own."""
+    """Return a name (`is_name`), refused if it is a reserved one."""
     if not is_name(value) or value in others:
         remedy = f"Rename it; taken: {', '.join(sorted(others))}." if others else "Rename it."
         raise error(where, "be a name: a letter, then letters, digits and underscores, all ASCII", shown(value), remedy)
@@ -497,12 +497,12 @@ def flow_tolerances(rtol: Any, atol: Any) -> tuple[float, float]:
 
 
 class MissingExtraError(ModuleNotFoundError, ValueError):
-    """A door was asked for what an extra holds that is not installed."""
+    """A call needs an extra that is not installed."""
 
 
 @contextlib.contextmanager
 def needs(extra: str, where: str) -> Iterator[None]:
-    """Import in its body what an extra holds; where that is missing, say how to install it.
+    """Import in its body what an extra holds; where that is missing, name the command that installs it.
 
     Raises:
         MissingExtraError: If a library of the extra is not installed.

@@ -64,7 +64,7 @@ def size_text(size: float) -> str:
 
 
 def memory_limit() -> float:
-    """Return the bytes that this process can have: of the machine, of its container, of its own limit."""
+    """Return the bytes that this process can have: of the machine, of its container, of the limit of the process."""
     return min(_machine(), _of_the_process())
 
 

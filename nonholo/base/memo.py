@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 else:
 
     class memo(functools.cached_property):  # noqa: N801
-        """A property of a `Keeper` that is computed once, whatever its size; its array is read-only.
+        """A property of a `Keeper` that is computed once, at any size; its array is read-only.
 
         Example:
             >>> class Row(Keeper):
@@ -48,7 +48,7 @@ else:
     class system_memo(property):  # noqa: N801
         """A property of a system, computed once; small arrays are kept, and given as copies.
 
-        What is traced belongs to its trace: nothing is kept by a system one of whose `leaves` is.
+        A traced value belongs to its trace: a system with a traced one among its `leaves` keeps nothing.
         """
 
         def __get__(self, owner: Any, kind: type | None = None) -> Any:

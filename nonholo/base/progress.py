@@ -43,7 +43,7 @@ def until(over: Callable[[], bool]) -> Iterator[None]:
 
 
 def is_over() -> bool:
-    """Tell whether the work is over: see `until`."""
+    """Return whether the work is over: see `until`."""
     return _over.get()()
 
 
@@ -65,7 +65,7 @@ def number_of_work() -> Iterator[int]:
 
 
 def number_is_over(number: int) -> bool:
-    """Tell whether the work of a number is over, from any thread: see `number_of_work`."""
+    """Return whether the work of a number is over, from any thread: see `number_of_work`."""
     return _overs[int(number)]()
 
 
@@ -136,7 +136,7 @@ def telling(title: str, is_visible: bool) -> Iterator[None]:
 
 
 def tell(amount: float, total: float) -> None:
-    """Report how much is done, and of how much, to whoever is `telling`."""
+    """Report how much is done, and of how much, to every listener (`telling`)."""
     _report.get()(amount, total)
 
 

@@ -10,7 +10,7 @@ from typing import Any
 class Outcome(enum.IntEnum):
     """The end of a step or a run.
 
-    Arrays of outcomes hold the integer value; `message` says what happened, why it can be expected, and what to try.
+    Arrays of outcomes hold the integer value; `message` has the event, its reason and a remedy.
 
     Example:
         >>> print(Outcome.no_real_branch, int(Outcome.successful))
@@ -80,9 +80,9 @@ _MESSAGES = {
 
 
 class OutcomeError(RuntimeError):
-    """A run that cannot continue; `outcome` says why and `orbit`, where there is one, holds every good step.
+    """A run that cannot continue; `outcome` has the reason and `orbit`, where there is one, every good step.
 
-    What a function of the user did, where that ended the run, is `said`.
+    `said` has the failure of a user's function, where that ended the run.
 
     Example:
         >>> str(OutcomeError(Outcome.nonfinite, "Step 7"))

@@ -41,7 +41,7 @@ _Advance = Callable[[Any, tuple[Array | None, Array | None]], tuple[Any, None]]
 def nan_unless(value: Array, cause: Array, good: Array) -> Array:
     """Return a finite value where it is good, and NaN elsewhere.
 
-    There the derivative is NaN along whatever moves the value or the cause of the failure; cotangents that are zero
+    There the derivative is NaN along all that moves the value or the cause of the failure; cotangents that are zero
     stay zero, since what comes later depends on nothing there.
     """
     del cause
@@ -71,7 +71,7 @@ def implicit(
 ) -> tuple[Float[Array, "m"], Float[Array, "m"]]:
     """Return a root of residual(y, *at) as checkpoints keep it, and how it moves with all that the residual depends on.
 
-    It is the derivative of the implicit function, which says nothing of the search.
+    It is the derivative of the implicit function, which does not depend on the search.
     """
     y = checkpoint_name(root, _ROOT)
     _, change = jax.jvp(lambda *numbers: residual(y, *numbers), at, changes)
@@ -108,7 +108,7 @@ def run_nodes(step: Step, begin: Any, controls: Array | None, sizes: tuple[int, 
     """Return the saved nodes after one whose `after` is the start.
 
     Args:
-        step: What takes a step.
+        step: The function that takes a step.
         begin: A node with the start.
         controls: A row for each step and one for what follows the last; None without.
         sizes: Number of steps, and of those between saved nodes.

@@ -33,7 +33,7 @@ def main() -> None:
 
 
 def _stop_as_by_ctrl_c() -> None:
-    """Let whoever ends the process or closes its terminal stop a run as Ctrl-C does: at a state that can be resumed."""
+    """Let signals that end the process or close its terminal stop a run as Ctrl-C does: where it can be resumed."""
     for name in ("SIGTERM", "SIGHUP"):
         with contextlib.suppress(AttributeError, ValueError):  # Windows; a thread that is not the main one
             number = getattr(signal, name)

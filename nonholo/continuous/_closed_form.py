@@ -58,8 +58,8 @@ def heteroclinic(system: AbstractSystem, reduced_momentum: Float[np.ndarray, "2"
     r"""Return the momentum of a system with a two-dimensional constraint in closed form.
 
     With $n = \gamma/|\gamma|$ and $|x|$ constant: $x(t) = |x|\,[\pm\mathrm{sech}\,s\; n + \tanh s\; Q n]$,
-    $s = s_0 + |\gamma||x|\,t$, $\sinh s_0 = (x_0\cdot Qn)/|x_0\cdot n|$. The rates of two unit vectors show
-    what $\gamma$ is.
+    $s = s_0 + |\gamma||x|\,t$, $\sinh s_0 = (x_0\cdot Qn)/|x_0\cdot n|$. The rates of two unit vectors give
+    $\gamma$.
     """
     lower = np.linalg.cholesky(system.constrained_inertia)
     x = np.linalg.solve(lower, reduced_momentum)

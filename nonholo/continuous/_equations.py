@@ -58,7 +58,7 @@ class ContinuousFlow(AbstractMotion):
     """The continuous motion of a system, as the orbits of `flow` know it.
 
     Attributes:
-        system: What moves.
+        system: The system.
         span: The first and the last time at which the motion is known; None of one that was loaded.
         solution: Gives its states at times since the first.
     """
@@ -182,7 +182,7 @@ def vector_field(
     Reference: [fedorov-zenkov-2004], section 2, the Euler-Poincare-Suslov equations.
 
     Args:
-        system: What moves.
+        system: The system.
 
     Raises:
         ValueError: `system` is not a system, or has one force for each step.

@@ -65,7 +65,7 @@ class LinearForces(NamedTuple):
 
 
 def _are_linear(forced: Forced) -> bool:
-    """Tell whether all that acts is friction and a potential linear in the pose, and the constraint is in the body."""
+    """Return whether only friction and a potential linear in the pose act, and the constraint is in the body."""
     others = forced.function is not None or forced.table is not None or forced.is_spatial
     return not others and (forced.potential is None or hasattr(forced.potential, "levers"))
 
@@ -115,7 +115,7 @@ def heads(
 
 
 def has_series_under(forced: Forced, span: float) -> bool:
-    """Tell whether the flow over a time is solved by series: not where friction is much faster."""
+    """Return whether the flow over a time is solved by series: not where friction is much faster."""
     return _are_linear(forced) and bool(abs(span) * _linear_forces(forced).fastest <= _STIFF)
 
 
@@ -199,7 +199,7 @@ def _most(tries: int, vain: int) -> int:
 
 
 def _is_short(solver: Any) -> bool:
-    """Tell whether a step is about as long as is stable, by two derivatives at its end, as Hairer's DOP853 does."""
+    """Return whether a step is about as long as is stable, by two derivatives at its end, as Hairer's DOP853 does."""
     last = solver.n_stages - 1
     other = solver.y_old + solver.step_size * (solver.K[:last].T @ solver.A[last, :last])
     slope, gap = np.linalg.norm(solver.K[-1] - solver.K[last]), np.linalg.norm(solver.y - other)

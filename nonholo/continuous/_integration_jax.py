@@ -1,4 +1,4 @@
-"""Momentum and pose by diffrax: a route of its own beside `_series`. Imported on first use: it loads slowly."""
+"""Momentum and pose by diffrax: a separate route beside `_series`. Imported on first use: it loads slowly."""
 
 import functools
 from collections.abc import Callable

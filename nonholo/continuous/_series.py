@@ -31,7 +31,7 @@ _COMPACT = 40
 """Poses of more numbers are integrated as matrices, whose rates need not be tried."""
 _CHUNK = 1 << 12  # states that are decoded at once: what it takes between stays near the processor
 GUARD = 1 / 64
-"""The error of a step as a share of what was asked for, so that rounding is all that is left at the default."""
+"""The error of a step as a share of the tolerance, so that only rounding is left at the default."""
 
 
 class Rates(NamedTuple):
@@ -55,7 +55,7 @@ class Series(NamedTuple):
         unit: The unit of time, inverted: a power of two that brings the velocities near to one, so that no coefficient
             over- or underflows without need.
         tolerance: Of a step.
-        end: The last time that was asked for.
+        end: The last of the given times.
         nodes: Beginnings of steps.
     """
 
@@ -112,7 +112,7 @@ def by_series(system: AbstractSystem, problem: Problem) -> Solved:
 
 
 def is_compact(group: AbstractMatrixGroup) -> bool:
-    """Tell whether poses are integrated as compact ones where the constraint is fixed in the body."""
+    """Return whether poses are integrated as compact ones where the constraint is fixed in the body."""
     return group.pose_size <= _COMPACT
 
 

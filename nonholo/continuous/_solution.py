@@ -54,9 +54,9 @@ class Solved(NamedTuple):
         states: At the requested times; after a failure only the good ones.
         outcome: How it ended.
         at: Gives the states at times since the start, up to the last good one, in the order of the requested times.
-        steps: Gives where steps of the solver begin and, if they are long, times within; none if that says nothing of
-            the motion.
-        fault: What a function of the user did that ended it.
+        steps: Gives where steps of the solver begin and, if they are long, times within; none if they do not depend
+            on the motion.
+        fault: The failure of a user's function that ended it.
     """
 
     states: States

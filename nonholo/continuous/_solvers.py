@@ -29,7 +29,7 @@ from nonholo.systems import AbstractSystem, System, refuse_slip
 
 
 def has_series(system: AbstractSystem, span: float) -> bool:
-    """Tell whether flows of a system over a time can be solved side by side.
+    """Return whether flows of a system over a time can be solved side by side.
 
     Example:
         >>> [has_series(each, 9.0) for each in (nh.ChaplyginSleigh(1.0, 1.0, 0.5), nh.VeselovaTop(np.eye(3)))]
@@ -97,7 +97,7 @@ def solver_of(
     choice("flow(method=...)", method, (None, "closed_form", "diffrax"))
     if system.forces is not None:
         if method is not None:
-            remedy = "Leave it out: the forces say which one it is."
+            remedy = "Leave it out: the forces decide it."
             raise error("flow(method=...)", "be None under forces", repr(method), remedy)
         return _of_problem(functools.partial(under_forces, system.forces, begins)), True
     alone = not reconstruct and method is None and system.canonical.normal_form is not None

@@ -27,7 +27,7 @@ class Discretization(Scheme, AbstractMotion):
     """A discretized system, made by `discretize`.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: h.
         difference: "matrix", "logarithmic" or a callable.
         constraint: "skew", "exponential", "naive" or functions.
@@ -291,7 +291,7 @@ def _in_body(discrete: Discretization, cayley: np.ndarray, g: np.ndarray, side: 
 def as_discretization(where: str, value: Any, *, compositions: bool = False, forced: bool = False) -> Discretization:
     """Refuse what is not a discretized system on a group, and compositions and forces unless they are welcome."""
     if not isinstance(value, Discretization):
-        raise error(where, "be a discretized system on a group", shown(value), "Pass what `discretize` returned.")
+        raise error(where, "be a discretized system on a group", shown(value), "Pass the result of `discretize`.")
     if not compositions:
         refuse_composition(where, value, "Pass the discretization of order 2 that is composed.")
     if not forced:

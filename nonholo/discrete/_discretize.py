@@ -42,15 +42,15 @@ def discretize(
     $$ l_d(W) = h\, l\bigl((W - I)/h\bigr) \ \text{(matrix)}, \qquad l_d(W) = h\, l(\log W/h)\ \text{(logarithmic)}, $$
 
     with $h$ the time step and, for matrices, $l(X) = \tfrac12\mathrm{tr}(X\,\mathbb{J}\,X^*)$. With "matrix" and "skew"
-    the step of a left-invariant system conserves the reduced constrained energy exactly, whatever the constraint
-    subspace; with any other choice it does not (`Discretization.conserves_energy` tells).
+    the step of a left-invariant system conserves the reduced constrained energy exactly, for every constraint
+    subspace; with any other choice it does not (see `Discretization.conserves_energy`).
 
     Reference: [fedorov-zenkov-2004], section 3; docs/theory/energy-theorem.md.
 
     A `LagrangeDAlembert` has its own rule, and takes no other argument than the time step.
 
     Args:
-        system: What moves.
+        system: The system.
         time_step: h > 0.
         difference: "matrix", "logarithmic" or a callable $L_d(W)$ of a JAX matrix that includes the factor h. By
             default "matrix" where it is defined, for a mass tensor, and "logarithmic" elsewhere.
@@ -59,8 +59,8 @@ def discretize(
             zero on the variety. By default "skew" where it is defined, on SO(n), SE(n) and groups with a form, and
             "exponential" elsewhere.
         order: 2, or 4, 6, 8: a symmetric composition of 5, 9, 15 steps of order 2 with time steps of either sign. It
-            needs difference "matrix" or "logarithmic" and constraint "skew" or "exponential". See
-            docs/theory/compositions.md for what momenta and displacements of its orbits are.
+            needs difference "matrix" or "logarithmic" and constraint "skew" or "exponential".
+            docs/theory/compositions.md explains momenta and displacements of its orbits.
 
     Returns:
         The discretization; of a system in coordinates a `nonholo.lagrange_dalembert.CoordinateDiscretization`.
@@ -68,7 +68,7 @@ def discretize(
     Raises:
         ValueError: A time step that is not positive and real, an unknown choice, a difference or a constraint that is
             not defined for the system, functions that do not fit d at the identity,
-            an order that cannot be had.
+            an order that is not available.
 
     Example:
         >>> discretize(ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), time_step=0.1).difference
@@ -97,7 +97,7 @@ def _difference(system: AbstractSystem, difference: Difference | None) -> Differ
         return _scalar(where, system, difference)
     choice(where, difference, ("matrix", "logarithmic"), "Or pass a callable L_d(W).")
     if difference == "matrix" and not is_defined:
-        got = "a kinetic energy given by an inertia operator, which says nothing of W - I outside the algebra"
+        got = "a kinetic energy given by an inertia operator, which does not extend to W - I outside the algebra"
         remedy = "Pass 'logarithmic', or build the system of a mass tensor, on SO(n), SE(n) or MatrixGroup(form=...)."
         raise error(where, "be defined for the system", got, remedy)
     return difference
@@ -136,11 +136,11 @@ _SAMPLES = 16
 
 
 def consistency_defect(discrete: Discretization, discretization_map: Callable[[Array], Array] | None = None) -> float:
-    r"""Return how far a displacement variety is from consistency with a discretization map; zero if it is consistent.
+    r"""Return the distance of a displacement variety from consistency with a discretization map; zero if consistent.
 
     A discrete Lagrangian that comes from a continuous one by a map $\Psi$ from displacements to velocities,
-    $l_d(W) = h\,l(\Psi(W))$, has the consistent variety $\{W : \langle a^j, \Psi(W)\rangle = 0\}$. What is returned is
-    the largest $|\langle a^j, \Psi(W)\rangle|$ at displacements W drawn from the variety, with rows $a^j$ and
+    $l_d(W) = h\,l(\Psi(W))$, has the consistent variety $\{W : \langle a^j, \Psi(W)\rangle = 0\}$. The result is the
+    largest $|\langle a^j, \Psi(W)\rangle|$ at displacements W drawn from the variety, with rows $a^j$ and
     velocities of length one. Consistency does not conserve energy, nor does its absence spoil it: "matrix" is
     consistent with "naive" and conserves with "skew".
 

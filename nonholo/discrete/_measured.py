@@ -31,7 +31,7 @@ class MeasuredMotion(AbstractMotion):
     A state's chart coordinates are those of $\log W_k$ (spatial: $\log U_k$) and $h_k$. Nothing is said between states.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: The time between poses; None where it varies.
     """
 
@@ -50,7 +50,7 @@ class MeasuredMotion(AbstractMotion):
         return self.displaced(states.canonical_chart)
 
     def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
-        """Return the discrete momenta at the displacements, of whatever difference the system has by default."""
+        """Return the discrete momenta at the displacements, with the default difference of the system."""
         return self.momenta(states.canonical_chart, states.configuration if self.system.is_spatial else None)
 
     def momenta(self, chart: Float[np.ndarray, "K m"], g: Float[np.ndarray, "K N N"] | None) -> np.ndarray:
@@ -63,7 +63,7 @@ class MeasuredMotion(AbstractMotion):
     def multipliers(self, states: Orbit) -> Float[np.ndarray, "L s"]:
         """Refuse: poses do not tell forces of constraint from others."""
         remedy = "Compare momenta, `orbit.momentum`, with those of a run."
-        raise error("Orbit.multipliers", "be asked of a run", f"{len(states)} given poses", remedy)
+        raise error("Orbit.multipliers", "be read from a run", f"{len(states)} given poses", remedy)
 
     def constraint_residual(self, states: Orbit) -> Float[np.ndarray, "K j"]:
         """Return the forbidden velocities: parts of (W - W^-1)/2h, or of log W/h where the group has no skew part."""
@@ -119,7 +119,7 @@ def _chart(system: System, g: Float[np.ndarray, "K N N"], h: Float[np.ndarray, "
 
 
 def _warn_of_aliasing(D: Float[np.ndarray, "K N N"]) -> None:
-    """Warn of the first turn that is wider than 90 degrees: an eigenvalue of its matrix says so."""
+    """Warn of the first turn that is wider than 90 degrees, by the eigenvalues of its matrix."""
     turns = np.degrees(np.abs(np.angle(np.linalg.eigvals(D))).max(axis=1))
     if (wide := turns > _WIDE).any():
         row = int(wide.argmax())

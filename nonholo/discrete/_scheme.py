@@ -31,11 +31,11 @@ Difference = str | Callable[[Array], Array]
 class Scheme:
     """A system, a time step, a discrete Lagrangian and a displacement variety.
 
-    A class of its own, not a protocol: to try whether an object obeys one would ask it for its variety, whose matrices
+    A class, not a protocol: to try whether an object obeys one would ask it for its variety, whose matrices
     fill the memory for wide bodies.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: The time step h.
         difference: The discrete Lagrangian: "matrix", "logarithmic" or a callable.
         constraint: The name of the variety, or its functions.

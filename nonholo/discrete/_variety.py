@@ -112,7 +112,7 @@ def _variety(group: AbstractMatrixGroup, rows: tuple, constraint: str) -> Variet
 
 
 def _cubes_stay(group: AbstractMatrixGroup, subspace: np.ndarray, annihilator: np.ndarray) -> bool:
-    """Tell whether X^3 lies in the subspace for every X in it; a polynomial identity, tried on random X."""
+    """Return whether X^3 lies in the subspace for every X in it; a polynomial identity, tried on random X."""
     X = group.hat(np.random.default_rng(0).normal(size=(4, len(subspace))) @ subspace)
     forbidden = forbidden_matrices(group, annihilator)
     escape = np.einsum("jab,iab->ij", forbidden, X @ X @ X)
@@ -159,7 +159,7 @@ def checked_constraint(where: str, system: AbstractSystem, constraint: object) -
         got = f"a derivative {along:.3g} along d"
         raise error(where, "be tangent to d at the identity", got, "Check the functions against constraint_subspace.")
     if np.linalg.matrix_rank(derivative, tol=_ROUNDING * np.abs(derivative).max(initial=0.0)) < s:
-        raise error(where, "be independent at the identity", "dependent derivatives", "Drop what repeats another.")
+        raise error(where, "be independent at the identity", "dependent derivatives", "Drop the dependent ones.")
     return functions
 
 

@@ -91,7 +91,7 @@ def grow(store: SweepStore, members: Any) -> SweepStore:
     if not isinstance(design, RandomDesign):
         raise error(where, "come with a random design", "a grid, which has no more members", "Run another grid.")
     if size < design.members:
-        raise error(where, f"not be below the {design.members} members that there are", shown(size), remedy)
+        raise error(where, f"not be below the {design.members} members of the design", shown(size), remedy)
     if size == design.members:
         return store
     _refuse_too_large(io.Layout((size,), store.layout.chunk), store.outputs, store.path)

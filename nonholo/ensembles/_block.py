@@ -1,4 +1,4 @@
-"""The part of a sweep that a task sees: some members in order, their values by name, random numbers of their own."""
+"""The part of a sweep that a task sees: some members in order, their values by name, their random numbers."""
 
 import dataclasses
 from collections.abc import Iterator, Mapping

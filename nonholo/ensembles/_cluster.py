@@ -46,7 +46,7 @@ def check_cluster(address: str) -> None:
 
 
 def is_client(scheduler: Any) -> bool:
-    """Tell whether a scheduler is the client of one, of the user's own."""
+    """Return whether a scheduler is the client of one, of the user's own."""
     return hasattr(scheduler, "scheduler_info") and hasattr(scheduler, "map")
 
 
@@ -102,7 +102,7 @@ def _do_blocks(work: Work, blocks: Iterator[int], client: Any, take: Callable[[D
 
 
 def do_sent(work_bytes: bytes, block: int) -> Done:
-    """Make sure that a block is in the store: what a worker is asked for."""
+    """Make sure that a block is in the store: the task of a worker."""
     return do_block(_work_of(work_bytes), block)
 
 

@@ -45,7 +45,8 @@ def dataset(
 
     First configurations and kinetic energies are drawn from the distributions of the definition, which has a version.
     Orbit i is the same in every data set with this `rng`, time step and version, however many there are. Each row is a
-    state; the row after it is the next one. An orbit that ends early has NaN in its later rows, and `outcome` says why.
+    state; the row after it is the next one. An orbit that ends early has NaN in its later rows, and `outcome` has the
+    reason.
 
     The folder gets `orbits.zarr`, which `xarray.open_zarr` opens, or tables `train.csv`, `validation.csv`, `test.csv`;
     `metadata.json` with the SHA-256 of every array; and `README.md`, a data card. A call that was stopped is resumed by
@@ -61,7 +62,7 @@ def dataset(
         noise: Standard deviation of normal noise, in the unit of each number: fields `observed_...` have it.
         split: Fractions of the orbits for training, validation and test, in this order.
         file_format: "zarr" or "csv".
-        license_name: What the card says.
+        license_name: The license in the data card.
         progress: Show a progress bar on standard error.
 
     Returns:
@@ -81,7 +82,7 @@ def dataset(
         ...     orbits.heading.shape, orbits.split.values[:17].tolist().count(0)
         ((20, 11), 16)
     """
-    choice("dataset(name=...)", name, tuple(DEFINITIONS), "`nonholo dataset --list` says what they are.")
+    choice("dataset(name=...)", name, tuple(DEFINITIONS), "`nonholo dataset --list` describes them.")
     choice("dataset(file_format=...)", file_format, _FORMATS)
     flags("dataset", progress=progress)
     text("dataset(license_name=...)", license_name)

@@ -37,10 +37,10 @@ Start: TypeAlias = tuple[str, Float[np.ndarray, "n"]]
 class EnsembleTask:
     r"""Run the members of a design and keep some numbers of each.
 
-    What the design does not name is as given here. Names of a design are parameters of the system, "time_step", a start
-    or one of its components, such as "restricted_velocity_0". A start need not be given if all of it is varied. Of a
-    system under forces they are also numbers of these, such as "gravity_force", "gravity_force_1", "friction" and
-    "slip_grip": such members run one by one.
+    Arguments that the design does not name are as given here. Names of a design are parameters of the system,
+    "time_step", a start or one of its components, such as "restricted_velocity_0". A start need not be given if all of
+    it is varied. Of a system under forces they are also numbers of these, such as "gravity_force", "gravity_force_1",
+    "friction" and "slip_grip": such members run one by one.
 
     Reductions: "final_state" (restricted momentum, time, energy and compact pose of the last good state that is saved,
     and the number of good steps), "energy_drift" (of that state, relative), "limit_angle" (total turn of a plane
@@ -54,7 +54,7 @@ class EnsembleTask:
         discrete: The discretized system.
         steps: Number of steps.
         start: Name of the start and its value for all members.
-        reductions: What to keep.
+        reductions: The quantities to keep.
         save_every: Steps between the states that reductions see; None for the last one alone. It is 1 with
             "lyapunov" and with the turn of a sleigh, which take all states.
         branch: The branch rule, as in `ensemble`.
@@ -166,7 +166,7 @@ class EnsembleTask:
         return self._with(io.on_route_of(attributes, self.discrete))
 
     def _member(self, block: MemberBlock, member: int, of_forces: list[str]) -> dict[str, Any]:
-        """Run one member under forces of its own."""
+        """Run one member under its forces."""
         system = with_force_numbers(self.discrete.system, {name: block[name][member] for name in of_forces})
         rest = {name: values for name, values in block.items() if name not in of_forces}
         task = self._with(dataclasses.replace(self.discrete, system=system))
@@ -217,7 +217,7 @@ def ensemble_task_from(entry: dict[str, Any]) -> EnsembleTask:
 
 
 def _described_rule(branch: BranchRule) -> dict[str, str]:
-    """Return what a store tells of a branch rule: nothing of the principal one."""
+    """Return what a store keeps of a branch rule: nothing for the principal one."""
     if isinstance(branch, str):
         return {} if branch == PRINCIPAL.name else {"branch": branch}
     return {RULE: function_name(branch)}

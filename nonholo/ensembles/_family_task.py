@@ -28,9 +28,10 @@ class FamilyTask:
     r"""Run the members of a family: systems that a function of parameters makes, such as `nh.examples.particle`.
 
     Names of a design are parameters of the function, "time_step", "configuration" and "body_velocity", or a component
-    of one that is an array, such as "body_velocity_0". What it does not name is as given here, or the default of the
-    function. Members with one system, or with one but for its `parameters`, run as one `ensemble`; each other system in
-    coordinates is compiled: of constants that are no parameters vary a few values, and all else at will.
+    of one that is an array, such as "body_velocity_0". Arguments that it does not name are as given here, or the
+    defaults of the function. Members with one system, or with one but for its `parameters`, run as one `ensemble`; each
+    other system in coordinates is compiled: of constants that are no parameters vary a few values, and all else at
+    will.
 
     The reduction "final_state" keeps time, configuration, velocity and energy of the last good state, and the number
     of good steps. A custom function gets the `Ensemble` of such members, and returns arrays as for
@@ -43,7 +44,7 @@ class FamilyTask:
         time_step: h.
         steps: Number of steps.
         parameters: Arguments of the family that are the same for all members.
-        reductions: What to keep.
+        reductions: The quantities to keep.
         save_every: Steps between the states that reductions see; None for the last one alone.
 
     Raises:
@@ -95,7 +96,9 @@ class FamilyTask:
         for name in names:
             part = component_of(name)
             if name not in own and not (part and part[0] in own):
-                raise error("sweep(design=...)", "name what the family has", shown(name), f"It has {', '.join(own)}.")
+                raise error(
+                    "sweep(design=...)", "name arguments of the family", shown(name), f"It has {', '.join(own)}."
+                )
 
     @property
     def block(self) -> int:

@@ -34,7 +34,7 @@ def _names(part: Any) -> Iterator[tuple[str, str]]:
 
 
 def is_force_number(system: Any, name: str) -> bool:
-    """Tell whether a name is a number of a force, or a component of one that is a vector."""
+    """Return whether a name is a number of a force, or a component of one that is a vector."""
     numbers, part = force_numbers(system), component_of(name)
     return name in numbers or (part is not None and np.ndim(numbers.get(part[0], 0.0)) == 1)
 

@@ -75,7 +75,7 @@ def with_components(name: str, value: Any, own: Mapping[str, Any]) -> Any:
 
 def no_component(got: str) -> ValueError:
     """Return the refusal of a component that a value does not have."""
-    return error("sweep(design=...)", "vary components that there are", got, "They are counted from 0.")
+    return error("sweep(design=...)", "vary existing components", got, "They are counted from 0.")
 
 
 def array_name(where: str, name: Any) -> str:

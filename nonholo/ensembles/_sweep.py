@@ -31,23 +31,23 @@ def sweep(
     progress: bool = False,
     scenario: str | None = None,
 ) -> xarray.Dataset:
-    """Run a task for every member of a design and keep what it returns in one store.
+    """Run a task for every member of a design and keep its results in one store.
 
-    The result does not depend on how members are cut in blocks, on workers or on what was interrupted: members take
-    their random numbers by their index. `outcome` says how each member ended; a member for which the task raises has
+    The result does not depend on blocks, workers or interruptions: members take their random numbers by their
+    index. `outcome` has the end of each member; a member for which the task raises has
     no numbers (NaN, the least integer) and the outcome 100, and the others are done.
 
     Args:
         task: An `EnsembleTask`, or a function of a `MemberBlock` that returns a dictionary of arrays with a leading
-            member axis. Of a tuple (dimensions, array) the names label the other axes.
+            member axis. In a tuple (dimensions, array) the names label the other axes.
         design: A `Grid` or a `RandomDesign`.
         store: A new path, usually named `*.zarr`; for a cluster one that all workers see.
         scheduler: "threads" (the default: embedded, nothing to start), "processes" for functions that hold the
             interpreter's lock, the address `tcp://host:port` of a Dask scheduler, or a `distributed.Client`, which
             stays open.
         workers: How many threads or processes; by default one for each core.
-        block: Most members in a block, which is one chunk on disk and one piece of work; a store that is there keeps
-            its own.
+        block: Most members in a block, which is one chunk on disk and one piece of work; an existing store keeps its
+            block size.
         resume: Resume the store of this very task and design, if there is one.
         progress: Show a progress bar on standard error.
         scenario: Text that is kept in the store.
@@ -57,9 +57,9 @@ def sweep(
 
     Raises:
         ValueError: A bad argument, a path with the suffix of another format, or a task that raises for every member
-            tried, before anything is written; with `resume` another task or design than that of the store, with the
-            difference.
-        FileExistsError: There is something at the path.
+            tried, before anything is written; with `resume` a task or design that differs from the store's; the
+            message has the difference.
+        FileExistsError: The path exists.
         BlockingIOError: Another process is writing the store; the message names it.
         OSError: The disk is full, or a worker process was killed; the store stays valid, and `resume` continues.
 
@@ -124,7 +124,7 @@ def resume(
     """Resume the run or the sweep of a store, with the bits of one that was never stopped.
 
     Every finished block is read first. A missing, cut or changed chunk is reported by name in a `RuntimeWarning`, and
-    its block is computed again, an orbit's from its last checkpoint. What is finished and sound is only opened.
+    its block is computed again, an orbit's from its last checkpoint. A store that is finished and sound is only opened.
 
     Args:
         store: A store that `simulate(..., store=...)` or `sweep` began.
@@ -136,8 +136,8 @@ def resume(
         task: The task of a sweep; needed if it is, or holds, a custom function, which a store only names.
         members: How many members a random design is to have, more than it has: it grows by those that are missing, in
             blocks as large as before. Those that are there stay; the result has the bits of a sweep of all of them.
-        trust: Import those functions by the names that the store gives. They run with your rights, whatever they are,
-            so only for a store whose maker you trust; without it nothing runs that you did not pass.
+        trust: Import those functions by the names that the store gives. They run with your rights: name only
+            functions of a store whose maker you trust; without it nothing runs that you did not pass.
         scheduler: As in `sweep`.
         workers: As in `sweep`.
         throw: Raise if an orbit cannot continue; otherwise return the good steps and the outcome.
@@ -161,7 +161,7 @@ def resume(
     store = path("resume(store=...)", store)
     kind = io.format_of(store)
     if kind is None and store.exists():
-        got, remedy = f"'{store}', whose zarr.json does not say so", "Check the path, or run it again."
+        got, remedy = f"'{store}', whose zarr.json does not record it", "Check the path, or run it again."
         raise error("resume(store=...)", "be a store of a run or a sweep", got, remedy)
     if kind == io.SWEEP_FORMAT:
         others, owner, remedy = {"discrete": discrete, "events": events}, "an orbit", "Pass task=..., or nothing."

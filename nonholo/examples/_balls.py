@@ -7,13 +7,13 @@ import numpy as np
 
 from nonholo.base.checks import error
 from nonholo.base.types import Array
-from nonholo.examples._example import Example, energy_of, numbers, positives, ready, reals, system_in
+from nonholo.examples._example import Example, energy_of, ready, system_in
 from nonholo.groups import SE, SO
 from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, LagrangeDAlembert, mass_tensor_lagrangian
 from nonholo.systems import mass_tensor_from_inertia
 
 
-@ready("angular_velocity")
+@ready("angular_velocity", positive="inertia", inertia="three moments", angular_velocity="three components")
 def chaplygin_ball(
     *,
     mass: float = 1.0,
@@ -49,17 +49,13 @@ def chaplygin_ball(
         >>> ready.conserved["momentum along z"](ready.configuration, ready.body_velocity).round(3)
         np.float64(0.5)
     """
-    name = "chaplygin_ball"
-    m, r = positives(name, mass=mass, radius=radius)
-    principal = numbers(name, "inertia", inertia, 3, "three moments")
-    moments = tuple(positives(name, **{f"inertia[{i}]": moment for i, moment in enumerate(principal)}))
-    omega = numbers(name, "angular_velocity", angular_velocity, 3, "three components")
+    m, r, omega = mass, radius, angular_velocity
     v = np.append(omega, r * np.cross(omega, (0.0, 0.0, 1.0)))
 
     def momentum(g: Array, v: Array) -> Array:
         R = g[..., :3, :3]
         gamma, omega = R[..., 2, :], v[..., :3]
-        own = omega * moments + m * r**2 * np.cross(gamma, np.cross(omega, gamma))
+        own = omega * inertia + m * r**2 * np.cross(gamma, np.cross(omega, gamma))
         return (R @ own[..., None])[..., 0]
 
     conserved = {f"momentum along {axis}": functools.partial(_component, momentum, i) for i, axis in enumerate("xyz")}
@@ -67,7 +63,7 @@ def chaplygin_ball(
         "The angular momentum about the contact is constant in space, and so is the energy.",
         "The middle moves at constant height.",
     )
-    return Example(name, _chaplygin_system(m, r, moments), np.eye(4), v, facts, conserved)
+    return Example("chaplygin_ball", _chaplygin_system(m, r, inertia), np.eye(4), v, facts, conserved)
 
 
 def _component(function: Array, index: int, g: Array, v: Array) -> Array:
@@ -85,7 +81,7 @@ def _chaplygin_system(m: float, r: float, moments: tuple[float, ...]) -> GroupLa
     return GroupLagrangeDAlembert(SE(3), mass_tensor_lagrangian(SE(3), tensor), forms)
 
 
-@ready("place", "velocity", "spin")
+@ready("place velocity spin", reals="spin", place="x and y", velocity="x and y")
 def ball_in_bowl(
     *,
     mass: float = 1.0,
@@ -99,8 +95,8 @@ def ball_in_bowl(
 ) -> Example:
     r"""A uniform ball that rolls in a round bowl: middle (x, y) seen from above, turns alpha, beta, gamma.
 
-    The turns are integrals of the angular velocity about the axes of space: equations of a uniform ball know no more of
-    its orientation. With the middle at $c = \rho n$ from that of the bowl, in its lower half, and z its height,
+    The turns are integrals of the angular velocity about the axes of space: equations of a uniform ball contain no more
+    of its orientation. With the middle at $c = \rho n$ from that of the bowl, in its lower half, and z its height,
 
     $$ L = \tfrac m2|\dot c|^2 + \tfrac J2|\omega|^2 - mgz, \qquad \dot c = -r\,\omega\times n, $$
 
@@ -132,16 +128,14 @@ def ball_in_bowl(
         >>> list(ready.conserved)
         ['spin', 'momentum', 'energy']
     """
-    name = "ball_in_bowl"
-    m, r, J, rho, g = positives(name, mass=mass, radius=radius, inertia=inertia, reach=reach, gravity=gravity)
-    c, v = (numbers(name, what, x, 2, "x and y") for what, x in (("place", place), ("velocity", velocity)))
-    (s,) = reals(name, spin=spin)
+    m, r, J, rho, g = mass, radius, inertia, reach, gravity
+    c = np.asarray(place)
     if not c @ c < rho**2:
-        where, demand = f"examples.{name}(place=...)", f"be less than {rho:g} from the axis"
+        where, demand = "examples.ball_in_bowl(place=...)", f"be less than {rho:g} from the axis"
         raise error(where, demand, str(c.tolist()), "Start in the bowl.")
     q = np.append(c, np.zeros(3))
-    n, dn = _normal(rho, q, np.append(v, np.zeros(3)))
-    rates = np.append(v, s * n - rho / r * np.cross(n, dn))
+    n, dn = _normal(rho, q, np.append(velocity, np.zeros(3)))
+    rates = np.append(velocity, spin * n - rho / r * np.cross(n, dn))
     kappa = J * r / (rho * (J + m * r**2))
 
     def spinning(q: Array, v: Array) -> Array:
@@ -157,7 +151,7 @@ def ball_in_bowl(
         "Without spin it moves like a spherical pendulum with five sevenths of its weight.",
         "Spin, energy and a momentum about the vertical are constant.",
     )
-    return Example(name, system, q, rates, facts, conserved)
+    return Example("ball_in_bowl", system, q, rates, facts, conserved)
 
 
 def _normal(rho: float, q: Array, v: Array) -> tuple[Array, Array]:
@@ -183,7 +177,7 @@ def _bowl_system(m: float, r: float, J: float, rho: float, g: float) -> Lagrange
     return system_in("x y alpha beta gamma", "Ball in a bowl", lagrangian, forms)
 
 
-@ready("place", "velocity")
+@ready("place velocity", reals="table_rate", place="x and y", velocity="x' and y'")
 def ball_on_turntable(
     *,
     mass: float = 1.0,
@@ -196,7 +190,7 @@ def ball_on_turntable(
     r"""A uniform ball that rolls without sliding on a table which is driven round: middle (x, y), turns alpha, beta.
 
     The turns are integrals of the angular velocity about the x and y axes of space. They are no coordinates of the
-    orientation, but the equations of a uniform ball know no more of it; its spin about the vertical is constant.
+    orientation, but the equations of a uniform ball contain no more of it; its spin about the vertical is constant.
 
     $$ L = \tfrac m2(\dot x^2 + \dot y^2) + \tfrac J2(\dot\alpha^2 + \dot\beta^2), \qquad
        \dot x - r\dot\beta = -\Omega y, \quad \dot y + r\dot\alpha = \Omega x . $$
@@ -223,11 +217,8 @@ def ball_on_turntable(
         >>> np.abs(ready.exact(np.array([2.0]))[0, :2] - ready.configuration[:2]).max() < 1e-14
         np.True_
     """
-    name = "ball_on_turntable"
-    m, r, J = positives(name, mass=mass, radius=radius, inertia=inertia)
-    (Omega,) = reals(name, table_rate=table_rate)
-    x, y = numbers(name, "place", place, 2, "x and y")
-    u, w = numbers(name, "velocity", velocity, 2, "x' and y'")
+    (x, y), (u, w) = place, velocity
+    m, r, J, Omega = mass, radius, inertia, table_rate
     kappa = Omega * J / (J + m * r**2)
 
     def exact(time: Array) -> Array:
@@ -243,7 +234,7 @@ def ball_on_turntable(
     }
     facts = ("The middle runs on a circle, at 2/7 of the rate of the table.", "So it does in the midpoint rule.")
     q, v = np.array([x, y, 0.0, 0.0]), np.array([u, w, (Omega * x - w) / r, (u + Omega * y) / r])
-    return Example(name, _turntable_system(m, r, J, Omega), q, v, facts, conserved, exact)
+    return Example("ball_on_turntable", _turntable_system(m, r, J, Omega), q, v, facts, conserved, exact)
 
 
 def _circle(z: complex, velocity: complex, kappa: float, t: Array) -> Array:

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.types import Array, Float
-from nonholo.examples._example import Example, energy_of, numbers, of_states, positives, ready, reals, system_in, wheel
+from nonholo.examples._example import Example, energy_of, of_states, ready, system_in, wheel
 from nonholo.groups import SO
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
@@ -17,7 +17,14 @@ _Body = tuple[float, float, float, float, float, float, float]
 _CORNERS = np.array([[-1.0, -0.4], [0.0, -1.0], [1.0, -0.6], [1.0, 0.6], [0.0, 1.0], [-1.0, 0.4]])  # of a rider
 
 
-@ready("place", "speed", "lean_rate", "steer_rate")
+@ready(
+    "place speed lean_rate steer_rate",
+    reals="trail tilt speed lean_rate steer_rate",
+    positive="rear_wheel front_wheel",
+    **dict.fromkeys(("rear_wheel", "front_wheel"), "radius, mass and two moments of inertia"),
+    **dict.fromkeys(("rear_frame", "front_frame"), "place, mass and inertia"),
+    place="x, y and theta",
+)
 def bicycle(
     *,
     wheelbase: float = 1.02,
@@ -76,32 +83,18 @@ def bicycle(
         >>> ready.coordinates, ready.system.constraints
         (('x', 'y', 'theta', 'lean', 'pitch', 'steer', 'rear', 'front'), 5)
     """
-    name = "bicycle"
-    w, g = positives(name, wheelbase=wheelbase, gravity=gravity)
-    rates = {"speed": speed, "lean_rate": lean_rate, "steer_rate": steer_rate}
-    c, slope, v, leaning, steering = reals(name, trail=trail, tilt=tilt, **rates)
-    rear, front = (_checked_wheel(*each) for each in (("rear_wheel", rear_wheel), ("front_wheel", front_wheel)))
-    frames = {"rear_frame": rear_frame, "front_frame": front_frame}
-    B, H = (tuple(numbers(name, what, x, 7, "place, mass and inertia").tolist()) for what, x in frames.items())
-    q = numbers(name, "place", place, 3, "x, y and theta")
-    machine = _Machine(w, c, slope, rear, B, H, front)
-    yaw = -c * np.cos(slope) / w * steering
-    start = np.array([v * np.cos(q[2]), v * np.sin(q[2]), yaw, leaning, 0.0, steering, v / rear[0], v / front[0]])
+    machine = _Machine(wheelbase, trail, tilt, rear_wheel, rear_frame, front_frame, front_wheel)
+    q, v, rolling = np.append(place, np.zeros(5)), speed, (speed / rear_wheel[0], speed / front_wheel[0])
+    yaw = -trail * np.cos(tilt) / wheelbase * steer_rate
+    start = np.array([v * np.cos(q[2]), v * np.sin(q[2]), yaw, lean_rate, 0.0, steer_rate, *rolling])
     facts = (
         "With the defaults it rides upright by itself at speeds between 4.292382536 and 6.024262015 m/s.",
         "The energy and the height of the front contact are constant; of the map the height is, to rounding.",
     )
-    system = _system(machine, g)
+    system = _system(machine, gravity)
     height = of_states(lambda q, v: machine.height(q) + 0.0 * v[0])
     conserved = {"energy": energy_of(system.lagrangian), "height of the front contact": height}
-    q = np.append(q, np.zeros(5))
-    return Example(name, system, q, start, facts, conserved, time_step=0.02)
-
-
-def _checked_wheel(name: str, value: _Wheel) -> _Wheel:
-    values = numbers("bicycle", name, value, 4, "radius, mass and two moments of inertia")
-    radius, mass, diameter, axle = positives("bicycle", **{f"{name}[{i}]": x for i, x in enumerate(values)})
-    return radius, mass, diameter, axle
+    return Example("bicycle", system, q, start, facts, conserved, time_step=0.02)
 
 
 class _Machine(NamedTuple):

@@ -8,25 +8,14 @@ import numpy as np
 
 from nonholo.base.checks import error
 from nonholo.base.types import Array, Float
-from nonholo.examples._example import (
-    Example,
-    Numbers,
-    numbers,
-    positives,
-    rate,
-    ready,
-    reals,
-    system_in,
-    wheel,
-    with_numbers,
-)
+from nonholo.examples._example import Example, Numbers, rate, ready, system_in, wheel, with_numbers
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.systems import ChaplyginSleigh, Forced
 
 _EDGE = ("mass", "inertia", "slope_acceleration")
 
 
-@ready("configuration", "speed", "turning")
+@ready("configuration speed turning", reals="slope_acceleration speed turning", configuration="x, y and phi")
 def knife_edge_on_incline(
     *,
     mass: float = 1.0,
@@ -71,13 +60,11 @@ def knife_edge_on_incline(
         >>> float(ready.exact(np.linspace(0, 100, 10_001))[:, 0].max().round(6))
         0.125
     """
-    name = "knife_edge_on_incline"
-    m, J = positives(name, mass=mass, inertia=inertia)
-    G, u0, omega = reals(name, slope_acceleration=slope_acceleration, speed=speed, turning=turning)
+    name, q = "knife_edge_on_incline", np.asarray(configuration)
+    G, u0, omega = slope_acceleration, speed, turning
     if omega == 0:
         remedy = "A blade that does not turn falls on a straight line."
         raise error(f"examples.{name}(turning=...)", "not be zero", "0", remedy)
-    q = numbers(name, "configuration", configuration, 3, "x, y and phi")
     c = G / omega
     w = u0 - c * np.sin(q[2])
 
@@ -102,7 +89,7 @@ def knife_edge_on_incline(
         "From rest the blade draws a cycloid.",
     )
     v = np.array([u0 * np.cos(q[2]), u0 * np.sin(q[2]), omega])
-    return Example(name, with_numbers(_edge_system, m, J, G), q, v, facts, conserved, exact)
+    return Example(name, with_numbers(_edge_system, mass, inertia, G), q, v, facts, conserved, exact)
 
 
 @functools.cache
@@ -124,7 +111,7 @@ def _edge_system() -> LagrangeDAlembert:
 _SLEIGH = ("mass", "inertia", "moving_mass", "frequency", "a", "ahead", "amplitude")
 
 
-@ready("configuration", "speed", "turning")
+@ready("configuration speed turning", reals="a ahead amplitude speed turning", configuration="x, y and theta")
 def driven_sleigh(
     *,
     mass: float = 1.0,
@@ -174,16 +161,14 @@ def driven_sleigh(
         >>> ready.coordinates, ready.body_velocity.tolist()
         (('x', 'y', 'theta', 's'), [0.5, 0.0, 0.3, 1.0])
     """
-    name = "driven_sleigh"
-    body = positives(name, mass=mass, inertia=inertia, moving_mass=moving_mass, frequency=frequency)
-    a, d, A, u, omega = reals(name, a=a, ahead=ahead, amplitude=amplitude, speed=speed, turning=turning)
-    q = numbers(name, "configuration", configuration, 3, "x, y and theta")
-    v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), omega, A * body[3]])
+    body = mass, inertia, moving_mass, frequency, a, ahead, amplitude
+    q = np.append(configuration, 0.0)
+    v = np.array([speed * np.cos(q[2]), speed * np.sin(q[2]), turning, amplitude * frequency])
     facts = (
         "The speed grows without bound if the moving mass is on the right side of the contact.",
         "With the line of the moving mass through the contact the speed settles.",
     )
-    return Example(name, with_numbers(_sleigh_system, *body, a, d, A), np.append(q, 0.0), v, facts, {})
+    return Example("driven_sleigh", with_numbers(_sleigh_system, *body), q, v, facts, {})
 
 
 @functools.cache
@@ -211,7 +196,7 @@ def _sleigh_system() -> LagrangeDAlembert:
     return system_in("x y theta s", "Driven sleigh", lagrangian, blade, **options)
 
 
-@ready("speed", "turning")
+@ready("speed turning", reals="a stiffness speed turning")
 def sleigh_in_a_well(
     *,
     mass: float = 1.0,
@@ -249,9 +234,7 @@ def sleigh_in_a_well(
         >>> bool(np.ptp(orbit.energy) < 1e-12)
         True
     """
-    name = "sleigh_in_a_well"
-    m, J = positives(name, mass=mass, inertia=inertia)
-    a, k, u, omega = reals(name, a=a, stiffness=stiffness, speed=speed, turning=turning)
+    m, J, k = mass, inertia, stiffness
 
     import numba
 
@@ -266,4 +249,4 @@ def sleigh_in_a_well(
     conserved = {"energy": energy} | ({} if a else {"turning rate": lambda _g, v: v[..., 0]})
     facts = ("The energy is constant.", "With the center of mass at the contact the turning rate is, too.")
     system = Forced(ChaplyginSleigh(m, J, a), potential)
-    return Example(name, system, np.eye(3), np.array([omega, u, 0.0]), facts, conserved)
+    return Example("sleigh_in_a_well", system, np.eye(3), np.array([turning, speed, 0.0]), facts, conserved)

@@ -8,24 +8,11 @@ import numpy as np
 
 from nonholo.base.checks import error
 from nonholo.base.types import Array
-from nonholo.examples._example import (
-    Example,
-    Numbers,
-    energy_of,
-    numbers,
-    pair,
-    positives,
-    rate,
-    ready,
-    reals,
-    system_in,
-    turn,
-    with_numbers,
-)
+from nonholo.examples._example import Example, Numbers, energy_of, pair, rate, ready, system_in, turn, with_numbers
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
 
-@ready("configuration", "speed")
+@ready("configuration speed", reals="center amplitude speed", configuration="x, y and theta")
 def roller_racer(
     *,
     mass: float = 1.0,
@@ -77,13 +64,11 @@ def roller_racer(
         >>> ready.coordinates, ready.system.constraints
         (('x', 'y', 'theta', 'phi'), 3)
     """
-    sizes = {"mass": mass, "inertia": inertia, "handle_inertia": handle_inertia, "joint": joint, "handle": handle}
-    body = positives("roller_racer", **sizes, frequency=frequency)
-    body += reals("roller_racer", center=center, handle_mass=0.0, handle_center=0.0)
+    body = mass, inertia, handle_inertia, joint, handle, frequency, center, 0.0, 0.0
     return _of_handle("roller_racer", "Roller racer", body, amplitude, configuration, speed)
 
 
-@ready("configuration", "speed")
+@ready("configuration speed", reals="center handle_center amplitude speed", configuration="x, y and theta")
 def twistcar(
     *,
     mass: float = 1.0,
@@ -139,9 +124,7 @@ def twistcar(
         >>> ready.coordinates, ready.system.constraints
         (('x', 'y', 'theta', 'phi'), 3)
     """
-    sizes = {"mass": mass, "inertia": inertia, "handle_inertia": handle_inertia, "joint": joint, "handle": handle}
-    body = positives("twistcar", **sizes, frequency=frequency) + reals("twistcar", center=center)
-    body += positives("twistcar", handle_mass=handle_mass) + reals("twistcar", handle_center=handle_center)
+    body = mass, inertia, handle_inertia, joint, handle, frequency, center, handle_mass, handle_center
     return _of_handle("twistcar", "Twistcar", body, amplitude, configuration, speed)
 
 
@@ -151,20 +134,18 @@ _HANDLE = (
 )
 
 
-def _of_handle(name: str, title: str, body: list[float], amplitude: float | None, place: Any, speed: float) -> Example:
+def _of_handle(name: str, title: str, body: Any, amplitude: float | None, place: Any, speed: float) -> Example:
     """Return a vehicle with a handle that drives it."""
-    u, A = reals(name, speed=speed, amplitude=0.0 if amplitude is None else amplitude)
-    q = numbers(name, "configuration", place, 3, "x, y and theta")
-    turning = 0.5 if amplitude is None else A * body[5]
+    turning = 0.5 if amplitude is None else amplitude * body[5]
     heading = -body[4] * turning / (body[3] + body[4])
-    v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), heading, turning])
-    system = with_numbers(functools.partial(_handle_system, title, amplitude is None), *body, A)
+    q, v = np.append(place, 0.0), np.array([speed * np.cos(place[2]), speed * np.sin(place[2]), heading, turning])
+    system = with_numbers(functools.partial(_handle_system, title, amplitude is None), *body, amplitude or 0.0)
     facts = (
         "Turning the handle to and fro drives it from rest.",
         "There is a momentum along the constraint, and it is not conserved.",
     )
     conserved = {} if system.is_driven else {"energy": energy_of(cast(Any, system).plain.lagrangian)}
-    return Example(name, system, np.append(q, 0.0), v, facts, conserved)
+    return Example(name, system, q, v, facts, conserved)
 
 
 @functools.cache
@@ -198,7 +179,11 @@ def _handle_system(title: str, is_free: bool) -> LagrangeDAlembert:
 _BOARD = ("mass", "half_length", "rotor_inertia", "wheel_inertia")
 
 
-@ready("configuration", "speed", "rotor_rate", "wheel_rate")
+@ready(
+    "configuration speed rotor_rate wheel_rate",
+    reals="speed rotor_rate wheel_rate",
+    configuration="x, y, theta, psi and phi",
+)
 def snakeboard(
     *,
     mass: float = 1.0,
@@ -244,15 +229,14 @@ def snakeboard(
         >>> [round(float(f(ready.configuration, ready.body_velocity)), 6) for f in ready.conserved.values()]
         [-0.05, 1.957408, 1.487535]
     """
-    where, inertias = "examples.snakeboard", {"rotor_inertia": rotor_inertia, "wheel_inertia": wheel_inertia}
-    m, r, J0, J1 = positives("snakeboard", mass=mass, half_length=half_length, **inertias)
+    where, q = "examples.snakeboard", np.asarray(configuration)
+    m, r, J0 = mass, half_length, rotor_inertia
     if m * r * r <= J0:
         raise error(f"{where}(rotor_inertia=...)", f"be less than m r^2 = {m * r * r:g}", f"{J0:g}", "Lighten it.")
-    q = numbers("snakeboard", "configuration", configuration, 5, "x, y, theta, psi and phi")
     if not abs(q[4]) < np.pi / 2:
         raise error(f"{where}(configuration=...)", "have |phi| < pi/2", f"{q[4]:g}", "The wheels must not be crossed.")
-    u, rotor, wheel = numbers("snakeboard", "...", (speed, rotor_rate, wheel_rate), 3, "speed and rates as numbers")
-    v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), u / r * np.tan(q[4]), rotor, wheel])
+    turning = speed / r * np.tan(q[4])
+    v = np.array([speed * np.cos(q[2]), speed * np.sin(q[2]), turning, rotor_rate, wheel_rate])
 
     def spin(q: Array, v: Array) -> Array:
         del q
@@ -268,7 +252,7 @@ def snakeboard(
         "The momentum along the constraint is constant.",
         "The motion ends where the wheels are crossed, at |phi| = pi/2.",
     )
-    return Example("snakeboard", with_numbers(_board_system, m, r, J0, J1), q, v, facts, conserved)
+    return Example("snakeboard", with_numbers(_board_system, m, r, J0, wheel_inertia), q, v, facts, conserved)
 
 
 @functools.cache
@@ -298,7 +282,12 @@ def _board_system() -> LagrangeDAlembert:
     return system_in("x y theta psi phi", "Snakeboard", lagrangian, forms, **options)
 
 
-@ready("place", "joints", "joint_rates")
+@ready(
+    "place joints joint_rates",
+    place="x, y and theta",
+    joints="alpha1 and alpha2",
+    joint_rates="the rates of alpha1 and alpha2",
+)
 def snake(
     *,
     half_length: float = 0.5,
@@ -316,7 +305,7 @@ def snake(
     $$ L = \sum_{i=1}^3 \tfrac m2|\dot p_i|^2 + \tfrac J2\dot\theta_i^2, \qquad
        -\dot x_i\sin\theta_i + \dot y_i\cos\theta_i = 0 . $$
 
-    Three constraints leave two rates: a principal kinematic system, whose joints say how it moves. With
+    Three constraints leave two rates: a principal kinematic system, whose joints determine its motion. With
     $\dot x = u\cos\theta$, $\dot y = u\sin\theta$ and $\omega = \dot\theta$
 
     $$ u\sin\alpha_1 - l(1 + \cos\alpha_1)\,\omega + l\,\dot\alpha_1 = 0, \qquad
@@ -344,24 +333,20 @@ def snake(
         >>> connection.matrix(ready.configuration[3:]).shape
         (3, 2)
     """
-    name = "snake"
-    half, m, J = positives(name, half_length=half_length, mass=mass, inertia=inertia)
-    q = numbers(name, "place", place, 3, "x, y and theta")
-    a = numbers(name, "joints", joints, 2, "alpha1 and alpha2")
-    turning = numbers(name, "joint_rates", joint_rates, 2, "the rates of alpha1 and alpha2")
+    q, a, half = place, np.asarray(joints), half_length
     if not (np.abs(a) < np.pi).all() or abs(a[0] - a[1]) < 1e-6:
-        where, remedy = f"examples.{name}(joints=...)", "An arc may roll at any rate: bend the joints differently."
+        where, remedy = "examples.snake(joints=...)", "An arc may roll at any rate: bend the joints differently."
         raise error(where, "differ and be between -pi and pi", str(a.tolist()), remedy)
     sign = np.array([1.0, -1.0])
     rows = np.stack([sign * np.sin(a), -sign * half * (1 + np.cos(a))], axis=1)
-    u, omega = np.linalg.solve(rows, -half * turning)
-    v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), omega, *turning])
-    system = _snake_system(half, m, J)
+    u, omega = np.linalg.solve(rows, -half * np.asarray(joint_rates))
+    v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), omega, *joint_rates])
+    system = _snake_system(half, mass, inertia)
     facts = (
-        "The joints say how it moves, but where it is an arc, with both alike: that may roll at any rate.",
+        "The joints determine its motion, but where it is an arc, with both alike: that may roll at any rate.",
         "The energy is constant.",
     )
-    return Example(name, system, np.append(q, a), v, facts, {"energy": energy_of(system.lagrangian)})
+    return Example("snake", system, np.append(q, a), v, facts, {"energy": energy_of(system.lagrangian)})
 
 
 @functools.cache

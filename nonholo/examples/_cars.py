@@ -11,12 +11,10 @@ from nonholo.base.types import Array
 from nonholo.examples._example import (
     Example,
     Numbers,
-    numbers,
     pair,
     positives,
     rate,
     ready,
-    reals,
     system_in,
     turn,
     wheel,
@@ -27,7 +25,7 @@ from nonholo.lagrange_dalembert import LagrangeDAlembert
 _CAR = ("mass", "inertia", "wheelbase", "wheel_radius", "wheel_inertia", "steering_inertia")
 
 
-@ready("configuration", "speed", "steering_rate")
+@ready("configuration speed steering_rate", reals="speed steering_rate", configuration="x, y, theta, psi and phi")
 def kinematic_car(
     *,
     mass: float = 1.0,
@@ -49,11 +47,11 @@ def kinematic_car(
        -\dot x\sin(\theta + \varphi) + \dot y\cos(\theta + \varphi) + \ell\cos\varphi\,\dot\theta = 0, \qquad
        \dot x\cos\theta + \dot y\sin\theta = \rho\,\dot\psi . $$
 
-    So $\dot\theta = (\rho/\ell)\tan\varphi\,\dot\psi$: the constraints alone say how rolling and steering move the car.
-    Without control $\dot\varphi$ and $u\sqrt{m + J_w/\rho^2 + (J/\ell^2)\tan^2\varphi}$ are constant, u the speed of
-    the rear axle; with the steering at rest the car drives on a circle of radius $\ell/\tan\varphi$. Where the front
-    wheels are across, at $|\varphi| = \pi/2$, the car cannot roll. The angle phi is that of one wheel in the middle;
-    pictures turn each front wheel across the line to the center of the circle, so that none slips.
+    So $\dot\theta = (\rho/\ell)\tan\varphi\,\dot\psi$: the constraints alone determine how rolling and steering move
+    the car. Without control $\dot\varphi$ and $u\sqrt{m + J_w/\rho^2 + (J/\ell^2)\tan^2\varphi}$ are constant, u the
+    speed of the rear axle; with the steering at rest the car drives on a circle of radius $\ell/\tan\varphi$. Where the
+    front wheels are across, at $|\varphi| = \pi/2$, the car cannot roll. The angle phi is that of one wheel in the
+    middle; pictures turn each front wheel across the line to the center of the circle, so that none slips.
 
     Reference: [kelly-murray-1995]; [bloch-2003].
 
@@ -76,14 +74,11 @@ def kinematic_car(
         >>> round(ready.body_velocity[2].item(), 6), round(np.tan(0.3).item() / 2, 6)
         (0.154668, 0.154668)
     """
-    name = "kinematic_car"
-    wheels = {"wheel_radius": wheel_radius, "wheel_inertia": wheel_inertia, "steering_inertia": steering_inertia}
-    m, J, ell, R, Jw, Js = positives(name, mass=mass, inertia=inertia, wheelbase=wheelbase, **wheels)
-    q = numbers(name, "configuration", configuration, 5, "x, y, theta, psi and phi")
+    q, u, turn = np.asarray(configuration), speed, steering_rate
+    m, J, ell, R, Jw = mass, inertia, wheelbase, wheel_radius, wheel_inertia
     if not abs(q[4]) < np.pi / 2:
-        where, remedy = f"examples.{name}(configuration=...)", "The front wheels must not be across."
+        where, remedy = "examples.kinematic_car(configuration=...)", "The front wheels must not be across."
         raise error(where, "have |phi| < pi/2", f"{q[4]:g}", remedy)
-    u, turn = numbers(name, "...", (speed, steering_rate), 2, "speed and rate as numbers")
     omega = u / ell * np.tan(q[4])
     v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), omega, u / R, turn])
 
@@ -103,8 +98,8 @@ def kinematic_car(
         "With the steering at rest it drives on a circle of radius wheelbase / tan phi.",
         "Rolling and steering bring it to every pose: growth (2, 3, 4, 5).",
     )
-    system = with_numbers(_car_system, m, J, ell, R, Jw, Js)
-    return Example(name, system, q, v, facts, conserved, None if turn else circle)
+    system = with_numbers(_car_system, m, J, ell, R, Jw, steering_inertia)
+    return Example("kinematic_car", system, q, v, facts, conserved, None if turn else circle)
 
 
 @functools.cache
@@ -131,7 +126,9 @@ def _car_system() -> LagrangeDAlembert:
     return system_in("x y theta psi phi", "Kinematic car", lagrangian, forms, **options)
 
 
-@ready("configuration", "speed", "turning")
+@ready(
+    "configuration speed turning", reals="offset speed turning friction", configuration="x, y, theta, right and left"
+)
 def two_wheeled_robot(
     *,
     mass: float = 1.0,
@@ -194,13 +191,11 @@ def two_wheeled_robot(
         >>> float(np.ptp(ready.conserved["axle"](orbit.configuration, orbit.body_velocity)).round(9))
         0.0
     """
-    name = "two_wheeled_robot"
-    wheels = {"half_width": half_width, "wheel_radius": wheel_radius, "wheel_inertia": wheel_inertia}
-    m, J, c, R, Jw = positives(name, mass=mass, inertia=inertia, **wheels)
-    ell, u, omega, d = reals(name, offset=offset, speed=speed, turning=turning, friction=friction)
+    m, J, c, R, Jw = mass, inertia, half_width, wheel_radius, wheel_inertia
+    q, ell, u, omega, d = np.asarray(configuration), offset, speed, turning, friction
     if d < 0:
-        raise error(f"examples.{name}(friction=...)", "not be negative", f"{d:g}", "Pass the friction of a wheel.")
-    q = numbers(name, "configuration", configuration, 5, "x, y, theta, right and left")
+        where = "examples.two_wheeled_robot(friction=...)"
+        raise error(where, "not be negative", f"{d:g}", "Pass the friction of a wheel.")
     M, K = m + 2 * Jw / R**2, J + m * ell**2 + 2 * Jw * c**2 / R**2
     v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), omega, (u + c * omega) / R, (u - c * omega) / R])
 
@@ -221,14 +216,15 @@ def two_wheeled_robot(
         "The discrete energy settles to a constant; it does not drift.",
     )
     system = _robot_system(m, J + m * ell**2, ell, c, R, Jw, motors, d)
-    return Example(name, system, q, v, facts, conserved)
+    return Example("two_wheeled_robot", system, q, v, facts, conserved)
 
 
 def _motors(torques: Any) -> Any:
     """Return torques as a function of the time, or None."""
     if torques is None or callable(torques):
         return torques
-    right, left = numbers("two_wheeled_robot", "torques", torques, 2, "a function of the time, or two torques").tolist()
+    where, remedy = "examples.two_wheeled_robot(torques=...)", "Pass a function of the time, or two torques."
+    right, left = array(where, torques, (2,), remedy).tolist()
     return lambda time: (right + 0.0 * time, left + 0.0 * time)
 
 
@@ -256,7 +252,7 @@ def _robot_system(
     return system_in("x y theta right left", "Two-wheeled robot", lagrangian, forms, **options)
 
 
-@ready("place", "angles", "speed", "turning")
+@ready("place angles speed turning", reals="speed turning", place="x and y")
 def trailers(
     *,
     hitches: tuple[float, ...] = (1.0, 1.0, 1.0),
@@ -303,21 +299,19 @@ def trailers(
         >>> ready.coordinates, ready.system.constraints
         (('x', 'y', 'theta', 'theta1', 'theta2'), 3)
     """
-    name, where = "trailers", "examples.trailers"
+    where = "examples.trailers"
     lengths = array(f"{where}(hitches=...)", hitches, (None,), "Pass one length for each trailer.")
     if not len(lengths):
         raise error(f"{where}(hitches=...)", "have at least one length", "none", "Pass one for each trailer.")
-    d = tuple(positives(name, **{f"hitches[{i}]": length for i, length in enumerate(lengths)}))
-    bodies = {"mass": mass, "inertia": inertia, "trailer_mass": trailer_mass, "trailer_inertia": trailer_inertia}
-    m, J, trailer, moment = positives(name, **bodies)
-    what = "the heading of the tractor, then those of the trailers"
-    headings = numbers(name, "angles", np.zeros(len(d) + 1) if angles is None else angles, len(d) + 1, what)
-    u, omega = reals(name, speed=speed, turning=turning)
-    rates, along = [omega], u
+    d = positives(f"{where}(hitches=...)", lengths)
+    m, J, trailer, moment = mass, inertia, trailer_mass, trailer_inertia
+    remedy, n = "Pass the heading of the tractor, then those of the trailers.", len(d) + 1
+    headings = array(f"{where}(angles=...)", np.zeros(n) if angles is None else angles, (n,), remedy)
+    u, rates, along = speed, [turning], speed
     for length, bend in zip(d, headings[:-1] - headings[1:], strict=True):
         rates.append(along * np.sin(bend) / length)
         along *= np.cos(bend)
-    q = np.append(numbers(name, "place", place, 2, "x and y"), headings)
+    q = np.append(place, headings)
     v = np.array([u * np.cos(headings[0]), u * np.sin(headings[0]), *rates])
     masses, moments = (m, *len(d) * (trailer,)), (J, *len(d) * (moment,))
 
@@ -329,9 +323,9 @@ def trailers(
 
     facts = (
         "The turning of the tractor is constant, also in the midpoint rule, and so is the energy of the flow.",
-        "Its speed and turning alone say how all trailers move; they can bring them anywhere.",
+        "Its speed and turning alone determine how all trailers move; they can bring them anywhere.",
     )
-    return Example(name, _trailer_system(d, masses, moments), q, v, facts, {"theta'": rate(2), "energy": energy})
+    return Example("trailers", _trailer_system(d, masses, moments), q, v, facts, {"theta'": rate(2), "energy": energy})
 
 
 @functools.cache

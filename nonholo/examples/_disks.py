@@ -6,25 +6,13 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import error
+from nonholo.base.checks import error, number
 from nonholo.base.types import Array
-from nonholo.examples._example import (
-    Example,
-    Numbers,
-    energy_of,
-    numbers,
-    positives,
-    rate,
-    ready,
-    reals,
-    system_in,
-    wheel,
-    with_numbers,
-)
+from nonholo.examples._example import Example, Numbers, energy_of, rate, ready, system_in, wheel, with_numbers
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
 
-@ready("configuration", "rates")
+@ready("configuration rates", configuration="x, y, theta and phi", rates="theta' and phi'")
 def rolling_disk(
     *,
     mass: float = 1.0,
@@ -62,11 +50,7 @@ def rolling_disk(
         >>> bool(np.abs(ready.exact(np.array([2.0]))[0, :2]).max() < 1e-15)
         True
     """
-    inertias = {"rolling_inertia": rolling_inertia, "turning_inertia": turning_inertia}
-    body = positives("rolling_disk", mass=mass, radius=radius, **inertias)
-    R = body[1]
-    q = numbers("rolling_disk", "configuration", configuration, 4, "x, y, theta and phi")
-    roll, turn = numbers("rolling_disk", "rates", rates, 2, "theta' and phi'")
+    q, R, (roll, turn) = np.asarray(configuration), radius, rates
 
     def exact(time: Array) -> Array:
         t = np.asarray(time)
@@ -79,7 +63,15 @@ def rolling_disk(
     conserved = {"theta'": rate(2), "phi'": rate(3)}
     facts = ("theta' and phi' are constant, also in the midpoint rule.", "The contact point moves on a circle.")
     v = np.array([R * np.cos(q[3]) * roll, R * np.sin(q[3]) * roll, roll, turn])
-    return Example("rolling_disk", with_numbers(_disk_system, *body), q, v, facts, conserved, exact)
+    return Example(
+        "rolling_disk",
+        with_numbers(_disk_system, mass, R, rolling_inertia, turning_inertia),
+        q,
+        v,
+        facts,
+        conserved,
+        exact,
+    )
 
 
 @functools.cache
@@ -97,7 +89,7 @@ def _disk_system() -> LagrangeDAlembert:
     return system_in("x y theta phi", "Rolling disk", lagrangian, forms, **options)
 
 
-@ready("configuration", "turning", "lean_rate", "rolling")
+@ready("configuration turning lean_rate rolling", reals="turning lean_rate", configuration="x, y, theta, lean and roll")
 def tilting_disk(
     *,
     mass: float = 1.0,
@@ -154,19 +146,16 @@ def tilting_disk(
         >>> bool(np.allclose(orbit.configuration, ready.exact(orbit.time), rtol=0, atol=1e-9))
         True
     """
-    name = "tilting_disk"
-    inertias = {"rolling_inertia": rolling_inertia, "turning_inertia": turning_inertia, "gravity": gravity}
-    m, R, axle, J, g = positives(name, mass=mass, radius=radius, **inertias)
-    q = numbers(name, "configuration", configuration, 5, "x, y, theta, lean and roll")
+    name, q, turn, falling = "tilting_disk", np.asarray(configuration), turning, lean_rate
+    m, R, axle, J, g = mass, radius, rolling_inertia, turning_inertia, gravity
     if not abs(q[3]) < np.pi / 2:
         raise error(f"examples.{name}(configuration=...)", "have |lean| < pi/2", f"{q[3]:g}", "The disk must not lie.")
-    turn, falling = reals(name, turning=turning, lean_rate=lean_rate)
     sin, steady = np.sin(q[3]), rolling is None and falling == 0.0
     if rolling is None:
         if turn == 0.0:
             raise error(f"examples.{name}(turning=...)", "not be zero on a circle", "0", "Pass `rolling`, too.")
         rolling = (J * turn * sin - m * g * R * np.tan(q[3]) / turn) / (axle + m * R**2) - turn * sin
-    (roll,) = reals(name, rolling=rolling)
+    roll = float(number(f"examples.{name}(rolling=...)", rolling))
 
     def circle(time: Array) -> Array:
         half = turn * np.asarray(time) / 2

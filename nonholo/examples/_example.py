@@ -43,6 +43,7 @@ def turn(angle: Array | float) -> Float[np.ndarray, "2 2"]:
     return np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
 
 
+_POSITIVE = "Pass a positive number."
 Numbers = Mapping[str, Any]
 """Parameters of a system by name."""
 
@@ -56,7 +57,7 @@ class Example(Keeper):
         system: The system.
         configuration: Where it starts.
         body_velocity: How it starts; it satisfies the constraint.
-        facts: What is known, a sentence each.
+        facts: Known facts, a sentence each.
         conserved: Functions (configuration, velocity) -> number, constant along the continuous motion. On a discrete
             orbit the velocity is that of a step: take the middle of the step, configuration + displacement / 2.
         exact: The configurations at given times, (K,) -> (K, n), from this start; None where no formula is known.
@@ -119,19 +120,38 @@ class Example(Keeper):
         return f"<Example {self.name}: {', '.join(self.coordinates)}>"
 
 
-def ready(*start: str) -> Callable[[Callable[..., Example]], Callable[..., Example]]:
-    """Let the system of what a function makes tell stores the function and its arguments but for those of the start."""
+def ready(
+    start: str = "", *, reals: str = "", positive: str = "", **arrays: str
+) -> Callable[[Callable[..., Example]], Callable[..., Example]]:
+    """Let the system of what a function makes tell stores the function and its arguments but for those of the start.
+
+    Args:
+        start: The arguments of the start, in words.
+        reals: Those that may be any numbers; all others with a number as default are positive.
+        positive: Arrays of positive numbers.
+        **arrays: What arrays are, for messages; they are as long as their defaults.
+    """
 
     def decorator(make: Callable[..., Example]) -> Callable[..., Example]:
         defaults = {name: each.default for name, each in inspect.signature(make).parameters.items()}
 
+        def checked(name: str, value: Any) -> Any:
+            default: Any = defaults.get(name)
+            where = f"examples.{make.__name__}({name}=...)"
+            if name in arrays:
+                rows = array(where, value, np.shape(default), f"Pass {arrays[name]}.")
+                return positives(where, rows) if name in positive.split() else tuple(rows.tolist())
+            if not isinstance(default, float) or value is None:
+                return value
+            return float(number(where, value) if name in reals.split() else scale(where, value, _POSITIVE))
+
         @functools.wraps(make)
         def make_ready(**arguments: Any) -> Example:
-            example = make(**arguments)
+            example = make(**{name: checked(name, value) for name, value in (defaults | arguments).items()})
             if any(map(callable, arguments.values())):
                 return example  # which no data describes
             body = {name: _plain(arguments.get(name, default), default) for name, default in defaults.items()}
-            parameters = {name: value for name, value in body.items() if name not in start}
+            parameters = {name: value for name, value in body.items() if name not in start.split()}
             system = _with_recipe(example.system, make_ready, json.dumps(parameters))
             example = dataclasses.replace(example, system=system)
             object.__setattr__(example, "recipe", (functools.partial(make_ready, **arguments), ()))
@@ -204,17 +224,6 @@ def energy_of(lagrangian: Callable[[Array, Array], Array]) -> Callable[[Array, A
     return of_states(energy)
 
 
-def positives(owner: str, **values: Any) -> list[float]:
-    """Return the parameters of a body, all positive."""
-    remedy = "Pass a positive number."
-    return [float(scale(f"examples.{owner}({name}=...)", value, remedy)) for name, value in values.items()]
-
-
-def reals(owner: str, **values: Any) -> list[float]:
-    """Return the parameters of a body or of a start, finite numbers."""
-    return [float(number(f"examples.{owner}({name}=...)", value)) for name, value in values.items()]
-
-
-def numbers(owner: str, name: str, value: Any, size: int, what: str) -> Float[np.ndarray, "size"]:
-    """Return the numbers of a start."""
-    return array(f"examples.{owner}({name}=...)", value, (size,), f"Pass {what}.")
+def positives(where: str, rows: Any) -> tuple[float, ...]:
+    """Return positive numbers."""
+    return tuple(float(scale(where.replace("=", f"[{i}]=", 1), value, _POSITIVE)) for i, value in enumerate(rows))

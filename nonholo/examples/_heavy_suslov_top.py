@@ -5,11 +5,11 @@ import functools
 import numpy as np
 
 from nonholo.base.types import Array, Float
-from nonholo.examples._example import Example, numbers, positives, ready
+from nonholo.examples._example import Example, ready
 from nonholo.systems import Forced, SuslovTop
 
 
-@ready("velocity")
+@ready("velocity", positive="inertia", inertia="three moments", stiffness="three numbers", velocity="two components")
 def heavy_suslov_top(
     *,
     inertia: tuple[float, float, float] = (1.0, 1.2, 0.8),
@@ -47,14 +47,10 @@ def heavy_suslov_top(
         >>> bool(np.ptp(kept) < 1e-3)
         True
     """
-    name = "heavy_suslov_top"
-    principal = numbers(name, "inertia", inertia, 3, "three moments")
-    moments = positives(name, **{f"inertia[{i}]": moment for i, moment in enumerate(principal)})
-    c = numbers(name, "stiffness", stiffness, 3, "three numbers")
-    omega = np.append(numbers(name, "velocity", velocity, 2, "two components"), 0.0)
+    c = np.asarray(stiffness)
 
     def integral(g: Array, v: Array, turning: int, tilting: int) -> Array:
-        return moments[turning] * v[..., turning] ** 2 - (c[2] - c[tilting]) * g[..., 2, tilting] ** 2
+        return inertia[turning] * v[..., turning] ** 2 - (c[2] - c[tilting]) * g[..., 2, tilting] ** 2
 
     conserved = {
         "of the first axis": functools.partial(integral, turning=0, tilting=1),
@@ -68,5 +64,5 @@ def heavy_suslov_top(
         return c @ g[2] ** 2 / 2
 
     facts = ("The equations separate: there are two quadratic integrals.", "Every solution is one of quadratures.")
-    system = Forced(SuslovTop.from_inertia(np.diag(moments)), potential)
-    return Example(name, system, np.eye(3), omega, facts, conserved)
+    system = Forced(SuslovTop.from_inertia(np.diag(inertia)), potential)
+    return Example("heavy_suslov_top", system, np.eye(3), np.append(velocity, 0.0), facts, conserved)

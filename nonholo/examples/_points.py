@@ -7,11 +7,11 @@ import numpy as np
 
 from nonholo.base.limits import bounded_count
 from nonholo.base.types import Array
-from nonholo.examples._example import Example, Numbers, numbers, positives, rate, ready, reals, system_in, with_numbers
+from nonholo.examples._example import Example, Numbers, rate, ready, system_in, with_numbers
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
 
-@ready("configuration", "planar_velocity")
+@ready("configuration planar_velocity", configuration="x, y and z", planar_velocity="x' and y'")
 def particle(
     *,
     mass: float = 1.0,
@@ -43,10 +43,8 @@ def particle(
         >>> bool(np.allclose(orbit.configuration, ready.exact(orbit.time), rtol=0, atol=1e-9))
         True
     """
-    (m,) = positives("particle", mass=mass)
-    q = numbers("particle", "configuration", configuration, 3, "x, y and z")
-    a, b = numbers("particle", "planar_velocity", planar_velocity, 2, "x' and y'")
-    y0 = q[1]
+    q = np.asarray(configuration)
+    (a, b), y0 = planar_velocity, q[1]
     c = a * np.sqrt(1 + y0**2)
 
     def exact(time: Array) -> Array:
@@ -61,7 +59,7 @@ def particle(
     conserved = {"y'": rate(1), "x' sqrt(1 + y^2)": lambda q, v: v[..., 0] * np.sqrt(1 + q[..., 1] ** 2)}
     facts = ("y' and x' sqrt(1 + y^2) are constant.", "The discrete energy settles to a constant; it does not drift.")
     v = np.array([a, b, y0 * a])
-    return Example("particle", with_numbers(_particle_system, m), q, v, facts, conserved, exact)
+    return Example("particle", with_numbers(_particle_system, mass), q, v, facts, conserved, exact)
 
 
 @functools.cache
@@ -133,7 +131,7 @@ def _quartic(n: int) -> LagrangeDAlembert:
     return system_in(f"x {pairs}", "Chaotic oscillator", lagrangian, forms)
 
 
-@ready("turning")
+@ready("turning", reals="asymmetry turning")
 def non_reversible(*, asymmetry: float = 0.5, turning: float = 2.6) -> Example:
     r"""Two oscillators in a gearbox whose ratio is set by a rotating, asymmetric pendulum: q = (x, y, xi).
 
@@ -161,24 +159,23 @@ def non_reversible(*, asymmetry: float = 0.5, turning: float = 2.6) -> Example:
         >>> [round(float(f(ready.configuration, ready.body_velocity)), 9) for f in ready.conserved.values()]
         [3.17, 2.38]
     """
-    epsilon, rate = reals("non_reversible", asymmetry=asymmetry, turning=turning)
 
     def pendulum(q: Array, v: Array) -> Array:
         xi = q[..., 2]
-        return v[..., 2] ** 2 / 2 - np.cos(xi) + epsilon / 2 * np.sin(2 * xi)
+        return v[..., 2] ** 2 / 2 - np.cos(xi) + asymmetry / 2 * np.sin(2 * xi)
 
     def energy(q: Array, v: Array) -> Array:
         return pendulum(q, v) + np.sum(q[..., :2] ** 2 + v[..., :2] ** 2, axis=-1) / 2
 
-    q, v = np.array([1.0, 0.3, 0.0]), np.array([0.0, 0.7, rate])
+    q, v = np.array([1.0, 0.3, 0.0]), np.array([0.0, 0.7, turning])
     facts = (
         "Energy and the energy of the pendulum are conserved.",
         "No reflection reverses a rotation: the discrete energy drifts in proportion to h^2 and time."
-        if epsilon
+        if asymmetry
         else "The reflection (x, -y, -xi) reverses the motion: the discrete energy does not drift.",
     )
     conserved = {"energy": energy, "energy of the pendulum": pendulum}
-    return Example("non_reversible", _gearbox(epsilon), q, v, facts, conserved)
+    return Example("non_reversible", _gearbox(asymmetry), q, v, facts, conserved)
 
 
 @functools.cache

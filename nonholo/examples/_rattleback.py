@@ -8,11 +8,19 @@ import numpy as np
 
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array
-from nonholo.examples._example import Example, energy_of, numbers, positives, ready, reals, system_in
+from nonholo.examples._example import Example, energy_of, ready, system_in
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
 
-@ready("tilt", "spin", "rates")
+@ready(
+    "tilt spin rates",
+    reals="center product spin",
+    positive="semi_axes inertia",
+    semi_axes="three numbers",
+    inertia="three numbers",
+    tilt="lean and pitch",
+    rates="rates of lean and pitch",
+)
 def rattleback(
     *,
     semi_axes: tuple[float, float, float] = (20.0, 3.0, 2.0),
@@ -57,21 +65,14 @@ def rattleback(
         >>> ready.coordinates, ready.body_velocity[2].item()
         (('x', 'y', 'theta', 'lean', 'pitch'), 5.0)
     """
-    name = "rattleback"
-    axes, moments = (
-        positives(name, **{f"{what}[{i}]": x for i, x in enumerate(numbers(name, what, values, 3, "three numbers"))})
-        for what, values in (("semi_axes", semi_axes), ("inertia", inertia))
-    )
-    (g,) = positives(name, gravity=gravity)
-    low, I12, turning = reals(name, center=center, product=product, spin=spin)
-    lean, pitch = numbers(name, "tilt", tilt, 2, "lean and pitch")
-    rocking = numbers(name, "rates", rates, 2, "rates of lean and pitch")
-    boat, q, angles = _Boat((*axes,), low), np.array([0.0, 0.0, 0.0, lean, pitch]), np.array([turning, *rocking])
-    system = _system(boat, (*moments,), I12, g)
+    boat, q, angles = _Boat(semi_axes, center), np.array([0.0, 0.0, 0.0, *tilt]), np.array([spin, *rates])
+    system = _system(boat, inertia, product, gravity)
     with double_precision():
         v = np.append(np.asarray(boat.rolling(jnp.asarray(q))) @ angles, angles)
     facts = ("Turned in the wrong direction it rattles, stops, and turns back.", "The energy is constant.")
-    return Example(name, system, q, v, facts, {"energy": energy_of(system.lagrangian)}, time_step=0.002, steps=5000)
+    return Example(
+        "rattleback", system, q, v, facts, {"energy": energy_of(system.lagrangian)}, time_step=0.002, steps=5000
+    )
 
 
 class _Boat(NamedTuple):

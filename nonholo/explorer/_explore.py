@@ -115,7 +115,7 @@ def explore(value: Any) -> Page:
 
     Tops with n = 3 and sleighs in the plane, also under `Gravity`, `Friction` and a table of forces, and tops with
     n = 4 run there with the very numbers of `nh.simulate`; sliders change the body, the forces, the start and the time
-    step. Any other orbit is replayed from its numbers, and the page says so. It fetches nothing, and its content
+    step. Any other orbit is replayed from its numbers, and the page names this. It fetches nothing, and its content
     security policy lets nothing run in it but its own view.
 
     Args:

@@ -67,7 +67,7 @@ class _State(BaseModel):
 
 
 def _problem(state: Any) -> str | None:
-    """Say what is wrong with a state; None if a page could show it."""
+    """Return in words why a page cannot show a state; None if it can."""
     try:
         _State.model_validate(state)
     except ValidationError as failure:
@@ -212,7 +212,7 @@ def simulate_state(where: str, state: Any, table: dict[str, Any] | None = None) 
         problem = "a motion under another table of forces"
     if problem:
         remedy = "Use the orbit you passed, or make the page again."
-        raise error(where, "be asked of a state that the page can show", problem, remedy)
+        raise error(where, "begin at a state that the page can show", problem, remedy)
     return _run(state, table)
 
 
@@ -309,7 +309,7 @@ def _planar_frames(orbit: AbstractOrbit) -> Float[np.ndarray, "K 12"]:
 def _frames(orbit: AbstractOrbit) -> Float[np.ndarray, "K 12"]:
     """Return for each state an origin and three body axes in space: the first two and the last, in three coordinates.
 
-    What a matrix does not have is zero.
+    Components that a matrix does not have are zero.
     """
     g, group = orbit.configuration, orbit.space
     turns = g[:, :-1, :-1] if group.is_affine else g
@@ -343,7 +343,7 @@ def force_numbers(forced: Forced) -> dict[str, float] | None:
 
 
 def _is_plain(forced: Forced) -> bool:
-    """Tell whether a weight is the only potential, no function acts, and the body has the canonical axes."""
+    """Return whether a weight is the only potential, no function acts, and the body has the canonical axes."""
     others = forced.scheme == "variational" or forced.slip is not None or (forced.terms and forced.gravity is None)
     return not (forced.needs_function or others) and np.array_equal(forced.system.frame, forced.group.identity)
 

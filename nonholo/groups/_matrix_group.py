@@ -9,17 +9,10 @@ from typing import ClassVar
 
 import numpy as np
 
+from nonholo.base import numerics
 from nonholo.base.checks import array, error
-from nonholo.base.numerics import (
-    cayley_increment,
-    exponential_increment,
-    identity_like,
-    inverse_of,
-    principal_logarithm,
-)
 from nonholo.base.types import Array, Float
-from nonholo.groups._base import AbstractMatrixGroup
-from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of
+from nonholo.groups._base import AbstractMatrixGroup, coordinates_of
 
 _REPRODUCED = 1e-8  # relative error of exp(log(g)) beyond which there is no logarithm
 _KNOWN = 1e-12  # of 1 / (|g| |g^-1|), above which the sign of a determinant is no rounding error
@@ -80,6 +73,8 @@ class MatrixGroup(AbstractMatrixGroup):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "basis", checked_basis("MatrixGroup(basis=...)", self.basis))
+        dim, size, _ = self.basis.shape
+        self._hold(dim, size, size * size)
         if self.form is not None:
             object.__setattr__(self, "form", checked_form("MatrixGroup(form=...)", self.basis, self.form))
 
@@ -96,26 +91,6 @@ class MatrixGroup(AbstractMatrixGroup):
     def _content(self) -> tuple:
         return self.basis.shape, self.basis.tobytes(), None if self.form is None else self.form.tobytes()
 
-    @property
-    def dim(self) -> int:
-        """Dimension, the number of basis matrices."""
-        return self.basis.shape[0]
-
-    @property
-    def size(self) -> int:
-        """Rows of a matrix."""
-        return self.basis.shape[1]
-
-    @property
-    def pose_size(self) -> int:
-        """Numbers in a compact pose, the entries of the matrix."""
-        return self.size * self.size
-
-    @functools.cached_property
-    def coordinates(self) -> AbstractCoordinates:
-        """The maps between coordinate vectors and matrices of the algebra."""
-        return coordinates_of(self.basis)
-
     @functools.cached_property
     def has_cayley(self) -> bool:
         """Whether the Cayley map stays in the group: with a form, or by trying random elements of the algebra."""
@@ -123,11 +98,11 @@ class MatrixGroup(AbstractMatrixGroup):
             return True
         X = self.hat(np.random.default_rng(0).normal(size=(4, self.dim)))
         X = X / np.abs(X).sum(axis=-1).max()
-        return bool(np.all(self.residual(np.eye(self.size) + cayley_increment(X)) < _REPRODUCED))
+        return bool(np.all(self.residual(np.eye(self.size) + numerics.cayley_increment(X)) < _REPRODUCED))
 
     def exp_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         """Return `exp(x)` minus the identity, without cancellation."""
-        return exponential_increment(self.hat(x))
+        return numerics.exponential_increment(self.hat(x))
 
     def log(self, g: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
         """Return the coordinates of the principal logarithm.
@@ -138,7 +113,7 @@ class MatrixGroup(AbstractMatrixGroup):
         """
         g = self._matrix(g)
         if not isinstance(g, np.ndarray):
-            return self.vee(principal_logarithm(g, _HALVINGS))
+            return self.vee(numerics.principal_logarithm(g, _HALVINGS))
         where, X = f"{self!r}.log(g=...)", _checked_logarithm(g)
         is_missing = np.isnan(X).any(axis=(-2, -1)) & np.isfinite(g).all(axis=(-2, -1))
         if np.any(is_missing):
@@ -160,31 +135,32 @@ class MatrixGroup(AbstractMatrixGroup):
         if not self.has_cayley:
             where = f"{self!r}.cayley"
             raise error(where, "stay in the group", "an algebra whose Cayley map leaves it", "Use `exp` or `retract`.")
-        return cayley_increment(self.hat(x))
+        return numerics.cayley_increment(self.hat(x))
 
     def inverse(self, g: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
         """Return the inverse matrix."""
         g = self._matrix(g)
-        return inverse_of(g) if self.form is None else self.form_adjoint(g)
+        return numerics.inverse_of(g) if self.form is None else self.form_adjoint(g)
 
     def residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
-        """Return how far the logarithm is from the algebra; infinite where there is no logarithm (JAX: undefined).
+        """Return the distance of the logarithm from the algebra; infinite where there is no logarithm (JAX: undefined).
 
-        With a form: the residual of g* g = I relative to |g*| |g|, or how far (g - g*)/2 is from the algebra relative
-        to |g|, whichever is larger; 2 for a negative determinant. Other components of the group are not distinguished.
+        With a form: the residual of g* g = I relative to |g*| |g|, or the distance of (g - g*)/2 from the algebra
+        relative to |g|, whichever is larger; 2 for a negative determinant. Other components of the group are not
+        distinguished.
         """
         g = self._matrix(g)
         xp = g.__array_namespace__()
         if self.form is not None:
             return self._form_residual(g)
-        X = _checked_logarithm(g) if isinstance(g, np.ndarray) else principal_logarithm(g, _HALVINGS)
+        X = _checked_logarithm(g) if isinstance(g, np.ndarray) else numerics.principal_logarithm(g, _HALVINGS)
         gap = xp.max(abs(X - self.coordinates.matrix(self.coordinates.vector(X))), axis=(-2, -1))
         return xp.where(xp.isnan(gap), xp.inf, gap)
 
     def _form_residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
         xp, adjoint = g.__array_namespace__(), self.form_adjoint(g)
         size, other = (xp.maximum(xp.max(abs(X), axis=(-2, -1), keepdims=True), 1) for X in (g, adjoint))
-        g, adjoint, eye = g / size, adjoint / other, identity_like(g) / size / other
+        g, adjoint, eye = g / size, adjoint / other, numerics.identity_like(g) / size / other
         K = (g - adjoint * (other / size)) / 2
         worst = xp.maximum(abs(adjoint @ g - eye), abs(K - self.hat(self.vee(K))))
         is_negative = (eye[..., 0, 0] > _KNOWN) & (xp.linalg.det(g) < 0)
@@ -195,10 +171,6 @@ class MatrixGroup(AbstractMatrixGroup):
         X = self.hat(x)
         xp = X.__array_namespace__()
         return xp.max(abs(xp.imag(xp.linalg.eigvals(X))), axis=-1)
-
-    def random(self, rng: int | np.random.Generator) -> Float[np.ndarray, "N N"]:
-        """Draw the exponential of standard normal coordinates."""
-        return self.exp(self._generator(rng).normal(size=self.dim))
 
     def matrix_from_pose(self, pose: Float[Array, "... size"]) -> Float[Array, "... N N"]:
         """Return the matrix with these rows."""
@@ -218,8 +190,10 @@ class MatrixGroup(AbstractMatrixGroup):
 def _checked_logarithm(g: np.ndarray) -> np.ndarray:
     """Return principal logarithms, NaN where the exponential does not lead back."""
     with np.errstate(all="ignore"):
-        X = principal_logarithm(g, _HALVINGS)
-        miss = np.abs(identity_like(g) + exponential_increment(X) - g).max(axis=(-2, -1), keepdims=True, initial=0.0)
+        X = numerics.principal_logarithm(g, _HALVINGS)
+        miss = np.abs(numerics.identity_like(g) + numerics.exponential_increment(X) - g).max(
+            axis=(-2, -1), keepdims=True, initial=0.0
+        )
         size = np.abs(g).max(axis=(-2, -1), keepdims=True, initial=1.0)
         return np.where(miss <= _REPRODUCED * size, X, np.nan)
 

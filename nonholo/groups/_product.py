@@ -12,7 +12,6 @@ from nonholo.base.checks import error, shown
 from nonholo.base.numerics import block_diagonal
 from nonholo.base.types import Array, Float
 from nonholo.groups._base import AbstractMatrixGroup
-from nonholo.groups._coordinates import AbstractCoordinates, coordinates_of
 
 
 @dataclasses.dataclass(frozen=True, init=False, repr=False)
@@ -46,35 +45,16 @@ class ProductGroup(AbstractMatrixGroup):
             got = shown(wrong[0]) if wrong else "no factor"
             raise error("ProductGroup(*factors)", "be given groups", got, "Pass groups such as SE(2), Translations(2).")
         object.__setattr__(self, "factors", factors)
+        self._hold(*(sum(getattr(factor, name) for factor in factors) for name in ("dim", "size", "pose_size")))
 
     def __repr__(self) -> str:
         return f"ProductGroup({', '.join(map(repr, self.factors))})"
-
-    @functools.cached_property
-    def dim(self) -> int:
-        """Dimension, the sum over the factors."""
-        return sum(factor.dim for factor in self.factors)
-
-    @functools.cached_property
-    def size(self) -> int:
-        """Rows of a matrix, the sum over the factors."""
-        return sum(factor.size for factor in self.factors)
-
-    @functools.cached_property
-    def pose_size(self) -> int:
-        """Numbers in a compact pose, the sum over the factors."""
-        return sum(factor.pose_size for factor in self.factors)
 
     @functools.cached_property
     def basis(self) -> np.ndarray:
         """The basis of the algebra, shape (dim, N, N)."""
         columns = np.split(np.eye(self.dim), self._cuts("dim"), axis=-1)
         return block_diagonal([factor.hat(part) for factor, part in zip(self.factors, columns, strict=True)])
-
-    @functools.cached_property
-    def coordinates(self) -> AbstractCoordinates:
-        """The maps between coordinate vectors and block-diagonal matrices."""
-        return coordinates_of(self.basis)
 
     def exp_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         """Return `exp(x)` minus the identity, without cancellation."""

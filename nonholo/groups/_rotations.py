@@ -5,13 +5,7 @@ import scipy  # its parts load on first use
 
 from nonholo.base import numerics
 from nonholo.base.checks import error
-from nonholo.base.numerics import (
-    exponential_increment,
-    identity_like,
-    inverse_cayley,
-    of_skew,
-    principal_logarithm,
-)
+from nonholo.base.numerics import exponential_increment, identity_like, inverse_cayley, of_skew, principal_logarithm
 from nonholo.base.types import Array, Float, Int
 
 _ENTRY = 1e3  # more than any entry of a matrix that is a rotation to whatever rounding

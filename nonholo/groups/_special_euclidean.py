@@ -7,29 +7,30 @@ from typing import ClassVar
 
 import numpy as np
 
+from nonholo.base import numerics
 from nonholo.base.checks import dimension
-from nonholo.base.limits import within_memory
-from nonholo.base.numerics import (
-    cayley_increment,
-    exponential_increment,
-    half_cotangent,
-    of_length_one,
-    of_skew,
-    principal_logarithm,
-    sinc,
-    versine,
-)
 from nonholo.base.types import Array, Float
 from nonholo.groups import _rotations
-from nonholo.groups._base import AbstractMatrixGroup
-from nonholo.groups._coordinates import AbstractCoordinates, SeparatedCoordinates, coordinates_of
-from nonholo.groups._special_orthogonal import AbstractRodriguesGroup
+from nonholo.groups._base import AbstractCoordinates, AbstractMatrixGroup, SeparatedCoordinates, coordinates_of
+from nonholo.groups._special_orthogonal import AbstractBodyGroup, AbstractRodriguesGroup
 
 _CUBIC = [(-1) ** k / math.factorial(2 * k + 3) for k in range(8, -1, -1)]  # exact to rounding for angles up to 1
 
 
+class AbstractMotions(AbstractMatrixGroup):
+    """Motions: a rotation and a translation."""
+
+    def inverse(self, g: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
+        """Return the inverse matrix from the transposed rotation."""
+        return _rotations.motion_inverse(self._matrix(g))
+
+    def residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
+        """Return the residual of the rotation or the largest error of the last row, whichever is larger."""
+        return _rotations.motion_residual(self._matrix(g))
+
+
 @dataclasses.dataclass(frozen=True, repr=False)
-class SpecialEuclidean2(AbstractRodriguesGroup):
+class SpecialEuclidean2(AbstractMotions, AbstractRodriguesGroup):
     r"""Motions of the plane, $\begin{pmatrix} R & x \\ 0 & 1\end{pmatrix}$; coordinates $(\omega, v_1, v_2)$.
 
     `cayley(x)` is the motion with tan(angle / 2) = x[0] / 2 about the same center as `exp(x)`.
@@ -56,17 +57,9 @@ class SpecialEuclidean2(AbstractRodriguesGroup):
         g = self._matrix(g)
         xp = g.__array_namespace__()
         angle = xp.arctan2(g[..., 1, 0], g[..., 0, 0])
-        along, across = half_cotangent(angle * angle), angle / 2
+        along, across = numerics.half_cotangent(angle * angle), angle / 2
         x, y = g[..., 0, 2], g[..., 1, 2]
         return xp.stack([angle, along * x + across * y, along * y - across * x], axis=-1)
-
-    def inverse(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3 3"]:
-        """Return the inverse motion."""
-        return _rotations.motion_inverse(self._matrix(g))
-
-    def residual(self, g: Float[Array, "... 3 3"]) -> Float[Array, "..."]:
-        """Return the residual of the rotation or the largest error of the last row, whichever is larger."""
-        return _rotations.motion_residual(self._matrix(g))
 
     def angle(self, x: Float[Array, "... 3"]) -> Float[Array, "..."]:
         """Return the angle through which `exp(x)` turns."""
@@ -96,7 +89,7 @@ class SpecialEuclidean2(AbstractRodriguesGroup):
 
     def normalize_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
         """Return the pose with cos^2 + sin^2 = 1."""
-        return of_length_one(self._pose(pose), 2)
+        return numerics.of_length_one(self._pose(pose), 2)
 
     def pose_product(self, pose: Float[Array, "... 4"], other: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
         """Return (cos, sin, x, y) of the product: headings add, and the first one turns the second position."""
@@ -116,29 +109,16 @@ class SpecialEuclidean2(AbstractRodriguesGroup):
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
-class SpecialEuclideanN(AbstractMatrixGroup):
+class SpecialEuclideanN(AbstractMotions, AbstractBodyGroup):
     r"""Motions $\begin{pmatrix} R & x \\ 0 & 1\end{pmatrix}$; coordinates of so(n), then $v_1, \dots, v_n$."""
 
     n: int
-    is_rigid: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        self._hold(self.n * (self.n + 1) // 2, self.n + 1, self.n * (self.n + 1))
 
     def __repr__(self) -> str:
         return f"SE({self.n})"
-
-    @property
-    def dim(self) -> int:
-        """Dimension, n (n + 1) / 2."""
-        return self.n * (self.n + 1) // 2
-
-    @property
-    def size(self) -> int:
-        """Rows of a matrix, n + 1."""
-        return self.n + 1
-
-    @property
-    def pose_size(self) -> int:
-        """Numbers in a compact pose: the entries of the rotation and the position."""
-        return self.n * (self.n + 1)
 
     @functools.cached_property
     def coordinates(self) -> SeparatedCoordinates:
@@ -149,19 +129,15 @@ class SpecialEuclideanN(AbstractMatrixGroup):
         turns = rows, columns, values
         return SeparatedCoordinates(self.size, *(np.concatenate(pair) for pair in zip(turns, moves, strict=True)))
 
-    @functools.cached_property
-    def basis(self) -> np.ndarray:
-        """The basis of the algebra, shape (dim, n + 1, n + 1)."""
-        within_memory(f"{self!r}.basis", 8.0 * self.dim * self.size**2, "Use what needs no basis.")
-        return self.hat(np.eye(self.dim))
-
     def exp_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         r"""Return `exp(x)` minus the identity: rotation $e^X - I$, position $\varphi_1(X)v$."""
         X = self.hat(x)
         if not isinstance(X, np.ndarray):
-            return self._screw(X) if self.n == 3 else exponential_increment(X)
+            return self._screw(X) if self.n == 3 else numerics.exponential_increment(X)
         skew = X[..., : self.n, : self.n]
-        return self._assemble(_rotations.exp_increment(skew), of_skew(skew, _mean) @ X[..., : self.n, self.n :])
+        return self._assemble(
+            _rotations.exp_increment(skew), numerics.of_skew(skew, _mean) @ X[..., : self.n, self.n :]
+        )
 
     def _screw(self, X: Float[Array, "... 4 4"]) -> Float[Array, "... 4 4"]:
         r"""Return $e^X - I = X + \frac{1-\cos\theta}{\theta^2}X^2 + \frac{\theta-\sin\theta}{\theta^3}X^3$ on se(3).
@@ -173,7 +149,7 @@ class SpecialEuclideanN(AbstractMatrixGroup):
         small = square < 1
         inside, outside = xp.where(small, square, 0.0), xp.where(small, 1.0, square)
         series = functools.reduce(lambda y, c: c + inside * y, _CUBIC, 0.0 * inside)
-        second, third = versine(square), xp.where(small, series, (1 - sinc(outside)) / outside)
+        second, third = numerics.versine(square), xp.where(small, series, (1 - numerics.sinc(outside)) / outside)
         turn = skew @ v
         rotation = (1 - third * square) * skew + second * (skew @ skew)
         return self._assemble(rotation, v + second * turn + third * (skew @ turn))
@@ -182,27 +158,14 @@ class SpecialEuclideanN(AbstractMatrixGroup):
         r"""Return the body velocity with angles up to pi (JAX: up to 3.14): $X = \log R$, $v = \varphi_1(X)^{-1}x$."""
         g = self._matrix(g)
         if not isinstance(g, np.ndarray):
-            return self.vee(principal_logarithm(g, halvings=1))
+            return self.vee(numerics.principal_logarithm(g, halvings=1))
         skew = _rotations.logarithm(g[..., : self.n, : self.n], f"{self!r}.log(g=...)")
-        return self.vee(self._assemble(skew, of_skew(skew, _inverse_mean) @ g[..., : self.n, self.n :]))
+        return self.vee(self._assemble(skew, numerics.of_skew(skew, _inverse_mean) @ g[..., : self.n, self.n :]))
 
     def cayley_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         """Return `cayley(x)` minus the identity, without cancellation."""
         X = self.hat(x)
-        return _rotations.motion_cayley_increment(X) if isinstance(X, np.ndarray) else cayley_increment(X)
-
-    def inverse(self, g: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
-        """Return the inverse motion."""
-        return _rotations.motion_inverse(self._matrix(g))
-
-    def residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
-        """Return the residual of the rotation or the largest error of the last row, whichever is larger."""
-        return _rotations.motion_residual(self._matrix(g))
-
-    def angle(self, x: Float[Array, "... dim"]) -> Float[Array, "..."]:
-        """Return the largest angle through which `exp(x)` turns a plane."""
-        X = self.hat(x)[..., : self.n, : self.n]
-        return X.__array_namespace__().linalg.norm(X, ord=2, axis=(-2, -1))
+        return _rotations.motion_cayley_increment(X) if isinstance(X, np.ndarray) else numerics.cayley_increment(X)
 
     def random(self, rng: int | np.random.Generator) -> Float[np.ndarray, "N N"]:
         """Draw a uniformly distributed rotation and a standard normal position."""
@@ -244,12 +207,12 @@ class SpecialEuclideanN(AbstractMatrixGroup):
 
 def _mean(angle: np.ndarray) -> np.ndarray:
     r"""The function $\varphi_1(z) = (e^z - 1)/z$ at z = i * angle."""
-    return sinc(angle * angle) + 1j * angle * versine(angle * angle)
+    return numerics.sinc(angle * angle) + 1j * angle * numerics.versine(angle * angle)
 
 
 def _inverse_mean(angle: np.ndarray) -> np.ndarray:
     r"""The function $1/\varphi_1(z) = (z/2)\coth(z/2) - z/2$ at z = i * angle."""
-    return half_cotangent(angle * angle) - 0.5j * angle
+    return numerics.half_cotangent(angle * angle) - 0.5j * angle
 
 
 def SE(n: int) -> AbstractMatrixGroup:

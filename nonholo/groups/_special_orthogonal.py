@@ -16,8 +16,37 @@ from nonholo.base.limits import within_memory
 from nonholo.base.numerics import cayley_increment, cotangent_deficit, identity_like, of_length_one, sinc, versine
 from nonholo.base.types import Array, Float
 from nonholo.groups import _rotations
-from nonholo.groups._base import AbstractMatrixGroup
-from nonholo.groups._coordinates import AbstractCoordinates, SeparatedCoordinates
+from nonholo.groups._base import AbstractCoordinates, AbstractMatrixGroup, SeparatedCoordinates
+
+
+class AbstractRotations(AbstractMatrixGroup):
+    """Rotations: the inverse is the transpose."""
+
+    def inverse(self, g: Float[Array, "... n n"]) -> Float[Array, "... n n"]:
+        """Return the transpose."""
+        return self.form_adjoint(self._matrix(g))
+
+    def residual(self, g: Float[Array, "... n n"]) -> Float[Array, "..."]:
+        """Return the largest entry of g g^T - I; at least 2 for a reflection."""
+        return _rotations.residual(self._matrix(g))
+
+
+class AbstractBodyGroup(AbstractMatrixGroup):
+    """Groups of motions of a body in n dimensions without formulas for its exponential."""
+
+    n: int
+    is_rigid: ClassVar[bool] = True
+
+    @functools.cached_property
+    def basis(self) -> np.ndarray:
+        """The basis of the algebra, shape (dim, N, N)."""
+        within_memory(f"{self!r}.basis", 8.0 * self.dim * self.size**2, "Use what needs no basis.")
+        return self.hat(np.eye(self.dim))
+
+    def angle(self, x: Float[Array, "... dim"]) -> Float[Array, "..."]:
+        """Return the largest angle through which `exp(x)` turns a plane: the spectral norm of its rotation."""
+        X = self.hat(x)[..., : self.n, : self.n]
+        return X.__array_namespace__().linalg.norm(X, ord=2, axis=(-2, -1))
 
 
 class AbstractRodriguesGroup(AbstractMatrixGroup):
@@ -89,7 +118,7 @@ def quaternion_product(p: Float[Array, "... 4"], q: Float[Array, "... 4"]) -> Fl
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
-class SpecialOrthogonal3(AbstractRodriguesGroup):
+class SpecialOrthogonal3(AbstractRotations, AbstractRodriguesGroup):
     """Rotations of space; the coordinates of the algebra are the angular velocity vector.
 
     `exp(x)` is the rotation by the vector `x` (axis times angle), `cayley(x)` that about `x` with
@@ -116,14 +145,6 @@ class SpecialOrthogonal3(AbstractRodriguesGroup):
         sine = xp.sqrt(xp.where(tiny, 1.0, square))
         scale = xp.where(tiny, 2.0, 2 * xp.arctan2(sine, q[..., 0]) / sine)
         return scale[..., None] * q[..., 1:]
-
-    def inverse(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 3 3"]:
-        """Return the transpose."""
-        return self.form_adjoint(self._matrix(g))
-
-    def residual(self, g: Float[Array, "... 3 3"]) -> Float[Array, "..."]:
-        """Return the largest entry of g g^T - I; at least 2 for a reflection."""
-        return _rotations.residual(self._matrix(g))
 
     def angle(self, x: Float[Array, "... 3"]) -> Float[Array, "..."]:
         """Return the angle through which `exp(x)` turns."""
@@ -160,40 +181,21 @@ class SpecialOrthogonal3(AbstractRodriguesGroup):
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
-class SpecialOrthogonalN(AbstractMatrixGroup):
+class SpecialOrthogonalN(AbstractRotations, AbstractBodyGroup):
     r"""Rotations of n-dimensional space; coordinates are the coefficients of $e_i\wedge e_j$, i < j, lexicographic."""
 
     n: int
-    is_rigid: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        self._hold(self.n * (self.n - 1) // 2, self.n, self.n * self.n)
 
     def __repr__(self) -> str:
         return f"SO({self.n})"
-
-    @property
-    def dim(self) -> int:
-        """Dimension, n (n - 1) / 2."""
-        return self.n * (self.n - 1) // 2
-
-    @property
-    def size(self) -> int:
-        """Rows of a matrix, n."""
-        return self.n
-
-    @property
-    def pose_size(self) -> int:
-        """Numbers in a compact pose, the entries of the matrix."""
-        return self.n * self.n
 
     @functools.cached_property
     def coordinates(self) -> SeparatedCoordinates:
         """The maps between coordinate vectors and skew-symmetric matrices."""
         return SeparatedCoordinates(self.n, *_rotations.planes(self.n))
-
-    @functools.cached_property
-    def basis(self) -> np.ndarray:
-        """The basis of the algebra, shape (dim, n, n)."""
-        within_memory(f"{self!r}.basis", 8.0 * self.dim * self.size**2, "Use what needs no basis.")
-        return self.hat(np.eye(self.dim))
 
     def exp_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... n n"]:
         """Return `exp(x)` minus the identity, without cancellation."""
@@ -207,19 +209,6 @@ class SpecialOrthogonalN(AbstractMatrixGroup):
         """Return `cayley(x)` minus the identity, without cancellation."""
         X = self.hat(x)
         return _rotations.cayley_increment(X) if isinstance(X, np.ndarray) else cayley_increment(X)
-
-    def inverse(self, g: Float[Array, "... n n"]) -> Float[Array, "... n n"]:
-        """Return the transpose."""
-        return self.form_adjoint(self._matrix(g))
-
-    def residual(self, g: Float[Array, "... n n"]) -> Float[Array, "..."]:
-        """Return the largest entry of g g^T - I; at least 2 for a reflection."""
-        return _rotations.residual(self._matrix(g))
-
-    def angle(self, x: Float[Array, "... dim"]) -> Float[Array, "..."]:
-        """Return the largest angle through which `exp(x)` turns a plane: the spectral norm of `hat(x)`."""
-        X = self.hat(x)
-        return X.__array_namespace__().linalg.norm(X, ord=2, axis=(-2, -1))
 
     def random(self, rng: int | np.random.Generator) -> Float[np.ndarray, "n n"]:
         """Draw a uniformly distributed rotation."""

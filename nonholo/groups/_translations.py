@@ -9,8 +9,7 @@ import numpy as np
 from nonholo.base.checks import count
 from nonholo.base.numerics import identity_like
 from nonholo.base.types import Array, Float
-from nonholo.groups._base import AbstractMatrixGroup
-from nonholo.groups._coordinates import SeparatedCoordinates
+from nonholo.groups._base import AbstractMatrixGroup, SeparatedCoordinates
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
@@ -35,24 +34,10 @@ class Translations(AbstractMatrixGroup):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "m", count("Translations(m=...)", self.m, "Pass the number of components."))
+        self._hold(self.m, self.m + 1, self.m)
 
     def __repr__(self) -> str:
         return f"Translations({self.m})"
-
-    @property
-    def dim(self) -> int:
-        """Dimension, m."""
-        return self.m
-
-    @property
-    def size(self) -> int:
-        """Rows of a matrix, m + 1."""
-        return self.m + 1
-
-    @property
-    def pose_size(self) -> int:
-        """Numbers in a compact pose, m."""
-        return self.m
 
     @functools.cached_property
     def coordinates(self) -> SeparatedCoordinates:
@@ -98,10 +83,6 @@ class Translations(AbstractMatrixGroup):
         """Return zero: nothing turns."""
         x = self._vector(x)
         return x.__array_namespace__().zeros_like(x[..., 0])
-
-    def random(self, rng: int | np.random.Generator) -> Float[np.ndarray, "N N"]:
-        """Draw a standard normal vector."""
-        return self.exp(self._generator(rng).normal(size=self.m))
 
     def matrix_from_pose(self, pose: Float[Array, "... m"]) -> Float[Array, "... N N"]:
         """Return the matrix of a vector."""

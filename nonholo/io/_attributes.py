@@ -61,7 +61,7 @@ _IN_COORDINATES = (
 
 
 def attributes(orbit: AbstractOrbit) -> dict[str, Any]:
-    """Return everything but arrays that is needed to rebuild an orbit and to say how it was made."""
+    """Return everything but arrays that is needed to rebuild an orbit and to describe its making."""
     return {
         "format": FORMAT,
         "schema": SCHEMA,

@@ -1,9 +1,9 @@
 """A store of blocks of named arrays: one block is one chunk of each array, then its mark, which is written last.
 
-A mark is a small file under `run/blocks`: a checksum, and as JSON what is said of the block and its seal. A checksum of
-a chunk does not know its place, so the seal is one number of the places and the checksums of all chunks of the block.
-Rows of which a block has any number, such as crossings, are in whole chunks of a log, an array that grows. All writes
-are atomic, so whoever writes can be killed at any moment.
+A mark is a small file under `run/blocks`: a checksum, and as JSON the attributes of the block and its seal. A checksum
+of a chunk does not know its place, so the seal is one number of the places and the checksums of all chunks of the
+block. Rows of which a block has any number, such as crossings, are in whole chunks of a log, an array that grows. All
+writes are atomic, so a writer can be killed at any moment.
 """
 
 import asyncio
@@ -94,7 +94,7 @@ class BlockMark(NamedTuple):
     """The mark of a finished block.
 
     Attributes:
-        about: What is said of the block.
+        about: Attributes of the block.
         has_rows: Whether it has a chunk of each array.
         log: The first chunk of the log that is its own, and the first one after those.
         seal: The number of its chunks.
@@ -220,7 +220,7 @@ class BlockStore:
         """Return the mark of a finished block, of which every chunk is sound.
 
         Raises:
-            DamagedError: One is not, or the mark is not; the message says which, and how.
+            DamagedError: One is not, or the mark is not; the message names it and the damage.
         """
         mark = self.mark_of(block)
         for name, index in self._chunks(block, mark):
@@ -262,7 +262,7 @@ class BlockStore:
         consolidate(self.path)
 
     def _seal(self, block: int, mark: BlockMark) -> int:
-        """Return one number of the places and the checksums of the chunks of a block, and of its own number."""
+        """Return one number of the places and the checksums of the chunks of a block, and of the block's number."""
         seal = hashlib.sha256(f"{block}".encode())
         for name, index in self._chunks(block, mark):
             chunk = chunk_path(self.path, name, self._array(name), index)

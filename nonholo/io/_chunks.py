@@ -85,5 +85,5 @@ def read_chunk(
 
 
 def _lacks_numbers(name: str, rows: np.ndarray) -> bool:
-    """Tell whether there are NaN; impulses lead from each state to the next, which the last state may not have."""
+    """Return whether there are NaN; impulses lead from each state to the next, which the last state may not have."""
     return bool(np.isnan(rows[:-1] if name == "multipliers" else rows).any())

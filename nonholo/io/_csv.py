@@ -38,7 +38,7 @@ def orbit_to_csv(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fa
     Numbers have as many digits as they need to be read back exactly. The file appears only when it is complete.
 
     Args:
-        orbit: What to write.
+        orbit: The orbit to write.
         path: A new file.
         overwrite: Replace an older file.
 
@@ -60,7 +60,7 @@ def _lines_of(orbit: Any) -> Iterator[str]:
     instance("orbit_to_csv(orbit=...)", orbit, AbstractOrbit, "be an orbit", "Pass what `simulate` or `flow` returned.")
     if not orbit.has_poses:
         remedy = "Run with reconstruct=True."
-        raise error("Orbit.to_csv(...)", "be asked of an orbit with poses", "reconstruct=False", remedy)
+        raise error("Orbit.to_csv(...)", "be called on an orbit with poses", "reconstruct=False", remedy)
     pose, heading = (orbit.canonical_pose, orbit.turned) if orbit.is_compact else (orbit.configuration, None)
     return _lines(orbit.system, [Stretch(orbit.time, np.asarray(pose), heading)], 1)
 
@@ -75,7 +75,7 @@ def store_to_csv(
 ) -> None:
     """Write the poses of a store as `orbit_to_csv` does, chunk by chunk: an orbit of any length needs little memory.
 
-    Of a run that is not finished the finished blocks are written, and a `RuntimeWarning` says how far they go. The
+    Of a run that is not finished the finished blocks are written, and a `RuntimeWarning` names the last step. The
     store is read twice: damage is found before the first row is written.
 
     Args:

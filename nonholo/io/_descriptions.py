@@ -178,7 +178,7 @@ def recorded_system(kind: str, parameters: dict[str, Any], group: Any) -> Any:
     except ValidationError as failure:
         problem = failure.errors()[0]
         got = f"{'.'.join(map(str, problem['loc']))}: {problem['msg'].removeprefix('Value error, ').rstrip('.')}"
-        raise error(_WHERE, "hold what its system is", got, "It was edited: run it again.") from None
+        raise error(_WHERE, "describe its system", got, "It was edited: run it again.") from None
     with needs("jax", "load_orbit(...) of an orbit in coordinates"):
         room = importlib.import_module("nonholo.lagrange_dalembert")
     return room.RecordedSystem(record | ({} if group is None else {"group": group}), (kind, parameters))

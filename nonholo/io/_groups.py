@@ -36,7 +36,7 @@ def create_groups(group: zarr.Group, names: Iterable[str]) -> None:
 def consolidate(path: Path) -> None:
     """Gather the metadata of a complete store in one file, and wait until all of them are on the disk.
 
-    Those of inner groups say nothing, and are written again.
+    Metadata of inner groups carry no information, and are written again.
     """
     for inner in filter(Path.is_dir, (path / "canonical", path / "run")):
         write_whole(inner / "zarr.json", json.dumps({"attributes": {}, "zarr_format": 3, "node_type": "group"}))

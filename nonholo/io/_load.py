@@ -58,7 +58,7 @@ def load_last_block(path: Path, discrete: Any) -> Any:
 def _load(root: Path, discrete: Any, *, last: bool) -> Any:
     attributes = read_attributes(root)
     if "run" in attributes and "outcome" not in attributes:
-        remedy = f"Resume with nonholo.resume('{root}') (nonholo resume); `nonholo info` says how far it came."
+        remedy = f"Resume with nonholo.resume('{root}') (nonholo resume); `nonholo info` shows its progress."
         raise error(WHERE, "be a finished run", f"'{root}', which is not", remedy)
     try:
         shapes = json.loads(attributes["arrays"])
@@ -83,7 +83,7 @@ def _load(root: Path, discrete: Any, *, last: bool) -> Any:
 
 
 def check_seals(root: Path, attributes: dict[str, Any]) -> None:
-    """Refuse the store of a finished run, or of an orbit saved whole, where a chunk lies in the place of another."""
+    """Refuse the store of a finished run, or of an orbit saved whole, where a chunk lies at the path of another."""
     arrays = {name: opened_array(root, name, tuple(shape)) for name, shape in json.loads(attributes["arrays"]).items()}
     events = [event["name"] for event in json.loads(attributes["events"])] if "events" in attributes else None
     log = None if events is None else opened_array(root, EVENTS, None)
@@ -163,7 +163,7 @@ def _other_schema(where: str, attributes: dict[str, Any], schema: int) -> Except
 
 
 def format_of(path: str | Path) -> str | None:
-    """Return the format that a store says it has; None if it says nothing that can be read."""
+    """Return the format that a store claims to have; None if it has no readable one."""
     try:
         return json.loads((Path(path) / "zarr.json").read_text())["attributes"]["format"]
     except (OSError, ValueError, KeyError, TypeError, RecursionError):

@@ -125,7 +125,7 @@ _OURS = {field.alias or name for kind in (OrbitMetadata, SweepMetadata) for name
 
 
 def checksum(attributes: dict[str, Any]) -> str:
-    """Return the SHA-256 of all attributes that are ours; whoever writes one of them writes it again."""
+    """Return the SHA-256 of all attributes that are ours; a writer of one of them writes it again."""
     ours = {name: value for name, value in attributes.items() if name in _OURS}
     return hashlib.sha256(json.dumps(ours, sort_keys=True).encode()).hexdigest()
 
@@ -155,7 +155,7 @@ def check_metadata(where: str, path: str, attributes: dict[str, Any], kind: type
 
 
 def _has_controls(value: Any) -> bool:
-    """Tell whether a text in nested data would control a terminal; lines and tabs do no harm."""
+    """Return whether a text in nested data would control a terminal; lines and tabs do no harm."""
     if isinstance(value, str):
         return any(unicodedata.category(letter) == "Cc" and letter not in "\n\t" for letter in value)
     if isinstance(value, dict):
@@ -179,10 +179,10 @@ def require_identity(path: Path, identity: str) -> None:
 
 
 def check_assertions(where: str) -> None:
-    """Refuse to read or write a store where Python leaves assertions out: zarr works in some of its own."""
+    """Refuse to read or write a store where Python leaves assertions out: some assertions of zarr do work."""
     if not __debug__:
         got = "python -O or PYTHONOPTIMIZE, which leaves out assertions in which zarr does a part of its work"
-        raise error(where, "be asked of Python with assertions", got, "Run it without -O, and unset PYTHONOPTIMIZE.")
+        raise error(where, "be run by Python with assertions", got, "Run it without -O, and unset PYTHONOPTIMIZE.")
 
 
 def check_array(where: str, name: str, array: zarr.Array) -> None:

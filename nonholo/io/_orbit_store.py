@@ -1,6 +1,6 @@
 """The store of an orbit, written block by block: the mark of a block holds the state of the run where the block ends.
 
-The mark before the first block is that of the start. What a mark says ends with what is needed to look for more events;
+The mark before the first block is that of the start. A mark ends with the data for the search for more events;
 crossings that were found are the log of the store. While a store is unfinished it has no outcome among its attributes
 and no consolidated metadata.
 
@@ -98,7 +98,7 @@ class Stream:
         """Return the state at the end of a block that is marked as finished, of which every chunk is sound.
 
         Raises:
-            DamagedError: One is not; the message says which, and how.
+            DamagedError: One is not; the message names it and the damage.
         """
         return checkpoint_of(self._blocks.sound(block).about, self.events)
 
@@ -154,7 +154,7 @@ class Stream:
         return dataclasses.replace(self, plan=self.plan._replace(steps=self.plan.steps + steps))
 
     def announce(self, more: int) -> None:
-        """Say in the store how long the run is now, and how many steps were asked for."""
+        """Write to the store how long the run is now, and how many steps it is to have."""
         run = json.loads(read_attributes(self.path)["run"]) | {"steps": self.plan.steps, "added": more}
         edit_attributes(self.path, {"run": json.dumps(run), "outcome": None, "crossings": None})
 
@@ -225,7 +225,7 @@ class Standing(NamedTuple):
 
 
 def standing(path: str | Path) -> Standing | None:
-    """Say how far the run of a store came; None if it is finished."""
+    """Return the progress of the run of a store; None if it is finished."""
     attributes = read_attributes(path)
     if "run" not in attributes or "outcome" in attributes:
         return None
@@ -261,7 +261,7 @@ def save_orbit(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fals
     stays as it was.
 
     Args:
-        orbit: What to save.
+        orbit: The orbit to save.
         path: A new directory, usually named `*.zarr`; suffixes of other formats, such as .nc and .csv, are refused.
         overwrite: Replace an older store of an orbit (nothing else is ever replaced).
         scenario: Text of the scenario that was run, kept with its SHA-256.
@@ -300,7 +300,7 @@ def _write(variables: dict[str, Variable], metadata: dict[str, Any], path: Path)
 
 @contextlib.contextmanager
 def reporting_how_to_resume(store: Path, what: str, standing: Callable[[], object]) -> Iterator[None]:
-    """Tell, if the writing of a store is stopped or fails, how far it came and how to resume."""
+    """Report, if the writing of a store is stopped or fails, its progress and how to resume."""
     again = f"nonholo.resume({str(store)!r})"
     try:
         yield
@@ -350,7 +350,7 @@ def check_target(path: str | Path, *, overwrite: bool = False, new: str | None =
 
 
 def _foreign_file(store: Path) -> str | None:
-    """Return a file below a store that is none of its own."""
+    """Return a file below a store that does not belong to it."""
     files = (file.relative_to(store).as_posix() for file in store.rglob("*") if not file.is_dir())
     return next((name for name in files if not _OWN.fullmatch(name)), None)
 

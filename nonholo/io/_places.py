@@ -58,7 +58,7 @@ def write_lock(store: Path) -> Iterator[None]:
 
 @contextlib.contextmanager
 def being_made(part: Path) -> Iterator[None]:
-    """Hold a lock beside what is being made, if the file system has locks: whoever is killed leaves both, unlocked."""
+    """Hold a lock beside what is being made, if the file system has locks: a killed process leaves both, unlocked."""
     lock = FileLock(part.with_suffix(".lock"), timeout=0, thread_local=False, fallback_to_soft=False)
     with contextlib.suppress(OSError, NotImplementedError):
         lock.acquire()
@@ -89,7 +89,7 @@ def _remove(part: Path) -> None:
 
 
 def owner_of(store: Path) -> str | None:
-    """Say who is writing a store; None if nobody is."""
+    """Return the process that is writing a store; None if there is none."""
     lock = _lock(store, 0)
     if not Path(lock.lock_file).exists():
         return None
@@ -145,7 +145,7 @@ def complete_file(path: Path) -> Iterator[str]:
 
 
 def remove_store(path: Path) -> None:
-    """Remove a store at once: whoever is killed leaves nothing of it at the path."""
+    """Remove a store at once: a killed process leaves nothing of it at the path."""
     with new_beside(path) as part:
         path.rename(part)
 

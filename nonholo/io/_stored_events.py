@@ -1,8 +1,8 @@
 """Crossings as rows of numbers, and checkpoints: the state of a run between two blocks, with what its events saw.
 
-A row of `run/events` is the position of the event, the step, the fraction, the direction, then the state there; that
-after an impact has a row of its own, of the position -1 - p for the event p. The
-rows of a block begin with a chunk of their own; what is left of its last chunk is NaN. The functions are not stored.
+A row of `run/events` is the position of the event, the step, the fraction, the direction, then the state there; the
+state after an impact has a separate row, of the position -1 - p for the event p. The
+rows of a block begin with a new chunk; what is left of its last chunk is NaN. The functions are not stored.
 """
 
 import dataclasses

@@ -49,7 +49,7 @@ class StoredPoses(NamedTuple):
 
 
 def open_poses(path: Path) -> StoredPoses:
-    """Open a store, finished or not; a warning says how far an unfinished one goes."""
+    """Open a store, finished or not; a warning gives the length of an unfinished one."""
     attributes = read_attributes(path)
     try:
         shapes = json.loads(attributes["arrays"])

@@ -21,7 +21,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import compiled
-from nonholo.lagrange_dalembert._functions import configurations, in_double, places, places_of, room
+from nonholo.lagrange_dalembert._functions import ROWS, configurations, in_blocks, in_double, places, room
 from nonholo.lagrange_dalembert._newton import orientation, solve
 from nonholo.lagrange_dalembert._orbit import (
     ORBITS,
@@ -31,7 +31,6 @@ from nonholo.lagrange_dalembert._orbit import (
     GroupOrbit,
 )
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
-from nonholo.lagrange_dalembert.compiled import ROWS
 from nonholo.orbit import AbstractStepper, First, Rows, State
 from nonholo.systems import AbstractCoordinateDiscretization, OrbitT, Start, one_start
 
@@ -43,7 +42,7 @@ Motion = tuple[Array, Array, Array]
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretization[OrbitT]):
-    r"""A discretized system: it says how a run starts.
+    r"""A discretized system, which checks the start of a run.
 
     $$ D_1 L_d(q_k, q_{k+1}) + D_2 L_d(q_{k-1}, q_k) = -\sum_j \lambda_j A^j(q_k), \qquad F(q_k, q_{k+1}) = 0, $$
 
@@ -56,7 +55,7 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
     a momentum with itself in place of $\partial L/\partial v$; only its action on admissible velocities counts.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: h.
     """
 
@@ -112,7 +111,7 @@ class CoordinateDiscretization(AbstractLagrangeDAlembertMap[CoordinateOrbit]):
     """A discretized system in coordinates, made by `nonholo.discretize`.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: h.
 
     Example:
@@ -148,7 +147,7 @@ class GroupDiscretization(AbstractLagrangeDAlembertMap[GroupOrbit]):
     """A discretized `GroupLagrangeDAlembert`, made by `nonholo.discretize`.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: h.
 
     Example:
@@ -203,7 +202,7 @@ class CoordinateStepper(AbstractStepper[AbstractCoordinateOrbit]):
     block = 1 << 18
 
     def __post_init__(self) -> None:
-        places_of(self.motion.system)  # refused by the system of a store without functions
+        _ = self.motion.system.places  # refused by the system of a store without functions
 
     @functools.cached_property
     def columns(self) -> dict[str, int]:  # type: ignore[override]
@@ -281,8 +280,7 @@ def set_out(system: Any, h: Array, q: Array, v: Array, p: Array) -> tuple[Motion
 def _step(system: Any, h: Array, state: Motion, sign: Array) -> tuple[Motion, Array, Array]:
     """Return the next state, the impulses and the outcome."""
     q, v, before = state
-    _, arriving = equations.momenta(system, q, v, h)
-    ahead = equations.ahead(system, q, v, h)
+    ahead, arriving = equations.arrival(system, q, v, h)
     following, multipliers, code = solve(system, h, ahead, arriving, v, 2 * v - before, sign)
     return (ahead, following, v), multipliers, code
 
@@ -318,18 +316,11 @@ def _decoded(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> list[np.ndarr
     columns = compiled.decoded(_decode, system, h, q, v)
     if columns is not None:
         return columns
-    blocks = max(1, -(-len(q) // ROWS))
-    whole_blocks = [np.concatenate([x, np.zeros((blocks * ROWS - len(x), *x.shape[1:]))]) for x in (q, v)]
-    for x in whole_blocks:
-        x[len(q) :] = x[len(q) - 1] if len(q) else 0.0
-    parts = [
-        in_double(_decode_all, system, h, *(x[i * ROWS : (i + 1) * ROWS] for x in whole_blocks)) for i in range(blocks)
-    ]
-    return [np.concatenate(column)[: len(q)] for column in zip(*parts, strict=True)]
+    return in_blocks(_decode_all, system, np.broadcast_to(h, len(q)), q, v)
 
 
 def _decode_all(system: Any, h: Array, q: Array, v: Array) -> tuple[Array, ...]:
-    return jax.vmap(functools.partial(_decode, system, h))(q, v)
+    return jax.vmap(functools.partial(_decode, system, h[0]))(q, v)
 
 
 def _decode(system: Any, h: Array, q: Array, v: Array, *node: Array) -> tuple[Array, ...]:
@@ -351,8 +342,8 @@ def _after_parts(
     def leg(carry: tuple[Array, Array, Array], length: Array) -> tuple[tuple[Array, Array, Array], tuple]:
         begin, near, p = carry
         (_, w, _), _, code = set_out(system, length, begin, near, p)
-        after = equations.ahead(system, begin, w, length), w, equations.momenta(system, begin, w, length)[1]
-        return after, (begin, w, code)
+        ahead, arriving = equations.arrival(system, begin, w, length)
+        return (ahead, w, arriving), (begin, w, code)
 
     def one(carry: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
         i, places, velocities = carry

@@ -35,7 +35,7 @@ def holonomic(system: LagrangeDAlembert, x: Array) -> Array:
 
 
 def place_residual(system: LagrangeDAlembert, x: Array) -> Array:
-    """Return how far a place is from holonomic constraints, then from prescribed coordinates."""
+    """Return the distance of a place from holonomic constraints, then from prescribed coordinates."""
     return jnp.concatenate([holonomic(system, x), *(x[i : i + 1] - s(x[-1]) for i, s in system.prescribed)])
 
 
@@ -114,17 +114,31 @@ def momenta(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[Ar
     return leaving - at_start, arriving + at_end
 
 
+def balance(values: tuple[Array, Array], p: Array, multipliers: Array, rows: Array) -> Array:
+    r"""Return what $P = p + \sum_j \mu_j A^j$, F = 0 lack, of values of P and F."""
+    P, F = values
+    return jnp.concatenate([P - p - multipliers @ rows, F])
+
+
+def step_balance(system: LagrangeDAlembert, state: tuple[Array, Array], z: Array, h: Array) -> Array:
+    """Return what vanishes if z, a velocity with multipliers, is the step from a place with a momentum."""
+    (x, p), v = state, z[: system.dimension]
+    values = momenta(system, x, v, h)[0], discrete_constraints(system, x, v, h)
+    return balance(values, p, z[system.dimension :], forms(system, x))
+
+
+def arrival(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[Array, Array]:
+    """Return the place and the momentum after a step."""
+    return ahead(system, x, v, h), momenta(system, x, v, h)[1]
+
+
 def step_residual(
     system: LagrangeDAlembert, state: tuple[Array, Array], z: Array, after: tuple[Array, Array], force: Array, h: Array
 ) -> Array:
-    """Return what vanishes if z, a velocity with multipliers, is the step between two states under a constant force.
-
-    A state is a place and the momentum of its node; nothing is solved for.
-    """
-    (x, p), (end, following), v, kick = state, after, z[: system.dimension], h / 2 * force
-    leaving, arriving = momenta(system, x, v, h)
-    root = leaving - kick - p - z[system.dimension :] @ forms(system, x), discrete_constraints(system, x, v, h)
-    return jnp.concatenate([*root, arriving + kick - following, ahead(system, x, v, h) - end])
+    """Return what vanishes if z is the step between two states, places with momenta, under a constant force."""
+    (x, p), (end, following), kick = state, after, h / 2 * force
+    place, arriving = arrival(system, x, z[: system.dimension], h)
+    return jnp.concatenate([step_balance(system, (x, p + kick), z, h), arriving + kick - following, place - end])
 
 
 def _impulses(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[Array, Array]:

@@ -6,8 +6,9 @@ Along a motion $\dot E = f\cdot v + \lambda\cdot b - \partial L/\partial t$: the
 constraints $A v = b$ (of driven joints what their motors give), and what a Lagrangian of the time adds.
 """
 
+import dataclasses
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple, cast
 
 import jax
 import jax.numpy as jnp
@@ -20,11 +21,12 @@ from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import compiled
 from nonholo.lagrange_dalembert._discretization import checked_state
 from nonholo.lagrange_dalembert._equations import solve_bordered
-from nonholo.lagrange_dalembert._functions import configurations, in_double, places, places_of, room
+from nonholo.lagrange_dalembert._functions import configurations, in_blocks, in_double, places, room
 from nonholo.lagrange_dalembert._orbit import ORBITS
 from nonholo.orbit import times_within
 
 _PROJECTIONS, _NEAR = 50, 1e-14  # corrections of a place, at most, and what the last one may be beside it
+_QUADRATIC = 1e-9  # what masses may change with velocities, relative
 _REMEDY = "Pass the configuration, row by row, then the velocity."
 
 
@@ -32,7 +34,7 @@ def acceleration(system: Any, q: Array, v: Array, extra: Any = 0.0) -> tuple[Arr
     r"""Return the rate of v and the forces $\lambda$, from the equations and $\tfrac{d}{dt}(A v - b) = 0$.
 
     Args:
-        system: What moves.
+        system: The system.
         q: Where it is.
         v: Its velocity.
         extra: A force beside those of the system: of a table the row that acts.
@@ -88,7 +90,7 @@ def refuse_table(owner: str, system: Any) -> None:
 
 def vector_field(system: Any) -> Callable[[Array, Float[Array, "size"]], Float[Array, "size"]]:
     """Return the equations of motion as a function (time, state) -> derivative; `nonholo.vector_field` says of what."""
-    places_of(system)  # refused by the system of a store without functions
+    _ = system.places  # refused by the system of a store without functions
     refuse_table("vector_field", system)
     size = int(np.prod(system.shapes[0]) + np.prod(system.shapes[1]))
 
@@ -118,30 +120,112 @@ State = tuple[Array, Array]
 """Configuration and velocity."""
 
 _FINE, _COARSE = 1e-14, 1e-10  # relative errors of a step, by series and by diffrax
-_ROWS = 1024  # states whose powers are computed at once: one size, one compilation
 
 
-def flow(
-    system: Any, *, configuration: Any, times: Any, rtol: float | None, atol: float, project: bool, **starts: Any
-) -> Any:
+def flow(system: Any, *, rtol: float | None, atol: float, **start: Any) -> Any:
     """Check the arguments, solve the equations and return the orbit."""
+    time, first = _opening(system, **start)
+    return solve(system, first, time, rtol, atol)
+
+
+def _opening(
+    system: Any, *, configuration: Any, times: Any, project: bool, **starts: Any
+) -> tuple[Float[np.ndarray, "K"], State]:
+    """Return the checked times of a flow and its first place and velocity."""
     refuse_table("flow", system)
     time = flow_times(times)
-    first = checked_state(system, configuration, starts, time[0], project=project)
-    return solve(system, first, time, rtol, atol)
+    return time, checked_state(system, configuration, starts, time[0], project=project)
+
+
+class Flights(NamedTuple):
+    """The flows from states of a motion.
+
+    Attributes:
+        system: What moves.
+        errors: Relative and absolute errors of a step.
+    """
+
+    system: Any
+    errors: tuple[float | None, float]
+
+    def fly(self, there: Any, elapsed: np.ndarray) -> tuple[Any, Outcome, str]:
+        """Return the flow from a state up to times since then where it is looked at, the outcome and what it says."""
+        times = float(there.time[0]) + np.union1d(0.0, elapsed)
+        try:
+            orbit, outcome = solve(self.system, _state_of(there), times, *self.errors), Outcome.successful
+        except OutcomeError as early:
+            orbit, outcome = cast(Any, early.orbit), early.outcome
+        looks = orbit.solution.looks()
+        return orbit.at(np.union1d(orbit.time, looks[looks < orbit.time[-1]])), outcome, ""
+
+    def joined(self, begins: list[Any], until: float) -> dict[str, Any]:
+        """Return the motion from several states, each up to the next one."""
+        nodes = np.array([*(each.time[0] for each in begins), until])
+        spans = zip(begins, nodes[:-1], nodes[1:], strict=True)
+        flows = [solve(self.system, _state_of(each), np.unique(span), *self.errors) for each, *span in spans]
+        return {"solution": Broken(nodes, tuple(flow.solution for flow in flows))}
+
+    def successful(self, orbit: Any, time: np.ndarray) -> Any:
+        """Return a flow, or raise if it ended early."""
+        return _successful(orbit, time, _checked_errors(*self.errors))
+
+
+class Broken(NamedTuple):
+    """A motion that begins again at times.
+
+    Attributes:
+        nodes: These times, and the last one.
+        solutions: The motions from them.
+    """
+
+    nodes: np.ndarray
+    solutions: tuple[Any, ...]
+
+    def __call__(self, times: np.ndarray) -> list[np.ndarray]:
+        """Return places and velocities at increasing times."""
+        owner = np.clip(np.searchsorted(self.nodes, times, "right") - 1, 0, len(self.solutions) - 1)
+        parts = [self.solutions[k](times[owner == k]) for k in np.unique(owner)]
+        return [np.concatenate(column) for column in zip(*parts, strict=True)]
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """The first and the last time."""
+        return float(self.nodes[0]), float(self.nodes[-1])
+
+
+def flights(
+    system: Any, *, rtol: float | None, atol: float, **start: Any
+) -> tuple[Flights, Float[np.ndarray, "K"], Any]:
+    """Check the arguments; return the flows of a system, the times and the first state."""
+    (time, (x, v)), _ = _opening(system, **start), _checked_errors(rtol, atol)
+    first = _orbit(system, time[:1], [x[None], v[None]], Outcome.successful, None)
+    return Flights(system, (rtol, atol)), time, first
+
+
+def _checked_errors(rtol: float | None, atol: float) -> tuple[float, float]:
+    return flow_tolerances(_COARSE if rtol is None else rtol, atol)
+
+
+def _state_of(there: Any) -> State:
+    return places(there.system, there.configuration, there.time)[0], there.body_velocity[0]
 
 
 def solve(system: Any, first: State, time: Float[np.ndarray, "K"], rtol: float | None, atol: float = 1e-12) -> Any:
     """Return the orbit from a checked place and velocity."""
-    errors = flow_tolerances(_COARSE if rtol is None else rtol, atol)
+    errors = _checked_errors(rtol, atol)
     motion = compiled.flow(system, first, time, _FINE if rtol is None else errors[0])
     rows, solution = motion or room("_integration").flow(system, first, time, errors)
     count = len(rows[0])
     outcome = Outcome.successful if count == len(time) else Outcome.not_converged
-    orbit = _orbit(system, time[:count], rows, outcome, solution)
-    if outcome != Outcome.successful:
+    return _successful(_orbit(system, time[:count], rows, outcome, solution), time, errors)
+
+
+def _successful(orbit: Any, time: np.ndarray, errors: tuple[float, float]) -> Any:
+    """Return a flow, or raise if it ended early."""
+    count = len(orbit)
+    if orbit.outcome != Outcome.successful:
         where = f"Flow from time {time[count - 1]:g} to {time[count]:g} (rtol {errors[0]:g}, atol {errors[1]:g})"
-        raise OutcomeError(outcome, where, orbit)
+        raise OutcomeError(orbit.outcome, where, orbit)
     return orbit
 
 
@@ -150,6 +234,40 @@ def at(orbit: Any, times: Any) -> Any:
     time, order = times_within(orbit.span, times)
     rows = [column[np.argsort(order)] for column in orbit.solution(time[order])]
     return _orbit(orbit.system, time, rows, orbit.outcome, orbit.solution)
+
+
+def reflection(orbit: Any, normal: Float[np.ndarray, "n"], bounce: float, direction: int) -> Any:
+    r"""Return one state after the impulse of a wall along a covector; None where the motion is not toward it.
+
+    The velocity w of its momentum becomes w + j u, the momentum p + j n: $M u - A^T\lambda = n$, A u = 0.
+    """
+    system, x = orbit.system, places(orbit.system, orbit.configuration, orbit.time)[0]
+    w, push = in_double(_answer, system, x, orbit.momentum[0], normal)
+    rate = normal @ w
+    if not rate * direction > 0:
+        return None
+    impulse = -(1 + bounce) * rate / (normal @ push)
+    p, v = orbit.momentum + impulse * normal, (w + impulse * push)[None]
+    if orbit.is_discrete:
+        return dataclasses.replace(orbit, momentum=p, body_velocity=v)
+    return dataclasses.replace(_orbit(system, orbit.time, [x[None], v], orbit.outcome, orbit.solution), step=orbit.step)
+
+
+def _answer(system: Any, x: Array, p: Array, normal: Array) -> tuple[Array, Array]:
+    """Return the velocity of a momentum, and how velocities change with an impulse along a covector."""
+    w = equations.inverse_legendre(system, x, p)
+    return w, bordered_solution(system, x, w, normal, jnp.zeros(system.constraints))[0]
+
+
+def refuse_varying_mass(where: str, orbit: Any) -> None:
+    """Refuse impacts where the mass matrix depends on the velocity: the rule of reflection does not keep the energy."""
+    system, x = orbit.system, places(orbit.system, orbit.configuration, orbit.time)[0]
+    rest, fast = (
+        in_double(equations.mass_matrix, system, x, v) for v in (0 * orbit.body_velocity[0], 1 + orbit.body_velocity[0])
+    )
+    if np.abs(fast - rest).max() > _QUADRATIC * np.abs(rest).max():
+        got = "another mass matrix at another velocity"
+        raise error(where, "be of a Lagrangian quadratic in velocities", got, "Leave the reset out.")
 
 
 def _orbit(system: Any, time: np.ndarray, rows: list[np.ndarray], outcome: Outcome, solution: Any) -> Any:
@@ -177,13 +295,10 @@ def work(orbit: Any) -> Float[np.ndarray, "K"]:
 
 def _powers(system: Any, *columns: Float[np.ndarray, "K n"]) -> Float[np.ndarray, "K"]:
     """Return the power on each state: of places, momenta and rows of a table."""
-    missing = -len(columns[0]) % _ROWS
-    full_columns = [np.concatenate([rows, np.repeat(rows[-1:], missing, axis=0)]) for rows in columns]
-    blocks = zip(*(rows.reshape(-1, _ROWS, rows.shape[1]) for rows in full_columns), strict=True)
-    return np.concatenate([np.empty(0), *(in_double(_power, system, *block) for block in blocks)])[: len(columns[0])]
+    return in_blocks(_power, system, *columns)[0]
 
 
-def _power(system: Any, x: Array, p: Array, row: Array) -> Array:
+def _power(system: Any, x: Array, p: Array, row: Array) -> tuple[Array]:
     def one(x: Array, p: Array, row: Array) -> Array:
         v = equations.inverse_legendre(system, x, p)
         force = row + equations.applied(system, x, v)
@@ -191,4 +306,4 @@ def _power(system: Any, x: Array, p: Array, row: Array) -> Array:
         time_slope = jax.grad(equations.lagrangian, argnums=1)(system, x, v)[-1]
         return force @ v + acceleration(system, x, v, row)[1] @ rates - time_slope
 
-    return jax.vmap(one)(x, p, jnp.asarray(row))
+    return (jax.vmap(one)(x, p, jnp.asarray(row)),)

@@ -23,6 +23,8 @@ from nonholo.base.checks import array, error, instance, is_traced, name, number,
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float, Int
 
+ROWS = 1024
+"""Saved states of one call of JAX: one size of table, one compilation."""
 _END = 120  # letters of either end of a long message
 
 
@@ -67,7 +69,7 @@ def check_value(
 ) -> None:
     """Refuse a function whose value has another shape, or that is to be differentiated, as a scalar is, and cannot be.
 
-    `called` says what arrays it is called with.
+    `called` describes the arrays that it is called with.
     """
     result_shape = traced_shape(where, function, arguments, of)
     if result_shape != shape:
@@ -146,7 +148,7 @@ class TwoPoint:
     is_of_one_step: ClassVar[bool] = True
 
     def __call__(self, q: Array, q_next: Array, time_step: Array, *parameters: Any) -> Array:
-        """Return the value, whatever the time step."""
+        """Return the value, which does not depend on the time step."""
         del time_step
         return self.function(q, q_next, *parameters)
 
@@ -165,7 +167,7 @@ def with_parameters(function: Any, others: int) -> Any:
 
 
 def _binds(function: Callable[..., Any], count: int) -> bool:
-    """Tell whether a function takes this many arguments; a builtin need not tell, and takes all."""
+    """Return whether a function takes this many arguments; a builtin need not tell, and takes all."""
     try:
         inspect.signature(function).bind(*range(count))
     except TypeError:
@@ -289,11 +291,6 @@ def room(name: str) -> Any:
     return importlib.import_module(f"nonholo.lagrange_dalembert.{name}")
 
 
-def places_of(system: Any) -> Any:
-    """Return where a system moves; one of a store, which has no functions, raises the error that says so."""
-    return system.places
-
-
 def configurations(system: Any, places: Any) -> Any:
     """Return the configurations of places: those of driven systems have the time in a last column."""
     return places[:, :-1] if system.is_driven else places
@@ -318,9 +315,18 @@ def in_double(function: Callable[..., Any], system: Any, *arguments: Any) -> Any
     return result
 
 
+def in_blocks(function: Callable[..., Any], system: Any, *columns: np.ndarray) -> list[np.ndarray]:
+    """Call a JAX function of a system and many states in blocks of one size, so that it is compiled once."""
+    count = len(columns[0])
+    missing = (-count % ROWS) or (0 if count else ROWS)
+    rows = [np.concatenate([x, np.broadcast_to(x[-1] if count else 0.0, (missing, *x.shape[1:]))]) for x in columns]
+    parts = [in_double(function, system, *(x[i : i + ROWS] for x in rows)) for i in range(0, len(rows[0]), ROWS)]
+    return [np.concatenate(column)[:count] for column in zip(*parts, strict=True)]
+
+
 @contextlib.contextmanager
 def compiling(system: Any) -> Iterator[None]:
-    """Say on standard error what is waited for, once for a system: JAX compiles at the first call of each function."""
+    """Report a wait on standard error, once for a system: JAX compiles at the first call of each function."""
 
     def say() -> None:
         if system not in _announcements:

@@ -88,6 +88,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
     prescribed: ClassVar[tuple[()]] = ()
     force: ClassVar[None] = None
     applied: ClassVar[None] = None
+    table: ClassVar[None] = None
     constraint_velocities: ClassVar[None] = None
 
     def __post_init__(self) -> None:
@@ -134,12 +135,17 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
         """The name of the argument that gives the energy."""
         return "discrete_lagrangian" if self.lagrangian is None else "lagrangian"
 
+    @functools.cached_property
+    def plain(self) -> Any:
+        """The system as the equations see it: Lagrangians of the pose and the velocity or displacement."""
+        plain = self._with_fields(lagrangian=self._lagrangian, discrete_lagrangian=self._discrete_lagrangian)
+        vars(plain)["plain"] = plain
+        return plain
+
     def bound(self, *numbers: Any) -> Any:
-        """Return the system as the equations see it: Lagrangians of the pose and the velocity or displacement."""
+        """Return the system as the equations see it: it has no parameters."""
         del numbers
-        if getattr(self.discrete_lagrangian, "__func__", None) is GroupLagrangeDAlembert._discrete_lagrangian:
-            return self  # a bound one
-        return self._with_fields(lagrangian=self._lagrangian, discrete_lagrangian=self._discrete_lagrangian)
+        return self.plain
 
     def _lagrangian(self, g: Array, w: Array) -> Array:
         r"""Return $l(\omega) - U(g)$ with the given l, or the quadratic form that belongs to l_d."""

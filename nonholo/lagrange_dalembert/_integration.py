@@ -30,7 +30,7 @@ class Pieces(NamedTuple):
     """A solved motion: its states, from each of which it can be solved for a piece of time.
 
     Attributes:
-        system: What moves.
+        system: The system.
         times: Of the states.
         rows: Places and velocities.
         errors: Relative and absolute.

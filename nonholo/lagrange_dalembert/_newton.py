@@ -22,7 +22,7 @@ _NEAR_FOLD = 0.05  # of the regularity at the start of the path, where a continu
 
 
 class Root(NamedTuple):
-    """A velocity, the impulse of constraint, and how far both can be trusted."""
+    """A velocity, the impulse of constraint, and the trust in both."""
 
     velocity: Array
     multipliers: Array
@@ -36,7 +36,7 @@ class _Path(NamedTuple):
 
     Attributes:
         count: Number of attempts.
-        s: How far the residual at the start has been taken away.
+        s: The part of the residual at the start that has been taken away.
         stride: Step of s that is tried next.
         root: The root at s.
         regularity: That at the start.
@@ -51,12 +51,6 @@ class _Path(NamedTuple):
     elsewhere: Array
 
 
-Matrix = Callable[[Array], tuple[Array, Scaled, tuple[Array, Array]]]
-"""Maps a velocity to the scaled matrix of the equations, its units, and the values (P, F)."""
-
-Correction = Callable[[Array, Array, Array], tuple[Array, Array, Array, Array, Array]]
-
-
 def orientation(system: Any, q: Array, v: Array, h: Array) -> tuple[Array, Array]:
     """Return the sign of the determinant of the scaled regularity matrix and its least singular value."""
     matrix, _, _ = newton_matrix(system, q, v, h, equations.mass_matrix(system, q, v))
@@ -67,22 +61,53 @@ def solve(
     system: Any, h: Array, q: Array, p: Array, near: Array, guess: Array, sign: Array
 ) -> tuple[Array, Array, Array]:
     """Return velocity, multipliers and outcome of the root with this orientation next to `near`."""
-    rows = equations.forms(system, q)
-    return root(of_step(system, q, near, h), rows, p, near, guess, sign, rounding_of_step(system, q, h))
+    return root(of_step(system, q, p, near, h), near, guess, sign)
 
 
-def rounding_of_step(system: Any, q: Array, h: Array) -> Array | None:
-    """Return by what the rounding of a place moves the velocity of a step to a holonomic constraint, over `TOLERANCE`.
+class Equations(NamedTuple):
+    r"""The equations $P(v) = p + \sum_j \mu_j A^j$, F(v) = 0.
 
-    Newton's corrections of short steps, and of short parts of steps, do not become smaller.
+    Attributes:
+        matrix: Maps a velocity to their scaled matrix, its units, and the values (P, F).
+        rows: A.
+        p: The momentum.
+        rounding: By what the rounding of a place moves the velocity of a step to a holonomic constraint, over
+            `TOLERANCE`: Newton's corrections of short steps, and of short parts of steps, do not become smaller.
     """
-    return None if system.holonomic is None else _ROUNDING / TOLERANCE * jnp.abs(q[: system.dimension]) / h
+
+    matrix: Callable[[Array], tuple[Array, Scaled, tuple[Array, Array]]]
+    rows: Array
+    p: Array
+    rounding: Array | None = None
+
+    def in_units(self, v: Array, multipliers: Array, offset: Array) -> tuple[Array, Array, Scaled, Array]:
+        """Return the scaled matrix, what the scaled equations less an offset lack, units and the size of velocities."""
+        n, (matrix, units, values) = len(self.p), self.matrix(v)
+        residual = equations.balance(values, self.p, multipliers, self.rows) - offset
+        scaled_residual = jnp.concatenate([residual[:n] * units.velocity, residual[n:] / units.constraints])
+        size = jnp.linalg.norm(v / units.velocity) + jnp.linalg.norm(self.p * units.velocity)
+        if self.rounding is not None:
+            size = size + jnp.linalg.norm(self.rounding / units.velocity)
+        return matrix, scaled_residual, units, size
+
+    def correction(self, v: Array, multipliers: Array, offset: Array) -> tuple[Array, Array, Array, Array, Array]:
+        """Return Newton's correction of both, its relative size, the orientation and the regularity."""
+        n, (matrix, scaled_residual, units, scale) = len(self.p), self.in_units(v, multipliers, offset)
+        factors, pivots = jax.scipy.linalg.lu_factor(matrix)
+        inverse = jax.scipy.linalg.lu_solve((factors, pivots), jnp.eye(len(scaled_residual)))
+        step = -(inverse @ scaled_residual)
+        swaps = jnp.sum(pivots != jnp.arange(len(scaled_residual)))
+        sign = jnp.prod(jnp.sign(jnp.diag(factors))) * (1 - 2 * (swaps % 2))
+        size = jnp.linalg.norm(step[:n])
+        relative = jnp.where(size == 0, 0.0, size / scale)
+        return step[:n] * units.velocity, step[n:] / units.forms, relative, sign, 1 / jnp.linalg.norm(inverse)
 
 
-def of_step(system: Any, q: Array, near: Array, h: Array) -> Matrix:
-    """Return the equations of a step from q, in the units of the velocity `near`."""
+def of_step(system: Any, q: Array, p: Array, near: Array, h: Array) -> Equations:
+    """Return the equations of a step from q with a momentum, in the units of the velocity `near`."""
     kinetic = equations.mass_matrix(system, q, near)
-    return lambda v: newton_matrix(system, q, v, h, kinetic)
+    rounding = None if system.holonomic is None else _ROUNDING / TOLERANCE * jnp.abs(q[: system.dimension]) / h
+    return Equations(lambda v: newton_matrix(system, q, v, h, kinetic), equations.forms(system, q), p, rounding)
 
 
 def newton_matrix(
@@ -99,25 +124,24 @@ def newton_matrix(
     return matrix, units, momentum_and_constraint
 
 
-def of_node(system: Any, q: Array, _near: Array, _h: Array) -> Matrix:
+def of_node(system: Any, q: Array, p: Array, _near: Array, _h: Array) -> Equations:
     """Return the equations of the velocity that belongs to a momentum."""
 
     def matrix_at(v: Array) -> tuple[Array, Scaled, tuple[Array, Array]]:
-        matrix, units = equations.acceleration_matrix(system, q, v)
-        return matrix, units, (equations.momentum(system, q, v), equations.constraint(system, q, v))
+        values = equations.momentum(system, q, v), equations.constraint(system, q, v)
+        return *equations.acceleration_matrix(system, q, v), values
 
-    return matrix_at
+    return Equations(matrix_at, equations.forms(system, q), p)
 
 
-def root(
-    matrix: Matrix, rows: Array, p: Array, near: Array, guess: Array, sign: Array, rounding: Array | None = None
-) -> tuple[Array, Array, Array]:
-    r"""Solve P = p + multipliers @ rows, F = 0; return velocity, multipliers and outcome.
+def root(system: Equations, near: Array, guess: Array, sign: Array) -> tuple[Array, Array, Array]:
+    r"""Solve equations; return velocity, multipliers and outcome.
 
-    A loop of attempts, so that the equations are compiled once: from the guess; at `near`, which is the root of the
+    A loop of attempts, so that they are compiled once: from the guess; at `near`, which is the root of the
     equations less their residual there; then along $R(x) = (1 - s) R(x_0)$ from s = 0 to 1.
     """
-    correction, offset = _correction(matrix, rows, p, near, rounding)
+    none = jnp.zeros(len(system.rows))
+    offset = equations.balance(system.matrix(near)[2], system.p, none, system.rows)
 
     def attempt(path: _Path) -> _Path:
         fast, first = path.count == 0, path.count == 1
@@ -126,7 +150,7 @@ def root(
         left = jnp.where(
             ahead == 1, 0.0, (1 - ahead) * offset
         )  # which need not be finite, if the guess leads to a root
-        trial = _newton(correction, begin, path.root.multipliers, left)
+        trial = _newton(system, begin, path.root.multipliers, left)
         good = trial.converged & (trial.sign == sign) & ~first
         best = jax.tree.map(lambda new, old: jnp.where(good, new, old), trial, path.root)
         stride = jnp.where(good, 2 * path.stride, path.stride / 2)
@@ -140,7 +164,7 @@ def root(
         )
 
     zero, one, no = jnp.zeros(()), jnp.ones(()), jnp.asarray(False)
-    start = Root(near, jnp.zeros((rows.shape[0],)), no, zero, one)
+    start = Root(near, none, no, zero, one)
     path_start = _Path(jnp.asarray(0), zero, 0.25 * one, start, one, no)
     path = jax.lax.while_loop(lambda path: (path.s < 1) & (path.stride > _SMALLEST), attempt, path_start)
     finite = (path.count == 1) | (jnp.all(jnp.isfinite(offset)) & jnp.isfinite(path.regularity))
@@ -148,7 +172,7 @@ def root(
 
 
 def _outcome(path: _Path) -> Array:
-    """Say what ended a path if it did not arrive."""
+    """Return what ended a path if it did not arrive."""
     singular = path.root.regularity < SINGULAR
     is_folded = (path.root.regularity < _NEAR_FOLD * path.regularity) | singular
     code = jnp.where(path.elsewhere, int(Outcome.branch_unverified), int(Outcome.not_converged))
@@ -156,52 +180,10 @@ def _outcome(path: _Path) -> Array:
     return jnp.where((path.s == 1) & ~singular, int(Outcome.successful), code)
 
 
-def scaled_equations(
-    matrix_at: Matrix,
-    rows: Array,
-    p: Array,
-    v: Array,
-    multipliers: Array,
-    offset: Array,
-    rounding: Array | None,
-) -> tuple[Array, Array, Scaled, Array]:
-    """Return the scaled matrix, what the scaled equations less an offset miss, the units and the size of velocities."""
-    matrix, units, (P, F) = matrix_at(v)
-    n = len(p)
-    residual = jnp.concatenate([P - p - multipliers @ rows, F]) - offset
-    scaled_residual = jnp.concatenate([residual[:n] * units.velocity, residual[n:] / units.constraints])
-    size = jnp.linalg.norm(v / units.velocity) + jnp.linalg.norm(p * units.velocity)
-    if rounding is not None:
-        size = size + jnp.linalg.norm(rounding / units.velocity)
-    return matrix, scaled_residual, units, size
-
-
-def _correction(
-    matrix_at: Matrix, rows: Array, p: Array, near: Array, rounding: Array | None
-) -> tuple[Correction, Array]:
-    """Return the Newton correction of the equations less an offset, and the residual at the velocity `near`."""
-    n = len(p)
-
-    def correct(v: Array, multipliers: Array, offset: Array) -> tuple[Array, Array, Array, Array, Array]:
-        matrix, scaled_residual, units, scale = scaled_equations(matrix_at, rows, p, v, multipliers, offset, rounding)
-        factors, pivots = jax.scipy.linalg.lu_factor(matrix)
-        inverse = jax.scipy.linalg.lu_solve((factors, pivots), jnp.eye(len(scaled_residual)))
-        step = -(inverse @ scaled_residual)
-        swaps = jnp.sum(pivots != jnp.arange(len(scaled_residual)))
-        sign = jnp.prod(jnp.sign(jnp.diag(factors))) * (1 - 2 * (swaps % 2))
-        size = jnp.linalg.norm(step[:n])
-        relative = jnp.where(size == 0, 0.0, size / scale)
-        regularity = 1 / jnp.linalg.norm(inverse)
-        return step[:n] * units.velocity, step[n:] / units.forms, relative, sign, regularity
-
-    _, _, (P, F) = matrix_at(near)
-    return correct, jnp.concatenate([P - p, F])
-
-
-def _newton(correction: Correction, v: Array, multipliers: Array, offset: Array) -> Root:
+def _newton(system: Equations, v: Array, multipliers: Array, offset: Array) -> Root:
     def body(carry: tuple[Array, Array, Root]) -> tuple[Array, Array, Root]:
         i, before, root = carry
-        dv, dm, size, sign, regularity = correction(root.velocity, root.multipliers, offset)
+        dv, dm, size, sign, regularity = system.correction(root.velocity, root.multipliers, offset)
         is_small = size <= TOLERANCE
         contracts = (i == 0) | (size <= CONTRACTION * before)
         after = Root(root.velocity + dv, root.multipliers + dm, is_small, sign, regularity)

@@ -55,15 +55,44 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     has_poses: ClassVar[bool] = True
     is_compact: ClassVar[bool] = False
     is_measured: ClassVar[bool] = False
+    momenta: ClassVar[tuple[str, ...]] = ("momentum", "body_velocity")
     _labels: ClassVar[Labels]
+
+    def __post_init__(self) -> None:
+        """Impulses of steps with impacts are not known."""
+        super().__post_init__()
+        if self.events is not None and self.is_discrete and self.has_impacts.any():
+            cut = self.has_impacts[: len(self.multipliers), None]
+            object.__setattr__(self, "multipliers", np.where(cut, np.nan, self.multipliers))
 
     @abc.abstractmethod
     def _configurations(self) -> str:
-        """Say what configurations are."""
+        """Return in words what configurations are."""
 
     def __repr__(self) -> str:
         span = f", time {self.time[0]:g} to {self.time[-1]:g}" if len(self) else ""
         return f"<{type(self).__name__}: {len(self)} states of {self._configurations()}{span}, {self.outcome}>"
+
+    def as_start(self) -> First:
+        """Return the momentum, the place and the velocity of the first state."""
+        return First((self.momentum[0], places(self.system, self.configuration, self.time)[0], self.body_velocity[0]))
+
+    def beside(self, offsets: Float[np.ndarray, "K n"]) -> Self:
+        """Return the states at places beside theirs, on a group by body directions."""
+        return dataclasses.replace(self, configuration=self.system.places.beside(self.configuration, offsets))
+
+    def with_step(self, ahead: Self, outcome: Outcome) -> Self:
+        """Return one state as that of a run that began there; a run that failed goes no further from there."""
+        del outcome
+        return dataclasses.replace(ahead, time=self.time, step=self.step)
+
+    def reflection(self, normal: Float[np.ndarray, "n"], bounce: float, direction: int) -> Self | None:
+        """Return one state after the impulse of a wall along a covector; None where the motion is not toward it."""
+        return room("_flow").reflection(self, normal, bounce, direction)
+
+    def refuse_reset(self, where: str) -> None:
+        """Refuse Lagrangians whose masses depend on velocities: Newton's rule does not keep their energy."""
+        room("_flow").refuse_varying_mass(where, self)
 
     @property
     def motion(self) -> Any:
@@ -87,10 +116,11 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         return False if self.is_discrete else None
 
     def rows(self) -> dict[str, np.ndarray]:
-        """Return the arrays with a row for each state; impulses that are not known are NaN."""
+        """Return the arrays with a row for each state; impulses that are not known are NaN, in cut steps zero."""
         missing = np.full((len(self) - len(self.multipliers), self.multipliers.shape[1]), np.nan)
+        impulses = np.where(self.has_impacts[: len(self.multipliers), None], 0.0, self.multipliers)
         arrays = {name: rows for name in _ROWS if (rows := getattr(self, name)) is not None}
-        return arrays | {"multipliers": np.concatenate([self.multipliers, missing])}
+        return arrays | {"multipliers": np.concatenate([impulses, missing])}
 
     def of_rows(self, rows: dict[str, np.ndarray]) -> Self:
         """Return the orbit of such arrays, without the impulse of the last state if it is not known."""
@@ -106,8 +136,8 @@ class AbstractCoordinateOrbit(AbstractOrbit):
 
         $$ \dot W = f\cdot v + \lambda\cdot b - \partial L/\partial t: $$
 
-        that of the force, of moving constraints and driven joints, and of a Lagrangian of the time. The energy less
-        this work is constant up to an error of order 2 in the time between states.
+        the power of the force, of moving constraints and driven joints, and of a Lagrangian of the time. The energy
+        less this work is constant up to an error of order 2 in the time between states.
         """
         if not self.system.has_functions:
             return np.full(len(self), np.nan if self.system.is_driven else 0.0)
@@ -130,9 +160,9 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     def tangent(self) -> Float[np.ndarray, "L d d"]:
         r"""Derivative of each state by the one before, in orthonormal bases of the admissible changes of (q, v).
 
-        Those of (q, v) that keep $A(q)v = b$, of a map the discrete constraint, and m holonomic ones, d = 2 n - s - m;
-        on a group $\xi$ of $g\,e^\xi$ stands for q. Of a map by the implicit function of the step, of a flow by its
-        equation of variation.
+        Admissible changes of (q, v) keep $A(q)v = b$, of a map the discrete constraint, and m holonomic ones, d = 2 n -
+        s - m; on a group $\xi$ of $g\,e^\xi$ stands for q. Of a map by the implicit function of the step, of a flow by
+        its equation of variation.
         """
         return room("_tangents").tangent_map(self)
 
@@ -148,7 +178,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         if self.solution is None:
             got = f"an orbit in coordinates with {len(self)} states; not {shown(times)}"
             remedy = "Slice it; solve a flow from a file again."
-            raise error("Orbit.at(...)", "be asked of a flow", got, remedy)
+            raise error("Orbit.at(...)", "be called on a flow", got, remedy)
         return room("_flow").at(self, times)
 
     def to_dataset(self) -> Any:
@@ -188,17 +218,18 @@ class CoordinateOrbit(AbstractCoordinateOrbit):
         body_velocity: The velocity; for a discrete orbit displacement / time_step, shape (K, n).
         momentum: $P_k = -D_1 L_d(q_k, q_{k+1})$, for a flow $\partial L/\partial v$, shape (K, n).
         multipliers: Impulses $\lambda$ in $P_{k+1} - P^+_k = \sum_j \lambda_j A^j(q_{k+1})$ of the steps from the saved
-            states but the last, shape (K - 1, s); for a flow the forces at its times, shape (K, s).
+            states but the last, shape (K - 1, s), NaN in steps with impacts, where datasets and stores have zero; for a
+            flow the forces at its times, shape (K, s).
         energy: $-\partial L_d/\partial h$, for a flow $v\cdot\partial L/\partial v - L$, shape (K,).
         constraint_residual: Largest $|F_j(q_k, q_{k+1})|$, of holonomic constraints $|\Phi_j(q_{k+1})|/h$; for a flow
             $|A^j(q) v|$, shape (K,).
         outcome: How the run ended.
-        system: What moves.
+        system: The system.
         time_step: h; None for a flow.
         save_every: Steps between saved states.
-        events: What `events=` of the run found, an `EventLog`; None without.
-        step: The number of the step of each state, from 0 at the start of the run, whatever rows are taken, shape (K,);
-            of a state within a step that of its beginning. Of a flow it is the number of the requested time.
+        events: Crossings of `events=`, an `EventLog`; None without.
+        step: The number of the step of each state, counted from 0 at the start of the run, for all rows, shape (K,); of
+            a state within a step the number of its beginning. Of a flow it is the number of the requested time.
 
     Example:
         >>> from nonholo.lagrange_dalembert import LagrangeDAlembert
@@ -242,16 +273,17 @@ class GroupOrbit(AbstractCoordinateOrbit):
         body_velocity: The body velocity; for a discrete orbit $\log(W_k)/h$, shape (K, dim).
         momentum: $P_k = P(W_k)$, for a flow $\partial l/\partial\omega$, shape (K, dim).
         multipliers: Impulses $\lambda$ in $P_{k+1} - \mathrm{Ad}^*_{W_k}P_k = \sum_j\lambda_j a^j(g_{k+1})$ of the
-            steps from the saved states but the last, shape (K - 1, s); for a flow the forces at its times, (K, s).
+            steps from the saved states but the last, shape (K - 1, s), NaN in steps with impacts, where datasets and
+            stores have zero; for a flow the forces at its times, (K, s).
         energy: $-\partial l_d/\partial h$ at $W_k$, for a flow $\omega\cdot\partial l/\partial\omega - l$, shape (K,).
         constraint_residual: Largest $|F_j(g_k, W_k)|$, for a flow $|a^j(g)\omega|$, shape (K,).
         outcome: How the run ended.
-        system: What moves.
+        system: The system.
         time_step: h; None for a flow.
         save_every: Steps between saved states.
-        events: What `events=` of the run found, an `EventLog`; None without.
-        step: The number of the step of each state, from 0 at the start of the run, whatever rows are taken, shape (K,);
-            of a state within a step that of its beginning. Of a flow it is the number of the requested time.
+        events: Crossings of `events=`, an `EventLog`; None without.
+        step: The number of the step of each state, counted from 0 at the start of the run, for all rows, shape (K,); of
+            a state within a step the number of its beginning. Of a flow it is the number of the requested time.
 
     Example:
         >>> from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, mass_tensor_lagrangian
@@ -268,9 +300,11 @@ class GroupOrbit(AbstractCoordinateOrbit):
     }
 
     @property
-    def space(self) -> AbstractMatrixGroup:
+    def group(self) -> AbstractMatrixGroup:  # type: ignore[override]
         """The group."""
         return self.system.group
+
+    space = group
 
     def _names(self) -> dict[str, Any]:
         return {}
@@ -327,7 +361,7 @@ class CoordinateFlow(CoordinateMotion):
     """The flow of a system in coordinates or on a group, as the motion of its orbits.
 
     Attributes:
-        system: What moves.
+        system: The system.
         begins: The first time, where one is set.
 
     Example:

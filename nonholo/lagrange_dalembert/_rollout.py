@@ -79,8 +79,8 @@ def roll(
         near, last = before
         z, code = step_root(family, (numbers, h, x, p + push), (near, 2 * near - last, sign))
         v = z[:n]
-        after = equations.ahead(system, x, v, h), equations.momenta(system, x, v, h)[1] + push
-        return _Node(x, (v, near), after, code, jnp.sum(z), control)
+        after, arriving = equations.arrival(system, x, v, h)
+        return _Node(x, (v, near), (after, arriving + push), code, jnp.sum(z), control)
 
     rows, control_of = with_policy(controls, h, rows_of(controls, steps, n))
     nothing = None if rows is None else jnp.zeros(n)
@@ -122,12 +122,8 @@ def step_root(
 
 @step_root.defjvp
 def _implicit(family: Any, primals: Any, tangents: Any) -> tuple[Any, Any]:
-    n = primals[0][3].shape[0]
-
     def residual(z: Array, numbers: tuple[Array, ...], h: Array, x: Array, p: Array) -> Array:
-        system, v = family.bound(*numbers), z[:n]
-        momentum_gap = equations.momenta(system, x, v, h)[0] - p - z[n:] @ equations.forms(system, x)
-        return jnp.concatenate([momentum_gap, equations.discrete_constraints(system, x, v, h)])
+        return equations.step_balance(family.bound(*numbers), (x, p), z, h)
 
     z, code = step_root(family, *primals)
     z, change = implicit(residual, z, primals[0], tangents[0])

@@ -9,18 +9,7 @@ import numpy as np
 from nonholo.base.checks import array, error, scale
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert._equations import (
-    acceleration_matrix,
-    constraint,
-    discrete_constraints,
-    forms,
-    holonomic,
-    holonomic_residual,
-    inverse_legendre,
-    lagrangian,
-    momenta,
-    momentum,
-)
+from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._flow import admissible_velocity, nearest_place
 from nonholo.lagrange_dalembert._functions import in_double, place
 from nonholo.lagrange_dalembert._newton import orientation
@@ -57,7 +46,7 @@ def point(
             got, remedy = f"{q[index]:.17g}", f"Set coordinate {index} to {target:.17g}."
             raise error(where, "agree with prescribed motions", got, remedy)
     x = place(system, q, time)
-    A = in_double(forms, system, x)
+    A = in_double(equations.forms, system, x)
     if system.holonomic is not None:
         _check_holonomic(where, system, x, A)
     _check_rows(_argument(system, "constraint_forms" if system.holonomic is None else "holonomic"), A, q)
@@ -66,11 +55,11 @@ def point(
 
 def _check_holonomic(where: str, system: Any, x: np.ndarray, A: Float[np.ndarray, "s n"]) -> None:
     """Refuse a place that holonomic constraints do not allow, with the residual and the nearest one that they do."""
-    n, residual = system.dimension, in_double(holonomic_residual, system, x)
+    n, residual = system.dimension, in_double(equations.holonomic_residual, system, x)
     if np.all(np.abs(residual) <= _TOLERANCE * np.linalg.norm(A, axis=1) * (1 + np.linalg.norm(x[:n]))):
         return
     nearest = in_double(nearest_place, system, x)[:n]
-    got = f"residual {np.array2string(in_double(holonomic, system, x), precision=6)}"
+    got = f"residual {np.array2string(in_double(equations.holonomic, system, x), precision=6)}"
     remedy = "Start elsewhere." if np.isnan(nearest).any() else f"The nearest admissible one is {nearest.tolist()}."
     raise error(where, "satisfy the holonomic constraints", got, remedy)
 
@@ -103,7 +92,7 @@ def consistent(system: Any, q: np.ndarray, h: Any) -> None:
     at_rest, slope = in_double(_constraint_slope, system, q, np.zeros(system.dimension), h)
     if not np.all(np.isfinite(at_rest)) or np.abs(at_rest).max() > _TOLERANCE * (1 + np.abs(slope).max()):
         raise error(where, f"vanish {rest}", f"{at_rest.tolist()} at {q.tolist()}", "Subtract its value there.")
-    A = in_double(forms, system, q)
+    A = in_double(equations.forms, system, q)
     directions = np.linalg.svd(A)[2][len(A) :]
     span_gap = np.abs(slope @ directions.T)
     if not span_gap.max() <= _CONSISTENT * np.linalg.norm(slope, axis=1).max() or np.linalg.matrix_rank(slope) < len(A):
@@ -124,7 +113,7 @@ def velocity(
     _check_regular(system, q, v)
     if project:
         return in_double(admissible_velocity, system, q, v)
-    A, residual = in_double(forms, system, q), in_double(constraint, system, q, v)
+    A, residual = in_double(equations.forms, system, q), in_double(equations.constraint, system, q, v)
     rounding = np.finfo(float).eps * np.linalg.norm(A, axis=1) * np.linalg.norm(v)  # of forms where their terms vanish
     if np.any(np.abs(residual) > _TOLERANCE * (np.abs(A) @ np.abs(v) + np.abs(A @ v - residual)) + rounding):
         raise inadmissible(where, residual, v - np.linalg.pinv(A) @ residual)
@@ -148,8 +137,8 @@ def _check_regular(system: Any, q: np.ndarray, v: np.ndarray) -> None:
 
 def _check_limit(system: Any, q: np.ndarray, v: np.ndarray) -> None:
     """Refuse a discrete Lagrangian that is not about h times the Lagrangian in short steps."""
-    h, limit = _SMALL / np.linalg.norm(v), in_double(momentum, system, q, v)
-    p = np.mean(in_double(momenta, system, q, v, h), axis=0)
+    h, limit = _SMALL / np.linalg.norm(v), in_double(equations.momentum, system, q, v)
+    p = np.mean(in_double(equations.momenta, system, q, v, h), axis=0)
     if not np.linalg.norm(p - limit) <= _CLOSE * np.linalg.norm(limit):
         got = f"momentum {p.tolist()} at the small step {h:.3g}, in the limit {limit.tolist()}"
         remedy = "Include the factor time_step; pass lagrangian= if it is not a quadratic form."
@@ -163,7 +152,7 @@ def of_momentum(owner: str, system: Any, q: np.ndarray, value: Any) -> tuple[np.
     where = f"{owner}(momentum=...)"
     p = array(where, value, (n,), f"Pass the {n} momenta; only their action on admissible velocities counts.")
     _check_regular(system, q, np.zeros(n))
-    v = in_double(inverse_legendre, system, q, p)
+    v = in_double(equations.inverse_legendre, system, q, p)
     _check_regular(system, q, v)
     return p, q, v
 
@@ -193,16 +182,16 @@ def regularity(system: Any, q: Any, q_next: Any, time_step: Any) -> float:
 
 def _constraint_slope(system: Any, q: Array, v: Array, h: Array) -> tuple[Array, Array]:
     """Return the discrete constraints of a step and their derivatives along its velocity."""
-    slope = jax.jacfwd(discrete_constraints, argnums=2)(system, q, v, h)
-    return discrete_constraints(system, q, v, h), slope
+    slope = jax.jacfwd(equations.discrete_constraints, argnums=2)(system, q, v, h)
+    return equations.discrete_constraints(system, q, v, h), slope
 
 
 def _value_and_gradients(system: Any, q: Array, v: Array) -> tuple[Array, tuple[Array, Array]]:
-    return jax.value_and_grad(lagrangian, argnums=(1, 2))(system, q, v)
+    return jax.value_and_grad(equations.lagrangian, argnums=(1, 2))(system, q, v)
 
 
 def _least(system: Any, q: Array, v: Array) -> Array:
-    return jnp.linalg.svd(acceleration_matrix(system, q, v)[0], compute_uv=False)[-1]
+    return jnp.linalg.svd(equations.acceleration_matrix(system, q, v)[0], compute_uv=False)[-1]
 
 
 def _admissible(system: Any, q: Array, v: Array, h: Array) -> Array:

@@ -81,7 +81,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             rule of the constraint forms.
         constraint_velocities: `constraint_velocities(q, time)` -> (s,), the right-hand side b of moving constraints.
         prescribed: Motions s(time) of coordinates, by index: joints that are driven. Discrete motions follow them
-            exactly; their multipliers, the last ones, are what drives them.
+            exactly; their multipliers, the last ones, are the driving forces.
         force: `force(time, q, v)` -> (n,); or `nonholo.Friction`; or an array (steps, n), whose row k acts over step k;
             or a tuple with at most one of each.
             `nonholo.Forced(system, potential, force)` adds one.
@@ -92,14 +92,14 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             `outline(q, p)`. They are compiled once for all numbers: see `with_parameters`.
         coordinates: Names of the coordinates, for tables and pictures, such as ("x", "y", "theta"); by default "q1",
             "q2" and so on.
-        name: What pictures call the system.
+        name: The name of the system in pictures.
         heading: The name of the coordinate that is the heading of a body with the coordinates x and y.
-        outline: What pictures of such a body draw: parts of at least two points (P, 2) in body axes, x ahead, the body
-            first, then what it carries, such as wheels; or a function of q that returns them.
+        outline: The drawing of such a body in pictures: parts of at least two points (P, 2) in body axes, x ahead, the
+            body first, then its parts, such as wheels; or a function of q that returns them.
 
     Raises:
         ValueError: A function that JAX cannot trace, that does not take the parameters there are, or whose result is
-            not real or has the wrong shape; an unknown rule; a driven system with discrete functions of its own; names
+            not real or has the wrong shape; an unknown rule; a driven system with its own discrete functions; names
             that are not n different words; a heading that is not among them, an outline that is no drawing.
 
     Example:
@@ -206,7 +206,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         return acts or any(map(self.takes_time, _OTHERS))
 
     def with_parameters(self, **numbers: Any) -> Self:
-        r"""Return the same system with other numbers of some of its parameters; nothing is compiled anew.
+        r"""Return the same system with other numbers of some of its parameters; nothing is compiled again.
 
         Args:
             numbers: Numbers or arrays by name, as in `parameters`; JAX may trace them (`nonholo.rollout`).
@@ -373,13 +373,12 @@ def _with_potential(lagrangian: Callable[..., Array], potential: Any, *, last: b
     """Return a Lagrangian less a potential; both may take parameters last."""
     if potential is None:
         return lagrangian
-    if last and takes_time(lagrangian, 3):
-        return lambda q, v, time, p: lagrangian(q, v, time, p) - potential(q, p)
-    if last:
-        return lambda q, v, p: lagrangian(q, v, p) - potential(q, p)
-    if takes_time(lagrangian, 2):
-        return lambda q, v, time: lagrangian(q, v, time) - potential(q)
-    return lambda q, v: lagrangian(q, v) - potential(q)
+
+    @functools.wraps(lagrangian)  # whose signature says whether the time is passed
+    def less(q: Array, v: Array, *rest: Any) -> Array:
+        return lagrangian(q, v, *rest) - potential(q, *(rest[-1:] if last else ()))
+
+    return less
 
 
 def _motions(motions: Any, dimension: int, last: tuple[Any, ...]) -> tuple[tuple[int, Callable[[Array], Array]], ...]:

@@ -71,6 +71,8 @@ def tangent_map(orbit: Any) -> Float[np.ndarray, "L d d"]:
     """Return the derivative of each state of an orbit by the one before, in orthonormal bases of admissible changes."""
     motion, system, time = orbit.motion, orbit.system, orbit.time
     where, n = "Orbit.tangent", orbit.body_velocity.shape[1]
+    if orbit.has_impacts.any():
+        raise error(where, "have no impacts", "some", "Ask it of the part of the orbit before the first one.")
     if orbit.is_discrete and not orbit.has_every_step:
         raise error(where, "have every step", f"{len(orbit)} states with others between", "Run with save_every=1.")
     if not len(orbit):
@@ -157,8 +159,7 @@ def _slopes_of(system: Any, change: Callable[[Array, Array], Array], x: Array, v
 
 def _after_step(system: Any, h: Array, x: Array, v: Array) -> tuple[Array, Array]:
     """Return the state after a step, with the derivatives of the implicit function."""
-    _, p = equations.momenta(system, x, v, h)
-    after = equations.ahead(system, x, v, h)
+    after, p = equations.arrival(system, x, v, h)
     place, near = jax.lax.stop_gradient((x, v))
     z, code = step_root(system, ((), h, after, p), (near, near, orientation(system, place, near, h)[0]))
     return after, jnp.where(code == 0, z[: len(v)], jnp.nan)

@@ -5,7 +5,7 @@ import dataclasses
 import functools
 import importlib
 from collections.abc import Sequence
-from typing import Any, TypeVar, cast
+from typing import Any, ClassVar, TypeVar, cast
 
 import numpy as np
 
@@ -53,13 +53,14 @@ def looked_at(ends: Sequence[float], unit: float = 1.0) -> Float[np.ndarray, "lo
 
 
 class AbstractOrbit(Keeper, abc.ABC):
-    """A motion at K saved states, of whatever system: times, configurations, momenta, energies, and how it ended.
+    """A motion at K saved states, of any system: times, configurations, momenta, energies, and how it ended.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time: Times of the saved states, shape (K,).
-        step: The number of the step of each state, from 0 at the start of the run, whatever rows are taken; of a state
-            within a step that of its beginning. Of a flow and of given poses: numbers of times and rows. Shape (K,).
+        step: The number of the step of each state, counted from 0 at the start of the run, for all rows; of a state
+            within a step the number of its beginning. Of a flow and of given poses: numbers of times and rows. Shape
+            (K,).
         configuration: Matrices (K, N, N) on a group, (K, n) in coordinates.
         body_velocity: Velocities.
         momentum: Momenta.
@@ -80,7 +81,7 @@ class AbstractOrbit(Keeper, abc.ABC):
         is_compact: Whether it is made of compact states that its motion decodes, or of the numbers that it tells.
         is_measured: Whether configurations were given, and everything else follows from them.
         conserves_energy: Whether its map conserves the energy exactly; None for a flow, and where there is no map.
-        events: What `events=` of the run found, an `EventLog`; None without.
+        events: Crossings of `events=`, an `EventLog`; None without.
         turned: Heading without ambiguity of full turns, where the run knows it, shape (K,).
     """
 
@@ -109,6 +110,10 @@ class AbstractOrbit(Keeper, abc.ABC):
     conserves_energy: bool | None
     events: Any
     turned: Float[np.ndarray, "K"] | None = None
+    group: Any = None
+    """The group that configurations are matrices of; None in coordinates."""
+    momenta: ClassVar[tuple[str, ...]]
+    """The columns that an impact changes, the momentum first."""
 
     def __post_init__(self) -> None:
         """Number the rows of a whole run; let no orbit be successful with a number that is not finite.
@@ -122,6 +127,34 @@ class AbstractOrbit(Keeper, abc.ABC):
                     object.__setattr__(self, "outcome", Outcome.nonfinite)
         if self.step is None or len(self.step) != len(self.time):
             object.__setattr__(self, "step", np.arange(0, self.save_every * len(self.time), self.save_every))
+
+    @abc.abstractmethod
+    def as_start(self) -> Any:
+        """Return what a run begins with that begins at the first state."""
+
+    @abc.abstractmethod
+    def beside(self: SelfT, offsets: Float[np.ndarray, "K dim"]) -> SelfT:
+        """Return the states at places beside theirs, by coordinates, on a group by body directions."""
+
+    @abc.abstractmethod
+    def with_step(self: SelfT, ahead: SelfT, outcome: Outcome) -> SelfT:
+        """Return one state with the step of a run that began there, as a state of that run, and what became of it."""
+
+    @abc.abstractmethod
+    def reflection(self: SelfT, normal: Float[np.ndarray, "dim"], bounce: float, direction: int) -> SelfT | None:
+        r"""Return one state after the impulse of a wall along a covector, which reverses its speed along that.
+
+        Args:
+            normal: The derivative of the gap.
+            bounce: Which part of the speed is left.
+            direction: That of the gap on the way through the wall.
+
+        Returns:
+            None where the motion is not toward the wall.
+        """
+
+    def refuse_reset(self, where: str) -> None:
+        """Refuse impacts of motions that have no reflection in the energy."""
 
     @property
     @abc.abstractmethod

@@ -62,7 +62,7 @@ class AbstractEventLog(abc.ABC, Generic[FoundT]):
 
     Attributes:
         names: The names of the events.
-        found: What each found.
+        found: The crossings of each.
     """
 
     names: tuple[str, ...]

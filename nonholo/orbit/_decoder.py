@@ -1,7 +1,7 @@
 r"""Rows of canonical momenta and poses as what a user reads, a row with the same bits alone and among others.
 
 `BodyDecoder` is for any body, by NumPy; `ClosedDecoder` for those with two admissible directions on SO(3) or SE(2),
-compiled. What displacements tell is decoded by the motion that made them. Angles become continuous headings, also of
+compiled. Displacements are decoded by the motion that made them. Angles become continuous headings, also of
 parts of a motion.
 """
 
@@ -21,8 +21,8 @@ _TURN = 2 * np.pi
 class AliasingWarning(UserWarning):
     """Given poses of which one is turned by more than 90 degrees from the one before.
 
-    Its velocity is that of the shorter turn. Of a body that turns faster than half a turn a row nothing tells which
-    turn it took.
+    Its velocity is that of the shorter turn. The turn of a body that turns faster than half a turn a row is not
+    determined.
 
     Example:
         >>> import warnings
@@ -58,7 +58,7 @@ def poses(system: System, canonical_pose: Float[np.ndarray, "K size"]) -> Float[
 
 
 def is_own_frame(system: System) -> bool:
-    """Tell whether the user's body frame is the canonical one."""
+    """Return whether the user's body frame is the canonical one."""
     return system.canonical is system or np.array_equal(np.asarray(system.frame), system.group.identity)
 
 
@@ -126,7 +126,7 @@ class ClosedDecoder:
     """The same of a body with two admissible directions on SO(3) or SE(2).
 
     Attributes:
-        numbers: What the compiled loops read it with.
+        numbers: Its numbers for the compiled loops.
     """
 
     numbers: decoding.Reading

@@ -20,7 +20,8 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Float, Int
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.orbit._base import AbstractOrbit
-from nonholo.orbit._decoder import Decoder, decoder_of, poses, unwrap
+from nonholo.orbit._decoder import Decoder, decoder_of, poses, turned_near, unwrap
+from nonholo.orbit._stepper import First
 from nonholo.systems import System
 
 STATES = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
@@ -30,7 +31,7 @@ _ROWS = ("step", *STATES)
 
 
 def as_orbit(where: str, value: Any, coordinates: str) -> "Orbit":
-    """Refuse what is not an orbit on a group; `coordinates` says what to do with an orbit in coordinates."""
+    """Refuse what is not an orbit on a group; `coordinates` is the remedy for an orbit in coordinates."""
     remedy = f"Pass what `simulate` or `flow` returned; {coordinates}"
     return instance(where, value, Orbit, "be an orbit of a system on a group", remedy)
 
@@ -70,7 +71,7 @@ class AbstractMotion(Keeper, abc.ABC):
     def at(self, states: "Orbit", times: Any) -> "Orbit":
         """Return the states at any times in between, where they are known."""
         got = f"a discrete orbit with {len(states)} states; not {shown(times)}"
-        raise error("Orbit.at(...)", "be asked of a flow", got, "Slice the orbit, or run with another time step.")
+        raise error("Orbit.at(...)", "be called on a flow", got, "Slice the orbit, or run with another time step.")
 
     def work(self, states: "Orbit") -> Float[np.ndarray, "K"]:
         """Return the work of the force along states since the first, by the trapezoidal rule."""
@@ -107,8 +108,8 @@ class AbstractMotion(Keeper, abc.ABC):
 class Orbit(AbstractOrbit):
     r"""A motion at K saved states, from `simulate` or `flow`.
 
-    What an orbit tells is in the user's body frame, momenta in physical units, and remembered: its arrays are
-    read-only. The compact states that it is made of are in the canonical frame of the system, where it says so. In a
+    Its quantities are in the user's body frame, momenta in physical units, and computed once: its arrays are
+    read-only. The compact states that it is made of are in the canonical frame of the system, where this is noted. In a
     discrete orbit $W_k = g_k^{-1} g_{k+1}$ is the displacement and $P_k$ the momentum at $W_k$; with `save_every` > 1
     displacements and multipliers are those of the single steps at the saved k. In a step with impacts the displacement
     and the momentum are those of the step that there would be without a wall. Of a composition (order > 2) the
@@ -125,11 +126,11 @@ class Orbit(AbstractOrbit):
         save_every: Steps between saved states.
         turned: Heading without ambiguity of full turns, where the run knows it, shape (K,).
         branch: The branch rule of a discrete run; "callable" for a function.
-        events: What `events=` of the run found, an `EventLog`: by name or position `Crossings` with their times and
+        events: Crossings of `events=`, an `EventLog`: by name or position `Crossings` with their times and
             states. None without `events=`. It stays whole in slices of the orbit. `save_orbit` does not
             keep it; the store of a run does.
-        step: The number of the step of each state, from 0 at the start of the run, whatever rows are taken, shape (K,);
-            of a state within a step that of its beginning. Of a flow it is the number of the requested time, of
+        step: The number of the step of each state, counted from 0 at the start of the run, for all rows, shape (K,); of
+            a state within a step the number of its beginning. Of a flow it is the number of the requested time, of
             given poses that of the row.
 
     Example:
@@ -153,6 +154,7 @@ class Orbit(AbstractOrbit):
     events: Any = None
     step: Int[np.ndarray, "K"] = None  # type: ignore[assignment]
     is_compact: ClassVar[bool] = True
+    momenta: ClassVar[tuple[str, ...]] = ("reduced_momentum",)
 
     @staticmethod
     def from_poses(system: System, time: Any, configuration: Any) -> "Orbit":
@@ -161,12 +163,12 @@ class Orbit(AbstractOrbit):
         With $W_k = g_k^{-1}g_{k+1}$ and $h_k = t_{k+1} - t_k$ the momentum of a state is the discrete momentum at
         $W_k$ over $h_k$; the displacement of the last state leads back. Momenta along the constraint, and with them
         `body_velocity` and `energy`, are means of the discrete momenta before and after each pose: of second order
-        whatever forces act (at both ends of first order, unless there are none). Of a free orbit of `simulate` they
-        are its own. Noise of size e in the poses is noise of size e/h in velocities: nothing is smoothed. How far the
-        poses are from admissible is the `constraint_residual` of `nh.invariants`, a velocity.
+        under all forces (at both ends of first order, unless there are none). Of a free orbit of `simulate` they
+        are its own. Noise of size e in the poses is noise of size e/h in velocities: nothing is smoothed. The
+        `constraint_residual` of `nh.invariants`, a velocity, measures whether the poses are admissible.
 
         Args:
-            system: What moves.
+            system: The system.
             time: Times of the poses, strictly increasing, in steps of any length.
             configuration: The poses, matrices (K, N, N) of the group. Small errors, up to the digits of single
                 precision, are removed: the nearest element of the group is taken.
@@ -216,6 +218,32 @@ class Orbit(AbstractOrbit):
             return self
         return dataclasses.replace(self, turned=unwrap(pose, before=before))
 
+    def as_start(self) -> First:
+        """Return the momentum and the pose of the first state."""
+        return First((self.reduced_momentum[0], cast(Any, self.canonical_pose)[0]))
+
+    def beside(self, offsets: Float[np.ndarray, "K dim"]) -> "Orbit":
+        """Return the states at poses beside theirs, by body directions."""
+        pose = self.group.pose_from_matrix(self.configuration @ self.group.exp(offsets) @ self.system.frame)
+        headings = None if self.turned is None else turned_near(self.turned, pose)
+        return dataclasses.replace(self, canonical_pose=pose, turned=headings)
+
+    def with_step(self, ahead: "Orbit", outcome: Outcome) -> "Orbit":
+        """Return one state with the displacement of the step of a run that began there; NaN if that failed."""
+        chart = ahead.canonical_chart
+        return dataclasses.replace(self, cayley=chart if outcome == Outcome.successful else np.full_like(chart, np.nan))
+
+    def reflection(self, normal: Float[np.ndarray, "dim"], bounce: float, direction: int) -> "Orbit | None":
+        """Return one state after the impulse of a wall along a covector; None where the motion is not toward it."""
+        system, g = self.system, self.configuration[0]
+        nu = system.restrict_at(normal, g)
+        push = system.restricted_velocity(nu, g)
+        rate = push @ self.restricted_momentum[0]
+        if not rate * direction > 0:
+            return None
+        change = system.to_canonical(-(1 + bounce) * rate / (push @ nu) * nu)
+        return dataclasses.replace(self, reduced_momentum=self.reduced_momentum + change)
+
     def at(self, times: Any) -> "Orbit":
         """Return the states of a flow at any of its times, from its Taylor series or closed form, without a new run.
 
@@ -223,7 +251,7 @@ class Orbit(AbstractOrbit):
             times: One or many, in any order, between the first and the last time of the flow.
 
         Returns:
-            An orbit with these times. Its numbers are those that `flow` returns when it is asked for them.
+            An orbit with these times. Its numbers are those that `flow` returns at these times.
 
         Raises:
             ValueError: Times outside, a discrete orbit, or a flow from a file, whose states alone are known.
@@ -240,6 +268,11 @@ class Orbit(AbstractOrbit):
     def system(self) -> System:
         """The system that moves."""
         return self.motion.system
+
+    @property
+    def group(self) -> AbstractMatrixGroup:  # type: ignore[override]
+        """The group."""
+        return self.system.group
 
     @property
     def space(self) -> AbstractMatrixGroup:
@@ -315,7 +348,7 @@ class Orbit(AbstractOrbit):
     def multipliers(self) -> Float[np.ndarray, "L s"]:
         """Impulses between the states of a discrete orbit, (K - 1, s), or forces at the times of a flow, (K, s).
 
-        Those of steps with impacts are NaN.
+        In steps with impacts they are NaN.
         """
         rows = self.motion.multipliers(self)
         if not self.is_discrete or not self.has_impacts.any():
@@ -425,7 +458,8 @@ class Orbit(AbstractOrbit):
     def tangent(self) -> Float[np.ndarray, "L k k"]:
         """Derivatives of restricted momenta after each step of an orbit by those before it, (K - 1, k, k).
 
-        `nonholo.analysis.tangent` says how, and where poses count too; `lyapunov_exponents` multiplies them.
+        `nonholo.analysis.tangent` has the method, and the case in which poses count too; `lyapunov_exponents`
+        multiplies them.
         """
         return importlib.import_module("nonholo.analysis").tangent(self)
 

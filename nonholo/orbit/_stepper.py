@@ -69,7 +69,7 @@ class Plan(NamedTuple):
         return self.begin(block), self.steps if is_last else self.begin(block + 1), is_last
 
     def has_rows(self, block: int, step: int) -> bool:
-        """Tell whether a block has saved states if the run stands at a step: it may fail before the first one."""
+        """Return whether a block has saved states if the run stands at a step: it may fail before the first one."""
         return block * self.rows <= step // self.every
 
 

@@ -152,7 +152,7 @@ def color_key(axes: Axes, mappable: ScalarMappable, subject: Subject) -> Colorba
 
 
 def is_wide(values: Float[np.ndarray, "..."]) -> bool:
-    """Tell whether positive numbers range over orders of magnitude."""
+    """Return whether positive numbers range over orders of magnitude."""
     if not values.size or not values.min() > 0:
         return False
     low, high = np.quantile(values, [0.05, 0.95])
@@ -165,7 +165,7 @@ def scale_along(values: Float[np.ndarray, "K"]) -> str:
 
 
 def is_geometric(values: Float[np.ndarray, "K"]) -> bool:
-    """Tell whether values along an axis have one quotient, and no one difference."""
+    """Return whether values along an axis have one quotient, and no one difference."""
     if len(values) < 3 or not values.min() > 0:
         return False
     quotients, differences = values[1:] / values[:-1], np.diff(values)

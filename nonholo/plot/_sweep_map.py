@@ -160,7 +160,7 @@ def sweep_map(
     logarithmic. For random draws: dots over two values, over one, or with neither x nor y a histogram.
 
     Args:
-        result: What `sweep` or `load_sweep` returned, or a part of it, as from `result.sel(...)`.
+        result: The result of `sweep` or `load_sweep`, or a part of it, as from `result.sel(...)`.
         quantity: A number of each member; by default the first that the task returned. "outcome" shows how all ended.
         x: An axis of the grid, by default the first one; for draws any number of each member.
         y: The same, by default the next axis.

@@ -27,7 +27,7 @@ def comparison(
     The ring is the largest error.
 
     Args:
-        comparison: What `compare` returned for one orbit.
+        comparison: The result of `compare` for one orbit.
         path: Where to save the figure, a new file; the suffix (.png, .svg, .pdf) chooses the format.
         overwrite: Replace an older picture at the path.
         **look: Title, label, color and more: `nh.plot.Look`.
@@ -63,10 +63,10 @@ def convergence(
 ) -> Figure:
     """Draw the largest errors of orbits over their time steps, with the slopes: the order of the map.
 
-    Errors at rounding, whose slope says nothing, are drawn pale.
+    Errors at rounding, whose slope has no meaning, are drawn pale.
 
     Args:
-        convergence: What `compare` returned for several orbits.
+        convergence: The result of `compare` for several orbits.
         path: Where to save the figure, a new file; the suffix (.png, .svg, .pdf) chooses the format.
         overwrite: Replace an older picture at the path.
         **look: Title, label, color and more: `nh.plot.Look`.
@@ -106,7 +106,7 @@ def _by_name(errors: Errors) -> dict[str, np.ndarray]:
 
 
 def _color(name: str) -> Any:
-    """Return the color of a kind of errors, or the one that is asked for."""
+    """Return the color of a kind of errors, or the given one."""
     return theme.option("color", theme.COMPONENTS[list(_TITLES).index(name)])
 
 

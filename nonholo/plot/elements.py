@@ -43,7 +43,7 @@ def draw_surface(axes: Any, momentum: Float[np.ndarray, "R C 3"]) -> Any:
 
 
 def spans(momentum: Float[np.ndarray, "R C 3"]) -> Float[np.ndarray, "3"]:
-    """Return the extent of each component; that of the largest where a surface is flat but for rounding."""
+    """Return the extent of each component; the largest of them where a surface is flat up to rounding."""
     span = np.ptp(momentum.reshape(-1, 3), axis=0)
     return np.where(span > _FLAT * span.max(), span, span.max())
 

@@ -1,7 +1,7 @@
 """The picture of an orbit: its panels in one figure with a head, for the screen, a slide or a page.
 
-Which panels it has is chosen by the group, the kind of constraint and the number of free directions. The head says what
-moves, its parameters, how long, and how the run ended.
+Which panels it has is chosen by the group, the kind of constraint and the number of free directions. The head names the
+system, its parameters, the time, and the end of the run.
 """
 
 import functools
@@ -139,7 +139,7 @@ def _facts(orbit: AbstractOrbit) -> list[str]:
 
 
 def _form(orbit: AbstractOrbit) -> str:
-    """Say where an orbit moves that no system of bodies describes, and how many constraints it has."""
+    """Return in words where an orbit without a body moves, and how many constraints it has."""
     names = [motion.symbol(name) for name in orbit.coordinates]
     where = ", ".join(names if len(names) <= 7 else [*names[:3], "...", names[-1]]) or str(orbit.space)
     s = orbit.system.constraints
@@ -179,7 +179,7 @@ def _name_of_body(system: System) -> str:
 
 
 def _is_top_in_body(system: System) -> bool:
-    """Tell whether the body would be a top if its constraint were fixed in it."""
+    """Return whether the body would be a top if its constraint were fixed in it."""
     form = LLSystem(system.group, system.homogeneous_mass_tensor, system.constraint_subspace).normal_form
     return form is not None and not form.is_sleigh
 
@@ -216,7 +216,7 @@ def overview(
     energy need poses, and are left out without them. Color is time in all panels; the strip under a panel against time
     is the key.
 
-    Of a Lagrange-d'Alembert system there are its path, where coordinates named x and y, or a group, say where it is,
+    Of a Lagrange-d'Alembert system there are its path, where coordinates named x and y, or a group, give its place,
     the other coordinates, velocities, the error of the energy and the residual of the constraint.
 
     Args:

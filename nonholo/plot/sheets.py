@@ -3,7 +3,7 @@ r"""Bodies with two admissible directions on paper: their displacements on a dis
 One interface of two classes: discs of tops, whose opposite rim points are one, the projective plane; strips of
 $(\Delta, \nu)$ of sleighs, whose edges are one upside down, a Moebius band. Points are those of
 `nonholo.analysis.planar`. Coordinates of the plane of momenta are those of the normal form of tops and sleighs, of
-others those of the canonical frame. What is drawn on that plane is not decided here.
+others those of the canonical frame. The drawing on that plane is not decided here.
 """
 
 import abc
@@ -360,7 +360,7 @@ def _draw_edge(axes: Axes, side: int, reach: float) -> None:
 
 
 def sheet_of(system: AbstractSystem) -> AbstractSheet | None:
-    """Return the sheet of a top in space or a sleigh in the plane, whatever its class; None for other systems."""
+    """Return the sheet of a top in space or a sleigh in the plane, of any class; None for other systems."""
     variety = planar_variety(system)
     if variety is None:
         return None
@@ -368,7 +368,7 @@ def sheet_of(system: AbstractSystem) -> AbstractSheet | None:
 
 
 def blade_of_system(system: AbstractSystem) -> Blade | None:
-    """Return the blade of a sleigh in the plane, whatever acts on it; None for other systems."""
+    """Return the blade of a sleigh in the plane, under any forces; None for other systems."""
     sheet = sheet_of(cast(Any, system).system if system.is_forced else system)
     return None if sheet is None else sheet.blade
 

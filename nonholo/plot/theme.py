@@ -90,8 +90,8 @@ class Look(TypedDict, total=False):
         color: The color of the same, any of matplotlib's; orbits have the colors of time by default.
         legend: Whether there is a legend.
         annotate: Whether there are words inside the axes.
-        size: Width and height of a new figure in inches, with which its fonts grow. By default that of the settings of
-            matplotlib, where they say so, else one that suits the picture.
+        size: Width and height of a new figure in inches, with which its fonts grow. By default from the settings of
+            matplotlib, where they have one, else one that suits the picture.
         dark: Whether colors are for a dark background; by default as the axes are, or the settings of matplotlib.
     """
 
@@ -134,7 +134,7 @@ def __getattr__(name: str) -> Any:
 
 
 def is_dark() -> bool:
-    """Tell whether the background is dark."""
+    """Return whether the background is dark."""
     return _DRAWING.get().is_dark
 
 
@@ -151,7 +151,7 @@ def own_look(color: Any, label: str | None = None) -> dict[str, Any]:
 def in_style(draw: Callable[_P, _R]) -> Callable[_P, _R]:
     """Run a drawing function under the style sheet and the keywords of `Look`, and restore all settings afterwards.
 
-    Where pictures are parts of another one, they inherit what is asked of it, but for title and size.
+    Where pictures are parts of another one, they inherit its options, but for title and size.
     """
     own = inspect.signature(draw).parameters
     names = Look.__annotations__ if "look" in own else {}
@@ -246,7 +246,7 @@ class _Picture(Figure):
 
 
 def new_figure(size: tuple[float, float], layout: Any = "constrained") -> Figure:
-    """Return a figure that no window manager knows, of the size that is asked for; fonts grow with it."""
+    """Return a figure that no window manager knows, of the given size; fonts grow with it."""
     own = tuple(_SETTINGS["figure.figsize"])
     inches = option("size", size if own == tuple(_USUAL["figure.figsize"]) else own)
     if _SETTINGS["font.size"] == _USUAL["font.size"]:
@@ -328,7 +328,7 @@ def time_scale(orbit: AbstractOrbit) -> Normalize:
 
 
 def time_colors(orbit: AbstractOrbit, time: Float[np.ndarray, "K"]) -> Float[np.ndarray, "K 4"]:
-    """Return the colors of an orbit at these times: of time, or the one that is asked for."""
+    """Return the colors of an orbit at these times: of time, or the given one."""
     shades = __getattr__("TIME")(time_scale(orbit)(time))
     return np.broadcast_to(to_rgba(option("color", None)), shades.shape).copy() if option("color", None) else shades
 
@@ -377,7 +377,7 @@ def dot_size(states: int) -> float:
 
 
 def is_narrow(axes: Axes) -> bool:
-    """Tell whether axes are too narrow for a title and a legend in one line."""
+    """Return whether axes are too narrow for a title and a legend in one line."""
     box = axes.get_window_extent()
     is_square = axes.get_aspect() == 1.0 and axes.get_adjustable() == "box"
     side = min(box.width, box.height) if is_square else box.width
@@ -405,7 +405,7 @@ def legend_above(axes: Axes) -> None:
 
 
 def _fits(axes: Axes, labels: list[str]) -> bool:
-    """Tell whether a title, at the left or in the middle, and a legend in one line do not meet."""
+    """Return whether a title, at the left or in the middle, and a legend in one line do not meet."""
     left, middle = axes.get_title(loc="left"), axes.get_title()
     width = axes.get_window_extent().width / axes.figure.dpi / _scale()
     plain = (_SIGNS.sub("", _COMMANDS.sub("x", label)) for label in labels)

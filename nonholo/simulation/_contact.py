@@ -8,7 +8,7 @@ reflected momentum.
 import dataclasses
 import functools
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -33,7 +33,7 @@ def after_contact(
 
     Args:
         begin: Gives the state of a run that begins at a state of an orbit, and the outcome.
-        watch: What is known.
+        watch: The search for events.
         there: One state: after the impact, or at the node.
         number: The number of the step.
         share: The part of it that is gone.
@@ -64,7 +64,7 @@ def _move_on(watch: Watch, there: Orbit, share: float) -> tuple[Watch, Orbit, Ou
     rest, grazes = max(1 - share, _ROUNDING), watch.grazes
     places, looks, inside = _looks(watch, there, rest)
     end, watch = looks.chosen(slice(-1, None)), dataclasses.replace(watch, reset_by=None)
-    if not np.isfinite(looks.reduced_momentum).all():
+    if not _is_finite(looks):
         return watch, end, Outcome.not_converged
     if inside.any():
         watch = _struck_here(watch, there, max(share, _ROUNDING), inside)
@@ -84,13 +84,17 @@ def _looks(watch: Watch, there: Orbit, rest: float) -> tuple[np.ndarray, Orbit, 
         return watch.part(there, np.array([place * rest]))
 
     places, looks, inside = [1.0], [look(1.0)], np.zeros((len(watch.events), 1), dtype=bool)
-    if rest >= _SHORT and np.isfinite(looks[0].reduced_momentum).all():
+    if rest >= _SHORT and _is_finite(looks[0]):
         inside = watch.is_beyond(values_of(watch.events, looks[0]))
     while inside.any() and places[-1] > _LEAST:
         places.append(places[-1] / 2)
         looks.append(look(places[-1]))
         inside &= watch.is_beyond(values_of(watch.events, looks[-1]))
     return np.array([0.0, *places[::-1]]), there.joined(looks[::-1]), inside
+
+
+def _is_finite(looks: Orbit) -> bool:
+    return bool(np.isfinite(getattr(looks, looks.momenta[0])).all())
 
 
 def _struck_here(watch: Watch, there: Orbit, share: float, inside: Bool[np.ndarray, "E 1"]) -> Watch:
@@ -133,13 +137,46 @@ def _search_rest(watch: Watch, there: Orbit, places: np.ndarray, looks: Orbit, s
 SolverAt = Callable[[float], Callable[..., Solved]]
 """Gives what solves the equations with poses from a time on."""
 
+
+class Flights(Protocol):
+    """The flows from states of a motion: of a system on a group, or in coordinates."""
+
+    def fly(self, there: Any, elapsed: np.ndarray) -> tuple[Any, Outcome, str]:
+        """Return the flow from a state up to times since then where it is looked at, the outcome and what it says."""
+        ...
+
+    def joined(self, begins: list[Any], until: float) -> dict[str, Any]:
+        """Return the field by which orbits know the motion from several states, each up to the next one."""
+        ...
+
+
+class BodyFlights(NamedTuple):
+    """The flows of a body.
+
+    Attributes:
+        solver_at: Gives what solves the equations with poses from a time on.
+    """
+
+    solver_at: SolverAt
+
+    def fly(self, there: Orbit, elapsed: np.ndarray) -> tuple[Orbit, Outcome, str]:
+        """Return the flow from a state up to times since then where it is looked at, the outcome and what it says."""
+        flow, solution = _flow(self.solver_at, there, elapsed)
+        return flow, solution.outcome, solution.fault
+
+    def joined(self, begins: list[Orbit], until: float) -> dict[str, Any]:
+        """Return the motion from several states, each up to the next one."""
+        states = functools.partial(_states, self.solver_at, begins)
+        return {"motion": ContinuousFlow(begins[0].system, (float(begins[0].time[0]), until), states)}
+
+
 _TURN = 2 * np.pi
 _SPAN = 2.0  # times that from one impact to the next are solved for at first after it
 
 
 def flow_through_impacts(
-    first: Orbit, time: Float[np.ndarray, "K"], solver_at: SolverAt, events: dict[str, Event]
-) -> tuple[Orbit, str]:
+    first: Any, time: Float[np.ndarray, "K"], flights: Flights, events: dict[str, Event]
+) -> tuple[Any, str]:
     """Return the flow from its first state at requested times, and what a function said that ended it."""
     there, span, since, end = first.with_headings(None), np.inf, float(time[0]), float(time[-1])
     watch, _ = search(Watch(events, between_times(there, 1.0)), there)
@@ -147,13 +184,14 @@ def flow_through_impacts(
     while outcome == Outcome.successful and watch.stopped_by is None and there.time[0] < end:
         begin, before = float(there.time[0]), len(watch.impacts)
         until = min(begin + span, end)
-        looks, solution = _flow(solver_at, there, np.append(time[(time > begin) & (time < until)], until) - begin)
-        there, watch, outcome = _pass_impact(solver_at, watch, looks)
+        elapsed = np.append(time[(time > begin) & (time < until)], until) - begin
+        looks, flown, fault = flights.fly(there, elapsed)
+        there, watch, outcome = _pass_impact(flights, watch, looks)
         if len(watch.impacts) > before:
             span, since = _SPAN * float(there.time[0] - since), float(watch.impacts[-1].time[0])
         elif there.time[0] == looks.time[-1]:
-            outcome, message, span = max(outcome, solution.outcome), solution.fault, 2 * span
-    return _whole(first, time, solver_at, watch, float(there.time[0]), outcome), message
+            outcome, message, span = max(outcome, flown), fault, 2 * span
+    return _whole(first, time, flights, watch, float(there.time[0]), outcome), message
 
 
 def _flow(solver_at: SolverAt, there: Orbit, elapsed: np.ndarray) -> tuple[Orbit, Solved]:
@@ -172,7 +210,7 @@ def _flow(solver_at: SolverAt, there: Orbit, elapsed: np.ndarray) -> tuple[Orbit
     return dataclasses.replace(there, motion=motion).at(begin + inside), solution._replace(states=turn(solution.states))
 
 
-def _pass_impact(solver_at: SolverAt, watch: Watch, looks: Orbit) -> tuple[Orbit, Watch, Outcome]:
+def _pass_impact(flights: Flights, watch: Watch, looks: Orbit) -> tuple[Orbit, Watch, Outcome]:
     """Return the state after the first step between two looks with an impact, or the last one; what is known there."""
     there, at, share = looks.chosen(slice(0, 1)), 0, 0.0
     if not watch.is_at_wall:
@@ -181,7 +219,7 @@ def _pass_impact(solver_at: SolverAt, watch: Watch, looks: Orbit) -> tuple[Orbit
             return looks.chosen(slice(last - 1, last)), watch, Outcome.successful
         there, at, share = watch.begun_at(last - 1)
     ends = looks.time[at + 1 : at + 2]
-    part = functools.partial(_part, solver_at, float(ends[0] - looks.time[at]), {})
+    part = functools.partial(_part, flights, float(ends[0] - looks.time[at]), {})
     after, watch, outcome = after_contact(
         lambda states: (states, Outcome.successful), dataclasses.replace(watch, part=part), there, at, share
     )
@@ -189,36 +227,36 @@ def _pass_impact(solver_at: SolverAt, watch: Watch, looks: Orbit) -> tuple[Orbit
 
 
 def _part(
-    solver_at: SolverAt, length: float, flows: dict[bytes, Any], states: Orbit, fractions: Float[np.ndarray, "K"]
+    flights: Flights, length: float, flows: dict[bytes, Any], states: Orbit, fractions: Float[np.ndarray, "K"]
 ) -> Orbit:
     """Return what is reached from one state, in all rows, after fractions of a time; NaN if that is not solved for."""
     if not len(states):
         return states
-    first, place = states.chosen(slice(0, 1)), states.reduced_momentum[0].tobytes()
+    first, momentum = states.chosen(slice(0, 1)), states.momenta[0]
+    place = getattr(first, momentum).tobytes()
     if place not in flows:
-        flows[place] = _flow(solver_at, first, np.array(length))
-    flow, solution = flows[place]
-    if solution.outcome != Outcome.successful:
-        return dataclasses.replace(states, reduced_momentum=np.full_like(states.reduced_momentum, np.nan))
+        flows[place] = flights.fly(first, np.array(length))
+    flow, outcome, _ = flows[place]
+    if outcome != Outcome.successful:
+        return dataclasses.replace(states, **{momentum: np.full_like(getattr(states, momentum), np.nan)})
     return flow.at(np.minimum(first.time + length * fractions, flow.time[-1]))
 
 
-def _whole(first: Orbit, time: np.ndarray, solver_at: SolverAt, watch: Watch, until: float, outcome: Outcome) -> Orbit:
+def _whole(first: Any, time: np.ndarray, flights: Flights, watch: Watch, until: float, outcome: Outcome) -> Any:
     """Return the flow at requested times up to one, each from the last impact before it."""
     log = watch.log()
     if log.stopped_by is not None:
         until = float(log[log.stopped_by].time[-1])
-    begins = [dataclasses.replace(each, motion=first.motion) for each in (first.with_headings(None), *watch.impacts)]
-    motion = ContinuousFlow(first.system, (float(time[0]), until), functools.partial(_states, solver_at, begins))
-    orbit = dataclasses.replace(first, motion=motion).at(time[time <= until])
+    motion = flights.joined([first.with_headings(None), *watch.impacts], until)
+    orbit = dataclasses.replace(first, **motion).at(time[time <= until])
     crossings = tuple(of_requested(_of_motion(part, motion), time, 1.0) for part in log.found)
     return dataclasses.replace(orbit, outcome=outcome, events=EventLog(log.names, crossings, log.stopped_by))
 
 
-def _of_motion(crossings: Crossings, motion: ContinuousFlow) -> Crossings:
+def _of_motion(crossings: Crossings, motion: dict[str, Any]) -> Crossings:
     """Return crossings with states of the whole flow."""
-    states = dataclasses.replace(crossings.states, motion=motion)
-    after = None if crossings.after is None else dataclasses.replace(crossings.after, motion=motion)
+    states = dataclasses.replace(crossings.states, **motion)
+    after = None if crossings.after is None else dataclasses.replace(crossings.after, **motion)
     return dataclasses.replace(crossings, states=states, after=after)
 
 

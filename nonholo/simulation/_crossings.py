@@ -2,7 +2,7 @@
 
 import dataclasses
 import functools
-import importlib
+from collections.abc import Callable
 from typing import Any, cast
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from nonholo.base.checks import error, instance
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
-from nonholo.orbit import AbstractOrbit, AbstractStepper, Crossings, EventLog, First, Orbit, State
+from nonholo.orbit import AbstractOrbit, AbstractStepper, Crossings, EventLog, Orbit, State
 from nonholo.simulation._event import Event, checked_events, has_resets, values_at
 from nonholo.simulation._search import Part, Watch, piece_of, search
 
@@ -21,7 +21,7 @@ def watch_for(owner: str, stepper: AbstractStepper[Any], events: Any) -> Watch:
     if stepper.part_refused is not None:
         remedy = "Look for changes of sign in the states yourself."
         raise error(f"{owner}(events=...)", "have parts of a step", stepper.part_refused, remedy)
-    watch = Watch(by_name, stepper.motion.after_parts, functools.partial(_with_displacement, stepper))
+    watch = Watch(by_name, stepper.motion.after_parts, functools.partial(_with_step, stepper))
     if watch.has_walls:
         _check_walls(owner, stepper, by_name)
     return watch
@@ -36,23 +36,22 @@ def refuse_resets(owner: str, events: dict[str, Event], got: str) -> None:
 
 def _check_walls(owner: str, stepper: AbstractStepper[Any], events: dict[str, Event]) -> None:
     """Refuse impacts of motions whose steps cannot begin at an impact."""
-    with_poses, motion = getattr(stepper, "with_poses", None), stepper.motion
-    if with_poses is None:
-        refuse_resets(owner, events, "those of a system in coordinates")
-    if not with_poses:
-        refuse_resets(owner, events, "those of a run without poses: reconstruct=False")
+    motion = stepper.motion
+    if not getattr(stepper, "with_poses", True):
+        refuse_resets(owner, events, "impacts of a run without poses: reconstruct=False")
     if (forced := motion.forces) is not None and (forced.table is not None or forced.function is not None):
-        refuse_resets(owner, events, f"those under {forced.names}: a force of the time, whose steps begin at nodes")
+        refuse_resets(owner, events, f"impacts under {forced.names}: a force of the time, whose steps begin at nodes")
 
 
 def check_resets(events: dict[str, Event], there: Any) -> None:
     """Refuse normals of another space, and gaps that differ at another momentum and time: not of the pose alone."""
     if not has_resets(events) or not len(there):
         return
-    other = dataclasses.replace(there, time=there.time + 1, reduced_momentum=1 - 0.6 * there.reduced_momentum)
+    others = {name: 1 - 0.6 * getattr(there, name) for name in there.momenta}
+    other: Any = dataclasses.replace(there, time=there.time + 1, **others)
     for name, event in events.items():
         if event.reset is not None:
-            event.reset.check(f"Event(reset=...) of {name!r}", there.system)
+            event.reset.check(f"Event(reset=...) of {name!r}", there)
             now, then = (values_at(name, event, states) for states in (there, other))
             if now[0] != then[0]:
                 got = f"{now[0]:.17g}, and {then[0]:.17g} at another velocity and time"
@@ -62,15 +61,14 @@ def check_resets(events: dict[str, Event], there: Any) -> None:
 
 def begun_at(stepper: AbstractStepper[Any], states: Any) -> tuple[State, Outcome]:
     """Return the state of a run that begins at a state of an orbit with poses, and the outcome."""
-    return stepper.start(First((states.reduced_momentum[0], states.canonical_pose[0])))
+    return stepper.start(states.as_start())
 
 
-def _with_displacement(stepper: AbstractStepper[Any], states: Any) -> Any:
-    """Return a state with the displacement of the step that begins there; NaN if none does."""
+def _with_step(stepper: AbstractStepper[Any], states: Any) -> Any:
+    """Return a state with the step that begins there."""
     state, outcome = begun_at(stepper, states)
     split = np.split(state[: stepper.width], np.cumsum(list(stepper.columns.values()))[:-1])
-    chart = stepper.orbit(tuple(row[None] for row in split), 0, 1, Outcome.successful).canonical_chart
-    return dataclasses.replace(states, cayley=chart if outcome == Outcome.successful else np.full_like(chart, np.nan))
+    return states.with_step(stepper.orbit(tuple(row[None] for row in split), 0, 1, Outcome.successful), outcome)
 
 
 def crossings(orbit: AbstractOrbit, event: Any) -> Crossings:
@@ -104,7 +102,7 @@ def crossings(orbit: AbstractOrbit, event: Any) -> Crossings:
     if orbit.branch != stepper.branch:
         got, remedy = f"branch {orbit.branch!r}", "Look for changes of sign in the states yourself."
         raise error("crossings(orbit=...)", "have parts of a step", got, remedy)
-    refuse_resets("crossings", checked_events("crossings", [event]), "one for an orbit that is there")
+    refuse_resets("crossings", checked_events("crossings", [event]), "an impact on a finished orbit")
     watch, piece = watch_for("crossings", stepper, [event]), piece_of(stepper.columns.values())
     for begin in range(0, max(1, len(orbit) - 1), piece):
         watch, _ = search(watch, orbit.chosen(slice(begin, begin + piece + 1)))
@@ -125,13 +123,8 @@ cusp = Event(_forward_speed, name="cusp")
 r"""The event of a sleigh whose velocity $v_1$ along the blade changes sign: its path in the plane has a cusp there."""
 
 
-def flow_in_coordinates(system: Any, events: Any, **flow: Any) -> Any:
-    """Solve the equations of a system in coordinates; return the orbit with what was found, if there are events."""
-    solve = functools.partial(importlib.import_module("nonholo.lagrange_dalembert").flow, system, **flow)
-    if events is None:
-        return solve()
-    refuse_resets("flow", checked_events("flow", events), "those of a system in coordinates")
-    by_name = checked_events("flow", events)
+def flow_in_coordinates(solve: Callable[[], Any], by_name: dict[str, Event]) -> Any:
+    """Solve the equations of a system in coordinates; return the orbit with what was found."""
     try:
         orbit, failure = solve(), None
     except OutcomeError as early:
@@ -146,7 +139,7 @@ def flow_with_events(events: dict[str, Event], orbit: Any, steps: Float[np.ndarr
     """Return the states of a flow up to the event that ends it, with what was found.
 
     Args:
-        events: What is looked for, by name.
+        events: The events, by name.
         orbit: The flow.
         steps: Times at which steps of its solver begin: there, too, its states are looked at.
     """

@@ -15,8 +15,8 @@ from nonholo.base.calls import call, check_result, numbers_of
 from nonholo.base.checks import array, choice, error, instance, is_name, natural, number, shown
 from nonholo.base.checks import name as checked_name
 from nonholo.base.types import Float
-from nonholo.orbit import AbstractOrbit, Orbit, turned_near
-from nonholo.systems import Forced, Gravity
+from nonholo.orbit import AbstractOrbit
+from nonholo.systems import Gravity, central_differences
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -28,18 +28,21 @@ class Impact:
     $$ r^+ = r - (1 + e)\,\frac{\nu\cdot B^{-1}r}{\nu\cdot B^{-1}\nu}\,\nu, \qquad
        \nu\cdot B^{-1}r^+ = -e\,\nu\cdot B^{-1}r. $$
 
-    So the constraint holds after it, and with restitution $e = 1$ the kinetic energy is the same, whatever n is; in
+    So the constraint holds after it, and with restitution $e = 1$ the kinetic energy is the same for every n; in
     general it falls by $\tfrac12(1 - e^2)(\nu\cdot B^{-1}r)^2/(\nu\cdot B^{-1}\nu)$. In a discrete map the step is cut
     there: the part of it that leads to the wall, the reflection, then the part of the length that is left, in which
     there may be more impacts. `orbit.events[name].states` are the states before the impacts, `.after` those after them.
+    In coordinates the Lagrangian must be quadratic in velocities. Under a constraint $A v = b$ that moves, the velocity
+    is reflected, and the wall keeps no energy.
 
     Reference: [brogliato-1999], Newton's rule in the kinetic metric; docs/theory/parts-of-a-step.md for the map.
 
     Args:
         normal: n, in the direction in which the gap grows: a spatial vector, the gap being that of the body's `point`
             from a plane across it; or a function from a configuration (N, N) to the derivatives (dim,) of the gap
-            along body directions. By default these are taken from the function of the event by central differences of
-            order 6, whose error is about 1e-13 of what it changes by over one radian or one unit of length.
+            along body directions. In coordinates n numbers, or a function from coordinates to n numbers. By default
+            these are taken from the function of the event by central differences of order 6, whose error is about 1e-13
+            of what it changes by over one radian or one unit of length.
         restitution: e, from 0 to 1.
         point: The point of the body that touches, n body coordinates; by default their origin. Only with a vector.
 
@@ -82,26 +85,33 @@ class Impact:
         """Whether the normal is a spatial vector."""
         return self.point is not None
 
-    def check(self, where: str, system: Any) -> None:
-        """Refuse a vector that is none of the space of a system, and differences for a body without matrices."""
-        group = system.group
-        if self.has_plane and len(self.point) != group.size - group.is_affine:
-            got = f"{len(self.point)} numbers for {group}"
-            raise error(where, "have a normal of the space", got, "Pass a vector of the space that points move in.")
-        if self.normal is None and system.is_wide:
+    def check(self, where: str, states: AbstractOrbit) -> None:
+        """Refuse a vector that is none of the space of a motion, and differences for a body without matrices."""
+        group, system = states.group, states.system
+        size = states.body_velocity.shape[1] if group is None else group.size - group.is_affine
+        if self.has_plane and (len(self.point) != size or (group is None and self.point.any())):
+            got = f"{len(self.point)} numbers and the point {self.point.tolist()} for {states.space}"
+            remedy = "Pass a vector of the space that points move in; of coordinates one number for each, and no point."
+            raise error(where, "have a normal of the space", got, remedy)
+        if self.normal is None and states.is_compact and system.is_wide:
             raise error(where, "have a normal", f"none for {type(system).__name__}", "Pass a function.")
+        states.refuse_reset(where)
 
-    def covector(self, gap: Any, states: Orbit) -> Float[np.ndarray, "dim"]:
+    def covector(self, gap: Any, states: AbstractOrbit) -> Float[np.ndarray, "dim"]:
         """Return n at a state; `gap` gives the values of the event at states."""
-        system, g = states.system, states.configuration[0]
+        place, dim = states.configuration[0], states.body_velocity.shape[1]
         if self.has_plane:
-            return Gravity(self.normal, self.point).covector(system.group, g)
+            return (
+                self.normal if states.group is None else Gravity(self.normal, self.point).covector(states.group, place)
+            )
         if callable(self.normal):
-            return numbers_of("Impact(normal=...)", self.normal, (system.group.dim,), "Return a body covector.", g)
-        inside = system if system.forces is None else system.forces.system
-        return -Forced(inside, lambda pose: gap(_place_at(states, pose))[0]).potential_force(g)
+            return numbers_of("Impact(normal=...)", self.normal, (dim,), "Return a body covector.", place)
+        offsets, weights = central_differences(dim)
+        rows = offsets.reshape(-1, dim)
+        values = gap(states.chosen(np.zeros(len(rows), dtype=int)).beside(rows)).reshape(offsets.shape[:-1])
+        return (values[..., 0] - values[..., 1]) @ weights
 
-    def struck(self, where: str, gap: Any, states: Orbit, direction: int) -> Orbit | None:
+    def struck(self, where: str, gap: Any, states: AbstractOrbit, direction: int) -> Any:
         """Return a state after an impact; None where the motion is not toward the wall, or cannot be.
 
         Args:
@@ -110,30 +120,18 @@ class Impact:
             states: One state, at the wall.
             direction: That of the gap on the way through the wall.
         """
-        system, g, r = states.system, states.configuration[0], states.restricted_momentum[0]
-        nu = system.restrict_at(self.covector(gap, states), g)
-        push = system.restricted_velocity(nu, g)
-        rate = push @ r
-        if not rate * direction > 0:
+        after = states.reflection(self.covector(gap, states), self.restitution, direction)
+        if after is None:
             self._check_direction(where, gap, states)
-            return None
-        change = system.to_canonical(-(1 + self.restitution) * rate / (push @ nu) * nu)
-        return dataclasses.replace(states, reduced_momentum=states.reduced_momentum + change)
+        return after
 
-    def _check_direction(self, where: str, gap: Any, states: Orbit) -> None:
+    def _check_direction(self, where: str, gap: Any, states: AbstractOrbit) -> None:
         """Refuse a normal that points where the gap falls; a motion along the wall may only graze it."""
-        if self.normal is None or states.system.is_wide:
+        if self.normal is None or (states.is_compact and states.system.is_wide):
             return
         if self.covector(gap, states) @ Impact().covector(gap, states) < 0:
             got, remedy = f"its opposite at time {states.time[0]:.17g}", "Pass the other direction."
-            raise error(where, "have the normal in whose direction the function grows", got, remedy)
-
-
-def _place_at(states: Orbit, g: Float[np.ndarray, "N N"]) -> Orbit:
-    """Return a state at another pose."""
-    pose = states.system.group.pose_from_matrix(g @ states.system.frame)[None]
-    headings = None if states.turned is None else turned_near(states.turned, pose)
-    return dataclasses.replace(states, canonical_pose=pose, turned=headings)
+            raise error(where, "have a normal in whose direction the function grows", got, remedy)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -148,16 +146,17 @@ class Event:
     Attributes:
         function: Takes an `Orbit` with any number of states, with all its quantities, and returns one real number for
             each, which may depend on that state alone.
-        direction: 1 for crossings from below, -1 for those from above, 0 for both.
+        direction: 1 for crossings from below, -1 from above, 0 for both.
         stop: Whether the motion ends at the first crossing, or at which one: stop=10 ends it at the tenth.
-        name: What to call it; a letter, then letters, digits and underscores, all ASCII. By default that of the
-            function, or "event 2" for a lambda at position 2.
+        name: Its name: a letter, then letters, digits and underscores, all ASCII. By default the name of
+            the function, or "event 2" for a lambda at position 2.
         reset: An `Impact`: the function is the gap to a wall, of the pose alone, and at each crossing the momentum is
             reflected. A body that starts at the wall is on the side from which `direction` leads through it, if it is
             not 0. None leaves the motion as it is.
 
     Raises:
-        ValueError: A function that is none, another direction, a stop that is no count, or a reset that is none.
+        ValueError: A function that cannot be called, another direction, a stop that is no count, or a reset that is no
+            `Impact`.
 
     Example:
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1)
@@ -206,7 +205,7 @@ def checked_events(owner: str, events: Any) -> dict[str, Event]:
 
 
 def has_resets(events: dict[str, Event]) -> bool:
-    """Tell whether an event changes the motion."""
+    """Return whether an event changes the motion."""
     return any(event.reset is not None for event in events.values())
 
 

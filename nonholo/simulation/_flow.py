@@ -1,6 +1,7 @@
 """`flow`: an orbit of the continuous equations, from a checked start to a decoded result."""
 
 import functools
+import importlib
 from collections.abc import Callable
 from typing import Any, NamedTuple, TypeAlias, overload
 
@@ -12,7 +13,7 @@ from nonholo.base.progress import telling
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.continuous import ContinuousFlow, Solved, solver_of
 from nonholo.orbit import First, Orbit
-from nonholo.simulation._contact import flow_through_impacts
+from nonholo.simulation._contact import BodyFlights, Flights, flow_through_impacts
 from nonholo.simulation._crossings import check_resets, flow_in_coordinates, flow_with_events, refuse_resets
 from nonholo.simulation._event import Event, checked_events, has_resets
 from nonholo.simulation._options import FEW
@@ -52,6 +53,7 @@ def flow(
     project: bool = False,
     rtol: float | None = None,
     atol: float = 1e-12,
+    events: Any = None,
     progress: bool = False,
 ) -> OrbitT: ...
 def flow(
@@ -78,13 +80,14 @@ def flow(
     By default by Taylor series: the equations are quadratic in velocity and pose. Steps do not depend on the requested
     times, where the series are evaluated, and are exact to rounding unless `rtol` allows more. With "closed_form" the
     momentum along the constraint is $r_\perp\,\mathrm{sech}\,s + r_\parallel\tanh s$, $s = s_0 + \nu t$, exact.
-    Exact are also heading and path of the sleigh (a hypergeometric function); the pose of the top is a quadrature.
+    Heading and path of the sleigh are exact too (a hypergeometric function); the pose of the top is a quadrature.
 
-    Of a `Forced` system the force -dU + f stands beside ad*. Under `Gravity` and `Friction`, of a constraint fixed in
-    the body, the series solve it too, or if friction is much faster than the motion Radau of SciPy, with `rtol` of 1e-9
-    and more; else DOP853, with `rtol` of 1e-13 and more. These two also give the states between.
+    For a `Forced` system the force -dU + f is added to ad*. With `Gravity` and `Friction`, and a constraint fixed in
+    the body, the series solve it too; if friction is much faster than the motion, Radau of SciPy does, with `rtol` of
+    1e-9 and more. Other forces are integrated by DOP853, with `rtol` of 1e-13 and more. These two also give the states
+    between.
 
-    The equations of a `LagrangeDAlembert` stand in its docstring. It starts at a `configuration`, and takes neither
+    The docstring of `LagrangeDAlembert` has its equations. It starts at a `configuration`, and takes neither
     `restricted_velocity` nor `method`. The acceleration comes from the constraint differentiated once, a holonomic one
     twice; velocities and places are projected to the constraints, orthogonally in the kinetic energy, at each requested
     time. Smooth formulas have Taylor series too; with kinks, as an absolute value has, diffrax solves them.
@@ -92,7 +95,7 @@ def flow(
     References: [fedorov-zenkov-2004], sections 2, 4 and 5; [jorba-zou-2005] for order and step of the series.
 
     Args:
-        system: What moves.
+        system: The system.
         times: The times of the states, at least one, increasing or decreasing; the start is at the first.
         body_velocity: Start with this velocity, which must satisfy the constraint.
         restricted_velocity: The same, in rows of the constraint subspace.
@@ -110,7 +113,7 @@ def flow(
             to the next are found, and located on the solution; see `Orbit.events`. Two of them between two such times
             are not seen: ask for more times. A stopping event ends the orbit with the last requested time before it.
             One with a `reset` changes the motion: the flow begins again at each `Impact`.
-        progress: Show on standard error how far the time has come.
+        progress: Show the time on standard error.
 
     Returns:
         The orbit. It has no displacements, and its multipliers are the forces at its times. Of a system in coordinates
@@ -137,7 +140,7 @@ def flow(
         refuse_in_coordinates("flow", **{name: (value, None) for name, value in others.items()}, **no_pose)
         errors = {"rtol": rtol, "atol": atol, "project": project}
         with telling("time", progress):
-            return flow_in_coordinates(system, events, configuration=configuration, times=times, **starts, **errors)
+            return _flow_in_coordinates(system, events, configuration=configuration, times=times, **starts, **errors)
     as_system("flow(system=...)", system)
     time = flow_times(times)
     solver, with_poses = solver_of(system, method, float(time[0]), reconstruct=reconstruct)
@@ -148,12 +151,28 @@ def flow(
     by_name = None if events is None else checked_events("flow", events)
     with telling("time", progress):
         if by_name is not None and has_resets(by_name):
-            return _flow_between_walls(task, first, by_name)
+            if not task.reconstruct:
+                refuse_resets("flow", by_name, "impacts of a flow without poses: reconstruct=False")
+            flights = BodyFlights(functools.partial(_solver_at, task))
+            return _successful(task, *_flow_between_walls(task.opening(first), time, flights, by_name))
         return _solve_flow(task, solver, first, by_name)
 
 
+def _flow_in_coordinates(system: AbstractCoordinateSystem, events: Any, **how: Any) -> Any:
+    """Return the flow of a system in coordinates, with what events found."""
+    room = importlib.import_module("nonholo.lagrange_dalembert")
+    if events is None:
+        return room.flow(system, **how)
+    by_name = checked_events("flow", events)
+    if not has_resets(by_name):
+        return flow_in_coordinates(functools.partial(room.flow, system, **how), by_name)
+    flights, time, opening = room.flights(system, **how)
+    orbit, _ = _flow_between_walls(opening, time, flights, by_name)
+    return flights.successful(orbit, time)
+
+
 class _Task(NamedTuple):
-    """The equations of a system at times, by a method, and whether poses are asked for."""
+    """The equations of a system at times, by a method, and whether with poses."""
 
     system: System
     time: np.ndarray
@@ -208,17 +227,13 @@ def _solve_flow(
     return _successful(task, orbit, solution.fault)
 
 
-def _flow_between_walls(task: _Task, first: FirstState, events: dict[str, Event]) -> Orbit:
-    """Return the orbit from a first state, with impacts."""
-    if not task.reconstruct:
-        refuse_resets("flow", events, "those of a flow without poses: reconstruct=False")
-    if task.time[-1] < task.time[0]:
-        refuse_resets("flow", events, "those of a flow back in time, which has other impacts")
-    opening = task.opening(first)
+def _flow_between_walls(opening: Any, time: np.ndarray, flights: Flights, events: dict[str, Event]) -> tuple[Any, str]:
+    """Return the orbit from a first state, with impacts, and what a function said that ended it."""
+    if time[-1] < time[0]:
+        refuse_resets("flow", events, "impacts of a flow back in time, which has other impacts")
     values_of(events, opening)
     check_resets(events, opening)
-    solver_at = functools.partial(_solver_at, task)
-    return _successful(task, *flow_through_impacts(opening, task.time, solver_at, events))
+    return flow_through_impacts(opening, time, flights, events)
 
 
 def _solver_at(task: _Task, begins: float) -> Callable[..., Solved]:

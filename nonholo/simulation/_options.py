@@ -54,7 +54,7 @@ def checked_run(
     throw: bool,
     progress: bool,
 ) -> Run:
-    """Return a run with checked options, whatever its start."""
+    """Return a run with checked options, for any start."""
     flags(owner, reconstruct=reconstruct, throw=throw, progress=progress)
     count, every = step_counts(steps, save_every)
     if isinstance(discrete, AbstractCoordinateDiscretization):

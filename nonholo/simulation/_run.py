@@ -1,4 +1,4 @@
-"""The one loop over the steps of a run, whatever steps, in blocks; and the sinks that keep its orbit in memory."""
+"""The one loop over the steps of every kind of run, in blocks; and the sinks that keep its orbit in memory."""
 
 import dataclasses
 import functools
@@ -28,10 +28,10 @@ class Run(NamedTuple):
     """The motion of a run and its options.
 
     Attributes:
-        stepper: What takes its steps.
+        stepper: The stepper that takes its steps.
         steps: Steps in total.
         every: Steps between saved states.
-        watch: What it looks for; None if for nothing.
+        watch: Its search for events; None without.
         throw: Whether a run that cannot continue raises.
         progress: Whether a progress bar is shown.
     """
@@ -286,7 +286,7 @@ def run_to_end(run: Run, first: First, *, whole: bool) -> tuple[Any, int]:
 
 
 def one_by_one(run: Run, first: First, rows: int) -> Iterator[Any]:
-    """Begin a run, before any block is asked for; return the iterator over the orbits of its blocks."""
+    """Begin a run, before its first block; return the iterator over the orbits of its blocks."""
     start, empty = open_run(run, first)
     return iter((empty,)) if empty is not None else _orbits(run, start, rows)
 

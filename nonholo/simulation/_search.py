@@ -25,7 +25,7 @@ class Watch:
     """The state of the search of a motion, stretch by stretch.
 
     Attributes:
-        events: What is looked for, by name.
+        events: The events, by name.
         part: Gives the states after parts of steps.
         begin: Gives states with the displacements of steps that begin there; of a flow the states.
         parts: Crossings of every event in each stretch so far that has some, and in the first one.
@@ -79,7 +79,8 @@ class Watch:
         """Whether the last thing that was seen is the crossing of a wall that the motion was not toward."""
         if self.reset_by is None:
             return False
-        return np.array_equal(self.impact.states.reduced_momentum, self.impact.after.reduced_momentum)
+        before, after = self.impact.states, self.impact.after
+        return np.array_equal(getattr(before, before.momenta[0]), getattr(after, after.momenta[0]))
 
     def begun_at(self, last: int) -> tuple[Any, int, float]:
         """Return the state after the impact, the step that is cut, and how much of it is gone; `last` came before it.
@@ -109,7 +110,7 @@ class Watch:
         return dataclasses.replace(self, values=values, heading=None if there.turned is None else there.turned[-1])
 
     def is_beyond(self, values: Float[np.ndarray, "E 1"]) -> Bool[np.ndarray, "E 1"]:
-        """Tell of which events values mean that the body is beyond a wall, or at one, before which it was last."""
+        """Return the events whose values mean that the body is beyond a wall, or at one, before which it was last."""
         side = np.sign(self.values)  # type: ignore[call-overload]
         guards = [(event.reset is not None, event.direction) for event in self.events.values()]
         has_wall, direction = np.array(guards).T[:, :, None]
@@ -216,7 +217,7 @@ def find_crossings(
     """Return where motions cross, none of it after a crossing that ends one.
 
     Args:
-        events: What is looked for, by name.
+        events: The events, by name.
         states: Consecutive states of one motion after another.
         values: Values of the events there.
         owner: The motion of each state.
@@ -265,7 +266,7 @@ def _cut_ends(
 
 
 def changes(event: Event, values: Float[np.ndarray, "... K"]) -> Bool[np.ndarray, "... L"]:
-    """Tell for each state but the last whether the motion crosses in the step from there."""
+    """Return for each state but the last whether the motion crosses in the step from there."""
     sign = np.sign(values)
     before, after = sign[..., :-1], sign[..., 1:]
     crosses = (before != 0) & (after != before)

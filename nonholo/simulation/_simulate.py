@@ -39,15 +39,15 @@ def simulate(
     $$ P(W_{k+1})|_{\mathfrak{d}} = (\mathrm{Ad}^*_{W_k} P(W_k))|_{\mathfrak{d}}, \qquad g_{k+1} = g_k W_k. $$
 
     The map is multivalued. The principal root is the one that momentum zero reaches along s r, 0 <= s <= 1; each root
-    is verified to be it, since energy cannot tell (every root conserves it).
+    is verified to be the principal one; energy does not distinguish roots, since every root conserves it.
 
     Branch rules. "nearest" is the root reached from the present W by continuation of the right-hand side along the
-    segment from $P(W)|_d$ to $(Ad^*_W P(W))|_d$: started with a `displacement` off the principal branch, this is how
-    one continues there. Every system with a left-invariant constraint has it. Of tops and sleighs with difference
-    "matrix" all values are known: "smallest" and "largest" take the real one with that norm of the full momentum,
-    "inner" and "outer" the one in that part of the invariant curve (n = 3 and det B > 2|c|^2, below the saddle's
-    energy; of three there the nearest). A function `rule(found, present)` gets the `Branches` and the present W,
-    and returns the index of a real one or None. A tie and a double root are `branch_unverified`.
+    segment from $P(W)|_d$ to $(Ad^*_W P(W))|_d$: it continues a run that starts with a `displacement` off the
+    principal branch. It exists for every system with a left-invariant constraint. For tops and sleighs with difference
+    "matrix" all values are known: "smallest" and "largest" take the real one with the least or the largest norm of the
+    full momentum, "inner" and "outer" the one in that part of the invariant curve (n = 3 and det B > 2|c|^2, below the
+    saddle's energy; the nearest of three). A function `rule(found, present)` gets the `Branches` and the present W, and
+    returns the index of a real one or None. A tie and a double root are `branch_unverified`.
 
     A discretized `LagrangeDAlembert` runs its own map. It starts at a
     `configuration`, its q_0, and takes neither `restricted_velocity` nor `branch`, `reconstruct` and `backend`.
@@ -79,14 +79,14 @@ def simulate(
             as its last block.
         checkpoint_every: Steps between two checkpoints of the store, a multiple of `save_every`; by default blocks of a
             few megabytes. A run that is stopped loses at most this many steps.
-        scenario: A text that says how the orbit is made, kept in the store.
+        scenario: A text that describes the making of the orbit, kept in the store.
 
     Returns:
         The orbit; of a system in coordinates a `nonholo.lagrange_dalembert.CoordinateOrbit`.
 
     Raises:
         ValueError: A bad argument, before any work.
-        FileExistsError: There is something at the path `store`.
+        FileExistsError: The path `store` exists.
         OSError: The disk is full; the store stays valid, and `resume` continues.
         OutcomeError: The start is not on the principal branch, or, with `throw`, the run could not continue; then the
             error's `orbit` holds every good step.
@@ -163,7 +163,7 @@ def iterate(
         backend: As in `simulate`.
         events: As in `simulate`; the `events` of a block are those after the last step of the block before. The block
             in which an event stops the run is the last one.
-        throw: Raise if the run cannot continue, after its last good block; otherwise that block's outcome says so.
+        throw: Raise if the run cannot continue, after its last good block; otherwise that block's outcome reports it.
         progress: Show a progress bar on standard error.
 
     Returns:

@@ -62,7 +62,7 @@ def continue_run(run: Run, stream: "Stream") -> Any:
 
 
 def _warn_of_other_versions(stream: "Stream") -> None:
-    """Say so if what is still to compute may differ in its last bits from a run with the versions of the store."""
+    """Warn if what is still to compute may differ in its last bits from a run with the versions of the store."""
     others = io.other_versions(io.read_attributes(stream.path))
     if others and not stream.is_finished:
         message = f"The store '{stream.path}' was begun with {others}: the last bits of what follows may differ."
@@ -103,7 +103,7 @@ def _sound(stream: "Stream", block: int) -> Checkpoint | None:
 
 
 def _is_final(stream: "Stream", block: int, end: Checkpoint) -> bool:
-    """Tell whether a block needs no more rows: not so if the run was extended, or ended and was not yet cut."""
+    """Return whether a block needs no more rows: not so if the run was extended, or ended and was not yet cut."""
     return end.done == stream.plan.stop(block) or (end.is_last and stream.is_finished)
 
 
@@ -196,7 +196,7 @@ def _refuse_other_values(where: str, stream: "Stream", stepper: AbstractStepper[
     for name, now, then in zip(watch.events, seen_by(first_watch).values, first.of_events.values, strict=True):
         if abs(now - then) > _SAME * (1 + abs(then)):
             got = f"another one of {name!r}: {now:.17g} instead of {then:.17g} at the first state"
-            raise error(where, "be the functions of the store", got, "Pass those it was run with.")
+            raise error(where, "be the functions of the store", got, "Pass the functions of the run.")
 
 
 def refuse_other_functions(owner: str, stream: "Stream", run: Run) -> None:

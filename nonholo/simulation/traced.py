@@ -17,7 +17,7 @@ from nonholo.discrete import Discretization, ScalarRoute, as_discretization
 from nonholo.discrete.definition import in_double, roll_out, traceable
 from nonholo.lagrange_dalembert import check_value, rolled_in_coordinates
 from nonholo.simulation._options import check_forces, refuse_many_matrices
-from nonholo.systems import AbstractCoordinateDiscretization, Forced, Start, in_coordinates, refuse_in_coordinates
+from nonholo.systems import AbstractCoordinateDiscretization, Forced, Start, refuse_in_coordinates
 
 _roll_out = equinox.filter_jit(roll_out)
 _MANY = 10_000  # steps, which may take longer than a user waits for an answer to Ctrl-C
@@ -53,7 +53,7 @@ def rollout(
     raises there. Derivatives are those of the implicit function of a step, to rounding, never of the iteration that
     finds its root; they are finite at rest, and up to displacements of half a turn. Where roots of the map merge, at a
     fold, the step has no derivative: its Jacobian matrix is singular, and beyond it the principal branch ends. The
-    outcome says so; states from there on are NaN and have the derivative NaN, states before keep theirs.
+    outcome reports it; states from there on are NaN and have the derivative NaN, states before keep theirs.
 
     Eager calls run in 64 bits and return NumPy arrays; traced calls must be 64-bit, or stand inside `allow_float32`.
     The first call compiles, for each number of steps and each kind of system; `jax.jit` around a function of the
@@ -112,7 +112,7 @@ def rollout(
         for name, value in (("steps", steps), ("save_every", save_every))
     )
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
-    if in_coordinates(discrete):
+    if isinstance(discrete, AbstractCoordinateDiscretization):
         refuse_in_coordinates("rollout", restricted_velocity=(starts.pop("restricted_velocity"), None))
         run, arguments = rolled_in_coordinates, _in_coordinates
     else:

@@ -50,7 +50,18 @@ from nonholo.systems.families import (
     SuslovTop,
     VeselovaTop,
 )
-from nonholo.systems.forces import Forced, Friction, Gravity, Linear, Slip, Spring, Widened, force_of, parts_of
+from nonholo.systems.forces import (
+    Forced,
+    Friction,
+    Gravity,
+    Linear,
+    Slip,
+    Spring,
+    Widened,
+    central_differences,
+    force_of,
+    parts_of,
+)
 
 SYSTEMS = tuple(kind for kind in vars(families).values() if isinstance(kind, type))
 """Every final class of this room."""

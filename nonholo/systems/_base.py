@@ -6,8 +6,9 @@ $\mathrm{Ad}_g\omega \in \mathfrak{d}$ (LR systems). Time steps and solvers live
 """
 
 import abc
+import dataclasses
 import functools
-from typing import Any, ClassVar, TypeVar
+from typing import Any, ClassVar, TypeVar, cast
 
 import numpy as np
 
@@ -24,6 +25,10 @@ from nonholo.systems._normal_form import NormalForm
 from nonholo.systems._subspace import complement
 
 SystemT = TypeVar("SystemT", bound="AbstractSystem")
+Along = Float[Array, "... k"]
+"""Numbers along the rows of a constraint subspace."""
+Poses = Float[Array, "... N N"]
+"""Matrices of the group."""
 
 
 class AbstractSystem(Keeper, abc.ABC):
@@ -37,8 +42,9 @@ class AbstractSystem(Keeper, abc.ABC):
     group: AbstractMatrixGroup
     leaves: ClassVar[tuple[str, ...]]
     """Fields that are differentiable numbers; None where a field is not used."""
-    structure: ClassVar[tuple[str, ...]]
+    structure: ClassVar[tuple[str, ...]] = ()
     """Fields that are fixed: groups, subspaces, axes."""
+    mass_tensor: Any
     is_spatial: ClassVar[bool]
     """Whether the constraint is fixed in space (right-invariant) instead of in the body (left-invariant)."""
     is_forced: ClassVar[bool] = False
@@ -51,10 +57,15 @@ class AbstractSystem(Keeper, abc.ABC):
         rows = [("body", repr(self)), ("moves on", self.group), ("constraint", constraint)]
         return table(type(self).__name__, rows)
 
-    @property
-    @abc.abstractmethod
-    def homogeneous_mass_tensor(self) -> Float[Array, "... N N"] | None:
+    def _hold(self, *values: Any) -> None:
+        """Set the fields, in their order."""
+        for field, value in zip(dataclasses.fields(cast(Any, self)), values, strict=True):
+            object.__setattr__(self, field.name, value)
+
+    @system_memo
+    def homogeneous_mass_tensor(self) -> Poses | None:
         """The mass tensor on which the group's matrices act; None if the inertia operator was given directly."""
+        return self.mass_tensor
 
     @system_memo
     def inertia_operator(self) -> Float[Array, "... dim dim"]:
@@ -193,7 +204,7 @@ class AbstractSystem(Keeper, abc.ABC):
         inertia = self.inertia_along
         return inertia.dense if isinstance(inertia, WideInertia) else inertia
 
-    def carried(self, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim dim"]:
+    def carried(self, configuration: Poses) -> Float[Array, "... dim dim"]:
         r"""Return the matrix from body velocities to those whose constraint is fixed: the identity, or $\mathrm{Ad}_g$.
 
         Args:
@@ -211,7 +222,7 @@ class AbstractSystem(Keeper, abc.ABC):
         del configuration
         return np.eye(self.group.dim)
 
-    def moved(self, configuration: Float[Array, "... N N"], displacement: Array) -> Float[Array, "... N N"]:
+    def moved(self, configuration: Poses, displacement: Array) -> Poses:
         """Return a pose after a displacement that the constraint sees: g W, or W g where it is fixed in space.
 
         Args:
@@ -221,7 +232,7 @@ class AbstractSystem(Keeper, abc.ABC):
         return configuration @ displacement
 
     def restrict_at(
-        self, momentum: Inexact[Array, "... dim"], configuration: Float[Array, "... N N"] | None = None
+        self, momentum: Inexact[Array, "... dim"], configuration: Poses | None = None
     ) -> Inexact[Array, "... k"]:
         r"""Return the components of a body momentum along the constraint of a body at a configuration.
 
@@ -233,9 +244,7 @@ class AbstractSystem(Keeper, abc.ABC):
         del configuration
         return self.restrict(momentum)
 
-    def restricted_velocity(
-        self, restricted_momentum: Float[Array, "... k"], configuration: Float[Array, "... N N"] | None = None
-    ) -> Float[Array, "... k"]:
+    def restricted_velocity(self, restricted_momentum: Along, configuration: Poses | None = None) -> Along:
         """Return the velocity, in rows of the constraint subspace, that has these momenta along it.
 
         Args:
@@ -248,9 +257,7 @@ class AbstractSystem(Keeper, abc.ABC):
             return solve_by_factors(self.inertia_factors, momentum)
         return inertia.velocities(momentum) if isinstance(inertia, WideInertia) else _solve(inertia, momentum)
 
-    def restricted_momentum(
-        self, restricted_velocity: Float[Array, "... k"], configuration: Float[Array, "... N N"] | None = None
-    ) -> Float[Array, "... k"]:
+    def restricted_momentum(self, restricted_velocity: Along, configuration: Poses | None = None) -> Along:
         """Return the momenta along the constraint subspace of velocities in its rows.
 
         Args:
@@ -263,9 +270,7 @@ class AbstractSystem(Keeper, abc.ABC):
         return inertia.momenta(velocity) if is_wide else applied(inertia.swapaxes(-1, -2), velocity)
 
     def constrained_energy(
-        self,
-        momentum: Float[Array, "... dim"] | Float[Array, "... k"],
-        configuration: Float[Array, "... N N"] | None = None,
+        self, momentum: Float[Array, "... dim"] | Along, configuration: Poses | None = None
     ) -> Float[Array, "..."]:
         r"""Return the reduced constrained energy $\tfrac12\,r\cdot(\mathbb{I}|_\mathfrak{d})^{-1}\,r$ of a momentum.
 
@@ -367,7 +372,7 @@ class AbstractLRSystem(AbstractSystem):
 
     is_spatial: ClassVar[bool] = True
 
-    def spatial_inertia(self, configuration: Float[Array, "... N N"]) -> Float[Array, "... k k"]:
+    def spatial_inertia(self, configuration: Poses) -> Float[Array, "... k k"]:
         r"""Return the inertia along the constraint subspace of a body with this configuration.
 
         $$ B(g) = S\,\mathrm{Ad}_{g^{-1}}^T\,\mathbb{I}\,\mathrm{Ad}_{g^{-1}}\,S^T
@@ -397,37 +402,31 @@ class AbstractLRSystem(AbstractSystem):
             raise error(where, "be given where the constraint is fixed in space", "none", remedy)
         return trailing(where, configuration, (self.group.size, self.group.size), remedy)
 
-    def restrict_in_space(
-        self, momentum: Float[Array, "... dim"], configuration: Float[Array, "... N N"]
-    ) -> Float[Array, "... k"]:
+    def restrict_in_space(self, momentum: Float[Array, "... dim"], configuration: Poses) -> Along:
         r"""Return the components $S\,\mathrm{Ad}^*_{g^{-1}}p$ of the spatial momentum of a body momentum."""
         g = self._at(configuration)
         return self.restrict(self.group.coadjoint(self.group.inverse(g), momentum))
 
-    def carried(self, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim dim"]:
+    def carried(self, configuration: Poses) -> Float[Array, "... dim dim"]:
         r"""Return $\mathrm{Ad}_g$: the constraint is fixed in space."""
         return self.group.adjoint(self._at(configuration))
 
-    def moved(self, configuration: Float[Array, "... N N"], displacement: Array) -> Float[Array, "... N N"]:
+    def moved(self, configuration: Poses, displacement: Array) -> Poses:
         """Return W g of a displacement in space."""
         return displacement @ configuration
 
     def restrict_at(
-        self, momentum: Inexact[Array, "... dim"], configuration: Float[Array, "... N N"] | None = None
+        self, momentum: Inexact[Array, "... dim"], configuration: Poses | None = None
     ) -> Inexact[Array, "... k"]:
         """Return the components of the spatial momentum along the constraint subspace (`restrict_in_space`)."""
         return self.restrict_in_space(momentum, self._at(configuration))
 
-    def restricted_velocity(
-        self, restricted_momentum: Float[Array, "... k"], configuration: Float[Array, "... N N"] | None = None
-    ) -> Float[Array, "... k"]:
+    def restricted_velocity(self, restricted_momentum: Along, configuration: Poses | None = None) -> Along:
         """Return the spatial velocity, in rows of the constraint subspace, that has these spatial momenta along it."""
         inertia = self.spatial_inertia(self._at(configuration))
         return _solve(inertia, self._along("restricted_momentum", restricted_momentum))
 
-    def restricted_momentum(
-        self, restricted_velocity: Float[Array, "... k"], configuration: Float[Array, "... N N"] | None = None
-    ) -> Float[Array, "... k"]:
+    def restricted_momentum(self, restricted_velocity: Along, configuration: Poses | None = None) -> Along:
         """Return the spatial momenta along the constraint subspace of spatial velocities in its rows."""
         velocity = self._along("restricted_velocity", restricted_velocity)
         inertia = self.constrained_inertia if configuration is None else self.spatial_inertia(configuration)

@@ -10,7 +10,7 @@ from nonholo.base.checks import error
 from nonholo.base.memo import Keeper
 
 if TYPE_CHECKING:
-    from typing_extensions import TypeIs, TypeVar
+    from typing_extensions import TypeVar
 
     OrbitT = TypeVar("OrbitT", default=Any)
     DiscretizationT = TypeVar("DiscretizationT", default=Any)
@@ -60,7 +60,7 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
     """A system in coordinates: `nonholo.discretize` and `Forced` hand their arguments on to it.
 
     Attributes:
-        description: What stores say of it in place of its fields: a name and parameters.
+        description: Its description in stores, instead of its fields: a name and parameters.
         parameters: Numbers that its functions take.
     """
 
@@ -98,7 +98,12 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
         """Return the same system with other numbers of its parameters; refused where there are none."""
         del numbers
         remedy = "Pass parameters= to a LagrangeDAlembert."
-        raise error("with_parameters(...)", "be asked of a system that has parameters", type(self).__name__, remedy)
+        raise error("with_parameters(...)", "be called on a system with parameters", type(self).__name__, remedy)
+
+    def takes_time(self, function: str) -> bool:
+        """Return whether a function is called with the time."""
+        del function
+        return False
 
     @property
     def has_parts(self) -> bool:
@@ -128,11 +133,11 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
         flow = _Former("nonholo.flow(system, times=...)")
 
 
-def in_coordinates(discrete: Any) -> "TypeIs[AbstractCoordinateDiscretization]":
-    """Tell whether something is a discretized system in coordinates.
+def in_coordinates(motion: Any) -> bool:
+    """Return whether a map or a flow is one of a system in coordinates.
 
     Example:
-        >>> in_coordinates(nh.discretize(nh.examples.particle().system, 0.1)), in_coordinates(None)
-        (True, False)
+        >>> in_coordinates(nh.discretize(nh.examples.particle().system, 0.1))
+        True
     """
-    return isinstance(discrete, AbstractCoordinateDiscretization)
+    return isinstance(motion.system, AbstractCoordinateSystem)

@@ -44,7 +44,7 @@ def trace_constraints(
 
 
 def in_exp_d(displacement: Float[np.ndarray, "... n n"], tolerance: float = 1e-9) -> Bool[Array, "..."]:
-    r"""Tell whether a rotation is a displacement $\exp(\theta\,u\wedge e_n)$ of the Suslov top in its canonical frame.
+    r"""Return whether a rotation is a displacement $\exp(\theta\,u\wedge e_n)$ of the Suslov top, in canonical axes.
 
     With $I_e = \mathrm{diag}(1, \dots, 1, -1)$: $I_eW$ is symmetric, that is an orthogonal reflection, and
 

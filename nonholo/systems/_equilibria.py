@@ -106,15 +106,12 @@ def _orthonormal(system: "AbstractLLSystem", inertia: np.ndarray) -> tuple[np.nd
     return (axes / np.sqrt(np.abs(values))).T @ (rows / units[:, None]), np.sign(values)
 
 
-if TYPE_CHECKING:
-    from nonholo.systems._base import AbstractLLSystem
-
-
 @dataclasses.dataclass(frozen=True)
 class Equilibria:
     """The body velocities that stay constant: a linear space, and the half of it that attracts.
 
-    Those of a system that is neither a top nor a sleigh may be several linear spaces, such as the axes of a free body.
+    Equilibria of a system that is neither a top nor a sleigh may be several linear spaces, such as the axes of a free
+    body.
 
     Attributes:
         subspace: Rows span the equilibria, shape (m, dim).

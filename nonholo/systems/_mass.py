@@ -237,7 +237,7 @@ def possible(where: str, mass_tensor: Float[Array, "n n"], depth: int = 3) -> Fl
     """Return a mass tensor, with a warning if no distribution of mass has it; flat bodies have an eigenvalue 0.
 
     Args:
-        where: What gave it.
+        where: Its source, for errors.
         mass_tensor: Symmetric.
         depth: Calls up to that of the user.
     """

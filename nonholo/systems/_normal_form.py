@@ -1,4 +1,4 @@
-r"""The normal form of tops and sleighs, whatever their class: five numbers in the axes of their constraint.
+r"""The normal form of tops and sleighs of any class: five numbers in the axes of their constraint.
 
 A top on SO(n) turns in the planes $e_i\wedge e_n$ with velocities w; a sleigh on SE(n) in the planes $e_1\wedge e_j$,
 while its center of mass advances along $e_1$ with the velocity $u = v_1 + \alpha\cdot w$:
@@ -146,7 +146,7 @@ def sleigh_form(mass: Array, center_of_mass: Float[Array, "... n"], mass_tensor:
 
 
 def recognized_form(system: "AbstractLLSystem") -> NormalForm | None:
-    """Return the form of a system with a mass tensor, in whatever axes it is given; None if it has none."""
+    """Return the form of a system with a mass tensor, in any axes; None if it has none."""
     tensor, group = system.homogeneous_mass_tensor, system.group
     if tensor is None or is_traced(tensor):
         return None
@@ -204,7 +204,7 @@ def _recognized_sleigh(system: "AbstractLLSystem", tensor: np.ndarray) -> Normal
 
 
 def _pass_through(planes: Float[np.ndarray, "k n n"], axis: Float[np.ndarray, "n"]) -> bool:
-    """Tell whether bivectors are planes that contain an axis."""
+    """Return whether bivectors are planes that contain an axis."""
     across = np.eye(len(axis)) - np.outer(axis, axis)
     return bool(np.abs(across @ planes @ across).max() <= _ROUNDING * np.abs(planes).max())
 

@@ -1,4 +1,4 @@
-"""The start of a motion, whatever runs it: exactly one start, a pose of the group, an admissible velocity."""
+"""The start of a motion, for every kind of run: exactly one start, a pose of the group, an admissible velocity."""
 
 import dataclasses
 from typing import Any
@@ -20,7 +20,7 @@ class Start:
     Attributes:
         owner: The function that was called, for messages.
         name: "body_velocity", "restricted_velocity", "momentum" or "displacement".
-        value: What it is, not yet checked.
+        value: Its value, not yet checked.
         configuration: The pose, not yet checked; None for the identity.
         project: Whether the admissible start next to it in the kinetic energy is meant.
 

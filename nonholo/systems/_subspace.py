@@ -1,6 +1,6 @@
 r"""Constraint subspaces: rows that span $\mathfrak{d}$ and rows of its annihilator, and whether it is half of a pair.
 
-Linear algebra alone; what a subspace means is said by the systems. For a symmetric pair $\exp\mathfrak{d}$ is a
+Linear algebra alone; the meaning of a subspace is defined by the systems. For a symmetric pair $\exp\mathfrak{d}$ is a
 submanifold, the model of Cartan of the symmetric space G/H.
 """
 
@@ -162,7 +162,7 @@ _RANK = 1e-12  # relative size below which a singular value or a residual counts
 
 
 def is_symmetric_pair(group: AbstractMatrixGroup, constraint_subspace: Any) -> bool:
-    r"""Tell whether the algebra has a subalgebra that forms a symmetric pair with the constraint subspace.
+    r"""Return whether the algebra has a subalgebra that forms a symmetric pair with the constraint subspace.
 
     $$ \mathfrak{g} = \mathfrak{h}\oplus\mathfrak{d}, \qquad [\mathfrak{h},\mathfrak{h}]\subset\mathfrak{h}, \quad
        [\mathfrak{h},\mathfrak{d}]\subset\mathfrak{d}, \quad [\mathfrak{d},\mathfrak{d}]\subset\mathfrak{h} $$

@@ -1,16 +1,16 @@
-"""Whether a system in coordinates moves as its functions say, and its discretization as the discrete principle does."""
+"""Whether a system moves as its Lagrangian and constraint forms say, and its map by the discrete principle."""
 
 import dataclasses
 import functools
-from collections.abc import Callable
+import itertools
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
-from nonholo.base.checks import error, shown
 from nonholo.base.types import Float
 from nonholo.simulation import flow, simulate
-from nonholo.testing._orbit_samples import COUNTS, off_two, result_of, result_or_raise
+from nonholo.testing import _report as report
 from nonholo.testing._report import Check, derivative, gap, largest, measures, need, relative
 
 SYSTEM: list[Check] = []
@@ -20,10 +20,9 @@ _SECOND = "errors against the flow fall with the square of the step: |slope - 2|
 
 
 class CoordinateSamples:
-    """Motions of a system in coordinates from one start, and its functions as the user wrote them.
+    """Motions of a system in coordinates or on a group from one start, and its functions as the user wrote them.
 
     Args:
-        owner: The check.
         system: The system.
         rng: Where the start comes from.
         configuration: Where it starts; by default what is admissible next to a random place, with what is prescribed.
@@ -32,19 +31,11 @@ class CoordinateSamples:
     """
 
     def __init__(
-        self,
-        owner: str,
-        system: Any,
-        rng: np.random.Generator,
-        configuration: Any,
-        time_step: Any = 1.0,
-        steps: int = 4,
+        self, system: Any, rng: np.random.Generator, configuration: Any, time_step: Any = 1.0, steps: int = 4
     ) -> None:
-        if not getattr(system, "coordinates", ()):
-            remedy = "Pass a LagrangeDAlembert, or a body on a group as an LLSystem or LRSystem."
-            raise error(f"{owner}(...)", "be in coordinates or an LL or LR system", shown(system), remedy)
         self.system, self.time_step, self.steps, n = system, float(time_step), steps, system.dimension
-        self._place = rng.normal(size=n) if configuration is None else configuration
+        self.places: Any = system.places
+        self._place = self.places.step(rng.normal(size=n), 1.0) if configuration is None else configuration
         self._drawn, self._is_random = rng.normal(size=n), configuration is None
         if configuration is None:
             for index, motion in system.plain.prescribed:
@@ -56,42 +47,54 @@ class CoordinateSamples:
         with double_precision():
             return np.asarray(function(*arguments))
 
+    def _at(self, name: str, *state: Any) -> np.ndarray:
+        """Return the value of a function of the system at a state, whose last entry is the time."""
+        arguments = state if self.system.takes_time(name) else state[:-1]
+        return self._value(getattr(self.system.plain, name), *arguments)
+
     def lagrangian(self, q: np.ndarray, v: np.ndarray, t: float) -> np.ndarray:
         """Return L."""
-        return self._value(self.system.plain.lagrangian, q, v, *([t] if self.system.takes_time("lagrangian") else []))
+        return self._at("lagrangian", q, v, t)
 
     def forms(self, q: np.ndarray, t: float) -> Float[np.ndarray, "s n"]:
         """Return the rows of the constraint, before the last ones of prescribed coordinates those of holonomic ones."""
-        system, driven = self.system.plain, [i for i, _ in self.system.prescribed]
-        rows = np.zeros((0, system.dimension))
-        if system.constraint_forms is not None:
-            rows = self._value(system.constraint_forms, q, *([t] if system.takes_time("constraint_forms") else []))
+        system, n = self.system.plain, self.system.dimension
+        rows = np.zeros((0, n)) if system.constraint_forms is None else self._at("constraint_forms", q, t)
         if system.holonomic is not None:
-            rows = np.concatenate([rows, self.gradient(lambda x: self.holonomic(x, t), q).T])
-        return np.concatenate([rows, np.eye(system.dimension)[driven]])
+            rows = np.concatenate([rows, self.gradient(lambda x: self.holonomic(self.places.beside(q, x), t)).T])
+        return np.concatenate([rows, np.eye(n)[[i for i, _ in system.prescribed]]])
 
     def holonomic(self, q: np.ndarray, t: float) -> Float[np.ndarray, "m"]:
         """Return what holonomic constraints leave."""
-        system = self.system.plain
-        return self._value(system.holonomic, q, *([t] if system.takes_time("holonomic") else []))
+        return self._at("holonomic", q, t)
 
     def force(self, t: float, q: np.ndarray, v: np.ndarray, step: int) -> np.ndarray:
         """Return the force, of a table that of a step."""
         row = np.zeros_like(v) if self.system.table is None else self.system.table.acting(np.array([step]))[0]
         return row if self.system.applied is None else row + self._value(self.system.plain.applied, t, q, v)
 
-    def gradient(self, function: Callable[[np.ndarray], Any], at: np.ndarray) -> Float[np.ndarray, "n"]:
-        """Return the derivatives of a function of n numbers, a row for each."""
-        return np.array([derivative(lambda t, x=x: function(at + t * x)) for x in np.eye(len(at))])
+    def action(self, before: np.ndarray, after: np.ndarray, t: float) -> np.ndarray:
+        """Return the discrete Lagrangian of a step: the user's own, or that of the rule."""
+        h, places = self.time_step, self.places
+        v = places.departure(before, after) / h
+        if (own := self.system.plain.discrete_lagrangian) is not None:
+            return self._value(own, *places.ends(before, places.step(v, h), h), h)
+        if self.system.rule == "midpoint":
+            return h * self.lagrangian((before + after) / 2, v, t + h / 2)
+        return h * (self.lagrangian(before, v, t) + self.lagrangian(after, v, t + h)) / 2
+
+    def gradient(self, function: Callable[[np.ndarray], Any]) -> Float[np.ndarray, "n"]:
+        """Return the derivatives at zero of a function of n numbers, a row for each."""
+        return np.array([derivative(lambda t, x=x: function(t * x)) for x in np.eye(self.system.dimension)])
 
     @functools.cached_property
     def _opening(self) -> Any:
-        free = dataclasses.replace(self.system, force=None)  # a table has no flow
+        free = dataclasses.replace(self.system, force=None) if self.system.table else self.system  # which has no flow
         start = {"configuration": self._place, "momentum": self._drawn, "project": self._is_random}
         return flow(free, times=[0.0], **start)
 
     @property
-    def q(self) -> Float[np.ndarray, "n"]:
+    def q(self) -> np.ndarray:
         """Where the motions start."""
         return self._opening.configuration[0]
 
@@ -121,7 +124,7 @@ class CoordinateSamples:
     @property
     def orbit(self) -> Any:
         """The orbit."""
-        return result_of(self.run, "the orbit failed")
+        return report.result_of(self.run, "the orbit failed")
 
     def _run(self, time_step: float, steps: int, **start: Any) -> Any:
         start = start or {"configuration": self.q, "momentum": self.momentum}
@@ -130,14 +133,14 @@ class CoordinateSamples:
     @functools.cached_property
     def span(self) -> float:
         """A time in which velocities do not change much, ten time steps at most."""
-        return min(COUNTS[0] * self.time_step, 1.0)
+        return min(report.COUNTS[0] * self.time_step, 1.0)
 
     @functools.cached_property
     def paths(self) -> list[Any]:
         """One path in more and more steps."""
-        result_of(self.run, "the orbit failed")
+        report.result_of(self.run, "the orbit failed")
         need(not getattr(self.system.discrete_lagrangian, "is_of_one_step", False), "made for one time step")
-        return [self._run(self.span / n, n) for n in COUNTS]
+        return [self._run(self.span / n, n) for n in report.COUNTS]
 
     @functools.cached_property
     def end(self) -> Any:
@@ -148,7 +151,7 @@ class CoordinateSamples:
 @measures(SYSTEM, "momentum", "p = dL/dv, by differences", 1e-8)
 def _momentum(s: CoordinateSamples) -> float:
     q, v, t, p = _middle(s)
-    return relative(p, s.gradient(lambda w: s.lagrangian(q, w, t), v))
+    return relative(p, s.gradient(lambda w: s.lagrangian(q, v + w, t)))
 
 
 @measures(SYSTEM, "energy", "E = v p - L", 1e-11)
@@ -160,7 +163,8 @@ def _energy(s: CoordinateSamples) -> float:
 
 @measures(SYSTEM, "velocity", "the flow moves with its velocity", 1e-8)
 def _velocity(s: CoordinateSamples) -> float:
-    return gap(_slope(s.near.configuration), s.near.body_velocity[2])
+    q = s.near.configuration
+    return gap(_slope([s.places.departure(q[2], after) for after in q]), s.near.body_velocity[2])
 
 
 @measures(SYSTEM, "constraint", "A v = b along the flow", 1e-11)
@@ -168,10 +172,11 @@ def _constraint(s: CoordinateSamples) -> float:
     return largest(s.near.constraint_residual) / (1 + largest(s.near.body_velocity))
 
 
-@measures(SYSTEM, "equations of motion", "p' = dL/dq + f + sum lambda_j A^j, by differences", 1e-6)
+@measures(SYSTEM, "equations of motion", "p' = ad*_v p + dL/dq + f + sum lambda_j A^j, by differences", 1e-6)
 def _equations(s: CoordinateSamples) -> float:
-    q, v, t, _ = _middle(s)
-    along = s.gradient(lambda x: s.lagrangian(x, v, t), q) + s.force(t, q, v, 0)
+    q, v, t, p = _middle(s)
+    turn = 0.0 if (group := getattr(s.system, "group", None)) is None else group.coad(v, p)
+    along = turn + s.gradient(lambda x: s.lagrangian(s.places.beside(q, x), v, t)) + s.force(t, q, v, 0)
     return gap(_slope(s.near.momentum), along + s.near.multipliers[2] @ s.forms(q, t))
 
 
@@ -185,13 +190,13 @@ def _middle(s: CoordinateSamples) -> tuple[np.ndarray, np.ndarray, float, np.nda
     return s.near.configuration[2], s.near.body_velocity[2], s.near.time[2], s.near.momentum[2]
 
 
-def _slope(rows: Float[np.ndarray, "5 n"]) -> Float[np.ndarray, "n"]:
+def _slope(rows: Sequence[np.ndarray]) -> Float[np.ndarray, "n"]:
     return derivative(lambda t: rows[2 + round(t / _OFFSET)], _OFFSET)
 
 
 @measures(MAP, "orbit", "a run goes through: steps that are missing", 0.0)
 def _orbit(s: CoordinateSamples) -> float:
-    return float(s.steps + 1 - len(result_or_raise(s.run)))
+    return float(s.steps + 1 - len(report.result_or_raise(s.run)))
 
 
 @measures(MAP, "discrete constraint", "F(q_k, q_(k+1)) = 0", 1e-11)
@@ -223,7 +228,6 @@ def _start(s: CoordinateSamples) -> float:
 
 @measures(MAP, "discrete principle", "P_(k+1) - P+_k = sum lambda_j A^j, by differences of the Lagrangian", 1e-7)
 def _principle(s: CoordinateSamples) -> float:
-    need(s.system.discrete_lagrangian is None, "a discrete Lagrangian of its own")
     leaving, arriving = np.array([_ends(s, k) for k in range(s.steps)]).transpose(1, 0, 2)
     nodes = zip(s.orbit.multipliers, s.orbit.configuration[1:], s.orbit.time[1:], strict=True)
     across = np.array([impulse @ s.forms(q, t) for impulse, q, t in nodes])
@@ -232,41 +236,38 @@ def _principle(s: CoordinateSamples) -> float:
 
 def _ends(s: CoordinateSamples, k: int) -> tuple[np.ndarray, np.ndarray]:
     """Return -D_1 L_d - f^- and D_2 L_d + f^+ of a step, by differences."""
-    q, t, h = s.orbit.configuration[k], s.orbit.time[k], s.time_step
-    after, v = q + s.orbit.displacement[k], s.orbit.body_velocity[k]
-
-    def action(ends: np.ndarray) -> np.ndarray:
-        first, last = np.split(ends, 2)
-        rate = (last - first) / h
-        if s.system.rule == "midpoint":
-            return h * s.lagrangian((first + last) / 2, rate, t + h / 2)
-        return h * (s.lagrangian(first, rate, t) + s.lagrangian(last, rate, t + h)) / 2
-
-    below, above = np.split(s.gradient(action, np.concatenate([q, after])), 2)
-    return -below - h / 2 * s.force(t, q, v, k), above + h / 2 * s.force(t + h, after, v, k)
+    (q, after), (t, later) = s.orbit.configuration[k : k + 2], s.orbit.time[k : k + 2]
+    beside, v, h = s.places.beside, s.orbit.body_velocity[k], s.time_step
+    below = s.gradient(lambda x: s.action(beside(q, x), after, t))
+    above = s.gradient(lambda x: s.action(q, beside(after, x), t))
+    return -below - h / 2 * s.force(t, q, v, k), above + h / 2 * s.force(later, after, v, k)
 
 
 @measures(MAP, "reversal", "a motion that nothing drives goes back the way it came", 1e-9)
 def _reversal(s: CoordinateSamples) -> float:
     need(not s.system.is_driven, "forces, or what drives it, act")
-    own = s.system.discrete_lagrangian or s.system.discrete_constraints
-    need(own is None, "discrete functions of its own")
-    q, d = s.orbit.configuration, s.orbit.displacement
-    back = s._run(s.time_step, s.steps - 1, configuration=q[-1], displacement=-d[-2])
+    need(s.system.discrete_constraints is None, "custom discrete constraints")
+    q = s.orbit.configuration
+    there, back = ([s.action(*ends, 0.0) for ends in itertools.pairwise(x)] for x in (q, q[::-1]))
+    need(relative(back[::-1], there) < 1e-12, "L_d is another one backwards")
+    displacement = s.places.displacement(-s.orbit.body_velocity[-2], s.time_step)
+    back = s._run(s.time_step, s.steps - 1, configuration=q[-1], displacement=displacement)
     return gap(back.configuration[::-1], q[1:])
 
 
 @measures(MAP, "order of momenta", _SECOND, 0.15)
 def _order_of_momenta(s: CoordinateSamples) -> float:
-    return off_two([relative(orbit.restricted_momentum[-1], s.end.restricted_momentum[-1]) for orbit in s.paths])
+    return report.off_two([relative(orbit.restricted_momentum[-1], s.end.restricted_momentum[-1]) for orbit in s.paths])
 
 
 @measures(MAP, "order of configurations", _SECOND, 0.15)
 def _order_of_configurations(s: CoordinateSamples) -> float:
-    return off_two([gap(orbit.configuration[-1], s.end.configuration[-1]) for orbit in s.paths])
+    return report.off_two([gap(orbit.configuration[-1], s.end.configuration[-1]) for orbit in s.paths])
 
 
 @measures(MAP, "order of the balance", "energy less work changes by the square of the step: |slope - 2|", 0.15)
 def _order_of_balance(s: CoordinateSamples) -> float:
     left = [orbit.energy - orbit.energy[0] - orbit.work for orbit in s.paths]
-    return off_two([largest(each) / (1 + largest(orbit.energy)) for each, orbit in zip(left, s.paths, strict=True)])
+    return report.off_two(
+        [largest(each) / (1 + largest(orbit.energy)) for each, orbit in zip(left, s.paths, strict=True)]
+    )

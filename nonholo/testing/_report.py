@@ -59,15 +59,15 @@ def derivative(function: Callable[[float], Any], step: float = 1e-3) -> np.ndarr
 
 
 Measure = TypeVar("Measure", bound=Callable[[Any], float])
-_HEADINGS = ("", "measured", "allowed", "", "what must hold")
+_HEADINGS = ("", "measured", "allowed", "", "property")
 
 
 class NotApplicableError(Exception):
-    """Raised by a measurement of a property that its object does not claim; the text says why."""
+    """Raised by a measurement of a property that its object does not claim; the text has the reason."""
 
 
 def need(condition: object, otherwise: str) -> None:
-    """End a measurement of what an object does not claim, and say why."""
+    """End a measurement of what an object does not claim, and give the reason."""
     if not condition:
         raise NotApplicableError(otherwise)
 
@@ -78,7 +78,7 @@ class Check:
 
     Attributes:
         name: A short name.
-        requirement: What must hold.
+        requirement: The property.
         tolerance: The largest number that passes; None if the number is reported only.
         measure: The measurement.
     """
@@ -107,7 +107,7 @@ class Result:
 
     Attributes:
         name: A short name.
-        requirement: What must hold.
+        requirement: The property.
         value: The worst value measured; None if nothing could be measured.
         tolerance: The largest value that passes; None if the value is reported only.
         passed: Whether nothing speaks against the property.
@@ -128,7 +128,7 @@ class Result:
 
     @property
     def status(self) -> str:
-        """One of "ok", "FAILED", "reported" (no tolerance), "not checked" (the note says why)."""
+        """One of "ok", "FAILED", "reported" (no tolerance), "not checked" (the note has the reason)."""
         if not self.passed:
             return "FAILED"
         if self.value is None:
@@ -193,12 +193,12 @@ def _cells(result: Result) -> tuple[str, ...]:
 
 
 def run_checks(owner: str, checks: Sequence[Check], subject: Any, factor: float, throw: bool) -> Report:
-    """Run every check, whatever the others say; a check that raises has failed.
+    """Run every check, also after failures of others; a check that raises has failed.
 
     Args:
         owner: The check and its object, for messages.
-        checks: What to measure.
-        subject: What the measurements take.
+        checks: The measurements.
+        subject: Their argument.
         factor: On every tolerance.
         throw: Raise if a check failed.
 
@@ -223,3 +223,31 @@ def _result_of(check: Check, subject: Any, factor: float) -> Result:
         line = (str(failure).splitlines() or [""])[0]
         return Result(check.name, check.requirement, None, tolerance, False, f"{type(failure).__name__}: {line}")
     return Result(check.name, check.requirement, value, tolerance, tolerance is None or value <= tolerance)
+
+
+EXACT = 1e-11  # errors below it are rounding, and have no order
+COUNTS = (10, 20, 40)  # steps for the path whose order is measured
+
+
+def result_of(outcome: Any, otherwise: str) -> Any:
+    """Return what a run made; where it failed, one check has failed, and the others have nothing to judge."""
+    if isinstance(outcome, Exception):
+        raise NotApplicableError(str(outcome) if isinstance(outcome, NotApplicableError) else otherwise)
+    return outcome
+
+
+def result_or_raise(outcome: Any) -> Any:
+    """Return what a run made, or raise what it raised."""
+    if isinstance(outcome, Exception):
+        raise outcome
+    return outcome
+
+
+def slope(errors: list[float]) -> float:
+    """Return the order of errors in the numbers of steps, from the last two."""
+    return float(np.log(errors[-2] / errors[-1]) / np.log(COUNTS[-1] / COUNTS[-2]))
+
+
+def off_two(errors: list[float]) -> float:
+    """Return the distance of the order of errors from two; zero of rounding."""
+    return abs(slope(errors) - 2) if errors[-1] > EXACT else 0.0

@@ -11,19 +11,9 @@ from nonholo.base.checks import error, flags, generator, refuse_given
 from nonholo.base.types import Float
 from nonholo.continuous import vector_field
 from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, Equilibria, Forced, refuse_slip
+from nonholo.testing import _report as report
 from nonholo.testing._coordinates import SYSTEM, CoordinateSamples
-from nonholo.testing._report import (
-    Check,
-    NotApplicableError,
-    Report,
-    derivative,
-    gap,
-    largest,
-    measures,
-    need,
-    relative,
-    run_checks,
-)
+from nonholo.testing._report import Check, Report, derivative, gap, largest, measures, need, relative, run_checks
 
 _COUNT = 4
 CHECKS: list[Check] = []
@@ -62,9 +52,8 @@ class SystemSamples:
     @functools.cached_property
     def directions(self) -> Float[np.ndarray, "4 k dim"]:
         """The admissible directions in the body."""
-        if not self.spatial:
-            return np.broadcast_to(self.S, (_COUNT, *self.S.shape))
-        return np.swapaxes(self.group.adjoint(np.linalg.inv(self.g)) @ self.S.T, -1, -2)
+        rows = np.swapaxes(self.system.carried(np.linalg.inv(self.g)) @ self.S.T, -1, -2)
+        return np.broadcast_to(rows, (_COUNT, *self.S.shape))
 
     @functools.cached_property
     def body_velocity(self) -> Float[np.ndarray, "4 dim"]:
@@ -114,16 +103,12 @@ class SystemSamples:
 
     def energy(self, restricted: np.ndarray, g: np.ndarray) -> np.ndarray:
         """Return the constrained energy that the system states: the kinetic one."""
-        system: Any = self.system
-        return system.constrained_energy(restricted, g) if self.spatial else system.constrained_energy(restricted)
+        return self.system.constrained_energy(restricted, g)
 
     def full_momentum(self, restricted: np.ndarray, g: np.ndarray) -> np.ndarray:
         """Return the momentum of the admissible velocity with these momenta along the constraint."""
-        system: Any = self.system
-        if not self.spatial:
-            return system.restricted_velocity(restricted) @ self.S @ self.inertia.T
-        spatial = system.restricted_velocity(restricted, g) @ self.S
-        return (self.group.adjoint(np.linalg.inv(g)) @ spatial[..., None])[..., 0] @ self.inertia.T
+        velocity = self.system.restricted_velocity(restricted, g) @ self.S
+        return (self.system.carried(np.linalg.inv(g)) @ velocity[..., None])[..., 0] @ self.inertia.T
 
 
 @measures(CHECKS, "sizes", "constraint_subspace (k, dim), annihilator (dim - k, dim), inertia_operator (dim, dim)", 0.0)
@@ -180,10 +165,7 @@ def _constrained_inertia(s: SystemSamples) -> float:
 
 @measures(CHECKS, "restriction", "restrict(p) = S p (in space: S coadjoint(g^-1, p))", 1e-12)
 def _restriction(s: SystemSamples) -> float:
-    system = s.system
-    if s.spatial:
-        return relative(system.restrict_in_space(s.momentum, s.g), s.restricted)  # type: ignore[attr-defined]
-    return relative(system.restrict(s.momentum), s.restricted)
+    return relative(s.system.restrict_at(s.momentum, s.g), s.restricted)
 
 
 @measures(CHECKS, "restricted_velocity", "restricted_velocity inverts velocity -> momentum", 1e-11)
@@ -263,15 +245,16 @@ def check_system(
     Measured on random admissible states: symmetry and positivity of the inertia; subspace and annihilator; restriction
     of momenta and constrained energy against their definitions; the canonical frame; constraint and energy along
     `vector_field`; equilibria and their attraction; `conserved_momenta`; under forces their part in the equations and
-    in the energy. The group is taken as right: `check_group` checks it. Of a `LagrangeDAlembert` momentum, energy,
-    constraint, equations and balance along its flow, against differences of the functions it was made of.
+    in the energy. The group is taken as right: `check_group` checks it. Of a `LagrangeDAlembert` or a
+    `GroupLagrangeDAlembert` momentum, energy, constraint, equations and balance along its flow, against differences of
+    the functions it was made of.
 
     Args:
-        system: A system on a group, `Forced` or free, or in coordinates.
+        system: A system on a group, `Forced` or free, or one by functions.
         rng: A generator of the samples, or an integer that makes one.
-        configuration: Where motions begin, of a system in coordinates; random by default.
+        configuration: Where motions begin, of a system by functions; random by default.
         tolerance_factor: On every tolerance, for badly scaled units.
-        throw: Raise if a check fails; otherwise only the report says so.
+        throw: Raise if a check fails; otherwise only the report has it.
 
     Returns:
         What was measured.
@@ -287,7 +270,7 @@ def check_system(
     """
     flags("check_system", throw=throw)
     if isinstance(system, AbstractCoordinateSystem):
-        there = CoordinateSamples("check_system", system, generator("check_system(rng=...)", rng), configuration)
+        there = CoordinateSamples(system, generator("check_system(rng=...)", rng), configuration)
         return run_checks(f"check_system({there.system.name})", SYSTEM, there, tolerance_factor, throw)
     refuse_given("check_system", "be left out on a group", "Leave it out.", configuration=(configuration, None))
     if not isinstance(system, AbstractSystem):
@@ -338,7 +321,7 @@ def _energy(s: SystemSamples) -> float:
 def _potential_force(s: SystemSamples) -> float:
     forced, g, x = s.forced, s.g[:, None], np.eye(s.group.dim)
     if forced is None or forced.potential is None:
-        raise NotApplicableError("no potential")
+        raise report.NotApplicableError("no potential")
     slope = derivative(lambda t: forced.potential_energy(g @ s.group.exp(t * x)))
     return relative(forced.potential_force(s.g), -slope)
 
@@ -346,7 +329,7 @@ def _potential_force(s: SystemSamples) -> float:
 @measures(CHECKS, "friction", "friction never adds energy: its largest power", 0.0)
 def _friction(s: SystemSamples) -> float:
     if s.forced is None or s.forced.friction is None:
-        raise NotApplicableError("no friction")
+        raise report.NotApplicableError("no friction")
     return float(np.sum(s.forced.friction.covector(s.body_velocity) * s.body_velocity, axis=-1).max())
 
 
@@ -359,7 +342,7 @@ def _equilibria(s: SystemSamples) -> tuple[Equilibria, ...]:
     try:
         family = system.equilibria()
     except ValueError:
-        raise NotApplicableError("the system refuses to name its equilibria") from None
+        raise report.NotApplicableError("the system refuses to name its equilibria") from None
     return family, *family.others
 
 

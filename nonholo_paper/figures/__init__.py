@@ -1,4 +1,4 @@
-"""The figures of the paper, drawn anew, and pictures of what it describes in words; one module for each.
+"""The figures of the paper, drawn again, and pictures of what it describes in words; one module for each.
 
 A module has a `FIGURE`. Orbits and surfaces are computed by the library, in double precision.
 """

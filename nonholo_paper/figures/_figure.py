@@ -1,10 +1,12 @@
-"""A figure: a picture of the paper, drawn anew, and the number that says whether it shows what it should."""
+"""A figure: a picture of the paper, drawn again, and the number that checks it."""
 
 import dataclasses
 from collections.abc import Callable
+from typing import Any
 
 from matplotlib.figure import Figure as MatplotlibFigure
 
+from nonholo_paper._claims import claims, in_one_line
 from nonholo_paper._finding import Finding
 
 
@@ -25,3 +27,9 @@ class Figure:
     caption: str
     draw: Callable[[], MatplotlibFigure]
     finding: Finding
+
+
+def figure(draw: Callable[[], Any], finding: Finding) -> Figure:
+    """Return the figure of a module; its name, labels and caption stand in claims/figures.toml."""
+    words = claims(finding.measure.__module__)
+    return Figure(words["name"], tuple(words["labels"]), in_one_line(words["caption"]), draw, finding)

@@ -18,7 +18,7 @@ _LEAN = 0.02  # half the length of an arrow, as an angle on its ellipse
 
 @dataclasses.dataclass(frozen=True)
 class Portrait:
-    """What `portrait` drew; coordinates are those of the plane.
+    """The drawing of `portrait`; coordinates are those of the plane.
 
     Attributes:
         levels: A closed line for each energy.

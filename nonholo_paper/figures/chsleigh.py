@@ -13,8 +13,9 @@ from matplotlib.patches import Arc, Polygon
 
 import nonholo as nh
 from nonholo.plot import theme
-from nonholo_paper._finding import Measured, finding
-from nonholo_paper.figures._figure import Figure
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
+from nonholo_paper.figures._figure import figure
 from nonholo_paper.formulas import sleigh_continuous as formulas
 
 THETA, X, Y = 0.55, 2.0, 1.3
@@ -26,7 +27,7 @@ _FRAME = 3.4  # length of a body axis
 
 @dataclasses.dataclass(frozen=True)
 class Sketch:
-    """What `picture` drew.
+    """The drawing of `picture`.
 
     Attributes:
         axes: The axes.
@@ -95,19 +96,7 @@ def _words(axes: Axes) -> None:
         axes.text(x, y, word, **look)
 
 
-def draw() -> Any:
-    """Return the figure."""
-    return picture().axes.figure
-
-
-@finding(
-    "Chsleigh.fig",
-    "figure",
-    "Section 5, figure of the sleigh",
-    r"$\theta$ and $(x, y)$ are the angle of the blade and the position of its contact point; the center of mass has "
-    r"the coordinates $(a, b)$ in the frame of the body.",
-    tolerance=1e-12,
-)
+@statement
 def sketch() -> Measured:
     """Compare drawn points with the formula of the center of mass, and with a pose and displacement of the library."""
     drawn = picture()
@@ -127,12 +116,4 @@ def sketch() -> Measured:
     return Measured(float(np.abs(gaps).max()), note="points, lengths and angles of the drawing")
 
 
-FIGURE = Figure(
-    "Chsleigh",
-    ("Chsleigh.fig", "Caplag"),
-    r"The sleigh, drawn with $\theta = 0.55$, $(x, y) = (2, 1.3)$, $a = 1.5$, $b = 0.65$. The blade (thick) touches "
-    r"the plane at $(x, y)$ and points along the first body axis, at the angle $\theta$ to the $x$ axis; the center of "
-    r"mass is $a$ along it and $b$ across.",
-    draw,
-    sketch,
-)
+FIGURE = figure(lambda: picture().axes.figure, sketch)

@@ -14,8 +14,9 @@ from matplotlib.patches import Arc
 
 import nonholo as nh
 from nonholo.plot import theme
-from nonholo_paper._finding import Measured, finding
-from nonholo_paper.figures._figure import Figure
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
+from nonholo_paper.figures._figure import figure
 from nonholo_paper.formulas import sleigh_discrete as formulas
 
 THETA, DELTA, RADIUS = 0.15, 1.3, 3.0
@@ -25,7 +26,7 @@ _BLADE = 0.3  # half its length
 
 @dataclasses.dataclass(frozen=True)
 class Geometry:
-    """What `picture` drew.
+    """The drawing of `picture`.
 
     Attributes:
         axes: The axes.
@@ -110,19 +111,7 @@ def _words(axes: Axes, ends: Float[np.ndarray, "2 2"], center: Float[np.ndarray,
     axes.annotate(r"$\rho$", (ends[0] + center) / 2, (-10, 0), ha="center", color=theme.MUTED, **place)
 
 
-def draw() -> Any:
-    """Return the figure."""
-    return picture().axes.figure
-
-
-@finding(
-    "circ.fig",
-    "figure",
-    "Section 7, figure of the incremental displacements",
-    r"Both contact points lie on a circle that both lines of the blade touch; the chord makes the angle "
-    r"$\Delta\theta_k/2$ with each of them.",
-    tolerance=1e-12,
-)
+@statement
 def geometry() -> Measured:
     """Measure angles and distances of the drawn lines, and put the drawn poses into the constraint and (discr.vel1)."""
     drawn = picture()
@@ -147,12 +136,4 @@ def geometry() -> Measured:
     return Measured(float(np.abs(gaps).max()), note="angles, distances and tangency of the drawing")
 
 
-FIGURE = Figure(
-    "circ",
-    ("circ.fig", "discr.vel1", "se2.const"),
-    r"A displacement of the sleigh, drawn with $\theta_k = 0.15$, $\Delta\theta_k = 1.3$ and radius $\rho = 3$. The "
-    r"blade (thick) lies on the lines $X_k$ and $X_{k+1}$, which touch the circle in the contact points. Turn by "
-    r"$\Delta\theta_k/2$, slide along the chord (orange), turn by $\Delta\theta_k/2$ again.",
-    draw,
-    geometry,
-)
+FIGURE = figure(lambda: picture().axes.figure, geometry)

@@ -9,8 +9,9 @@ from matplotlib.lines import Line2D
 import nonholo as nh
 from nonholo.orbit import Orbit
 from nonholo.plot import BladeTrack, blade_track, theme
-from nonholo_paper._finding import Measured, finding
-from nonholo_paper.figures._figure import Figure
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
+from nonholo_paper.figures._figure import figure
 from nonholo_paper.formulas import sleigh_discrete as formulas
 
 SLEIGH = nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.0, b=0.3)
@@ -42,19 +43,7 @@ def picture() -> tuple[BladeTrack, Line2D]:
     return drawn, circle
 
 
-def draw() -> Any:
-    """Return the figure."""
-    return picture()[0].axes.figure
-
-
-@finding(
-    "balanced-circle",
-    "figure",
-    "Section 7, the case a = 0: picture",
-    r"For $a = 0$ the discrete trajectory lies on a circle of radius $\rho = V_1/\sin\Delta\theta$; so does the "
-    "continuous one, for the same momentum on the same circle.",
-    tolerance=1e-12,
-)
+@statement
 def circles() -> Measured:
     """Compare distances of drawn points and of the drawn curve from the center with the radius."""
     track, curve = picture()
@@ -64,12 +53,4 @@ def circles() -> Measured:
     return Measured(float(np.abs(gaps).max()), note="12 points, and 361 of the flow")
 
 
-FIGURE = Figure(
-    "circle",
-    ("balanced-circle", "footnote-6"),
-    r"Discrete track of the sleigh with $m = J = 1$, $a = 0$, $b = 0.3$ and constant $\Delta\theta = 0.5$, $V_1 = 1.2$ "
-    r"per step: points on a circle of radius $\rho = V_1/\sin\Delta\theta = 2.50$. Orange: the flow with the same "
-    "momentum, on the same circle.",
-    draw,
-    circles,
-)
+FIGURE = figure(lambda: picture()[0].axes.figure, circles)

@@ -12,8 +12,9 @@ import nonholo as nh
 from nonholo.analysis import deltoid
 from nonholo.plot import theme
 from nonholo.plot.elements import draw_surface
-from nonholo_paper._finding import Measured, finding
-from nonholo_paper.figures._figure import Figure
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
+from nonholo_paper.figures._figure import figure
 from nonholo_paper.figures._space import along, space
 from nonholo_paper.formulas import sleigh_discrete as formulas
 
@@ -25,7 +26,7 @@ _FLOOR = -2.6  # height of the projection
 
 @dataclasses.dataclass(frozen=True)
 class Surface:
-    """What `picture` drew.
+    """The drawing of `picture`.
 
     Attributes:
         axes: The axes.
@@ -104,23 +105,12 @@ def _folds() -> tuple[Float[np.ndarray, "K 2"], Float[np.ndarray, "K"]]:
     return np.stack([around[:, 0], a * around[:, 1] + 2 * m * a**2], axis=1), angle
 
 
-def draw() -> Any:
-    """Return the figure."""
-    return picture().axes.figure
-
-
 def _touching(side: int) -> Float[np.ndarray, "2 3"]:
     ends = np.array([-_REACH, _REACH - BODY[1]])
     return np.stack([side * (ends + BODY[1]), ends, np.full(2, float(side))], axis=1)
 
 
-@finding(
-    "cubic.fig",
-    "figure",
-    "Section 7, figure of the cubic surface",
-    r"The surface $\tilde{\mathcal{U}}$ for $J = 1.5$.",
-    tolerance=1e-11,
-)
+@statement
 def surface() -> Measured:
     """Put the mesh and the drawn lines into the cubic and the discriminant; on the lines the cubic does not cross."""
     J, drawn = BODY[1], picture()
@@ -133,13 +123,4 @@ def surface() -> Measured:
     return Measured(float(max(gaps)), note="11041 points of the mesh, 601 of the curve, two lines")
 
 
-FIGURE = Figure(
-    "cubic",
-    ("cubic.fig", "det.delta.phi", "surface"),
-    r"The surface $\tilde{\mathcal{U}}$ in the space of $p_\theta$, $\hat p_1 = ap_1 + 2ma^2$ and $z = "
-    r"\sin\Delta\theta$ for $J = 1.5$, $b = 0$; it does not depend on $m$ and $a$. It lies between the planes $z = "
-    r"\pm1$ and touches them along $\ell_\pm$. Orange: where two of its three sheets meet, and below it the "
-    "projection, the discriminant curve with its three cusps.",
-    draw,
-    surface,
-)
+FIGURE = figure(lambda: picture().axes.figure, surface)

@@ -1,15 +1,15 @@
 """Figure cusps: a discrete trajectory of the sleigh against the continuous one."""
 
 import functools
-from typing import Any
 
 import numpy as np
 
 import nonholo as nh
 from nonholo.orbit import Orbit
 from nonholo.plot import BladeTrack, blade_track, theme
-from nonholo_paper._finding import Measured, finding
-from nonholo_paper.figures._figure import Figure
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
+from nonholo_paper.figures._figure import figure
 
 SLEIGH = nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.6)
 START = (0.15, -1.0, 0.0)
@@ -41,18 +41,7 @@ def picture() -> BladeTrack:
     return drawn
 
 
-def draw() -> Any:
-    """Return the figure."""
-    return picture().axes.figure
-
-
-@finding(
-    "cusps.fig",
-    "figure",
-    "Section 7, figure of a discrete trajectory",
-    "A discrete trajectory follows the continuous one, with $b = 0$, through its cusp.",
-    tolerance=0.05,
-)
+@statement
 def tracks() -> Measured:
     """Count drawn cusps; the distance of drawn points from those of the flow falls fourfold for half the step."""
     drawn, flow = picture(), continuous()
@@ -68,12 +57,4 @@ def tracks() -> Measured:
     )
 
 
-FIGURE = Figure(
-    "cusps",
-    ("cusps.fig",),
-    r"Discrete track of the sleigh (dots, colored by time) and the continuous one from the same velocity (orange "
-    r"line): $m = J = 1$, $a = 0.6$, $b = 0$, time step 0.4, start with $\omega = 0.15$, $v_1 = -1$ at the origin, 30 "
-    "steps. The discrete track has the cusp (star) too.",
-    draw,
-    tracks,
-)
+FIGURE = figure(lambda: picture().axes.figure, tracks)

@@ -7,8 +7,9 @@ import numpy as np
 
 import nonholo as nh
 from nonholo.plot import BranchCounts, branch_counts, theme
-from nonholo_paper._finding import Measured, finding
-from nonholo_paper.figures._figure import Figure
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
+from nonholo_paper.figures._figure import figure
 from nonholo_paper.formulas import sleigh_discrete as formulas
 
 BODY = (1.0, 1.5, 1.0, 0.0)  # m, J, a, b
@@ -37,19 +38,7 @@ def _plain(p_hat: Any) -> Any:
     return (p_hat - _SHIFT) / BODY[2]
 
 
-def draw() -> Any:
-    """Return the figure."""
-    return picture().axes.figure
-
-
-@finding(
-    "surface",
-    "figure",
-    "Section 7, lemma (surface), part 3: picture",
-    r"Inside the discriminant curve, which has three cusps, three displacements have the same $p_\theta$ and $p_1$, "
-    "outside one.",
-    tolerance=1e-11,
-)
+@statement
 def counts() -> Measured:
     """Put the drawn curve and cusps into the discriminant; count real displacements on either side of the curve."""
     drawn, J = picture(), BODY[1]
@@ -68,12 +57,4 @@ def counts() -> Measured:
     return Measured(float(max(np.abs(values).max(), nearest.max(), wrong)), note="601 points, 3 cusps, 24 counts")
 
 
-FIGURE = Figure(
-    "deltoid",
-    ("surface", "cubic.fig"),
-    r"Momenta of the discrete sleigh with $m = a = 1$, $J = 1.5$, $b = 0$, time step 1: inside the discriminant curve, "
-    r"a deltoid, three displacements have the same $p_\theta$ and $p_1$, outside one. Dashed: the ellipse (ell) of "
-    r"turns without translation. With the height $z$ this is the view from above on figure cubic.",
-    draw,
-    counts,
-)
+FIGURE = figure(lambda: picture().axes.figure, counts)

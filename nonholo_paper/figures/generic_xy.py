@@ -9,8 +9,9 @@ from matplotlib.figure import Figure as MatplotlibFigure
 import nonholo as nh
 from nonholo.orbit import Orbit
 from nonholo.plot import BladeTrack, blade_track, theme
-from nonholo_paper._finding import Measured, finding
-from nonholo_paper.figures._figure import Figure
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
+from nonholo_paper.figures._figure import figure
 from nonholo_paper.figures.mom_dynamics import TITLES
 from nonholo_paper.formulas import sleigh_continuous as formulas
 
@@ -53,18 +54,7 @@ def picture() -> tuple[MatplotlibFigure, tuple[BladeTrack, ...]]:
     return figure, tuple(drawn)
 
 
-def draw() -> MatplotlibFigure:
-    """Return the figure."""
-    return picture()[0]
-
-
-@finding(
-    "generic_xy.fig",
-    "figure",
-    "Section 5, figure of the generic trajectory",
-    r"A generic trajectory of the contact point has a cusp, where $v_1$ vanishes for a moment.",
-    tolerance=1e-3,
-)
+@statement
 def cusp_of_the_track() -> Measured:
     """Compare the one drawn star with the place where the momentum crosses the cusp line; the path turns back there."""
     gaps = []
@@ -83,12 +73,4 @@ def cusp_of_the_track() -> Measured:
     return Measured(float(max(gaps)), note="one star each, and the directions 0.02 before and after; drawn every 0.01")
 
 
-FIGURE = Figure(
-    "generic_xy",
-    ("generic_xy.fig",),
-    r"Path of the blade for $m = J = 1$, $a = 0.6$ and $b = 0.4$ (left), $b = 0$ (right), energy 1/2, times from -7 to "
-    "7, colored by time. Dark strokes: the blade; gray pins lead to the center of mass. The sleigh arrives backwards, "
-    "reverses in the cusp (star) and leaves forwards.",
-    draw,
-    cusp_of_the_track,
-)
+FIGURE = figure(lambda: picture()[0], cusp_of_the_track)

@@ -8,8 +8,9 @@ from matplotlib.figure import Figure as MatplotlibFigure
 
 import nonholo as nh
 from nonholo.plot import theme
-from nonholo_paper._finding import Measured, finding
-from nonholo_paper.figures._figure import Figure
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
+from nonholo_paper.figures._figure import figure
 from nonholo_paper.figures._portrait import Portrait, portrait
 from nonholo_paper.figures.suslov import limits
 from nonholo_paper.formulas import sleigh_continuous as formulas
@@ -34,19 +35,7 @@ def picture() -> tuple[MatplotlibFigure, tuple[Portrait, ...]]:
     return figure, tuple(drawn)
 
 
-def draw() -> MatplotlibFigure:
-    """Return the figure."""
-    return picture()[0]
-
-
-@finding(
-    "mom_dynamics.fig",
-    "figure",
-    "Section 5, figure of the momentum dynamics",
-    r"The trajectories are elliptic arches between equilibria on the line $p_\theta + bp_1 = 0$; for $a > 0$ those of "
-    "the upper half-plane are stable (filled dots), those of the lower one unstable (empty dots).",
-    tolerance=1e-12,
-)
+@statement
 def momentum_dynamics() -> Measured:
     """Put drawn dots into the line, drawn ellipses into the integral, and follow flows from dot to dot."""
     gaps = []
@@ -64,12 +53,4 @@ def momentum_dynamics() -> Measured:
     return Measured(float(max(gaps)), note="two sleighs, 3 ellipses each, 4 flows on each ellipse")
 
 
-FIGURE = Figure(
-    "mom_dynamics",
-    ("mom_dynamics.fig", "ch_sl_1.eqn", "cont_sl_int", "sleqns"),
-    r"Momenta of the sleigh with $m = J = a = 1$ and $b = 1$ (left), $b = 0$ (right), at the energies 0.25, 1 and "
-    r"2.25. Equilibria are on the line $p_\theta + bp_1 = 0$, unstable ones (empty) below, stable ones (filled) above; "
-    "all motions run along their ellipse in the direction of the arrows.",
-    draw,
-    momentum_dynamics,
-)
+FIGURE = figure(lambda: picture()[0], momentum_dynamics)

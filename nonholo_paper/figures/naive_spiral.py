@@ -1,7 +1,6 @@
 """Figure naive_spiral, described in a footnote of section 7: the track of a sleigh with the naive constraint."""
 
 import functools
-from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -12,8 +11,9 @@ from matplotlib.lines import Line2D
 
 import nonholo as nh
 from nonholo.plot import theme
-from nonholo_paper._finding import Measured, finding
-from nonholo_paper.figures._figure import Figure
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
+from nonholo_paper.figures._figure import figure
 from nonholo_paper.formulas import sleigh_discrete as formulas
 
 SLEIGH = nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.0, b=0.0)
@@ -50,18 +50,7 @@ def picture() -> tuple[Axes, PathCollection, Line2D]:
     return axes, dots, spiral
 
 
-def draw() -> Any:
-    """Return the figure."""
-    return picture()[0].figure
-
-
-@finding(
-    "footnote-6",
-    "figure",
-    "Section 7, footnote to the circle: picture",
-    "With the naive constraint the trajectory for $a = 0$ lies on a spiral.",
-    tolerance=1e-9,
-)
+@statement
 def spiral() -> Measured:
     """Compare drawn points with the logarithmic spiral, one by one, and with the drawn curve; the end is its pole."""
     _, dots, line = picture()
@@ -71,13 +60,4 @@ def spiral() -> Measured:
     return Measured(float(max(gaps)), note=f"{STEPS + 1} points of a run with the naive constraint")
 
 
-FIGURE = Figure(
-    "naive_spiral",
-    ("footnote-6", "false!"),
-    r"Contact points of the sleigh with $m = J = 1$, $a = b = 0$ for the naive constraint (orange), $V_2 = 0$, and for "
-    r"that of the paper (blue, one turn of a circle), from the same first step of length 1 and angle 0.35. The naive "
-    r"one turns by the same angle in each step, which is shorter by the factor $\cos 0.35$ each time: a "
-    "logarithmic spiral, on which energy is lost.",
-    draw,
-    spiral,
-)
+FIGURE = figure(lambda: picture()[0].figure, spiral)

@@ -14,9 +14,10 @@ from matplotlib.lines import Line2D
 import nonholo as nh
 from nonholo.plot import theme
 from nonholo.plot.elements import draw_rim
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._suslov_twin import BODIES
-from nonholo_paper.figures._figure import Figure
+from nonholo_paper.figures._figure import figure
 from nonholo_paper.figures._plane import draw_curve, project
 from nonholo_paper.figures.st import TOP
 from nonholo_paper.formulas import suslov_integrals as formulas
@@ -28,7 +29,7 @@ ENERGIES = [0.02, 0.1, 0.2, 0.3, 0.45, 0.6, 0.75, 0.87, 0.98, 1.06, 1.15, 1.22]
 
 @dataclasses.dataclass(frozen=True)
 class Foliation:
-    """What `picture` drew.
+    """The drawing of `picture`.
 
     Attributes:
         axes: The axes.
@@ -81,24 +82,12 @@ def critical(kind: str) -> Float[np.ndarray, "L 2"]:
     return np.concatenate([project(z), -project(z)])
 
 
-def draw() -> Any:
-    """Return the figure."""
-    return picture().axes.figure
-
-
 def sphere(q: Float[np.ndarray, "L 2"]) -> Any:
     """Return q0, q1, q2."""
     return np.stack([np.sqrt(np.maximum(0.0, 1 - np.sum(q * q, axis=1))), *q.T])
 
 
-@finding(
-    "quat.fig",
-    "figure",
-    "Section 6, figure of the invariant curves",
-    "The invariant curves are ovals about the origin and outer ones. They meet at two opposite saddles and shrink to "
-    "two opposite centers. A straight segment is the line of equilibria.",
-    tolerance=1e-6,
-)
+@statement
 def foliation() -> Measured:
     """Put drawn curves into the quartic integral, and the drawn points into its derivatives, and count them."""
     drawn = picture()
@@ -124,14 +113,4 @@ def _slope(point: Float[np.ndarray, "2"]) -> float:
     return float(np.abs(np.subtract(forth, back)).max() / (2 * small))
 
 
-FIGURE = Figure(
-    "quat",
-    ("quat.fig", "quatern_int"),
-    r"Curves $H = \mathrm{const}$ on $\mathbb{RP}^2$ for $J_{11} = 1.4$, $J_{22} = 1$, $J_{33} = 0.9$, $J_{12} = 0.2$, "
-    r"$J_{13} = 0.5$, $J_{23} = -0.3$, time step 1, at energies from 0.02 to 1.22; the energy is $2H/D$, $D = 4.33$. "
-    r"The upper hemisphere is seen from above; opposite points of the rim, half-turns, are one and have the same "
-    r"letter. Blue: the separatrix $h^*$ of the paper, through the saddles. Green: one that it does not mention, "
-    "$h_e$, through a saddle on the rim, where the ovals about a half-turn merge into a curve along the rim.",
-    draw,
-    foliation,
-)
+FIGURE = figure(lambda: picture().axes.figure, foliation)

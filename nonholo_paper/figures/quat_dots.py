@@ -12,8 +12,9 @@ from matplotlib.figure import Figure as MatplotlibFigure
 
 import nonholo as nh
 from nonholo.plot import theme
-from nonholo_paper._finding import Measured, finding
-from nonholo_paper.figures._figure import Figure
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
+from nonholo_paper.figures._figure import figure
 from nonholo_paper.figures._plane import draw_curve, project
 from nonholo_paper.figures.quat import J, sphere
 from nonholo_paper.figures.st import TOP
@@ -26,7 +27,7 @@ SIDES = {1: theme.DISCRETE, -1: theme.COMPONENTS[1]}
 
 @dataclasses.dataclass(frozen=True)
 class Orbits:
-    """What `picture` drew; one of each for an energy, two orbits.
+    """The drawing of `picture`; one of each for an energy, two orbits.
 
     Attributes:
         axes: The axes.
@@ -87,19 +88,7 @@ def _slope(q: Float[np.ndarray, "K 2"]) -> float:
     return float(np.median(suslov_momenta.slope(J, sphere(q))))
 
 
-def draw() -> Any:
-    """Return the figure."""
-    return picture().axes.figure
-
-
-@finding(
-    "quat_dots",
-    "figure",
-    "Section 6, figure of the discrete dynamics",
-    "Discrete orbits near the origin jump along their oval from the unstable equilibrium (circle) to the stable one "
-    r"(dot), on one side of the line $J_{13}q_1 + J_{23}q_2 = 0$.",
-    tolerance=1e-7,
-)
+@statement
 def discrete_dynamics() -> Measured:
     """Compare ends of drawn orbits with drawn equilibria, put orbits into the integral, count changes of side."""
     drawn, gaps = picture(), []
@@ -116,12 +105,4 @@ def discrete_dynamics() -> Measured:
     return Measured(float(max(gaps)), note="8 orbits, from start to end to rounding")
 
 
-FIGURE = Figure(
-    "quat_dots",
-    ("quat_dots", "discr_sus_dyn"),
-    r"Orbits of the map $\mathcal{B}$ in the middle of the last figure, $J_{11} = 1.4$, $J_{22} = 1$, $J_{33} = 0.9$, "
-    r"$J_{12} = 0.2$, $J_{13} = 0.5$, $J_{23} = -0.3$, time step 1, two at each of the energies 0.1, 0.3, 0.55 and "
-    r"0.85. Stable equilibria on $\mathbb{P}$ are filled, unstable ones empty; arrows are single steps.",
-    draw,
-    discrete_dynamics,
-)
+FIGURE = figure(lambda: picture().axes.figure, discrete_dynamics)

@@ -8,9 +8,10 @@ import numpy as np
 import nonholo as nh
 from nonholo.analysis import MomentumLocus
 from nonholo.plot import MomentumLocusPicture, momentum_locus, theme
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._suslov_twin import BODIES
-from nonholo_paper.figures._figure import Figure
+from nonholo_paper.figures._figure import figure
 from nonholo_paper.figures._space import along
 from nonholo_paper.formulas import suslov_momenta as formulas
 
@@ -33,24 +34,13 @@ def picture() -> MomentumLocusPicture:
     return drawn
 
 
-def draw() -> Any:
-    """Return the figure."""
-    return picture().axes.figure
-
-
 def quaternions(found: MomentumLocus) -> Any:
     """Return q0, q1, q2 of the displacements of a mesh."""
     z0, z1, z2 = np.moveaxis(found.points, -1, 0)
     return np.stack([z0, -z2, z1])
 
 
-@finding(
-    "st.fig",
-    "figure",
-    "Section 6, figure of the momentum surface",
-    "The momentum surface of an unbalanced top has pinch points and meets itself.",
-    tolerance=1e-12,
-)
+@statement
 def surface() -> Measured:
     """Compare the mesh with (full) and with the implicit equation, and count what is drawn on it."""
     found, drawn = locus(), picture()
@@ -65,12 +55,4 @@ def surface() -> Measured:
     return Measured(float(max(gaps)), note="7260 points; 3 segments, 6 pinch points, a triple point")
 
 
-FIGURE = Figure(
-    "st",
-    ("st.fig", "full", "Steiner"),
-    r"The surface $\mathcal{U}$ of the momenta (full) of the top with $J_{11} = 1.4$, $J_{22} = 1$, $J_{33} = 0.9$, "
-    r"$J_{12} = 0.2$, $J_{13} = 0.5$, $J_{23} = -0.3$ and time step 1. It meets itself along three segments, which end "
-    "in six pinch points and meet in a triple point; beyond the pinch points only its equation holds (dashed).",
-    draw,
-    surface,
-)
+FIGURE = figure(lambda: picture().axes.figure, surface)

@@ -9,9 +9,10 @@ from jaxtyping import Float
 import nonholo as nh
 from nonholo.plot import theme
 from nonholo.plot.elements import draw_surface
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._suslov_twin import BODIES
-from nonholo_paper.figures._figure import Figure
+from nonholo_paper.figures._figure import figure
 from nonholo_paper.figures._space import along, space
 from nonholo_paper.figures.st import TOP, locus
 from nonholo_paper.formulas import suslov_momenta as formulas
@@ -48,18 +49,7 @@ def picture() -> tuple[Any, list[Any]]:
     return axes, rims
 
 
-def draw() -> Any:
-    """Return the figure."""
-    return picture()[0].figure
-
-
-@finding(
-    "st1.fig",
-    "figure",
-    "Section 6, figure of the circular section",
-    r"The part of the momentum surface over the circular section $0.4 \le q_0 \le 0.8$ of the displacements.",
-    tolerance=1e-12,
-)
+@statement
 def section() -> Measured:
     """Compare the mesh with (full), its q0 with the bounds, and the drawn rims with (full) at the bounds."""
     W, J = displacements(), np.array(BODIES["generic"])
@@ -79,12 +69,4 @@ def section() -> Measured:
     return Measured(float(max(gaps)), note="4991 points, two rims of 161 points")
 
 
-FIGURE = Figure(
-    "st1",
-    ("st1.fig", "full"),
-    r"The part of the surface of the last figure, the top with $J_{11} = 1.4$, $J_{22} = 1$, $J_{33} = 0.9$, $J_{12} = "
-    r"0.2$, $J_{13} = 0.5$, $J_{23} = -0.3$, over the ring $0.4 \le q_0 \le 0.8$ of displacements, step angles "
-    r"between 74 and 133 degrees, on the axes of the whole surface.",
-    draw,
-    section,
-)
+FIGURE = figure(lambda: picture()[0].figure, section)

@@ -169,7 +169,7 @@ def next_in_space(body: Body, before: Three, after: Three) -> tuple[Number, Numb
 
 
 def printed_next_in_space(body: Body, before: Three, after: Three) -> tuple[Number, Number]:
-    """Return them with a length in the place of an angle."""
+    """Return them with a length instead of an angle."""
     p_theta, p_1 = _turned(body, before, after)
     m, _, a, _ = body
     dx, dy = after[1] - before[1], after[2] - before[2]

@@ -29,11 +29,6 @@ def printed_lagrangian(W: Matrix, J: Matrix) -> Number:
     return trace(W * J) / 2
 
 
-def momentum(W: Matrix, J: Matrix) -> Matrix:
-    """Return the discrete momentum (*)."""
-    return W * J - J * W.T
-
-
 def small_momentum(velocity: Matrix, J: Matrix) -> Matrix:
     """Return the momentum of the continuous top."""
     return J * velocity + velocity * J
@@ -110,11 +105,6 @@ def printed_trace_constraint(R: Matrix, after: Matrix, j: int) -> Number:
     plane[j, R.rows - 1] = 1
     plane[R.rows - 1, j] = -1
     return trace(R.T * plane * after - after.T * plane * R)
-
-
-def constraint_count(n: int) -> int:
-    """Return how many constraints a step of the top has."""
-    return (n - 1) * (n - 2) // 2
 
 
 def printed_constraint_count(n: int) -> int:

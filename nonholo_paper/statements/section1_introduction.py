@@ -15,19 +15,13 @@ from nonholo_paper._bodies import (
     in_double,
     velocities,
 )
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Number, ctx
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import energy_theorem, symmetric_pairs
 
 
-@finding(
-    "footnote-1",
-    "footnote",
-    "Title page, footnote",
-    r"Subject classification 37J60, 37J35, 70H45: nonholonomic systems, integrable systems, constrained mechanics.",
-    tolerance=1e-45,
-)
+@statement
 def nonholonomic() -> Measured:
     """Test the first of the three: brackets of admissible velocities span the algebra, so no constraint integrates."""
     defects = []
@@ -39,14 +33,7 @@ def nonholonomic() -> Measured:
     return Measured(float(max(defects)), note="tops n = 3, 4 and a sleigh: dimensions")
 
 
-@finding(
-    "nonlinear-locus",
-    "remark",
-    "Section 1, on Section 3",
-    r"Unlike the momenta of the continuous system the discrete momenta fill no linear subspace, but a subvariety "
-    r"$\mathcal{U}$ of the same dimension.",
-    tolerance=1e-45,
-)
+@statement
 def nonlinear_locus() -> Measured:
     """Count: the locus has tangent planes of dimension k at the identity, and its points span more dimensions."""
     defects = []
@@ -59,13 +46,7 @@ def nonlinear_locus() -> Measured:
     return Measured(float(max(defects)), note="tops n = 3, 4 and a sleigh: dimensions")
 
 
-@finding(
-    "non-orientable",
-    "remark",
-    "Section 1, on Sections 6 and 7",
-    r"The discrete systems live on two-dimensional non-orientable subvarieties of $SO(3)$ and $SE(2)$.",
-    tolerance=1e-45,
-)
+@statement
 def non_orientable() -> Measured:
     """Carry a frame around a closed curve on each: it comes back as its mirror image."""
     defects = []
@@ -102,14 +83,7 @@ def _sleigh_velocity(s: Number, u: Number) -> list[Number]:
     return [2 * s, u * s / ctx.sin(s)]
 
 
-@finding(
-    "measure-preserving",
-    "remark",
-    "Section 1, on Sections 6 and 7",
-    "“If, for special values of parameters, the continuous-time system is momentum/measure preserving, then so is its "
-    "discrete analog.”",
-    tolerance=1e-45,
-)
+@statement
 def measure_preserving() -> Measured:
     """Evaluate rates and steps of the momenta along the constraint of balanced bodies: none of them moves."""
     defects, facts = [], []
@@ -125,19 +99,7 @@ def measure_preserving() -> Measured:
     return Measured(max(twin.worst(*defects), float(facts.count(False))), note="balanced bodies; others move")
 
 
-@finding(
-    "mirror-image",
-    "remark",
-    "Section 1, last paragraph",
-    "“This conservation law replaces the momentum conservation in the general case and seems to be quite "
-    "unexpected, since generically the discrete variational integrators do not preserve the energy and this "
-    "property does not change in the nonholonomic case.”",
-    verdict=Verdict.SETTLED,
-    corrected=r"It follows from a mirror image. Let $X = \frac12(W - W^{-1}) \in \mathfrak{d}$. The step takes $r$ "
-    r"to its mirror image in the line of $\mathbb{I}|_\mathfrak{d}X$, in the metric of the energy. With $l_d = "
-    r"l(\log W)$, variational too, it does not, and the energy is not kept.",
-    tolerance=1e-45,
-)
+@statement
 def mirror_image() -> Measured:
     """Compare the step of the definition with the mirror image, for both discrete Lagrangians."""
     right, wrong = [], []

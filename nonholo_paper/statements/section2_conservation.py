@@ -16,9 +16,9 @@ from nonholo_paper._bodies import (
     in_double,
     pose,
 )
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Number, ctx
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import general
 
 
@@ -45,14 +45,7 @@ def _curved_acceleration(body: Body, omega: Matrix) -> Matrix:
     return body.velocity(list(ctx.lu_solve(along, body.restrict(torque))))
 
 
-@finding(
-    "reduced_energy.thm",
-    "theorem",
-    "Section 2, theorem (reduced_energy.thm)",
-    r"The Euler-Poincare-Suslov equations conserve the reduced constrained energy "
-    r"$\langle p, \omega\rangle - l(\omega)$, $\omega \in \mathfrak{d}$.",
-    tolerance=1e-45,
-)
+@statement
 def reduced_energy() -> Measured:
     """Differentiate it along the equations, for a quartic Lagrangian and for the kinetic energies of the library."""
     defects = []
@@ -67,17 +60,7 @@ def reduced_energy() -> Measured:
     return Measured(max(defects), note="7 bodies, quartic and quadratic Lagrangians")
 
 
-@finding(
-    "admissible-momenta",
-    "remark",
-    "Section 2, before equation (reducedenergy.eqn)",
-    r"“$p$ lies in the subspace $\mathfrak{d}^\perp = \{\langle a^j, \mathbb{I}^{-1}p\rangle = 0,\ j = 1, \dots, "
-    r"s\} \subset \mathfrak{g}^*$”",
-    verdict=Verdict.REMARK,
-    corrected=r"The set is the image $\mathbb{I}(\mathfrak{d})$; the symbol is defined by it and does not mean the "
-    r"annihilator of $\mathfrak{d}$: $\langle\mathbb{I}\omega, \omega\rangle > 0$.",
-    tolerance=1e-45,
-)
+@statement
 def momentum_subspace() -> Measured:
     """Test the printed condition and the annihilation of d on momenta of random admissible velocities."""
     right, wrong = [], []
@@ -89,18 +72,7 @@ def momentum_subspace() -> Measured:
     return Measured(twin.worst(right), min(wrong), "7 bodies")
 
 
-@finding(
-    "reducedenergy.eqn",
-    "equation",
-    "Section 2, equation (reducedenergy.eqn)",
-    r"“such that $a^j = e^{n-j+1}$, $j = 1, \dots, s$. In such a basis, the reduced constrained energy becomes "
-    r"$\frac12\sum_{i,j=1}^s \mathbb{I}_{ij}\omega^i\omega^j = \frac12\sum_{i,j=1}^s J^{ij}p_ip_j$.”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"The sums run over $1, \dots, n - s$: $s$ counts the constraints. $J^{ij}$ is the inverse of "
-    r"$\mathbb{I}|_\mathfrak{d}$.",
-    errata=("S1",),
-    tolerance=1e-45,
-)
+@statement
 def adapted_energy() -> Measured:
     """Compare both sums with the definition and with the library, in bases adapted to each constraint."""
     right, wrong = [], []
@@ -121,17 +93,7 @@ def adapted_energy() -> Measured:
     return Measured(max(right), min(wrong), "7 bodies; the printed sum is too short for 5 of them")
 
 
-@finding(
-    "S4",
-    "remark",
-    "Section 2, remark after equation (reducedenergy.eqn)",
-    r"“the Euler-Poincare equations, which conserve the spatial momentum $J = \mathrm{Ad}^*_g p$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"With the $\mathrm{Ad}^*$ of equation (disc.momentum.eqn) it is $\mathrm{Ad}^*_{g^{-1}}p$. The "
-    r"letter $J$ also names the inverse inertia there.",
-    errata=("S4",),
-    tolerance=1e-45,
-)
+@statement
 def spatial_momentum() -> Measured:
     """Differentiate both along a free motion, and follow a free body of the library."""
     right, wrong = [], []
@@ -151,14 +113,7 @@ def _free_motion(body: Body, t: Number) -> tuple[Matrix, Matrix]:
     return pose(body) * twin.exp(t * twin.hat(body.group, omega)), p + t * rate
 
 
-@finding(
-    "body-momentum",
-    "remark",
-    "Section 2, remark after equation (reducedenergy.eqn)",
-    r"With constraints neither the spatial nor the body momentum is conserved in general; in some cases the "
-    r"body momentum is.",
-    tolerance=1e-45,
-)
+@statement
 def conserved_body_momentum() -> Measured:
     """Count the conserved components: all for a balanced top, none for an unbalanced one."""
     counts = []

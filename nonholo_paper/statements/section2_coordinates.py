@@ -7,7 +7,8 @@ import numpy as np
 from nonholo.groups import SO
 from nonholo.systems import LLSystem
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Number, ctx
 from nonholo_paper.formulas import general
 
@@ -32,14 +33,7 @@ def _blade(q: Matrix) -> Matrix:
     return twin.column([-ctx.sin(q[2]), ctx.cos(q[2]), 0])
 
 
-@finding(
-    "LD.eqn",
-    "equation",
-    "Section 2, equation (LD.eqn)",
-    r"The motion makes the action stationary, $\delta\int_a^b L\,dt = 0$, for variations $\delta q \in \mathcal{D}$ "
-    r"that vanish at both ends. The constraint is imposed on the motion, not on the varied curves.",
-    tolerance=1e-45,
-)
+@statement
 def ld_eqn() -> Measured:
     """Integrate the first variation along the motion of a skate on an incline, for two admissible variations."""
     totals = []
@@ -68,14 +62,7 @@ def _first_variation(path: Path, t: Number) -> Number:
     return twin.rate(lambda e: _skate_lagrangian(q + e * d, v + e * moved))
 
 
-@finding(
-    "00",
-    "equation",
-    "Section 2, equation (00)",
-    r"Forms $A^1, \dots, A^s$ define $\mathcal{D} = \{\dot q : \langle A^j, \dot q\rangle = 0\}$, of dimension "
-    r"$k = n - s$.",
-    tolerance=1e-45,
-)
+@statement
 def constraint_forms() -> Measured:
     """Compare count and pairing of the subspace that the library computes of random forms."""
     generator, defects = np.random.default_rng(3), []
@@ -88,14 +75,7 @@ def constraint_forms() -> Measured:
     return Measured(twin.both(0.0, max(defects)), note="4 random sets of forms, n = 3 and 6")
 
 
-@finding(
-    "1.1",
-    "equation",
-    "Section 2, equation (1.1)",
-    r"The principle implies $\frac{d}{dt}\frac{\partial L}{\partial\dot q} - \frac{\partial L}{\partial q} = "
-    r"\sum_j \lambda_j A^j(q)$.",
-    tolerance=1e-45,
-)
+@statement
 def multiplier_equations() -> Measured:
     """Evaluate both sides along the skate; the multiplier is what remains across the blade."""
     defects = []
@@ -144,13 +124,7 @@ def _acceleration(q: Matrix, v: Matrix) -> Matrix:
     return ctx.lu_solve(bordered, twin.column([*force, v[1] * v[0]]))[:3]
 
 
-@finding(
-    "energy-lemma",
-    "lemma",
-    "Section 2, lemma before equation (energy.eqn)",
-    r"Equations (1.1) with the constraint conserve the energy.",
-    tolerance=1e-45,
-)
+@statement
 def energy_lemma() -> Measured:
     """Differentiate the energy along solutions for a Lagrangian that is neither quadratic nor even in the velocity."""
     rates = []
@@ -161,13 +135,7 @@ def energy_lemma() -> Measured:
     return Measured(twin.worst(rates), note="6 random states with the constraint z' = y x'")
 
 
-@finding(
-    "energy.eqn",
-    "equation",
-    "Section 2, equation (energy.eqn)",
-    r"The energy is $E = \langle\partial L/\partial\dot q, \dot q\rangle - L$.",
-    tolerance=1e-45,
-)
+@statement
 def energy_equation() -> Measured:
     """Compare with kinetic plus potential energy; terms of first degree in the velocity drop out."""
     defects = []

@@ -16,9 +16,9 @@ from nonholo_paper._bodies import (
     in_double,
     pose,
 )
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Number, ctx
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import general
 
 
@@ -26,17 +26,7 @@ def _as_column(body: Body, X: Matrix) -> Matrix:
     return twin.column(twin.vee(body.group, X))
 
 
-@finding(
-    "linv_const.eqn",
-    "equation",
-    "Section 2, equation (linv_const.eqn)",
-    r"“where $\omega = g^{-1}\dot g = TL_{q^{-1}}\dot g$ is the body velocity operator”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$\omega = g^{-1}\dot g = TL_{g^{-1}}\dot g$; there is no $q$. With another element in its place "
-    r"$\omega$ would not even lie in the algebra.",
-    errata=("S3",),
-    tolerance=1e-45,
-)
+@statement
 def linv_const() -> Measured:
     """Test that the velocity lies in the algebra and does not change when the motion is moved by a group element."""
     right, wrong = [], []
@@ -51,16 +41,7 @@ def linv_const() -> Measured:
     return Measured(twin.worst(*right), twin.worst(*wrong), "7 bodies")
 
 
-@finding(
-    "S2",
-    "remark",
-    "Section 2, before equation (EPS.eqn)",
-    r"“Define the body momentum $p : \mathfrak{g}^* \to \mathbb{R}$ by the formula $p = \partial l/\partial\omega$.”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$p \in \mathfrak{g}^*$ is a covector with $\dim\mathfrak{g}$ components.",
-    errata=("S2",),
-    tolerance=1e-45,
-)
+@statement
 def body_momentum() -> Measured:
     """Count the derivatives of the kinetic energy, and compare them with the inertia operator of the library."""
     right, wrong = [], []
@@ -108,14 +89,7 @@ def _lagrange_in_chart(body: Body, omega: Matrix, acceleration: Matrix) -> Matri
     return twin.column([general.euler_lagrange(momentum, force) for momentum, force in pairs])
 
 
-@finding(
-    "EPS.eqn",
-    "equation",
-    "Section 2, equation (EPS.eqn)",
-    r"The reduced dynamics is $\dot p = \mathrm{ad}^*_\omega p + \sum_j \lambda^j a_j$, with "
-    r"$\langle\mathrm{ad}^*_\omega p, \eta\rangle = \langle p, [\omega, \eta]\rangle$.",
-    tolerance=1e-45,
-)
+@statement
 def eps() -> Measured:
     """Compare with the Lagrange equations with multipliers in coordinates, and with the vector field of the library."""
     defects = []
@@ -134,13 +108,7 @@ def eps() -> Measured:
     return Measured(max(defects), note="top and sleigh in coordinates; 7 bodies in the library")
 
 
-@finding(
-    "rec.eqn",
-    "equation",
-    "Section 2, equation (rec.eqn)",
-    r"The configuration follows from $\dot g = TL_g\,\omega$.",
-    tolerance=1e-45,
-)
+@statement
 def reconstruction() -> Measured:
     """Differentiate the curve of constant velocity, and compare with the vector field of the library."""
     defects = []

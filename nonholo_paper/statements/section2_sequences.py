@@ -11,9 +11,9 @@ import numpy as np
 import nonholo as nh
 from nonholo_paper import _twin as twin
 from nonholo_paper._bodies import BALANCED_TOP, SLEIGH, TILTED_TOP, TOP, Body, displacements, velocities
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Number, ctx
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import general
 
 _WEIGHT = ctx.mpf("0.25")
@@ -57,14 +57,7 @@ def _slopes(q: Matrix, q_next: Matrix) -> tuple[Matrix, Matrix]:
     return twin.column(first), twin.column(second)
 
 
-@finding(
-    "discrete-principle",
-    "equation",
-    "Section 2, discrete Lagrange-d'Alembert principle",
-    r"The action sum is stationary for admissible variations that vanish at the ends, $\sum_k (D_1L_d(q_k, q_{k+1}) + "
-    r"D_2L_d(q_{k-1}, q_k))\,\delta q_k = 0$, $\delta q_k \in \mathcal{D}_{q_k}$.",
-    tolerance=1e-45,
-)
+@statement
 def principle() -> Measured:
     """Differentiate the action sum of a solution along random admissible variations of its inner points."""
     path, _ = _motion(6)
@@ -85,18 +78,7 @@ def _weights(points: list[Matrix], seed: int) -> list[tuple[Matrix, Number, Numb
     return list(zip(points, twin.numbers(seed, len(points)), twin.numbers(seed + 9, len(points)), strict=True))
 
 
-@finding(
-    "S54",
-    "equation",
-    "Section 2, discrete Lagrange-d'Alembert principle",
-    r"“$\sum_{k=0}^{N-1}\bigg(D_1L_d(q_k, q_{k+1}) + D_2L_d(q_{k-1}, q_k)\bigg)\,\delta q_k = 0$, $\delta q_k \in "
-    r"\mathcal{D}_{q_k}$”",
-    verdict=Verdict.MISPRINT,
-    corrected="The sum begins with $k = 1$, as in Section 3, and the variations vanish at the ends: the term $k = 0$ "
-    "contains $q_{-1}$, which there is not, and the rest of it does not vanish.",
-    errata=("S54",),
-    tolerance=1e-45,
-)
+@statement
 def first_term() -> Measured:
     """Sum the balances of a solution from k = 1; printed: what an admissible variation of the first point adds."""
     (path, _), right = _motion(6), []
@@ -112,18 +94,7 @@ def _admissible(q: Matrix) -> list[Matrix]:
     return [twin.column([1, 0, q[1]]), twin.column([0, 1, 0])]
 
 
-@finding(
-    "S55",
-    "remark",
-    "Section 2, discrete mechanical systems, (ii)",
-    r"“an $(n-s)$-dimensional distribution $\mathcal{D}$ on $TQ$;” and $\mathcal{D}_d$ “has the same dimension as "
-    r"$\mathcal{D}$”",
-    verdict=Verdict.MISPRINT,
-    corrected="On $Q$: $n - s$ is the dimension of the spaces $\\mathcal{D}_q$. The dimension that $\\mathcal{D}_d$ "
-    "shares is $2n - s$, that of $\\mathcal{D}$ as a subset of $TQ$.",
-    errata=("S55",),
-    tolerance=1e-45,
-)
+@statement
 def dimensions() -> Measured:
     """Find them from the ranks of slopes at random points; printed: the dimension of D_d less that of the spaces."""
     right, wrong = [], []
@@ -139,14 +110,7 @@ def dimensions() -> Measured:
     return Measured(twin.worst(right), float(min(wrong)), "a particle with n = 3, s = 1 at 4 random points")
 
 
-@finding(
-    "gen.constr",
-    "equation",
-    "Section 2, equation (gen.constr)",
-    r"Functions $\mathcal{F}_j(q_k, q_{k+1}) = 0$, $j = 1, \dots, s$, define a manifold $\mathcal{D}_d$ that contains "
-    r"$(q, q)$ and has the dimension of $\mathcal{D} \subset TQ$, $2n - s$.",
-    tolerance=1e-45,
-)
+@statement
 def constraint_functions() -> Measured:
     """Test the value on the diagonal, the rank, and that the slope there is the form of the constraint."""
     defects = []
@@ -183,13 +147,7 @@ def _sheared_step(before: Matrix, q: Matrix) -> Matrix:
     return twin.column(ctx.findroot(missed, list(2 * q - before), tol=1e-90, maxsteps=12, verify=False))
 
 
-@finding(
-    "horizontal-symmetry",
-    "remark",
-    "Section 1, on earlier work",
-    "“the discrete-time nonholonomic system conserves the spatial momentum in the case of horizontal symmetry”",
-    tolerance=1e-45,
-)
+@statement
 def horizontal_symmetry() -> Measured:
     """Move a particle by the principle: shifts along y are an admissible symmetry, those along x are not."""
     path = [twin.column([0, 0.5, 0]), twin.column([0.25, 0.75, 0.15625])]
@@ -203,18 +161,7 @@ def horizontal_symmetry() -> Measured:
     return Measured(max(twin.worst(kept), float(twin.worst(moved) < 0.01)), note="a particle with z' = y x', 3 steps")
 
 
-@finding(
-    "consistency",
-    "remark",
-    "Section 2, remark after equation (gen.constr)",
-    r"“the variety $\mathcal{D}_d$ must be consistent with the continuous distribution $\mathcal{D}$: "
-    r"$\mathcal{D}_d$ is locally defined by the equations $\nu^j\circ\Psi = 0$”",
-    verdict=Verdict.REMARK,
-    corrected=r"A definition of Cortes and Martinez, repeated; Section 7 departs from it. The displacements "
-    r"$\exp\mathfrak{d}$ are consistent with $\log W$ always, and with the projection of $W - I$ for tops. Those of "
-    r"the sleigh, with the discrete Lagrangian (approx), are not.",
-    tolerance=1e-45,
-)
+@statement
 def consistency() -> Measured:
     """Evaluate the forms on log W and on the part of W - I in the algebra, for W in exp d."""
     right, wrong = [], []
@@ -232,14 +179,7 @@ def _forbidden(body: Body, X: Matrix) -> Number:
     return max(abs(twin.dot(a, x)) for a in body.forms)
 
 
-@finding(
-    "footnote-2",
-    "footnote",
-    "Section 2, footnote to the remark after equation (gen.constr)",
-    r"Discretizations of one system are not unique; another approach (cited, not followed) modifies canonical "
-    r"transformations.",
-    tolerance=1e-45,
-)
+@statement
 def other_discretizations() -> Measured:
     """Compare two of this library at a step of 1e-60: momenta agree to second order, and differ at the third."""
     defects = []
@@ -259,14 +199,7 @@ def _logarithmic_momentum(body: Body, x: Matrix) -> Matrix:
     return p - once / 2 + twin.coad(body.group, x, once) / 12
 
 
-@finding(
-    "dis_LA.eqn",
-    "equation",
-    "Section 2, equation (dis_LA.eqn)",
-    r"With multipliers: $D_1L_d(q_k, q_{k+1}) + D_2L_d(q_{k-1}, q_k) = \sum_j\lambda_j^kA^j(q_k)$, "
-    r"$\mathcal{F}_j(q_k, q_{k+1}) = 0$.",
-    tolerance=1e-45,
-)
+@statement
 def discrete_multipliers() -> Measured:
     """Evaluate both sides on a solution that was found by elimination."""
     path, multipliers = _motion(6)
@@ -277,16 +210,7 @@ def discrete_multipliers() -> Measured:
     return Measured(twin.worst(*defects), note="6 steps of a falling particle")
 
 
-@finding(
-    "S13",
-    "remark",
-    "Sections 2 and 3, equations (dis_LA.eqn) and (dis_LA_1.eqn)",
-    r"“$\sum_{j=1}^s\lambda_j^kA^j(q_k)$” in (dis_LA.eqn), “$\sum_{j=1}^s\lambda_k^jA_j(g_k)$” in (dis_LA_1.eqn)",
-    verdict=Verdict.MISPRINT,
-    corrected=r"One table $\lambda_k^j$ with forms $A^j$: a row for each step, a column for each constraint.",
-    errata=("S13",),
-    tolerance=1e-45,
-)
+@statement
 def indices() -> Measured:
     """Count rows and columns of the multipliers of an orbit; the two printed readings exchange them."""
     steps, forms = 7, len(TOP.forms)
@@ -296,14 +220,7 @@ def indices() -> Measured:
     return Measured(float(np.abs(np.subtract(found, (steps, forms))).max()), float(wrong), "a count")
 
 
-@finding(
-    "regularity",
-    "remark",
-    "Section 2, remark after equation (dis_LA.eqn)",
-    r"The map $(q_{k-1}, q_k) \mapsto (q_k, q_{k+1})$ is well defined if the matrix of $D_1D_2L_d$, the forms "
-    r"$A^j(q_k)$ and the rows $D_2\mathcal{F}_j$ is invertible.",
-    tolerance=1e-45,
-)
+@statement
 def regularity() -> Measured:
     """Compare it with the derivative of the equations; its determinant vanishes where no next point exists."""
     defects = []

@@ -15,9 +15,9 @@ from nonholo_paper._bodies import (
     in_double,
     velocities,
 )
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, ctx
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import general, symmetric_pairs
 
 _PAIRS = (TOP, TOP_4, SLEIGH)
@@ -28,13 +28,7 @@ def _mirror(body: Body) -> Matrix:
     return ctx.diag([-1, 1, 1]) if body is SLEIGH else ctx.diag([1] * (body.group.size - 1) + [-1])
 
 
-@finding(
-    "tangent-space",
-    "remark",
-    "Section 3, discrete left-invariant constraints",
-    r"$\mathcal{S} = \exp\mathfrak{d}$ passes through the identity and is tangent to $\mathfrak{d}$ there.",
-    tolerance=1e-45,
-)
+@statement
 def tangent_space() -> Measured:
     """Differentiate the exponential at zero along each direction of d."""
     slopes = []
@@ -45,13 +39,7 @@ def tangent_space() -> Measured:
     return Measured(twin.worst(*slopes), note="7 bodies")
 
 
-@finding(
-    "generic-exponential",
-    "remark",
-    "Section 3, discrete left-invariant constraints",
-    r"For a general $\mathfrak{d}$ the set $\exp\mathfrak{d}$ is not a subvariety of $G$.",
-    tolerance=1e-45,
-)
+@statement
 def generic_exponential() -> Measured:
     """Let a line of so(4) turn two planes at rates 1 and the root of 2: it comes back to the identity without end."""
     with ctx.workdps(150):
@@ -65,14 +53,7 @@ def generic_exponential() -> Measured:
     return Measured(twin.worst(near, [int(left)]), note="one of infinitely many sheets: length of the velocity 1e51")
 
 
-@finding(
-    "cartan",
-    "equation",
-    "Section 3, equation (cartan)",
-    r"$[\mathfrak{h}, \mathfrak{h}] \subset \mathfrak{h}$, $[\mathfrak{d}, \mathfrak{d}] \subset \mathfrak{h}$, "
-    r"$[\mathfrak{h}, \mathfrak{d}] \subset \mathfrak{d}$: the tops and the sleigh belong to symmetric pairs.",
-    tolerance=1e-45,
-)
+@statement
 def symmetric_pair() -> Measured:
     """Multiply out all brackets, and ask the library, also for two subspaces that belong to none."""
     defects = []
@@ -88,20 +69,7 @@ def symmetric_pair() -> Measured:
     return Measured(twin.worst(*defects, [len(wrong)]), note="tops n = 3, 4, sleigh; library: 7 bodies")
 
 
-@finding(
-    "S-Cartan",
-    "proposition",
-    "Section 3, proposition (S-Cartan)",
-    r"“Under the condition (cartan) the set $\mathcal{S} = \exp\mathfrak{d}$ is a smooth submanifold of $G$, which "
-    r"is either homeomorphic to the symmetric space $G/H$ or is a factor of $G/H$ by a finite group action.”",
-    verdict=Verdict.HYPOTHESIS,
-    corrected=r"So it is for the pairs of the paper, where $gH \mapsto g\,\sigma(g)^{-1}$ is two to one onto "
-    r"$\exp\mathfrak{d}$, and for Riemannian symmetric pairs of groups. The condition (cartan) alone is not enough: "
-    r"in $SL(2, \mathbb{R})$, $\mathfrak{h}$ the diagonal matrices, $\exp\mathfrak{d}$ is no manifold at $-I$: near "
-    r"$-I$ it has points with off-diagonal entries $bc < 0$, none with $bc > 0$, where the trace is below $-2$.",
-    errata=("S50",),
-    tolerance=1e-45,
-)
+@statement
 def cartan_model() -> Measured:
     """Test the map on random elements and on two cosets with one image; measure traces in SL(2, R)."""
     defects = []
@@ -129,7 +97,7 @@ def _second_coset(body: Body, mirror: Matrix) -> Matrix:
 
 
 def _trace_gap() -> float:
-    """Return how far points of the model near -I, with bc > 0, have traces from those of exponentials, at least -2."""
+    """Return the distance of traces near -I, with bc > 0, from traces of exponentials, at least -2."""
     traces = []
     for b, c in ((1, 2), (1, -2), (-3, 1), (0, 1), (4, 4)):
         X = ctx.matrix([[0, b], [c, 0]])
@@ -140,13 +108,7 @@ def _trace_gap() -> float:
     return float(max(least, -2) - twin.trace(model))
 
 
-@finding(
-    "tangent-bundle",
-    "remark",
-    "Section 3, after proposition (S-Cartan)",
-    r"The tangent bundle $T\mathcal{S}$ is not contained in the left-invariant distribution, which is not integrable.",
-    tolerance=1e-45,
-)
+@statement
 def tangent_bundle() -> Measured:
     """Compare the forbidden part of the velocity of a curve on exp d with its closed form, for a top."""
     defects = []
@@ -165,17 +127,7 @@ def _printed_locus(body: Body, W: Matrix) -> Matrix:
     return twin.column([general.left_pullback(slope, W, e) for e in twin.basis(body.group)])
 
 
-@finding(
-    "S9",
-    "remark",
-    "Section 3, momentum locus",
-    r"“$\mathcal{U} = \{p \in \mathfrak{g}^* \mid p = L^*_Wl_d'(W), W \in \mathcal{S}\} \subset g^*$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$\mathcal{U} = \{R^*_Wl_d'(W) : W \in \mathcal{S}\}$. The printed set is $-\mathcal{U}$ whenever "
-    r"$l_d(W^{-1}) = l_d(W)$.",
-    errata=("S9",),
-    tolerance=1e-45,
-)
+@statement
 def locus() -> Measured:
     """Compare with the momenta by definition, and printed points with all momenta of the same part along d."""
     right, wrong = [], []
@@ -200,13 +152,7 @@ def _distance_from_locus(body: Body, p: Matrix) -> float:
     return float(np.abs(found.momentum - in_double(p)).max(axis=1).min())
 
 
-@finding(
-    "inverse-legendre",
-    "remark",
-    "Section 3, momentum locus",
-    r"In the examples $\mathcal{S} \to \mathcal{U}$ is uniquely invertible almost everywhere on $\mathcal{U}$.",
-    tolerance=1e-45,
-)
+@statement
 def inverse_legendre() -> Measured:
     """Take momenta at 50 digits back to their displacements with the library."""
     defects = []

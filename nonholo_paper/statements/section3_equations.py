@@ -8,23 +8,13 @@ import nonholo as nh
 from nonholo_paper import _sequences as sequences
 from nonholo_paper import _twin as twin
 from nonholo_paper._bodies import ANY_4, SLEIGH, SMALL, TOP, TOP_4, Body
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import ctx
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import general
 
 
-@finding(
-    "S10",
-    "remark",
-    "Section 3, before equation (disc.momentum.eqn)",
-    r"“$l_d'(W_k)TL_{W_k}\mathrm{Ad}_{W_k^{-1}}\omega = \langle l_d'(W_k), TL_{W_k}\mathrm{Ad}_{W_k}\omega\rangle = "
-    r"\langle\mathrm{Ad}^*_{W_k^{-1}}TL^*_{W_k}l_d'(W_k), \omega\rangle$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"The middle term has $\mathrm{Ad}_{W_k^{-1}}$.",
-    errata=("S10",),
-    tolerance=1e-45,
-)
+@statement
 def transported_slope() -> Measured:
     """Compare both middle terms with the last one and with the momentum by its definition."""
     right, wrong = [], []
@@ -39,17 +29,7 @@ def transported_slope() -> Measured:
     return Measured(twin.worst(*right), min(wrong), "2 tops and a sleigh, 4 displacements each")
 
 
-@finding(
-    "disc.momentum.eqn",
-    "equation",
-    "Section 3, equation (disc.momentum.eqn)",
-    r"“(discEP.eqn) becomes discrete Euler-Poincare-Suslov equations $P_{k+1} - \mathrm{Ad}^*_{W_k}P_k = "
-    r"\sum_{j=1}^s\lambda_{k+1}^ja_j$”",
-    verdict=Verdict.REMARK,
-    corrected=r"The letter $\lambda$ is used anew: the multipliers have the opposite sign of those of (discEP.eqn), "
-    r"whose left-hand side is minus this one.",
-    tolerance=1e-45,
-)
+@statement
 def momentum_equation() -> Measured:
     """Compare both left-hand sides for any two displacements, and the library with the jump of momentum."""
     right, wrong = [], []
@@ -74,13 +54,7 @@ def _multiplier_defect(body: Body) -> float:
     return worst
 
 
-@finding(
-    "discrete-analog",
-    "remark",
-    "Section 3, after equation (disc.momentum.eqn)",
-    r"The equations are a discrete analog of (EPS.eqn).",
-    tolerance=1e-45,
-)
+@statement
 def discrete_analog() -> Measured:
     """Compare jumps of momentum over a step of size 1e-60 with the free part of the continuous equations."""
     defects = []
@@ -96,15 +70,7 @@ def discrete_analog() -> Measured:
     return Measured(twin.worst(*defects), note="3 bodies and a top n = 4, h = 1e-60")
 
 
-@finding(
-    "three-steps",
-    "remark",
-    "Section 3, after equation (disc.momentum.eqn)",
-    r"$P_{k+1}$ follows from $P_k$ in three steps: $W_k$ by the inverse Legendre transformation; $\hat P_k = "
-    r"\mathrm{Ad}^*_{W_k}P_k$; one of the points of $\mathcal{U}$ that differ from $\hat P_k$ by $\sum_j\lambda_ja_j$. "
-    r"The smallest one is a natural choice for small momenta.",
-    tolerance=1e-45,
-)
+@statement
 def three_steps() -> Measured:
     """Take the three steps with the library, and compare the smallest momentum with its own next state."""
     defects = []

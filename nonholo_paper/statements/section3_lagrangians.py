@@ -17,9 +17,9 @@ from nonholo_paper._bodies import (
     pose,
     slopes,
 )
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, ctx
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import general
 
 
@@ -34,17 +34,7 @@ def _slope(body: Body, W: Matrix) -> Matrix:
     return slope
 
 
-@finding(
-    "S6",
-    "remark",
-    "Section 3, left-invariant discrete Lagrangians",
-    r"“Let the discrete Lagrangian $L_d : G \times G \to G$ be invariant with respect to the left diagonal action "
-    r"of $G$ on $G \times G$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$L_d: G \times G \to \mathbb{R}$. Then $L_d(g_k, g_{k+1}) = l_d(W_k)$, $W_k = g_k^{-1}g_{k+1}$.",
-    errata=("S6",),
-    tolerance=1e-45,
-)
+@statement
 def discrete_lagrangian() -> Measured:
     """Test the invariance, and count: a value is one number, an element of G has dim G of them."""
     right, wrong = [], []
@@ -58,14 +48,7 @@ def discrete_lagrangian() -> Measured:
     return Measured(twin.worst(right), float(min(wrong)), "7 bodies; the printed defect is a count of components")
 
 
-@finding(
-    "approx",
-    "equation",
-    "Section 3, equation (approx)",
-    r"For a matrix group $\log(W_k)/h$ is approximated by $(W_k - I)/h = g_k^{-1}(g_{k+1} - g_k)/h$, and "
-    r"$L_d = l(g_k^{-1}(g_{k+1} - g_k)/h)$.",
-    tolerance=1e-45,
-)
+@statement
 def approximation() -> Measured:
     """Take a step of size 1e-60: the difference from the velocity is half its square times the step, to first order."""
     defects = []
@@ -78,18 +61,7 @@ def approximation() -> Measured:
     return Measured(twin.worst(*defects), note="7 bodies, h = 1e-60")
 
 
-@finding(
-    "energy-of-differences",
-    "remark",
-    "Section 3, before equation (approx)",
-    r"“its discrete analog $l_d$ can be chosen in form $l_d = l((\log W_k)/h)$”, “one can approximate $(\log "
-    r"W_k)/h$ with $W_k - I$”, “This will be our default choice”",
-    verdict=Verdict.REMARK,
-    corrected=r"Of the two only the default choice keeps the reduced constrained energy. On every branch the step "
-    r"takes $r = P(W)|_\mathfrak{d}$ to $r' = \mathrm{Ad}^*_WP(W)|_\mathfrak{d}$. With $W - I$ both have the same "
-    r"energy, with $\log W$ in general not.",
-    tolerance=1e-45,
-)
+@statement
 def logarithm() -> Measured:
     """Compare the energies before and after a step, for both discrete Lagrangians, also those of the library."""
     right, wrong = [], []
@@ -110,17 +82,7 @@ def _energy_change(body: Body, discrete: nh.Discretization, W: Matrix) -> float:
     return float(body.system.constrained_energy(after) - body.system.constrained_energy(before))
 
 
-@finding(
-    "S7",
-    "remark",
-    "Section 3, first formula for the discrete momentum",
-    r"“$P_k = L^*_{g_k}D_2L_d(g_{k-1}, g_k) \equiv L^*_{W_k}D\,l_d(W_k)$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$P_k = -L^*_{g_k}D_1L_d(g_k, g_{k+1}) = R^*_{W_k}Dl_d(W_k)$. The printed pullback is "
-    r"$\mathrm{Ad}^*_{W_k}P_k$.",
-    errata=("S7",),
-    tolerance=1e-45,
-)
+@statement
 def first_momentum() -> Measured:
     """Compare both pullbacks of the matrix of partial derivatives with the definition by the first argument."""
     right, wrong = [], []
@@ -143,15 +105,7 @@ def _from_first_argument(body: Body, W: Matrix) -> Matrix:
     return twin.column([general.momentum_by_pose(slope) for slope in found])
 
 
-@finding(
-    "footnote-3",
-    "footnote",
-    "Section 3, footnote to equation (disc.mom.dfn)",
-    r"The usual definition, "
-    r"$\langle\omega, P_k\rangle = \frac{d}{d\varepsilon}L_d(g_{k-1}, g_ke^{\omega\varepsilon})$, makes the momentum "
-    r"a function of $W_{k-1}$.",
-    tolerance=1e-45,
-)
+@statement
 def usual_momentum() -> Measured:
     """Evaluate it at several configurations: it is the momentum carried along the step that ends there."""
     defects = []
@@ -170,18 +124,7 @@ def _usual(body: Body, g: Matrix, W: Matrix) -> Matrix:
     return slopes(lambda nudge: body.lagrangian(g**-1 * (g * W * nudge)), body.group)
 
 
-@finding(
-    "disc.mom.dfn",
-    "equation",
-    "Section 3, equation (disc.mom.dfn)",
-    r"“$\langle\omega, P_k\rangle = -\frac{d}{d\varepsilon}L_d(g_ke^{\omega\varepsilon}, g_{k+1})|_{\varepsilon=0}$ "
-    r"or $\langle\omega, P_k\rangle = -\frac{d}{d\varepsilon}l_d(e^{\omega\varepsilon}W_k)|_{\varepsilon=0}$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"The second form is $+\frac{d}{d\varepsilon}l_d(e^{\omega\varepsilon}W_k)$: moving $g_k$ by "
-    r"$e^{\omega\varepsilon}$ takes $W_k$ to $e^{-\omega\varepsilon}W_k$.",
-    errata=("S8",),
-    tolerance=1e-45,
-)
+@statement
 def momentum_definition() -> Measured:
     """Compare the two forms, and the library with the first."""
     right, wrong = [], []
@@ -198,13 +141,7 @@ def momentum_definition() -> Measured:
     return Measured(max(right), max(wrong), "7 bodies, 3 displacements each")
 
 
-@finding(
-    "legendre",
-    "remark",
-    "Section 3, discrete Legendre transformation",
-    r"The transformation $(g, W) \mapsto (g, P)$ is invertible near $P = 0$, and may fail to be so globally.",
-    tolerance=1e-45,
-)
+@statement
 def legendre() -> Measured:
     """At W = I its derivative is the inertia operator; half-turns about the principal axes also have momentum zero."""
     defects = []

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from nonholo_paper import _sequences as sequences
 from nonholo_paper import _twin as twin
 from nonholo_paper._bodies import ANY_4, SLEIGH, SMALL, TOP, TOP_4, Body, slopes
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Number, ctx
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import general
 
 
@@ -30,13 +30,7 @@ def _action_rate(body: Body, variations: list[Matrix]) -> Number:
     return twin.rate(action)
 
 
-@finding(
-    "**",
-    "equation",
-    "Section 3, equation (**)",
-    r"Admissible variations satisfy $\langle a^j, g_k^{-1}\delta g_k\rangle = 0$.",
-    tolerance=1e-45,
-)
+@statement
 def admissible_variations() -> Measured:
     """Differentiate curves g exp(t eta), eta in d, and move them by a group element."""
     defects = []
@@ -49,17 +43,7 @@ def admissible_variations() -> Measured:
     return Measured(twin.worst(defects), note="5 bodies, 5 poses each")
 
 
-@finding(
-    "S12",
-    "remark",
-    "Section 3, action sums and constraint functions",
-    r"“the reduced action sum $s_d : G^{N-1} \to \mathbb{R}$” and “$\mathcal{F}_j(q_k, q_{k+1}) = f_j(W_k)$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"It is a function on $G^N$, of $W_0, \dots, W_{N-1}$; the arguments of $\mathcal{F}_j$ are $g_k, "
-    r"g_{k+1}$.",
-    errata=("S12",),
-    tolerance=1e-45,
-)
+@statement
 def action_sums() -> Measured:
     """Count the displacements of N + 1 poses, and compare both sums."""
     right, wrong = [], []
@@ -73,15 +57,7 @@ def action_sums() -> Measured:
     return Measured(twin.worst(right), float(min(wrong)), "a count: N + 1 poses have N displacements")
 
 
-@finding(
-    "discrete_EPS",
-    "theorem",
-    "Section 3, theorem (discrete_EPS)",
-    r"Equivalent are: (i) the action sum is stationary under constrained variations, (ii) the equations with "
-    r"multipliers (dis_LA_1.eqn), (iii) the reduced action sum is stationary under the variations (var_W), (iv) "
-    r"equation (discEP.eqn).",
-    tolerance=1e-45,
-)
+@statement
 def equivalence() -> Measured:
     """Compare first variations in the forms (i), (iii), (iv) for arbitrary sequences and variations."""
     defects = []
@@ -116,17 +92,7 @@ def _stationarity(body: Body) -> float:
     return twin.worst(balances)
 
 
-@finding(
-    "S56",
-    "remark",
-    "Section 3, theorem (discrete_EPS), (iii) and (iv)",
-    r"“$s_d : G^{N-1} \to \mathbb{R}$” and “$f_j(W_k) = 0$, $j = 1, \dots, s$, $k = 1, \dots, N - 1$.”",
-    verdict=Verdict.MISPRINT,
-    corrected="$s_d$ is a function on $G^N$, of $W_0, \\dots, W_{N-1}$, and $k = 0, \\dots, N - 1$. Otherwise $W_0$ is "
-    "free: displacements off $\\mathcal{S}$ carry the same momenta along $\\mathfrak{d}$ to the next step.",
-    errata=("S56",),
-    tolerance=1e-45,
-)
+@statement
 def first_displacement() -> Measured:
     """Solve (iv) for a first displacement off the variety; printed: how asymmetric it is where it must not be."""
     right, wrong = [], []
@@ -147,13 +113,7 @@ def first_displacement() -> Measured:
     return Measured(twin.worst(right), float(min(wrong)), "a top, three displacements")
 
 
-@finding(
-    "dis_LA_1.eqn",
-    "equation",
-    "Section 3, equation (dis_LA_1.eqn)",
-    r"$D_1L_d(g_k, g_{k+1}) + D_2L_d(g_{k-1}, g_k) = \sum_j\lambda_k^jA_j(g_k)$.",
-    tolerance=1e-45,
-)
+@statement
 def equations_on_group() -> Measured:
     """Differentiate by the common pose: the slopes sum to minus the jump of momentum, for orbits a force."""
     defects, orbits = [], []
@@ -177,13 +137,7 @@ def _slopes_at(body: Body, before: Matrix, g: Matrix, after: Matrix) -> tuple[Ma
     return first, slopes(lambda nudge: body.lagrangian(before**-1 * (g * nudge)), body.group)
 
 
-@finding(
-    "var_W",
-    "equation",
-    "Section 3, equation (var_W)",
-    r"$\delta W_k = W_k[g_{k+1}^{-1}\delta g_{k+1} - \mathrm{Ad}_{W_k^{-1}}g_k^{-1}\delta g_k]$.",
-    tolerance=1e-45,
-)
+@statement
 def induced_variation() -> Measured:
     """Differentiate the displacement between two moving poses."""
     defects = []
@@ -200,13 +154,7 @@ def _moving(g: Matrix, g_next: Matrix, start: Matrix, end: Matrix) -> Callable[[
     return lambda t: (g * twin.exp(t * start)) ** -1 * (g_next * twin.exp(t * end))
 
 
-@finding(
-    "discEP.eqn",
-    "equation",
-    "Section 3, equation (discEP.eqn)",
-    r"$l_d'(W_{k-1})TL_{W_{k-1}} - l_d'(W_k)TL_{W_k}\mathrm{Ad}_{W_k^{-1}} = \sum_j\lambda_k^ja_j$.",
-    tolerance=1e-45,
-)
+@statement
 def reduced_equations() -> Measured:
     """Compare the left-hand side with momenta by definition, and on d with orbits of the library."""
     defects = []

@@ -6,20 +6,13 @@ import nonholo as nh
 from nonholo_paper import _tops as tops
 from nonholo_paper import _twin as twin
 from nonholo_paper._bodies import in_double
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import suslov_continuous as suslov
 
 
-@finding(
-    "ep3.24",
-    "equation",
-    "Section 4, equation (ep3.24)",
-    r"The angular velocity has no component along an axis that is fixed in the body, $(\omega, \gamma) = 0$: a "
-    r"left-invariant constraint on $SO(3)$.",
-    tolerance=1e-45,
-)
+@statement
 def constraint() -> Measured:
     """Compare with the projection of the spatial angular velocity in several poses, and the library's annihilator."""
     group, defects = nh.SO(3), []
@@ -32,13 +25,7 @@ def constraint() -> Measured:
     return Measured(max(defects), note="5 tops, 4 velocities each")
 
 
-@finding(
-    "3.25",
-    "equation",
-    "Section 4, equation (3.25)",
-    r"$\frac{d}{dt}(\mathbb{I}\omega) = \mathbb{I}\omega \times \omega + \lambda\gamma$.",
-    tolerance=1e-45,
-)
+@statement
 def equations() -> Measured:
     """Compare with the Euler-Poincare-Suslov equations on so(3), and with the vector field of the library."""
     defects = []
@@ -50,51 +37,28 @@ def equations() -> Measured:
 
 
 def _library_defect(top: tops.Top, w: Matrix, rate: Matrix) -> float:
-    """Return how far the library's rate of the restricted momenta is from one at 50 digits, relative to w^2."""
+    """Return the distance of the library's rate of the restricted momenta from one at 50 digits, relative to w^2."""
     rows = top.system.constraint_subspace
     state = np.concatenate([rows @ in_double(top.inertia * w), np.eye(3).ravel()])
     found = nh.vector_field(top.system)(0.0, state)[:2]
     return float(abs(found - rows @ in_double(rate)).max() / (1 + twin.dot(w, w)))
 
 
-@finding(
-    "suslov-multiplier",
-    "equation",
-    "Section 4, display after equation (3.25)",
-    r"$\lambda = -(\mathbb{I}\omega \times \omega, \mathbb{I}^{-1}\gamma)/(\gamma, \mathbb{I}^{-1}\gamma)$.",
-    tolerance=1e-45,
-)
+@statement
 def eliminated_multiplier() -> Measured:
     """Compare with the solution of the equations together with the derivative of the constraint."""
     defects = [suslov.multiplier(top.inertia, w, top.axis) - top.accelerated(w)[1] for top, w in tops.states()]
     return Measured(twin.worst(defects), note="5 tops, 4 velocities each")
 
 
-@finding(
-    "suslov-eliminated",
-    "equation",
-    "Section 4, display before equation (ep3.26)",
-    r"$\frac{d}{dt}(\mathbb{I}\omega) = \frac{1}{(\gamma, \mathbb{I}^{-1}\gamma)}\,\mathbb{I}^{-1}\gamma \times "
-    r"((\mathbb{I}\omega \times \omega) \times \gamma)$.",
-    tolerance=1e-45,
-)
+@statement
 def eliminated_equation() -> Measured:
     """Compare with the rate by definition."""
     pairs = [(suslov.eliminated(t.inertia, w, t.axis), t.inertia * t.accelerated(w)[0]) for t, w in tops.states()]
     return Measured(twin.worst(*(found - rate for found, rate in pairs)), note="5 tops, 4 velocities each")
 
 
-@finding(
-    "ep3.26",
-    "equation",
-    "Section 4, equation (ep3.26)",
-    r"“$\frac{d}{dt}(\mathbb{I}\omega) = (\mathbb{I}\omega, \gamma)\,\omega\times\mathbb{I}^{-1}\gamma$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$\frac{d}{dt}(\mathbb{I}\omega) = \frac{(\mathbb{I}\omega, \gamma)}{(\gamma, "
-    r"\mathbb{I}^{-1}\gamma)}\,\mathbb{I}^{-1}\gamma \times \omega$: the other sign, and a denominator.",
-    errata=("S14",),
-    tolerance=1e-45,
-)
+@statement
 def reduced_equation() -> Measured:
     """Compare both with the rate by definition, and the library with the corrected one."""
     right, wrong = [], []

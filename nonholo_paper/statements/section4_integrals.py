@@ -7,22 +7,13 @@ import nonholo as nh
 from nonholo_paper import _tops as tops
 from nonholo_paper import _twin as twin
 from nonholo_paper._bodies import in_double
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Number, ctx
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import suslov_continuous as suslov
 
 
-@finding(
-    "ep3.27",
-    "equation",
-    "Section 4, equation (ep3.27)",
-    r"“The Suslov system possesses the energy integral $(\omega, \mathbb{I}\omega) \equiv (M, \mathbb{I}^{-1}M) = "
-    r"h$”",
-    verdict=Verdict.REMARK,
-    corrected="It is twice the energy: $h = 2E$.",
-    tolerance=1e-45,
-)
+@statement
 def energy_integral() -> Measured:
     """Differentiate it along the motion, and compare it with the energy of the Lagrangian and of the library."""
     right, wrong = [], []
@@ -38,13 +29,7 @@ def energy_integral() -> Measured:
     return Measured(max(right), max(wrong), "5 tops, 4 velocities each")
 
 
-@finding(
-    "suslov-equilibria",
-    "remark",
-    "Section 4, after equation (ep3.27)",
-    r"The equilibria form a line, $(\omega, \gamma) = (\mathbb{I}\omega, \gamma) = 0$.",
-    tolerance=1e-45,
-)
+@statement
 def equilibria() -> Measured:
     """Test the line, the rest of the plane, and the library's equilibria; a balanced body has a plane of them."""
     defects = []
@@ -60,16 +45,7 @@ def equilibria() -> Measured:
     return Measured(twin.worst(defects), note="5 tops, one of them balanced")
 
 
-@finding(
-    "cont_sus_int",
-    "equation",
-    "Section 4, equation (cont_sus_int)",
-    r"The integral $(M, \hat{\mathbb{I}}M)$ “coincides with the restriction of (ep3.27) onto the constraint plane”",
-    verdict=Verdict.REMARK,
-    corrected=r"Up to a constant factor: $(M, \hat{\mathbb{I}}M) = \det\mathbb{I}\,(\gamma, "
-    r"\mathbb{I}^{-1}\gamma)\,(\omega, \mathbb{I}\omega)$ there. $\hat{\mathbb{I}}\gamma = 0$.",
-    tolerance=1e-45,
-)
+@statement
 def degenerate_integral() -> Measured:
     """Evaluate both integrals, the derivative along the motion and the kernel, in principal bases."""
     right, wrong = [], []
@@ -84,14 +60,7 @@ def degenerate_integral() -> Measured:
     return Measured(twin.worst(right), max(wrong), "3 tops in principal bases")
 
 
-@finding(
-    "sus_int_1",
-    "equation",
-    "Section 4, equation (sus_int_1)",
-    r"For $\gamma = (0, 0, 1)$ the integral can be replaced by $\mathbb{I}_{22}M_1^2 - 2\mathbb{I}_{12}M_1M_2 + "
-    r"\mathbb{I}_{11}M_2^2$, the reduced constrained energy.",
-    tolerance=1e-45,
-)
+@statement
 def reduced_integral() -> Measured:
     """Compare with (ep3.27) times the determinant of the constrained inertia, and with the energy of the library."""
     defects = []
@@ -107,14 +76,7 @@ def reduced_integral() -> Measured:
     return Measured(max(defects), note="2 tops, 4 velocities each")
 
 
-@finding(
-    "suslov-limits",
-    "remark",
-    "Section 4, before figure (Suslov.fig)",
-    r"The body goes from a permanent rotation about an axis fixed in it to the rotation about the same axis with the "
-    r"same speed, in the opposite sense.",
-    tolerance=1e-45,
-)
+@statement
 def limits() -> Measured:
     """Test the closed form of the motion in the equations, and its limits; the library says the same of its tops."""
     B, c, defects = ctx.matrix([[2.75, 0.25], [0.25, 2.25]]), twin.column([0.5, -0.25]), []
@@ -151,19 +113,7 @@ _ALIGNED = (
 )
 
 
-@finding(
-    "suslov-space-axes",
-    "remark",
-    "Section 4, before figure (Suslov.fig)",
-    "“Note that in space the axes of the limit permanent rotations are different.”",
-    verdict=Verdict.EXCEPTIONS,
-    corrected=r"Except on special bodies. If $J_{12} = J_{23} = 0$, the angle $\delta$ between them, which Fedorov, "
-    r"Maciejewski and Przybylska (2009) found from the monodromy, is $\sin\frac\delta2 = |\cos(\frac\pi2\sqrt "
-    r"q)|\,/\cosh\frac{\pi B_2}{2|J_{13}|}$, $q = B_2(B_1 - B_2)/J_{13}^2$, $B_i = J_{ii} + J_{33}$. It vanishes "
-    r"for $q = 1, 9, 25, \dots$, for instance for $J_{11} = \frac34$, $J_{22} = J_{33} = J_{13} = \frac12$.",
-    errata=("S51",),
-    tolerance=1e-7,
-)
+@statement
 def axes_in_space() -> Measured:
     """Integrate the vector field of the library to both ends, in double precision; the last body has q = 0."""
     defects, coinciding = [], 0

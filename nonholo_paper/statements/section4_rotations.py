@@ -5,9 +5,9 @@ import numpy as np
 import nonholo as nh
 from nonholo_paper import _twin as twin
 from nonholo_paper._bodies import in_double
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Number, ctx
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import general
 from nonholo_paper.formulas import suslov_continuous as suslov
 
@@ -32,14 +32,7 @@ def _skew(n: int, seed: int) -> Matrix:
     return twin.hat(nh.SO(n), twin.numbers(seed, nh.SO(n).dim, -2, 2))
 
 
-@finding(
-    "cont.so-n.lagr",
-    "equation",
-    "Section 4, equation (cont.so-n.lagr)",
-    r"The free body has $L = \frac12\langle\mathbb{I}\omega, \omega\rangle$ with "
-    r"$\mathbb{I}\omega = J\omega + \omega J$, mass tensor $J$, and $\langle X, Y\rangle = -\frac12\mathrm{tr}(XY)$.",
-    tolerance=1e-45,
-)
+@statement
 def lagrangian() -> Measured:
     """Compare with the kinetic energy of mass points, and the inertia operator with the library."""
     defects = []
@@ -56,14 +49,7 @@ def lagrangian() -> Measured:
     return Measured(max(defects), note="6 to 7 mass points, n = 3, 4, 5")
 
 
-@finding(
-    "matrix_constraint",
-    "equation",
-    "Section 4, equation (matrix_constraint)",
-    r"Only rotations in planes that contain $e_n$ are allowed: $\omega$ has entries $\omega_{in}$ and $-\omega_{in}$ "
-    r"in the last column and row, and zeros elsewhere.",
-    tolerance=1e-45,
-)
+@statement
 def admissible_velocities() -> Measured:
     """Compare with combinations of planes and the library's subspace; for n = 3 the third component vanishes."""
     defects = []
@@ -78,13 +64,7 @@ def admissible_velocities() -> Measured:
     return Measured(max(defects), note="n = 3, 4, 5")
 
 
-@finding(
-    "Suslov_constraints",
-    "equation",
-    "Section 4, equation (Suslov_constraints)",
-    r"$\langle\omega, e_i \wedge e_j\rangle = (e_i, \omega e_j) = 0$ for $1 \le i < j \le n - 1$.",
-    tolerance=1e-45,
-)
+@statement
 def constraints() -> Measured:
     """Compare both forms on any velocity, test them on admissible ones, and count them in the library."""
     defects = []
@@ -114,18 +94,7 @@ def _momentum_rate(J: Matrix, x: list[Number]) -> Matrix:
     return twin.hat(group, _momentum(J, suslov.admissible(list(ctx.lu_solve(inertia, along)))))
 
 
-@finding(
-    "Suslov_eq",
-    "equation",
-    "Section 4, equation (Suslov_eq)",
-    r"“$\omega(t) = g^{-1}\cdot g(t) \in so(n)$” and “$\frac{d}{dt}(\mathbb{I}\omega) = [\mathcal{I}\omega, \omega] "
-    r"+ \sum_{1<p<q\le n-1}\lambda_{pq}\,e_p\wedge e_q$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$\omega = g^{-1}\dot g$; the sum is over $1 \le p < q \le n - 1$, $(n-1)(n-2)/2$ planes, one for "
-    r"each constraint; $\mathcal{I}$ and $\mathbb{I}$ are one operator.",
-    errata=("S16",),
-    tolerance=1e-45,
-)
+@statement
 def equations() -> Measured:
     """Take the force of constraint from the definition: it lies in all planes of the sum, not in the printed ones."""
     right, forces, others = [], [], []

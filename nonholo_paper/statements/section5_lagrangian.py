@@ -4,10 +4,10 @@ import numpy as np
 
 import nonholo as nh
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._sleigh_twin import BODIES, PLANE, Body, kinetic, momenta, points, pose, poses
 from nonholo_paper._twin import ctx, worst
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import sleigh_continuous as formulas
 
 VELOCITIES = [twin.numbers(511 + k, 3, -2, 2) for k in range(3)] + [
@@ -25,14 +25,7 @@ def _library(body: Body) -> nh.ChaplyginSleigh:
     return nh.ChaplyginSleigh(*map(float, body))
 
 
-@finding(
-    "center-of-mass",
-    "equation",
-    "Section 5, the position of the center of mass",
-    r"The center of mass, at body point $(a, b)$, is at $(x + a\cos\theta - b\sin\theta,\ y + a\sin\theta + "
-    r"b\cos\theta)$.",
-    tolerance=1e-45,
-)
+@statement
 def center_of_mass() -> Measured:
     """Move the body point by the matrix of the pose."""
     gaps = []
@@ -44,16 +37,7 @@ def center_of_mass() -> Measured:
     return Measured(worst(gaps), note="8 bodies, 5 poses")
 
 
-@finding(
-    "C2",
-    "equation",
-    "Section 5, the words on J before equation (Caplag)",
-    "“Let $m$ and $J$ denote the mass and moment of inertia of the sleigh relative to the contact point.”",
-    verdict=Verdict.MISPRINT,
-    corrected="The formulas add $m(a^2 + b^2)$, so $J$ is the moment of inertia about the center of mass.",
-    errata=("C2",),
-    tolerance=1e-45,
-)
+@statement
 def meaning_of_inertia() -> Measured:
     """Put both readings of J into the Lagrangian, against the kinetic energy of mass points."""
     right, wrong = [], []
@@ -66,21 +50,7 @@ def meaning_of_inertia() -> Measured:
     return Measured(worst(right), worst(wrong), "8 bodies, 5 velocities")
 
 
-@finding(
-    "C3",
-    "equation",
-    "Section 5, the two displays of the kinetic energy of the center of mass",
-    r"“$m[\dot x^2 + \dot y^2 + (a^2 + b^2)\dot\theta^2 + 2\dot\theta(a(-\dot x\sin\theta + \dot y\cos\theta) - "
-    r"b(\dot x\cos\theta + \dot y\sin\theta))]$” and “$m[(a^2 + b^2)\omega^2 + v_1^2 + v_2^2 - 2b\,\omega v_1^2 + "
-    r"2a\,\omega v_2]$”",
-    verdict=Verdict.MISPRINT,
-    corrected="Both have the factor $m/2$. (The power of $v_1$ is the slip of (Caplag).)",
-    errata=(
-        "C3",
-        "C4",
-    ),
-    tolerance=1e-45,
-)
+@statement
 def energy_of_center() -> Measured:
     """Compare both displays with half the mass times the square of the velocity of the center."""
     right, wrong, wrong_in_space = [], [], []
@@ -96,17 +66,7 @@ def energy_of_center() -> Measured:
     return Measured(worst(right), worst(wrong) + worst(wrong_in_space), "8 bodies, 5 velocities; both displays")
 
 
-@finding(
-    "Caplag",
-    "equation",
-    "Section 5, equation (Caplag)",
-    r"“$l = \frac12[(J + m(a^2 + b^2))\omega^2 + m(v_1^2 + v_2^2) - 2mb\,\omega v_1^2 + 2ma\,\omega v_2]$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"The mixed term is $-2mb\,\omega v_1$, and $-2b\,\omega v_1$ in the display before: the kinetic "
-    r"energy is quadratic.",
-    errata=("C4",),
-    tolerance=1e-45,
-)
+@statement
 def caplag() -> Measured:
     """Compare with the kinetic energy of mass points, and with the inertia operator of the library."""
     right, wrong, library = [], [], []
@@ -121,16 +81,7 @@ def caplag() -> Measured:
     return Measured(twin.both(worst(right), worst(library)), worst(wrong), "8 bodies, 5 velocities")
 
 
-@finding(
-    "C5",
-    "equation",
-    "Section 5, the components of the body momentum",
-    r"“$p_\theta \equiv \frac{\partial l}{\partial\omega} = (J + m(a^2 + b^2))\omega + 2m(av_2 - bv_1)$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$p_\theta = (J + m(a^2 + b^2))\omega + m(av_2 - bv_1)$.",
-    errata=("C5",),
-    tolerance=1e-45,
-)
+@statement
 def body_momentum() -> Measured:
     """Compare with the derivatives of the kinetic energy of mass points."""
     right, wrong = [], []
@@ -142,13 +93,7 @@ def body_momentum() -> Measured:
     return Measured(worst(right), worst(wrong), "8 bodies, 5 velocities")
 
 
-@finding(
-    "se2_reconstruction.eqn",
-    "equation",
-    "Section 5, equation (se2_reconstruction.eqn)",
-    r"Lagrangian and constraint depend on $(g, \dot g)$ through $\Omega = g^{-1}\dot g$ only: they are left-invariant.",
-    tolerance=1e-45,
-)
+@statement
 def se2_reconstruction() -> Measured:
     """Compute energy and velocity across the blade in space, at a pose and at that pose moved by a rigid motion."""
     gaps = []

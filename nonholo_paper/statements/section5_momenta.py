@@ -1,17 +1,15 @@
 """Section 5: the equations of the body momentum of the sleigh, their integral and their phase portrait."""
 
-from collections.abc import Iterable
-
 import numpy as np
 
 import nonholo as nh
 from nonholo.groups import SO
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._sleigh_twin import ALONG, BODIES, PLANE, UNBALANCED, Body, points, rates, velocity_of
 from nonholo_paper._sleigh_twin import momenta as momenta_at
 from nonholo_paper._twin import Matrix, Number, ctx, worst
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import sleigh_continuous as formulas
 
 MOMENTA = [twin.numbers(531 + k, 2, -2, 2) for k in range(3)] + [
@@ -35,17 +33,7 @@ def _turning_rate(body: Body, turning: Number, p_1: Number) -> Number:
     return rate[0] + body.b * rate[1]
 
 
-def _gaps(left: Iterable, right: Iterable) -> list:
-    return [x - y for x, y in zip(left, right, strict=True)]
-
-
-@finding(
-    "EPS.se2.eqn",
-    "equation",
-    "Section 5, equation (EPS.se2.eqn)",
-    r"$\dot p_\theta = p_1v_2 - p_2v_1$, $\dot p_1 = p_2\omega$, $\dot p_2 = -p_1\omega + \lambda$, with $v_2 = 0$.",
-    tolerance=1e-45,
-)
+@statement
 def eps_se2() -> Measured:
     """Compare with the pairing of the momentum with the brackets of the velocity and the basis, on and off v2 = 0."""
     gaps = []
@@ -53,31 +41,18 @@ def eps_se2() -> Measured:
         for v in ([*twin.numbers(541 + k, 3, -3, 3)], [*twin.numbers(551 + k, 2, -3, 3), ctx.zero]):
             velocity = twin.hat(PLANE, v)
             defined = rates(PLANE, points(body), EVERY, velocity)
-            gaps += _gaps(formulas.momentum_rates(momenta_at(PLANE, points(body), velocity), v), defined)
+            gaps += twin.differences(formulas.momentum_rates(momenta_at(PLANE, points(body), velocity), v), defined)
     return Measured(worst(gaps), note="8 bodies, 16 velocities")
 
 
-@finding(
-    "ch_sl_1.eqn",
-    "equation",
-    "Section 5, equation (ch_sl_1.eqn)",
-    r"$\dot p_\theta = -\frac{a}{(J + ma^2)^2}(p_\theta + bp_1)(mb\,p_\theta + (J + m(a^2 + b^2))p_1)$, "
-    r"$\dot p_1 = \frac{ma}{(J + ma^2)^2}(p_\theta + bp_1)^2$.",
-    tolerance=1e-45,
-)
+@statement
 def ch_sl_1() -> Measured:
     """Compare with the equations at the admissible velocity that has these momenta."""
-    gaps = [_gaps(formulas.momentum_equation(body, *p), _rates(body, p)) for body in BODIES for p in MOMENTA]
+    gaps = [twin.differences(formulas.momentum_equation(body, *p), _rates(body, p)) for body in BODIES for p in MOMENTA]
     return Measured(max(map(worst, gaps)), note="8 bodies, 6 momenta")
 
 
-@finding(
-    "cont_sl_int",
-    "equation",
-    "Section 5, equation (cont_sl_int)",
-    r"$mp_\theta^2 + 2bm\,p_\theta p_1 + (J + m(a^2 + b^2))p_1^2$ is an integral, the constrained energy.",
-    tolerance=1e-45,
-)
+@statement
 def cont_sl_int() -> Measured:
     """Take its derivative along the equations, and compare it with 2 m (J + m a^2) times the kinetic energy."""
     gaps, library = [], []
@@ -95,28 +70,19 @@ def cont_sl_int() -> Measured:
     return Measured(twin.both(worst(gaps), worst(library)), note="8 bodies, 6 momenta")
 
 
-@finding(
-    "sleqns",
-    "equation",
-    "Section 5, equation (sleqns)",
-    r"For $b = 0$: $\dot p_\theta = -\frac{a\,p_\theta p_1}{J + ma^2}$, $\dot p_1 = \frac{ma\,p_\theta^2}{(J + "
-    r"ma^2)^2}$.",
-    tolerance=1e-45,
-)
+@statement
 def sleqns() -> Measured:
     """Compare with the equations of bodies whose center of mass is on the axis of the blade."""
     centered = [body._replace(b=ctx.zero) for body in BODIES]
-    gaps = [_gaps(formulas.momentum_equation_centered(body, *p), _rates(body, p)) for body in centered for p in MOMENTA]
+    gaps = [
+        twin.differences(formulas.momentum_equation_centered(body, *p), _rates(body, p))
+        for body in centered
+        for p in MOMENTA
+    ]
     return Measured(max(map(worst, gaps)), note="8 bodies, 6 momenta")
 
 
-@finding(
-    "b-irrelevant",
-    "remark",
-    "Section 5, the position of the center of mass",
-    r"$a$ is crucial to the behavior of the sleigh, $b$ is irrelevant.",
-    tolerance=1e-45,
-)
+@statement
 def b_irrelevant() -> Measured:
     """Compare the rates of p_theta + b p_1 and p_1 with those of the body with b = 0."""
     gaps = []
@@ -124,17 +90,11 @@ def b_irrelevant() -> Measured:
         for turning, p_1 in MOMENTA:
             rate = _rates(body, [turning - body.b * p_1, p_1])
             centered = _rates(body._replace(b=ctx.zero), [turning, p_1])
-            gaps += _gaps([rate[0] + body.b * rate[1], rate[1]], centered)
+            gaps += twin.differences([rate[0] + body.b * rate[1], rate[1]], centered)
     return Measured(worst(gaps), note="8 bodies, 6 momenta")
 
 
-@finding(
-    "suslov-portrait",
-    "remark",
-    "Section 5, after equation (sleqns)",
-    r"The phase portrait is identical to that of the Suslov problem.",
-    tolerance=1e-45,
-)
+@statement
 def suslov_portrait() -> Measured:
     """Compare the rates with those of the top with I_11 = J + m a^2, I_22 = m, I_13 = m a, I_12 = I_23 = 0."""
     group, gaps = SO(3), []
@@ -147,17 +107,11 @@ def suslov_portrait() -> Measured:
             omega = twin.hat(group, [turning / inertia[0, 0], p_1 / m, 0])
             top = [twin.inner(omega * tensor, omega * E - E * omega) for E in brackets]
             rate = _rates(body, [turning - b * p_1, p_1])
-            gaps += _gaps([rate[0] + b * rate[1], rate[1]], top)
+            gaps += twin.differences([rate[0] + b * rate[1], rate[1]], top)
     return Measured(worst(gaps), note="8 bodies and their tops, 6 momenta: the same equations")
 
 
-@finding(
-    "noncompact-limit",
-    "remark",
-    "Section 5, before the paragraph on more dimensions",
-    r"$SE(2)$ is a non-compact version of $SO(3)$, and the sleigh a limit of the Suslov problem.",
-    tolerance=1e-45,
-)
+@statement
 def noncompact_limit() -> Measured:
     r"""Turn by small angles e v about axes in the plane and stretch the third coordinate by 1/e, with e = 1e-30."""
     group, small, gaps = SO(3), ctx.mpf("1e-30"), []
@@ -170,14 +124,7 @@ def noncompact_limit() -> Measured:
     return Measured(max(gaps), note="3 displacements, e = 1e-30")
 
 
-@finding(
-    "footnote-4",
-    "footnote",
-    "Section 5, footnote to the trajectories",
-    r"For $a \neq 0$ the trajectories are equilibria on the line $p_\theta + bp_1 = 0$, or elliptic arches: the "
-    r"energy is a positive definite quadratic form.",
-    tolerance=1e-45,
-)
+@statement
 def footnote_arches() -> Measured:
     """Look for rates on the line, for rest off it, and for a minor of the form that is not positive."""
     gaps, failures = [], 0
@@ -190,18 +137,7 @@ def footnote_arches() -> Measured:
     return Measured(max(worst(gaps), failures), note="7 bodies, 6 momenta")
 
 
-@finding(
-    "C8",
-    "remark",
-    "Section 5, stability of the equilibria",
-    "“The equilibria located in the upper half plane are asymptotically stable ... whereas the equilibria in the "
-    "lower half plane are unstable”",
-    verdict=Verdict.HYPOTHESIS,
-    corrected="It needs $a > 0$, as in the figure. For $a < 0$ it is the other way round: those with $ap_1 > 0$ "
-    "attract, inside their level of energy, with the rate $-ap_1/(J + ma^2)$.",
-    errata=("C8",),
-    tolerance=1e-45,
-)
+@statement
 def stability() -> Measured:
     """Linearize across the line of equilibria; as printed, rates of upper equilibria would be negative."""
     gaps, library, printed = [], [], []

@@ -6,7 +6,8 @@ import numpy as np
 
 import nonholo as nh
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._sleigh_twin import (
     ALONG,
     BODIES,
@@ -20,7 +21,6 @@ from nonholo_paper._sleigh_twin import (
     rates,
 )
 from nonholo_paper._twin import Number, ctx, worst
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import sleigh_continuous as formulas
 
 TIMES = [ctx.mpf(t) for t in ("-2.5", "0.3", "7")]
@@ -35,13 +35,7 @@ def _velocity_of(motion: Callable[[Number], Sequence], time: Number) -> list:
     return [speed[0], turned[0], turned[1]]
 
 
-@finding(
-    "xyth.eqn",
-    "equation",
-    "Section 5, equation (xyth.eqn)",
-    r"$\dot\theta = \omega$, $\dot x\cos\theta + \dot y\sin\theta = v_1$, $-\dot x\sin\theta + \dot y\cos\theta = 0$.",
-    tolerance=1e-45,
-)
+@statement
 def xyth() -> Measured:
     """Compare with the matrix equation for the derivative of the pose."""
     gaps = []
@@ -52,14 +46,7 @@ def xyth() -> Measured:
     return Measured(worst(gaps), note="5 poses, random velocities")
 
 
-@finding(
-    "balanced-flow",
-    "equation",
-    "Section 5, the case a = 0 and the circle after equation (xyth.eqn)",
-    r"For $a = 0$ momentum, $\omega$ and $v_1$ are constant, and $\theta = \theta_0 + \omega t$, "
-    r"$x = x_0 + \frac{v_1}{\omega}\sin\theta$, $y = y_0 - \frac{v_1}{\omega}\cos\theta$: a circle at a uniform rate.",
-    tolerance=1e-45,
-)
+@statement
 def balanced_flow() -> Measured:
     """Look for rates of the momenta at a = 0, and differentiate the circle; (x_0, y_0) is its center."""
     gaps = []
@@ -75,16 +62,7 @@ def balanced_flow() -> Measured:
     return Measured(worst(gaps), note="8 bodies with a = 0, 3 times")
 
 
-@finding(
-    "C6",
-    "equation",
-    "Section 5, the straight solution of equation (xyth.eqn)",
-    r"“$x = x_0 + v_1\cos\theta_0\,t$, $y = y_0 + v_1\sin\theta_0$ if $\omega = 0$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$y = y_0 + v_1\sin\theta_0\,t$.",
-    errata=("C6",),
-    tolerance=1e-45,
-)
+@statement
 def straight_motion() -> Measured:
     """Differentiate the right one; printed is the distance of the other from it."""
     right, wrong = [], []
@@ -97,16 +75,7 @@ def straight_motion() -> Measured:
     return Measured(worst(right), worst(wrong), "3 poses")
 
 
-@finding(
-    "C7",
-    "equation",
-    "Section 5, the cusp of the contact point",
-    "“the momentum trajectory intersects the line $mbp_1 + (J + m(a^2 + b^2))p_2 = 0$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"The line is $mb\,p_\theta + (J + m(a^2 + b^2))p_1 = 0$.",
-    errata=("C7",),
-    tolerance=1e-45,
-)
+@statement
 def cusp() -> Measured:
     """Evaluate both lines at momenta with v1 = 0, and the right one, which is m (J + m a^2) v1, at others."""
     right, wrong = [], []
@@ -119,13 +88,7 @@ def cusp() -> Measured:
     return Measured(worst(right), worst(wrong), "7 bodies, 4 velocities")
 
 
-@finding(
-    "generic-cusp",
-    "remark",
-    "Section 5, before the figure of generic trajectories",
-    r"For $a \neq 0$ a generic trajectory of the contact point has a cusp, where its speed $|v_1|$ vanishes.",
-    tolerance=1e-45,
-)
+@statement
 def generic_cusp() -> Measured:
     r"""Evaluate v1 at $\sinh(\kappa t) = -b\omega_0/u_\infty$; it changes its sign there, and not at 40 other times."""
     gaps, failures = [], 0
@@ -140,14 +103,7 @@ def generic_cusp() -> Measured:
     return Measured(max(worst(gaps), failures), note="7 bodies")
 
 
-@finding(
-    "heteroclinic",
-    "remark",
-    "Section 5, after the footnote to the trajectories",
-    r"The elliptic arches connect pairs of equilibria: every other motion tends to uniform straight motions for "
-    r"$t \to \pm\infty$.",
-    tolerance=1e-45,
-)
+@statement
 def heteroclinic() -> Measured:
     """Compare the arch at 130 units of its time with the two straight motions of its energy."""
     gaps = []
@@ -161,13 +117,7 @@ def heteroclinic() -> Measured:
     return Measured(worst(gaps), note="7 bodies; arch: see elementary-heading")
 
 
-@finding(
-    "shape",
-    "remark",
-    "Section 5, after the limit of the Suslov problem",
-    r"The shape of a generic trajectory of the contact point does not depend on the initial conditions.",
-    tolerance=1e-45,
-)
+@statement
 def shape() -> Measured:
     """Compare paths of different speed, and the equations at velocities multiplied by 3 and by -1."""
     gaps = []
@@ -206,16 +156,7 @@ def _flow_gaps(body: Body, peak: Number) -> list:
     return [complex(x, y) - complex(moved), turned - float(formulas.heading(body, peak, ctx.mpf("1.5")))]
 
 
-@finding(
-    "elementary-heading",
-    "remark",
-    "Section 5, after the limit of the Suslov problem",
-    r"“the dynamics of the group variables $(\theta, x, y)$ cannot be explicitly written”",
-    verdict=Verdict.REMARK,
-    corrected=r"If explicit means elementary this is right of the three together: $x + iy$ is hypergeometric. The "
-    r"heading alone is elementary: $\theta = \frac{\omega_0}{\kappa}\,\mathrm{gd}(\kappa t)$.",
-    tolerance=1e-40,
-)
+@statement
 def closed_form() -> Measured:
     """Differentiate the closed forms, and compare the library with them."""
     gaps = [gap for body, peak in MOTIONS for time in TIMES[:2] for gap in _closed_form_gaps(body, peak, time)]
@@ -223,14 +164,7 @@ def closed_form() -> Measured:
     return Measured(twin.both(worst(gaps), worst(library)), note="7 bodies, 2 times; library: 1 time")
 
 
-@finding(
-    "asymptotic-angle",
-    "remark",
-    "Section 5, after the limit of the Suslov problem",
-    r"The angle between the asymptotic directions of the contact point can be computed. (No formula is printed: the "
-    r"heading turns by $\pi\sqrt{1 + J/(ma^2)}$, the direction of motion by $\pi(\sqrt{1 + J/(ma^2)} - 1)$.)",
-    tolerance=1e-45,
-)
+@statement
 def asymptotic_angle() -> Measured:
     """Integrate the angular velocity of the closed form over all time, and ask the library."""
     gaps, library = [], []

@@ -7,10 +7,10 @@ import numpy as np
 import nonholo as nh
 from nonholo.groups import SE
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._sleigh_twin import Point, homogeneous, kinetic, paired, rates, solid
 from nonholo_paper._twin import Matrix, Number, ctx, worst
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import sleigh_continuous as formulas
 
 
@@ -70,13 +70,7 @@ def _along(n: int, i: int) -> Matrix:
     return E
 
 
-@finding(
-    "se-n-bracket",
-    "equation",
-    "Section 5, the Lie algebra of SE(n)",
-    r"$[(\xi_1, v_1), (\xi_2, v_2)] = ([\xi_1, \xi_2],\ \xi_1v_2 - \xi_2v_1)$.",
-    tolerance=1e-45,
-)
+@statement
 def se_n_bracket() -> Measured:
     """Compare with the commutator of the matrices."""
     gaps = []
@@ -88,36 +82,14 @@ def se_n_bracket() -> Measured:
     return Measured(worst(gaps), note="n = 2, 3, 5")
 
 
-@finding(
-    "C11",
-    "equation",
-    "Section 5, the body velocity operator",
-    r"“the body velocity operator is defined as the left-trivialization $\xi(t) = g^{-1}\dot g(t) \in se(n)$”, "
-    r"while “The elements of $se(n)$ are written as $(\xi, v)$.”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$\eta = g^{-1}\dot g$, the letter of the display before: the velocity in $se(n)$ is the pair "
-    r"$(\omega, v)$; so the two objects need two letters.",
-    errata=("C11",),
-    tolerance=1e-45,
-)
+@statement
 def one_letter_for_two() -> Measured:
     """Count coordinates: of se(n) less those of omega and v; printed: of se(n) less those of so(n), one letter."""
     wrong = [SE(n).dim - nh.SO(n).dim for n in (3, 4)]
     return Measured(max(SE(n).dim - nh.SO(n).dim - n for n in (3, 4)), float(min(wrong)), "n = 3, 4")
 
 
-@finding(
-    "cont.sl.lagr",
-    "equation",
-    "Section 5, equation (cont.sl.lagr)",
-    r"“$L = -\frac14\mathrm{tr}(\xi\,\mathbb{J}\,\xi^T) \equiv -\frac14\mathrm{tr}(\omega(J + ma\otimes a)\omega) + "
-    r"m(v, \omega a) + \frac m2(v, v)$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$L = \frac12\mathrm{tr}(\xi\mathbb{J}\xi^T) = -\frac12\mathrm{tr}(\omega(J + m\,a\otimes a)\omega) "
-    r"+ \dots$",
-    errata=("C12",),
-    tolerance=1e-45,
-)
+@statement
 def cont_sl_lagr() -> Measured:
     """Compare with the kinetic energy of mass points."""
     right, wrong, wrong_trace = [], [], []
@@ -133,14 +105,7 @@ def cont_sl_lagr() -> Measured:
     return Measured(worst(right), worst(wrong) + worst(wrong_trace), "n = 2, 3, 4; both forms")
 
 
-@finding(
-    "cont.mom.se(n)",
-    "equation",
-    "Section 5, equation (cont.mom.se(n))",
-    r"$M = (J + m\,a\otimes a)\omega + \omega(J + m\,a\otimes a) + m(v\otimes a - a\otimes v)$, $p = m(v + \omega a)$, "
-    r"from $M_{ij} = \partial L/\partial\omega_{ij}$, $p_i = \partial L/\partial v_i$.",
-    tolerance=1e-45,
-)
+@statement
 def cont_mom_se_n() -> Measured:
     """Compare with the derivatives of the kinetic energy of mass points, for diagonal and full mass tensors."""
     gaps = []
@@ -164,16 +129,7 @@ def _spin(body: list[Point], xi: Matrix, about: list) -> Matrix:
     return total
 
 
-@finding(
-    "C13",
-    "equation",
-    "Section 5, the words after equation (cont.mom.se(n))",
-    "“Here $M$ is the angular momentum of the body with respect to its center of mass $C$”",
-    verdict=Verdict.MISPRINT,
-    corrected="$M$ is the angular momentum about the body origin $A$, hence its terms with $v$.",
-    errata=("C13",),
-    tolerance=1e-45,
-)
+@statement
 def meaning_of_M() -> Measured:
     """Sum the moments of mass points about both."""
     right, wrong = [], []
@@ -191,14 +147,7 @@ def _sleigh(body: Solid) -> nh.MultidimensionalSleigh:
     return nh.MultidimensionalSleigh(float(body.m), [float(x) for x in body.a], (tensor + tensor.T) / 2)
 
 
-@finding(
-    "d_for_se_n",
-    "equation",
-    "Section 5, equation (d_for_se_n)",
-    r"$\mathfrak{d}$: the first row is $(0, \omega_{12}, \dots, \omega_{1n}, v_1)$, its angular part is skew, all "
-    r"else zero. The body turns only in planes that contain $e_1$, and the contact point moves along $e_1$.",
-    tolerance=1e-45,
-)
+@statement
 def d_for_se_n() -> Measured:
     """Test the matrix on vectors of the body frame and the origin, and compare the library's basis of the subspace."""
     gaps, library = [], []
@@ -213,17 +162,7 @@ def d_for_se_n() -> Measured:
     return Measured(twin.both(worst(gaps), worst(library)), note="n = 3, 4")
 
 
-@finding(
-    "full-mass-tensor",
-    "remark",
-    "Sections 5 and 7, the mass tensor beside the constraint",
-    r"“as above, $J = \mathrm{diag}(J_1, \dots, J_n)$ be its mass tensor”, and “Another natural choice is to define "
-    r"the constraint subspace $\mathfrak{d} \in se(n)$ to be the set of matrices of the form” (d_for_se_n)",
-    verdict=Verdict.REMARK,
-    corrected=r"Together a simplification. The constraint has fixed the body frame, and in general $J_{12}, \dots, "
-    r"J_{1n}$ enter: $\dot\pi = |w|^2c - (c, w)w - ma_1u\,w$ with $c = (J_{12}, \dots, J_{1n})$.",
-    tolerance=1e-45,
-)
+@statement
 def full_mass_tensor() -> Measured:
     """Compare the equations of bodies with full mass tensors with the formula, and with the formula without c."""
     right, wrong = [], []
@@ -240,13 +179,7 @@ def full_mass_tensor() -> Measured:
     return Measured(max(right), min(wrong), "n = 3, 4")
 
 
-@finding(
-    "se2.constr",
-    "equation",
-    "Section 5, equation (se2.constr)",
-    r"For $n = 2$ the elements of $\mathfrak{d}$ have first row $(0, -\omega, v_1)$ and second row $(\omega, 0, 0)$.",
-    tolerance=1e-45,
-)
+@statement
 def se2_constr() -> Measured:
     """Compare with the general form at n = 2, and with the velocities that the library admits."""
     gaps, library = [], []

@@ -4,24 +4,13 @@ from collections.abc import Callable
 
 from nonholo_paper import _twin as twin
 from nonholo_paper._bodies import BALANCED_TOP, TOP, TOP_4, Body, displacements, slopes
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Number
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import general
 
 
-@finding(
-    "continuation",
-    "remark",
-    "Section 6, before equation (*)",
-    r"“Define the left-invariant discrete Lagrangian on $SO(n)\times SO(n)$ by substituting $\omega$ in "
-    r"(cont.so-n.lagr) by $R_k^T(R_{k+1} - R_k) \equiv \Omega_k - \mathbf{I}$.”",
-    verdict=Verdict.REMARK,
-    corrected=r"How $l$ continues to matrices that are not skew is left to the reader. For the printed momentum it "
-    r"has to be $\frac12\mathrm{tr}(XJX^T)$. On skew matrices $-\frac12\mathrm{tr}(JX^2)$ is the same, but gives "
-    r"another discrete Lagrangian and another momentum.",
-    tolerance=1e-45,
-)
+@statement
 def continuation() -> Measured:
     """Differentiate both continuations; on skew matrices they agree."""
     right, wrong = [], []

@@ -3,24 +3,15 @@
 import nonholo as nh
 from nonholo_paper import _suslov_twin as data
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Number, Vector, ctx
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import suslov_integrals as formulas
 
 GENERIC = (*data.REGULAR, "flat")
 
 
-@finding(
-    "quatern_int",
-    "equation",
-    "Section 6, equation (quatern_int)",
-    "“which gives rise to the following quartic integral in terms of the parameters $q_0, q_1, q_2$”, $H$ of "
-    "(quatern_int)",
-    verdict=Verdict.REMARK,
-    corrected="(sus_int) equals $4H$.",
-    tolerance=1e-45,
-)
+@statement
 def quartic() -> Measured:
     """Compare with the quadratic form at momenta of matrices."""
     right, wrong = [], []
@@ -75,19 +66,7 @@ def _equatorial(J: Matrix) -> tuple[Number, Vector]:
     return formulas.equatorial_value(J, u), _point(u, ctx.mpf(1))
 
 
-@finding(
-    "S36",
-    "remark",
-    "Section 6, invariant curves: critical values",
-    "“At a certain critical value $h = h^*$ the branches intersect at two opposite saddle points and form a "
-    "separatrix, and for the next critical value $h^{**} > h^*$ the two branches shrink to opposite center points.”",
-    verdict=Verdict.FALSE,
-    corrected=r"There is also a saddle $h_e$ on the equator, $h_e < h^*$ or $h^* < h_e < h^{**}$, or two with a third "
-    r"minimum, of positive energy, between them, for instance for $c$ along $e_1$ and $B_{11} > 2B_{22}$. With "
-    r"$h = \mu/4$ the others are the roots of $(1 - |c|^2/D)\mu^2 - (\mathrm{tr}B - c\cdot Bc/D)\mu + D = 0$.",
-    errata=("S36",),
-    tolerance=1e-45,
-)
+@statement
 def critical_values() -> Measured:
     """Differentiate the energy of matrices at the points; compare values with it and with the library; count them."""
     exact, library, counts = [], [], []
@@ -111,20 +90,9 @@ def _saddles_of_a_long_body() -> int:
     return sum(p.kind == "saddle" for p in points) if "minimum" in {p.kind for p in points} else 0
 
 
-@finding(
-    "S36",
-    "remark",
-    "Section 6, invariant curves: condition",
-    "“Assume that quadratic form $(J_{22} + J_{33})q_1^2 - 2J_{12}q_1q_2 + (J_{33} + J_{11})q_2^2$ is positive "
-    "definite. Then” both critical values exist",
-    verdict=Verdict.HYPOTHESIS,
-    corrected=r"Both exist if $D > 2|c|^2$, $D = \det B$; positivity is not enough: a tilted rod has no saddle off "
-    r"the equator. The condition is sufficient, not necessary: another tilted body violates it and has both.",
-    errata=("S36",),
-    tolerance=1e-45,
-)
+@statement
 def regular_regime() -> Measured:
-    """Look for saddles and centers of regular bodies; printed: how far the squared sine of a rod's saddle exceeds 1."""
+    """Look for saddles and centers of regular bodies; printed: excess over 1 of the squared sine of a rod's saddle."""
     facts = []
     for seed in range(60):
         J = data.random_body(seed, 3)
@@ -144,13 +112,7 @@ def _squared_sine(J: Matrix, mu: Number) -> Number:
     return formulas.ridge(J, data.unit(formulas.critical_direction(J, mu)))
 
 
-@finding(
-    "tangent-cylinders",
-    "remark",
-    "Section 6, invariant curves: critical values",
-    r"At $h^*$ and $h^{**}$ the elliptic cylinder (sus_int) is tangent to the surface of the momenta.",
-    tolerance=1e-45,
-)
+@statement
 def tangent_cylinders() -> Measured:
     """Multiply the normal of the cylinder with tangents of the surface at the critical points."""
     missed = []
@@ -170,31 +132,20 @@ def _momentum(J: Matrix, q: Vector, tangent: Vector, e: Number) -> Matrix:
     return ctx.matrix(data.momentum(J, data.rotation(data.unit([a + e * b for a, b in zip(q, tangent, strict=True)]))))
 
 
-@finding(
-    "S39",
-    "remark",
-    "Section 6, stationary solutions",
-    r"“neither the saddle points nor the centers of the invariant foliation on $\mathbb{RP}^2$ are stationary "
-    r"points” and “when the initial point is a center, the next point is necessarily complex”",
-    verdict=Verdict.EXCEPTIONS,
-    corrected=r"Except if $c$ is an eigenvector of $B$, for instance $J_{12} = J_{23} = 0$: then one of them lies "
-    r"on the line of equilibria, at $q_0^2 = \frac12$.",
-    errata=("S39",),
-    tolerance=1e-45,
-)
+@statement
 def stationary_center() -> Measured:
     """Take a critical point of an aligned body that is repeated; count such points, of generic bodies too."""
     J, half = data.body("aligned"), ctx.sqrt(ctx.mpf(1) / 2)
     q = [half, ctx.mpf(0), half]
     W = data.rotation(q)
-    moved = data.differences(data.turned(J, W)[:2], data.momentum(J, W)[:2])
+    moved = twin.differences(data.turned(J, W)[:2], data.momentum(J, W)[:2])
     right = [*moved, *_slopes(J, q)]
     facts = []
     for name in GENERIC:
         J = data.body(name)
         for _, point in critical_points(J):
             W = data.rotation(point)
-            change = data.differences(data.turned(J, W)[:2], data.momentum(J, W)[:2])
+            change = twin.differences(data.turned(J, W)[:2], data.momentum(J, W)[:2])
             facts.append(twin.worst(change) > 1e-6)
         center = data.array(data.rotation(critical_points(J)[1][1]))
         facts.append(not nh.branches(data.discrete(J), displacement=center).is_real.any())

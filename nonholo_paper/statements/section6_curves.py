@@ -7,25 +7,16 @@ import numpy as np
 import nonholo as nh
 from nonholo_paper import _suslov_twin as data
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Number, Vector, ctx
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import suslov_integrals as formulas
 from nonholo_paper.statements.section6_critical_values import GENERIC, critical_points, critical_roots
 
 _FLAT = [[1.645907, -0.975937, -0.176582], [-0.975937, 0.591716, 0.106159], [-0.176582, 0.106159, 0.028912]]
 
 
-@finding(
-    "quatern_int",
-    "equation",
-    "Section 6, invariant curves of (quatern_int): degree",
-    "“Thus, the invariant varieties are algebraic curves of order 8.”",
-    verdict=Verdict.REMARK,
-    corrected="So they are on the sphere and in the space of momenta. On the projective plane of displacements, "
-    "which the sphere covers twice, they are quartics.",
-    tolerance=1e-45,
-)
+@statement
 def degree() -> Measured:
     """Restrict the quartic and its level to a projective line, and find the degree from finite differences."""
     missed, degrees = [], []
@@ -48,19 +39,7 @@ def _binomial(k: int, i: int) -> Number:
     return (-1) ** (k - i) * ctx.binomial(k, i)
 
 
-@finding(
-    "level-curves",
-    "remark",
-    "Section 6, invariant curves",
-    "“on the upper hemisphere $0 \\le q_0 \\le 1$ real invariant curves consist of two branches” “There are no real "
-    "invariant curves for $h > h^{**}$.”",
-    verdict=Verdict.EXCEPTIONS,
-    corrected=r"So it is for bodies without a third minimum: below $h^*$ two components, one around the origin, which "
-    r"meet at $h^*$; at $h^{**}$ two opposite points. With a third minimum, for instance for $c$ along $e_1$ and "
-    r"$B_{11} > 2B_{22}$, there are three components between its energy and that of the saddles on the equator.",
-    errata=("S36",),
-    tolerance=1e-45,
-)
+@statement
 def level_curves() -> Measured:
     """Count components of the library's curves, compare energies with the largest; printed: how many too many."""
     facts = []
@@ -114,19 +93,7 @@ def _outside(J: Matrix, n: Matrix) -> Number:
     return n[0] ** 2 + n[1] ** 2 - formulas.ridge(J, data.unit([n[0], n[1]]))
 
 
-@finding(
-    "S57",
-    "remark",
-    "Section 6, invariant curves: two branches",
-    r"“These different branches correspond to the two connected components of the intersection of the Steiner surface "
-    r"$\mathcal{U}$ with the cylinder.”",
-    verdict=Verdict.FALSE,
-    corrected=r"The images of the two ovals in the space of momenta meet, on the double segments of $\mathcal{U}$: of "
-    r"two displacements with one momentum there one may lie on the inner oval and one on the outer. For two bodies "
-    r"there are such points below $0.1\,h^*$ and above $0.9\,h^*$, for a balanced top, $c = 0$, at every level.",
-    errata=("S57",),
-    tolerance=1e-45,
-)
+@statement
 def meeting_ovals() -> Measured:
     """Compare momenta of pairs below h*; printed: how far, at least, one is inside and one outside of the ridge."""
     exact, apart, lowest = [], [], []
@@ -135,7 +102,7 @@ def meeting_ovals() -> Measured:
         low = critical_roots(J)[0] / 4
         for pair in itertools.chain(*(_double_points(J, ctx.mpf(angle)) for angle in (0.01, 0.2, 0.5, 0.7))):
             momenta = [data.momentum(J, _reflected(n)) for n in pair]
-            exact += data.differences(*momenta)
+            exact += twin.differences(*momenta)
             sides, level = [_outside(J, n) for n in pair], data.reduced_energy(J, momenta[0]) / low
             if level < 1 and sides[0] * sides[1] < 0:
                 apart.append(float(min(map(abs, sides))))
@@ -144,19 +111,9 @@ def meeting_ovals() -> Measured:
     return Measured(max(twin.worst(exact), data.lacking(*lowest)), min(apart), "three bodies, 24 double points each")
 
 
-@finding(
-    "outer-oval",
-    "remark",
-    "Section 6, invariant curves: small values",
-    r"“for small positive values of $h$ one branch is a small oval around the origin $(0,0)$ whereas the other "
-    r"branch is an oval close to the equator $\{q_0=0\}$ of the sphere. It may or may not intersect the equator.”",
-    verdict=Verdict.REMARK,
-    corrected="For small $h$ it does: it is a small oval around the one half-turn with $J_{13}q_1 + J_{23}q_2 = "
-    "0$, where the integral vanishes; elsewhere on the equator it does not.",
-    tolerance=1e-45,
-)
+@statement
 def outer_oval() -> Measured:
-    """Evaluate the energy at half-turns, and how far the curve is from them; printed: from the opposite half-turn."""
+    """Evaluate the energy at half-turns, and the distance of the curve from them; printed: from opposite ones."""
     exact, facts, far = [], [], []
     for name in data.REGULAR:
         J = data.body(name)
@@ -180,13 +137,7 @@ def _complex_after(name: str, share: float) -> tuple[int, ...]:
     return tuple(int(values.is_real.sum()) for values in found)
 
 
-@finding(
-    "between-the-separatrices",
-    "remark",
-    "Section 6, remark on the choice of a branch",
-    r"Between the separatrices, $h^* < h < h^{**}$, all values after a real point may be complex.",
-    tolerance=1e-45,
-)
+@statement
 def between() -> Measured:
     """Count real values of the library on two curves of two bodies: none occurs, and two or four."""
     counts = [_complex_after(name, share) for name in data.REGULAR for share in (0.3, 0.7)]
@@ -194,20 +145,7 @@ def between() -> Measured:
     return Measured(data.lacking(*facts), note="two bodies, two energies")
 
 
-@finding(
-    "S49",
-    "remark",
-    "Section 6, remark on the choice of a branch",
-    r"“have to belong to the same connected component of the invariant curve. In other words, if the initial point "
-    r"lies in the interior (exterior) part of $\mathcal{S}$, one has to choose a real solution of (sys) that has "
-    r"the smallest (largest) norm”",
-    verdict=Verdict.FALSE,
-    corrected=r"For $D > 2|c|^2$ inside there is always a value, and only one below the first fold $h_f$, "
-    r"$\frac{125}{128}h^* < h_f \le h^*$, which is $h^*$ if $D \ge 3|c|^2$; from $h_f$ on there may be three. Outside "
-    r"there are one or three: the body with four real values has three outside, at $E < h^*$.",
-    errata=("S49",),
-    tolerance=1e-45,
-)
+@statement
 def components() -> Measured:
     """Count values inside and outside the ridge of the energy; printed: values outside above one."""
     facts, outside = [], []

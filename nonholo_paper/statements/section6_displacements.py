@@ -4,9 +4,10 @@ import nonholo as nh
 from nonholo.groups import SO
 from nonholo_paper import _suslov_twin as data
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Number, Vector, ctx
-from nonholo_paper._verdict import Verdict
+from nonholo_paper.formulas import suslov_continuous
 from nonholo_paper.formulas import suslov_displacements as formulas
 
 DIMENSIONS = (3, 4, 6)
@@ -32,33 +33,17 @@ def _reflection(seed: int, n: int, dimension: int) -> Matrix:
     return ctx.diag([1] * (n - 1) + [-1]) * (ctx.eye(n) - 2 * projector)
 
 
-@finding(
-    "sp",
-    "equation",
-    "Section 6, equation (sp)",
-    r"Admissible rotations have $\Omega_{ij} = \Omega_{ji}$ and $\Omega_{in} = -\Omega_{ni}$ for $i, j < n$.",
-    tolerance=1e-45,
-)
+@statement
 def symmetries() -> Measured:
     """Evaluate the differences on exponentials; on rotations of dimension 3 they are not zero identically."""
     missed = [x for angle, u in _arguments() for x in formulas.asymmetries(_rotation(angle, u))]
     general = data.attitude(2, 3)
     both = [general[1, 0] - general[0, 1], general[0, 2] + general[2, 0], general[1, 2] + general[2, 1]]
-    missed += data.differences(formulas.asymmetries(general), both)
+    missed += twin.differences(formulas.asymmetries(general), both)
     return Measured(twin.worst(missed), note=NOTE)
 
 
-@finding(
-    "symm",
-    "lemma",
-    "Section 6, lemma (symm), part 1",
-    r"“In the basis $e_1, \dots, e_n$, the admissible rotation matrices have the structure” (sp)",
-    verdict=Verdict.REMARK,
-    corrected=r"So they have; the converse is not said. With $\mathrm{tr}(\mathrm{diag}(1, .., 1, -1)\,\Omega) = n "
-    r"- 2$ the symmetries (sp) are sufficient too; without it not: for $n = 3$ the rotation $\mathrm{diag}(-1, -1, "
-    r"1)$ satisfies (sp), and is not admissible.",
-    tolerance=1e-45,
-)
+@statement
 def structure() -> Measured:
     """Evaluate the trace on exponentials, rebuild them from (sp) and the trace, and take reflections that fail."""
     right = [formulas.reflected_trace(_rotation(angle, u)) for angle, u in _arguments()]
@@ -84,16 +69,7 @@ def _from_symmetries(W: Matrix) -> Matrix:
     return _rotation(angle, [W[i, last] / (2 * z0 * sine) for i in range(last)])
 
 
-@finding(
-    "S28",
-    "lemma",
-    "Section 6, lemma (symm), part 2",
-    r"“homeomorphic to the projective space $\mathbb{P}^{n-1} = S^{n-1}/\mathbb{Z}^2$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$S^{n-1}/\mathbb{Z}_2$: two opposite points of the sphere give one rotation.",
-    errata=("S28",),
-    tolerance=1e-45,
-)
+@statement
 def projective_space() -> Measured:
     """Read the products of coordinates off a rotation: they fix the point up to its sign; count the group."""
     missed = []
@@ -108,29 +84,16 @@ def projective_space() -> Measured:
     return Measured(twin.worst(*missed), printed, NOTE + "; printed: elements of the group that are too many, at least")
 
 
-@finding(
-    "footnote-5",
-    "footnote",
-    "Section 6, footnote to lemma (symm)",
-    r"The components of $z$ are written without the index $k$ of time, which they have.",
-    tolerance=1e-45,
-)
+@statement
 def index_of_time() -> Measured:
     """Take a step of the map that is not an equilibrium: the next components differ, those of the inverse do not."""
     name, y = data.STEPS[0]
     z = data.point_of(data.successors(name, y)[0])
-    moved = twin.worst(data.differences(z, data.point_of([ctx.mpf(v) for v in y])))
+    moved = twin.worst(twin.differences(z, data.point_of([ctx.mpf(v) for v in y])))
     return Measured(data.lacking(moved > 1e-6), note="one step of a generic top")
 
 
-@finding(
-    "sp1",
-    "equation",
-    "Section 6, equation (sp1)",
-    r"$\Omega_{ij} = \delta_{ij} - 2z_iz_j$, $\Omega_{in} = -\Omega_{ni} = 2z_0z_i$, $\Omega_{nn} = 2z_0^2 - 1$ with "
-    r"$z_0^2 + |z|^2 = 1$.",
-    tolerance=1e-45,
-)
+@statement
 def parametrization() -> Measured:
     """Compare with the matrix exponential, and the library's exponential with both."""
     exact, library = [], []
@@ -142,31 +105,18 @@ def parametrization() -> Measured:
     return Measured(twin.both(twin.worst(*exact), twin.worst(library)), note=NOTE)
 
 
-@finding(
-    "t->q",
-    "equation",
-    "Section 6, equation (t->q)",
-    r"The point of the sphere is $z_i = \sin(\theta/2)\,u_i$, $z_0 = \cos(\theta/2)$.",
-    tolerance=1e-45,
-)
+@statement
 def half_angles() -> Measured:
     """Compare with the half of the rotation: the rotation by half of the angle takes e_n to (z, z0)."""
     missed = []
     for angle, u in _arguments():
         z0, z = formulas.half_angles(angle, u)
         image = _rotation(angle / 2, u)[:, len(u)]
-        missed += data.differences([*z, z0], image)
+        missed += twin.differences([*z, z0], image)
     return Measured(twin.worst(missed), note=NOTE)
 
 
-@finding(
-    "rotation-in-a-plane",
-    "equation",
-    "Section 6, proof of lemma (symm)",
-    r"$\exp(\theta\,u\wedge e_n)$ turns the plane of $u$, $e_n$ by $\theta$; the images of $u$, $e_j$ and $e_n$ are as "
-    r"printed, and are the columns of the matrix.",
-    tolerance=1e-45,
-)
+@statement
 def columns() -> Measured:
     """Compare with the matrix exponential applied to the vectors."""
     missed = []
@@ -179,36 +129,19 @@ def columns() -> Measured:
     return Measured(twin.worst(*missed), note=NOTE)
 
 
-@finding(
-    "half-angle-signs",
-    "equation",
-    "Section 6, proof of lemma (symm), end",
-    r"“Since $\sin(\theta/2) = -\sin(2\pi - \theta)/2$ and $\cos(\theta/2) = -\cos(2\pi - \theta)/2$ ... opposite "
-    r"points on $S^{n-1}$ correspond to the same admissible rotation”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$\sin\frac\theta2 = +\sin\frac{2\pi - \theta}2$. The opposite point belongs to the angle $2\pi - "
-    r"\theta$ and the vector $-u$.",
-    errata=("S52",),
-    tolerance=1e-45,
-)
+@statement
 def half_angle_signs() -> Measured:
     """Compare sines and cosines; the two rotations are compared as matrix exponentials."""
     right, wrong = [], []
     for angle, u in _arguments():
         definition = [ctx.sin(angle / 2), ctx.cos(angle / 2)]
-        right += data.differences(definition, formulas.other_half_angle(angle))
+        right += twin.differences(definition, formulas.other_half_angle(angle))
         wrong.append(definition[0] - formulas.printed_other_sine(angle))
         right += list(_rotation(angle, u) - _rotation(2 * ctx.pi - angle, [-x for x in u]))
     return Measured(twin.worst(right), twin.worst(wrong), NOTE)
 
 
-@finding(
-    "sp-limit",
-    "remark",
-    "Section 6, after lemma (symm)",
-    r"In the limit of small steps the conditions (sp) become $\omega_{ij} = 0$ for $i, j < n$.",
-    tolerance=1e-45,
-)
+@statement
 def linearized() -> Measured:
     """Differentiate the conditions along one-parameter groups of all rotations."""
     missed = []
@@ -216,29 +149,21 @@ def linearized() -> Measured:
         X = twin.hat(SO(n), twin.numbers(n + 1, SO(n).dim))
         slope = data.slope(lambda e, X=X: ctx.matrix(formulas.asymmetries(twin.exp(e * X))))
         allowed = [2 * X[i, j] for i in range(n - 1) for j in range(i)] + [0] * (n - 1)
-        missed += data.differences(slope, allowed)
+        missed += twin.differences(slope, allowed)
     return Measured(twin.worst(missed), note="n = 3, 4, 6, random generators")
 
 
-@finding(
-    "S24",
-    "equation",
-    "Section 6, constraints in trace form",
-    r"“Note that (sp) imply left-invariant constraints on $SO(n)\times SO(n)$ in the form "
-    r"$\mathrm{tr}(R_k^T\,e_j\wedge e_n\,R_{k+1} - R_{k+1}^T\,e_j\wedge e_n\,R_k) = 0$, $j = 1, \dots, n-1$.”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$\mathrm{tr}(R_{k+1}\,(e_i\wedge e_j)\,R_k^T) = 0$, $i < j < n$: $(n-1)(n-2)/2$ conditions. The "
-    r"printed ones are $n - 1$, in space, and in the allowed planes.",
-    errata=("S24",),
-    tolerance=1e-45,
-)
+@statement
 def trace_form() -> Measured:
     """Compare with the traces, on admissible steps also with zero, and with the library; count the conditions."""
     right, library, wrong, counts = [], [], [], []
     for n in (3, 4, 5):
         pairs = [(i, j) for i in range(n - 1) for j in range(i + 1, n - 1)]
         R = data.attitude(n, n)
-        right += [len(pairs) - formulas.constraint_count(n), SO(n).dim - (n - 1) - formulas.constraint_count(n)]
+        right += [
+            len(pairs) - suslov_continuous.multiplier_count(n),
+            SO(n).dim - (n - 1) - suslov_continuous.multiplier_count(n),
+        ]
         counts.append(abs(len(pairs) - formulas.printed_constraint_count(n)))
         for W in (twin.exp(data.wedge(twin.numbers(n, n - 1, -2, 2))), data.attitude(n + 3, n)):
             values = [formulas.trace_constraint(R, R * W, i, j) for i, j in pairs]

@@ -4,9 +4,9 @@ import nonholo as nh
 from nonholo.groups import SO
 from nonholo_paper import _suslov_twin as data
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Number, ctx
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import suslov_momenta as formulas
 
 NOTE = "all four values after three displacements, two bodies"
@@ -26,14 +26,7 @@ def _multiplier(J: Matrix, W: Matrix, after: Matrix) -> Number:
     return (after * J - J * after.T - W.T * (W * J - J * W.T) * W)[0, 1]
 
 
-@finding(
-    "suslov",
-    "equation",
-    "Section 6, equation (suslov)",
-    r"The discrete equations are $M_{k+1} = \Omega_k^TM_k\Omega_k + \lambda_kE$, $M_k = \Omega_kJ - J\Omega_k^T$, with "
-    r"the skew matrix $E$ of $E_{12} = 1$.",
-    tolerance=1e-45,
-)
+@statement
 def equations() -> Measured:
     """Compare with momenta that are derivatives, with matrix products, and a step of the library with both."""
     exact, library = [], []
@@ -43,7 +36,7 @@ def equations() -> Measured:
     group, lagrangian = SO(3), twin.trace_lagrangian(data.body("generic"))
     J, W, after = _steps()[0]
     carried = twin.coadjoint(group, W, twin.momentum(group, lagrangian, W))
-    moved = twin.hat(group, data.differences(twin.momentum(group, lagrangian, after), carried))
+    moved = twin.hat(group, twin.differences(twin.momentum(group, lagrangian, after), carried))
     exact += list(moved - ctx.matrix(formulas.multiplier_matrix(_multiplier(J, W, after))))
     orbit = nh.simulate(data.discrete(J), displacement=data.array(W), steps=1)
     library += list((orbit.displacement[1] - data.array(after)).ravel())
@@ -51,34 +44,20 @@ def equations() -> Measured:
     return Measured(twin.both(twin.worst(exact), twin.worst(library)), note=NOTE)
 
 
-@finding(
-    "full-1",
-    "equation",
-    "Section 6, equation (full-1)",
-    r"$\Omega_k^TM_k\Omega_k = J\Omega_k - \Omega_k^TJ$ has the vector $\Omega_k^TM_k$ and the printed components.",
-    tolerance=1e-45,
-)
+@statement
 def arriving() -> Measured:
     """Compare with the product of matrices, with the turned vector and with the library."""
     exact, library = [], []
     for J, q, W in data.samples():
         turned, vector = data.turned(J, W), W.T * ctx.matrix(data.momentum(J, W))
-        exact += data.differences(turned, formulas.arriving(J, q)) + data.differences(turned, list(vector))
-        exact += data.differences(turned, twin.vee(SO(3), formulas.turned_difference(W, J)))
+        exact += twin.differences(turned, formulas.arriving(J, q)) + twin.differences(turned, list(vector))
+        exact += twin.differences(turned, twin.vee(SO(3), formulas.turned_difference(W, J)))
         P = nh.discrete_legendre(data.discrete(J), data.array(W), side="right")
         library += list(P - [float(x) for x in turned])
     return Measured(twin.both(twin.worst(exact), twin.worst(library)), note="8 bodies, 12 displacements")
 
 
-@finding(
-    "diff_suslov",
-    "equation",
-    "Section 6, equation (diff_suslov)",
-    r"“(suslov) can be written in form” (diff_suslov), with the letter $\lambda_k$ in both",
-    verdict=Verdict.REMARK,
-    corrected=r"They are two multipliers: $4\lambda_{\mathrm{vector}} = -\lambda_{\mathrm{matrix}}$.",
-    tolerance=1e-45,
-)
+@statement
 def vector_form() -> Measured:
     """Take the multiplier of the matrix equation at all values of the map."""
     right, wrong = [], []
@@ -86,37 +65,25 @@ def vector_form() -> Measured:
         J, W, q = data.body(name), data.cayley(y), data.point_of([ctx.mpf(v) for v in y])
         for tangents in data.successors(name, y):
             after = data.cayley(tangents)
-            moved, mu = data.differences(data.momentum(J, after), data.momentum(J, W)), _multiplier(J, W, after)
-            right += data.differences(moved, formulas.change(J, q, formulas.multiplier_of_vector(mu)))
-            wrong += data.differences(moved, formulas.change(J, q, formulas.printed_multiplier_of_vector(mu)))
+            moved, mu = twin.differences(data.momentum(J, after), data.momentum(J, W)), _multiplier(J, W, after)
+            right += twin.differences(moved, formulas.change(J, q, formulas.multiplier_of_vector(mu)))
+            wrong += twin.differences(moved, formulas.change(J, q, formulas.printed_multiplier_of_vector(mu)))
     return Measured(twin.worst(right), twin.worst(wrong), NOTE)
 
 
-@finding(
-    "orthogonal-change",
-    "remark",
-    "Section 6, after equation (diff_suslov)",
-    r"The change of the momentum is orthogonal to the axis $(q_1, q_2, 0)$ of the rotation.",
-    tolerance=1e-45,
-)
+@statement
 def orthogonal_change() -> Measured:
     """Multiply the change, of matrices and of the formula, with the axis."""
     right = []
     for J, q, W in data.samples():
-        moved = data.differences(data.turned(J, W), data.momentum(J, W))
+        moved = twin.differences(data.turned(J, W), data.momentum(J, W))
         right += [moved[0] * q[1] + moved[1] * q[2]]
         change = formulas.change(J, q, 1)
         right += [change[0] * q[1] + change[1] * q[2]]
     return Measured(twin.worst(right), note="8 bodies, 12 displacements")
 
 
-@finding(
-    "suslov-analog",
-    "remark",
-    "Section 6, after equation (diff_suslov)",
-    r"Equation (diff_suslov) is a discrete analog of the continuous equation (ep3.26).",
-    tolerance=1e-45,
-)
+@statement
 def discrete_analog() -> Measured:
     """Put half of a small velocity for q: the change along the constraint is the square of its size times the force."""
     missed, epsilon = [], ctx.mpf("1e-4")

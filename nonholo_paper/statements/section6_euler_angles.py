@@ -9,9 +9,9 @@ import nonholo as nh
 from nonholo.groups import SO
 from nonholo_paper import _suslov_twin as data
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Number, Vector, ctx
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import suslov_euler_angles as formulas
 
 NOTE = "random angles up to 4, equal angles, theta = 0, nearly opposite positions"
@@ -48,30 +48,13 @@ def _missed(formula: Callable[[Vector, Vector], Number], which: int) -> Vector:
     return [abs(formula(before, after) - factors[which]) for before, after, factors in _traces()]
 
 
-@finding(
-    "euler-angles",
-    "equation",
-    "Section 6, remark on Euler angles",
-    r"The rotation with Euler angles $\theta, \psi, \phi$ has the printed matrix, $R_z(\phi)R_x(\theta)R_z(\psi)$.",
-    tolerance=1e-45,
-)
+@statement
 def matrix() -> Measured:
     """Compare with the product of three exponentials."""
     return Measured(twin.worst(*(formulas.rotation(*a) - _attitude(a) for pair in _pairs() for a in pair)), note=NOTE)
 
 
-@finding(
-    "L_angles",
-    "equation",
-    "Section 6, equation (L_angles), first block",
-    r"“$L_d = \frac12[\dots + \frac12[\cos\theta_{k+1} - \cos\theta_k]\sin(\Delta\phi_k)\sin(\psi_k + "
-    r"\psi_{k+1})]A_1$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"In $-\mathrm{tr}(\Omega_kJ)$ the prefactor is $-\frac12$ and the last term $(\cos\theta_{k+1} - "
-    r"\cos\theta_k)\sin\Delta\phi_k\sin(\psi_k + \psi_{k+1})$ has coefficient 1.",
-    errata=("S19",),
-    tolerance=1e-45,
-)
+@statement
 def first() -> Measured:
     """Compare with the trace at random angles, and the library's Lagrangian too."""
     exact, library = _missed(formulas.factor_1, 0), []
@@ -84,30 +67,14 @@ def first() -> Measured:
     return Measured(twin.both(twin.worst(exact), twin.worst(library)), printed, NOTE)
 
 
-@finding(
-    "L_angles",
-    "equation",
-    "Section 6, equation (L_angles), second block",
-    r"“$\frac12[\dots - \cos\vartheta_k\sin(\phi_k + \phi_{k+1})\sin(\Delta\psi_k) - "
-    r"\cos\vartheta_{k+1}\sin(\Delta\phi_k)\sin(\psi_k + \psi_{k+1})]A_2$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"It is the factor of $A_1$ with $\psi_k + \psi_{k+1}$ increased by $\pi$.",
-    errata=("S20",),
-    tolerance=1e-45,
-)
+@statement
 def second() -> Measured:
     """Compare with the trace at random angles."""
     printed = float(sum(_missed(formulas.printed_factor_2, 1)))
     return Measured(twin.worst(_missed(formulas.factor_2, 1)), printed, NOTE)
 
 
-@finding(
-    "L_angles",
-    "equation",
-    "Section 6, equation (L_angles), third block",
-    r"In $L_d = -\mathrm{tr}(\Omega_kJ)$, up to a constant, the moment $A_3$ has the printed factor.",
-    tolerance=1e-45,
-)
+@statement
 def third() -> Measured:
     """Compare with the trace at random angles."""
     return Measured(twin.worst(_missed(formulas.factor_3, 2)), note=NOTE)
@@ -123,14 +90,7 @@ def _lagrangian(moments: Vector, before: Vector, after: Vector) -> Number:
     return sum(A * (ctx.mpf(1) / 2 + f) for A, f in zip(moments, factors, strict=True))
 
 
-@finding(
-    "angle_limit",
-    "equation",
-    "Section 6, equation (angle_limit)",
-    r"With $\theta_{k+1} - \theta_k = \dot\theta\,\delta t$ and likewise $\phi$, $\psi$, the discrete Lagrangian "
-    r"(L_angles, as corrected) divided by $(\delta t)^2$ tends to the kinetic energy; $A_1 = J_2 + J_3$ and so on.",
-    tolerance=1e-45,
-)
+@statement
 def limit() -> Measured:
     """Differentiate the Lagrangian twice along straight motions of the angles, and at the identity the momenta."""
     missed = []
@@ -150,21 +110,14 @@ def limit() -> Measured:
     return Measured(twin.worst(missed), note="three bodies, four motions: value, first and second derivative")
 
 
-@finding(
-    "lagr_cont",
-    "equation",
-    "Section 6, equation (lagr_cont)",
-    r"$T = \frac12A_1\omega_1^2 + \frac12A_2\omega_2^2 + \frac12A_3\omega_3^2$ with the printed brackets, which are "
-    r"the components of the angular velocity in the body.",
-    tolerance=1e-45,
-)
+@statement
 def kinetic_energy() -> Measured:
     """Compare with the derivative of the rotation, and with the trace formula of the energy."""
     missed = []
     for angles, rates in _motions():
         R = _attitude(angles)
         X = R.T * data.slope(lambda t, a=angles, r=rates: _attitude(_moved(a, r, t)))
-        missed += data.differences(twin.vee(SO(3), X), formulas.body_velocity(angles, rates))
+        missed += twin.differences(twin.vee(SO(3), X), formulas.body_velocity(angles, rates))
         for masses in data.MASSES:
             J = ctx.diag(masses)
             A = [J[1, 1] + J[2, 2], J[0, 0] + J[2, 2], J[0, 0] + J[1, 1]]
@@ -176,13 +129,7 @@ def _moved(angles: Vector, rates: Vector, time: Number) -> Vector:
     return [a + r * time for a, r in zip(angles, rates, strict=True)]
 
 
-@finding(
-    "straightforward-discretization",
-    "remark",
-    "Section 6, after equation (lagr_cont)",
-    r"The discrete Lagrangian differs from $T$ with the rates replaced by differences of angles.",
-    tolerance=1e-45,
-)
+@statement
 def straightforward() -> Measured:
     """Look for a motion at which the two differ by more than a hundredth of the energy."""
     masses = [ctx.mpf(x) for x in data.MASSES[0]]

@@ -6,20 +6,15 @@ import nonholo as nh
 from nonholo.groups import SO
 from nonholo_paper import _suslov_twin as data
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Number, ctx
 from nonholo_paper.formulas import suslov_integrals as formulas
 
 NOTE = "8 bodies, balanced, tilted, with J1 = J2 among them; 12 displacements, half-turns among them"
 
 
-@finding(
-    "ints",
-    "theorem",
-    "Section 6, theorem (ints)",
-    r"The discrete top keeps the quadratic form (sus_int) of $M_1$, $M_2$, on every value of the map.",
-    tolerance=1e-45,
-)
+@statement
 def integral() -> Measured:
     """Compare its values before and after a step, real and complex, and along an orbit of the library."""
     right = [
@@ -36,14 +31,7 @@ def integral() -> Measured:
     return Measured(twin.both(twin.worst(right), twin.worst(values - values[0])), note=NOTE + "; 12 values; 50 steps")
 
 
-@finding(
-    "sus_int",
-    "equation",
-    "Section 6, equation (sus_int)",
-    r"The integral is $(J_{11} + J_{33})M_1^2 + 2J_{12}M_1M_2 + (J_{22} + J_{33})M_2^2$; it does not contain $M_3$, so "
-    r"all values of the map have the same one. It is the reduced energy, up to a factor.",
-    tolerance=1e-45,
-)
+@statement
 def quadratic() -> Measured:
     r"""Compare with $2\det(\mathbb{I}|_{\mathfrak{d}})$ times the energy of the velocity with these momenta."""
     right, library = [], []
@@ -61,14 +49,7 @@ def _determinant(J: Matrix) -> Number:
     return ctx.det((twin.trace(J) * ctx.eye(3) - J)[:2, :2])
 
 
-@finding(
-    "energy-in-n-dimensions",
-    "theorem",
-    "Section 6, theorem (ints), other dimensions",
-    r"The integral is stated for $n = 3$. It exists for every $n$: with the momenta $r$ along the constraint, "
-    r"$r\cdot B^{-1}r$ is kept, $B = A + J_{nn}\mathrm{Id}$ with the leading block $A$ of $J$.",
-    tolerance=1e-45,
-)
+@statement
 def every_dimension() -> Measured:
     """Compare the form at momenta before and after turning them, and along orbits of the library."""
     right, library = [], []
@@ -89,13 +70,7 @@ def every_dimension() -> Measured:
     return Measured(twin.both(twin.worst(right), twin.worst(library)), note="n = 3 to 6; 20 steps for n = 4, 5")
 
 
-@finding(
-    "whole-energy",
-    "remark",
-    "Section 6, after theorem (ints)",
-    r"The whole energy $(M, \mathbb{I}^{-1}M)$ of the continuous top is not kept.",
-    tolerance=1e-45,
-)
+@statement
 def whole_energy() -> Measured:
     """Look for a step, with the small value of the map, that changes it by more than a thousandth."""
     changes = []

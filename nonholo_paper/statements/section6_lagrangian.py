@@ -4,9 +4,10 @@ import nonholo as nh
 from nonholo.groups import SO
 from nonholo_paper import _suslov_twin as data
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, ctx
-from nonholo_paper._verdict import Verdict
+from nonholo_paper.formulas import general
 from nonholo_paper.formulas import suslov_displacements as formulas
 
 
@@ -19,18 +20,7 @@ def _tops() -> list[tuple[Matrix, Matrix]]:
     return cases
 
 
-@finding(
-    "limits",
-    "equation",
-    "Section 6, equation (limits)",
-    r"“when $R_{k+1} = R_k + \varepsilon\dot R$, $\varepsilon << 1$, one has $\Omega_k = \mathbf{I} + R^{-1}\dot R "
-    r"= \mathbf{I} + \varepsilon\omega$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$\Omega_k = \mathbf I + \varepsilon R^{-1}\dot R$: the factor $\varepsilon$ is missing in the "
-    r"middle.",
-    errata=("S17",),
-    tolerance=1e-45,
-)
+@statement
 def limits() -> Measured:
     """Compare with the product, and with the derivative of the product along a motion."""
     epsilon = ctx.mpf("1e-3")
@@ -45,17 +35,7 @@ def limits() -> Measured:
     return Measured(twin.worst(*right), twin.worst(*wrong), "random positions and velocities, n = 3, 4")
 
 
-@finding(
-    "S18",
-    "equation",
-    "Section 6, discrete Lagrangian",
-    r"“we get $l_d(\Omega_k) = \frac12\mathrm{tr}(\Omega_kJ)$”, with the momentum “$M_k = \Omega_kJ - J\Omega_k^T$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$l_d(\Omega) = \mathrm{tr}J - \mathrm{tr}(\Omega J)$, from $l = \frac12\mathrm{tr}(wJw^T)$; with "
-    r"the printed one the definition gives $-\frac12M$.",
-    errata=("S18",),
-    tolerance=1e-45,
-)
+@statement
 def lagrangian() -> Measured:
     """Compare with the kinetic energy, and the derivative of the printed one with the momentum."""
     right, wrong = [], []
@@ -64,34 +44,28 @@ def lagrangian() -> Measured:
         printed = twin.momentum(group, lambda X, J=J: formulas.printed_lagrangian(X, J), W)
         right.append(formulas.lagrangian(W, J) - twin.trace_lagrangian(J)(W))
         right += [2 * p + m for p, m in zip(printed, M, strict=True)]
-        wrong += data.differences(printed, M)
+        wrong += twin.differences(printed, M)
     return Measured(twin.worst(right), twin.worst(wrong), "n = 3, 4, 5, admissible and other rotations")
 
 
-@finding(
-    "*",
-    "equation",
-    "Section 6, equation (*)",
-    r"The discrete momentum of the top is $M_k = \Omega_kJ - J\Omega_k^T$; in the limit it is $J\omega + \omega J$.",
-    tolerance=1e-45,
-)
+@statement
 def momentum() -> Measured:
     """Compare with the derivatives of the discrete Lagrangian, with the library, and its slope with the limit."""
     exact, library = [], []
     for J, W in _tops():
         group = SO(W.rows)
-        M = twin.vee(group, formulas.momentum(W, J))
+        M = twin.vee(group, general.matrix_momentum(W, J))
         P = twin.momentum(group, twin.trace_lagrangian(J), W)
-        exact += data.differences(P, M)
+        exact += twin.differences(P, M)
         library += list(nh.discrete_legendre(data.discrete(J), data.array(W)) - data.array(ctx.matrix(M)).ravel())
     return Measured(twin.both(twin.worst(exact, *_limit()), twin.worst(library)), note="n = 3, 4, 5, all rotations")
 
 
 def _limit() -> list[Matrix]:
-    """Return how far the slope of the momentum at the identity is from the momentum of the continuous top."""
+    """Return the distance of the slope of the momentum at the identity from the momentum of the continuous top."""
     missed = []
     for n in (3, 4):
         J, velocity = data.random_body(n, n), twin.hat(SO(n), twin.numbers(n + 5, SO(n).dim))
-        slope = data.slope(lambda e, J=J, X=velocity: formulas.momentum(twin.exp(e * X), J))
+        slope = data.slope(lambda e, J=J, X=velocity: general.matrix_momentum(twin.exp(e * X), J))
         missed.append(slope - formulas.small_momentum(velocity, J))
     return missed

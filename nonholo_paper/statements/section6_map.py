@@ -2,25 +2,15 @@
 
 from nonholo_paper import _suslov_twin as data
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Number, Vector, ctx
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import suslov_momenta as formulas
 
 NOTE = "all four values after three displacements, two bodies"
 
 
-@finding(
-    "sys",
-    "equation",
-    "Section 6, equation (sys) and step 3 of the map",
-    r"“$(M_{k+1})_1 = ((J_{22} + J_{33})\tilde q_1 - J_{12}\tilde q_2)\sqrt{1 - \tilde q_1^2 - \tilde q_2^2} - "
-    r"(J_{13}\tilde q_1 + J_{23}\tilde q_2)\tilde q_2$”, the other two components likewise",
-    verdict=Verdict.MISPRINT,
-    corrected="All three right sides have to be multiplied by 2.",
-    errata=("S32",),
-    tolerance=1e-45,
-)
+@statement
 def system() -> Measured:
     """Evaluate the equations at all values of the map."""
     right, wrong = [], []
@@ -29,43 +19,26 @@ def system() -> Measured:
         target = data.turned(J, data.cayley(y))
         for after in data.successors(name, y):
             q, M = data.point_of(after), data.momentum(J, data.cayley(after))
-            right += data.differences([*formulas.restricted(J, q), formulas.last(J, q)], [*target[:2], M[2]])
-            wrong += data.differences(
+            right += twin.differences([*formulas.restricted(J, q), formulas.last(J, q)], [*target[:2], M[2]])
+            wrong += twin.differences(
                 [*formulas.printed_restricted(J, q), formulas.printed_last(J, q)], [*target[:2], M[2]]
             )
     return Measured(twin.worst(right), twin.worst(wrong), NOTE)
 
 
-@finding(
-    "last-momentum",
-    "equation",
-    "Section 6, step 3 of the map",
-    r"The formula for $(\bar M_{k+1})_3$ “is obtained from (sys) by substitutions $k \to k+1$ and the $q \to \tilde "
-    r"q$”",
-    verdict=Verdict.MISPRINT,
-    corrected="From (full): the system (sys) consists of the other two components.",
-    errata=("S53",),
-    tolerance=1e-45,
-)
+@statement
 def last_momentum() -> Measured:
     """Compare with (full); printed: components of the momentum that (sys) lacks."""
     right, lacking = [], []
     for J, q, W in data.samples():
         M = data.momentum(J, W)
-        right += data.differences([*formulas.restricted(J, q), formulas.last(J, q)], formulas.momentum(J, q))
+        right += twin.differences([*formulas.restricted(J, q), formulas.last(J, q)], formulas.momentum(J, q))
         right.append(formulas.last(J, q) - M[2])
         lacking.append(len(M) - len(formulas.printed_restricted(J, q)))
     return Measured(twin.worst(right), max(lacking), "8 bodies, 12 displacements")
 
 
-@finding(
-    "four-complex-values",
-    "remark",
-    "Section 6, step 2 of the map",
-    r"The map has in general four complex values; the equations (sys) are centrally symmetric quadrics, each of which "
-    r"meets the sphere in two ovals.",
-    tolerance=1e-45,
-)
+@statement
 def complex_values() -> Measured:
     """Count the values and their distances; compare each level with the eigenvalues of its quadratic form."""
     facts = []
@@ -95,13 +68,7 @@ def _form(J: Matrix, i: int) -> Matrix:
     return S
 
 
-@finding(
-    "small-value",
-    "remark",
-    "Section 6, choice of a branch",
-    r"After a small rotation only one of the values is small.",
-    tolerance=1e-45,
-)
+@statement
 def small_value() -> Measured:
     """Count the values whose half-angle has a tangent below 0.1 after rotations with tangent 0.01."""
     facts = []

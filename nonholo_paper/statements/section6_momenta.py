@@ -5,9 +5,9 @@ import numpy as np
 import nonholo as nh
 from nonholo_paper import _suslov_twin as data
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Vector, ctx
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import suslov_momenta as formulas
 
 NOTE = "8 bodies, balanced, tilted, with J1 = J2 among them; 12 displacements, half-turns among them"
@@ -19,14 +19,7 @@ def _masses() -> list[Vector]:
     return [[ctx.mpf(x) for x in masses] for masses in data.MASSES]
 
 
-@finding(
-    "diagonal-momentum",
-    "equation",
-    "Section 6, momentum locus",
-    r"Where $J$ is diagonal, $M = 2((J_2 + J_3)q_0q_1, (J_1 + J_3)q_0q_2, (J_1 - J_2)q_1q_2)$ with "
-    r"$M = (-M_{23}, M_{13}, -M_{12})$.",
-    tolerance=1e-45,
-)
+@statement
 def diagonal_momentum() -> Measured:
     """Compare with the product of matrices."""
     missed = []
@@ -34,36 +27,18 @@ def diagonal_momentum() -> Measured:
         for q, W in data.turns():
             X = W * ctx.diag(masses) - ctx.diag(masses) * W.T
             vector = [-X[1, 2], X[0, 2], -X[0, 1]]
-            missed += data.differences(vector, formulas.diagonal_momentum(masses, q))
+            missed += twin.differences(vector, formulas.diagonal_momentum(masses, q))
     return Measured(twin.worst(missed), note="4 diagonal bodies, 12 displacements")
 
 
-@finding(
-    "diagonal-tensor",
-    "equation",
-    "Section 6, momentum locus",
-    r"“the tensor $J$ is diagonal, $J = \mathrm{diag}(J_1, J_2, J_3)^T$”",
-    verdict=Verdict.REMARK,
-    corrected="The transposed matrix is the same.",
-    tolerance=1e-45,
-)
+@statement
 def superfluous_transposition() -> Measured:
     """Count the transpositions printed that change nothing, if the diagonal matrix is its own transpose."""
     same = [ctx.diag(masses) - ctx.diag(masses).T for masses in _masses()]
     return Measured(twin.worst(*same), float(twin.worst(*same) == 0), "printed: transpositions that are not needed")
 
 
-@finding(
-    "Steiner",
-    "equation",
-    "Section 6, equation (Steiner)",
-    r"“$\mathcal{U}$ coincides with the Steiner Roman surface in $\mathbb{R}^3$ given by the quartic equation” "
-    r"(Steiner)",
-    verdict=Verdict.REMARK,
-    corrected=r"The equation divides by $J_1 - J_2$, so $J_1 \neq J_2$. For $J_1 = J_2$ the locus is the flat disc "
-    r"$M_3 = 0$, $M_1^2/(J_2 + J_3)^2 + M_2^2/(J_1 + J_3)^2 \leq 1$.",
-    tolerance=1e-45,
-)
+@statement
 def steiner() -> Measured:
     """Evaluate the quartic at momenta of matrices, the library's too; printed: dimensions that a flat locus lacks."""
     exact, library, disc = [], [], []
@@ -81,31 +56,18 @@ def steiner() -> Measured:
     return Measured(twin.both(twin.worst(exact, disc), twin.worst(library)), missing, "3 bodies; one with J1 = J2")
 
 
-@finding(
-    "full",
-    "equation",
-    "Section 6, equation (full)",
-    r"In general the momentum has the printed components, quadratic in $(q_0, q_1, q_2)$.",
-    tolerance=1e-45,
-)
+@statement
 def full() -> Measured:
     """Compare with the product of matrices and with the library's Legendre transformation."""
     exact, library = [], []
     for J, q, W in data.samples():
         M = formulas.momentum(J, q)
-        exact += data.differences(data.momentum(J, W), M)
+        exact += twin.differences(data.momentum(J, W), M)
         library += list(nh.discrete_legendre(data.discrete(J), data.array(W)) - [float(x) for x in M])
     return Measured(twin.both(twin.worst(exact), twin.worst(library)), note=NOTE)
 
 
-@finding(
-    "locus-of-degree-4",
-    "remark",
-    "Section 6, after equation (full)",
-    r"The momenta satisfy an equation of degree 4, a generalization of (Steiner), and none of smaller degree; they "
-    r"fill no linear subspace.",
-    tolerance=1e-45,
-)
+@statement
 def degree() -> Measured:
     """Count relations between monomials at 45 random points of the sphere: ranks of integers modulo a prime."""
     J = [[3, 1, 2], [1, 5, -1], [2, -1, 4]]
@@ -147,13 +109,7 @@ def _rank(rows: list[list[int]]) -> int:
     return rank
 
 
-@finding(
-    "locus-singularities",
-    "remark",
-    "Section 6, after equation (full)",
-    r"The surface of the momenta has pinch points and self-intersections.",
-    tolerance=1e-45,
-)
+@statement
 def singularities() -> Measured:
     """Exchange two coordinates where the third is zero: the same momentum; where they are equal the rank is one."""
     exact, library = [], []
@@ -164,7 +120,7 @@ def singularities() -> Measured:
             first, second, pinch, across = ([ctx.mpf(0)] * 3 for _ in range(4))
             first[i], first[j], second[i], second[j] = ctx.mpf("0.6"), ctx.mpf("0.8"), ctx.mpf("0.8"), ctx.mpf("0.6")
             pinch[i], pinch[j], across[i], across[j] = root, root, root, -root
-            exact += data.differences(formulas.momentum(J, first), formulas.momentum(J, second))
+            exact += twin.differences(formulas.momentum(J, first), formulas.momentum(J, second))
             turned = data.slope(lambda e, p=pinch, d=across, J=J: ctx.matrix(_along(J, p, d, e)))
             exact += list(turned)
             library.append(_distances(J, formulas.momentum(J, pinch)).min())
@@ -184,19 +140,7 @@ def _distances(J: twin.Matrix, M: Vector) -> np.ndarray:
     return abs(found - data.array(ctx.matrix(M)).ravel()).max(axis=1)
 
 
-@finding(
-    "S30",
-    "remark",
-    "Section 6, after equation (full) and step 2 of the map",
-    r"“if the quadratic form $(J_{22} + J_{33})q_1^2 - 2J_{12}q_1q_2 + (J_{33} + J_{11})q_2^2$ is "
-    r"positive-definite, then any pair $(M_1, M_2)$ has at most two real inverse images on $\mathcal{U}$”",
-    verdict=Verdict.FALSE,
-    corrected=r"Four occur: $J$ with diagonal $(\frac54, 1, \frac54)$, $J_{12} = 0$, $J_{13} = -\frac12$, $J_{23} = "
-    r"-\frac34$ and $y = (-\frac14, -\frac38)$, $(-\frac{16}{13}, -\frac{24}{13})$, and near $(-3.8131, -0.5088)$, "
-    r"$(7.6026, -8.9649)$; $q_1 = -q_0y_2$, $q_2 = q_0y_1$.",
-    errata=("S30",),
-    tolerance=1e-45,
-)
+@statement
 def four_images() -> Measured:
     """Refine the library's values to 50 digits: four different real ones; two are the rational ones given."""
     name, y = data.STEPS[2]
@@ -204,7 +148,7 @@ def four_images() -> Measured:
     target = data.momentum(J, data.cayley(y))
     rational = [[ctx.mpf(-1) / 4, ctx.mpf(-3) / 8], [ctx.mpf(-16) / 13, ctx.mpf(-24) / 13]]
     momenta = [formulas.momentum(J, data.point_of(v)) for v in found + rational]
-    missed = [x for M in momenta for x in data.differences(M[:2], target[:2])]
+    missed = [x for M in momenta for x in twin.differences(M[:2], target[:2])]
     B = (twin.trace(J) * ctx.eye(3) - J)[:2, :2]
     different = all(twin.worst([a[i] - b[i] for i in (0, 1)]) > 0.1 for k, a in enumerate(found) for b in found[:k])
     real = sum(ctx.im(v[0]) == 0 and ctx.im(v[1]) == 0 for v in found)
@@ -212,14 +156,7 @@ def four_images() -> Measured:
     return Measured(max(twin.worst(missed), lacking), real - 2, "printed: real images above two")
 
 
-@finding(
-    "constrained-legendre",
-    "remark",
-    "Section 6, remark on the free top",
-    r"Without constraints $M = \Omega J - J\Omega^T$ has several solutions $\Omega$; with them one, except on the "
-    r"double lines: the values over one $(M_1, M_2)$ differ in $M_3$.",
-    tolerance=1e-45,
-)
+@statement
 def legendre() -> Measured:
     """Take four rotations with momentum zero, and compare the last momenta of the values over a pair."""
     J = ctx.diag(data.MASSES[0])

@@ -8,9 +8,9 @@ import nonholo as nh
 from nonholo.groups import SO
 from nonholo_paper import _suslov_twin as data
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Vector, ctx
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import suslov_displacements as formulas
 
 NOTE = "12 displacements: random, tiny, none, half-turns, almost half-turns"
@@ -33,16 +33,7 @@ def _angle(q: Vector) -> Vector:
     return 2 * ctx.atan2(ctx.sqrt(ctx.fsum(x * x for x in q[1:])), q[0])
 
 
-@finding(
-    "rotation-axis",
-    "remark",
-    "Section 6, rotations about an axis",
-    r"“the rotation axis is directed along vector $\rho = (z_2, -z_1, 0)^T \in \mathbb{R}^3$”",
-    verdict=Verdict.REMARK,
-    corrected=r"This is the axis. By the positive angle $\theta$ the turn is about $(-z_2, z_1, 0)$, the same line "
-    r"in the other direction.",
-    tolerance=1e-45,
-)
+@statement
 def axis() -> Measured:
     """Compare with rotations by the angle with half-angle cosine z0 about both vectors."""
     right, wrong = [], []
@@ -54,17 +45,7 @@ def axis() -> Measured:
     return Measured(twin.worst(*right), twin.worst(*wrong), NOTE)
 
 
-@finding(
-    "Rod",
-    "equation",
-    "Section 6, equation (Rod)",
-    r"“The operator $W$ describes a finite rotation in $\mathbb{R}^3$ about the vector $\mathbf{e} = (q_1, q_2, "
-    r"q_3)^T$ by the angle $\theta$ such that $q_0 = \cos\theta/2$.”",
-    verdict=Verdict.MISPRINT,
-    corrected="It turns about $(q_1, q_2, -q_3)$; the usual matrix has $q_3$ with the other sign.",
-    errata=("S26",),
-    tolerance=1e-45,
-)
+@statement
 def rodrigues() -> Measured:
     """Compare with rotations about both vectors, and the library's pose of a quaternion with the matrix."""
     right, wrong = [], []
@@ -75,18 +56,7 @@ def rodrigues() -> Measured:
     return Measured(twin.worst(*right), twin.worst(*wrong), "10 quaternions, with q0 = 0, q3 = 0, tiny angle")
 
 
-@finding(
-    "S23",
-    "remark",
-    "Section 6, after equation (Rod)",
-    r"“the conditions (sp) say that $\Omega_k$ is a finite rotation about an axis lying in the plane $(e_1, e_2)$”, "
-    r"for “Setting in (Rod) $(\Omega_k)_{12} = (\Omega_k)_{21}$ implies $q_3 = 0$”",
-    verdict=Verdict.EXCEPTIONS,
-    corrected=r"Except on half-turns: it implies $q_0q_3 = 0$, because $\Omega_{12} - \Omega_{21} = 4q_0q_3$. The "
-    r"half-turn about $e_3$ satisfies all of (sp).",
-    errata=("S23",),
-    tolerance=1e-45,
-)
+@statement
 def symmetric_entries() -> Measured:
     """Compare the difference of the entries with the product, and take a half-turn with q3 not zero."""
     right = []
@@ -99,14 +69,7 @@ def symmetric_entries() -> Measured:
     return Measured(twin.worst(right), twin.worst([half_turn[3]]), "10 quaternions; a half-turn")
 
 
-@finding(
-    "PE",
-    "equation",
-    "Section 6, equation (PE)",
-    r"Admissible displacements have the printed matrix; with $q_1 = -z_2$, $q_2 = z_1$, $q_0 = z_0$ "
-    r"it is (sp1).",
-    tolerance=1e-45,
-)
+@statement
 def admissible() -> Measured:
     """Compare with rotations about (q1, q2, 0), with (Rod), with (sp1), and with the library's exponential."""
     exact, library = [], []
@@ -115,23 +78,13 @@ def admissible() -> Measured:
         z = [q[2], -q[1]]
         exact += [
             W - formulas.displacement(q[0], z),
-            data.differences(formulas.quaternion(z), q[1:]),
+            twin.differences(formulas.quaternion(z), q[1:]),
         ]
         library.append(float(not nh.in_exp_d(data.array(formulas.admissible(*q)), tolerance=1e-14)))
     return Measured(twin.both(twin.worst(*exact), twin.worst(library)), note=NOTE)
 
 
-@finding(
-    "S27",
-    "equation",
-    "Section 6, after equation (PE)",
-    r"“the $k$-th position of the body $R_k = \Omega_{k-1}\cdots\Omega_0$ is not a rotation in the plane $(e_1, "
-    r"e_2)$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$R_k = R_0\,\Omega_0\cdots\Omega_{k-1}$.",
-    errata=("S27",),
-    tolerance=1e-45,
-)
+@statement
 def positions() -> Measured:
     """Compare with the definition of the displacement, step by step, and with an orbit of the library."""
     R = [data.attitude(seed, 3) for seed in range(5)]
@@ -148,13 +101,7 @@ def positions() -> Measured:
     )
 
 
-@finding(
-    "inverse-displacements",
-    "remark",
-    "Section 6, stationary solutions",
-    r"$(q_0, q_1, q_2)$ and $(q_0, -q_1, -q_2)$ belong to rotations that are inverse to each other.",
-    tolerance=1e-45,
-)
+@statement
 def inverses() -> Measured:
     """Multiply the two matrices (PE)."""
     products = [formulas.admissible(*q) * formulas.admissible(q[0], -q[1], -q[2]) for q in data.points()]

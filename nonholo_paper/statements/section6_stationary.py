@@ -5,9 +5,9 @@ import numpy as np
 import nonholo as nh
 from nonholo_paper import _suslov_twin as data
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Number, Vector, ctx
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import suslov_integrals as formulas
 from nonholo_paper.formulas import suslov_momenta
 
@@ -24,32 +24,17 @@ def _equilibria() -> list[tuple[Matrix, Vector, Matrix]]:
     return cases
 
 
-@finding(
-    "mirror-reflection",
-    "equation",
-    "Section 6, stationary solutions",
-    r"If $J_{13}q_1 + J_{23}q_2 = 0$ the coadjoint action keeps $M_1$, $M_2$ and changes the sign of $M_3$.",
-    tolerance=1e-45,
-)
+@statement
 def mirror() -> Measured:
     """Compare the turned momentum with the reflected one."""
     right = []
     for J, q, W in _equilibria():
         M = data.momentum(J, W)
-        right += [suslov_momenta.slope(J, q), *data.differences(data.turned(J, W), [M[0], M[1], -M[2]])]
+        right += [suslov_momenta.slope(J, q), *twin.differences(data.turned(J, W), [M[0], M[1], -M[2]])]
     return Measured(twin.worst(right), note="four bodies, three points of the line each")
 
 
-@finding(
-    "S38",
-    "equation",
-    "Section 6, stationary solutions",
-    r"“Then it is natural to choose the multiplier $\lambda_k$ such that $(\bar M_{k+1})_3 = (\bar M_{k+1})_3$.”",
-    verdict=Verdict.MISPRINT,
-    corrected="So that $(M_{k+1})_3 = (M_k)_3$; then $M_{k+1} = M_k$ and the displacement is repeated.",
-    errata=("S38",),
-    tolerance=1e-45,
-)
+@statement
 def stationary() -> Measured:
     """Choose the multiplier and look for the change; with another one, which the printed equation allows, too."""
     right, wrong = [], []
@@ -60,18 +45,12 @@ def stationary() -> Measured:
     return Measured(twin.worst(right), twin.worst(wrong), "four bodies, three points each")
 
 
-@finding(
-    "equilibria-line",
-    "remark",
-    "Section 6, stationary solutions",
-    r"There are no equilibria off the line $J_{13}q_1 + J_{23}q_2 = 0$.",
-    tolerance=1e-45,
-)
+@statement
 def no_other_equilibria() -> Measured:
     r"""Compare the change along the constraint with $4|J_{13}q_1 + J_{23}q_2|\,|(q_1, q_2)|$, and the library too."""
     exact, library = [], []
     for J, q, W in data.samples():
-        moved = data.differences(data.turned(J, W), data.momentum(J, W))
+        moved = twin.differences(data.turned(J, W), data.momentum(J, W))
         exact.append(ctx.hypot(*moved[:2]) - 4 * abs(suslov_momenta.slope(J, q)) * ctx.hypot(q[1], q[2]))
     for name in (*data.REGULAR, "tilted rod"):
         J = data.body(name)
@@ -80,30 +59,19 @@ def no_other_equilibria() -> Measured:
     return Measured(twin.both(twin.worst(exact), twin.worst(library)), note="8 bodies, 12 displacements")
 
 
-@finding(
-    "balanced-top",
-    "remark",
-    "Section 6, stationary solutions, end",
-    r"“for a balanced inertia tensor $J_{13} = J_{23} = 0$ all the solutions of (diff_suslov) are stationary, i.e., "
-    r"the discrete body momentum $M_k$ is preserved.”",
-    verdict=Verdict.EXCEPTIONS,
-    corrected="Except on the other branch. $M_1$ and $M_2$, of which (diff_suslov) speaks, are constant on both; the "
-    "step repeats on one, and may go to the supplementary angle about the same axis, with another $M_3$.",
-    errata=("S59",),
-    tolerance=1e-45,
-)
+@statement
 def balanced() -> Measured:
     """Compare turned momenta with the momentum, those of both branches too; printed: the change of the third."""
     right, library, jumps = [], [], []
     for name in ("balanced", "J1 = J2"):
         J = data.body(name)
         for q, W in data.turns():
-            right += data.differences(data.turned(J, W)[:2], data.momentum(J, W)[:2])
-            right += data.differences(suslov_momenta.arriving(J, q)[:2], suslov_momenta.momentum(J, q)[:2])
+            right += twin.differences(data.turned(J, W)[:2], data.momentum(J, W)[:2])
+            right += twin.differences(suslov_momenta.arriving(J, q)[:2], suslov_momenta.momentum(J, q)[:2])
             sine = ctx.hypot(q[1], q[2])
             if sine > 0.01 and q[0] > 0.01:
                 other = data.rotation([sine, q[1] * q[0] / sine, q[2] * q[0] / sine])
-                changes = data.differences(data.momentum(J, other), data.turned(J, W))
+                changes = twin.differences(data.momentum(J, other), data.turned(J, W))
                 right += changes[:2]
                 jumps.append(data.momentum(J, other)[2] - data.momentum(J, W)[2])
         orbit = nh.simulate(data.discrete(J), displacement=data.array(data.rotation(data.points()[0])), steps=20)
@@ -112,19 +80,7 @@ def balanced() -> Measured:
     return Measured(twin.both(twin.worst(right), twin.worst(library)), twin.worst(jumps), note)
 
 
-@finding(
-    "discr_sus_dyn",
-    "theorem",
-    "Section 6, theorem (discr_sus_dyn)",
-    r"“tends to the unstable equilibria semi-line $\mathbb{P}_u = \mathbb{P}\cap\Theta_-$ and the stable equilibria "
-    r"semi-line $\mathbb{P}_s = \mathbb{P}\cap\Theta_-$ respectively. It lies entirely in one of the semi-planes "
-    r"$\Delta_\pm$.”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"It goes to the equilibria in $\Theta_+$. Proved for $D > 2|c|^2$, $E < h^*$ and any choice among the "
-    r"inner values: one always exists, and below $h_f$ (S49) it is the only one.",
-    errata=("S40",),
-    tolerance=1e-45,
-)
+@statement
 def theorem() -> Measured:
     """Compare multipliers at equilibria with derivatives of momenta; follow six orbits of the library to their ends."""
     missed = []
@@ -182,13 +138,7 @@ def _orbit(name: str, start: tuple[float, float]) -> tuple[float, bool]:
     return float(formulas.stability_form(J, [ctx.mpf(x[-1]) for x in q])), kept
 
 
-@finding(
-    "limit-rotations",
-    "remark",
-    "Section 6, after theorem (discr_sus_dyn)",
-    r"The limit rotations at $k \to -\infty$ and $k \to +\infty$ are inverse to each other.",
-    tolerance=1e-45,
-)
+@statement
 def limit_rotations() -> Measured:
     """Follow orbits to both ends: the map is inverted by inverting the displacement."""
     library, exact = [], []

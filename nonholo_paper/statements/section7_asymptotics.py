@@ -4,10 +4,10 @@ import numpy as np
 
 import nonholo as nh
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._sleigh_twin import Body, real_tangents
 from nonholo_paper._twin import Number, ctx, worst
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import sleigh_continuous as continuous
 from nonholo_paper.formulas import sleigh_discrete as formulas
 
@@ -36,7 +36,7 @@ def _steps(body: Body, p_theta: Number, p_1: Number) -> list[tuple]:
 
 
 def _inside(body: Body, p_theta: Number, p_1: Number) -> bool:
-    """Tell whether a point lies inside the ellipse of V_1 = 0."""
+    """Return whether a point lies inside the ellipse of V_1 = 0."""
     m, J, a, _ = body
     return (p_theta / (J + m * a**2)) ** 2 + (_hat(body, p_1) / (m * a**2) - 1) ** 2 < 1
 
@@ -58,15 +58,7 @@ def _limits(body: Body) -> list[float]:
     return gaps
 
 
-@finding(
-    "bi-asymptotic",
-    "theorem",
-    "Section 7, the theorem for b = 0",
-    r"For $a > 0$ and $E < m^2a^2(J + ma^2)$ the point $(p_\theta, p_1)$ tends along its ellipse to an unstable point "
-    r"of $p_\theta = 0$, $-ma < p_1 < 0$ for $k \to -\infty$, to a stable one with $0 < p_1 < ma$ for $k \to "
-    r"+\infty$, and stays in one half-plane $p_\theta > 0$ or $p_\theta < 0$.",
-    tolerance=1e-43,
-)
+@statement
 def bi_asymptotic() -> Measured:
     """Make one step from many points in 50 digits, and run to both ends with the library."""
     failures = 0
@@ -83,14 +75,7 @@ def bi_asymptotic() -> Measured:
     )
 
 
-@finding(
-    "single-valued",
-    "theorem",
-    "Section 7, the theorem for b = 0",
-    r"For $E < m^2a^2(J + ma^2)$ the map is single-valued. (This is not sharp: with $M = ma^2$, $I = J + M$ it is "
-    r"so below $\frac{I}{a^2}\min\{4M^2, (\frac J4 - 2M)^2 + \frac{27MJ^2}{16I}\}$, 3.79 to 4 times as much.)",
-    tolerance=1e-45,
-)
+@statement
 def single_valued() -> Measured:
     """Compare with the least value of the integral on the deltoid, at many of its points, and with the library."""
     gaps, failures, library = [], 0, []
@@ -117,20 +102,9 @@ def _level(body: Body, turning: Number, p_hat: Number) -> Number:
     return continuous.energy_integral(body, turning, (p_hat - 2 * body.m * body.a**2) / body.a)
 
 
-@finding(
-    "C35",
-    "theorem",
-    "Section 7, proof of the theorem for b = 0",
-    r"“one shows that $2amV_{2,k} > p_{\theta,k}$ for $p_{\theta,k} > 0$ and $2amV_{2,k} < p_{\theta,k}$ for "
-    r"$p_{\theta,k} < 0$”",
-    verdict=Verdict.FALSE,
-    corrected=r"$2amV_2 < p_\theta$ for $p_\theta > 0$, so that $p_{\theta,k+1} > 0$ by the discrete equations. "
-    r"Points with $p_1 < 0$ outside the ellipse are left over; the theorem holds there too.",
-    errata=("C35",),
-    tolerance=1e-45,
-)
+@statement
 def inequality_of_the_proof() -> Measured:
-    """Look for points where the printed inequality holds, and for points left over; printed is how far it fails."""
+    """Look for points where the printed inequality holds, and for points left over; printed is its largest failure."""
     against, left_over, excess = 0, 0, []
     for body in SLEIGHS:
         for share in ("0.1", "0.6", "0.97"):
@@ -145,14 +119,7 @@ def inequality_of_the_proof() -> Measured:
     return Measured(float(against + (left_over == 0) + (min(excess) <= 0)), float(min(excess)), "5 bodies, 135 points")
 
 
-@finding(
-    "half-plane",
-    "theorem",
-    "Section 7, proof of the theorem for b = 0",
-    r"In that region $p_{\theta,k}$ and $p_{\theta,k+1}$ do not have different signs. (It is so for $E < 4m^2a^2(J "
-    r"+ ma^2)$ on every real branch; generally if $-2J < \hat p(1 + t^2) < 2J + 4ma^2$.)",
-    tolerance=1e-45,
-)
+@statement
 def half_plane() -> Measured:
     """Compare signs of p_theta before and after a step, on all real branches, in the region and elsewhere."""
     failures, elsewhere = 0, 0

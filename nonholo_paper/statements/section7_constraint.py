@@ -4,10 +4,10 @@ from collections.abc import Callable
 
 import nonholo as nh
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._sleigh_twin import TURNS, admissible, pose, poses
 from nonholo_paper._twin import Matrix, Number, ctx, worst
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import sleigh_continuous as continuous
 from nonholo_paper.formulas import sleigh_discrete as formulas
 
@@ -31,14 +31,7 @@ def _stepped(turn: tuple, start: list) -> tuple[list, list]:
 STEPS = [_stepped(turn, start) for turn in TURNS for start in (PAIRS[0][0], PAIRS[1][0])]
 
 
-@finding(
-    "false!",
-    "equation",
-    "Section 7, equation (false!)",
-    r"The naive constraint $\Omega_{23} = -\sin\theta_k\Delta x_k + \cos\theta_k\Delta y_k = 0$ is not the right one: "
-    r"displacements have to be exponentials of $\mathfrak{d}$.",
-    tolerance=1e-45,
-)
+@statement
 def naive_choice() -> Measured:
     """Compare the two sides, and count exponentials with a turn and a shift that satisfy it."""
     gaps = [formulas.naive_constraint(*pair) - (pose(*pair[0]) ** -1 * pose(*pair[1]))[1, 2] for pair in PAIRS]
@@ -46,16 +39,7 @@ def naive_choice() -> Measured:
     return Measured(max(worst(gaps), satisfied), note="6 pairs of poses; 5 exponentials, none naive")
 
 
-@finding(
-    "C19",
-    "equation",
-    "Section 7, the paragraph on the discrete constraint",
-    r"“discrete helical velocities $\Omega_k = X_{k+1}X_k^T$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$\Omega_k = X_k^{-1}X_{k+1}$, which is left-invariant.",
-    errata=("C19",),
-    tolerance=1e-45,
-)
+@statement
 def left_invariance() -> Measured:
     """Move both poses by a rigid motion."""
     right, wrong = [], []
@@ -76,18 +60,7 @@ def _two_cosets(n: int, seed: int) -> tuple[Matrix, list[Matrix]]:
     return twin.exp(X), [half, half * turned]
 
 
-@finding(
-    "C20",
-    "remark",
-    "Section 7, before the proposition on the variety",
-    r"“$\exp\mathfrak{d}$ must be a covering of the homogeneous space $SE(n)/SE(n-1)$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"The quotient covers $\exp\mathfrak{d}$ twice: with $\sigma$ the involution that reverses "
-    r"$\mathfrak{d}$, $g \to g\,\sigma(g)^{-1}$ has the same value at the cosets $(q, \nu)$ and $(-q, -\nu)$, where "
-    r"$q = Re_1$, $\nu = (x, q)$.",
-    errata=("C20",),
-    tolerance=1e-45,
-)
+@statement
 def coverings() -> Measured:
     """Map two cosets to one exponential, and one coset to itself; printed is the distance between the two cosets."""
     right, wrong = [], []
@@ -101,21 +74,9 @@ def coverings() -> Measured:
     return Measured(worst(right), worst(wrong), "n = 2, 3, 4")
 
 
-@finding(
-    "circ.motion",
-    "proposition",
-    "Section 7, proposition (circ.motion)",
-    r"“The variety $\mathcal{S} = \exp\mathfrak{d} \subset SE(2)$ is diffeomorphic to the the canonical line bundle "
-    r"... and it is defined by the condition” (constr.omegas)",
-    verdict=Verdict.EXCEPTIONS,
-    corrected=r"Except at $\Delta\theta = 0$, where (constr.omegas) and (se.const) admit every translation. It is a "
-    r"Moebius band, $(V_1, V_2) = \nu(\cos\frac{\Delta\theta}{2}, \sin\frac{\Delta\theta}{2})$ with $(\Delta\theta, "
-    r"\nu) \sim (\Delta\theta + 2\pi, -\nu)$, defined by (se2.const).",
-    errata=("C21",),
-    tolerance=1e-45,
-)
+@statement
 def circ_motion() -> Measured:
-    """Write exponentials as points of lines; printed is how far a shift sideways is from any such point."""
+    """Write exponentials as points of lines; printed is the distance of a shift sideways from all such points."""
     gaps = []
     for angle, v1 in ALL_TURNS:
         half = angle / 2
@@ -131,13 +92,7 @@ def circ_motion() -> Measured:
     return Measured(worst(gaps), worst([formulas.half_angle_constraint(*sideways)]), "12 exponentials")
 
 
-@finding(
-    "constr.omegas",
-    "equation",
-    "Section 7, equation (constr.omegas)",
-    r"On $\mathcal{S}$: $\frac{\Omega_{23}}{\Omega_{13}} = \frac{1 - \Omega_{11}}{\Omega_{21}}$.",
-    tolerance=1e-45,
-)
+@statement
 def constr_omegas() -> Measured:
     """Evaluate both quotients on exponentials where they have a value."""
     pairs = [formulas.quotients(admissible(turn)) for turn in PROPER if turn[1] != 0]
@@ -146,13 +101,7 @@ def constr_omegas() -> Measured:
     )
 
 
-@finding(
-    "se2.const",
-    "equation",
-    "Section 7, equation (se2.const)",
-    r"$-V_1\sin\frac{\Delta\theta}{2} + V_2\cos\frac{\Delta\theta}{2} = 0$ on $\mathcal{S}$.",
-    tolerance=1e-45,
-)
+@statement
 def se2_const() -> Measured:
     """Evaluate it on exponentials, and on the displacements that the library gives for a sleigh."""
     gaps = [formulas.half_angle_constraint(*_entries(turn)) for turn in ALL_TURNS]
@@ -163,17 +112,7 @@ def se2_const() -> Measured:
     return Measured(twin.both(worst(gaps), worst(library)), note="12 exponentials; library: 3 displacements")
 
 
-@finding(
-    "se.const",
-    "equation",
-    "Section 7, equation (se.const)",
-    r"“or, equivalently, $V_{1,k}[1 - \cos(\Delta\theta_k)] - V_{2,k}\sin(\Delta\theta_k) = 0$”",
-    verdict=Verdict.EXCEPTIONS,
-    corrected=r"Except at $\Delta\theta = 0$: it is $2\sin\frac{\Delta\theta}{2}$ times (se2.const) up to sign, "
-    r"hence true there for every translation.",
-    errata=("C21",),
-    tolerance=1e-45,
-)
+@statement
 def se_const() -> Measured:
     """Compare both at random displacements; printed is (se2.const) at a displacement that satisfies the other."""
     gaps = []
@@ -186,14 +125,7 @@ def se_const() -> Measured:
     return Measured(worst(gaps), worst([formulas.half_angle_constraint(*sideways)]), "6 displacements")
 
 
-@finding(
-    "discrete.se2.constraint.eqn",
-    "equation",
-    "Section 7, equation (discrete.se2.constraint.eqn)",
-    r"$-\sin\frac{\theta_{k+1} + \theta_k}{2}(x_{k+1} - x_k) + \cos\frac{\theta_{k+1} + \theta_k}{2}(y_{k+1} - y_k) = "
-    r"0$; in the limit $-\dot x\sin\theta + \dot y\cos\theta = 0$.",
-    tolerance=1e-45,
-)
+@statement
 def constraint_in_space() -> Measured:
     """Evaluate it on admissible steps, compare with (se2.const) on all, and differentiate in the limit."""
     gaps = [formulas.constraint_in_space(*step) for step in STEPS]
@@ -210,13 +142,7 @@ def _toward(start: list, velocity: list) -> Callable[[Number], Number]:
     return lambda e: formulas.constraint_in_space(start, [x + e * v for x, v in zip(start, velocity, strict=True)])
 
 
-@finding(
-    "exponential",
-    "equation",
-    "Section 7, proof of proposition (circ.motion)",
-    r"$\exp(St)$ is the rotation by $\omega t$ and the translation $\frac v\omega(\sin\omega t,\ 1 - \cos\omega t)$.",
-    tolerance=1e-45,
-)
+@statement
 def exponential() -> Measured:
     """Compare with the series of the exponential."""
     gaps = []
@@ -226,14 +152,7 @@ def exponential() -> Measured:
     return Measured(worst(gaps), note="6 velocities")
 
 
-@finding(
-    "quotient",
-    "equation",
-    "Section 7, equation (quotient)",
-    r"$\frac{\Omega_{23}}{\Omega_{13}} = \frac{1 - \cos\omega t}{\sin\omega t} = \tan\frac{\Delta\theta_k}{2}$; when "
-    r"the angle grows by $2\pi$, this line turns by $\pi$.",
-    tolerance=1e-45,
-)
+@statement
 def quotient() -> Measured:
     """Compare the quotients of the entries of exponentials with the tangent of half the angle."""
     gaps = []
@@ -245,14 +164,7 @@ def quotient() -> Measured:
     return Measured(worst(gaps), note="10 exponentials; for the tangent t relative to 1 + t^2")
 
 
-@finding(
-    "discr.vel1",
-    "equation",
-    "Section 7, equation (discr.vel1)",
-    r"$\Delta x\cos\theta_k + \Delta y\sin\theta_k = \Delta x\cos\theta_{k+1} + \Delta y\sin\theta_{k+1}$ and "
-    r"$-\Delta x\sin\theta_k + \Delta y\cos\theta_k = \Delta x\sin\theta_{k+1} - \Delta y\cos\theta_{k+1}$.",
-    tolerance=1e-45,
-)
+@statement
 def discr_vel1() -> Measured:
     """Evaluate both on admissible steps."""
     gaps = []
@@ -262,14 +174,7 @@ def discr_vel1() -> Measured:
     return Measured(worst(gaps), note="18 admissible steps")
 
 
-@finding(
-    "circle-of-a-step",
-    "remark",
-    "Section 7, remark after the proof of proposition (circ.motion)",
-    r"The points $(x_k, y_k)$ and $(x_{k+1}, y_{k+1})$ lie on a circle that the lines of the blade touch there. (Its "
-    r"radius is $V_1/\sin\Delta\theta$.)",
-    tolerance=1e-45,
-)
+@statement
 def circle_of_a_step() -> Measured:
     """Put a circle of this radius to the first blade, and test the second point and the second blade."""
     gaps = []
@@ -284,14 +189,7 @@ def circle_of_a_step() -> Measured:
     return Measured(worst(gaps), note="12 admissible steps, angles to 5.1")
 
 
-@finding(
-    "rotate-slide-rotate",
-    "remark",
-    "Section 7, before the discrete momentum locus",
-    r"A displacement is a rotation by $\Delta\theta/2$, a slide along the blade, and another rotation by "
-    r"$\Delta\theta/2$.",
-    tolerance=1e-45,
-)
+@statement
 def rotate_slide_rotate() -> Measured:
     """Multiply the three; the slide is the component of the translation along the blade turned halfway."""
     gaps = []

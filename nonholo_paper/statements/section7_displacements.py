@@ -1,15 +1,15 @@
 """Section 7: displacements of the sleigh, discrete Lagrangian, discrete momentum and its coadjoint transport."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 
 import numpy as np
 
 import nonholo as nh
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
-from nonholo_paper._sleigh_twin import BODIES, PLANE, TURNS, Body, admissible, lagrangian, points, pose, poses
-from nonholo_paper._twin import Matrix, Number, ctx, worst
-from nonholo_paper._verdict import Verdict
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
+from nonholo_paper._sleigh_twin import BODIES, PLANE, TURNS, Body, admissible, lagrangian, momentum, points, pose, poses
+from nonholo_paper._twin import Matrix, Number, ctx, differences, worst
 from nonholo_paper.formulas import sleigh_continuous as continuous
 from nonholo_paper.formulas import sleigh_discrete as formulas
 
@@ -21,24 +21,7 @@ def _between(before: list, after: list) -> Matrix:
     return pose(*before) ** -1 * pose(*after)
 
 
-def _momentum(body: Body, W: Matrix) -> list:
-    return twin.momentum(PLANE, lagrangian(points(body)), W)
-
-
-def _gaps(left: Iterable, right: Iterable) -> list:
-    return [x - y for x, y in zip(left, right, strict=True)]
-
-
-@finding(
-    "Om_k",
-    "equation",
-    "Section 7, equation (Om_k)",
-    r"“$\Delta\theta_k = \theta_{k+1} - \cos\theta_k$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$\Delta\theta_k = \theta_{k+1} - \theta_k$.",
-    errata=("C15",),
-    tolerance=1e-45,
-)
+@statement
 def om_k() -> Measured:
     """Compare with the product of the matrices."""
     right, wrong = [], []
@@ -49,18 +32,7 @@ def om_k() -> Measured:
     return Measured(worst(right), worst(wrong), "6 pairs of poses, one of equal ones, one half a turn apart")
 
 
-@finding(
-    "sl",
-    "equation",
-    "Section 7, equation (sl)",
-    r"“$L_d(X_{k+1}, X_k) = \frac12\mathrm{tr}(\Omega_k\mathbb{J}\Omega_k^T) - "
-    r"\frac12\mathrm{tr}(\mathbb{J}\Omega_k^T + \Omega_k\mathbb{I})$” with the entry “$J2 + mb^2$” of $\mathbb{J}$, "
-    r"where “$J$ is its scalar moment of inertia with respect to the origin $A$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"The last product is $\Omega\mathbb{J}$, the entry $J/2 + mb^2$, and $J$ is about the center of mass.",
-    errata=("C16",),
-    tolerance=1e-45,
-)
+@statement
 def trace_form() -> Measured:
     """Compare with half the sum of m |(W - 1) r|^2 over mass points."""
     right, wrong, identity = [], [], ctx.eye(3)
@@ -79,15 +51,7 @@ def trace_form() -> Measured:
     return Measured(worst(right), worst(wrong), "8 bodies, 6 displacements")
 
 
-@finding(
-    "discr.L2",
-    "equation",
-    "Section 7, equation (discr.L2)",
-    r"$L_d = \frac m2\Delta y^2 + \frac m2\Delta x^2 + (J + ma^2 + mb^2)(1 - \cos\Delta\theta) + "
-    r"am[\Delta\sin\theta\,\Delta y + \Delta\cos\theta\,\Delta x] + bm[\Delta\cos\theta\,\Delta y - "
-    r"\Delta\sin\theta\,\Delta x]$, where $\Delta f = f_{k+1} - f_k$.",
-    tolerance=1e-45,
-)
+@statement
 def discr_L2() -> Measured:
     """Compare with half the sum of m |(W - 1) r|^2 over mass points."""
     gaps = []
@@ -97,17 +61,7 @@ def discr_L2() -> Measured:
     return Measured(worst(gaps), note="8 bodies, 6 pairs of poses")
 
 
-@finding(
-    "cont.lim",
-    "equation",
-    "Section 7, equation (cont.lim) and the words after it",
-    r"“expression (discr.L2) divided by $\varepsilon$ transforms to the continuous Lagrangian (Caplag) plus higher "
-    r"order terms in $\varepsilon$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"$L_d/\varepsilon^2$ tends to it.",
-    errata=("C17",),
-    tolerance=1e-40,
-)
+@statement
 def cont_lim() -> Measured:
     """Differentiate the discrete Lagrangian along poses that start with a velocity."""
     right, wrong = [], []
@@ -126,14 +80,7 @@ def _line(at: list, velocity: list) -> Callable[[Number], list]:
     return lambda e: [x + e * v for x, v in zip(at, velocity, strict=True)]
 
 
-@finding(
-    "disc.mom.sl",
-    "equation",
-    "Section 7, equation (disc.mom.sl)",
-    r"$p_\theta = (J + ma^2 + mb^2)\sin\Delta\theta + amV_2 - bmV_1$, $p_1 = mV_1 - am(1 - \cos\Delta\theta) - "
-    r"bm\sin\Delta\theta$, $p_2 = mV_2 + am\sin\Delta\theta - bm(1 - \cos\Delta\theta)$.",
-    tolerance=1e-45,
-)
+@statement
 def disc_mom_sl() -> Measured:
     """Compare with the derivatives of L_d along the group and in coordinates, and with the library on the variety."""
     gaps, library = [], []
@@ -141,12 +88,14 @@ def disc_mom_sl() -> Measured:
         before, after = PAIRS[k % len(PAIRS)]
         velocities = formulas.discrete_velocities(before, after)
         p = formulas.momentum(body, formulas.step_angle(before, after), *velocities)
-        gaps += _gaps(p, _momentum(body, _between(before, after))) + _gaps(p, _in_coordinates(body, before, after))
+        gaps += differences(p, momentum(body, _between(before, after))) + differences(
+            p, _in_coordinates(body, before, after)
+        )
         discrete = nh.discretize(nh.ChaplyginSleigh(*map(float, body)), 1.0)
         W = admissible(TURNS[k])
         p = formulas.momentum(body, TURNS[k][0], W[0, 2], W[1, 2])
         found = nh.discrete_legendre(discrete, np.array(W.tolist(), dtype=float))
-        library += _gaps([*map(float, p)], found)
+        library += differences([*map(float, p)], found)
     return Measured(twin.both(worst(gaps), worst(library) / 100), note="8 bodies and displacements; momenta up to 100")
 
 
@@ -158,64 +107,42 @@ def _in_coordinates(body: Body, before: list, after: list) -> list:
     return [-ctx.diff(lambda e, way=way: formulas.scalar_lagrangian(body, way(e), after), 0) for way in ways]
 
 
-@finding(
-    "discr.vel",
-    "equation",
-    "Section 7, equation (discr.vel)",
-    r"$V_1 = \Omega_{13} = \Delta x\cos\theta + \Delta y\sin\theta$, $V_2 = \Omega_{23} = -\Delta x\sin\theta + "
-    r"\Delta y\cos\theta$.",
-    tolerance=1e-45,
-)
+@statement
 def discr_vel() -> Measured:
     """Compare with the entries of the product of the matrices."""
     gaps = []
     for before, after in PAIRS:
         W = _between(before, after)
-        gaps += _gaps(formulas.discrete_velocities(before, after), [W[0, 2], W[1, 2]])
+        gaps += differences(formulas.discrete_velocities(before, after), [W[0, 2], W[1, 2]])
     return Measured(worst(gaps), note="6 pairs of poses")
 
 
-@finding(
-    "discr.ad.sl",
-    "equation",
-    "Section 7, equation (discr.ad.sl)",
-    r"“$p_{\omega,k} - p_{2,k}V_{1,k} + p_{1,k}V_{2,k}$”, the first row of $\mathrm{Ad}^*_{\Omega_k}P_k$",
-    verdict=Verdict.MISPRINT,
-    corrected=r"The first letter is $p_\theta$; the formula is right.",
-    errata=("C18",),
-    tolerance=1e-45,
-)
+@statement
 def discr_ad_sl() -> Measured:
     """Compare with the transpose of Ad and with the library; printed counts letters that P does not have."""
     gaps, library = [], []
     for k, (before, after) in enumerate(PAIRS):
         W, p = _between(before, after), twin.numbers(721 + k, 3, -2, 2)
         found = formulas.coadjoint(p, formulas.step_angle(before, after), W[0, 2], W[1, 2])
-        gaps += _gaps(found, twin.coadjoint(PLANE, W, p))
+        gaps += differences(found, twin.coadjoint(PLANE, W, p))
         double = PLANE.coadjoint(np.array(W.tolist(), dtype=float), np.array(p, dtype=float))
-        library += _gaps([*map(float, found)], double)
+        library += differences([*map(float, found)], double)
     unknown = {"p_omega", "p_1", "p_2"} - {"p_theta", "p_1", "p_2"}
     return Measured(twin.both(worst(gaps), worst(library)), float(len(unknown)), "6 displacements, random momenta")
 
 
-@finding(
-    "discrete.free.se2.eqn",
-    "equation",
-    "Section 7, equation (discrete.free.se2.eqn)",
-    r"Without constraints $P_{k+1} = \mathrm{Ad}^*_{\Omega_k}P_k$, which is the conservation of momentum in space.",
-    tolerance=1e-45,
-)
+@statement
 def discrete_free() -> Measured:
     """Vary the middle pose of two steps, and carry the momenta before and after a step to space."""
     gaps = []
     for body, (before, after) in zip(BODIES[:6], PAIRS, strict=True):
         value, W, following = lagrangian(points(body)), _between(before, after), admissible(TURNS[0])
-        carried = twin.coadjoint(PLANE, W, _momentum(body, W))
-        for E, left, right in zip(twin.basis(PLANE), carried, _momentum(body, following), strict=True):
+        carried = twin.coadjoint(PLANE, W, momentum(body, W))
+        for E, left, right in zip(twin.basis(PLANE), carried, momentum(body, following), strict=True):
             gaps.append(ctx.diff(_action(value, W, following, E), 0) - (left - right))
-        spatial = [twin.coadjoint(PLANE, pose(*before) ** -1, _momentum(body, W))]
+        spatial = [twin.coadjoint(PLANE, pose(*before) ** -1, momentum(body, W))]
         spatial.append(twin.coadjoint(PLANE, pose(*after) ** -1, carried))
-        gaps += _gaps(*spatial)
+        gaps += differences(*spatial)
     return Measured(worst(gaps), note="6 bodies and displacements")
 
 
@@ -228,23 +155,15 @@ def _action(value: Callable, W: Matrix, following: Matrix, E: Matrix) -> Callabl
     return moved
 
 
-@finding(
-    "free-motion",
-    "equation",
-    "Section 7, after equation (discrete.free.se2.eqn)",
-    r"For $a = b = 0$: $\sin(\theta_{k+1} - \theta_k) = \sin(\theta_k - \theta_{k-1})$, and $(\Delta x_{k+1}, \Delta "
-    r"y_{k+1})$ and $(\Delta x_k, \Delta y_k)$ have the same components at $\theta_{k+1}$. For small angles all three "
-    r"differences are constant.",
-    tolerance=1e-45,
-)
+@statement
 def free_motion() -> Measured:
     """Compare transported momenta with the printed right sides, and with the momenta of the same step made again."""
     gaps = []
     for body, (before, after) in zip(BODIES[:6], PAIRS, strict=True):
         centered = Body(body.m, body.J, ctx.zero, ctx.zero)
-        carried = twin.coadjoint(PLANE, _between(before, after), _momentum(centered, _between(before, after)))
+        carried = twin.coadjoint(PLANE, _between(before, after), momentum(centered, _between(before, after)))
         along, back = formulas.tangent_velocities(before, after)
-        gaps += _gaps(carried, [body.J * ctx.sin(after[0] - before[0]), body.m * along, -body.m * back])
+        gaps += differences(carried, [body.J * ctx.sin(after[0] - before[0]), body.m * along, -body.m * back])
         following = [2 * y - x for x, y in zip(before, after, strict=True)]
-        gaps += _gaps(carried, _momentum(centered, _between(after, following)))
+        gaps += differences(carried, momentum(centered, _between(after, following)))
     return Measured(worst(gaps), note="6 bodies and steps; for large angles the supplementary angle solves it too")

@@ -4,21 +4,19 @@ import numpy as np
 
 import nonholo as nh
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._sleigh_twin import (
     BODIES,
-    PLANE,
     TURNS,
     UNBALANCED,
     Body,
     admissible,
-    lagrangian,
-    points,
+    momentum,
     real_tangents,
     tangents,
 )
-from nonholo_paper._twin import Matrix, Number, ctx, worst
-from nonholo_paper._verdict import Verdict
+from nonholo_paper._twin import Number, ctx, worst
 from nonholo_paper.formulas import sleigh_discrete as formulas
 
 CENTERED = [body._replace(b=ctx.zero) for body in BODIES]
@@ -26,49 +24,30 @@ DRAWN = list(zip(twin.numbers(751, 70, -4, 4), twin.numbers(752, 70, -4, 4), str
 SMALL = list(zip(twin.numbers(753, 90, -1, 1), twin.numbers(754, 90, -2.2, 0.4), strict=True))
 
 
-def _momentum(body: Body, W: Matrix) -> list:
-    return twin.momentum(PLANE, lagrangian(points(body)), W)
-
-
 def _shifted(body: Body, p: list) -> tuple[Number, Number]:
     """Return p_theta + b p_1 and a p_1 + 2 m a^2."""
     return p[0] + body.b * p[1], body.a * p[1] + 2 * body.m * body.a**2
 
 
-@finding(
-    "quartic",
-    "equation",
-    "Section 7, equation (quartic)",
-    r"For $b = 0$: $J\sin^2\Delta\theta - p_\theta\sin\Delta\theta + (2ma^2 + ap_1)(1 - \cos\Delta\theta) = 0$; "
-    r"$\Delta\theta = 2n\pi$ is always a solution.",
-    tolerance=1e-45,
-)
+@statement
 def quartic() -> Measured:
     """Evaluate it at momenta of admissible displacements, and at zero and full turns with other momenta."""
     gaps = []
     for body in CENTERED:
         for turn in TURNS:
-            p = _momentum(body, admissible(turn))
+            p = momentum(body, admissible(turn))
             gaps.append(formulas.quartic(body, p[0], p[1], turn[0]))
         gaps += [formulas.quartic(body, ctx.mpf(3), ctx.mpf(-2), angle) for angle in (ctx.zero, 2 * ctx.pi)]
     return Measured(worst(gaps), note="8 bodies, 9 displacements")
 
 
-@finding(
-    "det.delta.phi",
-    "equation",
-    "Section 7, equation (det.delta.phi)",
-    r"For $b = 0$, $z = \sin\Delta\theta$ and $\hat p = ap_1 + 2ma^2$: $J^2z^3 - 2Jp_\theta z^2 + (\hat p^2 + "
-    r"2J\hat p + p_\theta^2)z - 2p_\theta\hat p = 0$. (It holds for every $b$ with $p_\theta + bp_1$ in the place "
-    r"of $p_\theta$.)",
-    tolerance=1e-45,
-)
+@statement
 def det_delta_phi() -> Measured:
     """Evaluate it at momenta of admissible displacements, relative to the size of its terms."""
     gaps = []
     for body in [*CENTERED[:3], *BODIES]:
         for turn in TURNS:
-            turning, p_hat = _shifted(body, _momentum(body, admissible(turn)))
+            turning, p_hat = _shifted(body, momentum(body, admissible(turn)))
             size = 1 + body.J**2 + turning**2 + p_hat**2
             gaps.append(formulas.cubic_in_sine(body.J, turning, p_hat, ctx.sin(turn[0])) / size)
     return Measured(worst(gaps), note="8 bodies, 3 of them also with b = 0, 9 displacements")
@@ -82,33 +61,20 @@ def _polynomial_gaps(body: Body, p_1: Number, turning: Number) -> list:
         sine, V_1, V_2 = formulas.third_step(body, p_1, t)
         cosine = (1 - t**2) / (1 + t**2)
         W = ctx.matrix([[cosine, -sine, V_1], [sine, cosine, V_2], [0, 0, 1]])
-        p = _momentum(body, W)
+        p = momentum(body, W)
         excess = (1 + t**2) * (p[0] + body.b * p[1] - turning)
         gaps += [excess - twin.polynomial(formulas.cubic(body.J, turning, p_hat), t), p[1] - p_1]
         gaps.append(formulas.conoid(body.J, *_shifted(body, p), body.a * p[2]))
     return gaps
 
 
-@finding(
-    "three-preimages",
-    "remark",
-    "Section 7, before the discrete momentum locus",
-    r"“under the constraint (se.const) the image of the discrete Legendre transformation (disc.mom.sl) is an "
-    r"algebraic quartic subvariety ... and to a generic pair $(p_\theta, p_1)$ there correspond four distinct "
-    r"points”",
-    verdict=Verdict.REMARK,
-    corrected=r"So it is: (se.const) also admits the plane $\pi = ap_2$ of $\Delta\theta = 0$ (row C21), $\pi = "
-    r"p_\theta + bp_1$. For $\exp\mathfrak{d}$ alone it is the cubic surface $(\pi - ap_2)(\hat p^2 + a^2p_2^2) = "
-    r"2J\hat p\,ap_2$ with three points: the roots of $\hat pt^3 - \pi t^2 + (2J + \hat p)t - \pi$, $t = "
-    r"\tan\frac{\Delta\theta}{2}$.",
-    tolerance=1e-43,
-)
+@statement
 def three_preimages() -> Measured:
     """Find the cubic from the derivatives of L_d at 6 tangents, one complex; printed is 4 less the library's count."""
     gaps, counts = [], []
     for body, (p_1, turning) in zip(UNBALANCED, DRAWN, strict=False):
         gaps += _polynomial_gaps(body, p_1, turning)
-        p = _momentum(body, ctx.matrix([[1, 0, p_1], [0, 1, turning], [0, 0, 1]]))
+        p = momentum(body, ctx.matrix([[1, 0, p_1], [0, 1, turning], [0, 0, 1]]))
         gaps.append(_shifted(body, p)[0] - body.a * p[2])
         discrete = nh.discretize(nh.ChaplyginSleigh(*map(float, body)), 1.0)
         found = nh.displacements_over(discrete, [float(turning - body.b * p_1), float(p_1)])
@@ -116,19 +82,9 @@ def three_preimages() -> Measured:
     return Measured(max(worst(gaps), max(abs(n - 3) for n in counts)), float(4 - max(counts)), "7 bodies")
 
 
-@finding(
-    "surface",
-    "lemma",
-    "Section 7, lemma (surface), part 1",
-    r"“the surface $\tilde{\mathcal{U}}$ is given by cubic equation ... $\tilde{\mathcal{U}}$ lies entirely between "
-    r"the planes $z = \pm1$ and is tangent to them along the lines $\ell_\pm = \{\pm p_\theta - \hat p_1 = J\}$”",
-    verdict=Verdict.REMARK,
-    corrected=r"So does the image. The cubic also vanishes on the isolated line $\hat p = 0$, $z = p_\theta/J$, "
-    r"which goes beyond the planes for $\lvert p_\theta\rvert > J$ and belongs to complex angles there.",
-    tolerance=1e-43,
-)
+@statement
 def surface_between_planes() -> Measured:
-    """Evaluate the cubic on planes and axes, find its roots at random points; printed is how far the line leaves."""
+    """Evaluate the cubic on planes and axes, find its roots at random points; printed is the distance of the line."""
     gaps, outside = [], 0
     J = ctx.mpf("1.5")
     for p_theta, p_hat in DRAWN:
@@ -166,19 +122,7 @@ def _signs(J: Number, p_theta: Number, p_hat: Number) -> str:
 ALLOWED = {"upper": ("+", "+--"), "lower": ("+", "+++"), "side": ("-", "++-", "---")}
 
 
-@finding(
-    "surface",
-    "lemma",
-    "Section 7, lemma (surface), part 2",
-    r"“For the parts of $\tilde{\mathcal{U}}$ over the quadrants $L_{++}$ ... and $L_{--}$ ... one has "
-    r"$\cos(\Delta\theta) > 0$ ... and in the rest of quadrants one has $\cos(\Delta\theta) < 0$”",
-    verdict=Verdict.FALSE,
-    corrected=r"So it is outside the deltoid. Inside, where there are three angles, the signs are $+, -, -$ in the "
-    r"upper quadrant, $+, +, +$ in the lower, $+, +, -$ or $-, -, -$ at the sides (observed); and $\Delta\theta = "
-    r"\pi$ occurs all along $\hat p = 0$.",
-    errata=("C25",),
-    tolerance=1e-45,
-)
+@statement
 def surface_signs() -> Measured:
     """Count points with other signs; printed counts points inside that contradict the lemma."""
     J, wrong, contradicted, patterns = ctx.mpf("0.9"), 0, 0, set()
@@ -195,18 +139,7 @@ def surface_signs() -> Measured:
     return Measured(max(wrong, missing, worst([axis])), float(contradicted), "161 points; every pattern occurs")
 
 
-@finding(
-    "C26",
-    "lemma",
-    "Section 7, proof of lemma (surface), part 2",
-    r"“for large $|p_x|$” and “the sign of $\cos(\Delta\theta)$ can change only under passage from one quadrant on "
-    r"the plane $(p_\theta, Y)$ to another one”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"They are $p_1$ and $(p_\theta, \hat p)$. A sign changes on a line of tangency for the branch that "
-    r"touches the plane there, not for all branches over the point.",
-    errata=("C26",),
-    tolerance=1e-45,
-)
+@statement
 def proof_of_signs() -> Measured:
     """Find the angles over a point of a line of tangency: one is a right angle, two are not. Printed counts letters."""
     J, p_theta = ctx.mpf("0.9"), ctx.mpf("0.4")
@@ -216,17 +149,7 @@ def proof_of_signs() -> Measured:
     return Measured(abs(right_angles - 1) + abs(len(found) - 3), float(len(unknown)), "J = 0.9, p_theta = 0.4")
 
 
-@finding(
-    "surface",
-    "lemma",
-    "Section 7, lemma (surface), part 3",
-    r"The projection is one-to-one outside the curve $\hat p^4 + 6J\hat p^3 + \hat p^2(12J^2 + 2p_\theta^2) - \hat "
-    r"p(10Jp_\theta^2 - 8J^3) + p_\theta^4 - J^2p_\theta^2 = 0$ and three-to-one inside, except for segments. The "
-    r"curve is symmetric, touches the $p_\theta$ axis at the origin and has the cusps $(0, -2J)$, $(\pm c_1, c_2)$. "
-    r"(It is Steiner's deltoid, $c_1 = \frac{3\sqrt3}{4}J$, $c_2 = \frac14J$; the segment is $\hat p = 0$, $\lvert "
-    r"p_\theta\rvert < J$, where two angles have the same sine.)",
-    tolerance=1e-43,
-)
+@statement
 def surface_deltoid() -> Measured:
     """Compare with the product of differences of roots, count real roots, and look at cusps, tangency and segment."""
     J, miscounted, gaps = ctx.mpf("0.9"), 0, []
@@ -265,27 +188,16 @@ def _library_counts(J: Number) -> float:
     return max(miscounted, 1e-33 * defect)
 
 
-@finding(
-    "ell",
-    "lemma",
-    "Section 7, lemma (surface), part 4, equation (ell)",
-    r"“The curve $\{V_1=0\} \subset \tilde{\mathcal{U}}$ is projected onto the ellipse ... Inside the ellipse the "
-    r"values of $V_1$ are negative and outside are positive.”",
-    verdict=Verdict.FALSE,
-    corrected=r"$V_1 = 0$ there and, at $\Delta\theta = \pi$, on the whole axis $\hat p = 0$. The signs are those "
-    r"of the principal branch near the origin (observed).",
-    errata=("C28",),
-    tolerance=1e-45,
-)
+@statement
 def ell() -> Measured:
     """Compare momenta of turns on the spot and of half turns; printed is V_1 of a displacement with the other sign."""
     gaps, wrong = [], 0
     for body in (body for body in CENTERED if body.a != 0):
         for angle in (0.3, 1.7, -2.9, 6):
-            p = _momentum(body, admissible((ctx.mpf(angle), 0)))
+            p = momentum(body, admissible((ctx.mpf(angle), 0)))
             gaps += [x - y for x, y in zip(formulas.ellipse(body, ctx.mpf(angle)), _shifted(body, p), strict=True)]
         half_turn = ctx.matrix([[-1, 0, 0], [0, -1, 3], [0, 0, 1]])
-        gaps.append(_shifted(body, _momentum(body, half_turn))[1])
+        gaps.append(_shifted(body, momentum(body, half_turn))[1])
         wrong += sum(_contradicts(body, p_theta, p_hat) for p_theta, p_hat in SMALL[:20])
     body, angle, nu = CENTERED[0], ctx.mpf("3.5"), 10
     p = formulas.momentum(body, angle, nu * ctx.cos(angle / 2), nu * ctx.sin(angle / 2))
@@ -300,7 +212,7 @@ def _outside(body: Body, p_theta: Number, p_hat: Number) -> Number:
 
 
 def _contradicts(body: Body, across: Number, along: Number) -> bool:
-    """Tell whether V_1 of the one branch near the origin has another sign than the lemma says."""
+    """Return whether V_1 of the one branch near the origin has another sign than the lemma says."""
     m, J, a, _ = body
     p_theta, p_1 = across * a * m, (along + ctx.mpf("0.9")) / 2 * m * a  # along is in [-2.2, 0.4]
     if m * p_theta**2 + (J + m * a**2) * p_1**2 > formulas.sharp_bound(body):
@@ -310,14 +222,7 @@ def _contradicts(body: Body, across: Number, along: Number) -> bool:
     return a * formulas.third_step(body, p_1, t)[1] * _outside(body, p_theta, p_hat) < 0
 
 
-@finding(
-    "near-origin",
-    "remark",
-    "Section 7, after lemma (surface)",
-    r"In a neighborhood of the point $O$, $p_\theta = 0$, $\hat p = 2ma^2$, the origin of the phase plane, the "
-    r"projection is one-to-one.",
-    tolerance=1e-45,
-)
+@statement
 def near_origin() -> Measured:
     """Count points around O that are on the deltoid's side or have another number of real roots than one."""
     wrong = 0

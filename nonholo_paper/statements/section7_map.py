@@ -6,7 +6,8 @@ import numpy as np
 
 import nonholo as nh
 from nonholo_paper import _twin as twin
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._sleigh_twin import (
     ALONG,
     BODIES,
@@ -15,8 +16,9 @@ from nonholo_paper._sleigh_twin import (
     UNBALANCED,
     Body,
     admissible,
+    arriving,
     kinetic,
-    lagrangian,
+    momentum,
     points,
     pose,
     poses,
@@ -25,20 +27,11 @@ from nonholo_paper._sleigh_twin import (
     velocity_of,
 )
 from nonholo_paper._twin import Matrix, Number, ctx, worst
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import sleigh_continuous as continuous
 from nonholo_paper.formulas import sleigh_discrete as formulas
 
 CASES = list(zip(BODIES, TURNS, strict=False))
 SLOW = list(zip(UNBALANCED, TURNS, strict=False))
-
-
-def _momentum(body: Body, W: Matrix) -> list:
-    return twin.momentum(PLANE, lagrangian(points(body)), W)
-
-
-def _arriving(body: Body, W: Matrix) -> list:
-    return twin.arriving(PLANE, lagrangian(points(body)), W)
 
 
 def _matrix(t: Number, V_1: Number, V_2: Number) -> Matrix:
@@ -65,20 +58,14 @@ def _double(W: Matrix) -> np.ndarray:
     return np.array(W.tolist(), dtype=float)
 
 
-@finding(
-    "EP_sleigh",
-    "equation",
-    "Section 7, equation (EP_sleigh)",
-    r"$P_{k+1} = \mathrm{Ad}^*_{\Omega_k}P_k + \lambda_k(0, 0, 1)^T$.",
-    tolerance=1e-43,
-)
+@statement
 def ep_sleigh() -> Measured:
     """Vary the pose between two steps of every branch, complex ones too; and take a step of the library."""
     gaps, library = [], []
     for body, turn in SLOW:
-        carried = _arriving(body, admissible(turn))
+        carried = arriving(body, admissible(turn))
         for following in _after(body, turn)[1]:
-            p = _momentum(body, following)
+            p = momentum(body, following)
             gaps += [(carried[i] - p[i]) / (1 + abs(p[i])) for i in range(2)]
     for body, turn in SLOW[:4]:
         orbit = nh.simulate(_discrete(body), displacement=_double(admissible(turn)), steps=1)
@@ -88,24 +75,14 @@ def ep_sleigh() -> Measured:
     return Measured(twin.both(worst(gaps), worst(library)), note="7 bodies and steps, 3 branches each")
 
 
-@finding(
-    "C29",
-    "equation",
-    "Section 7, the display before equation (discrete.constr.se2.eqn)",
-    r"“$p_{1,k+1} = mV_{x,k} - bm\sin(\Delta\theta_k) + am[\Delta x_k\cos\theta_{k+1} + \Delta "
-    r"y_k\sin\theta_{k+1}]$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"The bracket, a length, is $(1 - \cos\Delta\theta)$. The formula for $p_{\theta,k+1}$ is right.",
-    errata=("C29",),
-    tolerance=1e-45,
-)
+@statement
 def transported_in_space() -> Measured:
     """Compare with the momentum that arrives at the end of admissible steps."""
     right, wrong = [], []
     for (body, turn), (start, _) in zip(CASES, poses(761, 6), strict=True):
         moved = pose(*start) * admissible(turn)
         after = [start[0] + turn[0], moved[0, 2], moved[1, 2]]
-        carried = _arriving(body, admissible(turn))[:2]
+        carried = arriving(body, admissible(turn))[:2]
         shown = formulas.next_in_space(body, start, after)
         right += [shown[0] - carried[0], formulas.printed_next_in_space(body, start, after)[0] - carried[0]]
         right.append(formulas.next_in_space(body, start, after)[1] - carried[1])
@@ -113,19 +90,13 @@ def transported_in_space() -> Measured:
     return Measured(worst(right), float(ctx.fsum(map(abs, wrong))), "8 bodies and steps; printed: sum")
 
 
-@finding(
-    "discrete.constr.se2.eqn",
-    "equation",
-    "Section 7, equation (discrete.constr.se2.eqn)",
-    r"$p_{\theta,k+1} = p_{\theta,k} - 2amV_2$, $p_{1,k+1} = p_{1,k} + 2am(1 - \cos\Delta\theta_k)$.",
-    tolerance=1e-45,
-)
+@statement
 def discrete_constr() -> Measured:
     """Compare with the momentum that arrives at the end of admissible steps, and with a step of the library."""
     gaps, library = [], []
     for body, turn in CASES:
         W = admissible(turn)
-        p, carried = _momentum(body, W), _arriving(body, W)
+        p, carried = momentum(body, W), arriving(body, W)
         found = formulas.next_momenta(body, p[0], p[1], turn[0], W[1, 2])
         gaps += [x - y for x, y in zip(found, carried, strict=False)]
         if body.a != 0 and abs(turn[0]) < 1.5:
@@ -134,42 +105,19 @@ def discrete_constr() -> Measured:
     return Measured(twin.both(worst(gaps), worst(library)), note="8 bodies and steps; library: 4 steps")
 
 
-@finding(
-    "C30",
-    "equation",
-    "Section 7, the three steps of the map",
-    r"“One finds $p_{\theta,k+1}, p_{2,k+1}$ from (discrete.constr.se2.eqn).” Step 3 has “$V_{x,k+1}$”, the text "
-    r"“$p_{x,k}$”",
-    verdict=Verdict.MISPRINT,
-    corrected=r"It finds $p_{\theta,k+1}$, $p_{1,k+1}$; the others are $V_1$ and $p_1$. So the three steps give the "
-    r"map.",
-    errata=("C30",),
-    tolerance=1e-43,
-)
+@statement
 def three_steps() -> Measured:
     """Make the three steps and compare the momenta of all displacements found; printed counts wrong letters."""
     gaps = []
     for body, turn in SLOW:
         wanted, found = _after(body, turn)
-        gaps += [(p - q) / (1 + abs(q)) for W in found for p, q in zip(_momentum(body, W), wanted, strict=False)]
+        gaps += [(p - q) / (1 + abs(q)) for W in found for p, q in zip(momentum(body, W), wanted, strict=False)]
     letters = {"V_x", "p_x"} - {"V_1", "V_2", "p_theta", "p_1", "p_2"}
     wrong = letters | ({"p_theta", "p_2"} - {"p_theta", "p_1"})
     return Measured(worst(gaps), float(len(wrong)), "7 bodies, 3 branches each")
 
 
-@finding(
-    "without-quotient",
-    "equation",
-    "Section 7, step 3 of the map",
-    r"“by choosing a solution of the system of equations” with the term $\frac{1 - "
-    r"\cos(\Delta\theta_{k+1})}{\sin(\Delta\theta_{k+1})}$",
-    verdict=Verdict.REMARK,
-    corrected=r"At $\Delta\theta = 0$ the quotient means its limit; at $\Delta\theta = \pi$, where $\hat p = 0$, it "
-    r"has none. The cubic of $t = \tan\frac{\Delta\theta}{2}$ has the first, that of $U = e^{i\Delta\theta}$, $U^3 "
-    r"- \kappa U^2 + \bar\kappa U - 1 = 0$ with $\kappa = (2i\pi - 2\hat p - J)/J$ and $\pi = p_\theta + bp_1$, "
-    r"both.",
-    tolerance=1e-43,
-)
+@statement
 def without_quotient() -> Measured:
     """Evaluate the cubic at momenta of steps, also half turns; printed counts steps that the quotient misses."""
     gaps, missed = [], 0
@@ -194,7 +142,7 @@ def _unit_gap(body: Body, angle: Number, p: tuple) -> Number:
 
 
 def _misses(body: Body, angle: Number, V_1: Number, p: tuple) -> bool:
-    """Tell whether the equations with the quotient have no value or a wrong one."""
+    """Return whether the equations with the quotient have no value or a wrong one."""
     try:
         shown = formulas.printed_third_step(body, angle, V_1)
     except ZeroDivisionError:
@@ -202,13 +150,7 @@ def _misses(body: Body, angle: Number, V_1: Number, p: tuple) -> bool:
     return worst([shown[0] - p[0], shown[1] - p[1]]) > 0.1
 
 
-@finding(
-    "int_chapl",
-    "theorem",
-    "Section 7, theorem (int_chapl)",
-    r"The map preserves $E = mp_\theta^2 + 2bm\,p_\theta p_1 + (J + m(a^2 + b^2))p_1^2$.",
-    tolerance=1e-43,
-)
+@statement
 def int_chapl() -> Measured:
     """Compare it at a momentum and at the next one, and along 40 steps of the library."""
     gaps, library = [], []
@@ -224,13 +166,7 @@ def int_chapl() -> Measured:
     return Measured(twin.both(worst(gaps), worst(library)), note="8 bodies and steps; library: 4 orbits")
 
 
-@finding(
-    "dis.chapl.int",
-    "equation",
-    "Section 7, equation (dis.chapl.int)",
-    r"The integral coincides with that of the continuous sleigh, the truncated energy.",
-    tolerance=1e-43,
-)
+@statement
 def dis_chapl_int() -> Measured:
     """Compare it at the start and end of real and complex steps, by derivatives of L_d, with the energy of the flow."""
     gaps = []
@@ -238,22 +174,16 @@ def dis_chapl_int() -> Measured:
         scale = 2 * body.m * (body.J + body.m * body.a**2)
         _, branches = _after(body, turn)
         for W in branches:
-            before, after = _momentum(body, W), _arriving(body, W)
+            before, after = momentum(body, W), arriving(body, W)
             value = continuous.energy_integral(body, before[0], before[1])
             gaps.append((continuous.energy_integral(body, after[0], after[1]) - value) / (1 + worst(after) ** 2))
-        p = _momentum(body, admissible(turn))
+        p = momentum(body, admissible(turn))
         energy = kinetic(points(body))(velocity_of(PLANE, points(body), ALONG, p[:2]))
         gaps.append((scale * energy - continuous.energy_integral(body, p[0], p[1])) / (1 + scale * energy))
     return Measured(worst(gaps), note="7 bodies, 3 branches each; relative to the squares of the momenta")
 
 
-@finding(
-    "invariant-ellipses",
-    "remark",
-    "Section 7, after theorem (int_chapl)",
-    r"The form is positive definite, so the invariant manifolds are ellipses in the plane of $p_\theta$, $p_1$.",
-    tolerance=1e-45,
-)
+@statement
 def invariant_ellipses() -> Measured:
     r"""Compare the determinant of the form with $m(J + ma^2) > 0$."""
     gaps = []
@@ -264,20 +194,13 @@ def invariant_ellipses() -> Measured:
     return Measured(worst(gaps), note="8 bodies")
 
 
-@finding(
-    "stationary-line",
-    "remark",
-    "Section 7, stationary solutions",
-    r"At $\Delta\theta_k = 0$, $V_{2,k} = 0$ the momenta stay. For $a \neq 0$ these solutions are the line $p_\theta "
-    r"+ bp_1 = 0$: shifts along the blade by constant distances.",
-    tolerance=1e-45,
-)
+@statement
 def stationary_line() -> Measured:
     """Put shifts along the blade into the map and into the library."""
     gaps, library = [], []
     for body in UNBALANCED:
-        p = _momentum(body, admissible((0, ctx.mpf("0.4"))))
-        carried = _arriving(body, admissible((0, ctx.mpf("0.4"))))
+        p = momentum(body, admissible((0, ctx.mpf("0.4"))))
+        carried = arriving(body, admissible((0, ctx.mpf("0.4"))))
         gaps += [p[0] + body.b * p[1], p[2], *(x - y for x, y in zip(carried, p, strict=True))]
         gaps += [x - y for x, y in zip(formulas.next_momenta(body, p[0], p[1], 0, 0), p, strict=False)]
         orbit = nh.simulate(_discrete(body), displacement=_double(admissible((0, ctx.mpf("0.4")))), steps=5)
@@ -285,30 +208,21 @@ def stationary_line() -> Measured:
     return Measured(twin.both(worst(gaps), worst(library)), note="7 bodies; library: 5 steps")
 
 
-@finding(
-    "multiplier-of-branch",
-    "remark",
-    "Section 7, stationary solutions",
-    r"“Hence, it is natural to choose such $\lambda_k$ in (EP_sleigh) that $p_{2,k+1} = p_{2,k}$ as well.”",
-    verdict=Verdict.REMARK,
-    corrected=r"This is the choice of a branch: each has its $\lambda_{k+1} = p_{2,k+1} + p_{2,k} - "
-    r"2am\sin\Delta\theta_k$. On another one a shift may be followed by a turn where $-2J < \hat p < 0$.",
-    tolerance=1e-43,
-)
+@statement
 def multiplier_of_branch() -> Measured:
     """Compare with the third component of the equations; printed is the change of p_2 on another branch over rest."""
     gaps = []
     for body, turn in SLOW:
         W = admissible(turn)
-        p, carried = _momentum(body, W), _arriving(body, W)
+        p, carried = momentum(body, W), arriving(body, W)
         for following in _after(body, turn)[1]:
-            p_2 = _momentum(body, following)[2]
+            p_2 = momentum(body, following)[2]
             gaps.append((p_2 - carried[2] - formulas.multiplier(body, turn[0], p[2], p_2)) / (1 + abs(p_2)))
     body = BODIES[3]
     p_1 = -(body.J + 2 * body.m * body.a**2) / body.a
     t = max(real_tangents(body.J, 0, -body.J), key=abs)
     other = _matrix(t, *formulas.third_step(body, p_1, t)[1:])
-    p = _momentum(body, other)
+    p = momentum(body, other)
     gaps += [p[0] + body.b * p[1], p[1] - p_1]
     return Measured(worst(gaps), float(abs(p[2])), "7 bodies, 3 branches each")
 
@@ -316,28 +230,16 @@ def multiplier_of_branch() -> Measured:
 BALANCED = [body._replace(a=ctx.zero) for body in BODIES[:5]]
 
 
-@finding(
-    "C32",
-    "remark",
-    "Section 7, the case a = 0",
-    r"“for $a=0$ all the solutions are stationary.” “this implies $\Delta\theta_{k+1} = \Delta\theta_k$, $V_{1,k+1} "
-    r"= V_{1,k}$”",
-    verdict=Verdict.EXCEPTIONS,
-    corrected=r"Except on another branch. The momenta along the constraint are constant, but $\sin\Delta\theta = "
-    r"(p_\theta + bp_1)/J$ has two solutions; the step repeats on one branch and may go to the supplementary angle. "
-    r"None is real if $\lvert p_\theta + bp_1\rvert > J$.",
-    errata=("C32",),
-    tolerance=1e-45,
-)
+@statement
 def balanced_branches() -> Measured:
     """Compare momenta of steps with supplementary angles; printed is the difference of their angles."""
     gaps, failures = [], 0
     for body in BALANCED:
         angle = ctx.mpf("0.8")
         W = admissible((angle, ctx.mpf("0.5")))
-        p, carried = _momentum(body, W), _arriving(body, W)
+        p, carried = momentum(body, W), arriving(body, W)
         t = ctx.tan((ctx.pi - angle) / 2)
-        other = _momentum(body, _matrix(t, *formulas.third_step(body, p[1], t)[1:]))
+        other = momentum(body, _matrix(t, *formulas.third_step(body, p[1], t)[1:]))
         for momenta in (carried, other, formulas.next_momenta(body, p[0], p[1], angle, W[1, 2])):
             gaps += [x - y for x, y in zip(momenta[:2], p, strict=False)]
         gaps.append(body.J * ctx.sin(angle) - p[0] - body.b * p[1])
@@ -346,13 +248,7 @@ def balanced_branches() -> Measured:
     return Measured(max(worst(gaps), failures), float(ctx.pi - 2 * angle), "5 bodies with a = 0")
 
 
-@finding(
-    "balanced-circle",
-    "remark",
-    "Section 7, the case a = 0",
-    r"For $a = 0$ the points $(x_k, y_k)$ lie on a circle of radius $\rho = V_1/\sin\Delta\theta$.",
-    tolerance=1e-45,
-)
+@statement
 def balanced_circle() -> Measured:
     """Repeat a step five times, and let the library run."""
     gaps, library = [], []
@@ -367,13 +263,7 @@ def balanced_circle() -> Measured:
     return Measured(twin.both(worst(gaps), worst(library)), note="5 bodies with a = 0, 5 steps each")
 
 
-@finding(
-    "footnote-6",
-    "footnote",
-    "Section 7, footnote to the circle",
-    r"With the naive constraint (false!) the points lie on a spiral for $a = 0$.",
-    tolerance=1e-45,
-)
+@statement
 def footnote_spiral() -> Measured:
     """Test for a = b = 0 that steps of constant angle, each cosine of it shorter, solve the equations; add them up."""
     gaps = []
@@ -382,7 +272,7 @@ def footnote_spiral() -> Measured:
         shifts = [ctx.mpf("0.7") * ctx.cos(angle) ** k for k in range(6)]
         steps = [pose(angle, shift, 0) for shift in shifts]
         for W, following in itertools.pairwise(steps):
-            pairs = zip(_arriving(centered, W)[:2], _momentum(centered, following), strict=False)
+            pairs = zip(arriving(centered, W)[:2], momentum(centered, following), strict=False)
             gaps += [x - y for x, y in pairs]
         place = ctx.eye(3)
         for k, W in enumerate(steps):

@@ -19,19 +19,13 @@ from nonholo_paper._bodies import (
     displacements,
     velocities,
 )
-from nonholo_paper._finding import Measured, finding
+from nonholo_paper._claims import statement
+from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Number, ctx
-from nonholo_paper._verdict import Verdict
 from nonholo_paper.formulas import correspondences, energy_theorem, general, suslov_continuous
 
 
-@finding(
-    "conclusions",
-    "remark",
-    "Section 8, first paragraph",
-    r"Both discrete systems preserve the reduced constrained energy and, in the balanced case, the momentum.",
-    tolerance=1e-45,
-)
+@statement
 def conservation() -> Measured:
     """Compare the restricted momenta and their energies before and after a step, and follow orbits of the library."""
     defects = []
@@ -81,7 +75,7 @@ def _sleigh_images(p: State) -> list[tuple[Matrix, State]]:
 
 
 def _wrong_momenta(body: Body, images: Images, unit: int) -> float:
-    """Return how far momenta by definition, before and after all displacements of a start, are from those solved."""
+    """Return the distance of momenta by definition, before and after displacements of a start, from those solved."""
     defects = []
     for W, after in images(_START):
         found = (body.restrict(body.momentum(W)), body.restrict(body.arriving(W)))
@@ -99,19 +93,7 @@ def _count(images: Images, generations: int) -> int:
     return len(values) - int(np.triu(near, 1).any(axis=0).sum())
 
 
-@finding(
-    "C37",
-    "remark",
-    "Section 8, first paragraph",
-    "“This enables one to obtain explicit solutions for the momentum dynamics of both discrete systems in terms of "
-    "theta-functions and exponents.”",
-    verdict=Verdict.FALSE,
-    corrected=r"False of the sleigh in this sense (Theorem 5.3 of the theory, page 5): branches that are translations "
-    r"of a torus, as theta functions make them, commute, and have at most $\frac12(N+1)(N+2)$ images after $N$ steps. "
-    r"For $a \ne 0$ general complex momenta have at least $cL^N$, $L > 1$; counted are $3^N$.",
-    errata=("C37",),
-    tolerance=1e-45,
-)
+@statement
 def sleigh_solvability() -> Measured:
     """Count images after 1 to 4 steps, check the first by the definition; follow the words of the theorem."""
     counts = [(n, _count(_sleigh_images, n)) for n in (1, 2, 3, 4)]
@@ -141,19 +123,7 @@ def _outside(growth: BranchGrowth) -> float:
     return float(outside)
 
 
-@finding(
-    "top-solvability",
-    "remark",
-    "Section 8, first paragraph",
-    "“This enables one to obtain explicit solutions for the momentum dynamics of both discrete systems in terms of "
-    "theta-functions and exponents.”",
-    verdict=Verdict.CONTRADICTED,
-    corrected=r"The complex images of the top speak against it: $4^N$ distinct ones after $N$ steps, as far as "
-    r"counted; translations have polynomially many. What holds, for every $n$, is the energy integral, and a Lyapunov "
-    r"function: a step changes $(c, r)$ by $-4(|z|^2|c|^2 - (c, z)^2) \le 0$.",
-    errata=("C37",),
-    tolerance=1e-45,
-)
+@statement
 def top_solvability() -> Measured:
     """Count the images after 1 and 2 steps, n = 3; compare energies and Lyapunov functions, n = 3, 4, 5."""
     counts = [(n, _count(_top_images, n)) for n in (1, 2)]
@@ -195,19 +165,7 @@ def _random_body(group: AbstractMatrixGroup, k: int) -> Body:
     return Body(group, tuple(map(tuple, (points.T @ points).tolist())), tuple(rows), ())
 
 
-@finding(
-    "energy-of-subspaces",
-    "remark",
-    "Section 8, second paragraph",
-    "“It is not currently clear if the complete solvability is due to the (low) dimension of the systems and if it "
-    "is possible to construct completely solvable discretizations of the multidimensional Suslov and Chaplygin "
-    "problems.”",
-    verdict=Verdict.REMARK,
-    corrected=r"Solvability is not decided here. Energy does not depend on the dimension: it is kept for every $n$ "
-    r"and every left-invariant $\mathfrak{d}$ with displacements such that $\frac12(W - W^{-1}) \in \mathfrak{d}$. "
-    r"With $\exp\mathfrak{d}$, the choice of the paper, it is not kept for general $\mathfrak{d}$.",
-    tolerance=1e-45,
-)
+@statement
 def several_dimensions() -> Measured:
     """Compare energies before and after a step for random subspaces of so(n) and se(n), with both varieties."""
     right, wrong = [], []
@@ -223,18 +181,7 @@ def several_dimensions() -> Measured:
     return Measured(twin.both(max(right), np.ptp(orbit.energy)), min(wrong), "6 random subspaces; one orbit on SO(4)")
 
 
-@finding(
-    "right-invariant",
-    "remark",
-    "Section 8, last paragraph",
-    "“by modifying our approach, one can also consider discretizations of nonholonomic LR systems on Lie groups.” “The "
-    "discrete dynamics of such systems, as well as the existence of their invariant measure, is currently being "
-    "developed”",
-    verdict=Verdict.REMARK,
-    corrected=r"One can: $g_{k+1}g_k^{-1} \in \exp\mathfrak{d}$, and the momentum in space is constant along "
-    r"$\mathfrak{d}$. Whether a measure is kept is not decided here.",
-    tolerance=1e-45,
-)
+@statement
 def right_invariant() -> Measured:
     """Follow a top whose constraint is fixed in space: momenta by definition, displacements as seen from space."""
     tensor = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.analysis.conserved._invariants import conserved_momenta
+from nonholo.analysis._invariants import conserved_momenta
 from nonholo.systems import (
     AbstractLLSystem,
     AbstractLRSystem,

@@ -1,10 +1,9 @@
 """Critical energies of the discrete top against 40-digit critical points of the energy, found from its definition."""
 
-import dataclasses
-
 import mpmath
 import numpy as np
 import pytest
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.analysis import CriticalEnergies
@@ -124,18 +123,6 @@ def test_aligned_closed_forms() -> None:
         assert kind.stationary
 
 
-@pytest.mark.parametrize("name", ["aligned, center", "aligned, saddle"])
-def test_a_saddle_or_a_center_can_be_stationary(name: str) -> None:
-    """False in the paper: "neither saddles nor centers are stationary". If c is an eigenvector of B one of them is."""
-    point = next(p for p in _found(name).points if p.stationary and p.half_turn_vector.any() and not p.on_equator)
-    assert {"aligned, center": "maximum", "aligned, saddle": "saddle"}[name] == point.kind
-    top, z = nh.SuslovTop(BODIES[name]), point.half_turn_vector
-    c, B, z0 = top.coupling, top.constrained_inertia, np.sqrt(1 - z @ z)
-    force = (z @ z) * c - (c @ z) * z
-    assert np.abs(force).max() <= 1e-15  # F(z) = -F(-z): the next displacement is the same
-    assert (z0 * z) @ B @ (z0 * z) * 2 / STEP**2 == pytest.approx(point.energy, rel=1e-14)
-
-
 def test_outer_ovals_surround_one_half_turn() -> None:
     """False in the paper: for small energies the outer component is near the equator. It is near z || c alone."""
     top, angle = nh.SuslovTop(BODIES["generic"]), np.linspace(0.0, np.pi, 1001)
@@ -145,26 +132,6 @@ def test_outer_ovals_surround_one_half_turn() -> None:
     low = energy < 1e-3 * _found("generic").equatorial_saddle
     assert 0 < low.sum() < 40
     assert np.abs(c @ z[:, low]).min() > 0.99 * np.hypot(*c)
-
-
-def test_three_critical_values_in_either_order() -> None:
-    """False in the paper: two critical values h* < h**. There is a third, h_e, below or above h*."""
-    found = _found("generic")
-    assert 0 < found.equatorial_saddle < found.saddle < found.center
-    above = nh.SuslovTop([[1.4, 1.34, 1.48], [1.34, 3.72, 1.78], [1.48, 1.78, 1.72]])
-    found = nh.critical_energies(nh.discretize(above, STEP))
-    assert np.linalg.det(above.constrained_inertia) > 2 * above.coupling @ above.coupling
-    assert found.regular
-    assert found.saddle < found.equatorial_saddle < found.center
-
-
-def test_a_definite_form_is_not_enough() -> None:
-    """False in the paper: B > 0 gives a pair of saddles. This rod-like body has none off the equator."""
-    found = _found("irregular")
-    assert not found.regular
-    assert found.saddle is None
-    assert found.center > 0
-    assert all(p.on_equator for p in found.points if p.kind == "saddle")
 
 
 def test_a_third_minimum_of_positive_energy() -> None:
@@ -203,24 +170,13 @@ def test_the_forbidden_axis_does_not_matter() -> None:
     assert [getattr(found, v) for v in values] == pytest.approx([getattr(same, v) for v in values], rel=1e-13)
 
 
-@pytest.mark.parametrize(
-    ("discrete", "text"),
-    [
-        (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), "single_valued_region"),
-        (nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), "discretized Suslov top"),
-        (nh.discretize(nh.SuslovTop(BODIES["generic"]), 0.1, difference="logarithmic"), "conserve the energy"),
-    ],
+# What has no such energies is refused, with the place to look at.
+test_refusals = refusals(
+    (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), "single_valued_region"),
+    (nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), "discretized Suslov top"),
+    (nh.discretize(nh.SuslovTop(BODIES["generic"]), 0.1, difference="logarithmic"), "conserve the energy"),
+    ask=lambda discrete: nh.critical_energies(discrete),
 )
-def test_refusals(discrete: object, text: str) -> None:
-    """What has no such energies is refused, with the place to look at."""
-    with pytest.raises(ValueError, match=text):
-        nh.critical_energies(discrete)
-
-
-def test_results_are_frozen() -> None:
-    """Results are values."""
-    with pytest.raises(dataclasses.FrozenInstanceError):
-        _found("generic").saddle = 1.0
 
 
 def test_both_names_of_the_center() -> None:

@@ -3,26 +3,13 @@
 import mpmath
 import numpy as np
 import pytest
-from bodies import mass_tensor
+from bodies import ATTRACTING
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.systems import AbstractLLSystem
 
-RNG = np.random.default_rng(7)
-SYSTEMS = {
-    "top 3": nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]),
-    "top 3, tilted": nh.SuslovTop.from_inertia(
-        [[3.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.5]], (2 / 3, -1 / 3, 2 / 3)
-    ),
-    "top 4": nh.SuslovTop(mass_tensor(nh.SO(4), RNG)),
-    "top 6": nh.SuslovTop(mass_tensor(nh.SO(6), RNG)),
-    "sleigh 2": nh.ChaplyginSleigh(1.3, 0.7, 0.4, 0.3),
-    "sleigh 2, backward": nh.ChaplyginSleigh(1.3, 0.7, -0.4, 0.3),
-    "sleigh 3": nh.MultidimensionalSleigh(1.3, [0.3, 0.2, -0.1], np.diag([0.5, 0.7, 0.4]) + 0.1),
-    "sleigh 4": nh.MultidimensionalSleigh(0.8, [-0.3, 0.2, 0.1, 0.5], mass_tensor(nh.SO(4), RNG)),
-    "turning sleigh 3": nh.MultidimensionalSleigh(1.3, [0.0, 0.2, -0.1], np.diag([0.5, 0.7, 0.4]) + 0.1),
-    "turning sleigh 4": nh.MultidimensionalSleigh(1.3, [0.0, 0.2, -0.1, 0.3], mass_tensor(nh.SO(4), RNG)),
-}
+SYSTEMS = ATTRACTING
 STEP, ENERGY = 0.3, 0.4
 
 
@@ -115,16 +102,11 @@ def test_balanced_bodies_have_no_transverse_direction(system: AbstractLLSystem) 
     assert np.array_equal(found.subspace, system.constraint_subspace)
 
 
-@pytest.mark.parametrize(
-    ("subject", "options", "text"),
-    [
-        (nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), {}, "left-invariant"),
-        (SYSTEMS["top 3"], {"energy": 0.0}, "positive"),
-        (nh.discretize(SYSTEMS["top 3"], 2.0), {"energy": 5.0}, "90 degrees"),
-        (nh.discretize(SYSTEMS["top 3"], 0.1, difference="logarithmic"), {}, "conserve the energy"),
-    ],
+# Systems without such equilibria, energies without a step and other maps are refused.
+test_refusals = refusals(
+    (nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), {}, "left-invariant"),
+    (SYSTEMS["top 3"], {"energy": 0.0}, "positive"),
+    (nh.discretize(SYSTEMS["top 3"], 2.0), {"energy": 5.0}, "90 degrees"),
+    (nh.discretize(SYSTEMS["top 3"], 0.1, difference="logarithmic"), {}, "conserve the energy"),
+    ask=lambda subject, options: nh.equilibria(subject, **options),
 )
-def test_refusals(subject: object, options: dict, text: str) -> None:
-    """Systems without such equilibria, energies without a step and other maps are refused."""
-    with pytest.raises(ValueError, match=text):
-        nh.equilibria(subject, **options)

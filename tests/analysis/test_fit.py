@@ -8,6 +8,7 @@ import jax
 import numpy as np
 import pytest
 from analysis.fit_coverage import CASES, held
+from refusals import refusals
 from scipy.stats import binom, norm
 
 import nonholo as nh
@@ -114,10 +115,10 @@ def test_bodies_are_found_within_their_errors(
 
 
 def test_top_is_found_from_its_gyroscope() -> None:
-    """Of 40 noisy records of angular velocities at least 38 are fitted within 3 sigma."""
+    """Of 10 noisy records of angular velocities all are fitted within 3 sigma."""
     guess = {"c": np.array([0.2, -0.1]), "b": 1.1}
-    errors = np.array([_errors(nh.fit(_top, _top_record(s), guess), [0.3, -0.2, 1.0]) for s in range(40)])
-    assert (np.abs(errors) < 3).all(axis=1).sum() >= 38
+    errors = np.array([_errors(nh.fit(_top, _top_record(s), guess), [0.3, -0.2, 1.0]) for s in range(10)])
+    assert (np.abs(errors) < 3).all()
 
 
 def test_exact_record_is_fitted_exactly() -> None:
@@ -208,6 +209,7 @@ def test_robust_loss_bears_outliers() -> None:
     assert plain.covariance[0, 0] > 100 * found.covariance[0, 0]
 
 
+@pytest.mark.profile("routes", cases=["good", "outlier", "more than the noise"])
 @pytest.mark.parametrize(
     ("change", "options", "outcome"),
     [
@@ -353,49 +355,44 @@ def _with(**columns: object) -> dict[str, object]:
     return {**_sleigh_record(0), **columns}
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"guess": {}}, "name the parameters"),
-        ({"system_of": lambda _: 3}, "left-invariant"),
-        ({"system_of": 3}, "be a function"),
-        ({"measurements": {"x": np.zeros(3)}}, "have a column `t`"),
-        ({"measurements": {"t": np.zeros(3)}}, "after the one before"),
-        ({"measurements": {"t": np.arange(3.0), "z": np.zeros(3)}}, "columns of a motion in"),
-        ({"measurements": {"t": np.array([0.0, 0.05, 0.13]), "omega": np.ones(3)}}, "whole number of time steps"),
-        ({"measurements": {"t": np.array([0.0, 0.05, 0.1]), "omega": np.ones(3)}}, "more than the unknowns"),
-        ({"measurements": []}, "at least one trial"),
-        ({"measurements": 5}, "be tables of numbers"),
-        ({"time_step": -1.0}, "be positive"),
-        ({"time_step": 1e-9}, "fit into memory"),
-        ({"time_step": 1e-140}, "fit into memory"),
-        ({"measurements": _with(t=_moved(1, 1e-9))}, "fit into memory. Got about .* Pass a time_step"),
-        ({"measurements": _with(t=_moved(1, 1e-6)), "time_step": 0.05}, "one row at a time step"),
-        ({"measurements": _with(x=np.ma.masked_array(np.zeros(61), np.arange(61) == 3))}, "'x': .* of real numbers"),
-        ({"measurements": _with(x=np.full(61, 1 + 1j))}, "be real. Got complex"),
-        ({"measurements": _with(x=np.arange(61) > 3)}, "'x': .* be an array of real numbers"),
-        ({"measurements": _with(x=["0.1"] * 61)}, "'x': .* be an array of real numbers"),
-        ({"measurements": _with(t=np.datetime64("2026-01-01") + np.arange(61))}, "'t': .* of real numbers"),
-        ({"measurements": _with(x=np.zeros(60))}, r"have shape \(61,\). Got shape \(60,\)"),
-        ({"measurements": _with(x=np.zeros((61, 2)))}, "have shape"),
-        ({"measurements": _with(x=np.full(61, np.inf))}, "be finite"),
-        ({"measurements": [_with(), {"t": np.arange(3.0), "omega": np.ones(3)}]}, "same columns of a motion"),
-        ({"measurements": "no such file.csv"}, "be the path of a CSV file .* No such file"),
-        ({"measurements": "/dev/zero"}, "be the path of a CSV file .* a device or a pipe"),
-        ({"noise": -1.0}, "be positive"),
-        ({"noise": {"rate": 1.0}}, "be one of 'position', 'turn'"),
-        ({"bounds": {"mass": (0, 1)}}, "be one of 'inertia', 'a'"),
-        ({"bounds": {"a": (0.5, 1)}}, "have the guess between them. Got a = .0.3. of .0.5, 1."),
-        ({"bounds": {"a": 3}}, "be a pair"),
-        ({"loss": "huber"}, "be one of 'linear', 'soft_l1'"),
-    ],
+# What cannot be fitted is named before any work.
+test_bad_arguments_are_refused = refusals(
+    ({"guess": {}}, "name the parameters"),
+    ({"system_of": lambda _: 3}, "left-invariant"),
+    ({"system_of": 3}, "be a function"),
+    ({"measurements": {"x": np.zeros(3)}}, "have a column `t`"),
+    ({"measurements": {"t": np.zeros(3)}}, "after the one before"),
+    ({"measurements": {"t": np.arange(3.0), "z": np.zeros(3)}}, "columns of a motion in"),
+    ({"measurements": {"t": np.array([0.0, 0.05, 0.13]), "omega": np.ones(3)}}, "whole number of time steps"),
+    ({"measurements": {"t": np.array([0.0, 0.05, 0.1]), "omega": np.ones(3)}}, "more than the unknowns"),
+    ({"measurements": []}, "at least one trial"),
+    ({"measurements": 5}, "be tables of numbers"),
+    ({"time_step": -1.0}, "be positive"),
+    ({"time_step": 1e-9}, "fit into memory"),
+    ({"time_step": 1e-140}, "fit into memory"),
+    ({"measurements": _with(t=_moved(1, 1e-9))}, "fit into memory. Got about .* Pass a time_step"),
+    ({"measurements": _with(t=_moved(1, 1e-6)), "time_step": 0.05}, "one row at a time step"),
+    ({"measurements": _with(x=np.ma.masked_array(np.zeros(61), np.arange(61) == 3))}, "'x': .* of real numbers"),
+    ({"measurements": _with(x=np.full(61, 1 + 1j))}, "be real. Got complex"),
+    ({"measurements": _with(x=np.arange(61) > 3)}, "'x': .* be an array of real numbers"),
+    ({"measurements": _with(x=["0.1"] * 61)}, "'x': .* be an array of real numbers"),
+    ({"measurements": _with(t=np.datetime64("2026-01-01") + np.arange(61))}, "'t': .* of real numbers"),
+    ({"measurements": _with(x=np.zeros(60))}, r"have shape \(61,\). Got shape \(60,\)"),
+    ({"measurements": _with(x=np.zeros((61, 2)))}, "have shape"),
+    ({"measurements": _with(x=np.full(61, np.inf))}, "be finite"),
+    ({"measurements": [_with(), {"t": np.arange(3.0), "omega": np.ones(3)}]}, "same columns of a motion"),
+    ({"measurements": "no such file.csv"}, "be the path of a CSV file .* No such file"),
+    ({"measurements": "/dev/zero"}, "be the path of a CSV file .* a device or a pipe"),
+    ({"noise": -1.0}, "be positive"),
+    ({"noise": {"rate": 1.0}}, "be one of 'position', 'turn'"),
+    ({"bounds": {"mass": (0, 1)}}, "be one of 'inertia', 'a'"),
+    ({"bounds": {"a": (0.5, 1)}}, "have the guess between them. Got a = .0.3. of .0.5, 1."),
+    ({"bounds": {"a": 3}}, "be a pair"),
+    ({"loss": "huber"}, "be one of 'linear', 'soft_l1'"),
+    ask=lambda change: nh.fit(
+        **{"system_of": _sleigh, "measurements": _sleigh_record(0), "guess": {"inertia": 1.0, "a": 0.3}} | change
+    ),
 )
-def test_bad_arguments_are_refused(change: dict, words: str) -> None:
-    """What cannot be fitted is named before any work."""
-    with pytest.raises(ValueError, match=words):
-        nh.fit(
-            **{"system_of": _sleigh, "measurements": _sleigh_record(0), "guess": {"inertia": 1.0, "a": 0.3}} | change
-        )
 
 
 @pytest.mark.parametrize(

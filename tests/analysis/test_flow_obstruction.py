@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.analysis._heteroclinic import _ends
+from nonholo.analysis._asymptotics import _phases
 
 CASES = {"heavy": (0.2, 1.0, 2.25), "light": (1.0, 0.3, (1.9 * 0.3) ** 2)}  # J, m a^2, level g at m = h = 1
 
@@ -55,7 +55,7 @@ def test_difference_against_fifty_digits(name: str) -> None:
     with mpmath.workdps(50):
         for angle in (0.1, 0.4):
             r = np.sqrt(2 * energy) * np.array([np.sqrt(J + M) * np.cos(angle), np.sin(angle)])
-            before, after = _ends(discrete, mu, r)
+            before, after = _phases(discrete, mu, r)
             found.append(after - before)
             exact.append(float(_difference(J, M, r)))
     assert np.abs(np.subtract(found, exact)).max() <= 1e-12
@@ -140,7 +140,7 @@ def test_it_is_a_function_of_the_phase(name: str) -> None:
     orbit = nh.heteroclinic(discrete, energy=energy, side=-1).orbit
     now = int(np.flatnonzero(orbit.time == 0)[0])
     mu = nh.flow_obstruction(discrete, energy, samples=2).multiplier
-    here, later = (np.array(_ends(discrete, mu, orbit.restricted_momentum[now + k])) for k in (0, 3))
+    here, later = (np.array(_phases(discrete, mu, orbit.restricted_momentum[now + k])) for k in (0, 3))
     assert np.abs(later - here - 3).max() <= 1e-11
 
 

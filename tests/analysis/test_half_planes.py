@@ -2,31 +2,14 @@
 
 import numpy as np
 import pytest
+from bodies import ATTRACTING
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.discrete import Discretization
 
-SYSTEMS = {
-    "top": nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]),
-    "top, tilted": nh.SuslovTop.from_inertia(
-        [[3.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.5]], (2 / 3, -1 / 3, 2 / 3)
-    ),
-    "sleigh": nh.ChaplyginSleigh(1.3, 0.7, 0.4, 0.3),
-    "sleigh, backward": nh.ChaplyginSleigh(1.3, 0.7, -0.4, 0.3),
-}
+SYSTEMS = {name: ATTRACTING[name] for name in ("top 3", "top 3, tilted", "sleigh 2", "sleigh 2, backward")}
 STEP = 0.25
-
-
-def _regular_tops(count: int) -> list[nh.SuslovTop]:
-    """Draw bodies in the regular regime D > 2|c|^2, c not small."""
-    rng, found = np.random.default_rng(5), []
-    while len(found) < count:
-        points = rng.normal(size=(3, 3))
-        top = nh.SuslovTop(points.T @ points)
-        square = top.coupling @ top.coupling
-        if 0.05 < square / np.linalg.det(top.constrained_inertia) < 0.5:
-            found.append(top)
-    return found
 
 
 def _paper(top: nh.SuslovTop, displacement: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -66,7 +49,7 @@ def _orbits(discrete: Discretization, shares: np.ndarray, seed: int = 0) -> list
 
 def test_they_are_the_letters_of_the_paper() -> None:
     """For the axis e3 `side` and `forward` of displacements are s and Q, of momenta twice its two combinations."""
-    top = SYSTEMS["top"]
+    top = SYSTEMS["top 3"]
     discrete = nh.discretize(top, STEP)
     for orbit in _orbits(discrete, np.array([0.1, 0.9])):
         s, Q, _ = _paper(top, orbit.displacement)
@@ -112,85 +95,6 @@ def test_orbits_stay_on_their_side(name: str) -> None:
         assert np.all(np.diff(momentum.forward) > 0)
 
 
-def test_theorem_on_the_discrete_top() -> None:
-    """On random regular bodies s keeps its sign, and both limits are inverse rotations in Theta_- and Theta_+."""
-    for body, top in enumerate(_regular_tops(8)):
-        discrete = nh.discretize(top, STEP)
-        for orbit in _orbits(discrete, np.array([0.05, 0.5, 0.95]), seed=body):
-            whole = nh.heteroclinic(discrete, momentum=orbit.restricted_momentum[0]).orbit
-            s, Q, _ = _paper(top, whole.displacement)
-            clear = np.abs(s) > 1e-12 * np.abs(s).max()  # at the ends rounding decides the sign
-            assert np.all(np.sign(s[clear]) == np.sign(s[len(s) // 2]))
-            assert Q[0] < 0 < Q[-1]
-            assert np.abs(s[[0, -1]]).max() <= 1e-12 * np.abs(s).max()
-            assert np.abs(whole.displacement[0] @ whole.displacement[-1] - np.eye(3)).max() <= 1e-12
-
-
-def test_the_second_combination_grows_by_twice_the_square() -> None:
-    """False in the proof: it grows by s^2. It grows by 2 s^2, exactly, at every step."""
-    for top in _regular_tops(5):
-        for orbit in _orbits(nh.discretize(top, STEP), np.array([0.3, 0.9])):
-            s, _, _ = _paper(top, orbit.displacement[:-1])
-            growth = np.diff(_combinations(top, orbit.momentum)[1])
-            scale = np.abs(orbit.momentum).max() * np.abs(top.mass_tensor).max()
-            assert np.abs(growth - 2 * s * s).max() <= 1e-14 * scale
-            assert np.abs(growth - s * s).max() > 1e-4 * scale
-
-
-def test_the_first_combination_after_a_step() -> None:
-    """False in the proof: it becomes s D q_0. It becomes s (D q_0 - Q), from s (D q_0 + Q)."""
-    for top in _regular_tops(5):
-        D = np.linalg.det(top.constrained_inertia)
-        for orbit in _orbits(nh.discretize(top, STEP), np.array([0.3, 0.9])):
-            s, Q, q0 = _paper(top, orbit.displacement[:-1])
-            first = _combinations(top, orbit.momentum)[0]
-            scale = np.abs(first).max()
-            assert np.abs(first[:-1] - s * (D * q0 + Q)).max() <= 1e-13 * scale
-            assert np.abs(first[1:] - s * (D * q0 - Q)).max() <= 1e-13 * scale
-            assert np.abs(first[1:] - s * D * q0).max() > 1e-2 * scale
-
-
-ROD_LIKE = [[0.95, -1.75, 1.8], [-1.75, 3.7, -3.65], [1.8, -3.65, 3.65]]
-
-
-def test_a_positive_determinant_is_not_enough() -> None:
-    """False in the proof: D > 0 makes the bracket positive below h*. For a rod-like body M_1 and s differ in sign."""
-    top = nh.SuslovTop(ROD_LIKE)
-    discrete = nh.discretize(top, STEP)
-    found, c = nh.critical_energies(discrete), top.coupling
-    D = float(np.linalg.det(top.constrained_inertia))
-    mu1 = 2 * STEP**2 * found.saddle
-    assert np.linalg.eigvalsh(top.mass_tensor)[0] > 0
-    assert 0 < D < 2 * c @ c
-    assert mu1 > D**2 / (c @ top.constrained_inertia @ c)
-    saddle = next(p for p in found.points if p.energy == found.saddle).half_turn_vector
-    z = 0.999 * saddle * np.sign(-top.constrained_inertia @ c @ saddle)  # inside the ridge, where Q > 0 or, turned, < 0
-    for sign in (1, -1):
-        W = top.group.cayley(2 * sign * z / np.sqrt(1 - z @ z) @ top.constraint_subspace)
-        P = nh.discrete_legendre(discrete, W)
-        assert top.constrained_energy(P) < found.saddle
-        s, Q, q0 = _paper(top, W)
-        first = _combinations(top, P)[0]
-        assert (np.sign(first) == np.sign(s)) == (sign == 1)
-        assert (D * q0 + Q > 0) == (sign == 1)
-
-
-def test_the_regular_regime_is_enough() -> None:
-    """For D > 2|c|^2 the bracket is positive at every point of the inner region, of 300 random bodies."""
-    angle = np.linspace(0.0, 2 * np.pi, 60, endpoint=False)
-    u = np.array([np.cos(angle), np.sin(angle)])
-    for top in _regular_tops(300):
-        B, c = top.constrained_inertia, top.coupling
-        D = np.linalg.det(B)
-        kappa = 1 - (c[1] * u[0] - c[0] * u[1]) ** 2 / D
-        b = np.einsum("ik,ij,jk->k", u, B, u)
-        rho = np.linspace(0.0, 1.0, 40)[:, None] / (2 * kappa)
-        inner = b * (rho - kappa * rho**2) < nh.critical_energies(nh.discretize(top, 1.0)).saddle / 2
-        bracket = D * np.sqrt(1 - rho) - np.abs(c @ B @ u) * np.sqrt(rho)
-        assert inner.any()
-        assert bracket[inner].min() > 0
-
-
 def test_a_balanced_body_has_no_sides() -> None:
     """All numbers are zero for a balanced top."""
     discrete = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), STEP)
@@ -199,22 +103,17 @@ def test_a_balanced_body_has_no_sides() -> None:
     assert found.side.shape == (4,)
 
 
-@pytest.mark.parametrize(
-    ("discrete", "options", "text"),
-    [
-        (nh.discretize(nh.SuslovTop(np.eye(4)), 0.1), {"momentum": np.ones(6)}, "top with n = 3 or of a sleigh"),
-        (nh.discretize(SYSTEMS["top"], 0.1, difference="logarithmic"), {"momentum": np.ones(3)}, "keep energy"),
-        (nh.discretize(SYSTEMS["top"], 0.1), {}, "be given displacement or momentum. Got none"),
-        (
-            nh.discretize(SYSTEMS["top"], 0.1),
-            {"momentum": np.ones(3), "displacement": np.eye(3)},
-            "be given displacement or momentum. Got both",
-        ),
-        (nh.discretize(SYSTEMS["top"], 0.1), {"momentum": np.ones(4)}, "end in shape"),
-        (nh.discretize(SYSTEMS["top"], 0.1), {"displacement": np.eye(2)}, "end in shape"),
-    ],
+# Other systems and maps, none or two arguments, and wrong shapes are named.
+test_wrong_arguments_are_refused = refusals(
+    (nh.discretize(nh.SuslovTop(np.eye(4)), 0.1), {"momentum": np.ones(6)}, "top with n = 3 or of a sleigh"),
+    (nh.discretize(SYSTEMS["top 3"], 0.1, difference="logarithmic"), {"momentum": np.ones(3)}, "keep energy"),
+    (nh.discretize(SYSTEMS["top 3"], 0.1), {}, "be given displacement or momentum. Got none"),
+    (
+        nh.discretize(SYSTEMS["top 3"], 0.1),
+        {"momentum": np.ones(3), "displacement": np.eye(3)},
+        "be given displacement or momentum. Got both",
+    ),
+    (nh.discretize(SYSTEMS["top 3"], 0.1), {"momentum": np.ones(4)}, "end in shape"),
+    (nh.discretize(SYSTEMS["top 3"], 0.1), {"displacement": np.eye(2)}, "end in shape"),
+    ask=lambda discrete, options: nh.half_planes(discrete, **options),
 )
-def test_wrong_arguments_are_refused(discrete: Discretization, options: dict, text: str) -> None:
-    """Other systems and maps, none or two arguments, and wrong shapes are named."""
-    with pytest.raises(ValueError, match=text):
-        nh.half_planes(discrete, **options)

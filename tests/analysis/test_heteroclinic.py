@@ -2,25 +2,13 @@
 
 import numpy as np
 import pytest
-from bodies import mass_tensor
+from bodies import ATTRACTING
 
 import nonholo as nh
 from nonholo.discrete import Discretization
 
-RNG = np.random.default_rng(7)
-TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
-SYSTEMS = {
-    "top 3": TOP,
-    "top 3, tilted": nh.SuslovTop.from_inertia(
-        [[3.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.5]], (2 / 3, -1 / 3, 2 / 3)
-    ),
-    "top 4": nh.SuslovTop(mass_tensor(nh.SO(4), RNG)),
-    "top 6": nh.SuslovTop(mass_tensor(nh.SO(6), RNG)),
-    "sleigh 2": nh.ChaplyginSleigh(1.3, 0.7, 0.4, 0.3),
-    "sleigh 2, backward": nh.ChaplyginSleigh(1.3, 0.7, -0.4, 0.3),
-    "sleigh 3": nh.MultidimensionalSleigh(1.3, [0.3, 0.2, -0.1], np.diag([0.5, 0.7, 0.4]) + 0.1),
-    "turning sleigh 3": nh.MultidimensionalSleigh(1.3, [0.0, 0.2, -0.1], np.diag([0.5, 0.7, 0.4]) + 0.1),
-}
+SYSTEMS = {name: body for name, body in ATTRACTING.items() if name not in ("sleigh 4", "turning sleigh 4")}
+TOP = SYSTEMS["top 3"]
 STEP = 0.3
 
 

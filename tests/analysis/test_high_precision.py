@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 import mpmath
 import numpy as np
-import pytest
 
 import nonholo as nh
 
@@ -45,46 +44,6 @@ def _top_orbit(r: tuple) -> Iterator[tuple]:
         yield y, m
         s, square = c[1] * y[0] - c[0] * y[1], 1 + y[0] ** 2 + y[1] ** 2
         m = m - 2 * s / square * mpmath.matrix([-y[1], y[0]])
-
-
-def test_cusps_are_triple_roots() -> None:
-    """Where the cubic, its slope and its curvature vanish together, solved in 40 digits."""
-    found = nh.single_valued_region(SLEIGH).cusps
-    with mpmath.workdps(40):
-        m, J, a, h = (mpmath.mpf(x) for x in (MASS, INERTIA, OFFSET, STEP))
-
-        def conditions(pi: mpmath.mpf, hat: mpmath.mpf, t: mpmath.mpf) -> list:
-            return [
-                hat * t**3 - pi * t**2 + (2 * J + hat) * t - pi,
-                3 * hat * t**2 - 2 * pi * t + 2 * J + hat,
-                6 * hat * t - 2 * pi,
-            ]
-
-        for cusp, start in zip(found, [(0.01, -1.3, 0.01), (-0.9, 0.2, -1.7), (0.9, 0.2, 1.7)], strict=True):
-            pi, hat, _ = mpmath.findroot(conditions, start)
-            exact = [float(pi / h), float((hat - 2 * m * a * a) / (a * h))]
-            assert np.abs(cusp - exact).max() <= 1e-12
-
-
-@pytest.mark.parametrize("name", ["sleigh", "top"])
-def test_multiplier_is_the_ratio_of_sides(name: str) -> None:
-    """Beside an equilibrium, at a distance of 1e-20, one step multiplies the distance by the multiplier, to 1e-12."""
-    discrete, orbit = (SLEIGH, _sleigh_orbit) if name == "sleigh" else (TOP, _top_orbit)
-    spectrum = nh.equilibria(discrete, 0.3)
-    system = discrete.system
-    with mpmath.workdps(50):
-        small = mpmath.mpf(10) ** -20
-        r = [mpmath.mpf(x) for x in system.restrict(system.inertia_operator @ spectrum.velocity).tolist()]
-        if name == "sleigh":
-            states = orbit((small, STEP * r[1]))
-            (_, here, _), (_, after, _) = next(states), next(states)
-        else:
-            along = mpmath.matrix(system.constrained_inertia.tolist()) * mpmath.matrix(system.coupling.tolist())
-            on_line = mpmath.mpf(float(STEP / 2 * r[0] / along[0])) * along  # exactly on the line of equilibria
-            start = on_line + small * mpmath.matrix([-on_line[1], on_line[0]])
-            states = orbit((start[0], start[1]))
-            here, after = (m[0] * along[1] - m[1] * along[0] for _, m in (next(states), next(states)))
-        assert abs(float(after / here) - spectrum.multipliers[0]) <= 1e-12
 
 
 def test_turn_of_a_discrete_sleigh() -> None:

@@ -4,28 +4,17 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from bodies import mass_tensor
+from bodies import ATTRACTING, mass_tensor
 
 import nonholo as nh
-from nonholo.analysis.conserved._measure import step_determinants
+from nonholo.analysis._measure import step_determinants
 from nonholo.analysis.planar import planar_variety
 from nonholo.discrete import momentum_slope
 from nonholo.systems import AbstractLLSystem
 
-RNG = np.random.default_rng(7)
-TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
-PLANE = {
-    "top 3": TOP,
-    "top 3, tilted": nh.SuslovTop.from_inertia(
-        [[3.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.5]], (2 / 3, -1 / 3, 2 / 3)
-    ),
-    "sleigh 2": nh.ChaplyginSleigh(1.3, 0.7, 0.4, 0.3),
-}
-SYSTEMS = PLANE | {
-    "top 4": nh.SuslovTop(mass_tensor(nh.SO(4), RNG)),
-    "sleigh 3": nh.MultidimensionalSleigh(1.3, [0.3, 0.2, -0.1], np.diag([0.5, 0.7, 0.4]) + 0.1),
-    "turning sleigh 3": nh.MultidimensionalSleigh(1.3, [0.0, 0.2, -0.1], np.diag([0.5, 0.7, 0.4]) + 0.1),
-}
+PLANE = {name: ATTRACTING[name] for name in ("top 3", "top 3, tilted", "sleigh 2")}
+SYSTEMS = PLANE | {name: ATTRACTING[name] for name in ("top 4", "sleigh 3", "turning sleigh 3")}
+TOP = PLANE["top 3"]
 STEP = 0.3
 
 

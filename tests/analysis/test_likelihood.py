@@ -5,8 +5,7 @@ import pytest
 from scipy import stats
 from scipy.optimize import minimize
 
-from nonholo.analysis.inverse._likelihood import Problem, bent
-from nonholo.analysis.inverse._search import Ranges, Search, Solution
+from nonholo.analysis.inverse._likelihood import Problem, Ranges, Search, Solution, bent
 
 FREE = Ranges(np.full(2, -np.inf), np.full(2, np.inf))
 

@@ -98,6 +98,7 @@ def forms_at(system: Any, q: np.ndarray) -> np.ndarray:
         return np.asarray(system.plain.constraint_forms(jnp.asarray(q)))
 
 
+@pytest.mark.profile("routes", cases=["oscillators"])
 @pytest.mark.parametrize(("system", "start"), CASES.values(), ids=CASES)
 def test_the_matrix_is_that_of_differences_of_the_equations(system: Any, start: dict[str, Any]) -> None:
     """From the definition: vary kept states, find the other velocities from the constraint, difference the rates."""
@@ -288,7 +289,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.profile("routes", cases=["a tilted top"])
+@pytest.mark.profile("routes", cases=["a tilted top", "a knife edge that slides"])
 @pytest.mark.parametrize(("subject", "state", "words"), REFUSED.values(), ids=REFUSED)
 def test_refusals(subject: Any, state: dict[str, Any], words: str) -> None:
     """What is not steady is refused with its rates, what has no linearization with the reason."""

@@ -6,6 +6,7 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.base.types import Array
@@ -83,8 +84,5 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize(("system", "given", "words"), REFUSED.values(), ids=REFUSED)
-def test_refusals(system: Any, given: dict[str, Any], words: str) -> None:
-    """Where there is no equilibrium, and what is no question, is refused in words."""
-    with pytest.raises(ValueError, match=words):
-        nh.equilibria(system, **given)
+# Where there is no equilibrium, and what is no question, is refused in words.
+test_refusals = refusals(*REFUSED.values(), ask=lambda system, given: nh.equilibria(system, **given))

@@ -185,6 +185,8 @@ def test_members_go_one_after_the_other() -> None:
     """Of two starts, with their own goals, each is what it is alone; bounds hold."""
     starts = {"restricted_velocity": np.array([(0.0, 0.0), (0.2, 0.3)])}
     size = 0.9 * np.abs(_around().controls).max()
+    with pytest.raises(ValueError, match="4 steps"):
+        nh.steer(SLEIGH, {}, GOAL, steps=4, guess=_around())
     both = nh.steer(SLEIGH, starts, GOAL, steps=STEPS, obstacles=DISC, bounds=(-size, size))
     assert both.failures == 0
     assert both.controls.shape == (2, STEPS, 3)
@@ -370,7 +372,7 @@ def test_wheels_are_kept_from_turning_over() -> None:
 
 def test_a_leap_over_a_disc_is_missed() -> None:
     """States on both sides of a disc are clear of it, but not the line between them; a cut of its edge is let pass."""
-    way = Way.of(2, 2, ([(0.0, 0.0)], 0.5), None, None)
+    way = Way.of(2, 2, ([(0.0, 0.0)], 0.5), None, None, None)
     leap, edge = (np.array([[-1.0, y], [1.0, y]]) for y in (0.1, 0.4))
     np.testing.assert_allclose([way.gap(each[:, None], each) for each in (leap, edge)], [0.4, 0.0], rtol=1e-15)
     inside = np.array([[0.0, 0.2], [1.0, 0.2]])
@@ -398,7 +400,7 @@ BOARD = {"start": {"configuration": np.zeros(5)}, "goal": {"configuration": {"x"
         ({"via": {0: (1.0, 1.0)}}, "number of a step"),
         ({"via": {2: (1.0, 1.0, 1.0)}}, "shape"),
         ({"guess": [(0.0, 0.0)]}, "two positions or more"),
-        ({"state_bounds": 3}, "name what a state has"),
+        ({"state_bounds": 3}, "name components of a state"),
         ({"state_bounds": {"phi": (0.0, 1.0)}}, "restricted_velocity, x, y, theta"),
         ({"state_bounds": {"x": (1.0, 0.0)}}, "room between"),
         ({"state_bounds": {"x": 1.0}}, "be a pair"),
@@ -409,7 +411,6 @@ BOARD = {"start": {"configuration": np.zeros(5)}, "goal": {"configuration": {"x"
         ({"state_bounds": {"x": (0.1, 1.0)}}, r"start=...\)` must lie within state_bounds"),
         ({"state_bounds": {"y": (-1.0, 0.9)}}, r"goal=...\)` must lie within state_bounds. Got y outside by 0.1"),
         ({"state_bounds": {"x": (-1.0, 1.0)}, "method": "shooting"}, "left out of shooting"),
-        ({"guess": "_around"}, "4 steps"),
         ({"method": "newton"}, "be one of"),
         ({"method": "shooting", "via": {1: (0.0, 0.0)}}, "left out of shooting"),
         ({"progress": 1}, "True or False"),
@@ -439,7 +440,5 @@ def test_bad_arguments_are_refused(change: dict, words: str) -> None:
     if change.get("discrete") in ("board", "ball", "driven"):
         pytest.importorskip("casadi")
         change = BOARD | change | {"discrete": nh.discretize(systems[change["discrete"]](), 0.1)}
-    if change.get("guess") == "_around":
-        change = {"guess": _around()}
     with pytest.raises(ValueError, match=words):
         nh.steer(**defaults | change)

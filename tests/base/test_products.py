@@ -4,8 +4,9 @@ from typing import Any, cast
 
 import mpmath
 import numpy as np
+import pytest
 
-from nonholo.base.numerics import factors_of, solve_by_factors
+from nonholo.base.numerics import factors_of, of_length_one, solve_by_factors
 
 
 def test_energies_of_uneven_bodies_have_all_their_digits() -> None:
@@ -35,3 +36,33 @@ def test_solutions_of_a_row_are_those_of_many() -> None:
     assert np.array_equal(solve_by_factors(of_one, rows), alone)
     assert np.array_equal(solve_by_factors(cast(Any, factors_of(np.tile(A, (30, 1, 1)))), rows), alone)
     assert np.abs(A @ alone[..., None] - rows[..., None]).max() < 1e-13
+
+
+def _formula(x: np.ndarray, count: int) -> np.ndarray:
+    squares = x[..., :1] * x[..., :1]
+    for m in range(1, count):
+        squares = squares + x[..., m : m + 1] * x[..., m : m + 1]
+    return np.concatenate([x[..., :count] / np.sqrt(squares), x[..., count:]], axis=-1)
+
+
+@pytest.mark.parametrize(("shape", "count"), [((4,), 4), ((500, 4), 4), ((3, 7, 4), 2), ((0, 4), 2), ((60, 9), 4)])
+def test_rows_have_the_bits_of_the_formula(shape: tuple[int, ...], count: int) -> None:
+    """In any shape and order in memory, for one row and for many, with zeros of both signs and uneven sizes."""
+    rng = np.random.default_rng(7)
+    x = rng.normal(size=shape) * 10.0 ** rng.integers(-120, 120, shape)
+    x[..., 1:2] *= -0.0
+    wide = np.repeat(x, 2, axis=-1)[..., ::2]
+    before = x.copy()
+    for one in (x, wide, np.asfortranarray(x)):
+        found = of_length_one(one, count)
+        assert np.array_equal(found.view(np.int64), _formula(x, count).view(np.int64))
+    assert np.array_equal(x, before)
+    assert not np.shares_memory(of_length_one(x, count), x)
+
+
+def test_other_numbers_go_by_the_formula() -> None:
+    """Single precision stays what it is; what has no length is NaN, and infinite numbers give none."""
+    assert of_length_one(np.array([3.0, 4.0], dtype=np.float32), 2).dtype == np.float32
+    with np.errstate(invalid="ignore"):  # of plain Python
+        bad = of_length_one(np.array([[0.0, 0.0, 1.0], [np.inf, 1.0, 2.0], [np.nan, 1.0, 3.0]]), 2)
+    assert np.array_equal(np.isnan(bad), [[True, True, False], [True, False, False], [True, True, False]])

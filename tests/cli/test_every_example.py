@@ -17,7 +17,7 @@ from nonholo.cli.scenario.files import load_scenario, parse_setting
 
 Command = Callable[..., Result]
 NAMES = sorted(name for name in nh.examples.__all__ if name.islower())
-QUICK = ["particle", "snakeboard", "heavy_suslov_top", "sleigh_in_a_well"]
+QUICK = ["particle", "heavy_suslov_top"]  # in coordinates, and on a group
 VARIED = {
     "chaotic_quartic_oscillator": ("start.body_velocity_1", [0.1, 0.2]),
     "non_reversible": ("body.turning", [2.5, 2.6]),

@@ -6,7 +6,6 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
 import pytest
 from stopping import stopped_at
 from typer.testing import Result
@@ -75,15 +74,6 @@ def test_wrong_usage_is_refused(arguments: tuple[object, ...], nonholo: Command)
     assert result.stdout == ""
 
 
-def test_damaged_store_is_refused(store: Path, nonholo: Command) -> None:
-    """A lost chunk is named, with exit code 1, and no row is printed."""
-    (store / "canonical" / "pose" / "c" / "1" / "0").unlink()
-    result = nonholo("export", store)
-    assert result.exit_code == 1
-    assert "chunk c/1/0 of the array canonical/pose" in result.stderr
-    assert result.stdout == ""
-
-
 def test_reader_that_stops_is_no_error() -> None:
     """A pipe that is closed after the first rows, as `head` does, ends the command without a word."""
     nh.simulate(SLEIGH, steps=20_000, store="run.zarr", **START)  # a megabyte of text, more than a pipe holds
@@ -95,13 +85,3 @@ def test_reader_that_stops_is_no_error() -> None:
             assert rows.readline() == "t,x,y,theta\n"
         assert process.communicate()[1] == ""
     assert process.returncode == 0
-
-
-def test_numbers_are_read_back_by_numpy(store: Path, nonholo: Command) -> None:
-    """`numpy.genfromtxt` takes the header for names and gives the bits of the orbit."""
-    nonholo("export", store, "-o", "poses.csv")
-    table = np.genfromtxt("poses.csv", delimiter=",", names=True)
-    orbit = nh.load_orbit(store)
-    assert table.dtype.names == ("t", "x", "y", "theta")
-    assert np.array_equal(table["theta"], orbit.heading)
-    assert np.array_equal(table["x"], orbit.position[:, 0])

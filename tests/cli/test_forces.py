@@ -164,27 +164,13 @@ def test_refusals(file: Path, setting: str, text: str) -> None:
     [
         ("", "it has no rows"),
         ("omega,v1,v2\n", "it has no rows"),
-        (
-            "O.1,O.2,O.3\n1,2,3\n",
-            "motor.csv': line 1 is 'O.1,O.2,O.3', neither numbers nor the names omega,v1,v2",
-        ),
+        ("O.1,O.2,O.3\n1,2,3\n", "motor.csv': line 1 is 'O.1,O.2,O.3', neither numbers nor the names omega,v1,v2"),
         ("\n# by hand\n1,2,3\n", "line 2 is '# by hand', neither numbers nor the names"),
         ("v1,v2,omega\n1,2,3\n", "line 1 is 'v1,v2,omega', neither"),
         ("1,2,3\n1,x,3\n", "could not convert string 'x'"),
         ("1,x,3\n1,2,3\n", "could not convert string 'x'"),
         ("1,2,3\n1,2\n", "number of columns changed"),
         ("\ufeff\x00", "line 1 is"),
-    ],
-    ids=[
-        "empty",
-        "names alone",
-        "letters O",
-        "comment",
-        "other order",
-        "word",
-        "word in the first row",
-        "uneven",
-        "zero byte",
     ],
 )
 def test_files_that_are_no_table(file: Path, text: str, reason: str) -> None:
@@ -286,7 +272,7 @@ def test_sweep_over_numbers_of_forces(file: Path, nonholo: Callable[..., Result]
     ("value", "told"),
     [
         ('"forces.gravity.wight" = [1]', "cannot be varied. Did you mean gravity_point?"),
-        ('"forces.friction_7" = [1.0]', "must vary components that there are. Got friction_7 of 3"),
+        ('"forces.friction_7" = [1.0]', "must vary existing components. Got friction_7 of 3"),
         ('"forces.slip.grip" = [1.0]', "cannot be varied. Known: gravity_force, gravity_point, friction."),
     ],
 )

@@ -222,6 +222,7 @@ def test_one_energy_and_one_constraint() -> None:
         ("left_invariant", "body.constraint_subspace=[[1,0,0,0,0,0],[2,0,0,0,0,0]]", "must have linearly independent"),
         ("right_invariant", "body.mass_tensor=[[1]]", "body.mass_tensor: must have shape (3, 3)"),
         ("suslov", "body.axis=[0,0,2]", "body.axis: must be a unit vector"),
+        ("suslov", "body.mass_tensor=[[1,0,0.5],[0,1,0],[0,0,1]]", "must be symmetric. Got entries 0.5 and 0.0"),
     ],
 )
 def test_physical_refusals_have_key_paths(kind: str, setting: str, told: str) -> None:

@@ -1,11 +1,14 @@
 """Times, directions, starts, precision and refusals of `flow` and `vector_field`."""
 
+from typing import Any
+
 import jax
 import numpy as np
 import pytest
+from comparisons import assert_same
+from refusals import refusals
 
 import nonholo as nh
-from nonholo.continuous import ContinuousFlow
 from nonholo.systems import AbstractLLSystem
 
 SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
@@ -32,8 +35,7 @@ def test_backward_in_time(system: AbstractLLSystem, method: str | None) -> None:
 def test_only_elapsed_time_matters(system: AbstractLLSystem, method: str | None) -> None:
     """The start is at the first time: a shift of all times, by a power of two, changes nothing at all."""
     first, second = (nh.flow(system, **START, times=t + np.array([0.0, 1.0, 2.5]), method=method) for t in (0.0, 64.0))
-    assert np.array_equal(first.configuration, second.configuration)
-    assert np.array_equal(first.momentum, second.momentum)
+    assert_same(first, second, "configuration", "momentum")
 
 
 @BOTH
@@ -44,15 +46,6 @@ def test_single_time(system: AbstractLLSystem, method: str | None) -> None:
     assert len(orbit) == 1
     assert np.abs(orbit.configuration[0] - np.eye(3)).max() <= 1e-15
     assert orbit.multipliers.shape == (1, 1)
-
-
-@pytest.mark.profile("routes", keep=["top"])
-@BOTH
-def test_states_do_not_depend_on_the_other_times(system: AbstractLLSystem) -> None:
-    """A state among few and among many times is the same to the tolerance: every time is stepped to."""
-    sparse = nh.flow(system, **START, times=(0.0, 4.0), rtol=1e-13, atol=1e-15)
-    dense = nh.flow(system, **START, times=np.linspace(0.0, 4.0, 1001), rtol=1e-13, atol=1e-15)
-    assert np.abs(sparse.configuration[-1] - dense.configuration[-1]).max() <= 1e-12
 
 
 @BOTH
@@ -66,13 +59,6 @@ def test_equal_starts_are_equal(system: AbstractLLSystem) -> None:
     assert np.abs(same.configuration[-1] - orbit.configuration[-1]).max() <= 1e-10
 
 
-@BOTH
-def test_units_of_time_do_not_matter(system: AbstractLLSystem) -> None:
-    """A motion 2^40 times slower, observed 2^40 times longer, takes the same path."""
-    slow = nh.flow(system, restricted_velocity=np.array([0.8, -0.5]) / 2.0**40, times=(0.0, 2.0**41), atol=1e-24)
-    assert np.abs(slow.configuration - nh.flow(system, **START, times=(0.0, 2.0)).configuration).max() <= 1e-8
-
-
 def test_precision_is_local() -> None:
     """The flow works in 64 bits and leaves JAX's global precision alone."""
     before = jax.config.read("jax_enable_x64")
@@ -80,14 +66,6 @@ def test_precision_is_local() -> None:
     assert orbit.configuration.dtype == np.float64
     assert jax.config.read("jax_enable_x64") == before
     assert jax.numpy.zeros(1).dtype == (np.float64 if before else np.float32)
-
-
-def test_an_orbit_of_a_flow_has_no_displacements() -> None:
-    """A flow's orbit says what it is and refuses displacements."""
-    orbit = nh.flow(SLEIGH, **START, times=(0.0, 1.0))
-    assert isinstance(orbit.motion, ContinuousFlow)
-    with pytest.raises(ValueError, match="continuous flow"):
-        _ = orbit.displacement
 
 
 def test_impossible_tolerance_is_an_outcome() -> None:
@@ -98,51 +76,41 @@ def test_impossible_tolerance_is_an_outcome() -> None:
     assert len(caught.value.orbit) == 1
 
 
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"times": []}, r"`flow\(times=...\)` must hold at least one time"),
-        ({"times": 1.0}, r"`flow\(times=...\)` must have shape \(any,\)"),
-        ({"times": (0.0, 1.0, 1.0)}, r"strictly increasing or strictly decreasing. Got 1.0 after 1.0"),
-        ({"times": (0.0, 2.0, 1.0)}, r"Got 1.0 after 2.0. Sort the times"),
-        ({"times": (0.0, 1.0, 0.0)}, r"Got 0.0 after 1.0"),
-        (
-            {"restricted_velocity": None, "momentum": (1.0, 0.0, 9.0)},
-            r"`flow\(momentum=...\)` must belong to an admissible",
-        ),
-        ({"times": (0.0, np.inf)}, r"`flow\(times=...\)` must be finite"),
-        ({"rtol": 1e-15}, r"`flow\(rtol=...\)` must be at least 1e-14. Got 1e-15"),
-        ({"atol": 0.0}, r"`flow\(atol=...\)` must be positive"),
-        ({"method": "euler"}, r"`flow\(method=...\)` must be one of None, 'closed_form', 'diffrax'. Got 'euler'"),
-        (
-            {"momentum": (1.0, 0.0)},
-            r"`flow\(...\)` must be given exactly one of .* Got restricted_velocity and momentum",
-        ),
-        ({"restricted_velocity": None}, r"must be given exactly one of .* Got none"),
-        ({"restricted_velocity": (1.0,)}, r"`flow\(restricted_velocity=...\)` must have shape \(2,\)"),
-        ({"restricted_velocity": None, "body_velocity": (1, 0, 1)}, r"`flow\(body_velocity=...\)` must satisfy"),
-        ({"configuration": 2 * np.eye(3)}, r"`flow\(configuration=...\)` must lie in SE\(2\)"),
-    ],
+# A bad argument is refused by name, with the requirement and what was got.
+test_refusals = refusals(
+    ({"times": []}, r"`flow\(times=...\)` must hold at least one time"),
+    ({"times": 1.0}, r"`flow\(times=...\)` must have shape \(any,\)"),
+    ({"times": (0.0, 1.0, 1.0)}, r"strictly increasing or strictly decreasing. Got 1.0 after 1.0"),
+    ({"times": (0.0, 2.0, 1.0)}, r"Got 1.0 after 2.0. Sort the times"),
+    ({"times": (0.0, 1.0, 0.0)}, r"Got 0.0 after 1.0"),
+    (
+        {"restricted_velocity": None, "momentum": (1.0, 0.0, 9.0)},
+        r"`flow\(momentum=...\)` must belong to an admissible",
+    ),
+    ({"times": (0.0, np.inf)}, r"`flow\(times=...\)` must be finite"),
+    ({"rtol": 1e-15}, r"`flow\(rtol=...\)` must be at least 1e-14. Got 1e-15"),
+    ({"atol": 0.0}, r"`flow\(atol=...\)` must be positive"),
+    ({"method": "euler"}, r"`flow\(method=...\)` must be one of None, 'closed_form', 'diffrax'. Got 'euler'"),
+    ({"momentum": (1.0, 0.0)}, r"`flow\(...\)` must be given exactly one of .* Got restricted_velocity and momentum"),
+    ({"restricted_velocity": None}, r"must be given exactly one of .* Got none"),
+    ({"restricted_velocity": (1.0,)}, r"`flow\(restricted_velocity=...\)` must have shape \(2,\)"),
+    ({"restricted_velocity": None, "body_velocity": (1, 0, 1)}, r"`flow\(body_velocity=...\)` must satisfy"),
+    ({"configuration": 2 * np.eye(3)}, r"`flow\(configuration=...\)` must lie in SE\(2\)"),
+    ask=lambda options: nh.flow(SLEIGH, **({"times": (0.0, 1.0)} | START | options)),
 )
-def test_refusals(options: dict, message: str) -> None:
-    """A bad argument is refused by name, with the requirement and what was got."""
-    with pytest.raises(ValueError, match=message):
-        nh.flow(SLEIGH, **({"times": (0.0, 1.0)} | START | options))
 
 
-def test_not_a_system() -> None:
-    """What is not a system is refused by both entry points."""
-    with pytest.raises(ValueError, match=r"`flow\(system=...\)` must be a system"):
-        nh.flow(SLEIGH.group, times=(0.0, 1.0), **START)
-    with pytest.raises(ValueError, match=r"`vector_field\(system=...\)` must be a system"):
-        nh.vector_field("sleigh")
-    for function in (lambda ready: nh.discretize(ready, 0.1), lambda ready: nh.flow(ready, times=(0.0, 1.0), **START)):
-        with pytest.raises(ValueError, match=r"of a ready example its `.system`"):
-            function(nh.examples.sleigh_in_a_well())  # type: ignore[arg-type]
-
-
-def test_no_closed_form() -> None:
-    """A system without a closed form is refused with the advice to integrate."""
-    top = nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0]))
-    with pytest.raises(ValueError, match=r"must have a closed-form solution. Got SuslovTop. Leave method out"):
-        nh.flow(top, restricted_velocity=np.ones(3), times=(0.0, 1.0), method="closed_form")
+_NO_CLOSED_FORM = {"restricted_velocity": np.ones(3), "times": (0.0, 1.0), "method": "closed_form"}
+_TIMES: dict[str, Any] = {"times": (0.0, 1.0), **START}
+# What is not a system is refused by both entry points; a system without a closed form with the advice to integrate.
+test_what_has_no_such_flow_is_refused = refusals(
+    (lambda: nh.flow(SLEIGH.group, **_TIMES), r"`flow\(system=...\)` must be a system"),
+    (lambda: nh.vector_field("sleigh"), r"`vector_field\(system=...\)` must be a system"),
+    (lambda: nh.discretize(nh.examples.sleigh_in_a_well(), 0.1), "of a ready example its `.system`"),  # type: ignore[arg-type]
+    (lambda: nh.flow(nh.examples.sleigh_in_a_well(), **_TIMES), "of a ready example its `.system`"),  # type: ignore[arg-type]
+    (
+        lambda: nh.flow(nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0])), **_NO_CLOSED_FORM),
+        "must have a closed-form solution. Got SuslovTop. Leave method out",
+    ),
+    (lambda: nh.flow(SLEIGH, **_TIMES).displacement, "continuous flow"),
+)

@@ -2,26 +2,12 @@
 
 import numpy as np
 import pytest
-from bodies import GENERAL, mass_tensor
-from problems import PROBLEMS
+from problems import EVERY as SYSTEMS
 
 import nonholo as nh
 from nonholo.systems import AbstractSystem
 
-RNG = np.random.default_rng(11)
 HYPERBOLIC = nh.MatrixGroup([[[0.0, 1.0], [1.0, 0.0]]], form=[[1.0, 0.0], [0.0, -1.0]])
-SYSTEMS: dict[str, AbstractSystem] = {
-    **{problem.name: problem.system for problem in PROBLEMS},
-    **{name: system for name, (system, _) in GENERAL.items()},
-    "top on SO(5)": nh.SuslovTop(mass_tensor(nh.SO(5), RNG)),
-    "free body on SE(3)": nh.RigidBody(mass_tensor(nh.SE(3), RNG), nh.SE(3)),
-    "right-invariant on SE(2)": nh.LRSystem(nh.SE(2), mass_tensor(nh.SE(2), RNG), [[1.0, 0.2, 0.0], [0.0, 1.0, 0.3]]),
-    "any inertia on a product": nh.LLSystem(
-        nh.ProductGroup(nh.SE(2), nh.SO(3), nh.Translations(2)),
-        constraint_subspace=RNG.normal(size=(4, 8)),
-        inertia_operator=np.diag(np.arange(1.0, 9.0)),
-    ),
-}
 
 
 def _start(system: AbstractSystem) -> dict:

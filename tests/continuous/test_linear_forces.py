@@ -1,11 +1,14 @@
 """Flows under weights and friction by Taylor series: 60 digits, DOP853 on the definition, what free flows have."""
 
+import signal
 import time
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
-from bodies import mass_tensor
+from bodies import OTHERS, mass_tensor
+from comparisons import assert_same
 from references import golden, numbers
 from scipy.integrate import solve_ivp
 
@@ -16,7 +19,6 @@ from nonholo.systems import AbstractSystem
 RNG = np.random.default_rng(11)
 TILTED = nh.SuslovTop.from_inertia([[3.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.5]], (2 / 3, -1 / 3, 2 / 3))
 SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
-HEISENBERG = nh.MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
 BODIES: dict[str, AbstractSystem] = {
     "tilted top": TILTED,
     "sleigh with b": SLEIGH,
@@ -25,16 +27,11 @@ BODIES: dict[str, AbstractSystem] = {
     "free body": nh.RigidBody(mass_tensor(nh.SO(3), RNG)),
     "any d on SE(3)": nh.LLSystem(nh.SE(3), mass_tensor(nh.SE(3), RNG), RNG.normal(size=(3, 6))),
     "sleigh on SE(3)": nh.MultidimensionalSleigh(2.0, [0.5, 0.25, -0.125], np.diag([1.0, 2.0, 1.5])),
-    "Heisenberg": nh.LLSystem(
-        HEISENBERG, constraint_subspace=[[1.0, 0.0, 0.2], [0.0, 1.0, 0.0]], inertia_operator=np.diag([1.0, 2.0, 3.0])
-    ),
+    **{name: OTHERS[name] for name in ("Heisenberg", "nothing moves")},
     "product": nh.LLSystem(
         nh.ProductGroup(nh.SE(2), nh.SO(3)),
         constraint_subspace=RNG.normal(size=(4, 6)),
         inertia_operator=np.diag(np.arange(1.0, 7.0)),
-    ),
-    "nothing moves": nh.LLSystem(
-        nh.SO(3), constraint_subspace=np.empty((0, 3)), inertia_operator=np.diag([1.0, 2.0, 2.5])
     ),
 }
 TIMES = np.array([0.0, 0.3, 1.0, 4.0])
@@ -132,8 +129,7 @@ def test_states_between_and_among_others(name: str) -> None:
         alone, among = (nh.flow(forced, **given, times=times) for times in ((0.0, 9.0), np.arange(9 * 128 + 1) / 128))
         for orbit in (alone, alone.at(among.time)):
             chosen = among.at([0.0, 9.0]) if len(orbit) == 2 else among
-            assert np.array_equal(orbit.reduced_momentum, chosen.reduced_momentum)
-            assert np.array_equal(orbit.configuration, chosen.configuration)
+            assert_same(orbit, chosen, "reduced_momentum", "configuration")
 
 
 @pytest.mark.parametrize("kinds", ["weight", "friction", "weight and friction"])
@@ -145,8 +141,7 @@ def test_members_have_the_bits_of_flows_alone(name: str, kinds: str) -> None:
     batch = nh.ensemble(forced, restricted_velocity=velocities, configuration=start["configuration"], times=TIMES)
     for member, velocity in enumerate(velocities):
         alone = nh.flow(forced, **(start | {"restricted_velocity": velocity}), times=TIMES)
-        assert np.array_equal(batch.orbit(member).reduced_momentum, alone.reduced_momentum)
-        assert np.array_equal(batch.orbit(member).configuration, alone.configuration)
+        assert_same(batch.orbit(member), alone, "reduced_momentum", "configuration")
 
 
 @pytest.mark.parametrize("size", [2.0**-60, 2.0**40])
@@ -230,3 +225,57 @@ def test_fast_motions_end_early() -> None:
     quick = nh.Forced(SLEIGH, nh.Gravity([1e60, 0.0], [0.1, 0.2]))
     batch = nh.ensemble(quick, restricted_velocity=[(0.3, -0.7)] * 2, times=(0.0, 3.0))
     assert [nh.Outcome(code) for code in batch.outcome] == [nh.Outcome.too_stiff] * 2
+
+
+SOON = np.linspace(0.0, 3.0, 7)
+
+
+def _switch(*state: Any) -> np.ndarray:
+    return np.array([np.sign(np.sin(1e3 * state[0])), 0.0, 0.0])
+
+
+def _drag(*state: Any) -> np.ndarray:
+    return -1e8 * state[2]
+
+
+def _flow(potential: Any, force: Any, times: Any = SOON) -> nh.Orbit:
+    return nh.flow(nh.Forced(SLEIGH, potential, force), times=times, restricted_velocity=(0.3, -0.7))
+
+
+ENDLESS: dict[str, tuple[Any, Any, str, str]] = {
+    "drag": (None, _drag, "too_stiff", "_drag"),
+    "switch": (None, _switch, "too_stiff", "_switch"),
+    "weight": (nh.Gravity([1e149, 0.0], [0.1, 0.2]), None, "too_stiff", "Gravity"),
+    "at once": (None, lambda *_: np.array([1e200, 0.0, 0.0]), "nonfinite", "<lambda>"),
+}
+
+
+@pytest.mark.profile("problems", keep=["weight", "at once"])
+@pytest.mark.parametrize("name", ENDLESS)
+def test_flows_without_end_are_given_up(name: str) -> None:
+    """After some thousand steps at most, with the orbit so far, the force by name and what to try."""
+    potential, force, outcome, acting = ENDLESS[name]
+    with pytest.raises(nh.OutcomeError, match=rf"under `{acting}` .*: {outcome}\. .*Try ") as ended:
+        _flow(potential, force)
+    assert (str(ended.value.outcome), len(ended.value.orbit)) == (outcome, 1)
+
+
+def test_ctrl_c_ends_a_flow_under_forces() -> None:
+    """Python is asked at every step, so that it comes within a second."""
+
+    def slow(*state: Any) -> np.ndarray:
+        return np.array([np.sin(50 * state[0]), 0.0, 0.0])
+
+    def stop(*_: Any) -> None:
+        raise KeyboardInterrupt
+
+    before: Callable[..., Any] | int | None = signal.signal(signal.SIGALRM, stop)
+    signal.setitimer(signal.ITIMER_REAL, 0.1)
+    begun = time.process_time()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            _flow(None, slow, (0.0, 1e4))
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert time.process_time() - begun < 1.1

@@ -2,11 +2,11 @@
 
 import functools
 import itertools
-import re
 from typing import Any
 
 import numpy as np
 import pytest
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.discrete import BranchGrowth, legendre
@@ -186,24 +186,19 @@ def test_rate_falls_with_the_energy() -> None:
 SLEIGH, TOP = nh.ChaplyginSleigh(1.0, 1.0, 0.5), nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 
 
-@pytest.mark.parametrize(
-    ("discrete", "options", "text"),
-    [
-        (nh.discretize(TOP, 0.1), {}, "`branch_tree` counts the images of tops"),
-        (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1), {}, "ChaplyginSleigh, a = 0"),
-        (nh.discretize(nh.MultidimensionalSleigh(1.0, [0.5, 0.0, 0.0], np.eye(3)), 0.1), {}, "plane sleigh"),
-        (nh.discretize(SLEIGH, 0.1, difference="logarithmic"), {}, "map with three branches"),
-        (nh.discretize(SLEIGH, 0.1, order=4), {}, "order 2"),
-        (SLEIGH, {}, "discretized system"),
-        (nh.discretize(nh.Forced(SLEIGH, force=nh.Friction([0.1, 0.0, 0.0])), 0.1), {}, "force"),
-        (nh.discretize(SLEIGH, 0.1), {"energy": 1250.0}, "be below 1250 and give words of at most 1000 steps"),
-        (nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 1e-3), 0.1), {"energy": 1e-3}, "Pass an energy between these"),
-        (nh.discretize(SLEIGH, 0.1), {"energy": -1.0}, "branch_growth(energy=...)"),
-        (nh.discretize(SLEIGH, 0.1), {"certify": 1}, "certify"),
-        (nh.discretize(nh.ChaplyginSleigh(1.0, 1e-30, 0.5), 0.1), {}, "less extreme body"),
-    ],
+test_what_has_no_such_words_is_refused = refusals(
+    ((nh.discretize(TOP, 0.1), {}), "`branch_tree` counts the images of tops"),
+    ((nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1), {}), "ChaplyginSleigh, a = 0"),
+    ((nh.discretize(nh.MultidimensionalSleigh(1.0, [0.5, 0.0, 0.0], np.eye(3)), 0.1), {}), "plane sleigh"),
+    ((nh.discretize(SLEIGH, 0.1, difference="logarithmic"), {}), "map with three branches"),
+    ((nh.discretize(SLEIGH, 0.1, order=4), {}), "order 2"),
+    ((SLEIGH, {}), "discretized system"),
+    ((nh.discretize(nh.Forced(SLEIGH, force=nh.Friction([0.1, 0.0, 0.0])), 0.1), {}), "force"),
+    ((nh.discretize(SLEIGH, 0.1), {"energy": 1250.0}), "be below 1250 and give words of at most 1000 steps"),
+    ((nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 1e-3), 0.1), {"energy": 1e-3}), "Pass an energy between these"),
+    ((nh.discretize(SLEIGH, 0.1), {"energy": -1.0}), r"branch_growth\(energy=...\)"),
+    ((nh.discretize(SLEIGH, 0.1), {"certify": 1}), "certify"),
+    ((nh.discretize(nh.ChaplyginSleigh(1.0, 1e-30, 0.5), 0.1), {}), "less extreme body"),
+    ask=lambda given: nh.branch_growth(given[0], **given[1]),
+    kind=(ValueError, TypeError),
 )
-def test_what_has_no_such_words_is_refused(discrete: nh.Discretization, options: dict, text: str) -> None:
-    """What has no such words is refused, with the reason."""
-    with pytest.raises((ValueError, TypeError), match=re.escape(text)):
-        nh.branch_growth(discrete, **options)

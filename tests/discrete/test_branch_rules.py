@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from bodies import GENERAL
 from continuation import FAMILIES, Problems, fold_factors, followed, newton, random_problems
+from refusals import refusals
 
 import nonholo as nh
 from nonholo import Outcome
@@ -237,33 +238,21 @@ def test_another_rule_is_refused_under_a_trace() -> None:
 
 def _start(name: str, **options: object) -> dict:
     system, velocity = GENERAL[name]
-    return {"discrete": nh.discretize(system, 0.1), "restricted_velocity": velocity, **options}
+    return {"discrete": nh.discretize(system, 0.1), "restricted_velocity": velocity, "momentum": None, **options}
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (
-            {"discrete": TOP, "branch": "closest"},
-            "must be one of 'principal', 'nearest', .* a function of the branches",
-        ),
-        ({"discrete": SLEIGH, "branch": "inner"}, "Got 'inner' for ChaplyginSleigh, whose .* Pass 'nearest'"),
-        ({"discrete": ROD, "branch": "inner"}, r"Got 'inner' for SuslovTop, .* Pass 'nearest'.* det B > 2\|c\|\^2"),
-        ({"discrete": TOP, "branch": "inner", "momentum": [5.0, 5.0]}, "Pass 'nearest', or start slower"),
-        ({"discrete": MOTION, "branch": "outer", "momentum": [0.1] * 3}, "no inner and outer part. Pass 'nearest'"),
-        (_start("veselova 3", branch="nearest"), "must be 'principal'. Got 'nearest' for a right-invariant"),
-        (_start("any d on SO(4)", branch="largest"), "Got 'largest' for LLSystem, of whose values not all are known"),
-        ({"discrete": TOP, "branch": "nearest", "backend": "numba"}, "Only 'principal' runs compiled"),
-        ({"discrete": TOP, "branch": "largest", "backend": "jax"}, "must be 'auto'. Got 'jax' with branch 'largest'"),
-        (
-            {"discrete": TOP, "branch": lambda *_: 2},
-            "must return the index of a real branch or None. Got 2",
-        ),
-        ({"discrete": TOP, "branch": "nearest", "momentum": [0.1, 0.2, 9.0]}, "must lie on the momentum locus"),
-    ],
+# Each refusal names the reason, and "inner" and "outer" advise "nearest"; under a trace all values are not found.
+test_rules_that_do_not_apply_are_refused = refusals(
+    ({"discrete": TOP, "branch": "closest"}, "must be one of 'principal', 'nearest', .* a function of the branches"),
+    ({"discrete": SLEIGH, "branch": "inner"}, "Got 'inner' for ChaplyginSleigh, whose .* Pass 'nearest'"),
+    ({"discrete": ROD, "branch": "inner"}, r"Got 'inner' for SuslovTop, .* Pass 'nearest'.* det B > 2\|c\|\^2"),
+    ({"discrete": TOP, "branch": "inner", "momentum": [5.0, 5.0]}, "Pass 'nearest', or start slower"),
+    ({"discrete": MOTION, "branch": "outer", "momentum": [0.1] * 3}, "no inner and outer part. Pass 'nearest'"),
+    (_start("veselova 3", branch="nearest"), "must be 'principal'. Got 'nearest' for a right-invariant"),
+    (_start("any d on SO(4)", branch="largest"), "Got 'largest' for LLSystem, of whose values not all are known"),
+    ({"discrete": TOP, "branch": "nearest", "backend": "numba"}, "Only 'principal' runs compiled"),
+    ({"discrete": TOP, "branch": "largest", "backend": "jax"}, "must be 'auto'. Got 'jax' with branch 'largest'"),
+    ({"discrete": TOP, "branch": lambda *_: 2}, "must return the index of a real branch or None. Got 2"),
+    ({"discrete": TOP, "branch": "nearest", "momentum": [0.1, 0.2, 9.0]}, "must lie on the momentum locus"),
+    ask=lambda given: nh.simulate(**{"momentum": [0.2, 0.3], "steps": 2} | given),
 )
-def test_rules_that_do_not_apply_are_refused(arguments: dict, words: str) -> None:
-    """Each refusal names the reason, and "inner" and "outer" advise "nearest"."""
-    start = {} if "restricted_velocity" in arguments else {"momentum": [0.2, 0.3]}
-    with pytest.raises(ValueError, match=words):
-        nh.simulate(**{**start, **arguments}, steps=2)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.discrete import BranchTree
@@ -97,20 +98,15 @@ def test_a_single_image_has_a_single_line() -> None:
     assert nh.branch_tree(straight, nh.SE(2).exp(np.array([0.0, 0.1, 0.0])), 3).counts.tolist() == [1, 1, 1, 1]
 
 
-@pytest.mark.parametrize(
-    ("discrete", "W", "depth", "words"),
-    [
-        (SLEIGH, np.eye(3), -1, r"depth=...\)` must be a natural number. Got -1"),
-        (SLEIGH, np.eye(3), 1.5, "must be a natural number. Got 1.5"),
-        (SLEIGH, np.eye(3), True, "must be a natural number. Got True"),
-        (SLEIGH, np.eye(3), 9, r"below 10000 images. Got 9, with 3\^9 images. Pass depth=8 or less"),
-        (SLEIGH, np.eye(2), 1, r"displacement=...\)` must have shape \(3, 3\)"),
-        (SLEIGH, nh.SE(2).exp(np.array([0.3, 0.1, 0.2])), 1, "must lie on the displacement variety"),
-        (nh.discretize(nh.RigidBody(np.diag([1.0, 2.0, 3.0])), 0.1), np.eye(3), 1, "must be a top or a sleigh"),
-        ("sleigh", np.eye(3), 1, "must be a discretized system"),
-    ],
+# Each names the argument, the requirement, what was got and the remedy.
+test_bad_arguments_are_refused = refusals(
+    ((SLEIGH, np.eye(3), -1), r"depth=...\)` must be a natural number. Got -1"),
+    ((SLEIGH, np.eye(3), 1.5), "must be a natural number. Got 1.5"),
+    ((SLEIGH, np.eye(3), True), "must be a natural number. Got True"),
+    ((SLEIGH, np.eye(3), 9), r"below 10000 images. Got 9, with 3\^9 images. Pass depth=8 or less"),
+    ((SLEIGH, np.eye(2), 1), r"displacement=...\)` must have shape \(3, 3\)"),
+    ((SLEIGH, nh.SE(2).exp(np.array([0.3, 0.1, 0.2])), 1), "must lie on the displacement variety"),
+    ((nh.discretize(nh.RigidBody(np.diag([1.0, 2.0, 3.0])), 0.1), np.eye(3), 1), "must be a top or a sleigh"),
+    (("sleigh", np.eye(3), 1), "must be a discretized system"),
+    ask=lambda given: nh.branch_tree(*given),
 )
-def test_bad_arguments_are_refused(discrete: nh.Discretization, W: np.ndarray, depth: int, words: str) -> None:
-    """Each names the argument, the requirement, what was got and the remedy."""
-    with pytest.raises(ValueError, match=words):
-        nh.branch_tree(discrete, W, depth)

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from refusals import refusals
+from sturm import assert_counted
 
 import nonholo as nh
 from nonholo.discrete import Branches, Discretization
@@ -103,11 +105,18 @@ _DEFINED = {
 
 @pytest.mark.parametrize(("discrete", "r"), _DEFINED.values(), ids=_DEFINED)
 def test_definition(discrete: Discretization, r: list[float]) -> None:
-    """Every displacement is in the complex group, on the variety, in one plane of rotation, and has the momentum."""
-    found = nh.displacements_over(discrete, r)
+    """Each displacement is in the complex group, on the variety, in one plane of rotation, and has the momentum.
+
+    The momenta of real ones are what `discrete_legendre` says, and share the given components and energy.
+    """
+    found, system = nh.displacements_over(discrete, r), discrete.system
     _check_definition(discrete, found, r)
     k = len(r)
-    assert found.multiplicity.sum() == (2 * k if isinstance(discrete.system, nh.SuslovTop) else 2 * k - 1)
+    assert found.multiplicity.sum() == (2 * k if isinstance(system, nh.SuslovTop) else 2 * k - 1)
+    for W, P in zip(found.displacement[found.is_real].real, found.momentum[found.is_real], strict=True):
+        expected = nh.discrete_legendre(discrete, W)
+        np.testing.assert_allclose(P, expected, rtol=0, atol=1e-12 * np.abs(expected).max() * np.abs(W).max() ** 2)
+        assert system.constrained_energy(system.restrict(P.real)) == pytest.approx(found.energy, rel=1e-11)
 
 
 def test_components_of_a_top_are_p2_and_minus_p1() -> None:
@@ -115,17 +124,6 @@ def test_components_of_a_top_are_p2_and_minus_p1() -> None:
     top = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.5)
     P = nh.displacements_over(top, [0.1, -0.05]).momentum
     np.testing.assert_allclose(P[:, :2], np.broadcast_to([0.05, 0.1], (4, 2)), rtol=0, atol=1e-13)
-
-
-@pytest.mark.parametrize(("discrete", "r"), _DEFINED.values(), ids=_DEFINED)
-def test_momenta_are_those_of_the_displacements(discrete: Discretization, r: list[float]) -> None:
-    """The momenta of real branches are what `discrete_legendre` says, and share the given components and energy."""
-    found = nh.displacements_over(discrete, r)
-    system = discrete.system
-    for W, P in zip(found.displacement[found.is_real].real, found.momentum[found.is_real], strict=True):
-        expected = nh.discrete_legendre(discrete, W)
-        np.testing.assert_allclose(P, expected, rtol=0, atol=1e-12 * np.abs(expected).max() * np.abs(W).max() ** 2)
-        assert system.constrained_energy(system.restrict(P.real)) == pytest.approx(found.energy, rel=1e-11)
 
 
 def test_four_real_branches() -> None:
@@ -158,6 +156,8 @@ _SPECIAL = {
     "sleigh, half-turn": (_sleigh(0.5), _at(0.8, 0.0), 3),
     "sleigh, pi = 0": (_sleigh(0.5), _at(0.0, 0.7), 3),
     "sleigh at rest": (_sleigh(0.5), [0.0, 0.0], 3),
+    "momentum of the coupling": (_top(np.diag([1.0, 1.5]), [0.5, 0.25]), [1.0, 0.5], 4),
+    "all equal and aligned": (_top(1.5 * np.eye(3), [0.5, 0, 0]), [0.4, 0, 0], 2),
     "balanced sleigh": (_sleigh(0.0), [0.3, 0.2], 2),
     "balanced sleigh, straight": (_sleigh(0.0), [0.0, 0.2], 1),
     "SE(3), c = 0": (_motion([0.3, 0.2, 0.1], np.diag([0.5, 0.7, 0.4])), [0.3, 0.2, 0.1], 5),
@@ -174,15 +174,38 @@ def test_special_bodies_and_momenta(discrete: Discretization, r: list[float], co
     assert found.certified == certify
     _check_definition(discrete, found, r)
     assert found.multiplicity.tolist() == [1] * count
+    if certify:
+        assert_counted(discrete, r)
+
+
+_HIDDEN = nh.MultidimensionalSleigh(1.0, [-0.5, 0, 0], [[3, 0, 0.5], [0, 2, 0], [0.5, 0, 1]])
+_MULTIPLE = {
+    "two roots that the secular polynomial hides beside a double half-turn": (
+        nh.discretize(_HIDDEN, 1.0),
+        [0.0, 0.0, 1.0],
+        [1, 2, 1, 1],
+        [True, True, False, False],
+    ),
+    "a cusp of the deltoid": (_sleigh(0.5), _at(0.0, -2.0), [3], [True]),
+    "the fold of a balanced top": (
+        nh.discretize(nh.SuslovTop(np.diag([0.75, 0.75, 0.25])), 1.0),
+        [1.0, 0.0],
+        [2],
+        [True],
+    ),
+}
 
 
 @pytest.mark.parametrize("certify", [False, True], ids=["numerical", "certified"])
-def test_roots_hidden_beside_a_double_root_are_found(certify: bool) -> None:
-    """Two roots that the secular polynomial hides are not taken for copies of a double half-turn."""
-    sleigh = nh.MultidimensionalSleigh(1.0, [-0.5, 0, 0], [[3, 0, 0.5], [0, 2, 0], [0.5, 0, 1]])
-    found = nh.displacements_over(nh.discretize(sleigh, 1.0), [0.0, 0.0, 1.0], certify)
-    assert found.multiplicity.tolist() == [1, 2, 1, 1]
-    assert found.is_real.tolist() == [True, True, False, False]
+@pytest.mark.parametrize("name", _MULTIPLE)
+def test_multiple_values(name: str, certify: bool) -> None:
+    """Values that are one are counted as often as they are, and no others are taken for copies of them."""
+    discrete, r, multiplicity, real = _MULTIPLE[name]
+    found = nh.displacements_over(discrete, r, certify)
+    assert found.multiplicity.tolist() == multiplicity
+    assert found.is_real.tolist() == real
+    if certify:
+        assert_counted(discrete, r)
 
 
 def test_a_half_turn_on_the_variety_is_a_branch() -> None:
@@ -250,10 +273,10 @@ def test_no_branch_is_lost_near_a_fold(t: float, off: float) -> None:
     assert (turns * found.multiplicity).sum() == pytest.approx(-(2 * phat + 1) + 2j * pi, abs=1e-6)
 
 
-@pytest.mark.parametrize("at", [(0.0, -2.0), (3 * np.sqrt(3) / 4, 0.25)])
-def test_three_branches_meet_at_a_cusp(at: tuple[float, float]) -> None:
-    """At a cusp of the deltoid the root is triple."""
-    found = nh.displacements_over(_sleigh(0.5), _at(*at))
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_three_branches_meet_at_a_cusp(sign: float) -> None:
+    """At the upper cusps of the deltoid the root is triple, too."""
+    found = nh.displacements_over(_sleigh(0.5), _at(sign * 3 * np.sqrt(3) / 4, 0.25))
     assert found.multiplicity.tolist() == [3]
     assert found.is_real.all()
 
@@ -339,28 +362,16 @@ def test_fold_distance_has_no_units() -> None:
     assert 0 < expected < 1
 
 
-_REFUSED = {
-    "free body": nh.discretize(nh.RigidBody(np.diag([1.0, 2.0, 3.0])), 0.1),
-    "right-invariant": nh.discretize(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), 0.1),
-    "logarithmic": nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1, difference="logarithmic"),
-    "naive": nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1, constraint="naive"),
-}
-
-
-@pytest.mark.parametrize("discrete", _REFUSED.values(), ids=_REFUSED)
-def test_other_systems_are_refused(discrete: Discretization) -> None:
-    """Where not all values are known the error says for which systems they are."""
-    with pytest.raises(ValueError, match="must be a top or a sleigh with difference"):
-        nh.displacements_over(discrete, [0.1, 0.2])
-
-
-def test_wrong_arguments_are_named() -> None:
-    """Missing or double starts and displacements off the variety are refused with the reason."""
-    sleigh = _sleigh(0.5)
-    with pytest.raises(ValueError, match=r"must be given momentum or displacement\. Got none"):
-        nh.branches(sleigh)
-    with pytest.raises(ValueError, match="must lie on the displacement variety"):
-        nh.fold_distance(sleigh, nh.SE(2).exp(np.array([0.1, 0.2, 0.3])))
-    spurious = np.array([[-1.0, 0.0, 0.4], [0.0, -1.0, 0.3], [0.0, 0.0, 1.0]])  # a half-turn with (W - W^-1)/2 in d
-    with pytest.raises(ValueError, match="must lie on the displacement variety"):
-        nh.branches(sleigh, displacement=spurious)
+_KNOWN, _OFF = "must be a top or a sleigh with difference", "must lie on the displacement variety"
+_SPURIOUS = np.array([[-1.0, 0, 0.4], [0, -1.0, 0.3], [0, 0, 1.0]])  # a half-turn with (W - W^-1)/2 in d
+_SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5)
+# Where not all values are known, and where a start is missing or off the variety, the error says why.
+test_what_has_no_values_is_refused = refusals(
+    (lambda: nh.displacements_over(nh.discretize(nh.RigidBody(np.diag([1.0, 2.0, 3.0])), 0.1), [0.1, 0.2]), _KNOWN),
+    (lambda: nh.displacements_over(nh.discretize(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), 0.1), [0.1, 0.2]), _KNOWN),
+    (lambda: nh.displacements_over(nh.discretize(_SLEIGH, 0.1, "logarithmic"), [0.1, 0.2]), _KNOWN),
+    (lambda: nh.displacements_over(nh.discretize(_SLEIGH, 0.1, constraint="naive"), [0.1, 0.2]), _KNOWN),
+    (lambda: nh.branches(_sleigh(0.5)), r"must be given momentum or displacement\. Got none"),
+    (lambda: nh.fold_distance(_sleigh(0.5), nh.SE(2).exp(np.array([0.1, 0.2, 0.3]))), _OFF),
+    (lambda: nh.branches(_sleigh(0.5), displacement=_SPURIOUS), _OFF),
+)

@@ -6,6 +6,8 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from bodies import magnet, weight
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.discrete import Branches
@@ -29,30 +31,18 @@ COUNTS = {  # without forces or with friction or a table, and with a potential
 }
 
 
-def _n(system: AbstractSystem) -> int:
-    return system.group.size - system.group.is_affine
-
-
-def _weight(system: AbstractSystem) -> nh.Gravity:
-    return nh.Gravity(np.linspace(0.4, -1.0, n := _n(system)), np.linspace(0.1, 0.5, n))
-
-
-def _magnet(system: AbstractSystem) -> nh.Linear:
-    return nh.Linear(np.random.default_rng(3).normal(size=(system.group.size,) * 2))
-
-
 def _friction(system: AbstractSystem) -> nh.Friction:
     turning = np.random.default_rng(8).normal(size=(system.group.dim,) * 2)
     return nh.Friction(0.1 * turning @ turning.T + 0.2 * (turning - turning.T))
 
 
 ACTING: dict[str, Callable[[AbstractSystem], nh.Forced]] = {
-    "weight": lambda s: nh.Forced(s, _weight(s)),
-    "magnet": lambda s: nh.Forced(s, (_magnet(s), _weight(s))),
+    "weight": lambda s: nh.Forced(s, weight(s)),
+    "magnet": lambda s: nh.Forced(s, (magnet(s), weight(s))),
     "friction": lambda s: nh.Forced(s, force=_friction(s)),
     "table": lambda s: nh.Forced(s, force=np.random.default_rng(4).normal(size=(9, s.group.dim))),
     "all": lambda s: nh.Forced(
-        s, _weight(s), (_friction(s), np.random.default_rng(4).normal(size=(9, s.group.dim)))
+        s, weight(s), (_friction(s), np.random.default_rng(4).normal(size=(9, s.group.dim)))
     ),
 }  # fmt: skip
 H = 0.4
@@ -206,7 +196,7 @@ def test_folds_are_those_of_the_step() -> None:
     heavy = nh.discretize(ACTING["weight"](top), H)
     low, high = 0.0, 20.0
     counts = [nh.displacements_over(heavy, s * r).is_real.sum() for s in (low, high)]
-    for _ in range(60):
+    for _ in range(40):
         middle = (low + high) / 2
         same = nh.displacements_over(heavy, middle * r).is_real.sum() == counts[0]
         low, high = (middle, high) if same else (low, middle)
@@ -215,39 +205,24 @@ def test_folds_are_those_of_the_step() -> None:
     assert distances.min() < 1e-5
 
 
-_REFUSED: dict[str, tuple[nh.Forced, str]] = {
-    "kicks": (nh.Forced(SYSTEMS["top"], _weight(SYSTEMS["top"]), scheme="variational"), "kick at the nodes"),
-    "slip": (nh.Forced(SYSTEMS["sleigh"], force=nh.Slip([[0.0, 0.0, 1.0]], 0.5)), "holds or slides"),
-    "spring": (nh.Forced(SYSTEMS["sleigh"], nh.Spring([0.1, 0.2], [1.0, 0.0], 2.0, 0.3)), "rational"),
-    "function": (nh.Forced(SYSTEMS["sleigh"], force=lambda *state: -abs(state[2]) * state[2]), "rational"),
-    "four dimensions": (nh.Forced(top4 := nh.SuslovTop(np.diag([1.0, 2.0, 1.5, 0.7])), _weight(top4)), "rational"),
-    "free body": (
-        nh.Forced(b := nh.RigidBody(np.diag([1.0, 2.0, 3.0])), _weight(b), None, "energy"),
-        "top or a sleigh",
-    ),
-}
+_TOP, _SLEIGH, _TOP4 = SYSTEMS["top"], SYSTEMS["sleigh"], nh.SuslovTop(np.diag([1.0, 2.0, 1.5, 0.7]))
+_FREE, _HEAVY = nh.RigidBody(np.diag([1.0, 2.0, 3.0])), nh.discretize(nh.Forced(_SLEIGH, weight(_SLEIGH)), 0.1)
+_WITHOUT_VALUES = (
+    (nh.Forced(_TOP, weight(_TOP), scheme="variational"), "kick at the nodes"),
+    (nh.Forced(_SLEIGH, force=nh.Slip([[0.0, 0.0, 1.0]], 0.5)), "holds or slides"),
+    (nh.Forced(_SLEIGH, nh.Spring([0.1, 0.2], [1.0, 0.0], 2.0, 0.3)), "rational"),
+    (nh.Forced(_SLEIGH, force=lambda *state: -abs(state[2]) * state[2]), "rational"),
+    (nh.Forced(_TOP4, weight(_TOP4)), "rational"),
+    (nh.Forced(_FREE, weight(_FREE), None, "energy"), "top or a sleigh"),
+)
 
 
-@pytest.mark.parametrize("name", _REFUSED)
-def test_other_forces_are_refused(name: str) -> None:
-    """Where not all values are known, or a step is no single equation, the error says why."""
-    forced, reason = _REFUSED[name]
-    discrete = nh.discretize(forced, 0.1)
-    for ask in (nh.displacements_over, lambda discrete, r: nh.branches(discrete, momentum=r)):
-        with pytest.raises(ValueError, match=reason):
-            ask(discrete, np.zeros(forced.rank))
-
-
-def test_wrong_arguments_are_named() -> None:
-    """A pose off the group, a step that is no number, a certificate and a full momentum are refused."""
-    discrete = nh.discretize(ACTING["weight"](SYSTEMS["sleigh"]), 0.1)
-    wrong: dict[str, Any]
-    for wrong, reason in (
-        ({"configuration": 2 * np.eye(3)}, r"configuration=\.\.\.\)` must lie in"),
-        ({"step": -1}, r"step=\.\.\.\)` must be a natural number"),
-        ({"certify": True}, "must be asked of a free motion"),
-    ):
-        with pytest.raises(ValueError, match=reason):
-            nh.displacements_over(discrete, [0.1, 0.2], **wrong)
-    with pytest.raises(ValueError, match="Pass the 2 components"):
-        nh.branches(discrete, momentum=[0.1, 0.2, 0.3])
+# Where not all values are known, or a step is no single equation, the error says why; bad arguments are named.
+test_what_has_no_values_is_refused = refusals(
+    *((lambda x=x: nh.displacements_over(nh.discretize(x, 0.1), np.zeros(x.rank)), why) for x, why in _WITHOUT_VALUES),
+    *((lambda x=x: nh.branches(nh.discretize(x, 0.1), momentum=np.zeros(x.rank)), why) for x, why in _WITHOUT_VALUES),
+    (lambda: nh.displacements_over(_HEAVY, [0, 0], configuration=2 * np.eye(3)), r"n=\.\.\.\)` must lie in"),
+    (lambda: nh.displacements_over(_HEAVY, [0, 0], step=-1), r"step=\.\.\.\)` must be a natural number"),
+    (lambda: nh.displacements_over(_HEAVY, [0, 0], certify=True), "must be left out under forces"),
+    (lambda: nh.branches(_HEAVY, momentum=[0.1, 0.2, 0.3]), "Pass the 2 components"),
+)

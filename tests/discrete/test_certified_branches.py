@@ -6,12 +6,10 @@ import mpmath
 import numpy as np
 import pytest
 from scripts import script
-from sturm import real_roots
+from sturm import assert_counted
 
 import nonholo as nh
 from nonholo.discrete import Discretization
-from nonholo.discrete.certificate._certificate import locate
-from nonholo.discrete.certificate._roots import problem_of
 
 _TENSOR = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 _TURNED = nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 2.5]) + 0.2, (0.6, 0, 0.8))
@@ -85,11 +83,7 @@ def test_random_counts_are_exact(kind: str) -> None:
     module, rng = script("benchmarks/certified_branches.py"), np.random.default_rng(8)
     for _ in range(40):
         discrete = module.random_body(rng, kind)
-        r = module.random_momentum(rng, discrete)[0]
-        form = discrete.system.canonical.normal_form
-        found = locate(problem_of(form, discrete.time_step, discrete.system.to_canonical(r)))
-        counted = [sum(mu.imag == 0 for mu in x.balls) for x in found]
-        assert counted == [real_roots(x.factor) for x in found]
+        assert_counted(discrete, module.random_momentum(rng, discrete)[0])
 
 
 @pytest.mark.parametrize(

@@ -64,19 +64,6 @@ def test_momentum_tends_to_the_continuous_one() -> None:
         assert np.abs(P - system.inertia_operator @ velocity).max() < h
 
 
-@pytest.mark.profile("routes", instead="test_a_compiled_step_against_the_definition")
-def test_any_discrete_lagrangian() -> None:
-    """A user's L_d(W) that repeats the matrix difference gives the orbit of difference="matrix"."""
-    for problem in (PROBLEMS[1], PROBLEMS[7]):
-        system, h = problem.system, 0.2
-        lagrangian = discrete_lagrangian(system, h)
-        start = {"restricted_velocity": problem.restricted_velocity, "steps": 5}
-        own = nh.simulate(nh.discretize(system, h, difference=lagrangian), **start)
-        expected = nh.simulate(nh.discretize(system, h), **start)
-        assert np.abs(own.momentum - expected.momentum).max() < 1e-12
-        assert np.abs(own.configuration - expected.configuration).max() < 1e-12
-
-
 def test_logarithmic_momenta_against_the_series() -> None:
     """For l(log W / h) the momentum is the transposed inverse of dexp applied to I X / h, here as a series."""
     system, h = PROBLEMS[0].system, 0.5
@@ -86,24 +73,6 @@ def test_logarithmic_momenta_against_the_series() -> None:
     inverse = sum(b * np.linalg.matrix_power(ad, k) for k, b in enumerate(bernoulli))
     P = nh.discrete_legendre(nh.discretize(system, h, difference="logarithmic"), system.group.exp(x))
     assert np.abs(P - inverse.T @ system.inertia_operator @ x / h).max() < 1e-9
-
-
-@pytest.mark.profile("routes", instead="test_step_derivatives_against_differences")
-@pytest.mark.parametrize("problem", PROBLEMS[:8:7], ids=lambda p: p.name)
-def test_step_repeats_the_orbit_under_transformations(problem: Problem) -> None:
-    """`step` gives the next state of `simulate`; jit and vmap change nothing; starts may be full or restricted."""
-    discrete = nh.discretize(problem.system, 0.2)
-    orbit = nh.simulate(discrete, restricted_velocity=problem.restricted_velocity, steps=4)
-    eager = nh.step(discrete, orbit.momentum[0])
-    assert np.abs(eager.momentum - orbit.momentum[1]).max() < 1e-13
-    assert np.abs(eager.displacement - orbit.displacement[1]).max() < 1e-14
-    assert np.abs(eager.multipliers - orbit.multipliers[0]).max() < 1e-13
-    assert isinstance(eager.momentum, np.ndarray)
-    with jax.enable_x64(True):
-        mapped = jax.jit(jax.vmap(lambda r: nh.step(discrete, r)))(jnp.asarray(orbit.restricted_momentum[:-1]))
-        mapped = jax.tree.map(np.asarray, mapped)
-    assert np.abs(mapped.momentum - orbit.momentum[1:]).max() < 1e-13
-    assert not mapped.outcome.any()
 
 
 @pytest.mark.profile("routes", keep=["offset sleigh"])

@@ -8,9 +8,6 @@ import pytest
 from bodies import mass_tensor
 
 import nonholo as nh
-from nonholo.base.numerics import product_and_remainder
-from nonholo.discrete.routes import make_route
-from nonholo.kernels.general._rows import pair_twice, put
 
 GROUPS = (nh.SO(3), nh.SO(4), nh.SO(5), nh.SE(2), nh.SE(3), nh.SE(4))
 ALLOWED = 5e-18  # relative, per step; rows rounded twice gave up to 6e-17, at every step of the same sign
@@ -66,42 +63,3 @@ def test_a_few_bodies(seed: int) -> None:
 def test_a_hundred_bodies(seed: int) -> None:
     """Of any dimension, on rotations and motions, over 100,000 steps."""
     assert growth(*random_case(seed), 100_000) <= ALLOWED * 100_000
-
-
-@pytest.mark.parametrize("seed", [1, 4, 5, 11])
-def test_rows_and_moments_to_twice_the_digits(seed: int) -> None:
-    """The kernel's annihilator vanishes on its directions, and its D J are products, both to 1e-30, as fractions."""
-    step = make_route(nh.discretize(random_case(seed)[0], 1.0), "matrix")
-    assert step is not None
-    body = step.body
-    k = len(body.directions)
-    D, J, rest = exact(body.directions), exact(body.tensor), exact(body.remainders)
-    moments = exact(body.pairings) + rest[:k]
-    scale = np.abs(body.pairings).max()
-    assert max(abs(x) for x in (D @ J - moments).ravel()) <= 1e-30 * scale
-    if len(body.forbidden):
-        A = (exact(body.forbidden) + rest[k:]).reshape(len(body.forbidden), -1)
-        size = np.abs(body.directions).max() * np.abs(body.forbidden).max()
-        assert max(abs(x) for x in (A @ D.reshape(k, -1).T).ravel()) <= 1e-28 * size
-
-
-@pytest.mark.parametrize("size", [1, 3, 8])
-def test_products_with_twice_the_digits(size: int) -> None:
-    """Rounded products, their remainders and the compensated pairing against fractions, with cancellation."""
-    rng = np.random.default_rng(size)
-    A, B = 10.0 ** rng.uniform(-8, 8, (2, size, size)) * rng.choice([-1, 1], (2, size, size))
-    product, rest = product_and_remainder(A, B)
-    exactly, terms = exact(A) @ exact(B), np.abs(A) @ np.abs(B)
-    missed = (exactly - exact(product) - exact(rest)).astype(float)
-    assert np.all(np.abs(missed) <= size * 2.0**-100 * terms)
-    assert np.all(np.abs(rest) <= 2.0**-53 * np.abs(product))
-    small = A * rng.uniform(-1e-16, 1e-16, A.shape)
-    whole = float(sum(((exact(A) + exact(small)) * exact(B)).ravel()))
-    rows, kinds, sums = np.zeros((2, size * size, 8)), np.zeros((2, 8)), np.zeros((1, 8))
-    for lane in range(8):  # the same row with both kinds of partners
-        put(A, lane, rows[0])
-        put(small, lane, rows[1])
-        kinds[lane % 2, lane] = 1.0
-    pair_twice(rows[0], rows[1], kinds, size, B, B, sums)
-    assert np.all(sums == sums[0, 0])
-    assert abs(sums[0, 0] - whole) <= 2.0**-52 * abs(whole) + 2.0**-95 * np.abs(A * B).sum()

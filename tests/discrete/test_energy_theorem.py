@@ -52,29 +52,6 @@ def test_a_symmetric_pair_of_rank_two(constraint: str) -> None:
     )
 
 
-def test_all_branches_conserve_energy() -> None:
-    """No energy is left to choose a root by: Newton from random guesses on SO(4) finds others of the same energy."""
-    from nonholo.discrete.routes import make_route
-    from nonholo.kernels.general._step import displace, increments, workspace
-    from nonholo.kernels.general.run import newton
-
-    rng = np.random.default_rng(4)
-    system = nh.SuslovTop(mass_tensor(nh.SO(4), rng))
-    discrete = nh.discretize(system, 0.5)
-    orbit = nh.simulate(discrete, restricted_velocity=(0.8, -0.5, 0.6), steps=1)
-    body, m = make_route(discrete, "matrix").body, 0.5 * orbit.restricted_momentum[1]
-    found, work, term = set(), workspace(body), np.zeros(3)
-    for y in rng.normal(size=(200, 3)) * 3:
-        good, _ = newton(body, work, 1.0, m, y)
-        if good:
-            displace(body, work, y)
-            increments(body, work, term)
-            after = m + term
-            assert abs(after @ body.metric @ after / (m @ body.metric @ m) - 1) < 1e-9
-            found.add(tuple(y.round(6)))
-    assert len(found) >= 2
-
-
 @pytest.mark.parametrize("name", GENERAL)
 def test_what_every_system_keeps(name: str) -> None:
     """Energy where it is exact, constraint, group, reversal and, in space, momenta to rounding over 1000 steps."""
@@ -89,21 +66,6 @@ def test_what_every_system_keeps(name: str) -> None:
     assert found.energy_drift <= 1e-12 or not discrete.conserves_energy
     for direction in nh.conserved_momenta(system).spatial:
         assert np.ptp(orbit.spatial_momentum @ direction) <= 1e-11 * np.abs(orbit.spatial_momentum).max()
-
-
-@pytest.mark.profile("routes", keep=["suslov 4"])
-@pytest.mark.parametrize("name", GENERAL)
-def test_slope_two(name: str) -> None:
-    """Halving the step divides the errors of momentum and pose against the flow by four."""
-    system, velocity = GENERAL[name]
-    start = {"restricted_velocity": velocity, "configuration": system.group.random(np.random.default_rng(6))}
-    exact = nh.flow(system, times=[0.0, 1.0], rtol=1e-12, atol=1e-14, **start)
-    steps = (40, 80, 160)
-    orbits = [nh.simulate(nh.discretize(system, 1 / n), steps=n, save_every=n, **start) for n in steps]
-    for quantity in ("restricted_momentum", "configuration"):
-        errors = [np.abs(getattr(o, quantity)[-1] - getattr(exact, quantity)[-1]).max() for o in orbits]
-        if max(errors) > 1e-11:  # conserved momenta are exact
-            assert abs(-np.polyfit(np.log(steps), np.log(errors), 1)[0] - 2) <= 0.1
 
 
 @pytest.mark.profile("routes", keep=["veselova 3"])

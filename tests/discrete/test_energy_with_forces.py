@@ -11,7 +11,6 @@ import mpmath as mp
 import numpy as np
 import pytest
 from forms import FORMS, tensor
-from scipy.linalg import sqrtm
 
 import nonholo as nh
 
@@ -142,57 +141,3 @@ def test_the_balance_of_any_force_is_exact(name: str) -> None:
             for x, _, W in _displacements(b, rng, unreal=unreal):
                 r, after = _legendre(b, W) - H / 2 * f, -_legendre(b, W**-1) + H / 2 * f
                 assert abs(_energy(b, after) - _energy(b, r) - (f.T * x)[0]) < _ZERO
-
-
-TENSOR = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
-POINT, WEIGHT = np.array([0.0, 0.1, 0.4]), np.array([0.0, 0.0, -1.0])
-
-
-def _step(system: Any, g: np.ndarray, r: np.ndarray, h: float) -> tuple[np.ndarray, np.ndarray]:
-    """Take a step of a heavy top in doubles: F(W) = r - h/2 G, r' = -F(W^-1) - h/2 G."""
-    S, hat, one = system.constraint_subspace, system.group.hat, np.eye(3)
-    J = np.trace(system.inertia_operator) / 2 * one - system.inertia_operator
-
-    def moved(x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        X = hat(x @ S)
-        W = X + sqrtm(one + X @ X).real
-        lean = g @ (one + np.linalg.solve((W + one).T, (W - one).T).T)
-        G = np.array([-WEIGHT @ lean @ hat(row) @ POINT for row in S])
-        ends = [np.array([np.trace(hat(row) @ V @ J @ (V - one).T) for row in S]) / h for V in (W, W.T)]
-        return W, ends[0] + h / 2 * G, -ends[1] - h / 2 * G
-
-    x, units = h * np.linalg.solve(S @ system.inertia_operator @ S.T, r), 1e-6 * np.eye(len(S))
-    for _ in range(12):
-        slopes = np.stack([moved(x + unit)[1] - moved(x - unit)[1] for unit in units], axis=1) / 2e-6
-        x = x - np.linalg.solve(slopes, moved(x)[1] - r)
-    W, _, after = moved(x)
-    return g @ W, after
-
-
-def _energies(system: Any, r: np.ndarray, g: np.ndarray) -> float:
-    B = system.constraint_subspace @ system.inertia_operator @ system.constraint_subspace.T
-    return float(r @ np.linalg.solve(B, r) / 2 - WEIGHT @ g @ POINT)
-
-
-@pytest.mark.parametrize("stages", [(1.0,), (a := 1 / (4 - 4 ** (1 / 3)), a, 1 - 4 * a, a, a)], ids=["2", "4"])
-def test_orbits_keep_it_and_have_their_order(stages: tuple[float, ...]) -> None:
-    """A heavy Suslov top: T + U to rounding, the flow approached with order 2, or 4 by five stages, and reversed."""
-    system = nh.SuslovTop(TENSOR)
-    heavy, velocity, end = nh.Forced(system, nh.Gravity(WEIGHT, POINT)), np.array([0.9, -0.5, 0.0]), 1.6
-    flow = nh.flow(heavy, body_velocity=velocity, times=(0.0, end))
-    errors, S = [], system.constraint_subspace
-    for h in (0.4, 0.2):
-        g, r = np.eye(3), S @ system.inertia_operator @ velocity
-        start = _energies(system, r, g)
-        for _ in range(round(end / h)):
-            for part in stages:
-                g, r = _step(system, g, r, part * h)
-            assert abs(_energies(system, r, g) - start) < 3e-14
-        errors.append(np.abs(g - flow.configuration[-1]).max())
-        back, turned = g, -r
-        for _ in range(round(end / h)):
-            for part in stages[::-1]:
-                back, turned = _step(system, back, turned, part * h)
-        np.testing.assert_allclose(back, np.eye(3), rtol=0, atol=1e-12)
-    order = 2.0 if len(stages) == 1 else 4.0
-    assert abs(np.log2(errors[0] / errors[1]) - order) < 0.3

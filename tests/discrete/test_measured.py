@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from refusals import refusals
 
 import nonholo as nh
 
@@ -120,38 +121,32 @@ def test_given_poses_have_tables_pictures_and_stores(tmp_path) -> None:  # noqa:
 
 GOOD = {"system": SLEIGH, "time": (0.0, 0.1, 0.2), "configuration": np.stack([np.eye(3)] * 3)}
 TURNED = np.stack([np.eye(3), np.eye(3), np.diag([1.0, -1.0, 1.0])])
-REFUSED = {
-    "no system": ({"system": 5}, r"from_poses\(system=...\)` must be a system on a group"),
-    "large": ({"system": nh.SuslovTop.arrowhead(np.ones(2000), np.zeros(1999))}, "`dense` twin"),
-    "one row": ({"time": (0.0,), "configuration": np.eye(3)[None]}, "two times or more"),
-    "no rows": ({"time": (), "configuration": np.zeros((0, 3, 3))}, "two times or more"),
-    "decreasing": ({"time": (0.0, 0.2, 0.1)}, "strictly increasing. Got 0.1 after 0.2"),
-    "twice": ({"time": (0.0, 0.1, 0.1)}, "strictly increasing"),
-    "nan": ({"time": (0.0, np.nan, 0.1)}, "finite"),
-    "fewer times": ({"time": (0.0, 0.1)}, "one time for each pose. Got 2 times for 3 poses"),
-    "shape": ({"configuration": np.eye(3)}, r"shape \(any, 3, 3\)"),
-    "reflection": ({"configuration": TURNED}, r"must lie in SE\(2\). Got .* in row 2"),
-    "scaled": ({"configuration": 1.001 * GOOD["configuration"]}, "in row 0"),
-}
 
 
-@pytest.mark.parametrize("case", REFUSED)
-def test_bad_data_are_refused(case: str) -> None:
-    """Each message names the argument, what it must be, and the row."""
-    change, words = REFUSED[case]
-    with pytest.raises(ValueError, match=words):
-        nh.Orbit.from_poses(**GOOD | change)
+# Each message names the argument, what it must be, and the row.
+test_bad_data_are_refused = refusals(
+    ({"system": 5}, r"from_poses\(system=...\)` must be a system on a group"),
+    ({"system": nh.SuslovTop.arrowhead(np.ones(2000), np.zeros(1999))}, "`dense` twin"),
+    ({"time": (0.0,), "configuration": np.eye(3)[None]}, "two times or more"),
+    ({"time": (), "configuration": np.zeros((0, 3, 3))}, "two times or more"),
+    ({"time": (0.0, 0.2, 0.1)}, "strictly increasing. Got 0.1 after 0.2"),
+    ({"time": (0.0, 0.1, 0.1)}, "strictly increasing"),
+    ({"time": (0.0, np.nan, 0.1)}, "finite"),
+    ({"time": (0.0, 0.1)}, "one time for each pose. Got 2 times for 3 poses"),
+    ({"configuration": np.eye(3)}, r"shape \(any, 3, 3\)"),
+    ({"configuration": TURNED}, r"must lie in SE\(2\). Got .* in row 2"),
+    ({"configuration": 1.001 * GOOD["configuration"]}, "in row 0"),
+    ask=lambda change: nh.Orbit.from_poses(**GOOD | change),
+)
 
 
-def test_what_poses_cannot_tell_is_refused() -> None:
-    """Forces of constraint, states between poses, crossings."""
-    orbit = nh.Orbit.from_poses(**GOOD)
-    with pytest.raises(ValueError, match=r"Orbit.multipliers` must be asked of a run"):
-        _ = orbit.multipliers
-    with pytest.raises(ValueError, match=r"Orbit.at\(...\)` must be asked of a flow"):
-        orbit.at(0.05)
-    with pytest.raises(ValueError, match="every single step of a discrete run"):
-        nh.crossings(orbit, nh.cusp)
+# Forces of constraint, states between poses, crossings.
+test_what_poses_cannot_tell_is_refused = refusals(
+    (lambda orbit: orbit.multipliers, r"Orbit.multipliers` must be read from a run"),
+    (lambda orbit: orbit.at(0.05), r"Orbit.at\(...\)` must be called on a flow"),
+    (lambda orbit: nh.crossings(orbit, nh.cusp), "every single step of a discrete run"),
+    ask=lambda question: question(nh.Orbit.from_poses(**GOOD)),
+)
 
 
 def _turning(angle: float) -> nh.Orbit:

@@ -3,7 +3,9 @@
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from bodies import mass_tensor, random_rows
+from bodies import OTHERS, mass_tensor, random_rows
+from comparisons import assert_near
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.systems import AbstractLLSystem
@@ -33,8 +35,7 @@ def test_functions_of_the_same_variety_give_the_same_orbit(name: str) -> None:
     start = {"restricted_velocity": (0.4, 0.9), "steps": 60}
     found = nh.simulate(nh.discretize(system, 0.1, constraint=function), **start)
     expected = nh.simulate(nh.discretize(system, 0.1), **start)
-    assert np.abs(found.configuration - expected.configuration).max() <= 1e-12
-    assert np.abs(found.momentum - expected.momentum).max() <= 1e-12
+    assert_near(found, expected, 1e-12, "configuration", "momentum")
     assert nh.invariants(found).constraint_residual <= 1e-14
 
 
@@ -113,40 +114,36 @@ def test_whether_a_discrete_lagrangian_is_even() -> None:
     assert nh.discretize(TOP, 0.1, "logarithmic").is_self_adjoint
 
 
-@pytest.mark.parametrize(
-    ("option", "value", "words"),
-    [
-        ("constraint", "skewed", "must be one of"),
-        ("constraint", lambda W: W[0, 2], "tangent to d"),
-        ("constraint", lambda W: W[1, 0] - W[0, 1] + 0.1, "vanish at the identity"),
-        ("constraint", [lambda W: W[1, 0] - W[0, 1]] * 2, "be 1 functions"),
-        ("constraint", lambda W: (W[1, 0] - W[0, 1]) ** 2, "independent"),
-        ("constraint", lambda W: W, "real scalar functions"),
-        ("constraint", lambda W: jnp.sqrt(W[1, 0] - W[0, 1]), "differentiable"),
-        ("constraint", lambda W: float(W[1, 0]), "real scalar functions"),
-        ("constraint", [3], "real scalar functions"),
-        ("difference", "matrices", "must be one of"),
-        ("difference", lambda W: W, "real scalar function"),
-        ("difference", lambda W: jnp.sqrt(jnp.sum((W - jnp.eye(3)) ** 2)), "differentiable"),
-        ("difference", lambda W, h: jnp.trace(W) / h, "real scalar function"),
-    ],
+# Each with what it must be, before any work.
+test_bad_choices_are_refused = refusals(
+    ({"constraint": "skewed"}, "must be one of"),
+    ({"constraint": lambda W: W[0, 2]}, "tangent to d"),
+    ({"constraint": lambda W: W[1, 0] - W[0, 1] + 0.1}, "vanish at the identity"),
+    ({"constraint": [lambda W: W[1, 0] - W[0, 1]] * 2}, "be 1 functions"),
+    ({"constraint": lambda W: (W[1, 0] - W[0, 1]) ** 2}, "independent"),
+    ({"constraint": lambda W: W}, "real scalar functions"),
+    ({"constraint": lambda W: jnp.sqrt(W[1, 0] - W[0, 1])}, "differentiable"),
+    ({"constraint": lambda W: float(W[1, 0])}, "real scalar functions"),
+    ({"constraint": [3]}, "real scalar functions"),
+    ({"difference": "matrices"}, "must be one of"),
+    ({"difference": lambda W: W}, "real scalar function"),
+    ({"difference": lambda W: jnp.sqrt(jnp.sum((W - jnp.eye(3)) ** 2))}, "differentiable"),
+    ({"difference": lambda W, h: jnp.trace(W) / h}, "real scalar function"),
+    ask=lambda option: nh.discretize(TOP, 0.1, **option),
 )
-def test_bad_choices_are_refused(option: str, value: object, words: str) -> None:
-    """Each with what it must be, before any work."""
-    with pytest.raises(ValueError, match=words):
-        nh.discretize(TOP, 0.1, **{option: value})
 
 
-@pytest.mark.parametrize(("option", "value"), [("difference", "matrix"), ("constraint", "skew")])
-def test_what_is_undefined_on_a_group_is_refused(option: str, value: str) -> None:
-    """On the Heisenberg group the defaults are logarithmic and exponential; the others have no meaning there."""
-    heisenberg = nh.MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
-    system = nh.LLSystem(heisenberg, constraint_subspace=np.eye(3)[:2], inertia_operator=np.diag([1.0, 2.0, 3.0]))
-    discrete = nh.discretize(system, 0.1)
-    assert (discrete.difference, discrete.constraint, discrete.conserves_energy) == (
-        "logarithmic",
-        "exponential",
-        False,
-    )
-    with pytest.raises(ValueError, match=r"must be defined .* the"):
-        nh.discretize(system, 0.1, **{option: value})
+ON_HEISENBERG = OTHERS["Heisenberg"]
+# On the Heisenberg group the other names have no meaning; the reasons say what would define them.
+test_what_is_undefined_on_a_group_is_refused = refusals(
+    ({"difference": "matrix"}, r"difference=.*be defined for the system.*MatrixGroup\(form="),
+    ({"constraint": "skew"}, r"constraint=.*be defined on the group.*MatrixGroup\(basis, form=G\)"),
+    ask=lambda option: nh.discretize(ON_HEISENBERG, 0.1, **option),
+)
+
+
+def test_defaults_on_a_group_without_a_form() -> None:
+    """They are logarithmic and exponential, and do not keep the energy."""
+    discrete = nh.discretize(ON_HEISENBERG, 0.1)
+    assert (discrete.difference, discrete.constraint) == ("logarithmic", "exponential")
+    assert not discrete.conserves_energy

@@ -257,12 +257,7 @@ def test_a_missing_extra_is_named(tmp_path: Path) -> None:
     assert not (tmp_path / "b.zarr").exists()
 
 
-def test_import_loads_no_dask(tmp_path: Path) -> None:
-    """Neither the package nor the names of sweeps load Dask."""
-    code = "import sys, nonholo; nonholo.sweep; print({'dask', 'distributed', 'cloudpickle'} & set(sys.modules))"
-    assert _printed(code, tmp_path) == "set()\n"
-
-
+@pytest.mark.profile("faults", instead="test_functions_without_a_module")
 def test_the_users_client(running: Cluster, undisturbed: xarray.Dataset, tmp_path: Path) -> None:
     """A client may be passed: the result is that of threads, and the client stays open; a closed one is refused."""
     distributed = pytest.importorskip("distributed")

@@ -111,11 +111,7 @@ def _swap(store: Path, one: str, other: str) -> None:
 
 @pytest.mark.parametrize(
     ("one", "other"),
-    [
-        ("noise/c/2/0/0", "noise/c/1/0/0"),
-        ("total/c/0/0", "total/c/2/0"),
-        ("run/blocks/0.json", "run/blocks/1.json"),
-    ],
+    [("noise/c/2/0/0", "noise/c/1/0/0"), ("total/c/0/0", "total/c/2/0"), ("run/blocks/0.json", "run/blocks/1.json")],
 )
 def test_a_block_in_the_place_of_another_is_computed_again(one: str, other: str, tmp_path: Path) -> None:
     """A checksum does not know where its chunk lies: the mark of the block does."""

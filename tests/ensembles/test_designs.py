@@ -8,6 +8,7 @@ import hypothesis
 import numpy as np
 import pytest
 from hypothesis import strategies as st
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.ensembles._block import block_of
@@ -76,9 +77,7 @@ def test_random_members_do_not_depend_on_the_rest(distribution: AbstractDistribu
 
 
 @pytest.mark.parametrize(
-    ("one", "other"),
-    [(("x", 0), ("y", 0)), (("x", 0), ("x", 1)), (("x", 1), ("y", 2))],
-    ids=["names", "seeds", "both"],
+    ("one", "other"), [(("x", 0), ("y", 0)), (("x", 0), ("x", 1)), (("x", 1), ("y", 2))], ids=["names", "seeds", "both"]
 )
 def test_names_and_seeds_are_independent(one: tuple[str, int], other: tuple[str, int]) -> None:
     """Numbers of different names or seeds are not correlated, nor are those of neighbors: five standard errors."""
@@ -203,37 +202,31 @@ def test_blocks_are_not_small(block: int) -> None:
     assert layout.piece(0).count > block / 2
 
 
-@pytest.mark.parametrize(
-    ("make", "match"),
-    [
-        (lambda: nh.Grid([1.0, 2.0]), r"Grid\(axes=...\)` must be a mapping"),
-        (lambda: nh.Grid({}), "must be a mapping"),
-        (lambda: nh.Grid({"a": []}), "hold at least one value"),
-        (lambda: nh.Grid({"a": [1.0, np.nan]}), "must be finite"),
-        (lambda: nh.Grid({"a": ["one"]}), "array of real numbers"),
-        (lambda: nh.Grid({"a/b": [1.0]}), "be a name: a letter"),
-        (lambda: nh.Grid({"_a": [1.0]}), "be a name: a letter"),
-        (lambda: nh.Grid({"run": [1.0]}), "taken: member, outcome, run, t, time"),
-        (lambda: nh.Grid({"outcome": [1.0]}), "taken: member, outcome, run, t, time"),
-        (lambda: nh.Grid({"a": [[1.0, 2.0]], "a_number": [1.0]}), "other names than its vectors"),
-        (lambda: nh.Grid({"a": [1.0]}, rng=-1), "be a natural number|be at most"),
-        (lambda: nh.RandomDesign(0, {"a": nh.Normal()}), "must be a positive integer"),
-        (lambda: nh.RandomDesign(5, {"a": 1.0}), "be a distribution. Got 1.0. Pass nh.Uniform"),
-        (lambda: nh.RandomDesign(5, {}), "must be a mapping"),
-        (lambda: nh.RandomDesign(5, {"a": nh.Normal()}, rng=True), "be a natural number|be at most"),
-        (lambda: nh.Uniform(2.0, 1.0), "not be below `low`"),
-        (lambda: nh.LogUniform([], 1.0), r"LogUniform\(low=...\)` must have a number. Got none"),
-        (lambda: nh.LogUniform(0.0, 1.0), r"LogUniform\(low=...\)` must be positive"),
-        (lambda: nh.Normal(0.0, 0.0), "must be positive"),
-        (lambda: nh.Direction(0), "must be a positive integer"),
-        (lambda: nh.MassTensor(3, -1.0, 1.0), "be one positive number"),
-        (lambda: nh.Choice([]), "hold at least one value"),
-    ],
+# What is no design, no distribution or no name is refused with the reason.
+test_bad_designs_are_refused = refusals(
+    (lambda: nh.Grid([1.0, 2.0]), r"Grid\(axes=...\)` must be a mapping"),
+    (lambda: nh.Grid({}), "must be a mapping"),
+    (lambda: nh.Grid({"a": []}), "hold at least one value"),
+    (lambda: nh.Grid({"a": [1.0, np.nan]}), "must be finite"),
+    (lambda: nh.Grid({"a": ["one"]}), "array of real numbers"),
+    (lambda: nh.Grid({"a/b": [1.0]}), "be a name: a letter"),
+    (lambda: nh.Grid({"_a": [1.0]}), "be a name: a letter"),
+    (lambda: nh.Grid({"run": [1.0]}), "taken: member, outcome, run, t, time"),
+    (lambda: nh.Grid({"outcome": [1.0]}), "taken: member, outcome, run, t, time"),
+    (lambda: nh.Grid({"a": [[1.0, 2.0]], "a_number": [1.0]}), "other names than its vectors"),
+    (lambda: nh.Grid({"a": [1.0]}, rng=-1), "be a natural number|be at most"),
+    (lambda: nh.RandomDesign(0, {"a": nh.Normal()}), "must be a positive integer"),
+    (lambda: nh.RandomDesign(5, {"a": 1.0}), "be a distribution. Got 1.0. Pass nh.Uniform"),
+    (lambda: nh.RandomDesign(5, {}), "must be a mapping"),
+    (lambda: nh.RandomDesign(5, {"a": nh.Normal()}, rng=True), "be a natural number|be at most"),
+    (lambda: nh.Uniform(2.0, 1.0), "not be below `low`"),
+    (lambda: nh.LogUniform([], 1.0), r"LogUniform\(low=...\)` must have a number. Got none"),
+    (lambda: nh.LogUniform(0.0, 1.0), r"LogUniform\(low=...\)` must be positive"),
+    (lambda: nh.Normal(0.0, 0.0), "must be positive"),
+    (lambda: nh.Direction(0), "must be a positive integer"),
+    (lambda: nh.MassTensor(3, -1.0, 1.0), "be one positive number"),
+    (lambda: nh.Choice([]), "hold at least one value"),
 )
-def test_bad_designs_are_refused(make: Callable[[], Any], match: str) -> None:
-    """What is no design, no distribution or no name is refused with the reason."""
-    with pytest.raises(ValueError, match=match):
-        make()
 
 
 def test_draws_do_not_depend_on_the_spelling_of_components() -> None:

@@ -4,6 +4,7 @@ import errno
 import json
 import os
 import signal
+import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -186,8 +187,8 @@ def test_stale_lock_is_recognized(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         stop_at(patch, 1, KeyboardInterrupt())
         with pytest.raises(KeyboardInterrupt):
             swept(path)
-    ended = python("")
-    ended.communicate()
+    ended = subprocess.Popen([sys.executable, "-c", ""])
+    ended.wait()
     (path / "run" / "lock.json").write_text(json.dumps({"pid": ended.pid, "host": os.uname().nodename, "since": "1"}))
     strays = [path / "total" / "c" / "1" / "0.1f.partial", path / "run" / "blocks" / "1.json.2e.partial"]
     for stray in strays:

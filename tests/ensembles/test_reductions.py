@@ -46,11 +46,7 @@ def test_final_state_is_the_last_one(discrete: nh.Discretization, every: int | N
     found = _reduced("final_state", _batch(discrete, every=every))
     for member in range(3):
         orbit = _orbit(discrete, member)
-        for name, wanted in (
-            ("momentum", orbit.restricted_momentum),
-            ("energy", orbit.energy),
-            ("pose", orbit.pose),
-        ):
+        for name, wanted in (("momentum", orbit.restricted_momentum), ("energy", orbit.energy), ("pose", orbit.pose)):
             assert wanted is not None
             assert np.abs(found[f"final_{name}"][member] - wanted[-1]).max() < 1e-13, name
     assert found["steps_done"].tolist() == [60] * 3

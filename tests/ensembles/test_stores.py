@@ -105,86 +105,47 @@ def test_another_sweep_is_refused(changes: dict[str, Any], match: str, tmp_path:
     assert same(_sleighs(path), whole)
 
 
-def _functions(path: Path) -> None:
-    swept(path)
-    nh.resume(path, task=faults.noisy)
-
-
-def _another_seed(path: Path) -> None:
-    swept(path)
-    nh.sweep(simple, nh.Grid(DESIGN.axes, rng=2), path, resume=True)
-
-
-def _another_kind_of_design(path: Path) -> None:
-    swept(path)
-    nh.sweep(simple, nh.RandomDesign(6, {"x": nh.Normal()}, rng=1), path, resume=True)
-
-
 def _another_schema(path: Path) -> None:
     swept(path)
     document = json.loads((path / "zarr.json").read_text())
     document["attributes"]["schema"] = 99
     (path / "zarr.json").write_text(json.dumps(document))
-    resumed(path)
 
 
 def _orbit(path: Path) -> None:
     nh.simulate(SLEIGH, steps=20, restricted_velocity=(1.0, 0.0), store=path)
 
 
-def _sweep_where_an_orbit_is(path: Path) -> None:
-    _orbit(path)
-    swept(path, resume=True)
-
-
-def _load_an_orbit_as_a_sweep(path: Path) -> None:
-    _orbit(path)
-    nh.load_sweep(path)
-
-
-def _load_a_sweep_as_an_orbit(path: Path) -> None:
-    swept(path)
-    nh.load_orbit(path)
-
-
-def _task_for_an_orbit(path: Path) -> None:
-    _orbit(path)
-    nh.resume(path, task=simple)
-
-
-def _scheduler_for_an_orbit(path: Path) -> None:
-    _orbit(path)
-    nh.resume(path, scheduler="threads")
-
-
-def _system_for_a_sweep(path: Path) -> None:
-    swept(path)
-    nh.resume(path, discrete=SLEIGH)
-
-
-def _no_store(path: Path) -> None:
-    path.mkdir()
-    nh.resume(path)
+RANDOM = nh.RandomDesign(6, {"x": nh.Normal()}, rng=1)
 
 
 @pytest.mark.parametrize(
-    ("mistake", "match"),
+    ("made", "mistake", "match"),
     [
-        (_functions, r'task\.name is "ensembles\.faults:noisy" instead of "ensembles\.small:simple"'),
-        (_another_seed, r"design\.seed is 2 instead of 1"),
-        (_another_kind_of_design, r'design\.kind is "RandomDesign" instead of "Grid"'),
-        (_another_schema, r"have schema \d, the one that this version reads. Got schema 99. Upgrade"),
-        (_sweep_where_an_orbit_is, "a store of an orbit"),
-        (_load_an_orbit_as_a_sweep, "a store of an orbit"),
-        (_load_a_sweep_as_an_orbit, "a store of a sweep"),
-        (_task_for_an_orbit, "come with the store of a sweep"),
-        (_scheduler_for_an_orbit, "come with the store of a sweep"),
-        (_system_for_a_sweep, "come with the store of an orbit"),
-        (_no_store, "must be a store of a run or a sweep"),
+        (
+            swept,
+            lambda path: nh.resume(path, task=faults.noisy),
+            r'name is "ensembles\.faults:noisy" instead of ".*le"',
+        ),
+        (
+            swept,
+            lambda path: nh.sweep(simple, nh.Grid(DESIGN.axes, rng=2), path, resume=True),
+            r"seed is 2 instead of 1",
+        ),
+        (swept, lambda path: nh.sweep(simple, RANDOM, path, resume=True), r'kind is "RandomDesign" instead of "Grid"'),
+        (_another_schema, resumed, r"have schema \d, the one that this version reads. Got schema 99. Upgrade"),
+        (_orbit, lambda path: swept(path, resume=True), "a store of an orbit"),
+        (_orbit, nh.load_sweep, "a store of an orbit"),
+        (swept, nh.load_orbit, "a store of a sweep"),
+        (_orbit, lambda path: nh.resume(path, task=simple), "come with the store of a sweep"),
+        (_orbit, lambda path: nh.resume(path, scheduler="threads"), "come with the store of a sweep"),
+        (swept, lambda path: nh.resume(path, discrete=SLEIGH), "come with the store of an orbit"),
+        (Path.mkdir, nh.resume, "must be a store of a run or a sweep"),
     ],
 )
-def test_wrong_stores_are_refused(mistake: Callable[[Path], None], match: str, tmp_path: Path) -> None:
+def test_wrong_stores_are_refused(made: Callable[..., Any], mistake: Callable, match: str, tmp_path: Path) -> None:
     """What does not belong together is refused, with the difference named."""
+    made(tmp_path / "run.zarr")
     with pytest.raises(ValueError, match=match):
         mistake(tmp_path / "run.zarr")
 

@@ -1,7 +1,5 @@
 """`sweep` with functions: what they may return, who is recorded as failed, and that blocks change nothing."""
 
-import subprocess
-import sys
 import threading
 import warnings
 from collections.abc import Callable
@@ -13,6 +11,7 @@ import pytest
 import xarray
 from ensembles import faults
 from ensembles.small import same
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.base.results import Outcome
@@ -236,22 +235,16 @@ def test_names_of_the_design_and_the_result_are_kept_apart(tmp_path: Path) -> No
         _swept(lambda block: {"mass_tensor": block.index}, tmp_path, FEW)
 
 
-@pytest.mark.parametrize(
-    ("options", "match"),
-    [
-        ({"task": 5}, r"sweep\(task=...\)` must be callable"),
-        ({"design": {"x": [1.0]}}, r"sweep\(design=...\)` must be a design"),
-        ({"scheduler": "fast"}, "must be one of threads, processes, synchronous or an address"),
-        ({"scheduler": 5}, "must be one of threads"),
-        ({"workers": 0}, r"sweep\(workers=...\)` must be a positive integer"),
-        ({"block": 0}, r"sweep\(block=...\)` must be a positive integer"),
-    ],
+# Bad arguments are refused before there is a store.
+test_bad_arguments_are_refused = refusals(
+    ({"task": 5}, r"sweep\(task=...\)` must be callable"),
+    ({"design": {"x": [1.0]}}, r"sweep\(design=...\)` must be a design"),
+    ({"scheduler": "fast"}, "must be one of threads, processes, synchronous or an address"),
+    ({"scheduler": 5}, "must be one of threads"),
+    ({"workers": 0}, r"sweep\(workers=...\)` must be a positive integer"),
+    ({"block": 0}, r"sweep\(block=...\)` must be a positive integer"),
+    ask=lambda options: nh.sweep(**{"task": _calm, "design": GRID, "store": Path("run.zarr"), **options}),
 )
-def test_bad_arguments_are_refused(options: dict[str, Any], match: str, tmp_path: Path) -> None:
-    """Bad arguments are refused before there is a store."""
-    with pytest.raises(ValueError, match=match):
-        nh.sweep(**{"task": _calm, "design": GRID, "store": tmp_path / "run.zarr", **options})
-    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("design", [GRID, nh.RandomDesign(12, {"x": nh.Normal(), "y": nh.Uniform(0, 1)}, rng=7)])
@@ -362,17 +355,11 @@ def test_progress_counts_members(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
         assert counted == [(0, 12), (4, 12), (8, 12), (12, 12)]
 
 
-def test_dask_is_loaded_when_it_is_needed() -> None:
-    """Neither the package nor designs and tasks load Dask; `sweep` does."""
-    program = "import sys, nonholo as nh; nh.Grid({'a': [1.0]}); nh.sweep; print(sorted({'dask'} & {*sys.modules}))"
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)  # noqa: S603
-    assert done.stdout.strip() == "[]"
-
-
 def _drawn_twice(block: nh.MemberBlock) -> dict[str, Any]:
     return {"twice": 2 * block["x"], "noise": block.random(1)[:, 0]}
 
 
+@pytest.mark.profile("faults", cases=["7"])
 @pytest.mark.parametrize("block", [4, 7, 100])
 def test_a_random_design_grows(block: int, tmp_path: Path) -> None:
     """With more members, once and again, a store has the bits of a sweep of all of them; what is there is not done."""
@@ -413,7 +400,7 @@ def test_a_growth_that_was_killed_continues(tmp_path: Path, monkeypatch: pytest.
     ("design", "members", "told"),
     [
         (GRID, 20, "must come with a random design"),
-        (FEW, 49, "must not be below the 50 members that there are. Got 49"),
+        (FEW, 49, "must not be below the 50 members of the design. Got 49"),
         (FEW, 1.5, r"resume\(members=...\)"),
     ],
 )

@@ -1,13 +1,13 @@
 """`EnsembleTask`: the members of a design run as those of `ensemble`, and of `simulate`."""
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from bodies import GENERAL
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.ensembles import standing_of
@@ -172,53 +172,39 @@ def test_refused_members_are_isolated_and_named(tmp_path: Path) -> None:
 START = {"restricted_velocity": (1.0, 0.2)}
 
 
-@pytest.mark.parametrize(
-    ("options", "axes", "match"),
-    [
-        ({}, {"a": [1.0]}, "have a start. Got none"),
-        (START, {"Mass": [1.0]}, "name parameters of the system or starts. Got 'Mass'. ChaplyginSleigh has mass,"),
-        (START, {"velocity": [[1.0, 2.0]]}, "name parameters"),
-        (START, {"momentum[0]": [1.0]}, "components of the start of the task. Got 'momentum_0'"),
-        (START, {"momentum": STARTS, "restricted_velocity[0]": [1.0]}, "components of the start of the task"),
-        ({}, {"restricted_velocity[0]": [1.0]}, r"vary all 2 components of a start that is not given. Got \[0\]"),
-        ({}, {"momentum_0": [1.0], "momentum_3": [1.0]}, r"vary all 2 or 3 components .* Got \[0, 3\]"),
-        ({}, {"momentum_0": [1.0], "body_velocity_1": [1.0]}, "vary components of one start"),
-        (START, {"restricted_velocity[2]": [1.0]}, "that there are. Got .* of a start with 2"),
-        ({}, {"momentum": STARTS, "body_velocity": [[1.0, 0.0, 0.0]]}, "vary one start"),
-        (START, {"mass": [-1.0, 0.0]}, "run for one of the members tried. Got ValueError.*must be positive"),
-        (START, {"mass": [[1.0, 2.0]]}, "run for one of the members tried.*must have shape"),
-        ({}, {"momentum": [1.0, 2.0]}, "run for one of the members tried.*must have shape"),
-    ],
+# A design that the task cannot run is refused before there is a store.
+test_designs_without_a_meaning_are_refused = refusals(
+    ({}, {"a": [1.0]}, "have a start. Got none"),
+    (START, {"Mass": [1.0]}, "name parameters of the system or starts. Got 'Mass'. ChaplyginSleigh has mass,"),
+    (START, {"velocity": [[1.0, 2.0]]}, "name parameters"),
+    (START, {"momentum[0]": [1.0]}, "components of the start of the task. Got 'momentum_0'"),
+    (START, {"momentum": STARTS, "restricted_velocity[0]": [1.0]}, "components of the start of the task"),
+    ({}, {"restricted_velocity[0]": [1.0]}, r"vary all 2 components of a start that is not given. Got \[0\]"),
+    ({}, {"momentum_0": [1.0], "momentum_3": [1.0]}, r"vary all 2 or 3 components .* Got \[0, 3\]"),
+    ({}, {"momentum_0": [1.0], "body_velocity_1": [1.0]}, "vary components of one start"),
+    (START, {"restricted_velocity[2]": [1.0]}, "that there are. Got .* of a start with 2"),
+    ({}, {"momentum": STARTS, "body_velocity": [[1.0, 0.0, 0.0]]}, "vary one start"),
+    (START, {"mass": [-1.0, 0.0]}, "run for one of the members tried. Got ValueError.*must be positive"),
+    (START, {"mass": [[1.0, 2.0]]}, "run for one of the members tried.*must have shape"),
+    ({}, {"momentum": [1.0, 2.0]}, "run for one of the members tried.*must have shape"),
+    ask=lambda options, axes: nh.sweep(_task(**options), nh.Grid(axes), Path("run.zarr")),
 )
-def test_designs_without_a_meaning_are_refused(
-    options: dict[str, Any], axes: dict[str, Any], match: str, tmp_path: Path
-) -> None:
-    """A design that the task cannot run is refused before there is a store."""
-    with pytest.raises(ValueError, match=match):
-        nh.sweep(_task(**options), nh.Grid(axes), tmp_path / "run.zarr")
-    assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize(
-    ("make", "match"),
-    [
-        (lambda: nh.EnsembleTask(SLEIGH, steps=0), "must be a positive integer"),
-        (lambda: nh.EnsembleTask(SLEIGH, steps=5, save_every=0), "must be a positive integer"),
-        (lambda: nh.EnsembleTask(SLEIGH.system, steps=5), r"EnsembleTask\(discrete=...\)"),  # type: ignore[arg-type]
-        (lambda: _task(reductions=["final", "energy_drift"]), "Got 'final'. Choose among final_state,"),
-        (lambda: _task(reductions=[["final_state"]]), "names or functions"),
-        (lambda: _task(reductions=None), "names or functions. Got None"),
-        (lambda: _task(momentum=(1.0, 0.0), branch="next"), r"EnsembleTask\(branch=...\)` must be"),
-        (lambda: _task(momentum=(1.0, 0.0), branch="inner"), r"EnsembleTask\(branch=...\)` must be a rule without"),
-        (lambda: _task(momentum=STARTS), r"EnsembleTask\(momentum=...\)` must have shape"),
-        (lambda: _task(momentum="left"), "array of real numbers"),
-        (lambda: _task(momentum=(1.0, 0.0), body_velocity=(1.0, 0.0, 0.0)), "exactly one of"),
-    ],
+# A task that makes no sense is refused when it is made.
+test_bad_tasks_are_refused = refusals(
+    (lambda: nh.EnsembleTask(SLEIGH, steps=0), "must be a positive integer"),
+    (lambda: nh.EnsembleTask(SLEIGH, steps=5, save_every=0), "must be a positive integer"),
+    (lambda: nh.EnsembleTask(SLEIGH.system, steps=5), r"EnsembleTask\(discrete=...\)"),  # type: ignore[arg-type]
+    (lambda: _task(reductions=["final", "energy_drift"]), "Got 'final'. Choose among final_state,"),
+    (lambda: _task(reductions=[["final_state"]]), "names or functions"),
+    (lambda: _task(reductions=None), "names or functions. Got None"),
+    (lambda: _task(momentum=(1.0, 0.0), branch="next"), r"EnsembleTask\(branch=...\)` must be"),
+    (lambda: _task(momentum=(1.0, 0.0), branch="inner"), r"EnsembleTask\(branch=...\)` must be a rule without"),
+    (lambda: _task(momentum=STARTS), r"EnsembleTask\(momentum=...\)` must have shape"),
+    (lambda: _task(momentum="left"), "array of real numbers"),
+    (lambda: _task(momentum=(1.0, 0.0), body_velocity=(1.0, 0.0, 0.0)), "exactly one of"),
 )
-def test_bad_tasks_are_refused(make: Callable[[], Any], match: str) -> None:
-    """A task that makes no sense is refused when it is made."""
-    with pytest.raises(ValueError, match=match):
-        make()
 
 
 def test_names_that_two_reductions_return_are_refused() -> None:

@@ -21,18 +21,6 @@ def _turns(path: Path, design: nh.Grid, steps: int, start: float = START) -> xar
     return nh.sweep(task, design, path / "turns.zarr").load()
 
 
-def test_deviation_from_the_flow(tmp_path: Path) -> None:
-    """Of the turn of the flow h^2 J / (24 (1 + J)^2) is missing (m = a = u = 1), to a part of order h^2."""
-    steps = np.array([0.2, 0.4])
-    found = _turns(tmp_path, nh.Grid({"inertia": INERTIAS, "time_step": steps}), 2200)
-    J = INERTIAS[:, None]
-    leading = steps**2 * J / (24 * (1 + J) ** 2)
-    error = found["turning_deviation"].values / leading - 1
-    assert (np.abs(error) < 0.35 * steps**2 + START * 4 / leading).all()  # 0.32 h^2 at the largest
-    growth = error[:, 1] / error[:, 0]
-    assert np.abs(growth - 4).max() < 0.5
-
-
 @pytest.mark.parametrize("time_step", [0.2, 1.5])
 def test_deviation_of_one_orbit(time_step: float, tmp_path: Path) -> None:
     """The reduction is the one of `asymptotics`, which follows an orbit of `simulate` to both ends."""
@@ -54,22 +42,6 @@ def test_every_discrete_sleigh_turns_less(tmp_path: Path) -> None:
     assert 50 < good.sum() < good.size
     assert (found["turning_deviation"].values[good] > 0).all()
     assert np.isnan(found["turning_deviation"].values[~good]).all()
-
-
-@pytest.mark.parametrize("inertia", INERTIAS)
-def test_no_sleigh_is_lost_below_the_sides_of_the_deltoid(inertia: float, tmp_path: Path) -> None:
-    """Sleighs turn round up to the time step at which their energy ellipse meets a side that ends the branch."""
-    bound = _bound(inertia)
-    found = _turns(tmp_path, nh.Grid({"inertia": [inertia], "time_step": bound * np.linspace(0.9, 0.999, 40)}), 1500)
-    assert (found["outcome"] == 0).all()
-    found = _turns(tmp_path / "above", nh.Grid({"inertia": [inertia], "time_step": bound * np.array([1.8])}), 1500)
-    assert (found["outcome"] == 1).all()
-
-
-def _bound(inertia: float) -> float:
-    """Return the time step at which the energy 1/2 is the one below which all momenta have a principal value."""
-    unit = nh.discretize(nh.ChaplyginSleigh(1.0, inertia, 1.0), 1.0)
-    return float(np.sqrt(2 * nh.single_valued_region(unit).principal_energy))
 
 
 def test_turn_of_each_step() -> None:

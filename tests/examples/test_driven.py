@@ -6,6 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 import scipy.linalg
+from refusals import refusals
 from scipy.integrate import solve_ivp
 
 import nonholo as nh
@@ -58,23 +59,6 @@ def _ball_by_hand(_time: float, z: np.ndarray) -> np.ndarray:
     return np.concatenate([np.cross(M, omega), (R @ nh.SO(3).hat(omega)).ravel(), R @ np.cross(omega, gamma)])
 
 
-@pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")
-def test_the_driven_sleigh_moves_as_derived_by_hand() -> None:
-    """Path and heading of the flow, to 1e-10."""
-    ready = nh.examples.driven_sleigh()
-    by_hand = _solved(_sleigh_by_hand, [0.5, 0.3, 0.0, 0.0, 0.0])
-    found = nh.flow(ready.system, **_start(ready), times=TIMES, rtol=1e-13, atol=1e-14)
-    assert np.abs(found.configuration[:, :3] - by_hand[2:].T).max() <= 1e-10
-
-
-def test_the_roller_racer_moves_as_derived_by_hand() -> None:
-    """Path and heading of the flow, to 1e-10; it moves on."""
-    ready = nh.examples.roller_racer()
-    by_hand = _solved(_racer_by_hand, [0.0, 0.0, 0.0, 0.0])
-    found = nh.flow(ready.system, **_start(ready), times=TIMES, rtol=1e-13, atol=1e-14)
-    assert np.abs(found.configuration[:, :3] - by_hand[1:].T).max() <= 1e-10
-
-
 def _twistcar_by_hand(time: float, z: np.ndarray) -> np.ndarray:
     """Newton's and Euler's equations of both bodies of the Twistcar, with forces of wheels and pivot as unknowns."""
     (m, J, c), (mh, Jh, d), ell, k, A, Om = (1.0, 0.1, 0.3), (0.2, 0.01, 0.1), 1.0, 0.2, 0.5, 2.0
@@ -106,16 +90,7 @@ def _twistcar_by_hand(time: float, z: np.ndarray) -> np.ndarray:
     return np.concatenate([z[3:], np.linalg.solve(rows, right)[:3]])
 
 
-@pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")
-def test_the_twistcar_moves_as_derived_by_hand() -> None:
-    """Path and heading of the flow are those of two bodies by Newton and Euler, to 1e-10."""
-    ready = nh.examples.twistcar()
-    by_hand = _solved(_twistcar_by_hand, [*ready.configuration[:3], *ready.body_velocity[:3]])
-    found = nh.flow(ready.system, **_start(ready), times=TIMES, rtol=1e-13, atol=1e-14)
-    assert np.abs(found.configuration[:, :3] - by_hand[:3].T).max() <= 1e-10
-
-
-@pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")
+@pytest.mark.profile("routes", instead="test_paths_are_those_derived_by_hand")
 @pytest.mark.parametrize(("handle_inertia", "sign"), [(0.01, -1.0), (0.1, 1.0)])
 def test_the_twistcar_goes_where_masses_send_it(handle_inertia: float, sign: float) -> None:
     """In the mean of periods it gains speed as the docstring says, up to the fourth power of the amplitude."""
@@ -143,17 +118,34 @@ def _robot_by_hand(time: float, z: np.ndarray) -> list[float]:
     return [du / M, dw / K, u * np.cos(theta), u * np.sin(theta), w]
 
 
-@pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")
-def test_the_robot_moves_as_derived_by_hand() -> None:
-    """Path and heading of the flow under torques and friction, to 1e-10; the axle keeps its angle."""
-    ready = nh.examples.two_wheeled_robot(
-        torques=lambda time: (0.1 + 0.05 * jnp.sin(time), 0.1 - 0.03 * time), friction=0.02
-    )
-    by_hand = _solved(_robot_by_hand, [-0.5, 1.0, 0.0, 0.0, 0.0])
+def _robot() -> Example:
+    torques = lambda time: (0.1 + 0.05 * jnp.sin(time), 0.1 - 0.03 * time)  # noqa: E731
+    return nh.examples.two_wheeled_robot(torques=torques, friction=0.02)
+
+
+BY_HAND: dict[str, tuple[Callable[[], Example], Callable, list[float], slice]] = {
+    "driven sleigh": (nh.examples.driven_sleigh, _sleigh_by_hand, [0.5, 0.3, 0.0, 0.0, 0.0], np.s_[2:]),
+    "roller racer": (nh.examples.roller_racer, _racer_by_hand, [0.0, 0.0, 0.0, 0.0], np.s_[1:]),
+    "Twistcar": (nh.examples.twistcar, _twistcar_by_hand, [], np.s_[:3]),
+    "robot": (_robot, _robot_by_hand, [-0.5, 1.0, 0.0, 0.0, 0.0], np.s_[2:]),
+}
+
+
+@pytest.mark.profile("routes", keep=["roller racer"])
+@pytest.mark.parametrize("name", BY_HAND)
+def test_paths_are_those_derived_by_hand(name: str) -> None:
+    """Path and heading of the flow, to 1e-10: by momenta along the constraint, or Newton's and Euler's equations.
+
+    The axle of the robot keeps its angle.
+    """
+    made, rate, first, path = BY_HAND[name]
+    ready = made()
     found = nh.flow(ready.system, **_start(ready), times=TIMES, rtol=1e-13, atol=1e-14)
-    assert np.abs(found.configuration[:, :3] - by_hand[2:].T).max() <= 1e-10
-    assert list(ready.conserved) == ["axle"]
-    assert np.ptp(ready.conserved["axle"](found.configuration, found.body_velocity)) <= 1e-11
+    by_hand = _solved(rate, first or [*ready.configuration[:3], *ready.body_velocity[:3]])[path]
+    assert np.abs(found.configuration[:, :3] - by_hand.T).max() <= 1e-10
+    if name == "robot":
+        assert list(ready.conserved) == ["axle"]
+        assert np.ptp(ready.conserved["axle"](found.configuration, found.body_velocity)) <= 1e-11
 
 
 def test_torques_of_the_robot() -> None:
@@ -172,7 +164,7 @@ def test_torques_of_the_robot() -> None:
         robot(friction=-0.1)
 
 
-@pytest.mark.profile("long", instead="test_the_roller_racer_moves_as_derived_by_hand")
+@pytest.mark.profile("long", instead="test_paths_are_those_derived_by_hand")
 def test_the_ball_moves_as_derived_by_hand() -> None:
     """Path and rotation of the flow, to 1e-10, momentum in space and energy constant."""
     ready = nh.examples.chaplygin_ball()
@@ -198,7 +190,7 @@ def test_what_drives_them() -> None:
     assert speed[-200:].mean() > 1.5 * speed[:200].mean()
 
 
-@pytest.mark.profile("routes", instead="test_the_roller_racer_moves_as_derived_by_hand")
+@pytest.mark.profile("routes", instead="test_paths_are_those_derived_by_hand")
 @pytest.mark.parametrize("name", ["heavy_suslov_top", "sleigh_in_a_well"])
 def test_integrals_under_a_potential(name: str) -> None:
     """Constant along the flow; of the map off by an error of order two."""
@@ -248,42 +240,6 @@ def _skate(**more) -> LagrangeDAlembert:  # noqa: ANN003
     return LagrangeDAlembert(lambda _q, v: (v[0] ** 2 + v[1] ** 2 + 0.3 * v[2] ** 2) / 2, _blade, dimension=3, **more)
 
 
-DRIVEN = {
-    "force": _skate(force=lambda t, q, v: jnp.array([jnp.cos(t), 0.3 * q[0], 0.5]) - 0.2 * v * jnp.sqrt(v @ v + 1)),
-    "moving belt": LagrangeDAlembert(
-        lambda _q, v: v @ v / 2,
-        lambda q, t: jnp.array([[-jnp.sin(q[2]), jnp.cos(q[2]) * (1 + 0.2 * jnp.sin(t)), 0.0]]),
-        dimension=3,
-        constraint_velocities=lambda q, t: jnp.array([0.3 * q[1] * jnp.cos(t)]),
-    ),
-    "growing mass, prescribed heading": LagrangeDAlembert(
-        lambda q, v, t: (1 + 0.5 * jnp.sin(t)) * (v @ v) / 2 - q[0] ** 2 / 2 + 0.2 * v[0] * v[2],
-        _blade,
-        dimension=3,
-        prescribed={2: lambda t: 0.4 * jnp.sin(2 * t)},
-        rule="trapezoidal",
-    ),
-}
-TURNING = {"growing mass, prescribed heading": 0.8}
-
-
-@pytest.mark.profile("routes", instead="test_the_maps_have_order_two")
-@pytest.mark.parametrize("name", DRIVEN)
-def test_order_two_of_configuration_and_energy(name: str) -> None:
-    """Against the flow, whose energies are those of its velocities."""
-    system = DRIVEN[name]
-    start = {"configuration": (0.0, 0.0, 0.0), "body_velocity": (1.0, 0.0, TURNING.get(name, 0.5))}
-    exact = nh.flow(system, **start, times=(0.0, 1.0), rtol=1e-13, atol=1e-14)
-    errors = []
-    for steps in (50, 100):
-        orbit = nh.simulate(nh.discretize(system, 1.0 / steps), **start, steps=steps)
-        errors.append(
-            [np.abs(orbit.configuration[-1] - exact.configuration[-1]).max(), orbit.energy[-1] - exact.energy[-1]]
-        )
-        assert orbit.constraint_residual.max() <= 1e-14
-    assert np.abs(np.log2(np.abs(np.divide(*errors))) - 2.0).max() <= 0.1
-
-
 @pytest.mark.profile("routes", instead="test_the_maps_have_order_two")
 def test_a_table_acts_row_by_row() -> None:
     """A constant table is a constant force; after its last row nothing acts."""
@@ -295,38 +251,24 @@ def test_a_table_acts_row_by_row() -> None:
     assert np.ptp(table.energy[40:]) <= 1e-13 < np.ptp(table.energy[:40])
 
 
-@pytest.mark.profile("routes", instead="test_the_maps_have_order_two")
-def test_forced_in_coordinates() -> None:
-    """A potential and friction as in the Lagrangian and by hand; neither gives the system itself; not twice."""
-    start = {"configuration": (0.5, 0.0, 0.0), "body_velocity": (1.0, 0.0, 0.3), "steps": 20}
-    forced = nh.Forced(_skate(), lambda q: 2.0 * q[0] ** 2, nh.Friction([0.2, 0.2, 0.1]))
-    by_hand = LagrangeDAlembert(
-        lambda q, v: (v[0] ** 2 + v[1] ** 2 + 0.3 * v[2] ** 2) / 2 - 2.0 * q[0] ** 2,
-        _blade,
-        dimension=3,
-        force=lambda _t, _q, v: -jnp.array([0.2, 0.2, 0.1]) * v,
-    )
-    orbits = [nh.simulate(nh.discretize(system, 0.1), **start) for system in (forced, by_hand)]
-    assert np.abs(orbits[0].configuration - orbits[1].configuration).max() <= 1e-14
-    free = _skate()
-    assert nh.Forced(free) is free
-    with pytest.raises(ValueError, match="have no force yet"):
-        nh.Forced(forced, None, nh.Friction([0.1, 0.1, 0.1]))
-    with pytest.raises(ValueError, match="have at most a potential"):
-        nh.Forced(nh.examples.chaplygin_ball().system, None, nh.Friction([0.1, 0.1, 0.1]))
+_RACER, _RUB = nh.examples.roller_racer(), nh.Friction([0.1, 0.1, 0.1])
+_RACING = nh.discretize(_RACER.system, 0.1)
 
 
-def test_what_a_driven_system_refuses() -> None:
-    """Each with what is wanted: starts off the motion, functions of its own, indices, tables."""
-    racer = nh.examples.roller_racer()
-    discrete = nh.discretize(racer.system, 0.1)
-    with pytest.raises(ValueError, match="agree with prescribed motions"):
-        nh.simulate(discrete, configuration=(0.0, 0.0, 0.0, 0.1), body_velocity=racer.body_velocity, steps=1)
-    with pytest.raises(ValueError, match="nearest admissible"):
-        nh.simulate(discrete, configuration=racer.configuration, body_velocity=(0.0, 0.0, 0.0, 0.0), steps=1)
-    with pytest.raises(ValueError, match="be left out of a driven system"):
-        _skate(force=np.zeros((2, 3)), discrete_lagrangian=lambda q, p, h: (p - q) @ (p - q) / h)
-    with pytest.raises(ValueError, match="indices from 0 to 2"):
-        _skate(prescribed={3: jnp.sin})
-    with pytest.raises(ValueError, match="force"):
-        _skate(force=np.zeros((4, 2)))
+def _raced(q: object, v: object) -> object:
+    return nh.simulate(_RACING, configuration=q, body_velocity=v, steps=1)
+
+
+# Each with what is wanted: starts off the motion, functions of its own, indices, tables, forces twice.
+test_what_a_driven_system_refuses = refusals(
+    (lambda: _raced((0.0, 0.0, 0.0, 0.1), _RACER.body_velocity), "agree with prescribed motions"),
+    (lambda: _raced(_RACER.configuration, (0.0, 0.0, 0.0, 0.0)), "nearest admissible"),
+    (
+        lambda: _skate(force=np.zeros((2, 3)), discrete_lagrangian=lambda q, p, h: (p - q) @ (p - q) / h),
+        "be left out of a driven system",
+    ),
+    (lambda: _skate(prescribed={3: jnp.sin}), "indices from 0 to 2"),
+    (lambda: _skate(force=np.zeros((4, 2))), "force"),
+    (lambda: nh.Forced(nh.Forced(_skate(), None, _RUB), None, _RUB), "have no force yet"),
+    (lambda: nh.Forced(nh.examples.chaplygin_ball().system, None, _RUB), "have at most a potential"),
+)

@@ -25,13 +25,25 @@ DRIVEN = {
 }
 
 
+FOUR = {"J11": 1.4, "J22": 1.0, "J33": 0.7, "J44": 0.9, "J14": 0.5, "J24": -0.3, "J34": 0.2}
+START = {"momentum": (1.2, -0.5, 0.6), "configuration": nh.SO(4).exp(np.linspace(-0.4, 0.6, 6))}
+
+
+def _top4(p: dict[str, float]) -> Any:
+    return nh.SuslovTop.arrowhead([p[f"J{i}{i}"] for i in "1234"], [p[f"J{i}4"] for i in "123"])
+
+
+ORBIT = nh.simulate(nh.discretize(_top4(FOUR), 0.1), **START, steps=300)
+
+
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """The pages of a top and a sleigh, free, under forces and a table; of a top in five dimensions, replayed."""
+    """Pages of a top and a sleigh, free, under forces and a table; of a top on SO(4); of one on SO(5), replayed."""
     folder = tmp_path_factory.mktemp("pages")
-    found = {name: folder / f"{name}.html" for name in (*BODIES, *FORCED, *DRIVEN, "replay")}
+    found = {name: folder / f"{name}.html" for name in (*BODIES, *FORCED, *DRIVEN, "replay", "top4")}
     for name, body in (BODIES | FORCED | DRIVEN).items():
         _sent(name, body).to_html(found[name])
+    ORBIT.to_html(found["top4"])
     wide = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0, 5.0]) + 0.3), 0.1)
     nh.simulate(wide, restricted_velocity=(1.0, 0.5, 0.2, 0.1), steps=100).to_html(found["replay"])
     return found
@@ -42,15 +54,16 @@ def _sent(name: str, body: Any) -> nh.Orbit:
     return nh.simulate(nh.discretize(body, 0.1), body_velocity=VELOCITY[name.rpartition("_")[2]], steps=300)
 
 
-def _same(page: Any, orbit: nh.Orbit, rounding: float = 0.0) -> None:
+def _same(page: Any, orbit: nh.Orbit, rounding: float = 0.0, poses: float = 0.0) -> None:
     """The page has the momenta, charts and poses of an orbit, to the last bit or to some rounding."""
-    for name, rows in (("r", orbit.reduced_momentum), ("y", orbit.cayley), ("g", orbit.canonical_pose)):
+    for name, rows in (("r", orbit.reduced_momentum), ("y", orbit.cayley)):
         np.testing.assert_allclose(page.numbers(name), rows.ravel(), rtol=0, atol=rounding)
+    np.testing.assert_allclose(page.numbers("g"), orbit.canonical_pose.ravel(), rtol=0, atol=rounding + poses)
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("size", [(1280, 800), (390, 844)], ids=["desk", "phone"])
-@pytest.mark.parametrize("name", [*BODIES, *FORCED, *DRIVEN, "replay"])
+@pytest.mark.parametrize("name", [*BODIES, *FORCED, *DRIVEN, "replay", "top4"])
 def test_opens_quietly(visit: Callable, files: dict, name: str, size: tuple[int, int], scheme: str) -> None:
     """No error, no request but the file, nothing wider than the screen, and pictures that are not empty."""
     look = {"viewport": {"width": size[0], "height": size[1]}, "color_scheme": scheme}
@@ -107,30 +120,37 @@ SLIDERS = {
 PUSHES = {"F1": 0.4, "F2": -0.8, "x1": -0.35, "x2": 0.15, "c1": 0.25, "c2": 0.65}
 SLIDERS["forced_top"] = {**SLIDERS["top"], **PUSHES, "F3": -1.3, "x3": 0.55}
 SLIDERS["forced_sleigh"] = {**SLIDERS["sleigh"], **PUSHES}
+SLIDERS["top4"] = {"J11": 1.7, "J22": 0.6, "J33": 1.1, "J44": 0.75, "J14": -0.15, "J24": 0.31, "J34": 0.12}
+SLIDERS["top4"] |= {"r1": 0.4, "r2": 0.9, "r3": -0.35}
 RUN = {"time_step": 0.17, "steps": 120}
 
 
-@pytest.mark.parametrize("name", [*BODIES, *FORCED])
+@pytest.mark.parametrize("name", [*BODIES, *FORCED, "top4"])
 def test_sliders(visit: Callable, files: dict, name: str) -> None:
-    """Each slider changes its number, and the motion is then that of Python."""
-    page, before = visit(files[name]), None
+    """Each slider changes its number, and the motion is then that of Python, which makes a rotation of any matrix."""
+    page, before, is_wide = visit(files[name]), None, name == "top4"
     for key, value in {**RUN, **SLIDERS[name]}.items():
         page.set(key, value)
         state = page.page.evaluate("JSON.stringify(nonholo.state)")
         assert state != before
         before, state = state, json.loads(state)
         p = state["parameters"]
-        body = _top(p) if name.endswith("top") else nh.ChaplyginSleigh(p["mass"], p["inertia"], p["a"])
+        body = _MADE[name.rpartition("_")[2]](p)
         body = _pushed(body, p) if name in FORCED else body
-        discrete = nh.discretize(body, state["time_step"])
-        _same(page, nh.simulate(discrete, momentum=state["momentum"], steps=state["steps"]))
-    assert {**p, **RUN, "r1": state["momentum"][0], "r2": state["momentum"][1]} == {**SLIDERS[name], **RUN}
+        start = {**(START if is_wide else {}), "momentum": state["momentum"]}
+        motion = nh.simulate(nh.discretize(body, state["time_step"]), **start, steps=state["steps"])
+        _same(page, motion, poses=1e-14 * is_wide)
+    momentum = {f"r{number}": r for number, r in enumerate(state["momentum"], 1)}
+    assert {**p, **RUN, **momentum} == {**SLIDERS[name], **RUN}
     assert page.errors == []
 
 
 def _top(p: dict[str, float]) -> nh.SuslovTop:
     rows = [("J11", "J12", "J13"), ("J12", "J22", "J23"), ("J13", "J23", "J33")]
     return nh.SuslovTop([[p[name] for name in row] for row in rows])
+
+
+_MADE = {"top": _top, "top4": _top4, "sleigh": lambda p: nh.ChaplyginSleigh(p["mass"], p["inertia"], p["a"])}
 
 
 def _pushed(body: Any, p: dict[str, float]) -> nh.Forced:
@@ -261,25 +281,33 @@ def test_link(visit: Callable, files: dict, name: str, key: str) -> None:
     assert again.page.evaluate("JSON.stringify(nonholo.state)") == page.page.evaluate("JSON.stringify(nonholo.state)")
 
 
+_SLEIGH, _PUSHED = "kind=sleigh&mass=1&inertia=1&a=", "kind=forced_sleigh&mass=1&inertia=1&a=1&"
+_FOUR = "kind=top4&J11=1&J22=1&J33=1&J44=1&J14=0&J24=0&J34=0&h=.1&steps=5&r=1+1"
+
+
 @pytest.mark.parametrize(
-    "fragment",
+    ("name", "fragment"),
     [
-        "#kind=top&J11=1",
-        "#kind=%3Cscript%3E",
-        "#kind=__proto__",
-        "#kind=sleigh&mass=1&inertia=1&a=alert(1)&h=.1&steps=5&r=1+1",
-        "#kind=sleigh&mass=1&inertia=1&a=1&h=.1&steps=1e9&r=1+1",
-        "#kind=sleigh&mass=1&inertia=1&a=1&h=NaN&steps=5&r=1+1",
-        "#kind=forced_sleigh&mass=1&inertia=1&a=1&h=.1&steps=5&r=1+1",
-        "#kind=forced_sleigh&mass=1&inertia=1&a=1&F1=1e7&F2=0&x1=0&x2=0&c1=0&c2=0&h=.1&steps=5&r=1+1",
-        "#kind=forced_sleigh&mass=1&inertia=1&a=1&F1=alert(1)&F2=0&x1=0&x2=0&c1=0&c2=0&h=.1&steps=5&r=1+1",
+        ("sleigh", "kind=top&J11=1"),
+        ("sleigh", "kind=%3Cscript%3E"),
+        ("sleigh", "kind=__proto__"),
+        ("sleigh", f"{_SLEIGH}alert(1)&h=.1&steps=5&r=1+1"),
+        ("sleigh", f"{_SLEIGH}1&h=.1&steps=1e9&r=1+1"),
+        ("sleigh", f"{_SLEIGH}1&h=NaN&steps=5&r=1+1"),
+        ("sleigh", f"{_PUSHED}h=.1&steps=5&r=1+1"),
+        ("sleigh", f"{_PUSHED}F1=1e7&F2=0&x1=0&x2=0&c1=0&c2=0&h=.1&steps=5&r=1+1"),
+        ("sleigh", f"{_PUSHED}F1=alert(1)&F2=0&x1=0&x2=0&c1=0&c2=0&h=.1&steps=5&r=1+1"),
+        ("top4", f"{_SLEIGH}1&h=.1&steps=5&r=1+1"),  # another body
+        ("top4", _FOUR),  # two momenta
+        ("top4", f"{_FOUR}+1&g=2"),  # no turn
+        ("top4", f"{_FOUR}+1&g=-1"),  # a mirror
     ],
 )
-def test_bad_links(visit: Callable, files: dict, fragment: str) -> None:
+def test_bad_links(visit: Callable, files: dict, name: str, fragment: str) -> None:
     """What a link holds is read as data: the motion in the file stays, and the page says what is wrong."""
-    page = visit(files["sleigh"], fragment)
+    page = visit(files[name], f"#{fragment}")
     assert "This link could not be read" in page.status
-    assert page.numbers("r")[:2] == pytest.approx([0.0625, -1.0])
+    _same(page, ORBIT if name == "top4" else _sent(name, BODIES[name]))
     assert page.errors == []
 
 
@@ -503,3 +531,92 @@ def test_in_a_notebook(visit: Callable, tmp_path: Path) -> None:
     page.page.frame_locator("iframe").locator("#slide-J13").press("ArrowRight")
     page.page.wait_for_timeout(500)
     assert page.errors == []
+
+
+def test_same_numbers_in_four_dimensions(visit: Callable, files: dict) -> None:
+    """The motion as it was sent, and ten thousand steps of others, are those of Python to the last bit."""
+    page, rng = visit(files["top4"]), np.random.default_rng(5)
+    _same(page, ORBIT)
+    for _ in range(5):
+        p = {key: round(float(x + rng.uniform(-0.2, 0.2)), 3) for key, x in FOUR.items()}
+        momentum, step = rng.normal(size=3).round(3).tolist(), round(float(rng.uniform(0.01, 0.2)), 4)
+        numbers = "&".join(f"{key}={x!r}" for key, x in {**p, "h": step, "steps": 2_000}.items())
+        link = f"kind=top4&{numbers}&r={'+'.join(map(repr, momentum))}"
+        page.page.evaluate("(link) => { location.hash = link; }", link)
+        page.until(f"nonholo.state.time_step === {step!r}")
+        page.settle()
+        _same(page, nh.simulate(nh.discretize(_top4(p), step), momentum=momentum, steps=2_000))
+
+
+def test_continuous_motion_in_four_dimensions(visit: Callable, files: dict) -> None:
+    """The momenta of the continuous motion are those of `flow` to the last bit, for slow, fast and resting motions."""
+    page = visit(files["top4"])
+    for moved in ({}, {"r1": 2.5, "J11": 0.1, "time_step": 0.7, "steps": 900}, {"r1": 0.0, "r2": 0.0, "r3": 0.0}):
+        for key, value in moved.items():
+            page.set(key, value)
+        state = page.page.evaluate("nonholo.state")
+        body, times = _top4(state["parameters"]), np.arange(state["steps"] + 1) * state["time_step"]
+        motion = nh.flow(body, momentum=state["momentum"], times=times, reconstruct=False)
+        np.testing.assert_array_equal(page.page.evaluate("nonholo.flow.rows"), motion.reduced_momentum)
+    assert page.errors == []
+
+
+def test_ready_motions_in_four_dimensions(visit: Callable, files: dict) -> None:
+    """Every ready motion is of a top on SO(4), and runs from the identity or says that it has no real branch."""
+    page = visit(files["top4"])
+    names = page.page.eval_on_selector_all("#preset option", "all => all.map((o) => [o.value, o.textContent])")
+    assert len(names) > 4
+    assert not any(page.page.is_visible(f"#{name}") for name in ("values", "whole", "many", "copy-toml", "forces"))
+    assert "300 steps computed here" in page.status
+    for value, label in names:
+        page.page.select_option("#preset", value)
+        page.settle()
+        assert ("no real branch" in page.status) == (label == "No real branch"), label
+        assert page.page.evaluate("nonholo.state.kind") == "top4"
+    page.page.select_option("#preset", "own")
+    page.settle()
+    _same(page, ORBIT)
+    assert page.errors == []
+
+
+def test_start_by_hand_in_four_dimensions(visit: Callable, files: dict) -> None:
+    """Pressing on the phase portrait, or arrow keys there, change the first two momenta."""
+    page = visit(files["top4"])
+    box = page.page.locator("#phase-canvas").bounding_box()
+    page.page.mouse.click(box["x"] + 0.6 * box["width"], box["y"] + 0.4 * box["height"])
+    page.settle()
+    r = page.page.evaluate("nonholo.state.momentum")
+    assert r[0] > 0.1
+    assert r[1] > 0.1
+    assert r[2] == 0.6
+    page.page.focus("#phase-canvas")
+    page.page.keyboard.press("ArrowUp")
+    page.settle()
+    after = page.page.evaluate("nonholo.state.momentum")
+    assert after[1] > r[1]
+    assert (after[0], after[2]) == (r[0], 0.6)
+
+
+def test_link_and_program_in_four_dimensions(visit: Callable, files: dict) -> None:
+    """A link opens the motion it was made of, with its pose, and the copied program gives its numbers."""
+    page = visit(files["top4"])
+    page.set("J34", 0.25)
+    page.set("r3", 1.1)
+    page.page.click("#share summary")
+    page.page.click("#copy-link")
+    link = page.page.input_value("#dialog-text")
+    page.page.click("#dialog-close")
+    again = visit(files["top4"], "#" + link.partition("#")[2])
+    assert again.page.evaluate("JSON.stringify(nonholo.state)") == page.page.evaluate("JSON.stringify(nonholo.state)")
+    page.page.click("#share summary")
+    page.page.click("#copy-python")
+    names: dict[str, Any] = {}
+    exec(page.page.input_value("#dialog-text"), names)  # noqa: S102
+    _same(page, names["orbit"], poses=1e-14)
+    page.page.click("#dialog-close")
+    page.page.select_option("#preset", "0")
+    page.settle()
+    page.page.click("#share summary")
+    page.page.click("#copy-python")
+    exec(page.page.input_value("#dialog-text"), names)  # noqa: S102
+    _same(page, names["orbit"])

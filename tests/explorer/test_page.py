@@ -28,6 +28,10 @@ def _data(text: str) -> dict[str, Any]:
     return json.loads(found[1])
 
 
+def _run(body: Any, velocity: tuple[float, ...]) -> nh.Orbit:
+    return nh.simulate(nh.discretize(body, 0.1), restricted_velocity=velocity, steps=5)
+
+
 def test_data_of_a_page() -> None:
     """The state of a page is the first state of the orbit, in the canonical frame."""
     orbit = nh.simulate(nh.discretize(SLEIGH, 0.1), body_velocity=(0.3, -1.0, 0.0), steps=20, save_every=5)
@@ -168,11 +172,14 @@ def test_size_and_policy() -> None:
         lambda: nh.simulate(nh.discretize(nh.SuslovTop(np.eye(5)), 0.1), restricted_velocity=(1, 0.5, 0, 0), steps=9),
         lambda: nh.flow(SLEIGH, body_velocity=(1.0, 0.5, 0.0), times=np.linspace(0, 1, 10)),
         lambda: nh.simulate(nh.discretize(TOP, 0.1, order=4), restricted_velocity=(1.0, 0.5), steps=9),
+        lambda: _run(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), (0.5, 0.2)),
+        lambda: _run(nh.RigidBody(np.diag([1.0, 2.0, 3.0, 4.0])), (1.0, 0.2, 0.0, 0.5, 0.1, 0.3)),
+        lambda: _run(nh.MultidimensionalSleigh(1.0, (0.3, 0.1, 0.0), np.diag([1.0, 2.0, 3.0])), (0.5, 0.2, 1.0)),
     ],
-    ids=["four dimensions", "flow", "composition"],
+    ids=["SO(5)", "flow", "composition", "SO(3)", "SO(4)", "SE(3)"],
 )
 def test_replays(orbit: Any) -> None:
-    """What has no kernel in the page comes with its numbers: times, energies, and axes that are those of the poses."""
+    """What has no kernel in the page comes with its numbers: times, energies, places, and axes of the poses."""
     motion = orbit()
     text = explore(motion).text
     data = _data(text)
@@ -181,11 +188,13 @@ def test_replays(orbit: Any) -> None:
     replay = {name: np.frombuffer(base64.b64decode(data["replay"][name])) for name in ("time", "energy", "frames")}
     np.testing.assert_array_equal(replay["time"], motion.time)
     np.testing.assert_array_equal(replay["energy"], motion.energy)
-    frames, g = replay["frames"].reshape(-1, 4, 3), motion.configuration
-    shown = min(3, g.shape[1])
-    np.testing.assert_array_equal(
-        frames[:, 1, : 2 if shown == 3 and motion.system.group == nh.SE(2) else 3][:, :2], g[:, :2, 0]
-    )
+    frames, g, group = replay["frames"].reshape(-1, 4, 3), motion.configuration, motion.system.group
+    if group == nh.SE(2):
+        np.testing.assert_array_equal(frames[:, 1, :2], g[:, :2, 0])
+        return
+    turns = g[:, :3, :3] if group == nh.SE(3) else g
+    np.testing.assert_array_equal(frames[:, 1:], turns[:, :3, [0, 1, -1]].transpose(0, 2, 1))
+    np.testing.assert_array_equal(frames[:, 0], motion.position if group == nh.SE(3) else np.zeros((len(g), 3)))
 
 
 def _in_coordinates(names: tuple[str, ...], heading: str | None = None) -> CoordinateOrbit:
@@ -244,26 +253,6 @@ def test_refusals(value: Any, message: str) -> None:
     """What cannot be shown is refused with a remedy."""
     with pytest.raises((TypeError, ValueError), match=message):
         explore(value)
-
-
-@pytest.mark.parametrize(
-    ("body", "velocity"),
-    [
-        (nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), (0.5, 0.2, 0.0)),
-        (nh.RigidBody(np.diag([1.0, 2.0, 3.0, 4.0])), (1.0, 0.2, 0.0, 0.5, 0.1, 0.3)),
-        (nh.MultidimensionalSleigh(1.0, (0.3, 0.1, 0.0), np.diag([1.0, 2.0, 3.0])), None),
-    ],
-    ids=["SO(3)", "SO(4)", "SE(3)"],
-)
-def test_frames_of_a_replay(body: Any, velocity: Any) -> None:
-    """A replay shows the place of the body and its axes, the columns of the turn: the first two and the last."""
-    start = {"restricted_velocity": (0.5, 0.2, 1.0)} if velocity is None else {"body_velocity": velocity}
-    orbit = nh.simulate(nh.discretize(body, 0.1), **start, steps=5)
-    frames = np.frombuffer(base64.b64decode(_data(explore(orbit).text)["replay"]["frames"])).reshape(-1, 4, 3)
-    moves = body.group == nh.SE(3)
-    turns = orbit.configuration[:, :3, :3] if moves else orbit.configuration
-    np.testing.assert_array_equal(frames[:, 1:], turns[:, :3, [0, 1, -1]].transpose(0, 2, 1))
-    np.testing.assert_array_equal(frames[:, 0], orbit.position if moves else np.zeros((6, 3)))
 
 
 def test_writing(tmp_path: Path) -> None:

@@ -5,13 +5,13 @@ import subprocess
 import sys
 import threading
 from collections.abc import Iterator
-from html.parser import HTMLParser
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote, urlsplit
 
 import pytest
+from links import Links
 
 DOCS = Path(__file__).parents[2] / "docs"
 
@@ -44,28 +44,10 @@ def _pages(site: Path) -> list[Path]:
     return [path for path in sorted(site.rglob("*.html")) if path.parent.name != "_static"]
 
 
-class Links(HTMLParser):
-    """What a page refers to, and the places in it that others may refer to."""
-
-    def __init__(self, path: Path) -> None:
-        super().__init__()
-        self.places: set[str] = {"", "top"}
-        self.referred: list[str] = []
-        self.feed(path.read_text("utf-8"))
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Keep names, links, scripts, pictures and frames."""
-        for name, value in attrs:
-            if name in {"id", "name"}:
-                self.places.add(value or "")
-            if name == ("href" if tag in {"a", "link"} else "src"):
-                self.referred.append(value or "")
-
-
 @pytest.mark.profile("site", instead="test_links")
 def test_every_link_leads_somewhere(site: Path) -> None:
     """Of links, pictures, scripts and frames within the site each file is there, and so is the place in it."""
-    pages = {path: Links(path) for path in _pages(site)}
+    pages = {path: Links(path.read_text("utf-8")) for path in _pages(site)}
     lost = []
     for page, links in pages.items():
         for link in links.referred:
@@ -73,7 +55,7 @@ def test_every_link_leads_somewhere(site: Path) -> None:
             if parts.scheme or parts.netloc:
                 continue
             target = (page.parent / unquote(parts.path)).resolve() if parts.path else page
-            known = pages[target].places if target in pages else {"", unquote(parts.fragment)}
+            known = {"", "top", *pages[target].places} if target in pages else {"", unquote(parts.fragment)}
             if not target.exists() or unquote(parts.fragment) not in known:
                 lost.append((str(page.relative_to(site)), link))
     assert len(pages) > 60

@@ -39,18 +39,15 @@ class Call:
         return list(itertools.islice(result, _BLOCKS)) if self.name.startswith("iterate") else result
 
 
-def call(
-    name: str,
-    function: Callable[..., Any],
-    /,
-    *,
-    slow: bool = False,
-    stores: bool = False,
-    infinite: bool = False,
-    **arguments: Argument,
-) -> Call:
-    """Return a call that works."""
-    return Call(name, function, arguments, slow, stores, infinite)
+def call(name: str, function: Callable[..., Any], /, **given: Any) -> Call:
+    """Return a call that works: arguments, and which of slow, stores and infinite it is."""
+    flags = {flag: given.pop(flag, False) for flag in ("slow", "stores", "infinite")}
+    return Call(name, function, given, **flags)
+
+
+def slow(calls: list[Call]) -> list[Call]:
+    """Return calls that compile, by JAX or numba."""
+    return [dataclasses.replace(each, slow=True) for each in calls]
 
 
 def by_position(function: Callable[..., Any]) -> Callable[..., Any]:

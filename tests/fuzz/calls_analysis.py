@@ -1,7 +1,7 @@
 """Calls of questions that are asked of systems, discretizations and orbits, and of the property checks."""
 
 import numpy as np
-from fuzz.calls import Call, by_position, call
+from fuzz.calls import Call, by_position, call, slow
 from fuzz.calls_maps import BENT, SLEIGH, TOP
 from fuzz.kinds import anything, array, count, flag, function, integer, number, positive, text, thing
 
@@ -26,6 +26,7 @@ def calls() -> list[Call]:
 
 def _of_systems() -> list[Call]:
     system, orbit = SLEIGH.system, nh.simulate(SLEIGH, body_velocity=(1.0, 0.3, 0.0), steps=20)
+    ahead = {"configuration": array(np.eye(3)), "body_velocity": array([0.0, 0.4, 0.0])}
     halved = nh.simulate(nh.discretize(system, float(SLEIGH.time_step) / 2), body_velocity=(1.0, 0.3, 0.0), steps=40)
     return [
         call("asymptotics", nh.asymptotics, subject=thing(system)),
@@ -41,14 +42,7 @@ def _of_systems() -> list[Call]:
         call("equilibria [near]", nh.equilibria, system=thing(_HEAVY), configuration=array(np.eye(3)), slow=True),
         call("invariant_measure", nh.invariant_measure, motion=thing(TOP), energy=positive(1.0)),
         call("invariants", nh.invariants, orbit=thing(orbit)),
-        call(
-            "linearize",
-            nh.linearize,
-            system=thing(SLEIGH),
-            configuration=array(np.eye(3)),
-            body_velocity=array([0.0, 0.4, 0.0]),
-            slow=True,
-        ),
+        call("linearize", nh.linearize, system=thing(SLEIGH), **ahead, slow=True),
         call("lyapunov_exponents", nh.lyapunov_exponents, orbit=thing(orbit)),
         call("lyapunov_function", nh.lyapunov_function, system=thing(system)),
     ]
@@ -61,16 +55,26 @@ def _ahead(speed: float) -> nh.analysis.Linearization:
 def _of_maps() -> list[Call]:
     top, sleigh, W = {"discrete": thing(TOP)}, {"discrete": thing(SLEIGH)}, nh.SO(3).exp(BENT)
     start = {"energy": positive(0.5), "side": integer(1)}
+    record = {"system_of": function(_slide), "measurements": anything(_RECORD), "guess": anything({"a": 0.4})}
+    record |= {"time_step": positive(0.1), "noise": anything(0.01), "bounds": anything({"a": (0.1, 1.0)})}
+    record |= {"loss": text("linear")}
+    steered = {
+        **sleigh,
+        "start": anything({}),
+        "goal": anything({"restricted_velocity": (0.1, 0.2)}),
+        "steps": count(3),
+    }
+    to_rest = {"bounds": anything(None), "cost": text("effort")}
+    around = {"method": text("ipopt"), "obstacles": anything(([(2.0, 0.0)], 0.5)), "outline": anything([(0.0, 0.1)])}
+    around |= {"via": anything({2: (0.1, 0.0)}), "state_bounds": anything({"x": (-1.0, 1.0)})}
+    around |= {"guess": anything([(0.0, 0.0), (0.1, 0.0)]), "progress": flag(False)}
+    weights = {f"{part}_weight": positive(1.0) for part in ("state", "control", "final")}
+    follow, begin = nh.tracking_feedback, anything({"restricted_velocity": (0.1, 0.2)})
+    followed = {**sleigh, "start": begin, "controls": array(np.zeros((3, 3))), **weights, "bounds": anything(None)}
+    values = {"linearization": thing(_ahead), "interval": array([1.0, 2.0]), "samples": count(1)}
     return [
         call("critical_energies", nh.critical_energies, **top),
-        call(
-            "critical_values",
-            nh.critical_values,
-            linearization=thing(_ahead),
-            interval=array([1.0, 2.0]),
-            samples=count(1),
-            slow=True,
-        ),
+        call("critical_values", nh.critical_values, **values, slow=True),
         call("flow_obstruction", nh.flow_obstruction, **sleigh, energy=positive(0.5), samples=count(4)),
         call("half_planes", nh.half_planes, **top, displacement=array(W, "batch")),
         call("half_planes [momentum]", nh.half_planes, **top, momentum=array([0.1, 0.2, 0.05], "batch")),
@@ -78,57 +82,8 @@ def _of_maps() -> list[Call]:
         call("heteroclinic [displacement]", nh.heteroclinic, **top, displacement=array(W)),
         call("invariant_curve", nh.invariant_curve, **top, energy=positive(0.5), resolution=count(40)),
         call("invariant_curve [sleigh]", nh.invariant_curve, **sleigh, energy=positive(0.5), resolution=count(40)),
-        call(
-            "fit",
-            nh.fit,
-            system_of=function(_slide),
-            measurements=anything(_RECORD),
-            guess=anything({"a": 0.4}),
-            time_step=positive(0.1),
-            noise=anything(0.01),
-            bounds=anything({"a": (0.1, 1.0)}),
-            loss=text("linear"),
-            slow=True,
-        ),
-        call(
-            "steer",
-            nh.steer,
-            discrete=thing(SLEIGH),
-            start=anything({}),
-            goal=anything({"restricted_velocity": (0.1, 0.2)}),
-            steps=count(3),
-            bounds=anything(None),
-            cost=text("effort"),
-            slow=True,
-        ),
-        call(
-            "tracking_feedback",
-            nh.tracking_feedback,
-            discrete=thing(SLEIGH),
-            start=anything({"restricted_velocity": (0.1, 0.2)}),
-            controls=array(np.zeros((3, 3))),
-            state_weight=positive(1.0),
-            control_weight=positive(1.0),
-            final_weight=positive(1.0),
-            bounds=anything(None),
-            slow=True,
-        ),
-        call(
-            "steer [ipopt]",
-            nh.steer,
-            discrete=thing(SLEIGH),
-            start=anything({}),
-            goal=anything({"restricted_velocity": (0.1, 0.2)}),
-            steps=count(3),
-            method=text("ipopt"),
-            obstacles=anything(([(2.0, 0.0)], 0.5)),
-            outline=anything([(0.0, 0.1)]),
-            via=anything({2: (0.1, 0.0)}),
-            state_bounds=anything({"x": (-1.0, 1.0)}),
-            guess=anything([(0.0, 0.0), (0.1, 0.0)]),
-            progress=flag(False),
-            slow=True,
-        ),
+        *slow([call("fit", nh.fit, **record), call("steer", nh.steer, **steered, **to_rest)]),
+        *slow([call("steer [ipopt]", nh.steer, **steered, **around), call("tracking_feedback", follow, **followed)]),
         call("momentum_locus", nh.momentum_locus, **top, resolution=count(12)),
         call("single_valued_region", nh.single_valued_region, sleigh=thing(SLEIGH)),
     ]

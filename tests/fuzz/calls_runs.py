@@ -61,11 +61,8 @@ def _runs() -> list[Call]:
         call("simulate [forced]", nh.simulate, **given, **_HOW, save_every=count(1)),
         call("flow [forced]", nh.flow, **_flow(TOP) | {"system": thing(forced)}),
     ]
-    stored = {
-        "store": path("new.zarr", none=True),
-        "checkpoint_every": count(2, none=True),
-        "scenario": text(None, True),
-    }
+    stored = {"store": path("new.zarr", none=True), "checkpoint_every": count(2, none=True)}
+    stored |= {"scenario": text(None, True)}
     given = {"discrete": thing(SLEIGH), "steps": count(5), "body_velocity": array([1.0, 0.3, 0.0])}
     return [*found, call("simulate [stored]", nh.simulate, **given, **stored)]
 

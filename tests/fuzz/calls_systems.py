@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from fuzz.calls import Call, call
+from fuzz.calls import Call, call, slow
 from fuzz.kinds import Argument, anything, array, count, function, number, positive, text, thing
 
 import nonholo as nh
@@ -35,9 +35,7 @@ def calls() -> list[Call]:
         *_general(),
         *_forces(),
         *_methods(),
-        *_in_coordinates(),
-        *_locomotion(),
-        *_examples(),
+        *slow([*_in_coordinates(), *_locomotion(), *_examples()]),
     ]
 
 
@@ -141,7 +139,7 @@ def _methods_in_space() -> list[Call]:
 
 def _in_coordinates() -> list[Call]:
     make, action = nh.GroupLagrangeDAlembert, nh.mass_tensor_lagrangian(nh.SE(2), np.eye(3))
-    named = {"coordinates": anything(("x", "y")), "name": text("particle"), "slow": True}
+    named = {"coordinates": anything(("x", "y")), "name": text("particle")}
     free, spring = nh.LagrangeDAlembert(_kinetic, None, dimension=2), {"configuration": array([0.1, 0.2])}
     moving: dict[str, Argument] = {"body_velocity": array([0.5, 1.0])}
     given: dict[str, Argument] = {"lagrangian": function(_kinetic), "constraint_forms": function(None, none=True)}
@@ -153,29 +151,20 @@ def _in_coordinates() -> list[Call]:
     found = {"discrete": thing(discrete), "events": anything(None)}
     return [
         call("LagrangeDAlembert", nh.LagrangeDAlembert, **given, dimension=count(2), rule=text("midpoint"), **named),
-        call("LagrangeDAlembert.regularity", free.regularity, **pair, slow=True),
-        call("discretize [coordinates]", nh.discretize, system=thing(free), time_step=positive(0.1), slow=True),
-        call(
-            "flow [coordinates]", nh.flow, system=thing(free), **spring, **moving, times=times, **tolerances, slow=True
-        ),
-        call("iterate [coordinates]", nh.iterate, discrete=thing(discrete), **spring, **moving, **blocks, slow=True),
-        call("ensemble [coordinates]", nh.ensemble, **members, **spring, steps=count(3), slow=True),
-        call("simulate [coordinates]", nh.simulate, **found, **spring, **moving, steps=count(3), slow=True),
+        call("LagrangeDAlembert.regularity", free.regularity, **pair),
+        call("discretize [coordinates]", nh.discretize, system=thing(free), time_step=positive(0.1)),
+        call("flow [coordinates]", nh.flow, system=thing(free), **spring, **moving, times=times, **tolerances),
+        call("iterate [coordinates]", nh.iterate, discrete=thing(discrete), **spring, **moving, **blocks),
+        call("ensemble [coordinates]", nh.ensemble, **members, **spring, steps=count(3)),
+        call("simulate [coordinates]", nh.simulate, **found, **spring, **moving, steps=count(3)),
         call(
             "GroupLagrangeDAlembert",
             make,
             group=thing(nh.SE(2)),
             discrete_lagrangian=function(action),
             constraint_forms=function(None, none=True),
-            slow=True,
         ),
-        call(
-            "mass_tensor_lagrangian",
-            nh.mass_tensor_lagrangian,
-            group=thing(nh.SE(2)),
-            mass_tensor=array(np.eye(3)),
-            slow=True,
-        ),
+        call("mass_tensor_lagrangian", nh.mass_tensor_lagrangian, group=thing(nh.SE(2)), mass_tensor=array(np.eye(3))),
     ]
 
 
@@ -202,15 +191,15 @@ def _locomotion() -> list[Call]:
     rows = lambda s: np.eye(3, 5) + 0 * s.sum()  # noqa: E731
     body = {"group": thing(nh.SO(3)), "shape_coordinates": anything(("a", "b")), "name": text("Satellite")}
     return [
-        call("ShapedBody", nh.ShapedBody, **body, constraint_forms=function(rows), lagrangian=thing(None), slow=True),
-        call("accessibility", nh.accessibility, **asked, slow=True),
-        call("geometric_phase", nh.geometric_phase, system=thing(car.system), gait=function(_still), **gait, slow=True),
-        call("local_connection", nh.local_connection, system=thing(car.system), pose=pose, slow=True),
-        call("connection.matrix", lambda shape: connection().matrix(shape), shape=shape, slow=True),
-        call("connection.curvature", lambda shape: connection().curvature(shape), shape=shape, slow=True),
-        call("connection.body_velocity", lambda **given: connection().body_velocity(**given), **moving, slow=True),
-        call("connection.momentum_rate", lambda **given: connection().momentum_rate(**given), **moving, slow=True),
-        call("plot.curvature", drawn, **drawing, slow=True),
+        call("ShapedBody", nh.ShapedBody, **body, constraint_forms=function(rows), lagrangian=thing(None)),
+        call("accessibility", nh.accessibility, **asked),
+        call("geometric_phase", nh.geometric_phase, system=thing(car.system), gait=function(_still), **gait),
+        call("local_connection", nh.local_connection, system=thing(car.system), pose=pose),
+        call("connection.matrix", lambda shape: connection().matrix(shape), shape=shape),
+        call("connection.curvature", lambda shape: connection().curvature(shape), shape=shape),
+        call("connection.body_velocity", lambda **given: connection().body_velocity(**given), **moving),
+        call("connection.momentum_rate", lambda **given: connection().momentum_rate(**given), **moving),
+        call("plot.curvature", drawn, **drawing),
     ]
 
 
@@ -230,26 +219,26 @@ def _examples() -> list[Call]:
         call(
             "examples.ball_on_turntable", made.ball_on_turntable, table_rate=number(1.0), velocity=velocity, slow=True
         ),
-        call("examples.bicycle", made.bicycle, wheelbase=positive(1.0), speed=number(4.6), place=place, slow=True),
-        call("examples.rattleback", made.rattleback, center=number(1.0), tilt=array([0.01, 0.02]), slow=True),
-        call("examples.snake", made.snake, half_length=positive(0.5), place=place, joint_rates=velocity, slow=True),
-        call("examples.tilting_disk", made.tilting_disk, gravity=positive(1.0), turning=number(0.5), slow=True),
-        call("examples.trailers", made.trailers, hitches=array([1.0, 0.5], "any"), speed=number(0.5), slow=True),
-        call("examples.ball_in_bowl", made.ball_in_bowl, reach=positive(1.0), spin=number(3.0), slow=True),
-        call("examples.chaplygin_ball", made.chaplygin_ball, mass=positive(1.0), radius=positive(1.0), slow=True),
-        call("examples.heavy_suslov_top", made.heavy_suslov_top, velocity=array([0.6, 0.4]), slow=True),
-        call("examples.sleigh_in_a_well", made.sleigh_in_a_well, **common, stiffness=number(0.3), slow=True),
-        call("examples.driven_sleigh", made.driven_sleigh, **driven, slow=True),
-        call("examples.roller_racer", made.roller_racer, **racer, slow=True),
-        call("examples.twistcar", made.twistcar, **racer, handle_mass=positive(0.2), slow=True),
-        call("examples.chaotic_quartic_oscillator", made.chaotic_quartic_oscillator, pairs=count(3), slow=True),
-        call("examples.kinematic_car", made.kinematic_car, **common, **car, slow=True),
-        call("examples.knife_edge_on_incline", made.knife_edge_on_incline, **common, configuration=place, slow=True),
-        call("examples.non_reversible", made.non_reversible, **odd, slow=True),
-        call("examples.particle", made.particle, configuration=place, planar_velocity=velocity, slow=True),
-        call("examples.rolling_disk", made.rolling_disk, **disk, configuration=upright, slow=True),
-        call("examples.snakeboard", made.snakeboard, mass=positive(1.0), **board, slow=True),
-        call("examples.two_wheeled_robot", made.two_wheeled_robot, **common, **robot, slow=True),
+        call("examples.bicycle", made.bicycle, wheelbase=positive(1.0), speed=number(4.6), place=place),
+        call("examples.rattleback", made.rattleback, center=number(1.0), tilt=array([0.01, 0.02])),
+        call("examples.snake", made.snake, half_length=positive(0.5), place=place, joint_rates=velocity),
+        call("examples.tilting_disk", made.tilting_disk, gravity=positive(1.0), turning=number(0.5)),
+        call("examples.trailers", made.trailers, hitches=array([1.0, 0.5], "any"), speed=number(0.5)),
+        call("examples.ball_in_bowl", made.ball_in_bowl, reach=positive(1.0), spin=number(3.0)),
+        call("examples.chaplygin_ball", made.chaplygin_ball, mass=positive(1.0), radius=positive(1.0)),
+        call("examples.heavy_suslov_top", made.heavy_suslov_top, velocity=array([0.6, 0.4])),
+        call("examples.sleigh_in_a_well", made.sleigh_in_a_well, **common, stiffness=number(0.3)),
+        call("examples.driven_sleigh", made.driven_sleigh, **driven),
+        call("examples.roller_racer", made.roller_racer, **racer),
+        call("examples.twistcar", made.twistcar, **racer, handle_mass=positive(0.2)),
+        call("examples.chaotic_quartic_oscillator", made.chaotic_quartic_oscillator, pairs=count(3)),
+        call("examples.kinematic_car", made.kinematic_car, **common, **car),
+        call("examples.knife_edge_on_incline", made.knife_edge_on_incline, **common, configuration=place),
+        call("examples.non_reversible", made.non_reversible, **odd),
+        call("examples.particle", made.particle, configuration=place, planar_velocity=velocity),
+        call("examples.rolling_disk", made.rolling_disk, **disk, configuration=upright),
+        call("examples.snakeboard", made.snakeboard, mass=positive(1.0), **board),
+        call("examples.two_wheeled_robot", made.two_wheeled_robot, **common, **robot),
     ]
     others = {*made.__all__} - {"Example"} - {each.name.removeprefix("examples.") for each in calls}
     return calls + [_by_signature(f"examples.{name}", getattr(made, name)) for name in sorted(others)]
@@ -258,4 +247,4 @@ def _examples() -> list[Call]:
 def _by_signature(name: str, make: Callable[..., Any]) -> Call:
     """Return a call of which nothing but the defaults is known."""
     arguments = inspect.signature(make).parameters.values()
-    return call(name, make, **{each.name: anything(each.default) for each in arguments}, slow=True)
+    return call(name, make, **{each.name: anything(each.default) for each in arguments})

@@ -7,30 +7,9 @@ from pathlib import Path
 from typing import Any
 
 HOSTILE: list[Any] = [
-    None,
-    True,
-    0,
-    -1,
-    7,
-    1e30,
-    10**15,
-    10**400,
-    -0.5,
-    float("nan"),
-    float("inf"),
-    "",
-    "abc",
-    "../victim.zarr/time",
-    "/tmp/../etc",  # noqa: S108  # a name that leaves the store
-    "a\x1b]0;gone\x07b",
-    "fuzz.marker:touch",
-    "subprocess:call",
-    [],
-    {},
-    [1, 2, 3],
-    ["abc"] * 3,
-    {"a": 1},
-    "deep",
+    *(None, True, 0, -1, 7, 1e30, 10**15, 10**400, -0.5, float("nan"), float("inf"), "", "abc"),
+    *("../victim.zarr/time", "/tmp/../etc", "a\x1b]0;gone\x07b"),  # noqa: S108  # a name that leaves the store
+    *("fuzz.marker:touch", "subprocess:call", [], {}, [1, 2, 3], ["abc"] * 3, {"a": 1}, "deep"),
 ]
 _DEPTH = 20_000
 

@@ -4,6 +4,7 @@ import dataclasses
 import decimal
 import numbers
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -31,64 +32,16 @@ class Argument:
     complex: bool = False
 
 
-def number(value: Any) -> Argument:
-    """Return a finite real number."""
-    return Argument("number", value)
-
-
-def positive(value: Any) -> Argument:
-    """Return a positive number."""
-    return Argument("positive", value)
-
-
-def count(value: int, none: bool = False) -> Argument:
-    """Return a positive integer."""
-    return Argument("count", value, none)
-
-
-def integer(value: Any) -> Argument:
-    """Return an integer."""
-    return Argument("integer", value)
+number, positive, integer, count = (partial(Argument, kind) for kind in ("number", "positive", "integer", "count"))
+path, text, flag, function = (partial(Argument, kind) for kind in ("path", "text", "flag", "function"))
+rule, thing = (partial(Argument, kind) for kind in ("rule", "thing"))
+anything = partial(Argument, "anything", none=True)
+"""These make arguments of the kinds above from values that work; trials have a folder of their own for paths."""
 
 
 def array(value: Any, shape: str = "same", none: bool = False, complex: bool = False) -> Argument:  # noqa: A002
     """Return an array of finite numbers."""
     return Argument("array", np.asarray(value, dtype=np.float64), none, shape, complex)
-
-
-def path(value: str, none: bool = False) -> Argument:
-    """Return a path; trials have a folder of their own."""
-    return Argument("path", value, none)
-
-
-def text(value: str | None, none: bool = False) -> Argument:
-    """Return a text."""
-    return Argument("text", value, none)
-
-
-def flag(value: bool) -> Argument:
-    """Return a truth value."""
-    return Argument("flag", value)
-
-
-def function(value: Callable[..., Any], none: bool = False) -> Argument:
-    """Return a function."""
-    return Argument("function", value, none)
-
-
-def rule(value: str) -> Argument:
-    """Return the name of a rule, in whose place a function may stand."""
-    return Argument("rule", value)
-
-
-def thing(value: Any, none: bool = False) -> Argument:
-    """Return an object of the library, or one of a few names."""
-    return Argument("thing", value, none)
-
-
-def anything(value: Any) -> Argument:
-    """Return what has no rule of its own here: that nothing else than our errors comes is all that is asked."""
-    return Argument("anything", value, none=True)
 
 
 def legal(argument: Argument, value: Any) -> bool:

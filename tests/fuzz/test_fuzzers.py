@@ -140,11 +140,3 @@ def test_the_continuation_is_that_of_the_definition(family: str) -> None:
     path = followed(equations, r)
     assert path.whole.all()
     np.testing.assert_allclose(path.roots, orbit.displacement, rtol=0, atol=1e-12)
-
-
-def test_the_continuation_meets_folds() -> None:
-    """Momenta without bound lead over a fold, at which the determinant vanishes."""
-    system = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
-    path = followed(steps.equations_of(system)[0], np.array([[5.0, 5.0], [1e-3, 1e-3]]))
-    assert path.folded.tolist() == [True, False]
-    assert path.whole.tolist() == [False, True]

@@ -18,11 +18,13 @@ PAGES = (
     "how-to/compare-motions.md",
     "how-to/differentiate-and-fit.md",
     "how-to/drive-a-robot.md",
+    "how-to/events-and-sections.md",
     "how-to/explore.md",
     "how-to/gaits.md",
     "how-to/linearize.md",
     "how-to/make-a-dataset.md",
     "how-to/run-an-ensemble.md",
+    "how-to/run-for-days.md",
     "how-to/steer.md",
     "how-to/style-a-picture.md",
     "how-to/why-a-run-stopped.md",
@@ -30,10 +32,8 @@ PAGES = (
 ELSEWHERE = {  # pages whose blocks run with what stands around them, and where
     "how-to/beyond-one-machine.md": "ensembles/test_cluster.py",
     "how-to/define-your-own-system.md": "testing/test_how_to.py",
-    "how-to/events-and-sections.md": "simulation/test_events.py",
     "how-to/export-poses.md": "io/test_csv.py",
     "how-to/run-a-sweep.md": "cli/test_sweep.py",
-    "how-to/run-for-days.md": "simulation/test_stored_runs.py",
 }
 NOTEBOOKS = {"how-to/steer.md", "how-to/differentiate-and-fit.md", "how-to/gaits.md"}
 LONG = {
@@ -41,6 +41,7 @@ LONG = {
     "how-to/drive-a-robot.md",
     "how-to/linearize.md",
     "how-to/make-a-dataset.md",
+    "how-to/run-for-days.md",
 }
 
 

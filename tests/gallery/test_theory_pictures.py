@@ -5,6 +5,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 import scripts
+from scripts import script
 
 import nonholo as nh
 
@@ -64,3 +65,10 @@ def test_the_three_angles_add_up_to_zero(script: ModuleType) -> None:
     touch, phi = np.array(script.curve(t)).T, np.arctan(t)
     across = np.stack([np.cos(phi), -np.sin(phi)], axis=-1)
     assert np.allclose(np.sum(across * (touch - script.INSIDE), axis=-1), 0.0, atol=1e-14)
+
+
+def test_page_is_drawn() -> None:
+    """A coarse page has two panels in space and four in the plane, and renders."""
+    figure = script("docs/gallery/loci.py").draw(resolution=6)
+    assert [axes.name for axes in figure.axes] == ["3d", "3d"] + 4 * ["rectilinear"]
+    figure.canvas.draw()

@@ -11,7 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matrix_algebra import chaplygin_sleigh, special_euclidean, special_orthogonal, wedge
+from make_discrete_orbits import planar
+from make_general_orbits import homogeneous
+from matrix_algebra import special_euclidean, special_orthogonal, wedge
 from mpmath import mp
 
 mp.dps = 60
@@ -126,8 +128,7 @@ def sleigh(a: float, b: float, pi: float, phat: float) -> dict:
     """Return a Chaplygin sleigh with m = 1.5, J = 1 at a point of the plane of the deltoid."""
     m = 1.5
     p1 = (phat - 2 * m * a * a) / a
-    body = chaplygin_sleigh("", m, 1.0, a, b)
-    J = [[float(x) for x in row] for row in body.mass_tensor]
+    J = homogeneous(planar(m, 1.0, a, b)).astype(float).tolist()
     parameters = {"mass": m, "inertia": 1.0, "a": a, "b": b}
     return case("sleigh", parameters, J, special_euclidean(2)[:2], 1.0, [pi - b * p1, p1], 3)
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from make_discrete_orbits import planar
 from make_general_orbits import (
     DIGITS,
     MIXED_ANNIHILATOR,
@@ -21,10 +22,11 @@ from make_general_orbits import (
     derivative,
     displacement,
     exact,
+    homogeneous,
     momentum,
     principal,
+    refined,
     remaining,
-    residual,
     solve,
     suslov_rows,
 )
@@ -61,26 +63,11 @@ class Case:
     def tensor(self, body: list[Any]) -> Array:
         """Return the mass tensor: of a sleigh from four numbers, else from an upper triangle row by row."""
         if "sleigh" in self.name:
-            m, inertia, x, y = body
-            half = inertia / 2
-            return np.array(
-                [[half + m * x * x, m * x * y, m * x], [m * x * y, half + m * y * y, m * y], [m * x, m * y, m]]
-            )
+            return homogeneous(planar(*body))
         size = len(self.basis[0])
         tensor = np.zeros((size, size), dtype=object)
         tensor[np.triu_indices(size)] = body
         return tensor + np.triu(tensor, 1).T
-
-
-def refined(equations: Equations, target: Array, root: tuple[Array, Array]) -> Array:
-    """Return the root that is that close to a known one."""
-    x, inverse = root
-    for _ in range(30):
-        change = inverse @ residual(equations, x, target)
-        x = x - change
-        if np.abs(change).max() < mpf(10) ** (5 - mp.dps):
-            return x
-    raise ArithmeticError("Newton's method did not converge")
 
 
 def end(case: Case, numbers: list[Any], roots: Roots) -> Array:
@@ -171,37 +158,21 @@ def cases() -> list[Case]:
     """Return seven bodies, each in motion and at rest, where the displacement is the identity, and a closed loop."""
     so3, so4, se3 = special_orthogonal(3), special_orthogonal(4), special_euclidean(3)
     pushes = [[0.3, -0.5, 0.2], [-0.4, 0.6, 0.1], [0.2, 0.3, -0.3], [0.5, -0.1, 0.4]]
+    plane = SE2, [[1, 0, 0], [0, 1, 0]], [[0, 0, 1]], SLEIGH
     moving = [
         Case("top", so3, suslov_rows(3), remaining(suslov_rows(3)), TOP, [0.9, -0.4], [], False),
         Case("tilted top", so3, TILTED_ROWS, TILTED_AXIS, TILTED, [0.5, 0.6], [], False),
-        Case("sleigh", SE2, sleigh_rows_of_plane(), [[0, 0, 1]], SLEIGH, [0.8, -0.5], [], False),
+        Case("sleigh", *plane, [0.8, -0.5], [], False),
         Case("four", so4, suslov_rows(4), remaining(suslov_rows(4)), FOUR, [0.5, -0.4, 0.3], [], False),
         Case("mixed", se3, MIXED_SUBSPACE, MIXED_ANNIHILATOR, MIXED, [0.3, -0.2, 0.25], [], True),
-        Case("driven sleigh", SE2, sleigh_rows_of_plane(), [[0, 0, 1]], SLEIGH, [0.8, -0.5], pushes, False),
-        Case(
-            "heavy sleigh",
-            SE2,
-            sleigh_rows_of_plane(),
-            [[0, 0, 1]],
-            SLEIGH,
-            [0.8, -0.5],
-            pushes,
-            False,
-            friction=(0.3, 0.2, 0.1),
-            weight=(0.4, -1.0, 0.5, 0.3),
-        ),
+        Case("driven sleigh", *plane, [0.8, -0.5], pushes, False),
+        Case("heavy sleigh", *plane, [0.8, -0.5], pushes, False, 0.3, (0.3, 0.2, 0.1), (0.4, -1.0, 0.5, 0.3)),
     ]
-    plane = SE2, sleigh_rows_of_plane(), [[0, 0, 1]], SLEIGH
     return [
         *moving,
         Case("steered sleigh", *plane, [0.8, -0.5], [], False, gains=(0.7, 0.2, 0.5)),
         *(replace(case, name=f"{case.name} at rest", velocity=[0.0] * len(case.velocity)) for case in moving),
     ]
-
-
-def sleigh_rows_of_plane() -> list[list[int]]:
-    """Return the directions of turning and of sliding along the blade."""
-    return [[1, 0, 0], [0, 1, 0]]
 
 
 def main() -> None:

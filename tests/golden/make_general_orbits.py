@@ -37,11 +37,7 @@ PARTS = 40
 TOLERANCE = "1e-48"
 
 # Three directions of se(3) that mix rotations and translations, and three covectors that vanish on them, exactly.
-MIXED_SUBSPACE = [
-    [1.0, 0.0, 1.0, 0.75, -0.5, 0.75],
-    [0.0, 1.0, 0.0, 0.5, 0.25, -1.0],
-    [1.0, 1.0, 0.0, 1.0, 0.5, -0.75],
-]
+MIXED_SUBSPACE = [[1.0, 0.0, 1.0, 0.75, -0.5, 0.75], [0.0, 1.0, 0.0, 0.5, 0.25, -1.0], [1.0, 1.0, 0.0, 1.0, 0.5, -0.75]]
 MIXED_ANNIHILATOR = [
     [-0.5, -0.5, -0.25, 1.0, 0.0, 0.0],
     [-0.25, -0.25, 0.75, 0.0, 1.0, 0.0],
@@ -192,8 +188,12 @@ def solve(equations: Equations, target: Array, x: Array) -> Array:
     """Solve from x, in float64 and then in mpmath numbers with the inverse Jacobian of float64."""
     rounded = equations.rounded()
     x = newton(rounded, target.astype(float), x.astype(float))
-    inverse = np.linalg.inv(derivative(rounded, x))
-    x = exact(x)
+    return refined(equations, target, (exact(x), np.linalg.inv(derivative(rounded, x))))
+
+
+def refined(equations: Equations, target: Array, root: tuple[Array, Array]) -> Array:
+    """Return the root that is that close to a known one, with the inverse Jacobian matrix there in float64."""
+    x, inverse = root
     for _ in range(30):
         change = inverse @ residual(equations, x, target)
         x = x - change

@@ -7,6 +7,7 @@ definition. Nothing of the library is imported here.
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, cast
 
@@ -96,11 +97,11 @@ class Motion:
             gs.append((turned >> shift) // (j + 1))
         return ws, gs
 
-    def solved(self, velocity: list[float], a_unit: int) -> list[tuple[Any, Any]]:
+    def solved(self, velocity: list[float], a_unit: int, times: Sequence[float] = TIMES) -> list[tuple[Any, Any]]:
         """Return velocities and poses at the times."""
         w, g, found = whole(velocity), whole(np.eye(self.size)), []
-        for step in range(TIMES[-1] * a_unit + 1):
-            if step % a_unit == 0 and step // a_unit in TIMES:
+        for step in range(int(times[-1] * a_unit) + 1):
+            if step / a_unit in times:
                 found.append((w, g))
             ws, gs = self.expanded(w, g, a_unit.bit_length() - 1)
             w, g = sum(ws[1:], ws[0]), sum(gs[1:], gs[0])

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,18 +16,8 @@ Number = Any  # an mpf, or an int that is exact
 Vector = list[Number]
 Matrix = list[list[Number]]
 
-SO3 = [
-    [[0, 0, 0], [0, 0, -1], [0, 1, 0]],
-    [[0, 0, 1], [0, 0, 0], [-1, 0, 0]],
-    [[0, -1, 0], [1, 0, 0], [0, 0, 0]],
-]
-SE2 = [
-    [[0, -1, 0], [1, 0, 0], [0, 0, 0]],
-    [[0, 0, 1], [0, 0, 0], [0, 0, 0]],
-    [[0, 0, 0], [0, 0, 1], [0, 0, 0]],
-]
-IDENTITY = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
-ANNIHILATOR = [0, 0, 1]
+SO3 = [[[0, 0, 0], [0, 0, -1], [0, 1, 0]], [[0, 0, 1], [0, 0, 0], [-1, 0, 0]], [[0, -1, 0], [1, 0, 0], [0, 0, 0]]]
+SE2 = [[[0, -1, 0], [1, 0, 0], [0, 0, 0]], [[0, 0, 1], [0, 0, 0], [0, 0, 0]], [[0, 0, 0], [0, 0, 1], [0, 0, 0]]]
 
 
 def identity(size: int) -> Matrix:
@@ -52,38 +41,6 @@ def special_euclidean(n: int) -> list[Matrix]:
         return SE2
     rotations = [[*([*row, 0] for row in element), [0] * (n + 1)] for element in special_orthogonal(n)]
     return rotations + [[[int((r, c) == (i, n)) for c in range(n + 1)] for r in range(n + 1)] for i in range(n)]
-
-
-@dataclass(frozen=True)
-class Body:
-    """A Suslov top or a Chaplygin sleigh: float inputs and the matrices made from them exactly."""
-
-    system: str
-    name: str
-    parameters: dict[str, Any]
-    mass_tensor: Matrix
-    basis: Sequence[Matrix]
-    subspace: Sequence[Sequence[int]]
-
-
-def suslov_top(name: str, mass_tensor: list[list[float]]) -> Body:
-    """Return the top with forbidden axis e3."""
-    tensor = [[mpf(entry) for entry in row] for row in mass_tensor]
-    subspace = [[0, 1, 0], [-1, 0, 0]]
-    return Body("suslov", name, {"mass_tensor": mass_tensor}, tensor, SO3, subspace)
-
-
-def chaplygin_sleigh(name: str, mass: float, inertia: float, a: float, b: float) -> Body:
-    """Return the sleigh with its homogeneous mass tensor; inertia is about the center of mass."""
-    m, x, y = mpf(mass), mpf(a), mpf(b)
-    half = mpf(inertia) / 2
-    tensor = [
-        [half + m * x * x, m * x * y, m * x],
-        [m * x * y, half + m * y * y, m * y],
-        [m * x, m * y, m],
-    ]
-    parameters = {"mass": mass, "inertia": inertia, "a": a, "b": b}
-    return Body("sleigh", name, parameters, tensor, SE2, [[1, 0, 0], [0, 1, 0]])
 
 
 def transpose(x: Matrix) -> Matrix:
@@ -110,11 +67,6 @@ def trace_product(x: Matrix, y: Matrix) -> Number:
 def largest(x: Matrix) -> Number:
     """Return the largest modulus of an entry."""
     return max(abs(entry) for row in x for entry in row)
-
-
-def apply(x: Matrix, v: Vector) -> Vector:
-    """Return the vector x v."""
-    return [mp.fdot(row, v) for row in x]
 
 
 def combine(coefficients: Vector, matrices: Sequence[Matrix]) -> Matrix:
@@ -150,31 +102,6 @@ def inertia_operator(basis: Sequence[Matrix], mass_tensor: Matrix) -> Matrix:
     """Return the matrix tr(E_i JJ E_j^T)."""
     products = [multiply(element, mass_tensor) for element in basis]
     return [[trace_product(x, transpose(y)) for y in basis] for x in products]
-
-
-def solve2(matrix: Matrix, right: Vector) -> tuple[Vector, Number]:
-    """Solve two linear equations; return the solution and the determinant."""
-    (p, q), (r, s) = matrix
-    determinant = p * s - q * r
-    u, v = right
-    return [(s * u - q * v) / determinant, (p * v - r * u) / determinant], determinant
-
-
-def constrained_energy(body: Body, momentum: Vector) -> Number:
-    """Return 1/2 P_d . (I|_d)^-1 P_d."""
-    rows = [combine(list(row), body.basis) for row in body.subspace]
-    restricted = apply([list(row) for row in body.subspace], momentum)
-    solution, _ = solve2(inertia_operator(rows, body.mass_tensor), restricted)
-    return mp.fdot(restricted, solution) / 2
-
-
-def group_residual(body: Body, g: Matrix) -> Number:
-    """Return how far g is from SO(3) or SE(2)."""
-    block = g if body.system == "suslov" else [row[:2] for row in g[:2]]
-    residual = largest(subtract(multiply(block, transpose(block)), identity(len(block))))
-    if body.system == "sleigh":
-        residual = max(residual, largest(subtract([g[2]], [IDENTITY[2]])))
-    return max(residual, abs(mp.det(mp.matrix(g)) - 1))
 
 
 def require(defect: Number, what: str, tolerance: Number) -> None:

@@ -33,33 +33,21 @@ def test_exp_increment_keeps_relative_accuracy(group: AbstractMatrixGroup, scale
 
 
 @every_group
-@pytest.mark.parametrize("scale", [0.5, 1e-3, 0.0])
+@pytest.mark.parametrize("scale", [0.5, 1e-3, 1e-9, 0.0])
 def test_log_inverts_exp(group: AbstractMatrixGroup, scale: float) -> None:
-    """log(exp(x)) = x while angles stay below pi."""
+    """log(exp(x)) = x while angles stay below pi; of small motions of SO(n) and SE(n) to relative precision."""
     x = vectors(group, 20, scale)
-    assert close(group.log(group.exp(x)), x)
-
-
-@pytest.mark.parametrize("group", RIGID, ids=str)
-def test_log_keeps_relative_accuracy_of_small_motions(group: AbstractMatrixGroup) -> None:
-    """Off-diagonal entries are stored to relative precision, and the logarithm uses it."""
-    x = vectors(group, 20, 1e-9)
-    assert np.abs(group.log(group.exp(x)) - x).max() <= 1e-9 * 1e-14
+    found = group.log(group.exp(x))
+    assert np.abs(found - x).max() <= 1e-23 if group.is_rigid and scale == 1e-9 else close(found, x)
 
 
 @every_group
 def test_hat_and_vee_are_inverse(group: AbstractMatrixGroup) -> None:
-    """vee(hat(x)) = x for every basis, orthogonal or not, and hat is the sum over the basis."""
+    """vee(hat(x)) = x for every basis, on SO(n) and SE(n) to the bit, and hat is the sum over the basis."""
     x = vectors(group, 7)
-    assert close(group.vee(group.hat(x)), x, 20)
+    found = group.vee(group.hat(x))
+    assert np.array_equal(found, x) if group.is_rigid else close(found, x, 20)
     assert close(group.hat(x), np.einsum("ki,iab->kab", x, group.basis), 4)
-
-
-@pytest.mark.parametrize("group", RIGID, ids=str)
-def test_hat_and_vee_are_inverse_to_the_bit(group: AbstractMatrixGroup) -> None:
-    """On SO(n) and SE(n) coordinates are entries of the matrix."""
-    x = vectors(group, 7)
-    assert np.array_equal(group.vee(group.hat(x)), x)
 
 
 @every_group
@@ -71,17 +59,19 @@ def test_sizes_agree(group: AbstractMatrixGroup) -> None:
 
 
 @every_group
-def test_cayley_solves_its_definition(group: AbstractMatrixGroup) -> None:
+@pytest.mark.parametrize("scale", [3.0, 1.0, 1e-3, 1e-6])
+def test_cayley_solves_its_definition(group: AbstractMatrixGroup, scale: float) -> None:
     """(I - X/2) cayley(x) = I + X/2 and the increment has no cancellation; a group without Cayley map says so."""
-    x = vectors(group, 10, 1e-6)
+    x = vectors(group, 10, scale)
     if group is OTHERS[2]:
         with pytest.raises(ValueError, match=r"cayley.*stay in the group.*retract"):
             group.cayley(x)
         return
     X, eye = group.hat(x), group.identity
     assert close((eye - X / 2) @ group.cayley(x), eye + X / 2)
-    assert np.abs((eye - X / 2) @ group.cayley_increment(x) - X).max() <= 1e-15 * 1e-6 * 10
-    assert group.residual(group.cayley(1e6 * x / 2)).max() < 1e-13
+    exact = np.linalg.solve(eye - X / 2, X)
+    assert np.abs(group.cayley_increment(x) - exact).max() <= 1e-14 * np.abs(exact).max()
+    assert group.residual(group.cayley(x / (2 * scale))).max() < 1e-13
 
 
 @every_group
@@ -137,19 +127,13 @@ def test_bracket_is_the_derivative_of_adjoint(group: AbstractMatrixGroup) -> Non
 
 @every_group
 def test_residual_vanishes_on_the_group_alone(group: AbstractMatrixGroup) -> None:
-    """Random elements have residual zero up to rounding, a changed matrix about the change."""
+    """Random elements have residual zero up to rounding, a changed matrix about the change, a reflection two."""
     rng = np.random.default_rng(7)
-    g = np.stack([group.random(rng) for _ in range(5)])
+    g, mirror = np.stack([group.random(rng) for _ in range(5)]), group.identity
     assert group.residual(g).max() < 1e-12
     assert np.all(group.residual(1.001 * g) > 4e-4)
-
-
-@pytest.mark.parametrize("group", RIGID, ids=str)
-def test_reflections_have_large_residual(group: AbstractMatrixGroup) -> None:
-    """An orthogonal matrix of determinant -1 is not nearly a rotation."""
-    mirror = group.identity
     mirror[0, 0] = -1
-    assert group.residual(mirror) == 2
+    assert group.residual(mirror) == 2 or not group.is_rigid
 
 
 @every_group
@@ -185,10 +169,12 @@ def test_random_rotations_are_uniform(n: int) -> None:
 
 
 def test_coordinates_follow_the_conventions() -> None:
-    """so(4): pairs in lexicographic order; se(3): the usual vector, then the velocity; se(4): pairs, then velocity."""
-    e = np.eye(4)
+    """so(3): cross products; so(4): pairs in lexicographic order; se(n): those of rotations, then the velocity."""
+    e, v, w = np.eye(4), np.array([1.0, 2.0, 3.0]), np.array([-1.0, 0.5, 2.0])
+    assert np.array_equal(SO(3).hat(v) @ w, np.cross(v, w))
+    assert SE(2).hat(v).tolist() == [[0, -1, 2], [1, 0, 3], [0, 0, 0]]
     assert np.array_equal(SO(4).hat(np.eye(6)[3]), np.outer(e[1], e[2]) - np.outer(e[2], e[1]))
-    assert np.array_equal(SE(3).hat(np.arange(1.0, 7.0))[:3, :3], SO(3).hat(np.array([1.0, 2.0, 3.0])))
+    assert np.array_equal(SE(3).hat(np.arange(1.0, 7.0))[:3, :3], SO(3).hat(v))
     assert SE(3).hat(np.arange(1.0, 7.0))[:, 3].tolist() == [4, 5, 6, 0]
     assert np.array_equal(SE(4).hat(np.arange(10.0))[:4, :4], SO(4).hat(np.arange(6.0)))
 

@@ -74,9 +74,9 @@ def test_traced_logarithm_of_large_turns(group: AbstractMatrixGroup, angle: floa
     assert np.abs(found - x).max() <= (2e-14 if angle < 3 else 1e-12) * np.abs(x).max()
 
 
-@pytest.mark.profile("routes", keep=["*-ProductGroup*"])
+@pytest.mark.profile("routes", keep=["*-ProductGroup*", "forward-SO(3)"])
 @pytest.mark.parametrize(
-    "group", [SO(2), SO(4), SE(3), HEISENBERG, SL2, SL3, ProductGroup(SE(2), Translations(1))], ids=str
+    "group", [SO(2), SO(3), SO(4), SE(3), HEISENBERG, SL2, SL3, ProductGroup(SE(2), Translations(1))], ids=str
 )
 @pytest.mark.parametrize("derivative", [jax.jacfwd, jax.jacrev], ids=["forward", "reverse"])
 def test_derivatives_at_the_identity(group: AbstractMatrixGroup, derivative: object) -> None:

@@ -3,26 +3,22 @@
 import numpy as np
 import pytest
 from groups.examples import HEISENBERG, OBLIQUE, SL2, SL3, TWO_BODIES, WHEELED, close, vectors
+from refusals import refusals
 
 from nonholo.groups import SE, SO, MatrixGroup, ProductGroup, Translations
 
-
-@pytest.mark.parametrize(
-    ("basis", "message"),
-    [
-        (np.full((1, 2, 2), np.nan), r"finite.*nan at index \(0, 0, 0\)"),
-        (np.ones((2, 2)), r"shape \(any, any, any\).*\(2, 2\)"),
-        (np.ones((1, 2, 3)), r"square matrices.*\(1, 2, 3\)"),
-        (np.zeros((0, 2, 2)), r"square matrices.*\(0, 2, 2\)"),
-        ([np.eye(2), np.zeros((2, 2))], r"linearly independent.*zero matrix at index 1"),
-        ([np.eye(2), 2 * np.eye(2), np.ones((2, 2))], r"linearly independent.*3 matrices of rank 2"),
-        ([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1]], r"Lie algebra.*matrices 0 and 1.*by 1 \("),
-    ],
+# Each refusal says what is wrong with the basis, and by how much.
+test_bases_that_span_no_lie_algebra_are_refused = refusals(
+    (np.full((1, 2, 2), np.nan), r"finite.*nan at index \(0, 0, 0\)"),
+    (np.ones((2, 2)), r"shape \(any, any, any\).*\(2, 2\)"),
+    (np.ones((1, 2, 3)), r"square matrices.*\(1, 2, 3\)"),
+    (np.zeros((0, 2, 2)), r"square matrices.*\(0, 2, 2\)"),
+    ([np.eye(2), np.zeros((2, 2))], r"linearly independent.*zero matrix at index 1"),
+    ([np.eye(2), 2 * np.eye(2), np.ones((2, 2))], r"linearly independent.*3 matrices of rank 2"),
+    ([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1]], r"Lie algebra.*matrices 0 and 1.*by 1 \("),
+    ask=MatrixGroup,
+    begin=r"MatrixGroup\(basis=\.\.\.\).*",
 )
-def test_bases_that_span_no_lie_algebra_are_refused(basis: object, message: str) -> None:
-    """Each refusal says what is wrong with the basis, and by how much."""
-    with pytest.raises(ValueError, match=rf"MatrixGroup\(basis=\.\.\.\).*{message}"):
-        MatrixGroup(basis)
 
 
 def test_badly_scaled_bases_are_taken() -> None:
@@ -65,14 +61,16 @@ def test_equal_groups_hash_alike(first: object, second: object, other: object) -
     assert first != other
 
 
-def test_what_is_no_group_is_refused_by_products_and_translations() -> None:
-    """No factors, numbers as factors, vectors without components."""
-    with pytest.raises(ValueError, match=r"ProductGroup.*no factor"):
-        ProductGroup()
-    with pytest.raises(ValueError, match=r"ProductGroup.*Got 3"):
-        ProductGroup(SO(3), 3)
-    with pytest.raises(ValueError, match=r"Translations\(m=\.\.\.\).*Got 0"):
-        Translations(0)
+# No factors, numbers as factors, vectors without components; a matrix where coordinates are needed, and the reverse.
+test_what_is_no_group_is_refused = refusals(
+    (ProductGroup, r"ProductGroup.*no factor"),
+    (lambda: ProductGroup(SO(3), 3), r"ProductGroup.*Got 3"),  # type: ignore[arg-type]
+    (lambda: Translations(0), r"Translations\(m=\.\.\.\).*Got 0"),
+    (lambda: SO(1), r"SO\(n=\.\.\.\).*at least 2.*Got 1"),
+    (lambda: SE(2.5), r"SE\(n=\.\.\.\).*positive integer.*Got 2\.5"),  # type: ignore[arg-type]
+    (lambda: SO(3).exp(np.zeros(4)), r"SO\(3\) \(coordinates\).*shape \(3,\).*vee"),
+    (lambda: SE(2).log(np.zeros((2, 2))), r"SE\(2\) \(element\).*hat"),
+)
 
 
 def test_products_act_by_blocks() -> None:

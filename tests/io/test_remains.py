@@ -119,7 +119,7 @@ for door in doors:
     except ValueError as refusal:
         print(refusal)
 """
-WORDS = "must be asked of Python with assertions. Got python -O or PYTHONOPTIMIZE"
+WORDS = "must be run by Python with assertions. Got python -O or PYTHONOPTIMIZE"
 
 
 @pytest.mark.profile("faults", instead="test_refusal_without_assertions")

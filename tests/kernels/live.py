@@ -1,6 +1,6 @@
 """Live motions that reach every compiled function: a program that prints the bits of each, or what each calls.
 
-python live.py bits [NAME ...]       # a digest of the results of each run
+python live.py bits   # a digest of the results of each run
 NUMBA_DISABLE_JIT=1 python live.py calls   # the functions that are called
 """
 
@@ -17,7 +17,7 @@ import numba
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from bodies import GENERAL, mass_tensor, random_rows
+from bodies import GENERAL, PAST_PI, mass_tensor, random_rows
 
 import nonholo as nh
 from nonholo.kernels.forced import _balanced
@@ -130,13 +130,7 @@ def read(system: Any) -> Arrays:
 
 def past_pi() -> Arrays:
     """Return a step whose principal path passes angle pi, where all unknowns are followed."""
-    tensor = [
-        [1.97, 2.24, -1.96, -0.56],
-        [2.24, 2.57, -2.24, -0.64],
-        [-1.96, -2.24, 1.97, 0.56],
-        [-0.56, -0.64, 0.56, 0.17],
-    ]
-    discrete = nh.discretize(nh.SuslovTop(tensor), 1.0)
+    discrete = nh.discretize(nh.SuslovTop(PAST_PI), 1.0)
     orbit = nh.simulate(discrete, momentum=(-1.718, -1.87, 1.66), steps=1, throw=False)
     return [orbit.reduced_momentum, orbit.cayley]
 
@@ -271,5 +265,4 @@ if __name__ == "__main__":
     if sys.argv[1] == "calls":
         sys.stdout.write(json.dumps(called()))
     else:
-        names = sys.argv[2:] or RUNS
-        sys.stdout.write(json.dumps({name: digest(RUNS[name]()) for name in names}))
+        sys.stdout.write(json.dumps({name: digest(run()) for name, run in RUNS.items()}))

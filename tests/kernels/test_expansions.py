@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from bodies import GENERAL, mass_tensor
-from problems import PROBLEMS
+from bodies import mass_tensor
+from problems import EVERY
 
 import nonholo as nh
 from nonholo.base.compiled import emission, library_of_kernels, njit, way_of_kernels
@@ -22,7 +22,6 @@ from nonholo.kernels.taylor.emission import code_of
 from nonholo.systems import AbstractSystem
 
 RNG = np.random.default_rng(17)
-HEISENBERG = nh.MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
 USUAL: dict[str, AbstractSystem] = {
     "top": nh.SuslovTop(mass_tensor(nh.SO(3), RNG)),
     "balanced top": nh.SuslovTop(np.diag([1.0, 2.0, 3.0])),
@@ -33,20 +32,13 @@ USUAL: dict[str, AbstractSystem] = {
     "top on SO(4)": nh.SuslovTop(mass_tensor(nh.SO(4), RNG)),
     "sleigh in space": nh.MultidimensionalSleigh(2.0, [0.5, 0.25, -0.125], np.diag([1.0, 2.0, 1.5])),
     "free body on SE(3)": nh.RigidBody(mass_tensor(nh.SE(3), RNG), nh.SE(3)),
-    "Heisenberg": nh.LLSystem(
-        HEISENBERG, constraint_subspace=[[1, 0, 0.25], [0, 1, 0]], inertia_operator=np.diag([1.0, 2.0, 3.0])
-    ),
+    "Heisenberg": EVERY["Heisenberg"],
     "Veselova top": nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])),
 }
 """What is compiled ahead."""
 OTHERS = {
-    **{problem.name: problem.system for problem in PROBLEMS},
-    **{name: system for name, (system, _) in GENERAL.items()},
-    "right-invariant on SE(2)": nh.LRSystem(nh.SE(2), mass_tensor(nh.SE(2), RNG), [[1.0, 0.2, 0.0], [0.0, 1.0, 0.3]]),
+    **{name: body for name, body in EVERY.items() if name not in ("product", "top on SO(7)")},
     "top on SO(10)": nh.SuslovTop(mass_tensor(nh.SO(10), RNG)),
-    "nothing moves": nh.LLSystem(
-        nh.SO(3), constraint_subspace=np.empty((0, 3)), inertia_operator=np.diag([1.0, 2.0, 2.5])
-    ),
     "heavy top": nh.Forced(USUAL["top"], nh.Gravity([0.0, 0.0, -2.0], [0.2, 0.1, 0.5])),
     "sleigh with friction": nh.Forced(USUAL["sleigh"], nh.Gravity([1.0, -0.5], [0.5, 0.0]), nh.Friction([0.1] * 3)),
     "heavy body on SO(4)": nh.Forced(nh.RigidBody(mass_tensor(nh.SO(4), RNG), nh.SO(4)), nh.Gravity(*np.eye(4)[:2])),

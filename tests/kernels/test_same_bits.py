@@ -17,19 +17,9 @@ LIVE, REPLAY = (Path(__file__).parent / name for name in ("live.py", "replay.py"
 ROUNDED_BY_IEEE = {
     "math": {"copysign", "inf", "isfinite", "nan", "sqrt"},
     "np": {
-        "abs",
-        "all",
-        "array",
-        "concatenate",
-        "empty",
-        "empty_like",
-        "float64",
-        "int64",
-        "isfinite",
-        "nan",
-        "ndarray",
-    }
-    | {"sqrt", "sum", "uint64", "zeros", "zeros_like"},
+        *("abs", "all", "array", "concatenate", "empty", "empty_like", "float64", "int64", "isfinite", "nan"),
+        *("ndarray", "sqrt", "sum", "uint64", "zeros", "zeros_like"),
+    },
 }
 
 
@@ -40,14 +30,12 @@ def _printed(*arguments: str, program: Path = LIVE, **variables: str) -> Any:
     return json.loads(done.stdout or "null")
 
 
-@pytest.mark.profile("long", keep=["sleighs"])
-@pytest.mark.parametrize("names", [(), ("sleighs",)], ids=["all", "sleighs"])
-def test_bits_of_a_fresh_cache(names: tuple[str, ...], tmp_path: Path) -> None:
+@pytest.mark.profile("long", instead="test_three_ways_have_the_same_bits")
+def test_bits_of_a_fresh_cache(tmp_path: Path) -> None:
     """Live motions have the bits of the library where numba compiles and where it loads, in 1 and in 7 threads."""
     library, compiled, loaded = (
         _printed(
             "bits",
-            *names,
             NONHOLO_KERNELS=way,
             NUMBA_CACHE_DIR=str(tmp_path),
             NUMBA_NUM_THREADS=n,
@@ -58,14 +46,14 @@ def test_bits_of_a_fresh_cache(names: tuple[str, ...], tmp_path: Path) -> None:
     assert loaded == compiled == library
 
 
-@pytest.mark.profile("long", instead="test_bits_of_a_fresh_cache")
+@pytest.mark.profile("long", instead="test_three_ways_have_the_same_bits")
 def test_bits_of_the_library() -> None:
     """All live motions have the bits of numba in the library."""
     library, compiled = (_printed("bits", NONHOLO_KERNELS=way) for way in ("library", "numba"))
     assert library == compiled
 
 
-@pytest.mark.profile("long", instead="test_bits_of_a_fresh_cache")
+@pytest.mark.profile("long", instead="test_three_ways_have_the_same_bits")
 def test_random_bodies_have_the_same_bits(tmp_path: Path) -> None:
     """What 600 bodies of 15 kinds ask of the library, in 1 and in 2 threads, numba answers with the same bits."""
     calls = str(tmp_path / "calls.pickle")
@@ -99,7 +87,7 @@ def _compiled_functions(*rooms: str) -> dict[str, ast.FunctionDef]:
     return found
 
 
-@pytest.mark.profile("routes", instead="test_bits_of_a_fresh_cache")
+@pytest.mark.profile("routes", instead="test_three_ways_have_the_same_bits")
 def test_every_compiled_function_is_run() -> None:
     """The live motions call each function that numba compiles: a new one needs a motion that does."""
     functions = _compiled_functions("continuous", "kernels", "base")

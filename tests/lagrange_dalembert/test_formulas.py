@@ -178,36 +178,23 @@ def started(system: LagrangeDAlembert, seed: int) -> dict[str, np.ndarray]:
     return {"configuration": q, "momentum": p}
 
 
-def left_to_jax(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let every run take JAX's route."""
-    monkeypatch.setattr(_run, "programs", lambda *_, **__: None)
-    monkeypatch.setattr(_run, "values", lambda *_: None)
+ROUTES, LONG = (
+    pytest.mark.profile(each, instead="test_the_equations_hold_with_their_sign") for each in ("routes", "long")
+)
 
 
-@pytest.mark.profile("routes", instead="test_the_equations_hold_with_their_sign")
 @pytest.mark.parametrize("time_step", [0.01, 0.3])
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", [pytest.param(seed, marks=ROUTES if seed < 3 else LONG) for seed in range(8)])
 def test_runs_are_those_of_jax(seed: int, time_step: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Orbits differ by rounding; large steps, of which some are not trusted, end alike."""
-    _runs_as_by_jax(seed, time_step, monkeypatch)
-
-
-@pytest.mark.profile("long", instead="test_the_equations_hold_with_their_sign")
-@pytest.mark.parametrize("time_step", [0.01, 0.3])
-@pytest.mark.parametrize("seed", range(3, 8))
-def test_more_runs_are_those_of_jax(seed: int, time_step: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The same of more systems."""
-    _runs_as_by_jax(seed, time_step, monkeypatch)
-
-
-def _runs_as_by_jax(seed: int, time_step: float, monkeypatch: pytest.MonkeyPatch) -> None:
     system = random_system(seed)
     start = started(system, seed)
     steps = 100 if time_step < 0.1 else 30  # large steps of random systems are chaotic
     run = functools.partial(nh.simulate, nh.discretize(system, time_step), **start, steps=steps, throw=False)
     compiled = run()
     assert _run.programs(system, (system.dimension + system.is_driven,), system.dimension) is not None
-    left_to_jax(monkeypatch)
+    monkeypatch.setattr(_run, "programs", lambda *_, **__: None)
+    monkeypatch.setattr(_run, "values", lambda *_: None)
     orbit = run()
     assert compiled.outcome == orbit.outcome or (time_step > 0.1 and compiled.outcome and orbit.outcome)
     assert len(compiled) == len(orbit)

@@ -7,6 +7,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from comparisons import assert_near
+from refusals import refusals
 from scipy.special import ellipj, ellipk
 
 import nonholo as nh
@@ -212,33 +214,38 @@ def test_a_moving_constraint_is_a_prescribed_coordinate() -> None:
     two = nh.LagrangeDAlembert(lagrangian, None, dimension=2, holonomic=lambda q, time: jnp.array([q[0] - s(time)]))
     run: Any = {"configuration": (0.0, 0.4), "body_velocity": (1.5, 0.2)}
     here, there = (nh.simulate(nh.discretize(each, 0.02), **run, steps=200) for each in (one, two))
-    for name in ("configuration", "multipliers", "energy", "work"):
-        assert np.abs(getattr(here, name) - getattr(there, name)).max() <= 1e-11  # of h: 1e-16 / h in velocities
+    assert_near(here, there, 1e-11, "configuration", "multipliers", "energy", "work")
     here, there = (nh.flow(each, **run, times=np.linspace(0, 4, 9)) for each in (one, two))
     assert np.abs(here.configuration - there.configuration).max() <= 1e-13
     assert np.abs(here.multipliers - there.multipliers).max() <= 1e-12
 
 
-def test_starts_that_are_not_admissible_are_refused() -> None:
-    """With the residual and what is admissible beside them: places, and velocities off the surface."""
-    discrete = nh.discretize(pendulum(), 0.1)
-    where = (
-        r"simulate\(configuration=...\)` must satisfy the holonomic constraints. Got residual \[0.21\]. The near.*1.0"
-    )
-    with pytest.raises(ValueError, match=where):
-        nh.simulate(discrete, configuration=(1.1, 0.0), body_velocity=(0, 0), steps=1)
-    with pytest.raises(ValueError, match=r"flow\(configuration=...\)` must satisfy the holonomic .* Start elsewhere"):
-        nh.flow(pendulum(), configuration=(0.0, 0.0), body_velocity=(0, 0), times=[0.0], project=True)
-    with pytest.raises(ValueError, match=r"body_velocity=...\)` must satisfy the constraint. Got residual \[0.2\]"):
-        nh.simulate(discrete, configuration=(1.0, 0.0), body_velocity=(0.1, 1), steps=1)
-    moving = nh.LagrangeDAlembert(fall, None, dimension=2, holonomic=lambda q, t: jnp.array([q @ q - 1 - t]))
-    with pytest.raises(ValueError, match=r"must satisfy the constraint. Got residual \[-1.\]"):
-        nh.flow(moving, configuration=(1.0, 0.0), body_velocity=(0, 1), times=[0.0, 1.0])
-    with pytest.raises(ValueError, match=r"simulate\(project=...\)` must be left out. Got displacement"):
-        nh.simulate(discrete, configuration=(1, 0), displacement=(0, 0.1), project=True, steps=1)
-    unclear: Any = {"project": 1}
-    with pytest.raises(ValueError, match=r"simulate\(project=...\)` must be True or False"):
-        nh.simulate(discrete, configuration=(1, 0), body_velocity=(0, 1), steps=1, **unclear)
+_SWINGING, _MOVING = nh.discretize(pendulum(), 0.1), lambda q, t: jnp.array([q @ q - 1 - t])
+_OFF = r"simulate\(configuration=...\)` must satisfy the holonomic constraints. Got residual \[0.21\]. The near.*1.0"
+
+
+def _at(*configuration: float, **how: Any) -> Any:
+    return nh.simulate(_SWINGING, configuration=configuration, **how, steps=1)
+
+
+# With the residual and what is admissible beside them: places, and velocities off the surface.
+test_starts_that_are_not_admissible_are_refused = refusals(
+    (lambda: _at(1.1, 0.0, body_velocity=(0, 0)), _OFF),
+    (
+        lambda: nh.flow(pendulum(), configuration=(0.0, 0.0), body_velocity=(0, 0), times=[0.0], project=True),
+        r"flow\(configuration=...\)` must satisfy the holonomic .* Start elsewhere",
+    ),
+    (lambda: _at(1.0, 0.0, body_velocity=(0.1, 1)), r"body_velocity=...\)` must satisfy the .* Got residual \[0.2\]"),
+    (
+        lambda: nh.flow(
+            nh.LagrangeDAlembert(fall, None, dimension=2, holonomic=_MOVING),
+            configuration=(1.0, 0.0), body_velocity=(0, 1), times=[0.0, 1.0],
+        ),
+        r"must satisfy the constraint. Got residual \[-1.\]",
+    ),
+    (lambda: _at(1, 0, displacement=(0, 0.1), project=True), r"project=...\)` must be left out. Got displacement"),
+    (lambda: _at(1, 0, body_velocity=(0, 1), project=1), r"simulate\(project=...\)` must be True or False"),
+)  # fmt: skip
 
 
 def test_projections_are_nearest_in_the_kinetic_energy() -> None:
@@ -320,20 +327,16 @@ def test_a_loop_at_its_dead_point_ends_the_run() -> None:
     assert abs(np.sin(orbit.configuration[-1, 0])) < 0.2
 
 
-@pytest.mark.parametrize(
-    ("function", "got"),
-    [
-        (lambda q: q @ q - 1.0, r"shape \(\)"),
-        (lambda q: jnp.array([[q @ q - 1.0]]), r"shape \(1, 1\)"),
-        (lambda q: jnp.array([q @ q - 1.0, q[0], q[1]]), r"shape \(3,\)"),
-        (lambda q: [q @ q - 1.0], "TypeError"),
-        (3, "3"),
-    ],
+# No row, a matrix, more than coordinates, a list, no function.
+test_what_is_no_constraint_of_places_is_refused = refusals(
+    (lambda q: q @ q - 1.0, r"shape \(\)"),
+    (lambda q: jnp.array([[q @ q - 1.0]]), r"shape \(1, 1\)"),
+    (lambda q: jnp.array([q @ q - 1.0, q[0], q[1]]), r"shape \(3,\)"),
+    (lambda q: [q @ q - 1.0], "TypeError"),
+    (3, "3"),
+    ask=lambda function: nh.LagrangeDAlembert(fall, None, holonomic=function, dimension=2),
+    begin=r"LagrangeDAlembert\(holonomic=...\)` must .*",
 )
-def test_what_is_no_constraint_of_places_is_refused(function: Any, got: str) -> None:
-    """No row, a matrix, more than coordinates, a list, no function."""
-    with pytest.raises(ValueError, match=rf"LagrangeDAlembert\(holonomic=...\)` must .*{got}"):
-        nh.LagrangeDAlembert(fall, None, holonomic=function, dimension=2)
 
 
 def test_common_paths(tmp_path: Path) -> None:
@@ -352,6 +355,7 @@ def test_common_paths(tmp_path: Path) -> None:
     assert np.array_equal(np.concatenate([each.configuration for each in blocks]), whole.configuration)
 
 
+@pytest.mark.profile("routes", instead="test_constraints_of_places_hold_at_every_node")
 def test_derivatives_see_the_surface_move() -> None:
     """The last place of a rollout by the length of the rod, on which the start depends, too."""
     swing = nh.LagrangeDAlembert(
@@ -374,6 +378,7 @@ def test_derivatives_see_the_surface_move() -> None:
         assert abs(slope - (last(1.0 + step) - last(1.0 - step)) / (2 * step)) <= 1e-8
 
 
+@pytest.mark.profile("routes", instead="test_constraints_of_places_hold_at_every_node")
 def test_checks_and_linearizations_see_the_surface() -> None:
     """`check_system`, `check_discretization`; a pendulum hangs with the frequency sqrt(g), in two states."""
     place = nh.flow(four_bar(), configuration=LOOP[0], momentum=(0, 0, 0), project=True, times=[0.0]).configuration[0]

@@ -1,5 +1,6 @@
 """Parameters of systems in coordinates: the same as numbers within the functions, compiled once for all numbers."""
 
+import inspect
 import pickle
 from pathlib import Path
 from typing import Any
@@ -7,7 +8,9 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from comparisons import assert_member, assert_near
 from jax import lax
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.lagrange_dalembert import LagrangeDAlembert
@@ -73,19 +76,13 @@ def driven(time, p):  # noqa: ANN001, ANN201
 
 def within(function: Any, numbers: dict[str, Any]) -> Any:
     """Return a function that has the numbers within."""
-    if function in (sleigh, looped):
-        return lambda q, v: function(q, v, numbers)
-    if function in (timed, action, turned, rolled, short_action):
-        return {
-            timed: lambda q, v, time: timed(q, v, time, numbers),
-            action: lambda q, q_next, time_step: action(q, q_next, time_step, numbers),
-            turned: lambda q, time: turned(q, time, numbers),
-            rolled: lambda q, time: rolled(q, time, numbers),
-            short_action: lambda q, q_next: short_action(q, q_next, numbers),
-        }[function]
-    if function is pushed:
-        return lambda time, q, v: pushed(time, q, v, numbers)
-    return (lambda time: driven(time, numbers)) if function is driven else lambda q: blade(q, numbers)
+
+    def with_numbers(*given: Any) -> Any:
+        return function(*given, numbers)
+
+    *arguments, _ = inspect.signature(function).parameters.values()
+    with_numbers.__signature__ = inspect.Signature(arguments)  # type: ignore[attr-defined]
+    return with_numbers
 
 
 SYSTEMS: dict[str, dict[str, Any]] = {
@@ -130,8 +127,7 @@ def test_flows_and_work_have_the_parameters(name: str) -> None:
     """A flow, and the work along it, agree with those of numbers within, to the errors of its steps."""
     system, times = made(name).with_parameters(**OTHERS), np.linspace(0.0, 1.0, 9)
     orbit, plain = (nh.flow(each, **START, times=times) for each in (system, made(name, OTHERS)))
-    for row in ("configuration", "momentum", "multipliers", "energy", "work"):
-        assert np.abs(getattr(orbit, row) - getattr(plain, row)).max() <= 1e-9, row
+    assert_near(orbit, plain, 1e-09, "configuration", "momentum", "multipliers", "energy", "work")
 
 
 @pytest.mark.profile("routes", keep=["midpoint"])
@@ -164,16 +160,20 @@ def test_a_force_and_friction_go_with_parameters() -> None:
     runs = [
         nh.simulate(nh.discretize(each, 0.05), **START, steps=40) for each in (system.with_parameters(**OTHERS), plain)
     ]
-    assert np.abs(runs[0].configuration - runs[1].configuration).max() <= 1e-13
-    assert np.abs(runs[0].work - runs[1].work).max() <= 1e-13
+    assert_near(runs[0], runs[1], 1e-13, "configuration", "work")
 
 
 def test_a_force_of_the_time_goes_with_parameters() -> None:
-    """`Forced` keeps the time of a Lagrangian between velocity and parameters."""
-    system = nh.Forced(made("of time"), potential=lambda q, p: p["mass"] * q @ q)
-    plain = nh.Forced(made("of time", NUMBERS), potential=lambda q: NUMBERS["mass"] * q @ q)
-    ends = [nh.simulate(nh.discretize(each, 0.05), **START, steps=9).configuration[-1] for each in (system, plain)]
-    assert np.abs(ends[0] - ends[1]).max() <= 1e-14
+    """`Forced` keeps the time of a Lagrangian between velocity and parameters; what it adds need not take them."""
+    well, drag = lambda q: NUMBERS["mass"] * q @ q, lambda _time, q, v: -0.1 * v + 0 * q
+    plain = nh.Forced(made("of time", NUMBERS), potential=well, force=drag)
+    for parts in (
+        {"potential": lambda q, p: p["mass"] * q @ q, "force": drag},
+        {"potential": well, "force": lambda time, q, v, p: drag(time, q, v) + 0 * p["mass"]},
+    ):
+        pair = nh.Forced(made("of time"), **parts), plain
+        ends = [nh.simulate(nh.discretize(each, 0.05), **START, steps=9).configuration[-1] for each in pair]
+        assert np.abs(ends[0] - ends[1]).max() <= 1e-14
 
 
 def test_systems_know_their_parameters() -> None:
@@ -226,51 +226,33 @@ def test_stores_tell_the_parameters(tmp_path: Path) -> None:
     del again
 
 
-REFUSED: dict[str, tuple[dict[str, Any], str]] = {
-    "a function without them": (
-        {"lagrangian": lambda q, v: q @ v},
-        r"lagrangian=.* take the parameters .* Got \(q, v\)",
+# Each bad argument is refused by its name.
+test_bad_parameters_are_refused = refusals(
+    ({"lagrangian": lambda q, v: q @ v}, r"lagrangian=.* take the parameters .* Got \(q, v\)"),
+    ({"constraint_forms": lambda q: q[None]}, r"constraint_forms=.* last argument. Got \(q\)"),
+    ({"prescribed": {0: lambda time: time}}, r"prescribed=.* last argument. Got \(time\)"),
+    ({"force": lambda time, q, v: time * q + v}, r"force=.* last argument. Got \(time, q, v\)"),
+    ({"parameters": {"a b": 1.0}}, r"parameters=\.\.\.\)` must be a name"),
+    ({"parameters": {"time_step": 1.0}}, r"must be a name.* taken: time_step"),
+    ({"parameters": [1.0]}, r"must be a mapping of names to numbers"),
+    ({"parameters": {"mass": "heavy"}}, r"parameters=\{'mass': \.\.\.\}\)` must be an array of real numbers"),
+    ({"parameters": {"mass": [1.0, np.nan]}}, r"'mass'.* must be finite"),
+    ({"lagrangian": lambda q, v, p: p["weight"] * v @ q}, r"KeyError: 'weight'"),
+    ask=lambda given: LagrangeDAlembert(
+        **{"lagrangian": sleigh, "constraint_forms": None, "dimension": 3, "parameters": NUMBERS} | given
     ),
-    "forms without them": ({"constraint_forms": lambda q: q[None]}, r"constraint_forms=.* last argument. Got \(q\)"),
-    "a motion without them": ({"prescribed": {0: lambda time: time}}, r"prescribed=.* last argument. Got \(time\)"),
-    "a force without them": ({"force": lambda time, q, v: time * q + v}, r"force=.* last argument. Got \(time, q, v\)"),
-    "a name that is none": ({"parameters": {"a b": 1.0}}, r"parameters=\.\.\.\)` must be a name"),
-    "the time step": ({"parameters": {"time_step": 1.0}}, r"must be a name.* taken: time_step"),
-    "no mapping": ({"parameters": [1.0]}, r"must be a mapping of names to numbers"),
-    "no number": (
-        {"parameters": {"mass": "heavy"}},
-        r"parameters=\{'mass': \.\.\.\}\)` must be an array of real numbers",
-    ),
-    "nan": ({"parameters": {"mass": [1.0, np.nan]}}, r"'mass'.* must be finite"),
-    "unknown": ({"lagrangian": lambda q, v, p: p["weight"] * v @ q}, r"KeyError: 'weight'"),
-}
-
-
-@pytest.mark.parametrize("name", REFUSED)
-def test_bad_parameters_are_refused(name: str) -> None:
-    """Each bad argument is refused by its name."""
-    given, words = REFUSED[name]
-    with pytest.raises(ValueError, match=words):
-        LagrangeDAlembert(
-            **{"lagrangian": sleigh, "constraint_forms": None, "dimension": 3, "parameters": NUMBERS} | given
-        )
-
-
-@pytest.mark.parametrize(
-    ("given", "words"),
-    [
-        ({"mas": 1.0}, r"`with_parameters\(\.\.\.\)` must name parameters .* Got 'mas'. Did you mean mass\?"),
-        ({"q": 1.0}, r"Got 'q'. It has mass, inertia, arm, pull\."),
-        ({"mass": [1.0, 2.0]}, r"with_parameters\(\{'mass': \.\.\.\}\)` must have shape \(\). Got shape \(2,\)"),
-        ({"mass": np.inf}, "must be finite"),
-    ],
 )
-def test_bad_numbers_are_refused(given: dict[str, Any], words: str) -> None:
-    """Other numbers have a known name, the same shape, and are finite."""
-    with pytest.raises(ValueError, match=words):
-        made("midpoint").with_parameters(**given)
-    with pytest.raises(ValueError, match="It has none: pass LagrangeDAlembert"):
-        made("midpoint", NUMBERS).with_parameters(mass=1.0)
+
+
+# Other numbers have a known name, the same shape, and are finite.
+test_bad_numbers_are_refused = refusals(
+    ({"mas": 1.0}, r"`with_parameters\(\.\.\.\)` must name parameters .* Got 'mas'. Did you mean mass\?"),
+    ({"q": 1.0}, r"Got 'q'. It has mass, inertia, arm, pull\."),
+    ({"mass": [1.0, 2.0]}, r"with_parameters\(\{'mass': \.\.\.\}\)` must have shape \(\). Got shape \(2,\)"),
+    ({"mass": np.inf}, "must be finite"),
+    ({}, "It has none: pass LagrangeDAlembert"),
+    ask=lambda given: made("midpoint", None if given else NUMBERS).with_parameters(**given or {"mass": 1.0}),
+)
 
 
 def test_members_with_parameters_are_runs_alone() -> None:
@@ -282,8 +264,9 @@ def test_members_with_parameters_are_runs_alone() -> None:
         own = {name: values[member] for name, values in varied.items()}
         alone = nh.discretize(made("force").with_parameters(mass=own["mass"], pull=own["pull"]), own["time_step"])
         orbit = nh.simulate(alone, **START, steps=30, save_every=10)
-        for row in ("configuration", "momentum", "energy", "body_velocity", "restricted_momentum"):
-            assert np.array_equal(getattr(batch, row)[member], getattr(orbit, row)), row
+        assert_member(
+            batch, member, orbit, "configuration", "momentum", "energy", "body_velocity", "restricted_momentum"
+        )
         assert batch.orbit(member).system == alone.system
     assert np.array_equal(batch.to_dataset()["pull"], varied["pull"])
 
@@ -297,31 +280,13 @@ def test_members_with_parameters_are_compiled_once() -> None:
     assert len(CALLS) == before
 
 
-@pytest.mark.parametrize(
-    ("given", "words"),
-    [
-        (
-            {"mas": [1.0]},
-            r"name fields of the system. Got 'mas'. LagrangeDAlembert has mass, inertia, arm, pull, time_step",
-        ),
-        ({"pull": [1.0, 2.0]}, r"'pull': \.\.\.\}\)` must have shape \(any, 3\)"),
-        ({"mass": [1.0, np.nan]}, "must be finite"),
-    ],
+# Members differ by known names and fitting shapes.
+test_bad_members_are_refused = refusals(
+    (
+        {"mas": [1.0]},
+        r"name fields of the system. Got 'mas'. LagrangeDAlembert has mass, inertia, arm, pull, time_step",
+    ),
+    ({"pull": [1.0, 2.0]}, r"'pull': \.\.\.\}\)` must have shape \(any, 3\)"),
+    ({"mass": [1.0, np.nan]}, "must be finite"),
+    ask=lambda given: nh.ensemble(nh.discretize(made("midpoint"), 0.05), **START, parameters=given, steps=3),
 )
-def test_bad_members_are_refused(given: dict[str, Any], words: str) -> None:
-    """Members differ by known names and fitting shapes."""
-    with pytest.raises(ValueError, match=words):
-        nh.ensemble(nh.discretize(made("midpoint"), 0.05), **START, parameters=given, steps=3)
-
-
-def test_forces_need_not_take_the_parameters() -> None:
-    """`Forced` takes a potential and a force with the parameters of the system, and without."""
-    system = made("midpoint")
-    runs = [
-        nh.simulate(nh.discretize(nh.Forced(system, potential=potential, force=force), 0.05), **START, steps=9)
-        for potential, force in (
-            (lambda q: q @ q, lambda time, q, v: -0.1 * v + 0 * q * time),
-            (lambda q, p: q @ q + 0 * p["mass"], lambda time, q, v, p: -0.1 * v + 0 * q * time * p["mass"]),
-        )
-    ]
-    assert np.abs(runs[0].configuration - runs[1].configuration).max() <= 1e-14

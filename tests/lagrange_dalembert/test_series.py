@@ -7,6 +7,7 @@ import jax.numpy as jnp
 import mpmath
 import numpy as np
 import pytest
+from comparisons import assert_near
 from llvmlite import ir
 
 import nonholo as nh
@@ -18,28 +19,16 @@ from nonholo.lagrange_dalembert.compiled._run import machine_code
 from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError
 
 ORDER = 30
-UNARY: dict[str, tuple[Any, float]] = {
-    "exp": (mpmath.exp, 0.3),
-    "expm1": (mpmath.expm1, 0.3),
-    "log": (mpmath.log, 1.7),
-    "log1p": (mpmath.log1p, 0.4),
-    "sqrt": (mpmath.sqrt, 1.3),
-    "cbrt": (mpmath.cbrt, 1.3),
-    "sin": (mpmath.sin, 0.4),
-    "cos": (mpmath.cos, 0.4),
-    "tan": (mpmath.tan, 0.4),
-    "asin": (mpmath.asin, 0.3),
-    "acos": (mpmath.acos, 0.3),
-    "atan": (mpmath.atan, 0.6),
-    "sinh": (mpmath.sinh, 0.4),
-    "cosh": (mpmath.cosh, 0.4),
-    "tanh": (mpmath.tanh, 0.4),
-    "asinh": (mpmath.asinh, 0.4),
-    "acosh": (mpmath.acosh, 1.9),
-    "atanh": (mpmath.atanh, 0.3),
-    "erf": (mpmath.erf, 0.4),
-    "neg": (lambda x: -x, 0.4),
+POINTS = {
+    0.3: ("exp", "expm1", "asin", "acos", "atanh"),
+    0.4: ("log1p", "sin", "cos", "tan", "sinh", "cosh", "tanh", "asinh", "erf"),
+    0.6: ("atan",),
+    1.3: ("sqrt", "cbrt"),
+    1.7: ("log",),
+    1.9: ("acosh",),
 }
+UNARY = {name: (getattr(mpmath, name), x) for x, names in POINTS.items() for name in names}
+UNARY["neg"] = (lambda x: -x, 0.4)
 BINARY: dict[str, Any] = {
     "add": lambda x, y: x + y,
     "sub": lambda x, y: x - y,
@@ -154,5 +143,4 @@ def test_parameters_are_numbers_of_the_series() -> None:
         )
         wanted = nh.flow(constant, **run)
         compiled_before = formulation.cache_info().misses
-        for name in ("configuration", "body_velocity", "momentum", "energy"):
-            assert np.abs(getattr(orbit, name) - getattr(wanted, name)).max() < 1e-13
+        assert_near(orbit, wanted, 1e-13, "configuration", "body_velocity", "momentum", "energy")

@@ -6,6 +6,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from refusals import refusals
 from scipy.integrate import solve_ivp
 
 import nonholo as nh
@@ -74,10 +75,9 @@ def test_forces_on_groups_are_traced() -> None:
     np.testing.assert_allclose(slope, np.transpose(columns), rtol=0, atol=1e-11)
 
 
-def test_refusals() -> None:
-    """A force for each step has no vector field; a state of another size is refused."""
-    free = nh.LagrangeDAlembert(lambda _, v: v @ v / 2, None, dimension=2)
-    with pytest.raises(ValueError, match=r"`vector_field\(system=\.\.\.\)` must have forces at times"):
-        nh.vector_field(free.forced(None, np.zeros((3, 2))))
-    with pytest.raises(ValueError, match=r"must end in shape \(4"):
-        nh.vector_field(free)(0.0, np.zeros(3))
+FREE = nh.LagrangeDAlembert(lambda _, v: v @ v / 2, None, dimension=2)
+# A force for each step has no vector field; a state of another size is refused.
+test_what_has_no_vector_field_is_refused = refusals(
+    (lambda: nh.vector_field(FREE.forced(None, np.zeros((3, 2)))), r"`vector_field\(system=\.\.\.\)` must have forces"),
+    (lambda: nh.vector_field(FREE)(0.0, np.zeros(3)), r"must end in shape \(4"),
+)

@@ -81,8 +81,10 @@ class Case:
 
     @functools.cached_property
     def crossings(self) -> Any:
-        """The crossings of the event in the run."""
-        return self.simulated(events=[self.event()[0]]).events["middle"]
+        """The crossings of the event in the run, which has the states of one without events."""
+        watched = self.simulated(events=[self.event()[0]])
+        assert_same(watched, self.orbit)
+        return watched.events["middle"]
 
     @functools.cached_property
     def balance(self) -> np.ndarray:

@@ -10,11 +10,19 @@ from matrix.kinds import KINDS
 from matrix.verdicts import CELLS, RULES
 from scripts import ROOT, script
 
-CHEAP = ["top, n = 3-*", "sleigh, SE(2)-*", "particle-*"]
+QUICK = (
+    *("sleigh, SE(3)", "LL by matrices", "Veselova top", "order 4", "rule nearest"),
+    *("gravity", "friction, table", "force in Python"),
+)
+CUT = (
+    *("thinned", "iterate", "store", "extend", "resume", "save and load", "ensemble", "flow store", "sweep"),
+    *("events", "events in stores", "events in iterators", "crossings", "ensemble with events"),
+)
+HERE = ["top, n = 3-*", "sleigh, SE(2)-*", "particle-*", *(f"{kind}-{ability}" for kind in QUICK for ability in CUT)]
 BROKEN = {cell for cell, rule in CELLS.items() if rule is not None and rule.is_broken}
 
 
-@pytest.mark.profile("routes", keep=CHEAP)
+@pytest.mark.profile("routes", keep=HERE)
 @pytest.mark.parametrize(("kind", "ability"), CELLS)
 def test_cell(
     kind: str, ability: str, tmp_path: Path, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch

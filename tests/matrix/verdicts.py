@@ -55,9 +55,8 @@ RULES: tuple[Rule, ...] = (
     Rule(
         "events|events in *|crossings|ensemble with events",
         "rule",
-        "Parts of a step are known of the principal branch alone.",
+        "A step to a value that is not the principal one has no parts that begin at its state: Proposition 13.3.",
         "parts of a step",
-        is_broken=True,
     ),
     Rule(
         "ensemble of time steps|sweep",
@@ -65,7 +64,6 @@ RULES: tuple[Rule, ...] = (
         "A discrete Lagrangian of the user's own includes its time step.",
         "includes its time step",
     ),
-    Rule("multipliers|checks", "on a group", "No checks for systems on groups by functions.", "Got", is_broken=True),
     Rule("scenario file", "function", "A file holds numbers, not the functions of a user.", "cannot be run"),
     Rule(
         "ensemble of parameters|gradient",

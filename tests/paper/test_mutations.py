@@ -4,15 +4,7 @@ import random
 from types import ModuleType
 
 import pytest
-from paper.mutations import (
-    Mutant,
-    all_mutants,
-    functions,
-    modules,
-    survives,
-    unchanged,
-    users,
-)
+from paper.mutations import Mutant, all_mutants, functions, modules, survives, unchanged, users
 
 SAMPLE = 40  # of all mutants; `python tests/paper/mutations.py` tries every one
 

@@ -3,11 +3,11 @@
 import html
 import json
 import re
-from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
 import pytest
+from links import Links
 from matplotlib.figure import Figure as MatplotlibFigure
 
 from nonholo_paper._checklist import sections
@@ -19,8 +19,6 @@ from nonholo_paper._registry import Entry, entries
 from nonholo_paper._run import Result, evaluate, evaluate_all
 from nonholo_paper._verdict import Verdict
 from nonholo_paper.figures import Figure
-
-VOID = {"meta", "img", "input", "link", "br"}
 
 
 @finding("plus", "equation", "Section 4, equation (plus)", r"$1 + 1 = 2$", tolerance=1e-12)
@@ -64,41 +62,6 @@ def results(*chosen: str) -> list[Result]:
     return [evaluate(Entry(own[name], sections()[3], picture if name == "plus" else None)) for name in chosen]
 
 
-class Reader(HTMLParser):
-    """Collects the addresses of a page and the tags that are not closed in order."""
-
-    def __init__(self) -> None:
-        HTMLParser.__init__(self)
-        self.open: list[str] = []
-        self.anchors: list[str] = []
-        self.sources: list[str] = []
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Note a tag and its addresses."""
-        if tag not in VOID:
-            self.open.append(tag)
-        for name, value in attrs:
-            if name == "id":
-                self.anchors.append(str(value))
-            if name in ("src", "href"):
-                self.sources.append(str(value))
-
-    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Pass over a tag that closes itself."""
-
-    def handle_endtag(self, tag: str) -> None:
-        """Close the last tag."""
-        assert self.open.pop() == tag
-
-
-def read(text: str) -> Reader:
-    """Read a page to its end."""
-    reader = Reader()
-    reader.feed(text)
-    assert not reader.open
-    return reader
-
-
 def test_what_raises_fails() -> None:
     """A finding that raises has failed, and says why."""
     (result,) = results("raises")
@@ -126,10 +89,12 @@ def test_progress_is_reported() -> None:
 
 def test_page_is_well_formed_and_alone() -> None:
     """Tags close in order, addresses are on the page, in its folder or embedded, none occurs twice."""
-    reader = read(page(results("plus", "minus", "minus", "raises")))
-    assert len(set(reader.anchors)) == len(reader.anchors)
-    for source in reader.sources:
-        inside = source.startswith("#") and source[1:] in reader.anchors
+    reader = Links(page(results("plus", "minus", "minus", "raises")))
+    assert reader.in_order
+    assert not reader.open
+    assert len(set(reader.places)) == len(reader.places)
+    for source in reader.referred:
+        inside = source.startswith("#") and source[1:] in reader.places
         assert inside or source.startswith(("data:image/", "figures/line.")) or source == "findings.json", source
 
 

@@ -164,11 +164,8 @@ def test_a_film_that_fails_leaves_nothing(sleigh_orbit: nh.Orbit, tmp_path: Path
 @pytest.mark.parametrize("suffix", ["mp4", "webm"])
 def test_ffmpeg_is_asked_for_before_any_work(suffix: str, sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:
     """Where there is no ffmpeg, its films are refused with the remedy."""
-    refused = r"must end in .gif where there is no program ffmpeg. Got 'new.*'. Install it \(on Debian the package"
-    with (
-        mpl.rc_context({"animation.ffmpeg_path": str(tmp_path / "none")}),
-        pytest.raises(ValueError, match=refused),
-    ):
+    refused = r"must end in .gif without the program ffmpeg. Got 'new.*'. Install it \(on Debian the package"
+    with mpl.rc_context({"animation.ffmpeg_path": str(tmp_path / "none")}), pytest.raises(ValueError, match=refused):
         nh.plot.animate(sleigh_orbit, f"new.{suffix}")
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgba
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.lagrange_dalembert import CoordinateOrbit, LagrangeDAlembert
@@ -104,17 +105,12 @@ def test_ready_systems_in_the_plane_have_bodies(name: str) -> None:
     assert 0.3 < max(np.linalg.norm(part, axis=1).max() for part in parts) < 2.0
 
 
-@pytest.mark.parametrize(
-    ("given", "words"),
-    [
-        ({"heading": "b"}, r"heading=...\)` must be a coordinate beside x and y of x, y, a. Got 'b'"),
-        ({"heading": "x"}, r"heading=...\)` must be a coordinate beside"),
-        ({"outline": 3}, r"outline=...\)` must be a list of parts"),
-        ({"outline": [[(0, 0)]]}, r"outline=...\)` must have parts of at least two points"),
-        ({"outline": [[(0, 0, 0), (1, 1, 1)]]}, r"outline=...\)` must have shape"),
-    ],
+# Before anything runs, with the argument and what it takes.
+test_what_is_no_drawing_is_refused = refusals(
+    ({"heading": "b"}, r"heading=...\)` must be a coordinate beside x and y of x, y, a. Got 'b'"),
+    ({"heading": "x"}, r"heading=...\)` must be a coordinate beside"),
+    ({"outline": 3}, r"outline=...\)` must be a list of parts"),
+    ({"outline": [[(0, 0)]]}, r"outline=...\)` must have parts of at least two points"),
+    ({"outline": [[(0, 0, 0), (1, 1, 1)]]}, r"outline=...\)` must have shape"),
+    ask=lambda given: _free(**given),
 )
-def test_what_is_no_drawing_is_refused(given: dict, words: str) -> None:
-    """Before anything runs, with the argument and what it takes."""
-    with pytest.raises(ValueError, match=words):
-        _free(**given)

@@ -5,7 +5,7 @@ import pytest
 from plot.runs import MASS_TENSOR, top_run
 
 import nonholo as nh
-from nonholo.plot.parts._sphere import View, arcs, great_circle, opacity
+from nonholo.plot.parts._sphere import opacity
 
 
 def test_points_are_the_forbidden_axis_in_space(top_orbit: nh.Orbit) -> None:
@@ -80,24 +80,6 @@ def test_what_lies_behind_is_faint(top_orbit: nh.Orbit) -> None:
     assert np.allclose(alpha, opacity(depth))
     assert alpha.min() < 0.3
     assert alpha.max() == 1.0
-
-
-def test_views_are_rotations() -> None:
-    """The projection is an orthonormal frame with e_3 upwards."""
-    frame = View(37.0, 20.0).frame
-    assert np.allclose(frame @ frame.T, np.eye(3))
-    assert np.isclose(np.linalg.det(frame), 1.0)
-    assert frame[0, 2] == 0.0
-    assert frame[1, 2] > 0.0
-
-
-def test_curves_on_the_sphere() -> None:
-    """Arcs pass through their points and stay on the sphere; a great circle is perpendicular to its axis."""
-    points = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-    joined = arcs(points, 5)
-    assert np.allclose(joined[::5], points)
-    assert np.allclose(np.linalg.norm(joined, axis=1), 1.0)
-    assert np.allclose(great_circle(np.array([0.3, -0.5, 2.0])) @ [0.3, -0.5, 2.0], 0.0)
 
 
 def test_refuses_a_sleigh(sleigh_orbit: nh.Orbit) -> None:

@@ -66,39 +66,6 @@ def _same(one: Any, other: Any) -> None:
 
 
 @by_pair
-def test_curves(pair: Pair) -> None:
-    """Curves of one energy, equilibria and the orbit are at the same places."""
-    one, other = (nh.plot.invariant_curves(orbit.motion, orbit) for orbit in pair.runs(0.5, 12))
-    for level, equal in zip(one.levels, other.levels, strict=True):
-        assert np.allclose(level.get_segments()[0], equal.get_segments()[0], atol=1e-9)
-    _same(one.orbit, other.orbit)
-    _same(one.stable, other.stable)
-
-
-@by_pair
-def test_portraits(pair: Pair) -> None:
-    """Ellipses, equilibria, the orbit and the names of the axes are the same."""
-    one, other = (nh.plot.phase_portrait(orbit.system, orbit) for orbit in pair.runs(0.5, 12))
-    assert np.allclose(one.levels[1].get_xydata(), other.levels[1].get_xydata(), atol=1e-9)
-    _same(one.orbit, other.orbit)
-    _same(one.stable, other.stable)
-    assert one.axes.get_xlabel() == other.axes.get_xlabel()
-    assert one.axes.get_aspect() == other.axes.get_aspect()
-
-
-@by_pair
-def test_loci(pair: Pair) -> None:
-    """The surface in space, the orbit on it and the section are the same."""
-    orbits = pair.runs(0.5, 8)
-    loci = [nh.momentum_locus(orbit.motion, 12) for orbit in orbits]
-    one, other = (nh.plot.momentum_locus(*both) for both in zip(loci, orbits, strict=True))
-    assert np.allclose(one.double_lines[0].get_data_3d(), other.double_lines[0].get_data_3d(), atol=1e-9)
-    assert np.allclose(one.orbit._offsets3d, other.orbit._offsets3d, atol=1e-9)
-    assert one.axes.get_zlabel() == other.axes.get_zlabel()
-    _same(*(nh.plot.locus_section(locus, normal=(0.2, 0.1, 1.0), offset=0.1).crossings for locus in loci))
-
-
-@by_pair
 def test_values(pair: Pair) -> None:
     """All values of the map, on displacements and, where there is a deltoid, on momenta; trees; counts."""
     one, other = pair.runs(0.5, 3)

@@ -1,12 +1,13 @@
 """Pictures of every system: which panels the overview has, and what the pictures beyond tops and sleighs show."""
 
-from collections.abc import Callable
+import inspect
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from PIL import Image
-from plot.runs import body_tensor, made_up, run_of
+from plot.runs import body_tensor, made_up, run_of, sleigh_run, top_run
 
 import nonholo as nh
 from nonholo.plot.motion import momentum_track
@@ -20,6 +21,7 @@ _FORBIDDEN, _AXIS, _POINT = "Forbidden body axis in space", "Body axis 3 in spac
 _PORTRAIT, _SPHERE = "Phase portrait", "Momentum on its energy sphere"
 _MOMENTUM, _SPATIAL = "Momentum along the constraint", "Spatial momentum along the constraint"
 _VELOCITY, _ENERGY = "Body velocity", "Energy error"
+_TRACK, _HEADING, START = "Track of the blade", "Heading and speed", (0.4, 0.9, 0.0)
 
 
 def _left(group: object, rows: object) -> nh.LLSystem:
@@ -32,17 +34,14 @@ def _any(group: object, free: int) -> nh.LLSystem:
     return nh.LLSystem(group, constraint_subspace=np.eye(group.dim)[:free], inertia_operator=np.eye(group.dim))
 
 
-CASES: dict[str, tuple[Callable[[], nh.Orbit], list[str]]] = {
-    "nothing moves": (lambda: run_of(_left(nh.SO(3), np.empty((0, 3)))), [_AXIS, _VELOCITY, _ENERGY]),
-    "one direction": (lambda: run_of(_left(nh.SO(3), [[1, 0, 0]])), [_AXIS, _MOMENTUM, _VELOCITY, _ENERGY]),
-    "two": (lambda: run_of(_left(nh.SO(3), [[1, 0, 0.2], [0, 1, 0]])), [_FORBIDDEN, _PORTRAIT, _VELOCITY, _ENERGY]),
-    "free top": (lambda: run_of(nh.RigidBody(np.diag([1.0, 3.0, 2.0]))), [_AXIS, _SPHERE, _VELOCITY, _ENERGY]),
-    "free in the plane": (
-        lambda: run_of(nh.RigidBody(body_tensor(2), nh.SE(2))),
-        [_POINT, _SPHERE, _VELOCITY, _ENERGY],
-    ),
-    "free on SO(5)": (lambda: run_of(nh.RigidBody(body_tensor(5)[:5, :5])), [_MOMENTUM, _VELOCITY, _ENERGY]),
-    "top of SO(4)": (lambda: run_of(nh.SuslovTop(body_tensor(4)[:4, :4])), [_SPHERE, _VELOCITY, _ENERGY]),
+CASES: dict[str, tuple[Any, list[str]]] = {  # a system, which runs, or what makes an orbit
+    "nothing moves": (_left(nh.SO(3), np.empty((0, 3))), [_AXIS, _VELOCITY, _ENERGY]),
+    "one direction": (_left(nh.SO(3), [[1, 0, 0]]), [_AXIS, _MOMENTUM, _VELOCITY, _ENERGY]),
+    "two": (_left(nh.SO(3), [[1, 0, 0.2], [0, 1, 0]]), [_FORBIDDEN, _PORTRAIT, _VELOCITY, _ENERGY]),
+    "free top": (nh.RigidBody(np.diag([1.0, 3.0, 2.0])), [_AXIS, _SPHERE, _VELOCITY, _ENERGY]),
+    "free in the plane": (nh.RigidBody(body_tensor(2), nh.SE(2)), [_POINT, _SPHERE, _VELOCITY, _ENERGY]),
+    "free on SO(5)": (nh.RigidBody(body_tensor(5)[:5, :5]), [_MOMENTUM, _VELOCITY, _ENERGY]),
+    "top of SO(4)": (nh.SuslovTop(body_tensor(4)[:4, :4]), [_SPHERE, _VELOCITY, _ENERGY]),
     "arrowhead of SO(1000)": (
         lambda: nh.simulate(
             nh.discretize(nh.SuslovTop.arrowhead(np.linspace(40, 80, 1000), np.ones(999)), 0.1),
@@ -53,25 +52,22 @@ CASES: dict[str, tuple[Callable[[], nh.Orbit], list[str]]] = {
         [f"{_MOMENTUM}, the 60 largest of 999", _ENERGY],
     ),
     "arrowhead of SE(4)": (
-        lambda: run_of(nh.MultidimensionalSleigh.arrowhead(1.0, [0.5, 0.2, 0.1, 0.0], [1.0, 2, 3, 4], [0.1, 0.2, 0.3])),
+        nh.MultidimensionalSleigh.arrowhead(1.0, [0.5, 0.2, 0.1, 0.0], [1.0, 2, 3, 4], [0.1, 0.2, 0.3]),
         [_MOMENTUM, _ENERGY],
     ),
     "sleigh of SE(3)": (
-        lambda: run_of(nh.MultidimensionalSleigh(1.0, [0.5, 0.2, 0.1], body_tensor(3)[:3, :3])),
+        nh.MultidimensionalSleigh(1.0, [0.5, 0.2, 0.1], body_tensor(3)[:3, :3]),
         [_POINT, _SPHERE, _VELOCITY, _ENERGY],
     ),
     "sleigh of SE(4)": (
-        lambda: run_of(nh.MultidimensionalSleigh(1.0, [0.5, 0.2, 0.1, 0.0], body_tensor(4)[:4, :4])),
+        nh.MultidimensionalSleigh(1.0, [0.5, 0.2, 0.1, 0.0], body_tensor(4)[:4, :4]),
         [_POINT, _MOMENTUM, _VELOCITY, _ENERGY],
     ),
-    "dart": (lambda: run_of(_left(nh.SE(3), np.eye(6)[:4])), [_POINT, _MOMENTUM, _VELOCITY, _ENERGY]),
-    "Veselova": (lambda: run_of(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0]))), [_AXIS, _VELOCITY, _SPATIAL, _ENERGY]),
-    "Veselova of SO(4)": (
-        lambda: run_of(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0, 4.0]))),
-        [_VELOCITY, _SPATIAL, _ENERGY],
-    ),
+    "dart": (_left(nh.SE(3), np.eye(6)[:4]), [_POINT, _MOMENTUM, _VELOCITY, _ENERGY]),
+    "Veselova": (nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), [_AXIS, _VELOCITY, _SPATIAL, _ENERGY]),
+    "Veselova of SO(4)": (nh.VeselovaTop(np.diag([1.0, 2.0, 3.0, 4.0])), [_VELOCITY, _SPATIAL, _ENERGY]),
     "plate": (
-        lambda: run_of(nh.LRSystem(nh.SE(2), body_tensor(2), [[1.0, 0, 0], [0, 1.0, 0]])),
+        nh.LRSystem(nh.SE(2), body_tensor(2), [[1.0, 0, 0], [0, 1.0, 0]]),
         [_POINT, _VELOCITY, _SPATIAL, _ENERGY],
     ),
     "plate that cannot move": (
@@ -81,16 +77,19 @@ CASES: dict[str, tuple[Callable[[], nh.Orbit], list[str]]] = {
     "Heisenberg": (lambda: made_up(_any(_HEISENBERG, 2)), [_PORTRAIT, _VELOCITY, _ENERGY]),
     "product": (lambda: made_up(_any(_PRODUCT, 4)), [_MOMENTUM, _VELOCITY, _ENERGY]),
     "translations": (lambda: made_up(_any(nh.Translations(9), 9)), [_MOMENTUM, _VELOCITY, _ENERGY]),
-    "no poses": (
-        lambda: run_of(_left(nh.SE(3), np.eye(6)[:4]), reconstruct=False),
-        [_MOMENTUM, _VELOCITY, _ENERGY],
-    ),
-    "Veselova without poses": (
-        lambda: run_of(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), reconstruct=False),
-        [_SPATIAL],
-    ),
+    "no poses": (lambda: run_of(_left(nh.SE(3), np.eye(6)[:4]), reconstruct=False), [_MOMENTUM, _VELOCITY, _ENERGY]),
+    "Veselova without poses": (lambda: run_of(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), reconstruct=False), [_SPATIAL]),
+    "top": (lambda: top_run(START, steps=40), [_FORBIDDEN, _PORTRAIT, _VELOCITY, _ENERGY]),
+    "top without poses": (lambda: top_run(START, steps=20, reconstruct=False), [_PORTRAIT, _VELOCITY, _ENERGY]),
+    "sleigh": (lambda: sleigh_run(START, steps=40), [_TRACK, _PORTRAIT, _HEADING, _ENERGY]),
+    "sleigh without poses": (lambda: sleigh_run(START, steps=20, reconstruct=False), [_PORTRAIT, _VELOCITY, _ENERGY]),
     "one state": (lambda: run_of(_left(nh.SE(3), np.eye(6)[:4]))[:1], [_POINT, _MOMENTUM, _VELOCITY, _ENERGY]),
 }
+
+
+def _orbit(name: str) -> nh.Orbit:
+    made = CASES[name][0]
+    return made() if inspect.isfunction(made) else run_of(made)
 
 
 def _titles(orbit: nh.Orbit, **options: object) -> list[str]:
@@ -98,41 +97,42 @@ def _titles(orbit: nh.Orbit, **options: object) -> list[str]:
     return [title for one in axes if (title := one.get_title(loc="left"))]
 
 
-@pytest.mark.parametrize(("make", "titles"), CASES.values(), ids=CASES)
-def test_panels(make: Callable[[], nh.Orbit], titles: list[str]) -> None:
+@pytest.mark.parametrize("name", CASES)
+def test_panels(name: str) -> None:
     """Each orbit has the panels that are defined for it, the large one first, and none is a failure."""
-    assert _titles(make()) == titles
+    assert _titles(_orbit(name)) == CASES[name][1]
 
 
 def test_every_system_is_tried() -> None:
-    """No final system is missing here or in `test_overview`, which draws the sleigh of the plane."""
-    assert {type(make().system) for make, _ in CASES.values()} | {nh.ChaplyginSleigh} == set(SYSTEMS)
+    """No final system is missing."""
+    assert {type(_orbit(name).system) for name in CASES} == set(SYSTEMS)
 
 
 @pytest.mark.parametrize("name", ["sleigh of SE(3)", "Veselova of SO(4)", "translations"])
 def test_pictures_are_saved(name: str, tmp_path: object) -> None:
     """Panels in three dimensions, panels against time alone, and many lines are saved without a warning."""
-    CASES[name][0]().plot(tmp_path / "a.png")
+    _orbit(name).plot(tmp_path / "a.png")
     assert (tmp_path / "a.png").stat().st_size > 10_000
 
 
-def test_a_flow_beside_and_alone() -> None:
-    """A flow of a right-invariant system has the same panels, alone and beside the discrete orbit."""
-    orbit = CASES["plate"][0]()
-    flow = nh.flow(orbit.system, restricted_velocity=0.6 * np.cos(np.arange(2)), times=np.linspace(0.0, 4.0, 20))
-    titles = CASES["plate"][1]
+@pytest.mark.profile("paper", keep=["plate-*"])
+@pytest.mark.parametrize("end", [4.0, -4.0])
+@pytest.mark.parametrize("name", ["plate", "sleigh"])
+def test_a_flow_beside_and_alone(name: str, end: float) -> None:
+    """A flow, forwards and backwards in time, has the same panels, alone and beside the discrete orbit."""
+    orbit, titles = _orbit(name), CASES[name][1]
+    flow = nh.flow(orbit.system, restricted_velocity=0.6 * np.cos(np.arange(2)), times=np.linspace(0.0, end, 20))
     assert _titles(flow) == titles
     assert _titles(orbit, flow=flow) == titles
     assert nh.plot.energy_error(flow).expected.get_text() == "error of the solver"
 
 
 @pytest.mark.parametrize(
-    ("name", "words"),
-    [("dart", "exact by theorem, up to rounding"), ("Veselova", "not exact for this discretization")],
+    ("name", "words"), [("dart", "exact by theorem, up to rounding"), ("Veselova", "not exact for this discretization")]
 )
 def test_the_energy_panel_says_what_to_expect(name: str, words: str) -> None:
     """The panel says whether a theorem makes the energy exact, and the measured error agrees with it."""
-    orbit = CASES[name][0]()
+    orbit = _orbit(name)
     assert nh.plot.energy_error(orbit).expected.get_text() == words
     assert (np.ptp(orbit.energy) < 1e-14) == words.startswith("exact")
 
@@ -140,12 +140,12 @@ def test_the_energy_panel_says_what_to_expect(name: str, words: str) -> None:
 def test_energy_without_poses_is_refused() -> None:
     """The energy of a right-invariant system needs poses, and the refusal says how to get them."""
     with pytest.raises(ValueError, match=r"`energy_error\(orbit=...\)` must have poses. .* reconstruct=True"):
-        nh.plot.energy_error(CASES["Veselova without poses"][0]())
+        nh.plot.energy_error(_orbit("Veselova without poses"))
 
 
 def test_large_panel_is_not_a_constant() -> None:
     """The conserved momenta of a right-invariant constraint never fill the large panel if there is another one."""
-    orbit = CASES["Veselova of SO(4)"][0]()
+    orbit = _orbit("Veselova of SO(4)")
     assert np.ptp(orbit.restricted_momentum, axis=0).max() < 1e-14
     assert len(panels_of(orbit, None)) == 3
     assert _titles(orbit)[0] != _SPATIAL
@@ -172,16 +172,16 @@ def test_momentum_sphere_ends_at_the_stable_equilibrium() -> None:
 def test_momentum_sphere_refuses_other_dimensions() -> None:
     """Two directions and right-invariant constraints are refused, with what to draw instead."""
     with pytest.raises(ValueError, match=r"three-dimensional constraint subspace. Got dimension 2. Use `phase_portr"):
-        nh.plot.momentum_sphere(CASES["two"][0]())
+        nh.plot.momentum_sphere(_orbit("two"))
     with pytest.raises(ValueError, match=r"must have a left-invariant constraint. .* draw `overview`"):
-        nh.plot.momentum_sphere(CASES["Veselova of SO(4)"][0]())
+        nh.plot.momentum_sphere(_orbit("Veselova of SO(4)"))
 
 
 def test_point_track_shows_the_positions() -> None:
     """The track is the path of the reference point; of SE(4) the three largest coordinates are shown."""
-    plane = CASES["plate"][0]()
+    plane = _orbit("plate")
     assert np.array_equal(nh.plot.point_track(plane).points, plane.position)
-    four = CASES["sleigh of SE(4)"][0]()
+    four = _orbit("sleigh of SE(4)")
     drawn = nh.plot.point_track(four)
     left_out = set(range(4)) - set(drawn.coordinates)
     assert left_out == {int(np.argmin(np.ptp(four.position, axis=0)))}
@@ -193,16 +193,16 @@ def test_point_track_refusals(top_orbit: nh.Orbit) -> None:
     with pytest.raises(ValueError, match=r"must be an orbit on SE\(n\). Got SO\(3\). Use `body_axis_track`"):
         nh.plot.point_track(top_orbit)
     with pytest.raises(ValueError, match="must have poses"):
-        nh.plot.point_track(CASES["no poses"][0]())
+        nh.plot.point_track(_orbit("no poses"))
     flat = nh.plot.energy_error(top_orbit).axes
     with pytest.raises(ValueError, match=r"must be axes of dimension 3. .* projection=\"3d\""):
-        nh.plot.point_track(CASES["dart"][0](), axes=flat)
+        nh.plot.point_track(_orbit("dart"), axes=flat)
 
 
 def test_axis_of_the_constraint_is_marked() -> None:
     """For a Veselova top the vertical is marked; for a free body its spatial momentum, the same in every state."""
-    assert nh.plot.body_axis_track(CASES["Veselova"][0]()).fixed_axis.tolist() == [0.0, 0.0, 1.0]
-    free = CASES["free top"][0]()
+    assert nh.plot.body_axis_track(_orbit("Veselova")).fixed_axis.tolist() == [0.0, 0.0, 1.0]
+    free = _orbit("free top")
     axis = nh.plot.body_axis_track(free).fixed_axis
     last = free.spatial_momentum[-1]
     assert np.allclose(axis, last / np.linalg.norm(last), atol=1e-14)
@@ -210,7 +210,7 @@ def test_axis_of_the_constraint_is_marked() -> None:
 
 def test_any_body_axis() -> None:
     """A body axis of the user's choice is scaled to length one and carried along; a zero vector is refused."""
-    orbit = CASES["free top"][0]()
+    orbit = _orbit("free top")
     assert np.allclose(nh.plot.body_axis_track(orbit, body_axis=(0, 2, 0)).points, orbit.configuration[:, :, 1])
     with pytest.raises(ValueError, match=r"`body_axis_track\(body_axis=...\)` must have a direction"):
         nh.plot.body_axis_track(orbit, body_axis=(0, 0, 0))
@@ -226,13 +226,13 @@ def test_portraits_of_any_plane() -> None:
     assert np.abs(drawn.stable.get_offsets()[:, 0]).max() < 1e-15  # momenta in d move where the first is not zero
     assert len(drawn.arrows) == 8
     with pytest.raises(ValueError, match=r"must have a left-invariant constraint"):
-        nh.plot.phase_portrait(CASES["plate"][0]().system)
+        nh.plot.phase_portrait(_orbit("plate").system)
 
 
 @pytest.mark.parametrize("name", ["top of SO(4)", "sleigh of SE(4)", "translations"])
 def test_other_systems_move_in_a_plane_of_momenta(name: str, tmp_path: Path) -> None:
     """A film of no body shows a point in the plane of the two largest momenta, or one momentum against time."""
-    orbit = CASES[name][0]()
+    orbit = _orbit(name)
     track = momentum_track(orbit)
     size = np.abs(orbit.restricted_momentum).max(axis=0)
     column = size.argmax()

@@ -17,7 +17,7 @@ from plot.runs import MASS_TENSOR, run_of, sleigh_run, top_run
 
 import nonholo as nh
 import nonholo.plot.geometry._locus
-from nonholo.lagrange_dalembert import LagrangeDAlembert
+from nonholo.lagrange_dalembert import CoordinateOrbit, LagrangeDAlembert
 from nonholo.plot import theme
 
 _SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3), 0.5)
@@ -249,13 +249,27 @@ def test_a_wide_figure_is_used(sleigh_orbit: nh.Orbit) -> None:
     assert np.ptp(axes.get_xlim()) / np.ptp(axes.get_ylim()) == pytest.approx(box.width / box.height)
 
 
-def test_the_overview_obeys(sleigh_orbit: nh.Orbit) -> None:
+def _on_a_spring() -> CoordinateOrbit:
+    spring = LagrangeDAlembert(lambda q, v: (v @ v - q @ q) / 2, None, dimension=2, coordinates=("x", "y"))
+    return nh.simulate(nh.discretize(spring, 0.1), configuration=(1, 0), body_velocity=(0, 1), steps=40)
+
+
+@pytest.mark.parametrize(
+    ("run", "titles"),
+    [
+        (_short, ["Track of the blade", "Phase portrait", "Heading and speed", "Energy error"]),
+        (_on_a_spring, ["Path", "Coordinates", "Velocity", "Energy error"]),
+    ],
+    ids=["group", "coordinates"],
+)
+def test_the_overview_obeys(run: Callable[[], Any], titles: list[str]) -> None:
     """The title replaces the name of the system, panels keep theirs; words and legends go, colors are the caller's."""
-    figure = nh.plot.overview(sleigh_orbit, title="Mine", legend=False, annotate=False, color="C3", dark=True)
+    orbit = run()
+    figure = nh.plot.overview(orbit, title="Mine", legend=False, annotate=False, color="C3", dark=True)
     assert [text.get_text() for text in figure.texts] == ["Mine"]
-    panels = [axes for axes in figure.axes if _titles(axes)]
-    assert [_titles(axes).pop() for axes in panels[:2]] == ["Track of the blade", "Phase portrait"]
-    assert "Mine" not in set().union(*map(_titles, panels))
+    assert [_titles(axes).pop() for axes in figure.axes if _titles(axes)] == titles
+    named = nh.plot.overview(orbit, label="this one").axes[0].get_legend().get_texts()
+    assert "this one" in [text.get_text() for text in named]
     assert not any(_words(axes) or axes.get_legend() for axes in figure.axes)
     assert np.allclose(figure.axes[0].collections[0].get_facecolor(), to_rgba("C3"))
     assert theme.luminance(figure.get_facecolor()) < 0.01
@@ -279,20 +293,6 @@ def test_pages_of_comparisons_obey() -> None:
     for figure in (nh.plot.comparison(one, **_NOTHING), nh.plot.convergence(order, **_NOTHING)):
         assert not any(_words(axes) or axes.get_legend() for axes in figure.axes)
         assert [text.get_text() for text in figure.texts] == [""]
-
-
-def test_the_overview_in_coordinates_obeys() -> None:
-    """As that of bodies."""
-    spring = LagrangeDAlembert(lambda q, v: (v @ v - q @ q) / 2, None, dimension=2, coordinates=("x", "y"))
-    orbit = nh.simulate(nh.discretize(spring, 0.1), configuration=(1, 0), body_velocity=(0, 1), steps=40)
-    figure = nh.plot.overview(orbit, title="Mine", legend=False, annotate=False, color="C3", dark=True)
-    assert [text.get_text() for text in figure.texts] == ["Mine"]
-    assert [_titles(axes).pop() for axes in figure.axes] == ["Path", "Coordinates", "Velocity", "Energy error"]
-    assert not any(_words(axes) or axes.get_legend() for axes in figure.axes)
-    assert np.allclose(figure.axes[0].collections[0].get_facecolor(), to_rgba("C3"))
-    assert theme.luminance(figure.get_facecolor()) < 0.01
-    named = nh.plot.overview(orbit, label="this one").axes[0].get_legend().get_texts()
-    assert [text.get_text() for text in named] == ["this one"]
 
 
 def test_text_stays_text_in_svg(sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:

@@ -10,11 +10,6 @@ from plot.runs import MASS_TENSOR, sleigh_run, top_run
 
 import nonholo as nh
 
-TITLES = {
-    "top": ["Forbidden body axis in space", "Phase portrait", "Body velocity", "Energy error"],
-    "sleigh": ["Track of the blade", "Phase portrait", "Heading and speed", "Energy error"],
-    "no poses": ["Phase portrait", "Body velocity", "Energy error"],
-}
 FEW = {
     "one state": lambda: top_run((0.4, 0.9, 0.0), steps=1)[:1],
     "two states": lambda: top_run((0.4, 0.9, 0.0), steps=1),
@@ -24,31 +19,6 @@ FEW = {
     "backward sleigh": lambda: sleigh_run((0.3, 1.0, 0.0), a=-0.5, steps=150),
     "thinned top": lambda: top_run((0.4, 0.9, 0.0), steps=600, save_every=20),
 }
-
-
-def _titles(orbit: nh.Orbit, **options: nh.Orbit) -> list[str]:
-    axes = nh.plot.overview(orbit, **options).axes
-    return [title for one in axes if (title := one.get_title(loc="left"))]
-
-
-def test_panels(top_orbit: nh.Orbit, sleigh_orbit: nh.Orbit) -> None:
-    """A top and a sleigh have four panels, an orbit without poses three."""
-    assert _titles(top_orbit) == TITLES["top"]
-    assert _titles(sleigh_orbit) == TITLES["sleigh"]
-    assert _titles(top_run((0.4, 0.9, 0.0), steps=20, reconstruct=False)) == TITLES["no poses"]
-    assert _titles(sleigh_run((0.1, -1.0, 0.0), steps=20, reconstruct=False)) == TITLES["no poses"]
-
-
-@pytest.mark.profile("paper", instead="test_a_flow_beside_and_alone")
-def test_panels_of_flows(sleigh_orbit: nh.Orbit) -> None:
-    """A continuous orbit has the same panels, forwards and backwards in time, and can accompany a discrete one."""
-    system = sleigh_orbit.system
-    forwards, backwards = (
-        nh.flow(system, body_velocity=(0.3, 1.0, 0.0), times=np.linspace(0.0, end, 100)) for end in (20.0, -20.0)
-    )
-    assert _titles(forwards) == TITLES["sleigh"]
-    assert _titles(backwards) == TITLES["sleigh"]
-    assert _titles(sleigh_orbit, flow=forwards) == TITLES["sleigh"]
 
 
 @pytest.mark.profile("paper", keep=["one state", "top at rest", "backward sleigh"])
@@ -101,13 +71,12 @@ def test_refuses_other_suffixes(sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:
         nh.plot.overview(sleigh_orbit, tmp_path / "picture.zarr")
 
 
-@pytest.mark.parametrize("draw", ["plot", "overview", "animate"])
+@pytest.mark.parametrize("draw", ["plot", "animate"])
 def test_older_pictures_are_kept(draw: str, sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:
     """A picture at the path is kept unless it is to be replaced; a folder is never replaced."""
     path = tmp_path / ("a.gif" if draw == "animate" else "a.png")
     functions = {
         "plot": lambda **options: sleigh_orbit.plot(str(path), **options),
-        "overview": lambda **options: nh.plot.overview(sleigh_orbit, path, **options),
         "animate": lambda **options: nh.plot.animate(sleigh_orbit, path, frames=2, **options),
     }
     path.write_text("mine")

@@ -102,12 +102,8 @@ def test_labels_and_units(plane: xarray.Dataset) -> None:
     assert (picture.axes.get_xlabel(), picture.axes.get_ylabel()) == ("a", "b")
     assert picture.colorbar is not None
     assert picture.colorbar.ax.get_ylabel() == "value  [rad]"
-
-
-def test_first_quantity_is_the_default(plane: xarray.Dataset) -> None:
-    """Without a name the first quantity with one number for each member is shown, not the outcome."""
-    picture = nh.plot.sweep_map(plane)
-    assert picture.axes.get_title(loc="left") == "A number"
+    default = nh.plot.sweep_map(plane)  # the first quantity with one number for each member, not the outcome
+    assert default.axes.get_title(loc="left") == "A number"
 
 
 def test_axes_can_be_exchanged(plane: xarray.Dataset) -> None:
@@ -195,36 +191,27 @@ def test_given_axes_are_used(plane: xarray.Dataset) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("result", "arguments", "told"),
     [
-        ({"quantity": "nothing"}, "must be one of 'value', 'many', 'outcome'|must be one of 'many'"),
-        ({"quantity": "many"}, "Pass result.isel\\(part=0\\)"),
-        ({"x": "d"}, "must be one of 'a', 'b', 'c'. Got 'd'"),
-        ({"quantity": "value"}, "must have at most two free axes. Got also c. Pass result.sel\\(c="),
+        ("space", {"quantity": "nothing"}, "must be one of 'value', 'many', 'outcome'|must be one of 'many'"),
+        ("space", {"quantity": "many"}, "Pass result.isel\\(part=0\\)"),
+        ("space", {"x": "d"}, "must be one of 'a', 'b', 'c'. Got 'd'"),
+        ("space", {"quantity": "value"}, "must have at most two free axes. Got also c. Pass result.sel\\(c="),
+        ("plane", {"quantity": "value", "x": "a", "y": "a"}, "Got 'a' twice"),
+        ("draws", {"quantity": "wide", "y": "b"}, "must come with x"),
+        ("draws", {"quantity": "wide", "x": "c"}, "must be one number of each member. Got 'c'. Choose among"),
     ],
 )
-def test_what_is_refused_of_a_grid(space: xarray.Dataset, arguments: dict[str, str], told: str) -> None:
-    """A quantity or an axis that is not there, and an axis too many, are refused with what there is."""
+def test_what_is_refused(request: pytest.FixtureRequest, result: str, arguments: dict[str, str], told: str) -> None:
+    """A quantity or an axis that is not there, an axis twice or too many, and draws over y alone are refused."""
     with pytest.raises(ValueError, match=told):
-        nh.plot.sweep_map(space, **arguments)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "told"),
-    [({"y": "b"}, "must come with x"), ({"x": "c"}, "must be one number of each member. Got 'c'. Choose among")],
-)
-def test_what_is_refused_of_draws(draws: xarray.Dataset, arguments: dict[str, str], told: str) -> None:
-    """For draws y alone, and names that are no number of a member, are refused."""
-    with pytest.raises(ValueError, match=told):
-        nh.plot.sweep_map(draws, "wide", **arguments)
+        nh.plot.sweep_map(request.getfixturevalue(result), **arguments)
 
 
 def test_one_member_is_refused(plane: xarray.Dataset) -> None:
-    """A result without axes has no picture; nor has one axis against itself."""
+    """A result without axes has no picture."""
     with pytest.raises(ValueError, match="Got one member"):
         nh.plot.sweep_map(plane.isel(a=0, b=0), "value")
-    with pytest.raises(ValueError, match="Got 'a' twice"):
-        nh.plot.sweep_map(plane, "value", x="a", y="a")
 
 
 @pytest.mark.parametrize("columns", [slice(2, 4), slice(0, 1)])

@@ -7,11 +7,14 @@ from typing import Any
 import numpy as np
 import pytest
 from bodies import GENERAL
+from comparisons import assert_member
+from refusals import refusals
 
 import nonholo as nh
 from nonholo import Outcome
 
 TOP = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.3)
+ALONG = {"restricted_velocity": None, "body_velocity": [[1.0, 0.0, 0.0]]}
 FAMILIES = {
     "top": TOP,
     "tilted top": nh.discretize(
@@ -154,36 +157,26 @@ def test_members_that_differ_take_the_rule(name: str) -> None:
     batch = nh.ensemble(discrete, **run, steps=12, save_every=3, parameters={"time_step": steps})
     for member, step in enumerate(steps):
         alone = nh.simulate(dataclasses.replace(discrete, time_step=step), **run, steps=12, save_every=3)
-        for column in ("reduced_momentum", "cayley", "canonical_pose"):
-            assert np.array_equal(getattr(batch, column)[member], getattr(alone, column)), column
+        assert_member(batch, member, alone, "reduced_momentum", "cayley", "canonical_pose")
 
 
-@pytest.mark.parametrize(
-    ("given", "match"),
-    [
-        ({"branch": "next"}, r"`ensemble\(branch=\.\.\.\)` must be"),
-        ({"branch": "nearest", "backend": "numba"}, r"`ensemble\(backend=\.\.\.\)` must be 'auto' or 'jax'"),
-        ({"branch": "inner", "restricted_velocity": [[0.1, 0.1], [3.0, 0.0]]}, r"'inner' and an energy.*member 1\."),
-        ({"branch": lambda found, _: len(found)}, r"return the index of a real branch.*member 0\."),
-        ({"branch": "nearest", "events": [lambda orbit: orbit.energy]}, "parts of a step"),
-    ],
+SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5)
+WITHOUT_RULES = (
+    nh.discretize(SLEIGH, 0.1, order=4),
+    nh.discretize(nh.Forced(SLEIGH, nh.Gravity([0.2, -1.0], [0.5, 0.1])), 0.1),
+    nh.discretize(nh.examples.particle().system, 0.1),
 )
-def test_rules_that_members_cannot_take_are_refused(given: dict[str, Any], match: str) -> None:
-    """In the words of a single run, with the number of the member where it is that member's."""
-    with pytest.raises(ValueError, match=match):
-        nh.ensemble(TOP, **{"restricted_velocity": [[0.1, 0.1]], "steps": 3, **given})
+# In the words of a single run, with the number of the member where it is that member's; motions without rules, too.
+test_rules_that_members_cannot_take_are_refused = refusals(
+    ({"branch": "next"}, r"`ensemble\(branch=\.\.\.\)` must be"),
+    ({"branch": "nearest", "backend": "numba"}, r"`ensemble\(backend=\.\.\.\)` must be 'auto' or 'jax'"),
+    ({"branch": "inner", "restricted_velocity": [[0.1, 0.1], [3.0, 0.0]]}, r"'inner' and an energy.*member 1\."),
+    ({"branch": lambda found, _: len(found)}, r"return the index of a real branch.*member 0\."),
+    ({"branch": "nearest", "events": [lambda orbit: orbit.energy]}, "parts of a step"),
+    *(({"discrete": each, **ALONG, "branch": "nearest"}, "branch") for each in WITHOUT_RULES),
+    ({"discrete": SLEIGH, **ALONG, "branch": "nearest", "steps": None, "times": (0.0, 1.0)}, "branch"),
+    ask=lambda given: nh.ensemble(**{"discrete": TOP, "restricted_velocity": [[0.1, 0.1]], "steps": 3} | given),
+)
 
 
-@pytest.mark.parametrize("kind", ["composition", "forces", "coordinates", "flow"])
-def test_motions_without_rules_are_refused(kind: str) -> None:
-    """Compositions, forces, coordinates and flows have no branch rules, in ensembles as in runs alone."""
-    sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.5)
-    motion: Any = {
-        "composition": lambda: nh.discretize(sleigh, 0.1, order=4),
-        "forces": lambda: nh.discretize(nh.Forced(sleigh, nh.Gravity([0.2, -1.0], [0.5, 0.1])), 0.1),
-        "coordinates": lambda: nh.discretize(nh.examples.particle().system, 0.1),
-        "flow": lambda: sleigh,
-    }[kind]()
-    run: Any = {"times": (0.0, 1.0)} if kind == "flow" else {"steps": 3}
-    with pytest.raises(ValueError, match="branch"):
-        nh.ensemble(motion, body_velocity=[[1.0, 0.0, 0.0]], branch="nearest", **run)
+# In the words of a single run, with the number of the member where it is that member's.

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from bodies import tensor
 
 import nonholo as nh
 from nonholo.base.numerics import applied
@@ -14,15 +15,9 @@ from nonholo.systems import System
 DECODED = ("restricted_momentum", "momentum", "body_velocity", "configuration", "pose", "energy")
 
 
-def tensor(rng: np.random.Generator, n: int) -> np.ndarray:
-    """Return a mass tensor."""
-    A = rng.normal(size=(n, n))
-    return A @ A.T + 0.3 * np.eye(n)
-
-
 def top(rng: np.random.Generator) -> System:
     """Return a top by its inertia, with an oblique axis."""
-    axis, J = rng.normal(size=3), tensor(rng, 3)
+    axis, J = rng.normal(size=3), tensor(3, rng)
     return nh.SuslovTop.from_inertia(np.trace(J) * np.eye(3) - J, axis=axis / np.linalg.norm(axis))
 
 
@@ -34,13 +29,13 @@ def sleigh(rng: np.random.Generator, b: float) -> System:
 BODIES: dict[str, Callable[[np.random.Generator], System]] = {
     "sleigh": functools.partial(sleigh, b=0.0),
     "sleigh-b": functools.partial(sleigh, b=1.0),
-    "top": lambda rng: nh.SuslovTop(tensor(rng, 3)),
+    "top": lambda rng: nh.SuslovTop(tensor(3, rng)),
     "oblique": top,
 }
 WIDER: dict[str, Callable[[np.random.Generator], System]] = {
-    "SO(5)": lambda rng: nh.SuslovTop(tensor(rng, 5)),
-    "SE(3)": lambda rng: nh.MultidimensionalSleigh(1.5, rng.normal(size=3), tensor(rng, 3)),
-    "slanted": lambda rng: nh.LLSystem(nh.SO(3), tensor(rng, 3), annihilator=rng.normal(size=(1, 3))),
+    "SO(5)": lambda rng: nh.SuslovTop(tensor(5, rng)),
+    "SE(3)": lambda rng: nh.MultidimensionalSleigh(1.5, rng.normal(size=3), tensor(3, rng)),
+    "slanted": lambda rng: nh.LLSystem(nh.SO(3), tensor(3, rng), annihilator=rng.normal(size=(1, 3))),
 }
 
 
@@ -92,39 +87,20 @@ CASES = [
 ]
 
 
-@pytest.mark.profile("problems", keep=["*-few"])
+@pytest.mark.profile("problems", keep=["*-few-*"])
+@pytest.mark.parametrize("flows", [False, True], ids=["runs", "flows"])
 @pytest.mark.parametrize(("kind", "count"), CASES)
-def test_an_ensemble_has_the_bits_of_each_run(kind: str, count: int) -> None:
-    """Last states after 20 steps, and what is decoded of them, are those of `simulate` from the same momenta."""
-    equal = 0
+def test_an_ensemble_has_the_bits_of_each_run(kind: str, count: int, flows: bool) -> None:
+    """Last states after 20 steps, or those of flows, and what is decoded of them, are those from the same momenta."""
+    names, times = ("reduced_momentum", "canonical_pose", *DECODED), np.linspace(0.0, 2.0, 3)
     for body, momenta in bodies(kind, count):
-        discrete = nh.discretize(body, 0.1)
-        batch = nh.ensemble(discrete, momentum=momenta, steps=20)
-        runs = [nh.simulate(discrete, momentum=momentum, steps=20) for momentum in momenta]
-        names = ("reduced_momentum", "cayley", "canonical_pose", *DECODED)
-        equal += all(
-            np.array_equal(getattr(batch, name)[j][-1], getattr(run, name)[-1])
-            for name in names
-            for j, run in enumerate(runs)
-        )
-    print(f"{kind}: {equal} of {count}")  # noqa: T201
-    assert equal == count
-
-
-@pytest.mark.profile("problems", keep=["*-few"])
-@pytest.mark.parametrize(("kind", "count"), CASES)
-def test_an_ensemble_of_flows_has_the_bits_of_each_flow(kind: str, count: int) -> None:
-    """States, and what is decoded of them, are those of `flow` from the same momenta."""
-    equal, times = 0, np.linspace(0.0, 2.0, 3)
-    for body, momenta in bodies(kind, count):
-        batch = nh.ensemble(body, momentum=momenta, times=times)
-        runs = [nh.flow(body, momentum=momentum, times=times) for momentum in momenta]
-        names = ("reduced_momentum", "canonical_pose", *DECODED)
-        equal += all(
-            np.array_equal(getattr(batch, name)[j], getattr(run, name)) for name in names for j, run in enumerate(runs)
-        )
-    print(f"{kind} flows: {equal} of {count}")  # noqa: T201
-    assert equal == count
+        motion, run = (body, {"times": times}) if flows else (nh.discretize(body, 0.1), {"steps": 20})
+        batch: Any = nh.ensemble(motion, momentum=momenta, **run)
+        for j, momentum in enumerate(momenta):
+            alone = (nh.flow if flows else nh.simulate)(motion, momentum=momentum, **run)
+            for name in names if flows else ("cayley", *names):
+                last = getattr(alone, name)[0 if flows else -1 :]
+                assert np.array_equal(getattr(batch, name)[j], last), (body, name)
 
 
 def test_a_body_of_one_closed_form_runs_side_by_side(monkeypatch: pytest.MonkeyPatch) -> None:

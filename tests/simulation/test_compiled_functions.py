@@ -3,7 +3,6 @@
 import math
 import sys
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numba
@@ -78,7 +77,7 @@ def _rows(orbit: Any) -> list[np.ndarray]:
     return [orbit.reduced_momentum, orbit.cayley, orbit.canonical_pose]
 
 
-@pytest.mark.profile("routes", keep=["top-all three"])
+@pytest.mark.profile("routes", keep=["top-all three", "top-well and drive"])
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_compiled_functions_have_the_bits_of_python(name: str, kind: str) -> None:
@@ -106,22 +105,6 @@ def test_compiled_functions_have_the_bits_of_python(name: str, kind: str) -> Non
     for in_python, compiled, defined in zip(*map(_rows, (*found, by_definition)), strict=True):
         assert np.array_equal(in_python, compiled)
         assert np.abs(compiled - defined).max() < 3e-13
-
-
-def test_compiled_functions_run_in_blocks_stores_and_ensembles(tmp_path: Path) -> None:
-    """Blocks, a run into a store that is extended, and members have the bits of one run."""
-    start: dict[str, Any] = {"restricted_velocity": START[:2]}
-    discrete = nh.discretize(nh.Forced(TOP, WELL, DRIVE), 0.05)
-    orbit = nh.simulate(discrete, **start, steps=30)
-    blocks = map(_rows, nh.iterate(discrete, **start, steps=30, block_steps=7))
-    joint = [np.concatenate(rows) for rows in zip(*blocks, strict=True)]
-    nh.simulate(discrete, **start, steps=20, store=tmp_path / "run.zarr")
-    extended = nh.extend(tmp_path / "run.zarr", 10, discrete=discrete)
-    for whole, joined, stored in zip(_rows(orbit), joint, _rows(extended), strict=True):
-        assert np.array_equal(whole, joined)
-        assert np.array_equal(whole, stored)
-    batch = nh.ensemble(discrete, restricted_velocity=np.array([START[:2]] * 3), steps=30)
-    assert np.array_equal(batch.reduced_momentum[:, 0], np.array([orbit.reduced_momentum[-1]] * 3))
 
 
 def test_events_are_found_under_a_compiled_potential() -> None:

@@ -6,19 +6,22 @@ from typing import Any
 import numpy as np
 import pytest
 from bodies import GENERAL, mass_tensor
+from comparisons import assert_member, assert_same
+from refusals import refusals
 
 import nonholo as nh
 from nonholo import kernels
-from nonholo.kernels import suslov_body
 from nonholo.kernels._ensemble import motion_product, quaternion_product
 from nonholo.simulation.members import _ensemble, _executors
-from nonholo.simulation.members._members import Members, ScalarMembers, in_lanes
+from nonholo.simulation.members._members import in_lanes
 
 J = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 TOP = nh.SuslovTop(J, axis=(0.6, 0.0, 0.8))
 SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
 BOTH = pytest.mark.parametrize("system", [TOP, SLEIGH], ids=["top", "sleigh"])
 DECODED = ("momentum", "restricted_momentum", "energy", "body_velocity", "displacement", "configuration")
+PLACED = {"top": TOP, "sleigh": SLEIGH, "suslov 4": GENERAL["suslov 4"][0], "veselova 3": GENERAL["veselova 3"][0]}
+PLACED["plane blade"] = nh.LLSystem(nh.SE(2), SLEIGH.homogeneous_mass_tensor, np.eye(3)[:2])
 
 
 def _velocities(count: int, size: float = 1.0) -> np.ndarray:
@@ -46,27 +49,22 @@ def _assert_close(found: np.ndarray, wanted: np.ndarray, tolerance: float) -> No
 
 
 @BOTH
-def test_members_move_as_simulate_moves_them(system: Any) -> None:
-    """Over 1000 steps states agree to rounding, and what is decoded from them; poses gather that of 1000 products."""
-    discrete, velocities = nh.discretize(system, 0.1), _velocities(35)
-    batch = nh.ensemble(discrete, restricted_velocity=velocities, steps=1000, save_every=250)
+@pytest.mark.parametrize("varied", [False, True], ids=["one body", "many bodies"])
+def test_members_move_as_simulate_moves_them(system: Any, varied: bool) -> None:
+    """Over 1000 steps states agree to rounding, and what is decoded; each has its own parameters and time step."""
+    velocities, parameters = _velocities(35), _parameters(system, 35) if varied else {}
+    run = {"restricted_velocity": velocities, "steps": 1000, "save_every": 250}
+    batch = nh.ensemble(nh.discretize(system, 0.1), **run, parameters=parameters)
     assert batch.outcome.tolist() == [0] * 35
     for member in (0, 33):
-        orbit = nh.simulate(discrete, restricted_velocity=velocities[member], steps=1000, save_every=250)
+        body, own = system, {name: values[member] for name, values in parameters.items()}
+        step = own.pop("time_step", 0.1)
+        if varied:
+            body = nh.SuslovTop(**own, axis=TOP.axis) if system is TOP else nh.ChaplyginSleigh(**own)
+        orbit = nh.simulate(nh.discretize(body, step), **run | {"restricted_velocity": velocities[member]})
         assert np.array_equal(batch.time[member], orbit.time)
         for name in DECODED:
             _assert_close(getattr(batch, name)[member], getattr(orbit, name), 1e-14)
-
-
-@BOTH
-def test_last_state_is_that_of_the_history(system: Any) -> None:
-    """By default the one state kept is the last one, at time N h."""
-    discrete, velocities = nh.discretize(system, 0.1), _velocities(3)
-    whole = nh.ensemble(discrete, restricted_velocity=velocities, steps=30, save_every=1)
-    last = nh.ensemble(discrete, restricted_velocity=velocities, steps=30)
-    assert np.array_equal(last.reduced_momentum[:, 0], whole.reduced_momentum[:, -1])
-    assert np.array_equal(last.pose[:, 0], whole.pose[:, -1])
-    assert np.array_equal(last.time[:, 0], whole.time[:, -1])
 
 
 @BOTH
@@ -145,72 +143,6 @@ def test_bits_of_simulate(system: Any) -> None:
             assert np.array_equal(getattr(orbit, name), getattr(batch, name)[member, : len(orbit)]), (member, name)
 
 
-@BOTH
-@pytest.mark.parametrize("every", [None, 1], ids=["last", "history"])
-def test_a_failed_member_ends_as_in_simulate(system: Any, every: int | None) -> None:
-    """Outcome, number of good steps and last good state of each member are those of its own run."""
-    discrete, velocities = nh.discretize(system, 0.7), _velocities(40, 2.0)
-    batch = nh.ensemble(discrete, restricted_velocity=velocities, steps=30, save_every=every)
-    assert set(batch.outcome) > {0}
-    for member in range(40):
-        orbit = nh.simulate(discrete, restricted_velocity=velocities[member], steps=30, throw=False)
-        own = batch.orbit(member)
-        assert (batch.outcome[member], own.outcome) == (orbit.outcome, orbit.outcome)
-        assert batch.steps_done[member] == max(0, len(orbit) - 1)
-        if every:
-            assert len(own) == len(orbit)
-        if len(orbit):
-            assert own.time[-1] == pytest.approx(orbit.time[-1], rel=1e-15)
-            _assert_close(own.momentum[-1], orbit.momentum[-1], 1e-14)
-
-
-@BOTH
-def test_later_rows_of_a_failed_member_are_nan(system: Any) -> None:
-    """After its end, and from the start if there is no first root, a member has NaN; others have numbers."""
-    discrete = nh.discretize(system, 0.7)
-    batch = nh.ensemble(discrete, restricted_velocity=_velocities(40, 2.0), steps=30, save_every=3)
-    good = np.isfinite(batch.energy).sum(axis=1)
-    failed = batch.outcome != 0
-    assert (good[~failed] == 11).all()
-    begun = good[failed] > 0
-    assert (good[failed][begun] == 1 + batch.steps_done[failed][begun] // 3).all()
-    assert (batch.steps_done[failed][~begun] == 0).all()
-
-
-@BOTH
-def test_parameters_vary_by_member(system: Any) -> None:
-    """Each member moves as the system with its own parameters and time step does."""
-    discrete, velocities, parameters = nh.discretize(system, 0.1), _velocities(33), _parameters(system, 33)
-    batch = nh.ensemble(discrete, restricted_velocity=velocities, parameters=parameters, steps=100, save_every=50)
-    for member in (0, 32):
-        own = {name: values[member] for name, values in parameters.items() if name != "time_step"}
-        body = nh.SuslovTop(**own, axis=TOP.axis) if system is TOP else nh.ChaplyginSleigh(**own)
-        alone = nh.discretize(body, parameters["time_step"][member])
-        orbit = nh.simulate(alone, restricted_velocity=velocities[member], steps=100, save_every=50)
-        assert np.array_equal(batch.time[member], orbit.time)
-        for name in DECODED:
-            _assert_close(getattr(batch, name)[member], getattr(orbit, name), 1e-14)
-
-
-@BOTH
-def test_numbers_of_all_members_are_those_of_each(system: Any) -> None:
-    """Inertia, map to the canonical frame, first pose and fields, made in one go, are those of the systems."""
-    members = Members(nh.discretize(system, 0.1), _parameters(system, 5), 5)
-    scalar = ScalarMembers(members)
-    for member in range(5):
-        own = members.of(member).system
-        _assert_close(scalar.inertia[member], own.canonical.constrained_inertia, 1e-15)
-        frame_map = np.broadcast_to(scalar.frame_map, (5, 2, 2))
-        assert np.array_equal(frame_map[member], own.frame_map)
-        pose = np.broadcast_to(scalar.pose, (5, 4))
-        assert np.array_equal(pose[member], own.group.pose_from_matrix(own.frame))
-        if system is TOP:
-            body = suslov_body(own.canonical.constrained_inertia, own.canonical.coupling)
-            assert np.allclose(scalar.fields[:, member], body, rtol=1e-14, atol=0)
-        else:
-            assert scalar.fields[:, member].tolist() == [own.mass, own.inertia, own.a]
-
-
 @pytest.mark.parametrize("name", ["top", "suslov 4", "any d on SE(3)", "flow", "rule"])
 def test_little_work_starts_no_threads(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Members that are soon done run in the calling thread, all others beside it, where Ctrl-C ends them."""
@@ -277,35 +209,26 @@ def test_other_systems_run_member_by_member(name: str) -> None:
             _assert_close(getattr(batch, quantity)[1, 0], getattr(orbit, quantity)[-1], 1e-14)
 
 
-def test_a_member_of_another_system_keeps_its_last_good_state() -> None:
-    """Where members run one by one a failed one still has the state before its end."""
-    system, w = GENERAL["suslov 4"]
-    discrete = nh.discretize(system, 1.0)
-    velocities = w * np.array([[0.1], [2.3], [40.0]])
-    batch = nh.ensemble(discrete, restricted_velocity=velocities, steps=50)
-    assert batch.outcome[0] == 0
-    assert batch.outcome[2] != 0
-    for member in range(3):
-        orbit = nh.simulate(discrete, restricted_velocity=velocities[member], steps=50, throw=False)
-        assert (batch.outcome[member], len(batch.orbit(member))) == (orbit.outcome, min(1, len(orbit)))
+@pytest.mark.parametrize("name", ["top", "sleigh", "suslov 4"])
+@pytest.mark.parametrize("every", [None, 1], ids=["last", "history"])
+def test_a_failed_member_ends_as_in_simulate(name: str, every: int | None) -> None:
+    """Outcome, good steps and last good state of each member are those of its own run; later rows are NaN."""
+    discrete = nh.discretize(PLACED[name], 0.7)
+    velocities = 2.0 * np.random.default_rng(5).normal(size=(40, discrete.system.rank))
+    batch = nh.ensemble(discrete, restricted_velocity=velocities, steps=30, save_every=every)
+    assert set(batch.outcome) > {0}
+    for member in range(40):
+        orbit = nh.simulate(discrete, restricted_velocity=velocities[member], steps=30, throw=False)
+        own = batch.orbit(member)
+        assert (batch.outcome[member], own.outcome) == (orbit.outcome, orbit.outcome)
         assert batch.steps_done[member] == max(0, len(orbit) - 1)
+        assert len(own) == (len(orbit) if every else min(1, len(orbit)))
+        if every:
+            assert np.array_equal(np.isfinite(batch.energy[member]), np.arange(31) < len(orbit))
         if len(orbit):
-            assert np.array_equal(batch.reduced_momentum[member, 0], orbit.reduced_momentum[-1])
-
-
-@BOTH
-def test_a_momentum_off_the_locus_spoils_its_member_alone(system: Any) -> None:
-    """A full momentum that no displacement has gives the outcome off_momentum_locus and NaN."""
-    discrete = nh.discretize(system, 0.1)
-    momenta = nh.ensemble(discrete, restricted_velocity=_velocities(3), steps=1, save_every=1).momentum[:, 0].copy()
-    momenta[1] += 0.1 * system.annihilator[0]
-    batch = nh.ensemble(discrete, momentum=momenta, steps=5)
-    assert batch.outcome.tolist() == [0, nh.Outcome.off_momentum_locus, 0]
-    assert np.isnan(batch.energy[:, 0]).tolist() == [False, True, False]
-
-
-PLACED = {"top": TOP, "sleigh": SLEIGH, "suslov 4": GENERAL["suslov 4"][0], "veselova 3": GENERAL["veselova 3"][0]}
-PLACED["plane blade"] = nh.LLSystem(nh.SE(2), SLEIGH.homogeneous_mass_tensor, np.eye(3)[:2])
+            assert own.time[-1] == pytest.approx(orbit.time[-1], rel=1e-15)
+            _assert_close(own.momentum[-1], orbit.momentum[-1], 1e-14)
+            _assert_close(own.configuration[-1], orbit.configuration[-1], 1e-13)
 
 
 def _poses(system: Any, count: int) -> np.ndarray:
@@ -347,15 +270,6 @@ def test_flows_start_where_they_are_put(name: str) -> None:
         assert batch.first_energy[member] == pytest.approx(alone.energy[0], rel=1e-14)
 
 
-def test_members_in_the_air_start_with_their_potential_energy() -> None:
-    """The first energy of members under forces is that at their own poses."""
-    heavy = nh.Forced(TOP, nh.Gravity(force=[0.0, 0.0, -9.81], point=[0.0, 0.0, 0.3]))
-    discrete, poses = nh.discretize(heavy, 0.01), _poses(TOP, 3)
-    batch = nh.ensemble(discrete, restricted_velocity=np.ones((3, 2)), configuration=poses, steps=4, save_every=1)
-    assert np.ptp(batch.first_energy) > 0.1
-    assert np.array_equal(batch.first_energy, batch.energy[:, 0])
-
-
 DRIVEN: dict[str, tuple[Any, dict[str, Any], dict[str, Any]]] = {
     "heavy tops": (
         TOP,
@@ -378,21 +292,21 @@ DRIVEN: dict[str, tuple[Any, dict[str, Any], dict[str, Any]]] = {
 
 @pytest.mark.parametrize("name", DRIVEN)
 def test_bodies_on_which_forces_act_have_parameters(name: str) -> None:
-    """Each member has the bits of the run of the body with its own numbers under the same forces."""
+    """Each member has the bits of the run of the body with its own numbers under the same forces, from its own pose."""
     inside, forces, parameters = DRIVEN[name]
-    system, w = nh.Forced(inside, **forces), _velocities(3, 0.5)
+    system, w, poses = nh.Forced(inside, **forces), _velocities(3, 0.5), _poses(inside, 3)
+    run: dict[str, Any] = {"steps": 20, "save_every": 4}
     batch = nh.ensemble(
-        nh.discretize(system, 0.1), restricted_velocity=w, parameters=parameters, steps=20, save_every=4
+        nh.discretize(system, 0.1), restricted_velocity=w, configuration=poses, parameters=parameters, **run
     )
-    for member in range(3):
+    for member, (velocity, pose) in enumerate(zip(w, poses, strict=True)):
         own = {key: values[member] for key, values in parameters.items()}
         step = own.pop("time_step", 0.1)
         body = nh.SuslovTop(**own, axis=TOP.axis) if inside is TOP else dataclasses.replace(SLEIGH, **own)
-        orbit = nh.simulate(
-            nh.discretize(nh.Forced(body, **forces), step), restricted_velocity=w[member], steps=20, save_every=4
-        )
-        for state in ("time", "reduced_momentum", "canonical_pose", "energy"):
-            assert np.array_equal(getattr(batch, state)[member], getattr(orbit, state)), state
+        discrete = nh.discretize(nh.Forced(body, **forces), step)
+        orbit = nh.simulate(discrete, restricted_velocity=velocity, configuration=pose, **run)
+        assert_member(batch, member, orbit, "time", "reduced_momentum", "canonical_pose", "energy")
+        assert batch.first_energy[member] == pytest.approx(orbit.energy[0], rel=1e-14)
 
 
 def test_flows_under_forces_have_parameters() -> None:
@@ -404,22 +318,26 @@ def test_flows_under_forces_have_parameters() -> None:
     for member, (a, mass) in enumerate(zip(*parameters.values(), strict=True)):
         body = dataclasses.replace(SLEIGH, a=a, mass=mass)
         alone = nh.flow(nh.Forced(body, **forces), body_velocity=(1.0, 0.5, 0.0), times=(0.0, 1.0))
-        assert np.array_equal(batch.reduced_momentum[member], alone.reduced_momentum)
-        assert np.array_equal(batch.heading[member], alone.heading)
+        assert_member(batch, member, alone, "reduced_momentum", "heading")
 
 
 @pytest.mark.parametrize("name", ["top", "sleigh", "suslov 4"])
-def test_a_displacement_of_another_branch_spoils_its_member_alone(name: str) -> None:
-    """A member that would not start on the principal branch has outcome branch_unverified and NaN."""
+def test_a_start_that_is_none_spoils_its_member_alone(name: str) -> None:
+    """A displacement off the principal branch and a momentum of no displacement give an outcome and NaN."""
     system = PLACED[name]
     discrete = nh.discretize(system, 0.5)
     orbit = nh.simulate(discrete, restricted_velocity=np.full(system.rank, 0.3), steps=1)
-    bad = system.group.exp(3.0 * system.constraint_subspace[0])
-    batch = nh.ensemble(discrete, displacement=[orbit.displacement[0], bad], steps=5, save_every=1)
-    assert batch.outcome.tolist() == [0, nh.Outcome.branch_unverified]
-    assert batch.steps_done.tolist() == [5, 0]
-    assert np.isnan(batch.energy[1]).all()
-    assert len(batch.orbit(1)) == 0
+    other = system.group.exp(3.0 * system.constraint_subspace[0])
+    off = orbit.momentum[0] + 0.5 * np.asarray(system.annihilator)[0]
+    for start, outcome in (
+        ({"displacement": [orbit.displacement[0], other]}, nh.Outcome.branch_unverified),
+        ({"momentum": [orbit.momentum[0], off]}, nh.Outcome.off_momentum_locus),
+    ):
+        batch = nh.ensemble(discrete, **start, steps=5, save_every=1)
+        assert batch.outcome.tolist() == [0, outcome]
+        assert batch.steps_done.tolist() == [5, 0]
+        assert np.isnan(batch.energy[1]).all()
+        assert len(batch.orbit(1)) == 0
 
 
 @BOTH
@@ -432,8 +350,7 @@ def test_jax_agrees_with_the_compiled_loop(system: Any) -> None:
     wanted = nh.ensemble(discrete, **arguments)
     found = nh.ensemble(discrete, **arguments, backend="jax")
     assert set(wanted.outcome) > {0}
-    assert np.array_equal(found.outcome, wanted.outcome)
-    assert np.array_equal(found.steps_done, wanted.steps_done)
+    assert_same(found, wanted, "outcome", "steps_done")
     for name in ("reduced_momentum", "cayley", "canonical_pose"):
         good = ~np.isnan(getattr(wanted, name))
         assert np.array_equal(good, ~np.isnan(getattr(found, name)))
@@ -497,73 +414,54 @@ def test_without_poses_what_needs_them_is_refused() -> None:
 
 
 ONE = {"restricted_velocity": (0.3, 1.0)}
-REFUSED: dict[str, tuple[dict[str, Any], str]] = {
-    "a pose that is none": (
-        {"restricted_velocity": [[1, 0]], "configuration": [np.ones((3, 3))]},
-        "lie in SE.*This is member 0",
-    ),
-    "poses of others": (
-        {"restricted_velocity": np.ones((2, 2)), "configuration": np.eye(3)[None]},
-        "1 of configuration",
-    ),
-    "a displacement off the variety": (
+
+
+# Each bad argument is named, with what was got and what to do.
+test_bad_arguments_are_refused = refusals(
+    ({"restricted_velocity": [[1, 0]], "configuration": [np.ones((3, 3))]}, "lie in SE.*This is member 0"),
+    ({"restricted_velocity": np.ones((2, 2)), "configuration": np.eye(3)[None]}, "1 of configuration"),
+    (
         {"displacement": [np.eye(3), nh.SE(2).exp(np.array([0.0, 0.0, 1.0]))]},
         "lie on the displacement variety.*This is member 1",
     ),
-    "no start": ({}, "exactly one of"),
-    "two starts": ({**ONE, "momentum": [[1, 0]]}, "restricted_velocity and momentum"),
-    "one row without parameters": (ONE, "`simulate` runs a single one"),
-    "no rows": ({"restricted_velocity": np.empty((0, 2))}, "Pass at least one row"),
-    "wrong width": ({"body_velocity": np.ones((2, 4))}, r"must have shape \(any, 3\)"),
-    "nan": ({"restricted_velocity": [[0.1, np.nan]]}, "must be finite"),
-    "forbidden velocity": ({"body_velocity": [[1, 1, 0], [1, 0, 1]]}, "satisfy the constraint.*This is member 1"),
-    "infinite energy": (
+    ({}, "exactly one of"),
+    ({**ONE, "momentum": [[1, 0]]}, "restricted_velocity and momentum"),
+    (ONE, "`simulate` runs a single one"),
+    ({"restricted_velocity": np.empty((0, 2))}, "Pass at least one row"),
+    ({"body_velocity": np.ones((2, 4))}, r"must have shape \(any, 3\)"),
+    ({"restricted_velocity": [[0.1, np.nan]]}, "must be finite"),
+    ({"body_velocity": [[1, 1, 0], [1, 0, 1]]}, "satisfy the constraint.*This is member 1"),
+    (
         {"restricted_velocity": [[1, 1], [1e150, 0]], "parameters": {"mass": [1, 1e100], "inertia": [1, 1e100]}},
         "finite energy.*This is member 1",
     ),
-    "lengths of parameters": ({**ONE, "parameters": {"a": [1, 2], "b": [1]}}, "one number of rows. Got 2 of a, 1 of b"),
-    "lengths of starts": ({"momentum": [[1, 0]], "parameters": {"a": [1, 2]}}, "Got 2 of a, 1 of momentum"),
-    "unknown parameter": ({**ONE, "parameters": {"c": [1, 2]}}, "has mass, inertia, a, b, time_step"),
-    "no mapping": ({**ONE, "parameters": [1.0]}, "be a mapping"),
-    "nan parameter": ({**ONE, "parameters": {"a": [1, np.nan]}}, "must be finite"),
-    "shape of a parameter": ({**ONE, "parameters": {"a": 1.0}}, r"must have shape \(any,\)"),
-    "no system": ({**ONE, "parameters": {"mass": [1, 1, -1]}}, r"`ChaplyginSleigh\(mass=.*This is member 2"),
-    "time step": ({**ONE, "parameters": {"time_step": [0.1, 0]}}, "be positive. Got 0.0.*This is member 1"),
-    "save_every": ({"restricted_velocity": [[1, 0]], "save_every": 0}, r"`ensemble\(save_every=...\)` must be"),
-    "steps": ({"restricted_velocity": [[1, 0]], "steps": 0}, r"`ensemble\(steps=...\)` must be"),
-    "backend": ({"restricted_velocity": [[1, 0]], "backend": "c"}, "must be one of 'auto'"),
-    "reduction": ({"restricted_velocity": [[1, 0]], "reduce": lambda _: 1.0}, "leading member axis"),
-}
+    ({**ONE, "parameters": {"a": [1, 2], "b": [1]}}, "one number of rows. Got 2 of a, 1 of b"),
+    ({"momentum": [[1, 0]], "parameters": {"a": [1, 2]}}, "Got 2 of a, 1 of momentum"),
+    ({**ONE, "parameters": {"c": [1, 2]}}, "has mass, inertia, a, b, time_step"),
+    ({**ONE, "parameters": [1.0]}, "be a mapping"),
+    ({**ONE, "parameters": {"a": [1, np.nan]}}, "must be finite"),
+    ({**ONE, "parameters": {"a": 1.0}}, r"must have shape \(any,\)"),
+    ({**ONE, "parameters": {"mass": [1, 1, -1]}}, r"`ChaplyginSleigh\(mass=.*This is member 2"),
+    ({**ONE, "parameters": {"time_step": [0.1, 0]}}, "be positive. Got 0.0.*This is member 1"),
+    ({"restricted_velocity": [[1, 0]], "save_every": 0}, r"`ensemble\(save_every=...\)` must be"),
+    ({"restricted_velocity": [[1, 0]], "steps": 0}, r"`ensemble\(steps=...\)` must be"),
+    ({"restricted_velocity": [[1, 0]], "backend": "c"}, "must be one of 'auto'"),
+    ({"restricted_velocity": [[1, 0]], "reduce": lambda _: 1.0}, "leading member axis"),
+    ask=lambda arguments: nh.ensemble(nh.discretize(SLEIGH, 0.1), **{"steps": 5, **arguments}),
+)
 
 
-@pytest.mark.parametrize("case", REFUSED)
-def test_bad_arguments_are_refused(case: str) -> None:
-    """Each bad argument is named, with what was got and what to do."""
-    arguments, words = REFUSED[case]
-    with pytest.raises(ValueError, match=words):
-        nh.ensemble(nh.discretize(SLEIGH, 0.1), **{"steps": 5, **arguments})
-
-
-def test_mass_tensors_of_no_top_are_refused() -> None:
-    """A tensor that is not symmetric, and one without positive inertia along the constraint, are named by member."""
-    discrete = nh.discretize(TOP, 0.1)
-    for bad, words in ((J + np.triu(np.ones((3, 3)), 1), "be symmetric"), (-J, "positive definite")):
-        with pytest.raises(ValueError, match=f"{words}.*This is member 1"):
-            nh.ensemble(discrete, **ONE, parameters={"mass_tensor": [J, bad]}, steps=5)
-
-
-def test_numba_without_closed_form_is_refused() -> None:
-    """A discretization that only its definition can run refuses the compiled backend."""
-    discrete = nh.discretize(SLEIGH, 0.1, difference="logarithmic")
-    with pytest.raises(ValueError, match="closed form of the step"):
-        nh.ensemble(discrete, restricted_velocity=[[0.1, 1.0]], steps=3, backend="numba")
-
-
-def test_poses_that_fill_the_memory_are_refused() -> None:
-    """Poses of a top in very many dimensions are refused before anything runs, with the remedy."""
-    top = nh.SuslovTop.arrowhead(np.ones(40_000), np.zeros(39_999))
-    with pytest.raises(ValueError, match=r"`ensemble\(reconstruct=.*reconstruct=False"):
-        nh.ensemble(nh.discretize(top, 0.1), restricted_velocity=np.ones((2, 39_999)), steps=3)
+_WIDE = nh.SuslovTop.arrowhead(np.ones(40_000), np.zeros(39_999))
+# Tensors that are not symmetric or positive, by member; a backend without a closed form; poses beyond the memory.
+test_ensembles_that_cannot_be_are_refused = refusals(
+    ((TOP, {**ONE, "parameters": {"mass_tensor": [J, J + np.triu(np.ones((3, 3)), 1)]}}), "symmetric.*is member 1"),
+    ((TOP, {**ONE, "parameters": {"mass_tensor": [J, -J]}}), "positive definite.*This is member 1"),
+    ((SLEIGH, {"restricted_velocity": [[0.1, 1.0]], "backend": "numba"}), "closed form of the step"),
+    ((_WIDE, {"restricted_velocity": np.ones((2, 39_999))}), r"`ensemble\(reconstruct=.*reconstruct=False"),
+    ask=lambda case: nh.ensemble(
+        nh.discretize(case[0], 0.1, "logarithmic" if "backend" in case[1] else "matrix"), steps=3, **case[1]
+    ),
+)
 
 
 @pytest.mark.parametrize("size", [5e-324, 1e-200, 1e200])

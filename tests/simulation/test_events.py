@@ -1,11 +1,13 @@
 """Events of discrete runs: what counts as a crossing, where it is, and how a run ends there."""
 
 import pathlib
-import re
+from typing import Any
 
 import mpmath
 import numpy as np
 import pytest
+from comparisons import assert_joined, assert_near
+from refusals import refusals
 
 import nonholo as nh
 
@@ -62,25 +64,7 @@ def test_parts_of_steps_join_the_states(name: str) -> None:
     between = MOTIONS[name].after_parts
     for fraction, limit, error in ((1.0, orbit[1:], 2e-14), (1e-10, orbit[:-1], 1e-9)):
         reached = between(orbit[:-1], np.full(8, fraction))
-        for quantity in ("momentum", "configuration", "displacement", "body_velocity"):
-            assert np.abs(getattr(reached, quantity) - getattr(limit, quantity)).max() < error
-
-
-@pytest.mark.parametrize("name", MOTIONS)
-def test_events_leave_the_orbit_alone(name: str) -> None:
-    """With and without events, thinned or not, the states are the same to the last bit; crossings do not depend."""
-    discrete, found = MOTIONS[name], []
-    middle = nh.simulate(discrete, restricted_velocity=start(discrete), steps=15).configuration[15, 0, 1]
-    event = nh.Event(lambda orbit: orbit.configuration[:, 0, 1] - middle / 2, name="middle")
-    for every in (1, 7):
-        run = {"restricted_velocity": start(discrete), "steps": 300, "save_every": every}
-        orbit, plain = nh.simulate(discrete, **run, events=[event]), nh.simulate(discrete, **run)
-        for field in STATE:
-            assert np.array_equal(getattr(orbit, field), getattr(plain, field))
-        found.append(orbit.events["middle"])
-        assert len(found[-1]) > 0
-        assert np.abs(event.function(found[-1].states)).max() < 4e-16
-    assert np.array_equal(found[0].time, found[1].time)
+        assert_near(reached, limit, error, "momentum", "configuration", "displacement", "body_velocity")
 
 
 def test_a_part_of_a_step_is_a_shorter_step() -> None:
@@ -106,23 +90,6 @@ def test_runs_by_the_definition_find_the_same(options: dict[str, str]) -> None:
     assert np.abs(event.function(orbit.events[0].states)).max() < 2e-16
     assert orbit.time[-1] <= orbit.events[0].time[0] <= orbit.time[-1] + 0.3
     assert np.array_equal(orbit.pose, plain.pose)
-
-
-@pytest.mark.profile("routes", instead="test_runs_by_the_definition_find_the_same")
-def test_a_callable_lagrangian_has_parts_of_steps() -> None:
-    """The path s r to the principal root is defined without a time step; it gives those of the closed form."""
-    J = TOP.system.mass_tensor
-    discrete = nh.discretize(
-        TOP.system, 0.1, difference=lambda W: ((W - np.eye(3)) @ J @ (W - np.eye(3)).T).trace() / 0.2
-    )
-    run = {
-        "restricted_velocity": (0.7, -0.3),
-        "steps": 8,
-        "events": [lambda orbit: orbit.configuration[:, 0, 0] - 0.95],
-    }
-    slow, fast = nh.simulate(discrete, **run).events[0], nh.simulate(TOP, **run).events[0]
-    assert len(slow) == len(fast) == 1
-    assert np.abs(slow.time - fast.time).max() < 1e-14
 
 
 def test_direction() -> None:
@@ -210,32 +177,15 @@ def test_headings_of_events_know_full_turns() -> None:
     assert abs(found.time[0] - 0.1 * 6000 * np.pi / np.arcsin(0.4)) < 0.1
 
 
-def test_blocks_of_a_run_hold_its_crossings() -> None:
-    """`iterate` finds in its blocks what `simulate` finds, and ends with the block in which an event stops it."""
+@pytest.mark.parametrize("block_steps", [20, 5])
+def test_blocks_of_a_run_hold_its_crossings(block_steps: int) -> None:
+    """Blocks, of one state each too, have states and crossings of the run, and end with the one that a stop ends."""
     run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 200, "events": [nh.Event(east, stop=9)], "save_every": 5}
     whole = nh.simulate(ROUND, **run)
-    blocks = list(nh.iterate(ROUND, **run, block_steps=20))
+    blocks = list(nh.iterate(ROUND, **run, block_steps=block_steps))
     assert np.array_equal(np.concatenate([block.events["east"].time for block in blocks]), whole.events["east"].time)
-    assert np.array_equal(np.concatenate([block.pose for block in blocks]), whole.pose)
+    assert_joined(blocks, whole, *STATE)
     assert [block.events.stopped_by for block in blocks] == [None] * (len(blocks) - 1) + ["east"]
-
-
-def test_blocks_of_one_state() -> None:
-    """A block that holds the first state alone has no crossings."""
-    run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 20, "events": [east]}
-    blocks = list(nh.iterate(ROUND, **run, block_steps=1))
-    assert sum(len(block.events[0]) for block in blocks) == len(nh.simulate(ROUND, **run).events[0]) == 2
-
-
-@pytest.mark.parametrize("every", [1, 7])
-def test_blocks_of_one_state_are_those_of_the_run(every: int) -> None:
-    """With events and one state per block, each state has its own time, and the bits of the run without events."""
-    run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 30, "save_every": every}
-    whole = nh.simulate(ROUND, **run)
-    blocks = list(nh.iterate(ROUND, **run, block_steps=every, events=[east]))
-    assert [len(block) for block in blocks] == [1] * (1 + 30 // every)
-    for field in STATE:
-        assert np.array_equal(np.concatenate([getattr(block, field) for block in blocks]), getattr(whole, field))
 
 
 def test_a_stored_run_without_start_has_no_crossings(tmp_path: pathlib.Path) -> None:
@@ -244,13 +194,6 @@ def test_a_stored_run_without_start_has_no_crossings(tmp_path: pathlib.Path) -> 
     orbit = nh.simulate(nh.discretize(TOP.system, 1.0), **beyond, events=[lambda orbit: orbit.time - 1.0])
     assert (len(orbit), orbit.outcome, len(orbit.events[0])) == (0, nh.Outcome.no_real_branch, 0)
     assert not list(tmp_path.iterdir())
-
-
-def test_crossings_of_an_orbit_are_those_of_the_run() -> None:
-    """An orbit that is already there has the same crossings as the run that looks for them."""
-    run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 200}
-    found = nh.crossings(nh.simulate(ROUND, **run), east)
-    assert np.array_equal(found.time, nh.simulate(ROUND, **run, events=[east]).events[0].time)
 
 
 def test_a_run_that_cannot_go_on_keeps_its_crossings() -> None:
@@ -297,35 +240,25 @@ def test_functions_that_give_no_number_are_refused(function: object, told: str) 
     assert told in str(refusal.value)
 
 
-@pytest.mark.parametrize(
-    ("options", "told"),
-    [
-        ({"events": east}, "be a list"),
-        ({"events": [3]}, "be a function"),
-        ({"events": [east, east]}, "different names"),
-        ({"events": [east], "branch": "smallest"}, "principal branch"),
-    ],
-    ids=["no list", "number", "one name", "rule"],
+# What cannot be watched is refused before any work.
+_CIRCLE: dict[str, Any] = {"body_velocity": (4.0, 1.0, 0.0), "steps": 20}
+_ALONG: dict[str, Any] = {"restricted_velocity": (0.7, -0.3), "steps": 5}
+_WITHOUT, _THINNED = {"reconstruct": False}, "one with steps left out"
+# What cannot be watched is refused before any work, orbits with states left out too.
+test_what_cannot_be_watched_is_refused = refusals(
+    (lambda: nh.simulate(SLEIGH, **_CIRCLE, events=east), "be a list"),
+    (lambda: nh.simulate(SLEIGH, **_CIRCLE, events=[3]), "be a function"),
+    (lambda: nh.simulate(SLEIGH, **_CIRCLE, events=[east, east]), "different names"),
+    (lambda: nh.simulate(SLEIGH, **_CIRCLE, events=[east], branch="smallest"), "principal branch"),
+    (lambda: nh.simulate(MOTIONS["right-invariant"], **_ALONG, **_WITHOUT, events=[east]), "reconstruct=True"),
+    (lambda: nh.simulate(ROUND, **_CIRCLE, **_WITHOUT, events=[east]), "reconstruct=True"),
+    (lambda: nh.simulate(TOP, **_ALONG, events=[nh.cusp]), "watch a sleigh"),
+    (lambda: nh.Event(east, direction=2), "Event"),
+    (lambda: nh.Event(east, stop=-1), "Event"),
+    (lambda: nh.Event(east, stop=0.5), "Event"),
+    (lambda: nh.crossings(nh.simulate(ROUND, **_CIRCLE)[::2], east), _THINNED),
+    (lambda: nh.crossings(nh.simulate(ROUND, **_CIRCLE).chosen(np.arange(21) != 5), east), _THINNED),
 )
-def test_runs_without_events_are_refused(options: dict[str, object], told: str) -> None:
-    """What cannot be watched is refused before any work."""
-    with pytest.raises(ValueError, match=told):
-        nh.simulate(SLEIGH, body_velocity=(1.0, 1.0, 0.0), steps=20, **options)  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize("options", [{"direction": 2}, {"stop": -1}, {"stop": 0.5}], ids=str)
-def test_bad_events_are_refused(options: dict[str, float]) -> None:
-    """A direction is -1, 0 or 1, a stop a number of crossings."""
-    with pytest.raises(ValueError, match="Event"):
-        nh.Event(east, **options)  # type: ignore[arg-type]
-
-
-def test_crossings_of_thinned_orbits_are_refused() -> None:
-    """Between thinned states crossings could be missed."""
-    whole = nh.simulate(ROUND, body_velocity=(4.0, 1.0, 0.0), steps=20)
-    for thinned in (whole[::2], whole.chosen(np.arange(21) != 5)):
-        with pytest.raises(ValueError, match="one with steps left out"):
-            nh.crossings(thinned, east)
 
 
 def test_wide_tops_need_no_poses() -> None:
@@ -337,25 +270,6 @@ def test_wide_tops_need_no_poses() -> None:
     found = nh.simulate(nh.discretize(top, 0.1), **run, reconstruct=False, events=[event]).events[0]
     assert len(found) == 1
     assert abs(event.function(found.states)[0]) < 1e-16
-
-
-def test_right_invariant_constraints_without_poses_are_refused() -> None:
-    """The step of an LR system depends on the pose."""
-    run = {"restricted_velocity": (0.7, -0.3), "steps": 5, "reconstruct": False}
-    with pytest.raises(ValueError, match=r"reconstruct=True"):
-        nh.simulate(MOTIONS["right-invariant"], **run, events=[lambda orbit: orbit.time - 0.1])
-
-
-def test_cusps_of_tops_are_refused() -> None:
-    """A top has no blade."""
-    with pytest.raises(ValueError, match="watch a sleigh"):
-        nh.simulate(TOP, restricted_velocity=(0.7, -0.3), steps=5, events=[nh.cusp])
-
-
-def test_poses_of_runs_without_them_are_refused() -> None:
-    """A function of the pose needs reconstruct=True, and says so."""
-    with pytest.raises(ValueError, match="reconstruct=True"):
-        nh.simulate(ROUND, body_velocity=(4.0, 1.0, 0.0), steps=5, reconstruct=False, events=[east])
 
 
 def test_states_at_crossings_have_the_energy_of_the_run() -> None:
@@ -380,10 +294,83 @@ def test_seen_from_its_end_a_step_has_other_parts_to_third_order() -> None:
     assert np.abs(np.log2(np.divide(gaps[:-1], gaps[1:])) - 3).max() < 0.15
 
 
-def test_page(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The examples of the page about events run, and say what is so."""
-    page = pathlib.Path(__file__).parents[2] / "docs" / "how-to" / "events-and-sections.md"
-    names: dict[str, object] = {}
-    monkeypatch.chdir(tmp_path)
-    for block in re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL):
-        exec(block, names)  # noqa: S102
+OFFSET = nh.ChaplyginSleigh(1.0, 0.75, 0.5)  # rho^2 = a^2 + J/m = 1
+VELOCITY = (0.3, -1.0, 0.0)
+# v_1 = E tanh(s_0 + a E t / rho), with E = hypot(rho omega, v_1) and sinh s_0 = v_1/(rho omega).
+CUSP = -np.arcsinh(VELOCITY[1] / VELOCITY[0]) / (0.5 * np.hypot(*VELOCITY[:2]))
+TIMES = np.linspace(0.0, 10.0, 21)
+
+
+@pytest.mark.parametrize("method", ["closed_form", None])
+def test_cusp_of_the_sleigh_is_where_the_closed_form_says(method: str | None) -> None:
+    """A backward sleigh turns round once, at the time where tanh is zero; numerically as exact as the tolerances."""
+    flow = {"body_velocity": VELOCITY, "times": TIMES, "method": method, "rtol": 1e-13, "atol": 1e-14}
+    found = nh.flow(OFFSET, **flow, events=[nh.cusp]).events["cusp"]
+    assert len(found) == 1
+    assert found.step.tolist() == [int(np.searchsorted(TIMES, CUSP)) - 1]
+    assert abs(found.time[0] - CUSP) < 4e-15 if method else abs(found.time[0] - CUSP) < 1e-12
+    assert abs(found.states.body_velocity[0, 1]) < 1e-15
+
+
+def test_events_leave_the_flow_alone() -> None:
+    """With and without events the states are the same to the last bit; a stopping event cuts them."""
+    plain = nh.flow(OFFSET, body_velocity=VELOCITY, times=TIMES)
+    stopped = nh.flow(
+        OFFSET, body_velocity=VELOCITY, times=TIMES, events=[nh.Event(lambda o: o.time - 3.2, stop=True, name="t")]
+    )
+    assert stopped.events.stopped_by == "t"
+    assert len(stopped) == 7
+    assert np.array_equal(stopped.pose, plain.pose[:7])
+    assert np.array_equal(stopped.heading, plain.heading[:7])
+
+
+@pytest.mark.parametrize("method", ["closed_form", None])
+def test_full_turns_between_two_times_are_known(method: str | None) -> None:
+    """A heading of three turns is crossed within one interval of four turns, where the closed form has it."""
+    spin = nh.ChaplyginSleigh(1.0, 0.75, 0.0)
+    flow = {"body_velocity": (1.0, 0.5, 0.0), "times": (0.0, 4.0, 4.0 + 8 * np.pi), "method": method, "rtol": 1e-13}
+    found = nh.flow(spin, **flow, events=[lambda orbit: orbit.heading - 6 * np.pi]).events[0]
+    assert found.step.tolist() == [1]
+    assert abs(found.time[0] - 6 * np.pi) < 1e-11  # some 100 solver steps of relative error 1e-13
+
+
+def test_backward_flow() -> None:
+    """Run backwards from after the cusp the flow finds it again, in the other direction."""
+    after = nh.flow(OFFSET, body_velocity=VELOCITY, times=(0.0, 10.0), method="closed_form")
+    found = nh.flow(
+        OFFSET, body_velocity=after.body_velocity[1], times=TIMES[::-1], method="closed_form", events=[nh.cusp]
+    ).events["cusp"]
+    assert found.direction.tolist() == [-1]
+    assert abs(found.time[0] - CUSP) < 1e-14 * 10 * np.exp(5)  # errors of the state grow backwards as e^(aEt)
+
+
+def test_functions_without_a_value_are_refused() -> None:
+    """A function that does not give a number at the first state is refused before the flow is solved."""
+    with pytest.raises(ValueError, match=r"displacement.*needs a discrete orbit"):
+        nh.flow(OFFSET, body_velocity=VELOCITY, times=TIMES, events=[lambda orbit: orbit.displacement[:, 0, 0]])
+
+
+def test_a_flow_that_stops_in_time_does_not_fail() -> None:
+    """An event before the time at which the solver gives up ends the orbit successfully."""
+    flow = {"restricted_velocity": (1e140, 2e140), "rtol": 1e-14, "atol": 1e-300}
+    times = (0.0, 1e-141, 2e-141, 1.0)
+    with pytest.raises(nh.OutcomeError, match="not_converged") as caught:
+        nh.flow(TOP.system, **flow, times=times, events=[lambda orbit: orbit.time - 5e-142])
+    assert len(caught.value.orbit.events[0]) == 1
+    orbit = nh.flow(TOP.system, **flow, times=times, events=[nh.Event(lambda orbit: orbit.time - 1.5e-141, stop=True)])
+    assert (orbit.outcome, len(orbit)) == (nh.Outcome.successful, 2)
+
+
+def test_events_between_requested_times_are_seen() -> None:
+    """Every step of the series is looked at: a sine of time, between two times and between many."""
+    top = nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 2.5]), axis=(0, 0, 1))
+    for times in ((0.0, 100.0), np.linspace(0.0, 100.0, 300)):
+        orbit = nh.flow(top, restricted_velocity=(0.4, 0.9), times=times, events=[lambda orbit: np.sin(orbit.time)])
+        found = orbit.events[0]
+        assert np.abs(found.time - np.pi * np.arange(1, 32)).max() <= 1e-13
+        begin, gap = orbit.time[found.step], orbit.time[found.step + 1] - orbit.time[found.step]
+        assert np.abs(begin + found.fraction * gap - found.time).max() <= 1e-13
+    fifth = nh.Event(lambda orbit: np.sin(orbit.time), stop=5)
+    orbit = nh.flow(top, restricted_velocity=(0.4, 0.9), times=(0.0, 1.0, 15.0, 16.0, 17.0), events=[fifth])
+    assert orbit.time.tolist() == [0.0, 1.0, 15.0]
+    assert orbit.events[0].step.tolist() == [1, 1, 1, 1, 2]

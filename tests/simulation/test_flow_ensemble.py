@@ -1,15 +1,11 @@
 """Ensembles of flows: each member is the flow of its start and parameters, whoever runs beside it."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 from bodies import mass_tensor
+from refusals import refusals
 
 import nonholo as nh
-from nonholo.continuous._series import body_numbers, by_series
-from nonholo.continuous._solution import Problem
-from nonholo.simulation.members._members import Members, inertias_of
 from nonholo.systems import AbstractSystem
 
 RNG = np.random.default_rng(8)
@@ -35,8 +31,7 @@ ROWS = RNG.normal(size=(3, 6))
 OWN: dict[str, tuple[AbstractSystem, dict[str, np.ndarray]]] = {
     "top": (nh.SuslovTop(TENSORS[3][0]), {"mass_tensor": TENSORS[3]}),
     "top with an axis": (TOP, {"mass_tensor": TENSORS[3]}),
-    "sleigh": (SLEIGH, {"mass": RNG.uniform(1, 2, 7), "a": RNG.normal(size=7)}),
-    "frames of sleighs": (SLEIGH, {"b": RNG.normal(size=7)}),
+    "sleighs": (SLEIGH, {"mass": RNG.uniform(1, 2, 7), "a": [0.0, *RNG.normal(size=6)], "b": RNG.normal(size=7)}),
     "top on SO(4)": (SYSTEMS["top on SO(4)"], {"mass_tensor": TENSORS[4]}),
     "free bodies": (nh.RigidBody(TENSORS[3][0]), {"mass_tensor": TENSORS[3]}),
     "any tensor": (nh.LLSystem(nh.SO(4), TENSORS[4][0], ROWS), {"mass_tensor": TENSORS[4]}),
@@ -59,75 +54,40 @@ def _same(member: nh.Orbit, alone: nh.Orbit) -> bool:
 @pytest.mark.parametrize("backward", [False, True])
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_members_are_flows(name: str, backward: bool) -> None:
-    """More members than lanes, at rest and fast; from one canonical momentum the bits of a flow alone."""
+    """More members than lanes, at rest and fast, have the bits of flows alone, with poses and without them."""
     system, times = SYSTEMS[name], TIMES[::-1] if backward else TIMES
     w = np.random.default_rng(1).normal(size=(19, system.rank)) * np.geomspace(1e-3, 3.0, 19)[:, None]
     w[4] = 0.0
     batch = nh.ensemble(system, restricted_velocity=w, times=times)
-    assert isinstance(batch, nh.Ensemble)
+    bare = nh.ensemble(system, restricted_velocity=w[:3], times=times, reconstruct=False)
     assert (batch.outcome == nh.Outcome.successful).all()
+    assert bare.canonical_pose is bare.pose is None
     for member, start in enumerate(w):
         alone = nh.flow(system, restricted_velocity=start, times=times)
         assert _same(batch.orbit(member), alone)
         assert np.abs(batch.configuration[member] - alone.configuration).max() < 1e-12
         assert np.abs(batch.momentum[member] - alone.momentum).max() < 1e-12
+        if member < 3:
+            without = nh.flow(system, restricted_velocity=start, times=times, reconstruct=False)
+            assert not bare.orbit(member).has_poses
+            assert _same(bare.orbit(member), without)
     few = nh.ensemble(system, restricted_velocity=w[7:9], times=times)
     assert np.array_equal(few.reduced_momentum, batch.reduced_momentum[7:9])
     assert np.array_equal(few.canonical_pose, batch.canonical_pose[7:9])
 
 
-@pytest.mark.parametrize("name", SYSTEMS)
-def test_members_without_poses_are_flows_without_them(name: str) -> None:
-    """With the bits of `flow(reconstruct=False)`, which of tops and sleighs solves for the momenta alone."""
-    system, w = SYSTEMS[name], np.random.default_rng(1).normal(size=(3, SYSTEMS[name].rank))
-    batch = nh.ensemble(system, restricted_velocity=w, times=TIMES, reconstruct=False)
-    assert batch.canonical_pose is None
-    assert batch.pose is None
-    for member, start in enumerate(w):
-        alone = nh.flow(system, restricted_velocity=start, times=TIMES, reconstruct=False)
-        assert not batch.orbit(member).has_poses
-        assert _same(batch.orbit(member), alone)
-
-
-def test_members_with_their_own_parameters() -> None:
-    """Arms of both signs and none, in any company; the sum of kinds is that of flows."""
-    own = {"a": [0.1, -0.2, 0.0, 0.5], "b": [0.0, 0.1, 0.2, 0.3], "mass": [1.0, 2.0, 3.0, 4.0]}
-    batch = nh.ensemble(SLEIGH, body_velocity=(1.0, 0.5, 0.0), times=TIMES, parameters=own)
-    for member, (a, b, mass) in enumerate(zip(*own.values(), strict=True)):
-        alone = nh.flow(nh.ChaplyginSleigh(mass, 0.75, a, b), body_velocity=(1.0, 0.5, 0.0), times=TIMES)
-        assert _same(batch.orbit(member), alone)
-        assert np.abs(batch.heading[member] - alone.heading).max() < 1e-12
-        assert np.abs(batch.energy[member] / alone.energy[0] - 1).max() < 1e-14
-    tensors = np.stack([np.diag([1.0, 2.0, 3.0, 4.0]), mass_tensor(nh.SO(4), RNG)])
-    batch = nh.ensemble(
-        SYSTEMS["top on SO(4)"], restricted_velocity=np.ones((2, 3)), times=TIMES, parameters={"mass_tensor": tensors}
-    )
-    for member, tensor in enumerate(tensors):
-        alone = nh.flow(nh.SuslovTop(tensor), restricted_velocity=(1.0, 1.0, 1.0), times=TIMES)
-        assert _same(batch.orbit(member), alone)
-
-
 @pytest.mark.parametrize("name", OWN)
-def test_numbers_of_members_are_those_of_each_alone(name: str) -> None:
-    """Inertias, poses and equations, made for all members in one go, have the bits of one alone; the motions too."""
+def test_members_with_their_own_parameters(name: str) -> None:
+    """Inertias, frames and equations, made for all members in one go, give the bits of flows alone."""
     system, own = OWN[name]
-    members = Members(nh.discretize(system, 1.0), own, 7)
-    inertias = inertias_of(members)
-    batch = nh.ensemble(system, restricted_velocity=RNG.normal(size=(7, system.rank)), times=(0.0, 2.0), parameters=own)
-    for member in range(7):
-        alone = members.of(member).system
-        seen = alone.canonical
-        assert np.array_equal(inertias[member], seen.inertia_operator)
-        assert np.array_equal(batch.first_pose[member], alone.frame_pose)
-        S, group = seen.constraint_subspace, seen.group
-        for made, expected in zip(
-            body_numbers(group, S, inertias), body_numbers(group, S, inertias[member]), strict=True
-        ):
-            assert np.array_equal(made[member], expected)
-        problem = Problem(batch.first_momentum[member], alone.frame_pose, np.array([0.0, 2.0]), (1e-14, 1.0))
-        solved = by_series(seen, problem)
-        assert np.array_equal(batch.reduced_momentum[member], solved.states.momenta)
-        assert np.array_equal(np.asarray(batch.canonical_pose)[member], solved.states.poses)
+    w = RNG.normal(size=(7, system.rank))
+    batch = nh.ensemble(system, restricted_velocity=w, times=(0.0, 2.0), parameters=own)
+    for member, velocity in enumerate(w):
+        alone = nh.flow(batch.members.of(member).system, restricted_velocity=velocity, times=(0.0, 2.0))
+        assert _same(batch.orbit(member), alone)
+        assert np.abs(batch.energy[member] / alone.energy[0] - 1).max() < 1e-14
+        if name == "sleighs":
+            assert np.abs(batch.heading[member] - alone.heading).max() < 1e-12
 
 
 def test_reduction_block_by_block(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -157,38 +117,26 @@ def test_a_member_that_cannot_go_on_has_no_later_states() -> None:
         _ = batch.displacement
 
 
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        ({"steps": np.array([5, 6])}, r"ensemble\(steps=...\)` must be left out for a flow"),
-        ({"steps": 5}, r"ensemble\(steps=...\)` must be left out for a flow"),
-        ({"save_every": 1}, r"ensemble\(save_every=...\)` must be left out"),
-        ({"backend": "jax"}, r"ensemble\(backend=...\)` must be left out"),
-        ({"events": [nh.cusp]}, r"ensemble\(events=...\)` must be left out"),
-        ({"branch": "nearest"}, r"ensemble\(branch=...\)` must be left out"),
-        ({"times": None}, r"flow\(times=...\)"),
-        ({"times": (1.0, 1.0)}, r"flow\(times=...\)"),
-        ({"rtol": 1e-16}, r"flow\(rtol=...\)"),
-        ({"parameters": {"time_step": [0.1, 0.2]}}, "A flow has no time step"),
-        ({"parameters": {"mass": [1.0, 2.0, 3.0]}}, "one value for each member"),
-        ({"parameters": {"mass": [1.0, -2.0]}}, "This is member 1"),
-        ({"reduce": 3}, "be a function"),
-    ],
+# Before any work, by name.
+test_refused_arguments = refusals(
+    ({"steps": np.array([5, 6])}, r"ensemble\(steps=...\)` must be left out for a flow"),
+    ({"steps": 5}, r"ensemble\(steps=...\)` must be left out for a flow"),
+    ({"save_every": 1}, r"ensemble\(save_every=...\)` must be left out"),
+    ({"backend": "jax"}, r"ensemble\(backend=...\)` must be left out"),
+    ({"events": [nh.cusp]}, r"ensemble\(events=...\)` must be left out"),
+    ({"branch": "nearest"}, r"ensemble\(branch=...\)` must be left out"),
+    ({"times": None}, r"flow\(times=...\)"),
+    ({"times": (1.0, 1.0)}, r"flow\(times=...\)"),
+    ({"rtol": 1e-16}, r"flow\(rtol=...\)"),
+    ({"parameters": {"time_step": [0.1, 0.2]}}, "A flow has no time step"),
+    ({"parameters": {"mass": [1.0, 2.0, 3.0]}}, "one value for each member"),
+    ({"parameters": {"mass": [1.0, -2.0]}}, "This is member 1"),
+    ({"reduce": 3}, "be a function"),
+    ({"restricted_velocity": None, "momentum": [[1.0, 1.0, 0.5], [0.0, 0.0, 1.0]]}, "belong to admissible velocities"),
+    ({"restricted_velocity": np.ones((10**6, 2)), "times": np.arange(1e6)}, r"ensemble\(times=...\)"),
+    ({"discrete": nh.discretize(SLEIGH, 0.1)}, r"ensemble\(times=...\)` must be left out for a discretization"),
+    ({"discrete": nh.discretize(SLEIGH, 0.1), "times": None}, r"ensemble\(steps=...\)"),
+    ask=lambda given: nh.ensemble(
+        **{"discrete": SLEIGH, "restricted_velocity": np.ones((2, 2)), "times": (0.0, 1.0)} | given
+    ),
 )
-def test_refused_arguments(given: dict[str, Any], message: str) -> None:
-    """Before any work, by name."""
-    with pytest.raises(ValueError, match=message):
-        nh.ensemble(SLEIGH, **{"restricted_velocity": np.ones((2, 2)), "times": (0.0, 1.0), **given})
-
-
-def test_other_refused_starts() -> None:
-    """Full momenta of no velocity; too many states; times for a discretization, which needs steps."""
-    with pytest.raises(ValueError, match="belong to admissible velocities"):
-        nh.ensemble(SLEIGH, momentum=[[1.0, 1.0, 0.5], [0.0, 0.0, 1.0]], times=(0.0, 1.0))
-    with pytest.raises(ValueError, match=r"ensemble\(times=...\)"):
-        nh.ensemble(SLEIGH, restricted_velocity=np.ones((10**6, 2)), times=np.arange(1e6))
-    for times in ((0.0, 1.0), np.linspace(0.0, 1.0, 3)):
-        with pytest.raises(ValueError, match=r"ensemble\(times=...\)` must be left out for a discretization"):
-            nh.ensemble(nh.discretize(SLEIGH, 0.1), restricted_velocity=np.ones((2, 2)), times=times)
-    with pytest.raises(ValueError, match=r"ensemble\(steps=...\)"):
-        nh.ensemble(nh.discretize(SLEIGH, 0.1), restricted_velocity=np.ones((2, 2)))

@@ -1,15 +1,17 @@
 """Stores, ensembles, events and pictures of motions under forces."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 import zarr
+from comparisons import assert_member, assert_same
+from refusals import refusals
 
 import nonholo as nh
-from nonholo.orbit import Orbit
 from nonholo.systems import AbstractSystem
 
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
@@ -24,39 +26,12 @@ FORCED: dict[str, nh.Forced] = {
     "friction and table": nh.Forced(SLEIGH, force=(RUB, TABLE)),
 }
 START: dict[str, Any] = {"restricted_velocity": [0.5, -0.3]}
+READ = ("momentum", "pose", "energy")
 
 
 def _brake(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:
     del g
     return -time * w
-
-
-def _same(mine: Orbit, theirs: Orbit) -> bool:
-    return all(
-        np.array_equal(a, b)
-        for a, b in ((mine.momentum, theirs.momentum), (mine.pose, theirs.pose), (mine.energy, theirs.energy))
-    )
-
-
-@pytest.mark.parametrize("name", FORCED)
-def test_stores_give_the_forces_back(name: str, tmp_path: Path) -> None:
-    """A saved orbit, map or flow, has its forces from data; a run into a store is extended with the same bits."""
-    discrete = nh.discretize(FORCED[name], 0.05)
-    orbit = nh.simulate(discrete, **START, steps=30)
-    nh.save_orbit(orbit, tmp_path / "orbit.zarr")
-    loaded = nh.load_orbit(tmp_path / "orbit.zarr")
-    assert _same(loaded, orbit)
-    assert np.array_equal(loaded.work, orbit.work)
-    nh.simulate(discrete, **START, steps=20, store=tmp_path / "run.zarr")
-    assert _same(nh.extend(tmp_path / "run.zarr", 10), orbit)
-    assert orbit.to_dataset()["energy"].values.tolist() == orbit.energy.tolist()
-    if "table" not in name:
-        flow = nh.flow(FORCED[name], **START, times=(0.0, 1.0))
-        nh.save_orbit(flow, tmp_path / "flow.zarr")
-        assert _same(nh.load_orbit(tmp_path / "flow.zarr"), flow)
-        return
-    with pytest.raises(ValueError, match=r"extend\(steps=...\)"):
-        nh.extend(tmp_path / "run.zarr", 1)
 
 
 def test_a_stored_function_is_not_run(tmp_path: Path) -> None:
@@ -66,12 +41,12 @@ def test_a_stored_function_is_not_run(tmp_path: Path) -> None:
     nh.save_orbit(orbit, path)
     with pytest.raises(ValueError, match="force is a callable"):
         nh.load_orbit(path)
-    assert _same(nh.load_orbit(path, discrete=discrete), orbit)
+    assert_same(nh.load_orbit(path, discrete=discrete), orbit, *READ)
     run = tmp_path / "run.zarr"
-    assert _same(nh.simulate(discrete, **START, steps=3, store=run), orbit)
+    assert_same(nh.simulate(discrete, **START, steps=3, store=run), orbit, *READ)
     with pytest.raises(ValueError, match="force is a callable"):
         nh.extend(run, 2)
-    assert _same(nh.extend(run, 2, discrete=discrete), nh.simulate(discrete, **START, steps=5))
+    assert_same(nh.extend(run, 2, discrete=discrete), nh.simulate(discrete, **START, steps=5), *READ)
     nh.save_orbit(nh.simulate(nh.discretize(FORCED["table"], 0.05), **START, steps=3), tmp_path / "table.zarr")
     described = json.loads(zarr.open_group(tmp_path / "table.zarr", mode="r").attrs["parameters"])  # type: ignore[arg-type]
     assert described["system"] == {
@@ -87,41 +62,25 @@ def test_members_are_single_runs(forced: nh.Forced) -> None:
     batch = nh.ensemble(discrete, restricted_velocity=starts, steps=30, save_every=10)
     for member, start in enumerate(starts):
         orbit = nh.simulate(discrete, restricted_velocity=start, steps=30, save_every=10)
-        assert np.array_equal(batch.momentum[member], orbit.momentum)
-        assert np.array_equal(batch.configuration[member], orbit.configuration)
-        assert np.array_equal(batch.energy[member], orbit.energy)
+        assert_member(batch, member, orbit, "momentum", "configuration", "energy")
         assert batch.first_energy[member] == pytest.approx(orbit.energy[0], rel=1e-14)
 
 
-@pytest.mark.parametrize(
-    "forced", [FORCED["weight and friction"], FORCED["a matrix of friction"], nh.Forced(TOP, force=_brake)]
-)
-def test_members_of_flows_are_single_flows(forced: nh.Forced) -> None:
-    """Each member of an ensemble of flows, also one that begins later, is the flow of `flow`, to the last bit."""
-    starts, times = np.random.default_rng(2).normal(size=(3, 2)), (0.5, 1.0, 1.5)
-    batch = nh.ensemble(forced, restricted_velocity=starts, times=times)
-    for member, start in enumerate(starts):
-        flow = nh.flow(forced, restricted_velocity=start, times=times)
-        assert np.array_equal(batch.momentum[member], flow.momentum)
-        assert np.array_equal(batch.configuration[member], flow.configuration)
-        assert np.array_equal(batch.energy[member], flow.energy)
-
-
-def test_sweeps_end_where_single_runs_do(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["friction and table", "function"])
+def test_sweeps_end_where_single_runs_do(name: str, tmp_path: Path) -> None:
     """A sweep of starts and time steps keeps the last states of single runs; its store knows forces that are data."""
-    steps = np.array([0.05, 0.025])
-    for name, forced in (FORCED | {"function": nh.Forced(TOP, force=_brake)}).items():
-        task = nh.EnsembleTask(nh.discretize(forced, 0.05), steps=30, **START)
-        found = nh.sweep(task, nh.Grid({"time_step": steps}), tmp_path / f"{name}.zarr")
-        for row, h in enumerate(steps):
-            orbit = nh.simulate(nh.discretize(forced, h), **START, steps=30)
-            assert np.array_equal(found["final_momentum"][row], orbit.restricted_momentum[-1])
-            assert float(found["final_energy"][row]) == orbit.energy[-1]
-        if name == "function":
-            with pytest.raises(ValueError, match="force is a callable"):
-                nh.resume(tmp_path / f"{name}.zarr")
-        else:
-            assert nh.resume(tmp_path / f"{name}.zarr").equals(found)
+    steps, forced = np.array([0.05, 0.025]), (FORCED | {"function": nh.Forced(TOP, force=_brake)})[name]
+    task = nh.EnsembleTask(nh.discretize(forced, 0.05), steps=30, **START)
+    found = nh.sweep(task, nh.Grid({"time_step": steps}), tmp_path / "a.zarr")
+    for row, h in enumerate(steps):
+        orbit = nh.simulate(nh.discretize(forced, h), **START, steps=30)
+        assert np.array_equal(found["final_momentum"][row], orbit.restricted_momentum[-1])
+        assert float(found["final_energy"][row]) == orbit.energy[-1]
+    if name == "function":
+        with pytest.raises(ValueError, match="force is a callable"):
+            nh.resume(tmp_path / "a.zarr")
+    else:
+        assert nh.resume(tmp_path / "a.zarr").equals(found)
 
 
 @pytest.mark.parametrize(
@@ -153,3 +112,71 @@ def test_pictures_show_no_free_motion() -> None:
     assert nh.plot.blade_track(orbit).track is not None
     assert nh.plot.energy_error(orbit).unit < 1e-2  # of what is left of the balance; the energy changes by more
     assert np.ptp(orbit.energy) > 0.05 * np.abs(orbit.energy).max()
+
+
+SLOPE = nh.Gravity(force=[0.4, -1.0], point=[0.5, 0.3])
+
+
+_FORCED = nh.Forced(TOP, HEAVY, RUB)
+_MAP = nh.discretize(_FORCED, 0.1)
+_RUN = nh.simulate(_MAP, restricted_velocity=[0.5, -0.3], steps=5)
+_PUSHED = nh.discretize(nh.Forced(TOP, force=np.ones((5, 3))), 0.1)
+_PAIR = nh.Forced(TOP, force=lambda *state: state[2][:2])
+_REFUSED: list[Callable[[], Any]] = [
+    lambda: nh.step(_MAP, [0.1, 0.2]),
+    lambda: nh.branches(_MAP, momentum=[0.1, 0.2], certify=True),
+    lambda: nh.inverse_discrete_legendre(_MAP, np.zeros(3)),
+    lambda: nh.fold_distance(_MAP, np.eye(3)),
+    lambda: nh.discrete_legendre(_MAP, np.eye(3)),
+    lambda: nh.momentum_locus(_MAP),
+    lambda: nh.invariant_curve(_MAP, 0.1),
+    lambda: nh.critical_energies(_MAP),
+    lambda: nh.consistency_defect(_MAP, np.eye(3)),
+    lambda: nh.heteroclinic(_MAP, energy=0.1),
+    lambda: nh.flow_obstruction(_MAP, 0.1),
+    lambda: nh.equilibria(_FORCED),
+    lambda: nh.equilibria(_MAP),
+    lambda: nh.invariant_measure(_FORCED),
+    lambda: nh.conserved_momenta(_FORCED),
+    lambda: nh.lyapunov_function(_FORCED),  # type: ignore[arg-type]
+    lambda: nh.asymptotics(_RUN),
+    lambda: nh.vector_field(_PUSHED.system),
+    lambda: nh.ensemble(_PUSHED, restricted_velocity=np.ones((2, 2)), steps=9),
+    lambda: nh.ensemble(nh.Forced(TOP, force=np.ones((3, 3))), restricted_velocity=np.ones((2, 2)), times=(0.0, 1.0)),
+    lambda: nh.EnsembleTask(_PUSHED, steps=9),
+    lambda: nh.EnsembleTask(_MAP, steps=3, reductions=["final_state", "energy_drift"]),
+    lambda: nh.plot.phase_portrait(_FORCED),
+    lambda: nh.simulate(_MAP, restricted_velocity=[0.5, -0.3], steps=5, branch="nearest"),
+    lambda: nh.simulate(_MAP, restricted_velocity=[0.5, -0.3], steps=5, backend="jax"),
+    lambda: nh.simulate(_MAP, displacement=np.eye(3), steps=5),
+    lambda: nh.discretize(nh.Forced(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), HEAVY), 0.1, order=4),
+    lambda: nh.discretize(nh.Forced(TOP, HEAVY, scheme="energy"), 0.1, difference="logarithmic"),
+    lambda: nh.Forced(TOP, nh.Linear(np.eye(2))),
+    lambda: nh.Forced(TOP, nh.Spring([0.1, 0.2], [0.0, 0.0], 1.0)),
+    lambda: nh.Forced(TOP, (lambda g: g[0, 0], lambda g: g[1, 1])),
+    lambda: nh.Forced(nh.examples.particle().system, lambda q: q[0], scheme="energy"),
+    lambda: nh.discretize(_FORCED, 0.1, difference="logarithmic"),
+    lambda: nh.flow(_FORCED, restricted_velocity=[0.5, -0.3], times=(0.0, 1.0), method="closed_form"),
+    lambda: nh.flow(nh.Forced(TOP, force=np.ones((3, 3))), restricted_velocity=[0.5, -0.3], times=(0.0, 1.0)),
+    lambda: nh.Forced(_FORCED),
+    lambda: nh.Forced(3),  # type: ignore[arg-type]
+    lambda: nh.Forced(TOP, 3.0),
+    lambda: nh.Forced(TOP, SLOPE),
+    lambda: nh.Forced(TOP, force=nh.Friction([1.0, 2.0])),
+    lambda: nh.Friction([1.0, -2.0, 0.0]),
+    lambda: nh.Forced(TOP, force=(RUB, RUB)),
+    lambda: nh.Forced(TOP, force=(RUB, np.ones((5, 3)), np.ones((5, 3)))),
+    lambda: nh.Forced(TOP, force=(RUB, np.ones((3, 2)))),
+    lambda: nh.flow(nh.Forced(TOP, force=(RUB, np.ones((3, 3)))), restricted_velocity=[0.5, -0.3], times=(0.0, 1.0)),
+    lambda: nh.Forced(TOP, force=np.ones((3, 2))),
+    lambda: nh.Forced(TOP, lambda g: g[0]).potential_energy(np.eye(3)),
+    lambda: _PAIR.applied_force(0.0, np.eye(3), np.ones(3)),
+]
+
+
+# Whatever serves free motions alone says so, in place of leaving the forces out.
+test_what_does_not_know_of_forces_is_refused = refusals(
+    *((ask, r"Force|force|Friction|Gravity") for ask in _REFUSED),
+    # the second argument is the potential: friction there is refused with the name of its own argument
+    (lambda: nh.Forced(TOP, nh.Friction([1.0, 2.0, 0.0])), r"Friction and other forces as force="),
+)

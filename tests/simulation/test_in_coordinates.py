@@ -3,12 +3,13 @@
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from comparisons import assert_member
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
 G = 0.8
-ROWS = ("time", "configuration", "displacement", "body_velocity", "momentum", "multipliers", "energy")
 PROFILE = pytest.mark.profile("routes", instead="test_a_ready_system_is_first_class")
 
 
@@ -76,63 +77,6 @@ def test_flows_cross_where_parabolas_do(system: LagrangeDAlembert) -> None:
 
 
 @PROFILE
-def test_the_states_are_those_of_a_run_without_events() -> None:
-    """Bit for bit, thinned too; blocks together have the states and the crossings of the run."""
-    discrete = nh.discretize(FALL, 0.02)
-    whole = nh.simulate(discrete, **THROWN, steps=300, events=[height, rise])
-    for every in (1, 7):
-        alone = nh.simulate(discrete, **THROWN, steps=300, save_every=every)
-        thinned = nh.simulate(discrete, **THROWN, steps=300, save_every=every, events=[height])
-        blocks = list(nh.iterate(discrete, **THROWN, steps=300, save_every=every, block_steps=14, events=[height]))
-        assert [len(block) for block in blocks[:-1]] == [14 // every] * (len(blocks) - 1)
-        for row in ROWS:
-            assert np.array_equal(getattr(thinned, row), getattr(alone, row)), row
-            assert np.array_equal(np.concatenate([getattr(block, row) for block in blocks]), getattr(alone, row)), row
-        assert np.array_equal(thinned.events["height"].time, whole.events["height"].time)
-        assert np.array_equal(
-            np.concatenate([block.events["height"].time for block in blocks]), whole.events["height"].time
-        )
-        steps = np.concatenate([block.events["height"].step for block in blocks])
-        assert np.array_equal(steps, whole.events["height"].step)
-
-
-@PROFILE
-def test_an_event_stops_a_run() -> None:
-    """At its second crossing, with the last saved state before it; an earlier end of the run is its own."""
-    discrete = nh.discretize(FALL, 0.1)
-    down = nh.Event(height, stop=2)
-    orbit = nh.simulate(discrete, **THROWN, steps=10**6, events=[down, rise])
-    assert (orbit.events.stopped_by, len(orbit)) == ("height", 1 + int((1 + np.sqrt(1 - 0.6 * G)) / G / 0.1))
-    assert len(orbit.events["rise"]) == 1
-    alone = nh.simulate(discrete, **THROWN, steps=len(orbit) - 1)
-    for row in ROWS:
-        assert np.array_equal(getattr(orbit, row), getattr(alone, row)), row
-    blocks = list(nh.iterate(discrete, **THROWN, steps=10**6, block_steps=8, events=[down]))
-    assert (sum(map(len, blocks)), blocks[-1].events.stopped_by) == (len(orbit), "height")
-
-
-@PROFILE
-def test_runs_that_cannot_continue_say_so_with_events() -> None:
-    """The good steps and the outcome are those without events; a stop before the fold is a success."""
-    start = {"configuration": [0.0], "body_velocity": [0.1], "steps": 20}
-    discrete = nh.discretize(FOLDING, 1.0)
-
-    def reached(states) -> np.ndarray:  # noqa: ANN001
-        return states.configuration[:, 0] - 0.5
-
-    plain = nh.simulate(discrete, **start, throw=False)
-    found = nh.simulate(discrete, **start, throw=False, events=[reached])
-    assert (found.outcome, len(found), len(found.events[0])) == (plain.outcome, len(plain), 1)
-    with pytest.raises(nh.OutcomeError, match=r"Step 6 of 20 \(time_step 1\): no_real_branch") as caught:
-        nh.simulate(discrete, **start, events=[reached])
-    assert len(caught.value.orbit.events[0]) == 1
-    stopped = nh.simulate(discrete, **start, events=[nh.Event(reached, stop=True)])
-    assert (stopped.outcome, len(stopped)) == (nh.Outcome.successful, 1 + stopped.events[0].step[0])
-    with pytest.raises(nh.OutcomeError, match="Start of the run"):
-        nh.simulate(discrete, **start | {"body_velocity": [1.5]}, events=[reached])
-
-
-@PROFILE
 def test_members_are_runs_alone_however_they_end() -> None:
     """Those that fold keep their good states and are NaN after them; with the last state alone it is the last good."""
     discrete, v = nh.discretize(FOLDING, 1.0), np.array([[0.1], [0.3], [-1.5], [0.8]])
@@ -183,67 +127,41 @@ def test_members_of_flows_are_flows_alone(name: str, rtol: float | None) -> None
         alone = system.with_parameters(**own) if own else system
         first = {what: np.asarray(x)[member if np.ndim(x) == 2 else ...] for what, x in start.items()}
         orbit = nh.flow(alone, times=times, rtol=rtol, **first)
-        for what in ("time", "configuration", "body_velocity", "momentum", "multipliers", "energy"):
-            assert np.array_equal(getattr(batch, what)[member], getattr(orbit, what)), what
+        assert_member(
+            batch, member, orbit, "time", "configuration", "body_velocity", "momentum", "multipliers", "energy"
+        )
         assert np.array_equal(energies[member], orbit.energy)
         assert np.array_equal(batch.orbit(member).configuration, orbit.configuration)
     assert batch.to_dataset().configuration.shape[:2] == (2, 3)
 
 
-@pytest.mark.parametrize(
-    ("given", "words"),
-    [
-        ({"reconstruct": False}, r"ensemble\(reconstruct=...\)` must keep its default"),
-        ({"steps": 3}, r"ensemble\(steps=...\)` must be left out for a flow"),
-        ({"parameters": {"time_step": [0.1]}}, "must name fields of the system"),
-        ({"rtol": -1.0}, "rtol"),
-        ({"configuration": [[1.0], [np.nan]]}, "finite"),
-    ],
+# Each refusal says what is wrong before any work.
+test_flows_of_members_that_cannot_be_solved_are_refused = refusals(
+    ({"reconstruct": False}, r"ensemble\(reconstruct=...\)` must keep its default"),
+    ({"steps": 3}, r"ensemble\(steps=...\)` must be left out for a flow"),
+    ({"parameters": {"time_step": [0.1]}}, "must name fields of the system"),
+    ({"rtol": -1.0}, "rtol"),
+    ({"configuration": [[1.0], [np.nan]]}, "finite"),
+    ask=lambda given: nh.ensemble(
+        SPRING, **{"times": [0.0, 1.0], "configuration": [[1.0]], "body_velocity": [0.0]} | given
+    ),
 )
-def test_flows_of_members_that_cannot_be_solved_are_refused(given: dict, words: str) -> None:
-    """Each refusal says what is wrong before any work."""
-    with pytest.raises(ValueError, match=words):
-        nh.ensemble(SPRING, **{"times": [0.0, 1.0], "configuration": [[1.0]], "body_velocity": [0.0]} | given)
 
 
-@PROFILE
-def test_members_have_the_crossings_of_their_runs() -> None:
-    """How many, the first and the last, and who is stopped; with time steps of their own."""
-    discrete, v = nh.discretize(FALL, 0.1), np.array([[1.0, 0.5], [0.42, 0.0], [2.0, 0.0]])
-    start = {"configuration": (0.0, 0.0), "body_velocity": v, "steps": 60}
-    batch = nh.ensemble(
-        discrete, **start, events=[height, nh.Event(rise, stop=True)], parameters={"time_step": [0.1, 0.05, 0.02]}
-    )
-    assert batch.events["height"].count.tolist() == [1, 0, 1]
-    assert batch.events.stopped_by.tolist() == [1, 1, -1]
-    assert np.abs(batch.events["rise"].first.time[:2, 0] - [1 / G, 0.42 / G]).max() <= 1e-14
-    assert np.isnan(batch.events["rise"].last.time[2, 0])
-    assert batch.steps_done.tolist() == [12, 10, 60]
-    assert np.array_equal(batch.time[:, 0], [12 * 0.1, 10 * 0.05, 60 * 0.02])
-    blocks = nh.ensemble(discrete, **start, save_every=30, reduce=lambda block: block.momentum[:, :, 0])
-    assert np.abs(blocks - (v[:, :1] - G * np.array([[0.0, 3.0, 6.0]]))).max() <= 1e-13
-
-
-REFUSED = {
-    "one start": ({"body_velocity": (1.0, 0.5)}, "have a row for each member. Got one start"),
-    "no rows": ({"body_velocity": np.empty((0, 2))}, "have a row for each member. Got no rows"),
-    "lengths": ({"configuration": np.zeros((2, 2)), "body_velocity": np.zeros((3, 2))}, "Got 2 of configuration, 3 of"),
-    "shape": ({"body_velocity": np.zeros((3, 4))}, r"must have shape \(any, 2\)"),
-    "two starts": ({"body_velocity": np.zeros((3, 2)), "momentum": np.zeros((3, 2))}, "exactly one of"),
-    "parameters": ({"parameters": {"mass": [1.0, 2.0]}, "body_velocity": (1, 0)}, "coordinates that has no parameters"),
-    "member": ({"body_velocity": [(1.0, 0.0), (np.inf, 0.0)]}, "must be finite"),
-    "times": ({"body_velocity": [(1.0, 0.0)], "times": (0.0, 1.0)}, r"ensemble\(times=...\)` must keep its default"),
-    "rows of bodies": ({"restricted_velocity": [(1.0, 0.0)]}, r"ensemble\(restricted_velocity=...\)` must keep"),
-    "no steps": ({"body_velocity": [(1.0, 0.0)], "steps": None}, r"ensemble\(steps=...\)` must be"),
-}
-
-
-@pytest.mark.parametrize("name", REFUSED)
-def test_members_that_cannot_be_run_are_refused(name: str) -> None:
-    """Each refusal says what is wrong and what to pass."""
-    given, words = REFUSED[name]
-    with pytest.raises(ValueError, match=words):
-        nh.ensemble(nh.discretize(FALL, 0.1), **{"configuration": (0.0, 0.0), "steps": 3} | given)
+# Each refusal says what is wrong and what to pass.
+test_members_that_cannot_be_run_are_refused = refusals(
+    ({"body_velocity": (1.0, 0.5)}, "have a row for each member. Got one start"),
+    ({"body_velocity": np.empty((0, 2))}, "have a row for each member. Got no rows"),
+    ({"configuration": np.zeros((2, 2)), "body_velocity": np.zeros((3, 2))}, "Got 2 of configuration, 3 of"),
+    ({"body_velocity": np.zeros((3, 4))}, r"must have shape \(any, 2\)"),
+    ({"body_velocity": np.zeros((3, 2)), "momentum": np.zeros((3, 2))}, "exactly one of"),
+    ({"parameters": {"mass": [1.0, 2.0]}, "body_velocity": (1, 0)}, "coordinates that has no parameters"),
+    ({"body_velocity": [(1.0, 0.0), (np.inf, 0.0)]}, "must be finite"),
+    ({"body_velocity": [(1.0, 0.0)], "times": (0.0, 1.0)}, r"ensemble\(times=...\)` must keep its default"),
+    ({"restricted_velocity": [(1.0, 0.0)]}, r"ensemble\(restricted_velocity=...\)` must keep"),
+    ({"body_velocity": [(1.0, 0.0)], "steps": None}, r"ensemble\(steps=...\)` must be"),
+    ask=lambda given: nh.ensemble(nh.discretize(FALL, 0.1), **{"configuration": (0.0, 0.0), "steps": 3} | given),
+)
 
 
 @PROFILE

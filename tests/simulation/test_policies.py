@@ -8,6 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from references import golden, numbers
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.base.traced import NodeState
@@ -74,7 +75,7 @@ READY = {
 }
 
 
-@pytest.mark.profile("routes", keep=["parameters"])
+@pytest.mark.profile("routes", instead="test_a_policy_is_the_table_of_its_controls")
 @pytest.mark.parametrize("name", READY)
 def test_a_policy_in_coordinates_is_the_table_of_its_controls(name: str) -> None:
     """It sees the velocity that belongs to the momentum of the node; what drives a system acts beside it."""
@@ -154,16 +155,12 @@ def test_a_network_learns() -> None:
         assert abs(value - missed(better) - 1e-3 * gain) < 0.1 * 1e-3 * gain  # to first order
 
 
-@pytest.mark.parametrize(
-    ("policy", "more", "words"),
-    [
-        (lambda *_: np.zeros(2), {}, r"return an array of shape \(3,\). Got shape \(2,\)"),
-        (lambda _: np.zeros(3), {}, "be traceable by JAX on a time and a state"),
-        (wavy, {"controls": np.zeros((3, 3))}, "be left out beside controls"),
-        (1.0, {}, "be a function"),
-    ],
+# A policy that gives no body covector, or stands beside controls, is refused before any work.
+test_bad_policies_are_refused = refusals(
+    ({"policy": lambda *_: np.zeros(2)}, r"return an array of shape \(3,\). Got shape \(2,\)"),
+    ({"policy": lambda _: np.zeros(3)}, "be traceable by JAX on a time and a state"),
+    ({"policy": wavy, "controls": np.zeros((3, 3))}, "be left out beside controls"),
+    ({"policy": 1.0}, "be a function"),
+    ask=lambda given: nh.rollout(nh.discretize(SLEIGH, 0.1), restricted_velocity=(0.1, 0.2), steps=3, **given),
+    begin=r"rollout\(policy=...\).*",
 )
-def test_bad_policies_are_refused(policy: Any, more: dict[str, Any], words: str) -> None:
-    """A policy that gives no body covector, or stands beside controls, is refused before any work."""
-    with pytest.raises(ValueError, match=rf"rollout\(policy=...\).*{words}"):
-        nh.rollout(nh.discretize(SLEIGH, 0.1), restricted_velocity=(0.1, 0.2), steps=3, policy=policy, **more)

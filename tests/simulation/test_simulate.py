@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from problems import PROBLEMS
+from refusals import refusals
 
 import nonholo as nh
 
@@ -113,14 +114,6 @@ def test_a_start_beyond_the_fold_is_empty() -> None:
         nh.simulate(discrete, body_velocity=(40.0, 0.0, 0.0), steps=3)
 
 
-def test_a_displacement_on_another_branch_is_refused() -> None:
-    """A displacement of the variety that is not the principal root of its momentum is not silently replaced."""
-    discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1.0)
-    W = discrete.system.group.exp(np.array([2.8, 0.1, 0.0]))
-    with pytest.raises(nh.OutcomeError, match=r"branch_unverified|no_real_branch"):
-        nh.simulate(discrete, displacement=W, steps=3)
-
-
 def test_the_way_to_a_variety_that_is_no_exponential() -> None:
     """Where exp d is not the variety its elements are refused, and the error does not advise them."""
     discrete = nh.discretize(nh.LLSystem(nh.SO(4), np.diag([1.0, 2.0, 3.0, 4.0]), np.eye(6)[:2]), 0.1)
@@ -144,60 +137,49 @@ def test_a_momentum_off_the_locus_is_refused() -> None:
 GOOD = {"body_velocity": (0.4, 0.9, 0.0), "steps": 3}
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ({**GOOD, "steps": 0}, r"simulate\(steps=...\)` must be a positive integer. Got 0"),
-        ({**GOOD, "steps": 2.5}, "positive integer. Got 2.5"),
-        ({**GOOD, "steps": True}, "positive integer. Got True"),
-        ({**GOOD, "save_every": -1}, r"save_every=...\)` must be a positive integer"),
-        ({"steps": 3}, "exactly one of body_velocity, .*Got none"),
-        ({**GOOD, "momentum": (1, 2)}, "Got body_velocity and momentum"),
-        (
-            {**GOOD, "body_velocity": (0.4, 0.9, 0.1)},
-            r"satisfy the constraint. Got residual \[0.1\].*\[0.4, 0.9, 0.0\]",
-        ),
-        ({**GOOD, "body_velocity": (0.4, 0.9)}, r"shape \(3,\). Got shape \(2,\)"),
-        ({**GOOD, "body_velocity": (0.4, np.nan, 0.0)}, "be finite. Got nan at index"),
-        ({**GOOD, "body_velocity": (0.4, 1j, 0.0)}, "be real. Got complex"),
-        ({**GOOD, "branch": "closest"}, "branch=.*must be one of 'principal', 'nearest', .*Got 'closest'"),
-        ({**GOOD, "backend": "cuda"}, "be one of 'auto', 'numba', 'jax'"),
-        ({**GOOD, "configuration": 2 * np.eye(3)}, r"lie in SO\(3\). Got a matrix at distance"),
-        ({"displacement": nh.SO(3).exp(np.array([0.1, 0.2, 0.3])), "steps": 3}, "displacement variety.*forbidden part"),
-        ({"displacement": np.eye(3) + 0.1, "steps": 3}, r"lie in SO\(3\)"),
-    ],
+# Each names the owner, the requirement, what was got and the remedy, before any work.
+test_bad_arguments_are_refused = refusals(
+    ({**GOOD, "steps": 0}, r"simulate\(steps=...\)` must be a positive integer. Got 0"),
+    ({**GOOD, "steps": 2.5}, "positive integer. Got 2.5"),
+    ({**GOOD, "steps": True}, "positive integer. Got True"),
+    ({**GOOD, "save_every": -1}, r"save_every=...\)` must be a positive integer"),
+    ({"steps": 3}, "exactly one of body_velocity, .*Got none"),
+    ({**GOOD, "momentum": (1, 2)}, "Got body_velocity and momentum"),
+    ({**GOOD, "body_velocity": (0.4, 0.9, 0.1)}, r"satisfy the constraint. Got residual \[0.1\].*\[0.4, 0.9, 0.0\]"),
+    ({**GOOD, "body_velocity": (0.4, 0.9)}, r"shape \(3,\). Got shape \(2,\)"),
+    ({**GOOD, "body_velocity": (0.4, np.nan, 0.0)}, "be finite. Got nan at index"),
+    ({**GOOD, "body_velocity": (0.4, 1j, 0.0)}, "be real. Got complex"),
+    ({**GOOD, "branch": "closest"}, "branch=.*must be one of 'principal', 'nearest', .*Got 'closest'"),
+    ({**GOOD, "backend": "cuda"}, "be one of 'auto', 'numba', 'jax'"),
+    ({**GOOD, "configuration": 2 * np.eye(3)}, r"lie in SO\(3\). Got a matrix at distance"),
+    ({"displacement": nh.SO(3).exp(np.array([0.1, 0.2, 0.3])), "steps": 3}, "displacement variety.*forbidden part"),
+    ({"displacement": np.eye(3) + 0.1, "steps": 3}, r"lie in SO\(3\)"),
+    ask=lambda arguments: nh.simulate(TOP, **arguments),
 )
-def test_bad_arguments_are_refused(arguments: dict, words: str) -> None:
-    """Each names the owner, the requirement, what was got and the remedy, before any work."""
-    with pytest.raises(ValueError, match=words):
-        nh.simulate(TOP, **arguments)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ({"time_step": 0}, "time_step=.*must be positive. Got 0.0"),
-        ({"time_step": -0.1}, "must be positive. Got -0.1"),
-        ({"time_step": 0.1 + 1j}, "must be real"),
-        ({"time_step": np.nan}, "must be finite"),
-        ({"difference": "central"}, "be one of 'matrix', 'logarithmic'. Got 'central'"),
-        ({"constraint": "holonomic"}, "be one of 'skew', 'exponential', 'naive'"),
-        ({"order": 3}, "be one of 2, 4, 6, 8. Got 3"),
-    ],
+# `discretize` says what it accepts.
+test_bad_discretizations_are_refused = refusals(
+    ({"time_step": 0}, "time_step=.*must be positive. Got 0.0"),
+    ({"time_step": -0.1}, "must be positive. Got -0.1"),
+    ({"time_step": 0.1 + 1j}, "must be real"),
+    ({"time_step": np.nan}, "must be finite"),
+    ({"difference": "central"}, "be one of 'matrix', 'logarithmic'. Got 'central'"),
+    ({"constraint": "holonomic"}, "be one of 'skew', 'exponential', 'naive'"),
+    ({"order": 3}, "be one of 2, 4, 6, 8. Got 3"),
+    ask=lambda arguments: nh.discretize(TOP.system, **{"time_step": 0.1, **arguments}),
 )
-def test_bad_discretizations_are_refused(arguments: dict, words: str) -> None:
-    """`discretize` says what it accepts."""
-    with pytest.raises(ValueError, match=words):
-        nh.discretize(TOP.system, **{"time_step": 0.1, **arguments})
 
 
-def test_no_poses_unless_asked() -> None:
-    """reconstruct=False leaves poses out, and asking for them says so."""
-    orbit = nh.simulate(TOP, **GOOD, reconstruct=False)
-    with pytest.raises(ValueError, match="reconstruct=True"):
-        _ = orbit.configuration
-    with pytest.raises(ValueError, match="group of motions"):
-        _ = nh.simulate(TOP, **GOOD).position
+HUGE = nh.discretize(nh.ChaplyginSleigh(1e100, 1e100, 0.5), 0.1)
+# A backend without a closed form; energies that overflow, before any work; poses that are not kept.
+test_what_is_not_there_is_refused = refusals(
+    (lambda: nh.simulate(nh.discretize(TOP.system, 0.1, "logarithmic"), **GOOD, backend="numba"), "have a closed form"),
+    (lambda: nh.simulate(HUGE, body_velocity=(0.0, 1e150, 0.0), steps=3), "finite energy"),
+    (lambda: nh.simulate(HUGE, body_velocity=(1e150, 1.0, 0.0), steps=3), "finite energy"),
+    (lambda: nh.simulate(TOP, **GOOD, reconstruct=False).configuration, "reconstruct=True"),
+    (lambda: nh.simulate(TOP, **GOOD).position, "group of motions"),
+)
 
 
 def test_a_first_pose_that_is_not_kept_does_not_matter() -> None:
@@ -213,20 +195,6 @@ def test_a_first_pose_that_is_not_kept_does_not_matter() -> None:
         *nh.iterate(discrete, **turned),
     ):
         assert np.array_equal(orbit.reduced_momentum, momenta)
-
-
-def test_numba_backend_needs_a_closed_form() -> None:
-    """The compiled backend is refused for a discrete Lagrangian without one."""
-    with pytest.raises(ValueError, match="have a closed form"):
-        nh.simulate(nh.discretize(TOP.system, 0.1, difference="logarithmic"), **GOOD, backend="numba")
-
-
-def test_an_energy_that_overflows_is_refused() -> None:
-    """A start whose energy is not a number of double precision is refused before any work, without a warning."""
-    heavy = nh.discretize(nh.ChaplyginSleigh(1e100, 1e100, 0.5), 0.1)
-    for velocity in ((0.0, 1e150, 0.0), (1e150, 1.0, 0.0)):
-        with pytest.raises(ValueError, match="finite energy"):
-            nh.simulate(heavy, body_velocity=velocity, steps=3)
 
 
 def test_an_index_of_an_orbit_is_refused() -> None:

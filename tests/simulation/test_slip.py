@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from refusals import refusals
 from scipy.optimize import least_squares
 from simulation.slipping import Continuous, random_case, space_body
 
@@ -50,6 +51,7 @@ def _drive(time: float, g: np.ndarray, velocity: np.ndarray) -> np.ndarray:
     return np.array([0.4 * np.sin(3 * time), 0.1, 0.3 * g[0, 0] - 0.1 * velocity[2]])
 
 
+@pytest.mark.profile("problems", keep=["sleigh", "top", "cone"])
 @pytest.mark.parametrize("name", CASES)
 def test_orbits_converge_to_the_continuous_motion(name: str) -> None:
     """Velocity and pose have order 2, also across the places where rows yield and come to rest."""
@@ -208,6 +210,7 @@ def test_stiff_viscous_friction_tends_to_the_ideal_map() -> None:
     assert 95 < errors[1] / errors[2] < 105
 
 
+@pytest.mark.profile("problems", keep=["sleigh", "cone"])
 @pytest.mark.parametrize("name", CASES)
 def test_one_motion_however_it_is_run(name: str, tmp_path: Path) -> None:
     """Blocks, thinned rows, ensembles and stores that are extended have the bits of one run."""
@@ -272,92 +275,46 @@ def test_multipliers_are_reactions_and_friction() -> None:
     )
 
 
-def test_friction_of_a_model_is_its_only_root() -> None:
-    """The impulse of friction solves A x = b + j, -j in m d|x| + c x, for matrices that are monotone."""
-    from nonholo.discrete.routes._slipping import friction
-
-    rng = np.random.default_rng(5)
-    for _ in range(300):
-        s = int(rng.integers(1, 4))
-        root, turning = rng.normal(size=(s, s)), rng.normal(size=(s, s))
-        A = root @ root.T + 0.05 * np.eye(s) + turning - turning.T
-        b, m, c = rng.normal(size=s), 10.0 ** rng.uniform(-3, 0.5), (0.0, 10.0 ** rng.uniform(-3, 6))[rng.integers(2)]
-        j = friction(A, b, m, c)
-        x = np.linalg.solve(A, b + j)
-        if np.linalg.norm(b) <= m:
-            assert np.array_equal(j, -b)
-        else:
-            np.testing.assert_allclose(j, -m * x / np.linalg.norm(x) - c * x, rtol=1e-9, atol=1e-9 * (1 + c * 1e-6))
-
-
-_REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
-    "no row of the constraint": (
-        lambda: nh.Forced(SLEIGH, force=nh.Slip([[0, 1, 1]], 1.0)),
-        "vanish on the constraint",
-    ),
-    "rows of another group": (lambda: nh.Forced(SLEIGH, force=nh.Slip([[0, 1]], 1.0)), "have rows of 3 numbers"),
-    "a mixture of rows": (
-        lambda: nh.Forced(BODY, force=nh.Slip([BODY.annihilator[1] + BODY.annihilator[2]], 1.0)),
-        "span the same as rows",
-    ),
-    "a free body": (
-        lambda: nh.Forced(nh.RigidBody(np.eye(3)), force=nh.Slip(AXIS, 1.0)),
-        "a constraint that can yield",
-    ),
-    "fixed in space": (lambda: nh.Forced(nh.VeselovaTop(np.eye(3)), force=nh.Slip(AXIS, 1.0)), "fixed in the body"),
-    "in coordinates": (
-        lambda: nh.Forced(nh.examples.knife_edge_on_incline().system, force=nh.Slip(AXIS, 1.0)),
-        "be no Slip",
-    ),
-    "two contacts": (lambda: nh.Forced(SLEIGH, force=(nh.Slip(BLADE, 1.0), nh.Slip(BLADE, 1.0))), "at most one force"),
-    "a negative grip": (lambda: nh.Slip(BLADE, -1.0), "never add energy"),
-    "a negative coefficient": (lambda: nh.Slip(BLADE, 1.0, -1.0), "never add energy"),
-    "an endless coefficient": (lambda: nh.Slip(BLADE, 1.0, np.inf), "be finite"),
-    "no number": (lambda: nh.Slip(BLADE, np.nan), "be finite"),
-    "rows that are not finite": (lambda: nh.Slip([[0.0, 0.0, np.nan]], 1.0), "be finite"),
-    "dependent rows": (lambda: nh.Slip([[0, 0, 1], [0, 0, 2]], 1.0), "independent rows"),
-    "one row alone": (lambda: nh.Slip([0.0, 0.0, 1.0], 1.0), "have shape"),
-    "no rows": (lambda: nh.Slip(np.zeros((0, 3)), 1.0), "have a row"),
-    "order": (lambda: nh.discretize(CASES["sleigh"][0], 0.1, order=4), "steps of order 2"),
-    "difference": (lambda: nh.discretize(CASES["sleigh"][0], 0.1, "logarithmic"), "keep their energy"),
-    "scheme": (
+# One clear error that names the demand, before any work.
+test_what_has_no_slip_is_refused = refusals(
+    (lambda: nh.Forced(SLEIGH, force=nh.Slip([[0, 1, 1]], 1.0)), "vanish on the constraint"),
+    (lambda: nh.Forced(SLEIGH, force=nh.Slip([[0, 1]], 1.0)), "have rows of 3 numbers"),
+    (lambda: nh.Forced(BODY, force=nh.Slip([BODY.annihilator[1] + BODY.annihilator[2]], 1.0)), "span the same as rows"),
+    (lambda: nh.Forced(nh.RigidBody(np.eye(3)), force=nh.Slip(AXIS, 1.0)), "a constraint that can yield"),
+    (lambda: nh.Forced(nh.VeselovaTop(np.eye(3)), force=nh.Slip(AXIS, 1.0)), "fixed in the body"),
+    (lambda: nh.Forced(nh.examples.knife_edge_on_incline().system, force=nh.Slip(AXIS, 1.0)), "be no Slip"),
+    (lambda: nh.Forced(SLEIGH, force=(nh.Slip(BLADE, 1.0), nh.Slip(BLADE, 1.0))), "at most one force"),
+    (lambda: nh.Slip(BLADE, -1.0), "never add energy"),
+    (lambda: nh.Slip(BLADE, 1.0, -1.0), "never add energy"),
+    (lambda: nh.Slip(BLADE, 1.0, np.inf), "be finite"),
+    (lambda: nh.Slip(BLADE, np.nan), "be finite"),
+    (lambda: nh.Slip([[0.0, 0.0, np.nan]], 1.0), "be finite"),
+    (lambda: nh.Slip([[0, 0, 1], [0, 0, 2]], 1.0), "independent rows"),
+    (lambda: nh.Slip([0.0, 0.0, 1.0], 1.0), "have shape"),
+    (lambda: nh.Slip(np.zeros((0, 3)), 1.0), "have a row"),
+    (lambda: nh.discretize(CASES["sleigh"][0], 0.1, order=4), "steps of order 2"),
+    (lambda: nh.discretize(CASES["sleigh"][0], 0.1, "logarithmic"), "keep their energy"),
+    (
         lambda: nh.discretize(nh.Forced(SLEIGH, force=nh.Slip(BLADE, 1.0), scheme="variational"), 0.1),
         "keep their energy",
     ),
-    "inertia operator": (
+    (
         lambda: nh.discretize(
             nh.Forced(nh.LLSystem(nh.SO(3), annihilator=AXIS, inertia_operator=np.eye(3)), force=nh.Slip(AXIS, 1.0)),
             0.1,
         ),
         "keep their energy",
     ),
-    "flow": (lambda: nh.flow(CASES["sleigh"][0], body_velocity=FAST, times=(0, 1)), "never yields"),
-    "flows": (lambda: nh.ensemble(CASES["sleigh"][0], body_velocity=[FAST], times=(0, 1)), "never yields"),
-    "vector_field": (lambda: nh.vector_field(CASES["sleigh"][0]), "never yields"),
-    "linearize": (lambda: nh.linearize(CASES["sleigh"][0], body_velocity=FAST), "never yields"),
-    "linearize a map": (
-        lambda: nh.linearize(nh.discretize(CASES["sleigh"][0], 0.1), body_velocity=(0.0, 1.0, 0.0)),
-        "never yields",
-    ),
-    "rollout": (
-        lambda: nh.rollout(nh.discretize(CASES["sleigh"][0], 0.1), body_velocity=FAST, steps=3),
-        "never yields",
-    ),
-    "check_system": (lambda: nh.testing.check_system(CASES["sleigh"][0]), "never yields"),
-    "check_discretization": (
-        lambda: nh.testing.check_discretization(nh.discretize(CASES["sleigh"][0], 0.1)),
-        "never yields",
-    ),
-    "branches": (lambda: nh.branches(nh.discretize(CASES["sleigh"][0], 0.1), momentum=FAST), "rows that yield"),
-}
-
-
-@pytest.mark.parametrize("question", _REFUSED)
-def test_what_has_no_slip_is_refused(question: str) -> None:
-    """One clear error that names the demand, before any work."""
-    ask, words = _REFUSED[question]
-    with pytest.raises(ValueError, match=words):
-        ask()
+    (lambda: nh.flow(CASES["sleigh"][0], body_velocity=FAST, times=(0, 1)), "never yields"),
+    (lambda: nh.ensemble(CASES["sleigh"][0], body_velocity=[FAST], times=(0, 1)), "never yields"),
+    (lambda: nh.vector_field(CASES["sleigh"][0]), "never yields"),
+    (lambda: nh.linearize(CASES["sleigh"][0], body_velocity=FAST), "never yields"),
+    (lambda: nh.linearize(nh.discretize(CASES["sleigh"][0], 0.1), body_velocity=(0.0, 1.0, 0.0)), "never yields"),
+    (lambda: nh.rollout(nh.discretize(CASES["sleigh"][0], 0.1), body_velocity=FAST, steps=3), "never yields"),
+    (lambda: nh.testing.check_system(CASES["sleigh"][0]), "never yields"),
+    (lambda: nh.testing.check_discretization(nh.discretize(CASES["sleigh"][0], 0.1)), "never yields"),
+    (lambda: nh.branches(nh.discretize(CASES["sleigh"][0], 0.1), momentum=FAST), "rows that yield"),
+)
 
 
 def test_a_slip_may_turn_over_without_a_way() -> None:
@@ -381,6 +338,7 @@ def test_a_step_without_a_root_is_an_outcome() -> None:
         assert orbit.outcome in (nh.Outcome.no_real_branch, nh.Outcome.branch_unverified, nh.Outcome.not_converged)
 
 
+@pytest.mark.profile("problems", instead="test_no_slip_adds_energy")
 def test_the_grip_of_a_record_is_found_by_least_squares() -> None:
     """`fit` needs derivatives by JAX and refuses a slip; SciPy finds grip and friction from differences of orbits."""
 

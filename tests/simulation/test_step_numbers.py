@@ -103,16 +103,6 @@ def test_stores_keep_the_steps(kind: str, tmp_path: Path) -> None:
     assert load_last_block(path, whole.motion).step.tolist() == [18, 20]
 
 
-def test_blocks_of_iterators_keep_the_steps() -> None:
-    """Blocks count on from those before them, in bodies and in coordinates."""
-    particle = nh.examples.particle()
-    runs = (nh.discretize(TOP, H), _start(TOP)), (nh.discretize(particle.system, H), _here(particle))
-    for discrete, at in runs:
-        blocks = list(nh.iterate(discrete, **at, steps=20, save_every=2, block_steps=6))
-        assert len(blocks) > 2
-        assert np.concatenate([block.step for block in blocks]).tolist() == list(range(0, 21, 2))
-
-
 @pytest.mark.parametrize(("every", "steps"), [(None, [9]), (3, [0, 3, 6, 9])])
 def test_members_of_ensembles_know_their_steps(every: int | None, steps: list[int]) -> None:
     """Of bodies side by side and one by one, and in coordinates."""
@@ -142,6 +132,7 @@ def test_motions_without_steps_number_their_rows() -> None:
     assert flows[0].at([0.3, 0.1]).step.tolist() == [0, 1]
 
 
+@pytest.mark.profile("problems", cases=["table fixed in space"])
 @pytest.mark.parametrize("name", [name for name in FORCED if "table" in name])
 def test_work_under_a_table_is_that_of_every_step(name: str) -> None:
     """However rows are taken: that of the whole run at these rows, less that before the first, to rounding."""
@@ -182,6 +173,7 @@ def test_the_whole_part_of_a_step_under_forces_is_the_step(name: str) -> None:
         assert np.abs(mine - theirs).max() <= 4e-15 * max(1.0, np.abs(theirs).max()), quantity  # 4 x 4 products
 
 
+@pytest.mark.profile("problems", keep=["table and*"])
 @pytest.mark.parametrize("name", FORCED)
 def test_events_under_forces_are_where_bisection_finds_them(name: str) -> None:
     """A crossing is where a map with another time step, from the state before and under the forces then, arrives."""
@@ -210,27 +202,6 @@ def test_events_under_forces_are_where_bisection_finds_them(name: str) -> None:
     slope = abs(value(high) - value(low - 1e-3)) / 1e-3
     assert abs(fraction - low) < 2**-43 + 4e-15 / slope
     assert np.abs(_level(found.states)).max() < 4e-15  # ulps of 3 t = 15
-
-
-def test_thinned_runs_stores_blocks_and_members_have_the_same_crossings(tmp_path: Path) -> None:
-    """Under a table: to the last bit those of the run in memory that keeps every step."""
-    discrete = nh.discretize(FORCED["table and weight on a top"], H)
-    start, steps = _start(TOP), {"steps": 100, "events": [nh.Event(_level, name="level")]}
-    whole = nh.simulate(discrete, **start, **steps).events[0]
-    assert len(whole) > 1
-    blocks = list(nh.iterate(discrete, **start, **steps, save_every=5, block_steps=20))
-    logs = [
-        nh.simulate(discrete, **start, **steps, save_every=7).events[0],
-        nh.simulate(discrete, **start, **steps, store=tmp_path / "run.zarr", checkpoint_every=10).events[0],
-        nh.crossings(_whole("table and weight on a top"), steps["events"][0]),
-    ]
-    log = blocks[0].events[0].states.joined([block.events[0].states for block in blocks[1:]])
-    for states in (log, *(each.states for each in logs)):
-        for quantity in ("time", "step", "reduced_momentum", "cayley", "canonical_pose"):
-            assert np.array_equal(getattr(states, quantity), getattr(whole.states, quantity))
-    member = nh.ensemble(discrete, restricted_velocity=[start["restricted_velocity"]], **steps).events[0]
-    assert member.count.tolist() == [len(whole)]
-    assert np.abs(member.last.time[0, 0] - whole.time[-1]) < 1e-14
 
 
 def test_crossings_of_a_part_of_an_orbit_count_from_its_run() -> None:

@@ -3,7 +3,6 @@
 import errno
 import json
 import os
-import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -21,7 +20,6 @@ import nonholo as nh
 from nonholo.io import Stream, checksum
 from nonholo.systems import AbstractSystem
 
-TOP = nh.discretize(PROBLEMS[0].system, 0.1)
 SLEIGH = nh.discretize(PROBLEMS[7].system, 0.1)
 WIDE = nh.discretize(GENERAL["sleigh 3"][0], 0.05)
 NAMES = ("time", "reduced_momentum", "cayley", "canonical_pose")
@@ -46,27 +44,6 @@ def _begun(path: Path, steps: int = 500, **options: Any) -> nh.Orbit:
 
 def _whole(steps: int = 500) -> nh.Orbit:
     return nh.simulate(SLEIGH, steps=steps, save_every=2, **START)
-
-
-@pytest.mark.parametrize(
-    ("discrete", "start"),
-    [
-        (TOP, START),
-        (SLEIGH, START),
-        (nh.discretize(PROBLEMS[7].system, 0.1, order=4), START),
-        (WIDE, {"restricted_velocity": GENERAL["sleigh 3"][1]}),
-        (nh.discretize(GENERAL["veselova 3"][0], 0.05), {"restricted_velocity": GENERAL["veselova 3"][1]}),
-    ],
-    ids=["top", "sleigh", "composition", "step in O(n)", "right-invariant"],
-)
-@pytest.mark.parametrize("block_steps", [6, 48, None])
-def test_blocks_are_the_orbit(discrete: nh.Discretization, start: dict[str, Any], block_steps: int | None) -> None:
-    """The blocks of `iterate` are the orbit of `simulate`, each state once, bit for bit."""
-    whole = nh.simulate(discrete, steps=200, save_every=3, **start)
-    blocks = list(nh.iterate(discrete, steps=200, save_every=3, block_steps=block_steps, **start))
-    assert len(blocks) == (1 if block_steps is None else -(-len(whole) // (block_steps // 3)))
-    for name in NAMES:
-        assert np.concatenate([getattr(block, name) for block in blocks]).tobytes() == getattr(whole, name).tobytes()
 
 
 @pytest.mark.parametrize("throw", [True, False])
@@ -94,16 +71,6 @@ def test_stored_run_is_the_orbit(tmp_path: Path) -> None:
     xarray = pytest.importorskip("xarray")
     with xarray.open_zarr(tmp_path / "run.zarr", chunks=None) as dataset:
         xarray.testing.assert_equal(dataset.load(), orbit.to_dataset().drop_vars(["momentum", "body_velocity", "step"]))
-
-
-@pytest.mark.parametrize("lengths", [(1, 500), (39, 1, 461), (78, 423), (250, 251)])
-def test_extended_run_is_the_long_run(lengths: tuple[int, ...], tmp_path: Path) -> None:
-    """A run extended once or several times, from within a block or between saved states, is the long run."""
-    path = tmp_path / "run.zarr"
-    _begun(path, lengths[0])
-    for steps in lengths[1:]:
-        nh.extend(path, steps)
-    assert _same(nh.load_orbit(path), _whole(sum(lengths)))
 
 
 @pytest.mark.parametrize("block_steps", [1, 2, 3, 4, 5])
@@ -137,16 +104,6 @@ def test_interrupted_run_goes_on(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="must be a finished run"):
         nh.load_orbit(path)
     assert _same(nh.resume(path), _whole())
-
-
-def test_scenario_is_kept_in_the_store(tmp_path: Path) -> None:
-    """The text that says how a run is made is there from its beginning; without a store it is refused."""
-    with stopped_at(5):
-        _begun(tmp_path / "run.zarr", scenario="mine")
-    assert json.loads((tmp_path / "run.zarr" / "zarr.json").read_text())["attributes"]["scenario"] == "mine"
-    assert _same(nh.resume(tmp_path / "run.zarr"), _whole())
-    with pytest.raises(ValueError, match=r"`simulate\(scenario=\.\.\.\)` must come with a store"):
-        nh.simulate(SLEIGH, steps=5, scenario="mine", **START)
 
 
 def test_full_disk_leaves_a_valid_store(tmp_path: Path) -> None:
@@ -197,9 +154,9 @@ def test_lost_start_is_refused(tmp_path: Path) -> None:
         nh.resume(path)
 
 
-@pytest.mark.profile("faults", keep=["short sleigh-3"])
+@pytest.mark.profile("faults", keep=["short sleigh-1"])
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kills forked processes")
-@pytest.mark.parametrize(("name", "kills"), [("short sleigh", 3), ("sleigh", 20), ("tumbling body", 5)])
+@pytest.mark.parametrize(("name", "kills"), [("short sleigh", 1), ("sleigh", 20), ("tumbling body", 5)])
 def test_killed_runs_go_on(name: str, kills: int, tmp_path: Path) -> None:
     """Killed at random moments and resumed each time, a run is the undisturbed one, and leaves no rubbish."""
     path = tmp_path / "run.zarr"
@@ -210,6 +167,7 @@ def test_killed_runs_go_on(name: str, kills: int, tmp_path: Path) -> None:
     assert not list(path.rglob("*.partial"))
 
 
+@pytest.mark.profile("faults", instead="test_full_disk_leaves_a_valid_store")
 def test_limit_of_the_system_on_file_sizes(tmp_path: Path) -> None:
     """A limit met while zarr writes ends in the same clean error as a full disk, and the run continues without it."""
     path = tmp_path / "run.zarr"
@@ -267,15 +225,6 @@ def test_runs_without_poses(system: AbstractSystem, tmp_path: Path) -> None:
     whole = nh.simulate(discrete, steps=155, reconstruct=False, **start)
     assert np.abs(orbit.reduced_momentum - whole.reduced_momentum).max() < 1e-15  # products of matrices: see `iterate`
     assert np.array_equal(orbit.time, whole.time)
-
-
-def test_the_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The Python blocks of the page on long runs hold what its text says."""
-    page = Path(__file__).parents[2] / "docs" / "how-to" / "run-for-days.md"
-    blocks = re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL)
-    monkeypatch.chdir(tmp_path)
-    exec(compile("\n".join(blocks), page, "exec"), {})  # noqa: S102
-    assert (tmp_path / "run.zarr").is_dir()
 
 
 def test_second_process_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -339,23 +288,6 @@ def test_refused(attempt: Callable[[Path], object], kind: type[Exception], words
     """Bad arguments, foreign stores and stores of other runs are refused with the reason."""
     with pytest.raises(kind, match=words):
         attempt(tmp_path / "run.zarr")
-
-
-def test_refused_run_leaves_nothing(tmp_path: Path) -> None:
-    """A run whose arguments are refused makes no store."""
-    with pytest.raises(ValueError, match="steps"):
-        _begun(tmp_path / "run.zarr", steps=0)
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_large_orbit_is_returned_as_its_last_block(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """An orbit that would fill the memory is in the store whole; what is returned are its last states."""
-    monkeypatch.setattr("nonholo.simulation._stored._LOADED", 100)
-    tail = _begun(tmp_path / "run.zarr")
-    whole = _whole()
-    assert len(tail) == len(whole) % 20
-    assert np.array_equal(tail.cayley, whole.cayley[-len(tail) :])
-    assert _same(nh.load_orbit(tmp_path / "run.zarr"), whole)
 
 
 def test_a_replaced_store_is_not_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

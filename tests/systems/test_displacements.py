@@ -2,9 +2,16 @@
 
 import numpy as np
 import pytest
+from refusals import refusals
 
 import nonholo as nh
-from nonholo.systems import SuslovTop, in_exp_d, trace_constraints
+from nonholo.systems import (
+    SuslovTop,
+    euler_angle_discrete_lagrangian,
+    in_exp_d,
+    mass_tensor_from_inertia,
+    trace_constraints,
+)
 
 
 def _displacement(n: int, seed: int = 0) -> np.ndarray:
@@ -40,11 +47,12 @@ def test_displacements_of_the_top_belong(n: int) -> None:
 
 
 def test_half_turn_about_the_forbidden_axis() -> None:
-    """The matrix diag(-1, -1, 1) satisfies the traces but is not the exponential of an admissible velocity."""
+    """The matrix diag(-1, -1, 1) satisfies the traces but is no exponential of a velocity; scaled ones fail too."""
     W = np.diag([-1.0, -1.0, 1.0])
     assert np.array_equal(trace_constraints(np.eye(3), W), [0.0])
     assert not in_exp_d(W)
     assert in_exp_d(np.diag([1.0, -1.0, -1.0]))
+    assert not in_exp_d(1.001 * _displacement(3))
 
 
 def test_spurious_sheet_in_five_dimensions() -> None:
@@ -58,24 +66,56 @@ def test_spurious_sheet_in_five_dimensions() -> None:
     assert in_exp_d(W_on_the_variety)
 
 
-def test_matrices_that_are_no_rotations_are_refused() -> None:
-    """A scaled displacement is refused by the test, and a vector by an error."""
-    assert not in_exp_d(1.001 * _displacement(3))
-    with pytest.raises(ValueError, match=r"in_exp_d\(displacement=\.\.\.\)` must be a square matrix. Got shape \(3,\)"):
-        in_exp_d(np.ones(3))
+_STACK, _EYE, _SHAPE = np.stack([np.eye(3)] * 2), np.eye(3), r"configuration(_next)?=\.\.\.\)` must end in shape"
+test_what_are_no_two_real_matrices_of_one_size_is_refused = refusals(
+    (lambda: in_exp_d(np.ones(3)), r"in_exp_d\(displacement=\.\.\.\)` must be a square matrix. Got shape \(3,\)"),
+    (lambda: trace_constraints(_EYE, np.eye(4)), _SHAPE),
+    (lambda: trace_constraints(np.ones((3, 4)), _EYE), _SHAPE),
+    (lambda: trace_constraints(1.0, 2.0), _SHAPE),
+    (lambda: trace_constraints(_EYE + 0j, _EYE), r"trace_constraints\(configuration=...\)` must be real"),
+    (lambda: trace_constraints(_STACK, _STACK + 0j), r"trace_constraints\(configuration_next=...\)` must be real"),
+)
 
 
-@pytest.mark.parametrize("pair", [(np.eye(3), np.eye(4)), (np.ones((3, 4)), np.eye(3)), (1.0, 2.0)])
-def test_traces_of_other_than_two_matrices_of_one_size_are_refused(pair: tuple) -> None:
-    """Other shapes are refused by the name of the argument."""
-    with pytest.raises(ValueError, match=r"trace_constraints\(configuration(_next)?=\.\.\.\)` must end in shape"):
-        trace_constraints(*pair)
+def _rotation(angles: np.ndarray) -> np.ndarray:
+    phi, theta, psi = angles
+    exp = nh.SO(3).exp
+    return exp(np.array([0, 0, phi])) @ exp(np.array([theta, 0, 0])) @ exp(np.array([0, 0, psi]))
 
 
-@pytest.mark.parametrize("stack", [False, True])
-def test_constraints_of_complex_matrices_are_refused(stack: bool) -> None:
-    """Both configurations are rotations, which are real, as `in_exp_d` demands."""
-    R = np.stack([np.eye(3)] * 2) if stack else np.eye(3)
-    for name, pair in (("configuration", (R.astype(complex), R)), ("configuration_next", (R, R.astype(complex)))):
-        with pytest.raises(ValueError, match=rf"trace_constraints\({name}=...\)` must be real"):
-            trace_constraints(*pair)
+def test_against_the_trace() -> None:
+    """L_d = tr J - tr(R^T R' J) at random angles and moments, one triple at a time and as a stack."""
+    rng = np.random.default_rng(0)
+    moments, first, second = rng.uniform(1.0, 2.0, size=(50, 3)), rng.normal(size=(50, 3)), rng.normal(size=(50, 3)) * 2
+    stacked = euler_angle_discrete_lagrangian(moments, first, second)
+    for A, x, y, value in zip(moments, first, second, stacked, strict=True):
+        J = mass_tensor_from_inertia(np.diag(A))
+        expected = np.trace(J) - np.trace(_rotation(x).T @ _rotation(y) @ J)
+        assert value == pytest.approx(expected, abs=1e-13)
+        assert euler_angle_discrete_lagrangian(A, x, y) == pytest.approx(expected, abs=1e-13)
+
+
+def test_it_is_the_discrete_lagrangian_of_the_library() -> None:
+    """Divided by the time step it is l_d(W) of the matrix difference, whose half-step momentum the library uses."""
+    top, h = nh.SuslovTop(mass_tensor_from_inertia(np.diag([3.0, 2.5, 2.0]))), 0.2
+    x, turn, step = np.array([0.3, 0.8, -0.4]), np.array([0.2, -0.1, 0.3]), 1e-6
+    W = nh.SO(3).exp(turn)
+    R = _rotation(x)
+
+    def value(displacement: np.ndarray) -> float:
+        moved = R @ displacement
+        angles = np.array(
+            [np.arctan2(moved[0, 2], -moved[1, 2]), np.arccos(moved[2, 2]), np.arctan2(moved[2, 0], moved[2, 1])]
+        )
+        return euler_angle_discrete_lagrangian((3.0, 2.5, 2.0), x, angles) / h
+
+    momentum = [
+        (value(nh.SO(3).exp(step * e) @ W) - value(nh.SO(3).exp(-step * e) @ W)) / (2 * step) for e in np.eye(3)
+    ]
+    assert np.allclose(nh.discrete_legendre(nh.discretize(top, h), W), momentum, atol=1e-7)  # rounding eps/step
+
+
+def test_other_than_triples_are_refused() -> None:
+    """Angles and moments come as triples."""
+    with pytest.raises(ValueError, match=r"angles_next=\.\.\.\)` must end in shape \(3,\)"):
+        euler_angle_discrete_lagrangian((1, 1, 1), (0, 0, 0), (0, 0))

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from bodies import mass_tensor, random_rows
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.groups import AbstractMatrixGroup
@@ -180,6 +181,7 @@ _NAMED = {
     "top 3, flat": SuslovTop(np.diag([1.0, 2.0, 0.0]) + 0.0),
     "top 3, flat and coupled": SuslovTop(np.outer([1.0, 0.5, 0.3], [1.0, 0.5, 0.3]) + np.diag([0.0, 1.0, 0.0])),
     "top 3, c an axis of B": SuslovTop([[1.0, 0.0, 0.4], [0.0, 2.0, 0.0], [0.4, 0.0, 3.0]]),
+    "top 3, tilted": SuslovTop.from_inertia(np.diag([3.0, 2.5, 2.0]) + 0.1, axis=np.array([1.0, 2.0, 2.0]) / 3),
     "top 3, balanced": SuslovTop(np.diag([1.0, 2.0, 3.0])),
     "top 4": SuslovTop(mass_tensor(nh.SO(4), RNG)),
     "top 4, balanced": SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0])),
@@ -258,19 +260,26 @@ def test_equilibria_in_any_unit(length: float) -> None:
         assert (space.attracting is None) == (expected.attracting is None)
 
 
-def test_commuting_rows_in_general_position() -> None:
-    """Rows that commute exactly do so to rounding after they are mixed and turned: all velocities stay constant."""
-    turn = nh.SO(4).exp(RNG.normal(size=6))
-    torus = np.eye(6)[[0, 5]] @ nh.SO(4).adjoint(turn).T
-    rows = RNG.normal(size=(2, 2)) @ torus
-    known = LLSystem(nh.SO(4), constraint_subspace=rows, inertia_operator=_positive(6, 3)).equilibria()
-    assert (known.subspace.shape, known.attracting, known.others) == ((2, 6), None, ())
+def _torus() -> LLSystem:
+    """Return a system whose rows commute, but for rounding: they are mixed and turned."""
+    turned = np.eye(6)[[0, 5]] @ nh.SO(4).adjoint(nh.SO(4).exp(RNG.normal(size=6))).T
+    rows = RNG.normal(size=(2, 2)) @ turned
+    return LLSystem(nh.SO(4), constraint_subspace=rows, inertia_operator=_positive(6, 3))
 
 
-@pytest.mark.parametrize("k", [0, 1])
-def test_one_direction_and_none(k: int) -> None:
-    """With one admissible direction all velocities stay constant, with none there is only rest."""
-    known = _any(nh.SE(3), k, 0).equilibria()
+_STEADY = {
+    "no direction": _any(nh.SE(3), 0, 0),
+    "one direction": _any(nh.SE(3), 1, 0),
+    "commuting rows": _torus(),
+    "translations": LLSystem(nh.SE(3), mass_tensor(nh.SE(3), RNG), np.eye(6)[3:]),
+    "round body": RigidBody(np.eye(4)),
+}
+
+
+@pytest.mark.parametrize("name", _STEADY)
+def test_bodies_of_which_all_velocities_stay(name: str) -> None:
+    """All admissible velocities are equilibria, and none attracts."""
+    known, k = _STEADY[name].equilibria(), _STEADY[name].rank
     assert (known.subspace.shape, known.attracting, known.others) == ((k, 6), None, ())
 
 
@@ -290,12 +299,8 @@ def test_energies_of_either_sign() -> None:
         nh.equilibria(body)
 
 
-def test_discrete_maps_of_other_systems_are_refused() -> None:
-    """Multipliers are known of tops and sleighs."""
-    body = nh.discretize(RigidBody(np.diag([1.0, 2.0, 3.0])), 0.1)
-    with pytest.raises(ValueError, match=r"be a top or a sleigh to have known multipliers\. Got RigidBody"):
-        nh.equilibria(body)
-    with pytest.raises(
-        ValueError, match=r"lyapunov_function\(system=\.\.\.\)` must be a top or a sleigh. Got RigidBody"
-    ):
-        nh.lyapunov_function(body.system)
+_FREE_BODY = RigidBody(np.diag([1.0, 2.0, 3.0]))
+test_other_systems_are_refused = refusals(
+    (lambda: nh.equilibria(nh.discretize(_FREE_BODY, 0.1)), "be a top or a sleigh to have known multipliers. Got Rigi"),
+    (lambda: nh.lyapunov_function(_FREE_BODY), r"lyapunov_function\(system=\.\.\.\)` must be a top or a sleigh. Got R"),
+)

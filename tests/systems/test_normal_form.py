@@ -1,37 +1,19 @@
 """The normal form of tops and sleighs against the equations of motion by definition, in any axes."""
 
+import functools
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
+from bodies import elsewhere, tensor
 
 import nonholo as nh
 from nonholo.systems import NormalForm
 
 RNG = np.random.default_rng(16)
-
-
-def _tensor(n: int) -> np.ndarray:
-    A = RNG.normal(size=(n, n))
-    return A @ A.T + np.eye(n)
-
-
-def _pose(group: Any) -> np.ndarray:
-    n = group.size if group == nh.SO(group.size) else group.size - 1
-    g, turn = group.identity.copy(), np.linalg.qr(RNG.normal(size=(n, n)))[0]
-    turn[:, 0] *= np.sign(np.linalg.det(turn))
-    g[:n, :n] = turn
-    if n < group.size:
-        g[:n, n] = RNG.normal(size=n)
-    return g
-
-
-def elsewhere(system: Any) -> nh.LLSystem:
-    """Return the same body as an `LLSystem` in random axes, with random rows of its subspace."""
-    g, k = _pose(system.group), len(system.constraint_subspace)
-    rows = RNG.normal(size=(k, k)) @ system.constraint_subspace @ system.group.adjoint(g).T
-    return nh.LLSystem(system.group, g @ system.homogeneous_mass_tensor @ g.T, rows)
+_tensor = functools.partial(tensor, rng=RNG)
+_elsewhere = functools.partial(elsewhere, rng=RNG)
 
 
 NAMED = {
@@ -47,7 +29,7 @@ NAMED = {
         2.0, [0.5, 0.1, 0.2, 0.3], [1.0, 2.0, 3.0, 4.0], [0.3, 0.2, -0.1]
     ),
 }
-SYSTEMS = {**NAMED, **{f"{name}, elsewhere": lambda make=make: elsewhere(make()) for name, make in NAMED.items()}}
+SYSTEMS = {**NAMED, **{f"{name}, elsewhere": lambda make=make: _elsewhere(make()) for name, make in NAMED.items()}}
 
 
 def _rates(form: NormalForm, r: np.ndarray) -> np.ndarray:
@@ -83,7 +65,7 @@ def test_equations_of_motion(make: Callable[[], Any]) -> None:
 def test_axes_do_not_matter(make: Callable[[], Any]) -> None:
     """A body in other axes has the same form but for a rotation of the planes, and the side that faces forward."""
     system = make()
-    named, found = system.normal_form, elsewhere(system).normal_form
+    named, found = system.normal_form, _elsewhere(system).normal_form
 
     def invariants(form: NormalForm) -> np.ndarray:
         B = np.diag(form.stiffness) if form.is_diagonal else np.asarray(form.stiffness)

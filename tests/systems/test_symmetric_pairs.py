@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from groups.examples import HEISENBERG
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.groups import AbstractMatrixGroup, MatrixGroup
@@ -18,7 +20,6 @@ def _turned(group: AbstractMatrixGroup, rows: object) -> np.ndarray:
     return rng.normal(size=(len(rows), len(rows))) @ rows @ group.adjoint(group.random(rng)).T
 
 
-_HEISENBERG = MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
 _SCREWS = MatrixGroup(nh.SE(3).basis + np.concatenate([nh.SE(3).basis[3:], 0 * nh.SE(3).basis[3:]]))
 
 PAIRS = {
@@ -29,8 +30,8 @@ PAIRS = {
     "sleigh in space": (nh.SE(3), _SLEIGH),
     "translations": (nh.SE(3), _E6[3:]),
     "translations beside screws": (_SCREWS, _E6[3:]),  # the coordinate complement is no subalgebra
-    "Heisenberg, horizontal": (_HEISENBERG, _E3[:2]),
-    "Heisenberg, an ideal": (_HEISENBERG, _E3[1:]),
+    "Heisenberg, horizontal": (HEISENBERG, _E3[:2]),
+    "Heisenberg, an ideal": (HEISENBERG, _E3[1:]),
     "no motion": (nh.SE(3), np.empty((0, 6))),
 }
 OTHERS = {
@@ -40,7 +41,7 @@ OTHERS = {
     "one translation": (nh.SE(2), _E3[1:2]),
     "knife edge that may turn about every axis": (nh.SE(3), reference_point_subspace(3, [[1, 0, 0]])),
     "sleigh without its runner": (nh.SE(3), _SLEIGH[:2]),
-    "center of the Heisenberg algebra": (_HEISENBERG, _E3[2:]),  # normal, but without a complementary subalgebra
+    "center of the Heisenberg algebra": (HEISENBERG, _E3[2:]),  # normal, but without a complementary subalgebra
     "random": (nh.SO(4), np.random.default_rng(0).normal(size=(3, 6))),
 }
 
@@ -83,15 +84,8 @@ def test_exponentials_of_a_pair_are_inverse_to_their_images() -> None:
     assert defects[0] < 1e-15 < 1e-3 < defects[1]
 
 
-def test_subspace_is_checked() -> None:
-    """Rows of the wrong width are refused."""
-    with pytest.raises(
-        ValueError, match=r"is_symmetric_pair\(constraint_subspace=\.\.\.\)` must have shape \(any, 3\)"
-    ):
-        is_symmetric_pair(nh.SO(3), np.eye(2))
-
-
-def test_what_is_no_group_is_refused() -> None:
-    """A name is no group."""
-    with pytest.raises(ValueError, match=r"is_symmetric_pair\(group=\.\.\.\)` must be a matrix group. Got 'SO\(3\)'"):
-        is_symmetric_pair("SO(3)", np.eye(3))
+test_what_is_no_subspace_of_a_group_is_refused = refusals(
+    (lambda: is_symmetric_pair(nh.SO(3), np.eye(2)), r"constraint_subspace=\.\.\.\)` must have shape \(any, 3\)"),
+    (lambda: is_symmetric_pair("SO(3)", np.eye(3)), r"group=\.\.\.\)` must be a matrix group. Got 'SO\(3\)'"),
+    begin=r"is_symmetric_pair\(",
+)

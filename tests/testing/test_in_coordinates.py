@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.lagrange_dalembert import _equations, _flow
+from nonholo.lagrange_dalembert import _equations, _flow, _places
 from nonholo.testing import check_discretization, check_system
 
 READY = ["particle", "two_wheeled_robot", "roller_racer", "driven_sleigh", "rolling_disk", "knife_edge_on_incline"]
@@ -66,6 +66,43 @@ def test_a_body_that_is_pushed_passes() -> None:
     body = nh.Forced(nh.LagrangeDAlembert(_ball, None, dimension=2), force=_pushed)
     report = check_discretization(nh.discretize(body, 0.05), steps=4)
     assert report["discrete principle"].status == report["order of the balance"].status == "ok"
+
+
+def _turning(g: Any) -> Any:
+    return jnp.array([[0.0, -jnp.sin(g[0, 2]), jnp.cos(g[0, 2])]])
+
+
+def _hill(g: Any) -> Any:
+    return jnp.cos(g[0, 2]) + g[1, 2] ** 2
+
+
+def _crooked(g: Any, W: Any, h: Any) -> Any:
+    return _turning(g) @ jnp.array([W[1, 0], W[0, 2], W[1, 2]]) / h
+
+
+@HERE
+@pytest.mark.parametrize("potential", [None, _hill])
+def test_systems_on_groups_by_functions_pass(potential: Any) -> None:
+    """A blade that turns in the body with the place: the equations and the principle in the body, with a potential."""
+    action = nh.mass_tensor_lagrangian(nh.SE(2), nh.ChaplyginSleigh(1.3, 0.5, a=0.3).homogeneous_mass_tensor)
+    sleigh = nh.Forced(nh.GroupLagrangeDAlembert(nh.SE(2), action, _turning), potential)
+    assert check_system(sleigh, rng=2).passed
+    report = check_discretization(nh.discretize(sleigh, 0.05))
+    assert report.passed
+    names = ("discrete principle", "reversal", "order of momenta", "order of configurations")
+    assert {report[name].status for name in names} == {"ok"}
+
+
+@HERE
+def test_errors_on_groups(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without the term ad* the equations fail; a crooked rule for the constraint is of order one."""
+    action = nh.mass_tensor_lagrangian(nh.SE(2), nh.ChaplyginSleigh(1.3, 0.5, a=0.3).homogeneous_mass_tensor)
+    crooked = nh.GroupLagrangeDAlembert(nh.SE(2), action, _turning, _crooked)
+    report = check_discretization(nh.discretize(crooked, 0.05), throw=False)
+    assert {"order of momenta", "order of configurations"} <= {result.name for result in report.failed}
+    monkeypatch.setattr(_places.Poses, "force", lambda *given: 0.0 * given[1])
+    body = nh.GroupLagrangeDAlembert(nh.SO(3), nh.mass_tensor_lagrangian(nh.SO(3), np.diag([3.0, 1.0, 2.0])), None)
+    assert "equations of motion" in {result.name for result in check_system(body, throw=False).failed}
 
 
 @HERE

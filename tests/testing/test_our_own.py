@@ -9,7 +9,7 @@ from problems import PROBLEMS
 import nonholo as nh
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractSystem
-from nonholo.testing import check_discretization, check_group, check_system
+from nonholo.testing import check_discretization, check_group, check_order, check_system
 
 GROUPS = [nh.SO(3), nh.SE(2), nh.SO(4), nh.SE(3), HEISENBERG, SL2, WHEELED]
 INERTIA = np.array([[2.0, 0.3, 0.5], [0.3, 1.0, 0.2], [0.5, 0.2, 1.5]])
@@ -99,15 +99,36 @@ def test_callables_in_place_of_names() -> None:
 
 @pytest.mark.parametrize(
     ("check", "thing"),
-    [
-        (check_group, np.eye(3)),
-        (check_system, nh.SE(2)),
-        (check_discretization, ON_SL2),
-        (check_system, nh.examples.chaplygin_ball().system),
-        (check_discretization, nh.discretize(nh.examples.chaplygin_ball().system, 0.1)),
-    ],
+    [(check_group, np.eye(3)), (check_system, nh.SE(2)), (check_discretization, ON_SL2)],
 )
 def test_other_things_are_refused(check: object, thing: object) -> None:
-    """Each check says what it takes; Lagrange-d'Alembert systems on a group are not among it."""
+    """Each check says what it takes."""
     with pytest.raises(ValueError, match=rf"`{check.__name__}\(.*must be .*Got .*Pass "):
         check(thing)
+
+
+SLEIGH = nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5)
+START = (1.0, 0.5, 0.0)
+
+
+@pytest.mark.profile("routes", cases=["4"])
+@pytest.mark.parametrize("order", [2, 4])
+def test_the_order_is_found(order: int) -> None:
+    """Slopes of momenta and poses are those of the composition, and the errors are drawn."""
+    found = check_order(nh.discretize(SLEIGH, 0.2, order=order), START)
+    assert np.allclose([found.order.momentum, found.order.pose], order, atol=0.1)
+    assert found.plot().axes
+
+
+def test_another_order_is_refused() -> None:
+    """Slopes that are farther off than allowed are an error, which names them; without `throw` they are returned."""
+    discrete = nh.discretize(SLEIGH, 0.2)
+    with pytest.raises(AssertionError, match=r"must find order 2 \+- 1e-06. Got <Convergence"):
+        check_order(discrete, START, tolerance=1e-6)
+    assert abs(check_order(discrete, START, tolerance=1e-6, throw=False).order.momentum - 2) > 1e-6
+
+
+def test_a_system_is_no_discretization() -> None:
+    """What is refused is named with the remedy."""
+    with pytest.raises(ValueError, match=r"check_order\(discrete=...\).*Pass `discretize"):
+        check_order(SLEIGH, START)

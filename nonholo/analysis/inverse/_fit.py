@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 from scipy.special import stdtrit
 
-from nonholo.analysis.inverse._likelihood import LOSSES, Estimate, Problem, Shapes, by_name
+from nonholo.analysis.inverse._likelihood import LOSSES, Estimate, Problem, Ranges, Search, Shapes, Solution, by_name
 from nonholo.analysis.inverse._measurements import WHERE, kinds_of
 from nonholo.analysis.inverse._profile import Minimum, Profile, profile_of
-from nonholo.analysis.inverse._search import Ranges, Search, Solution, outcome_of
 from nonholo.base.checks import array, choice, error, function, instance, needs, number, pair, scale, shown
 from nonholo.base.types import Array, Float
 from nonholo.orbit import Orbit
@@ -126,30 +125,30 @@ def fit(
 
     over parameters $\theta$, first poses $g_i$ and first velocities $w_i$; $\hat z_k$ is the discrete orbit, z are
     poses or angular velocities. Derivatives are exact (`rollout`). Each kind a of number (position, turn, rate) has a
-    noise level of its own by restricted likelihood, from its residuals r, their number, and the trace of the hat
+    separate noise level by restricted likelihood, from its residuals r, their number, and the trace of the hat
     matrix H over them. The model is the discrete map, which misses the continuous motion by $O(h^2)$: a time step that
     is a part of that of the samples makes this small.
 
-    What the fit takes from a kind with few numbers, seven headings, and how uncertain its level is, is counted: by
+    The numbers that the fit takes from a small kind (seven headings), and the uncertainty of its level, are counted: by
     Kenward and Roger in the covariance, by Satterthwaite in the `degrees` of freedom of the intervals. The search stays
     among parameters of which `system_of` makes a body, and says in `Fit.outcome` where it ended.
 
     A free motion does not know its unit of mass: fix one mass, or the fit is refused as undetermined.
 
     In coordinates the positions x and y, and z, are one kind, each other coordinate is one by its name, and the heading
-    counts up to full turns. What is not measured may be anything, and its first value is fitted; coordinates that the
-    equations do not contain, and nobody measured, begin at 0. A start is a first configuration and a first momentum;
-    forces and prescribed motions see time 0 at the first sample.
+    counts up to full turns. A coordinate that is not measured may have any value, and its first one is fitted;
+    coordinates that the equations do not contain, and nobody measured, begin at 0. A start is a first configuration and
+    a first momentum; forces and prescribed motions see time 0 at the first sample.
 
     Args:
         system_of: Makes the system, with a left-invariant constraint on SE(2), SO(3) or SE(3), from the parameters by
             name, which JAX traces; or returns `system.with_parameters(**p)` of a `LagrangeDAlembert`. The same function
-            is compiled once, whatever the data, in coordinates once for each time step.
+            is compiled once for all data, in coordinates once for each time step.
         measurements: A pandas DataFrame, an xarray Dataset, a dictionary of columns, the path of a CSV file with a
             header, or a list of such trials. Columns: `t`; `x`, `y`, (`z`); `theta` or `heading` in the plane, `qw`,
             `qx`, `qy`, `qz` or `quaternion` in space; angular velocities in the body `omega`, or `omega_x`, `omega_y`,
             `omega_z`; in coordinates the names of the coordinates. NaN marks what was not measured, and kinds may have
-            rates of their own. Positions alone tell the pose of a body in the plane that moves forward; without poses,
+            different rates. Positions alone tell the pose of a body in the plane that moves forward; without poses,
             trials start at the identity. A CSV file has at most 256 MB.
         guess: The parameters to begin with, numbers or arrays.
         time_step: h; by default the smallest time between two samples. Samples lie on multiples of it.
@@ -252,7 +251,7 @@ def _result(search: Search, solution: Solution, begin: np.ndarray, shapes: Shape
     orbits = [orbit_of(system, start=start, pose=pose, steps=steps) for start, pose in rows_of]
     levels = {kind: float(x) for kind, x in zip(rows, solution.noise, strict=True)}
     minimum = search.minimum(solution, degrees, np.sqrt(plain), np.sqrt(covariance.diagonal() / plain))
-    outcome = outcome_of(search, solution, begin[:P], np.sqrt(covariance.diagonal()))
+    outcome = search.outcome_of(solution, begin[:P], np.sqrt(covariance.diagonal()))
     orbit = tuple(orbits) if len(orbits) > 1 else orbits[0]
     free = len(problem.kind_of) - len(point)
     return Fit(parameters, covariance, system, orbit, residuals, levels, outcome, degrees, free, minimum)

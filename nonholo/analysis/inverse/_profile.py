@@ -44,7 +44,7 @@ class Minimum(NamedTuple):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Profile:
-    r"""The likelihood profile of a fitted number: $\tau$ over its values, all others fitted anew at each.
+    r"""The likelihood profile of a fitted number: $\tau$ over its values, all others fitted again at each.
 
     Attributes:
         name: Of the number.
@@ -53,7 +53,7 @@ class Profile:
         level: The probability of the interval, if the noise is normal and the model right.
         cut: The value of $|\tau|$ at its ends, a quantile of Student's distribution.
         interval: The least and the largest number within the level, infinite where there is none.
-        ends: What bounds each side. "level": the profile crosses the level there. "unbounded": it levels off below,
+        ends: The bound on each side. "level": the profile crosses the level there. "unbounded": it levels off below,
             seen up to ten thousand times the number. "model": there is no motion, or no body, beyond, and
             the profile has not reached the level.
         values: Numbers at which the others were fitted, in order, (K,).
@@ -187,7 +187,7 @@ class _Search(NamedTuple):
         return _Place(value, point, tau, rate)
 
     def holds(self, point: np.ndarray) -> bool:
-        """Tell whether there is a motion at a point."""
+        """Return whether there is a motion at a point."""
         return self.minimum.exists(point) and bool(np.isfinite(self.minimum.rows(point)).all())
 
 

@@ -29,7 +29,7 @@ class Accessibility:
 
 
 def accessibility(system: Any, configuration: Any, *, depth: int | None = None) -> Accessibility:
-    r"""Return how far brackets of admissible velocities lead from a configuration.
+    r"""Return the directions to which brackets of admissible velocities lead from a configuration.
 
     $$ D_1 = D = \{v : A(q)\,v = 0\}, \qquad D_{i+1} = D_i + [D, D_i], \qquad
        \text{growth} = (\dim D_1, \dim D_2, \dots). $$
@@ -59,7 +59,8 @@ def accessibility(system: Any, configuration: Any, *, depth: int | None = None) 
     """
     with needs("jax", "accessibility"):
         from nonholo.analysis.locomotion import _brackets
-    where, (rows, q, whole) = "accessibility(configuration=...)", _constraints(system, configuration)
+    where = "accessibility(configuration=...)"
+    rows, q, whole = _constraints(where, system, configuration)
     forms = _brackets.forms_at(rows, q)
     rank = np.linalg.matrix_rank(forms) if np.isfinite(forms).all() else -1
     if rank < len(forms):
@@ -79,12 +80,12 @@ def accessibility(system: Any, configuration: Any, *, depth: int | None = None) 
     return Accessibility(tuple(growth), directions, growth[-1] == whole)
 
 
-def _constraints(system: Any, configuration: Any) -> tuple[Any, Float[np.ndarray, "n"], int]:
-    """Return the function of the constraint forms with its system, the checked place, and how far brackets may lead."""
+def _constraints(where: str, system: Any, configuration: Any) -> tuple[Any, Float[np.ndarray, "n"], int]:
+    """Return the function of the constraint forms with its system, the checked place, and the reach of brackets."""
     from nonholo.analysis.locomotion import _reduction
     from nonholo.lagrange_dalembert import checked_state, equations
 
-    where, has_shape = "accessibility(configuration=...)", hasattr(system, "shape_coordinates")
+    has_shape = hasattr(system, "shape_coordinates")
     own: Any = _reduction.Reduced(system) if has_shape else checked_system("accessibility", system)
     names = system.shape_coordinates if has_shape else own.coordinates
     q = array(where, configuration, (len(names),), f"Pass {len(names)} coordinates.")

@@ -172,7 +172,7 @@ def local_connection(system: Any, *, pose: tuple[str, str, str] = ("x", "y", "th
 
     Of a `LagrangeDAlembert` system in the plane coordinates are position, heading and shape s. With the body velocity
     $\xi = (\omega, v_1, v_2)$, $\omega = \dot\theta$, $v_1 = \dot x\cos\theta + \dot y\sin\theta$,
-    $v_2 = -\dot x\sin\theta + \dot y\cos\theta$, the constraints are $B(s)\,\xi + C(s)\,\dot s = 0$, whatever the pose.
+    $v_2 = -\dot x\sin\theta + \dot y\cos\theta$, the constraints are $B(s)\,\xi + C(s)\,\dot s = 0$, at every pose.
     A `ShapedBody`, on any group, is given in this form. Where B is a square matrix,
 
     $$ \xi = -A(s)\,\dot s, \qquad A = B^{-1}C : $$

@@ -69,7 +69,7 @@ def geometric_phase(
     to 1e-12.
 
     Reference: [kelly-murray-1995], [bloch-krishnaprasad-marsden-murray-1996]; the area rule with the bracket in it is
-    that of [hatton-choset-2011].
+    from [hatton-choset-2011].
 
     Args:
         system: A system, or its `local_connection`.
@@ -79,7 +79,7 @@ def geometric_phase(
         momentum: p at the start; zero by default.
 
     Raises:
-        ValueError: What `local_connection` refuses; a gait that is not closed, or that meets a shape where the
+        ValueError: A system that `local_connection` refuses; a gait that is not closed, or that meets a shape where the
             connection is singular.
 
     Example:

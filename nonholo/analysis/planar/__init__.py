@@ -1,6 +1,6 @@
 """Bodies with two admissible directions, tops in space and sleighs in the plane, of which all is known.
 
-What differs between the two is in `_disc` and `_strip`, two files of one interface. Theory:
+The differences between the two are in `_disc` and `_strip`, two files of one interface. Theory:
 docs/theory/momentum-locus.md.
 """
 

@@ -118,7 +118,7 @@ class Arc:
         sign: Which of the two solutions, -1 or 1.
         start: First direction.
         stop: Last direction.
-        ends: What happens at the two, FOLD or EQUATOR; empty for an arc that closes on itself.
+        ends: The kinds of the two, FOLD or EQUATOR; empty for an arc that closes on itself.
     """
 
     sign: int
@@ -155,7 +155,7 @@ class Place:
         return Place(other, self.side, not self.forward)
 
     def is_same(self, other: "Place") -> bool:
-        """Tell whether both are one arc on one side, full turns and the sense apart."""
+        """Return whether both are one arc on one side, full turns and the sense apart."""
         arc, that = self.arc, other.arc
         middles = (arc.start + arc.stop) / 2, (that.start + that.stop) / 2
         same = arc.sign == that.sign and self.side == other.side
@@ -175,8 +175,7 @@ def closed_curves(
 
     Arcs beyond the first half turn are copies of the others; `points` gives the points of an arc on a side.
     """
-    curves: list[Float[np.ndarray, "K c"]] = []
-    past: list[Place] = []
+    curves, past = [], []
     for arc in arcs:
         place, pieces = Place(arc, 1, forward=True), []
         while not any(place.is_same(other) for other in past):

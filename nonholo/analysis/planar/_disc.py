@@ -181,27 +181,6 @@ class SteinerSurface:
         return np.linalg.svd(np.stack([_vector(square) for square in squares], axis=-1))[0][:, 3:].T
 
 
-def steiner_surface(
-    inertia: Float[np.ndarray, "2 2"],
-    coupling: Float[np.ndarray, "2"],
-    frame: Float[np.ndarray, "3 3"],
-    time_step: float,
-) -> SteinerSurface:
-    r"""Return the surface of the forms $z_0Bz + sz^\perp$ and $z_0s - z^\perp\cdot Bz$, $s = c\cdot z^\perp$."""
-    (b11, b12), (_, b22) = inertia
-    c1, c2 = coupling
-    forms = np.array(
-        [
-            [[0, b11, b12], [b11, 0, -c2], [b12, -c2, 2 * c1]],
-            [[0, b12, b22], [b12, 2 * c2, -c1], [b22, -c1, 0]],
-            [[0, c2, -c1], [c2, -2 * b12, b11 - b22], [-c1, b11 - b22, 2 * b12]],
-        ]
-    )
-    size = np.linalg.norm(forms, 2, axis=(1, 2)).max() / 2
-    axes = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]) @ frame.T
-    return SteinerSurface(forms / (2 * size), _pencil(forms / (2 * size)), axes * time_step / (2 * size))
-
-
 def _pencil(forms: Float[np.ndarray, "3 3 3"]) -> Float[np.ndarray, "m 3 3"]:
     _, values, rows = np.linalg.svd(_four(forms))
     return _matrix(rows[np.count_nonzero(values > _FLAT) :])
@@ -313,8 +292,19 @@ class Disc(AbstractPlanarVariety):
         return DiscLevel(self.inertia, self.coupling, energy / 2)
 
     def surface(self, time_step: float) -> SteinerSurface:
-        """Return the Steiner surface."""
-        return steiner_surface(self.inertia, self.coupling, self.frame, time_step)
+        r"""Return the surface of the forms $z_0Bz + sz^\perp$ and $z_0s - z^\perp\cdot Bz$, $s = c\cdot z^\perp$."""
+        (b11, b12), (_, b22) = self.inertia
+        c1, c2 = self.coupling
+        forms = np.array(
+            [
+                [[0, b11, b12], [b11, 0, -c2], [b12, -c2, 2 * c1]],
+                [[0, b12, b22], [b12, 2 * c2, -c1], [b22, -c1, 0]],
+                [[0, c2, -c1], [c2, -2 * b12, b11 - b22], [-c1, b11 - b22, 2 * b12]],
+            ]
+        )
+        size = np.linalg.norm(forms, 2, axis=(1, 2)).max() / 2
+        axes = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]) @ self.frame.T
+        return SteinerSurface(forms / (2 * size), _pencil(forms / (2 * size)), axes * time_step / (2 * size))
 
 
 def _quarter_turned(z: Float[np.ndarray, "... 2"]) -> Float[np.ndarray, "... 2"]:

@@ -52,15 +52,6 @@ class Conoid:
         """Return None: the rulings meet one axis."""
 
 
-def conoid(mass: float, inertia: float, a: float, frame: Float[np.ndarray, "3 3"], time_step: float) -> Conoid:
-    """Return the conoid of a sleigh."""
-    m, J = mass, inertia
-    arm = a or np.sqrt(J / m)  # a length for the balanced sleigh, where any serves
-    rows = np.array([[0.0, arm, 0.0], [0.0, 0.0, arm], [1.0, 0.0, -a]])
-    to_canonical = SE(2).coadjoint(frame, np.eye(3)).T
-    return Conoid(rows @ to_canonical * (time_step / J), np.array([2 * m * a * a / J, 0.0, 0.0]))
-
-
 _NEAR_HALF_TURN = 0.04  # balanced sleighs: the level goes to infinity at the angle pi; it is cut so far from there
 
 
@@ -197,4 +188,8 @@ class Strip(AbstractPlanarVariety):
 
     def surface(self, time_step: float) -> Conoid:
         """Return Pluecker's conoid."""
-        return conoid(self.mass, self.inertia, self.arm, self.frame, time_step)
+        m, J, a = self.mass, self.inertia, self.arm
+        arm = a or np.sqrt(J / m)  # a length for the balanced sleigh, where any serves
+        rows = np.array([[0.0, arm, 0.0], [0.0, 0.0, arm], [1.0, 0.0, -a]])
+        to_canonical = SE(2).coadjoint(self.frame, np.eye(3)).T
+        return Conoid(rows @ to_canonical * (time_step / J), np.array([2 * m * a * a / J, 0.0, 0.0]))

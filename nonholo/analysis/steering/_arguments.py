@@ -30,7 +30,7 @@ class Guess(NamedTuple):
         return 1.0 if self.configuration is None and self.path is None else 0.1
 
 
-def checked_guess(guess: Any, steps: int, n: int | None) -> Guess:
+def _checked_guess(guess: Any, steps: int, n: int | None) -> Guess:
     """Return a guess: a `Steering` of one member with as many steps, or positions of n numbers."""
     where, remedy = "steer(guess=...)", "Pass the result of `steer` for one member, or two positions or more."
     if guess is None:
@@ -137,7 +137,7 @@ class StateBounds(NamedTuple):
             return None
         remedy = f"Pass {{name: (least, largest)}} of {', '.join(names)}."
         if not isinstance(bounds, Mapping) or not set(bounds) <= set(names):
-            raise error(_WHERE, "name what a state has", shown(bounds), remedy)
+            raise error(_WHERE, "name components of a state", shown(bounds), remedy)
         parts = {name: cls._one(name, both, names[name]) for name, both in bounds.items()}
         for name, part in parts.items():
             for end, numbers in ends.items():
@@ -222,6 +222,7 @@ class Way(NamedTuple):
         radii: Of obstacles.
         outline: Body points that keep clear of them, or a function of the configuration that returns them.
         via: Places of the body frame, by number of the step after which it is there.
+        guess: Where IPOPT begins.
         bounds: Of states; None where they are free.
     """
 
@@ -229,16 +230,18 @@ class Way(NamedTuple):
     radii: Float[np.ndarray, "obstacles"]
     outline: Any
     via: dict[int, Float[np.ndarray, "n"]]
+    guess: Guess = Guess()
     bounds: StateBounds | None = None
 
     @classmethod
-    def of(cls, n: int | None, steps: int, obstacles: Any, outline: Any, via: Any) -> "Way":
+    def of(cls, n: int | None, steps: int, obstacles: Any, outline: Any, via: Any, guess: Any) -> "Way":
         """Return checked arguments of `steer`, for positions of n numbers; None where bodies have none."""
+        hint = _checked_guess(guess, steps, n)
         if n is None:
             if not (obstacles is None and outline is None and via is None):
                 remedy = "Leave obstacles, outline and via out: only bodies on SE(n) or with x and y are somewhere."
                 raise error("steer(discrete=...)", "have a position", "a system without", remedy)
-            return cls(np.zeros((0, 0)), np.zeros(0), np.zeros((1, 0)), {})
+            return cls(np.zeros((0, 0)), np.zeros(0), np.zeros((1, 0)), {}, hint)
         where, remedy = "steer(obstacles=...)", f"Pass centers (obstacles, {n}), and one radius or one for each."
         centers, radii = pair(where, ((np.zeros((0, n)), 1.0) if obstacles is None else obstacles))
         centers = array(where, centers, (None, n), remedy)
@@ -246,7 +249,11 @@ class Way(NamedTuple):
         if not (radii > 0).all():
             raise error(where, "have positive radii", shown(radii), remedy)
         outline = outline if callable(outline) else _body_points_of(n, outline)
-        return cls(centers, np.broadcast_to(radii, len(centers)), outline, _places(n, steps, via))
+        return cls(centers, np.broadcast_to(radii, len(centers)), outline, _places(n, steps, via), hint)
+
+    def positions(self, ends: Mapping[int, Float[np.ndarray, "n"]], steps: int) -> Float[np.ndarray, "K n"]:
+        """Return positions to begin with: along the path of the guess, or evenly between the ends and the places."""
+        return evenly({**ends, **self.via}, steps) if self.guess.path is None else resample(self.guess.path, steps)
 
     def penetration(self, points: Float[np.ndarray, "... points n"]) -> float:
         """Return how deep points of the outline lie in an obstacle; zero where all are clear."""

@@ -36,7 +36,7 @@ class Feedback(Keeper):
     """A reference orbit and the feedback along it.
 
     Attributes:
-        discrete: What is steered.
+        discrete: The steered system.
         controls: Body covectors of the reference, (steps, dim).
         reference: The reference orbit, a `Rollout`.
         gains: K, (steps, k, n) with n = dim + k.
@@ -71,13 +71,13 @@ class Feedback(Keeper):
         disturbance: Any = None,
         misreading: Any = None,
     ) -> Tracking:
-        """Run the body under the feedback, from a start of its own, with pushes that the feedback does not know.
+        """Run the body under the feedback, from a given start, with pushes that the feedback does not include.
 
         Args:
             restricted_velocity: The first velocity along the constraint; by default that of the reference.
             configuration: The first pose; by default that of the reference.
             disturbance: Body covectors beside the controls, (steps, dim).
-            misreading: What is added to the error of the state where the feedback reads it, (steps, dim + k).
+            misreading: The error added to the state where the feedback reads it, (steps, dim + k).
 
         Returns:
             The motion. Its `orbit.outcome` is not zero where it ends early, NaN from there on.
@@ -86,7 +86,7 @@ class Feedback(Keeper):
             ValueError: A bad argument.
         """
         with needs("jax", "Feedback.simulate"):
-            from nonholo.analysis.steering._motions import closed_loop
+            from nonholo.analysis.steering._shooting import closed_loop
         where, nodes = "Feedback.simulate", _states(self.discrete, self.reference)
         S = self.discrete.system.constraint_subspace
 
@@ -170,7 +170,7 @@ def tracking_feedback(
     limits = checked_limits(f"{where}(bounds=...)", bounds, k)
     refuse_many_matrices(f"{where}(controls=...)", discrete, len(table), "Pass fewer.", derivatives=dim + 2 * k)
     with needs("jax", where):
-        from nonholo.analysis.steering._motions import linearize_steps
+        from nonholo.analysis.steering._shooting import linearize_steps
         from nonholo.simulation.traced import rollout
     first = {"restricted_velocity": np.zeros(k), **start}
     reference = rollout(discrete, **first, controls=table, steps=len(table))

@@ -13,7 +13,6 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo.analysis.steering._arguments import (
-    Guess,
     Limits,
     Way,
     body_points,
@@ -21,11 +20,9 @@ from nonholo.analysis.steering._arguments import (
     check_names,
     evenly,
     planar_points,
-    resample,
 )
-from nonholo.analysis.steering._motions import driven
 from nonholo.analysis.steering._program import Program, Steps
-from nonholo.analysis.steering._shooting import sizes
+from nonholo.analysis.steering._shooting import driven, sizes
 from nonholo.analysis.steering._transcription import Problem, bounds_of
 from nonholo.base.checks import array, error, shown
 from nonholo.base.numerics import double_precision
@@ -137,7 +134,7 @@ class CoordinateNodes(NamedTuple):
     """Steps in coordinates.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: h.
         outline: Points in axes of the body that keep clear of obstacles, (points, 2), or a `MovingOutline`.
         directions: Rows span the admissible velocities near the goal; none where its velocity is free.
@@ -231,15 +228,11 @@ def driven_in_coordinates(
 
 
 def coordinate_problem(
-    discrete: CoordinateDiscretization,
-    ends: tuple[tuple[np.ndarray, np.ndarray], Goal],
-    limits: Limits,
-    way: Way,
-    steps: int,
-    guess: Guess,
+    discrete: CoordinateDiscretization, ends: tuple[tuple[np.ndarray, np.ndarray], Goal], limits: Limits, way: Way
 ) -> Problem:
     """Return the problem of a system in coordinates, from place and velocity at the start and a goal."""
     ((x, v), goal), system, n = ends, discrete.system, discrete.system.dimension
+    steps = len(limits[0]) // n
     last = place(system, x[:n].copy(), steps * discrete.time_step)
     last[list(goal.coordinates)] = list(goal.coordinates.values())
     nodes = _nodes(discrete, way, last, goal.velocity)
@@ -251,10 +244,10 @@ def coordinate_problem(
     pins[steps] = pins.get(steps, {}) | goal.coordinates
     if way.outline.shape[-1]:
         way.check("start", planar_points(system, x[:n], way.outline))
-    path, forces = _coordinate_guess(system, (x[:n], last[:n]), way, steps, guess)
+    path, forces = _coordinate_guess(system, (x[:n], last[:n]), way, steps)
 
     def first_guess(rng: np.random.Generator, spread: float) -> np.ndarray:
-        spread *= guess.trust
+        spread *= way.guess.trust
         bow = np.sin(np.linspace(0, np.pi, steps + 1))[:, None]
         bent = path + spread * bow * rng.normal(size=n)
         return _coordinate_unknowns(nodes, bent, forces + spread * rng.normal(size=(steps, n)))
@@ -289,17 +282,15 @@ def _coordinate_gap(program: Program, goal: Goal, way: Way, orbit: CoordinateOrb
 
 
 def _coordinate_guess(
-    system: LagrangeDAlembert, ends: tuple[np.ndarray, np.ndarray], way: Way, steps: int, guess: Guess
-) -> tuple[np.ndarray, np.ndarray]:
+    system: LagrangeDAlembert, ends: tuple[np.ndarray, np.ndarray], way: Way, steps: int
+) -> tuple[Float[np.ndarray, "K n"], Float[np.ndarray, "steps n"]]:
     """Return configurations and forces of a guess: by default evenly from the start to the goal, through places."""
-    if guess.configuration is not None and guess.controls is not None:
-        return guess.configuration, guess.controls
+    if way.guess.configuration is not None and way.guess.controls is not None:
+        return way.guess.configuration, way.guess.controls
     q = evenly({0: ends[0], steps: ends[1]}, steps)
-    at = [system.coordinates.index(name) for name in "xy"] if way.outline.shape[-1] else []
-    if guess.path is not None:
-        q[:, at] = resample(guess.path, steps)
-    elif at:
-        q[:, at] = evenly({0: ends[0][at], steps: ends[1][at]} | way.via, steps)
+    if way.outline.shape[-1]:
+        at = [system.coordinates.index(name) for name in "xy"]
+        q[:, at] = way.positions({0: ends[0][at], steps: ends[1][at]}, steps)
     return q, np.zeros((steps, len(q[0])))
 
 
@@ -312,7 +303,7 @@ def _coordinate_unknowns(nodes: CoordinateNodes, q: np.ndarray, forces: np.ndarr
     return np.concatenate([v, np.zeros((steps, system.constraints)), forces, places[1:], momenta], axis=1).ravel()
 
 
-def group_problem(discrete: Discretization, ends: tuple[Any, ...], limits: Limits, way: Way, guess: Guess) -> Problem:
+def group_problem(discrete: Discretization, ends: tuple[Any, ...], limits: Limits, way: Way) -> Problem:
     """Return the problem of one member, from velocity and pose of the start, pose and velocity of the goal."""
     (w, g, to_pose, to_velocity), system, free = ends, discrete.system, discrete
     if system.is_forced:
@@ -327,10 +318,10 @@ def group_problem(discrete: Discretization, ends: tuple[Any, ...], limits: Limit
     if to_velocity is not None:
         momenta = enumerate(system.restricted_momentum(to_velocity), len(first) - system.rank)
         pins[steps] = pins.get(steps, {}) | dict(momenta)
-    poses, forces = _group_guess(discrete, (g, to_pose), way, steps, guess)
+    poses, forces = _group_guess(discrete, (g, to_pose), way, steps)
 
     def first_guess(rng: np.random.Generator, spread: float) -> np.ndarray:
-        spread *= guess.trust
+        spread *= way.guess.trust
         noise = spread * sizes(discrete, steps).reshape(steps, -1) * rng.normal(size=(steps, system.rank))
         bent = _bent(discrete, poses, spread * rng.normal(size=system.group.dim), way)
         return _group_unknowns(nodes, bent, forces + noise)
@@ -362,20 +353,21 @@ def _numbers(nodes: GroupNodes, poses: Float[np.ndarray, "... N N"]) -> Float[np
 
 
 def _group_guess(
-    discrete: Discretization, ends: tuple[Any, Any], way: Way, steps: int, guess: Guess
+    discrete: Discretization, ends: tuple[Any, Any], way: Way, steps: int
 ) -> tuple[Float[np.ndarray, "K N N"], Float[np.ndarray, "steps k"]]:
     """Return poses and forces of a guess: by default evenly from the start to the goal, through places on the way.
 
     In the plane the body looks along a path.
     """
-    group, (g, to_pose), rows = discrete.system.group, ends, np.asarray(discrete.system.constraint_subspace)
+    group, (g, to_pose), guess = discrete.system.group, ends, way.guess
+    rows = np.asarray(discrete.system.constraint_subspace)
     if guess.configuration is not None:
         return guess.configuration, guess.controls @ rows.T
     last = g if to_pose is None else to_pose
     poses = g @ group.exp(np.linspace(0, 1, steps + 1)[:, None] * group.log(group.inverse(g) @ last))
     if group.is_affine:
         places = {0: g[:-1, -1]} | ({} if to_pose is None else {steps: last[:-1, -1]})
-        poses[:, :-1, -1] = evenly(places | way.via, steps) if guess.path is None else resample(guess.path, steps)
+        poses[:, :-1, -1] = way.positions(places, steps)
     if group == SE(2) and (way.via or guess.path is not None):
         ahead = np.gradient(poses[:, 0, 2] + 1j * poses[:, 1, 2])
         poses[:, :2, :2] = group.exp(np.angle(ahead)[:, None] * [1.0, 0.0, 0.0])[:, :2, :2]

@@ -51,7 +51,7 @@ class Steps(NamedTuple):
         return jnp.concatenate([self.nodes.residual(x, z, f, after, row), self.clearances(after), states])
 
     def clearances(self, x: Array) -> Array:
-        """Return how far points are outside of obstacles, exact in the first order where that is little."""
+        """Return the distance of points from obstacles, exact in the first order where that is little."""
         if not len(self.radii):
             return jnp.zeros(0)
         apart = self.nodes.places(x)[:, None] - self.centers
@@ -97,7 +97,7 @@ class Program:
     """The least effort under the equations of all steps, clearances and a goal.
 
     Attributes:
-        steps: What all steps share.
+        steps: The data that all steps share.
         first: The state at the start.
         rows: Body covectors that act in the steps beside the forces, (steps, size).
     """

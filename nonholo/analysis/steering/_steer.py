@@ -10,14 +10,12 @@ import numpy as np
 from nonholo.analysis.steering._arguments import (
     BLOCK,
     Ends,
-    Guess,
     Limits,
     StateBounds,
     Way,
     body_points,
     bounds_of_body,
     checked_ends,
-    checked_guess,
     coordinate_numbers,
     limits_of_steps,
 )
@@ -28,7 +26,7 @@ from nonholo.base.progress import interruptibly, progress_bar
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, as_discretization
 from nonholo.simulation import check_forces, refuse_many_matrices
-from nonholo.systems import in_coordinates
+from nonholo.systems import AbstractCoordinateDiscretization, in_coordinates
 
 _PER_ENTRY = 24.0  # bytes of a second derivative: its value, and where it stands
 
@@ -38,7 +36,7 @@ class Steering(Keeper):
     """Controls that lead to a goal; of many members at once every array has an axis of them in front.
 
     Attributes:
-        discrete: What was steered.
+        discrete: The steered system.
         start: First velocities along the constraint, and poses; in coordinates velocity and configuration.
         controls: Body covectors, (steps, dim), as `rollout` takes them; in coordinates forces on them.
         cost: Half the time integral of the squared forces along the rows of the constraint subspace.
@@ -70,7 +68,7 @@ class Steering(Keeper):
     def orbit(self) -> Any:
         """The motion under the controls, a `Rollout`; an orbit in coordinates."""
         with needs("jax", "Steering.orbit"):
-            from nonholo.analysis.steering._motions import driven
+            from nonholo.analysis.steering._shooting import driven
         if in_coordinates(self.discrete):
             from nonholo.analysis.steering._problems import driven_in_coordinates
 
@@ -102,44 +100,44 @@ def steer(
 
     $$ \min_f\ \tfrac h2\sum_k |f_k|^2 \quad\text{with}\quad (g_N, w_N) = \text{goal}, $$
 
-    where $f_k$ are the components of the control of step k along the rows of the constraint subspace: of a sleigh the
-    torque and the thrust along the blade. The orbit is the exact discrete one and its derivatives are exact, so the
+    where $f_k$ are the components of the control of step k along the rows of the constraint subspace: for a sleigh
+    the torque and the thrust along the blade. The orbit is the exact discrete one and its derivatives are exact, so the
     goal is met to rounding, not to the error of a transcription. Minima are local.
 
     "shooting" has the forces alone as unknowns, of many members at once, by derivatives of `rollout`: Newton's method
-    on the equations of the minimum begins at random controls, anew where it fails. "ipopt" has all states as unknowns
-    too, and the equations of all steps as sparse conditions with exact first and second derivatives, one member after
-    the other; it keeps clear of obstacles, and long motions do not trouble it.
+    on the equations of the minimum begins at random controls, and again where it fails. "ipopt" has all states as
+    unknowns too, and the equations of all steps as sparse conditions with exact first and second derivatives, one
+    member after the other; it keeps clear of obstacles, and it also solves long motions.
 
-    Starts and goals may be many, with an axis of members in front. One that has no such axis is that of all of them.
+    Starts and goals may have a leading axis of members. One without it holds for all members.
 
     A system in coordinates (`LagrangeDAlembert`) is steered by "ipopt", one member, with a force on each coordinate:
-    `bounds` say which of them have motors.
+    `bounds` select those with motors.
 
     Args:
         discrete: The discretized system, of order 2, with a left-invariant constraint; or one in coordinates.
         start: `configuration` and `restricted_velocity`; by default the identity, at rest. In coordinates
             `configuration` and `body_velocity`.
-        goal: The same; what it does not name is free. In coordinates a configuration may name some of them alone:
-            {"x": 1.0, "theta": 0.0}.
+        goal: The same; components that it does not name are free. In coordinates a configuration may name some of them
+            alone: {"x": 1.0, "theta": 0.0}.
         steps: Number of steps N.
-        bounds: Least and largest force, numbers or one for each row; zero for both where nothing pushes.
+        bounds: Least and largest force, numbers or one for each row; zero for both where there is no motor.
         cost: "effort".
-        method: "shooting" or "ipopt" (extra `steer`); by default "ipopt" where it alone can do what is asked.
+        method: "shooting" or "ipopt" (extra `steer`); by default "ipopt" where only it can solve the problem.
         obstacles: Discs or balls: their centers (obstacles, n), and one radius or one for each. States keep clear of
             them; between two states a track may cut into one by up to $s^2/8\rho$ on a step of length s.
         outline: Body points (points, n) that keep clear; by default the origin of the body frame. In coordinates also a
             function of q, written with `jax.numpy`, that returns them: those of a trailer, which must not cut a disc.
         via: Positions of the body frame on the way, by number of steps: {40: (1.0, 0.5)}.
-        state_bounds: The least and the largest value of what a state has, by name: {"x": (0, 3), "theta": (-1, 1)}.
-            On groups "x", "y", "z"; "theta" in the plane, of the heading whatever its turns; "restricted_velocity", a
-            number or one for each row. In coordinates their names; "body_velocity" of each step, a number or one for
+        state_bounds: The least and the largest value of components of the state, by name: {"x": (0, 3), "theta": (-1,
+            1)}. On groups "x", "y", "z"; "theta" in the plane, of the heading up to full turns; "restricted_velocity",
+            a number or one for each row. In coordinates their names; "body_velocity" of each step, a number or one for
             each coordinate. Infinite ones bound nothing. They hold for every state, of the goal too.
         guess: Where "ipopt" begins: positions (points, n) of a path, or a `Steering` of one member.
         progress: Show a progress bar of the members on standard error.
 
     Returns:
-        The controls. `converged` is False where no way to the goal was found, and `outcome` says in a word why;
+        The controls. `converged` is False where no way to the goal was found, and `outcome` names the reason;
         `failures` counts these members.
 
     Raises:
@@ -160,24 +158,24 @@ def steer(
         >>> str(around.outcome), bool(around.cost > parked.cost[0])
         ('converged', True)
     """
-    if not in_coordinates(discrete):
-        as_discretization("steer(discrete=...)", discrete, forced=True)
+    is_on_group = not isinstance(discrete, AbstractCoordinateDiscretization)
+    discrete = as_discretization("steer(discrete=...)", discrete, forced=True) if is_on_group else discrete
     steps = count("steer(steps=...)", steps, "Pass the number of steps.")
     choice("steer(cost=...)", cost, ("effort",))
     flag("steer(progress=...)", progress)
     n = _size_of_positions(discrete)
-    way, hints = Way.of(n, steps, obstacles, outline, via), checked_guess(guess, steps, n)
+    way = Way.of(n, steps, obstacles, outline, via, guess)
     extras = {"obstacles": obstacles, "outline": outline, "via": via, "state_bounds": state_bounds, "guess": guess}
     method = _method(discrete, method, extras)
-    if in_coordinates(discrete):
-        return _steered_in_coordinates(discrete, (start, goal), bounds, way, steps, hints, state_bounds)
+    if not is_on_group:
+        return _steered_in_coordinates(discrete, (start, goal), (bounds, state_bounds), way, steps)
     _check(discrete, steps, way)
     ends, is_one = checked_ends(discrete.system, start, goal, bool(way.via))
     _refuse_too_many(discrete, steps, method, min(len(ends[0]), BLOCK))
     way = way._replace(bounds=bounds_of_body(state_bounds, discrete.system, ends))
     limits = limits_of_steps(bounds, steps, discrete.system.rank)
     with progress_bar("members", progress) as report:
-        by = functools.partial(_by_ipopt, way=way, guess=hints, report=report) if method == "ipopt" else _by_shooting
+        by = functools.partial(_by_ipopt, way=way, report=report) if method == "ipopt" else _by_shooting
         forces, gap, outcome = interruptibly(lambda: by(discrete, ends, limits))
     controls = forces @ np.linalg.pinv(discrete.system.constraint_subspace).T
     effort = float(discrete.time_step) * (forces**2).sum(axis=(-2, -1)) / 2
@@ -242,7 +240,7 @@ def _by_shooting(discrete: Discretization, ends: Ends, limits: Limits) -> tuple[
 
 
 def _by_ipopt(
-    discrete: Discretization, ends: Ends, limits: Limits, way: Way, guess: Guess, report: Callable[[int, int], None]
+    discrete: Discretization, ends: Ends, limits: Limits, way: Way, report: Callable[[int, int], None]
 ) -> tuple[Any, ...]:
     """Return forces along the rows, what is missed, and outcomes of members, one after the other."""
     with needs("steer", "steer(method='ipopt')"):
@@ -253,14 +251,13 @@ def _by_ipopt(
     results = []
     for member in range(len(ends[0])):
         one = tuple(each if each is None else each[member] for each in ends)
-        results.append(transcribe(group_problem(discrete, one, limits, way, guess)))
+        results.append(transcribe(group_problem(discrete, one, limits, way)))
         report(member + 1, len(ends[0]))
-    forces, gap, outcome = (np.array(part) for part in zip(*results, strict=True))
-    return forces, gap, outcome
+    return tuple(np.array(part) for part in zip(*results, strict=True))
 
 
 def _steered_in_coordinates(
-    discrete: Any, ends: tuple[Any, Any], bounds: Any, way: Way, steps: int, guess: Guess, state_bounds: Any
+    discrete: Any, ends: tuple[Any, Any], bounds: tuple[Any, Any], way: Way, steps: int
 ) -> Steering:
     """Return the result for a system in coordinates."""
     with needs("steer", "steer"):
@@ -270,12 +267,11 @@ def _steered_in_coordinates(
     if callable(way.outline):
         way = way._replace(outline=MovingOutline.of(discrete.system, way.outline))
     within_memory("steer(steps=...)", _PER_ENTRY * steps * (7.0 * n) ** 2, "Pass fewer steps.")
-    limits = limits_of_steps(bounds, steps, n)
+    limits = limits_of_steps(bounds[0], steps, n)
     goal = checked_goal(discrete, ends[1], is_free=bool(way.via))
     both = {"start": np.append(v, x[:n]), "goal": goal.numbers(n)}
-    way = way._replace(bounds=StateBounds.of(state_bounds, coordinate_numbers(discrete.system), both))
-    problem = coordinate_problem(discrete, ((x, v), goal), limits, way, steps, guess)
+    way = way._replace(bounds=StateBounds.of(bounds[1], coordinate_numbers(discrete.system), both))
+    problem = coordinate_problem(discrete, ((x, v), goal), limits, way)
     forces, gap, outcome = interruptibly(lambda: transcribe(problem))
     effort = float(discrete.time_step) * (forces**2).sum() / 2
-    start = v, x[:n]
-    return Steering(discrete, start, forces, *map(np.asarray, (effort, gap, outcome)))
+    return Steering(discrete, (v, x[:n]), forces, *map(np.asarray, (effort, gap, outcome)))

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import casadi
 import numpy as np
 
+from nonholo.analysis.steering._arguments import Limits
 from nonholo.analysis.steering._program import Program
 from nonholo.analysis.steering._shooting import TOLERANCE
 from nonholo.base.progress import go_on, is_over
@@ -93,9 +94,7 @@ class Solution(NamedTuple):
     iterations: int
 
 
-def minimize(
-    program: Program, guess: Float[np.ndarray, "n"], bounds: tuple[np.ndarray, np.ndarray], iterations: int
-) -> Solution:
+def minimize(program: Program, guess: Float[np.ndarray, "n"], bounds: Limits, iterations: int) -> Solution:
     """Return unknowns between bounds that meet the conditions of a program with least effort, from a guess."""
     numbers, one, nothing = (casadi.Sparsity.dense(size) for size in (program.unknowns, 1, 0))
     conditions = casadi.Sparsity.dense(len(program.limits[0]))

@@ -121,7 +121,7 @@ def _report(
 def run_and_keep(request: Loaded, store: Path | None, *, overwrite: bool, progress: bool) -> tuple[Path | None, Ran]:
     """Run a scenario and keep it at the path given or under the next free number; return where, and what it gave.
 
-    Compilation is over before the clock starts. What takes several blocks goes to the store as it is computed.
+    Compilation is over before the clock starts. A run of several blocks goes to the store as it is computed.
     """
     with waiting("compiling", progress):
         scenario, (discrete, starts) = request.scenario, _try(request)
@@ -151,7 +151,7 @@ def scenario_text(request: Loaded) -> str:
 
 
 def is_stopped(store: Path, text: str, pictures: list[str], read: Callable[[Path], dict[str, Any]]) -> bool:
-    """Tell whether a store holds what this scenario began, and lacks a part of it or a picture: it was stopped."""
+    """Return whether a store holds what this scenario began, and lacks a part of it or a picture: it was stopped."""
     with contextlib.suppress(OSError, ValueError):
         attributes = read(store)
         is_whole = "outcome" in attributes or attributes.get("finished", False)

@@ -65,7 +65,7 @@ def sweep_and_keep(
 
 
 def _is_stopped(output: Path | None, text: str, has_picture: bool) -> bool:
-    """Tell whether this very sweep was begun at a path and stopped; refuse a path that holds something else."""
+    """Return whether this very sweep was begun at a path and stopped; refuse a path that holds something else."""
     again = output is not None and is_stopped(output, text, ["png"] * has_picture, attributes_of)
     if output is not None and output.exists() and not again:
         leave(f"'{output}' exists. Choose another path, or resume what it holds: nonholo resume {output}", USAGE)
@@ -113,7 +113,7 @@ def resume_sweep(store: Path, module: Path | None, how: dict[str, Any], *, json:
 
 @contextlib.contextmanager
 def reporting_stops(store: Path) -> Iterator[None]:
-    """Tell what stopped a sweep and how to resume, and at its end what it warned of."""
+    """Report why a sweep stopped and how to resume it, and at its end its warnings."""
     with warnings.catch_warnings(record=True) as messages:
         warnings.simplefilter("always", RuntimeWarning)
         try:
@@ -132,7 +132,7 @@ def reporting_stops(store: Path) -> Iterator[None]:
 
 
 def _where(store: Path) -> str:
-    """Say how far a sweep came; before its store is there it has not begun."""
+    """Report the progress of a sweep; before its store exists it has not begun."""
     if not store.exists():
         return "before it began."
     return f"at {ensembles.standing_of(store)}. Resume with: nonholo resume {store}"

@@ -10,7 +10,7 @@ from nonholo.cli.commands.run import Module
 if TYPE_CHECKING:
     from nonholo.examples import Example
 
-_ABOUT = "name", "what it is"
+_ABOUT = "name", "description"
 
 
 def cite(
@@ -179,6 +179,6 @@ def systems(module: Module = None) -> None:
         take_module(module)
     tables = ((kind, body_table(kind)) for kind in own_kinds())
     rows = ((kind, body.__doc__ or "", ", ".join([*body.model_fields][1:])) for kind, body in tables)
-    show_table(("kind", "what it is", "parameters"), rows, "Bodies")
+    show_table(("kind", "description", "parameters"), rows, "Bodies")
     show_table(_ABOUT, built_in_titles().items(), "Built-in scenarios")
     typer.echo("And every ready system of `nonholo examples`.")

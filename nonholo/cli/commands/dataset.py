@@ -20,7 +20,7 @@ def dataset(
     split: Annotated[str, typer.Option(metavar="A/B/C", help="For training, validation, test.")] = "0.8/0.1/0.1",
     file_format: Annotated[str, typer.Option("--format", metavar="HOW", help="zarr, or csv: tables.")] = "zarr",
     license_name: Annotated[
-        str, typer.Option("--license", metavar="NAME", help="What the data card says.")
+        str, typer.Option("--license", metavar="NAME", help="The license in the data card.")
     ] = "CC0-1.0",
     shown: Annotated[bool, typer.Option("--list", help="List the data sets.")] = False,
     quiet: Quiet = False,
@@ -54,7 +54,7 @@ def dataset(
             folder = write(name, output, **options, **how, progress=sys.stderr.isatty() and not quiet)
         except KeyboardInterrupt:
             leave("Stopped; the same command resumes it.", FAILED)
-    typer.echo(folder if quiet else f"{folder / 'README.md'} says what is there.")
+    typer.echo(folder if quiet else f"{folder / 'README.md'} describes the files.")
 
 
 def _fractions(split: str) -> list[float]:
@@ -69,4 +69,4 @@ def _show_all() -> None:
     from nonholo.ensembles import DEFINITIONS
 
     rows = ((k, each.title, "{:g} to {:g}".format(*each.energy), str(each.version)) for k, each in DEFINITIONS.items())
-    show_table(("name", "what moves", "energies", "version"), rows, "Data sets")
+    show_table(("name", "system", "energies", "version"), rows, "Data sets")

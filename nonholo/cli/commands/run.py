@@ -42,7 +42,7 @@ def simulate(
     """Run a scenario, keep the orbit and a picture, print how exact it was.
 
     Without -o each run gets a new store under runs/: nothing is overwritten.
-    A run that cannot continue keeps its good steps, says why, exits with code 1.
+    A run that cannot continue keeps its good steps, prints the reason and exits with code 1.
     Long runs go to the store as they are computed: after Ctrl-C or a kill,
     `nonholo resume STORE` continues. Weight, friction and tables of forces
     are the table `forces` of a scenario.
@@ -64,7 +64,8 @@ def simulate(
 
 
 Source = Annotated[
-    str, typer.Argument(metavar="[SCENARIO | STORE]", help="What `nonholo simulate` takes, or a store that it made.")
+    str,
+    typer.Argument(metavar="[SCENARIO | STORE]", help="A scenario, or a store of `nonholo simulate`."),
 ]
 Page = Annotated[Path | None, typer.Option("-o", "--output", metavar="FILE", help="Where to write the page.")]
 Browser = Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")]
@@ -141,7 +142,7 @@ def sweep(
     \[keep] reductions = ["final_state"]       or energy_drift, ...
     \[output] color, x, y                      what the map shows
 
-    Ctrl-C stops it and says how to resume; members that fail do not stop it.
+    Ctrl-C stops it and prints the command that resumes it; members that fail do not stop it.
 
     nonholo sweep my.toml
     nonholo sweep my.toml --members 1e6 -o large.zarr

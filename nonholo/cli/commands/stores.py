@@ -21,7 +21,7 @@ def info(
 ) -> None:
     """Show the provenance of a run and measure again what it should keep.
 
-    Of a sweep: how far it came, how members ended, the first errors, its ranges.
+    Of a sweep: its progress, how members ended, the first errors, its ranges.
 
     nonholo info runs/suslov-001.zarr
     nonholo info runs/suslov-001.zarr --scenario > again.toml
@@ -138,7 +138,7 @@ def plot(
 ) -> None:
     """Draw the overview of a run, another picture or an animation of it, or the map of a sweep.
 
-    The picture beside STORE is drawn anew; one at -o is replaced only with --overwrite.
+    The picture beside STORE is drawn again; one at -o is replaced only with --overwrite.
 
     nonholo plot runs/sleigh-001.zarr -o sleigh.pdf
     nonholo plot runs/sleigh-001.zarr --gif
@@ -178,11 +178,11 @@ def _check_kind(kind: str, gif: bool, color: str | None, axis: str | None) -> No
     if color or (axis and kind != "section"):
         leave("--color, --x and --y are for the store of a sweep; --x and --y for --kind section too.", USAGE)
     if gif and kind != OVERVIEW:
-        leave("--gif is a kind of its own. Leave --kind out.", USAGE)
+        leave("--gif is a separate kind. Leave --kind out.", USAGE)
 
 
 def _look(title: str | None, size: str | None, dark: bool | None) -> dict[str, Any]:
-    """Return what is asked of a picture, as the library takes it."""
+    """Return the options of a picture, as the library takes them."""
     from nonholo.cli.screen.errors import USAGE, leave
 
     look: dict[str, Any] = {"title": title, "dark": dark}

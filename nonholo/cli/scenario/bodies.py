@@ -1,6 +1,6 @@
 """Bodies of scenarios: systems of the library, its ready examples, functions in a module of the user's own.
 
-A table is of a class or a function, whose arguments are the keys; its docstring says what they mean.
+A table is of a class or a function, whose arguments are the keys; its docstring describes them.
 """
 
 import functools
@@ -127,9 +127,9 @@ def table_of(word: str, make: Maker, kind: bool = False, plain: bool = True) -> 
     """Return the table whose keys are the arguments of a class or a function.
 
     Args:
-        word: What it is called in a scenario.
+        word: Its name in a scenario.
         make: The class or function; other constructors of a class, `from_inertia`, give more keys.
-        kind: Whether the table says what it is by a key.
+        kind: Whether a key of the table names it.
         plain: Whether values are numbers, lists of them or groups, as everywhere in the library.
     """
     others = tuple(getattr(make, name) for name in ("from_inertia",) if hasattr(make, name))
@@ -169,12 +169,12 @@ _OWN: dict[str, Maker] = {}
 
 
 def kinds() -> list[str]:
-    """Return every kind of body that there is; those of the examples load JAX."""
+    """Return every kind of body; those of the examples load JAX."""
     return [*_OWN, *SHORT, *_systems(), *examples()]
 
 
 def nearest_kind(name: str) -> str:
-    """Return which kind was probably meant, or all of them, and how a kind of the user's own is asked for."""
+    """Return which kind was probably meant, or all of them, and the option for the user's own kinds."""
     near = _NICKNAMES.get(name.lower())
     remedy = f"Did you mean {near}?" if near else suggestion(name.lower(), kinds(), most=2)
     return remedy if _OWN else f"{remedy} Your own functions are kinds with --module my_robot.py."
@@ -219,7 +219,7 @@ def examples() -> dict[str, Maker]:
 
 
 def is_example(name: str) -> bool:
-    """Tell whether a kind starts by itself: an example, or what a user's own function makes."""
+    """Return whether a kind starts by itself: an example, or what a user's own function makes."""
     return name in _OWN or name not in (*SHORT, *_systems())
 
 
@@ -240,7 +240,7 @@ def _module_at(path: Path) -> Any:
         sys.path.insert(0, str(path.resolve().parent))  # where other processes find it too
     elif spec.origin != str(path.resolve()):
         got = f"'{path}', but there is a module {name} at {spec.origin}"
-        raise ValueError(f"`--module` must have a name of its own. Got {got}. Rename it.")
+        raise ValueError(f"`--module` must have a name that no other module has. Got {got}. Rename it.")
     return importlib.import_module(name)
 
 

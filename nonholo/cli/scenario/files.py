@@ -95,7 +95,7 @@ def load_scenario(name: str, settings: list[Setting], module: Path | None = None
 
 
 def take_module(module: Path | None) -> None:
-    """Run the module of the user's own that was asked for, and no other: what it makes are kinds of bodies."""
+    """Run the user's module of `--module`, and no other: it makes kinds of bodies."""
     try:
         import_own(module)
     except Exception as failure:

@@ -19,7 +19,7 @@ SPEEDS = ("body_velocity", "restricted_velocity", "momentum", "displacement")
 
 
 class Start(Section):
-    """The start of the motion: one of four ways to say how fast, and a first pose."""
+    """The start of the motion: one of four forms of the velocity, and a first pose."""
 
     body_velocity: Numbers | None = None
     """Velocity in body axes, or of the coordinates, which must satisfy the constraint."""
@@ -109,7 +109,7 @@ class Scenario(AbstractScenario):
 
 
 def is_ready(product: Any) -> bool:
-    """Tell whether what a body made comes with a start, as the examples do."""
+    """Return whether what a body made comes with a start, as the examples do."""
     return hasattr(product, "configuration") and hasattr(product, "body_velocity")
 
 

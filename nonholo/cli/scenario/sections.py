@@ -46,7 +46,7 @@ def _flaws(value: Any, place: tuple[int, ...]) -> Iterator[InitErrorDetails]:
 
 
 def is_finite(value: float) -> bool:
-    """Tell whether a number is one in double precision; an integer may have thousands of digits."""
+    """Return whether a number is one in double precision; an integer may have thousands of digits."""
     try:
         return math.isfinite(value)
     except OverflowError:
@@ -58,14 +58,14 @@ Numbers = Annotated[Any, checked_by(check_numbers), WithJsonSchema({"type": "num
 
 
 class Section(BaseModel):
-    """A table of a scenario: no unknown keys, no silent conversions. The string below a key says what it means."""
+    """A table of a scenario: no unknown keys, no silent conversions. The string below a key describes it."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, use_attribute_docstrings=True)
 
     @model_validator(mode="wrap")
     @classmethod
     def _suggest(cls, table: Any, handler: Callable[[Any], Any]) -> Any:
-        """Say of a key that is not known which one was meant."""
+        """Name the known key that an unknown one resembles."""
         try:
             return handler(table)
         except ValidationError as failure:
@@ -107,7 +107,7 @@ def by_kind(table_of: Callable[[str], type[Section]], remedy: Callable[[str], st
             model = None
         if model is None:
             got = "none" if kind is None else repr(kind)
-            raise ValueError(f"must have a kind that there is. Got {got}. {remedy(str(kind))}")
+            raise ValueError(f"must have a known kind. Got {got}. {remedy(str(kind))}")
         return model.model_validate(table)
 
     return AfterValidator(read)

@@ -109,12 +109,12 @@ def _refusals(scenario: SweepScenario) -> list[tuple[str, str]]:
     flaws = _refused_values(scenario)
     if scenario.start is not None:
         if scenario.is_family:
-            flaws.append(("start", "is not for sweeps of this body, whose keys say how it starts"))
+            flaws.append(("start", "is not for sweeps of this body, whose keys have its start"))
         for key in ("displacement", "configuration"):
             if getattr(scenario.start, key) is not None:
                 flaws.append((f"start.{key}", f"is not for sweeps. Start by {', '.join(_STARTS)}"))
     if scenario.run.save_every != 1:
-        flaws.append(("run.save_every", "is not for sweeps: [keep] says what is kept"))
+        flaws.append(("run.save_every", "is not for sweeps: [keep] lists what is kept"))
     return flaws
 
 
@@ -141,7 +141,7 @@ def _flaw(scenario: SweepScenario, table: str, name: str, names: tuple[str, ...]
 
 
 def _whole(name: str, names: tuple[str, ...]) -> str:
-    """Return what a name is a component of, where it is none of its own."""
+    """Return the array that a name is a component of, where the name itself is not known."""
     part = component_of(name)
     return part[0] if part and name not in names else name
 

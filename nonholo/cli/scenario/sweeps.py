@@ -34,7 +34,7 @@ Value = TypeVar("Value")
 
 
 def is_range(value: Any) -> bool:
-    """Tell whether values of a grid are a range, whose count can be scaled."""
+    """Return whether values of a grid are a range, whose count can be scaled."""
     return isinstance(value, dict)
 
 
@@ -126,7 +126,7 @@ def _arguments(word: str) -> tuple[list[str], list[str]]:
 
 
 def needs_size(table: Any) -> bool:
-    """Tell whether a distribution lacks the size that its own table can give it."""
+    """Return whether a distribution lacks the size that its own table can give it."""
     if not isinstance(table, dict) or "size" in table:
         return False
     each = (arguments(make)[name] for word, make in _WORDS.items() if word in table for name in _arguments(word)[1])

@@ -1,4 +1,4 @@
-"""Commented scenarios of bodies that have no file of their own, from signatures and docstrings."""
+"""Commented scenarios of bodies without a file, from signatures and docstrings."""
 
 import contextlib
 import inspect

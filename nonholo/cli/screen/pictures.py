@@ -113,7 +113,7 @@ def draw(
     dpi: float = 150,
     **names: str | None,
 ) -> dict[str, str | None]:
-    """Draw what is asked for, with progress if wanted; return the paths of what was drawn, None for the rest."""
+    """Draw the given kinds, with progress if wanted; return the paths of the pictures, None for the rest."""
     look = look or {}
     paths: dict[str, str | None] = {"picture": None, "animation": None}
     with _at_no_cost():
@@ -128,7 +128,7 @@ def draw(
 
 
 def draw_all(orbit: Any, picture: Path, *, progress: bool, look: dict[str, Any], dpi: float) -> list[str]:
-    """Draw every kind that this orbit has, each in a file of its own; return their paths, and warn of the others."""
+    """Draw every kind that this orbit has, each in a separate file; return their paths, and warn of the others."""
     os.environ.setdefault("MPLBACKEND", "agg")
     paths, others = [], []
     for kind, make in kinds().items():
@@ -140,12 +140,12 @@ def draw_all(orbit: Any, picture: Path, *, progress: bool, look: dict[str, Any],
         except (AttributeError, TypeError, ValueError):
             others.append(kind)
     if others:
-        warn(f"of this run there is no {', '.join(others)}; --kind {others[0]} says why.")
+        warn(f"of this run there is no {', '.join(others)}; --kind {others[0]} prints the reason.")
     return paths
 
 
 def warn_of_older(store: Path, paths: dict[str, str | None]) -> None:
-    """Say so if a picture beside a store that was replaced still shows the run before."""
+    """Warn if a picture beside a store that was replaced still shows the run before."""
     for path in (beside(store, "png"), beside(store, "gif")):
         if path.exists() and str(path) not in paths.values():
             warn(f"'{path}' shows an older run. Remove it, or draw it again with: nonholo plot {store}")
@@ -189,7 +189,7 @@ def _name_of(path: str) -> str:
 def draw_stored_sweep(
     store: Path, picture: Path, color: str | None, x: str | None, y: str | None, **options: Any
 ) -> tuple[str | None]:
-    """Draw the sweep of a store: what is asked for, or what its scenario shows."""
+    """Draw the sweep of a store: the given quantities, or those of its scenario."""
     from nonholo.ensembles import load_sweep
     from nonholo.ensembles.stores import attributes_of
 

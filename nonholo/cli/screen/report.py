@@ -57,7 +57,7 @@ def _table(columns: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Table:
 
 
 def _expected_energy(exact: bool | None) -> str:
-    """Say how well energy should be conserved; None stands for a continuous flow."""
+    """Return in words how well energy should be conserved; None stands for a continuous flow."""
     if exact is None:
         return "tolerance of the solver"
     return "exact by theorem" if exact else "not exact for this discretization"

@@ -41,7 +41,7 @@ def show_provenance(store: Path, attributes: dict[str, Any], orbit: AbstractOrbi
 
 
 def show_standing(store: Path, attributes: dict[str, Any], standing: Standing, *, json: bool) -> None:
-    """Print how far an unfinished run came, and who is writing it."""
+    """Print the progress of an unfinished run, and who is writing it."""
     record, now = _record(attributes), standing._asdict()
     if json:
         show_json({"store": str(store), "unfinished": now, "provenance": record})
@@ -52,7 +52,7 @@ def show_standing(store: Path, attributes: dict[str, Any], standing: Standing, *
 
 
 def show_sweep_standing(store: Path, attributes: dict[str, Any], *, json: bool) -> None:
-    """Print how far a sweep came and, if it is finished, sound and not too large, the ranges of its quantities."""
+    """Print the progress of a sweep and, if it is finished, sound and not too large, the ranges of its quantities."""
     record = _record(attributes)
     result = failure = None
     with store_errors(USAGE):
@@ -98,7 +98,7 @@ def sweep_figures(
 
     Args:
         store: Where it is.
-        result: What it gave, for ranges; None if it is not finished.
+        result: Its results, for ranges; None if it is not finished.
         seconds: How long it took now, with all that comes before the first member.
         before: Members that had been done before.
     """

@@ -78,7 +78,7 @@ def displacements_over(
         certify: Also prove that these are all of them, with exact multiplicities and enclosures; needs the extra
             `certify` (python-flint). The statement is about the polynomial equations with the doubles of the canonical
             body (`system.canonical`), of the time step and of the canonical r as exact numbers. Where it is not
-            decided, `certified` is False and `uncertified` says why. Of free motions only.
+            decided, `certified` is False and `uncertified` has the reason. Of free motions only.
         configuration: g at the beginning of the step, by default the identity; only forces depend on it.
         step: Number of the step, whose row of a table of forces acts.
 
@@ -232,7 +232,7 @@ def _node(owner: str, discrete: Any, certify: bool, configuration: Any, step: An
     if discrete.forces is None:
         return None
     if certify:
-        raise error(f"{owner}(certify=...)", "be asked of a free motion", "forces", "Leave it out.")
+        raise error(f"{owner}(certify=...)", "be left out under forces", "forces", "Leave it out.")
     return node_of(owner, discrete, configuration, number)
 
 

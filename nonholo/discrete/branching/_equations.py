@@ -98,7 +98,7 @@ class Equations:
         return J
 
     def kick(self, x: Inexact[Array, "m"]) -> tuple[Inexact[Array, "k"], Array]:
-        """Return how far the step after x moves the target and the push: twice the terms that are even in z and u."""
+        """Return the change of target and push by the step after x: twice the terms that are even in z and u."""
         c, a = self.coupling, self.arm
         _, z, u = _parts(self, x)
         return 2 * ((c @ z) * z - (z @ z) * c) - a * u * z, 4 * a * (z @ z)
@@ -212,7 +212,7 @@ class Frame:
 
 
 def has_frame(discrete: "Discretization") -> bool:
-    """Tell whether all branches of a discretization are known."""
+    """Return whether all branches of a discretization are known."""
     has_form = discrete.system.normal_form is not None
     return has_form and discrete.difference == "matrix" and discrete.constraint in ("skew", "exponential")
 
@@ -279,7 +279,7 @@ def follow(start: Equations, end: Equations, x: Float[np.ndarray, "m"]) -> tuple
 
 
 def nearest_body(equations: Equations) -> kernels.NearestBody:
-    """Return what a kernel follows the roots of equations by, whatever their target and push."""
+    """Return what a kernel follows the roots of equations by, for every target and push."""
     slides, inertia = equations.lever is not None, equations.stiffness + equations.arm**2
     how = (_LONGEST, _CLOSE, _SMALL, _CORRECTIONS, _CONVERGED, _SHORTEST, _CLEAR * _SINGULAR)
     return kernels.NearestBody(inertia, equations.coupling, equations.arm, slides, *how)
@@ -320,7 +320,7 @@ def _correct(equations: Equations, guess: np.ndarray, reach: float) -> Float[np.
 
 
 def _why_it_ended(equations: Equations, direction: np.ndarray, x: np.ndarray) -> Outcome:
-    """Tell a fold from another singular point, from a root that goes to infinity, and from a failure to converge."""
+    """Distinguish a fold, another singular point, a root that goes to infinity, and a failure to converge."""
     if not np.all(np.isfinite(x)):
         return Outcome.nonfinite
     if np.abs(x).max() > _FAR:

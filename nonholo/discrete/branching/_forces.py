@@ -102,7 +102,7 @@ class Pulled(Equations):
 
 
 def _is_weight(pull: Inexact[Array, "3 2"]) -> bool:
-    """Tell whether N of a sleigh in space is that of weights at one point, a number times y but for the slide's row."""
+    """Return whether N of a sleigh in space is of weights at one point, a number times y but for the slide's row."""
     aside = np.array([-pull[2, 1], pull[2, 0]])
     bent = pull[:2] @ aside
     return bool(abs(aside[0] * bent[1] - aside[1] * bent[0]) <= _SEEN * np.linalg.norm(aside) * np.linalg.norm(bent))

@@ -70,7 +70,7 @@ class Axis(NamedTuple):
     Attributes:
         turn: $\kappa = \sqrt{ma^2/I}$.
         lift: $\sqrt{2I/E}/h$.
-        numbers: What the two are.
+        numbers: The two numbers.
     """
 
     turn: Any
@@ -92,7 +92,7 @@ class Axis(NamedTuple):
         return middle + half, middle - half
 
     def rises(self, tau: float) -> bool:
-        """Tell whether x after the step grows with x before it; of tau > 1, from there down to 1."""
+        """Return whether x after the step grows with x before it; of tau > 1, from there down to 1."""
         square = self.numbers.number(tau) ** 2
         k = self.turn**2 * square
         return bool((self.lift * (1 - k)) ** 2 * ((1 + square) ** 2 - 4 * k) > (self.turn * (1 - square) ** 2) ** 2)

@@ -143,7 +143,7 @@ def _count(roots: list[Root]) -> int:
 
 
 def _is_crowded(equations: Equations, roots: list[Root]) -> bool:
-    """Tell whether iterations that missed hidden roots may have ended on a multiple root and been counted there."""
+    """Return whether iterations that missed hidden roots may have ended on a multiple root and been counted there."""
     return len(equations.stiffness) > 1 and not equations.is_balanced and any(r.multiplicity > 2 for r in roots)
 
 

@@ -66,7 +66,7 @@ class AbstractBranchRule(abc.ABC):
     """Which value of the map a step takes.
 
     Attributes:
-        name: What an orbit calls it.
+        name: Its name in an orbit.
         is_principal: Whether it is the principal value, which has compiled runs, parts of steps and events.
         is_nearest: Whether it follows the present value, for which there is a kernel.
         needs_all_values: Whether it chooses among all values, which has to be done outside of a JAX transformation.

@@ -61,7 +61,7 @@ def landscape(form: NormalForm) -> Landscape:
 
 
 def is_regular(discrete: Discretization) -> bool:
-    r"""Tell whether a discretization has regions: a top with n = 3 and $\det B > 2|c|^2$ that conserves its energy."""
+    r"""Return whether a discretization has regions: a top, n = 3, with $\det B > 2|c|^2$ that conserves its energy."""
     return _regular_landscape(discrete) is not None
 
 
@@ -114,10 +114,10 @@ class Branches:
         region: "inner", "outer" or "between", of real displacements of a top with n = 3 and det B > 2|c|^2; otherwise
             "", also from the energy h** on. See docs/theory/branches.md.
         principal: Index of the principal one; None if the principal branch does not reach this momentum.
-        certified: Whether `certify=True` was asked for and all that stands here is proved: that these are all isolated
+        certified: Whether `certify=True` was passed and all results are proved: that these are all isolated
             displacements, each once, which of them are real, their multiplicities.
         radius: Bounds of the distance of any entry of each displacement from the exact one; None if not certified.
-        uncertified: Why a certificate that was asked for could not be given; otherwise "".
+        uncertified: Why there is no certificate in spite of `certify=True`; otherwise "".
     """
 
     displacement: Array

@@ -21,7 +21,7 @@ _ROUNDING = 2.0**-51  # of a sum rounded to doubles and of the radii themselves,
 
 
 class Enclosures(NamedTuple):
-    """Displacements minus the identity in doubles, how far they may be off in any entry, and exact facts of them."""
+    """Displacements minus the identity in doubles, a bound of the error of any entry, and exact facts of them."""
 
     increment: np.ndarray
     radius: np.ndarray
@@ -39,7 +39,7 @@ class Located(NamedTuple):
 
 
 def enclosures(discrete: Discretization, canonical: np.ndarray) -> Enclosures | str:
-    """Enclose all isolated displacements over canonical restricted momenta, or say what is not decided."""
+    """Enclose all isolated displacements over canonical restricted momenta, or name what is not decided."""
     form = cast(NormalForm, discrete.system.canonical.normal_form)
     if form.frame is not None:
         return "the axes of the constraint are not those of the body, whose doubles would be rounded"
@@ -71,7 +71,7 @@ def locate(problem: Problem) -> list[Located]:
 
 
 def _values(problem: Problem, places: list[Located], bits: int) -> tuple[np.ndarray, ...] | None:
-    """Return the products of all roots, how far off, multiplicity, reality; None if the number of bits is too small."""
+    """Return the products of all roots, their error, multiplicity, reality; None if the number of bits is too small."""
     rows = []
     with ctx.workprec(bits):
         for family, _, multiplicity, balls in places:

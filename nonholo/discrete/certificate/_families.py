@@ -18,7 +18,7 @@ _ONE = fmpz_poly([1])
 
 
 class UncertainError(Exception):
-    """A case that is not decided; the message says which."""
+    """A case that is not decided; the message names it."""
 
 
 class Family(NamedTuple):

@@ -1,4 +1,4 @@
-r"""All roots of a square-free polynomial with integer coefficients, each in a ball of its own, and which are real.
+r"""All roots of a square-free polynomial with integer coefficients, each in a separate ball, and which are real.
 
 Numbers only guess. The proof is $p'/p = \sum_j 1/(z - \zeta_j)$: a disc around z of radius $d\,|p(z)/p'(z)|$ holds a
 root, so d disjoint discs hold one each, and a disc around a real z holds a real one, being its own mirror image.

@@ -41,7 +41,7 @@ def principal_root(
         residual: A function of y and the momenta, zero at (0, 0).
         target: The momenta.
         unknowns: Number m of components of y.
-        certificate: Tells of a root whether it is certainly the principal one, whatever the continuation saw.
+        certificate: Whether a root is certainly the principal one, by the root alone.
         guess: Where Newton's method may look first; what it finds there needs the certificate.
 
     Returns:
@@ -101,7 +101,7 @@ def _search(
 
 @_search.defjvp
 def _implicit(residual: Any, certificate: Any, primals: Any, tangents: Any) -> tuple[Any, Any]:
-    """Return the derivative of the implicit function at the root, which says nothing of the search."""
+    """Return the derivative of the implicit function at the root, which does not depend on the search."""
     y, code = _search(residual, certificate, *primals)
     numbers, _, start, target, _ = primals
     finite = jnp.all(jnp.isfinite(target))
@@ -123,7 +123,7 @@ class _Path(NamedTuple):
     """The continuation: the last root with its s, and Newton's method on the way to the next one.
 
     Attributes:
-        s: How far the root has been followed.
+        s: The parameter up to which the root has been followed.
         size: Step of s that is being tried.
         root: y at s.
         tangent: Its derivative with respect to s.
@@ -211,7 +211,7 @@ def _unless_it_failed(path: _Path, begin: _Path, certain: Array) -> _Path:
 
 
 def _verdict(end: _Path) -> tuple[Array, Array]:
-    """Tell whether a path has met a fold, or was lost."""
+    """Return whether a path has met a fold, or was lost."""
     is_lost = end.s < 1
     far = jnp.sum(end.root**2) > _FAR**2  # where the determinant vanishes without a fold
     at_fold = is_lost & ~far & (jnp.abs(end.now) < _NEAR_FOLD * jnp.abs(end.start))

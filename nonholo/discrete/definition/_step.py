@@ -130,7 +130,7 @@ def map_each(function: Callable[[Array], Array], W: Float[Array, "K N N"]) -> An
 
 
 def is_even(function: Callable[[Array], Array], group: AbstractMatrixGroup) -> bool:
-    """Tell whether a function takes the same value at W and its inverse, tried at random elements."""
+    """Return whether a function takes the same value at W and its inverse, tried at random elements."""
     W = group.exp(0.5 * np.random.default_rng(0).normal(size=(_SAMPLES, group.dim)) / np.sqrt(group.dim))
     there, back = map_each(function, W), map_each(function, group.inverse(W))
     return bool(np.abs(there - back).max() <= _EVEN * np.abs(there).max())
@@ -177,7 +177,7 @@ def closed_step_of(discrete: Scheme, step: ScalarStep) -> ClosedStep:
 
 
 def traceable(number: Array) -> Array:
-    """Return a number as a scalar array: JAX would compile the step anew for each value of a Python float."""
+    """Return a number as a scalar array: JAX would compile the step again for each value of a Python float."""
     return np.float64(number) if isinstance(number, float) else number
 
 

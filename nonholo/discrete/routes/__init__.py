@@ -1,6 +1,6 @@
 """Ways to compute the steps of a discretization: one route for each way, chosen and built once.
 
-| route | what it computes |
+| route | bodies and method |
 |---|---|
 | `ScalarRoute` | tops in space and sleighs in the plane, in closed form with scalars |
 | `SecularRoute` | tops on SO(n) and sleighs on SE(n), with two unknowns |

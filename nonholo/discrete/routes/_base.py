@@ -22,7 +22,7 @@ Compact = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 class AbstractBodyStepper(AbstractStepper[Orbit]):
-    """The steps of a map on a group: rows are momenta, charts and poses in numbers of its own.
+    """The steps of a map on a group: rows are momenta, charts and poses in the numbers of the kernel.
 
     Attributes:
         motion: The discretization.
@@ -155,10 +155,10 @@ class AbstractRoute(abc.ABC):
 
 
 class AbstractCompiledRoute(AbstractRoute):
-    """A route with a compiled kernel, which has units and perhaps axes of its own.
+    """A route with a compiled kernel, which has separate units and perhaps axes.
 
     Attributes:
-        system: What moves.
+        system: The system.
         time_step: h.
     """
 

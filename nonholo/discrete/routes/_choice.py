@@ -1,4 +1,4 @@
-"""Which route a discretization takes: the first of its system that computes what is asked for, else the definition."""
+"""Which route a discretization takes: the first of its system that computes the map, else the definition."""
 
 import dataclasses
 import functools

@@ -82,7 +82,7 @@ class AbstractForcedRoute(AbstractRoute):
     Attributes:
         free: The route of the free step.
         forced: The system with its forces.
-        faults: What functions of the user said of the end of the last run.
+        faults: Failures of the user's functions at the end of the last run.
     """
 
     free: AbstractCompiledRoute
@@ -272,7 +272,7 @@ def half_drive(free: AbstractCompiledRoute, forced: Forced, faults: dict[str, st
 
 
 def driven_potential(forced: Forced) -> Callable[..., Any] | None:
-    """Return U as kicks at nodes take it: a function of whatever is no single weight."""
+    """Return U as kicks at nodes take it: a function, unless it is a single weight."""
     whole = len(forced.terms) > 1 or (forced.terms and forced.gravity is None and forced.own_potential is None)
     return forced.potential_energy if whole else forced.own_potential
 
@@ -311,7 +311,7 @@ def _in_python(forced: Forced, own: Any, faults: dict[str, str]) -> tuple[Callab
 def _check_compiled(forced: Forced) -> None:
     """Ask functions that numba compiled once: for their numbers, and whether they write to what they get.
 
-    What they say at a place that is no place of a run does not count.
+    Their result at a place that is no place of a run does not count.
     """
     group, moving = forced.group, np.linspace(0.5, 1.0, forced.group.dim)
     for g, velocity, harmless in (

@@ -23,7 +23,7 @@ class ClosedForm(NamedTuple):
     """A scalar kernel, and the bodies that it is for.
 
     Attributes:
-        covers: Tells whether a planar normal form is one of its bodies.
+        covers: Returns whether a planar normal form is one of its bodies.
         body: Makes its body; of many systems in one a body whose fields have an axis in front.
         share: The part of the time step in its momenta, m = share h r.
         rows: C with r_kernel = C r_form; None where its rows are those of the normal form.
@@ -175,7 +175,7 @@ class SecularRoute(AbstractCompiledRoute):
 
     @staticmethod
     def covers(form: NormalForm) -> bool:
-        """Tell whether a body is one of this route."""
+        """Return whether a body is one of this route."""
         return not form.is_planar or form.is_diagonal
 
     @functools.cached_property

@@ -11,7 +11,7 @@ from nonholo.orbit import Orbit
 
 
 def reversal_defects(route: AbstractCompiledRoute, states: Orbit) -> Float[np.ndarray, "K"]:
-    """Return, for each state, how far one step forward and one back miss it, relative to it.
+    """Return, for each state, the relative miss of one step forward and one back.
 
     Infinite where the step back cannot be computed, NaN where there is no step forward.
     """

@@ -120,7 +120,7 @@ class SlipRoute(AbstractForcedRoute):
         return applied(self.body.duals, jump)
 
     def holds(self, impulses: Float[np.ndarray, "K s"], moving: Any = 0.0) -> np.ndarray:
-        """Tell which impulses the grip gives, and the viscous friction of a slip that ends in the step."""
+        """Return which impulses the grip gives, and the viscous friction of a slip that ends in the step."""
         h = float(self.holding.time_step)
         most = h * self.slip.grip + h / 2 * self.slip.viscous * np.linalg.norm(moving)
         return np.linalg.norm(impulses, axis=1) <= most
@@ -218,7 +218,7 @@ class SlipRoute(AbstractForcedRoute):
 
 
 def update_slope(slope: np.ndarray, way: np.ndarray, change: np.ndarray, least: float) -> np.ndarray:
-    """Return a slope that knows a change of the impulse along a way, by Broyden; rounding errors say nothing."""
+    """Return a slope with a change of the impulse along a way, by Broyden; changes by rounding are ignored."""
     if np.linalg.norm(change) < least or not way @ change > 0:
         return slope
     return slope + np.outer(change - slope @ way, way) / (way @ way)
@@ -302,7 +302,7 @@ class SlipStepper(AbstractBodyStepper):
         return good, code
 
     def _stretch(self, state: State, most: int) -> tuple[Rows, int]:
-        """Take steps that hold, or one that begins anew; return their rows and the outcome."""
+        """Take steps that hold, or one from a new beginning; return their rows and the outcome."""
         (r, pose, (number, since)), route = self._own(state), self.route
         if since >= 0:
             return self._hold(state, most)

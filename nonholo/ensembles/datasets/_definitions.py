@@ -35,7 +35,7 @@ class Definition(NamedTuple):
     """A data set.
 
     Attributes:
-        title: What moves.
+        title: The system.
         weights: Of the components of first momenta: of those along the constraint of bodies, else of all.
         spread: Half the edges of the box of first configurations: coordinates, or of a pose the coordinates of
             its logarithm. None for the identity: the body moves alike from every pose.

@@ -116,7 +116,7 @@ Written by
 
 ## Fields
 
-| name | dimensions | shape | what it is | units |
+| name | dimensions | shape | meaning | units |
 |---|---|---|---|---|
 {fields}
 

@@ -66,7 +66,7 @@ class AbstractDesign(abc.ABC):
     @property
     @abc.abstractmethod
     def drawn(self) -> dict[str, tuple[int, ...]]:
-        """Names and shapes of what each member has of its own."""
+        """Names and shapes of the values that vary from member to member."""
 
     @abc.abstractmethod
     def values(self, first: int, count: int) -> Values:
@@ -84,9 +84,9 @@ class Grid(AbstractDesign):
 
     Names are parameters of the system ("a", "mass", "mass_tensor", ...), "time_step", a start ("body_velocity",
     "restricted_velocity", "momentum") or one component of it ("restricted_velocity_0"); for a custom function
-    whatever it reads. A component may be written "restricted_velocity[0]"; the result calls it as Python and xarray
-    can. Values are numbers, or along the first axis vectors or matrices. The result has a dimension for each axis.
-    Random numbers of a task are made of `rng`, as those of a `RandomDesign`.
+    the names that it reads. A component may be written "restricted_velocity[0]"; the result calls it as Python and
+    xarray can. Values are numbers, or along the first axis vectors or matrices. The result has a dimension for each
+    axis. Random numbers of a task are made of `rng`, as those of a `RandomDesign`.
 
     Example:
         >>> design = Grid({"a": [0.1, 0.2], "time_step": np.linspace(0.1, 0.5, 5)})

@@ -1,4 +1,4 @@
-"""The store of a sweep: how it is cut, what a task returns, how far it came, its poses as CSV."""
+"""The store of a sweep: how it is cut, what a task returns, its progress, its poses as CSV."""
 
 from nonholo.ensembles.stores._poses_csv import sweep_to_csv
 from nonholo.ensembles.stores._results import OUTCOME, RAISED, Output, Results, Task, attempt, probe_outputs

@@ -21,7 +21,7 @@ def sweep_to_csv(store: str | Path, target: str | Path | TextIO, *, overwrite: b
     """Write the last pose of each member of a sweep, with its number, its values of the design, its outcome and time.
 
     Columns of the pose are those of `Orbit.to_csv`, with angles between -pi and pi. Of a sweep that is not finished the
-    finished blocks are written, and a `RuntimeWarning` says how far it came.
+    finished blocks are written, and a `RuntimeWarning` gives their number.
 
     Args:
         store: A store of a sweep that kept "final_state" with poses.

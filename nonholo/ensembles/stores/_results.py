@@ -27,7 +27,7 @@ class Output:
         dimensions: Names of its axes but for those of the members.
         shape: Their lengths.
         dtype: Type of the numbers on disk.
-        attributes: What is said of it.
+        attributes: Its attributes in the store.
     """
 
     dimensions: tuple[str, ...]

@@ -1,7 +1,7 @@
 """The store of a sweep: one block is one chunk of each array, then its mark, a small file written after the data.
 
-Writes are atomic, so whoever writes can be killed at any moment. What a block holds depends on nothing but the task and
-the design, so two writers of one block write the same.
+Writes are atomic, so a writer can be killed at any moment. The content of a block depends only on the task and the
+design, so two writers of one block write the same.
 """
 
 import collections
@@ -134,7 +134,7 @@ class SweepStore:
         """Return the mark of a finished block, of which every chunk is sound.
 
         Raises:
-            DamagedError: One is not, or the mark is not; the message says which, and how.
+            DamagedError: One is not, or the mark is not; the message names it and the damage.
         """
         return _mark_of(block, self._blocks.sound(block).about)
 
@@ -159,7 +159,7 @@ class SweepStore:
         _ = self.design
 
     def finish(self) -> None:
-        """Say that the sweep came to its end, and consolidate the metadata."""
+        """Mark the sweep as finished, and consolidate the metadata."""
         self._blocks.finish({"finished": True})
 
     def grow(self, members: int) -> "SweepStore":
@@ -319,7 +319,7 @@ class SweepStanding(NamedTuple):
 
 
 def standing_of(path: str | Path) -> SweepStanding:
-    """Say how far the sweep of a store came."""
+    """Return the progress of the sweep of a store."""
     store = open_store(path)
     marks = [mark for _, mark in store.marks()]
     outcomes: collections.Counter[str] = collections.Counter()

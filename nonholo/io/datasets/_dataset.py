@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Variable(NamedTuple):
-    """An array with the names of its dimensions, and what is said of it: xarray takes it as it is.
+    """An array with the names of its dimensions, and its attributes: xarray takes it as it is.
 
     Attributes:
         dims: Names.
@@ -75,7 +75,7 @@ _SPATIAL = {  # of a right-invariant constraint
 
 
 def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> "xarray.Dataset":
-    r"""Return an orbit as a labeled dataset in the user's body frame; attributes say how it was made.
+    r"""Return an orbit as a labeled dataset in the user's body frame; attributes describe its making.
 
     Variables along `step`, whose coordinate is the number of the step, with the coordinate `time`: `energy`,
     `restricted_momentum`, `body_velocity`, `momentum` and the pose.
@@ -89,10 +89,10 @@ def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> "xarray.Dataset"
     | products | those of the factors, translations as `shape` |
     | other groups | `configuration`, a matrix |
 
-    What the orbit does not know, or is too large for many dimensions, is left out.
+    Quantities that the orbit does not have, or that are too large in many dimensions, are left out.
 
     Args:
-        orbit: What to label.
+        orbit: The orbit to label.
         decoded: Also poses and displacements as matrices, and `multipliers` of an orbit of which every step is saved,
             NaN after the last state of a discrete one.
 
@@ -115,10 +115,10 @@ def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> "xarray.Dataset"
 
 
 def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None) -> dict[str, Variable]:
-    """Return the arrays of a store by name: what a person knows, and compact states in a group of their own.
+    """Return the arrays of a store by name: what a person knows, and compact states in a separate group.
 
     Args:
-        orbit: What to store, an orbit or a block of one.
+        orbit: An orbit or a block of one.
         before: The heading or the quaternion of the state before the first one, in a row.
     """
     if not orbit.is_compact:
@@ -155,7 +155,7 @@ def _variables(orbit: Any) -> dict[str, Variable]:
 
 
 def is_known(system: System, name: str, *, posed: bool, discrete: bool) -> bool:
-    """Tell whether motions of a system have a quantity; with a right-invariant constraint most need the pose."""
+    """Return whether motions of a system have a quantity; with a right-invariant constraint most need the pose."""
     needs_pose = {"configuration"}
     if system.is_spatial:
         needs_pose |= {"energy", "momentum", "body_velocity", "displacement"}
@@ -183,7 +183,7 @@ def _posed(orbit: Orbit, before: np.ndarray | None) -> dict[str, Variable]:
 
 
 def _has_multipliers(orbit: Orbit) -> bool:
-    """Tell whether an orbit has multipliers that need no other steps than those of its states."""
+    """Return whether an orbit has multipliers that need no other steps than those of its states."""
     motion = orbit.motion
     single = not isinstance(motion, Discretization) or (motion.order == 2 and orbit.has_every_step)
     return single and not motion.is_measured and len(orbit) > 0 and _is_known(orbit, "momentum")

@@ -182,7 +182,7 @@ class Expansion:
     def write(self, module: Any, name: str, width: int) -> None:
         """Write the function to a module; `width` numbers stand in a row of its series.
 
-        An order is a function of its own, which a loop calls.
+        An order is a separate function, which a loop calls.
         """
         pointer, self.width = DOUBLE.as_pointer(), width
         kind = ir.FunctionType(ir.VoidType(), [pointer] * 5 + [_WORD])

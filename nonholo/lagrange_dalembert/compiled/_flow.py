@@ -98,10 +98,10 @@ class Series(NamedTuple):
     """A solved motion: its equations, and from where their series can be expanded again.
 
     Attributes:
-        system: What moves.
+        system: The system.
         shapes: Of a place and of a velocity.
         nodes: Beginnings of steps.
-        end: The last time that was asked for.
+        end: The last of the given times.
         tolerance: Of a step.
     """
 
@@ -160,7 +160,7 @@ def flow(system: Any, first: tuple[Any, Any], times: np.ndarray, rtol: float) ->
 def _equations(code: Formulation, shapes: tuple[tuple[int, ...], tuple[int, ...]], size: int) -> Quadratic:
     """Return equations without quadratic terms, whose numbers are the room of the code.
 
-    What moves is measured apart from how it moves, and from what does not.
+    Places are measured apart from their rates, and from constants.
     """
     places, rates = map(math.prod, shapes)
     blocks, none = np.repeat([0, 1, 2], [places, rates, size - places - rates]), np.zeros(0, dtype=np.int64)

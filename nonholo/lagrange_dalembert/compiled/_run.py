@@ -27,7 +27,7 @@ from nonholo.kernels import (
 )
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import _newton
-from nonholo.lagrange_dalembert._functions import compiling
+from nonholo.lagrange_dalembert._functions import ROWS, compiling
 from nonholo.lagrange_dalembert.compiled._scalars import (
     DOUBLE,
     OPERATIONS,
@@ -40,8 +40,6 @@ from nonholo.lagrange_dalembert.compiled._scalars import (
 from nonholo.lagrange_dalembert.compiled._translation import array_of, translate
 
 State = tuple[Any, Any, Any]
-ROWS = 1024
-"""Saved states of one call of JAX: one size of table, one compilation."""
 
 
 class Program(NamedTuple):
@@ -52,7 +50,7 @@ class Program(NamedTuple):
         results: Its values, one after another.
         doubt: Not zero where the formulas may not be trusted.
         shapes: Shapes of the values.
-        formulas: What makes more of them.
+        formulas: The maker of more of them.
     """
 
     inputs: list[Scalar]
@@ -108,7 +106,7 @@ def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
         None if JAX must solve them.
     """
     s = family.constraints
-    matrix_of = _newton.of_node if at_node else _newton.of_step
+    equations_of = _newton.of_node if at_node else _newton.of_step
 
     def arrive(x: Array, v: Array, h: Array, *numbers: Array) -> tuple[Array, Array]:
         system = family.bound(*numbers)
@@ -117,12 +115,8 @@ def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
 
     def correct(x: Array, p: Array, doubt: Array, near: Array, h: Array, *rest: Array) -> Any:
         *numbers, v, multipliers = rest
-        system = family.bound(*numbers)
-        matrix_at, rows = matrix_of(system, x, near, h), equations.forms(system, x)
-        rounding = None if at_node else _newton.rounding_of_step(system, x, h)
-        matrix, residual, units, size = _newton.scaled_equations(
-            matrix_at, rows, p, v, multipliers, jnp.zeros(n + s), rounding
-        )
+        unknown = equations_of(family.bound(*numbers), x, p, near, h)
+        matrix, residual, units, size = unknown.in_units(v, multipliers, jnp.zeros(n + s))
         return matrix, residual, units.velocity, units.forms, size, doubt
 
     try:

@@ -96,7 +96,7 @@ class Scalar:
 
     Attributes:
         operation: The name of the operation; "constant" and "input" are none.
-        arguments: What it acts on.
+        arguments: Its operands.
         value: That of a constant, else None.
         varies: Whether it depends on an input that varies.
         is_total: Whether it is finite wherever the inputs are, overflow apart.

@@ -1,6 +1,6 @@
 """JAX programs as formulas: arrays become arrays of single numbers, and each primitive acts on these.
 
-Gather and scatter with indices that are constants say which numbers of an array windows hold. The meaning of their
+Gather and scatter with constant indices select the numbers of an array that windows hold. The meaning of their
 dimension numbers: https://openxla.org/xla/operation_semantics, "Gather" and "Scatter".
 """
 

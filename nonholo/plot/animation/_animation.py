@@ -117,7 +117,7 @@ def animate(
 
 
 def _scene_of(where: str, orbit: AbstractOrbit) -> tuple[Callable[[Any], float], Callable[..., Callable[[int], None]]]:
-    """Return how far an orbit moves between saved states, in units of what the eye can follow, and what draws it."""
+    """Return the motion of an orbit between saved states, in units of what the eye can follow, and what draws it."""
     scenes = {SO(3): _on_sphere, SE(2): _in_plane, SE(3): _in_space}
     if isinstance(orbit, Orbit) and orbit.system.group in scenes:
         scene = scenes[with_poses(where, orbit).system.group]
@@ -135,7 +135,7 @@ def _same_space(where: str, flow: Any, orbit: AbstractOrbit) -> Any:
 
 
 def _stage(orbit: AbstractOrbit, times: Float[np.ndarray, "F"]) -> tuple[Figure, Axes, Callable[[int], None]]:
-    """Return a figure with a title, the time and a strip that shows how far it has come; its axes; what sets both."""
+    """Return a figure with a title, the time and a strip that shows the progress; its axes; what sets both."""
     figure = theme.new_figure((_SIZE, _SIZE), None)
     axes = figure.add_axes((0.02, 0.05, 0.96, 0.88))
     title = theme.option("title", name_of(orbit))
@@ -163,7 +163,7 @@ def film_path(where: str, path: str | Path, *, overwrite: bool) -> Path:
         raise error(where, "end in .gif, .mp4 or .webm", shown(str(path)), "Use `overview` for a still picture.")
     if suffix in _CODECS and not FFMpegWriter.isAvailable():
         remedy = "Install it (on Debian the package ffmpeg), or write a .gif."
-        raise error(where, "end in .gif where there is no program ffmpeg", shown(str(path)), remedy)
+        raise error(where, "end in .gif without the program ffmpeg", shown(str(path)), remedy)
     check_file(target, overwrite=overwrite, where=where)
     return target
 

@@ -21,7 +21,7 @@ _SLENDER = 1.6  # length of the drawn body over its width
 
 
 def motion(orbit: Orbit) -> float:
-    """Return how far the body moves between saved states, in units of what the eye can follow from frame to frame."""
+    """Return the motion of the body between saved states, in units of what the eye can follow from frame to frame."""
     point = SE(2).adjoint(SE(2).inverse(_axes(orbit.system)))[1:]
     return motion_of(orbit, point, float(np.ptp(_outline(orbit.system)[0][:, 0])))
 

@@ -85,7 +85,7 @@ _ARM = 1.5  # of a body axis, in half diagonals of the box
 
 
 def motion(orbit: Orbit) -> float:
-    """Return how far the body moves between saved states, in units of what the eye can follow from frame to frame."""
+    """Return the motion of the body between saved states, in units of what the eye can follow from frame to frame."""
     return motion_of(orbit, np.eye(6)[3:], 2 * float(np.linalg.norm(_box(orbit.system).half)))
 
 

@@ -32,7 +32,7 @@ _SPIN = {"linewidth": 2.0, "marker": "D", "markersize": 4, "label": "angular vel
 
 
 def motion(orbit: Orbit) -> float:
-    """Return how far the body turns between saved states, in units of what the eye can follow from frame to frame."""
+    """Return the turn of the body between saved states, in units of what the eye can follow from frame to frame."""
     return turn_per_state(orbit) / float(_TURN)
 
 

@@ -39,7 +39,7 @@ class Part(NamedTuple):
 def shown_states(orbit: AbstractOrbit, motion: float, total: int) -> Int[np.ndarray, "F"]:
     """Return the states of the frames: the whole orbit, or the part about the transition if it moves too fast for that.
 
-    `motion` is how far the body moves between two saved states, in units of what the eye can follow; 0 for all.
+    `motion` is the motion of the body between two saved states, in units of what the eye can follow; 0 for all.
     """
     stride = max(1, int(1 / motion)) if motion > 0 else len(orbit)
     if len(orbit) <= stride * total:
@@ -53,7 +53,7 @@ def part_of(orbit: AbstractOrbit, states: Int[np.ndarray, "F"]) -> Part:
 
 
 def part_of_flow(flow: AbstractOrbit, times: Float[np.ndarray, "F"]) -> Part:
-    """Return a flow at the times of the frames and between them; at its nearest states if it knows no others."""
+    """Return a flow at the times of the frames and between them; at its nearest states if it has no others."""
     at = np.arange(_BETWEEN * (len(times) - 1) + 1)
     between = np.interp(at / _BETWEEN, np.arange(len(times)), times)
     if flow.span is None:
@@ -66,11 +66,11 @@ def part_of_flow(flow: AbstractOrbit, times: Float[np.ndarray, "F"]) -> Part:
 
 
 def motion_of(orbit: Orbit, point: Float[np.ndarray, "n dim"], length: float) -> float:
-    """Return how far a body moves between saved states, in units of what the eye can follow from frame to frame.
+    """Return the motion of a body between saved states, in units of what the eye can follow from frame to frame.
 
     Args:
         orbit: The orbit, on SE(n).
-        point: What gives the velocity of the point to follow, of a body velocity.
+        point: The map from a body velocity to the velocity of the point to follow.
         length: Of the body.
     """
     if len(orbit) < 2:

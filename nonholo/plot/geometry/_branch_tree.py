@@ -55,8 +55,8 @@ def branch_tree(
     Reference: docs/theory/branches.md.
 
     Args:
-        discrete: What the tree was made of; with three or more restricted momenta the first two are drawn.
-        tree: What `nh.branch_tree` returned, with one generation or more.
+        discrete: The discretization of the tree; with three or more restricted momenta the first two are drawn.
+        tree: The result of `nh.branch_tree`, with one generation or more.
         axes: Where to draw the momenta and the counts; a new figure by default.
         **look: Title, label, color and more: `nh.plot.Look`.
 

@@ -196,14 +196,14 @@ def branches(
 
 
 def _is_over_momenta(discrete: Discretization, plane: str | None) -> bool:
-    """Tell whether to draw on the plane of momenta."""
+    """Return whether to draw on the plane of momenta."""
     has_deltoid = _sheet(discrete).has_deltoid
     if plane is None:
         return has_deltoid
     where = "plot.branches(plane=...)"
     choice(where, plane, ("displacements", "momenta"), "Leave it out for the usual one.")
     if plane == "momenta" and not has_deltoid:
-        raise error(where, "be 'displacements' where there is no deltoid", shown(discrete.system), "Leave it out.")
+        raise error(where, "be 'displacements' for a system without a deltoid", shown(discrete.system), "Leave it out.")
     return plane == "momenta"
 
 

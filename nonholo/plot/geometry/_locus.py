@@ -74,9 +74,9 @@ def momentum_locus(
     Reference: [fedorov-zenkov-2004], equation (Steiner).
 
     Args:
-        locus: What `nh.momentum_locus` returned.
+        locus: The result of `nh.momentum_locus`.
         orbit: A discrete orbit of the same system.
-        curve: What `nh.invariant_curve` returned: all momenta of one energy, on the surface.
+        curve: The result of `nh.invariant_curve`: all momenta of one energy, on the surface.
         axes: Axes in space; new ones by default.
         view: Elevation and azimuth of the eye in degrees.
         **look: Title, label, color and more: `nh.plot.Look`.
@@ -204,7 +204,7 @@ def locus_section(
     the polynomial but not to the locus.
 
     Args:
-        locus: What `nh.momentum_locus` returned.
+        locus: The result of `nh.momentum_locus`.
         normal: Three components of the body momentum, not all zero.
         offset: The component of the momentum along the normal.
         axes: Where to draw; a new figure by default.

@@ -155,8 +155,8 @@ class Track(NamedTuple):
     """A path that an orbit draws.
 
     Attributes:
-        title: What it is.
-        names: What its axes are, two or three.
+        title: Its title.
+        names: The names of its axes, two or three.
         points: Gives the points of an orbit, (K, d).
         is_place: Whether its axes have one unit.
     """
@@ -168,7 +168,7 @@ class Track(NamedTuple):
 
 
 def track_of(orbit: AbstractOrbit) -> Track | None:
-    """Return the path of an orbit: where a body is, if its coordinates or its group say so; two coordinates else."""
+    """Return the path of an orbit: where a body is, if its coordinates or its group have it; two coordinates else."""
     space = orbit.coordinates
     if not space:
         return _track_on(orbit.space)

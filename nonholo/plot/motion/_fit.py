@@ -1,6 +1,6 @@
 """The likelihood profile of a fitted number beside the parabola of the linearized model.
 
-What measurements miss of a fitted motion, against time.
+Deviations of measurements from a fitted motion, against time.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -20,7 +20,7 @@ def fit_profile(profile: "Profile") -> Any:
     r"""Draw $\tau^2$, the growth of the sum of squares in units of the noise, with the parabola, and the interval.
 
     Args:
-        profile: What `Fit.profile` returned.
+        profile: The result of `Fit.profile`.
 
     Returns:
         The matplotlib figure.
@@ -55,7 +55,7 @@ def fit_residuals(fit: "Fit") -> Any:
     """Draw the residuals of a fit against time, a panel for each kind of number, with a band of two noise levels.
 
     Args:
-        fit: What `nh.fit` returned.
+        fit: The result of `nh.fit`.
 
     Returns:
         The matplotlib figure.

@@ -36,7 +36,7 @@ def _trees_of(orbit: Orbit | None, branches: str) -> list[BranchTree]:
         return []
     if orbit is None or not isinstance(orbit.motion, Discretization):
         got = "a system alone" if orbit is None else shown(orbit)
-        raise error(where, "be 'principal' without a discrete orbit", got, "Pass what `nh.simulate` returned.")
+        raise error(where, "be 'principal' without a discrete orbit", got, "Pass an orbit of `nh.simulate`.")
     at = evenly_in_box(orbit.reduced_momentum, _SEEDS + 1)[:_SEEDS]
     return [branch_tree(orbit.motion, W, _GENERATIONS) for W in orbit.displacement[at]]
 
@@ -105,7 +105,7 @@ def phase_portrait(
     Equilibria are one line through the origin, filled where they attract and empty where they repel; all other
     motions run along their ellipse from one to the other. In a balanced system every point is an equilibrium. Momenta
     of a sleigh are $(p_\theta + b p_1, p_1)$ in the axes of its blade, those of a top $(M_{13}, M_{23})$ in axes whose
-    third one is the forbidden axis, whatever the axes of the body; those of other systems are in its canonical frame.
+    third one is the forbidden axis, in every frame of the body; those of other systems are in its canonical frame.
 
     With `branches="all"` three states of a discrete orbit are followed for three steps along every real branch. All
     images stay on the ellipse. The values from one displacement coincide here, as they have the same momenta along the
@@ -241,7 +241,7 @@ def section(
     """Draw a Poincare section: one dot for each crossing of an event, colored from early to late.
 
     Args:
-        crossings: What an event found: `orbit.events["name"]` or `nh.crossings(orbit, event)`.
+        crossings: The crossings of an event: `orbit.events["name"]` or `nh.crossings(orbit, event)`.
         across: The abscissa, a function of an orbit that returns one number for each of its states.
         up: The ordinate.
         axes: Where to draw; a new figure by default.

@@ -94,7 +94,7 @@ def _flow(axes: Axes, time: Float[np.ndarray, "K"], values: Float[np.ndarray, "K
 def draw_components(
     axes: Axes, orbit: AnyOrbit, flow: AnyOrbit | None, quantity: Callable[[AnyOrbit], np.ndarray], names: list[str]
 ) -> None:
-    """Draw one line for each component of a quantity, thin and without names where there are too many to tell apart."""
+    """Draw one line for each component of a quantity, thin and without names where there are many."""
     few = len(names) <= len(theme.COMPONENTS)
     for values, color, name in zip(quantity(orbit).T, theme.component_colors(len(names)), names, strict=True):
         look = {"color": color, "linewidth": 2.0 if few else 1.0, "label": name if few else None, "zorder": 3}
@@ -145,8 +145,8 @@ class EnergyError(NamedTuple):
         error: Dots, or for long orbits the band between the smallest and the
             largest error in each column; a line for a flow.
         rounding: The band of relative errors up to machine epsilon.
-        unit: What 1 on the axis means.
-        expected: Whether the error should be zero but for rounding, in words.
+        unit: The meaning of 1 on the axis.
+        expected: Whether the error should be zero up to rounding, in words.
     """
 
     axes: Axes
@@ -164,7 +164,7 @@ def energy_error(orbit: AbstractOrbit, axes: Axes | None = None, **look: Unpack[
 
     in units of 1e-16, or of a larger power of ten where rounding is not what is seen. The shaded band is the machine
     epsilon 2.2e-16 of double precision to either side. At rest, where E_0 = 0, the error is absolute. A line of
-    text says whether a theorem makes the energy of this discretization exact (`Discretization.conserves_energy`).
+    text states whether a theorem makes the energy of this discretization exact (`Discretization.conserves_energy`).
 
     Args:
         orbit: The orbit.

@@ -65,8 +65,8 @@ def window(orbit: Orbit, step: float, finest: float, most: int) -> slice:
 
     Args:
         orbit: The orbit.
-        step: How far a picture moves between two states.
-        finest: How far it should move at least.
+        step: The motion in a picture between two states.
+        finest: The least motion between two of them.
         most: Number of states.
     """
     stride = max(1, int(finest / step)) if step > 0 else max(1, len(orbit) // most)

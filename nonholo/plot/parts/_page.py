@@ -35,7 +35,7 @@ def _check_suffix(figure: Figure, path: str | Path, where: str) -> None:
 
 
 def finish_page(figure: Figure, title: str, facts: list[str], path: str | Path | None) -> Figure:
-    """Write the head above the panels, with the title that is asked for, and save the figure."""
+    """Write the head above the panels, with the given title, and save the figure."""
     line = rcParams["font.size"] / 72 / figure.get_figheight()  # in parts of the figure
     title = theme.option("title", title)
     figure.text(0.012, 0.985, title, va="top", fontsize="xx-large", fontweight="bold")
@@ -95,7 +95,7 @@ def detail(
         position: Points of the curve.
         turning: Angular velocities there.
         cusp: A cusp of the curve.
-        view: What the picture shows.
+        view: The view of the picture.
     """
     fast = np.flatnonzero(np.abs(turning) > 0.1 * np.abs(turning).max())
     turn = slice(fast[0], fast[-1] + 1)

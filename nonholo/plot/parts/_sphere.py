@@ -109,7 +109,7 @@ def set_curve(
     """Give a collection a new curve.
 
     Args:
-        collection: What to change.
+        collection: The lines to change.
         view: The projection.
         points: The curve.
         colors: One color, or one for each piece.

@@ -28,7 +28,7 @@ def drawable_in_time(where: str, orbit: Any) -> Any:
     """Return an orbit of any kind with at least one state; a flow that knows those between with enough for a curve."""
     remedy = "Pass what `simulate` or `flow` returned."
     if len(instance(where, orbit, AbstractOrbit, "be an orbit", remedy)) == 0:
-        raise error(where, "have a state to draw", "none", "See `orbit.outcome` for why the run did not start.")
+        raise error(where, "have a state to draw", "none", "`orbit.outcome` has the reason.")
     if orbit.span is None or not 1 < len(orbit) < _SMOOTH:
         return orbit
     more = np.linspace(orbit.time[0], orbit.time[-1], _SMOOTH)
@@ -55,7 +55,7 @@ def same_group(where: str, orbit: Any, other: Orbit) -> Orbit | None:
 
 
 def is_free(system: System) -> bool:
-    """Tell whether nothing constrains the body or acts on it, whose spatial momentum is then conserved."""
+    """Return whether nothing constrains the body or acts on it, whose spatial momentum is then conserved."""
     return system.rank == system.group.dim and not system.is_forced
 
 
@@ -68,7 +68,7 @@ def forbidden_axis(system: AbstractSystem) -> Float[np.ndarray, "3"] | None:
 
 
 def is_same_body(system: System, other: System) -> bool:
-    """Tell whether two systems have the same constraint and inertia, whatever their classes, up to rounding."""
+    """Return whether two systems have the same constraint and inertia, up to rounding, in any classes."""
     if (system.group, system.is_spatial, system.rank) != (other.group, other.is_spatial, other.rank):
         return False
     same_rows = np.allclose(system.constraint_subspace, other.constraint_subspace, rtol=0.0, atol=_ROUNDING)

@@ -105,7 +105,7 @@ def _add(total: jax.Array, error: jax.Array, term: jax.Array) -> tuple[jax.Array
 
 
 def _root(body: kernels.Body, m: jax.Array, guess: jax.Array) -> tuple[jax.Array, jax.Array]:
-    """Correct guesses until all have converged or it takes too long; tell which are certain."""
+    """Correct guesses until all have converged or it takes too long; return which are certain."""
 
     def is_unfinished(carry: tuple[jax.Array, jax.Array, jax.Array]) -> jax.Array:
         count, _, further = carry

@@ -19,7 +19,7 @@ def ensemble_to_dataset(ensemble: Ensemble, none: Any) -> xarray.Dataset:
     attributes are those of an orbit of the shared motion; parameters that differ are variables of their names.
 
     Args:
-        ensemble: What to label.
+        ensemble: The ensemble to label.
         none: No state of the shared motion, as an orbit.
     """
     variables = _of_bodies(ensemble) if none.is_compact else _in_coordinates(ensemble, none)

@@ -29,7 +29,6 @@ from nonholo.systems import (
     AbstractSystem,
     Start,
     System,
-    in_coordinates,
     refuse_in_coordinates,
 )
 
@@ -63,24 +62,24 @@ def ensemble(
     rtol: float | None = None,
     progress: bool = False,
 ) -> Any:
-    r"""Run or solve many members of one system, that differ in where they start, in parameters, or in both.
+    r"""Run or solve many members of one system, which differ in their starts, in parameters, or in both.
 
-    Each member takes the steps that `simulate` would take from its start, on the branch of its rule and verified; what
-    becomes of it does not depend on the others. Tops with n = 3 and plane sleighs run in compiled blocks of 32 members,
+    Each member takes the steps that `simulate` would take from its start, on the branch of its rule and verified. Its
+    result does not depend on the others. Tops with n = 3 and plane sleighs run in compiled blocks of 32 members,
     other systems, and all by other rules than "principal", one after another. All cores are used (`NUMBA_NUM_THREADS`
     sets how many), with the same result.
 
-    Of a system in place of a discretization the flows are solved, by the series of `flow`: from one canonical momentum
+    For a system instead of a discretization the flows are solved, by the series of `flow`; from one canonical momentum
     each has the bits of a flow alone.
 
     Systems in coordinates run one member after another, in one thread: each has the bits of `simulate` or `flow` alone.
 
-    The start and the `configuration` may come as one row for each member, or one may be that of all.
+    The start and the `configuration` have one row for each member, or one for all.
 
-    A member that cannot continue keeps its good states: see `Ensemble` for what is where, and `outcome` for why.
+    A member that cannot continue keeps its good states: see `Ensemble` for its arrays, and `outcome` for the reason.
 
     Args:
-        discrete: The discretized system, or a system whose flow is asked for.
+        discrete: The discretized system, or a system for its flow.
         steps: Number of steps N.
         times: Of a system instead: the times of the states, as in `flow`.
         configuration: First poses, matrices (M, N, N), in coordinates (M, n); one alone is that of all members. Bodies
@@ -105,13 +104,13 @@ def ensemble(
             run in chunks on processors and all at once on accelerators, other systems by the definition.
         events: `Event`s, or functions, whose changes of sign are found at every single step of each member; see
             `Ensemble.events`. A function sees an orbit: the states of many members one after another, or those of
-            one member where parameters differ or members run alone. A member that an event stops has no states after
-            that.
+            one member where parameters differ or members run alone. A member has no states after the event that
+            stops it.
         rtol: Of a system: the relative error of a step, as in `flow`.
         progress: Show a progress bar on standard error.
 
     Returns:
-        The `Ensemble`; with `reduce` what it gave, blocks joined along the member axis.
+        The `Ensemble`; with `reduce` its results, blocks joined along the member axis.
 
     Raises:
         ValueError: A bad argument, before any work.
@@ -177,7 +176,7 @@ def _of_steps(
     """Return the motion of runs, their plan, and how wide their columns are."""
     del starts
     steps, save_every, events, branch, backend, reconstruct = of_steps.values()
-    if in_coordinates(discrete):
+    if isinstance(discrete, AbstractCoordinateDiscretization):
         absent = {"branch": branch, "backend": backend, "reconstruct": reconstruct, **of_flow}
         refuse_in_coordinates("ensemble", **{name: (value, _DEFAULTS.get(name)) for name, value in absent.items()})
     else:
@@ -190,7 +189,7 @@ def _of_steps(
     check_forces("ensemble", discrete, steps)
     watch = None if events is None else watch_for("ensemble", stepper, events)
     by_name = None if watch is None else watch.events
-    refuse_resets("ensemble", by_name or {}, "those of many members, whose steps are taken side by side")
+    refuse_resets("ensemble", by_name or {}, "impacts of many members, whose steps are taken side by side")
     plan = Plan(steps, save_every, bool(reconstruct), branch, backend, by_name)
     return discrete, plan, tuple(stepper.columns.values())
 

@@ -30,11 +30,11 @@ from nonholo.simulation.members._members import (
     ScalarMembers,
     in_lanes,
     inertias_of,
-    is_in_coordinates,
     refusal,
 )
 from nonholo.simulation.members._result import Ensemble, stack_rows
 from nonholo.simulation.members._start import Firsts, are_others
+from nonholo.systems import in_coordinates
 
 _PART = 8192  # members in a piece of work of one thread, a multiple of what a compiled block holds
 _FLOWS = 1024  # flows in a piece of work,
@@ -91,7 +91,7 @@ class Plan(NamedTuple):
         with_poses: Whether to compute poses.
         branch: The branch rule.
         backend: "auto", "numba" or "jax".
-        events: What the runs look for, by name; None if for nothing.
+        events: The events of the runs, by name; None without.
         times: Those of a flow.
         rtol: The relative error of its steps; 0 for the default of each motion.
     """
@@ -117,7 +117,7 @@ def run_members(members: Members, starts: Firsts, plan: Plan, report: Report = l
     Args:
         members: Who runs.
         starts: Their checked starts.
-        plan: What to do.
+        plan: The plan of the run.
         report: Called with the number of members that are done.
     """
     return executor_of(members, plan)(members, starts, plan, threads_to_use(), report)
@@ -131,7 +131,7 @@ def executor_of(members: Members, plan: Plan) -> Callable[..., Ensemble]:
 
 
 def _has_series(members: Members, plan: Plan) -> bool:
-    """Tell whether flows are solved side by side; under forces those of one body are."""
+    """Return whether flows are solved side by side; under forces those of one body are."""
     system, times = members.discrete.system, cast(np.ndarray, plan.times)
     if members.in_coordinates:
         return False
@@ -140,7 +140,7 @@ def _has_series(members: Members, plan: Plan) -> bool:
 
 
 def are_side_by_side(members: Members, plan: Plan) -> bool:
-    """Tell whether members are computed side by side, in numbers of their closed form."""
+    """Return whether members are computed side by side, in numbers of their closed form."""
     return plan.branch == PRINCIPAL.name and in_lanes(members)
 
 
@@ -288,7 +288,7 @@ def _flow_alone(motion: Any, first: First, plan: Plan) -> tuple[Any, int]:
     """Return the flow of one member up to its end, and the number of good times after the first."""
     try:
         times = cast(np.ndarray, plan.times)
-        flow = motion.solve if is_in_coordinates(motion) else functools.partial(flow_from, motion.system)
+        flow = motion.solve if in_coordinates(motion) else functools.partial(flow_from, motion.system)
         orbit = flow(first, times, plan.rtol, reconstruct=plan.with_poses)
     except OutcomeError as early:
         orbit = cast(Any, early.orbit)

@@ -12,7 +12,7 @@ from nonholo.base.checks import array, error, shown
 from nonholo.base.memo import Keeper
 from nonholo.base.types import Bool, Float
 from nonholo.discrete import Discretization, discretize
-from nonholo.systems import AbstractCoordinateSystem, System
+from nonholo.systems import AbstractCoordinateSystem, System, in_coordinates
 
 STEP = "time_step"
 _ARGUMENTS = {"given_inertia": "inertia_operator"}  # fields that the constructor calls otherwise
@@ -38,7 +38,7 @@ class Members(Keeper):
     @property
     def in_coordinates(self) -> bool:
         """Whether they move in coordinates, which have no closed forms."""
-        return is_in_coordinates(self.discrete)
+        return in_coordinates(self.discrete)
 
     @property
     def time_step(self) -> Float[np.ndarray, "m"]:
@@ -90,7 +90,7 @@ class Members(Keeper):
 
     @functools.cached_property
     def keep_frame(self) -> bool:
-        """Whether all members clearly have the canonical frame of the shared motion, whatever their parameters."""
+        """Whether all members clearly have the canonical frame of the shared motion, with all parameters."""
         return self.joint_system is not None and bool(np.all(self.joint_system.frame == self.discrete.system.frame))
 
     @functools.cached_property
@@ -106,11 +106,6 @@ class Members(Keeper):
             return self
         numbers = {name: values[which] for name, values in self.parameters.items()}
         return Members(self.discrete, numbers, len(range(*which.indices(self.count))))
-
-
-def is_in_coordinates(motion: Any) -> bool:
-    """Tell whether a map or a flow is one of a system in coordinates."""
-    return isinstance(motion.system, AbstractCoordinateSystem)
 
 
 def _inside(system: Any) -> Any:
@@ -135,7 +130,7 @@ def _leaves(system: System) -> list[str]:
 
 def _numbers(motion: Any) -> Mapping[str, Any]:
     """Return what may differ from member to member, by the name that its constructor has for it."""
-    if is_in_coordinates(motion):
+    if in_coordinates(motion):
         return motion.system.parameters
     system = _inside(motion.system)
     return {_ARGUMENTS.get(name, name): getattr(system, name) for name in _leaves(system)}
@@ -148,7 +143,7 @@ def checked_parameters(motion: Any, parameters: Any) -> dict[str, Any]:
     if not isinstance(parameters, Mapping):
         raise error("ensemble(parameters=...)", "be a mapping of names to arrays", shown(parameters), "Pass a dict.")
     numbers = dict(_numbers(motion)) | ({} if motion.time_step is None else {STEP: motion.time_step})
-    kind, arrays = type(motion.system if is_in_coordinates(motion) else _inside(motion.system)).__name__, {}
+    kind, arrays = type(motion.system if in_coordinates(motion) else _inside(motion.system)).__name__, {}
     for name, value in parameters.items():
         if name not in numbers:
             raise _unknown(name, kind, [*numbers])
@@ -237,12 +232,12 @@ class ScalarMembers:
 
 
 def run_in_lanes(discrete: Discretization) -> bool:
-    """Tell whether the members of an ensemble of a discretization are computed side by side."""
+    """Return whether the members of an ensemble of a discretization are computed side by side."""
     return in_lanes(Members(discrete, {}, 1))
 
 
 def in_lanes(members: Members) -> bool:
-    """Tell whether members are computed side by side: those of one closed form."""
+    """Return whether members are computed side by side: those of one closed form."""
     return members.lanes is not None
 
 
@@ -268,7 +263,7 @@ def inertias_of(members: Members) -> Float[np.ndarray, "m dim dim"]:
 
 
 def check_systems(members: Members) -> None:
-    """Refuse parameters of which no system can be made; those that clearly make one are looked through in one go."""
+    """Refuse parameters of which no system can be made; those that clearly make one are checked at once."""
     step = members.parameters.get(STEP)
     if step is not None and callable(getattr(members.discrete, "difference", None)):
         where, got = "ensemble(parameters={'time_step': ...})", "a function"
@@ -286,6 +281,6 @@ def check_systems(members: Members) -> None:
 
 
 def _doubtful(members: Members) -> Bool[np.ndarray, "M"]:
-    """Tell which members have to be built to know that they can be."""
+    """Return which members have to be built to know that they can be."""
     is_clear = not members.of_system or (members.joint_system is not None and members.joint_system.is_clear)
     return np.broadcast_to(~np.asarray(is_clear), len(members))

@@ -73,8 +73,8 @@ class Ensemble:
     its later rows. A member that cannot start has only NaN. `outcome` tells them apart.
 
     Attributes:
-        members: What moves, and the parameters.
-        steps: Number of steps N that were asked for; of flows that of the times after the first.
+        members: The system, and the parameters.
+        steps: Number of steps N; of flows the number of times after the first.
         save_every: Steps between saved states; None if only the last one is kept.
         columns: The arrays of the orbits by name, shapes (M, K, ...): `reduced_momentum` and others of bodies, what
             an orbit tells in coordinates.
@@ -82,7 +82,7 @@ class Ensemble:
         steps_done: Good steps of each member, shape (M,); of states at crossings with the fraction of the last one.
         first_momentum: Momenta of the starts, of bodies compact ones in the canonical frame, shape (M, k).
         first_pose: Compact poses of the starts of bodies, canonical frame, places in coordinates, shape (M, ...).
-        events: What `events=` of the run found, a `MemberEvents`: by name or position how many crossings each member
+        events: Crossings of `events=`, a `MemberEvents`: by name or position how many crossings each member
             has, and the states at the first and the last. None without `events=`.
         branch: The branch rule of the steps, as in `Orbit`.
 
@@ -217,7 +217,7 @@ class Ensemble:
             return energies(ScalarMembers(self.members), self.first_momentum)
         if "reduced_momentum" not in self.columns:
             got, remedy = type(self.members.discrete.system).__name__, "Save every state, and take energy[:, 0]."
-            raise error("Ensemble.first_energy", "be asked of bodies on a group", got, remedy)
+            raise error("Ensemble.first_energy", "be read from bodies on a group", got, remedy)
         rows = {"reduced_momentum": self.first_momentum[:, None], "canonical_pose": self.first_pose[:, None]}
         rows = {name: column for name, column in rows.items() if column.shape[2]}
         return dataclasses.replace(self, columns=rows, save_every=1).energy[:, 0]
@@ -294,7 +294,7 @@ class Ensemble:
         return importlib.import_module("nonholo.simulation.members._dataset").ensemble_to_dataset(self, none)
 
     def _decode(self, name: str) -> np.ndarray:
-        """Return a quantity of orbits, NaN after a member's end; in one go where it is the same function for all."""
+        """Return a quantity of orbits, NaN after a member's end; at once where it is the same function for all."""
         if name in self.columns:
             return self.columns[name]
         good = self._good
@@ -304,7 +304,7 @@ class Ensemble:
         return np.stack([_spread(values, rows) for values, rows in zip(each, good, strict=True)])
 
     def _is_shared(self, name: str) -> bool:
-        """Tell whether a quantity is the same function of the state for all members."""
+        """Return whether a quantity is the same function of the state for all members."""
         motion = self.members.discrete
         if name == "multipliers" or motion.forces is not None:
             return False

@@ -1,4 +1,4 @@
-"""The starts of the members of an ensemble, of tops and plane sleighs for all members in one go."""
+"""The starts of the members of an ensemble, of tops and plane sleighs for all members at once."""
 
 import dataclasses
 from collections.abc import Mapping
@@ -154,6 +154,6 @@ def energies(scalar: ScalarMembers, momenta: Float[np.ndarray, "M ... 2"]) -> Fl
 
 
 def are_others(demand: Float[np.ndarray, "M ..."], full: Float[np.ndarray, "M ..."]) -> Bool[np.ndarray, "M"]:
-    """Tell which momenta or displacements that were given are not those with which the members start."""
+    """Return which momenta or displacements that were given are not those with which the members start."""
     demand, full = demand.reshape(len(demand), -1), full.reshape(len(full), -1)
     return np.linalg.norm(demand - full, axis=1) > _TOLERANCE * np.linalg.norm(full, axis=1)

@@ -10,16 +10,8 @@ from nonholo.base.checks import array, error, is_traced, positive_definite, symm
 from nonholo.base.memo import system_memo
 from nonholo.base.types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
+from nonholo.systems import _mass
 from nonholo.systems._base import AbstractLLSystem, AbstractLRSystem, replace_numbers
-from nonholo.systems._mass import (
-    body_tensor,
-    checked_group,
-    form_mass_tensor,
-    group_mass_tensor,
-    lines_of,
-    mass_tensor_of_body,
-    tensors_shown,
-)
 from nonholo.systems._normal_form import NormalForm, recognized_form
 from nonholo.systems._subspace import subspace_and_annihilator, top_rows
 
@@ -97,23 +89,20 @@ class LLSystem(AbstractLLSystem):
         annihilator: Any = None,
         inertia_operator: Any = None,
     ) -> None:
-        checked_group("LLSystem(group=...)", group)
+        _mass.checked_group("LLSystem(group=...)", group)
         if (mass_tensor is None) == (inertia_operator is None):
             got = "neither" if mass_tensor is None else "both"
             remedy = "Pass the mass tensor on SO(n), SE(n) or a group with a form, the inertia operator on any other."
             raise error("LLSystem(mass_tensor=...)", "be given, or else inertia_operator=", got, remedy)
         rows, covectors = subspace_and_annihilator("LLSystem", group.dim, constraint_subspace, annihilator)
         if mass_tensor is not None:
-            where = "LLSystem(mass_tensor=...)"
-            mass_tensor = _tensor(where, group, mass_tensor)
+            mass_tensor = _tensor(where := "LLSystem(mass_tensor=...)", group, mass_tensor)
         else:
             where = "LLSystem(inertia_operator=...)"
             shape = (group.dim, group.dim)
             remedy = f"Pass the symmetric {shape} matrix that takes body velocities to body momenta."
             inertia_operator = symmetric(where, array(where, inertia_operator, shape, remedy), remedy)
-        values = (group, mass_tensor, inertia_operator, rows, covectors)
-        for field, value in zip(dataclasses.fields(self), values, strict=True):
-            object.__setattr__(self, field.name, value)
+        self._hold(group, mass_tensor, inertia_operator, rows, covectors)
         if len(rows) and mass_tensor is not None and group.form is not None:
             _refuse_singular(where, self)
         elif len(rows):
@@ -134,7 +123,7 @@ class LLSystem(AbstractLLSystem):
         """Build a system from its mass, its inertia about the center of mass, and where that is in the body.
 
         On SO(3) the body turns about the origin of body coordinates, to which Steiner's theorem carries the inertia; on
-        SE(n) the origin is the reference point. An `ImpossibleBodyWarning` says so if no body has the inertia.
+        SE(n) the origin is the reference point. An `ImpossibleBodyWarning` is issued if no body has the inertia.
 
         Args:
             mass: m.
@@ -156,19 +145,14 @@ class LLSystem(AbstractLLSystem):
                    [0. , 2. , 0. ],
                    [1. , 0. , 2. ]])
         """
-        tensor = mass_tensor_of_body("LLSystem", mass, inertia, center_of_mass, group)
+        tensor = _mass.mass_tensor_of_body("LLSystem", mass, inertia, center_of_mass, group)
         return cls(group, tensor, constraint_subspace, annihilator=annihilator)
 
     def __repr__(self) -> str:
         operator = {"inertia operator": np.asarray(self.given_inertia)}
-        facts = operator if self.mass_tensor is None else tensors_shown(self.group, self.mass_tensor)
+        facts = operator if self.mass_tensor is None else _mass.tensors_shown(self.group, self.mass_tensor)
         subspace = {"constraint subspace": np.asarray(self.constraint_subspace)}
-        return f"LLSystem({self.group!r},\n  {lines_of(facts | subspace)})"
-
-    @system_memo
-    def homogeneous_mass_tensor(self) -> Float[Array, "... N N"] | None:
-        """The mass tensor; None if the inertia operator was given."""
-        return self.mass_tensor
+        return f"LLSystem({self.group!r},\n  {_mass.lines_of(facts | subspace)})"
 
     @system_memo
     def inertia_operator(self) -> Float[Array, "... dim dim"]:
@@ -185,9 +169,9 @@ class LLSystem(AbstractLLSystem):
 
 def _tensor(where: str, group: AbstractMatrixGroup, value: Any) -> Array:
     if group.form is not None:
-        return form_mass_tensor(where, group, value)
+        return _mass.form_mass_tensor(where, group, value)
     instead = "Pass inertia_operator= instead or, if the group preserves a form G, MatrixGroup(basis, form=G)."
-    return group_mass_tensor(where, group, value, instead)
+    return _mass.group_mass_tensor(where, group, value, instead)
 
 
 def _refuse_singular(where: str, system: LLSystem) -> None:
@@ -200,7 +184,7 @@ def _refuse_singular(where: str, system: LLSystem) -> None:
         units = units * np.sqrt((terms / units / units[:, None]).max(axis=1, initial=np.finfo(float).tiny))
     if not np.abs(np.linalg.eigvalsh(inertia / units / units[:, None])).min() > _SINGULAR:
         got = f"eigenvalues {np.linalg.eigvalsh(inertia).tolist()}"
-        remedy = "Every admissible velocity needs a momentum of its own along the constraint."
+        remedy = "Every admissible velocity needs a separate momentum along the constraint."
         raise error(where, "make the inertia along the constraint invertible", got, remedy)
 
 
@@ -244,23 +228,17 @@ class LRSystem(AbstractLRSystem):
 
     def __post_init__(self) -> None:
         where, instead = "LRSystem(mass_tensor=...)", "LR systems on other groups are not offered."
-        checked_group("LRSystem(group=...)", self.group)
+        _mass.checked_group("LRSystem(group=...)", self.group)
         spaces = (self.constraint_subspace, self.annihilator)
         rows, covectors = subspace_and_annihilator("LRSystem", self.group.dim, *spaces)
-        tensor = group_mass_tensor(where, self.group, self.mass_tensor, instead)
-        for field, value in zip(dataclasses.fields(self), (self.group, tensor, rows, covectors), strict=True):
-            object.__setattr__(self, field.name, value)
+        tensor = _mass.group_mass_tensor(where, self.group, self.mass_tensor, instead)
+        self._hold(self.group, tensor, rows, covectors)
         positive_definite(where, self.inertia_operator, "the inertia operator", _REMEDY)
 
     def __repr__(self) -> str:
-        facts = tensors_shown(self.group, self.mass_tensor)
+        facts = _mass.tensors_shown(self.group, self.mass_tensor)
         subspace = {"constraint subspace": np.asarray(self.constraint_subspace)}
-        return f"LRSystem({self.group!r},\n  {lines_of(facts | subspace)})"
-
-    @system_memo
-    def homogeneous_mass_tensor(self) -> Float[Array, "N N"]:
-        """The mass tensor itself."""
-        return self.mass_tensor
+        return f"LRSystem({self.group!r},\n  {_mass.lines_of(facts | subspace)})"
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
@@ -289,26 +267,19 @@ class VeselovaTop(AbstractLRSystem):
 
     mass_tensor: Array
     leaves: ClassVar[tuple[str, ...]] = ("mass_tensor",)
-    structure: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         where = "VeselovaTop(mass_tensor=...)"
-        tensor = body_tensor(where, self.mass_tensor, "Pass the mass tensor J, not the inertia tensor.")
-        object.__setattr__(self, "mass_tensor", tensor)
+        self._hold(_mass.body_tensor(where, self.mass_tensor, "Pass the mass tensor J, not the inertia tensor."))
         positive_definite(where, self.inertia_operator, "the inertia operator", _REMEDY)
 
     def __repr__(self) -> str:
-        return f"VeselovaTop({self.group!r},\n  {lines_of(tensors_shown(self.group, self.mass_tensor))})"
+        return f"VeselovaTop({self.group!r},\n  {_mass.lines_of(_mass.tensors_shown(self.group, self.mass_tensor))})"
 
     @system_memo
     def group(self) -> AbstractMatrixGroup:
         """The rotation group SO(n)."""
         return SO(self.mass_tensor.shape[-1])
-
-    @system_memo
-    def homogeneous_mass_tensor(self) -> Float[Array, "n n"]:
-        """The mass tensor itself."""
-        return self.mass_tensor
 
     @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:

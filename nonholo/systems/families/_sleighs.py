@@ -47,16 +47,14 @@ class ChaplyginSleigh(AbstractLLSystem):
     b: Array = 0.0
     group: ClassVar[AbstractMatrixGroup] = SE(2)
     leaves: ClassVar[tuple[str, ...]] = ("mass", "inertia", "a", "b")
-    structure: ClassVar[tuple[str, ...]] = ()
     stack = replace_numbers
     has_blade: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         about = "Pass the moment of inertia about the center of mass."
-        object.__setattr__(self, "mass", scale("ChaplyginSleigh(mass=...)", self.mass, "Pass the mass of the body."))
-        object.__setattr__(self, "inertia", scale("ChaplyginSleigh(inertia=...)", self.inertia, about))
-        object.__setattr__(self, "a", number("ChaplyginSleigh(a=...)", self.a))
-        object.__setattr__(self, "b", number("ChaplyginSleigh(b=...)", self.b))
+        mass = scale("ChaplyginSleigh(mass=...)", self.mass, "Pass the mass of the body.")
+        inertia = scale("ChaplyginSleigh(inertia=...)", self.inertia, about)
+        self._hold(mass, inertia, *(number(f"ChaplyginSleigh({name}=...)", getattr(self, name)) for name in "ab"))
 
     def __repr__(self) -> str:
         fields = (f"{name}={getattr(self, name)}" for name in ("mass", "inertia", "a", "b"))
@@ -80,11 +78,6 @@ class ChaplyginSleigh(AbstractLLSystem):
     def constraint_subspace(self) -> Float[np.ndarray, "2 3"]:
         """Rows (omega) and (v1)."""
         return np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-
-    @system_memo
-    def annihilator(self) -> Float[np.ndarray, "1 3"]:
-        """The velocity across the blade."""
-        return np.array([[0.0, 0.0, 1.0]])
 
     @system_memo
     def frame(self) -> Float[Array, "... 3 3"]:
@@ -143,7 +136,6 @@ class MultidimensionalSleigh(AbstractLLSystem):
     center_of_mass: Array
     mass_tensor: Array
     leaves: ClassVar[tuple[str, ...]] = ("mass", "center_of_mass", "mass_tensor")
-    structure: ClassVar[tuple[str, ...]] = ()
     has_blade: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
@@ -156,8 +148,7 @@ class MultidimensionalSleigh(AbstractLLSystem):
             raise error(where, "have at least 3 coordinates", f"{n}", "In the plane use `ChaplyginSleigh`.")
         where, remedy = f"{owner}(mass_tensor=...)", "Pass the mass tensor about the center of mass."
         tensor = symmetric(where, array(where, self.mass_tensor, (n, n), remedy), remedy)
-        for field, value in zip(dataclasses.fields(self), (mass, center, tensor), strict=True):
-            object.__setattr__(self, field.name, value)
+        self._hold(mass, center, tensor)
         positive_definite(where, self.constrained_inertia, "the inertia along the constraint", remedy)
 
     @staticmethod
@@ -247,7 +238,6 @@ class ArrowheadSleigh(AbstractLLSystem):
     diagonal: Array
     coupling: Array
     leaves: ClassVar[tuple[str, ...]] = ("mass", "center_of_mass", "diagonal", "coupling")
-    structure: ClassVar[tuple[str, ...]] = ()
     has_blade: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
@@ -256,8 +246,7 @@ class ArrowheadSleigh(AbstractLLSystem):
         diagonal, coupling = arrow_numbers(owner, self.diagonal, self.coupling)
         where = f"{owner}(center_of_mass=...)"
         center = array(where, self.center_of_mass, diagonal.shape, "Pass n body coordinates.")
-        for field, value in zip(dataclasses.fields(self), (mass, center, diagonal, coupling), strict=True):
-            object.__setattr__(self, field.name, value)
+        self._hold(mass, center, diagonal, coupling)
         refuse_negative(f"{owner}(diagonal=...)", self.inertia_along)
 
     def __repr__(self) -> str:

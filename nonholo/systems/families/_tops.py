@@ -1,4 +1,4 @@
-"""The free rigid body, and the Suslov top, which only turns in planes through an axis of its own, in any dimension."""
+"""The free rigid body, and the Suslov top, which only turns in planes through an axis fixed in it, in any dimension."""
 
 import dataclasses
 import functools
@@ -10,23 +10,8 @@ from nonholo.base.checks import array, error, is_traced, positive_definite, symm
 from nonholo.base.memo import system_memo
 from nonholo.base.types import Array, Float
 from nonholo.groups import SO, AbstractMatrixGroup
+from nonholo.systems import _mass
 from nonholo.systems._base import AbstractLLSystem, replace_numbers
-from nonholo.systems._mass import (
-    WideInertia,
-    arrow_numbers,
-    body_tensor,
-    checked_group,
-    group_mass_tensor,
-    inertia_tensor,
-    lines_of,
-    mass_tensor_from_inertia,
-    mass_tensor_of_body,
-    narrow,
-    possible,
-    refuse_negative,
-    rotation_to,
-    tensors_shown,
-)
 from nonholo.systems._normal_form import NormalForm, top_form
 from nonholo.systems._subspace import top_rows
 
@@ -67,13 +52,12 @@ class RigidBody(AbstractLLSystem):
         where = "RigidBody(mass_tensor=...)"
         remedy = "Pass the mass tensor J; `RigidBody.from_inertia` takes the inertia tensor."
         if self.group is None:
-            tensor = body_tensor(where, self.mass_tensor, remedy)
-            object.__setattr__(self, "group", SO(tensor.shape[0]))
+            tensor = _mass.body_tensor(where, self.mass_tensor, remedy)
         else:
-            checked_group("RigidBody(group=...)", self.group)
+            _mass.checked_group("RigidBody(group=...)", self.group)
             instead = "`LLSystem` takes an inertia operator on any group."
-            tensor = group_mass_tensor(where, self.group, self.mass_tensor, instead)
-        object.__setattr__(self, "mass_tensor", tensor)
+            tensor = _mass.group_mass_tensor(where, self.group, self.mass_tensor, instead)
+        self._hold(tensor, self.group or SO(len(tensor)))
         positive_definite(where, self.inertia_operator, "the inertia operator", remedy)
 
     @classmethod
@@ -83,7 +67,7 @@ class RigidBody(AbstractLLSystem):
         """Build a body from its mass, its inertia about the center of mass, and where that is in the body.
 
         On SO(3) the body turns about the origin of body coordinates, to which Steiner's theorem carries the inertia; on
-        SE(n) the origin is the reference point. An `ImpossibleBodyWarning` says so if no body has the inertia.
+        SE(n) the origin is the reference point. An `ImpossibleBodyWarning` is issued if no body has the inertia.
 
         Args:
             mass: m.
@@ -102,25 +86,15 @@ class RigidBody(AbstractLLSystem):
                    [0. , 2.5, 0. ],
                    [0. , 0. , 1.5]])
         """
-        return cls(mass_tensor_of_body("RigidBody", mass, inertia, center_of_mass, group), group)
+        return cls(_mass.mass_tensor_of_body("RigidBody", mass, inertia, center_of_mass, group), group)
 
     def __repr__(self) -> str:
-        return f"RigidBody({self.group!r},\n  {lines_of(tensors_shown(self.group, self.mass_tensor))})"
-
-    @system_memo
-    def homogeneous_mass_tensor(self) -> Float[Array, "... N N"]:
-        """The mass tensor itself."""
-        return self.mass_tensor
+        return f"RigidBody({self.group!r},\n  {_mass.lines_of(_mass.tensors_shown(self.group, self.mass_tensor))})"
 
     @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "dim dim"]:
         """All coordinate rows."""
         return np.eye(self.group.dim)
-
-    @system_memo
-    def annihilator(self) -> Float[np.ndarray, "0 dim"]:
-        """No rows."""
-        return np.empty((0, self.group.dim))
 
 
 _E3 = (0.0, 0.0, 1.0)
@@ -168,15 +142,15 @@ class SuslovTop(AbstractLLSystem):
     def __post_init__(self) -> None:
         where = "SuslovTop(mass_tensor=...)"
         remedy = "Pass the mass tensor J, not the inertia tensor; `SuslovTop.from_inertia` takes that one."
-        object.__setattr__(self, "mass_tensor", body_tensor(where, self.mass_tensor, remedy))
-        object.__setattr__(self, "axis", _forbidden_axis("SuslovTop(axis=...)", self.axis, len(self.mass_tensor)))
+        tensor = _mass.body_tensor(where, self.mass_tensor, remedy)
+        self._hold(tensor, _forbidden_axis("SuslovTop(axis=...)", self.axis, len(tensor)))
         positive_definite(where, self.constrained_inertia, "the inertia along the constraint", remedy)
 
     @classmethod
     def from_inertia(cls, inertia: Array, axis: Array = _E3) -> "SuslovTop":
         """Build a top (n = 3) from its inertia tensor and the forbidden body axis, all in the user's body frame.
 
-        The inertia tensor is about the fixed point. An `ImpossibleBodyWarning` says so if no body has it.
+        The inertia tensor is about the fixed point. An `ImpossibleBodyWarning` is issued if no body has it.
 
         Example:
             >>> SuslovTop.from_inertia(np.diag([3.0, 2.0, 1.5]), axis=(0, 1, 0)).annihilator
@@ -184,7 +158,7 @@ class SuslovTop(AbstractLLSystem):
         """
         where = "SuslovTop.from_inertia(inertia=...)"
         tensor = symmetric(where, array(where, inertia, (3, 3)), "Pass the inertia tensor about the fixed point.")
-        return cls(possible(where, mass_tensor_from_inertia(tensor)), axis=axis)
+        return cls(_mass.possible(where, _mass.mass_tensor_from_inertia(tensor)), axis=axis)
 
     @staticmethod
     def arrowhead(diagonal: Any, coupling: Any) -> "ArrowheadTop":
@@ -207,7 +181,7 @@ class SuslovTop(AbstractLLSystem):
 
     def __repr__(self) -> str:
         head = f"n={self.group.size}" if self.axis is None else f"axis={np.asarray(self.axis).tolist()}"
-        return f"SuslovTop({head},\n  {lines_of(tensors_shown(self.group, self.mass_tensor))})"
+        return f"SuslovTop({head},\n  {_mass.lines_of(_mass.tensors_shown(self.group, self.mass_tensor))})"
 
     @system_memo
     def group(self) -> AbstractMatrixGroup:
@@ -215,14 +189,9 @@ class SuslovTop(AbstractLLSystem):
         return SO(self.mass_tensor.shape[-1])
 
     @system_memo
-    def homogeneous_mass_tensor(self) -> Float[Array, "... n n"]:
-        """The mass tensor itself."""
-        return self.mass_tensor
-
-    @system_memo
     def inertia_operator(self) -> Float[Array, "... dim dim"]:
         r"""The operator $\omega \mapsto J\omega + \omega J$; for n = 3 it is $\mathrm{tr}(J)\,\mathrm{Id} - J$."""
-        return super().inertia_operator if self.axis is None else inertia_tensor(self.mass_tensor)
+        return super().inertia_operator if self.axis is None else _mass.inertia_tensor(self.mass_tensor)
 
     @system_memo
     def inertia_along(self) -> Float[Array, "... k k"]:
@@ -243,7 +212,7 @@ class SuslovTop(AbstractLLSystem):
     @system_memo
     def frame(self) -> Float[np.ndarray, "... n n"]:
         """The shortest rotation taking e3 to the forbidden axis; the identity for n > 3."""
-        return self.group.identity if self.axis is None else rotation_to(self.axis)
+        return self.group.identity if self.axis is None else _mass.rotation_to(self.axis)
 
     @system_memo
     def canonical(self) -> "SuslovTop":
@@ -307,13 +276,10 @@ class ArrowheadTop(AbstractLLSystem):
     diagonal: Array
     coupling: Array
     leaves: ClassVar[tuple[str, ...]] = ("diagonal", "coupling")
-    structure: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
-        diagonal, coupling = arrow_numbers("SuslovTop.arrowhead", self.diagonal, self.coupling)
-        object.__setattr__(self, "diagonal", diagonal)
-        object.__setattr__(self, "coupling", coupling)
-        refuse_negative("SuslovTop.arrowhead(diagonal=...)", self.inertia_along)
+        self._hold(*_mass.arrow_numbers("SuslovTop.arrowhead", self.diagonal, self.coupling))
+        _mass.refuse_negative("SuslovTop.arrowhead(diagonal=...)", self.inertia_along)
 
     def __repr__(self) -> str:
         return f"SuslovTop.arrowhead(n={len(self.diagonal)})"
@@ -331,15 +297,15 @@ class ArrowheadTop(AbstractLLSystem):
     @system_memo
     def homogeneous_mass_tensor(self) -> Float[np.ndarray, "n n"]:
         """The mass tensor as a matrix."""
-        narrow("A dense mass tensor of SuslovTop.arrowhead", self.group.dim)
+        _mass.narrow("A dense mass tensor of SuslovTop.arrowhead", self.group.dim)
         J = np.diag(self.diagonal)
         J[-1, :-1] = J[:-1, -1] = self.coupling
         return J
 
     @system_memo
-    def inertia_along(self) -> WideInertia:
+    def inertia_along(self) -> _mass.WideInertia:
         """The diagonal of B."""
-        return WideInertia(self.diagonal[:-1] + self.diagonal[-1], None, np.zeros_like(self.coupling))
+        return _mass.WideInertia(self.diagonal[:-1] + self.diagonal[-1], None, np.zeros_like(self.coupling))
 
     @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:

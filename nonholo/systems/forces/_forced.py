@@ -1,6 +1,7 @@
 """A system with a potential and a force: again a system, with kinetic energy and constraint of the one inside.
 
-Questions about free motions (equilibria, conserved momenta, closed forms) are refused; what serves forces says so.
+Questions about free motions (equilibria, conserved momenta, closed forms) are refused; functions that serve forces are
+documented as such.
 
 The implicit midpoint rule for half an impulse of a force that depends on the velocity.
 """
@@ -50,7 +51,7 @@ class Forced(AbstractSystem):
     $$ \dot p = \mathrm{ad}^*_\omega p - dU + f(t, g, \omega) + \sum_j\lambda_ja^j, \qquad \omega\in\mathfrak{d}. $$
 
     `discretize` gives the forced discrete map, symmetric in time and of order 2 or, composed, 4, 6, 8, with group and
-    constraint kept as by the free map (docs/theory/forces.md). Two schemes say where forces act:
+    constraint kept as by the free map (docs/theory/forces.md). Two schemes differ in where forces act:
 
     - "energy": equal half impulses $\tfrac h2f$ at both ends of a step, taken at the displacement itself. T + U is
       exact on every branch and at every step size (Theorem 18.1), and T changes by $\langle f, X\rangle$ exactly,
@@ -75,8 +76,8 @@ class Forced(AbstractSystem):
         scheme: "energy" or "variational"; by default "energy" wherever it is defined and the body is constrained.
 
     Functions marked `numba.njit` run in the compiled step of a constraint that is fixed in the body, in a fraction of a
-    microsecond beside their own time; they may return a tuple, and must not write to their arguments. What they raise
-    is printed, and ends the run as "nonfinite". Functions of Python have the same bits, and cost some hundred
+    microsecond beside their own time; they may return a tuple, and must not write to their arguments. An exception in
+    them is printed, and ends the run as "nonfinite". Functions of Python have the same bits, and cost some hundred
     microseconds a step.
 
     Raises:
@@ -231,7 +232,7 @@ class Forced(AbstractSystem):
         """Whether forces act by equal half impulses at the displacement, the scheme "energy", around a free step.
 
         Raises:
-            ValueError: It is asked for where the free step does not keep its energy.
+            ValueError: The free step does not keep its energy.
         """
         if self.slip is not None:
             return self._slips(exact and not is_composition)
@@ -254,8 +255,8 @@ class Forced(AbstractSystem):
     @functools.cached_property
     def differences(self) -> tuple[Float[np.ndarray, "dim orders 2 N N"], Float[np.ndarray, "orders"]]:
         """Displacements to and fro along each body direction, and weights: -dU sums what U loses between them."""
-        offsets = _OFFSET * np.arange(1, 1 + len(_DIFFERENCES))[:, None] * np.eye(self.group.dim)[:, None]
-        return np.stack([self.group.exp(offsets), self.group.exp(-offsets)], axis=2), _DIFFERENCES
+        offsets, weights = central_differences(self.group.dim)
+        return self.group.exp(offsets), weights
 
     def potential_energy(self, configuration: Float[Array, "... N N"]) -> Float[Array, "..."]:
         """Return U at configurations; zero without a potential.
@@ -433,6 +434,12 @@ class Forced(AbstractSystem):
         moves, weights = self.differences
         values = _each(self._value, g @ moves)
         return (values[..., 1] - values[..., 0]) @ weights
+
+
+def central_differences(dim: int) -> tuple[Float[np.ndarray, "dim orders 2 dim"], Float[np.ndarray, "orders"]]:
+    """Return offsets to and fro along each direction, and the weights of what a function loses between them."""
+    offsets = _OFFSET * np.arange(1, 1 + len(_DIFFERENCES))[:, None] * np.eye(dim)[:, None]
+    return np.stack([offsets, -offsets], axis=2), _DIFFERENCES
 
 
 def _each(function: Callable[[np.ndarray], Any], g: np.ndarray) -> np.ndarray:

@@ -86,21 +86,21 @@ class Slip:
     $$ v = 0, \quad |\lambda| \le \mu \qquad\text{or}\qquad
        \lambda = -\mu\,\frac{v}{|v|} - c\,v, \quad v \ne 0 . $$
 
-    Several rows are one contact with a cone: $|\lambda|$ is their norm. Rows of unit velocities make $\mu$ a force.
+    Several rows are one contact with a cone: $|\lambda|$ is their norm. With rows of unit velocities $\mu$ is a force.
 
     `discretize` decides at every step whether the rows hold, then takes the step of the system itself, or slide
     (docs/theory/forces.md, Theorem 18.4). T never grows by a slip, at any step size. Momenta and velocities are those
     of the system without these rows, and an orbit shows the slip: `orbit.body_velocity @ rows.T`, zero while they hold.
 
     Args:
-        rows: A, (s, dim) rows of the system's annihilator, or others that span the same as s of them. The other rows of
-            the annihilator always hold.
+        rows: A, (s, dim) rows of the system's annihilator, or rows with the span of s of them. The other rows of the
+            annihilator always hold.
         grip: $\mu$, the largest reaction that holds; 0 for none, infinite for rows that never yield.
         viscous: c of the sliding rows.
 
     Raises:
         ValueError: Rows that are dependent or not finite, a grip or a coefficient that is negative; by `Forced`, rows
-            that are not those of the constraint, a body without one, a constraint fixed in space; by `discretize`, a
+            that are not of the constraint, a body without one, a constraint fixed in space; by `discretize`, a
             free map that does not keep its energy, the scheme "variational", an order above 2.
 
     Example:

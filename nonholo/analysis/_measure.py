@@ -175,12 +175,12 @@ class InvariantMeasure:
         return np.concatenate([np.zeros(min(1, len(orbit))), np.cumsum(steps)])
 
     def _discrete(self, where: str) -> Discretization:
-        remedy = "Pass what `discretize` returned."
+        remedy = "Pass the result of `discretize`."
         return instance(where, self.motion, Discretization, "belong to a discrete map", remedy)
 
 
 def invariant_measure(motion: AbstractLLSystem | Discretization, energy: Array = 1.0) -> InvariantMeasure:
-    r"""Tell which densities of restricted momenta the flow of a system, or its discrete map, keeps.
+    r"""Return which densities of restricted momenta the flow of a system, or its discrete map, keeps.
 
     - A balanced body keeps its momenta (the principal branch is the identity): every density is invariant.
     - Any other body keeps no density that is continuous and positive near an equilibrium other than rest. An

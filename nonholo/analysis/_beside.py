@@ -11,7 +11,7 @@ from typing import Any
 import jax
 import numpy as np
 
-from nonholo.analysis.linearization._reduction import Local
+from nonholo.analysis._linearize import Local
 from nonholo.base.checks import error
 from nonholo.base.types import Array, Float
 from nonholo.continuous import vector_field
@@ -20,7 +20,7 @@ from nonholo.discrete.definition import compile_double
 from nonholo.lagrange_dalembert import CoordinateFlow, tangents
 from nonholo.simulation import refuse_many_matrices, simulate
 from nonholo.simulation.traced import rollout
-from nonholo.systems import Start, in_coordinates, refuse_slip
+from nonholo.systems import AbstractCoordinateSystem, Start, refuse_slip
 
 _TIMES = np.array([0.0, 0.3719, 0.9173])  # not in a ratio that a rotation may have
 _OTHERS, _SPREAD = 3, 0.3
@@ -153,7 +153,7 @@ def _differences(function: Callable[[np.ndarray], np.ndarray], z: np.ndarray) ->
 
 def beside_state(owner: str, subject: Any, configuration: Any, velocity: Any) -> tuple[Local, Any]:
     """Return the changes beside a state of a system or of its map, and the function that gives states beside it."""
-    motion = subject if in_coordinates(subject) else CoordinateFlow(subject)
+    motion = CoordinateFlow(subject) if isinstance(subject, AbstractCoordinateSystem) else subject
     x, v = tangents.begin(motion, owner, configuration, velocity)
     later = tangents.following(motion, x, v)
     rng, size = np.random.default_rng(0), len(v) + motion.system.is_driven

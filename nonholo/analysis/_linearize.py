@@ -3,18 +3,122 @@
 import dataclasses
 import functools
 import itertools
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
+import scipy.linalg
 from scipy.optimize import bisect, brentq
 
-from nonholo.analysis.linearization._reduction import Local, reduced
 from nonholo.base.checks import array, count, error, instance, needs, shown
 from nonholo.base.memo import Keeper
-from nonholo.base.types import Float, Inexact
+from nonholo.base.types import Bool, Float, Inexact, Int
+from nonholo.continuous import ContinuousFlow, flow_tangents
 from nonholo.discrete import Discretization
-from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, in_coordinates
+from nonholo.orbit import Orbit, as_orbit
+from nonholo.systems import AbstractCoordinateDiscretization, AbstractCoordinateSystem, AbstractSystem
+
+_CHOICES = 1000  # of velocities
+_SHARE = 0.05  # least singular value of the dependent columns of orthonormal constraints; a good choice has more
+_UNSEEN = 1e-11  # of the largest derivative
+_STEADY = 1e-7  # of a state
+
+
+class Local(NamedTuple):
+    """Changes beside some states: the steady one, the same later, and others that show what depends on what.
+
+    Attributes:
+        names: Those of m numbers of a state: first coordinates seen from its place, then velocities or momenta.
+        places: How many of them are coordinates.
+        state: The steady state, shape (m,).
+        change: Rates of the states, or what a step adds to them, shape (K, m).
+        slope: Their derivatives by the states, shape (K, m, m).
+        rows: Derivatives of the constraints, shape (K, s, m); those of holonomic ones by velocities are zero.
+        later: How many of the states after the first one are the steady motion at later times.
+    """
+
+    names: tuple[str, ...]
+    places: int
+    state: Float[np.ndarray, "m"]
+    change: Float[np.ndarray, "K m"]
+    slope: Float[np.ndarray, "K m m"]
+    rows: Float[np.ndarray, "K s m"]
+    later: int
+
+
+class Reduced(NamedTuple):
+    """The linear equations of the states that matter.
+
+    Attributes:
+        states: Numbers of these states.
+        matrix: Derivatives of their changes.
+        defect: Their changes, which vanish in a steady motion.
+        directions: Changes of the whole state, a column for each of these states.
+        is_steady: Whether they do, and the derivatives stay the same.
+        ignorable: Numbers of the coordinates that are left out.
+    """
+
+    states: Int[np.ndarray, "d"]
+    matrix: Float[np.ndarray, "d d"]
+    defect: Float[np.ndarray, "d"]
+    directions: Float[np.ndarray, "m d"]
+    is_steady: bool
+    ignorable: Int[np.ndarray, "_"]
+
+
+def reduced(local: Local) -> Reduced:
+    """Return the equations in the velocities that leave the fewest coordinates, steady if there are such."""
+    rows, places = local.rows[0], local.places
+    of_places = ~rows[:, places:].any(axis=1)  # holonomic constraints
+    holonomic = list(next(_choices(rows[of_places, :places])))
+    choices = _choices(rows[~of_places, places:])
+    equations = (_without(local, holonomic + [places + i for i in dependent]) for dependent in choices)
+    return min(equations, key=lambda each: (not each.is_steady, len(each.states)))
+
+
+def _choices(rows: Float[np.ndarray, "s n"]) -> Iterator[tuple[int, ...]]:
+    """Return sets of velocities that may depend on the others, those of the first coordinates first."""
+    s, n = rows.shape
+    across = np.linalg.qr(rows.T)[0]
+    order: Any = scipy.linalg.qr(across.T, mode="r", pivoting=True)[-1] if s else ()
+    for choice in itertools.islice(itertools.combinations(range(n), s), _CHOICES):
+        if not s or np.linalg.svd(across[list(choice)], compute_uv=False)[-1] > _SHARE:
+            yield choice
+    yield tuple(map(int, order[:s]))
+
+
+def _without(local: Local, dependent: list[int]) -> Reduced:
+    independent = np.setdiff1d(np.arange(len(local.state)), dependent)
+    dependence = -np.linalg.solve(local.rows[:, :, dependent], local.rows[:, :, independent])
+    slope = local.slope[:, independent][:, :, independent] + local.slope[:, independent][:, :, dependent] @ dependence
+    change, count = local.change[:, independent], 1 + local.later
+    matters = _influences(_depends(slope), int((independent < local.places).sum()))
+    states = independent[matters]
+    matrix, defects = slope[:count, matters][:, :, matters], change[:count, matters]
+    largest, z = np.abs(local.slope[0]).max(), 1 + np.abs(local.state[states])
+    bound = _STEADY * np.abs(matrix[0]) @ z + _UNSEEN * largest * z.max(initial=0.0)
+    same = np.abs(matrix - matrix[0]).max(initial=0.0) <= _STEADY * largest
+    is_steady = bool(same and np.all(np.abs(defects) <= bound))
+    worst = defects[np.argmax(np.abs(defects).max(axis=1, initial=0.0))]
+    free = independent[independent < local.places]
+    directions = np.eye(len(local.state))[:, independent]
+    directions[dependent] = dependence[0]
+    return Reduced(states, matrix[0], worst, directions[:, matters], is_steady, np.setdiff1d(free, states))
+
+
+def _depends(slope: Float[np.ndarray, "K d d"]) -> Bool[np.ndarray, "d d"]:
+    """Return which change depends on which state, at any state where the derivatives are finite."""
+    finite = slope[np.isfinite(slope).all(axis=(1, 2))]
+    return np.any(np.abs(finite) > _UNSEEN * np.abs(finite).max(axis=(1, 2), initial=0.0, keepdims=True), axis=0)
+
+
+def _influences(depends: Bool[np.ndarray, "d d"], places: int) -> Bool[np.ndarray, "d"]:
+    """Return which states the velocities depend on, directly or by other states; velocities are among them."""
+    matters = np.arange(len(depends)) >= places
+    while np.any(more := depends[matters].any(axis=0) & ~matters):
+        matters |= more
+    return matters
+
 
 Shifted = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 """Takes changes of coordinates and of velocities to a configuration and a body velocity."""
@@ -78,7 +182,7 @@ def linearize(system: Any, *, configuration: Any = None, body_velocity: Any = No
     on the pose $\xi$ of $g\,e^\xi$, seen from a body that moves on steadily. So a top in steady precession is, too.
 
     Derivatives are exact, by JAX; those of forces and potentials that are functions, on groups, are central
-    differences of order 6. What depends on what is seen at the state and three more, up to 1e-11 of the largest
+    differences of order 6. Dependences are seen at the state and three more, up to 1e-11 of the largest
     derivative. The step of a map begins as `simulate` begins, with `body_velocity`.
 
     Args:
@@ -121,18 +225,11 @@ def linearize(system: Any, *, configuration: Any = None, body_velocity: Any = No
     return Linearization(matrix, names, ignorable, _time_step(system))
 
 
-def step_tangents(orbit: Any) -> Float[np.ndarray, "L d d"]:
-    """Return the derivative of each state of a discrete orbit on a group by the one before."""
-    with needs("jax", "Orbit.tangent"):
-        from nonholo.analysis.linearization import _beside
-    return _beside.along(orbit)
-
-
 def local_motion(owner: str, system: Any, configuration: Any, velocity: Any) -> tuple[Local, Shifted]:
     """Return the changes beside a state, and the function that gives the states beside it."""
     with needs("jax", owner):
-        from nonholo.analysis.linearization import _beside
-    if isinstance(system, AbstractCoordinateSystem) or in_coordinates(system):
+        from nonholo.analysis import _beside
+    if isinstance(system, AbstractCoordinateSystem | AbstractCoordinateDiscretization):
         return _beside.beside_state(owner, system, configuration, velocity)
     if not isinstance(system, AbstractSystem | Discretization):
         remedy = "Pass a system, on a group or in coordinates, or what `discretize` returned."
@@ -282,3 +379,59 @@ def _change_between(linearization: Any, least: float, ends: np.ndarray, rows: li
     crosses = before * after < 0 and min(abs(before), abs(after)) > least
     root: Any = brentq(change, *ends, xtol=1e-14) if crosses else bisect(is_alike, *ends, xtol=1e-14)
     return float(root)
+
+
+_WHERE = "Orbit.tangent"
+
+
+def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
+    r"""Return the derivative of each state of an orbit by the one before, $\partial r_{k+1}/\partial r_k$.
+
+    Of the discrete map, without JAX from closed derivatives along the displacement variety,
+
+    $$ \frac{\partial r_{k+1}}{\partial r_k} = F'(W_k^{-1})\,F'(W_k)^{-1}, \qquad
+       F(W) = P(W)|_{\mathfrak d},\quad r_{k+1} = -F(W_k^{-1}), $$
+
+    for a left-invariant system, difference "matrix", constraint "skew" and order 2; of other maps by JAX. Where forces
+    depend on the pose, or the constraint is fixed in space, a state is $(\xi, r)$ with $\xi$ of the pose
+    $g\,e^\xi$, (K - 1, dim + k, dim + k). Of a flow without forces, of a constraint fixed in the body, from the Taylor
+    series of its equation of variation, between its times.
+
+    Args:
+        orbit: Made by `simulate` with every step saved, or by `flow`. An orbit in coordinates has its own `tangent`.
+
+    Raises:
+        ValueError: Another kind of orbit, a map under a table or a function of Python or numba.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), 0.1)
+        >>> orbit = nh.simulate(sleigh, restricted_velocity=(0.0, 1.0), steps=1)
+        >>> orbit.tangent[0].round(3)
+        array([[0.961, 0.   ],
+               [0.   , 1.   ]])
+    """
+    as_orbit(_WHERE, orbit, "of one in coordinates take `orbit.tangent`.")
+    discrete, system = orbit.motion, orbit.system
+    if orbit.has_impacts.any():
+        raise error(_WHERE, "have no impacts", "some", "Ask it of the part of the orbit before the first one.")
+    if isinstance(discrete, ContinuousFlow) and not system.is_spatial and not system.is_forced:
+        return flow_tangents(_WHERE, system, orbit.restricted_momentum, orbit.time)
+    if not isinstance(discrete, Discretization) or _acts_from_outside(discrete.forces):
+        remedy = "Differentiate `nh.rollout` by JAX."
+        raise error(_WHERE, "belong to a free flow, or to a map whose forces are numbers", shown(discrete), remedy)
+    if not orbit.has_every_step:
+        raise error(_WHERE, "have every step", f"{len(orbit)} states with others between", "Run with save_every=1.")
+    if _has_closed_derivatives(discrete):
+        return discrete.displacement_decoder.tangent(orbit.canonical_chart[:-1])
+    with needs("jax", _WHERE):
+        from nonholo.analysis import _beside
+    return _beside.along(orbit)
+
+
+def _has_closed_derivatives(discrete: Discretization) -> bool:
+    return discrete.conserves_energy and discrete.order == 2 and discrete.forces is None
+
+
+def _acts_from_outside(forces: Any) -> bool:
+    """Return whether forces do more than the state does: by a table, or by a function that is not traced."""
+    return forces is not None and (forces.needs_function or forces.table is not None)

@@ -37,7 +37,7 @@ class Invariants:
         reversal_defect: Largest relative miss of one step forward and back; not measured in coordinates.
         largest_step_angle: In degrees.
         outcome: How the run ended.
-        work: What forces, and what else drives it, did on the whole, less what friction dissipated; None of a free
+        work: The total work of forces and drives, less the dissipation by friction; None of a free
             system.
     """
 
@@ -53,12 +53,12 @@ class Invariants:
 
 
 def invariants(orbit: AbstractOrbit) -> Invariants:
-    """Measure what an orbit should keep.
+    """Measure the errors of an orbit in its invariants.
 
     Returns:
         `Invariants`, with the fields `states`, `steps`, `energy_drift` (relative), `constraint_residual`,
         `group_residual`, `reversal_defect`, `largest_step_angle` (in degrees), `outcome`, `work`: the last five None
-        where they are not defined. `help(type(nh.invariants(orbit)))` says what each of them is.
+        where they are not defined. `help(type(nh.invariants(orbit)))` describes each of them.
 
     Raises:
         ValueError: The orbit has no states.
@@ -71,7 +71,7 @@ def invariants(orbit: AbstractOrbit) -> Invariants:
     """
     where, remedy = "invariants(orbit=...)", "Pass what `simulate` or `flow` returned."
     if len(instance(where, orbit, AbstractOrbit, "be an orbit", remedy)) == 0:
-        raise error(where, "have at least one state", str(orbit), "Its outcome says why it has none.")
+        raise error(where, "have at least one state", str(orbit), "Its outcome gives the reason.")
     driven = orbit.system.forces is not None if isinstance(orbit, Orbit) else orbit.system.is_driven
     work = orbit.known_work
     return Invariants(
@@ -173,7 +173,7 @@ def conserved_momenta(system: AbstractSystem) -> ConservedMomenta:
     the spatial components always contain $\mathfrak{d}$.
 
     The lists are complete for connected groups: a linear function of p or of $\mu$ that is not in their span changes
-    along some motion. A discrete map keeps the spatial components along ideals inside $\mathfrak{d}$, whatever its
+    along some motion. A discrete map keeps the spatial components along ideals inside $\mathfrak{d}$, for every
     Lagrangian. That it keeps the others is not implied.
 
     Args:
@@ -262,3 +262,37 @@ def _bracket_scale(group: AbstractMatrixGroup) -> float:
 
 def _brackets(group: AbstractMatrixGroup, x: np.ndarray, y: np.ndarray) -> Float[np.ndarray, "i j dim"]:
     return group.bracket(x[:, None, :], y[None, :, :])
+
+
+def lyapunov_exponents(orbit: AbstractOrbit) -> Float[np.ndarray, "k"]:
+    r"""Return the finite-time Lyapunov exponents along an orbit, largest first.
+
+    $$ \lambda_i = \frac{1}{t_K - t_0}\sum_k \log R^{(k)}_{ii}, \qquad
+       \frac{\partial r_{k+1}}{\partial r_k}\,Q^{(k)} = Q^{(k+1)}R^{(k+1)}, $$
+
+    Benettin's method: an orthonormal frame is carried by the tangent map (`Orbit.tangent`) and made orthonormal again
+    at each step. Their sum is the mean rate at which volumes of states grow: of momenta, where nothing else decides
+    them, in coordinates of configurations with admissible velocities.
+
+    Args:
+        orbit: One that has a `tangent`.
+
+    Raises:
+        ValueError: An orbit without a tangent map, or of a single state.
+
+    Example:
+        A sleigh tends to its straight motion: one momentum keeps what it is, the other decays.
+
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), 0.1)
+        >>> nh.lyapunov_exponents(nh.simulate(sleigh, restricted_velocity=(0.0, 1.0), steps=200)).round(3) + 0.0
+        array([ 0. , -0.4])
+    """
+    remedy = "Pass what `simulate` or `flow` returned."
+    steps = instance("lyapunov_exponents(orbit=...)", orbit, AbstractOrbit, "be an orbit", remedy).tangent
+    if not len(steps):
+        raise error("lyapunov_exponents(orbit=...)", "have a step", "one state", "Run longer.")
+    frame, growth = np.eye(steps.shape[-1]), np.zeros(steps.shape[-1])
+    for step in steps:
+        frame, triangle = np.linalg.qr(step @ frame)
+        growth += np.log(np.abs(triangle.diagonal()))
+    return np.sort(growth / float(orbit.time[-1] - orbit.time[0]))[::-1]
