@@ -366,11 +366,11 @@ class Axes:
 
     def canonical_momenta(self, momenta: np.ndarray) -> np.ndarray:
         """Return momenta along the canonical rows."""
-        return momenta if self.rows is None else applied(self._inverse, momenta)
+        return momenta if self.rows is None else applied(self.inverse, momenta)
 
     def charts(self, canonical: np.ndarray) -> np.ndarray:
         """Return charts along the kernel's rows."""
-        return canonical if self.rows is None else applied(self._inverse.swapaxes(-1, -2), canonical)
+        return canonical if self.rows is None else applied(self.inverse.swapaxes(-1, -2), canonical)
 
     def canonical_charts(self, charts: np.ndarray) -> np.ndarray:
         """Return charts along the canonical rows."""
@@ -386,18 +386,19 @@ class Axes:
 
     def poses(self, canonical: np.ndarray) -> np.ndarray:
         """Return compact poses of the kernel's axes."""
-        return canonical if self.frame is None else self.group.pose_product(canonical, self._turns[0])
+        return canonical if self.frame is None else self.group.pose_product(canonical, self.turns[0])
 
     def canonical_poses(self, poses: np.ndarray) -> np.ndarray:
         """Return compact poses of the canonical axes."""
-        return poses if self.frame is None else self.group.pose_product(poses, self._turns[1])
+        return poses if self.frame is None else self.group.pose_product(poses, self.turns[1])
 
     @functools.cached_property
-    def _turns(self) -> tuple[np.ndarray, np.ndarray]:
+    def turns(self) -> tuple[np.ndarray, np.ndarray]:
         """The frame and its inverse as compact poses."""
         frame = np.asarray(self.frame)
         return self.group.pose_from_matrix(frame), self.group.pose_from_matrix(self.group.inverse(frame))
 
     @functools.cached_property
-    def _inverse(self) -> np.ndarray:
+    def inverse(self) -> np.ndarray:
+        """The inverse of C."""
         return np.linalg.inv(np.asarray(self.rows))
