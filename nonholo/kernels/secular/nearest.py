@@ -166,6 +166,12 @@ def _tangent(p: NearestBody, x: np.ndarray, direction: np.ndarray, out: np.ndarr
 
 
 @njit()
+def _keeps(det: float, positive: bool) -> bool:
+    """Return whether a determinant keeps its sign."""
+    return det != 0 and np.isfinite(det) and (det > 0) == positive
+
+
+@njit()
 def follow(p: NearestBody, start: np.ndarray, end: np.ndarray, x: np.ndarray) -> bool:
     """Follow a root from one goal to another; false, with the point as it was, if the path is not clear."""
     m, here = len(x), x.copy()
@@ -182,8 +188,7 @@ def follow(p: NearestBody, start: np.ndarray, end: np.ndarray, x: np.ndarray) ->
         goal = end if ahead == 1.0 else start + ahead * direction
         clear = _correct(p, goal, here + size * tangent[:, 0], size * pace, there)
         if clear:
-            det = _tangent(p, there, direction, tangent, J)
-            clear = det != 0 and np.isfinite(det) and (det > 0) == positive
+            clear = _keeps(_tangent(p, there, direction, tangent, J), positive)
         if clear:
             assign(here, there)
             s, size = ahead, 2 * size

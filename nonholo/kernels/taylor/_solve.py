@@ -213,8 +213,7 @@ def _write_rows(
     lanes: tuple[int, ...],
 ) -> None:
     """Write states of a lane at the times ahead, in place of which the sums of their numbers come."""
-    (place, heading, head), (series, ahead, order) = columns, (room.series, room.ahead, len(room.series) - 1)
-    L, first, second = len(lanes), place.shape[1], place.shape[1] + heading.shape[1]
+    L, series, ahead, order = len(lanes), room.series, room.ahead, len(room.series) - 1
     time, later, total, sum_later = (
         load(ahead, 0, 0, EIGHT),
         load(ahead, 0, 1, EIGHT),
@@ -237,14 +236,22 @@ def _write_rows(
         store(ahead, 1, 1, EIGHT, other)
         total, sum_later = total + change, sum_later + other
         for k in range(rows):
-            if at < first:
-                place[row + k, at] = ahead[1, k]
-            elif at < second:
-                heading[row + k, at - first] = ahead[1, k]
-            else:
-                head[row + k, at - second] = ahead[1, k]
+            _put(columns, row + k, at, ahead[1, k])
     store(ahead, 0, 0, EIGHT, total)
     store(ahead, 0, 1, EIGHT, sum_later)
+
+
+@scalar
+def _put(columns: Columns, row: Any, at: int, value: float) -> None:
+    """Write a number of a state into the part that has it."""
+    place, heading, head = columns
+    first, second = place.shape[1], place.shape[1] + heading.shape[1]
+    if at < first:
+        place[row, at] = value
+    elif at < second:
+        heading[row, at - first] = value
+    else:
+        head[row, at - second] = value
 
 
 @scalar
