@@ -81,7 +81,7 @@ class Series(NamedTuple):
         return looked_at([*self.nodes[:, 0, -1], self.end * self.unit], self.unit)
 
     def decode(self, columns: Columns) -> States:
-        """Return momenta, poses and headings, in the place of the columns where they fit."""
+        """Return momenta, poses and headings, in the memory of the columns where they fit."""
         (poses, angles, head), group = columns, self.group
         headings = angles[:, 0] if angles.shape[1] else None
         if not self.compact:
