@@ -177,15 +177,15 @@ def test_headings_of_events_know_full_turns() -> None:
     assert abs(found.time[0] - 0.1 * 6000 * np.pi / np.arcsin(0.4)) < 0.1
 
 
-@pytest.mark.parametrize("block_steps", [20, 5])
-def test_blocks_of_a_run_hold_its_crossings(block_steps: int) -> None:
+@pytest.mark.parametrize(("block_steps", "stop"), [(20, 9), (5, False)])
+def test_blocks_of_a_run_hold_its_crossings(block_steps: int, stop: int) -> None:
     """Blocks, of one state each too, have states and crossings of the run, and end with the one that a stop ends."""
-    run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 200, "events": [nh.Event(east, stop=9)], "save_every": 5}
+    run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 200, "events": [nh.Event(east, stop=stop)], "save_every": 5}
     whole = nh.simulate(ROUND, **run)
     blocks = list(nh.iterate(ROUND, **run, block_steps=block_steps))
     assert np.array_equal(np.concatenate([block.events["east"].time for block in blocks]), whole.events["east"].time)
     assert_joined(blocks, whole, *STATE)
-    assert [block.events.stopped_by for block in blocks] == [None] * (len(blocks) - 1) + ["east"]
+    assert [block.events.stopped_by for block in blocks] == [None] * (len(blocks) - 1) + [whole.events.stopped_by]
 
 
 def test_a_stored_run_without_start_has_no_crossings(tmp_path: pathlib.Path) -> None:

@@ -151,7 +151,7 @@ def test_gradients_of_every_system_are_differences(system: AbstractSystem, optio
     point = (nh.discretize(system, 0.1, **options), np.linspace(0.4, 0.6, system.rank))
     pose = system.group.exp(np.linspace(0.1, 0.5, system.group.dim))
     weights, on_pose = rng.normal(size=system.rank), rng.normal(size=pose.size)
-    steps = 130 if system is TOP and not options else 50  # so many that stretches of steps are computed once more
+    steps = 130 if system is TOP and not options else 50  # of 130 steps stretches are computed once more
 
     def end(run: Callable, discrete: nh.Discretization, velocity: Any) -> Any:
         how = {"steps": steps, "save_every": steps}
