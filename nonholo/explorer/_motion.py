@@ -150,7 +150,7 @@ def _of_discretization(where: str, discrete: Discretization) -> Shown:
         if not len(orbit):
             raise error(where, "be a motion that the page can show", problem, "Run it, and pass the orbit.")
         return _replay(orbit, _BEYOND)
-    return _shown_state(orbit, kind, state, table)
+    return _shown_state(system, orbit, state, table)
 
 
 def _live(orbit: Orbit) -> Shown | None:
@@ -168,13 +168,13 @@ def _live(orbit: Orbit) -> Shown | None:
     if _problem(state):
         return _replay(orbit, _BEYOND)
     cut = f" The first {steps:,} of {step_count:,} steps." if steps < step_count else ""
-    return _shown_state(orbit, kind, state, table, cut)
+    return _shown_state(orbit.system, orbit, state, table, cut)
 
 
-def _shown_state(orbit: Orbit, kind: str, state: dict[str, Any], table: Any, cut: str = "") -> Shown:
+def _shown_state(system: AbstractSystem, orbit: Orbit, state: dict[str, Any], table: Any, cut: str = "") -> Shown:
     preview = _numbers(orbit, _spread(orbit, _RECORDED))[0] if len(orbit) else None
-    data = {"kind": kind, "state": state, "recorded": preview, "table": table}
-    return Shown(data, _name(orbit.system), _frame_note(orbit.system) + cut)
+    data = {"kind": state["kind"], "state": state, "recorded": preview, "table": table}
+    return Shown(data, _name(system), _frame_note(system) + cut)
 
 
 def _kind(discrete: Discretization) -> str | None:
