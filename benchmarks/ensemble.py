@@ -50,6 +50,7 @@ def compare(both: tuple, name: str, posed: bool) -> None:
     body = np.array(step.body, dtype=np.float64)
     first = step.encode(velocities @ discrete.system.constrained_inertia)
     unit, rows = np.tile((1.0, 0.0, 0.0, 0.0), (MEMBERS, 1)), kernel_rows(posed)
+    axes = kernels.MemberAxes(np.ones((1, 13)), False, 0)
     m, q = first.copy(), unit.copy()
 
     def part_of_c(found: ctypes.CDLL, part: slice) -> int:
@@ -62,7 +63,9 @@ def compare(both: tuple, name: str, posed: bool) -> None:
 
     def kernel(part: slice) -> None:
         own = kernels.MemberRows(*(array[part] for array in rows))
-        kernels.advance_members(step.body, None, first[part], unit[part], STEPS, 0, own, np.zeros(1, dtype=np.bool_))
+        kernels.advance_members(
+            step.body, None, axes, first[part], unit[part], STEPS, 0, own, np.zeros(1, dtype=np.bool_)
+        )
 
     def call() -> nh.Ensemble:
         return nh.ensemble(discrete, restricted_velocity=velocities, steps=STEPS, reconstruct=posed)

@@ -28,17 +28,12 @@ for _command in _COMMANDS:
 
 def main() -> None:
     """Run the command line."""
-    _stop_as_by_ctrl_c()
-    app()
-
-
-def _stop_as_by_ctrl_c() -> None:
-    """Let signals that end the process or close its terminal stop a run as Ctrl-C does: where it can be resumed."""
-    for name in ("SIGTERM", "SIGHUP"):
+    for name in ("SIGTERM", "SIGHUP"):  # which stop a run as Ctrl-C does: at a state that can be resumed
         with contextlib.suppress(AttributeError, ValueError):  # Windows; a thread that is not the main one
             number = getattr(signal, name)
             if signal.getsignal(number) == signal.SIG_DFL:  # nohup has it ignored
                 signal.signal(number, signal.default_int_handler)
+    app()
 
 
 def _show_version(is_asked: bool) -> None:

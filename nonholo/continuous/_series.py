@@ -23,12 +23,13 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.continuous._solution import PLANE, Problem, Solved, States, first_heading
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.kernels import Quadratic, revisit_series, solve_series, sparse_products
+from nonholo.kernels import Columns, Quadratic, revisit_series, solve_series, sparse_products
 from nonholo.orbit import looked_at, turned_near
 from nonholo.systems import AbstractSystem
 
 _COMPACT = 40
 """Poses of more numbers are integrated as matrices, whose rates need not be tried."""
+_CHUNK = 1 << 12  # states that are decoded at once: what it takes between stays near the processor
 GUARD = 1 / 64
 """The error of a step as a share of the tolerance, so that only rounding is left at the default."""
 
@@ -71,27 +72,31 @@ class Series(NamedTuple):
 
     def __call__(self, elapsed: Float[np.ndarray, "K"]) -> States:
         """Return the states at times since the start, which lie in the order in which the motion was solved."""
-        limits = self.end * self.unit, self.tolerance
-        return self.decode(revisit_series(self.equations, self.nodes, elapsed * self.unit, *limits))
+        planar, limits = int(self.group == PLANE), (self.end * self.unit, self.tolerance)
+        widths = len(self.equations.order) - planar - self.head, planar, self.head
+        return self.decode(revisit_series(self.equations, self.nodes, widths, elapsed * self.unit, *limits))
 
     def looks(self) -> Float[np.ndarray, "looks"]:
         """Return times since the start at which the state is looked at for events."""
         return looked_at([*self.nodes[:, 0, -1], self.end * self.unit], self.unit)
 
-    def decode(self, rows: Float[np.ndarray, "K size"]) -> States:
-        """Return momenta, poses and headings."""
-        group, end = self.group, rows.shape[1] - self.head
-        pose_end = end - (group == PLANE)
-        poses = np.ascontiguousarray(rows[:, :pose_end])
+    def decode(self, columns: Columns) -> States:
+        """Return momenta, poses and headings, in the memory of the columns where they fit."""
+        (poses, angles, head), group = columns, self.group
+        headings = angles[:, 0] if angles.shape[1] else None
         if not self.compact:
             poses = group.pose_from_matrix(poses.reshape(-1, *group.identity.shape))
-        poses = group.normalize_pose(poses)
-        momenta = (
-            rows[:, end : end + self.rank] * self.unit
-            if self.momentum is None
-            else np.broadcast_to(self.momentum, (len(rows), len(self.momentum))).copy()
-        )
-        return States(momenta, poses, turned_near(rows[:, pose_end], poses) if group == PLANE else None)
+        for begin in range(0, len(poses), _CHUNK):
+            part = slice(begin, begin + _CHUNK)
+            poses[part] = group.normalize_pose(poses[part])
+            if headings is not None:
+                headings[part] = turned_near(headings[part], poses[part])
+        if self.momentum is None:
+            head *= self.unit
+            momenta = np.ascontiguousarray(head[:, : self.rank])
+        else:
+            momenta = np.broadcast_to(self.momentum, (len(poses), len(self.momentum))).copy()
+        return States(momenta, poses, headings)
 
 
 def by_series(system: AbstractSystem, problem: Problem) -> Solved:
@@ -130,11 +135,10 @@ def solve(
     _, pose, elapsed, tolerances = problem
     compact, tolerance = is_compact(group) and not len(f.forms), tolerances[0] * GUARD
     g = pose if compact else group.matrix_from_pose(pose).ravel()
-    start = np.concatenate([g, first_heading(group, pose), head])
-    rows, nodes = solve_series(f, start, elapsed * unit, tolerance, most)
+    columns, nodes = solve_series(f, (g, first_heading(group, pose), head), elapsed * unit, tolerance, most)
     series = Series(group, f, len(head), rank, compact, constant, unit, tolerance, float(elapsed[-1]), nodes)
-    outcome = Outcome.successful if len(rows) == len(elapsed) else Outcome.not_converged
-    return Solved(series.decode(rows), outcome, series, series.looks)
+    outcome = Outcome.successful if len(columns[0]) == len(elapsed) else Outcome.not_converged
+    return Solved(series.decode(columns), outcome, series, series.looks)
 
 
 @functools.lru_cache(maxsize=16)
@@ -277,8 +281,9 @@ def flow_tangents(
     out = np.empty((len(time) - 1, k, k))
     for j, (r, step) in enumerate(zip(momenta, np.diff(time), strict=False)):
         unit = power_of_two(V @ r)
-        rows, _ = solve_series(f, np.append(np.eye(k), r / unit), np.array([0.0, step * unit]), _TOLERANCE * GUARD)
-        if len(rows) < 2:
+        parts = np.eye(k).ravel(), np.zeros(0), r / unit
+        (tangents, *_), _ = solve_series(f, parts, np.array([0.0, step * unit]), _TOLERANCE * GUARD)
+        if len(tangents) < 2:
             raise error(where, "be of a motion that can be integrated", f"none from state {j}", "Ask for closer times.")
-        out[j] = rows[1, : k * k].reshape(k, k)
+        out[j] = tangents[1].reshape(k, k)
     return out

@@ -82,13 +82,11 @@ def members_by_series(
         head = momenta / units[:, None]
     else:
         head, units = heads(system.forces, momenta, poses)
-    starts = np.hstack([poses, first_heading(group, poses), head])
-    rows = np.full((len(momenta), len(elapsed), starts.shape[1]), np.nan)
-    counts = solve_members(f, (velocities, factors), starts, (elapsed, units), tolerance * GUARD, rows, stop)
-    path = group.normalize_pose(rows[..., : poses.shape[1]])
-    headings = turned_near(rows[..., poses.shape[1]], path) if group == PLANE else None
-    first = starts.shape[1] - head.shape[1]
-    return States(rows[..., first : first + k] * units[:, None, None], path, headings), counts
+    parts, numbers = (poses, first_heading(group, poses), head), (velocities, factors)
+    (path, angles, heads_after), counts = solve_members(f, numbers, parts, (elapsed, units), tolerance * GUARD, stop)
+    path = group.normalize_pose(path)
+    headings = turned_near(angles[..., 0], path) if group == PLANE else None
+    return States(heads_after[..., :k] * units[:, None, None], path, headings), counts
 
 
 def solver_of(

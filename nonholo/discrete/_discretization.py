@@ -87,9 +87,7 @@ class Discretization(Scheme, AbstractMotion):
     def step_needs_pose(self) -> bool:
         """Whether momenta after a step depend on the pose: with right-invariant constraints, and under some forces."""
         forced = self.forces
-        return self.system.is_spatial or any(
-            each is not None for each in (forced and forced.potential, forced and forced.function)
-        )
+        return self.system.is_spatial or (forced is not None and bool(forced.terms or forced.function))
 
     @property
     def route_name(self) -> str:
@@ -203,7 +201,7 @@ class Discretization(Scheme, AbstractMotion):
     @functools.cached_property
     def _first(self) -> "Discretization":
         """The first step of order 2 of a composition."""
-        return dataclasses.replace(self, time_step=weights(self.order)[0] * self.time_step, order=2)
+        return self.part(weights(self.order)[0])
 
     def mean_force(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
         """Return the covectors f that act over single steps from states, where forces are balanced."""

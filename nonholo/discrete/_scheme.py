@@ -55,6 +55,10 @@ class Scheme:
         """The displacement variety in the canonical frame."""
         return variety_of(self.system, self.constraint)
 
+    def part(self, share: Array) -> Any:
+        """Return the step of order 2 whose length is a share of that of a step."""
+        return dataclasses.replace(self, time_step=share * self.time_step, order=2)
+
 
 def legendre(discrete: Scheme, increment: Inexact[Array, "... N N"], side: str) -> Inexact[Array, "... dim"]:
     """Return the momenta of displacements given as W - I."""

@@ -11,15 +11,14 @@ from nonholo import io
 from nonholo.base.checks import count, error, shown
 from nonholo.base.limits import within_disk, within_memory
 from nonholo.base.progress import waiting
-from nonholo.ensembles._block import block_of
 from nonholo.ensembles._describe import NO_NAME, design_text, differences, function_from, function_name
 from nonholo.ensembles._ensemble_task import RULE, EnsembleTask, ensemble_task_from
 from nonholo.ensembles._family_task import FamilyTask, family_task_from, imported_functions
 from nonholo.ensembles._names import Axes, check_dimensions
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.ensembles.datasets import DatasetTask, dataset_task_from
-from nonholo.ensembles.designs import Design, Grid, RandomDesign, axis_dimensions
-from nonholo.ensembles.stores import Output, SweepStore, Task, create_store, layout_of, open_store, probe_outputs
+from nonholo.ensembles.designs import Design, Grid, RandomDesign, axis_dimensions, block_of
+from nonholo.ensembles.stores import AXIS, Output, SweepStore, Task, create_store, layout_of, open_store, probe_outputs
 from nonholo.simulation import in_one_thread
 
 _BLOCK = 4096  # most members of a block of a task that does not say how many
@@ -47,10 +46,13 @@ def begin_store(
 ) -> SweepStore:
     """Make the store of a sweep, after its task has been tried."""
     io.check_suffix(path, "sweep(store=...)")
-    size = _block(task, design.members) if block is None else count("sweep(block=...)", block, "Pass how many members.")
+    most, least = (task.block, _LANES) if isinstance(task, DESCRIBED) else (_BLOCK, 1)
+    own = min(most, max(least, -(-design.members // _PIECES)))
+    size = own if block is None else count("sweep(block=...)", block, "Pass how many members.")
     with in_one_thread(), waiting("compiling and trying a member", progress):
         results = probe_outputs(task, lambda first, some: block_of(design, first, some), design.members)
-    draws = {name: _output_of_draws(name, shape) for name, shape in design.drawn.items()}
+    axes = {name: tuple(f"{name}_{axis}" for axis in range(1, len(shape) + 1)) for name, shape in design.drawn.items()}
+    draws = {name: Output(axes[name], shape, "float64", dict(AXIS)) for name, shape in design.drawn.items()}
     _check_names(design, draws, results)
     layout = layout_of(tuple(design.sizes.values()), size)
     _refuse_too_large(layout, draws | results, path)
@@ -58,26 +60,18 @@ def begin_store(
     return create_store(path, _description(task, design), design, layout, draws | results, extra)
 
 
-def _block(task: Task, members: int) -> int:
-    most, least = (task.block, _LANES) if isinstance(task, DESCRIBED) else (_BLOCK, 1)
-    return min(most, max(least, -(-members // _PIECES)))
-
-
 def _refuse_too_large(layout: io.Layout, outputs: dict[str, Output], path: Path) -> None:
     """Refuse blocks that memory does not hold, and results that the disk does not: numbers, and files of each block."""
-    each = sum(math.prod(o.shape) * np.dtype(o.dtype).itemsize for o in outputs.values())
-    in_memory = 2.0 * each * math.prod(layout.chunk)
-    within_memory("sweep(block=...)", in_memory, "Pass fewer members: a block is held whole.")
-    files = layout.blocks * (1 + len(outputs))
-    on_disk = float(each) * math.prod(layout.sizes) + _FILE * files
+    each = float(sum(math.prod(o.shape) * np.dtype(o.dtype).itemsize for o in outputs.values()))
+    within_memory("sweep(block=...)", 2 * each * math.prod(layout.chunk), "Pass fewer members: a block is held whole.")
+    on_disk = each * math.prod(layout.sizes) + _FILE * layout.blocks * (1 + len(outputs))
     within_disk("sweep(design=...)", on_disk, path, "Ask for fewer members, or for less of each.")
 
 
 def _check_names(design: Design, draws: dict[str, Output], results: dict[str, Output]) -> None:
     """Refuse names that stand for two things, before anything is computed that nobody could open."""
-    for name in results:
-        if name in draws:
-            raise error("sweep(task=...)", "return names that the design does not have", shown(name), "Rename it.")
+    for name in filter(draws.__contains__, results):
+        raise error("sweep(task=...)", "return names that the design does not have", shown(name), "Rename it.")
     members, lengths = tuple(design.sizes), tuple(design.sizes.values())
     coordinates = {name: Axes(axis_dimensions(name, x), x.shape) for name, x in design.axes.items()}
     outputs = (draws | results).items()
@@ -117,8 +111,7 @@ def functions_of(store: str | Path) -> list[str]:
     if entry["kind"] == "FamilyTask":
         return imported_functions(entry)
     names = entry.get("reductions", []) if entry["kind"] in _MAKERS else [entry["name"]]
-    rules = [entry[RULE]] if RULE in entry else []
-    return [name for name in names if name not in REDUCTIONS] + rules
+    return [name for name in names if name not in REDUCTIONS] + [entry[key] for key in (RULE,) if key in entry]
 
 
 def restored_task(store: SweepStore, task: Any, *, trust: bool = False) -> Task:
@@ -158,8 +151,3 @@ def _refuse_untrusted(store: SweepStore, names: list[str], *, trust: bool) -> No
 def _description(task: Any, design: Design) -> dict[str, Any]:
     entry = task.describe() if isinstance(task, DESCRIBED) else {"kind": "function", "name": function_name(task)}
     return {"task": entry, "design": design_text(design)}
-
-
-def _output_of_draws(name: str, shape: tuple[int, ...]) -> Output:
-    dimensions = tuple(f"{name}_{axis}" for axis in range(1, len(shape) + 1))
-    return Output(dimensions, shape, "float64", {"long_name": "value of the design"})

@@ -89,7 +89,10 @@ def dataset(
     members, definition = count("dataset(orbits=...)", orbits, "Pass how many."), DEFINITIONS[name]
     h = float(scale("dataset(time_step=...)", time_step, "Pass a positive time step."))
     steps = count("dataset(steps=...)", steps, "Pass the number of steps.")
-    task = DatasetTask(name, definition.version, h, steps, _deviation(noise), _ends(split, members))
+    deviation = float(number("dataset(noise=...)", noise))
+    if deviation < 0:
+        raise error("dataset(noise=...)", "not be negative", f"{deviation}", "Pass a standard deviation, or 0.")
+    task = DatasetTask(name, definition.version, h, steps, deviation, _ends(split, members))
     design = RandomDesign(members, definition.distributions, seed("dataset(rng=...)", rng))
     target = _checked_folder(folder)
     system_of(name)  # which says what extra it needs
@@ -103,13 +106,6 @@ def dataset(
     if file_format == "csv":
         shutil.rmtree(store.path)
     return target
-
-
-def _deviation(noise: Any) -> float:
-    deviation = float(number("dataset(noise=...)", noise))
-    if deviation < 0:
-        raise error("dataset(noise=...)", "not be negative", f"{deviation}", "Pass a standard deviation, or 0.")
-    return deviation
 
 
 def _ends(split: Any, orbits: int) -> tuple[int, ...]:

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.checks import error
-from nonholo.ensembles.designs import DISTRIBUTIONS, Design, Grid, RandomDesign
+from nonholo.ensembles.designs import Design, Grid, RandomDesign
+from nonholo.ensembles.distributions import DISTRIBUTIONS
 from nonholo.io import fields_of
 
 NO_NAME = "a function without an importable name"
@@ -28,9 +29,14 @@ def design_text(design: Design) -> dict[str, Any]:
 def design_from(text: dict[str, Any], axis: Callable[[str], np.ndarray]) -> Design:
     """Return the design of a description."""
     if text["kind"] == "Grid":
-        along = {name: _sound(name, axis(name), digest) for name, digest in text["axes"].items()}
+        along = {name: axis(name) for name in text["axes"]}
+        for name, digest in text["axes"].items():
+            if _hash(along[name]) != digest:
+                remedy = "The store is damaged: copy it again from its source, or run it again."
+                raise error("load_sweep(store=...)", f"hold the axis {name} of its design", "another one", remedy)
         return Grid(along, rng=text["seed"])
-    distributions = {name: _distribution(dict(entry)) for name, entry in text["distributions"].items()}
+    entries = {name: dict(entry) for name, entry in text["distributions"].items()}
+    distributions = {name: DISTRIBUTIONS[entry.pop("kind")](**entry) for name, entry in entries.items()}
     return RandomDesign(text["members"], distributions, rng=text["seed"])
 
 
@@ -81,17 +87,5 @@ def _short(value: Any) -> str:
     return text if len(text) <= 200 else f"{text[:200]}..."
 
 
-def _sound(name: str, values: np.ndarray, digest: str) -> np.ndarray:
-    """Return the values along an axis, which its description tells by their hash."""
-    if _hash(values) != digest:
-        remedy = "The store is damaged: copy it again from its source, or run it again."
-        raise error("load_sweep(store=...)", f"hold the axis {name} of its design", "another one", remedy)
-    return values
-
-
 def _hash(values: np.ndarray) -> str:
     return hashlib.sha256(np.ascontiguousarray(values).tobytes() + repr(values.shape).encode()).hexdigest()
-
-
-def _distribution(entry: dict[str, Any]) -> Any:
-    return DISTRIBUTIONS[entry.pop("kind")](**entry)

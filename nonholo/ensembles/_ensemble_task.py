@@ -13,11 +13,20 @@ from nonholo.base.calls import call
 from nonholo.base.checks import array, count, error, flag, shown
 from nonholo.base.types import Float
 from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretization
-from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
-from nonholo.ensembles._force_numbers import force_numbers, is_force_number, with_force_numbers
-from nonholo.ensembles._names import OUTCOME, STARTS, checked_reductions, no_component, numbering, start_component
+from nonholo.ensembles._names import (
+    OUTCOME,
+    STARTS,
+    checked_reductions,
+    force_numbers,
+    is_force_number,
+    no_component,
+    numbering,
+    start_component,
+    with_force_numbers,
+)
 from nonholo.ensembles._reductions import REDUCTIONS
+from nonholo.ensembles.designs import MemberBlock
 from nonholo.io import missing_part
 from nonholo.simulation import Ensemble, check_forces, ensemble, run_in_lanes, stepper_of
 from nonholo.systems import one_start, refuse_forces
@@ -54,7 +63,7 @@ class EnsembleTask:
         discrete: The discretized system.
         steps: Number of steps.
         start: Name of the start and its value for all members.
-        reductions: The quantities to keep.
+        reductions: What to keep.
         save_every: Steps between the states that reductions see; None for the last one alone. It is 1 with
             "lyapunov" and with the turn of a sleigh, which take all states.
         branch: The branch rule, as in `ensemble`.
@@ -92,22 +101,22 @@ class EnsembleTask:
         reconstruct: bool = True,
     ) -> None:
         starts = dict(zip(STARTS, (body_velocity, restricted_velocity, momentum), strict=True))
-        start = [(name, _start(name, value)) for name, value in starts.items() if value is not None]
+        remedy = "Pass the start of all members; what differs belongs to the design."
+        own = {name: value for name, value in starts.items() if value is not None}
+        start = [(name, array(f"EnsembleTask({name}=...)", value, (None,), remedy)) for name, value in own.items()]
         if start:
             one_start("EnsembleTask", **starts)
         if save_every is not None:
             save_every = count("EnsembleTask(save_every=...)", save_every, "Pass the steps between states, or None.")
-        fields = {
-            "discrete": as_discretization("EnsembleTask(discrete=...)", discrete, compositions=True, forced=True),
-            "steps": count("EnsembleTask(steps=...)", steps, "Pass the number of steps."),
-            "start": start[0] if start else None,
-            "reductions": checked_reductions("EnsembleTask(reductions=...)", reductions, REDUCTIONS, _KNOWN),
-            "save_every": save_every,
-            "branch": branch,
-            "reconstruct": flag("EnsembleTask(reconstruct=...)", reconstruct),
-        }
-        for name, value in fields.items():
-            object.__setattr__(self, name, value)
+        vars(self).update(
+            discrete=as_discretization("EnsembleTask(discrete=...)", discrete, compositions=True, forced=True),
+            steps=count("EnsembleTask(steps=...)", steps, "Pass the number of steps."),
+            start=start[0] if start else None,
+            reductions=checked_reductions("EnsembleTask(reductions=...)", reductions, REDUCTIONS, _KNOWN),
+            save_every=save_every,
+            branch=branch,
+            reconstruct=flag("EnsembleTask(reconstruct=...)", reconstruct),
+        )
         stepper_of(discrete, branch, "auto", with_poses=self.reconstruct, owner="EnsembleTask")
         check_forces("EnsembleTask", discrete, self.steps)
         if free := ({*REDUCTIONS} - {"final_state"}) & {*self.reductions}:
@@ -117,21 +126,16 @@ class EnsembleTask:
         """Run a block of members and reduce it; under forces that differ one by one."""
         if of_forces := [name for name in block if is_force_number(self.discrete.system, name)]:
             return _join([self._member(block, member, of_forces) for member in range(block.count)])
-        parameters = self._parameters(block)
-        starts: dict[str, Any] = _rows_of_starts(self.start, block)
+        parameters = {name: block[name] for name in block if name in self._fields}
         run: Any = {"steps": self.steps, "save_every": self._every, "branch": self.branch}
+        run |= _rows_of_starts(self.start, block)
         with numbering(lambda member: block.first + member):
-            batch = ensemble(
-                self.discrete, parameters=parameters or None, reconstruct=self.reconstruct, **run, **starts
-            )
+            batch = ensemble(self.discrete, parameters=parameters or None, reconstruct=self.reconstruct, **run)
         results: dict[str, Any] = {OUTCOME: batch.outcome}
-        for reduction in self.reductions:
-            more = (
-                REDUCTIONS[reduction].function(batch)
-                if isinstance(reduction, str)
-                else call("EnsembleTask(reductions=...)", reduction, batch)
-            )
-            _add(results, more)
+        for each in self.reductions:
+            is_own = not isinstance(each, str)
+            own = call("EnsembleTask(reductions=...)", each, batch) if is_own else REDUCTIONS[each].function(batch)
+            _add(results, own)
         return results
 
     @property
@@ -179,17 +183,16 @@ class EnsembleTask:
 
     @property
     def _fields(self) -> list[str]:
+        """The parameters in which members may differ."""
         system: Any = self.discrete.system
         return [*(system.system if system.is_forced else system).leaves, "inertia_operator", "time_step"]
-
-    def _parameters(self, block: MemberBlock) -> dict[str, Any]:
-        """Return the parameters in which members differ."""
-        return {name: block[name] for name in block if name in self._fields}
 
     def describe(self) -> dict[str, Any]:
         """Return the task as plain data."""
         names = [r if isinstance(r, str) else function_name(r) for r in self.reductions]
         start = None if self.start is None else [self.start[0], self.start[1].tolist()]
+        rule = {"branch": self.branch} if isinstance(self.branch, str) else {RULE: function_name(self.branch)}
+        rule = {} if self.branch == PRINCIPAL.name else rule  # a store says nothing of the principal one
         return {
             "kind": "EnsembleTask",
             **io.identity_of(self.discrete),
@@ -198,7 +201,7 @@ class EnsembleTask:
             "reductions": names,
             "save_every": self.save_every,
             "reconstruct": self.reconstruct,
-            **_described_rule(self.branch),
+            **rule,
         }
 
 
@@ -216,18 +219,6 @@ def ensemble_task_from(entry: dict[str, Any]) -> EnsembleTask:
     return EnsembleTask(motion, reductions=reductions, **options, **start)
 
 
-def _described_rule(branch: BranchRule) -> dict[str, str]:
-    """Return what a store keeps of a branch rule: nothing for the principal one."""
-    if isinstance(branch, str):
-        return {} if branch == PRINCIPAL.name else {"branch": branch}
-    return {RULE: function_name(branch)}
-
-
-def _start(name: str, value: Any) -> np.ndarray:
-    remedy = "Pass the start of all members; what differs belongs to the design."
-    return array(f"EnsembleTask({name}=...)", value, (None,), remedy)
-
-
 def _add(results: dict[str, Any], more: Any) -> None:
     """Add what a reduction returned, refused if it would replace what another one did."""
     entries = more if isinstance(more, Mapping) else {"result": more}
@@ -241,9 +232,9 @@ def _join(members: list[dict[str, Any]]) -> dict[str, Any]:
     """Return the rows of some members that were reduced one by one."""
     together: dict[str, Any] = {}
     for name, first in members[0].items():
-        rows = [each[name][1] if isinstance(first, tuple) else each[name] for each in members]
-        whole = np.concatenate([np.asarray(row) for row in rows])
-        together[name] = (first[0], whole, *first[2:]) if isinstance(first, tuple) else whole
+        is_named = isinstance(first, tuple)
+        whole = np.concatenate([np.asarray(each[name][1] if is_named else each[name]) for each in members])
+        together[name] = (first[0], whole, *first[2:]) if is_named else whole
     return together
 
 

@@ -11,9 +11,9 @@ import numpy as np
 from nonholo.base.calls import call
 from nonholo.base.checks import count, error, function, instance, scale, shown
 from nonholo.discrete import discretize
-from nonholo.ensembles._block import MemberBlock
 from nonholo.ensembles._describe import function_from, function_name
 from nonholo.ensembles._names import OUTCOME, checked_reductions, component_of, numbering, with_components
+from nonholo.ensembles.designs import MemberBlock
 from nonholo.groups import components_of
 from nonholo.simulation import ensemble
 
@@ -77,8 +77,7 @@ class FamilyTask:
             "reductions": checked_reductions(_where("reductions"), self.reductions, (_FINAL,), remedy),
             "save_every": every and count(_where("save_every"), every, "Pass the steps between states, or None."),
         }
-        for name, value in fields.items():
-            object.__setattr__(self, name, value)
+        vars(self).update(fields)
         arguments = inspect.signature(self.family).parameters
         for name in self.parameters.keys() - arguments.keys():
             remedy = f"It has {', '.join(arguments)}."
@@ -107,34 +106,26 @@ class FamilyTask:
 
     def __call__(self, block: MemberBlock) -> dict[str, Any]:
         """Run a block of members, those with one system together, and reduce it."""
-        made_members = [
-            self._member({name: values[member] for name, values in block.items()}) for member in range(block.count)
-        ]
+        each = [self._member({name: values[k] for name, values in block.items()}) for k in range(block.count)]
         results: dict[str, tuple[Any, np.ndarray, Any]] = {}
-        families = [getattr(system, "family", system) for system, _ in made_members]
+        families = [getattr(system, "family", system) for system, _ in each]
         for family in dict.fromkeys(families):
             members = [member for member, other in enumerate(families) if other == family]
-            starts = {
-                name: np.stack([made_members[member][1][name] for member in members]) for name in made_members[0][1]
-            }
-            batch = self._ensemble(
-                [made_members[member][0] for member in members], starts, [block.first + m for m in members]
-            )
-            self._place(self._reduced(batch), members, block.count, results)
+            starts = {name: np.stack([each[member][1][name] for member in members]) for name in each[0][1]}
+            numbers = (block.first + np.array(members)).tolist()
+            batch = self._ensemble([each[member][0] for member in members], starts, numbers)
+            for name, (dimensions, rows, labels) in self._reduced(batch).items():
+                whole = np.empty((block.count, *rows.shape[1:]), rows.dtype)
+                results.setdefault(name, (dimensions, whole, labels))[1][members] = rows
         return results
-
-    def _place(self, reduced: dict[str, Any], members: list[int], count: int, results: dict[str, Any]) -> None:
-        """Write the rows of some members."""
-        for name, (dimensions, rows, labels) in reduced.items():
-            whole = np.empty((count, *rows.shape[1:]), rows.dtype)
-            results.setdefault(name, (dimensions, whole, labels))[1][members] = rows
 
     def _member(self, own: dict[str, Any]) -> tuple[Any, dict[str, np.ndarray]]:
         """Return the system of a member, and what it starts with."""
         arguments = self._arguments
         values = {name: with_components(name, value, own) for name, value in arguments.items()}
         example = self.family(**{name: value for name, value in values.items() if value is not inspect.Parameter.empty})
-        rest = {key: value for key, value in own.items() if key not in arguments and _base(key) not in arguments}
+        bases = {key: (component_of(key) or (key,))[0] for key in own}
+        rest = {key: value for key, value in own.items() if not {key, bases[key]} & arguments.keys()}
         starts = {name: np.asarray(with_components(name, getattr(example, name), rest)) for name in _STARTS}
         return example.system, starts | ({_STEP: np.asarray(own[_STEP])} if _STEP in own else {})
 
@@ -152,18 +143,19 @@ class FamilyTask:
         """Return dimensions, rows and labels of what is kept of members, by name."""
         results: dict[str, Any] = {OUTCOME: batch.outcome}
         for reduction in self.reductions:
-            results |= (
-                _final_state(batch) if reduction == _FINAL else call("FamilyTask(reductions=...)", reduction, batch)
-            )
+            is_final = reduction == _FINAL
+            results |= _final_state(batch) if is_final else call("FamilyTask(reductions=...)", reduction, batch)
         return {name: _labels(name, entry) for name, entry in results.items()}
 
     def describe(self) -> dict[str, Any]:
         """Return the task as plain data."""
+        name = function_name(self.family)
+        own = name.partition(":")[2]
         parameters = {name: np.asarray(value).tolist() for name, value in self.parameters.items()}
         reductions = [_FINAL if reduction == _FINAL else function_name(reduction) for reduction in self.reductions]
         return {
             "kind": "FamilyTask",
-            "family": _family_name(self.family),
+            "family": f"{_READY}{own}" if name.startswith(f"{_EXAMPLES}.") and own in _ready_names() else name,
             "parameters": parameters,
             "time_step": self.time_step,
             "steps": self.steps,
@@ -193,19 +185,8 @@ def _ready_names() -> set[str]:
     return {*importlib.import_module(_EXAMPLES).__all__} - {"Example"}
 
 
-def _family_name(family: Callable[..., Any]) -> str:
-    name = function_name(family)
-    own = name.partition(":")[2]
-    return f"{_READY}{own}" if name.startswith(f"{_EXAMPLES}.") and own in _ready_names() else name
-
-
 def _where(argument: str) -> str:
     return f"FamilyTask({argument}=...)"
-
-
-def _base(name: str) -> str:
-    part = component_of(name)
-    return part[0] if part else name
 
 
 def _labels(name: str, entry: Any) -> tuple[Any, np.ndarray, Any]:
@@ -220,7 +201,7 @@ def _final_state(batch: Any) -> dict[str, Any]:
     """Return what is known of the last good state of each member that is kept."""
     every, members = batch.save_every, np.arange(len(batch))
     last = np.zeros_like(members) if every is None else batch.steps_done // every
-    configuration = batch.configuration[members, last]
+    configuration, velocity = batch.configuration[members, last], batch.body_velocity[members, last]
     system = batch.members.discrete.system
     names = list(getattr(system, "coordinates", ()))
     axes, of_places = (("coordinate",), {"components": names}) if configuration.ndim == 2 else (("row", "column"), {})
@@ -228,11 +209,7 @@ def _final_state(batch: Any) -> dict[str, Any]:
     return {
         "final_time": ((), batch.time[members, last], {"long_name": "time of the last good state"}),
         "final_configuration": (axes, configuration, of_places | {"long_name": "configuration of the last good state"}),
-        "final_velocity": (
-            ("component",),
-            batch.body_velocity[members, last],
-            of_rates | {"long_name": "velocity there"},
-        ),
+        "final_velocity": (("component",), velocity, of_rates | {"long_name": "velocity there"}),
         "final_energy": ((), batch.energy[members, last], {"long_name": "energy there"}),
         "steps_done": ((), batch.steps_done, {"long_name": "good steps"}),
     }

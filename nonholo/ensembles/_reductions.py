@@ -30,22 +30,16 @@ class Reduction(NamedTuple):
 
 def _final_state(batch: Ensemble) -> Reduced:
     last, system = _last_states(batch), batch.members.discrete.system
+    momentum = _labels("restricted momentum") | _names(_names_along(system))
     results: Reduced = {
         "final_time": ((), last.time[:, 0], _labels("time of the last good state", "time unit")),
-        "final_momentum": (
-            ("component",),
-            last.restricted_momentum[:, 0],
-            _labels("restricted momentum") | _names(_names_along(system)),
-        ),
+        "final_momentum": (("component",), last.restricted_momentum[:, 0], momentum),
         "final_energy": ((), last.energy[:, 0], _labels("reduced constrained energy")),
         "steps_done": ((), batch.steps_done, _labels("good steps", "1")),
     }
     if (pose := last.pose) is not None:
-        results["final_pose"] = (
-            ("pose_component",),
-            pose[:, 0],
-            _labels("compact pose") | _names(compact_names(system.group)),
-        )
+        labels = _labels("compact pose") | _names(compact_names(system.group))
+        results["final_pose"] = ("pose_component",), pose[:, 0], labels
     return results
 
 

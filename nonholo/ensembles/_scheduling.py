@@ -1,21 +1,222 @@
-"""All blocks of a sweep by a scheduler of Dask, on this machine or on a cluster."""
+"""All blocks of a sweep by a scheduler of Dask, on this machine or on a cluster, and what a worker does with one."""
 
+import asyncio
+import contextlib
+import errno
 import functools
 import itertools
 import multiprocessing
 import os
+import pickle
 import signal
+import socket
 import threading
+import time
+import warnings
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import CancelledError, Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from typing import Any
+from typing import Any, NamedTuple
 
-from nonholo.base.checks import count, error, shown
-from nonholo.ensembles._blocks import Done, Work, do_block
-from nonholo.ensembles._cluster import check_client, check_cluster, do_on_cluster, is_client
+import numpy as np
 
-_WAVE = 1024  # blocks of which a scheduler knows at once
+from nonholo import io
+from nonholo.base.checks import count, error, needs, shown
+from nonholo.base.results import Outcome
+from nonholo.ensembles.designs import block_of
+from nonholo.ensembles.stores import OUTCOME, RAISED, Mark, Results, SweepStore, Task, attempt, attributes_of, store_of
+from nonholo.simulation import in_one_thread
+
+
+class Work(NamedTuple):
+    """The message to a worker: everything but the task is read from the store."""
+
+    store: SweepStore
+    task: Task
+
+
+class Done(NamedTuple):
+    """The report of a worker on a block: its mark, what was wrong with an older one, the versions it works with."""
+
+    block: int
+    mark: Mark
+    damage: str | None
+    versions: str
+
+
+def do_block(work: Work, block: int) -> Done:
+    """Make sure that a block is in the store."""
+    store = store_of(work.store)
+    mark = damage = None
+    try:
+        mark = None if store.mark(block) is None else store.sound(block)
+    except io.DamagedError as flaw:
+        damage = str(flaw)
+    piece, begin = store.layout.piece(block), time.perf_counter()
+    if mark is not None and mark.members == piece.count:  # or the sweep has grown
+        return Done(block, mark, None, _versions())
+    members, draws = block_of(store.design, piece.first, piece.count), store.design.drawn
+    outputs = {name: output for name, output in store.outputs.items() if name not in draws}
+    with in_one_thread():
+        outcome = attempt(work.task, members, outputs)
+    results = Results({name: members[name] for name in draws} | outcome.arrays, outcome.messages)
+    seconds = time.perf_counter() - begin
+    codes, counts = np.unique(results.arrays[OUTCOME], return_counts=True)
+    outcomes = {outcome_name(int(code)): int(count) for code, count in zip(codes, counts, strict=True)}
+    messages = [list(message) for message in results.messages]
+    mark = Mark(piece.count, outcomes, seconds, time.time(), _writer(), messages)
+    store.write(piece, results, mark)
+    return Done(block, mark, damage, _versions())
+
+
+@functools.cache
+def _versions() -> str:
+    """Return the versions of what computes here, which do not change; looking them up takes longer than a mark."""
+    return io.versions_text()
+
+
+def outcome_name(code: int) -> str:
+    """Return the name of an outcome of a member, also of one of the task's own."""
+    if code == RAISED:
+        return "raised"
+    return Outcome(code).name if code in list(Outcome) else str(code)
+
+
+def _writer() -> str:
+    """Name this process."""
+    return f"{socket.gethostname()}:{os.getpid()}"
+
+
+_AHEAD = 1024  # blocks of which the scheduler knows at once
+_CONNECT = 10  # seconds
+_PAUSE = 0.02  # seconds between looks for finished blocks
+_PATIENCE = 5.0  # seconds without any, until workers are counted
+_WHERE = "sweep(scheduler=...)"
+
+
+def check_cluster(address: str) -> None:
+    """Refuse an address at which no scheduler answers, before any work.
+
+    Not by a client: one that cannot start is closed by the garbage collector, in any thread, and may block the next.
+    """
+    library = _library()
+
+    async def answer() -> dict[str, Any]:
+        async with library.rpc(address, timeout=_CONNECT) as remote:
+            return await asyncio.wait_for(remote.identity(), _CONNECT)
+
+    try:
+        with ThreadPoolExecutor(1) as pool:  # the loop of a notebook runs in this thread
+            kind = pool.submit(asyncio.run, answer()).result()["type"]
+    except Exception as failure:  # whatever else listens there may answer anything
+        raise _no_scheduler(f"{address}: {str(failure) or f'no answer in {_CONNECT} s'}") from None
+    if kind != "Scheduler":
+        raise _no_scheduler(f"{address}, a {kind.lower()}")
+
+
+def is_client(scheduler: Any) -> bool:
+    """Return whether a scheduler is the client of one, of the user's own."""
+    return hasattr(scheduler, "scheduler_info") and hasattr(scheduler, "map")
+
+
+def check_client(client: Any) -> None:
+    """Refuse a client that is closed, or one of `async` code."""
+    if client.status != "running" or client.asynchronous:
+        got, remedy = f"one that is {client.status}", "Pass distributed.Client(...), or the address tcp://host:port."
+        raise error(_WHERE, "be a client that is connected, and not asynchronous", got, remedy)
+
+
+def do_on_cluster(work: Work, blocks: Iterator[int], scheduler: Any, take: Callable[[Done], None]) -> None:
+    """Do every block by the scheduler at an address, or by that of a client, which stays open.
+
+    A loss of the scheduler, or of workers again and again, is reported as what it is.
+    """
+    from distributed.comm.core import CommClosedError
+    from distributed.scheduler import KilledWorker
+
+    own, how = is_client(scheduler), {"timeout": _CONNECT, "set_as_default": False}
+    with contextlib.nullcontext(scheduler) if own else _library().Client(scheduler, **how) as client:
+        try:
+            _do_blocks(work, blocks, client, take)
+        except KilledWorker as failure:
+            message = "Workers were killed, or ran out of memory, again and again at the same block"
+            raise ChildProcessError(message) from failure
+        except Exception as failure:
+            if client.status == "running" and not isinstance(failure, CommClosedError | CancelledError):
+                raise
+            address = client.scheduler.address if own else scheduler
+            raise ConnectionError(f"The connection to the scheduler at {address} was lost") from None
+
+
+def _do_blocks(work: Work, blocks: Iterator[int], client: Any, take: Callable[[Done], None]) -> None:
+    """Send a new block for each that is done, so that the scheduler never knows of all."""
+    import cloudpickle
+
+    # as bytes: a worker of Dask that cannot make a function of what it receives ends itself
+    function = functools.partial(do_sent, cloudpickle.dumps(work))
+
+    def send(count: int) -> list[Any]:
+        return client.map(function, list(itertools.islice(blocks, count)), pure=False, key="block")
+
+    running = _library().as_completed(send(_AHEAD), loop=client.loop)
+    for batch in _batches(running, client):
+        for future in batch:
+            take(future.result())
+        running.update(send(len(batch)))
+
+
+def do_sent(work_bytes: bytes, block: int) -> Done:
+    """Make sure that a block is in the store: the task of a worker."""
+    return do_block(_work_of(work_bytes), block)
+
+
+@functools.lru_cache(maxsize=4)
+def _work_of(work_bytes: bytes) -> Work:
+    """Return what was sent, once it is known that this worker can import the task and sees the store."""
+    worker = _writer()
+    try:
+        work: Work = pickle.loads(work_bytes)  # noqa: S301
+    except (ImportError, AttributeError) as failure:
+        remedy = "Install its module there, or define the function in the script that calls sweep."
+        raise error("sweep(task=...)", "be importable by the workers", f"{failure} ({worker})", remedy) from None
+    try:
+        is_seen = attributes_of(work.store.path)["made"] == work.store.made
+    except (OSError, ValueError):
+        is_seen = False
+    if not is_seen:
+        message = f"The worker {worker} does not see this store: choose a path on a file system that all workers share"
+        raise FileNotFoundError(errno.ENOENT, message, str(work.store.path))
+    return work
+
+
+def _batches(running: Any, client: Any) -> Iterator[list[Any]]:
+    """Yield what is finished, as soon as it is; warn when there is nobody to do the rest."""
+    last_time, has_warned = time.monotonic(), False
+    while running.count():
+        if running.has_ready():
+            yield running.next_batch(block=False)
+            last_time, has_warned = time.monotonic(), False
+        elif not has_warned and time.monotonic() - last_time > _PATIENCE:
+            last_time, has_warned = time.monotonic(), not client.ncores()
+            if has_warned:
+                address = client.scheduler.address
+                text = f"The scheduler at {address} has no workers. The sweep waits for some: dask worker {address}"
+                warnings.warn(text, RuntimeWarning, stacklevel=2)
+        else:
+            time.sleep(_PAUSE)
+
+
+def _no_scheduler(got: str) -> ValueError:
+    remedy = "Start `dask scheduler`, and workers by `dask worker ADDRESS`."
+    return error(_WHERE, "be the address of a Dask scheduler", got, remedy)
+
+
+def _library() -> Any:
+    with needs("cluster", _WHERE):
+        import distributed
+    return distributed
+
+
 _LOCAL = ("threads", "processes", "synchronous")
 
 Take = Callable[[Done], None]
@@ -46,8 +247,9 @@ def do_all(work: Work, scheduler: Any, workers: int | None, take: Take) -> None:
     """Do every block; what becomes of each is taken as soon as it is known, in the thread of the caller."""
     blocks = iter(range(work.store.layout.blocks))
     if _is_remote(scheduler):
-        return do_on_cluster(work, blocks, scheduler, take)
-    return _here(work, blocks, scheduler, workers, take)
+        do_on_cluster(work, blocks, scheduler, take)
+    else:
+        _here(work, blocks, scheduler, workers, take)
 
 
 def _here(work: Work, blocks: Iterator[int], scheduler: str, workers: int | None, take: Take) -> None:
@@ -58,11 +260,13 @@ def _here(work: Work, blocks: Iterator[int], scheduler: str, workers: int | None
         take(result)
 
     one = dask.delayed(functools.partial(do_block, work), name="block", pure=False, traverse=False)  # pyright: ignore
-    pool = _pool(scheduler, workers or CPU_COUNT)
+    pool: Executor | None = ThreadPoolExecutor(workers or CPU_COUNT) if scheduler == "threads" else None
+    if scheduler == "processes":
+        pool = ProcessPoolExecutor(workers or CPU_COUNT, multiprocessing.get_context("spawn"), _begin_worker)
     options = {} if pool is None else {"pool": pool}
     options |= {"chunksize": 1, "callbacks": [(None, None, None, report, None)]}  # of this call, not of all of Dask
     try:
-        while wave := [one(block) for block in itertools.islice(blocks, _WAVE)]:
+        while wave := [one(block) for block in itertools.islice(blocks, _AHEAD)]:
             dask.compute(*wave, scheduler=scheduler, optimize_graph=False, traverse=False, **options)  # pyright: ignore
     except BrokenProcessPool as failure:
         reason = "A worker process was killed, ran out of memory, or could not start (scripts need a __main__ guard)"
@@ -70,12 +274,6 @@ def _here(work: Work, blocks: Iterator[int], scheduler: str, workers: int | None
     finally:
         if pool is not None:
             pool.shutdown(wait=True, cancel_futures=True)
-
-
-def _pool(scheduler: str, workers: int) -> Executor | None:
-    if scheduler == "processes":
-        return ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _begin_worker)
-    return ThreadPoolExecutor(workers) if scheduler == "threads" else None
 
 
 def _begin_worker() -> None:

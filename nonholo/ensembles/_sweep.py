@@ -13,10 +13,9 @@ from nonholo import io, simulation
 from nonholo.base.checks import error, flags, path, shown
 from nonholo.base.progress import progress_bar
 from nonholo.ensembles._begin import begin_store, check_same, check_task, grow, restored_task
-from nonholo.ensembles._blocks import Done, Work
-from nonholo.ensembles._scheduling import checked_scheduler, do_all
+from nonholo.ensembles._scheduling import Done, Work, checked_scheduler, do_all
 from nonholo.ensembles.designs import Design
-from nonholo.ensembles.stores import SweepStore, attributes_of, open_store, opened_result, standing_of
+from nonholo.ensembles.stores import attributes_of, open_store, opened_result, standing_of
 
 
 def sweep(
@@ -208,18 +207,13 @@ def _complete(work: Work, scheduler: Any, workers: int | None, progress: bool) -
                 _warn(f"The store '{store.path}' is damaged: {piece.damage}. {which}")
             if piece.versions not in versions:
                 versions.add(piece.versions)
-                _warn(_other_versions(store, piece))
+                others = f"{piece.mark.writer} has {piece.versions}: what it computes may differ in the last bits."
+                ours = attributes_of(store.path)["versions"]
+                _warn(f"The store '{store.path}' was begun with {ours}, but {others}")
 
         do_all(work, scheduler, workers, take)
     if not store.is_finished:
         store.finish()
-
-
-def _other_versions(store: SweepStore, report: Done) -> str:
-    return (
-        f"The store '{store.path}' was begun with {attributes_of(store.path)['versions']}, but {report.mark.writer} "
-        f"has {report.versions}: what it computes may differ in the last bits."
-    )
 
 
 def _warn(message: str) -> None:

@@ -135,19 +135,15 @@ def ready(
     def decorator(make: Callable[..., Example]) -> Callable[..., Example]:
         defaults = {name: each.default for name, each in inspect.signature(make).parameters.items()}
 
-        def checked(name: str, value: Any) -> Any:
-            default: Any = defaults.get(name)
-            where = f"examples.{make.__name__}({name}=...)"
+        def valid_value(name: str, value: Any) -> Any:
+            where, default = f"examples.{make.__name__}({name}=...)", defaults.get(name)
             if name in arrays:
-                rows = array(where, value, np.shape(default), f"Pass {arrays[name]}.")
-                return positives(where, rows) if name in positive.split() else tuple(rows.tolist())
-            if not isinstance(default, float) or value is None:
-                return value
-            return float(number(where, value) if name in reals.split() else scale(where, value, _POSITIVE))
+                return _row(where, value, default, arrays[name], name in positive.split())
+            return _number(where, value, default, name in reals.split())
 
         @functools.wraps(make)
         def make_ready(**arguments: Any) -> Example:
-            example = make(**{name: checked(name, value) for name, value in (defaults | arguments).items()})
+            example = make(**{name: valid_value(name, value) for name, value in (defaults | arguments).items()})
             if any(map(callable, arguments.values())):
                 return example  # which no data describes
             body = {name: _plain(arguments.get(name, default), default) for name, default in defaults.items()}
@@ -160,6 +156,19 @@ def ready(
         return make_ready
 
     return decorator
+
+
+def _row(where: str, value: Any, default: Any, words: str, positive: bool) -> tuple[float, ...]:
+    """Return a checked array of as many numbers as its default has."""
+    rows = array(where, value, np.shape(default), f"Pass {words}.")
+    return positives(where, rows) if positive else tuple(rows.tolist())
+
+
+def _number(where: str, value: Any, default: Any, real: bool) -> Any:
+    """Return a checked number; an argument whose default is no number is left to its function."""
+    if not isinstance(default, float) or value is None:
+        return value
+    return float(number(where, value) if real else scale(where, value, _POSITIVE))
 
 
 def _plain(value: Any, default: Any) -> Any:

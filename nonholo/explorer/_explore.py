@@ -22,8 +22,7 @@ from nonholo.base.checks import MissingExtraError, flags
 from nonholo.base.checks import path as checked_path
 from nonholo.base.memo import Keeper
 from nonholo.base.results import Outcome
-from nonholo.explorer._kernel import kernel, kinds_beside
-from nonholo.explorer._motion import shown_motion, simulate_state
+from nonholo.explorer._motion import kernel, kinds_beside, shown_motion, simulate_state
 from nonholo.io import check_file, new_file
 from nonholo.orbit import Orbit
 
@@ -144,36 +143,20 @@ def orbit_to_html(orbit: Any, path: str | Path, *, overwrite: bool = False) -> N
 def page_text(data: dict[str, Any], title: str, note: str, version: str) -> str:
     """Return the text of a page, in ASCII; what it is given is escaped, and data cannot end their element."""
     outcomes = {int(outcome): (outcome.name, outcome.message) for outcome in Outcome}
-    kernels = {} if "replay" in data else {kind: _pack(kernel(kind)) for kind in kinds_beside(data["kind"])}
+    modules = {} if "replay" in data else {kind: kernel(kind) for kind in kinds_beside(data["kind"])}
+    kernels = {kind: base64.b64encode(gzip.compress(each, mtime=0)).decode() for kind, each in modules.items()}
     content = {**data, "title": title, "library": version, "outcomes": outcomes, "kernels": kernels}
     text = json.dumps(content, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     script, style = _text("view.js"), _text("style.css")
-    whole = _template().render(
-        data=text,
-        licence=_text("three-LICENSE.txt"),
-        note=note,
-        script=script,
-        script_hash=_hash(script),
-        style=style,
-        style_hash=_hash(style),
-        title=title,
-        version=version,
-    )
+    parts = {"data": text, "licence": _text("three-LICENSE.txt"), "note": note, "title": title, "version": version}
+    parts |= {"script": script, "script_hash": _hash(script), "style": style, "style_hash": _hash(style)}
+    whole = jinja2.Environment(autoescape=True).from_string(_text("page.html")).render(parts)
     return whole.encode("ascii", "xmlcharrefreplace").decode()
 
 
 @functools.cache
 def _text(name: str) -> str:
     return (_VIEW / name).read_text("utf-8")
-
-
-@functools.cache
-def _template() -> jinja2.Template:
-    return jinja2.Environment(autoescape=True).from_string(_text("page.html"))
-
-
-def _pack(module: bytes) -> str:
-    return base64.b64encode(gzip.compress(module, mtime=0)).decode()
 
 
 def _hash(text: str) -> str:

@@ -12,14 +12,47 @@ from typing import Annotated, Any, Literal, NamedTuple, cast
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from nonholo.base.checks import error, instance, number, printable, shown
+from nonholo.base.checks import error, instance, needs, number, printable, shown
+from nonholo.base.compiled import library
 from nonholo.base.types import Float, Int
 from nonholo.discrete import Discretization, discretize
-from nonholo.explorer._kernel import KINDS
 from nonholo.groups import matrix_from_quaternion
+from nonholo.kernels import FLAT_RUNS
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.simulation import simulate
 from nonholo.systems import AbstractSystem, ChaplyginSleigh, Forced, Friction, Gravity, NormalForm, SuslovTop
+
+KINDS = tuple(FLAT_RUNS)
+"""The runs of the bodies that have a kernel for the page; of a continuous motion where there is no closed form."""
+
+_WIDE_KINDS = {"top4", "flow4"}
+
+
+def kinds_beside(kind: str) -> list[str]:
+    """Return the kinds of one page, and of its ready motions: those in the plane and in space, or the others."""
+    return [each for each in KINDS if (each in _WIDE_KINDS) == (kind in _WIDE_KINDS)]
+
+
+def kernel(body: str) -> bytes:
+    r"""Return the WebAssembly module that runs a body, one of `KINDS`.
+
+    Its only export is `run`, with the arguments that the functions of `nonholo.kernels.FLAT_RUNS` have; it imports a
+    memory and the top of its stack.
+
+    Raises:
+        MissingExtraError: It was not compiled ahead, and the extra `compile` is not installed.
+
+    Example:
+        >>> kernel("sleigh")[:4]
+        b'\x00asm'
+    """
+    file = library.place(library.name_of_module(body))
+    if file is not None:
+        return file.read_bytes()
+    with needs("compile", "nonholo.explore"):
+        from nonholo.base.compiled import wasm
+    return wasm.module(body)
+
 
 MOST_STEPS = 20_000
 """Steps that the kernel of a page takes."""
@@ -117,17 +150,14 @@ def _of_discretization(where: str, discrete: Discretization) -> Shown:
         if not len(orbit):
             raise error(where, "be a motion that the page can show", problem, "Run it, and pass the orbit.")
         return _replay(orbit, _BEYOND)
-    preview = _numbers(orbit, _spread(orbit, _RECORDED))[0] if len(orbit) else None
-    data = {"kind": kind, "state": state, "recorded": preview, "table": table}
-    return Shown(data, _name(discrete.system), _frame_note(discrete.system))
+    return _shown_state(system, orbit, state, table)
 
 
 def _live(orbit: Orbit) -> Shown | None:
     """Return the state that a kernel of the page starts from; None where there is no kernel for it."""
-    discrete = orbit.motion
-    if not isinstance(discrete, Discretization) or orbit.branch != "principal" or orbit.canonical_pose is None:
-        return None
-    if orbit.has_impacts.any():
+    discrete: Any = orbit.motion
+    has_map = isinstance(discrete, Discretization) and orbit.branch == "principal" and not orbit.has_impacts.any()
+    if not has_map or orbit.canonical_pose is None:
         return None
     kind, step_count = _kind(discrete), int(orbit.step[-1] - orbit.step[0])
     if kind is None or step_count < 1:
@@ -138,9 +168,13 @@ def _live(orbit: Orbit) -> Shown | None:
     if _problem(state):
         return _replay(orbit, _BEYOND)
     cut = f" The first {steps:,} of {step_count:,} steps." if steps < step_count else ""
-    preview = _numbers(orbit, _spread(orbit, _RECORDED))[0]
-    data = {"kind": kind, "state": state, "recorded": preview, "table": table}
-    return Shown(data, _name(orbit.system), _frame_note(orbit.system) + cut)
+    return _shown_state(orbit.system, orbit, state, table, cut)
+
+
+def _shown_state(system: AbstractSystem, orbit: Orbit, state: dict[str, Any], table: Any, cut: str = "") -> Shown:
+    preview = _numbers(orbit, _spread(orbit, _RECORDED))[0] if len(orbit) else None
+    data = {"kind": state["kind"], "state": state, "recorded": preview, "table": table}
+    return Shown(data, _name(system), _frame_note(system) + cut)
 
 
 def _kind(discrete: Discretization) -> str | None:
@@ -189,20 +223,13 @@ def _parameters(system: AbstractSystem) -> dict[str, float]:
 def _state(
     discrete: Discretization, kind: str, momentum: np.ndarray, pose: np.ndarray, steps: int, table: Any
 ) -> dict[str, Any]:
-    name_of_table = {} if table is None else {"table": table["name"]}
     form = cast(NormalForm, _inside(discrete.system).normal_form)
     if kind == "top4" and form.principal[1] is not None:  # a matrix with rows of the pose turned, its last column stays
         momentum, g = form.to_principal(momentum), pose.reshape(4, 4)
         pose = np.column_stack([g[:, :3] @ form.principal[1], g[:, 3]]).ravel()
-    return {
-        "kind": kind,
-        "parameters": _parameters(discrete.system),
-        "momentum": [float(r) for r in momentum],
-        "pose": [float(x) + 0.0 for x in pose],
-        "time_step": float(discrete.time_step),
-        "steps": steps,
-        **name_of_table,
-    }
+    numbers = {"momentum": [float(r) for r in momentum], "pose": [float(x) + 0.0 for x in pose]}
+    run = {"time_step": float(discrete.time_step), "steps": steps} | ({} if table is None else {"table": table["name"]})
+    return {"kind": kind, "parameters": _parameters(discrete.system), **numbers, **run}
 
 
 def simulate_state(where: str, state: Any, table: dict[str, Any] | None = None) -> Orbit:

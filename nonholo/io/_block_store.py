@@ -13,31 +13,198 @@ import hashlib
 import json
 import math
 import os
+import threading
 import uuid
+import warnings
 import zlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import zarr
-from pydantic import NonNegativeInt, TypeAdapter
+from pydantic import BaseModel, NonNegativeInt, TypeAdapter
+from zarr.codecs import BloscCodec, Crc32cCodec
 from zarr.core.sync import sync
 
+from nonholo.base.checks import error, printable
 from nonholo.base.results import Outcome
-from nonholo.io._chunks import DamagedError, chunk_name, chunk_path, read_chunk
-from nonholo.io._groups import (
-    consolidate,
-    create_array,
-    create_groups,
-    edit_attributes,
-    new_group,
-    remove_partials,
-    write_whole,
-)
-from nonholo.io._metadata import OrbitMetadata, require_identity
+from nonholo.io._metadata import OrbitMetadata, check_array, check_metadata, checksum, require_identity
+from nonholo.io._places import sibling
 from nonholo.io._stored_events import EVENTS, Checkpoint, Seen
-from nonholo.io.datasets import Variable
+from nonholo.io.datasets import CANONICAL, Variable
+
+_FILTERS = threading.Lock()  # warning filters belong to the whole process
+
+
+def new_group(path: Path, metadata: dict[str, Any], kind: type[BaseModel]) -> zarr.Group:
+    """Make a store with attributes, refused if they could not be read again, and their checksum."""
+    metadata |= {"checksum": checksum(metadata)}
+    check_metadata("store=...", str(path), json.loads(json.dumps(metadata)), kind)
+    return zarr.create_group(path, zarr_format=3, attributes=metadata)
+
+
+def create_groups(group: zarr.Group, names: Iterable[str]) -> None:
+    """Make the group of compact states, where arrays lie in it."""
+    if any(name.startswith(CANONICAL) for name in names):
+        group.create_group(CANONICAL.rstrip("/"))
+
+
+def consolidate(path: Path) -> None:
+    """Gather the metadata of a complete store in one file, and wait until all of them are on the disk.
+
+    Metadata of inner groups carry no information, and are written again.
+    """
+    for inner in filter(Path.is_dir, (path / "canonical", path / "run")):
+        write_whole(inner / "zarr.json", json.dumps({"attributes": {}, "zarr_format": 3, "node_type": "group"}))
+    with _FILTERS, warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # zarr: consolidated metadata are not in the specification yet
+        zarr.consolidate_metadata(path)
+    for files in map(path.glob, ("zarr.json", "*/zarr.json", "*/*/zarr.json")):
+        for file in files:
+            settle(file)
+            settle(file.parent)
+    settle(path.parent)
+
+
+def create_array(group: zarr.Group, name: str, variable: Variable, rows: int, chunk: int) -> zarr.Array:
+    """Make the array of a variable for this many rows, this many in a chunk; rows that are not written are NaN.
+
+    Chunks are compressed, then get a checksum of what is on disk.
+    """
+    with zarr.config.set({"array.write_empty_chunks": True}):
+        return group.create_array(
+            name,
+            shape=(rows, *variable.shape[1:]),
+            dtype="float64",
+            chunks=(chunk, *(max(1, size) for size in variable.shape[1:])),
+            compressors=(BloscCodec(cname="zstd", clevel=3, shuffle="shuffle"), Crc32cCodec()),
+            fill_value=float("nan"),
+            dimension_names=list(variable.dims),
+            attributes=variable.attrs,
+        )
+
+
+def settle(path: Path) -> None:
+    """Wait until a file, or the names in a folder, are on the disk: a power cut does not take them back."""
+    with contextlib.suppress(PermissionError):  # Windows opens no folders
+        descriptor = os.open(path, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
+
+
+def remove_partials(store: Path) -> None:
+    """Remove what killed writers left in a store."""
+    for folder, _, files in os.walk(store):
+        for file in files:
+            if file.endswith(".partial"):
+                Path(folder, file).unlink(missing_ok=True)
+
+
+def write_whole(path: Path, text: str, *, is_settled: bool = False) -> None:
+    """Write a small file at once: a reader sees the old one or the new one, and a killed writer leaves a `.partial`."""
+    part = sibling(path, "partial")
+    try:
+        part.write_text(text)
+        if is_settled:
+            settle(part)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def edit_attributes(path: Path, changes: dict[str, Any]) -> None:
+    """Change attributes (None removes one) and drop the consolidated metadata, in one atomic write."""
+    document = json.loads((path / "zarr.json").read_text())
+    together = document["attributes"] | changes
+    attributes = {name: value for name, value in together.items() if value is not None}
+    document["attributes"] = attributes | {"checksum": checksum(attributes)}
+    document.pop("consolidated_metadata", None)
+    write_whole(path / "zarr.json", json.dumps(document), is_settled=True)
+    settle(path)
+
+
+WHERE = "load_orbit(path=...)"
+AGAIN = "The store is damaged: copy it again from its source, or run it again."
+_NAN = "NaN"
+
+
+class DamagedError(Exception):
+    """Damage of a part of a store; a reader reports it, or computes the part again."""
+
+
+def opened_array(root: Path, name: str, shape: tuple[int, ...] | None) -> zarr.Array:
+    """Open an array of a store, of a known shape unless the run is not finished."""
+    try:
+        array = zarr.open_array(root / name, mode="r")
+    except Exception as failure:
+        raise error(WHERE, f"hold the array {name}", f"{type(failure).__name__}: {failure}", AGAIN) from failure
+    if array.shape != (shape or array.shape) or array.dtype != np.float64:
+        got = f"{array.dtype} of shape {array.shape}"
+        raise error(WHERE, f"hold the array {name} as float64 of shape {shape}", got, AGAIN)
+    check_array(WHERE, name, array)
+    return array
+
+
+def checked_block(
+    root: Path, name: str, array: zarr.Array, index: tuple[int, ...], *, with_nan: bool = False
+) -> np.ndarray:
+    """Return one chunk; refuse one that is missing or damaged, with its name."""
+    try:
+        return read_chunk(root, name, array, index, with_nan=with_nan)
+    except DamagedError as wrong:
+        requirement = f"hold {chunk_name(name, array, index)}" + (" free of NaN" if str(wrong) == _NAN else "")
+        raise error(WHERE, requirement, str(wrong), AGAIN) from None
+
+
+def checked_array(root: Path, name: str, array: zarr.Array) -> np.ndarray:
+    """Return all chunks, read at once; refuse one that is missing or damaged, with its name."""
+    indices = list(np.ndindex(array.cdata_shape))
+    if all(chunk_path(root, name, array, index).is_file() for index in indices):
+        with contextlib.suppress(Exception):  # which one it is appears when they are read one by one
+            values = np.asarray(array[...])
+            if not _lacks_numbers(name, values):
+                return values
+    return np.concatenate([checked_block(root, name, array, index) for index in indices])
+
+
+def chunk_name(name: str, array: zarr.Array, index: tuple[int, ...]) -> str:
+    """Return how messages call a chunk."""
+    return f"chunk {array.metadata.encode_chunk_key(index)} of the array {name}"
+
+
+def chunk_path(root: Path, name: str, array: zarr.Array, index: tuple[int, ...]) -> Path:
+    """Return the file of a chunk."""
+    return root / name / array.metadata.encode_chunk_key(index)
+
+
+def read_chunk(
+    root: Path, name: str, array: zarr.Array, index: tuple[int, ...], *, with_nan: bool = False
+) -> np.ndarray:
+    """Return one chunk; NaN is wrong, unless it may be a result.
+
+    A missing one would be read as its fill value, NaN, so its file is looked for first.
+
+    Raises:
+        DamagedError: The chunk is missing or damaged.
+    """
+    if not chunk_path(root, name, array, index).is_file():
+        raise DamagedError("no such chunk")
+    try:
+        block = np.asarray(array.blocks[index])
+    except Exception as failure:
+        raise DamagedError(f"a corrupt one ({printable(str(failure))})") from failure
+    if not with_nan and _lacks_numbers(name, block):
+        raise DamagedError(_NAN)
+    return block
+
+
+def _lacks_numbers(name: str, rows: np.ndarray) -> bool:
+    """Return whether there are NaN; impulses lead from each state to the next, which the last state may not have."""
+    return bool(np.isnan(rows[:-1] if name == "multipliers" else rows).any())
+
 
 BEFORE = -1
 """The number of the mark of what the first block begins with."""
@@ -138,7 +305,8 @@ class BlockStore:
         begin = 0 if before is None else before.log[1]
         self._mark_file(block).unlink(missing_ok=True)
         for name in self.arrays if rows else ():
-            self._file(name, block).unlink(missing_ok=True)  # zarr would read a damaged one first
+            chunk = chunk_path(self.path, name, self.arrays[name], self._index(name, block))
+            chunk.unlink(missing_ok=True)  # zarr would read a damaged one first
         end = begin if log is None or not len(log) else self._write_log(begin, log)
         if rows:
             sync(self._write_chunks(block, rows))
@@ -291,9 +459,6 @@ class BlockStore:
         index = self.layout.index(block)
         return index + (0,) * (self.arrays[name].ndim - len(index))
 
-    def _file(self, name: str, block: int) -> Path:
-        return chunk_path(self.path, name, self.arrays[name], self._index(name, block))
-
     def _mark_file(self, block: int) -> Path:
         return self.path / _MARKS / ("start.json" if block == BEFORE else f"{block}.json")
 
@@ -327,18 +492,12 @@ _NONE = "a mark without the state of a run"
 
 def said_of(checkpoint: Checkpoint) -> dict[str, Any]:
     """Return a checkpoint as what the mark of a block says; JSON has every bit of a number."""
-    events = None if checkpoint.of_events is None else _said_of_events(checkpoint.of_events)
-    return {
-        "done": int(checkpoint.done),
-        "outcome": checkpoint.outcome.name,
-        "state": checkpoint.vector.tolist(),
-        "seen": events,
-    }
-
-
-def _said_of_events(events: Seen) -> dict[str, Any]:
-    lists = {"counts": events.counts.tolist(), "values": events.values.tolist()}
-    return {**lists, "heading": float(events.heading), "stopped": int(events.last_event)}
+    events, state = checkpoint.of_events, checkpoint.vector.tolist()
+    about = {"done": int(checkpoint.done), "outcome": checkpoint.outcome.name, "state": state, "seen": None}
+    if events is not None:
+        lists = {"counts": events.counts.tolist(), "values": events.values.tolist()}
+        about["seen"] = {**lists, "heading": float(events.heading), "stopped": int(events.last_event)}
+    return about
 
 
 def checkpoint_of(about: dict[str, Any], events: Sequence[str] | None) -> Checkpoint:
@@ -355,10 +514,7 @@ def checkpoint_of(about: dict[str, Any], events: Sequence[str] | None) -> Checkp
     try:
         vector, of_events = np.array(about["state"], dtype=np.float64), about["seen"]
         if of_events is not None:
-            counts, values = (
-                np.array(of_events["counts"], dtype=np.int64),
-                np.array(of_events["values"], dtype=np.float64),
-            )
+            counts, values = np.array(of_events["counts"], np.int64), np.array(of_events["values"], np.float64)
             of_events = Seen(counts, values, float(of_events["heading"]), int(of_events["stopped"]))
         checkpoint = Checkpoint(int(about["done"]), Outcome[about["outcome"]], vector, of_events)
     except (KeyError, TypeError, ValueError, OverflowError):

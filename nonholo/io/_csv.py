@@ -51,18 +51,15 @@ def orbit_to_csv(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fa
         >>> orbit_to_csv(orbit, "poses.csv")  # doctest: +SKIP
     """
     flags("Orbit.to_csv", overwrite=overwrite)
-    lines = _lines_of(orbit)
-    with new_file(checked_path("Orbit.to_csv(path=...)", path), overwrite=overwrite) as file:
-        file.writelines(lines)
-
-
-def _lines_of(orbit: Any) -> Iterator[str]:
     instance("orbit_to_csv(orbit=...)", orbit, AbstractOrbit, "be an orbit", "Pass what `simulate` or `flow` returned.")
     if not orbit.has_poses:
         remedy = "Run with reconstruct=True."
         raise error("Orbit.to_csv(...)", "be called on an orbit with poses", "reconstruct=False", remedy)
-    pose, heading = (orbit.canonical_pose, orbit.turned) if orbit.is_compact else (orbit.configuration, None)
-    return _lines(orbit.system, [Stretch(orbit.time, np.asarray(pose), heading)], 1)
+    own: Any = orbit
+    pose, heading = (own.canonical_pose, own.turned) if orbit.is_compact else (own.configuration, None)
+    lines = _lines(orbit.system, [Stretch(orbit.time, np.asarray(pose), heading)], 1)
+    with new_file(checked_path("Orbit.to_csv(path=...)", path), overwrite=overwrite) as file:
+        file.writelines(lines)
 
 
 def store_to_csv(
@@ -96,10 +93,11 @@ def store_to_csv(
     every = count("store_to_csv(every=...)", every, "Pass 1 for every saved state.")
     check_file(target, overwrite=overwrite)
     flags("store_to_csv", overwrite=overwrite, progress=progress)
-    from nonholo.io._stored_poses import open_poses  # loads zarr, which a CSV of an orbit does not need
+    from nonholo.io._orbit_store import open_poses  # loads zarr, which a CSV of an orbit does not need
 
     poses = open_poses(checked_path("store_to_csv(store=...)", store))
-    poses.check()
+    for _ in poses.stretches():  # so that damage is found before the first row is used
+        pass
     with new_file(target, overwrite=overwrite) as file, progress_bar("states", progress) as report:
         stretches = _reporting(poses.stretches(), lambda row: report(row, poses.rows))
         file.writelines(_lines(poses.system, stretches, every))

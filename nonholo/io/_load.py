@@ -14,8 +14,17 @@ from nonholo.base.checks import path as checked_path
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.io._attributes import FORMAT, SCHEMA, SWEEP_FORMAT, restore_motion
-from nonholo.io._block_store import BlockStore, Layout, checkpoint_of
-from nonholo.io._chunks import AGAIN, WHERE, DamagedError, checked_array, checked_block, opened_array
+from nonholo.io._block_store import (
+    AGAIN,
+    WHERE,
+    BlockStore,
+    DamagedError,
+    Layout,
+    checked_array,
+    checked_block,
+    checkpoint_of,
+    opened_array,
+)
 from nonholo.io._metadata import OrbitMetadata, SweepMetadata, check_assertions, check_metadata
 from nonholo.io._stored_events import EVENTS, log_of, without_padding
 from nonholo.io.datasets import CANONICAL, STEP
@@ -62,11 +71,8 @@ def _load(root: Path, discrete: Any, *, last: bool) -> Any:
         raise error(WHERE, "be a finished run", f"'{root}', which is not", remedy)
     try:
         shapes = json.loads(attributes["arrays"])
-        motion, outcome, every = (
-            restore_motion(attributes, discrete),
-            Outcome[attributes["outcome"]],
-            attributes["save_every"],
-        )
+        motion, every = restore_motion(attributes, discrete), attributes["save_every"]
+        outcome = Outcome[attributes["outcome"]]
     except (KeyError, json.JSONDecodeError) as failure:
         raise error(WHERE, "hold complete attributes", f"'{root}' without {failure}", AGAIN) from failure
     arrays = {name: _read(root, name, tuple(shape), last) for name, shape in shapes.items()}
@@ -78,7 +84,8 @@ def _load(root: Path, discrete: Any, *, last: bool) -> Any:
     orbit = motion.orbit(outcome=outcome, save_every=every, branch=attributes["branch"], step=step, **rows)
     if "events" not in attributes:
         return orbit
-    begin = _begin_of_last(attributes, shapes["time"][0]) if last else 0
+    plan = plan_of(attributes)
+    begin = plan.begin((total - 1) // plan.rows) if last else 0
     return dataclasses.replace(orbit, events=_events(root, attributes, orbit, begin))
 
 
@@ -114,20 +121,13 @@ def _events(root: Path, attributes: dict[str, Any], orbit: Orbit, begin: int) ->
     """Return the crossings of a stored run after the state of a step."""
     array = opened_array(root, EVENTS, None)
     events, counts = json.loads(attributes["events"]), json.loads(attributes["crossings"])
-    parts = [np.empty((0, array.shape[1]))]
-    for chunk in range(array.cdata_shape[0]):
-        parts.append(without_padding(checked_block(root, EVENTS, array, (chunk, 0), with_nan=True), begin))
-    log = log_of(np.concatenate(parts), events, orbit, attributes.get("stopped_by"))
+    chunks = (checked_block(root, EVENTS, array, (k, 0), with_nan=True) for k in range(array.cdata_shape[0]))
+    rows = np.concatenate([np.empty((0, array.shape[1])), *(without_padding(chunk, begin) for chunk in chunks)])
+    log = log_of(rows, events, orbit, attributes.get("stopped_by"))
     lengths = [len(crossings) for crossings in log.found]
     if begin == 0 and lengths != counts:
         raise error(WHERE, f"hold {counts} crossings in {EVENTS}", str(lengths), AGAIN)
     return log
-
-
-def _begin_of_last(attributes: dict[str, Any], states: int) -> int:
-    """Return the step at which the last block of states begins."""
-    plan = plan_of(attributes)
-    return plan.begin((states - 1) // plan.rows)
 
 
 def read_attributes(path: str | Path, format_name: str = FORMAT, schema: int = SCHEMA) -> dict[str, Any]:
@@ -147,19 +147,14 @@ def read_attributes(path: str | Path, format_name: str = FORMAT, schema: int = S
         got = f"'{path}', " + (f"a store of {kind_of_store}" if kind_of_store else "made by another program")
         raise error(where, kind, got, "Pass a store of nonholo that is one.")
     if attributes.get("schema") != schema:
-        raise _other_schema(where, attributes, schema)
+        number, versions = attributes.get("schema"), attributes.get("versions")
+        got, remedy = f"schema {number}", f"Upgrade nonholo: {versions} wrote it."
+        if isinstance(number, int) and number < schema:
+            got += ", of before 0.3.0, from which on later versions read stores"
+            remedy = f"Read it with the version that wrote it, {versions}, and save it as CSV, or repeat the run."
+        raise error(where, f"have schema {schema}, the one that this version reads", got, remedy)
     check_metadata(where, str(path), attributes, OrbitMetadata if format_name == FORMAT else SweepMetadata)
     return attributes
-
-
-def _other_schema(where: str, attributes: dict[str, Any], schema: int) -> Exception:
-    """Return what refuses a store of another schema: of a later version, or of before stores were read for good."""
-    number, versions = attributes.get("schema"), attributes.get("versions")
-    got, remedy = f"schema {number}", f"Upgrade nonholo: {versions} wrote it."
-    if isinstance(number, int) and number < schema:
-        got += ", of before 0.3.0, from which on later versions read stores"
-        remedy = f"Read it with the version that wrote it, {versions}, and save it as CSV, or repeat the run."
-    return error(where, f"have schema {schema}, the one that this version reads", got, remedy)
 
 
 def format_of(path: str | Path) -> str | None:

@@ -14,6 +14,7 @@ import functools
 import json
 import re
 import shutil
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -23,15 +24,25 @@ import zarr
 
 from nonholo.base.checks import error, flags, instance
 from nonholo.base.checks import path as checked_path
-from nonholo.io._attributes import FORMAT, attributes, attributes_of_text
-from nonholo.io._block_store import BEFORE, BlockStore, Layout, checkpoint_of, new_blocks, said_of
-from nonholo.io._chunks import DamagedError
-from nonholo.io._groups import create_array, edit_attributes
-from nonholo.io._load import format_of, plan_of, read_attributes
+from nonholo.io._attributes import FORMAT, attributes, attributes_of_text, system_of
+from nonholo.io._block_store import (
+    BEFORE,
+    BlockStore,
+    DamagedError,
+    Layout,
+    checked_block,
+    checkpoint_of,
+    create_array,
+    edit_attributes,
+    new_blocks,
+    opened_array,
+    said_of,
+)
+from nonholo.io._load import check_seals, format_of, plan_of, read_attributes, stored_names
 from nonholo.io._metadata import check_array, check_assertions
 from nonholo.io._places import new_beside, owner_of, remove_remains
 from nonholo.io._stored_events import EVENTS, Checkpoint, rows_of
-from nonholo.io.datasets import HEADED, Variable, steps_apart, stored_variables
+from nonholo.io.datasets import HEADED, Stretch, Variable, steps_apart, stored_variables
 from nonholo.orbit import AbstractOrbit, Plan
 
 _ROWS = 100_000  # states in one chunk
@@ -78,7 +89,9 @@ class Stream:
 
     def columns(self, orbit: Any, first: int) -> dict[str, np.ndarray]:
         """Return the arrays that the store has, of an orbit whose first state is a row of it."""
-        variables = stored_variables(orbit, self._turn_before(first))
+        turns = [array for name, array in self._blocks.arrays.items() if name in HEADED] if first > 0 else []
+        before = np.ravel(turns[0][first - 1 : first])[None] if turns else None  # on which what follows continues
+        variables = stored_variables(orbit, before)
         return {name: variables[name].values for name in self._blocks.arrays}
 
     def checkpoint(self, block: int) -> Checkpoint:
@@ -135,11 +148,6 @@ class Stream:
             metadata["stopped_by"] = self.events[end.of_events.last_event] if end.is_stopped else None
         self._blocks.finish(metadata)
 
-    def _turn_before(self, row: int) -> np.ndarray | None:
-        """Return the heading or the quaternion of the state before a row, on which what follows continues."""
-        headings = [name for name in HEADED if name in self._blocks.arrays]
-        return np.ravel(self._blocks.arrays[headings[0]][row - 1 : row])[None] if headings and row > 0 else None
-
     @functools.cached_property
     def events(self) -> tuple[str, ...] | None:
         """The names of the events that the run looks for; None if it looks for none."""
@@ -182,14 +190,19 @@ def create_stream(
     scenario: str | None = None,
 ) -> Stream:
     """Make a store with the first checkpoint and no rows yet; it appears at the path only when it is complete."""
-    extra = {} if events is None else {"events": json.dumps(events)}
-    extra |= {} if scenario is None else attributes_of_text(scenario)
     target = path.resolve()
     check_target(target, new="simulate(store=...)")
+    metadata = {name: value for name, value in attributes(first).items() if name != "outcome"}
+    run = {"steps": plan.steps, "rows": plan.rows, "reconstruct": first.has_poses, "lead": plan.lead}
+    metadata |= {"run": json.dumps(run)} | ({} if events is None else {"events": json.dumps(events)})
+    metadata |= {} if scenario is None else attributes_of_text(scenario)
     with new_beside(path) as part:
-        identity = _create(part, first, plan, opening, extra)
+        store = new_blocks(part, metadata, stored_variables(first), 1 + plan.steps // plan.every, plan.rows)
+        if first.events is not None:
+            create_log(zarr.open_group(part), rows_of(first.events))
+        store.write(BEFORE, {}, said_of(opening))
         put_in_place(part, target, overwrite=False)
-    return Stream(target, plan, first.has_poses, identity)
+    return Stream(target, plan, first.has_poses, store.made)
 
 
 def open_stream(path: str | Path) -> Stream:
@@ -233,18 +246,6 @@ def standing(path: str | Path) -> Standing | None:
     return Standing(stream.steps_done(), stream.plan.steps, owner_of(stream.path))
 
 
-def _create(part: Path, first: Any, plan: Plan, opening: Checkpoint, extra: dict[str, str]) -> str:
-    """Make the store with the mark of the start; return which one it is."""
-    metadata = {name: value for name, value in attributes(first).items() if name != "outcome"}
-    run = {"steps": plan.steps, "rows": plan.rows, "reconstruct": first.has_poses, "lead": plan.lead}
-    metadata |= {"run": json.dumps(run), **extra}
-    store = new_blocks(part, metadata, stored_variables(first), 1 + plan.steps // plan.every, plan.rows)
-    if first.events is not None:
-        create_log(zarr.open_group(part), rows_of(first.events))
-    store.write(BEFORE, {}, said_of(opening))
-    return store.made
-
-
 _NUMBERS, _MOST = 1 << 16, 1 << 10  # at most in a chunk: numbers, rows
 
 
@@ -285,17 +286,13 @@ def save_orbit(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fals
     check_target(target, overwrite=overwrite)
     with new_beside(path) as part:
         metadata = attributes(orbit) | ({} if scenario is None else attributes_of_text(scenario))
-        _write(stored_variables(orbit) | steps_apart(orbit), metadata, part)
+        variables = stored_variables(orbit) | steps_apart(orbit)
+        store = new_blocks(part, metadata, variables, len(orbit), max(1, min(_ROWS, len(orbit))))
+        for block in range(store.layout.blocks):
+            (rows,) = store.layout.piece(block).place
+            store.write(block, {name: variable.values[rows] for name, variable in variables.items()}, {})
+        store.finish({})
         put_in_place(part, target, overwrite=overwrite)
-
-
-def _write(variables: dict[str, Variable], metadata: dict[str, Any], path: Path) -> None:
-    rows = len(variables["time"].values)
-    store = new_blocks(path, metadata, variables, rows, max(1, min(_ROWS, rows)))
-    for block in range(store.layout.blocks):
-        (part,) = store.layout.piece(block).place
-        store.write(block, {name: variable.values[part] for name, variable in variables.items()}, {})
-    store.finish({})
 
 
 @contextlib.contextmanager
@@ -341,18 +338,12 @@ def check_target(path: str | Path, *, overwrite: bool = False, new: str | None =
         raise _exists(path, "Choose another path, or pass overwrite=True (--overwrite) to replace it.")
     if format_of(path) != FORMAT:
         raise _exists(path, "It is not a store of an orbit, so it is not replaced. Choose another path.")
-    if foreign := _foreign_file(Path(path)):
+    files = (file.relative_to(path).as_posix() for file in Path(path).rglob("*") if not file.is_dir())
+    if foreign := next((name for name in files if not _OWN.fullmatch(name)), None):
         raise _exists(path, f"It holds '{foreign}', which is no part of a store, so it is not replaced.")
     if owner := owner_of(Path(path)):
-        raise BlockingIOError(
-            f"The store '{path}' is being written by {owner}, so it is not replaced. Wait, or stop it."
-        )
-
-
-def _foreign_file(store: Path) -> str | None:
-    """Return a file below a store that does not belong to it."""
-    files = (file.relative_to(store).as_posix() for file in store.rglob("*") if not file.is_dir())
-    return next((name for name in files if not _OWN.fullmatch(name)), None)
+        remedy = "so it is not replaced. Wait, or stop it."
+        raise BlockingIOError(f"The store '{path}' is being written by {owner}, {remedy}")
 
 
 def _exists(path: str | Path, remedy: str, where: str = "save_orbit(path=...)") -> FileExistsError:
@@ -364,10 +355,10 @@ def put_in_place(part: Path, target: Path, *, overwrite: bool) -> None:
     if not (overwrite and target.exists()):
         try:
             part.rename(target)
+            return
         except OSError:
             check_target(target)
             raise
-        return
     check_target(target, overwrite=True)  # once more, after the time that writing took
     old = part.with_suffix(".old")  # which remove_remains knows
     target.rename(old)
@@ -377,3 +368,70 @@ def put_in_place(part: Path, target: Path, *, overwrite: bool) -> None:
         old.rename(target)
         raise
     shutil.rmtree(old, ignore_errors=True)
+
+
+_WHERE = "store_to_csv(store=...)"
+_COMPACT, _RECORDED = ("time", "canonical_pose", "turned"), ("time", "configuration")
+
+
+class StoredPoses(NamedTuple):
+    """The part of a store that holds the poses: its system, the number of saved states, their arrays and the names."""
+
+    path: Path
+    system: Any
+    rows: int
+    places: dict[str, str]
+    arrays: dict[str, zarr.Array]
+
+    def stretches(self) -> Iterator[Stretch]:
+        """Return the states chunk after chunk; only one chunk is in memory."""
+        chunk = self.arrays["time"].chunks[0]
+        for number in range(-(-self.rows // chunk)):
+            own_rows = slice(self.rows - number * chunk)
+            columns: dict[str, np.ndarray] = {}
+            for name, array in self.arrays.items():
+                index = (number,) + (0,) * (array.ndim - 1)
+                columns[name] = checked_block(self.path, self.places[name], array, index)[own_rows]
+            time, places = columns.pop("time"), columns.get("canonical_pose", columns.get("configuration"))
+            yield Stretch(time, np.asarray(places), columns.get("turned"))
+
+
+def open_poses(path: Path) -> StoredPoses:
+    """Open a store, finished or not; a warning gives the length of an unfinished one."""
+    attributes = read_attributes(path)
+    try:
+        shapes = json.loads(attributes["arrays"])
+        remedy = "Write the orbit of nonholo.load_orbit(path, discrete=...) with its to_csv."
+        system = system_of(attributes, _WHERE, remedy)
+        names = _RECORDED if "constraint_residual" in shapes else _COMPACT
+        places = {name: array for name, array in stored_names(shapes, names).items() if array in shapes}
+    except KeyError as failure:
+        raise error(_WHERE, "hold complete attributes", f"'{path}' without {failure}", "Run it again.") from failure
+    if names[1] not in places:
+        remedy = "Run it again with reconstruct=True: poses cannot be added later."
+        raise error(_WHERE, "hold poses", f"'{path}', which was run with reconstruct=False", remedy)
+    if "outcome" in attributes:
+        check_seals(path, attributes)
+        arrays = {name: opened_array(path, array, tuple(shapes[array])) for name, array in places.items()}
+        return StoredPoses(path, system, shapes["time"][0], places, arrays)
+    stream = open_stream(path)
+    rows = _state_count(stream)
+    owner, steps_done = owner_of(path), max(0, rows - 1) * stream.plan.every
+    resume = f"Resume with nonholo.resume({str(path)!r}) (nonholo resume)."
+    now = f"It is being written by {owner}." if owner else resume
+    message = f"The run in '{path}' is not finished: its poses go up to step {steps_done} of {stream.plan.steps}. {now}"
+    warnings.warn(message, RuntimeWarning, stacklevel=3)
+    arrays = {name: opened_array(path, array, None) for name, array in places.items()}
+    return StoredPoses(path, system, rows, places, arrays)
+
+
+def _state_count(stream: Stream) -> int:
+    """Return the number of saved states in the full blocks of an unfinished run, refused if one is damaged."""
+    try:
+        full = stream.full_blocks()
+        for block in range(full):
+            stream.sound(block)
+    except DamagedError as flaw:
+        remedy = f"nonholo.resume({str(stream.path)!r}) computes its block again."
+        raise error(_WHERE, "hold sound blocks", f"{flaw}, in '{stream.path}'", remedy) from None
+    return stream.state_count(full)

@@ -38,15 +38,15 @@ def write_lock(store: Path) -> Iterator[None]:
     try:
         lock.acquire()
     except Timeout:
-        raise BlockingIOError(
-            f"The store '{store}' is being written by {_owner_in(about)}. Wait until it is done."
-        ) from None
+        words = f"The store '{store}' is being written by {_owner_in(about)}. Wait until it is done."
+        raise BlockingIOError(words) from None
     except (OSError, NotImplementedError) as failure:
         number = getattr(failure, "errno", None)
         remedy = "A run that is stored needs a file system with locks: write it elsewhere, then copy it."
         raise OSError(number, f"The store cannot be locked ({failure}). {remedy}", str(store)) from failure
     try:
-        about.write_text(json.dumps({"pid": os.getpid(), "host": socket.gethostname(), "since": _now()}))
+        since = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+        about.write_text(json.dumps({"pid": os.getpid(), "host": socket.gethostname(), "since": since}))
         yield
     finally:
         if lock.is_locked:  # not in a process that was forked meanwhile
@@ -112,10 +112,6 @@ def _owner_in(about: Path) -> str:
         return printable(f"process {owner['pid']} on {owner['host']} since {owner['since']}")
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return "an unknown process"
-
-
-def _now() -> str:
-    return datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
 
 
 @contextlib.contextmanager

@@ -57,20 +57,16 @@ class Checkpoint(NamedTuple):
 def rows_of(log: EventLog) -> Float[np.ndarray, "C width"]:
     """Return the crossings of a block as rows, one event after another."""
     parts = [_rows(event, crossings) for event, crossings in enumerate(log.found)]
-    parts += [
-        _rows(-1 - event, Crossings(crossings.step, crossings.fraction, crossings.direction, crossings.after))
-        for event, crossings in enumerate(log.found)
-        if crossings.after is not None
-    ]
+    impacts = [(event, crossings) for event, crossings in enumerate(log.found) if crossings.after is not None]
+    parts += [_rows(-1 - event, dataclasses.replace(each, states=each.after, after=None)) for event, each in impacts]
     return np.concatenate(parts) if parts else np.empty((0, _PLACE))
 
 
 def _rows(event: int, crossings: Crossings) -> np.ndarray:
     rows = crossings.states.rows()
     states = [rows[name].reshape(len(crossings), math.prod(rows[name].shape[1:])) for name in rows if name != "step"]
-    return np.column_stack(
-        [np.full(len(crossings), event), crossings.step, crossings.fraction, crossings.direction, *states]
-    )
+    events = np.full(len(crossings), event)
+    return np.column_stack([events, crossings.step, crossings.fraction, crossings.direction, *states])
 
 
 def log_of(
@@ -89,16 +85,14 @@ def _crossings_of(rows: np.ndarray, orbit: AbstractOrbit) -> Crossings:
     shapes = {name: column.shape[1:] for name, column in orbit.rows().items() if name not in ("step", "turned")}
     columns = np.split(rows, np.cumsum([_PLACE, *map(math.prod, shapes.values())]), axis=1)
     place, *states, turns = map(np.ascontiguousarray, columns)
-    columns_by_name: dict[str, Any] = {
-        name: part.reshape(len(rows), *shapes[name]) for name, part in zip(shapes, states, strict=True)
-    }
+    parts = zip(shapes.items(), states, strict=True)
+    columns_by_name: dict[str, Any] = {name: part.reshape(len(rows), *shape) for (name, shape), part in parts}
     step, direction = (place[:, entry].astype(np.int64) for entry in (1, 3))
     single: Any = dataclasses.replace(cast(Any, orbit), outcome=Outcome.successful, save_every=1, events=None)
     if single.turned is not None or turns.shape[1]:
         columns_by_name["turned"] = turns[:, 0] if turns.shape[1] else None
-    return Crossings(
-        step, np.ascontiguousarray(place[:, 2]), direction, single.of_rows({**columns_by_name, "step": step})
-    )
+    states_again = single.of_rows({**columns_by_name, "step": step})
+    return Crossings(step, np.ascontiguousarray(place[:, 2]), direction, states_again)
 
 
 def without_padding(rows: Float[np.ndarray, "D width"], after: int = 0) -> Float[np.ndarray, "C width"]:
@@ -114,9 +108,8 @@ def events_text(events: list[dict[str, Any]]) -> str:
         >>> events_text([{"name": "cusp", "direction": 0, "stop": 0}, {"name": "east", "direction": 1, "stop": 3}])
         "'cusp', 'east' (direction=1, stop=3)"
     """
-    return ", ".join(_described_event(event) for event in events) or "no events"
-
-
-def _described_event(event: dict[str, Any]) -> str:
-    options = ", ".join(f"{name}={event[name]}" for name in ("direction", "stop", "restitution") if event.get(name))
-    return f"{event['name']!r}" + (f" ({options})" if options else "")
+    words = []
+    for event in events:
+        options = ", ".join(f"{name}={event[name]}" for name in ("direction", "stop", "restitution") if event.get(name))
+        words.append(f"{event['name']!r}" + (f" ({options})" if options else ""))
+    return ", ".join(words) or "no events"

@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 from nonholo.kernels._composition import ComposedBody, whole_steps
 from nonholo.kernels._driver import CHART, CORRECTIONS, SETTLED, STATE_SIZE, converged, start
-from nonholo.kernels._ensemble import LANES, MemberRows, advance_members, tables_of
+from nonholo.kernels._ensemble import LANES, MemberAxes, MemberRows, advance_members, canonical, tables_of
 from nonholo.kernels._entry import AnyBody, runs_of, sizes, step_each
 from nonholo.kernels._flat import flat_arrowhead_run, flat_forced_run, flat_run, flat_secular_run
 from nonholo.kernels._scalar import (
@@ -39,6 +39,7 @@ from nonholo.kernels.secular.nearest import NearestBody
 from nonholo.kernels.secular.nearest import advance as advance_to_nearest
 from nonholo.kernels.taylor import (
     Arrowhead,
+    Columns,
     Quadratic,
     order_for,
     revisit_series,

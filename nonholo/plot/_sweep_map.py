@@ -1,21 +1,187 @@
-"""The result of a sweep in one picture: a map over a grid, a curve along one axis, draws as dots or a histogram."""
+"""The result of a sweep in one picture: a map over a grid, a curve along one axis, draws as dots or a histogram.
 
+The quantity that is shown, the colors and names of outcomes, and the scales of axes come first.
+"""
+
+import dataclasses
 from typing import TYPE_CHECKING, Any, NamedTuple, Unpack
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import QuadMesh
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import PathCollection
 from matplotlib.colorbar import Colorbar
-from matplotlib.colors import ListedColormap
+from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, Normalize
 from matplotlib.ticker import MaxNLocator
 
 from nonholo.base.checks import choice, error, shown
 from nonholo.base.types import Float
-from nonholo.plot import _sweep_axes as common
 from nonholo.plot import theme
 
 if TYPE_CHECKING:
     import xarray
+
+OUTCOME, DRAWN = "outcome", "value of the design"
+_SUCCESSFUL = "successful"
+_ENDED = {
+    _SUCCESSFUL: "#56b4e9",
+    "no_real_branch": "#cfd3da",
+    "branch_unverified": "#8a8f98",
+    "not_converged": "#cc79a7",
+    "off_momentum_locus": "#e69f00",
+    "no_half_impulse": "#009e73",
+    "too_stiff": "#f0e442",
+    "raised": "#d55e00",
+}
+_OTHER = "#a0522d"
+_WIDE = 30.0  # quotient of the ends of the middle nine tenths from which a scale is logarithmic: 19 for even numbers
+_FEW = 9  # different integers that get a color each
+
+
+@dataclasses.dataclass(frozen=True)
+class Subject:
+    """The quantity of a picture.
+
+    Attributes:
+        values: The quantity, NaN where a member did not succeed.
+        codes: How members ended.
+        whole: Whether the quantity consists of whole numbers.
+    """
+
+    values: "xarray.DataArray"
+    codes: "xarray.DataArray"
+    whole: bool
+
+    @property
+    def title(self) -> str:
+        """The meaning of the quantity."""
+        name = str(self.values.attrs.get("long_name") or label(self.values))
+        return name[:1].upper() + name[1:]
+
+    @property
+    def finite(self) -> Float[np.ndarray, "K"]:
+        """The numbers of the members that have one."""
+        return self.values.values[np.isfinite(self.values.values)]
+
+
+def subject_of(result: Any, quantity: str | None) -> Subject:
+    """Return the quantity of that name, by default the first one of a task that is one number of each member."""
+    import xarray
+
+    where = "plot.sweep_map"
+    if not isinstance(result, xarray.Dataset) or OUTCOME not in result:
+        remedy = "Pass what nh.sweep or nh.load_sweep returned."
+        raise error(f"{where}(result=...)", "be the result of a sweep", type(result).__name__, remedy)
+    codes = result[OUTCOME]
+    numbers = [str(name) for name in result.data_vars if result[name].dtype.kind in "biuf"]
+    if quantity is None:
+        quantity = _first_of_the_task(result, numbers)
+    values = result[choice(f"{where}(quantity=...)", quantity, tuple(numbers))]
+    more = [str(name) for name in values.dims if name not in codes.dims]
+    if more:
+        got, remedy = f"{quantity} along {', '.join(more)}", f"Pass result.isel({more[0]}=0), or another one."
+        raise error(f"{where}(quantity=...)", "be one number of each member", got, remedy)
+    successes = values.astype(float) if quantity == OUTCOME else values.where(codes == 0)
+    return Subject(successes.assign_attrs(values.attrs), codes, values.dtype.kind in "biu")
+
+
+def _first_of_the_task(result: "xarray.Dataset", numbers: list[str]) -> str:
+    """Return the first name that is one number of each member and no draw; the outcome if there is none."""
+    own = [name for name in numbers if result[name].attrs.get("long_name") != DRAWN and name != OUTCOME]
+    return next((name for name in own if result[name].dims == result[OUTCOME].dims), OUTCOME)
+
+
+def label(values: "xarray.DataArray") -> str:
+    """Return the name of a quantity with its units."""
+    units = values.attrs.get("units", "1")
+    return str(values.name).replace("_", " ") + ("" if units == "1" else f"  [{units}]")
+
+
+def ends(codes: "xarray.DataArray", *, successful: bool = False) -> list[tuple[int, str, str]]:
+    """Return the outcomes that occur, but for success, with their names and colors."""
+    flags = [int(flag) for flag in np.atleast_1d(codes.attrs.get("flag_values", []))]
+    names = dict(zip(flags, str(codes.attrs.get("flag_meanings", "")).split(), strict=False))
+    own = _ENDED | {"nonfinite": theme.STABLE, "absent": theme.PAPER}
+    counts = zip(*np.unique(codes.values, return_counts=True), strict=True)
+    shown = [(int(k), names.get(int(k), str(k)), count) for k, count in counts if successful or k != 0]
+    return [(k, f"{name.replace('_', ' ')} ({count:,})", own.get(name, _OTHER)) for k, name, count in shown]
+
+
+def key_to(axes: Axes, outcomes: list[tuple[int, str, str]]) -> tuple[PathCollection, ...]:
+    """Put a square into the legend for each outcome."""
+    look: Any = {"marker": "s", "s": 42, "linewidths": 0.6, "edgecolors": theme.MUTED}
+    return tuple(axes.scatter([], [], color=color, label=name, **look) for _, name, color in outcomes)
+
+
+def mark_below(
+    axes: Axes, across: np.ndarray, codes: np.ndarray, outcomes: list[tuple[int, str, str]], marker: str
+) -> tuple[PathCollection, ...]:
+    """Mark members along the bottom of the axes that have no number; call it after the others are drawn."""
+    look: Any = {"marker": marker, "s": 18 if marker == "s" else 50, "linewidths": 0.8, "clip_on": False, "zorder": 5}
+    axes.update_datalim(np.stack([across, across], axis=-1), updatey=False)
+    axes.autoscale_view()
+    groups = [(across[codes == code], color) for code, _, color in outcomes]
+    where = axes.get_xaxis_transform()
+    return tuple(axes.scatter(x, np.zeros(len(x)), transform=where, color=color, **look) for x, color in groups)
+
+
+def scale_of(subject: Subject) -> Normalize:
+    """Return how numbers become colors: whole numbers one each if they are few, by logarithm if they range widely."""
+    finite = subject.finite
+    distinct = np.unique(finite)
+    if subject.whole and 0 < len(distinct) <= _FEW:
+        middles = (distinct[:-1] + distinct[1:]) / 2
+        borders = np.concatenate([[distinct[0] - 1], middles, [distinct[-1] + 1]])
+        return BoundaryNorm(borders, theme.TIME.N)
+    if is_wide(finite):
+        return LogNorm(finite.min(), finite.max())
+    return Normalize(finite.min(), finite.max()) if len(finite) else Normalize(0.0, 1.0)
+
+
+def color_key(axes: Axes, mappable: ScalarMappable, subject: Subject) -> Colorbar:
+    """Put the key to the colors beside the axes."""
+    figure: Any = axes.get_figure(root=False)
+    bar = figure.colorbar(mappable, ax=axes, label=label(subject.values), pad=0.02)
+    bar.outline.set_visible(False)
+    bar.solids.set_alpha(1.0)
+    if isinstance(mappable.norm, BoundaryNorm):
+        labels = [f"{value:g}" for value in np.unique(subject.finite)]
+        ends_of = np.asarray(mappable.norm.boundaries)
+        bar.set_ticks(list((ends_of[:-1] + ends_of[1:]) / 2), labels=labels)
+        bar.ax.tick_params(length=0, which="both")
+    return bar
+
+
+def is_wide(values: Float[np.ndarray, "..."]) -> bool:
+    """Return whether positive numbers range over orders of magnitude."""
+    if not values.size or not values.min() > 0:
+        return False
+    low, high = np.quantile(values, [0.05, 0.95])
+    return bool(high > _WIDE * low)
+
+
+def scale_along(values: Float[np.ndarray, "K"]) -> str:
+    """Return the scale of an axis for these numbers, of which some may be missing."""
+    return "log" if is_wide(values[np.isfinite(values)]) else "linear"
+
+
+def is_geometric(values: Float[np.ndarray, "K"]) -> bool:
+    """Return whether values along an axis have one quotient, and no one difference."""
+    if len(values) < 3 or not values.min() > 0:
+        return False
+    quotients, differences = values[1:] / values[:-1], np.diff(values)
+    return bool(np.ptp(quotients) < 1e-6 * quotients[0] and np.ptp(differences) > 1e-6 * abs(differences[0]))
+
+
+def borders(values: Float[np.ndarray, "K"]) -> Float[np.ndarray, "K+1"]:
+    """Return where cells around ascending values end: half-way between them, in logarithms if they are geometric."""
+    if is_geometric(values):
+        return np.exp(borders(np.log(values)))
+    if len(values) == 1:
+        return values[0] + np.array([-0.5, 0.5])
+    middles = (values[:-1] + values[1:]) / 2
+    return np.concatenate([[2 * values[0] - middles[0]], middles, [2 * values[-1] - middles[-1]]])
+
 
 _MOST = 20_000  # dots
 _LARGE = 2000  # dots from which they are small
@@ -25,13 +191,13 @@ _OPAQUE = 600  # dots up to which they are opaque
 _Drawn = tuple[Any, tuple[Any, ...], Colorbar | None]
 
 
-def _draw_draws(axes: Axes, result: "xarray.Dataset", subject: common.Subject, x: str | None, y: str | None) -> _Drawn:
+def _draw_draws(axes: Axes, result: "xarray.Dataset", subject: Subject, x: str | None, y: str | None) -> _Drawn:
     """Draw the members of a random design."""
     if y is not None and x is None:
         raise error("plot.sweep_map(y=...)", "come with x", shown(y), "Pass x, or x and y.")
     if x is not None and y is not None:
         members = _colored_dots(axes, subject, _number(result, "x", x), _number(result, "y", y))
-    elif subject.values.name == common.OUTCOME:
+    elif subject.values.name == OUTCOME:
         members = _outcomes(axes, subject)
     elif x is not None:
         members = _dots_over(axes, subject, _number(result, "x", x))
@@ -56,34 +222,34 @@ def _thin(*arrays: "xarray.DataArray") -> list[np.ndarray]:
     return [array.values[:: -(-len(array) // _MOST)] for array in arrays]
 
 
-def _dots_over(axes: Axes, subject: common.Subject, x: "xarray.DataArray") -> _Drawn:
+def _dots_over(axes: Axes, subject: Subject, x: "xarray.DataArray") -> _Drawn:
     """Draw the quantity of members that succeeded as dots over x; the others are marked along the bottom."""
     across, values, codes = _thin(x, subject.values, subject.codes)
-    good, outcomes = codes == 0, common.ends(subject.codes)
+    good, outcomes = codes == 0, ends(subject.codes)
     members = axes.scatter(across[good], values[good], **theme.own_look(theme.DISCRETE), **_look(across, 0.2))
-    axes.set(xlabel=common.label(x), xscale=common.scale_along(across))
-    axes.set(ylabel=common.label(subject.values), yscale=common.scale_along(values))
-    marks = common.mark_below(axes, across, codes, outcomes, marker="|")
-    common.key_to(axes, outcomes)
+    axes.set(xlabel=label(x), xscale=scale_along(across))
+    axes.set(ylabel=label(subject.values), yscale=scale_along(values))
+    marks = mark_below(axes, across, codes, outcomes, marker="|")
+    key_to(axes, outcomes)
     return members, marks, None
 
 
-def _colored_dots(axes: Axes, subject: common.Subject, x: "xarray.DataArray", y: "xarray.DataArray") -> _Drawn:
+def _colored_dots(axes: Axes, subject: Subject, x: "xarray.DataArray", y: "xarray.DataArray") -> _Drawn:
     """Draw members as dots over x and y, those that did not succeed below the others."""
     across, up, values, codes = _thin(x, y, subject.values, subject.codes)
-    of_outcome, look = subject.values.name == common.OUTCOME, _look(across, 0.5)
-    outcomes = common.ends(subject.codes, successful=of_outcome)
+    of_outcome, look = subject.values.name == OUTCOME, _look(across, 0.5)
+    outcomes = ends(subject.codes, successful=of_outcome)
     groups = [(codes == code, color) for code, _, color in outcomes]
     marks = tuple(axes.scatter(across[of], up[of], color=color, **look) for of, color in groups)
     members = bar = None
     if not of_outcome:
         good = codes == 0
-        colors: Any = {"c": values[good], "cmap": theme.TIME, "norm": common.scale_of(subject)}
+        colors: Any = {"c": values[good], "cmap": theme.TIME, "norm": scale_of(subject)}
         members = axes.scatter(across[good], up[good], **colors, **look)
-        bar = common.color_key(axes, members, subject)
-    axes.set(xlabel=common.label(x), xscale=common.scale_along(across))
-    axes.set(ylabel=common.label(y), yscale=common.scale_along(up))
-    common.key_to(axes, outcomes)
+        bar = color_key(axes, members, subject)
+    axes.set(xlabel=label(x), xscale=scale_along(across))
+    axes.set(ylabel=label(y), yscale=scale_along(up))
+    key_to(axes, outcomes)
     return members, marks, bar
 
 
@@ -93,23 +259,22 @@ def _look(across: np.ndarray, faintest: float) -> Any:
     return {"s": 14.0 if len(across) <= _LARGE else 5.0, "linewidths": 0, "rasterized": True, "alpha": opacity}
 
 
-def _histogram(axes: Axes, subject: common.Subject) -> _Drawn:
+def _histogram(axes: Axes, subject: Subject) -> _Drawn:
     """Count the members that succeeded; the legend counts the others."""
-    bars = axes.hist(
-        subject.finite, bins=_bins(subject.finite, subject.whole), rwidth=0.94, **theme.own_look(theme.DISCRETE)
-    )[2]
-    axes.set(xlabel=common.label(subject.values), ylabel="members")
+    look = theme.own_look(theme.DISCRETE)
+    bars = axes.hist(subject.finite, bins=_bins(subject.finite, subject.whole), rwidth=0.94, **look)[2]
+    axes.set(xlabel=label(subject.values), ylabel="members")
     if subject.whole:
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     else:
-        axes.set_xscale(common.scale_along(subject.finite))
-    common.key_to(axes, common.ends(subject.codes))
+        axes.set_xscale(scale_along(subject.finite))
+    key_to(axes, ends(subject.codes))
     return bars, (), None
 
 
-def _outcomes(axes: Axes, subject: common.Subject) -> _Drawn:
+def _outcomes(axes: Axes, subject: Subject) -> _Drawn:
     """Count how members ended, one bar each."""
-    outcomes = common.ends(subject.codes, successful=True)
+    outcomes = ends(subject.codes, successful=True)
     counts = [int((subject.codes.values == code).sum()) for code, _, _ in outcomes]
     bars = axes.barh([name for _, name, _ in outcomes], counts, color=[color for _, _, color in outcomes], height=0.6)
     axes.set(xlabel="members", ylim=(len(outcomes) - 0.5, -0.5))
@@ -121,7 +286,7 @@ def _bins(values: Float[np.ndarray, "K"], whole: bool) -> Any:
         return 1
     if whole and np.ptp(values) < _BARS:
         return np.arange(values.min() - 0.5, values.max() + 1)
-    if common.is_wide(values):
+    if is_wide(values):
         return np.geomspace(values.min(), values.max(), _BARS + 1)
     return min(_BARS, max(1, int(np.sqrt(len(values)))))
 
@@ -181,20 +346,16 @@ def sweep_map(
         >>> picture.drawn.get_array().shape, picture.axes.get_xlabel()
         ((2, 3), 'inertia')
     """
-    subject = common.subject_of(result, quantity)
+    subject = subject_of(result, quantity)
     if subject.codes.dims == ("member",):
         axes = theme.axes_or_new(axes, (7.2, 5.4))
         return SweepMap(axes, *_draw_draws(axes, result, subject, x, y))
-    along = _along(subject.values, x, y)
+    names = [str(name) for name in subject.values.dims]
+    _check_named(names, x, y)
+    free = [name for name in names if subject.values.sizes[name] > 1 and name not in (x, y)]
+    along = _axes_of(free, x, y) or names[:1]  # others may only have one value
     axes = theme.axes_or_new(axes, (7.2, 5.4))
     return _curve(axes, subject, *along) if len(along) == 1 else _map(axes, subject, *along)
-
-
-def _along(values: "xarray.DataArray", x: str | None, y: str | None) -> list[str]:
-    """Return the axes of the picture; others may only have one value."""
-    names = [str(name) for name in values.dims]
-    _check_named(names, x, y)
-    return _axes_of([name for name in names if values.sizes[name] > 1 and name not in (x, y)], x, y) or names[:1]
 
 
 def _check_named(names: list[str], x: str | None, y: str | None) -> None:
@@ -217,44 +378,35 @@ def _axes_of(free: list[str], x: str | None, y: str | None) -> list[str]:
     return [name for name in (across, up) if name is not None]
 
 
-def _map(axes: Axes, subject: common.Subject, x: str, y: str) -> SweepMap:
+def _map(axes: Axes, subject: Subject, x: str, y: str) -> SweepMap:
     values, codes = (_plane(array, x, y) for array in (subject.values, subject.codes))
-    edges = common.borders(_places(values, x)), common.borders(_places(values, y))
-    outcomes = common.ends(subject.codes, successful=subject.values.name == common.OUTCOME)
-    marks = _fill_outcomes(axes, edges, codes, outcomes)
+    edges = borders(_places(values, x)), borders(_places(values, y))
+    outcomes = ends(subject.codes, successful=subject.values.name == OUTCOME)
+    look: Any = {"rasterized": True, "zorder": 1}
+    cells = [(np.ma.masked_where(codes.values != k, np.ones(codes.shape)), color) for k, _, color in outcomes]
+    marks = tuple(axes.pcolormesh(*edges, here, cmap=ListedColormap([color]), **look) for here, color in cells)
     members = bar = None
-    if subject.values.name != common.OUTCOME:
-        look: Any = {"cmap": theme.TIME, "norm": common.scale_of(subject), "rasterized": True, "zorder": 1}
-        members = axes.pcolormesh(*edges, np.ma.masked_invalid(values.values), **look)
-        bar = common.color_key(axes, members, subject)
+    if subject.values.name != OUTCOME:
+        colors: Any = {"cmap": theme.TIME, "norm": scale_of(subject)}
+        members = axes.pcolormesh(*edges, np.ma.masked_invalid(values.values), **colors, **look)
+        bar = color_key(axes, members, subject)
     _dress_axis(axes, "x", values, x)
     _dress_axis(axes, "y", values, y)
-    common.key_to(axes, outcomes)
+    key_to(axes, outcomes)
     _name(axes, subject)
     return SweepMap(axes, members, marks, bar)
 
 
-def _fill_outcomes(
-    axes: Axes, edges: Any, codes: "xarray.DataArray", outcomes: list[tuple[int, str, str]]
-) -> tuple[QuadMesh, ...]:
-    """Fill the cells of each outcome with its color."""
-    cells = []
-    for code, _, color in outcomes:
-        here = np.ma.masked_where(codes.values != code, np.ones(codes.shape))
-        cells.append(axes.pcolormesh(*edges, here, cmap=ListedColormap([color]), rasterized=True, zorder=1))
-    return tuple(cells)
-
-
-def _curve(axes: Axes, subject: common.Subject, x: str) -> SweepMap:
+def _curve(axes: Axes, subject: Subject, x: str) -> SweepMap:
     values, codes = (_plane(array, x) for array in (subject.values, subject.codes))
     across = _places(values, x)
     marker = "o" if len(across) <= _MARKED else ""
     (line,) = axes.plot(across, values.values, **theme.own_look(theme.DISCRETE), marker=marker, markersize=3.5)
-    outcomes = common.ends(subject.codes)
-    marks = common.mark_below(axes, across, codes.values, outcomes, marker="s")
+    outcomes = ends(subject.codes)
+    marks = mark_below(axes, across, codes.values, outcomes, marker="s")
     _dress_axis(axes, "x", values, x)
-    axes.set(ylabel=common.label(subject.values), yscale=common.scale_along(values.values))
-    common.key_to(axes, outcomes)
+    axes.set(ylabel=label(subject.values), yscale=scale_along(values.values))
+    key_to(axes, outcomes)
     _name(axes, subject)
     return SweepMap(axes, line, marks, None)
 
@@ -271,11 +423,11 @@ def _places(array: "xarray.DataArray", name: str) -> np.ndarray:
 
 
 def _dress_axis(axes: Axes, side: str, array: "xarray.DataArray", name: str) -> None:
-    scale = "log" if common.is_geometric(_places(array, name)) else "linear"
-    axes.set(**{f"{side}scale": scale, f"{side}label": common.label(array[name])})
+    scale = "log" if is_geometric(_places(array, name)) else "linear"
+    axes.set(**{f"{side}scale": scale, f"{side}label": label(array[name])})
 
 
-def _name(axes: Axes, subject: common.Subject) -> None:
+def _name(axes: Axes, subject: Subject) -> None:
     """Write what is shown, and the values that the rest of the design has."""
     rest = [
         f"{str(name).replace('_', ' ')} = {values.values.item():.4g}"

@@ -101,8 +101,7 @@ def convergence(
 
 def _by_name(errors: Errors) -> dict[str, np.ndarray]:
     """Return what is known of errors, by name in the order of pictures."""
-    rows = errors._asdict()
-    return {name: rows[name] for name in _TITLES if rows[name] is not None}
+    return {name: rows for name in _TITLES if (rows := getattr(errors, name)) is not None}
 
 
 def _color(name: str) -> Any:
@@ -119,8 +118,10 @@ def _draw_errors(axes: Axes, time: Float[np.ndarray, "K"], name: str, errors: Fl
     color = _color(name)
     axes.plot(time[at], errors[at] / unit, color=color, label=theme.option("label", None), linewidth=1.6, zorder=3)
     axes.axhline(0.0, color=theme.LEVEL, linewidth=0.8, zorder=1)
+    mantissa, power = f"{abs(errors[most]):.1e}".split("e")
+    largest = "0" if errors[most] == 0 else rf"${mantissa}\cdot10^{{{int(power)}}}$"
     ring: Any = {"s": 46, "facecolors": theme.PAPER, "edgecolors": color, "linewidths": 1.6, "zorder": 5}
-    axes.scatter(time[most], errors[most] / unit, label=f"largest {_scientific(abs(errors[most]))}", **ring)
+    axes.scatter(time[most], errors[most] / unit, label=f"largest {largest}", **ring)
     theme.write_title(axes, _TITLES[name])
     axes.set(ylabel=rf"error   [$10^{{{round(np.log10(unit))}}}$]")
     axes.margins(x=0.02, y=0.16)
@@ -138,9 +139,3 @@ def _draw_slope(axes: Axes, h: Float[np.ndarray, "R"], errors: Float[np.ndarray,
         middle = np.exp(np.log(errors / h**order).mean())
         ends = np.array([h.min() / 1.15, h.max() * 1.15])
         axes.plot(ends, middle * ends**order, color=color, linewidth=1.2, alpha=0.6, zorder=2)
-
-
-def _scientific(value: float) -> str:
-    """Return a number with two digits and its power of ten."""
-    mantissa, power = f"{value:.1e}".split("e")
-    return "0" if value == 0 else rf"${mantissa}\cdot10^{{{int(power)}}}$"

@@ -13,13 +13,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from nonholo.base.checks import error
 from nonholo.base.results import Outcome
-from nonholo.base.types import Float
 from nonholo.groups import SE, SO
 from nonholo.orbit import AbstractOrbit, Orbit
-from nonholo.plot import motion, theme
-from nonholo.plot.parts import drawable_in_time, finish_page, is_free, new_page
+from nonholo.plot import theme
+from nonholo.plot.motion import coordinates, spheres, time_series, tracks
+from nonholo.plot.motion.phase_portrait import phase_portrait
+from nonholo.plot.parts import drawable_in_time, finish_page, is_free, new_page, same_space
 from nonholo.plot.sheets import blade_of_system, sheet_of
 from nonholo.systems import AbstractLLSystem, LLSystem, System
 
@@ -34,29 +34,24 @@ class Panel(NamedTuple):
 
 def panels_of(orbit: AbstractOrbit, flow: AbstractOrbit | None) -> list[Panel]:
     """Return the panels of an orbit, the large one first; there is always one."""
-    if not isinstance(orbit, Orbit):
-        return _in_coordinates(orbit, flow)
-    return _of_body(orbit, cast(Orbit | None, flow))
+    return _of_body(orbit, cast(Any, flow)) if isinstance(orbit, Orbit) else _in_coordinates(orbit, flow)
 
 
 def _in_coordinates(orbit: AbstractOrbit, flow: AbstractOrbit | None) -> list[Panel]:
     """Return the panels of an orbit of a Lagrange-d'Alembert system."""
-    track = motion.track_of(orbit)
-    path = []
+    track = coordinates.track_of(orbit)
+    panels = []
     if track is not None:
-        projection = "3d" if len(track.names) == 3 else None
-        path = [Panel(functools.partial(motion.draw_path, track, orbit, flow), projection=projection)]
-    shape = [Panel(functools.partial(motion.draw_shape, orbit, flow), is_timed=True)] if orbit.coordinates else []
-    velocity = Panel(functools.partial(motion.draw_velocity, orbit, flow), is_timed=True)
-    energy = Panel(functools.partial(motion.energy_error, orbit), is_timed=True)
-    residual = (
-        [Panel(functools.partial(motion.draw_residual, orbit), is_timed=True)] if orbit.system.constraints else []
-    )
-    return [*path, *shape, velocity, energy, *residual]
+        draw = functools.partial(coordinates.draw_path, track, orbit, flow)
+        panels = [Panel(draw, projection="3d" if len(track.names) == 3 else None)]
+    pictures = [coordinates.draw_shape] * bool(orbit.coordinates) + [coordinates.draw_velocity]
+    series = [functools.partial(draw, orbit, flow) for draw in pictures]
+    errors = [time_series.energy_error] + [time_series.draw_residual] * bool(orbit.system.constraints)
+    return panels + [Panel(each, is_timed=True) for each in (*series, *(functools.partial(e, orbit) for e in errors))]
 
 
 def _of_body(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
-    energy = Panel(functools.partial(motion.energy_error, orbit), is_timed=True)
+    energy = Panel(functools.partial(time_series.energy_error, orbit), is_timed=True)
     if orbit.system.is_wide and sheet_of(orbit.system) is None:
         return [_components(orbit, flow), energy]
     path, momentum = _path(orbit, flow), _momentum(orbit, flow)
@@ -73,12 +68,12 @@ def _path(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
         return []
     group, flow = orbit.system.group, flow if flow is not None and flow.canonical_pose is not None else None
     if blade_of_system(orbit.system) is not None:
-        return [Panel(lambda axes: motion.blade_track(orbit, axes=axes, flow=flow))]
+        return [Panel(lambda axes: tracks.blade_track(orbit, axes=axes, flow=flow))]
     if group == SO(3):
         return [Panel(functools.partial(_body_axis, orbit, flow))]
     if group.size > 2 and group == SE(group.size - 1):
         projection = "3d" if group.size > 3 else None
-        return [Panel(lambda axes: motion.point_track(orbit, axes=axes, flow=flow), projection=projection)]
+        return [Panel(lambda axes: tracks.point_track(orbit, axes=axes, flow=flow), projection=projection)]
     return []
 
 
@@ -86,40 +81,36 @@ def _momentum(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
     system, directions = orbit.system, orbit.system.rank
     if directions == 0:
         return []
-    if system.is_forced:
-        return [_components(orbit, flow)]
-    if not system.is_spatial and directions == 2:
-        return [Panel(lambda axes: motion.phase_portrait(cast(AbstractLLSystem, system), orbit, axes=axes))]
-    if not system.is_spatial and directions == 3:
-        return [Panel(lambda axes: motion.momentum_sphere(orbit, axes=axes))]
+    is_free_in_body = not (system.is_forced or system.is_spatial)
+    if is_free_in_body and directions == 2:
+        return [Panel(lambda axes: phase_portrait(cast(AbstractLLSystem, system), orbit, axes=axes))]
+    if is_free_in_body and directions == 3:
+        return [Panel(lambda axes: spheres.momentum_sphere(orbit, axes=axes))]
     return [_components(orbit, flow)]
 
 
 def _components(orbit: Orbit, flow: Orbit | None) -> Panel:
-    return Panel(lambda axes: motion.momentum_components(orbit, axes, flow), is_timed=True)
+    return Panel(lambda axes: time_series.momentum_components(orbit, axes, flow), is_timed=True)
 
 
 def _body_axis(orbit: Orbit, flow: Orbit | None, axes: Axes) -> None:
-    motion.body_axis_track(orbit, axes=axes, flow=flow)
+    spheres.body_axis_track(orbit, axes=axes, flow=flow)
     tensor: Any = orbit.system.homogeneous_mass_tensor
-    if tensor is not None:
-        _write_mass_tensor(axes, np.asarray(tensor))
+    if tensor is None:
+        return
+    cells = [[f"{number:.3g}".replace("-", "\u2212") for number in row] for row in np.asarray(tensor) + 0.0]
+    width = max(len(cell) for row in cells for cell in row)
+    lines = ["  ".join(cell.rjust(width) for cell in row) for row in cells]
+    text = f"    \u23a1{lines[0]}\u23a4\nJ = \u23a2{lines[1]}\u23a5\n    \u23a3{lines[2]}\u23a6"
+    look: Any = {"family": "monospace", "fontsize": "medium", "linespacing": 1.05, "color": theme.QUIET}
+    axes.text(0.0, 0.0, text, transform=axes.transAxes, **look)
 
 
 def _velocity(orbit: Orbit, flow: Orbit | None, axes: Axes) -> None:
     has_heading = blade_of_system(orbit.system) is not None and orbit.canonical_pose is not None
     if flow is not None and flow.canonical_pose is None and (has_heading or orbit.system.is_spatial):
         flow = None
-    (motion.heading_and_speed if has_heading else motion.velocity_components)(orbit, axes, flow)
-
-
-def _write_mass_tensor(axes: Axes, mass_tensor: Float[np.ndarray, "3 3"]) -> None:
-    cells = [[f"{number:.3g}".replace("-", "\u2212") for number in row] for row in mass_tensor + 0.0]
-    width = max(len(cell) for row in cells for cell in row)
-    lines = ["  ".join(cell.rjust(width) for cell in row) for row in cells]
-    text = f"    \u23a1{lines[0]}\u23a4\nJ = \u23a2{lines[1]}\u23a5\n    \u23a3{lines[2]}\u23a6"
-    look: Any = {"family": "monospace", "fontsize": "medium", "linespacing": 1.05, "color": theme.QUIET}
-    axes.text(0.0, 0.0, text, transform=axes.transAxes, **look)
+    (time_series.heading_and_speed if has_heading else time_series.velocity_components)(orbit, axes, flow)
 
 
 _FIXED = {False: "System with a left-invariant constraint", True: "System with a right-invariant constraint"}
@@ -135,15 +126,12 @@ def _facts(orbit: AbstractOrbit) -> list[str]:
         steps = int(orbit.step[-1] - orbit.step[0])
         run = f"{steps:,} step{'s' * (steps != 1)} of $h$ = {step:g}".replace(",", "\u2009")
     end = [] if orbit.outcome == Outcome.successful else [f"stopped: {orbit.outcome}"]
-    return [_parameters(_inside(orbit.system)) if isinstance(orbit, Orbit) else _form(orbit), run, *end]
-
-
-def _form(orbit: AbstractOrbit) -> str:
-    """Return in words where an orbit without a body moves, and how many constraints it has."""
-    names = [motion.symbol(name) for name in orbit.coordinates]
+    if isinstance(orbit, Orbit):
+        return [_parameters(_inside(orbit.system)), run, *end]
+    names = [coordinates.symbol(name) for name in orbit.coordinates]
     where = ", ".join(names if len(names) <= 7 else [*names[:3], "...", names[-1]]) or str(orbit.space)
     s = orbit.system.constraints
-    return f"{where},  {s or 'no'} constraint{'s' * (s != 1)}"
+    return [f"{where},  {s or 'no'} constraint{'s' * (s != 1)}", run, *end]
 
 
 def name_of(orbit: AbstractOrbit) -> str:
@@ -173,15 +161,10 @@ def _name_of_body(system: System) -> str:
     if system.homogeneous_mass_tensor is not None and system.group.is_rigid:
         if is_free(system):
             return "Free rigid body"
-        if system.is_spatial and _is_top_in_body(system):
+        in_body = LLSystem(system.group, system.homogeneous_mass_tensor, system.constraint_subspace).normal_form
+        if system.is_spatial and in_body is not None and not in_body.is_sleigh:
             return "Veselova top"
     return _FIXED[system.is_spatial]
-
-
-def _is_top_in_body(system: System) -> bool:
-    """Return whether the body would be a top if its constraint were fixed in it."""
-    form = LLSystem(system.group, system.homogeneous_mass_tensor, system.constraint_subspace).normal_form
-    return form is not None and not form.is_sleigh
 
 
 def _parameters(system: System) -> str:
@@ -237,10 +220,7 @@ def overview(
         ['Track of the blade', 'Phase portrait']
     """
     smooth = drawable_in_time("overview(orbit=...)", orbit)
-    flow = None if flow is None else drawable_in_time("overview(flow=...)", flow)
-    if flow is not None and flow.space != orbit.space:
-        remedy = "Pass a motion of the same system."
-        raise error("overview(flow=...)", f"move in {orbit.space}", f"{flow.space}", remedy)
+    flow = same_space("overview(flow=...)", flow, orbit, "Pass a motion of the same system.")
     figure = new_page("overview", _SIZE, path, overwrite=overwrite)
     panels = panels_of(smooth, flow)
     axes = _axes(figure, panels)
@@ -256,20 +236,18 @@ def overview(
 def _axes(figure: Figure, panels: list[Panel]) -> list[Axes]:
     """Return the large axes on the left and the others on the right, those against time lower."""
     first, *others = panels
-    heights = [1.0 if panel.is_timed else _LARGER for panel in others]
-    if len(heights) == 0:
+    if not others:
         return [figure.add_subplot(projection=first.projection)]
+    heights = [1.0 if panel.is_timed else _LARGER for panel in others]
     grid = figure.add_gridspec(len(others), 2, width_ratios=(1.3, 1.0), height_ratios=heights)
-    large = figure.add_subplot(grid[:, 0], projection=first.projection)
-    return [large, *(figure.add_subplot(grid[row, 1], projection=each.projection) for row, each in enumerate(others))]
+    places = (grid[:, 0], *(grid[row, 1] for row in range(len(others))))
+    return [figure.add_subplot(place, projection=each.projection) for place, each in zip(places, panels, strict=True)]
 
 
 def _share_time(panels: list[Axes]) -> None:
-    if not panels:
-        return
-    *upper, lowest = panels
-    lowest.set_xlabel("time")
-    for axes in upper:
-        axes.sharex(lowest)
+    for axes in panels[:-1]:
+        axes.sharex(panels[-1])
         axes.set_xlabel("")
         axes.tick_params(labelbottom=False)
+    for axes in panels[-1:]:
+        axes.set_xlabel("time")

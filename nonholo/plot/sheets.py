@@ -6,23 +6,21 @@ $(\Delta, \nu)$ of sleighs, whose edges are one upside down, a Moebius band. Poi
 others those of the canonical frame. The drawing on that plane is not decided here.
 """
 
-import abc
 import dataclasses
-import functools
-from typing import Any, ClassVar, cast
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.patches import FancyArrowPatch
+from matplotlib.colors import to_rgb
+from matplotlib.patches import Circle, FancyArrowPatch
 
 from nonholo.analysis import InvariantCurve, MomentumLocus
-from nonholo.analysis.planar import AbstractPlanarVariety, Disc, Strip, planar_variety
+from nonholo.analysis.planar import Disc, Strip, planar_variety
 from nonholo.base.types import Float
 from nonholo.groups import SE
 from nonholo.orbit import Orbit
 from nonholo.plot import theme
-from nonholo.plot.elements import draw_rim
 from nonholo.plot.parts import forbidden_axis
 from nonholo.systems import AbstractSystem
 
@@ -37,14 +35,10 @@ class Blade:
     Attributes:
         frame: The axes at the contact point, the first along the blade, as seen from the user's frame.
         center: The center of mass (a, b) in these axes.
-        mass: m.
-        inertia: J, about the center of mass.
     """
 
     frame: Float[np.ndarray, "3 3"]
     center: Float[np.ndarray, "2"]
-    mass: float
-    inertia: float
 
     def poses(self, orbit: Orbit) -> Float[np.ndarray, "K 3 3"]:
         """Return the axes in the plane."""
@@ -63,102 +57,8 @@ class Blade:
         return orbit.body_velocity @ SE(2).adjoint(SE(2).inverse(self.frame))[1]
 
 
-def blade_of(strip: Strip) -> Blade:
-    """Return the blade of a sleigh."""
-    across = (SE(2).inverse(strip.frame) @ [0.0, 0.0, 1.0])[1]  # the origin of body coordinates
-    shift = np.eye(3)
-    shift[1, 2] = across
-    return Blade(strip.frame @ shift, np.array([strip.arm, -across]), strip.mass, strip.inertia)
-
-
 _ROUNDING = 1e-14
 LEVELS = 9  # curves of one energy, where none are asked for
-
-
-@dataclasses.dataclass(frozen=True, eq=False)
-class AbstractSheet(abc.ABC):
-    """The displacements of a body on paper, and the words for its momenta.
-
-    Attributes:
-        variety: The displacements.
-        momentum_labels: Names of the axes of the plane of momenta.
-        locus_labels: Names of the axes of a momentum locus in space.
-        component_names: Names of the components of a body momentum.
-        signs: The map from momenta along the rows of the normal form to the plane of momenta.
-    """
-
-    variety: AbstractPlanarVariety
-    momentum_labels: ClassVar[tuple[str, str]]
-    locus_labels: ClassVar[tuple[str, str, str]]
-    component_names: ClassVar[tuple[str, str, str]]
-    signs: ClassVar[Float[np.ndarray, "2"]]
-
-    @property
-    def to_plane(self) -> Float[np.ndarray, "2 2"]:
-        """The map from canonical momenta to the plane of momenta; exactly the identity for tops and sleighs by name."""
-        to_form = self.variety.form.frame_map
-        return self.signs[:, None] * (np.eye(2) if to_form is None else to_form)
-
-    @property
-    @abc.abstractmethod
-    def inertia(self) -> Float[np.ndarray, "2 2"]:
-        """The inertia in the coordinates of the plane of momenta."""
-
-    @property
-    @abc.abstractmethod
-    def blade(self) -> Blade | None:
-        """The blade of a sleigh; None for a top."""
-
-    @property
-    @abc.abstractmethod
-    def has_deltoid(self) -> bool:
-        """Whether three values are real over a region of the plane of momenta."""
-
-    @abc.abstractmethod
-    def facts(self, system: AbstractSystem) -> str:
-        """Return the parameters of the body in words."""
-
-    @abc.abstractmethod
-    def places(self, points: Float[np.ndarray, "K c"]) -> Float[np.ndarray, "K 2"]:
-        """Return the places of displacements."""
-
-    @abc.abstractmethod
-    def pieces(self, points: Float[np.ndarray, "K c"]) -> list[Float[np.ndarray, "L 2"]]:
-        """Return a curve cut where it leaves the sheet."""
-
-    @abc.abstractmethod
-    def step_angles(self, points: Float[np.ndarray, "K c"]) -> Float[np.ndarray, "K"]:
-        """Return the step angles of displacements; of a top with the direction left out."""
-
-    @abc.abstractmethod
-    def energies(self, time_step: float) -> Float[np.ndarray, "L"]:
-        """Return energies whose curves fill the sheet."""
-
-    @abc.abstractmethod
-    def attracting(self, curves: list[InvariantCurve]) -> tuple[Float[np.ndarray, "E 2"], Float[np.ndarray, "2"]]:
-        """Return the attracting equilibria on curves, and the end of their line; of a body that is not balanced."""
-
-    @abc.abstractmethod
-    def inwards(self, places: Float[np.ndarray, "K 2"]) -> Float[np.ndarray, "K ..."]:
-        """Return signs that turn the direction of a label inwards where it would meet the rim or the legend."""
-
-    @abc.abstractmethod
-    def dress(self, axes: Axes, curves: list[InvariantCurve], places: Float[np.ndarray, "K 2"]) -> None:
-        """Draw the rim or the edges, name the axes and place the legend; show places that are far away too."""
-
-    @abc.abstractmethod
-    def locus_map(self) -> Float[np.ndarray, "3 3"]:
-        """Return what takes rows of body momenta to the components that are drawn in space."""
-
-    @abc.abstractmethod
-    def locus_kind(self, locus: MomentumLocus) -> str:
-        """Return what the surface of momenta is called."""
-
-    def draw_level(self, axes: Axes, curve: InvariantCurve, **look: Any) -> LineCollection:
-        """Draw all components of a curve of one energy, cut where they leave the sheet."""
-        lines = LineCollection([piece for points in curve.components for piece in self.pieces(points)], **look)
-        axes.add_collection(lines)
-        return lines
 
 
 def without_rounding(values: Float[np.ndarray, "K"], size: float) -> Float[np.ndarray, "K"]:
@@ -172,28 +72,32 @@ def runs(inside: np.ndarray) -> list[slice]:
     return [slice(first, last) for first, last in ends if last - first > 1]
 
 
-class DiscSheet(AbstractSheet):
-    """The disc of a top: the radius is the step angle in half-turns, the direction that of the turn."""
+@dataclasses.dataclass(frozen=True, eq=False)
+class DiscSheet:
+    """The disc of a top: the radius is the step angle in half-turns, the direction that of the turn.
+
+    Attributes:
+        variety: The displacements.
+        momentum_labels: Names of the axes of the plane of momenta.
+        locus_labels: Names of the axes of a momentum locus in space.
+        component_names: Names of the components of a body momentum.
+        signs: The map from momenta along the rows of the normal form to the plane of momenta.
+        blade: None: it has no blade.
+        has_deltoid: Whether three values are real over a region of the plane of momenta.
+    """
 
     variety: Disc
     momentum_labels = (r"$M_{13}$, along $e_1\wedge e_3$", r"$M_{23}$, along $e_2\wedge e_3$")
     locus_labels = ("$P_1$", "$P_2$", "$P_3$")
     component_names = ("P_1", "P_2", "P_3")
     signs = np.array([1.0, 1.0])
+    blade = None
+    has_deltoid = False
 
     @property
     def inertia(self) -> Float[np.ndarray, "2 2"]:
         """B."""
         return self.variety.inertia
-
-    @property
-    def blade(self) -> None:
-        """None."""
-
-    @property
-    def has_deltoid(self) -> bool:
-        """False."""
-        return False
 
     def facts(self, system: AbstractSystem) -> str:
         """Return the forbidden axis."""
@@ -256,7 +160,8 @@ def _laid(z: Float[np.ndarray, "K 3"]) -> Float[np.ndarray, "K 2"]:
 _TALLEST = 4.0  # height of the strip in translations without turning
 
 
-class StripSheet(AbstractSheet):
+@dataclasses.dataclass(frozen=True, eq=False)
+class StripSheet:
     """The strip of a sleigh."""
 
     variety: Strip
@@ -268,16 +173,15 @@ class StripSheet(AbstractSheet):
     @property
     def inertia(self) -> Float[np.ndarray, "2 2"]:
         r"""$\mathrm{diag}(J + ma^2, m)$."""
-        return np.diag([self._whole, self.variety.mass])
+        return np.diag([self.variety.inertia + self.variety.mass * self.variety.arm**2, self.variety.mass])
 
     @property
-    def _whole(self) -> float:
-        return self.variety.inertia + self.variety.mass * self.variety.arm**2
-
-    @functools.cached_property
     def blade(self) -> Blade:
         """The blade."""
-        return blade_of(self.variety)
+        across = (SE(2).inverse(self.variety.frame) @ [0.0, 0.0, 1.0])[1]  # the origin of body coordinates
+        shift = np.eye(3)
+        shift[1, 2] = across
+        return Blade(self.variety.frame @ shift, np.array([self.variety.arm, -across]))
 
     @property
     def has_deltoid(self) -> bool:
@@ -312,7 +216,7 @@ class StripSheet(AbstractSheet):
 
     def energies(self, time_step: float) -> Float[np.ndarray, "L"]:
         """Return energies in units of that of a quarter-turn on the spot."""
-        return self._whole / time_step**2 * (np.arange(1, LEVELS + 1) / 5) ** 2
+        return self.inertia[0, 0] / time_step**2 * (np.arange(1, LEVELS + 1) / 5) ** 2
 
     def attracting(self, curves: list[InvariantCurve]) -> tuple[Float[np.ndarray, "E 2"], Float[np.ndarray, "2"]]:
         """Return the translations in the direction of the center of mass."""
@@ -333,8 +237,10 @@ class StripSheet(AbstractSheet):
         reach = min(max(-low, high), _TALLEST * middle)  # levels of a balanced sleigh go to infinity
         axes.set_xlim(-np.pi, np.pi)
         axes.set_xticks(np.pi * np.linspace(-1, 1, 5), [r"$-\pi$", r"$-\pi/2$", "0", r"$\pi/2$", r"$\pi$"])
-        for side in (-1, 1):
-            _draw_edge(axes, side, reach)
+        look = {"arrowstyle": "-|>", "mutation_scale": 22, "shrinkA": 0, "shrinkB": 0, "linewidth": 2.0}
+        for side in (-np.pi, np.pi):  # arrows on the edges, in opposite directions
+            ends = ((side, -0.1 * np.sign(side) * reach), (side, 0.1 * np.sign(side) * reach))
+            axes.add_patch(FancyArrowPatch(*ends, color=theme.INK, clip_on=False, zorder=7, **look))
         reach = max(reach, 0.0 if axes.get_autoscaley_on() else high, 1.1 * np.abs(places[:, 1]).max(initial=0.0))
         axes.spines["right"].set_visible(True)
         axes.set(xlabel=r"step angle $\Delta$", ylabel=r"translation along the chord  $\nu$", ylim=(-reach, reach))
@@ -352,19 +258,21 @@ class StripSheet(AbstractSheet):
         return "Plücker's conoid"
 
 
-def _draw_edge(axes: Axes, side: int, reach: float) -> None:
-    """Draw an arrow on an edge: the two point in opposite directions."""
-    ends = ((side * np.pi, -0.1 * side * reach), (side * np.pi, 0.1 * side * reach))
-    look = {"arrowstyle": "-|>", "mutation_scale": 22, "shrinkA": 0, "shrinkB": 0, "linewidth": 2.0}
-    axes.add_patch(FancyArrowPatch(*ends, color=theme.INK, clip_on=False, zorder=7, **look))
+Sheet: TypeAlias = DiscSheet | StripSheet
+"""The displacements of a body on paper, and the words for its momenta; both kinds answer the same questions."""
 
 
-def sheet_of(system: AbstractSystem) -> AbstractSheet | None:
+def draw_level(axes: Axes, sheet: Sheet, curve: InvariantCurve, **look: Any) -> LineCollection:
+    """Draw all components of a curve of one energy, cut where they leave the sheet."""
+    lines = LineCollection([piece for points in curve.components for piece in sheet.pieces(points)], **look)
+    axes.add_collection(lines)
+    return lines
+
+
+def sheet_of(system: AbstractSystem) -> Sheet | None:
     """Return the sheet of a top in space or a sleigh in the plane, of any class; None for other systems."""
-    variety = planar_variety(system)
-    if variety is None:
-        return None
-    return (StripSheet if variety.form.is_sleigh else DiscSheet)(variety)
+    variety: Any = planar_variety(system)
+    return None if variety is None else (StripSheet if variety.form.is_sleigh else DiscSheet)(variety)
 
 
 def blade_of_system(system: AbstractSystem) -> Blade | None:
@@ -385,7 +293,10 @@ def momenta_on_plane(orbit: Orbit) -> Float[np.ndarray, "K k"]:
 
 def _to_plane(system: AbstractSystem, canonical: Float[np.ndarray, "... k"]) -> Float[np.ndarray, "... k"]:
     sheet = sheet_of(system)
-    return canonical if sheet is None else canonical @ sheet.to_plane.T
+    if sheet is None:
+        return canonical
+    to_form = sheet.variety.form.frame_map  # None for tops and sleighs by name, whose map is exactly the identity
+    return canonical @ (sheet.signs[:, None] * (np.eye(2) if to_form is None else to_form)).T
 
 
 def plane_inertia(system: AbstractSystem) -> Float[np.ndarray, "2 2"]:
@@ -414,3 +325,63 @@ def name_axes(axes: Axes, system: AbstractSystem) -> None:
     axes.margins(0.06)
     if form is not None and not form.is_sleigh:
         axes.set_aspect("equal", adjustable="datalim")
+
+
+_SHEET = "#9cc4dd"
+_OPACITY = 0.42
+_FLAT = 1e-9
+_PAIRS = "abcd"  # names of pairs of opposite points of the rim that are one
+
+
+def draw_surface(axes: Any, momentum: Float[np.ndarray, "R C 3"]) -> Any:
+    """Draw a surface of momenta as a translucent mesh, lit from above.
+
+    Args:
+        axes: Axes in space.
+        momentum: The rows and columns of the mesh.
+
+    Example:
+        >>> import matplotlib.pyplot as plt
+        >>> axes = plt.figure().add_subplot(projection="3d")
+        >>> sphere = [[[np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)] for u in range(7)] for v in (-1, 0, 1)]
+        >>> draw_surface(axes, np.array(sphere)).get_facecolor().shape
+        (12, 4)
+    """
+    x, y, z = np.moveaxis(momentum, -1, 0)
+    unit = momentum / spans(momentum)
+    normal = np.cross(np.gradient(unit, axis=0), np.gradient(unit, axis=1))
+    length = np.linalg.norm(normal, axis=-1, keepdims=True)
+    light = np.abs(normal / np.where(length > 0, length, 1.0) @ (np.array([0.35, -0.45, 0.82])))
+    shade = 0.55 + 0.45 * light[..., None]
+    colors = np.concatenate([shade * to_rgb(_SHEET), np.full(shade.shape, _OPACITY)], axis=-1)
+    rows, columns = x.shape
+    look = {"rcount": rows, "ccount": columns, "linewidth": 0, "antialiased": False, "shade": False}
+    return axes.plot_surface(x, y, z, facecolors=colors, **look)
+
+
+def spans(momentum: Float[np.ndarray, "R C 3"]) -> Float[np.ndarray, "3"]:
+    """Return the extent of each component; the largest of them where a surface is flat up to rounding."""
+    span = np.ptp(momentum.reshape(-1, 3), axis=0)
+    return np.where(span > _FLAT * span.max(), span, span.max())
+
+
+def draw_rim(axes: Axes) -> None:
+    """Draw the half-turns around a disc of displacements; points with the same letter are the same one.
+
+    Args:
+        axes: Axes whose unit circle is the rim.
+
+    Example:
+        >>> import matplotlib.pyplot as plt
+        >>> axes = plt.figure().add_subplot()
+        >>> draw_rim(axes)
+        >>> [text.get_text() for text in axes.texts]
+        ['a', 'a', 'b', 'b', 'c', 'c', 'd', 'd']
+    """
+    axes.add_patch(Circle((0, 0), 1.0, facecolor="none", edgecolor=theme.MUTED, linewidth=1.2, zorder=2))
+    for index, letter in enumerate(_PAIRS):
+        angle = np.pi * (index + 0.5) / len(_PAIRS)
+        for sign in (1, -1):
+            x, y = sign * np.cos(angle), sign * np.sin(angle)
+            axes.plot(x, y, "o", color=theme.MUTED, markersize=4, zorder=4)
+            axes.text(1.07 * x, 1.07 * y, letter, color=theme.INK, ha="center", va="center", style="italic")

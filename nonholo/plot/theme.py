@@ -30,20 +30,6 @@ from nonholo.base.checks import error, flag, instance, pair, positive, shown, te
 from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit, Orbit
 
-STABLE: str
-UNSTABLE: str
-DISCRETE: str
-CONTINUOUS: str
-COMPONENTS: tuple[str, ...]
-LEVEL: str
-INK: str
-QUIET: str
-MUTED: str
-PAPER: str
-INSIDE: str
-TIME: ListedColormap
-HALO: tuple[Any, ...]
-
 
 def _shades(first: float, last: float) -> ListedColormap:
     return ListedColormap(matplotlib.colormaps["viridis"](np.linspace(first, last, 256)), name="nonholo_time")

@@ -88,13 +88,14 @@ class Impact:
     def check(self, where: str, states: AbstractOrbit) -> None:
         """Refuse a vector that is none of the space of a motion, and differences for a body without matrices."""
         group, system = states.group, states.system
-        size = states.body_velocity.shape[1] if group is None else group.size - group.is_affine
-        if self.has_plane and (len(self.point) != size or (group is None and self.point.any())):
-            got = f"{len(self.point)} numbers and the point {self.point.tolist()} for {states.space}"
-            remedy = "Pass a vector of the space that points move in; of coordinates one number for each, and no point."
-            raise error(where, "have a normal of the space", got, remedy)
         if self.normal is None and states.is_compact and system.is_wide:
             raise error(where, "have a normal", f"none for {type(system).__name__}", "Pass a function.")
+        if self.has_plane:
+            size = states.body_velocity.shape[1] if group is None else group.size - group.is_affine
+            if len(self.point) != size or (group is None and self.point.any()):
+                got = f"{len(self.point)} numbers and the point {self.point.tolist()} for {states.space}"
+                remedy = "Pass a vector of the space of points; in coordinates one number for each, and no point."
+                raise error(where, "have a normal of the space", got, remedy)
         states.refuse_reset(where)
 
     def covector(self, gap: Any, states: AbstractOrbit) -> Float[np.ndarray, "dim"]:

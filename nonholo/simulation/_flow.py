@@ -216,7 +216,9 @@ def _solve_flow(
     if events is not None:
         values_of(events, task.opening(first if reconstruct else (first[0], None)))  # refused where there is none
     solution = solver(*first, time - time[0], tolerances=task.tolerances)
-    states = solution.states if reconstruct else solution.states._replace(poses=None, turned=None)
+    states = solution.states
+    if not reconstruct:  # nor is the memory kept, of which the momenta are a part
+        states = states._replace(momenta=states.momenta.copy(), poses=None, turned=None)
     outcome, count = solution.outcome, len(states.momenta)
     motion = ContinuousFlow(task.system, (time[0], time[count - 1]), solution.at)
     orbit = Orbit(motion, time[:count], states.momenta, None, states.poses, outcome, turned=states.turned)

@@ -11,7 +11,7 @@ from mpl_toolkits.mplot3d.art3d import Line3D, Poly3DCollection
 import nonholo as nh
 from nonholo.analysis import deltoid
 from nonholo.plot import theme
-from nonholo.plot.elements import draw_surface
+from nonholo.plot.sheets import draw_surface
 from nonholo_paper._claims import statement
 from nonholo_paper._finding import Measured
 from nonholo_paper.figures._figure import figure

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 
 import nonholo as nh
 from nonholo.plot import theme
-from nonholo.plot.elements import draw_rim
+from nonholo.plot.sheets import draw_rim
 from nonholo_paper._claims import statement
 from nonholo_paper._finding import Measured
 from nonholo_paper._suslov_twin import BODIES

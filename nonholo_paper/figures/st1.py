@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 import nonholo as nh
 from nonholo.plot import theme
-from nonholo.plot.elements import draw_surface
+from nonholo.plot.sheets import draw_surface
 from nonholo_paper._claims import statement
 from nonholo_paper._finding import Measured
 from nonholo_paper._suslov_twin import BODIES

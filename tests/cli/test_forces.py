@@ -18,7 +18,7 @@ from nonholo.cli.scenario.bodies import SHORT
 from nonholo.cli.scenario.files import built_in, effective_text, load_scenario, parse_setting
 from nonholo.cli.scenario.forces import rows_of
 from nonholo.cli.scenario.problems import ScenarioError
-from nonholo.cli.scenario.sweep_files import load_sweep_scenario, sweep_text
+from nonholo.cli.scenario.sweeps import load_sweep_scenario, sweep_text
 
 TABLE = [[0.5, 0.25, 0.0], [-0.1, 0.3, 1.0], [0.0, 1e-3, 0.0]]
 RUN = """

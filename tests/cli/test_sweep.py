@@ -22,9 +22,9 @@ from waiting import wait_for
 import nonholo as nh
 from nonholo.cli.scenario.files import Setting, parse_setting
 from nonholo.cli.scenario.problems import ScenarioError
-from nonholo.cli.scenario.sweep_files import load_sweep_scenario, sweep_text
+from nonholo.cli.scenario.sweeps import load_sweep_scenario, sweep_text
 from nonholo.ensembles import standing_of
-from nonholo.ensembles.stores._store import SweepStore
+from nonholo.ensembles.stores import SweepStore
 from nonholo.io import write_lock
 
 Command = Callable[..., Result]
@@ -342,9 +342,9 @@ def test_failed_members_are_told(nonholo: Command) -> None:
 @pytest.fixture
 def stopped(monkeypatch: pytest.MonkeyPatch, nonholo: Command) -> Path:
     """A sweep of 12 members, one a block, that Ctrl-C stopped after some blocks."""
-    from nonholo.ensembles import EnsembleTask, _blocks
+    from nonholo.ensembles import EnsembleTask, _scheduling
 
-    done, do = [], _blocks.attempt
+    done, do = [], _scheduling.attempt
 
     def interrupted(*arguments: Any) -> Any:
         done.append(arguments)
@@ -354,7 +354,7 @@ def stopped(monkeypatch: pytest.MonkeyPatch, nonholo: Command) -> Path:
 
     with monkeypatch.context() as patch:
         patch.setattr(EnsembleTask, "block", property(lambda _: 1))
-        patch.setattr(_blocks, "attempt", interrupted)
+        patch.setattr(_scheduling, "attempt", interrupted)
         result = nonholo("sweep", _written(RANDOM), "-o", "s.zarr", "--scheduler", "synchronous")
     assert result.exit_code == 1
     assert "Stopped at 4 of 12 members" in result.stderr

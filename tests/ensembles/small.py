@@ -10,7 +10,7 @@ import pytest
 import xarray
 
 import nonholo as nh
-from nonholo.ensembles.stores._store import SweepStore
+from nonholo.ensembles.stores import SweepStore
 from nonholo.io import Piece
 
 DESIGN = nh.Grid({"x": [1.0, 2.0, 3.0], "start": [[0.0, 1.0], [2.0, 3.0]]}, rng=1)

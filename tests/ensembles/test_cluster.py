@@ -22,8 +22,8 @@ from ensembles.small import same
 from waiting import wait_for
 
 import nonholo as nh
-from nonholo.ensembles import _cluster
-from nonholo.ensembles.stores._store import SweepStore
+from nonholo.ensembles import _scheduling
+from nonholo.ensembles.stores import SweepStore
 
 BLOCKS = DESIGN.members // BLOCK
 PAGE = (Path(__file__).parents[2] / "docs" / "how-to" / "beyond-one-machine.md").read_text()
@@ -126,7 +126,7 @@ def test_addresses_without_a_scheduler_are_refused(
     listens: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Where nobody listens, or another server does, a sweep ends at once and leaves nothing, no thread either."""
-    monkeypatch.setattr(_cluster, "_CONNECT", 1)
+    monkeypatch.setattr(_scheduling, "_CONNECT", 1)
     server, begun = socket.create_server(("127.0.0.1", 0)), time.monotonic()
     address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
     if listens == "another":
@@ -220,7 +220,7 @@ def test_a_killed_cluster_is_told(
     strike: Callable[[Cluster], Any], tmp_path: Path, undisturbed: xarray.Dataset, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """When the scheduler is gone the client says where the sweep stands, and threads end it with the same bits."""
-    monkeypatch.setattr(_cluster, "_CONNECT", 1)
+    monkeypatch.setattr(_scheduling, "_CONNECT", 1)
     with cluster(tmp_path / "cluster", workers=1) as made:
         swept = _in_background(made.address, tmp_path / "a.zarr")
         _some_blocks(tmp_path / "a.zarr", random.Random(2))  # noqa: S311
@@ -234,7 +234,7 @@ def test_a_killed_cluster_is_told(
 
 def test_a_cluster_without_workers_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A sweep for which there are no workers says what it waits for."""
-    monkeypatch.setattr(_cluster, "_PATIENCE", 0.1)
+    monkeypatch.setattr(_scheduling, "_PATIENCE", 0.1)
     with (
         cluster(tmp_path / "cluster", workers=0) as made,
         pytest.raises(RuntimeWarning, match=f"has no workers. The sweep waits for some: dask worker {made.address}"),

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from refusals import refusals
 
 import nonholo as nh
-from nonholo.ensembles._block import block_of
-from nonholo.ensembles.designs._distributions import AbstractDistribution
-from nonholo.ensembles.stores._store import layout_of
+from nonholo.ensembles.designs import block_of
+from nonholo.ensembles.distributions import AbstractDistribution
+from nonholo.ensembles.stores import layout_of
 
 MEMBERS = 40_000
 DISTRIBUTIONS = {

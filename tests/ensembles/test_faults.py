@@ -17,7 +17,7 @@ from waiting import wait_for
 import nonholo as nh
 from nonholo import io
 from nonholo.ensembles import standing_of
-from nonholo.ensembles.stores._store import SweepStore, open_store
+from nonholo.ensembles.stores import SweepStore, open_store
 from nonholo.io import Piece
 
 KILLS = {

@@ -15,7 +15,7 @@ from ensembles.small import DESIGN, resumed, same, simple, stop_at, swept
 
 import nonholo as nh
 from nonholo.ensembles import standing_of
-from nonholo.ensembles.stores._store import attributes_of
+from nonholo.ensembles.stores import attributes_of
 from nonholo.io import checksum, edit_attributes
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)

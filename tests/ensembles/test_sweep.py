@@ -16,7 +16,7 @@ from refusals import refusals
 import nonholo as nh
 from nonholo.base.results import Outcome
 from nonholo.ensembles import standing_of
-from nonholo.ensembles.stores._results import ABSENT, RAISED
+from nonholo.ensembles.stores import ABSENT, RAISED
 
 GRID = nh.Grid({"x": [1.0, 2.0, 3.0], "y": [10.0, 20.0, 30.0, 40.0]}, rng=7)
 FEW = nh.RandomDesign(50, faults.TOP_DESIGN, rng=6)

@@ -11,8 +11,8 @@ from refusals import refusals
 
 import nonholo as nh
 from nonholo.ensembles import standing_of
-from nonholo.ensembles._block import block_of
 from nonholo.ensembles._ensemble_task import ensemble_task_from
+from nonholo.ensembles.designs import block_of
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
 TOP = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.1)
@@ -182,7 +182,7 @@ test_designs_without_a_meaning_are_refused = refusals(
     ({}, {"restricted_velocity[0]": [1.0]}, r"vary all 2 components of a start that is not given. Got \[0\]"),
     ({}, {"momentum_0": [1.0], "momentum_3": [1.0]}, r"vary all 2 or 3 components .* Got \[0, 3\]"),
     ({}, {"momentum_0": [1.0], "body_velocity_1": [1.0]}, "vary components of one start"),
-    (START, {"restricted_velocity[2]": [1.0]}, "that there are. Got .* of a start with 2"),
+    (START, {"restricted_velocity[2]": [1.0]}, "existing components. Got .* of a start with 2"),
     ({}, {"momentum": STARTS, "body_velocity": [[1.0, 0.0, 0.0]]}, "vary one start"),
     (START, {"mass": [-1.0, 0.0]}, "run for one of the members tried. Got ValueError.*must be positive"),
     (START, {"mass": [[1.0, 2.0]]}, "run for one of the members tried.*must have shape"),

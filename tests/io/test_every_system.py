@@ -13,7 +13,7 @@ from problems import PROBLEMS
 import nonholo as nh
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.io import orbit_to_dataset, read_attributes
-from nonholo.io._descriptions import describe_group, restore_group
+from nonholo.io._attributes import describe_group, restore_group
 from nonholo.systems import SYSTEMS, AbstractSystem
 
 _HEISENBERG = nh.MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])

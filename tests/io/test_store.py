@@ -19,7 +19,7 @@ import zarr
 import nonholo as nh
 from nonholo.base.compiled import way_of_kernels
 from nonholo.io import BlockStore, _orbit_store, checksum, orbit_to_dataset, read_attributes, write_lock
-from nonholo.io.datasets._dataset import stored_variables
+from nonholo.io.datasets import stored_variables
 
 NAMES = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
 

@@ -234,6 +234,20 @@ def crossings(c: Case, _: Path) -> None:
 
 
 @ability
+def impacts(c: Case, _: Path) -> None:
+    """The first impact is where the run without a wall crosses it, and the step ends on the side where it began."""
+    event, _ = c.event()
+    orbit = c.simulated(events=[dataclasses.replace(event, reset=nh.Impact())])
+    hits, free, values = orbit.events["middle"], c.crossings, event.function(orbit)
+    np.testing.assert_array_equal(hits.time[0], free.time[0])
+    np.testing.assert_array_equal(hits.states.configuration[0], free.states.configuration[0])
+    assert values[hits.step[0]] * values[hits.step[0] + 1] > 0
+    np.testing.assert_allclose(event.function(hits.after), 0, atol=1e-13)
+    if not c.in_coordinates and "opaque" not in c.kind.traits:  # there energies are those of whole steps
+        np.testing.assert_allclose(hits.after.energy, hits.states.energy, 1e-12)
+
+
+@ability
 def ensemble(c: Case, _: Path) -> None:
     """Members are runs alone from their starts."""
     batch = nh.ensemble(c.discrete, steps=STEPS, save_every=3, **c.rows, **c.run)

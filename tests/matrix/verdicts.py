@@ -53,10 +53,17 @@ RULES: tuple[Rule, ...] = (
     ),
     Rule("scenario file", "wide", "Scenario files hold matrices.", "cannot be run"),
     Rule(
-        "events|events in *|crossings|ensemble with events",
+        "events|events in *|crossings|ensemble with events|impacts",
         "rule",
         "A step to a value that is not the principal one has no parts that begin at its state: Proposition 13.3.",
         "parts of a step",
+    ),
+    Rule("impacts", "wide", "The normal of a gap is taken along a basis of 44,850 dimensions.", "have a normal"),
+    Rule(
+        "impacts",
+        "friction, table|force in Python|force in numba",
+        "The impulses of a force of the time are those of nodes, where no step after an impact begins.",
+        "a force of the time",
     ),
     Rule(
         "ensemble of time steps|sweep",

@@ -5,7 +5,7 @@ import pytest
 from plot.runs import MASS_TENSOR, top_run
 
 import nonholo as nh
-from nonholo.plot.parts._sphere import opacity
+from nonholo.plot.sphere import opacity
 
 
 def test_points_are_the_forbidden_axis_in_space(top_orbit: nh.Orbit) -> None:

@@ -108,7 +108,9 @@ def test_far_values_of_a_strip_are_within_the_axes() -> None:
 def test_planes_that_do_not_exist_are_refused() -> None:
     """A top has no deltoid, nor has a balanced sleigh, and other planes have no name."""
     for discrete in (FOUR, BALANCED):
-        with pytest.raises(ValueError, match=r"`plot.branches\(plane=...\)` must be 'displacements' where there is no"):
+        with pytest.raises(
+            ValueError, match=r"`plot.branches\(plane=...\)` must be 'displacements' for a system without"
+        ):
             nh.plot.branches(discrete, momentum=[0.1, 0.1], plane="momenta")
     with pytest.raises(ValueError, match=r"must be one of 'displacements', 'momenta'. Got 'disc'"):
         nh.plot.branches(SLEIGH, momentum=INSIDE, plane="disc")

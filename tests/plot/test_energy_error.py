@@ -46,5 +46,5 @@ def test_at_rest_the_error_is_absolute() -> None:
 
 def test_refuses_an_orbit_without_states(top_orbit: nh.Orbit) -> None:
     """An orbit that did not start is refused, and its outcome is pointed at."""
-    with pytest.raises(ValueError, match=r"must have a state to draw. Got none. See `orbit.outcome`"):
+    with pytest.raises(ValueError, match=r"must have a state to draw. Got none. `orbit.outcome` has"):
         nh.plot.energy_error(top_orbit[:0])

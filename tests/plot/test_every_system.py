@@ -10,8 +10,8 @@ from PIL import Image
 from plot.runs import body_tensor, made_up, run_of, sleigh_run, top_run
 
 import nonholo as nh
-from nonholo.plot.motion import momentum_track
-from nonholo.plot.motion._time_series import velocity_names
+from nonholo.plot.motion.coordinates import momentum_track
+from nonholo.plot.motion.time_series import velocity_names
 from nonholo.plot.overviews import panels_of
 from nonholo.systems import SYSTEMS
 

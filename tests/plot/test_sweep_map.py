@@ -9,7 +9,7 @@ import xarray
 from matplotlib.colors import BoundaryNorm, LogNorm, Normalize, to_rgba
 
 import nonholo as nh
-from nonholo.plot._sweep_axes import borders, is_geometric
+from nonholo.plot._sweep_map import borders, is_geometric
 
 A, B, C = np.array([1.0, 2.0, 4.0]), np.array([0.0, 1.0, 2.0, 3.0]), np.array([5.0, 6.0])
 

@@ -153,6 +153,35 @@ def test_bodies_that_fall_keep_their_energy(name: str, step: float) -> None:
     assert len(run) > 10**5 or run.outcome == nh.Outcome.no_real_branch
 
 
+@pytest.mark.parametrize("turned", [0.0, 0.01])
+def test_a_sleigh_of_order_4_ends_at_a_fold_where_it_falls_too_fast(turned: float) -> None:
+    """The longest substep back in time has a principal displacement up to v = 2 (J + m a^2) / (m a |w| h)."""
+    system, h = nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1
+    fastest = 2 * 1.25 / (0.5 * h * 0.6579630871775028)
+    free = nh.discretize(system, h, order=4)
+    for share, lasts in ((0.999, True), (1.001, False)):
+        run = nh.simulate(free, body_velocity=(0.0, share * fastest, 0.0), steps=3, throw=False)
+        assert (len(run) > 3) == lasts
+    heavy = nh.discretize(nh.Forced(system, nh.Gravity([0.4, 0.0], [0.5, 0.0])), h, order=4)
+    start = {"body_velocity": (1e-3, 0.99 * fastest, 0.0), "configuration": nh.SE(2).exp([turned, 0.0, 0.0])}
+    run = nh.simulate(heavy, **start, steps=100, throw=False)
+    assert run.outcome == nh.Outcome.no_real_branch
+    assert 0.998 < run.body_velocity[-1, 1] / fastest < 1
+
+
+def test_a_pull_that_rounding_blurs_is_no_fold() -> None:
+    """Far out on SO(2, 1) terms of the pull are large and cancel: the run continues, with their rounding in T + U."""
+    form = np.diag([1.0, 1.0, -1.0])
+    group = nh.MatrixGroup(form @ nh.SO(3).basis, form=form)
+    body = nh.LLSystem(group, np.diag([4.0, 6.0, 9.0]) @ form, [[0.3, 0.8, 0.3], [-1.3, 0.9, 0.4]])
+    discrete = nh.discretize(nh.Forced(body, nh.Linear(0.2 * np.eye(3))), 0.5)
+    run = nh.simulate(discrete, restricted_velocity=(0.4, -0.3), steps=400, throw=False)
+    assert run.outcome == nh.Outcome.successful
+    far = np.abs(run.configuration).max()
+    assert far > 1e4
+    assert np.abs(run.energy - run.energy[0]).max() < 1e-15 * far
+
+
 def test_a_reversed_motion_comes_back() -> None:
     """From the last pose with the opposite momentum the steps lead back to the start."""
     for name, system in SYSTEMS.items():

@@ -11,6 +11,7 @@ from refusals import refusals
 
 import nonholo as nh
 from nonholo import kernels
+from nonholo.kernels._ensemble import motion_product, quaternion_product
 from nonholo.simulation.members import _ensemble, _executors
 from nonholo.simulation.members._members import in_lanes
 
@@ -480,3 +481,16 @@ def test_members_that_cannot_begin_have_no_states(size: float, members: int, mon
     assert batch.outcome[-1] in (nh.Outcome.not_converged, nh.Outcome.nonfinite)
     assert batch.steps_done.tolist() == [7] * (members - 1) + [0]
     assert np.isnan(batch.reduced_momentum[-1]).all()
+
+
+@pytest.mark.parametrize(
+    ("product", "group"), [(quaternion_product, nh.SO(3)), (motion_product, nh.SE(2))], ids=["quaternions", "motions"]
+)
+def test_rows_are_turned_as_the_group_multiplies(product: Any, group: nh.MatrixGroup) -> None:
+    """The product of poses in the kernel has the bits of the group's, for large, small and half turns, and NaN."""
+    rng = np.random.default_rng(8)
+    one, other = (group.pose_from_matrix(group.exp(rng.normal(size=(200, 3)) * scale)) for scale in (3.0, 1e-9))
+    back = group.pose_from_matrix(group.inverse(group.matrix_from_pose(one)))
+    for poses, turns in ((one, other), (other, one), (one, one[::-1]), (one, back), (-one, one), (one * np.nan, one)):
+        found = [product(*pair) for pair in zip(poses.tolist(), turns.tolist(), strict=True)]
+        assert np.array_equal(found, group.pose_product(poses, turns), equal_nan=True)

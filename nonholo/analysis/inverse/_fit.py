@@ -105,7 +105,7 @@ class Fit:
 
     def plot(self) -> Any:
         """Draw the residuals of every kind against time; return the matplotlib figure."""
-        return importlib.import_module("nonholo.plot.motion").fit_residuals(self)
+        return importlib.import_module("nonholo.plot.motion.fit").fit_residuals(self)
 
 
 def fit(

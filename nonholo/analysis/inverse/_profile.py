@@ -72,7 +72,7 @@ class Profile:
 
     def plot(self) -> Any:
         """Draw the profile beside the parabola of the linearized model; return the matplotlib figure."""
-        return importlib.import_module("nonholo.plot.motion").fit_profile(self)
+        return importlib.import_module("nonholo.plot.motion.fit").fit_profile(self)
 
 
 class _Place(NamedTuple):

@@ -8,7 +8,7 @@ import re
 import sys
 import time
 import webbrowser
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any, NamedTuple, TypeVar
@@ -28,6 +28,7 @@ from nonholo.simulation import resume_run, simulate, size_in_blocks
 
 RUNS = Path("runs")
 Chosen = dict[str, tuple[str, Any]]
+Loader = Callable[..., Loaded]
 Result = TypeVar("Result")
 
 
@@ -39,32 +40,42 @@ class Ran(NamedTuple):
     reason: str | None
 
 
-def simulate_and_keep(
-    name: str,
-    options: Chosen,
-    settings: list[str],
-    output: Path | None,
-    *,
-    module: Path | None,
-    json: bool,
-    overwrite: bool,
-    quiet: bool,
-) -> None:
-    """Load, run, save, draw, report; options of the command line come before the settings of `--set`."""
+def request_of(
+    name: str, options: Chosen, settings: list[str] | None, module: Path | None, load: Loader = load_scenario
+) -> Any:
+    """Load a scenario; options of the command line come before the settings of `--set`."""
     with scenario_errors(), reporting_warnings():
-        request = load_scenario(name, given_settings(options, settings), module)
+        return load(name, given_settings(options, settings or []), module)
+
+
+def simulate_and_keep(request: Loaded, output: Path | None, *, json: bool, overwrite: bool, quiet: bool) -> None:
+    """Run, save, draw, report."""
     part = _part_of(request, output, overwrite=overwrite)
     progress = sys.stderr.isatty() and not quiet
-    store, ran = _run_and_keep(request, output, part, overwrite=overwrite, progress=progress)
+    with _reporting_stops(), store_errors(FAILED), scenario_errors(), reporting_warnings():
+        if part:
+            store, ran = part, _complete(request, part, progress=progress)
+        else:
+            store, ran = run_and_keep(request, output, overwrite=overwrite, progress=progress)
     if store is None or ran.orbit is None:
         leave(f"Nothing to keep. {ran.reason}", FAILED)
     wishes = request.scenario.output
     paths = (beside(store, "png") if wishes.plot else None, beside(store, "gif") if wishes.gif else None)
     pictures = draw(ran.orbit, *paths, progress=progress)
     warn_of_older(store, pictures)
-    _report(request, ran, ran.orbit, {"store": str(store), **pictures}, json=json, quiet=quiet)
+    _report(request, ran, {"store": str(store), **pictures}, json=json, quiet=quiet)
     if ran.reason:
         leave(f"Stopped early; the good steps are kept. {ran.reason}", FAILED)
+
+
+@contextlib.contextmanager
+def _reporting_stops() -> Iterator[None]:
+    try:
+        yield
+    except KeyboardInterrupt as stop:
+        leave(str(stop) or "Stopped. A run this short is not kept.", FAILED)
+    except MemoryError:
+        leave("The states do not fit in memory. Keep fewer of them: raise run.save_every.", USAGE)
 
 
 def _part_of(request: Loaded, output: Path | None, *, overwrite: bool) -> Path | None:
@@ -78,23 +89,8 @@ def _part_of(request: Loaded, output: Path | None, *, overwrite: bool) -> Path |
     return output if again else None
 
 
-def _run_and_keep(
-    request: Loaded, store: Path | None, part: Path | None, *, overwrite: bool, progress: bool
-) -> tuple[Path | None, Ran]:
-    try:
-        with store_errors(FAILED), scenario_errors(), reporting_warnings():
-            if part:
-                return part, _complete(request, part, progress=progress)
-            return run_and_keep(request, store, overwrite=overwrite, progress=progress)
-    except KeyboardInterrupt as stop:
-        leave(str(stop) or "Stopped. A run this short is not kept.", FAILED)
-    except MemoryError:
-        leave("The states do not fit in memory. Keep fewer of them: raise run.save_every.", USAGE)
-
-
-def _report(
-    request: Loaded, ran: Ran, orbit: AbstractOrbit, paths: dict[str, str | None], *, json: bool, quiet: bool
-) -> None:
+def _report(request: Loaded, ran: Ran, paths: dict[str, str | None], *, json: bool, quiet: bool) -> None:
+    orbit: Any = ran.orbit
     if quiet and not json:
         typer.echo(paths["store"])
         return
@@ -130,9 +126,8 @@ def run_and_keep(request: Loaded, store: Path | None, *, overwrite: bool, progre
     size = size_in_blocks(discrete, scenario.run.branch, scenario.run.steps, scenario.run.save_every)
     if size and starts:
         with store_errors(USAGE):
-            within_disk(
-                "run.save_every", size, RUNS if store is None else store.parent, "Raise it to keep fewer states."
-            )
+            folder = RUNS if store is None else store.parent
+            within_disk("run.save_every", size, folder, "Raise it to keep fewer states.")
         if overwrite and store is not None and store.exists():
             io.check_target(store, overwrite=True)
             io.remove_store(store)
@@ -171,11 +166,9 @@ def _complete(request: Loaded, store: Path, *, progress: bool) -> Ran:
 def _try(request: Loaded) -> tuple[Any, bool]:
     """Return the discretized body of a scenario after a first step, which compiles, and whether there is a start."""
     discrete = _discretize(request)
-    try:
-        with request.reporting("start"):
-            return discrete, len(simulate(discrete, steps=1, throw=False, **request.scenario.options())) > 0
-    except OutcomeError:
-        return discrete, False  # off the principal branch: the run proper says so
+    with contextlib.suppress(OutcomeError), request.reporting("start"):
+        return discrete, len(simulate(discrete, steps=1, throw=False, **request.scenario.options())) > 0
+    return discrete, False  # off the principal branch: the run proper says so
 
 
 def _run(task: Callable[..., AbstractOrbit], **place: Any) -> Ran:
@@ -210,29 +203,16 @@ def at_free_path(name: str, store: Path | None, make: Callable[[Path], Result]) 
     """Make a store at the path given or under the next free number; return where, and what came of it."""
     if store is not None:
         return store, make(store)
-    for path in _next_names(name):
+    pattern = re.compile(re.escape(name) + r"-(\d+)\.\w+")
+    numbers = [int(match[1]) for path in RUNS.iterdir() if (match := pattern.fullmatch(path.name))]
+    for number in itertools.count(max(numbers, default=0) + 1):
+        path = RUNS / f"{name}-{number:03d}.zarr"
         with contextlib.suppress(FileExistsError):  # another run was faster
             return path, make(path)
     raise AssertionError("the numbers do not end")
 
 
-def _next_names(name: str) -> Iterable[Path]:
-    """Return the numbered paths that are free for a scenario, in order."""
-    pattern = re.compile(re.escape(name) + r"-(\d+)\.\w+")
-    numbers = [int(match[1]) for path in RUNS.iterdir() if (match := pattern.fullmatch(path.name))]
-    return (RUNS / f"{name}-{number:03d}.zarr" for number in itertools.count(max(numbers, default=0) + 1))
-
-
-def write_page(
-    source: str,
-    options: Chosen,
-    settings: list[str],
-    output: Path | None,
-    *,
-    module: Path | None,
-    browser: bool,
-    overwrite: bool,
-) -> Path:
+def write_page(source: str, ask: Callable[[], Loaded], output: Path | None, *, browser: bool, overwrite: bool) -> Path:
     """Write the page of a scenario or a store, and return its path."""
     if output is not None:
         with store_errors(USAGE):
@@ -241,20 +221,13 @@ def write_page(
         with store_errors(FAILED):
             orbit = io.load_orbit(source)
     else:
-        with scenario_errors(), reporting_warnings():
-            request = load_scenario(source, given_settings(options, settings), module)
-            orbit = _orbit_of(request)
+        request = ask()
+        options = {"steps": request.scenario.run.steps, "throw": False} | request.scenario.options()
+        with scenario_errors(), reporting_warnings(), store_errors(USAGE):
+            orbit = simulate(_discretize(request), **options)
     path = output or Path(mkdtemp(prefix="nonholo-")) / f"{Path(source).stem}.html"
     with store_errors(FAILED):
         explorer.orbit_to_html(orbit, path, overwrite=overwrite)
     if browser:
         webbrowser.open(path.resolve().as_uri())
     return path
-
-
-def _orbit_of(request: Loaded) -> Any:
-    try:
-        run = request.scenario.run
-        return simulate(_discretize(request), steps=run.steps, throw=False, **request.scenario.options())
-    except ValueError as refusal:
-        leave(str(refusal), USAGE)

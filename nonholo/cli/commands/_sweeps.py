@@ -10,15 +10,13 @@ from pathlib import Path
 from typing import Any
 
 import typer
-import xarray
 
 from nonholo import ensembles, io
 from nonholo.base.results import OutcomeError
-from nonholo.cli.commands._runs import Chosen, at_free_path, check_output, is_stopped
-from nonholo.cli.scenario.files import given_settings, stored_scenario
+from nonholo.cli.commands._runs import at_free_path, check_output, is_stopped
+from nonholo.cli.scenario.files import Loaded, stored_scenario
 from nonholo.cli.scenario.motion import Scenario
-from nonholo.cli.scenario.sweep_files import load_sweep_scenario, sweep_text
-from nonholo.cli.scenario.sweeps import SweepScenario
+from nonholo.cli.scenario.sweeps import SweepScenario, sweep_text
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, scenario_errors, store_errors, warn
 from nonholo.cli.screen.pictures import beside, draw_sweep
 from nonholo.cli.screen.stores import leave_if_all_raised, show_provenance, show_sweep, sweep_figures
@@ -29,30 +27,18 @@ _MOST_WARNINGS = 5  # warnings of a sweep that are reported
 
 
 def sweep_and_keep(
-    name: str,
-    options: Chosen,
-    settings: list[str],
-    output: Path | None,
-    *,
-    module: Path | None,
-    scheduler: str | None,
-    workers: int | None,
-    json: bool,
-    quiet: bool,
+    request: Loaded[SweepScenario], output: Path | None, how: dict[str, Any], *, json: bool, quiet: bool
 ) -> None:
-    """Load, run, draw, report; options of the command line come before the settings of `--set`."""
-    with scenario_errors(), reporting_warnings():
-        request = load_sweep_scenario(name, given_settings(options, settings), module)
-        with request.reporting():
-            task = request.scenario.task()
+    """Run, draw, report; how: scheduler and workers."""
+    with scenario_errors(), reporting_warnings(), request.reporting():
+        task = request.scenario.task()
     scenario, begin = request.scenario, time.perf_counter()
     text = sweep_text(scenario if scenario.is_family else scenario.in_force(task.discrete))
     again = _is_stopped(output, text, scenario.output.plot)
     design, progress = scenario.design.design(), sys.stderr.isatty() and not quiet
-    how: Any = {"scheduler": scheduler, "workers": workers, "resume": again}
-    run = functools.partial(ensembles.sweep, task, design, **how, progress=progress, scenario=text)
+    run = functools.partial(ensembles.sweep, task, design, **how, resume=again, progress=progress, scenario=text)
     with store_errors(USAGE):
-        store, result = at_free_path(request.name, output, lambda path: _kept_in(run, path))
+        store, result = at_free_path(request.name, output, lambda path: reporting_stops(path)(run)(store=path))
     seconds, wishes = time.perf_counter() - begin, scenario.output
     picture = draw_sweep(result, beside(store, "png"), wishes.color, wishes.x, wishes.y) if wishes.plot else None
     figures = sweep_figures(store, result, seconds)
@@ -72,11 +58,6 @@ def _is_stopped(output: Path | None, text: str, has_picture: bool) -> bool:
     with store_errors(USAGE):
         check_output(None if again else output, overwrite=False)
     return again
-
-
-def _kept_in(run: Callable[..., xarray.Dataset], store: Path) -> xarray.Dataset:
-    with reporting_stops(store):
-        return run(store=store)
 
 
 def continue_and_report(store: Path, module: Path | None, resume: Callable[..., AbstractOrbit], *, json: bool) -> None:
@@ -119,7 +100,8 @@ def reporting_stops(store: Path) -> Iterator[None]:
         try:
             yield
         except KeyboardInterrupt:
-            leave(f"Stopped {_where(store)}", FAILED)
+            resume = f"at {ensembles.standing_of(store)}. Resume with: nonholo resume" if store.exists() else ""
+            leave(f"Stopped {resume} {store}" if resume else "Stopped before it began.", FAILED)
         except OSError as failure:
             if not store.exists() or isinstance(failure, FileExistsError | BlockingIOError):
                 raise
@@ -129,10 +111,3 @@ def reporting_stops(store: Path) -> Iterator[None]:
                 warn(str(warning.message))
             if len(messages) > _MOST_WARNINGS:
                 warn(f"and {len(messages) - _MOST_WARNINGS} more of this kind.")
-
-
-def _where(store: Path) -> str:
-    """Report the progress of a sweep; before its store exists it has not begun."""
-    if not store.exists():
-        return "before it began."
-    return f"at {ensembles.standing_of(store)}. Resume with: nonholo resume {store}"

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nonholo.cli.commands.run import Module
+from nonholo.cli.screen.errors import USAGE, leave, scenario_errors, store_errors
+from nonholo.cli.screen.tables import show_table
 
 if TYPE_CHECKING:
     from nonholo.examples import Example
@@ -27,29 +29,24 @@ def cite(
     """
     import yaml
 
-    text = _citation().read_text("utf-8")
+    room = Path(__file__).parents[1]  # the file is beside it in an installed package, at the root of a checkout
+    file = next(path for path in (room / "CITATION.cff", room.parents[1] / "CITATION.cff") if path.exists())
+    text = file.read_text("utf-8")
     if cff:
         typer.echo(text, nl=False)
         return
     about = yaml.safe_load(text)
-    typer.echo("\n\n".join([_entry("nonholo", about), *(_entry(_key(each), each) for each in about["references"])]))
-
-
-def _citation() -> Path:
-    """Return the file: in an installed package beside the room, in a checkout at its root."""
-    room = Path(__file__).parents[1]
-    return next(path for path in (room / "CITATION.cff", room.parents[1] / "CITATION.cff") if path.exists())
-
-
-def _key(about: dict[str, Any]) -> str:
-    names = (author["family-names"].lower() for author in about["authors"])
-    return "-".join([*names, str(about["year"])])
+    entries = [_entry("nonholo", about)]
+    for each in about["references"]:
+        names = (author["family-names"].lower() for author in each["authors"])
+        entries.append(_entry("-".join([*names, str(each["year"])]), each))
+    typer.echo("\n\n".join(entries))
 
 
 def _entry(key: str, about: dict[str, Any]) -> str:
     """Return a BibTeX entry of a work as CITATION.cff describes it; braces keep capitals and the names of groups."""
     fields = {
-        "author": " and ".join(_author(each) for each in about["authors"]),
+        "author": " and ".join(map(_author, about["authors"])),
         "title": f"{{{about['title']}}}",
         "journal": about.get("journal"),
         "volume": about.get("volume"),
@@ -82,8 +79,6 @@ def examples(
     from nonholo.cli.scenario.bodies import summary
     from nonholo.cli.scenario.files import built_in_titles
     from nonholo.cli.scenario.sections import suggestion
-    from nonholo.cli.screen.errors import USAGE, leave, store_errors
-    from nonholo.cli.screen.tables import show_table
 
     scenarios = built_in_titles()
     if name in scenarios:
@@ -146,7 +141,6 @@ def new(
     nonholo new sweep > many.toml
     """
     from nonholo.cli.scenario.files import built_in, take_module
-    from nonholo.cli.screen.errors import scenario_errors
 
     own = {**built_in(), **built_in("sweeps")}
     with scenario_errors():
@@ -172,8 +166,6 @@ def systems(module: Module = None) -> None:
     """
     from nonholo.cli.scenario.bodies import body_table, own_kinds
     from nonholo.cli.scenario.files import built_in_titles, take_module
-    from nonholo.cli.screen.errors import scenario_errors
-    from nonholo.cli.screen.tables import show_table
 
     with scenario_errors():
         take_module(module)

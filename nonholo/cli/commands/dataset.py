@@ -7,6 +7,8 @@ from typing import Annotated
 import typer
 
 from nonholo.cli.commands.run import Quiet
+from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, store_errors
+from nonholo.cli.screen.tables import show_table
 
 
 def dataset(
@@ -38,10 +40,12 @@ def dataset(
     nonholo dataset snakeboard -o boards --orbits 200 --noise 0.01
     nonholo dataset top -o tops --rng 7 --format csv
     """
-    from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, store_errors
-
     if shown:
-        _show_all()
+        from nonholo.ensembles import DEFINITIONS
+
+        data = DEFINITIONS.items()
+        rows = ((k, each.title, "{:g} to {:g}".format(*each.energy), str(each.version)) for k, each in data)
+        show_table(("name", "system", "energies", "version"), rows, "Data sets")
         return
     if name is None or output is None:
         leave("Pass a name and -o FOLDER; `nonholo dataset --list` lists the names.", USAGE)
@@ -62,11 +66,3 @@ def _fractions(split: str) -> list[float]:
         return [float(part) for part in split.split("/")]
     except ValueError:
         raise ValueError(f"`--split` must be three numbers such as 0.8/0.1/0.1. Got {split!r}. Mend it.") from None
-
-
-def _show_all() -> None:
-    from nonholo.cli.screen.tables import show_table
-    from nonholo.ensembles import DEFINITIONS
-
-    rows = ((k, each.title, "{:g} to {:g}".format(*each.energy), str(each.version)) for k, each in DEFINITIONS.items())
-    show_table(("name", "system", "energies", "version"), rows, "Data sets")

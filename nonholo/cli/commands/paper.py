@@ -5,8 +5,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
+from nonholo.cli.screen.tables import show_table
+
 if TYPE_CHECKING:
-    from nonholo_paper import Entry, Result
+    from nonholo_paper import Result
 
 
 def paper(
@@ -33,14 +36,14 @@ def paper(
 
     from nonholo.base.checks import needs
     from nonholo.base.progress import progress_bar
-    from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
 
     with store_errors(USAGE), needs("paper", "nonholo paper"):
         from nonholo_paper import check_folder, entries, evaluate_all, select, write_folder
 
         selection = select(only) if only else entries()
         if is_list:
-            _list(selection)
+            rows = ((", ".join(e.names), e.finding.kind, e.finding.verdict, e.finding.source) for e in selection)
+            show_table(("--only", "kind", "verdict", "where"), rows)
             return
         check_folder(output)
     with progress_bar("findings", sys.stderr.isatty()) as report:
@@ -55,18 +58,8 @@ def paper(
         leave(f"{len(failures)} of {len(results)} findings fail: {', '.join(failures)}.", FAILED)
 
 
-def _list(selection: "tuple[Entry, ...]") -> None:
-    """Print a line for each finding: by what it is chosen, what it is, the verdict, where the paper has it."""
-    from nonholo.cli.screen.tables import show_table
-
-    rows = ((", ".join(e.names), e.finding.kind, e.finding.verdict, e.finding.source) for e in selection)
-    show_table(("--only", "kind", "verdict", "where"), rows)
-
-
 def _show(results: "list[Result]", *, each: bool) -> None:
     """Print a line for each section, or for each finding."""
-    from nonholo.cli.screen.tables import show_table
-
     if each:
         columns = "label", "verdict", "defect", "of what is denied", "tolerance", "holds", "seconds"
         show_table(columns, _findings(results))
@@ -75,18 +68,13 @@ def _show(results: "list[Result]", *, each: bool) -> None:
 
 
 def _findings(results: "list[Result]") -> list[tuple[str, ...]]:
-    return [
-        (
-            result.entry.finding.label,
-            result.entry.finding.verdict,
-            _short(result.measured and result.measured.corrected),
-            _short(result.measured and result.measured.printed),
-            _short(result.entry.finding.tolerance),
-            "yes" if result.holds else "no",
-            f"{result.seconds:.2f}",
-        )
-        for result in results
-    ]
+    rows = []
+    for result in results:
+        finding, measures = result.entry.finding, result.measured
+        numbers = (measures and measures.corrected, measures and measures.printed, finding.tolerance)
+        words = ("" if number is None else f"{number:.1e}" for number in numbers)
+        rows.append((finding.label, finding.verdict, *words, "yes" if result.holds else "no", f"{result.seconds:.2f}"))
+    return rows
 
 
 def _sections(results: "list[Result]") -> list[tuple[str, ...]]:
@@ -96,7 +84,3 @@ def _sections(results: "list[Result]") -> list[tuple[str, ...]]:
         holding, seconds = sum(result.holds for result in own), sum(result.seconds for result in own)
         rows.append((heading, str(len(own)), str(holding), f"{seconds:.1f}"))
     return rows
-
-
-def _short(number: float | None) -> str:
-    return "" if number is None else f"{number:.1e}"

@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from nonholo.cli.screen.errors import USAGE, leave
+
 Scenario = Annotated[
     str, typer.Argument(metavar="SCENARIO", help="A TOML file, or a name of `nonholo systems` or `nonholo examples`.")
 ]
@@ -15,11 +17,8 @@ TimeStep = Annotated[float | None, typer.Option(metavar="H", help="Instead of ru
 Settings = Annotated[
     list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change any value, in TOML; repeatable.")
 ]
-Plot = Annotated[bool | None, typer.Option("--plot/--no-plot", help="Draw a picture beside the store.")]
-Gif = Annotated[bool | None, typer.Option("--gif/--no-gif", help="Draw an animation beside the store.")]
 Module = Annotated[
-    Path | None,
-    typer.Option(metavar="FILE", help="Run your own Python file, whose functions are kinds of bodies."),
+    Path | None, typer.Option(metavar="FILE", help="Run your own Python file, whose functions are kinds of bodies.")
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of the table.")]
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace what an earlier call wrote there.")]
@@ -32,8 +31,8 @@ def simulate(
     steps: Steps = None,
     time_step: TimeStep = None,
     settings: Settings = None,
-    plot: Plot = None,
-    gif: Gif = None,
+    plot: Annotated[bool | None, typer.Option("--plot/--no-plot", help="Draw a picture beside the store.")] = None,
+    gif: Annotated[bool | None, typer.Option("--gif/--no-gif", help="Draw an animation beside the store.")] = None,
     module: Module = None,
     json: Json = False,
     overwrite: Overwrite = False,
@@ -55,12 +54,12 @@ def simulate(
     nonholo simulate my.toml -o study/first.zarr --json
     nonholo simulate robot.toml --module my_robot.py
     """
-    from nonholo.cli.commands._runs import simulate_and_keep
+    from nonholo.cli.commands._runs import request_of, simulate_and_keep
 
     options = {"run.steps": ("--steps", steps), "run.time_step": ("--time-step", time_step)}
     options |= {"output.plot": ("--plot", plot), "output.gif": ("--gif", gif)}
-    how = {"json": json, "overwrite": overwrite, "quiet": quiet}
-    simulate_and_keep(scenario, options, settings or [], output, module=module, **how)
+    request = request_of(scenario, options, settings, module)
+    simulate_and_keep(request, output, json=json, overwrite=overwrite, quiet=quiet)
 
 
 Source = Annotated[
@@ -68,7 +67,6 @@ Source = Annotated[
     typer.Argument(metavar="[SCENARIO | STORE]", help="A scenario, or a store of `nonholo simulate`."),
 ]
 Page = Annotated[Path | None, typer.Option("-o", "--output", metavar="FILE", help="Where to write the page.")]
-Browser = Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")]
 
 
 def explore(
@@ -78,7 +76,7 @@ def explore(
     time_step: TimeStep = None,
     settings: Settings = None,
     module: Module = None,
-    browser: Browser = True,
+    browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")] = True,
     overwrite: Overwrite = False,
 ) -> None:
     """Write the live page of a motion, one file, and open it in the browser.
@@ -91,11 +89,11 @@ def explore(
     nonholo explore my.toml -o top.html --no-browser
     nonholo explore runs/sleigh-001.zarr
     """
-    from nonholo.cli.commands._runs import write_page
+    from nonholo.cli.commands._runs import request_of, write_page
 
     options = {"run.steps": ("--steps", steps), "run.time_step": ("--time-step", time_step)}
-    how = {"module": module, "browser": browser, "overwrite": overwrite}
-    typer.echo(write_page(source, options, settings or [], output, **how))
+    ask = functools.partial(request_of, source, options, settings, module)
+    typer.echo(write_page(source, ask, output, browser=browser, overwrite=overwrite))
 
 
 SweepScenario = Annotated[
@@ -113,7 +111,6 @@ Scheduler = Annotated[
     typer.Option(metavar="HOW", help="threads (default), processes, or tcp://HOST:PORT of a Dask scheduler."),
 ]
 Workers = Annotated[int | None, typer.Option(metavar="N", min=1, help="Threads or processes; by default one a core.")]
-Map = Annotated[bool | None, typer.Option("--plot/--no-plot", help="Draw a map beside the store.")]
 
 
 def sweep(
@@ -123,7 +120,7 @@ def sweep(
     scheduler: Scheduler = None,
     workers: Workers = None,
     settings: Settings = None,
-    plot: Map = None,
+    plot: Annotated[bool | None, typer.Option("--plot/--no-plot", help="Draw a map beside the store.")] = None,
     module: Module = None,
     json: Json = False,
     quiet: Quiet = False,
@@ -151,12 +148,14 @@ def sweep(
     nonholo sweep robots.toml --module my_robot.py
     nonholo resume large.zarr               resume one that stopped
     """
+    from nonholo.cli.commands._runs import request_of
     from nonholo.cli.commands._sweeps import sweep_and_keep
+    from nonholo.cli.scenario.sweeps import load_sweep_scenario
 
     whole = int(members) if members is not None and members.is_integer() else members  # 1e6 is a whole number
     options = {"design.members": ("--members", whole), "output.plot": ("--plot", plot)}
-    how = {"scheduler": scheduler, "workers": workers, "json": json, "quiet": quiet}
-    sweep_and_keep(scenario, options, settings or [], output, module=module, **how)
+    request = request_of(scenario, options, settings, module, load_sweep_scenario)
+    sweep_and_keep(request, output, {"scheduler": scheduler, "workers": workers}, json=json, quiet=quiet)
 
 
 Store = Annotated[Path, typer.Argument(metavar="STORE", help="A store made by sweep, or by simulate(..., store=...).")]
@@ -208,7 +207,6 @@ def extend(
     """
     from nonholo import io, simulation
     from nonholo.cli.commands._sweeps import continue_and_report
-    from nonholo.cli.screen.errors import USAGE, leave
 
     if io.format_of(store) == io.SWEEP_FORMAT:
         again = f"nonholo info {store} --scenario > more.toml; nonholo sweep more.toml --set run.steps=..."

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from nonholo.cli.commands.run import Json, Overwrite
+from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, store_errors
 
 Store = Annotated[Path, typer.Argument(metavar="STORE", help="A store made by simulate, sweep or save_orbit.")]
 
@@ -26,7 +27,6 @@ def info(
     nonholo info runs/suslov-001.zarr
     nonholo info runs/suslov-001.zarr --scenario > again.toml
     """
-    from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
     from nonholo.cli.screen.stores import show_provenance, show_standing, show_sweep_standing
     from nonholo.ensembles.stores import attributes_of
     from nonholo.io import SWEEP_FORMAT, format_of, load_orbit, read_attributes, standing
@@ -72,7 +72,6 @@ def export(
     nonholo export runs/sleigh-001.zarr -o sleigh.csv
     nonholo export run.zarr --every 100 | head
     """
-    from nonholo.cli.screen.errors import FAILED, USAGE, reporting_warnings, store_errors
     from nonholo.io import SWEEP_FORMAT, check_file, format_of, read_attributes, store_to_csv
 
     is_sweep = format_of(store) == SWEEP_FORMAT
@@ -112,13 +111,7 @@ Output = Annotated[
 Kind = Annotated[
     str, typer.Option(metavar="KIND", help="Of a run: a picture of nonholo.plot, such as blade-track; or all of them.")
 ]
-Gif = Annotated[bool, typer.Option("--gif", help="Of a run: draw an animation instead.")]
-Color = Annotated[str | None, typer.Option(metavar="NAME", help="Of a sweep: the quantity that is shown.")]
 Across = Annotated[str | None, typer.Option("--x", metavar="NAME", help="Of a sweep or section: what runs across.")]
-Up = Annotated[str | None, typer.Option("--y", metavar="NAME", help="Of a sweep or section: what runs up.")]
-Title = Annotated[str | None, typer.Option(help="Instead of the picture's own; '' for none.")]
-Size = Annotated[str | None, typer.Option(metavar="WxH", help="In inches, as 16x9; fonts grow with it.")]
-Dpi = Annotated[float, typer.Option(min=10, max=1200, help="Dots per inch of a .png.")]
 Dark = Annotated[bool | None, typer.Option("--dark/--light", help="Colors for a dark or a light background.")]
 
 
@@ -126,13 +119,13 @@ def plot(
     store: Store,
     output: Output = None,
     kind: Kind = "overview",
-    gif: Gif = False,
-    color: Color = None,
+    gif: Annotated[bool, typer.Option("--gif", help="Of a run: draw an animation instead.")] = False,
+    color: Annotated[str | None, typer.Option(metavar="NAME", help="Of a sweep: the quantity that is shown.")] = None,
     x: Across = None,
-    y: Up = None,
-    title: Title = None,
-    size: Size = None,
-    dpi: Dpi = 150,
+    y: Annotated[str | None, typer.Option("--y", metavar="NAME", help="Of a sweep or section: what runs up.")] = None,
+    title: Annotated[str | None, typer.Option(help="Instead of the picture's own; '' for none.")] = None,
+    size: Annotated[str | None, typer.Option(metavar="WxH", help="In inches, as 16x9; fonts grow with it.")] = None,
+    dpi: Annotated[float, typer.Option(min=10, max=1200, help="Dots per inch of a .png.")] = 150,
     dark: Dark = None,
     overwrite: Overwrite = False,
 ) -> None:
@@ -148,7 +141,6 @@ def plot(
     nonholo plot sweep.zarr --color outcome --x body.a --y run.time_step
     """
     from nonholo import io
-    from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
     from nonholo.cli.screen.pictures import OVERVIEW, beside, draw_stored_sweep
 
     if output is not None:
@@ -170,7 +162,6 @@ def plot(
 
 def _check_kind(kind: str, gif: bool, color: str | None, axis: str | None) -> None:
     """Refuse options that do not belong to this kind of picture of a run."""
-    from nonholo.cli.screen.errors import USAGE, leave
     from nonholo.cli.screen.pictures import ALL, OVERVIEW, kinds
 
     if kind not in (names := [*kinds(), ALL]):
@@ -183,8 +174,6 @@ def _check_kind(kind: str, gif: bool, color: str | None, axis: str | None) -> No
 
 def _look(title: str | None, size: str | None, dark: bool | None) -> dict[str, Any]:
     """Return the options of a picture, as the library takes them."""
-    from nonholo.cli.screen.errors import USAGE, leave
-
     look: dict[str, Any] = {"title": title, "dark": dark}
     if size is not None:
         try:
@@ -200,7 +189,6 @@ def _draw_run(store: Path, path: Path, look: dict[str, Any], *, gif: bool, **opt
     """Draw a picture or the animation of a run, and return the paths of what was drawn."""
     from nonholo import io
     from nonholo.base.progress import waiting
-    from nonholo.cli.screen.errors import FAILED, USAGE, store_errors
     from nonholo.cli.screen.pictures import ALL, draw, draw_all
 
     with store_errors(USAGE):

@@ -8,7 +8,7 @@ import importlib.util
 import inspect
 import re
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
@@ -140,9 +140,8 @@ def table_of(word: str, make: Maker, kind: bool = False, plain: bool = True) -> 
         for name, each in arguments(way).items():
             default = _default_of(each) if name in common else None
             shape = Group if name == "group" else Numbers if plain else Any
-            fields.setdefault(
-                name, (shape, Field(default, description=about.get(name, f"As in `{way.__qualname__}`.")))
-            )
+            meaning = about.get(name, f"As in `{way.__qualname__}`.")
+            fields.setdefault(name, (shape, Field(default, description=meaning)))
     table = create_model(word, __base__=MadeTable, __doc__=summary(make), **fields)
     table.make, table.others = make, others
     return table
@@ -226,9 +225,11 @@ def is_example(name: str) -> bool:
 def import_own(path: Path | None) -> None:
     """Run a module of the user's own, asked for by its path: each public function and class in it is a kind of body."""
     _OWN.clear()
-    if path is None:
-        return
-    _OWN.update(_public(_module_at(path)))
+    if path is not None:
+        module = _module_at(path)
+        for name, value in vars(module).items():
+            if callable(value) and not name.startswith("_") and value.__module__ == module.__name__:
+                _OWN[name] = value
 
 
 def _module_at(path: Path) -> Any:
@@ -242,9 +243,3 @@ def _module_at(path: Path) -> Any:
         got = f"'{path}', but there is a module {name} at {spec.origin}"
         raise ValueError(f"`--module` must have a name that no other module has. Got {got}. Rename it.")
     return importlib.import_module(name)
-
-
-def _public(module: Any) -> Iterator[tuple[str, Maker]]:
-    for name, value in vars(module).items():
-        if callable(value) and not name.startswith("_") and value.__module__ == module.__name__:
-            yield name, value

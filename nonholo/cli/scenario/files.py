@@ -149,9 +149,8 @@ def complete(document: dict[str, Any], name: str, source: str, settings: list[Se
 def _directions(document: dict[str, Any]) -> tuple[str, ...] | None:
     """Return the names of the directions of the body of a document; None if it is no body, which is reported later."""
     try:
-        return components_of(
-            moving(body_table(document["body"]["kind"]).model_validate(document["body"]).creation).group
-        )
+        body = document["body"]
+        return components_of(moving(body_table(body["kind"]).model_validate(body).creation).group)
     except (AttributeError, KeyError, TypeError, ValueError):
         return None
 

@@ -1,14 +1,14 @@
 """Forces in a scenario, as data: the classes of `nonholo` that act, by their names, and a table of rows."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, cast
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, create_model
 
 import nonholo
 from nonholo.base.checks import shown
 from nonholo.base.limits import read_text
-from nonholo.cli.scenario.bodies import Maker, arguments, summary, table_of
+from nonholo.cli.scenario.bodies import MadeTable, Maker, arguments, summary, table_of
 from nonholo.cli.scenario.sections import Numbers, Section, checked_by
 from nonholo.groups import components_of
 
@@ -32,7 +32,10 @@ class AbstractForces(Section):
     def on(self, system: "System") -> "System":
         """Return the system under these forces, the system itself without any."""
         tables = {word: getattr(self, word) for word in (*_CLASSES, "table")}
-        parts = {word: _part(word, table) for word, table in tables.items() if table is not None}
+        parts: dict[str, Any] = {word: table for word, table in tables.items() if table is not None}
+        for word in filter(_CLASSES.__contains__, parts):  # one with a single argument is written without its name
+            own = parts[word]
+            parts[word] = own.creation if isinstance(own, MadeTable) else _CLASSES[word](own)
         if not parts:
             return system
         for word, part in parts.items():
@@ -60,13 +63,6 @@ def _requirement(failure: ValueError) -> str:
     """Return what an error asks for, without its owner, and without remedies that a scenario does not have."""
     text, _, _ = (str(failure).partition("` ")[2] or str(failure)).partition(". Pass ")
     return text
-
-
-def _part(word: str, table: Any) -> Any:
-    """Return the force of a table; one with a single argument is written without its name."""
-    if isinstance(table, Section):
-        return cast(Any, table).creation
-    return _CLASSES[word](table) if word in _CLASSES else table
 
 
 def _acting(parts: list[Any]) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from pydantic import ValidationInfo, field_validator, model_validator
 import nonholo
 from nonholo.cli.scenario.bodies import body_table, is_example, nearest_kind
 from nonholo.cli.scenario.forces import Forces
-from nonholo.cli.scenario.sections import Count, Numbers, Positive, Section, by_kind, exactly_one
+from nonholo.cli.scenario.sections import Count, Numbers, Positive, Section, by_kind
 
 if TYPE_CHECKING:
     from nonholo.discrete import Discretization
@@ -34,7 +34,9 @@ class Start(Section):
 
     @model_validator(mode="after")
     def _is_one_start(self) -> Self:
-        exactly_one(self, SPEEDS)
+        own = [name for name in SPEEDS if getattr(self, name) is not None]
+        if len(own) != 1:
+            raise ValueError(f"must hold exactly one of {', '.join(SPEEDS)}. Got {' and '.join(own) or 'none'}.")
         return self
 
 

@@ -83,13 +83,6 @@ def _details_of(entry: Any, keys: Iterable[str]) -> InitErrorDetails:
     return flaw
 
 
-def exactly_one(section: Section, names: tuple[str, ...]) -> None:
-    """Refuse a table that holds none or several of the keys."""
-    own = [name for name in names if getattr(section, name) is not None]
-    if len(own) != 1:
-        raise ValueError(f"must hold exactly one of {', '.join(names)}. Got {' and '.join(own) or 'none'}.")
-
-
 def by_kind(table_of: Callable[[str], type[Section]], remedy: Callable[[str], str]) -> AfterValidator:
     """Return the check of a table by its kind; `table_of` raises a `KeyError` for an unknown one."""
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import nonholo
 from nonholo.base.progress import progress_bar, waiting
-from nonholo.cli.scenario.files import parse_toml
+from nonholo.cli.scenario.files import parse_toml, table_in
 from nonholo.cli.scenario.sweeps import library_name
 from nonholo.cli.screen.errors import FAILED, store_errors, warn
 from nonholo.io import complete_file
@@ -172,18 +172,13 @@ def draw_sweep(
     result: "xarray.Dataset", picture: Path, *names: str | None, dpi: float = 150, **look: Any
 ) -> str | None:
     """Draw a quantity over the design; return the path of the picture, None if there is none."""
-    own: Any = [None if name is None else _name_of(name) for name in names]
+    from nonholo.ensembles import component_name
+
+    own: Any = [None if path is None else component_name(library_name(path)) for path in names]
     with _at_no_cost():
         figure: Any = nonholo.plot.sweep_map(result, *own, **look).axes.figure
         return _save(picture, lambda: figure, dpi, progress=sys.stderr.isatty())
     return None
-
-
-def _name_of(path: str) -> str:
-    """Return the name in a result of a key path."""
-    from nonholo.ensembles import component_name
-
-    return component_name(library_name(path))
 
 
 def draw_stored_sweep(
@@ -196,15 +191,7 @@ def draw_stored_sweep(
     with store_errors(FAILED):
         result = load_sweep(store)
     if not (color or x or y):
-        output = _output_of(attributes_of(store).get("scenario", ""))
-        color, x, y = (output.get(name) for name in ("color", "x", "y"))
+        with contextlib.suppress(ValueError):  # a store may keep a text that is no scenario
+            output = table_in(parse_toml(attributes_of(store).get("scenario", "")), "output")
+            color, x, y = (output.get(name) for name in ("color", "x", "y"))
     return (draw_sweep(result, picture, color, x, y, **options),)
-
-
-def _output_of(scenario: str) -> dict[str, Any]:
-    """Return the table [output] of a scenario; of a text that is none, which a store may keep too, an empty one."""
-    try:
-        output = parse_toml(scenario).get("output")
-    except ValueError:
-        return {}
-    return output if isinstance(output, dict) else {}

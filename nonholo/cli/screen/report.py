@@ -19,6 +19,7 @@ from nonholo.io import described_system, fields_of
 from nonholo.orbit import AbstractOrbit
 
 ROUNDING = "rounding"
+_ENERGY = {True: "exact by theorem", False: "not exact for this discretization", None: "tolerance of the solver"}
 _WIDEST = 6  # columns of a matrix that is shown whole
 _LARGE = 100  # dimension of a group from which inertia operators are too large to print
 _LABELS = {"mass_tensor": "mass tensor J", "inertia_tensor": "inertia tensor tr(J)-J"}
@@ -27,9 +28,9 @@ _LABELS = {"mass_tensor": "mass tensor J", "inertia_tensor": "inertia tensor tr(
 def figures(orbit: AbstractOrbit) -> dict[str, Any]:
     """Return the invariants of an orbit and its body as plain numbers; None where a figure is not defined."""
     quantities = dataclasses.asdict(invariants(orbit))
-    plain = {name: _plain(value) for name, value in quantities.items()}
+    is_odd = {name: isinstance(value, float) and not math.isfinite(value) for name, value in quantities.items()}
     return {
-        **plain,
+        **{name: None if is_odd[name] else value for name, value in quantities.items()},
         "energy_is_exact": orbit.conserves_energy,
         "outcome": orbit.outcome.name,
         "message": orbit.outcome.message,
@@ -56,13 +57,6 @@ def _table(columns: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Table:
     return table
 
 
-def _expected_energy(exact: bool | None) -> str:
-    """Return in words how well energy should be conserved; None stands for a continuous flow."""
-    if exact is None:
-        return "tolerance of the solver"
-    return "exact by theorem" if exact else "not exact for this discretization"
-
-
 def show_json(document: dict[str, Any]) -> None:
     """Print one JSON object."""
     typer.echo(json.dumps(document, indent=2, allow_nan=False))
@@ -84,7 +78,7 @@ def duration(seconds: float) -> str:
 def _rows(figures: dict[str, Any]) -> list[tuple[str, str, str]]:
     """Return label, value and expectation of the figures that are defined for the orbit."""
     expectations = {
-        "energy_drift": ("relative energy drift", "", _expected_energy(figures["energy_is_exact"])),
+        "energy_drift": ("relative energy drift", "", _ENERGY[figures["energy_is_exact"]]),
         "constraint_residual": ("constraint residual", "", ROUNDING),
         "group_residual": ("group residual", "", ROUNDING),
         "reversal_defect": ("one-step reversal defect", "", ROUNDING),
@@ -117,10 +111,6 @@ def _body(orbit: AbstractOrbit) -> dict[str, Any]:
     name = "inertia_tensor" if "mass_tensor" in fields and system.group == SO(3) else "inertia_operator"
     fields.pop("given_inertia", None)
     return {"system": type(system).__name__, "group": repr(system.group), **fields, name: inertia}
-
-
-def _plain(value: Any) -> Any:
-    return None if value is None or (isinstance(value, float) and not math.isfinite(value)) else value
 
 
 def _shown(value: Any) -> str:

@@ -3,7 +3,6 @@
 import json as jsonlib
 import math
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -151,11 +150,8 @@ def _state(standing: SweepStanding) -> str:
 
 def _rows(store: Path, figures: dict[str, Any]) -> dict[str, str]:
     members, count_done = figures["members"], figures["done"]
-    came = (
-        f"{members:,}"
-        if count_done == members
-        else f"{count_done:,} of {members:,}, {100 * count_done / members:.1f} %"
-    )
+    part = f"{count_done:,} of {members:,}, {100 * count_done / members:.1f} %"
+    came = f"{members:,}" if count_done == members else part
     state = figures["state"] + (f"; resume with: nonholo resume {store}" if figures["state"] == "stopped" else "")
     speeds = {"members_per_second_of_one_worker": "members/s", "steps_per_second_of_one_worker": "steps/s"}
     rates = [f"{figures[key]:,.3g} {unit}" for key, unit in speeds.items() if figures[key]]
@@ -172,7 +168,10 @@ def _rows(store: Path, figures: dict[str, Any]) -> dict[str, str]:
 def _ranges(result: xarray.Dataset) -> dict[str, tuple[float, float, str]]:
     """Return least and largest number of each quantity over the members that succeeded, and what it means."""
     ranges: dict[str, tuple[float, float, str]] = {}
-    for part in _slabs(result):
+    first, *others = result[_OUTCOME].dims
+    rows = max(1, _SLAB // math.prod(result.sizes[name] for name in others))  # parts that fit in memory
+    for begin in range(0, result.sizes[first], rows):
+        part = result.isel({first: slice(begin, begin + rows)})
         good = part[_OUTCOME] == 0
         for name, values in part.data_vars.items():
             if name == _OUTCOME or values.attrs.get("long_name") == _DRAWN or values.dtype.kind not in "if":
@@ -184,11 +183,3 @@ def _ranges(result: xarray.Dataset) -> dict[str, tuple[float, float, str]]:
                 least, most, _ = ranges.get(str(name), (math.inf, -math.inf, ""))
                 ranges[str(name)] = (min(least, float(finite.min())), max(most, float(finite.max())), meaning)
     return ranges
-
-
-def _slabs(result: xarray.Dataset) -> Iterator[xarray.Dataset]:
-    """Cut a result along its first dimension, so that parts fit in memory."""
-    first, *others = result[_OUTCOME].dims
-    rows = max(1, _SLAB // math.prod(result.sizes[name] for name in others))
-    for begin in range(0, result.sizes[first], rows):
-        yield result.isel({first: slice(begin, begin + rows)})

@@ -66,8 +66,9 @@ def displacements_over(
     $\pi$ that satisfy $(W - W^{-1})/2 \in \mathfrak{d}$ without lying on the variety are no solutions.
 
     Under forces of the scheme "energy" it solves $\langle P(W) - \tfrac h2f(g, W), e_i\rangle = r_i$, for weights and
-    other `Linear` potentials, `Friction` and tables on tops with n = 3 and sleighs with n = 2, 3, of a table alone for
-    every n. Under a weight a top has 7 solutions, sleighs have 4 and 8, and T + U after the step is the same for all.
+    other `Linear` potentials, `Friction` and tables. Under a weight a top with n = 3 has 7 solutions, sleighs with n =
+    2, 3 have 4 and 8, and T + U after the step is the same for all. Beyond these n roots of a generic problem are
+    followed: that they are all is observed, not proved.
 
     Reference: [fedorov-zenkov-2004], section 3, item 3; docs/theory/branches.md.
 

@@ -9,7 +9,7 @@ Reference: docs/theory/branches.md, "Under forces".
 
 import dataclasses
 import functools
-from typing import Any, ClassVar, cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -40,7 +40,17 @@ class Pulled(Equations):
 
     pull: Inexact[Array, "m k"] = dataclasses.field(default_factory=lambda: np.zeros((0, 0)))
     drag: Inexact[Array, "m m"] = dataclasses.field(default_factory=lambda: np.zeros((0, 0)))
-    parameters: ClassVar[tuple[str, ...]] = (*Equations.parameters, "pull", "drag")
+
+    @classmethod
+    def at_rest(cls, k: int, slides: bool) -> "Pulled":
+        """Return equations without any inertia or force."""
+        m, none = k + slides, np.zeros(k)
+        return cls(none, none, none, 0.0 if slides else None, 0.0, np.zeros((m, k)), np.zeros((m, m)))
+
+    @property
+    def parameters(self) -> tuple[str, ...]:  # type: ignore[override]
+        """The names of all numbers."""
+        return (*Equations.parameters, "pull", "drag", *(() if self.lever is None else ("lever",)))
 
     @property
     def is_pulled(self) -> bool:
@@ -54,12 +64,12 @@ class Pulled(Equations):
 
     @property
     def count(self) -> int:
-        """Number of complex roots in general, of at most two coordinates y."""
+        """Number of complex roots in general; of special forces on more than two coordinates y there are fewer."""
         k = len(self.stiffness)
         if not self.is_pulled:
             return super().count
         if self.arm:
-            return (k + 1) ** 2 - (k > 1 and _is_weight(self.pull))
+            return (k + 1) ** 2 - (k == 2 and _is_weight(self.pull))
         return k * k + k + 1 if np.any(self.coupling) else 2 * k + 1
 
     def residual(self, x: Inexact[Array, "... m"]) -> tuple[Inexact[Array, "... m"], Inexact[Array, "... m"]]:
@@ -91,7 +101,7 @@ class Pulled(Equations):
         return least / np.abs(x[..., 0]) if self.is_pulled else least
 
     def starts(self) -> Inexact[Array, "B m"]:
-        """Return approximate roots, by elimination; none of more than two coordinates y."""
+        """Return approximate roots, by elimination; none of more than two coordinates y, whose roots are followed."""
         k = len(self.stiffness)
         if k > 2:
             return np.zeros((0, 1 + len(self.drag)))
@@ -198,10 +208,8 @@ class Node:
         if forced.friction is None and not np.any(pull):
             return free
         to_rows, to_chart = self._units
-        fields = {each.name: getattr(free, each.name) for each in dataclasses.fields(free)}
-        return Pulled(
-            **fields, pull=to_rows @ pull @ to_chart[:, : len(frame.stiffness)], drag=to_rows @ drag @ to_chart
-        )
+        along = to_chart[:, : len(frame.stiffness)]
+        return Pulled(**vars(free), pull=to_rows @ pull @ along, drag=to_rows @ drag @ to_chart)
 
     @functools.cached_property
     def _units(self) -> tuple[np.ndarray, np.ndarray]:
@@ -247,25 +255,19 @@ class Node:
 
 def node_of(owner: str, discrete: Discretization, configuration: object, step: int) -> Node:
     """Return where a step under forces begins, refused where not all its values are known."""
-    forced, where = cast(Forced, discrete.forces), f"{owner}(discrete=...)"
-    free, demand = (
-        dataclasses.replace(discrete, system=forced.system),
-        "act at the displacement, by the scheme 'energy'",
-    )
+    forced, where, group = cast(Forced, discrete.forces), f"{owner}(discrete=...)", discrete.system.group
+    demand = "act at the displacement, by the scheme 'energy'"
     if forced.slip is not None:
         remedy = "Ask the system without them, or with all its rows."
         raise error(where, demand, "forces of rows that yield, by which a step holds or slides", remedy)
     if not discrete.is_balanced:
         remedy = "The displacement over a kicked momentum is one of the system inside."
         raise error(where, demand, "forces that kick at the nodes", remedy)
-    frame = frame_of(where, free)
+    frame = frame_of(where, dataclasses.replace(discrete, system=forced.system))
     others = [each for each in forced.terms if not hasattr(each, "matrix_for")]
-    is_large = len(frame.stiffness) > 2 and (forced.terms or forced.friction is not None)
-    if others or forced.function is not None or is_large:
+    if others or forced.function is not None:
         got = f"{forced.names} on a body of rank {forced.rank}"
         remedy = "Of others the principal one is known (`simulate`)."
-        raise error(where, "have forces that are rational in at most two coordinates of a turn", got, remedy)
-    g = free.system.group.identity if configuration is None else in_group(
-        f"{owner}(configuration=...)", free.system.group, configuration
-    )  # fmt: skip
+        raise error(where, "have forces that are rational in the coordinates of a turn", got, remedy)
+    g = group.identity if configuration is None else in_group(f"{owner}(configuration=...)", group, configuration)
     return Node(discrete, frame, g, step)

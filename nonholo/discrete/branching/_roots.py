@@ -8,8 +8,9 @@ Reference: docs/theory/branches.md.
 
 import dataclasses
 import functools
+import itertools
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -115,6 +116,7 @@ _SETTLED = 1e-14  # relative residual below which an iteration that gains no mor
 _TINY = 1e-10  # part of the largest equation that others are measured by, where their own terms vanish
 _RANK = 1e-13  # relative singular value below which a direction is left alone
 _REACHED = 1e-13  # relative residual of a root
+_STARTS, _LOOPS = 400, 40  # of Newton's method on a generic problem; of problems around it
 _ARRIVED = 1e-12  # of the homotopy parameter, from where Newton's method takes over
 
 
@@ -133,7 +135,7 @@ def roots_of(equations: Equations) -> list[Root]:
     if not complete or _is_crowded(equations, roots):
         by_path = _merge(equations, _by_continuation(equations))
         roots = by_path if _count(by_path) >= min(_count(roots), equations.count) else roots
-    if not np.iscomplexobj(equations.target) and not np.iscomplexobj(equations.push):
+    if not _is_complex(equations):
         roots = _mark_real(equations, roots)
     return sorted(roots, key=place)
 
@@ -246,7 +248,34 @@ def _by_continuation(equations: Equations) -> Inexact[Array, "B m"]:
         starts = _polish(generic, candidates(generic))
         if _count(_merge(generic, starts)) == generic.count:
             break
-    return _finite(_follow(equations, generic, starts))
+    if len(starts) == 0:
+        generic, starts = _around(type(equations), len(equations.stiffness), equations.lever is not None)
+    ends = _finite(_follow(equations, generic, starts))
+    if _is_complex(equations) or len(ends) == 0:
+        return ends
+    alone = _distance(ends.conj()[:, None], ends).min(axis=1) > _BLURRED  # real problems have them in pairs
+    return np.concatenate([ends, ends[alone].conj()])
+
+
+def _is_complex(equations: Equations) -> bool:
+    return np.iscomplexobj(equations.target) or np.iscomplexobj(equations.push)
+
+
+@functools.cache
+def _around(kind: Any, k: int, slides: bool) -> tuple[Equations, Inexact[Array, "B m"]]:
+    """Return a generic problem and its roots: some by Newton's method, the others where loops of problems lead them."""
+    rng, still = np.random.default_rng(0), kind.at_rest(k, slides)
+    generic = _disturb(still, rng)
+    points = rng.normal(size=(_STARTS, 1 + k + slides, 2)) @ np.array([1.0, 1j])
+    points[:, : 1 + k] /= np.sqrt((points[:, : 1 + k] ** 2).sum(axis=1, keepdims=True))
+    roots, left = _merge(generic, _polish(generic, points)), _LOOPS
+    while _count(roots) < generic.count and left:
+        way, left = (generic, _disturb(still, rng), _disturb(still, rng), generic), left - 1
+        points = starts = generic.points([root.point for root in roots])
+        for begin, end in itertools.pairwise(way):
+            points = _follow(end, begin, points)
+        roots = _merge(generic, np.concatenate([starts, points]))
+    return generic, generic.points([root.point for root in roots])
 
 
 def _disturb(equations: Equations, rng: np.random.Generator) -> Equations:

@@ -205,13 +205,8 @@ def branch_rule(owner: str, branch: BranchRule) -> AbstractBranchRule:
     """Return the rule that a user names or gives as a function."""
     if callable(branch):
         return Chosen(branch)
-    choice(
-        f"{owner}(branch=...)",
-        branch,
-        tuple(_BY_NAME),
-        "Or pass a function of the branches and the present displacement.",
-    )
-    return _BY_NAME[branch]
+    remedy = "Or pass a function of the branches and the present displacement."
+    return _BY_NAME[choice(f"{owner}(branch=...)", branch, tuple(_BY_NAME), remedy)]
 
 
 def checked_rule(owner: str, discrete: Discretization, branch: BranchRule) -> AbstractBranchRule:

@@ -5,7 +5,6 @@ the scalars of their kernel, from the identity; other ones in momenta along the 
 `step_residual` nothing is solved for: momenta, chart, pose and force are unknown at once.
 """
 
-import dataclasses
 import functools
 from collections.abc import Callable
 from typing import Any, NamedTuple, cast
@@ -154,7 +153,7 @@ def _half_impulses(
     """Return the half impulses at saved nodes."""
     impulse, balance = forces
     if balance is not None:
-        first = _part(discrete, weights(discrete.order)[0])
+        first = discrete.part(weights(discrete.order)[0])
         return jax.vmap(functools.partial(half_impulse, first, balance))(states[1], states[2], rows)
     return jnp.zeros(()) if impulse is None else jax.vmap(impulse)(states[0], states[2], rows)
 
@@ -190,11 +189,6 @@ def half_impulse(discrete: Scheme, forced: Forced, y: Array, g: Array, row: Arra
     """Return half the impulse of a balanced step by the chart of its displacement, a body covector."""
     h = discrete.time_step
     return h / 2 * forced.mean_force(g, displacement_of(discrete, y), h, row)
-
-
-def _part(discrete: Scheme, weight: Array) -> Any:
-    """Return the step of order 2 whose length is a part of that of a discretization."""
-    return dataclasses.replace(cast(Any, discrete), time_step=weight * discrete.time_step, order=2)
 
 
 def _as_it_is(node: _Node) -> tuple[Array, ...]:
@@ -259,7 +253,7 @@ def _in_stages(discrete: Scheme, scalar: ScalarStep | None, take: Callable[..., 
 
     def stage(carry: tuple[Any, ...], weight: Array) -> tuple[tuple[Any, ...], Array]:
         r, g, code, row = carry
-        part, own = _part(discrete, weight), scalar and scalar._replace(scale=weight * scalar.scale)
+        part, own = discrete.part(weight), scalar and scalar._replace(scale=weight * scalar.scale)
         y, outcome, ahead, after = take(part, own, (r, g, row))
         good, code = (code == 0) & (outcome == 0), jnp.where(code == 0, outcome, code)
         return (jnp.where(good, ahead, r), jnp.where(good, after, g), code, row), y
@@ -356,7 +350,7 @@ def _decode(
     """
     system, first = discrete.system, discrete
     if discrete.order > 2:
-        first = _part(discrete, float(weights(discrete.order)[0]))
+        first = discrete.part(float(weights(discrete.order)[0]))
 
     def at(r: Array, y: Array, g: Array, after: Array) -> tuple[Array, ...]:
         whole = discrete.order > 2 or system.is_spatial

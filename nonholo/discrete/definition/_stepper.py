@@ -2,7 +2,7 @@
 
 import dataclasses
 import functools
-from typing import Any, cast
+from typing import Any
 
 import equinox
 import jax
@@ -28,7 +28,7 @@ from nonholo.orbit import First, Orbit, Rows, State, keep_row, write_first
 
 def _substep(discrete: Scheme, weight: Array, r: Array, g: Array) -> tuple[Array, Array, Array, Array]:
     """Return momentum and pose after a substep, the chart of its displacement and the outcome."""
-    part: Any = dataclasses.replace(cast(Any, discrete), time_step=weight * discrete.time_step, order=2)
+    part = discrete.part(weight)
     y, code = principal_displacement(part, r, g)
     W = displacement_of(part, y)
     after = discrete.system.moved(g, W)
@@ -198,8 +198,7 @@ def _partial_step(
     discrete: Scheme, fraction: float, r: np.ndarray, g: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return momentum, chart and pose after a fraction of a step from a momentum and a pose, in the user's frame."""
-    order = cast(Any, discrete).order
-    one, parts = dataclasses.replace(cast(Any, discrete), order=2), weights(order)
+    one, parts = discrete.part(1.0), weights(discrete.order)
     for part in fraction * parts:
         y, code = in_double(_root, one, part * r, g)
         r, g = in_double(_push, one, y, g)

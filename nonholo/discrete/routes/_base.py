@@ -180,21 +180,26 @@ class AbstractCompiledRoute(AbstractRoute):
         """The route of a step of order 2 with the same time step: the route itself, if it is one."""
         return self
 
-    @abc.abstractmethod
+    @functools.cached_property
+    def axes(self) -> "Axes":
+        """The change from the canonical axes to those of the kernel; none unless a route has its own."""
+        return Axes(self.system.group, None, None)
+
     def encode(self, momenta: np.ndarray) -> np.ndarray:
         """Return the momenta of the kernel from canonical ones."""
+        return self.scale * self.axes.momenta(momenta)
 
-    @abc.abstractmethod
     def decode(self, momenta: np.ndarray) -> np.ndarray:
         """Return canonical momenta from those of the kernel."""
+        return self.axes.canonical_momenta(momenta / self.scale)
 
-    @abc.abstractmethod
     def to_kernel(self, charts: np.ndarray) -> np.ndarray:
         """Return the chart coordinates of the kernel from canonical ones."""
+        return self.axes.charts(charts)
 
-    @abc.abstractmethod
     def from_kernel(self, charts: np.ndarray) -> np.ndarray:
         """Return canonical chart coordinates from those of the kernel."""
+        return self.axes.canonical_charts(charts)
 
     @abc.abstractmethod
     def encode_poses(self, poses: np.ndarray) -> np.ndarray:
@@ -361,11 +366,11 @@ class Axes:
 
     def canonical_momenta(self, momenta: np.ndarray) -> np.ndarray:
         """Return momenta along the canonical rows."""
-        return momenta if self.rows is None else applied(self._inverse, momenta)
+        return momenta if self.rows is None else applied(self.inverse, momenta)
 
     def charts(self, canonical: np.ndarray) -> np.ndarray:
         """Return charts along the kernel's rows."""
-        return canonical if self.rows is None else applied(self._inverse.swapaxes(-1, -2), canonical)
+        return canonical if self.rows is None else applied(self.inverse.swapaxes(-1, -2), canonical)
 
     def canonical_charts(self, charts: np.ndarray) -> np.ndarray:
         """Return charts along the canonical rows."""
@@ -381,18 +386,19 @@ class Axes:
 
     def poses(self, canonical: np.ndarray) -> np.ndarray:
         """Return compact poses of the kernel's axes."""
-        return canonical if self.frame is None else self.group.pose_product(canonical, self._turns[0])
+        return canonical if self.frame is None else self.group.pose_product(canonical, self.turns[0])
 
     def canonical_poses(self, poses: np.ndarray) -> np.ndarray:
         """Return compact poses of the canonical axes."""
-        return poses if self.frame is None else self.group.pose_product(poses, self._turns[1])
+        return poses if self.frame is None else self.group.pose_product(poses, self.turns[1])
 
     @functools.cached_property
-    def _turns(self) -> tuple[np.ndarray, np.ndarray]:
+    def turns(self) -> tuple[np.ndarray, np.ndarray]:
         """The frame and its inverse as compact poses."""
         frame = np.asarray(self.frame)
         return self.group.pose_from_matrix(frame), self.group.pose_from_matrix(self.group.inverse(frame))
 
     @functools.cached_property
-    def _inverse(self) -> np.ndarray:
+    def inverse(self) -> np.ndarray:
+        """The inverse of C."""
         return np.linalg.inv(np.asarray(self.rows))

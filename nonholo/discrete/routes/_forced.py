@@ -92,11 +92,6 @@ class AbstractForcedRoute(AbstractRoute):
     is_scalar: ClassVar[bool] = False
 
     @property
-    def name(self) -> str:
-        """The name of the route inside."""
-        return self.free.name
-
-    @property
     def single(self) -> AbstractCompiledRoute:
         """The route of the free step."""
         return self.free
@@ -314,10 +309,8 @@ def _check_compiled(forced: Forced) -> None:
     Their result at a place that is no place of a run does not count.
     """
     group, moving = forced.group, np.linspace(0.5, 1.0, forced.group.dim)
-    for g, velocity, harmless in (
-        (group.identity, 0 * moving, UndefinedError),
-        (group.exp(moving / 8), moving, Exception),
-    ):
+    rest, motion = (group.identity, 0 * moving, UndefinedError), (group.exp(moving / 8), moving, Exception)
+    for g, velocity, harmless in (rest, motion):
         try:
             forced.driving_force(0.0, g, velocity)
             forced.potential_energy(g)

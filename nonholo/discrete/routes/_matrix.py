@@ -56,22 +56,6 @@ class MatrixRoute(AbstractCompiledRoute):
         """The time step over the unit of momenta."""
         return self.time_step / self._body_and_unit[1]
 
-    def encode(self, momenta: np.ndarray) -> np.ndarray:
-        """Return the momenta of the kernel from canonical ones."""
-        return self.scale * momenta
-
-    def decode(self, momenta: np.ndarray) -> np.ndarray:
-        """Return canonical momenta from those of the kernel."""
-        return momenta / self.scale
-
-    def to_kernel(self, charts: np.ndarray) -> np.ndarray:
-        """Return the chart itself."""
-        return charts
-
-    def from_kernel(self, charts: np.ndarray) -> np.ndarray:
-        """Return the chart itself."""
-        return charts
-
     def encode_poses(self, poses: np.ndarray) -> np.ndarray:
         """Return the matrices of poses, row by row."""
         group = self.system.group

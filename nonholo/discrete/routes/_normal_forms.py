@@ -117,22 +117,6 @@ class ScalarRoute(AbstractCompiledRoute):
         state = np.zeros(kernels.STATE_SIZE)
         return kernels.start(self.body, momenta, pose, state), state[kernels.CHART], state
 
-    def encode(self, momenta: np.ndarray) -> np.ndarray:
-        """Return the momenta of the kernel from canonical ones."""
-        return self.scale * self.axes.momenta(momenta)
-
-    def decode(self, momenta: np.ndarray) -> np.ndarray:
-        """Return canonical momenta from those of the kernel."""
-        return self.axes.canonical_momenta(momenta / self.scale)
-
-    def to_kernel(self, charts: np.ndarray) -> np.ndarray:
-        """Return the chart coordinates of the kernel from canonical ones."""
-        return self.axes.charts(charts)
-
-    def from_kernel(self, charts: np.ndarray) -> np.ndarray:
-        """Return canonical chart coordinates from those of the kernel."""
-        return self.axes.canonical_charts(charts)
-
     def encode_poses(self, poses: np.ndarray) -> np.ndarray:
         """Return the compact poses of the kernel's axes."""
         return self.axes.poses(poses)
@@ -194,7 +178,7 @@ class SecularRoute(AbstractCompiledRoute):
 
     def encode(self, momenta: np.ndarray) -> np.ndarray:
         """Return the momenta of the kernel from canonical ones."""
-        momenta = self._axes.momenta(momenta)
+        momenta = self.axes.momenta(momenta)
         if self.form.is_sleigh:
             along = momenta[..., -1:]
             momenta = np.concatenate([momenta[..., :-1] - along * self.form.offset, along], axis=-1)
@@ -205,19 +189,19 @@ class SecularRoute(AbstractCompiledRoute):
         momenta = self.form.from_principal(momenta) / self.scale
         if self.form.is_sleigh:
             momenta[..., :-1] += momenta[..., -1:] * self.form.offset
-        return self._axes.canonical_momenta(momenta)
+        return self.axes.canonical_momenta(momenta)
 
     def to_kernel(self, charts: np.ndarray) -> np.ndarray:
         """Return the chart coordinates of the kernel from canonical ones."""
-        return self.form.to_principal(self._axes.charts(charts))
+        return self.form.to_principal(self.axes.charts(charts))
 
     def from_kernel(self, charts: np.ndarray) -> np.ndarray:
         """Return canonical chart coordinates from those of the kernel."""
-        return self._axes.canonical_charts(self.form.from_principal(charts))
+        return self.axes.canonical_charts(self.form.from_principal(charts))
 
     def encode_poses(self, poses: np.ndarray) -> np.ndarray:
         """Return the matrices of poses of the kernel's axes, row by row."""
-        g = self._axes.turn(self.system.group.matrix_from_pose(poses))
+        g = self.axes.turn(self.system.group.matrix_from_pose(poses))
         g = g if self._turn is None else g @ self._turn
         return g.reshape(*poses.shape[:-1], self.system.group.size**2)
 
@@ -226,7 +210,7 @@ class SecularRoute(AbstractCompiledRoute):
         size = self.system.group.size
         g = poses.reshape(*poses.shape[:-1], size, size)
         g = g if self._turn is None else g @ self._turn.T
-        return self.system.group.pose_from_matrix(self._axes.turn_back(g))
+        return self.system.group.pose_from_matrix(self.axes.turn_back(g))
 
     @functools.cached_property
     def _turn(self) -> Float[np.ndarray, "N N"] | None:
@@ -240,5 +224,6 @@ class SecularRoute(AbstractCompiledRoute):
         return turn
 
     @functools.cached_property
-    def _axes(self) -> Axes:
+    def axes(self) -> Axes:
+        """The axes of the normal form."""
         return Axes(self.system.group, self.form.frame, self.form.frame_map)

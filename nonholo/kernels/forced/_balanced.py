@@ -27,6 +27,7 @@ _CORRECTIONS = 30  # of momenta between two half impulses
 _EXACT = 4e-16  # relative
 _SETTLED = 1e-11  # relative, below which corrections that do not fall any more are rounding
 _UNSEEN = 2e-15  # relative, of differences of U
+_ROUNDED = 4e-16  # relative, of the terms of a pull, which are large where a group is not compact
 _FALL = 0.5  # most that a correction leaves of what is missed, by which the root is certain
 _PIECES = 1000  # most of a path
 _FOLDED = 100.0  # of the inverse slope
@@ -159,7 +160,9 @@ def pull(c: Impulses, room: Scratch, out: np.ndarray) -> None:
     for r in range(len(out)):
         for i in range(n):
             for j in range(n):
-                out[r] -= product[i, j] * c.levers[r, j, i]
+                term = product[i, j] * c.levers[r, j, i]
+                out[r] -= term
+                room.noise[0] += _ROUNDED * abs(term)
 
 
 @njit(**BORROWING)
@@ -256,7 +259,7 @@ def add_potential(f: Balanced, room: Scratch, part: float, out: np.ndarray) -> N
             twice += mean[i] * f.c.metric[i, j] * mean[j]
     share = 1 / (2 * twice) if twice > 0.0 else 0.0
     left = 0.0 if abs(change) <= rounding else change * share
-    room.noise[0] = rounding * share * largest(mean, mean)
+    room.noise[0] += rounding * share * largest(mean, mean)
     for i in range(len(out)):
         out[i] -= left * mean[i]
         for j in range(len(dU)):
@@ -288,6 +291,7 @@ def half_impulse(f: Balanced, room: Scratch, part: float, time: float, row: int)
     """Write the half impulse of a part of a step from what stands in the room: poses, chart, momenta of the middle."""
     mean, out = room.momenta[0], room.momenta[1]
     out[:] = 0.0
+    room.noise[0] = 0.0
     if len(f.c.linear) > 0 or len(f.c.springs) > 0:
         pull(f.c, room, out)
     for i in range(len(out)):
@@ -438,10 +442,13 @@ def is_folded(room: Scratch) -> bool:
     return not largest(rows, rows) < _FOLDED
 
 
-@scalar
-def why_lost(room: Scratch, code: int, reach: float) -> int:
-    """Return the outcome of a path that is lost after a part of the step: 1 at a fold."""
-    return 1 if code == 7 and (reach == 0.0 or is_folded(room)) else code
+@borrowing
+def why_lost(f: Balanced, room: Scratch, code: int, reach: float) -> int:
+    """Return the outcome of a path that is lost after a part of the step: 1 at a fold, of the step or the free root.
+
+    Half impulses that are smooth functions of the displacement change without bound nowhere else.
+    """
+    return 1 if code == 7 and (reach == 0.0 or not f.has[0] or is_folded(room)) else code
 
 
 @scalar
@@ -470,7 +477,7 @@ def solve(
             assign(s, at)
             assign(root, guess)
         if size < _SMALLEST:
-            return why_lost(room, code, reach)
+            return why_lost(f, room, code, reach)
     return 3
 
 

@@ -130,28 +130,9 @@ def workspace(p: GeneralBody) -> Workspace:
     for i in range(L):
         for j in range(L):
             others[i, j] = i != j
-    slopes, charts = np.zeros((4, m, R)), np.zeros((6, m))
-    return Workspace(
-        many[0],
-        many[1],
-        many[2],
-        many[3],
-        many[4],
-        many[5],
-        rows[0],
-        rows[1],
-        kinds,
-        others,
-        np.zeros((N * N, L)),
-        slopes[3],
-        np.zeros((1, R)),
-        np.zeros((1, K)),
-        np.zeros(m, dtype=np.int64),
-        charts[4],
-        charts[5],
-        slopes[:3],
-        charts[:4],
-    )
+    slopes, charts, halves, order = np.zeros((4, m, R)), np.zeros((6, m)), np.zeros((N * N, L)), np.zeros(m, np.int64)
+    matrices = many[0], many[1], many[2], many[3], many[4], many[5], rows[0], rows[1], kinds, others, halves, slopes[3]
+    return Workspace(*matrices, np.zeros((1, R)), np.zeros((1, K)), order, charts[4], charts[5], slopes[:3], charts[:4])
 
 
 @njit(inline="always", **BORROWING)

@@ -167,7 +167,7 @@ def _tangent(p: NearestBody, x: np.ndarray, direction: np.ndarray, out: np.ndarr
 
 @njit()
 def _keeps(det: float, positive: bool) -> bool:
-    """Tell whether a determinant keeps its sign."""
+    """Return whether a determinant keeps its sign."""
     return det != 0 and np.isfinite(det) and (det > 0) == positive
 
 

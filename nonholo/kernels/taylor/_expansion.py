@@ -96,6 +96,7 @@ class Room(NamedTuple):
         change: A sum of a series, (1, width).
         sizes: Of the coefficients of blocks, (order + 1, blocks L).
         steps: The length of a step, (1, L).
+        ahead: Times after the beginning of a step, and one component at each, (2, 8).
     """
 
     series: np.ndarray
@@ -106,6 +107,7 @@ class Room(NamedTuple):
     change: np.ndarray
     sizes: np.ndarray
     steps: np.ndarray
+    ahead: np.ndarray
 
 
 def make_room(f: Quadratic, order: int, lanes: tuple[int, ...]) -> Room:
@@ -136,6 +138,7 @@ def _room(sizes: tuple[int, ...], L: int) -> Room:
         np.zeros((1, width)),
         np.zeros((order + 1, blocks * L)),
         np.zeros((1, L)),
+        np.zeros((2, 2 * len(EIGHT))),
     )
 
 

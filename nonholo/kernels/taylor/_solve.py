@@ -6,7 +6,7 @@ steps that it would take alone, with the same bits.
 """
 
 import math
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from nonholo.base.compiled import njit
 from nonholo.base.progress import tell
 from nonholo.base.types import Bool, Float, Int
 from nonholo.kernels._scalar import COMPILED, scalar
-from nonholo.kernels._small import assign, assign_rows
+from nonholo.kernels._small import assign_rows
 from nonholo.kernels.lanes import EIGHT, ONE, load, spread, store
 from nonholo.kernels.taylor._expansion import (
     Quadratic,
@@ -27,6 +27,9 @@ from nonholo.kernels.taylor._expansion import (
 )
 from nonholo.kernels.taylor._steps import order_for, write_steps
 
+Columns: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""A row for each state in three parts: places, headings, and what moves them."""
+
 _FIRST, _STEPS = 64, 2048  # between two looks at the keyboard: at first, and at most
 _NUMBERS = 1 << 24  # in the nodes of a solve, 128 MiB
 _SMALLEST_STEP = 1e-13  # of an interval between requested times; below it a solve is given up
@@ -34,29 +37,31 @@ _SMALLEST_STEP = 1e-13  # of an interval between requested times; below it a sol
 
 def solve_series(
     f: Quadratic,
-    start: Float[np.ndarray, "size"],
+    parts: Columns,
     times: Float[np.ndarray, "K"],
     tolerance: float,
     most: float = math.inf,
     expansion: int = 0,
-) -> tuple[Float[np.ndarray, "reached size"], Float[np.ndarray, "steps 2 state"]]:
+) -> tuple[Columns, Float[np.ndarray, "steps 2 state"]]:
     """Return the states at the times, which rise or fall, up to the first that cannot be reached, and the nodes.
 
-    Nodes are the beginnings of steps: the state and its time, above what rounding took from them. When they fill much
-    memory every second one is left out. The solve ends early if at the rate of the steps so far it needs more than
-    `most` of them. The coefficients are written by the code at an address: by default that of the structure.
+    States come in the three parts of the first one. Nodes are the beginnings of steps: the state and its time, above
+    what rounding took from them. When they fill much memory every second one is left out. The solve ends early if at
+    the rate of the steps so far it needs more than `most` of them. The coefficients are written by the code at an
+    address: by default that of the structure.
     """
-    rows = np.empty((len(times), len(start)))
-    rows[0] = start
-    state = np.zeros((2, len(start) + 1))
-    state[0, :-1], state[0, -1] = start[f.order], times[0]
+    columns = _columns(len(times), *map(len, parts))
+    for column, part in zip(columns, parts, strict=True):
+        column[0] = part
+    state = np.zeros((2, len(f.order) + 1))
+    state[0, :-1], state[0, -1] = np.concatenate(parts)[f.order], times[0]
     longest = max(16, min(_STEPS, _NUMBERS // (8 * state.size)))
     block, nodes = min(_FIRST, longest), []
     count, going, stride, total, node_count = 1, True, 1, 0, 0
     room, expansion = kept_room(f, order_for(tolerance)), expansion or expansion_of(f, ONE)
     while going and count < len(times):
         starts, block = np.empty((block, *state.shape)), min(8 * block, longest)
-        count, steps, going = advance(f, times, tolerance, count, state, rows, starts, room, expansion)
+        count, steps, going = advance(f, times, tolerance, count, state, columns, starts, room, expansion)
         nodes.append(starts[-total % stride : steps : stride].copy())
         total, node_count = total + steps, node_count + len(nodes[-1])
         if node_count * state.size > max(_NUMBERS, 2 * state.size):
@@ -66,22 +71,31 @@ def solve_series(
         tell(come, abs(times[-1] - times[0]))
         if total * abs(times[-1] - times[0]) / most > come:
             break
-    return rows[:count], np.concatenate(nodes) if len(nodes) > 1 else nodes[0] if nodes else state[None]
+    nodes = np.concatenate(nodes) if len(nodes) > 1 else nodes[0] if nodes else state[None]
+    return (columns[0][:count], columns[1][:count], columns[2][:count]), nodes
+
+
+def _columns(count: int, place: int, heading: int, head: int) -> Columns:
+    """Return room for states in three parts, side by side: of one large array few pages are touched first."""
+    room, first, second = np.empty(count * (place + heading + head)), count * place, count * (place + heading)
+    parts = room[:first].reshape(count, place), room[first:second].reshape(count, heading)
+    return *parts, room[second:].reshape(count, head)
 
 
 def revisit_series(
     f: Quadratic,
     nodes: Float[np.ndarray, "steps 2 state"],
+    widths: tuple[int, int, int],
     times: Float[np.ndarray, "K"],
     end: float,
     tolerance: float,
     expansion: int = 0,
-) -> Float[np.ndarray, "K size"]:
+) -> Columns:
     """Return the states at times in the order of the nodes, the bits as if they had been requested with `end`."""
-    rows, room = np.empty((len(times), len(f.blocks))), kept_room(f, order_for(tolerance))
+    columns, room = _columns(len(times), *widths), kept_room(f, order_for(tolerance))
     expansion = expansion or expansion_of(f, ONE)
-    revisit(f, nodes, times, np.array([end]), tolerance, nodes[0].copy(), rows, room, expansion)
-    return rows
+    revisit(f, nodes, times, np.array([end]), tolerance, nodes[0].copy(), columns, room, expansion)
+    return columns
 
 
 @njit(nogil=True, _nrt=False, **COMPILED)
@@ -91,7 +105,7 @@ def advance(
     tolerance: float,
     count: int,
     state: np.ndarray,
-    rows: np.ndarray,
+    columns: Columns,
     nodes: np.ndarray,
     room: Room,
     expansion: int,
@@ -106,7 +120,9 @@ def advance(
         at += 1
         expand(f, expansion, state, room, ONE)
         write_steps(f, state, times[-1:], tolerance, room, ONE)
-        count, going = read(f, room, state, times, 1.0, count, rows, 0, ONE)
+        going = room.steps[0, 0] > _SMALLEST_STEP * abs(times[count] - times[count - 1])
+        if going:
+            count, going = read(f, room, state, times, 1.0, count, 0, columns, 0, 0, ONE)
         if going and count < len(times):
             room.steps[0, 0] = math.copysign(room.steps[0, 0], times[-1] - times[0])
             move(f, room, state, ONE)
@@ -121,27 +137,28 @@ def revisit(
     ends: np.ndarray,
     tolerance: float,
     state: np.ndarray,
-    rows: np.ndarray,
+    columns: Columns,
     room: Room,
     expansion: int,
 ) -> None:
     """Write the states at times in the order of the nodes."""
-    at, direction = -1, math.copysign(1.0, ends[0] - nodes[0, 0, -1])
-    for i in range(len(times)):
+    at, count, direction = -1, 0, math.copysign(1.0, ends[0] - nodes[0, 0, -1])
+    while count < len(times):
         after = max(at, 0)
-        while after + 1 < len(nodes) and direction * since(nodes[after + 1], times[i], 0, ONE) > 0:
+        while after + 1 < len(nodes) and direction * since(nodes[after + 1], times[count], 0, ONE) > 0:
             after += 1
         if after != at:
             at = after
             assign_rows(state, nodes[at])
             expand(f, expansion, state, room, ONE)
             write_steps(f, state, ends, tolerance, room, ONE)
-        while abs(since(state, times[i], 0, ONE)) > room.steps[0, 0]:  # nodes between were left out
+        while abs(since(state, times[count], 0, ONE)) > room.steps[0, 0]:  # nodes between were left out
             room.steps[0, 0] *= direction
             move(f, room, state, ONE)
             expand(f, expansion, state, room, ONE)
             write_steps(f, state, ends, tolerance, room, ONE)
-        evaluate(f, room, since(state, times[i], 0, ONE), state, rows[i], 0, ONE)
+        count, going = read(f, room, state, times, 1.0, count, 1, columns, 0, 0, ONE)
+        count += not going
 
 
 @scalar
@@ -159,48 +176,82 @@ def read(
     times: np.ndarray,
     unit: Any,
     count: Any,
-    rows: np.ndarray,
+    least: int,
+    columns: Columns,
+    first: Any,
     lane: int,
     lanes: tuple[int, ...],
 ) -> tuple[int, bool]:
-    """Write the rows whose times lie within the step of a lane; return how many are filled, and whether all went well.
+    """Write the rows, from `first` on, of times within the step of a lane, and at least some more than are there.
 
-    Times are in other units than the state's: `unit` is the factor to them.
+    Times are in other units than the state's: `unit` is the factor to them. Return how many rows are good, up to one
+    that is not finite, and whether all are.
     """
-    step = room.steps[0, lane]
-    going = step > _SMALLEST_STEP * unit * abs(times[count] - times[count - 1])
-    while going and count < len(times) and abs(since(state, times[count] * unit, lane, lanes)) <= step:
-        evaluate(f, room, since(state, times[count] * unit, lane, lanes), state, rows[count], lane, lanes)
-        going = _is_finite(rows[count])
-        count += going
+    end, going = count + least, True
+    while end < len(times) and abs(since(state, times[end] * unit, lane, lanes)) <= room.steps[0, lane]:
+        end += 1
+    while going and count < end:
+        rows, good = min(room.ahead.shape[1], end - count), 0
+        for k in range(rows):
+            room.ahead[0, k] = since(state, times[count + k] * unit, lane, lanes)
+        _write_rows(f, room, state, columns, first + count, rows, lane, lanes)
+        while good < rows and math.isfinite(room.ahead[0, good]):
+            good += 1
+        count, going = count + good, good == rows
     return count, going
 
 
 @scalar
-def _is_finite(row: np.ndarray) -> bool:
-    total = 0.0
-    for x in row:
-        total += x
-    return math.isfinite(total)
+def _write_rows(
+    f: Quadratic,
+    room: Room,
+    state: np.ndarray,
+    columns: Columns,
+    row: Any,
+    rows: int,
+    lane: int,
+    lanes: tuple[int, ...],
+) -> None:
+    """Write states of a lane at the times ahead, in place of which the sums of their numbers come."""
+    L, series, ahead, order = len(lanes), room.series, room.ahead, len(room.series) - 1
+    time, later, total, sum_later = (
+        load(ahead, 0, 0, EIGHT),
+        load(ahead, 0, 1, EIGHT),
+        spread(0.0, EIGHT),
+        spread(0.0, EIGHT),
+    )
+    for m in range(len(f.blocks)):
+        source, own, at = (len(f.velocities) + m) * L + lane, m * L + lane, f.order[m]
+        x, rest, change = (
+            spread(state[0, own], EIGHT),
+            spread(state[1, own], EIGHT),
+            spread(series[order, source], EIGHT),
+        )
+        other = change
+        for j in range(order - 1, 0, -1):
+            term = spread(series[j, source], EIGHT)
+            change, other = change * time + term, other * later + term
+        change, other = x + (change * time + rest), x + (other * later + rest)
+        store(ahead, 1, 0, EIGHT, change)
+        store(ahead, 1, 1, EIGHT, other)
+        total, sum_later = total + change, sum_later + other
+        for k in range(rows):
+            _put(columns, row + k, at, ahead[1, k])
+    store(ahead, 0, 0, EIGHT, total)
+    store(ahead, 0, 1, EIGHT, sum_later)
 
 
 @scalar
-def evaluate(
-    f: Quadratic, room: Room, time: float, state: np.ndarray, out: np.ndarray, lane: int, lanes: tuple[int, ...]
-) -> None:
-    """Write the state of a lane some time after the beginning of its step."""
-    L, before, series, change = len(lanes), len(f.velocities), room.series, room.change
-    order = len(series) - 1
-    if L == 1:
-        _sum(series, before // len(EIGHT), spread(time, EIGHT), change)
+def _put(columns: Columns, row: Any, at: int, value: float) -> None:
+    """Write a number of a state into the part that has it."""
+    place, heading, head = columns
+    first, second = place.shape[1], place.shape[1] + heading.shape[1]
+    if at < first:
+        place[row, at] = value
+    elif at < second:
+        heading[row, at - first] = value
     else:
-        for m in range(before, before + len(out)):
-            total = series[order, m * L + lane]
-            for j in range(order - 1, 0, -1):
-                total = total * time + series[j, m * L + lane]
-            change[0, m * L + lane] = total * time
-    for m in range(len(out)):
-        out[f.order[m]] = state[0, m * L + lane] + (change[0, (before + m) * L + lane] + state[1, m * L + lane])
+        head[row, at - second] = value
 
 
 @scalar
@@ -240,32 +291,34 @@ _LOOK = 64  # steps between two looks at whether to stop
 def solve_members(
     f: Quadratic,
     numbers: tuple[Float[np.ndarray, "m k k"], Float[np.ndarray, "m Q"]],
-    starts: Float[np.ndarray, "M size"],
+    parts: Columns,
     times: tuple[Float[np.ndarray, "K"], Float[np.ndarray, "M"]],
     tolerance: float,
-    rows: Float[np.ndarray, "M K size"],
     stop: Bool[np.ndarray, "1"],
-) -> Int[np.ndarray, "M"]:
-    """Write the states of members at the times, up to the first that cannot be reached; return how many each has.
+) -> tuple[list[Float[np.ndarray, "M K size"]], Int[np.ndarray, "M"]]:
+    """Return the states of members at the times in three parts, NaN where there are none, and how many each has.
 
     Args:
         f: Equations of all members, with a constraint fixed in the body.
         numbers: Velocities and factors of each member, or with an axis of length 1 those of all.
-        starts: First states.
+        parts: First states, (M, size) of each part.
         times: Requested times, which rise or fall, and the factor of each member to them.
         tolerance: Of a step.
-        rows: Where the states go; the others are left as they are.
         stop: Ends the work when it becomes true.
     """
-    counts, L = np.zeros(len(starts), dtype=np.int64), len(EIGHT)
-    wide, size = f._replace(velocities=np.tile(f.velocities, L), factors=np.tile(f.factors, L)), starts.shape[1]
+    starts, L = np.hstack(parts), len(EIGHT)
+    count, states, size = len(starts), len(times[0]), starts.shape[1]
+    columns = [np.full((count, states, part.shape[1]), np.nan) for part in parts]
+    for column, part in zip(columns, parts, strict=True):
+        column[:, 0] = part
+    rows = tuple([column.reshape(count * states, column.shape[2]) for column in columns])
+    wide = f._replace(velocities=np.tile(f.velocities, L), factors=np.tile(f.factors, L))
     wide = wide._replace(**one_by_one(f.rows, f.sources))
     room, state, ends = make_room(wide, order_for(tolerance), EIGHT), np.zeros((2, (size + 1) * L)), np.zeros(L)
-    members, expansion = np.full(L, -1), expansion_of(wide, EIGHT)
-    _advance_members(
-        wide, *numbers, starts, *times, tolerance, rows, counts, stop, (state, ends, members), room, expansion
-    )
-    return counts
+    counts, lanes = np.zeros(count, dtype=np.int64), (state, ends, np.full(L, -1))
+    expansion = expansion_of(wide, EIGHT)
+    _advance_members(wide, *numbers, starts, *times, tolerance, rows, counts, stop, lanes, room, expansion)
+    return columns, counts
 
 
 def one_by_one(rows: Int[np.ndarray, "2 R"], sources: Int[np.ndarray, "Q"]) -> dict[str, Int[np.ndarray, "..."]]:
@@ -287,7 +340,7 @@ def _advance_members(
     times: np.ndarray,
     units: np.ndarray,
     tolerance: float,
-    rows: np.ndarray,
+    columns: Columns,
     counts: np.ndarray,
     stop: np.ndarray,
     lanes: tuple[np.ndarray, np.ndarray, np.ndarray],
@@ -306,14 +359,13 @@ def _advance_members(
                 own = following if len(velocities) > 1 else 0
                 span = times[0] * units[following], times[-1] * units[following]
                 ends[lane] = _load(f, velocities[own], factors[own], starts[following], span, lane, state)
-                assign(rows[following, 0], starts[following])
                 counts[following], members[lane] = 1, following
                 following += 1
         expand(f, expansion, state, room, EIGHT)
         write_steps(f, state, ends, tolerance, room, EIGHT)
         busy = following < len(starts)
         for lane in range(L):
-            room.steps[0, lane] *= direction * _continue(f, room, state, times, units, lane, members, counts, rows)
+            room.steps[0, lane] *= direction * _continue(f, room, state, times, units, lane, members, counts, columns)
             busy |= members[lane] >= 0
         move(f, room, state, EIGHT)
 
@@ -351,12 +403,15 @@ def _continue(
     lane: int,
     members: np.ndarray,
     counts: np.ndarray,
-    rows: np.ndarray,
+    columns: Columns,
 ) -> bool:
     """Write what the motion in a lane reaches in this step; tell whether it takes the step, else free the lane."""
     at, going = members[lane], members[lane] >= 0 and counts[members[lane]] < len(times)
     if going:
-        counts[at], going = read(f, room, state, times, units[at], counts[at], rows[at], lane, EIGHT)
+        count, unit = counts[at], units[at]
+        going = room.steps[0, lane] > _SMALLEST_STEP * unit * abs(times[count] - times[count - 1])
+        if going:
+            counts[at], going = read(f, room, state, times, unit, count, 0, columns, at * len(times), lane, EIGHT)
     if going and counts[at] < len(times):
         return True
     members[lane], room.steps[0, lane] = -1, 0.0

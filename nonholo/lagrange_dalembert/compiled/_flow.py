@@ -12,7 +12,7 @@ from llvmlite import ir
 
 from nonholo.base.compiled.emission import compile_text
 from nonholo.base.types import Array
-from nonholo.kernels import Quadratic, revisit_series, solve_series
+from nonholo.kernels import Columns, Quadratic, revisit_series, solve_series
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._functions import compiling
 from nonholo.lagrange_dalembert.compiled._expansion import Expansion, bordered_elimination
@@ -119,15 +119,15 @@ class Series(NamedTuple):
 
     def __call__(self, times: np.ndarray) -> list[np.ndarray]:
         """Return places and velocities at times in the order in which the motion was solved."""
-        f, code = _equations(self.code, self.shapes, self.nodes.shape[2] - 1), self.code
-        return self.settle(revisit_series(f, self.nodes, times, self.end, self.tolerance, code.expansion))
+        (place, (n,)), size, code = self.shapes, self.nodes.shape[2] - 1, self.code
+        widths = math.prod(place), n, size - math.prod(place) - n
+        f, limits = _equations(code, self.shapes, size), (self.end, self.tolerance)
+        return self.settle(revisit_series(f, self.nodes, widths, times, *limits, code.expansion))
 
-    def settle(self, rows: np.ndarray) -> list[np.ndarray]:
+    def settle(self, columns: Columns) -> list[np.ndarray]:
         """Return places and admissible velocities of states of the series."""
-        place, (n,) = self.shapes
-        size = math.prod(place)
-        x = self.system.places.normalize(rows[:, :size].reshape(-1, *place))
-        return cast(Any, _values(self.code.settle, self.system, x, rows[:, size : size + n]))
+        x = self.system.places.normalize(columns[0].reshape(-1, *self.shapes[0]))
+        return cast(Any, _values(self.code.settle, self.system, x, columns[1]))
 
     @property
     def span(self) -> tuple[float, float]:
@@ -148,13 +148,13 @@ def flow(system: Any, first: tuple[Any, Any], times: np.ndarray, rtol: float) ->
     if not code or start is None or not np.all(start[-2] > _SMALLEST * start[-1]):
         return None
     shapes, tolerance = (x.shape, v.shape), rtol * _GUARD
-    state = np.concatenate([np.ravel(each) for each in (x, v, *system.parameters.values())])
-    f = _equations(code, shapes, len(state))
-    rows, nodes = solve_series(f, state, times, tolerance, _MOST, code.expansion)
-    if len(rows) < len(times):
+    still = np.concatenate([np.zeros(0), *map(np.ravel, system.parameters.values())])
+    f = _equations(code, shapes, x.size + len(v) + len(still))
+    columns, nodes = solve_series(f, (x.ravel(), v, still), times, tolerance, _MOST, code.expansion)
+    if len(columns[0]) < len(times):
         return None
     series = Series(system, shapes, nodes, float(times[-1]), tolerance)
-    return series.settle(rows), series
+    return series.settle(columns), series
 
 
 def _equations(code: Formulation, shapes: tuple[tuple[int, ...], tuple[int, ...]], size: int) -> Quadratic:

@@ -29,10 +29,10 @@ from nonholo.io import check_file, complete_file
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plot import theme
 from nonholo.plot.animation import _in_plane, _in_space, _on_sphere
-from nonholo.plot.animation._part import part_of, part_of_flow, shown_states
-from nonholo.plot.motion import momentum_track, track_of
+from nonholo.plot.animation._part import Show, part_of, part_of_flow, shown_states
+from nonholo.plot.motion.coordinates import momentum_track, track_of
 from nonholo.plot.overviews import name_of
-from nonholo.plot.parts import drawable_in_time, with_poses
+from nonholo.plot.parts import drawable_in_time, same_space, with_poses
 
 _SIZE = 4.8  # inches; 480 pixels
 
@@ -95,7 +95,9 @@ def animate(
     """
     orbit = drawable_in_time("animate(orbit=...)", orbit)
     motion, scene = _scene_of("animate(orbit=...)", orbit)
-    flow = None if flow is None else _same_space("animate(flow=...)", flow, orbit)
+    beside = same_space("animate(flow=...)", flow, orbit, "Pass a motion of the same body.")
+    if beside is not None:
+        _scene_of("animate(flow=...)", beside)
     target = film_path("animate(path=...)", path, overwrite=overwrite)
     remedy = "Pass how many frames there should be."
     total = min(count("animate(frames=...)", frames, remedy), len(orbit))
@@ -104,7 +106,7 @@ def animate(
     rate = float(positive("animate(fps=...)", fps, "Pass frames per second."))
     frame_states = shown_states(orbit, motion(orbit), total)
     figure, axes, set_clock = _stage(orbit, orbit.time[frame_states])
-    others = [] if flow is None else [part_of_flow(flow, orbit.time[frame_states])]
+    others = [] if beside is None else [part_of_flow(beside, orbit.time[frame_states])]
     show = scene(axes, orbit, [part_of(orbit, frame_states), *others])
 
     def draw(frame: int) -> None:
@@ -124,14 +126,6 @@ def _scene_of(where: str, orbit: AbstractOrbit) -> tuple[Callable[[Any], float],
         return scene.motion, scene.draw_body
     track = track_of(orbit) or momentum_track(orbit)
     return lambda _: 0.0, functools.partial((_in_plane if len(track.names) == 2 else _in_space).draw_path, track)
-
-
-def _same_space(where: str, flow: Any, orbit: AbstractOrbit) -> Any:
-    flow = drawable_in_time(where, flow)
-    if flow.space != orbit.space:
-        raise error(where, f"move in {orbit.space}", f"{flow.space}", "Pass a motion of the same body.")
-    _scene_of(where, flow)
-    return flow
 
 
 def _stage(orbit: AbstractOrbit, times: Float[np.ndarray, "F"]) -> tuple[Figure, Axes, Callable[[int], None]]:
@@ -168,9 +162,7 @@ def film_path(where: str, path: str | Path, *, overwrite: bool) -> Path:
     return target
 
 
-def write_film(
-    path: str, figure: Figure, draw: Callable[[int], None], total: int, rate: float, progress: Progress = None
-) -> None:
+def write_film(path: str, figure: Figure, draw: Show, total: int, rate: float, progress: Progress = None) -> None:
     """Write a film with this many frames a second, of whose figure `draw` makes each."""
     codec = _CODECS.get(Path(path).suffix.lower())
     if codec is None:
@@ -181,7 +173,7 @@ def write_film(
             writer.grab_frame()
 
 
-def _frames(draw: Callable[[int], None], total: int, progress: Progress) -> Iterator[int]:
+def _frames(draw: Show, total: int, progress: Progress) -> Iterator[int]:
     """Draw the frames one by one, and report each after what is done with it."""
     for frame in range(total):
         draw(frame)
@@ -190,9 +182,7 @@ def _frames(draw: Callable[[int], None], total: int, progress: Progress) -> Iter
             progress(frame + 1, total)
 
 
-def _write_gif(
-    path: str, figure: Figure, draw: Callable[[int], None], total: int, rate: float, progress: Progress
-) -> None:
+def _write_gif(path: str, figure: Figure, draw: Show, total: int, rate: float, progress: Progress) -> None:
     figure.set_dpi(_DPI)
     canvas = FigureCanvasAgg(figure)
     size = float(total) * math.prod(canvas.get_width_height())
@@ -213,10 +203,7 @@ def _write_gif(
 
 
 def _palette(samples: list[Image.Image]) -> Image.Image:
-    width, height = samples[0].size
-    sheet = Image.new("RGB", (width, height * len(samples)))
-    for row, sample in enumerate(samples):
-        sheet.paste(sample, (0, row * height))
+    sheet = Image.fromarray(np.concatenate([np.asarray(sample) for sample in samples]), "RGB")
     common = sheet.quantize(colors=_COLORS, method=Image.Quantize.MEDIANCUT).getpalette() or []
     # thin lines are too few pixels to be given a color of their own, so theirs are added; white stays white
     own = (theme.PAPER, theme.INK, theme.CONTINUOUS, *theme.COMPONENTS)

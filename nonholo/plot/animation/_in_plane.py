@@ -1,7 +1,7 @@
 """Films of bodies in the plane: a sleigh with its blade, center of mass and track, the outline of a system, a point."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,13 +11,17 @@ from nonholo.base.types import Float
 from nonholo.groups import SE
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plot import theme
-from nonholo.plot.animation._part import Part, Show, draw_point, draw_trail, motion_of, name_of_trail, together
-from nonholo.plot.motion import Bodies, Track, bodies_of
+from nonholo.plot.animation._part import Part, Points, Show, draw_point, draw_trail, motion_of, name_of_trail, together
+from nonholo.plot.motion.coordinates import Bodies, Track, bodies_of
 from nonholo.plot.parts import fit_view
 from nonholo.plot.sheets import blade_of_system
 from nonholo.systems import System
 
 _SLENDER = 1.6  # length of the drawn body over its width
+
+
+Drawn: TypeAlias = Callable[[Any], Bodies | None]
+"""A function of states that gives their bodies."""
 
 
 def motion(orbit: Orbit) -> float:
@@ -81,16 +85,21 @@ def _outline(system: System) -> list[Float[np.ndarray, "P 2"]]:
 
 
 def _draw(
-    axes: Axes,
-    orbit: AbstractOrbit,
-    parts: list[Part],
-    points: Callable[[Any], Float[np.ndarray, "K 2"]],
-    bodies: Callable[[Any], Bodies | None],
-    *,
-    is_place: bool = True,
+    axes: Axes, orbit: AbstractOrbit, parts: list[Part], points: Points, bodies: Drawn, *, is_place: bool = True
 ) -> Show:
     motions = [(part, points(part.path), bodies(part.frames)) for part in parts]
-    _ground(axes, np.concatenate([path if at is None else at.with_corners(path) for _, path, at in motions]), is_place)
+    shown = np.concatenate([path if at is None else at.with_corners(path) for _, path, at in motions])
+    if is_place:
+        fit_view(axes, shown)
+        axes.set(xlabel="", ylabel="")
+    else:
+        axes.margins(0.1)
+        axes.update_datalim(shown)
+        axes.autoscale_view()
+    axes.grid(color=theme.LEVEL, linewidth=0.8, alpha=0.3)
+    axes.tick_params(length=0, labelleft=False, labelbottom=False)
+    axes.spines[:].set_visible(False)
+    axes.set_axisbelow(True)
     shows = []
     for part, path, at in motions:
         shows.append(draw_trail(axes, orbit, part, path, label=name_of_trail(part)))
@@ -99,29 +108,14 @@ def _draw(
     return together(shows)
 
 
-def _ground(axes: Axes, points: Float[np.ndarray, "L 2"], is_place: bool) -> None:
-    if is_place:
-        fit_view(axes, points)
-        axes.set(xlabel="", ylabel="")
-    else:
-        axes.margins(0.1)
-        axes.update_datalim(points)
-        axes.autoscale_view()
-    axes.grid(color=theme.LEVEL, linewidth=0.8, alpha=0.3)
-    axes.tick_params(length=0, labelleft=False, labelbottom=False)
-    axes.spines[:].set_visible(False)
-    axes.set_axisbelow(True)
-
-
 def _draw_body(axes: Axes, part: Part, bodies: Bodies) -> Show:
     """Return what draws the outline of a frame: the body in a light shade, what it carries in a dark one."""
     edge: Any = theme.CONTINUOUS if part.is_flow else theme.option("color", theme.INK)
     look: Any = {"edgecolors": [edge], "linewidths": 1.2}
     faces = ("none", "none") if part.is_flow else (theme.INSIDE, edge)
     layers = (2.2, 2.2) if part.is_flow else (1.0, 3.0)  # below the trail and above it
-    body, cargo = (
-        PolyCollection([], facecolors=[face], zorder=layer, **look) for face, layer in zip(faces, layers, strict=True)
-    )
+    kinds = zip(faces, layers, strict=True)
+    body, cargo = (PolyCollection([], facecolors=[face], zorder=layer, **look) for face, layer in kinds)
     for collection in (body, cargo):
         axes.add_collection(collection, autolim=False)
 

@@ -11,9 +11,10 @@ from matplotlib.colors import to_rgb
 from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plot import theme
-from nonholo.plot.animation._part import Part, Show, draw_point, draw_trail, motion_of, name_of_trail, together
-from nonholo.plot.motion import Track
-from nonholo.plot.parts import View, fit_view
+from nonholo.plot.animation._part import Part, Points, Show, draw_point, draw_trail, motion_of, name_of_trail, together
+from nonholo.plot.motion.coordinates import Track
+from nonholo.plot.parts import fit_view
+from nonholo.plot.sphere import View
 from nonholo.systems import System
 
 _THINNEST = 0.12  # of the drawn box, over its longest side
@@ -36,7 +37,11 @@ class Box(NamedTuple):
 
     def corners(self, g: Float[np.ndarray, "N N"]) -> Float[np.ndarray, "6 4 3"]:
         """Return the corners of its faces in space, in a pose of SO(3) or SE(3)."""
-        inside = np.array([_face(self.half, normal) for normal in _NORMALS]) @ self.axes.T + self.center
+        faces = []
+        for normal in _NORMALS:
+            along, across = np.eye(3)[normal == 0]
+            faces.append([normal + i * along + j * across for i, j in ((1, 1), (1, -1), (-1, -1), (-1, 1))])
+        inside = self.half * np.array(faces) @ self.axes.T + self.center
         return inside @ g[:3, :3].T + (g[:3, 3] if len(g) == 4 else 0.0)
 
     def way_out(self, direction: Float[np.ndarray, "3"]) -> float:
@@ -74,11 +79,6 @@ def draw_box(axes: Axes, view: View, box: Box, *, zorder: float, ghost: bool = F
     return show
 
 
-def _face(half: Float[np.ndarray, "3"], normal: Float[np.ndarray, "3"]) -> Float[np.ndarray, "4 3"]:
-    along, across = (np.eye(3)[i] for i in range(3) if normal[i] == 0)
-    return half * np.array([normal + i * along + j * across for i, j in ((1, 1), (1, -1), (-1, -1), (-1, 1))])
-
-
 _VIEW = View(-58.0, 22.0)
 _SQUARES = 12  # of the floor
 _ARM = 1.5  # of a body axis, in half diagonals of the box
@@ -109,13 +109,7 @@ def _box(system: System) -> Box:
     return box_of(inertia[:3, :3] - steiner, mass)._replace(center=center)
 
 
-def _draw(
-    axes: Axes,
-    orbit: AbstractOrbit,
-    parts: list[Part],
-    points: Callable[[Any], Float[np.ndarray, "K 3"]],
-    box: Box | None,
-) -> Show:
+def _draw(axes: Axes, orbit: AbstractOrbit, parts: list[Part], points: Points, box: Box | None) -> Show:
     paths = [points(part.path) for part in parts]
     reach = 0.0 if box is None else float(np.linalg.norm(box.half) * _ARM + np.linalg.norm(box.center))
     every = np.concatenate(paths)

@@ -13,16 +13,9 @@ from nonholo.orbit import Orbit
 from nonholo.plot import theme
 from nonholo.plot.animation._in_space import box_of, draw_box
 from nonholo.plot.animation._part import Part, Show, together
-from nonholo.plot.motion import known_axes, rotation_axes
-from nonholo.plot.parts import (
-    View,
-    arcs,
-    best_view,
-    draw_globe,
-    forbidden_axis,
-    set_curve,
-    turn_per_state,
-)
+from nonholo.plot.motion.spheres import known_axes, rotation_axes
+from nonholo.plot.parts import forbidden_axis, turn_per_state
+from nonholo.plot.sphere import View, arcs, best_view, draw_globe, set_curve
 
 _TURN = np.radians(22.0)  # most between two frames
 _PIECE = np.radians(4.0)

@@ -14,6 +14,8 @@ from nonholo.plot.parts import evenly_spread, some_states, turn_per_state, windo
 
 Show: TypeAlias = Callable[[int], None]
 """A function that shows a frame."""
+Points: TypeAlias = Callable[[Any], Float[np.ndarray, "K d"]]
+"""A function of states that gives their points."""
 
 _BETWEEN = 8  # states of a flow from frame to frame
 _MOST_PIECES = 1500  # of a trail

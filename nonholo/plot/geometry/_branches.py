@@ -1,8 +1,7 @@
-"""All values of the discrete map from one point: on the variety of displacements, or as tangents of the deltoid.
+"""All values of the discrete map: from one point, their tree over several steps, and their number over the momenta.
 
-The number of real values of the discrete sleigh, over the plane of its restricted momenta: three inside the deltoid.
-
-Coordinates are those of the canonical frame, pi = p_theta + b p_1 and p_1.
+Values are drawn on the variety of displacements, or as tangents of the deltoid, inside which the discrete sleigh has
+three real ones. Coordinates are those of the canonical frame, pi = p_theta + b p_1 and p_1.
 """
 
 from typing import Any, NamedTuple, Unpack, cast
@@ -13,17 +12,26 @@ from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 from matplotlib.text import Annotation
+from matplotlib.ticker import MaxNLocator, NullLocator
 
 from nonholo.analysis import Deltoid, deltoid, invariant_curve
 from nonholo.analysis.planar import planar_map
-from nonholo.base.checks import choice, error, shape_of, shown
+from nonholo.base.checks import choice, error, instance, pair, shape_of, shown
 from nonholo.base.types import Float
-from nonholo.discrete import Branches, Discretization, discrete_legendre, displacements_over, inverse_discrete_legendre
+from nonholo.discrete import (
+    Branches,
+    BranchTree,
+    Discretization,
+    as_discretization,
+    discrete_legendre,
+    displacements_over,
+    inverse_discrete_legendre,
+)
 from nonholo.discrete import branches as values_of
 from nonholo.orbit import Orbit
 from nonholo.plot import theme
 from nonholo.plot.parts import draw_orbit, own_orbit
-from nonholo.plot.sheets import AbstractSheet, ellipse, momenta_on_plane, on_plane, sheet_of
+from nonholo.plot.sheets import Sheet, draw_level, ellipse, momenta_on_plane, name_axes, on_plane, sheet_of
 
 
 def draw_deltoid(axes: Axes, region: Deltoid) -> tuple[Polygon, Line2D, PathCollection]:
@@ -190,7 +198,13 @@ def branches(
     discrete = planar_map(f"{where}(discrete=...)", discrete)[0]
     on_momenta = _is_over_momenta(discrete, plane)
     values = values_of(discrete, momentum=momentum, displacement=displacement)
-    W = _present(discrete, momentum) if displacement is None else np.asarray(displacement, dtype=float)
+    if displacement is not None:
+        W = np.asarray(displacement, dtype=float)
+    elif shape_of(momentum) == (discrete.system.group.dim,):
+        W = inverse_discrete_legendre(discrete, momentum)
+    else:
+        over = displacements_over(discrete, momentum)
+        W = over.displacement[over.principal].real
     axes = theme.axes_or_new(axes, (6.4, 5.6))
     return (_over_momenta if on_momenta else _on_displacements)(axes, discrete, values, W)
 
@@ -207,20 +221,12 @@ def _is_over_momenta(discrete: Discretization, plane: str | None) -> bool:
     return plane == "momenta"
 
 
-def _present(discrete: Discretization, momentum: Any) -> Float[np.ndarray, "N N"]:
-    """Return the displacement of a momentum that has one."""
-    if shape_of(momentum) == (discrete.system.group.dim,):
-        return inverse_discrete_legendre(discrete, momentum)
-    values = displacements_over(discrete, momentum)
-    return values.displacement[values.principal].real
-
-
 def _on_displacements(axes: Axes, discrete: Discretization, values: Branches, W: np.ndarray) -> BranchesPicture:
     curves, level, sheet = [], None, _sheet(discrete)
     if values.energy > 0:
         curves = [invariant_curve(discrete, values.energy)]
         look = {"color": theme.DISCRETE, "linewidth": 1.5, "zorder": 2}
-        level = sheet.draw_level(axes, curves[0], label="its energy", **look)
+        level = draw_level(axes, sheet, curves[0], label="its energy", **look)
     real = np.flatnonzero(values.is_real)
     places = sheet.places(sheet.variety.points(values.displacement[real].real))
     here = sheet.places(sheet.variety.points(W[None]))
@@ -238,27 +244,25 @@ def _over_momenta(axes: Axes, discrete: Discretization, values: Branches, W: np.
     here, there = on_plane(system, np.stack([before, after]))
     real = np.flatnonzero(values.is_real)
     places = on_plane(system, region.touching(_angles(sheet, values)[real]))
-    tangents = tuple(_tangent(axes, there, place, i == values.principal) for i, place in zip(real, places, strict=True))
+    tangents = []
+    for i, place in zip(real, places, strict=True):
+        ends = np.stack([there, place]) + _BEYOND * np.stack([there - place, place - there])
+        style: Any = {"linewidth": 1.6} if i == values.principal else {"linewidth": 1.1, "dashes": (5, 3)}
+        tangents += axes.plot(*ends.T, color=theme.STABLE, zorder=3, **style)
     axes.scatter(*there, marker="D", s=40, color=theme.UNSTABLE, zorder=6, label="new momentum")
     dots = _dots(axes, values, places, here[None])
     labels = _labels(axes, sheet, values, places, places - there)
     name_inside(axes, region, "3 real values")
     dress_momenta(axes, region, _title(values))
-    return BranchesPicture(axes, values, *dots, None, tangents, labels)
+    return BranchesPicture(axes, values, *dots, None, tuple(tangents), labels)
 
 
-def _sheet(discrete: Discretization) -> AbstractSheet:
-    return cast(AbstractSheet, sheet_of(discrete.system))
+def _sheet(discrete: Discretization) -> Sheet:
+    return cast(Sheet, sheet_of(discrete.system))
 
 
-def _angles(sheet: AbstractSheet, values: Branches) -> Float[np.ndarray, "B"]:
+def _angles(sheet: Sheet, values: Branches) -> Float[np.ndarray, "B"]:
     return sheet.step_angles(sheet.variety.points(values.displacement.real))
-
-
-def _tangent(axes: Axes, there: np.ndarray, place: np.ndarray, is_principal: bool) -> Line2D:
-    ends = np.stack([there, place]) + _BEYOND * np.stack([there - place, place - there])
-    style: Any = {"linewidth": 1.6} if is_principal else {"linewidth": 1.1, "dashes": (5, 3)}
-    return axes.plot(*ends.T, color=theme.STABLE, zorder=3, **style)[0]
 
 
 def _dots(axes: Axes, values: Branches, places: np.ndarray, here: np.ndarray) -> tuple[Any, Any, Any]:
@@ -270,18 +274,15 @@ def _dots(axes: Axes, values: Branches, places: np.ndarray, here: np.ndarray) ->
     if is_principal.any():
         principal = axes.scatter(*places[is_principal].T, **look, **own)
     if not is_principal.all():
-        others = axes.scatter(
-            *places[~is_principal].T, facecolors=theme.PAPER, edgecolors=own["color"], label="other real", **look
-        )
+        look |= {"facecolors": theme.PAPER, "edgecolors": own["color"]}
+        others = axes.scatter(*places[~is_principal].T, label="other real", **look)
     present = axes.scatter(*here.T, marker="x", s=70, color=theme.UNSTABLE, linewidths=2.2, zorder=8, label="present")
     if not values.is_real.all():
         axes.plot([], [], " ", label=f"and {np.count_nonzero(~values.is_real)} complex")
     return principal, others, present
 
 
-def _labels(
-    axes: Axes, sheet: AbstractSheet, values: Branches, places: np.ndarray, away: np.ndarray
-) -> tuple[Annotation, ...]:
+def _labels(axes: Axes, sheet: Sheet, values: Branches, places: np.ndarray, away: np.ndarray) -> tuple[Annotation, ...]:
     """Write index and step angle beside each real value, in a direction."""
     angles = np.degrees(_angles(sheet, values))
     labels = []
@@ -298,3 +299,115 @@ def _labels(
 def _title(values: Branches) -> str:
     real, others = int(np.count_nonzero(values.is_real)), int(np.count_nonzero(~values.is_real))
     return f"Values: {real} real" + (f", {others} complex" if others else "")
+
+
+_EARLY, _LATE = 0.05, 0.9  # ends of the shades of the generations
+_LARGEST, _SMALLEST = 150.0, 26.0  # areas of the dots of the first and the last generation
+
+
+class BranchTreePicture(NamedTuple):
+    """The artists of `branch_tree`.
+
+    Attributes:
+        plane: The axes of the momenta.
+        growth: The axes of the counts.
+        edges: From each real image whose parent is real to its parent.
+        images: The real images of each generation.
+        counts: All distinct images of each generation.
+        bound: Their number if none coincide.
+        real: The real images of each generation.
+    """
+
+    plane: Axes
+    growth: Axes
+    edges: LineCollection
+    images: tuple[PathCollection, ...]
+    counts: Line2D
+    bound: Line2D
+    real: Line2D
+
+
+@theme.in_style
+def branch_tree(
+    discrete: Discretization, tree: BranchTree, axes: tuple[Axes, Axes] | None = None, **look: Unpack[theme.Look]
+) -> BranchTreePicture:
+    r"""Draw the tree of all images: the real ones in the plane of restricted momenta, and how many there are.
+
+    Dots are colored by generation, later ones are smaller. All lie on one ellipse, that of their energy, and the
+    images of one displacement coincide in this plane, since they differ in the forbidden component alone: a dot stands
+    for all of them. Lines lead from dot to dot. Beside it the number of distinct images, complex ones included,
+    and of the real ones among them, in each generation; the dashed line is the power $m^k$ that they have if no two
+    coincide, m = 3 for a sleigh.
+
+    Reference: docs/theory/branches.md.
+
+    Args:
+        discrete: The discretization of the tree; with three or more restricted momenta the first two are drawn.
+        tree: The result of `nh.branch_tree`, with one generation or more.
+        axes: Where to draw the momenta and the counts; a new figure by default.
+        **look: Title, label, color and more: `nh.plot.Look`.
+
+    Raises:
+        ValueError: No tree, a tree of the root alone, a tree of another group.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.5)
+        >>> tree = nh.branch_tree(sleigh, nh.SE(2).exp(np.array([0.3, -0.6, 0.0])), 4)
+        >>> picture = nh.plot.branch_tree(sleigh, tree)
+        >>> picture.counts.get_ydata()
+        array([ 1,  3,  9, 27, 81])
+    """
+    system = _system_of(discrete, tree)
+    if axes is None:
+        plane, growth = theme.new_figure((10.4, 4.8)).subplots(1, 2, width_ratios=(1.25, 1.0))
+    else:
+        plane, growth = pair("plot.branch_tree(axes=...)", axes)
+    plane, growth = map(theme.axes_or_new, (plane, growth))
+    restricted = system.restrict(tree.momentum.real)
+    momentum = on_plane(system, restricted)
+    if momentum.shape[1] == 2:
+        level = ellipse(system, float(system.constrained_energy(restricted[0])))
+        plane.plot(*level.T, color=theme.LEVEL, linewidth=1.1, zorder=1)
+    colors = theme.TIME(np.linspace(_EARLY, _LATE, len(tree.counts)))
+    momentum, parent = momentum[:, :2], np.maximum(tree.parent, 0)
+    at = np.flatnonzero((tree.parent >= 0) & tree.is_real & tree.is_real[parent])
+    ends = np.stack([momentum[parent[at]], momentum[at]], axis=1)
+    edges = LineCollection(list(ends), colors=colors[tree.level[at]], linewidths=0.7, zorder=2)
+    plane.add_collection(edges)
+    images = []
+    for level, (color, size) in enumerate(zip(colors, np.geomspace(_LARGEST, _SMALLEST, len(colors)), strict=True)):
+        dots: Any = {"color": color, "edgecolors": theme.PAPER, "linewidths": 0.6, "zorder": 4 + level / 100}
+        generation = momentum[tree.is_real & (tree.level == level)]
+        images.append(plane.scatter(*generation.T, s=size, label=str(level), **dots))
+    name_axes(plane, system)
+    theme.write_title(plane, "Real images")
+    theme.legend(plane, title="generation", loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    return BranchTreePicture(plane, growth, edges, tuple(images), *_growth(growth, tree))
+
+
+def _system_of(discrete: Any, tree: Any) -> Any:
+    where = "plot.branch_tree(tree=...)"
+    system = as_discretization("plot.branch_tree(discrete=...)", discrete).system
+    instance(where, tree, BranchTree, "be a tree", "Pass what `nh.branch_tree` returned.")
+    if len(tree.counts) < 2:
+        raise error(where, "have a generation of images", "the root alone", "Make it with depth=1 or more.")
+    if tree.displacement.shape[1:] != system.group.identity.shape:
+        got = f"matrices {tree.displacement.shape[1:]}"
+        raise error(where, f"be in {system.group}", got, "Pass its own `discrete`.")
+    return system
+
+
+def _growth(axes: Axes, tree: BranchTree) -> tuple[Line2D, Line2D, Line2D]:
+    level, images = np.arange(len(tree.counts)), int(tree.counts[1])
+    real = np.bincount(tree.level[tree.is_real], minlength=len(level))
+    bound = axes.plot(level, images**level, color=theme.MUTED, dashes=(4, 3), label=f"${images}^k$", zorder=1)[0]
+    own = theme.own_look(theme.DISCRETE, "distinct images")
+    counts = axes.plot(level, tree.counts, "o", markersize=7, **own)[0]
+    look: Any = {"markerfacecolor": theme.PAPER, "markeredgewidth": 1.6, "linestyle": "none"}
+    reals = axes.plot(level, real, "o", color=theme.UNSTABLE, markersize=7, label="real ones", **look)[0]
+    axes.set(xlabel="generation k", ylabel="number of images", yscale="log")
+    axes.set_title("Growth", loc="left")
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.yaxis.set_minor_locator(NullLocator())
+    theme.legend(axes, loc="upper left")
+    return counts, bound, reals

@@ -13,7 +13,7 @@ from nonholo.analysis import GeometricPhase, LocalConnection
 from nonholo.base.checks import array, choice, error, instance, pair, shown
 from nonholo.base.types import Array, Float
 from nonholo.plot import theme
-from nonholo.plot.motion import symbol
+from nonholo.plot.motion.coordinates import symbol
 
 _POINTS = 121  # a side
 _MARGIN = 0.3  # of the extent of a gait
@@ -83,7 +83,8 @@ def curvature(
     if len(names) < 2:
         raise error("plot.curvature(connection=...)", "have two shape variables", shown(names), "One encloses no area.")
     choice("plot.curvature(component=...)", component, connection.components)
-    shapes = [names.index(choice("plot.curvature(along=...)", name, names)) for name in _two(along, names)]
+    two = names[:2] if along is None else pair("plot.curvature(along=...)", along)
+    shapes = [names.index(choice("plot.curvature(along=...)", name, names)) for name in two]
     if shapes[0] == shapes[1]:
         raise error("plot.curvature(along=...)", "name two shape variables", shown(along), "Name another one.")
     path = None if phase is None else np.asarray(phase.shape)
@@ -98,10 +99,6 @@ def curvature(
     theme.write_title(axes, f"{connection.system.name}: curvature, {symbol(component)}")
     theme.legend_above(axes)
     return CurvaturePicture(axes, mesh, zero, gait, bar)
-
-
-def _two(along: Any, names: tuple[str, ...]) -> tuple[Any, Any]:
-    return (names[0], names[1]) if along is None else pair("plot.curvature(along=...)", along)
 
 
 def _sides(bounds: Any, path: Array | None, shapes: list[int]) -> Float[np.ndarray, "2 2"]:

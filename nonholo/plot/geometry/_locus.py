@@ -19,9 +19,9 @@ from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit
 from nonholo.plot import theme
-from nonholo.plot.elements import draw_surface, spans
-from nonholo.plot.parts import View, draw_equilibria, draw_in_time, draw_orbit, evenly_in_box, own_orbit
-from nonholo.plot.sheets import AbstractSheet, sheet_of
+from nonholo.plot.parts import draw_equilibria, draw_in_time, draw_orbit, evenly_in_box, own_orbit
+from nonholo.plot.sheets import Sheet, draw_level, draw_surface, sheet_of, spans
+from nonholo.plot.sphere import View
 from nonholo.systems import AbstractLLSystem
 
 _MOST_DOTS = 600
@@ -97,7 +97,7 @@ def momentum_locus(
     if space is None:
         space = theme.new_figure((7.2, 6.4), None).add_axes((-0.02, 0.01, 0.94, 0.97), projection="3d")
     theme.begin(space)
-    sheet = cast(AbstractSheet, sheet_of(locus.discrete.system))
+    sheet = cast(Sheet, sheet_of(locus.discrete.system))
     components = sheet.locus_map()
     if curve is not None:
         instance(f"{where}(curve=...)", curve, InvariantCurve, "be an invariant curve", "Pass `invariant_curve`.")
@@ -134,7 +134,7 @@ def _dots(axes: Any, points: Float[np.ndarray, "L 3"] | None, **look: Any) -> An
     return axes.scatter(*points.T, linewidths=1.5, depthshade=False, edgecolors=theme.UNSTABLE, zorder=9, **look)
 
 
-def _dress(axes: Any, locus: MomentumLocus, sheet: AbstractSheet, view: tuple[float, float] | None) -> None:
+def _dress(axes: Any, locus: MomentumLocus, sheet: Sheet, view: tuple[float, float] | None) -> None:
     across, deep, up = sheet.locus_labels
     axes.set(xlabel=across, ylabel=deep, zlabel=up)
     components = locus.momentum @ sheet.locus_map()
@@ -226,23 +226,23 @@ def locus_section(
         raise error(f"{where}(normal=...)", "not be zero", "0, 0, 0", "Pass a direction.")
     n = n / np.linalg.norm(n)
     height = float(array(f"{where}(offset=...)", offset, (), "Pass one number."))
-    plane = _directions(n)
+    first = np.eye(3)[np.argmin(np.abs(n))]  # the coordinate direction least along the normal, made orthogonal
+    first = first - (first @ n) * n
+    first /= np.linalg.norm(first)
+    plane = np.stack([first, np.cross(n, first)])
     axes = theme.axes_or_new(axes, (6.0, 5.6))
     curve = _curve(axes, locus, plane, height * n)
     crossings = _meeting(axes, locus.double_lines, plane, n, height, color=theme.UNSTABLE, label="crosses itself")
     outside = locus.whiskers(_LONG_WHISKER)
     empty: Any = {"facecolors": theme.PAPER, "edgecolors": theme.UNSTABLE, "linewidths": 1.5}
     alone = _meeting(axes, outside, plane, n, height, label="equation alone", **empty)
-    _dress_section(axes, locus, plane, n, height)
+    names = cast(Sheet, sheet_of(locus.discrete.system)).component_names
+    across, up, along_normal = (_words(row, names) for row in (*plane, n))
+    axes.set(xlabel=across, ylabel=up)
+    theme.write_title(axes, f"Section  {along_normal} = {height:g}")
+    axes.set_aspect("equal", adjustable="datalim")
+    theme.legend_above(axes)
     return LocusSection(axes, curve, plane, crossings, alone)
-
-
-def _directions(n: Float[np.ndarray, "3"]) -> Float[np.ndarray, "2 3"]:
-    """Return the coordinate direction least along the normal, made orthogonal, and the one that completes the frame."""
-    first = np.eye(3)[np.argmin(np.abs(n))]
-    first = first - (first @ n) * n
-    first /= np.linalg.norm(first)
-    return np.stack([first, np.cross(n, first)])
 
 
 def _curve(axes: Axes, locus: MomentumLocus, plane: np.ndarray, foot: np.ndarray) -> QuadContourSet:
@@ -268,15 +268,6 @@ def _meeting(
     part = (first / np.where(meets, first - last, 1.0))[meets, None]
     points = segments[meets, 0] + part * (segments[meets, 1] - segments[meets, 0])
     return axes.scatter(*(points @ plane.T).T, s=40, zorder=4, **look)
-
-
-def _dress_section(axes: Axes, locus: MomentumLocus, plane: np.ndarray, n: np.ndarray, height: float) -> None:
-    names = cast(AbstractSheet, sheet_of(locus.discrete.system)).component_names
-    across, up, normal = (_words(row, names) for row in (*plane, n))
-    axes.set(xlabel=across, ylabel=up)
-    theme.write_title(axes, f"Section  {normal} = {height:g}")
-    axes.set_aspect("equal", adjustable="datalim")
-    theme.legend_above(axes)
 
 
 def _words(row: Float[np.ndarray, "3"], names: tuple[str, ...]) -> str:
@@ -346,18 +337,18 @@ def invariant_curves(
     """
     where = "plot.invariant_curves"
     discrete = planar_map(f"{where}(discrete=...)", discrete)[0]
-    sheet = cast(AbstractSheet, sheet_of(discrete.system))
+    sheet = cast(Sheet, sheet_of(discrete.system))
     own_orbit(f"{where}(orbit=...)", orbit, discrete)
     axes = theme.axes_or_new(axes, (6.2, 6.0))
     wishes = sheet.energies(float(discrete.time_step)) if energies is None else energies
     wishes = checked_energies(f"{where}(energies=...)", wishes)
     curves = [invariant_curve(discrete, energy, _POINTS) for energy in wishes]
-    levels = tuple(sheet.draw_level(axes, curve, color=theme.LEVEL, linewidth=1.1, zorder=1) for curve in curves)
+    levels = tuple(draw_level(axes, sheet, curve, color=theme.LEVEL, linewidth=1.1, zorder=1) for curve in curves)
     own = path = None
     if orbit is not None:
         curves = [invariant_curve(discrete, orbit[:1].energy[0], _POINTS)] if orbit.energy[0] > 0 else []
         for curve in curves:
-            own = sheet.draw_level(axes, curve, color=theme.DISCRETE, linewidth=1.8, zorder=3, label="its energy")
+            own = draw_level(axes, sheet, curve, color=theme.DISCRETE, linewidth=1.8, zorder=3, label="its energy")
         path = draw_orbit(axes, orbit, sheet.places(sheet.variety.points(orbit.displacement)))
     stable = unstable = None
     if cast(AbstractLLSystem, discrete.system).equilibria().attracting is not None:

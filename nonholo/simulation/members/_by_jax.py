@@ -22,15 +22,22 @@ def chunk() -> int | None:
 
 
 def advance_by_jax(
-    body: kernels.Body, momenta: np.ndarray, poses: np.ndarray, steps: int, every: int, rows: kernels.MemberRows
+    body: kernels.Body,
+    axes: kernels.MemberAxes,
+    momenta: np.ndarray,
+    poses: np.ndarray,
+    steps: int,
+    every: int,
+    rows: kernels.MemberRows,
 ) -> np.ndarray:
     """Take steps as `kernels.advance_members` does, with fields of the body that are arrays; tell who was uncertain."""
     save_count = steps // every if every else 1
     each = every or steps
     with_poses = rows.poses.shape[1] > 0
     first, history, certain = in_double(
-        functools.partial(_run, save_count=save_count, with_poses=with_poses),
+        functools.partial(_run, save_count=save_count, with_poses=with_poses, turns=axes[1:]),
         body,
+        axes.numbers.T,
         momenta.T,
         poses.T,
         each,
@@ -45,9 +52,10 @@ def advance_by_jax(
     return ~certain
 
 
-@functools.partial(jax.jit, static_argnames=("save_count", "with_poses"))
+@functools.partial(jax.jit, static_argnames=("save_count", "with_poses", "turns"))
 def _run(
     body: kernels.Body,
+    axes: jax.Array,
     m: jax.Array,
     q: jax.Array,
     each: jax.Array,
@@ -55,19 +63,25 @@ def _run(
     *,
     save_count: int,
     with_poses: bool,
+    turns: tuple[bool, int],
 ) -> tuple[State, State, jax.Array]:
     """Return the first states, the saved ones, and which members were certain all the time."""
     y, certain = _root(body, m, jnp.zeros_like(m))
     state = (m, jnp.zeros_like(m), y, y, y, q, certain)
     step = functools.partial(_step, body, with_poses)
 
+    def row_of(state: State) -> State:
+        numbers = jnp.stack(kernels.canonical((*state[0], *state[2], *state[5]), tuple(axes), *turns))
+        return numbers[:2], numbers[2:4], numbers[4:]
+
     def stretch(state: State, _: None) -> tuple[State, State]:
         state = jax.lax.fori_loop(0, each, step, state)
-        return state, (state[0], state[2], state[5])
+        return state, row_of(state)
 
+    start = row_of(state)
     state, history = jax.lax.scan(stretch, state, None, length=save_count)
     state = jax.lax.fori_loop(0, rest, step, state)
-    return (m, y, q), history, state[-1]
+    return start, history, state[-1]
 
 
 def _step(body: kernels.Body, with_poses: bool, _: jax.Array, state: State) -> State:

@@ -155,18 +155,17 @@ def _in_lanes(members: Members, starts: Firsts, plan: Plan, threads: int, report
     """Run members of a closed form, 32 at a time, or by JAX."""
     scalar, count, (momenta, first) = ScalarMembers(members), len(members), starts.numbers
     rows = _rows(count, plan.states, with_poses=plan.with_poses)
-    fields, run = scalar.fields, _advance_by_jax if plan.backend == "jax" else _advance
+    fields, back, run = scalar.fields, scalar.to_canonical, _advance_by_jax if plan.backend == "jax" else _advance
     advance = functools.partial(run, scalar.body)
 
     def work(part: slice, stop: np.ndarray) -> None:
         pieces = _fill_nan(kernels.MemberRows(*(array[part] for array in rows)))
-        scale = np.broadcast_to(scalar.scale, (count,))[part, None]
-        axes = scalar.axes.at(part)
-        poses = np.array(axes.poses(first[part]), order="C")  # never read-only: compiled once
+        scale, axes = np.broadcast_to(scalar.scale, (count,))[part, None], scalar.axes.at(part)
+        places = axes.poses(first[part] if first.strides[0] else first[:1])
+        poses = np.array(np.broadcast_to(places, (len(scale), 4)), order="C")  # never read-only: compiled once
         own = fields if fields.shape[1] == 1 else fields[:, part]
-        advance(own, (scale * axes.momenta(momenta[part]), poses), plan, pieces, stop)
-        np.divide(pieces.momenta, scale[:, None], out=pieces.momenta)
-        _decode(axes, pieces)
+        turn = back if len(back.numbers) == 1 else back._replace(numbers=back.numbers[part])
+        advance(own, turn, (scale * axes.momenta(momenta[part]), poses), plan, pieces, stop)
 
     if plan.backend == "jax":
         threads = 1  # XLA has its own
@@ -191,16 +190,6 @@ def _refuse_other_starts(batch: Ensemble, demand: np.ndarray, probe: Ensemble) -
         column[others] = np.nan
 
 
-def _decode(axes: Any, pieces: kernels.MemberRows) -> None:
-    """Take rows of a kernel to canonical axes, in place."""
-    beside = axes.beside(1)
-    if axes.rows is not None:
-        pieces.momenta[:] = beside.canonical_momenta(pieces.momenta)
-        pieces.charts[:] = beside.canonical_charts(pieces.charts)
-    if axes.frame is not None and pieces.poses.shape[1]:
-        pieces.poses[:] = beside.canonical_poses(pieces.poses)
-
-
 def _rows(count: int, states: int, *, with_poses: bool) -> kernels.MemberRows:
     """Return rows for the states of members, not yet NaN: threads that run a part of them touch its memory first."""
     empty = (np.empty((count, number, size)) for number, size in ((states, 2), (states, 2), (states * with_poses, 4)))
@@ -215,27 +204,40 @@ def _fill_nan(rows: kernels.MemberRows) -> kernels.MemberRows:
 
 
 def _advance(
-    body: Any, fields: np.ndarray, starts: Starts, plan: Plan, rows: kernels.MemberRows, stop: np.ndarray
+    body: Any,
+    fields: np.ndarray,
+    axes: kernels.MemberAxes,
+    starts: Starts,
+    plan: Plan,
+    rows: kernels.MemberRows,
+    stop: np.ndarray,
 ) -> None:
     """Run members by the compiled loop."""
     one = body(*(float(x) for x in fields[:, 0]))
     tables = None if fields.shape[1] == 1 else kernels.tables_of(fields)
-    kernels.advance_members(one, tables, *starts, plan.steps, plan.every or 0, rows, stop)
+    kernels.advance_members(one, tables, axes, *starts, plan.steps, plan.every or 0, rows, stop)
 
 
 def _advance_by_jax(
-    body: Any, fields: np.ndarray, starts: Starts, plan: Plan, rows: kernels.MemberRows, stop: np.ndarray
+    body: Any,
+    fields: np.ndarray,
+    axes: kernels.MemberAxes,
+    starts: Starts,
+    plan: Plan,
+    rows: kernels.MemberRows,
+    stop: np.ndarray,
 ) -> None:
     """Run members by JAX, and those whose roots are not certain by the compiled loop."""
     with needs("jax", "ensemble(backend='jax')"):
         from nonholo.simulation.members._by_jax import advance_by_jax
 
-    uncertain = advance_by_jax(body(*fields), *starts, plan.steps, plan.every or 0, rows)
+    uncertain = advance_by_jax(body(*fields), axes, *starts, plan.steps, plan.every or 0, rows)
     again = np.flatnonzero(uncertain)
     if again.size:
         fresh = _fill_nan(_rows(len(again), rows.momenta.shape[1], with_poses=plan.with_poses))
         own, (momenta, poses) = fields if fields.shape[1] == 1 else fields[:, again], starts
-        _advance(body, own, (momenta[again], poses[again]), plan, fresh, stop)
+        turn = axes if len(axes.numbers) == 1 else axes._replace(numbers=axes.numbers[again])
+        _advance(body, own, turn, (momenta[again], poses[again]), plan, fresh, stop)
         for array, values in zip(rows, fresh, strict=True):
             array[again] = values
 

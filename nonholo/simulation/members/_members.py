@@ -198,6 +198,19 @@ class ScalarMembers:
         """Factors from momenta to those of the kernel."""
         return np.reshape(self.route.scale, -1)
 
+    @functools.cached_property
+    def to_canonical(self) -> kernels.MemberAxes:
+        """How the kernel takes its rows to canonical numbers."""
+        axes = self.axes
+        C = np.zeros((1, 2, 2)) if axes.rows is None else axes.rows.reshape(-1, 2, 2)
+        back = C if axes.rows is None else axes.inverse.reshape(-1, 2, 2)
+        turn = np.zeros((1, 4)) if axes.frame is None else axes.turns[1].reshape(-1, 4)
+        parts = self.scale[:, None], back.reshape(-1, 4), C.swapaxes(1, 2).reshape(-1, 4), turn
+        count = max(map(len, parts))
+        numbers = np.hstack([np.broadcast_to(part, (count, part.shape[1])) for part in parts])
+        space = 0 if axes.frame is None else 3 if axes.group.curvature else 2
+        return kernels.MemberAxes(numbers, axes.rows is not None, space)
+
     @property
     def inertia(self) -> Float[np.ndarray, "m 2 2"]:
         """Inertias along the constraint in the canonical frame."""

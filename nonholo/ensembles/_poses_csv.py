@@ -9,9 +9,9 @@ import numpy as np
 
 from nonholo import io
 from nonholo.base.checks import error, path
-from nonholo.ensembles._block import MemberBlock, block_of
 from nonholo.ensembles._ensemble_task import EnsembleTask, ensemble_task_from
-from nonholo.ensembles.stores._store import SweepStore, open_store, standing_of
+from nonholo.ensembles.designs import MemberBlock, block_of
+from nonholo.ensembles.stores import SweepStore, open_store, standing_of
 
 _WHERE = "sweep_to_csv(store=...)"
 _WANTED = ("outcome", "final_time", "final_pose")
@@ -44,9 +44,9 @@ def sweep_to_csv(store: str | Path, target: str | Path | TextIO, *, overwrite: b
     if len(blocks) < sweep_store.layout.blocks:
         warnings.warn(f"The sweep in '{store}' is not finished: {standing_of(store)}.", RuntimeWarning, stacklevel=2)
     with io.new_file(target, overwrite=overwrite) as file:
-        file.writelines(
-            io.table_lines(_names(sweep_store, task), (_rows(sweep_store, task, block) for block in blocks))
-        )
+        values = [name for name, _ in _flat(block_of(sweep_store.design, 0, 1))]
+        names = ["member", *values, "outcome", *io.column_names(task.discrete.system.group)]
+        file.writelines(io.table_lines(names, (_rows(sweep_store, task, block) for block in blocks)))
 
 
 def _task(store: SweepStore) -> EnsembleTask:
@@ -61,11 +61,6 @@ def _task(store: SweepStore) -> EnsembleTask:
         remedy = "nonholo.load_sweep(store) has the poses as they are kept."
         got = f"'{store.path}', {str(failure).rstrip('.')}"
         raise error(_WHERE, "hold its system as data", got, remedy) from failure
-
-
-def _names(store: SweepStore, task: EnsembleTask) -> list[str]:
-    values = _flat(block_of(store.design, 0, 1))
-    return ["member", *(name for name, _ in values), "outcome", *io.column_names(task.discrete.system.group)]
 
 
 def _rows(store: SweepStore, task: EnsembleTask, block: int) -> np.ndarray:

@@ -16,7 +16,7 @@ from nonholo.base.types import Float
 from nonholo.groups import SE
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plot import parts, theme
-from nonholo.plot.motion._coordinates import draw_track, dress_path, mark_path_ends, track_of
+from nonholo.plot.motion.coordinates import draw_track, dress_path, mark_path_ends, track_of
 from nonholo.plot.sheets import Blade, blade_of_system
 
 
@@ -82,7 +82,10 @@ def blade_track(
     cusps, view = _cusps(position, blade.speed(orbit)), parts.fit_view(axes, position)
     track, blades, masses, line = _draw(axes, orbit, orbit, flow, view, blades=18, length=0.032)
     ends = parts.draw_ends(axes, position, orbit)
-    _name_ends(axes, position)
+    middle = position[parts.evenly_spread(position)].mean(axis=0)
+    _name(axes, "start", position[0], middle)
+    if not np.allclose(position[0], position[-1]):
+        _name(axes, "end", position[-1], middle)
     stars = _stars(axes, position, cusps) if len(cusps) else None
     theme.write_title(axes, "Track of the blade")
     theme.legend_above(axes)
@@ -125,7 +128,12 @@ def _draw(
 
 def _blades(axes: Axes, orbit: Orbit, count: int, length: float) -> tuple[LineCollection, PathCollection]:
     blade = cast(Blade, blade_of_system(orbit.system))
-    poses = blade.poses(orbit.chosen(_now_and_then(orbit, count)))
+    # states evenly in way and, with less weight, in turn, so that the cusp gets its share
+    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(blade.contact(orbit), axis=0), axis=1))])
+    turn = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(orbit.heading)))])
+    shares = [weight * total / total[-1] for weight, total in ((1.0, way), (0.35, turn)) if total[-1] > 0]
+    some = parts.evenly_spread(np.sum(shares, axis=0)[:, None], count) if shares else np.array([0])
+    poses = blade.poses(orbit.chosen(some))
     points, half = poses[:, :2, 2], length / 2 * poses[:, :2, 0]
     center = (poses @ np.append(blade.center, 1.0))[:, :2]
     blades = parts.segments(points - half, points + half, colors=theme.INK, linewidth=1.5, zorder=5)
@@ -133,21 +141,6 @@ def _blades(axes: Axes, orbit: Orbit, count: int, length: float) -> tuple[LineCo
     axes.add_collection(blades)
     look: Any = {"facecolors": theme.PAPER, "edgecolors": theme.MUTED, "linewidths": 0.8, "zorder": 2.2}
     return blades, axes.scatter(*center.T, s=9, label="center of mass", **look)
-
-
-def _now_and_then(orbit: Orbit, count: int) -> np.ndarray:
-    """Choose states evenly in way and, with less weight, in turn, so that the cusp gets its share."""
-    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(_contact(orbit), axis=0), axis=1))])
-    turn = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(orbit.heading)))])
-    shares = [weight * total / total[-1] for weight, total in ((1.0, way), (0.35, turn)) if total[-1] > 0]
-    return parts.evenly_spread(np.sum(shares, axis=0)[:, None], count) if shares else np.array([0])
-
-
-def _name_ends(axes: Axes, position: Float[np.ndarray, "K 2"]) -> None:
-    middle = position[parts.evenly_spread(position)].mean(axis=0)
-    _name(axes, "start", position[0], middle)
-    if not np.allclose(position[0], position[-1]):
-        _name(axes, "end", position[-1], middle)
 
 
 def _stars(axes: Axes, position: Float[np.ndarray, "K 2"], cusps: Float[np.ndarray, "C 2"]) -> PathCollection:
@@ -236,7 +229,7 @@ def point_track(
         raise error(where, "be an orbit on SE(n)", f"{group}", remedy)
     flow = parts.same_group("point_track(flow=...)", flow, orbit)
     axes = _axes(axes, 2 if n == 2 else 3)
-    largest = _largest(orbit.position)
+    largest = np.sort(np.argsort(-np.ptp(orbit.position, axis=0), kind="stable")[:3])  # in which the path is largest
     at = parts.evenly_spread(orbit.position)
     position = orbit.position[:, largest]
     points = position[at]
@@ -256,8 +249,7 @@ def _in_coordinates(where: str, orbit: AbstractOrbit, axes: Any, flow: AbstractO
     if track is None or not track.is_place:
         remedy = "Name its coordinates, `LagrangeDAlembert(coordinates=...)`, or use `overview`."
         raise error(where, "have coordinates named x and y", f"{', '.join(orbit.coordinates)}", remedy)
-    if flow is not None and parts.drawable_in_time("point_track(flow=...)", flow).space != orbit.space:
-        raise error("point_track(flow=...)", f"move in {orbit.space}", f"{flow.space}", "Pass one of the same system.")
+    parts.same_space("point_track(flow=...)", flow, orbit, "Pass one of the same system.")
     dimension = len(track.names)
     axes = _axes(axes, dimension)
     path, bodies, curve = draw_track(track, orbit, flow, axes)
@@ -269,12 +261,6 @@ def _axes(axes: Any, dimension: int) -> Any:
         remedy = 'Make them with projection="3d".' if dimension == 3 else "Make them without a projection."
         raise error("point_track(axes=...)", f"be axes of dimension {dimension}", shown(axes), remedy)
     return theme.axes_or_new(axes, (6.0, 6.0), "3d" if dimension == 3 else None)
-
-
-def _largest(position: Float[np.ndarray, "K n"]) -> np.ndarray:
-    """Return the coordinates, three at most and in order, in which a path is largest."""
-    extent = np.ptp(position, axis=0)
-    return np.sort(np.argsort(-extent, kind="stable")[:3])
 
 
 def _frames(axes: Any, orbit: Orbit, largest: np.ndarray, length: float) -> tuple[Artist, ...]:

@@ -79,18 +79,14 @@ def draw_globe(axes: Axes, view: View) -> None:
     rim = Circle((0, 0), 1.0, facecolor="none", edgecolor=theme.MUTED, linewidth=0.9, zorder=3)
     axes.add_patch(rim)
     shade.set_clip_path(rim)
-    for circle in _wires():
-        draw_curve(axes, view, circle, to_rgb(theme.MUTED if theme.is_dark() else "#aab0ba"), width=0.6, zorder=1)
-    axes.set(xlim=(-1.27, 1.27), ylim=(-1.15, 1.15), aspect="equal")
-    axes.set_axis_off()
-
-
-def _wires() -> list[Float[np.ndarray, "K 3"]]:
     turn = np.linspace(0, 2 * np.pi, 181)
     cos, sin, zero = np.cos(turn), np.sin(turn), np.zeros_like(turn)
     parallels = [(np.cos(v) * cos, np.cos(v) * sin, np.sin(v) + zero) for v in np.radians([-60, -30, 0, 30, 60])]
     meridians = [(np.cos(v) * cos, np.sin(v) * cos, sin) for v in np.radians([0, 30, 60, 90, 120, 150])]
-    return [np.stack(circle, axis=-1) for circle in parallels + meridians]
+    for circle in (np.stack(each, axis=-1) for each in parallels + meridians):
+        draw_curve(axes, view, circle, to_rgb(theme.MUTED if theme.is_dark() else "#aab0ba"), width=0.6, zorder=1)
+    axes.set(xlim=(-1.27, 1.27), ylim=(-1.15, 1.15), aspect="equal")
+    axes.set_axis_off()
 
 
 def draw_curve(

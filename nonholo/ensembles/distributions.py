@@ -45,6 +45,7 @@ class AbstractBounded(AbstractDistribution):
 
     @property
     def shape(self) -> tuple[int, ...]:
+        """Shape of one draw."""
         return np.shape(self.low)
 
 
@@ -97,14 +98,15 @@ class Normal(AbstractDistribution):
     size: int | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "mean", float(number("Normal(mean=...)", self.mean)))
-        spread = positive("Normal(deviation=...)", self.deviation, "Pass a positive standard deviation.")
-        object.__setattr__(self, "deviation", float(spread))
+        mean = float(number("Normal(mean=...)", self.mean))
+        spread = float(positive("Normal(deviation=...)", self.deviation, "Pass a positive standard deviation."))
+        vars(self).update(mean=mean, deviation=spread)
         if self.size is not None:
             bounded_count("Normal(size=...)", self.size, 8.0, "Pass the length of the vectors.")
 
     @property
     def shape(self) -> tuple[int, ...]:
+        """Shape of one draw."""
         return () if self.size is None else (self.size,)
 
     def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
@@ -130,6 +132,7 @@ class Direction(AbstractDistribution):
 
     @property
     def shape(self) -> tuple[int, ...]:
+        """Shape of one draw."""
         return (self.size,)
 
     def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
@@ -161,10 +164,12 @@ class MassTensor(AbstractDistribution):
 
     @property
     def width(self) -> int:
+        """Uniform numbers that one draw takes."""
         return self.n * (self.n + 1)
 
     @property
     def shape(self) -> tuple[int, ...]:
+        """Shape of one draw."""
         return (self.n, self.n)
 
     def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
@@ -193,10 +198,12 @@ class Choice(AbstractDistribution):
 
     @property
     def width(self) -> int:
+        """Uniform numbers that one draw takes."""
         return 1
 
     @property
     def shape(self) -> tuple[int, ...]:
+        """Shape of one draw."""
         return np.shape(self.values)[1:]
 
     def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
@@ -229,8 +236,7 @@ def _bounds(owner: Any) -> None:
     low, high = (array(f"{name}({side}=...)", x, low.shape, remedy) for side, x in (("low", low), ("high", high)))
     if not np.all(low <= high):
         raise error(f"{name}(high=...)", "not be below `low`", f"{high} for low {low}", "Exchange the two.")
-    object.__setattr__(owner, "low", low.tolist())
-    object.__setattr__(owner, "high", high.tolist())
+    vars(owner).update(low=low.tolist(), high=high.tolist())
 
 
 def _orthonormal(rows: Float[np.ndarray, "n n count"]) -> list[Float[np.ndarray, "n count"]]:

@@ -1,18 +1,18 @@
-"""The store of a sweep: one block is one chunk of each array, then its mark, a small file written after the data.
+"""The store of a sweep, its blocks and their marks, and the results of tasks, checked and named.
 
-Writes are atomic, so a writer can be killed at any moment. The content of a block depends only on the task and the
-design, so two writers of one block write the same.
+A task that raises is asked again for halves, until the members that fail are known.
 """
 
 import collections
+import contextlib
 import dataclasses
 import functools
 import json
 import math
 import uuid
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any, NamedTuple, TypeAlias
 
 import numpy as np
 import xarray
@@ -23,10 +23,163 @@ from zarr.codecs import BloscCodec, Crc32cCodec
 from nonholo import io
 from nonholo.base.checks import error, printable
 from nonholo.base.compiled import way_of_kernels
+from nonholo.base.results import Outcome
 from nonholo.ensembles._describe import design_from
-from nonholo.ensembles.designs import Design, axis_dimensions
-from nonholo.ensembles.stores._results import Output, Results
+from nonholo.ensembles._names import OUTCOME, array_name
+from nonholo.ensembles.designs import Design, MemberBlock, axis_dimensions
 from nonholo.io import owner_of
+
+ABSENT, RAISED = -128, 100
+"""Outcomes of members that are not computed yet, and for which the task raised; the others are those of `Outcome`."""
+_MOST_MESSAGES = 20  # failures of a block whose messages are kept
+_PROBES = 8
+
+Task: TypeAlias = Callable[[MemberBlock], Any]
+Data: TypeAlias = dict[str, Any]
+
+
+@dataclasses.dataclass(frozen=True)
+class Output:
+    """One array of the result.
+
+    Attributes:
+        dimensions: Names of its axes but for those of the members.
+        shape: Their lengths.
+        dtype: Type of the numbers on disk.
+        attributes: Its attributes in the store.
+    """
+
+    dimensions: tuple[str, ...]
+    shape: tuple[int, ...]
+    dtype: str
+    attributes: dict[str, Any]
+
+    @property
+    def fill(self) -> Any:
+        """The entry where there is no number."""
+        kind = np.dtype(self.dtype)
+        return np.nan if kind.kind in "fc" else np.iinfo(kind).min if kind.kind == "i" else np.iinfo(kind).max
+
+
+class Results(NamedTuple):
+    """Arrays of a block by name, and the first few members for which the task raised, with the messages."""
+
+    arrays: dict[str, np.ndarray]
+    messages: list[tuple[int, str]]
+
+
+def attempt(task: Task, block: MemberBlock, outputs: dict[str, Output]) -> Results:
+    """Run a task; members for which it raises have no numbers and the outcome `RAISED`."""
+    try:
+        return Results(_check(_entries(task(block), block.count), outputs, block.count), [])
+    except Exception as failure:
+        if block.count == 1:
+            arrays = {name: np.full((1, *each.shape), each.fill, each.dtype) for name, each in outputs.items()}
+            arrays[OUTCOME][:] = RAISED
+            return Results(arrays, [(block.first, f"{type(failure).__name__}: {failure}")])
+    middle = block.count // 2
+    halves = [attempt(task, part, outputs) for part in (block.part(0, middle), block.part(middle, block.count))]
+    arrays = {name: np.concatenate([half.arrays[name] for half in halves]) for name in outputs}
+    return Results(arrays, (halves[0].messages + halves[1].messages)[:_MOST_MESSAGES])
+
+
+def probe_outputs(task: Task, block_at: Callable[[int, int], MemberBlock], members: int) -> dict[str, Output]:
+    """Return what a task returns, from a few members spread over the design: the first for which it does not raise.
+
+    A task that takes two members and returns something else than two rows is refused.
+    """
+    first_failure = None
+    for member in dict.fromkeys((members - 1) * probe // (_PROBES - 1) for probe in range(_PROBES)):
+        try:
+            outputs = _outputs(_entries(task(block_at(member, 1)), 1))
+        except Exception as failure:
+            first_failure = first_failure or failure
+            continue
+        _check_two(task, block_at(0, min(2, members)), outputs)
+        return outputs
+    got = f"{type(first_failure).__name__} for the first: {str(first_failure).rstrip('.')}"
+    raise error("sweep(task=...)", "run for one of the members tried", got, "Mend the design.") from first_failure
+
+
+def _check_two(task: Task, block: MemberBlock, outputs: dict[str, Output]) -> None:
+    """Refuse a task that is wrong for blocks, which would be done member by member and take long."""
+    try:
+        own = task(block)
+    except Exception:  # of some members: these are found when it runs
+        return
+    _check(_entries(own, block.count), outputs, block.count)
+
+
+def _outputs(entries: dict[str, Any]) -> dict[str, Output]:
+    """Return what a task returns, with outcomes as CF conventions write flags."""
+    meanings = {ABSENT: "absent", **{int(code): code.name for code in Outcome}, RAISED: "raised"}
+    labels = {"long_name": "how the member ended", "flag_values": list(meanings)}
+    labels |= {"flag_meanings": " ".join(meanings.values())}
+    outputs = {name: Output(axes, x.shape[1:], _type_on_disk(x), about) for name, (axes, x, about) in entries.items()}
+    return {**outputs, OUTCOME: Output((), (), "int8", labels)}
+
+
+def _type_on_disk(rows: np.ndarray) -> str:
+    return {"b": "int8", "i": "int64", "u": "uint64", "c": "complex128"}.get(rows.dtype.kind, "float64")
+
+
+def _entries(result: Any, count: int) -> dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, Any]]]:
+    """Return dimensions, rows and attributes of all that a task returned, by name."""
+    if not isinstance(result, Mapping):
+        result = {"result": result}
+    return {array_name("task(...)", name): _entry(name, value, count) for name, value in result.items()}
+
+
+def _entry(name: str, value: Any, count: int) -> tuple[tuple[str, ...], np.ndarray, dict[str, Any]]:
+    dimensions, value, *rest = value if isinstance(value, tuple) else (None, value)
+    rows = _rows(name, value, count)
+    if dimensions is None:
+        dimensions = [f"{name}_{axis}" for axis in range(1, rows.ndim)]
+    if len(dimensions) != rows.ndim - 1:
+        got = f"{len(dimensions)} dimensions for shape {rows.shape}"
+        raise error(f"task(...)[{name!r}]", "name each axis but the first", got, "Name them.")
+    return tuple(dimensions), rows, dict(rest[0]) if rest else {}
+
+
+def _rows(name: str, value: Any, count: int) -> np.ndarray:
+    """Return one row for each member."""
+    rows = np.asarray(value)
+    if rows.dtype.kind not in "biufc":
+        remedy = "Return numbers."
+        raise error(f"task(...)[{name!r}]", "be an array of numbers", f"dtype {rows.dtype}", remedy)
+    if rows.ndim == 0 or len(rows) != count:
+        got = f"shape {rows.shape} for {count} members"
+        raise error(f"task(...)[{name!r}]", "have a leading member axis", got, "Keep that axis.")
+    if name == OUTCOME:
+        rows = _codes(rows)
+    if 0 in rows.shape[1:]:
+        raise error(f"task(...)[{name!r}]", "hold numbers", f"shape {rows.shape}", "Leave it out.")
+    return rows
+
+
+def _codes(rows: np.ndarray) -> np.ndarray:
+    """Return the outcomes that a task gives its members."""
+    if rows.ndim != 1 or rows.dtype.kind not in "biu" or not ((rows > ABSENT) & (rows < -ABSENT)).all():
+        got = f"{rows.dtype} of shape {rows.shape}, such as {rows.flat[0]}"
+        raise error(f"task(...)[{OUTCOME!r}]", "be a number from -127 to 127 of each member", got, "Number them so.")
+    return rows.astype(np.int8)
+
+
+def _check(entries: dict[str, Any], outputs: dict[str, Output], count: int) -> dict[str, np.ndarray]:
+    """Return the rows of a block as they are written, refused if they are not what the first members had."""
+    rows_by_name = {name: rows for name, (_, rows, _) in entries.items()}
+    rows_by_name.setdefault(OUTCOME, np.zeros(count, dtype=np.int8))
+    if rows_by_name.keys() != outputs.keys():
+        got = f"{sorted(rows_by_name)} instead of {sorted(outputs)}"
+        raise error("task(...)", "return the same names for all members", got, "Return them always.")
+    for name, rows in rows_by_name.items():
+        if rows.shape[1:] != outputs[name].shape:
+            got = f"{rows.shape[1:]} instead of {outputs[name].shape}"
+            raise error(f"task(...)[{name!r}]", "have one shape for all members", got, "Pad it with NaN.")
+        if not (name == OUTCOME or np.can_cast(_type_on_disk(rows), outputs[name].dtype)):
+            got = f"{rows.dtype} after {outputs[name].dtype}"
+            raise error(f"task(...)[{name!r}]", "have one type for all members", got, "Return floats always.")
+    return {name: rows_by_name[name].astype(output.dtype) for name, output in outputs.items()}
 
 
 def layout_of(sizes: tuple[int, ...], block: int) -> io.Layout:
@@ -47,7 +200,7 @@ FORMAT = "nonholo.sweep"
 SCHEMA = 4
 """Written by this version, and read. Those below 4 are of before 0.3.0, from which on later versions read stores."""
 _AGAIN = "Run the sweep again."
-_AXIS = {"long_name": "value of the design"}
+AXIS = {"long_name": "value of the design"}
 _CODECS = BloscCodec(cname="lz4", clevel=5, shuffle="bitshuffle"), Crc32cCodec()
 """As fast as a sweep: the numbers of its members are too different from each other for a slower one to gain by it."""
 
@@ -123,10 +276,9 @@ class SweepStore:
     def marks(self) -> Iterator[tuple[int, Mark]]:
         """Return the numbers of finished blocks in order with their marks, those that can be read."""
         for block in sorted(self._blocks.block_numbers()):
-            try:
+            mark = None
+            with contextlib.suppress(io.DamagedError):
                 mark = self.mark(block)
-            except io.DamagedError:
-                continue
             if mark is not None:
                 yield block, mark
 
@@ -179,7 +331,7 @@ class SweepStore:
         except io.DamagedError as flaw:
             got = f"{flaw}, in '{self.path}'"
             raise error("resume(store=...)", f"hold the axis {name}", got, _AGAIN) from None
-        description = list(axis_dimensions(name, values)), _AXIS
+        description = list(axis_dimensions(name, values)), AXIS
         if (list(array.metadata.dimension_names or ()), array.metadata.attributes) != description:  # type: ignore[union-attr]
             raise error("resume(store=...)", f"hold the axis {name}", f"another one in '{self.path}'", _AGAIN)
         return values
@@ -230,12 +382,7 @@ def store_of(store: SweepStore) -> SweepStore:
 
 
 def create_store(
-    path: Path,
-    description: dict[str, Any],
-    design: Design,
-    layout: io.Layout,
-    outputs: dict[str, Output],
-    extra: dict[str, Any],
+    path: Path, description: Data, design: Design, layout: io.Layout, outputs: dict[str, Output], extra: Data
 ) -> SweepStore:
     """Make a store without rows; it appears at the path only when it is complete."""
     target, identity = path.resolve(), uuid.uuid4().hex
@@ -273,7 +420,7 @@ def attributes_of(path: str | Path) -> dict[str, Any]:
 
 def _create_arrays(group: zarr.Group, design: Design, layout: io.Layout, outputs: dict[str, Output]) -> None:
     for name, values in design.axes.items():
-        variable = io.Variable(axis_dimensions(name, values), values, dict(_AXIS))
+        variable = io.Variable(axis_dimensions(name, values), values, dict(AXIS))
         io.create_array(group, name, variable, len(values), len(values))[:] = values
     for name, output in outputs.items():
         group.create_array(
@@ -322,14 +469,11 @@ def standing_of(path: str | Path) -> SweepStanding:
     """Return the progress of the sweep of a store."""
     store = open_store(path)
     marks = [mark for _, mark in store.marks()]
-    outcomes: collections.Counter[str] = collections.Counter()
-    for mark in marks:
-        outcomes.update(mark.outcomes)
+    outcomes = sum((collections.Counter(mark.outcomes) for mark in marks), collections.Counter())
     count, seconds = sum(mark.members for mark in marks), sum(mark.seconds for mark in marks)
     messages = [message for mark in marks for message in mark.messages]
-    rate = count / seconds if seconds else math.nan
-    owner = owner_of(store.path)
-    return SweepStanding(count, math.prod(store.layout.sizes), dict(outcomes), rate, messages, owner, store.is_finished)
+    rate, members = count / seconds if seconds else math.nan, math.prod(store.layout.sizes)
+    return SweepStanding(count, members, dict(outcomes), rate, messages, owner_of(store.path), store.is_finished)
 
 
 def opened_result(store: SweepStore) -> xarray.Dataset:

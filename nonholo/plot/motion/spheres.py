@@ -14,7 +14,7 @@ from nonholo.base.checks import array, error, shown
 from nonholo.base.types import Float
 from nonholo.groups import SO
 from nonholo.orbit import Orbit
-from nonholo.plot import parts, theme
+from nonholo.plot import parts, sphere, theme
 from nonholo.systems import AbstractLLSystem
 
 Axis: TypeAlias = Float[np.ndarray, "3"] | None  # a unit vector
@@ -41,7 +41,7 @@ class BodyAxisTrack(NamedTuple):
     """
 
     axes: Axes
-    view: parts.View
+    view: sphere.View
     points: Float[np.ndarray, "L 3"]
     path: LineCollection
     dots: PathCollection | None
@@ -99,13 +99,18 @@ def body_axis_track(
     points = orbit[part].configuration @ gamma
     before, after = rotation_axes(orbit)
     third = _fixed_axis(orbit)
-    eye = parts.view_of("body_axis_track(view=...)", view, points, known_axes(before, after, third))
-    parts.draw_globe(axes, eye)
-    curve = None if flow is None else _flow(axes, eye, flow, gamma)
-    path, dots = parts.draw_path(axes, eye, orbit[part], points, orbit)
-    parts.draw_named_axes(axes, eye, _axes_to_draw(before, after, third, orbit))
-    parts.mark_ends(axes, eye, points, part, orbit)
-    theme.write_title(axes, _title(orbit, body_axis))
+    eye = sphere.view_of("body_axis_track(view=...)", view, points, known_axes(before, after, third))
+    sphere.draw_globe(axes, eye)
+    curve = None
+    if flow is not None:
+        thin: Any = {"width": 1.0, "zorder": 5.5}
+        axes.plot([], [], color=theme.CONTINUOUS, linewidth=1.0, label="continuous")  # its first piece is faint
+        curve = sphere.draw_curve(axes, eye, flow[_part(flow)].configuration @ gamma, to_rgb(theme.CONTINUOUS), **thin)
+    path, dots = sphere.draw_path(axes, eye, orbit[part], points, orbit)
+    sphere.draw_named_axes(axes, eye, _axes_to_draw(before, after, third, orbit))
+    sphere.mark_ends(axes, eye, points, part, orbit)
+    title = "Body axis 3 in space" if parts.forbidden_axis(orbit.system) is None else "Forbidden body axis in space"
+    theme.write_title(axes, title if body_axis is None else "Body axis in space")
     theme.legend_above(axes)
     return BodyAxisTrack(axes, eye, points, path, dots, before, after, third, curve)
 
@@ -119,12 +124,6 @@ def _body_axis(orbit: Orbit, vector: Any) -> Float[np.ndarray, "3"]:
     if not axis.any():
         raise error(where, "have a direction", "the vector 0", remedy)
     return axis / np.linalg.norm(axis)
-
-
-def _title(orbit: Orbit, vector: Any) -> str:
-    if vector is not None:
-        return "Body axis in space"
-    return "Body axis 3 in space" if parts.forbidden_axis(orbit.system) is None else "Forbidden body axis in space"
 
 
 def _fixed_axis(orbit: Orbit) -> Axis:
@@ -162,12 +161,6 @@ def known_axes(*axes: Axis) -> Float[np.ndarray, "A 3"]:
     return np.array([axis for axis in axes if axis is not None]).reshape(-1, 3)
 
 
-def _flow(axes: Axes, eye: parts.View, flow: Orbit, gamma: Float[np.ndarray, "3"]) -> LineCollection:
-    points = flow[_part(flow)].configuration @ gamma
-    axes.plot([], [], color=theme.CONTINUOUS, linewidth=1.0, label="continuous")  # the curve's own first piece is faint
-    return parts.draw_curve(axes, eye, points, np.array(to_rgb(theme.CONTINUOUS)), width=1.0, zorder=5.5)
-
-
 def _axes_to_draw(before: Axis, after: Axis, still: Axis, orbit: Orbit) -> list[tuple[Any, str, str]]:
     """Return the axes to draw, with their names and colors."""
     names = ("rotation axis\nbefore", "rotation axis\nafter")
@@ -197,7 +190,7 @@ class MomentumSphere(NamedTuple):
     """
 
     axes: Axes
-    view: parts.View
+    view: sphere.View
     points: Float[np.ndarray, "L 3"]
     path: LineCollection
     dots: PathCollection | None
@@ -238,15 +231,23 @@ def momentum_sphere(
     values, directions = np.linalg.eigh(np.asarray(system.canonical.constrained_inertia))
     to_sphere = directions @ np.diag(values**-0.5) @ directions.T
     size = np.sqrt(2 * orbit[:1].energy[0]) or 1.0
-    part = _sphere_part(orbit.reduced_momentum @ to_sphere / size, orbit)
+    part = slice(0, len(orbit), 1)
+    if len(orbit) > _MOST_MOMENTA:
+        every = orbit.reduced_momentum @ to_sphere / size
+        step = np.linalg.norm(np.diff(every, axis=0), axis=1).max(initial=0.0)
+        part = parts.window(orbit, step, _FINEST_MOMENTA, _MOST_MOMENTA)
     points = orbit[part].reduced_momentum @ to_sphere / size
     attracting = _attracting(system, to_sphere)
-    eye = parts.view_of("momentum_sphere(view=...)", view, points, attracting)
+    eye = sphere.view_of("momentum_sphere(view=...)", view, points, attracting)
     axes = theme.axes_or_new(axes, (6.0, 6.0))
-    parts.draw_globe(axes, eye)
-    path, dots = parts.draw_path(axes, eye, orbit[part], points, orbit)
-    _rows(axes, eye, to_sphere)
-    parts.mark_ends(axes, eye, points, part, orbit)
+    sphere.draw_globe(axes, eye)
+    path, dots = sphere.draw_path(axes, eye, orbit[part], points, orbit)
+    for index, direction in enumerate(to_sphere / np.linalg.norm(to_sphere, axis=1)[:, None]):
+        (pole, tip), depth = eye(np.array([[1.0], [1.16]]) * direction)  # where each component alone points, outwards
+        alpha = float(sphere.opacity(depth[:1])[0])
+        axes.plot(*np.stack([pole, tip], axis=1), color=theme.MUTED, linewidth=1.4, alpha=alpha, zorder=6)
+        sphere.name_beside(axes, f"$r_{index + 1}$", tip, away=tip, color=theme.MUTED)
+    sphere.mark_ends(axes, eye, points, part, orbit)
     stable, unstable = _equilibria(axes, eye, attracting)
     theme.write_title(axes, "Momentum on its energy sphere")
     if axes.get_legend_handles_labels()[0]:
@@ -269,13 +270,6 @@ def _check(orbit: Orbit) -> AbstractLLSystem:
     return cast(AbstractLLSystem, system)
 
 
-def _sphere_part(points: Float[np.ndarray, "K 3"], orbit: Orbit) -> slice:
-    if len(orbit) <= _MOST_MOMENTA:
-        return slice(0, len(orbit), 1)
-    step = np.linalg.norm(np.diff(points, axis=0), axis=1).max(initial=0.0)
-    return parts.window(orbit, step, _FINEST_MOMENTA, _MOST_MOMENTA)
-
-
 def _attracting(system: AbstractLLSystem, to_sphere: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "A 3"]:
     """Return the attracting equilibrium as a row, no row where there is none or more than one."""
     canonical = system.canonical
@@ -286,22 +280,13 @@ def _attracting(system: AbstractLLSystem, to_sphere: Float[np.ndarray, "3 3"]) -
     return (point / np.linalg.norm(point))[None, :]
 
 
-def _rows(axes: Axes, eye: parts.View, to_sphere: Float[np.ndarray, "3 3"]) -> None:
-    """Draw where each component of the momentum alone points, out of the sphere."""
-    for index, direction in enumerate(to_sphere / np.linalg.norm(to_sphere, axis=1)[:, None]):
-        (pole, tip), depth = eye(np.array([[1.0], [1.16]]) * direction)
-        alpha = float(parts.opacity(depth[:1])[0])
-        axes.plot(*np.stack([pole, tip], axis=1), color=theme.MUTED, linewidth=1.4, alpha=alpha, zorder=6)
-        parts.name_beside(axes, f"$r_{index + 1}$", tip, away=tip, color=theme.MUTED)
-
-
 def _equilibria(
-    axes: Axes, eye: parts.View, attracting: Float[np.ndarray, "A 3"]
+    axes: Axes, eye: sphere.View, attracting: Float[np.ndarray, "A 3"]
 ) -> tuple[PathCollection | None, PathCollection | None]:
     if not len(attracting):
         return None, None
     (here, there), depth = eye(np.concatenate([attracting, -attracting]))
-    alpha = parts.opacity(depth)
+    alpha = sphere.opacity(depth)
     look: Any = {"s": 60, "linewidths": 1.6, "zorder": 8}
     stable = axes.scatter(*here, color=theme.STABLE, alpha=alpha[0], label="stable", **look)
     look |= {"facecolors": theme.PAPER, "edgecolors": theme.UNSTABLE, "alpha": alpha[1]}

@@ -16,7 +16,7 @@ from nonholo.base.types import Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.orbit import AbstractOrbit
 from nonholo.plot import parts, theme
-from nonholo.plot.motion._time_series import draw_components, velocity_names
+from nonholo.plot.motion.time_series import draw_components, velocity_names
 
 _THIN = 0.35  # shortest side of the box in space, in parts of its longest
 
@@ -27,7 +27,9 @@ def dress_path(axes: Any, points: Float[np.ndarray, "L d"], names: list[str]) ->
         view = parts.fit_view(axes, points)
         axes.set(xlabel=names[0], ylabel=names[1])
         return view
-    limits = _box_about(points)
+    square = parts.square_about(points)  # with a margin, no side much shorter than the longest
+    half = np.maximum(0.57 * np.ptp(points, axis=0), _THIN * np.ptp(square[0]) / 2)
+    limits = square.mean(axis=1)[:, None] + half[:, None] * [-1.0, 1.0]
     if axes.has_data():
         before = np.array([axes.get_xlim(), axes.get_ylim(), axes.get_zlim()])
         limits = np.column_stack([np.minimum(before, limits)[:, 0], np.maximum(before, limits)[:, 1]])
@@ -43,13 +45,6 @@ def dress_path(axes: Any, points: Float[np.ndarray, "L d"], names: list[str]) ->
     floor = np.column_stack([points[:, :2], np.full(len(points), limits[2, 0])])
     axes.plot(*floor.T, color=theme.LEVEL, linewidth=1.2, zorder=1)
     return limits
-
-
-def _box_about(points: Float[np.ndarray, "L 3"]) -> Float[np.ndarray, "3 2"]:
-    """Return a box with a margin about the points, no side much shorter than the longest."""
-    square, extent = parts.square_about(points), np.ptp(points, axis=0)
-    half = np.maximum(0.57 * extent, _THIN * np.ptp(square[0]) / 2)
-    return square.mean(axis=1)[:, None] + half[:, None] * [-1.0, 1.0]
 
 
 def mark_path_ends(axes: Any, points: Float[np.ndarray, "L d"], orbit: AbstractOrbit) -> None:
@@ -124,22 +119,16 @@ def bodies_of(
     corners = np.concatenate([np.zeros((1, 2)), *system.parts(orbit.configuration[0])])
     radius = float(np.linalg.norm(corners, axis=1).max())
     size = (radius if radius > _SMALL * extent else _ENLARGED * extent) or 1.0
-    q = (states or _some(orbit, points, size)).configuration
+    way = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+    at = parts.evenly_spread(points, int(np.clip(way / (_APART * size), 1, _MOST - 1)))  # where bodies stay apart
+    q = (states or orbit.chosen(at)).configuration
     angle, larger = q[:, orbit.coordinates.index(system.heading)], size / radius if radius else 1.0
     ahead = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     place = q[:, [orbit.coordinates.index(name) for name in ("x", "y")]]
     turns = np.stack([ahead, ahead[:, ::-1] * [-1.0, 1.0]], axis=1)  # body axes, a row each
-    outlines = [
-        [foot + larger * part @ turn for part in system.parts(row)]
-        for foot, turn, row in zip(place, turns, q, strict=True)
-    ]
+    poses = zip(place, turns, q, strict=True)
+    outlines = [[foot + larger * part @ turn for part in system.parts(row)] for foot, turn, row in poses]
     return Bodies(place, ahead, outlines, size, larger)
-
-
-def _some(orbit: AbstractOrbit, points: Float[np.ndarray, "K d"], radius: float) -> AbstractOrbit:
-    """Return states along the points of a path at which bodies stay apart."""
-    way = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
-    return orbit.chosen(parts.evenly_spread(points, int(np.clip(way / (_APART * radius), 1, _MOST - 1))))
 
 
 _GREEK = (
@@ -174,9 +163,7 @@ def track_of(orbit: AbstractOrbit) -> Track | None:
         return _track_on(orbit.space)
     if len(space) == 1:
         names = [symbol(space[0]), symbol(space[0], is_rate=True)]
-        return Track(
-            "Phase plane", names, lambda of: np.concatenate([of.configuration, of.body_velocity], axis=1), False
-        )
+        return Track("Phase plane", names, lambda of: np.hstack([of.configuration, of.body_velocity]), False)
     places = [name for name in _PLACES if name in space]
     is_place = places[:2] == ["x", "y"]
     columns = places if is_place else list(space[:2])

@@ -19,7 +19,6 @@ from nonholo.base.types import Float
 from nonholo.discrete import BranchTree, Discretization, branch_tree
 from nonholo.orbit import Orbit
 from nonholo.plot import parts, theme
-from nonholo.plot.parts import evenly_in_box
 from nonholo.plot.sheets import ellipse, half_axes, momenta_on_plane, name_axes, on_plane, plane_inertia
 from nonholo.simulation import Crossings
 from nonholo.systems import AbstractLLSystem, AbstractSystem, refuse_forces
@@ -37,7 +36,7 @@ def _trees_of(orbit: Orbit | None, branches: str) -> list[BranchTree]:
     if orbit is None or not isinstance(orbit.motion, Discretization):
         got = "a system alone" if orbit is None else shown(orbit)
         raise error(where, "be 'principal' without a discrete orbit", got, "Pass an orbit of `nh.simulate`.")
-    at = evenly_in_box(orbit.reduced_momentum, _SEEDS + 1)[:_SEEDS]
+    at = parts.evenly_in_box(orbit.reduced_momentum, _SEEDS + 1)[:_SEEDS]
     return [branch_tree(orbit.motion, W, _GENERATIONS) for W in orbit.displacement[at]]
 
 
@@ -131,15 +130,19 @@ def phase_portrait(
         >>> len(portrait.levels), len(portrait.stable.get_offsets())
         (2, 2)
     """
-    _check(system, orbit)
-    orbit = None if orbit is None else parts.drawable("phase_portrait(orbit=...)", orbit)
+    orbit = _check(system, orbit)
     trees = _trees_of(orbit, branches)
     levels = _energies(system, orbit, energies)
     axes = theme.axes_or_new(axes)
     thin: Any = {"color": theme.LEVEL, "linewidth": 1.1, "zorder": 1}
     lines = tuple(axes.plot(*ellipse(system, level).T, **thin)[0] for level in levels)
-    stable, unstable, neutral, arrows = _equilibria(axes, system, half_axes(system), np.sqrt(2 * levels))
-    path = None if orbit is None else _orbit(axes, orbit)
+    stable, unstable, neutral, arrows = _equilibria(axes, system, np.sqrt(2 * levels))
+    path = None
+    if orbit is not None:
+        momentum = momenta_on_plane(orbit)
+        stays = np.ptp(momentum, axis=0).max() <= 1e-6 * np.abs(momentum).max()
+        size = 60 if stays else None
+        path = parts.draw_in_time(axes, orbit, momentum, parts.evenly_in_box(momentum), zorder=6, size=size)
     images, edges = _draw_images(axes, orbit, trees) if orbit is not None and trees else (None, None)
     name_axes(axes, system)
     theme.write_title(axes, "Phase portrait")
@@ -147,7 +150,8 @@ def phase_portrait(
     return PhasePortrait(axes, lines, stable, unstable, neutral, arrows, path, images, edges)
 
 
-def _check(system: AbstractLLSystem, orbit: Orbit | None) -> None:
+def _check(system: AbstractLLSystem, orbit: Orbit | None) -> Orbit | None:
+    """Return the orbit as it is drawn."""
     where = "phase_portrait(system=...)"
     refuse_forces(where, system)
     instance(where, system, AbstractSystem, "be a system", "Pass `orbit.system` first, then the orbit.")
@@ -157,8 +161,10 @@ def _check(system: AbstractLLSystem, orbit: Orbit | None) -> None:
     if len(system.constraint_subspace) != 2:
         got = f"dimension {len(system.constraint_subspace)}"
         raise error(where, "have a two-dimensional constraint subspace", got, "Plot `orbit.restricted_momentum`.")
-    if orbit is not None and not parts.is_same_body(parts.drawable("phase_portrait(orbit=...)", orbit).system, system):
+    smooth = None if orbit is None else parts.drawable("phase_portrait(orbit=...)", orbit)
+    if smooth is not None and not parts.is_same_body(smooth.system, system):
         raise error("phase_portrait(orbit=...)", "be an orbit of the system", shown(orbit), "Pass `orbit.system`.")
+    return smooth
 
 
 def _energies(system: AbstractLLSystem, orbit: Orbit | None, energies: Any) -> Float[np.ndarray, "L"]:
@@ -170,28 +176,23 @@ def _energies(system: AbstractLLSystem, orbit: Orbit | None, energies: Any) -> F
     return scale * (np.arange(1, 5) / 3) ** 2
 
 
-def _equilibria(
-    axes: Axes, system: AbstractLLSystem, half_axes: Float[np.ndarray, "2 2"], sizes: Float[np.ndarray, "L"]
-) -> tuple[Any, ...]:
+def _equilibria(axes: Axes, system: AbstractLLSystem, sizes: Float[np.ndarray, "L"]) -> tuple[Any, ...]:
+    to_ellipse = half_axes(system)
     equilibria = parts.known_equilibria(system)
     if equilibria is None:
         return None, None, None, ()
     attracting = equilibria.attracting
     if attracting is None:
-        return None, None, _every_point(axes, half_axes, sizes), ()
-    u = np.linalg.solve(half_axes, on_plane(system, system.restrict(system.inertia_operator @ attracting)))
+        angle = np.arange(24) * (np.pi / 12)
+        circle = np.array([np.cos(angle), np.sin(angle)])
+        x, y = np.concatenate([size * to_ellipse @ circle for size in sizes], axis=1)
+        return None, None, axes.scatter(x, y, s=16, color=theme.MUTED, linewidths=0, zorder=3, label="equilibria"), ()
+    u = np.linalg.solve(to_ellipse, on_plane(system, system.restrict(system.inertia_operator @ attracting)))
     u /= np.linalg.norm(u)
-    points = sizes[:, None] * (half_axes @ u)
+    points = sizes[:, None] * (to_ellipse @ u)
     stable, unstable = parts.draw_equilibria(axes, points, 1.12 * points[sizes.argmax()], 46)
-    arrows = tuple(_arrow(axes, size * half_axes, u, side) for size in sizes for side in (1, -1))
+    arrows = tuple(_arrow(axes, size * to_ellipse, u, side) for size in sizes for side in (1, -1))
     return stable, unstable, None, arrows
-
-
-def _every_point(axes: Axes, half_axes: Float[np.ndarray, "2 2"], sizes: Float[np.ndarray, "L"]) -> PathCollection:
-    angle = np.arange(24) * (np.pi / 12)
-    circle = np.array([np.cos(angle), np.sin(angle)])
-    x, y = np.concatenate([size * half_axes @ circle for size in sizes], axis=1)
-    return axes.scatter(x, y, s=16, color=theme.MUTED, linewidths=0, zorder=3, label="equilibria")
 
 
 def _arrow(axes: Axes, half_axes: Float[np.ndarray, "2 2"], u: Float[np.ndarray, "2"], side: int) -> FancyArrowPatch:
@@ -201,13 +202,6 @@ def _arrow(axes: Axes, half_axes: Float[np.ndarray, "2 2"], u: Float[np.ndarray,
     arrow = FancyArrowPatch(tail, head, color=theme.MUTED, zorder=2, **look)
     axes.add_patch(arrow)
     return arrow
-
-
-def _orbit(axes: Axes, orbit: Orbit) -> PathCollection | LineCollection:
-    momentum = momenta_on_plane(orbit)
-    stays = np.ptp(momentum, axis=0).max() <= 1e-6 * np.abs(momentum).max()
-    at = parts.evenly_in_box(momentum)
-    return parts.draw_in_time(axes, orbit, momentum, at, zorder=6, size=60 if stays else None)
 
 
 _FEW, _LARGE, _SMALL = 500, 14.0, 4.0  # up to this many dots are large; areas of dots
@@ -287,9 +281,10 @@ def _name_of(quantity: Quantity, otherwise: str) -> str:
 
 
 def _values(name: str, quantity: Quantity, crossings: Crossings) -> Float[np.ndarray, "C"]:
-    where, remedy = (
-        f"section({name}=...)",
+    where = f"section({name}=...)"
+    words = (
+        "one number for each crossing",
         "It gets an `Orbit`: return an array with one number for each of its states.",
     )
-    values, words = call(where, quantity, crossings.states), ("one number for each crossing", remedy)
+    values = call(where, quantity, crossings.states)
     return check_result(where, quantity, values, (len(crossings),), words, lambda at: f"time {crossings.time[at]:.17g}")

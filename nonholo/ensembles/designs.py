@@ -7,16 +7,17 @@ import abc
 import dataclasses
 import math
 import zlib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, TypeAlias
 
 import numpy as np
 
-from nonholo.base.checks import count, error, natural, refuse_former_names, seed, shown
+from nonholo.base.checks import count, error, natural, refuse_former_names, seed, shown, text
 from nonholo.base.checks import name as checked_name
+from nonholo.base.limits import bounded_count
 from nonholo.base.types import Float
 from nonholo.ensembles._names import OUTCOME, component_name
-from nonholo.ensembles.designs._distributions import AbstractDistribution, checked_list
+from nonholo.ensembles.distributions import AbstractDistribution, checked_list
 from nonholo.io import TAKEN
 
 _COLUMNS = TAKEN | {"member", OUTCOME, "t", "time"}  # which tables of results have of their own
@@ -49,24 +50,15 @@ class AbstractDesign(abc.ABC):
 
     Attributes:
         seed: The integer that random numbers are made of, those of tasks too.
+        axes: Values along one dimension, the first axis of each, by name.
+        drawn: Names and shapes of the values that vary from member to member.
+        sizes: Dimensions and their lengths; members are numbered along the last one first.
     """
 
     seed: int
-
-    @property
-    @abc.abstractmethod
-    def sizes(self) -> dict[str, int]:
-        """Dimensions and their lengths; members are numbered along the last one first."""
-
-    @property
-    @abc.abstractmethod
-    def axes(self) -> dict[str, np.ndarray]:
-        """Values along one dimension, the first axis of each, by name."""
-
-    @property
-    @abc.abstractmethod
-    def drawn(self) -> dict[str, tuple[int, ...]]:
-        """Names and shapes of the values that vary from member to member."""
+    axes: dict[str, np.ndarray]
+    drawn: dict[str, tuple[int, ...]]
+    sizes: dict[str, int]
 
     @abc.abstractmethod
     def values(self, first: int, count: int) -> Values:
@@ -94,8 +86,6 @@ class Grid(AbstractDesign):
         (10, {'a': array([0.1, 0.2]), 'time_step': array([0.5, 0.1])})
     """
 
-    values_along: dict[str, np.ndarray]
-
     @refuse_former_names("Grid", seed="rng")
     def __init__(self, axes: Any, rng: int | np.random.Generator = 0) -> None:
         if not isinstance(axes, Mapping) or not axes:
@@ -104,33 +94,21 @@ class Grid(AbstractDesign):
             name: checked_list(f"Grid({{{name!r}: ...}})", axes[name_given])
             for name, name_given in _own_names("Grid(axes=...)", axes).items()
         }
-        if len({axis_dimension(name, values) for name, values in axes_by_name.items()}) < len(axes_by_name):
+        sizes = {axis_dimension(name, values): len(values) for name, values in axes_by_name.items()}
+        if len(sizes) < len(axes_by_name):
             requirement = "have other names than its vectors and matrices"
             raise error("Grid(axes=...)", requirement, ", ".join(axes_by_name), "Rename one.")
-        object.__setattr__(self, "values_along", axes_by_name)
-        object.__setattr__(self, "seed", seed("Grid(rng=...)", rng))
+        vars(self).update(axes=axes_by_name, sizes=sizes, drawn={}, seed=seed("Grid(rng=...)", rng))
 
     def __repr__(self) -> str:
         sizes = " x ".join(f"{size} {name}" for name, size in self.sizes.items())
         return f"<Grid of {self.members} members: {sizes}>"
 
-    @property
-    def sizes(self) -> dict[str, int]:
-        return {axis_dimension(name, values): len(values) for name, values in self.values_along.items()}
-
-    @property
-    def axes(self) -> dict[str, np.ndarray]:
-        return self.values_along
-
-    @property
-    def drawn(self) -> dict[str, tuple[int, ...]]:
-        return {}
-
     def values(self, first: int, count: int) -> Values:
         """Return the values of some members in order, by name."""
         first, count = _some("Grid", first, count)
         places = np.unravel_index(np.arange(first, first + count), tuple(self.sizes.values()))
-        return {name: values[at] for (name, values), at in zip(self.values_along.items(), places, strict=True)}
+        return {name: values[at] for (name, values), at in zip(self.axes.items(), places, strict=True)}
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -145,7 +123,6 @@ class RandomDesign(AbstractDesign):
         (2,)
     """
 
-    count: int
     distributions: dict[str, AbstractDistribution]
 
     @refuse_former_names("RandomDesign", seed="rng")
@@ -158,27 +135,15 @@ class RandomDesign(AbstractDesign):
             if not isinstance(value, AbstractDistribution):
                 remedy = "Pass nh.Uniform(low, high), ...; what all members share belongs to the task."
                 raise error(f"RandomDesign({{{name!r}: ...}})", "be a distribution", shown(value), remedy)
-        object.__setattr__(self, "count", count("RandomDesign(members=...)", members, "Pass how many."))
-        object.__setattr__(
-            self, "distributions", {name: distributions[name_given] for name, name_given in names.items()}
-        )
-        object.__setattr__(self, "seed", seed("RandomDesign(rng=...)", rng))
+        own = {name: distributions[name_given] for name, name_given in names.items()}
+        sizes = {"member": count("RandomDesign(members=...)", members, "Pass how many.")}
+        shapes = {name: value.shape for name, value in own.items()}
+        number = seed("RandomDesign(rng=...)", rng)
+        vars(self).update(distributions=own, sizes=sizes, drawn=shapes, axes={}, seed=number)
 
     def __repr__(self) -> str:
         draws = ", ".join(f"{name} {value!r}" for name, value in self.distributions.items())
         return f"<RandomDesign of {self.members} members, seed {self.seed}: {draws}>"
-
-    @property
-    def sizes(self) -> dict[str, int]:
-        return {"member": self.count}
-
-    @property
-    def axes(self) -> dict[str, np.ndarray]:
-        return {}
-
-    @property
-    def drawn(self) -> dict[str, tuple[int, ...]]:
-        return {name: value.shape for name, value in self.distributions.items()}
 
     def values(self, first: int, count: int) -> Values:
         """Return the values of some members in order, by name."""
@@ -215,3 +180,63 @@ def _own_names(where: str, names: Mapping[Any, Any]) -> dict[str, str]:
     if len(own_by_name) < len(names):
         raise error(where, "name each value once", ", ".join(names), "Leave one out.")
     return own_by_name
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class MemberBlock(Mapping[str, Any]):
+    """Some members of a sweep in order: a mapping of names to arrays whose first axis is that of the members.
+
+    Attributes:
+        first: Number of the first member.
+        count: How many.
+        seed: Seed of the design.
+        arrays: Values by name.
+
+    Example:
+        >>> block = block_of(nh.Grid({"a": [1.0, 2.0, 3.0]}), first=1, count=2)
+        >>> block["a"], block.index, block.random(3).shape
+        (array([2., 3.]), array([1, 2]), (2, 3))
+    """
+
+    first: int
+    count: int
+    seed: int
+    arrays: dict[str, np.ndarray]
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        name = name if name in self.arrays else component_name(name)
+        if name not in self.arrays:
+            raise KeyError(f"{name!r}: the design has {', '.join(self.arrays)}")
+        return self.arrays[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.arrays)
+
+    def __len__(self) -> int:
+        return len(self.arrays)
+
+    def __repr__(self) -> str:
+        return f"<MemberBlock: members {self.first} to {self.first + self.count - 1}, {', '.join(self)}>"
+
+    @property
+    def index(self) -> np.ndarray:
+        """Numbers of the members."""
+        return np.arange(self.first, self.first + self.count)
+
+    def random(self, width: int, stream: str = "") -> Float[np.ndarray, "count width"]:
+        """Return uniform numbers in [0, 1) of each member, the same in any block; streams are independent."""
+        remedy = "Pass how many numbers each member needs."
+        width = bounded_count("MemberBlock.random(width=...)", width, 24.0 * self.count, remedy)
+        text("MemberBlock.random(stream=...)", stream)
+        return uniform_numbers(self.seed, f"task {stream}", self.first, self.count, width)
+
+    def part(self, begin: int, end: int) -> "MemberBlock":
+        """Return some of the members, counted from the first one here."""
+        begin, end = (natural("MemberBlock.part(...)", x, "Pass numbers of members here.") for x in (begin, end))
+        arrays = {name: values[begin:end] for name, values in self.arrays.items()}
+        return MemberBlock(self.first + begin, end - begin, self.seed, arrays)
+
+
+def block_of(design: AbstractDesign, first: int, count: int) -> MemberBlock:
+    """Return some members of a design."""
+    return MemberBlock(first, count, design.seed, design.values(first, count))

@@ -58,11 +58,11 @@ def momentum_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> 
 def heading_and_speed(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> None:
     """Draw the heading of a sleigh (left scale) and the speed along its blade (right scale) against time."""
     right = axes.twinx()
-    scales = ((axes, r"heading  $\theta/\pi$", _heading), (right, "speed  $v_1$", _speed))
-    for (one, name, values), color in zip(scales, theme.COMPONENTS, strict=False):
-        _line(one, orbit.time, values(orbit), color=color, linewidth=2.0, zorder=3)
+    scales = ((axes, r"heading  $\theta/\pi$"), (right, "speed  $v_1$"))
+    for row, ((one, name), color) in enumerate(zip(scales, theme.COMPONENTS, strict=False)):
+        _line(one, orbit.time, _turn_and_speed(orbit)[row], color=color, linewidth=2.0, zorder=3)
         if flow is not None:
-            _flow(one, flow.time, values(flow), has_label=one is right)
+            _flow(one, flow.time, _turn_and_speed(flow)[row], has_label=one is right)
         one.set_ylabel(name, color=color)
         one.tick_params(axis="y", labelcolor=color)
         one.margins(y=0.12)
@@ -73,12 +73,9 @@ def heading_and_speed(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> No
     theme.legend_above(right)
 
 
-def _heading(orbit: Orbit) -> Float[np.ndarray, "K"]:
-    return cast(Blade, blade_of_system(orbit.system)).heading(orbit) / np.pi
-
-
-def _speed(orbit: Orbit) -> Float[np.ndarray, "K"]:
-    return cast(Blade, blade_of_system(orbit.system)).speed(orbit)
+def _turn_and_speed(orbit: Orbit) -> tuple[Float[np.ndarray, "K"], Float[np.ndarray, "K"]]:
+    blade = cast(Blade, blade_of_system(orbit.system))
+    return blade.heading(orbit) / np.pi, blade.speed(orbit)
 
 
 def _line(axes: Axes, time: Float[np.ndarray, "K"], values: Float[np.ndarray, "K"], **look: Any) -> None:
@@ -194,9 +191,8 @@ def energy_error(orbit: AbstractOrbit, axes: Axes | None = None, **look: Unpack[
     theme.write_title(axes, "Energy less work" if has_work else "Energy error" if is_known else "Change of energy")
     _dress(axes, orbit.time, error / unit, unit, rf"\Delta {name}{'/E' if size else ''}")
     small: Any = {"color": theme.QUIET, "fontsize": "medium", "va": "top", "path_effects": theme.HALO, "zorder": 6}
-    words = axes.text(
-        0.012, 0.97, _expectation(orbit, has_work) if is_known else _THINNED, transform=axes.transAxes, **small
-    )
+    outlook = _expectation(orbit, has_work) if is_known else _THINNED
+    words = axes.text(0.012, 0.97, outlook, transform=axes.transAxes, **small)
     return EnergyError(axes, dots, rounding, unit, words)
 
 
@@ -219,7 +215,16 @@ def _over_rounding(
     band: Any = {"color": theme.LEVEL, "alpha": 0.45, "linewidth": 0, "zorder": 0, "label": label}
     rounding = axes.axhspan(-_EPS / unit, _EPS / unit, **band)
     axes.axhline(0.0, color=theme.LEVEL, linewidth=0.8, zorder=1)
-    return rounding, (_error if orbit.is_discrete else _curve)(axes, orbit.time, error)
+    time, own = orbit.time, theme.own_look(theme.DISCRETE)
+    if orbit.is_discrete and len(time) <= _MOST_DOTS:
+        return rounding, axes.scatter(time, error, s=5, linewidths=0, zorder=3, **own)
+    if orbit.is_discrete:
+        starts = np.arange(0, len(time), math.ceil(len(time) / _COLUMNS))
+        low, high = np.minimum.reduceat(error, starts), np.maximum.reduceat(error, starts)
+        return rounding, axes.fill_between(time[starts], low, high, linewidth=0.8, zorder=3, **own)
+    at = evenly_in_box(np.stack([orbit.time, error], axis=1), _MOST_DOTS)
+    look = theme.own_look(theme.CONTINUOUS)
+    return rounding, axes.plot(orbit.time[at], error[at], linewidth=1.0, zorder=3, **look)[0]
 
 
 def _expectation(orbit: AbstractOrbit, has_work: bool) -> str:
@@ -234,19 +239,6 @@ def _expectation(orbit: AbstractOrbit, has_work: bool) -> str:
 
 def _unit(largest: float) -> float:
     return 1e-16 if largest < 1e-13 else float(f"1e{math.floor(math.log10(largest))}")
-
-
-def _error(axes: Axes, time: Float[np.ndarray, "K"], error: Float[np.ndarray, "K"]) -> PathCollection | PolyCollection:
-    if len(time) <= _MOST_DOTS:
-        return axes.scatter(time, error, s=5, linewidths=0, zorder=3, **theme.own_look(theme.DISCRETE))
-    starts = np.arange(0, len(time), math.ceil(len(time) / _COLUMNS))
-    low, high = np.minimum.reduceat(error, starts), np.maximum.reduceat(error, starts)
-    return axes.fill_between(time[starts], low, high, linewidth=0.8, zorder=3, **theme.own_look(theme.DISCRETE))
-
-
-def _curve(axes: Axes, time: Float[np.ndarray, "K"], error: Float[np.ndarray, "K"]) -> Line2D:
-    at = evenly_in_box(np.stack([time, error], axis=1), _MOST_DOTS)
-    return axes.plot(time[at], error[at], linewidth=1.0, zorder=3, **theme.own_look(theme.CONTINUOUS))[0]
 
 
 def _dress(axes: Axes, time: Any, error: Float[np.ndarray, "K"], unit: float, name: str) -> None:

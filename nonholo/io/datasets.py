@@ -1,0 +1,444 @@
+"""Orbits as labeled variables in the user's body frame: poses as things that people know, x, heading, quaternion.
+
+Poses are columns of numbers first: what they are called, and how one row continues another.
+"""
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+import xarray
+
+from nonholo.base.types import Float
+from nonholo.discrete import Discretization
+from nonholo.groups import AbstractMatrixGroup, ProductGroup, Translations, quaternion_from_matrix
+from nonholo.io._attributes import attributes, describe_group
+from nonholo.orbit import STATES, AbstractOrbit, Orbit, configurations, poses, unwrap
+from nonholo.systems import System
+
+Variables: TypeAlias = dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]
+"""Dimensions after those of the states, values and attributes, by name."""
+
+_AXIS = ("axis",)
+_ENTRIES = ("row", "column")
+
+HEADING = ["theta"]
+QUATERNION = ["qw", "qx", "qy", "qz"]
+
+
+def pose_variables(orbit: Orbit, before: Float[np.ndarray, "1 c"] | None = None) -> Variables:
+    """Return the poses of an orbit by name; headings and signs of quaternions continue from row to row.
+
+    Args:
+        orbit: With poses.
+        before: The heading or the quaternion of the state before the first one, in a row.
+
+    Example:
+        >>> sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+        >>> list(pose_variables(nh.simulate(sleigh, body_velocity=(1, 0, 0), steps=3)))
+        ['x', 'y', 'heading']
+    """
+    group = orbit.system.group
+    stretch = Stretch(orbit.time, np.asarray(orbit.canonical_pose), orbit.turned)
+    if isinstance(group, ProductGroup):
+        return separate_variables(group, configurations(orbit.system, stretch.pose))
+    (rows,) = rows_of(orbit.system, [stretch], 1, before)
+    return _variables_of(group, rows[:, 1:])
+
+
+def separate_variables(group: AbstractMatrixGroup, g: Float[np.ndarray, "... K N N"]) -> Variables:
+    """Return poses as matrices by name; headings and signs of quaternions continue along the axis K, from the first.
+
+    The translations in a product are its `shape`; of two factors with one name the second has a number.
+
+    Example:
+        >>> robot = nh.ProductGroup(nh.SE(2), nh.Translations(2))
+        >>> list(separate_variables(robot, robot.identity[None]))
+        ['x', 'y', 'heading', 'shape']
+    """
+    if not isinstance(group, ProductGroup):
+        return _variables_of(group, joined_rows(group, g))
+    variables: Variables = {}
+    begin = 0
+    for number, factor in enumerate(group.factors, start=1):
+        part = slice(begin, begin := begin + factor.size)
+        for name, entry in separate_variables(factor, g[..., part, part]).items():
+            name = "shape" if isinstance(factor, Translations) else name
+            variables[f"{name}_{number}" if name in variables else name] = entry
+    return variables
+
+
+def joined_rows(group: AbstractMatrixGroup, g: Float[np.ndarray, "... K N N"]) -> Float[np.ndarray, "... K c"]:
+    """Return poses as rows of the columns but for the time; headings and signs of quaternions continue along K."""
+    rows = separate_rows(group, g.reshape(-1, *g.shape[-2:])).reshape(*g.shape[:-2], -1)
+    turn = layout(group)[1]
+    if turn == HEADING:
+        rows[..., -1] = np.unwrap(rows[..., -1], axis=-1)
+    if turn == QUATERNION:
+        rows[..., -4:] = continuous(rows[..., -4:])
+    return rows
+
+
+def _variables_of(group: AbstractMatrixGroup, rows: Float[np.ndarray, "... c"]) -> Variables:
+    """Return the columns of `layout` by name."""
+    position, turn = layout(group)
+    where, turns = rows[..., : len(position)], rows[..., len(position) :]
+    variables: Variables = {}
+    if position and set(position) <= set("xyz"):
+        variables |= {name: ((), where[..., i], _labels("position", "length unit")) for i, name in enumerate(position)}
+    elif position:
+        variables["position"] = _AXIS, where, _labels("position", "length unit")
+    return variables | _turn(group, turn, turns)
+
+
+def _turn(group: AbstractMatrixGroup, turn: list[str], turns: np.ndarray) -> Variables:
+    if not turn:
+        return {}
+    if turn == HEADING:
+        return {"heading": ((), turns[..., 0], _labels("angle of the body", "rad"))}
+    if turn == QUATERNION:
+        labels = _labels("unit quaternion w, x, y, z of the body, Hamilton's product", "1")
+        return {"quaternion": (("quaternion_component",), turns, labels)}
+    size = round(np.sqrt(turns.shape[-1]))
+    name, meaning = ("rotation", "rotation") if group.is_rigid else ("configuration", "pose")
+    return {name: (_ENTRIES, turns.reshape(*turns.shape[:-1], size, size), _labels(f"{meaning} as a matrix", "1"))}
+
+
+def _labels(meaning: str, units: str) -> dict[str, str]:
+    return {"long_name": meaning, "units": units}
+
+
+class Stretch(NamedTuple):
+    """Saved states that follow one another: times, places, and headings where the run knows them.
+
+    Places are compact poses, matrices, or the coordinates of a system that has them.
+    """
+
+    time: Float[np.ndarray, "K"]
+    pose: Float[np.ndarray, "K ..."]
+    headings: Float[np.ndarray, "K"] | None
+
+
+def column_names(group: AbstractMatrixGroup) -> list[str]:
+    """Return the names of the columns: time, position, and how the body is turned.
+
+    Example:
+        >>> column_names(nh.SE(2)), column_names(nh.SO(3))
+        (['t', 'x', 'y', 'theta'], ['t', 'qw', 'qx', 'qy', 'qz'])
+    """
+    position, turn = layout(group)
+    return ["t", *position, *turn]
+
+
+def compact_names(group: AbstractMatrixGroup) -> list[str]:
+    """Return the names of the numbers of a compact pose; none for products, whose factors may share them.
+
+    Example:
+        >>> compact_names(nh.SE(2)), compact_names(nh.SO(3))
+        (['cos', 'sin', 'x', 'y'], ['qw', 'qx', 'qy', 'qz'])
+    """
+    if isinstance(group, ProductGroup):
+        return []
+    position, turn = layout(group)
+    if turn == HEADING:
+        return ["cos", "sin", *position]
+    return [*(_entries(3) if turn == QUATERNION and position else turn), *position]
+
+
+def separate_rows(group: AbstractMatrixGroup, g: Float[np.ndarray, "R N N"]) -> Float[np.ndarray, "R c"]:
+    """Return poses that do not follow one another as rows of the columns but for the time.
+
+    Angles are between -pi and pi, quaternions have a scalar that is not negative.
+    """
+    position, turn = layout(group)
+    turns = np.arctan2(g[:, 1, 0], g[:, 0, 0])[:, None] if turn == HEADING else _turns(g, turn)
+    return np.concatenate([g[:, : len(position), len(position)], turns], axis=1)
+
+
+def rows_of(
+    system: Any, stretches: Iterable[Stretch], every: int, before: Float[np.ndarray, "1 c"] | None = None
+) -> Iterator[Float[np.ndarray, "R c"]]:
+    """Return one in `every` of the states as rows of the columns; rows do not depend on how the motion is cut.
+
+    The first row continues from the one `before`, if there is one.
+    """
+    position, turn = layout(system.group)
+    first = 0
+    for time, pose, headings in _with_headings(stretches, before) if turn == HEADING else stretches:
+        own_rows = slice(-first % every, None, every)
+        place, turns = _places_and_turns(system, pose[own_rows], len(position), turn)
+        if turn == HEADING:
+            turns = np.asarray(headings)[own_rows, None]
+        if turn == QUATERNION:
+            turns = continuous(turns, None if before is None else before[:, -4:])
+        rows = np.concatenate([time[own_rows, None], place, turns], axis=1)
+        first, before = first + len(time), rows[-1:] if len(rows) else before
+        yield rows
+
+
+def _places_and_turns(system: Any, pose: np.ndarray, n: int, turn: list[str]) -> tuple[np.ndarray, np.ndarray]:
+    """Return n numbers of the positions, and the turns, of poses: compact ones with the turn first, or matrices."""
+    if pose.shape[1:] == (4,) and turn in (HEADING, QUATERNION):
+        compact = poses(system, pose)
+        return compact[:, 4 - n :], compact
+    g = pose if pose.ndim == 3 else configurations(system, pose)
+    return g[:, :n, n], _turns(g, turn)
+
+
+def coordinate_rows(stretches: Iterable[Stretch], every: int) -> Iterator[Float[np.ndarray, "R c"]]:
+    """Return times and coordinates of one in `every` of the states."""
+    first = 0
+    for time, q, _ in stretches:
+        yield np.concatenate([time[:, None], q], axis=1)[-first % every :: every]
+        first += len(time)
+
+
+def layout(group: AbstractMatrixGroup) -> tuple[list[str], list[str]]:
+    """Return the columns of the position and of the turn; groups that are none of ours have all entries as turn."""
+    text = describe_group(group)
+    kind, n = text["group"], text.get("n", 0)
+    if kind == "Translations":
+        return _numbers(n), []
+    position = [] if kind != "SE" else list("xyz"[:n]) if n <= 3 else _numbers(n)
+    if (kind, n) == ("SE", 2):
+        return position, HEADING
+    return position, QUATERNION if n == 3 else _entries(n or group.size)
+
+
+def _numbers(n: int) -> list[str]:
+    return [f"x{i}" for i in range(1, n + 1)]
+
+
+def _entries(size: int) -> list[str]:
+    between = "" if size < 10 else "_"
+    return [f"r{i}{between}{j}" for i in range(1, size + 1) for j in range(1, size + 1)]
+
+
+def _with_headings(stretches: Iterable[Stretch], row: Float[np.ndarray, "1 c"] | None) -> Iterator[Stretch]:
+    """Give stretches on SE(2) headings, each continuing the one before, the first that at the end of a row."""
+    before = None if row is None else float(row[0, -1])
+    for stretch in stretches:
+        turns = stretch.pose[:, :2, 0] if stretch.pose.ndim == 3 else stretch.pose  # cosine and sine first
+        headings = unwrap(turns, before) if stretch.headings is None else stretch.headings
+        before = headings[-1] if len(headings) else before
+        yield stretch._replace(headings=headings)
+
+
+def _turns(g: np.ndarray, names: list[str]) -> Float[np.ndarray, "R c"]:
+    """Return the rotations as quaternions or, row by row, as matrices."""
+    if names == QUATERNION:
+        return quaternion_from_matrix(g[:, :3, :3])
+    size = math.isqrt(len(names))
+    return g[:, :size, :size].reshape(len(g), len(names))
+
+
+def continuous(
+    q: Float[np.ndarray, "... R 4"], before: Float[np.ndarray, "... 1 4"] | None = None
+) -> Float[np.ndarray, "... R 4"]:
+    """Return the quaternions, each with the sign that is nearer to the one before it."""
+    chain = np.concatenate([q[..., :1, :] if before is None else before, q], axis=-2)
+    signs = np.where(np.sum(chain[..., 1:, :] * chain[..., :-1, :], axis=-1) < 0, -1.0, 1.0)
+    return q * np.cumprod(signs, axis=-1)[..., : q.shape[-2], None]
+
+
+class Variable(NamedTuple):
+    """An array with the names of its dimensions, and its attributes: xarray takes it as it is.
+
+    Attributes:
+        dims: Names.
+        values: Numbers.
+        attrs: Texts by name.
+    """
+
+    dims: tuple[str, ...]
+    values: np.ndarray
+    attrs: dict[str, Any]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of the array."""
+        return self.values.shape
+
+
+CANONICAL = "canonical/"
+"""The group of a store that holds compact states."""
+STEP = CANONICAL + "step"
+"""The numbers of steps in a store, where they do not follow from the places of its rows."""
+_MOST = 1000  # components of a momentum, or numbers of a pose, that are reported
+HEADED = ("heading", "quaternion")  # whose rows continue from the row before
+
+# name: dimensions after `step`, and what the numbers are
+_COMPACT = {
+    "reduced_momentum": (("component",), "momentum along the constraint subspace, canonical frame", "momentum unit"),
+    "cayley": (("chart",), "chart coordinates of the displacement, canonical frame", "1"),
+    "pose": (("pose_component",), "compact pose, canonical frame", "1, lengths in length unit"),
+    "turned": ((), "heading without ambiguity of full turns", "rad"),
+}
+_KNOWN = {
+    "energy": ((), "reduced constrained energy", "energy unit"),
+    "restricted_momentum": (("component",), "momentum along the rows of the constraint subspace", "momentum unit"),
+    "body_velocity": (("coordinate",), "body velocity", "1 / time unit"),
+    "momentum": (("coordinate",), "body momentum", "momentum unit"),
+}
+_STORED = ("energy", "restricted_momentum")
+_MATRICES = {
+    "configuration": (("row", "column"), "pose as a matrix", "1"),
+    "displacement": (("row", "column"), "displacement of one step as a matrix", "1"),
+}
+_MULTIPLIERS = "multipliers: forces of a flow, impulses to the next state of a discrete orbit"
+_OTHERS = {
+    "time": ((), "time", "time unit"),
+    "multipliers": (("multiplier",), _MULTIPLIERS, "force unit, or times time"),
+}
+_LABELS = _COMPACT | _KNOWN | _MATRICES | _OTHERS
+_SPATIAL = {  # of a right-invariant constraint
+    "reduced_momentum": "spatial momentum along the constraint subspace",
+    "restricted_momentum": "spatial momentum along the rows of the constraint subspace",
+    "cayley": "chart coordinates of the spatial displacement",
+}
+
+
+def orbit_to_dataset(orbit: Orbit, *, decoded: bool = False) -> xarray.Dataset:
+    r"""Return an orbit as a labeled dataset in the user's body frame; attributes describe its making.
+
+    Variables along `step`, whose coordinate is the number of the step, with the coordinate `time`: `energy`,
+    `restricted_momentum`, `body_velocity`, `momentum` and the pose.
+
+    | group | the pose |
+    |---|---|
+    | SE(2) | `x`, `y`, `heading` |
+    | SO(3), SE(3) | `quaternion`: w, x, y, z, unit, signs continuous; on SE(3) also `x`, `y`, `z` |
+    | SO(n), SE(n) | `rotation`, a matrix; on SE(n) also `position` |
+    | translations | `position` |
+    | products | those of the factors, translations as `shape` |
+    | other groups | `configuration`, a matrix |
+
+    Quantities that the orbit does not have, or that are too large in many dimensions, are left out.
+
+    Args:
+        orbit: The orbit to label.
+        decoded: Also poses and displacements as matrices, and `multipliers` of an orbit of which every step is saved,
+            NaN after the last state of a discrete one.
+
+    Example:
+        >>> orbit = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), body_velocity=(1, 0, 0), steps=3)
+        >>> list(orbit.to_dataset().data_vars)
+        ['energy', 'restricted_momentum', 'body_velocity', 'momentum', 'x', 'y', 'heading']
+    """
+    names = (*_KNOWN, *_MATRICES) if decoded else tuple(_KNOWN)
+    states = {name: _variable(orbit, name) for name in names if _is_known(orbit, name)}
+    columns = {"time": _variable(orbit, "time")} | states | _posed(orbit, None)
+    motion: Any = orbit.motion
+    is_own = not isinstance(motion, Discretization) or (motion.order == 2 and orbit.has_every_step)
+    has_multipliers = is_own and not motion.is_measured and len(orbit) > 0 and _is_known(orbit, "momentum")
+    if decoded and has_multipliers:  # that need no other steps than those of its states
+        rows = orbit.multipliers
+        missing = np.full((len(orbit) - len(rows), rows.shape[1]), np.nan)
+        columns["multipliers"] = _variable(orbit, "multipliers", np.concatenate([rows, missing]))
+    number = ("step", orbit.step, {"long_name": "number of the step", "units": "1"})
+    return xarray.Dataset(columns, {"step": number}, attributes(orbit)).set_coords("time").copy(deep=True)
+
+
+def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None) -> dict[str, Variable]:
+    """Return the arrays of a store by name: what a person knows, and compact states in a separate group.
+
+    Args:
+        orbit: An orbit or a block of one.
+        before: The heading or the quaternion of the state before the first one, in a row.
+    """
+    if not orbit.is_compact:
+        return _variables(orbit)
+    compact = {
+        CANONICAL + name: _variable(orbit, name, getattr(orbit, state))
+        for name, state in zip(_COMPACT, STATES[1:], strict=True)
+        if getattr(orbit, state) is not None
+    }
+    states = {name: _variable(orbit, name) for name in _STORED if _is_known(orbit, name)} | _posed(orbit, before)
+    for variable in states.values():
+        variable.attrs["coordinates"] = "time"  # those of the group canonical need none
+    return {"time": _variable(orbit, "time")} | states | compact
+
+
+def steps_apart(orbit: Any) -> dict[str, Variable]:
+    """Return the array of the steps of an orbit that is not a whole run; empty of one that is."""
+    if np.array_equal(orbit.step, orbit.save_every * np.arange(len(orbit))):
+        return {}
+    return {STEP: Variable(("step",), orbit.step, {"long_name": "number of the step"})}
+
+
+def _variables(orbit: Any) -> dict[str, Variable]:
+    """Return what an orbit tells, but for empty rows; names along axes are texts, which are attributes of a store."""
+    dataset: Any = orbit.to_dataset()
+    for variable in dataset.data_vars.values():
+        own_labels = {"components": list(orbit.coordinates)} if "coordinate" in variable.dims else {}
+        variable.attrs |= {"coordinates": "time"} | own_labels
+    variables = {
+        str(name): Variable(tuple(map(str, each.dims)), each.values, each.attrs)
+        for name, each in dataset.reset_coords("time").data_vars.items()
+    }
+    return {name: each for name, each in variables.items() if 0 not in each.shape[1:]}
+
+
+def is_known(system: System, name: str, *, posed: bool, discrete: bool) -> bool:
+    """Return whether motions of a system have a quantity; with a right-invariant constraint most need the pose."""
+    needs_pose = {"configuration"}
+    if system.is_spatial:
+        needs_pose |= {"energy", "momentum", "body_velocity", "displacement"}
+    if (name in needs_pose and not posed) or (name == "displacement" and not discrete):
+        return False
+    return name in _STORED or system.group.dim <= _MOST
+
+
+def labels_of(system: System, name: str) -> tuple[tuple[str, ...], dict[str, str]]:
+    """Return the dimensions of a quantity after those of the states, and its attributes."""
+    axes, meaning, units = _LABELS[name]
+    long_name = _SPATIAL.get(name, meaning) if system.is_spatial else meaning
+    return axes, {"long_name": long_name, "units": units}
+
+
+def _is_known(orbit: Orbit, name: str) -> bool:
+    return is_known(orbit.system, name, posed=orbit.canonical_pose is not None, discrete=orbit.cayley is not None)
+
+
+def _posed(orbit: Orbit, before: np.ndarray | None) -> dict[str, Variable]:
+    if orbit.canonical_pose is None or orbit.canonical_pose.shape[1] > _MOST:
+        return {}
+    variables = pose_variables(orbit, before).items()
+    return {name: Variable(("step", *axes), values, dict(labels)) for name, (axes, values, labels) in variables}
+
+
+def _variable(orbit: Orbit, name: str, values: np.ndarray | None = None) -> Variable:
+    axes, labels = labels_of(orbit.system, name)
+    return Variable(("step", *axes), getattr(orbit, name) if values is None else values, labels)
+
+
+_PARTS = {"quaternion": tuple("wxyz")}
+
+
+def orbit_to_pandas(orbit: AbstractOrbit) -> Any:
+    """Return an orbit as a `pandas.DataFrame` in the user's body frame, indexed by time.
+
+    Columns are the variables of `orbit_to_dataset`; those of several numbers have their numbers in the name, from 0 on,
+    quaternions the letters w, x, y, z. Coordinates of a Lagrange-d'Alembert system have their names, such as `x`; what
+    belongs to one has its name too, such as `momentum_x`.
+
+    Example:
+        >>> orbit = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), body_velocity=(1, 0, 0), steps=3)
+        >>> table = orbit.to_pandas()
+        >>> table.shape, list(table.columns[-5:])
+        ((4, 12), ['momentum_1', 'momentum_2', 'x', 'y', 'heading'])
+    """
+    columns: dict[str, tuple[str, np.ndarray]] = {}
+    dataset: Any = orbit.to_dataset()
+    if not orbit.coordinates and "configuration" in dataset:
+        poses_by_name = separate_variables(orbit.space, orbit.configuration).items()
+        own = {name: (("step", *axes), rows) for name, (axes, rows, _) in poses_by_name}  # as people know them
+        dataset = dataset.drop_vars(["configuration", "displacement"], errors="ignore").assign(own)
+    for name, variable in dataset.data_vars.items():
+        labels: list[Any] = [_PARTS.get(str(name), dataset[axis].values) for axis in variable.dims[1:]]
+        for place in np.ndindex(variable.shape[1:]):
+            parts = [str(words[i]) for words, i in zip(labels, place, strict=True)]
+            whole = parts if name == "configuration" and "coordinate" in variable.dims else [str(name), *parts]
+            columns["_".join(whole)] = "time", variable.values[:, *place]
+    return xarray.Dataset(columns, coords={"time": orbit.time}).to_dataframe()
