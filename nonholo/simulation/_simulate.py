@@ -167,7 +167,8 @@ def iterate(
         progress: Show a progress bar on standard error.
 
     Returns:
-        An iterator over orbits of `block_steps // save_every` states, the last one of those that are left.
+        An iterator over orbits of `block_steps // save_every` states. The last one has the states that are left: none
+        if an event ends the run before the next one.
 
     Raises:
         ValueError: A bad argument, before any work.

@@ -30,12 +30,13 @@ def _printed(*arguments: str, program: Path = LIVE, **variables: str) -> Any:
     return json.loads(done.stdout or "null")
 
 
-@pytest.mark.profile("long", instead="test_three_ways_have_the_same_bits")
+@pytest.mark.profile("routes", instead="test_three_ways_have_the_same_bits")
 def test_bits_of_a_fresh_cache(tmp_path: Path) -> None:
-    """Live motions have the bits of the library where numba compiles and where it loads, in 1 and in 7 threads."""
+    """Live sleighs have the bits of the library where numba compiles and where it loads, in 1 and in 7 threads."""
     library, compiled, loaded = (
         _printed(
             "bits",
+            "sleighs",
             NONHOLO_KERNELS=way,
             NUMBA_CACHE_DIR=str(tmp_path),
             NUMBA_NUM_THREADS=n,

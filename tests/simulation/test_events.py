@@ -177,7 +177,7 @@ def test_headings_of_events_know_full_turns() -> None:
     assert abs(found.time[0] - 0.1 * 6000 * np.pi / np.arcsin(0.4)) < 0.1
 
 
-@pytest.mark.parametrize(("block_steps", "stop"), [(20, 9), (5, False)])
+@pytest.mark.parametrize(("block_steps", "stop"), [(20, 9), (5, 9), (5, False)])
 def test_blocks_of_a_run_hold_its_crossings(block_steps: int, stop: int) -> None:
     """Blocks, of one state each too, have states and crossings of the run, and end with the one that a stop ends."""
     run = {"body_velocity": (4.0, 1.0, 0.0), "steps": 200, "events": [nh.Event(east, stop=stop)], "save_every": 5}
