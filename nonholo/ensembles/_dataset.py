@@ -10,15 +10,7 @@ import numpy as np
 from nonholo import io
 from nonholo.base.checks import array, choice, count, error, flags, number, path, refuse_former_names, scale, seed, text
 from nonholo.ensembles._sweep import sweep
-from nonholo.ensembles.datasets import (
-    DEFINITIONS,
-    SPLITS,
-    DatasetTask,
-    card,
-    record_of,
-    system_of,
-    write_tables,
-)
+from nonholo.ensembles.datasets import DEFINITIONS, SPLITS, DatasetTask, card, record_of, system_of, write_tables
 from nonholo.ensembles.designs import RandomDesign
 from nonholo.ensembles.stores import open_store
 

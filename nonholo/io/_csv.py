@@ -63,12 +63,7 @@ def orbit_to_csv(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fa
 
 
 def store_to_csv(
-    store: str | Path,
-    target: str | Path | TextIO,
-    *,
-    every: int = 1,
-    overwrite: bool = False,
-    progress: bool = False,
+    store: str | Path, target: str | Path | TextIO, *, every: int = 1, overwrite: bool = False, progress: bool = False
 ) -> None:
     """Write the poses of a store as `orbit_to_csv` does, chunk by chunk: an orbit of any length needs little memory.
 

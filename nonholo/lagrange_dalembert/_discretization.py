@@ -159,13 +159,7 @@ class GroupDiscretization(AbstractLagrangeDAlembertMap[GroupOrbit]):
 
 
 def checked_state(
-    system: Any,
-    configuration: Any,
-    starts: dict[str, Any],
-    time: float,
-    owner: str = "flow",
-    *,
-    project: bool = False,
+    system: Any, configuration: Any, starts: dict[str, Any], time: float, owner: str = "flow", *, project: bool = False
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the checked start of a flow, or another place and velocity."""
     checks, name = room("_start"), one_start(owner, **starts)
@@ -299,11 +293,7 @@ def _advance(system: Any, h: Array, state: Motion, sign: Array, rows: Array, eve
         i, total, current, _, (configurations, velocities, impulses) = carry
         start = (jnp.asarray(0), current, jnp.zeros(s), jnp.asarray(0))
         count, end, impulse, code = jax.lax.while_loop(lambda c: (c[0] < every) & (c[3] == 0), one, start)
-        table = (
-            configurations.at[i].set(current[0]),
-            velocities.at[i].set(current[1]),
-            impulses.at[i].set(impulse),
-        )
+        table = (configurations.at[i].set(current[0]), velocities.at[i].set(current[1]), impulses.at[i].set(impulse))
         return i + 1, total + count, end, code, table
 
     tables = tuple(jnp.zeros((ROWS, *shape)) for shape in (state[0].shape, state[1].shape, (s,)))

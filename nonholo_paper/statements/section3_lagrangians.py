@@ -4,19 +4,7 @@ import numpy as np
 
 import nonholo as nh
 from nonholo_paper import _twin as twin
-from nonholo_paper._bodies import (
-    BODIES,
-    SLEIGH,
-    SMALL,
-    TOP,
-    TOP_4,
-    Body,
-    apart,
-    displacements,
-    in_double,
-    pose,
-    slopes,
-)
+from nonholo_paper._bodies import BODIES, SLEIGH, SMALL, TOP, TOP_4, Body, apart, displacements, in_double, pose, slopes
 from nonholo_paper._claims import statement
 from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, ctx

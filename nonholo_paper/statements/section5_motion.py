@@ -8,18 +8,7 @@ import nonholo as nh
 from nonholo_paper import _twin as twin
 from nonholo_paper._claims import statement
 from nonholo_paper._finding import Measured
-from nonholo_paper._sleigh_twin import (
-    ALONG,
-    BODIES,
-    PLANE,
-    UNBALANCED,
-    Body,
-    momenta,
-    points,
-    pose,
-    poses,
-    rates,
-)
+from nonholo_paper._sleigh_twin import ALONG, BODIES, PLANE, UNBALANCED, Body, momenta, points, pose, poses, rates
 from nonholo_paper._twin import Number, ctx, worst
 from nonholo_paper.formulas import sleigh_continuous as formulas
 

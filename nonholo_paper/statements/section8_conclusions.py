@@ -9,16 +9,7 @@ import nonholo as nh
 from nonholo.discrete import BranchGrowth
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo_paper import _twin as twin
-from nonholo_paper._bodies import (
-    ANY_4,
-    BALANCED_SLEIGH,
-    BALANCED_TOP,
-    SLEIGH,
-    TOP,
-    Body,
-    displacements,
-    velocities,
-)
+from nonholo_paper._bodies import ANY_4, BALANCED_SLEIGH, BALANCED_TOP, SLEIGH, TOP, Body, displacements, velocities
 from nonholo_paper._claims import statement
 from nonholo_paper._finding import Measured
 from nonholo_paper._twin import Matrix, Number, ctx

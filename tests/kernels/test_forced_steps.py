@@ -8,10 +8,7 @@ from bodies import GENERAL
 import nonholo as nh
 from nonholo import kernels
 from nonholo.kernels._scalar import corrections, residual
-from nonholo.kernels.forced._kick import (
-    to_body,
-    turn_weight,
-)
+from nonholo.kernels.forced._kick import to_body, turn_weight
 from nonholo.systems import AbstractSystem
 
 BODIES: dict[str, tuple[AbstractSystem, list[float]]] = {

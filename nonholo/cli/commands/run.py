@@ -63,8 +63,7 @@ def simulate(
 
 
 Source = Annotated[
-    str,
-    typer.Argument(metavar="[SCENARIO | STORE]", help="A scenario, or a store of `nonholo simulate`."),
+    str, typer.Argument(metavar="[SCENARIO | STORE]", help="A scenario, or a store of `nonholo simulate`.")
 ]
 Page = Annotated[Path | None, typer.Option("-o", "--output", metavar="FILE", help="Where to write the page.")]
 

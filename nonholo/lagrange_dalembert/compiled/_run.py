@@ -18,13 +18,7 @@ from numba.core.registry import cpu_target
 from nonholo.base.compiled import FUNCTION
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array
-from nonholo.kernels import (
-    CoordinateBody,
-    advance_coordinates,
-    each_root,
-    each_row,
-    set_out_coordinates,
-)
+from nonholo.kernels import CoordinateBody, advance_coordinates, each_root, each_row, set_out_coordinates
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import _newton
 from nonholo.lagrange_dalembert._functions import ROWS, compiling

@@ -25,13 +25,7 @@ from nonholo.simulation._options import stepper_of
 from nonholo.simulation._run import Run, run_to_end
 from nonholo.simulation._search import Watch
 from nonholo.simulation.members._events import log_of, watched_block
-from nonholo.simulation.members._members import (
-    Members,
-    ScalarMembers,
-    in_lanes,
-    inertias_of,
-    refusal,
-)
+from nonholo.simulation.members._members import Members, ScalarMembers, in_lanes, inertias_of, refusal
 from nonholo.simulation.members._result import Ensemble, stack_rows
 from nonholo.simulation.members._start import Firsts, are_others
 from nonholo.systems import in_coordinates
