@@ -58,10 +58,9 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     momenta: ClassVar[tuple[str, ...]] = ("momentum", "body_velocity")
     _labels: ClassVar[Labels]
 
-    def __post_init__(self) -> None:
+    def _mark_impacts(self) -> None:
         """Impulses of steps with impacts are not known."""
-        super().__post_init__()
-        if self.events is not None and self.is_discrete and self.has_impacts.any():
+        if self.is_discrete and self.has_impacts.any():
             cut = self.has_impacts[: len(self.multipliers), None]
             object.__setattr__(self, "multipliers", np.where(cut, np.nan, self.multipliers))
 

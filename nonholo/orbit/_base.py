@@ -127,6 +127,11 @@ class AbstractOrbit(Keeper, abc.ABC):
                     object.__setattr__(self, "outcome", Outcome.nonfinite)
         if self.step is None or len(self.step) != len(self.time):
             object.__setattr__(self, "step", np.arange(0, self.save_every * len(self.time), self.save_every))
+        if self.events is not None:
+            self._mark_impacts()
+
+    def _mark_impacts(self) -> None:
+        """Mark what steps with impacts do not have."""
 
     @abc.abstractmethod
     def as_start(self) -> Any:

@@ -294,10 +294,10 @@ def one_by_one(run: Run, first: First, rows: int) -> Iterator[Any]:
 def _orbits(run: Run, start: Reached, rows: int) -> Iterator[Any]:
     with progress_bar("steps", run.progress) as report:
         for _, orbit, standing in blocks(run, run.plan(rows), start, report):
-            failed = run.throw and orbit.outcome != Outcome.successful
-            if len(orbit) or not failed:  # an event may end the motion before the first state of a block
+            raises = run.throw and orbit.outcome != Outcome.successful
+            if len(orbit) or not raises:  # an event may end the motion before the first state of a block
                 yield orbit
-            if failed:
+            if raises:
                 where = f"Step {standing.step + 1} of {run.steps} (time_step {run.stepper.motion.time_step:g})"
                 raise OutcomeError(orbit.outcome, where, orbit)
 
