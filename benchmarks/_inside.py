@@ -23,7 +23,6 @@ HOMES = {
     "best": "nonholo.analysis.steering._shooting",
     "continuation": "",  # of the tests
     "correction": "nonholo.kernels._scalar",
-    "each_row": "nonholo.kernels",
     "enclosures": "nonholo.discrete.certificate._certificate",
     "flow_by_diffrax": "nonholo.lagrange_dalembert._integration:flow",
     "flow_by_series": "nonholo.lagrange_dalembert.compiled._flow:flow",
@@ -37,7 +36,6 @@ HOMES = {
     "Located": "nonholo.discrete.certificate._certificate",
     "problem_of": "nonholo.discrete.certificate._roots",
     "published": "",  # of the tests
-    "programs": "nonholo.lagrange_dalembert.compiled._run",
     "transcription": "nonholo.analysis.steering:_transcription",
 }
 

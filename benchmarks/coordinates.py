@@ -1,9 +1,8 @@
 """Steps in coordinates by compiled formulas beside the loop in JAX: process time of runs of ready systems, in turns.
 
 Both must end at the same place. The first call is that of a process: it traces and compiles, for each system anew; the
-kernels are loaded. "Equations" is one evaluation of the scaled equations, of which a step takes two or three. Then
-flows over 20 units of time: Taylor series of the formulas to rounding, beside diffrax with a relative error of 1e-10,
-and how far each ends from diffrax with 1e-13.
+kernels are loaded. Then flows over 20 units of time: Taylor series of the formulas to rounding, beside diffrax with a
+relative error of 1e-10, and how far each ends from diffrax with 1e-13.
 
     python benchmarks/coordinates.py [--steps 20000] [--rounds 7] [--smoke]
 """
@@ -16,7 +15,7 @@ from typing import Any
 import numpy as np
 from _command import options as command
 from _command import small
-from _inside import advance, each_row, flow_by_diffrax, flow_by_series, in_double_precision, loop_in_jax, programs
+from _inside import advance, flow_by_diffrax, flow_by_series, in_double_precision, loop_in_jax
 
 import nonholo as nh
 
@@ -25,33 +24,20 @@ NAMES += ("roller_racer", "driven_sleigh", "chaotic_quartic_oscillator")
 STEP = 0.002
 
 
-def equations_time(system: Any, place: int) -> float:
-    """Return the microseconds of one evaluation of the equations."""
-    code = programs(system, (place,), system.dimension)
-    assert code is not None
-    size = system.dimension + system.constraints
-    inputs = np.ones((20000, code.settled + size))
-    results = np.empty((20000, size * size + 2 * size + 2))
-    each_row(code.correct, inputs, results)
-    start = time.process_time()
-    each_row(code.correct, inputs, results)
-    return (time.process_time() - start) / len(inputs) * 1e6
-
-
 def main() -> None:
     """Print a table."""
     parser = command(__doc__)
     parser.add_argument("--steps", type=int, default=small(20000, 20))
     parser.add_argument("--rounds", type=int, default=small(7, 1))
     options = parser.parse_args()
-    print("| system | n | JAX, us a step | compiled | ratio | equations | first call, s |")
-    print("| --- | ---: | ---: | ---: | ---: | ---: | ---: |")
+    print("| system | n | JAX, us a step | compiled | ratio | first call, s |")
+    print("| --- | ---: | ---: | ---: | ---: | ---: |")
     for name in small(NAMES, NAMES[:2]):
         ready = getattr(nh.examples, name)()
         system, h, counts = ready.system, np.float64(STEP), (np.int64(1), np.int64(options.steps))
         begin = time.process_time()
         how = {"configuration": ready.configuration, "body_velocity": ready.body_velocity}
-        orbit = nh.discretize(system, STEP).simulate(**how, steps=10)
+        orbit = nh.simulate(nh.discretize(system, STEP), **how, steps=10)
         first = time.process_time() - begin
         q = np.append(ready.configuration, 0.0) if system.is_driven else ready.configuration
         state, sign = (q, orbit.body_velocity[0], orbit.body_velocity[0]), np.float64(1)
@@ -75,7 +61,7 @@ def main() -> None:
                 spent.append((time.process_time() - begin) / options.steps * 1e6)
         jax, ours = map(statistics.median, times)
         ratio = statistics.median(a / b for a, b in zip(*times, strict=True))
-        cells = f"{jax:.2f} | {ours:.2f} | {ratio:.1f} | {equations_time(system, len(q)):.2f} | {first:.2f}"
+        cells = f"{jax:.2f} | {ours:.2f} | {ratio:.1f} | {first:.2f}"
         print(f"| {name} | {system.dimension} | {cells} |", flush=True)
     flows(options.rounds)
 

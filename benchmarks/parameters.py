@@ -47,8 +47,8 @@ def main() -> None:
     options = parser.parse_args()
     system = nh.LagrangeDAlembert(sleigh, blade, dimension=3, parameters={"mass": 1.0})
     fixed = nh.LagrangeDAlembert(lambda q, v: sleigh(q, v, {"mass": 1.0}), lambda q: blade(q, None), dimension=3)
-    first = [spent(lambda s=s: nh.discretize(s, STEP).simulate(**START, steps=100)) for s in (system, fixed)]
-    other = spent(lambda: nh.discretize(system.with_parameters(mass=2.0), STEP).simulate(**START, steps=100))
+    first = [spent(lambda s=s: nh.simulate(nh.discretize(s, STEP), **START, steps=100)) for s in (system, fixed)]
+    other = spent(lambda: nh.simulate(nh.discretize(system.with_parameters(mass=2.0), STEP), **START, steps=100))
     masses = np.linspace(0.5, 2.0, options.members)
     maps, starts = [nh.discretize(s, STEP) for s in (system, fixed)], np.tile(START["body_velocity"], (len(masses), 1))
     print(
@@ -58,7 +58,7 @@ def main() -> None:
     for steps in small((100, 2000), (10,)):
         run = {"configuration": START["configuration"], "body_velocity": starts, "steps": steps}
         many = nh.ensemble(maps[0], **run, parameters={"mass": masses})
-        alone = nh.discretize(system.with_parameters(mass=masses[3]), STEP).simulate(**START, steps=steps)
+        alone = nh.simulate(nh.discretize(system.with_parameters(mass=masses[3]), STEP), **START, steps=steps)
         assert np.array_equal(many.configuration[3, -1], alone.configuration[-1])
         kinds = [
             lambda run=run: nh.ensemble(maps[0], **run),

@@ -26,7 +26,10 @@ nitpicky = True
 nitpick_ignore_regex = [
     ("py:obj", ".*"),  # the default role of docstrings: a link where there is something to link to
     ("py:.*", r"(?!nonholo\b).*"),  # types of other libraries, whose inventories are elsewhere
-    ("py:class", r"nonholo\.((\w+\.)*_.*|base\.memo\..*)"),  # types that no room names
+    (
+        "py:class",
+        r"nonholo\.((\w+\.)*_.*|(base\.memo|ensembles\.distributions|plot\.sphere)\..*)",
+    ),  # that no room names
 ]
 
 html_theme = "pydata_sphinx_theme"

@@ -8,7 +8,7 @@ reflected momentum.
 import dataclasses
 import functools
 from collections.abc import Callable
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -138,6 +138,7 @@ SolverAt = Callable[[float], Callable[..., Solved]]
 """Gives what solves the equations with poses from a time on."""
 
 
+@runtime_checkable
 class Flights(Protocol):
     """The flows from states of a motion: of a system on a group, or in coordinates."""
 

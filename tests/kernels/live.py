@@ -1,6 +1,6 @@
 """Live motions that reach every compiled function: a program that prints the bits of each, or what each calls.
 
-python live.py bits   # a digest of the results of each run
+python live.py bits [NAME ...]   # a digest of the results of each run
 NUMBA_DISABLE_JIT=1 python live.py calls   # the functions that are called
 """
 
@@ -94,6 +94,11 @@ def _drag(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:  # noqa: ARG
 
 
 @numba.njit
+def _thrust(time: float, g: np.ndarray, w: np.ndarray) -> np.ndarray:  # noqa: ARG001
+    return 1e2 * np.abs(w) * w
+
+
+@numba.njit
 def _well(g: np.ndarray) -> float:
     return 0.2 * g[0, 1] * g[0, 1] + 0.1 * g[1, 2]
 
@@ -101,7 +106,7 @@ def _well(g: np.ndarray) -> float:
 def driven(system: Any) -> Arrays:
     """Run single orbits under functions that are compiled, where compilation is not turned off."""
     found = []
-    forces = _pushed, nh.Friction(np.linspace(0.1, 0.2, system.group.dim)), _drag
+    forces = _pushed, nh.Friction(np.linspace(0.1, 0.2, system.group.dim)), _drag, _thrust
     for force, scheme in itertools.product(forces, (None, "variational")):
         discrete = nh.discretize(nh.Forced(system, _well, force, scheme), STEP / 10)
         velocity = np.linspace(0.5, -0.3, system.rank)
@@ -183,6 +188,10 @@ RUNS: dict[str, Callable[[], Arrays]] = {
     "sleighs": lambda: members(SLEIGH),
     "own sleighs": lambda: members(SLEIGH, ("mass", "inertia")),
     "tops": lambda: members(TOP),
+    "sleighs of an oblique blade": lambda: members(
+        nh.LLSystem(nh.SE(2), np.diag([0.6, 0.7, 1.0]), annihilator=[[0.2, -0.6, 0.8]])
+    ),
+    "tops of an oblique axis": lambda: members(nh.LLSystem(nh.SO(3), TOP.mass_tensor, annihilator=[[1.0, 2.0, 2.0]])),
     "own tops": lambda: members(TOP, ("mass_tensor",)),
     "top": lambda: orbits(TOP),
     "sleigh": lambda: orbits(SLEIGH),
@@ -265,4 +274,5 @@ if __name__ == "__main__":
     if sys.argv[1] == "calls":
         sys.stdout.write(json.dumps(called()))
     else:
-        sys.stdout.write(json.dumps({name: digest(run()) for name, run in RUNS.items()}))
+        names = sys.argv[2:] or RUNS
+        sys.stdout.write(json.dumps({name: digest(RUNS[name]()) for name in names}))
