@@ -163,7 +163,7 @@ def test_a_sleigh_of_order_4_ends_at_a_fold_where_it_falls_too_fast(turned: floa
         run = nh.simulate(free, body_velocity=(0.0, share * fastest, 0.0), steps=3, throw=False)
         assert (len(run) > 3) == lasts
     heavy = nh.discretize(nh.Forced(system, nh.Gravity([0.4, 0.0], [0.5, 0.0])), h, order=4)
-    start = {"body_velocity": (1e-3, 0.99 * fastest, 0.0), "configuration": nh.SE(2).exp([turned, 0.0, 0.0])}
+    start = {"body_velocity": (1e-3, 0.99 * fastest, 0.0), "configuration": nh.SE(2).exp(np.array([turned, 0.0, 0.0]))}
     run = nh.simulate(heavy, **start, steps=100, throw=False)
     assert run.outcome == nh.Outcome.no_real_branch
     assert 0.998 < run.body_velocity[-1, 1] / fastest < 1
