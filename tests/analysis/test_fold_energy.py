@@ -155,6 +155,7 @@ def test_the_inner_displacement_is_not_unique_below_the_saddle() -> None:
     assert np.abs(limits.axis_after - nh.asymptotics(top.system).axis_after).max() <= 1e-14
 
 
+@pytest.mark.profile("routes", keep=["a little below", "a saddle, irregular"])
 @pytest.mark.parametrize("name", BODIES)
 def test_below_the_fold_every_principal_orbit_goes_on(name: str) -> None:
     """At 0.9999 of the energy 50 principal orbits continue; in the regular regime there is one inner value."""

@@ -57,6 +57,7 @@ def _swept(nonholo: Callable[..., Result], name: str, members: int) -> Any:
     return nh.load_sweep("s.zarr").load()
 
 
+@pytest.mark.profile("routes", instead="test_deviation_of_one_orbit")
 def test_turning_sweep_shows_the_closed_form(nonholo: Callable[..., Result]) -> None:
     """The lowest row deviates by h^2 J / (24 (1 + J)^2); below the bound no member is lost, most are above."""
     found = _swept(nonholo, "sleigh_turning_sweep", 400)
@@ -71,7 +72,7 @@ def test_turning_sweep_shows_the_closed_form(nonholo: Callable[..., Result]) -> 
     assert lost[~below].mean() > 0.5
 
 
-@pytest.mark.profile("problems", instead="test_turning_sweep_shows_the_closed_form")
+@pytest.mark.profile("problems", instead="test_deviation_of_one_orbit")
 def test_random_tops_keep_their_branch_below_the_saddle(nonholo: Callable[..., Result]) -> None:
     """No top whose energy is below its saddle loses its branch; of those above twice that, none keeps it."""
     found = _swept(nonholo, "random_tops_sweep", 100)

@@ -161,6 +161,7 @@ def test_lyapunov_is_the_growth_of_differences(discrete: nh.Discretization, star
         assert abs(exponent - wanted) < 1e-8  # differences: 1e-10 of the slopes, divided by a time of about one
 
 
+@pytest.mark.profile("routes", keep=["*-top"])
 @BOTH
 @pytest.mark.parametrize("size", [0.0, 1e-9, 1.0, 4.0])
 def test_tangents_are_derivatives_of_steps(discrete: nh.Discretization, size: float) -> None:

@@ -33,6 +33,7 @@ def _run(store: Path, **more: Any) -> nh.Orbit:
     return nh.simulate(SLEIGH, **RUN, **more, store=store)
 
 
+@pytest.mark.profile("faults", keep=["time*", "run/blocks/1*", "canonical*"])
 @pytest.mark.parametrize(
     ("one", "other"),
     [

@@ -85,6 +85,7 @@ def _bits(f: Quadratic, lanes: tuple[int, ...], expansion: int, state: np.ndarra
     return room.series.view(np.int64)
 
 
+@pytest.mark.profile("routes", keep=["top*"])
 @pytest.mark.parametrize(("name", "lanes"), cases(BODIES), ids=lambda x: x if isinstance(x, str) else str(len(x)))
 def test_emitted_code_has_the_bits_of_the_general_kernel(name: str, lanes: tuple[int, ...]) -> None:
     """At random states, with zeros of both signs, tiny and huge numbers, and at any order."""

@@ -96,6 +96,7 @@ def left(system: nh.LagrangeDAlembert, orbit: Any) -> float:
     return float((residual / (1 + np.abs(orbit.configuration).max(axis=1))).max())
 
 
+@pytest.mark.profile("routes", keep=["sleigh in a bowl"])
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_constraints_of_places_hold_at_every_node(name: str) -> None:
     """After 100,000 steps as after one: a residual is the rounding of the coordinates, and does not gather.

@@ -66,6 +66,7 @@ SYSTEMS: dict[str, Any] = {
 }
 
 
+@pytest.mark.profile("routes", keep=["contact-*"])
 @pytest.mark.parametrize("bounce", [1.0, 0.4])
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_reflection_is_that_of_the_impulses(name: str, bounce: float) -> None:

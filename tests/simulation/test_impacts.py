@@ -132,6 +132,7 @@ def test_impacts_are_values() -> None:
         assert np.array_equal(other.point, given.point)
 
 
+@pytest.mark.profile("routes", keep=["2-*"])
 @pytest.mark.parametrize("name", MOTIONS)
 @pytest.mark.parametrize("order", [2, 4])
 def test_energy_is_kept_over_impacts(name: str, order: int) -> None:
@@ -299,6 +300,7 @@ def test_motion_is_reversed() -> None:
     assert np.abs(back.restricted_momentum[::-1] + there.restricted_momentum).max() < 1e-12
 
 
+@pytest.mark.profile("routes", keep=["sleigh in a square"])
 @pytest.mark.parametrize("name", ["sleigh in a square", "top", "body in a cube", "disk in corners"])
 def test_thinned_iterated_and_stored_runs_have_the_same_bits(name: str, tmp_path: pathlib.Path) -> None:
     """Saved states, crossings and states after impacts do not depend on how a run is cut, kept and continued.

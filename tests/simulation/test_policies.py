@@ -99,6 +99,7 @@ def test_a_policy_in_coordinates_is_the_table_of_its_controls(name: str) -> None
     assert_same(nh.rollout(discrete, **start, controls=states.controls[:-1]), states)
 
 
+@pytest.mark.profile("routes", instead="test_a_policy_is_the_table_of_its_controls")
 def test_derivatives_of_a_closed_loop_agree_with_40_digits() -> None:
     """Gains, body, time step and start of a steered sleigh move its end as differences in 60 digits say."""
     (case,) = (case for case in golden("derivatives.json") if "gains" in case)
@@ -134,7 +135,7 @@ class Network(equinox.Module):
         return self.layers[1] @ jnp.tanh(self.layers[0] @ seen)
 
 
-@pytest.mark.profile("routes", instead="test_derivatives_of_a_closed_loop_agree_with_40_digits")
+@pytest.mark.profile("routes", instead="test_a_policy_is_the_table_of_its_controls")
 def test_a_network_learns() -> None:
     """The gradient by the weights of a pytree is that of the same weights captured, and a step along it gains."""
     rng, discrete = np.random.default_rng(0), nh.discretize(SLEIGH, 0.1)
