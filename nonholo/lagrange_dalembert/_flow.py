@@ -243,10 +243,9 @@ def reflection(orbit: Any, normal: Float[np.ndarray, "n"], bounce: float, direct
     """
     system, x = orbit.system, places(orbit.system, orbit.configuration, orbit.time)[0]
     w, push = in_double(_answer, system, x, orbit.momentum[0], normal)
-    rate = normal @ w
-    if not rate * direction > 0:
+    impulse = orbit.impulse_of_wall(normal @ w, normal @ push, bounce, direction)
+    if impulse is None:
         return None
-    impulse = -(1 + bounce) * rate / (normal @ push)
     p, v = orbit.momentum + impulse * normal, (w + impulse * push)[None]
     if orbit.is_discrete:
         return dataclasses.replace(orbit, momentum=p, body_velocity=v)

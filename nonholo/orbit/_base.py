@@ -158,6 +158,14 @@ class AbstractOrbit(Keeper, abc.ABC):
             None where the motion is not toward the wall.
         """
 
+    @staticmethod
+    def impulse_of_wall(rate: Any, response: Any, bounce: float, direction: int) -> Any:
+        """Return the size of the impulse along a normal from the rate of the gap and its change by a unit impulse.
+
+        None where the motion is not toward the wall.
+        """
+        return -(1 + bounce) * rate / response if rate * direction > 0 else None
+
     def refuse_reset(self, where: str) -> None:
         """Refuse impacts of motions that have no reflection in the energy."""
 

@@ -238,10 +238,10 @@ class Orbit(AbstractOrbit):
         system, g = self.system, self.configuration[0]
         nu = system.restrict_at(normal, g)
         push = system.restricted_velocity(nu, g)
-        rate = push @ self.restricted_momentum[0]
-        if not rate * direction > 0:
+        impulse = self.impulse_of_wall(push @ self.restricted_momentum[0], push @ nu, bounce, direction)
+        if impulse is None:
             return None
-        change = system.to_canonical(-(1 + bounce) * rate / (push @ nu) * nu)
+        change = system.to_canonical(impulse * nu)
         return dataclasses.replace(self, reduced_momentum=self.reduced_momentum + change)
 
     def at(self, times: Any) -> "Orbit":
