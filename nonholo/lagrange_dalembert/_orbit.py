@@ -61,8 +61,11 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     def _mark_impacts(self) -> None:
         """Impulses of steps with impacts are not known."""
         if self.is_discrete and self.has_impacts.any():
-            cut = self.has_impacts[: len(self.multipliers), None]
-            object.__setattr__(self, "multipliers", np.where(cut, np.nan, self.multipliers))
+            object.__setattr__(self, "multipliers", self._impulses(np.nan))
+
+    def _impulses(self, in_cut_steps: float) -> Float[np.ndarray, "L s"]:
+        """Return the multipliers with a number in place of those of steps with impacts."""
+        return np.where(self.has_impacts[: len(self.multipliers), None], in_cut_steps, self.multipliers)
 
     @abc.abstractmethod
     def _configurations(self) -> str:
@@ -117,9 +120,8 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     def rows(self) -> dict[str, np.ndarray]:
         """Return the arrays with a row for each state; impulses that are not known are NaN, in cut steps zero."""
         missing = np.full((len(self) - len(self.multipliers), self.multipliers.shape[1]), np.nan)
-        impulses = np.where(self.has_impacts[: len(self.multipliers), None], 0.0, self.multipliers)
         arrays = {name: rows for name in _ROWS if (rows := getattr(self, name)) is not None}
-        return arrays | {"multipliers": np.concatenate([impulses, missing])}
+        return arrays | {"multipliers": np.concatenate([self._impulses(0.0), missing])}
 
     def of_rows(self, rows: dict[str, np.ndarray]) -> Self:
         """Return the orbit of such arrays, without the impulse of the last state if it is not known."""
