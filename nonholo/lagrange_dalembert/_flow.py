@@ -141,7 +141,7 @@ class Flights(NamedTuple):
     """The flows from states of a motion.
 
     Attributes:
-        system: What moves.
+        system: The system.
         errors: Relative and absolute errors of a step.
     """
 
@@ -150,13 +150,12 @@ class Flights(NamedTuple):
 
     def fly(self, there: Any, elapsed: np.ndarray) -> tuple[Any, Outcome, str]:
         """Return the flow from a state up to times since then where it is looked at, the outcome and what it says."""
-        times = float(there.time[0]) + np.union1d(0.0, elapsed)
         try:
-            orbit, outcome = solve(self.system, _state_of(there), times, *self.errors), Outcome.successful
+            orbit = solve(self.system, _state_of(there), there.time[0] + np.union1d(0.0, elapsed), *self.errors)
         except OutcomeError as early:
-            orbit, outcome = cast(Any, early.orbit), early.outcome
+            orbit = cast(Any, early.orbit)
         looks = orbit.solution.looks()
-        return orbit.at(np.union1d(orbit.time, looks[looks < orbit.time[-1]])), outcome, ""
+        return orbit.at(np.union1d(orbit.time, looks[looks < orbit.time[-1]])), orbit.outcome, ""
 
     def joined(self, begins: list[Any], until: float) -> dict[str, Any]:
         """Return the motion from several states, each up to the next one."""
