@@ -130,8 +130,8 @@ def page(found: dict[str, Any], fuzz: dict[str, Any]) -> str:
 def _part(name: str, part: dict[str, str] | None) -> str:
     if part is None:
         return f"Not run: `python benchmarks/figures.py --parts {name}`."
-    shown = f"```text\n{part['text']}\n```" if name in TIMED and name != "tables" else part["text"]
-    return f"{part['about']}\n\n{shown}"
+    table = f"```text\n{part['text']}\n```" if name in TIMED and name != "tables" else part["text"]
+    return f"{part['about']}\n\n{table}"
 
 
 def _api(found: dict[str, Any]) -> str:
