@@ -78,8 +78,9 @@ def flow(
        g' = g\,\hat\omega, \qquad p = \mathbb{I}\omega. $$
 
     The default is a Taylor series, because the equations are quadratic in velocity and pose. Steps do not depend on the
-    requested times, where the series are evaluated, and are exact to rounding unless `rtol` allows more. With "closed_form" the
-    momentum along the constraint is $r_\perp\,\mathrm{sech}\,s + r_\parallel\tanh s$, $s = s_0 + \nu t$, exact.
+    requested times, where the series are evaluated, and are exact to rounding unless `rtol` allows more. With
+    "closed_form" the momentum along the constraint is
+    $r_\perp\,\mathrm{sech}\,s + r_\parallel\tanh s$, $s = s_0 + \nu t$, exact.
     Heading and path of the sleigh are exact too (a hypergeometric function); the pose of the top is a quadrature.
 
     For a `Forced` system the force -dU + f is added to ad*. With `Gravity` and `Friction`, and a constraint fixed in
