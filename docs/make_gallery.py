@@ -119,14 +119,14 @@ _TEXT = """\
 <!-- written by docs/make_gallery.py -->
 # Gallery
 
-Each picture is drawn by a script, which a click opens. Each script measures a number that theory knows, and tests
-compare the two. The same in a terminal: `python docs/make_gallery.py sleigh_cusp`.
+Each picture is drawn by a script, which a click opens. Each script measures a number with a known theoretical value,
+and tests compare the two. The same in a terminal: `python docs/make_gallery.py sleigh_cusp`.
 
 {cards}
 
 ## Studies
 
-A click leads to the page that tells what is to be seen.
+A click opens the page that explains the picture.
 
 {studies}
 

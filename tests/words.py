@@ -25,7 +25,6 @@ GENERATED = re.compile(
     r"api/.*|reference/(?!symbols).*|gallery/README\.md|(errata|paper|project/figures|tests)\.md"
 )  # by scripts
 NO_PROSE = {"references.md", "project/migration.md"}
-KERNELS = ("nonholo/kernels/", "nonholo/base/compiled/", "nonholo/base/numerics/")  # whose text names the library
 MOST = 80_000
 
 
@@ -78,8 +77,7 @@ def complaints(root: Path = ROOT) -> list[str]:
 
 def in_library(name: str) -> bool:
     """Return whether a file is code of the library with prose to check."""
-    is_code = name.startswith(("nonholo/", "nonholo_paper/")) and name.endswith((".py", ".pyi"))
-    return is_code and not name.startswith(KERNELS)
+    return name.startswith(("nonholo/", "nonholo_paper/")) and name.endswith((".py", ".pyi"))
 
 
 def strings(text: str) -> Iterator[tuple[int, str]]:

@@ -1,4 +1,4 @@
-"""A snakeboard without a rider: it runs until its wheels are crossed, and the map says so."""
+"""A snakeboard without a rider: it runs until its wheels are crossed, and the map reports the reason."""
 
 from functools import cache
 

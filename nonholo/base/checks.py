@@ -475,7 +475,7 @@ def energies(where: str, value: Any) -> Array:
 
 def flow_times(value: Any) -> Array:
     """Return the times of a flow: at least one, in strict order, in either direction."""
-    where, remedy = "flow(times=...)", "Sort the times; the start is at the first."
+    where, remedy = "flow(times=...)", "Sort the times. The motion starts at the first one."
     times = array(where, value, (None,), "Pass a sequence of times.")
     if times.size == 0:
         raise error(where, "hold at least one time", "none", "Pass the time of the start first.")

@@ -41,11 +41,12 @@ OUTCOMES = tuple(Outcome)
 _MESSAGES = {
     Outcome.successful: "Every step succeeded.",
     Outcome.no_real_branch: (
-        "The branch ends before it reaches this momentum: it folds, and has no real next point (or a branch rule found "
-        "none). The map is multivalued and folds at large step angles. Try a smaller time_step or a slower motion."
+        "The branch folds before it reaches this momentum, so the next step has no real solution. A branch rule may "
+        "also have found none. The map is multivalued and folds at large step angles. Try a smaller time_step or a "
+        "slower motion."
     ),
     Outcome.branch_unverified: (
-        "A root was found, but it could not be verified to be the one that the branch rule means: it lies on another "
+        "A root was found, but it could not be verified as the root that the branch rule selects: it lies on another "
         "branch, it ties with one, or the path to it runs through a singular point. Try a smaller time_step. "
         "From a displacement off the principal branch branch='nearest' continues."
     ),
@@ -62,8 +63,8 @@ _MESSAGES = {
         "Try a smaller time_step or other units."
     ),
     Outcome.no_half_impulse: (
-        "No half impulse of the force was found: at the velocity in the middle of it the force has to give that same "
-        "impulse. A force that grows faster than the velocity, or jumps, may have none over half a step. "
+        "The implicit equation for the half impulse of the force has no solution: the force at the velocity in the "
+        "middle must equal that impulse. A force that grows faster than the velocity, or jumps, may have none. "
         "Try a smaller time_step, or a force that is continuous."
     ),
     Outcome.lasting_contact: (

@@ -89,7 +89,7 @@ class ContinuousFlow(AbstractMotion):
         """Return the states at any times of the span."""
         if self.span is None or self.solution is None:
             remedy = "Solve it again: flow(orbit.system, ...)."
-            raise error("Orbit.at(...)", "know more than its states", "a flow from a file", remedy)
+            raise error("Orbit.at(...)", "contain its series", "a flow from a file, which has only states", remedy)
         time, order = times_within(self.span, times)
         there = self.solution(time[order] - self.span[0]).chosen(np.argsort(order))
         rows: dict[str, Any] = {"reduced_momentum": there.momenta}

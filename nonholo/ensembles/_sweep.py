@@ -33,8 +33,8 @@ def sweep(
     """Run a task for every member of a design and keep its results in one store.
 
     The result does not depend on blocks, workers or interruptions: members take their random numbers by their
-    index. `outcome` has the end of each member; a member for which the task raises has
-    no numbers (NaN, the least integer) and the outcome 100, and the others are done.
+    index. `outcome` records how each member ended. If the task raises for a member, its
+    numbers are missing (NaN, the least integer) and its outcome is 100. The other members run.
 
     Args:
         task: An `EnsembleTask`, or a function of a `MemberBlock` that returns a dictionary of arrays with a leading
@@ -57,7 +57,7 @@ def sweep(
     Raises:
         ValueError: A bad argument, a path with the suffix of another format, or a task that raises for every member
             tried, before anything is written; with `resume` a task or design that differs from the store's; the
-            message has the difference.
+            message shows the difference.
         FileExistsError: The path exists.
         BlockingIOError: Another process is writing the store; the message names it.
         OSError: The disk is full, or a worker process was killed; the store stays valid, and `resume` continues.

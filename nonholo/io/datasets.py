@@ -200,10 +200,12 @@ def layout(group: AbstractMatrixGroup) -> tuple[list[str], list[str]]:
     kind, n = text["group"], text.get("n", 0)
     if kind == "Translations":
         return _numbers(n), []
-    position = [] if kind != "SE" else list("xyz"[:n]) if n <= 3 else _numbers(n)
+    if kind not in ("SO", "SE"):
+        return [], _entries(group.size)
+    position = [] if kind == "SO" else list("xyz"[:n]) if n <= 3 else _numbers(n)
     if (kind, n) == ("SE", 2):
         return position, HEADING
-    return position, QUATERNION if n == 3 else _entries(n or group.size)
+    return position, QUATERNION if n == 3 else _entries(n)
 
 
 def _numbers(n: int) -> list[str]:

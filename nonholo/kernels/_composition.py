@@ -1,12 +1,12 @@
 r"""Compositions of the step: one long step made of substeps $\gamma_i h$ of either sign (docs/theory/compositions.md).
 
-Momenta are in units of the displacement of the long step, $m = h\,r/2$ or whatever its body has; a substep sees
+Momenta are in units of the displacement of the long step, $m = h\,r/2$ or another unit of its body; a substep sees
 $\gamma_i m$ and changes m by the increment over $\gamma_i$. A state counts as good when the whole step that starts
 there was taken, so the state of a run holds the present state and the one after it. It is one array: momenta (k),
 pose, then momenta (k), compensations (k) and pose after the step, then the last three roots of each substep.
 
 The pieces of a substep (a root over given momenta, the push and the move at that root) are the same for every body,
-chosen by its type; numba chooses when it compiles. Tops in space and sleighs in the plane have loops of their own, here
+chosen by its type; numba chooses when it compiles. Tops in space and sleighs in the plane have separate loops, here
 and in `forced`, where no function is called.
 """
 

@@ -120,7 +120,7 @@ def floor_of(m: np.ndarray) -> float:
 
 @scalar
 def converged(d1: float, d2: float, y1: float, y2: float) -> bool:
-    """Tell whether a correction that led to y was so small that the next one would be below rounding."""
+    """Return whether a correction that led to y was so small that the next one would be below rounding."""
     return d1 * d1 + d2 * d2 <= 1e-18 * (1 + y1 * y1 + y2 * y2)
 
 

@@ -1,9 +1,9 @@
 """The compiled loop over members: blocks of 32, in loops over the block that the compiler turns into vectors.
 
 A block is one array of rows of 32 numbers, one number for each member: offsets between rows are then constants, so that
-the compiler sees that rows do not overlap. Every member takes the steps that it would take alone, whatever the others
-do: its corrections end when it has converged, and a root that is not certain goes to the scalar `principal`. Since
-arithmetic is strict, its bits are those that it has in `_driver`.
+the compiler sees that rows do not overlap. Every member takes the steps that it would take alone, independent
+of the others: its corrections end when it has converged, and a root that is not certain goes to the scalar
+`principal`. Since arithmetic is strict, its bits are those that it has in `_driver`.
 """
 
 from typing import Any, NamedTuple, TypeAlias
@@ -117,7 +117,7 @@ def _own(body: type[Body]) -> Any:
 
 
 def _is_none(kind: Any) -> bool:
-    """Tell whether a type of numba is that of None."""
+    """Return whether a type of numba is that of None."""
     from numba import types
 
     return isinstance(kind, types.NoneType)

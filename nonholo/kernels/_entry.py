@@ -1,4 +1,4 @@
-"""The compiled runs, whatever the body: what each kind of body has, in one table."""
+"""The compiled runs of all bodies, one table for each kind of body."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple

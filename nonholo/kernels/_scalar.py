@@ -101,7 +101,7 @@ def corrections(p: Body, m1: Any, m2: Any, y1: Any, y2: Any) -> tuple[Any, Any, 
 
 
 def is_certain(p: Body, m1: Any, m2: Any, y1: Any, y2: Any) -> Any:
-    """Tell whether a root y is certainly the principal one."""
+    """Return whether a root y is certainly the principal one."""
     return _file_of(type(p)).is_certain(p, m1, m2, y1, y2)
 
 

@@ -87,7 +87,7 @@ def slopes(p: SleighBody, m1: Any, m2: Any, y1: Any, y2: Any) -> tuple[Any, Any,
 
 @scalar
 def is_certain(p: SleighBody, m1: float, m2: float, y1: float, y2: float) -> bool:
-    """Tell whether a root is certainly the principal one: on the middle sheet, turning by at most 120 degrees."""
+    """Return whether a root is certainly the principal one: on the middle sheet, turning by at most 120 degrees."""
     return (slope(p, m1, m2, y1) >= 0) & (y1 * y1 <= 3) & (y1 * m1 >= 0)
 
 
@@ -157,6 +157,6 @@ def _far_slide(p: SleighBody, m1: float, t: float) -> float:
 
 @scalar
 def _passes_the_cusp(p: SleighBody, m1: float, hat: float) -> bool:
-    """Tell whether the segment from (0, 2 m a^2) to (m1, hat), m1 >= 0, passes outside the upper right cusp."""
+    """Return whether the segment from (0, 2 m a^2) to (m1, hat), m1 >= 0, passes outside the upper right cusp."""
     start = 2 * p.mass * p.a * p.a
     return 3 * sqrt(3.0) * (hat - start) - (1 - 4 * start / p.inertia) * m1 > 0

@@ -1,7 +1,7 @@
 """Linear algebra of matrices without calls of libraries and without allocations.
 
-Libraries may cut a product otherwise in other numbers of threads. Every sum here runs over rising indices, whatever
-the order of the loops.
+Libraries may cut a product otherwise in other numbers of threads. Every sum here runs over rising indices, in
+any order of the loops.
 """
 
 import numpy as np

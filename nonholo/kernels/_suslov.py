@@ -127,7 +127,7 @@ def corrections(p: SuslovBody, m1: float, m2: float, y1: float, y2: float) -> tu
 
 @scalar
 def is_certain(p: SuslovBody, m1: float, m2: float, y1: float, y2: float) -> bool:
-    """Tell whether a root is certainly the principal one: it lies in the disc that no fold reaches."""
+    """Return whether a root is certainly the principal one: it lies in the disc that no fold reaches."""
     return y1 * y1 + y2 * y2 <= p.certain
 
 

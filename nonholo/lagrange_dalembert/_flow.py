@@ -283,7 +283,7 @@ def work(orbit: Any) -> Float[np.ndarray, "K"]:
     if system.table is not None:
         if orbit.lacks_forces:
             got = f"steps {orbit.step[:3].tolist()} ... with a force for each step"
-            raise error("Orbit.work", "know every step", got, "Run with save_every=1.")
+            raise error("Orbit.work", "contain every step", got, "Run with save_every=1.")
         rows = system.table.acting(orbit.step)
         before, after = _powers(system, x, p, rows), _powers(system, x, p, np.roll(rows, 1, axis=0))
     else:

@@ -77,17 +77,18 @@ def flow(
     $$ p' = \mathrm{ad}^*_\omega p + \sum_j \lambda_j a^j, \qquad \langle a^j, \omega\rangle = 0, \qquad
        g' = g\,\hat\omega, \qquad p = \mathbb{I}\omega. $$
 
-    By default by Taylor series: the equations are quadratic in velocity and pose. Steps do not depend on the requested
-    times, where the series are evaluated, and are exact to rounding unless `rtol` allows more. With "closed_form" the
-    momentum along the constraint is $r_\perp\,\mathrm{sech}\,s + r_\parallel\tanh s$, $s = s_0 + \nu t$, exact.
+    The default is a Taylor series, because the equations are quadratic in velocity and pose. Steps do not depend on the
+    requested times, where the series are evaluated, and are exact to rounding unless `rtol` allows more. With
+    "closed_form" the momentum along the constraint is
+    $r_\perp\,\mathrm{sech}\,s + r_\parallel\tanh s$, $s = s_0 + \nu t$, exact.
     Heading and path of the sleigh are exact too (a hypergeometric function); the pose of the top is a quadrature.
 
     For a `Forced` system the force -dU + f is added to ad*. With `Gravity` and `Friction`, and a constraint fixed in
     the body, the series solve it too; if friction is much faster than the motion, Radau of SciPy does, with `rtol` of
-    1e-9 and more. Other forces are integrated by DOP853, with `rtol` of 1e-13 and more. These two also give the states
-    between.
+    1e-9 and more. Other forces are integrated by DOP853, with `rtol` of 1e-13 and more. `Orbit.at` works with these
+    two solvers too.
 
-    The docstring of `LagrangeDAlembert` has its equations. It starts at a `configuration`, and takes neither
+    `LagrangeDAlembert` documents its equations. Such a flow starts at a `configuration`, and takes neither
     `restricted_velocity` nor `method`. The acceleration comes from the constraint differentiated once, a holonomic one
     twice; velocities and places are projected to the constraints, orthogonally in the kinetic energy, at each requested
     time. Smooth formulas have Taylor series too; with kinks, as an absolute value has, diffrax solves them.
@@ -105,8 +106,8 @@ def flow(
         rtol: Relative error of a step, at least 1e-14, which is the default; with "diffrax" 1e-10.
         atol: Absolute error of a step with "diffrax". Smaller components are not resolved there: a solution that starts
             so near a repelling equilibrium leaves it at the wrong time.
-        method: None (numerical), without forces also "closed_form" or "diffrax": numerical too, by JAX, from the extra
-            `jax`.
+        method: None for the solver described above. Without forces also "closed_form", or "diffrax" (numerical, needs
+            the extra `jax`).
         reconstruct: Also keep poses. Without them momenta of tops and sleighs cost O(n) operations a Taylor
             coefficient, and nothing of size n x n is made.
         events: `Event`s, or functions of an orbit, whose changes of sign from one requested time or step of the series

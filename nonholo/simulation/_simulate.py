@@ -47,7 +47,8 @@ def simulate(
     "matrix" all values are known: "smallest" and "largest" take the real one with the least or the largest norm of the
     full momentum, "inner" and "outer" the one in that part of the invariant curve (n = 3 and det B > 2|c|^2, below the
     saddle's energy; the nearest of three). A function `rule(found, present)` gets the `Branches` and the present W, and
-    returns the index of a real one or None. A tie and a double root are `branch_unverified`.
+    returns the index of a real one or None. A tie or a double root ends the run with
+    `branch_unverified`.
 
     A discretized `LagrangeDAlembert` runs its own map. It starts at a
     `configuration`, its q_0, and takes neither `restricted_velocity` nor `branch`, `reconstruct` and `backend`.
@@ -66,7 +67,8 @@ def simulate(
         project: Start at the admissible configuration and `body_velocity` next to the given ones in the kinetic energy.
         save_every: Steps between saved states.
         branch: Which value of the map a step takes: "principal", "nearest", "smallest", "largest", "inner", "outer" or
-            a function; see above. A velocity or restricted momentum starts at the principal W_0 with every rule.
+            a function; see above. A start from a velocity or a restricted momentum uses the principal W_0
+            under every rule.
         reconstruct: Also compute poses.
         backend: "numba" (closed forms, compiled), "jax" (the definition), or "auto" to choose.
         events: `Event`s, or functions of an orbit, whose changes of sign are found at every single step and located

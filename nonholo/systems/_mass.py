@@ -245,7 +245,7 @@ def possible(where: str, mass_tensor: Float[Array, "n n"], depth: int = 3) -> Fl
         return mass_tensor
     eigenvalues = np.linalg.eigvalsh(mass_tensor)
     if eigenvalues[0] < -_ROUNDING * np.abs(eigenvalues).max():
-        message = f"`{where}` is of no distribution of mass: the mass tensor has the eigenvalue {eigenvalues[0]:.6g}."
+        message = f"No distribution of mass has `{where}`: its mass tensor has the eigenvalue {eigenvalues[0]:.6g}."
         remedy = "No principal moment of inertia is larger than the other two together. Check the numbers."
         warnings.warn(f"{message} {remedy}", ImpossibleBodyWarning, stacklevel=depth)
     return mass_tensor

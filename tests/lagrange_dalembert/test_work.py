@@ -93,5 +93,5 @@ def test_a_table_belongs_to_steps() -> None:
     empty = np.zeros((3, 1))
     numbers = (empty, None, empty, empty, empty[:, :0], np.zeros(3), np.zeros(3))
     thinned = nh.lagrange_dalembert.CoordinateOrbit(np.array([0.0, 0.2, 0.4]), *numbers, system=body, time_step=0.1)
-    with pytest.raises(ValueError, match=r"Orbit.work` must know every step. Got steps .* Run with"):
+    with pytest.raises(ValueError, match=r"Orbit.work` must contain every step. Got steps .* Run with"):
         _ = thinned.work

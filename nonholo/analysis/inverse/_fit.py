@@ -129,16 +129,16 @@ def fit(
     matrix H over them. The model is the discrete map, which misses the continuous motion by $O(h^2)$: a time step that
     is a part of that of the samples makes this small.
 
-    The numbers that the fit takes from a small kind (seven headings), and the uncertainty of its level, are counted: by
-    Kenward and Roger in the covariance, by Satterthwaite in the `degrees` of freedom of the intervals. The search stays
-    among parameters of which `system_of` makes a body, and says in `Fit.outcome` where it ended.
+    For small samples of a kind (seven headings) the covariance has the correction of Kenward and Roger, and the
+    `degrees` of freedom of the intervals follow Satterthwaite's formula. The search uses only parameters for which
+    `system_of` returns a body. `Fit.outcome` records how it ended.
 
-    A free motion does not know its unit of mass: fix one mass, or the fit is refused as undetermined.
+    A free motion does not determine the unit of mass. Fix one mass; otherwise the fit raises an error.
 
-    In coordinates the positions x and y, and z, are one kind, each other coordinate is one by its name, and the heading
-    counts up to full turns. A coordinate that is not measured may have any value, and its first one is fitted;
-    coordinates that the equations do not contain, and nobody measured, begin at 0. A start is a first configuration and
-    a first momentum; forces and prescribed motions see time 0 at the first sample.
+    In coordinates x, y and z form one kind. Every other coordinate is a separate kind. The heading counts up to full
+    turns. A coordinate that is not measured may have any value, and its first one is fitted; coordinates that are
+    neither measured nor contained in the equations begin at 0. A start is a first configuration and a first momentum.
+    For forces and prescribed motions, time 0 is the first sample.
 
     Args:
         system_of: Makes the system, with a left-invariant constraint on SE(2), SO(3) or SE(3), from the parameters by
@@ -148,7 +148,7 @@ def fit(
             header, or a list of such trials. Columns: `t`; `x`, `y`, (`z`); `theta` or `heading` in the plane, `qw`,
             `qx`, `qy`, `qz` or `quaternion` in space; angular velocities in the body `omega`, or `omega_x`, `omega_y`,
             `omega_z`; in coordinates the names of the coordinates. NaN marks what was not measured, and kinds may have
-            different rates. Positions alone tell the pose of a body in the plane that moves forward; without poses,
+            different rates. Positions alone determine the pose of a body that moves forward in the plane; without poses
             trials start at the identity. A CSV file has at most 256 MB.
         guess: The parameters to begin with, numbers or arrays.
         time_step: h; by default the smallest time between two samples. Samples lie on multiples of it.
@@ -163,8 +163,8 @@ def fit(
         The fitted body with its uncertainty.
 
     Raises:
-        ValueError: Measurements that are none, do not lie on steps or need more memory than there is, a guess without
-            a motion or beyond its bounds, parameters, or noise of a kind, that the measurements do not determine.
+        ValueError: The measurements are empty, do not lie on time steps, or do not fit in memory. The guess has no
+            motion or violates its bounds. The measurements do not determine a parameter or a noise level.
 
     Sources: [patterson-thompson-1971], [kenward-roger-1997], [satterthwaite-1946], [huber-1981].
 

@@ -1,6 +1,6 @@
 """The kernels' decorator: a kernel runs from the library that was compiled ahead, else by numba, else as it is.
 
-What kernels tell numba about themselves waits until numba is needed: a process that the library serves never loads it.
+Declarations for numba wait until numba is needed: a process that the library serves never loads it.
 """
 
 import ctypes
@@ -43,9 +43,9 @@ DTYPES = {letter: np.dtype(kind) for letter, kind in {"d": np.float64, "q": np.i
 """The numbers of arrays, by the letter of a key."""
 _LETTERS = {numbers.str: letter for letter, numbers in DTYPES.items()}
 _WAYS = ("library", "numba", "python")
-_FAILED = "The kernel {} failed: the memory is full, or a size is too large. NONHOLO_KERNELS=python says where."
+_FAILED = "The kernel {} failed: the memory is full, or a size is too large. NONHOLO_KERNELS=python shows the line."
 DATA, AXES, SHAPE, ABOUT, FLAGS = 16, 24, 32, 56, 64
-"""Where an array, and what it says about its numbers, have their fields: part of NumPy's binary interface."""
+"""Places of the fields of an array and of its type of numbers: part of NumPy's binary interface."""
 LETTER, ORDER, SIZE = 24, 26, 40
 ORDERED = 0x101  # in C order, and aligned
 
@@ -80,7 +80,7 @@ class Kernel:
         self._body: tuple[Any, Any, list[Any]] = (), None, []
 
     def __call__(self, *arguments: Any) -> Any:
-        """Run it by the first way that there is."""
+        """Run it by the first available way."""
         code = library_of_kernels()
         if code is None:
             return self.dispatcher(*arguments)
@@ -299,7 +299,7 @@ def symbol_of(name: str, key: str) -> str:
 
 
 def _is_wide() -> bool:
-    """Tell whether the processor has vectors of eight numbers."""
+    """Return whether the processor has vectors of eight numbers."""
     try:
         return "avx512f" in Path("/proc/cpuinfo").read_text(encoding="utf-8")
     except OSError:
@@ -356,7 +356,7 @@ def _by_numba() -> Any:
 
 
 def _has_known_arrays() -> bool:
-    """Tell whether arrays have their fields where the library looks for them; another Python may not."""
+    """Return whether arrays have their fields where the library looks for them; another Python may not."""
     array = np.zeros((2, 3))
     fields = ctypes.cast(id(array), ctypes.POINTER(ctypes.c_int64))
     axes, flags = (ctypes.c_int32.from_address(id(array) + place).value for place in (AXES, FLAGS))

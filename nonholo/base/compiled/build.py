@@ -1,8 +1,8 @@
 r"""The kernels compiled ahead: a library for a processor, for arguments of known kinds.
 
 `ahead.txt` names them, a kernel and the kinds of its arguments a line, as `nonholo.base.compiled.spread` gives them.
-numba types and lowers each as it does for a process of its own. Or a line names a function that writes LLVM code, and
-what for. llvmlite makes objects of that, a linker a library.
+numba types and lowers each as in a process that calls it. Or a line names a function that writes LLVM code, and
+its purpose. llvmlite makes objects of this code, a linker a library.
 Arithmetic is strict everywhere, so the numbers are the same to the last bit.
 
     python -m nonholo.base.compiled.build FOLDER [MACHINE...]
@@ -105,7 +105,7 @@ def _parts(kind: Any) -> list[Any]:
 
 
 def flat(kernel: compiled.Kernel, kinds: list[Any]) -> tuple[Any, list[str]]:
-    """Return a kernel as a function of two addresses, for numba to compile, and where it says what it returns."""
+    """Return a kernel as a function of two addresses, for numba to compile, and a list for the kinds of its results."""
     returns: list[str] = []
     options: Any = {name: option for name, option in kernel.options.items() if name != "inline"}
     function: Any = numba.njit(**options)(kernel.py_func) if "inline" in kernel.options else kernel
@@ -157,7 +157,7 @@ def _field(builder: Any, record: Any, at: int, kind: Any) -> Any:
 
 
 def _fits(builder: Any, kind: Any, word: Callable[[], Any]) -> Any:
-    """Tell whether arrays have the axes, numbers and order that a kernel is compiled for."""
+    """Return whether arrays have the axes, numbers and order that a kernel is compiled for."""
     if isinstance(kind, types.BaseTuple):
         each = [_fits(builder, part, word) for part in _parts(kind)]
         return functools.reduce(builder.and_, each, ir.IntType(1)(1))

@@ -5,7 +5,7 @@ object for wasm32, and `module_of` makes that a module that can be instantiated.
 and a module may import no function, so its numbers are those of Python to the last bit. Arrays are made in the first
 48 KiB of the memory (`webassembly.ll`).
 
-An export section is all that an object with one global function lacks. Its indices are already those of its own
+An export section is all that an object with one global function lacks. Its indices already belong to the object's
 tables; what a linker would change are addresses of data and of functions in tables, and calls of functions elsewhere.
 An object that has any of these is refused.
 

@@ -151,7 +151,7 @@ def _repeat(function: Callable[[Any], Any], times: int, state: Any) -> Any:
 def of_skew(X: Float[np.ndarray, "... n n"], function: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
     r"""Return a function f of skew-symmetric matrices with eigenvalues $\pm i\theta$, real if $f(\bar z) = \bar f(z)$.
 
-    `function` takes $\theta$ and returns $f(i\theta)$. The error is rounding of the largest value, whatever the angles,
+    `function` takes $\theta$ and returns $f(i\theta)$. The error is rounding of the largest value for all angles,
     because the eigenvectors are orthonormal. NumPy only: eigenvectors have no derivative where angles coincide.
 
     Example:
@@ -286,7 +286,7 @@ def _mean(block: Float[np.ndarray, "m m"]) -> float:
 
 
 def _is_nilpotent(block: Float[np.ndarray, "m m"], rounding: float) -> bool:
-    """Tell whether the eigenvalues of a block with trace 0 are all zero, up to a change of its entries."""
+    """Return whether the eigenvalues of a block with trace 0 are all zero, up to a change of its entries."""
     size = np.linalg.norm(block)
     squares = abs(np.trace(block @ block)) / 2
     return bool(squares <= rounding * size and abs(np.linalg.det(block)) <= rounding * size ** (len(block) - 1))

@@ -14,7 +14,7 @@ def applied(matrix: Inexact[Array, "... i j"], vectors: Inexact[Array, "... j"])
     """Return the products of a matrix, or of one for each vector, with vectors: the same bits in any company.
 
     BLAS adds in another order where there are more vectors, and einsum where they lie otherwise in memory than row by
-    row. What JAX holds has the bits of XLA.
+    row. Arrays of JAX have the bits of XLA.
 
     Example:
         >>> from nonholo.base.numerics import applied

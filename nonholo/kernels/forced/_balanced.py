@@ -437,7 +437,7 @@ def see_slope(
 
 @njit(**BORROWING)
 def is_folded(room: Scratch) -> bool:
-    """Tell whether what is missed hardly depends on momenta in some direction, by the inverse slope."""
+    """Return whether what is missed hardly depends on momenta in some direction, by the inverse slope."""
     rows = room.slopes.reshape(-1)
     return not largest(rows, rows) < _FOLDED
 

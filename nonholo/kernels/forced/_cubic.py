@@ -36,7 +36,7 @@ STRIP = 0.5
 
 @scalar
 def is_alone(b: float, c: float, K: float, nu: float, R: float) -> bool:
-    """Tell whether there is at most one root of a top within a radius."""
+    """Return whether there is at most one root of a top within a radius."""
     pull = c * R / (b * sqrt(b))
     return 1 - pull - 2 * R / b * ((1 + K / b) * R + pull * R) - (1 + R * R / b) * nu / b > 0
 
@@ -62,9 +62,9 @@ def certain_disc(B: Any, c: float, K: float, nu: float) -> tuple[float, float]:
 
 @scalar
 def is_in_strip(B: Any, c: float, K: Any, m: Any, r: Any, N: Any) -> bool:
-    """Tell whether all parts of the step of a sleigh have one root each in the strip: of momenta m and r + N y_1.
+    """Return whether all parts of the step of a sleigh have one root each in the strip: of momenta m and r + N y_1.
 
-    What the second equation gives to y_2 is put into the first one, whose least slope in the strip is bounded; a slide
+    The y_2 of the second equation is put into the first one, whose least slope in the strip is bounded; a slide
     that adds to it does no harm.
     """
     T, W = STRIP, 1 + STRIP * STRIP
@@ -245,7 +245,7 @@ def root_of(
 
 @scalar
 def is_certain(q: Cubic, disc: tuple[float, float], m: Any, r: Any, N: Any, y1: float, y2: float) -> bool:
-    """Tell whether a root is the principal one beyond doubt."""
+    """Return whether a root is the principal one beyond doubt."""
     B = q.B
     if q.e == 0.0:
         return y1 * y1 <= STRIP * STRIP and is_in_strip(B, q.c[1], q.K, m, r, N)

@@ -1,6 +1,6 @@
 """Half an impulse that is linear in the momenta: friction, a force that is fixed in space, rows of a table.
 
-Tops in space and sleighs in the plane have a loop of their own, with numbers in place of arrays.
+Tops in space and sleighs in the plane have a separate loop, with numbers in place of arrays.
 """
 
 from typing import Any, NamedTuple
@@ -139,7 +139,7 @@ def friction_flow(p: Body, C: Any, time: float) -> tuple[Any, Any]:
 
 
 RENEWED = 64
-"""Steps after which the weight as the body sees it is taken from the pose again, lest it drift away from it."""
+"""Steps after which the weight as the body sees it is taken from the pose again, so that the two do not drift apart."""
 
 
 class Numbers(NamedTuple):

@@ -96,7 +96,7 @@ def decompose(A: np.ndarray, order: np.ndarray, inverses: np.ndarray, others: np
     """Replace a Jacobian by what `solve_rows` needs; return its determinant, zero or NaN if there is no solution.
 
     Gauss and Jordan: each unknown leaves all equations but the one where it is largest among those left. These stay
-    where they are; `order` tells which it is.
+    where they are; `order` is the permutation.
     """
     det, n, blocks = 1.0, len(A), A.shape[1] // len(EIGHT)
     for c in range(n):

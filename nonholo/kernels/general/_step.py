@@ -137,7 +137,7 @@ def workspace(p: GeneralBody) -> Workspace:
 
 @njit(inline="always", **BORROWING)
 def _turns(p: GeneralBody) -> bool:
-    """Tell whether the group has rotations alone, where G^T = (I + Y)^{-1}."""
+    """Return whether the group has rotations alone, where G^T = (I + Y)^{-1}."""
     return p.size == len(p.tensor) and len(p.form) == 0
 
 
@@ -151,7 +151,7 @@ def see_tensor(p: GeneralBody, w: Workspace, J: np.ndarray) -> None:
 
 @njit(**INLINED)
 def displace(p: GeneralBody, w: Workspace, y: np.ndarray) -> float:
-    """Compute X = 2 (I - Y)^{-1} Y and G = I + X / 2; return how far it turns, the sum of tan^2(angle / 2).
+    """Compute X = 2 (I - Y)^{-1} Y and G = I + X / 2; return its turn, the sum of tan^2(angle / 2).
 
     Beyond `LOST`, where I - Y may be singular to rounding, they are not computed; nor where its determinant is not
     positive, beyond the edge of the chart on groups with boosts.

@@ -6,7 +6,7 @@ the time step to all that stays the same during Newton's method there; `correct`
 to the equations: the scaled matrix, what the scaled equations miss, the units of velocities and of multipliers, the
 size of velocities, and the doubt, which is 0 where the formulas may be trusted.
 
-What is not trusted here is left to the caller: a root may count for more reasons.
+A root that is not certain is left to the caller: a root may count for more reasons.
 """
 
 import math

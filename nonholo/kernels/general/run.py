@@ -70,7 +70,7 @@ def newton(p: GeneralBody, w: Workspace, s: float, m: np.ndarray, y: np.ndarray)
 
 @njit(**INLINED)
 def is_certain(p: GeneralBody, w: Workspace, m: np.ndarray, y: np.ndarray) -> bool:
-    """Tell whether a root is certainly the principal one: it lies in the ball where there is only one.
+    """Return whether a root is certainly the principal one: it lies in the ball where there is only one.
 
     The workspace holds its displacement afterwards.
     """
@@ -97,7 +97,7 @@ def _rotational(X: np.ndarray, n: int) -> float:
 
 @njit(inline="always", **BORROWING)
 def _certifiable(p: GeneralBody, m: np.ndarray) -> bool:
-    """Tell whether the momenta are so small that there is a ball."""
+    """Return whether the momenta are so small that there is a ball."""
     energy = 0.0
     for i in range(len(m)):
         for j in range(len(m)):
@@ -123,7 +123,7 @@ def _tangent(
 
 @njit(inline="always", **BORROWING)
 def _bend(w: Workspace) -> float:
-    """Return how far Jacobians are apart, by traces of E and E^2, E + I the quotient: the same in all coordinates.
+    """Return the distance of two Jacobians, by traces of E and E^2, E + I the quotient: the same in all coordinates.
 
     Were the equations quadratic, E would have an eigenvalue of -2 between two roots for the same momentum.
     """
@@ -177,7 +177,7 @@ def principal(p: GeneralBody, w: Workspace, m: np.ndarray, y: np.ndarray) -> int
 def _piece(
     p: GeneralBody, w: Workspace, size: float, ahead: float, m: np.ndarray, y: np.ndarray, start: float
 ) -> tuple[bool, float]:
-    """Write the root over ahead m to the workspace, its Jacobian and where the path leads; tell whether it is next."""
+    """Write the root over ahead m, its Jacobian and its tangent to the workspace; return whether it is the next one."""
     guess, root = w.charts[0], w.charts[1]
     for a in range(len(y)):
         guess[a] = y[a] + size * w.charts[2, a]
@@ -191,7 +191,7 @@ def _piece(
 
 @njit(inline="always", **BORROWING)
 def finite(A: np.ndarray) -> bool:
-    """Tell whether all numbers of an array are."""
+    """Return whether all numbers of an array are finite."""
     result = True
     for x in A.flat:
         result = result and np.isfinite(x)
@@ -200,7 +200,7 @@ def finite(A: np.ndarray) -> bool:
 
 @njit(inline="always", **BORROWING)
 def _close(y: np.ndarray, guess: np.ndarray, root: np.ndarray) -> bool:
-    """Tell whether a root is where the tangent foretold, to a tenth of a move that is not long, or to rounding."""
+    """Return whether a root is where the tangent foretold, to a tenth of a move that is not long, or to rounding."""
     shift = off = square = 0.0
     for a in range(len(y)):
         shift += (root[a] - y[a]) ** 2
@@ -274,7 +274,7 @@ def move(p: GeneralBody, w: Workspace, g: np.ndarray) -> None:
 
 @njit(**INLINED)
 def is_infinite(p: GeneralBody, g: np.ndarray) -> bool:
-    """Tell whether a pose of a group with a form, which may grow without bound, is no longer finite."""
+    """Return whether a pose of a group with a form, which may grow without bound, is no longer finite."""
     return len(p.form) > 0 and not finite(g)
 
 

@@ -121,7 +121,7 @@ def _length(move: np.ndarray) -> float:
 
 @njit(nogil=True, **COMPILED)
 def _correct(p: SecularBody, m: np.ndarray, m0: float, s: float, guess: np.ndarray) -> tuple[bool, np.ndarray]:
-    """Correct a guess at fixed s; tell whether it converged."""
+    """Correct a guess at fixed s; return whether it converged."""
     x, right, move = guess.copy(), np.empty_like(guess), np.empty_like(guess)
     for _ in range(_CORRECTIONS):
         _write_gap(p, m, m0, s, x, right)

@@ -161,7 +161,7 @@ def write_box(p: SecularBody, x: np.ndarray, way: np.ndarray, R: np.ndarray) -> 
 
 @njit(nogil=True, **COMPILED)
 def holds(p: SecularBody, x: np.ndarray, R: np.ndarray, root: np.ndarray) -> bool:
-    """Tell whether the box about x has a root in it."""
+    """Return whether the box about x has a root in it."""
     move, scale = root - x, abs(x[1])
     for i in range(len(p.b)):
         scale += abs(p.c[i] * x[2 + i])

@@ -1,4 +1,4 @@
-r"""The step on SO(n) and SE(n) in O(n): two scalar unknowns, whatever n (docs/theory/secular-step.md).
+r"""The step on SO(n) and SE(n) in O(n): two scalar unknowns for every n (docs/theory/secular-step.md).
 
 Axes of the body in which the constrained inertia is diagonal, momenta in units of the displacement, $m = h\,r/2$. The
 displacement has Cayley coordinates $y$, and with $\tau = |y|^2$, $\nu = c\cdot y + (1 + \tau)q$
@@ -156,7 +156,7 @@ def _add(s: Sums, t: Sums) -> Sums:
 def newton(
     p: SecularBody, m: np.ndarray, m0: float, share: float, nu: float, tau: float, any_sheet: bool, room: np.ndarray
 ) -> tuple[bool, float, float, float]:
-    """Correct nu and tau; tell whether they converged, on the sheet of the principal root if not on any.
+    """Correct nu and tau; return whether they converged, on the sheet of the principal root if not on any.
 
     Also returns the sum of b y y, at a correction that is too small to matter.
     """

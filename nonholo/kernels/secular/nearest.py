@@ -5,7 +5,7 @@ The equations are those of `nonholo.discrete`, on the sphere over the displaceme
 $$ z_0 B_1z + (z\cdot z)c - (c\cdot z)z + \tfrac\alpha2 uz = r, \qquad uz_0 - 2\alpha z\cdot z = p,
    \qquad z_0^2 + z\cdot z = 1. $$
 
-What is not clear (a root near a fold, a path that is lost) is left to them: `advance` ends before that step.
+An unclear step (a root near a fold, a lost path) is left to them: `advance` ends before that step.
 """
 
 from typing import NamedTuple
@@ -48,7 +48,7 @@ class NearestBody(NamedTuple):
 
 @njit()
 def _sums(p: NearestBody, x: np.ndarray) -> tuple[float, float, float]:
-    """Return the coupling along a point, the square of its length, and how far it slides."""
+    """Return the coupling along a point, the square of its length, and its slide."""
     along = square = 0.0
     for i in range(len(p.coupling)):
         along += p.coupling[i] * x[1 + i]
@@ -112,7 +112,7 @@ def _length(move: np.ndarray, at: np.ndarray) -> float:
 
 @njit()
 def _is_clear(p: NearestBody, J: np.ndarray, det: float) -> bool:
-    """Tell whether the least singular value of the derivative along the sphere is certainly large.
+    """Return whether the least singular value of the derivative along the sphere is certainly large.
 
     It is at least the determinant over the product of the others, each of which is at most the Frobenius norm.
     """

@@ -25,7 +25,7 @@ def coordinates(p: SecularBody, m: np.ndarray, nu: float, tau: float, y: np.ndar
 
 @scalar
 def _is_principal(good: bool, size: float, tau: float, lever: float, certain: float) -> bool:
-    """Tell whether a corrected guess is certainly the principal root; `size` is the sum of b y y."""
+    """Return whether a corrected guess is certainly the principal root; `size` is the sum of b y y."""
     return good and tau < 1 and 4 * (size + lever * tau) <= certain * (1 + tau) ** 2
 
 

@@ -1,8 +1,8 @@
 """One motion by Taylor series, or many, as many as there are lanes at a time.
 
-Steps do not depend on the times that are asked for, which are read from the series. What rounding takes from state and
-time is carried along (Kahan). A lane whose motion has reached its last time takes the next one; each motion takes the
-steps that it would take alone, with the same bits.
+Steps do not depend on the times of the states that are returned: those are read from the series. The rounding errors of
+state and time are carried along (Kahan). A lane whose motion has reached its last time takes the next one; each motion
+takes the steps that it would take alone, with the same bits.
 """
 
 import math
@@ -46,7 +46,7 @@ def solve_series(
     """Return the states at the times, which rise or fall, up to the first that cannot be reached, and the nodes.
 
     States come in the three parts of the first one. Nodes are the beginnings of steps: the state and its time, above
-    what rounding took from them. When they fill much memory every second one is left out. The solve ends early if at
+    the rounding errors of both. When they fill much memory every second one is left out. The solve ends early if at
     the rate of the steps so far it needs more than `most` of them. The coefficients are written by the code at an
     address: by default that of the structure.
     """
@@ -112,7 +112,7 @@ def advance(
 ) -> tuple[int, int, bool]:
     """Take a step from each node, which is written; return how many rows and nodes are filled and whether one failed.
 
-    `state` holds x and time, and what rounding took from them.
+    `state` holds x and time, and the rounding errors of both.
     """
     going, at = True, 0
     while at < len(nodes) and going and count < len(times):
@@ -405,7 +405,7 @@ def _continue(
     counts: np.ndarray,
     columns: Columns,
 ) -> bool:
-    """Write what the motion in a lane reaches in this step; tell whether it takes the step, else free the lane."""
+    """Write what the motion in a lane reaches in this step; return whether it takes the step, else free the lane."""
     at, going = members[lane], members[lane] >= 0 and counts[members[lane]] < len(times)
     if going:
         count, unit = counts[at], units[at]

@@ -1,4 +1,4 @@
-"""How far a series reaches: the order and the length of a step [jorba-zou-2005], without a library's logarithm.
+"""The order and the length of a step [jorba-zou-2005], without a library's logarithm.
 
 The last two terms of a step are within the tolerance of the first, block by block; where something outside drives a
 block, of its largest one. The size of a block is the sum of what its components have.
@@ -23,8 +23,8 @@ _FRACTION, _UNIT = (1 << 52) - 1, 1023  # the bits of a number that follow its e
 def order_for(tolerance: float) -> int:
     """Return the order of the series.
 
-    Half of the logarithm takes the fewest products [jorba-zou-2005]; but a processor waits for one order after another,
-    whatever their number, so that longer steps of a higher order take less time.
+    Half of the logarithm takes the fewest products [jorba-zou-2005]; but a processor waits for one order after another
+    at every order, so that longer steps of a higher order take less time.
     """
     return max(8, math.floor(1 - _STRETCH * math.log(tolerance)))
 

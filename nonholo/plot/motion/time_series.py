@@ -131,7 +131,7 @@ _EXPECTED = {
     False: "not exact for this discretization",
     None: "error of the solver",
 }
-_THINNED = "with the work of forces, which no thinned run knows"
+_THINNED = "includes the work of forces, which a thinned run does not record"
 
 
 class EnergyError(NamedTuple):

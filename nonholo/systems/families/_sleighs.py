@@ -27,8 +27,8 @@ class ChaplyginSleigh(AbstractLLSystem):
     Args:
         mass: m.
         inertia: J, about the center of mass.
-        a: Coordinate of the center of mass along the blade, from the contact point; the sleigh settles to move with the
-            sign of a; a = 0 is balanced.
+        a: Coordinate of the center of mass along the blade, from the contact point. The final velocity along the blade
+            has the sign of a; a = 0 is balanced.
         b: Coordinate of the center of mass across the blade.
 
     Raises:

@@ -117,7 +117,7 @@ class SuslovTop(AbstractLLSystem):
 
     Args:
         mass_tensor: Symmetric (n, n), n >= 3, with positive definite B; flat and rod-like bodies are allowed.
-        axis: n = 3 alone: forbidden body axis, a unit vector; e3 if left out.
+        axis: The forbidden body axis as a unit vector, for n = 3 only; by default e3.
 
     Raises:
         ValueError: A shape, an asymmetry, a value that is not finite, B not positive definite, an axis for n > 3.
