@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import nonholo as nh
-from nonholo.base.progress import progress_bar, waiting
+from nonholo.base.progress import progress_bar
 
 
 @pytest.fixture(autouse=True)
@@ -43,7 +43,7 @@ def test_no_bar_unless_wanted(capsys: pytest.CaptureFixture[str]) -> None:
 def test_waiting_says_for_how_long(capsys: pytest.CaptureFixture[str]) -> None:
     """Where there is nothing to count, what is being done and the time that has passed are shown, if wanted."""
     for wanted in (True, False):
-        with waiting("measuring", wanted):
+        with progress_bar("measuring", wanted):
             pass
         written = capsys.readouterr()
         assert not written.out

@@ -57,9 +57,8 @@ def call(where: str, function: Callable[..., Any], *arguments: Any) -> Any:
         ...
         nonholo.base.calls.FunctionError: `Forced(force=...)` must not write to its arguments. Got `half`...
     """
-    is_compiled = hasattr(
-        function, "py_func"
-    )  # by numba, which would compile it once more for arrays that are read-only
+    # numba would compile it once more for arrays that are read-only
+    is_compiled = hasattr(function, "py_func")
     copies = [_protect(argument, is_compiled) for argument in arguments]
     try:
         result = function(*copies)

@@ -79,7 +79,7 @@ def array(where: str, value: Any, shape: tuple[int | None, ...], remedy: str = "
         result = np.array(_as_floats(raw), dtype=np.float64)
         _check_size(where, result, remedy)
     except MemoryError:
-        raise _too_large(where, raw, remedy) from None
+        raise error(where, "fit into memory", f"shape {raw.shape}", remedy) from None
     result.setflags(write=False)
     return result
 
@@ -111,11 +111,6 @@ def shown(value: Any) -> str:
     except Exception:  # an integer of thousands of digits, nested lists, whatever it is made of
         text = f"a {type(value).__name__} that cannot be shown"
     return text if len(text) <= 200 else f"{text[:200]}..."
-
-
-def _too_large(where: str, value: np.ndarray, remedy: str) -> ValueError:
-    """Return the error of numbers of which there are too many to look at, such as one that is repeated without end."""
-    return error(where, "fit into memory", f"shape {value.shape}", remedy)
 
 
 def is_moderate(value: np.ndarray, most: float) -> bool:
@@ -197,7 +192,7 @@ def trailing(where: str, value: Any, shape: tuple[int, ...], remedy: str, *, rea
         if not _is_moderate(result):
             _check_finite(where, result if result.ndim == len(shape) else np.where(np.isnan(result), 0, result), remedy)
     except MemoryError:
-        raise _too_large(where, raw, remedy) from None
+        raise error(where, "fit into memory", f"shape {raw.shape}", remedy) from None
     return result
 
 

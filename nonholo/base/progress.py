@@ -24,7 +24,22 @@ _LOOK = 0.2  # seconds between two looks at the keyboard, where a signal does no
 
 
 @contextlib.contextmanager
-def until(over: Callable[[], bool]) -> Iterator[None]:
+def setting(variable: contextvars.ContextVar[Result], value: Result) -> Iterator[None]:
+    """Give a variable of the context a value, which it has in the block alone.
+
+    Example:
+        >>> with setting(_over, lambda: True):
+        ...     is_over()
+        True
+    """
+    token = variable.set(value)
+    try:
+        yield
+    finally:
+        variable.reset(token)
+
+
+def until(over: Callable[[], bool]) -> contextlib.AbstractContextManager[None]:
     """Let what runs inside end with `CancelledError` at its first report after `over` has become true.
 
     Work in another thread is ended so: Ctrl-C reaches the main thread alone.
@@ -35,11 +50,7 @@ def until(over: Callable[[], bool]) -> Iterator[None]:
         Traceback (most recent call last):
         concurrent.futures._base.CancelledError
     """
-    token = _over.set(over)
-    try:
-        yield
-    finally:
-        _over.reset(token)
+    return setting(_over, over)
 
 
 def is_over() -> bool:
@@ -127,12 +138,8 @@ def telling(title: str, is_visible: bool) -> Iterator[None]:
         >>> with telling("time", is_visible=False):
         ...     tell(3.0, 10.0)
     """
-    with progress_bar(title, is_visible) as report:
-        token = _report.set(report)
-        try:
-            yield
-        finally:
-            _report.reset(token)
+    with progress_bar(title, is_visible) as report, setting(_report, report):
+        yield
 
 
 def tell(amount: float, total: float) -> None:
@@ -172,15 +179,3 @@ def late_bar(title: str) -> Iterator[Callable[[int, int], None]]:
                 show(amount, total)
 
         yield report
-
-
-@contextlib.contextmanager
-def waiting(title: str, is_visible: bool) -> Iterator[None]:
-    """Show what is being done, and for how long, where there is nothing to count.
-
-    Example:
-        >>> with waiting("measuring", is_visible=False):
-        ...     pass
-    """
-    with progress_bar(title, is_visible):
-        yield

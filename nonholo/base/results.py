@@ -106,7 +106,6 @@ def conclude(orbit: Any, time_step: float, good: int, steps: int, throw: bool) -
     if throw and orbit.outcome != Outcome.successful:
         where = f"Step {good + 1} of {steps}" if len(orbit) else "Start of the run"
         route = getattr(orbit.motion, "route", None) if orbit.outcome == Outcome.nonfinite else None
-        raise OutcomeError(
-            orbit.outcome, f"{where} (time_step {time_step:g})", orbit, " ".join(getattr(route, "faults", {}).values())
-        )
+        faults = " ".join(getattr(route, "faults", {}).values())
+        raise OutcomeError(orbit.outcome, f"{where} (time_step {time_step:g})", orbit, faults)
     return orbit

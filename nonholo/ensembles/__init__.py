@@ -4,7 +4,7 @@ from nonholo.ensembles._begin import functions_of
 from nonholo.ensembles._dataset import dataset
 from nonholo.ensembles._ensemble_task import EnsembleTask
 from nonholo.ensembles._family_task import FamilyTask
-from nonholo.ensembles._names import component_name, component_of, force_numbers
+from nonholo.ensembles._names import STARTS, component_name, component_of, force_numbers, start_component
 from nonholo.ensembles._poses_csv import sweep_to_csv
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.ensembles._sweep import load_sweep, resume, sweep

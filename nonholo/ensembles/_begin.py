@@ -10,7 +10,7 @@ import numpy as np
 from nonholo import io
 from nonholo.base.checks import count, error, shown
 from nonholo.base.limits import within_disk, within_memory
-from nonholo.base.progress import waiting
+from nonholo.base.progress import progress_bar
 from nonholo.ensembles._describe import NO_NAME, design_text, differences, function_from, function_name
 from nonholo.ensembles._ensemble_task import RULE, EnsembleTask, ensemble_task_from
 from nonholo.ensembles._family_task import FamilyTask, family_task_from, imported_functions
@@ -49,7 +49,7 @@ def begin_store(
     most, least = (task.block, _LANES) if isinstance(task, DESCRIBED) else (_BLOCK, 1)
     own = min(most, max(least, -(-design.members // _PIECES)))
     size = own if block is None else count("sweep(block=...)", block, "Pass how many members.")
-    with in_one_thread(), waiting("compiling and trying a member", progress):
+    with in_one_thread(), progress_bar("compiling and trying a member", progress):
         results = probe_outputs(task, lambda first, some: block_of(design, first, some), design.members)
     axes = {name: tuple(f"{name}_{axis}" for axis in range(1, len(shape) + 1)) for name, shape in design.drawn.items()}
     draws = {name: Output(axes[name], shape, "float64", dict(AXIS)) for name, shape in design.drawn.items()}

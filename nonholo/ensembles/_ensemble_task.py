@@ -13,18 +13,8 @@ from nonholo.base.calls import call
 from nonholo.base.checks import array, count, error, flag, shown
 from nonholo.base.types import Float
 from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretization
+from nonholo.ensembles import _names
 from nonholo.ensembles._describe import function_from, function_name
-from nonholo.ensembles._names import (
-    OUTCOME,
-    STARTS,
-    checked_reductions,
-    force_numbers,
-    is_force_number,
-    no_component,
-    numbering,
-    start_component,
-    with_force_numbers,
-)
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.ensembles.designs import MemberBlock
 from nonholo.io import missing_part
@@ -100,7 +90,7 @@ class EnsembleTask:
         branch: BranchRule = PRINCIPAL.name,
         reconstruct: bool = True,
     ) -> None:
-        starts = dict(zip(STARTS, (body_velocity, restricted_velocity, momentum), strict=True))
+        starts = dict(zip(_names.STARTS, (body_velocity, restricted_velocity, momentum), strict=True))
         remedy = "Pass the start of all members; what differs belongs to the design."
         own = {name: value for name, value in starts.items() if value is not None}
         start = [(name, array(f"EnsembleTask({name}=...)", value, (None,), remedy)) for name, value in own.items()]
@@ -112,7 +102,7 @@ class EnsembleTask:
             discrete=as_discretization("EnsembleTask(discrete=...)", discrete, compositions=True, forced=True),
             steps=count("EnsembleTask(steps=...)", steps, "Pass the number of steps."),
             start=start[0] if start else None,
-            reductions=checked_reductions("EnsembleTask(reductions=...)", reductions, REDUCTIONS, _KNOWN),
+            reductions=_names.checked_reductions("EnsembleTask(reductions=...)", reductions, REDUCTIONS, _KNOWN),
             save_every=save_every,
             branch=branch,
             reconstruct=flag("EnsembleTask(reconstruct=...)", reconstruct),
@@ -124,14 +114,14 @@ class EnsembleTask:
 
     def __call__(self, block: MemberBlock) -> dict[str, Any]:
         """Run a block of members and reduce it; under forces that differ one by one."""
-        if of_forces := [name for name in block if is_force_number(self.discrete.system, name)]:
+        if of_forces := [name for name in block if _names.is_force_number(self.discrete.system, name)]:
             return _join([self._member(block, member, of_forces) for member in range(block.count)])
         parameters = {name: block[name] for name in block if name in self._fields}
         run: Any = {"steps": self.steps, "save_every": self._every, "branch": self.branch}
         run |= _rows_of_starts(self.start, block)
-        with numbering(lambda member: block.first + member):
+        with _names.numbering(lambda member: block.first + member):
             batch = ensemble(self.discrete, parameters=parameters or None, reconstruct=self.reconstruct, **run)
-        results: dict[str, Any] = {OUTCOME: batch.outcome}
+        results: dict[str, Any] = {_names.OUTCOME: batch.outcome}
         for each in self.reductions:
             is_own = not isinstance(each, str)
             own = call("EnsembleTask(reductions=...)", each, batch) if is_own else REDUCTIONS[each].function(batch)
@@ -159,10 +149,10 @@ class EnsembleTask:
         _check_starts(self.discrete, self.start, names)
         for name in names:
             system = self.discrete.system
-            is_start = name in STARTS or start_component(name) is not None
-            if not (name in self._fields or is_start or is_force_number(system, name)):
-                kind, names_known = type(system).__name__, ", ".join([*self._fields, *force_numbers(system)])
-                remedy = f"{kind} has {names_known}; starts are {', '.join(STARTS)}."
+            is_start = name in _names.STARTS or _names.start_component(name) is not None
+            if not (name in self._fields or is_start or _names.is_force_number(system, name)):
+                kind, names_known = type(system).__name__, ", ".join([*self._fields, *_names.force_numbers(system)])
+                remedy = f"{kind} has {names_known}; starts are {', '.join(_names.STARTS)}."
                 raise error("sweep(design=...)", "name parameters of the system or starts", shown(name), remedy)
 
     def on_route_of(self, attributes: dict[str, Any]) -> "EnsembleTask":
@@ -171,7 +161,7 @@ class EnsembleTask:
 
     def _member(self, block: MemberBlock, member: int, of_forces: list[str]) -> dict[str, Any]:
         """Run one member under its forces."""
-        system = with_force_numbers(self.discrete.system, {name: block[name][member] for name in of_forces})
+        system = _names.with_force_numbers(self.discrete.system, {name: block[name][member] for name in of_forces})
         rest = {name: values for name, values in block.items() if name not in of_forces}
         task = self._with(dataclasses.replace(self.discrete, system=system))
         return task(dataclasses.replace(block, arrays=rest).part(member, member + 1))
@@ -240,10 +230,10 @@ def _join(members: list[dict[str, Any]]) -> dict[str, Any]:
 
 def _check_starts(discrete: Discretization, start: Start | None, names: Sequence[str]) -> None:
     """Refuse a design that varies several starts, components that the start does not have, or leaves none."""
-    whole = [name for name in names if name in STARTS]
+    whole = [name for name in names if name in _names.STARTS]
     if len(whole) > 1:
         raise error("sweep(design=...)", "vary one start", " and ".join(whole), "Choose one.")
-    parts = {name: part for name in names if (part := start_component(name))}
+    parts = {name: part for name in names if (part := _names.start_component(name))}
     if not whole and start is None:
         _check_all(discrete, parts)
     else:
@@ -257,13 +247,13 @@ def _check_components(start: Start | None, parts: dict[str, tuple[str, int]]) ->
             remedy = f"Pass EnsembleTask(..., {owner}=...) with what the other components are, or vary each of them."
             raise error("sweep(design=...)", "vary components of the start of the task", shown(name), remedy)
         if component >= len(start[1]):
-            raise no_component(f"{name!r} of a start with {len(start[1])}")
+            raise _names.no_component(f"{name!r} of a start with {len(start[1])}")
 
 
 def _rows_of_starts(start: Start | None, block: MemberBlock) -> dict[str, Float[np.ndarray, "count n"]]:
     """Return the start of each member of a block, by its name."""
-    parts = {name: part for name in block if (part := start_component(name))}
-    whole = [name for name in block if name in STARTS]
+    parts = {name: part for name in block if (part := _names.start_component(name))}
+    whole = [name for name in block if name in _names.STARTS]
     if whole:
         name, value = whole[0], block[whole[0]]
     elif start is not None:

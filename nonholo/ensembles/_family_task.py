@@ -95,9 +95,8 @@ class FamilyTask:
         for name in names:
             part = component_of(name)
             if name not in own and not (part and part[0] in own):
-                raise error(
-                    "sweep(design=...)", "name arguments of the family", shown(name), f"It has {', '.join(own)}."
-                )
+                remedy = f"It has {', '.join(own)}."
+                raise error("sweep(design=...)", "name arguments of the family", shown(name), remedy)
 
     @property
     def block(self) -> int:

@@ -61,10 +61,8 @@ def with_components(name: str, value: Any, own: Mapping[str, Any]) -> Any:
         >>> with_components("a", [1.0, 2.0], {"a_1": 5.0, "b": 3.0})
         array([1., 5.])
     """
-    value, parts = (
-        own.get(name, value),
-        [(key, part[1]) for key in own if (part := component_of(key)) and part[0] == name],
-    )
+    value = own.get(name, value)
+    parts = [(key, part[1]) for key in own if (part := component_of(key)) and part[0] == name]
     if not parts:
         return value
     value = np.array(value, dtype=np.float64)

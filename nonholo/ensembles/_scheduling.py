@@ -54,7 +54,7 @@ def do_block(work: Work, block: int) -> Done:
         damage = str(flaw)
     piece, begin = store.layout.piece(block), time.perf_counter()
     if mark is not None and mark.members == piece.count:  # or the sweep has grown
-        return Done(block, mark, None, _versions())
+        return Done(block, mark, None, io.versions_text())
     members, draws = block_of(store.design, piece.first, piece.count), store.design.drawn
     outputs = {name: output for name, output in store.outputs.items() if name not in draws}
     with in_one_thread():
@@ -66,13 +66,7 @@ def do_block(work: Work, block: int) -> Done:
     messages = [list(message) for message in results.messages]
     mark = Mark(piece.count, outcomes, seconds, time.time(), _writer(), messages)
     store.write(piece, results, mark)
-    return Done(block, mark, damage, _versions())
-
-
-@functools.cache
-def _versions() -> str:
-    """Return the versions of what computes here, which do not change; looking them up takes longer than a mark."""
-    return io.versions_text()
+    return Done(block, mark, damage, io.versions_text())
 
 
 def outcome_name(code: int) -> str:
@@ -233,8 +227,7 @@ def checked_scheduler(scheduler: Any, workers: Any) -> tuple[Any, int | None]:
     if _is_remote(name):
         if workers is not None:
             remedy = "Leave it out: a cluster has the workers that were started for it."
-            got = f"{shown(workers)} for {name}"
-            raise error("sweep(workers=...)", "come with threads or processes", got, remedy)
+            raise error("sweep(workers=...)", "come with threads or processes", f"{shown(workers)} for {name}", remedy)
         (check_client if is_client(name) else check_cluster)(name)
     return name, None if workers is None else count("sweep(workers=...)", workers, "Pass how many work at a time.")
 

@@ -90,10 +90,8 @@ class Grid(AbstractDesign):
     def __init__(self, axes: Any, rng: int | np.random.Generator = 0) -> None:
         if not isinstance(axes, Mapping) or not axes:
             raise error("Grid(axes=...)", "be a mapping of names to values", shown(axes), f"{_REMEDY} values.")
-        axes_by_name = {
-            name: checked_list(f"Grid({{{name!r}: ...}})", axes[name_given])
-            for name, name_given in _own_names("Grid(axes=...)", axes).items()
-        }
+        names = _own_names("Grid(axes=...)", axes).items()
+        axes_by_name = {name: checked_list(f"Grid({{{name!r}: ...}})", axes[key]) for name, key in names}
         sizes = {axis_dimension(name, values): len(values) for name, values in axes_by_name.items()}
         if len(sizes) < len(axes_by_name):
             requirement = "have other names than its vectors and matrices"

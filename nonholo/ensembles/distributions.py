@@ -16,17 +16,18 @@ _LEAST = 2.0**-54  # instead of a uniform number zero, where its logarithm is ne
 
 
 class AbstractDistribution(abc.ABC):
-    """A distribution of numbers, vectors or matrices."""
+    """A distribution of numbers, vectors or matrices.
+
+    Attributes:
+        shape: Of one draw.
+    """
+
+    shape: tuple[int, ...]
 
     @property
     def width(self) -> int:
         """Uniform numbers that one draw takes: by default one for each of its numbers."""
         return math.prod(self.shape)
-
-    @property
-    @abc.abstractmethod
-    def shape(self) -> tuple[int, ...]:
-        """Shape of one draw."""
 
     @abc.abstractmethod
     def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
@@ -42,11 +43,6 @@ class AbstractBounded(AbstractDistribution):
 
     def __post_init__(self) -> None:
         _bounds(self)
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Shape of one draw."""
-        return np.shape(self.low)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -100,14 +96,9 @@ class Normal(AbstractDistribution):
     def __post_init__(self) -> None:
         mean = float(number("Normal(mean=...)", self.mean))
         spread = float(positive("Normal(deviation=...)", self.deviation, "Pass a positive standard deviation."))
-        vars(self).update(mean=mean, deviation=spread)
+        vars(self).update(mean=mean, deviation=spread, shape=() if self.size is None else (self.size,))
         if self.size is not None:
             bounded_count("Normal(size=...)", self.size, 8.0, "Pass the length of the vectors.")
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Shape of one draw."""
-        return () if self.size is None else (self.size,)
 
     def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
         """Return draws, one for each row of uniform numbers."""
@@ -128,12 +119,8 @@ class Direction(AbstractDistribution):
 
     def __post_init__(self) -> None:
         bounded_count("Direction(size=...)", self.size, 8.0, "Pass the length of the vectors.")
-        object.__setattr__(self, "length", float(positive("Direction(length=...)", self.length, "Pass their norm.")))
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Shape of one draw."""
-        return (self.size,)
+        length = float(positive("Direction(length=...)", self.length, "Pass their norm."))
+        vars(self).update(length=length, shape=(self.size,))
 
     def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
         """Return draws, one for each row of uniform numbers."""
@@ -159,6 +146,7 @@ class MassTensor(AbstractDistribution):
         n = count("MassTensor(n=...)", self.n, "Pass the dimension of the body.")
         within_memory("MassTensor(n=...)", 24.0 * n * n, "Pass a smaller n.")
         _bounds(self)
+        vars(self).update(shape=(n, n))
         if np.ndim(self.low) or not self.low > 0:
             raise error("MassTensor(low=...)", "be one positive number", f"{self.low}", "Pass the least eigenvalue.")
 
@@ -166,11 +154,6 @@ class MassTensor(AbstractDistribution):
     def width(self) -> int:
         """Uniform numbers that one draw takes."""
         return self.n * (self.n + 1)
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Shape of one draw."""
-        return (self.n, self.n)
 
     def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
         """Return draws, one for each row of uniform numbers."""
@@ -194,17 +177,13 @@ class Choice(AbstractDistribution):
     values: Any
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "values", checked_list("Choice(values=...)", self.values).tolist())
+        values = checked_list("Choice(values=...)", self.values)
+        vars(self).update(values=values.tolist(), shape=values.shape[1:])
 
     @property
     def width(self) -> int:
         """Uniform numbers that one draw takes."""
         return 1
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Shape of one draw."""
-        return np.shape(self.values)[1:]
 
     def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
         """Return draws, one for each row of uniform numbers."""
@@ -224,7 +203,7 @@ def checked_list(where: str, values: Any) -> Float[np.ndarray, "count ..."]:
 
 
 def _bounds(owner: Any) -> None:
-    """Check and keep two bounds of one shape as plain numbers, which are written to stores exactly."""
+    """Check and keep two bounds and their shape, as plain numbers, which are written to stores exactly."""
     name, remedy = type(owner).__name__, "Pass numbers, or vectors of one length."
     low, high = (trailing(f"{name}({side}=...)", getattr(owner, side), (), remedy) for side in ("low", "high"))
     for side, bound in (("low", low), ("high", high)):
@@ -236,7 +215,7 @@ def _bounds(owner: Any) -> None:
     low, high = (array(f"{name}({side}=...)", x, low.shape, remedy) for side, x in (("low", low), ("high", high)))
     if not np.all(low <= high):
         raise error(f"{name}(high=...)", "not be below `low`", f"{high} for low {low}", "Exchange the two.")
-    vars(owner).update(low=low.tolist(), high=high.tolist())
+    vars(owner).update(low=low.tolist(), high=high.tolist(), shape=low.shape)
 
 
 def _orthonormal(rows: Float[np.ndarray, "n n count"]) -> list[Float[np.ndarray, "n count"]]:

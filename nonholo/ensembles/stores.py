@@ -145,8 +145,7 @@ def _rows(name: str, value: Any, count: int) -> np.ndarray:
     """Return one row for each member."""
     rows = np.asarray(value)
     if rows.dtype.kind not in "biufc":
-        remedy = "Return numbers."
-        raise error(f"task(...)[{name!r}]", "be an array of numbers", f"dtype {rows.dtype}", remedy)
+        raise error(f"task(...)[{name!r}]", "be an array of numbers", f"dtype {rows.dtype}", "Return numbers.")
     if rows.ndim == 0 or len(rows) != count:
         got = f"shape {rows.shape} for {count} members"
         raise error(f"task(...)[{name!r}]", "have a leading member axis", got, "Keep that axis.")
@@ -329,8 +328,7 @@ class SweepStore:
         try:
             values = io.read_chunk(self.path, name, array, (0,) * array.ndim)
         except io.DamagedError as flaw:
-            got = f"{flaw}, in '{self.path}'"
-            raise error("resume(store=...)", f"hold the axis {name}", got, _AGAIN) from None
+            raise error("resume(store=...)", f"hold the axis {name}", f"{flaw}, in '{self.path}'", _AGAIN) from None
         description = list(axis_dimensions(name, values)), AXIS
         if (list(array.metadata.dimension_names or ()), array.metadata.attributes) != description:  # type: ignore[union-attr]
             raise error("resume(store=...)", f"hold the axis {name}", f"another one in '{self.path}'", _AGAIN)

@@ -255,11 +255,9 @@ def _area(z: complex, velocity: complex, kappa: float, t: Array) -> Array:
 @functools.cache
 def _turntable_system(m: float, r: float, J: float, Omega: float) -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array) -> Array:
-        del q
         return jnp.array([m, m, J, J]) @ v**2 / 2
 
     def forms(q: Array) -> Array:
-        del q
         return jnp.array([[1.0, 0.0, 0.0, -r], [0.0, 1.0, r, 0.0]])
 
     def velocities(q: Array, _time: Array) -> Array:

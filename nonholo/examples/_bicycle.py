@@ -196,11 +196,8 @@ def _system(machine: _Machine, g: float) -> LagrangeDAlembert:
 
     def lagrangian(q: Array, v: Array) -> Array:
         axle, omega, pivot, fork_rate = machine.motion(q, v)
-        velocities = (
-            axle,
-            axle + jnp.cross(omega, body),
-            *(pivot + jnp.cross(fork_rate, at) for at in (bars, machine.axle)),
-        )
+        of_fork = (pivot + jnp.cross(fork_rate, at) for at in (bars, machine.axle))
+        velocities = axle, axle + jnp.cross(omega, body), *of_fork
         leaning = jnp.stack([v[3], jnp.sin(q[3]) * v[2] + v[6], jnp.cos(q[3]) * v[2]])
         turnings = leaning, omega, fork_rate, fork_rate + v[7] * np.array([0.0, 1.0, 0.0])
         bodies = zip(masses, velocities, tensors, turnings, strict=True)

@@ -99,7 +99,6 @@ def _edge_system() -> LagrangeDAlembert:
         return jnp.array([m, m, J]) @ v**2 / 2 + m * G * q[0]
 
     def forms(q: Array, p: Numbers) -> Array:
-        del p
         return jnp.array([[jnp.sin(q[2]), -jnp.cos(q[2]), 0.0]])
 
     blade = np.array([[-1.0, 0.0], [1.0, 0.0]])
@@ -181,7 +180,6 @@ def _sleigh_system() -> LagrangeDAlembert:
         return (platform + mu * ((u - s * omega) ** 2 + (w + d * omega + v[3]) ** 2)) / 2
 
     def blade(q: Array, p: Numbers) -> Array:
-        del p
         return jnp.array([[-jnp.sin(q[2]), jnp.cos(q[2]), 0.0, 0.0]])
 
     platform = np.array([[-1.0, -0.6], [0.8, -0.6], [1.2, 0.0], [0.8, 0.6], [-1.0, 0.6]])

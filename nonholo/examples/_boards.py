@@ -239,7 +239,6 @@ def snakeboard(
     v = np.array([speed * np.cos(q[2]), speed * np.sin(q[2]), turning, rotor_rate, wheel_rate])
 
     def spin(q: Array, v: Array) -> Array:
-        del q
         return v[..., 2] + v[..., 3]
 
     def momentum(q: Array, v: Array) -> Array:
@@ -258,7 +257,6 @@ def snakeboard(
 @functools.cache
 def _board_system() -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
-        del q
         m, r, J0, J1 = map(p.__getitem__, _BOARD)
         return jnp.array([m, m, m * r * r, J0, 2 * J1]) @ v**2 / 2 + J0 * v[2] * v[3]
 

@@ -8,18 +8,7 @@ import numpy as np
 
 from nonholo.base.checks import array, error
 from nonholo.base.types import Array
-from nonholo.examples._example import (
-    Example,
-    Numbers,
-    pair,
-    positives,
-    rate,
-    ready,
-    system_in,
-    turn,
-    wheel,
-    with_numbers,
-)
+from nonholo.examples._example import Example, Numbers, pair, rate, ready, scales, system_in, turn, wheel, with_numbers
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
 _CAR = ("mass", "inertia", "wheelbase", "wheel_radius", "wheel_inertia", "steering_inertia")
@@ -105,7 +94,6 @@ def kinematic_car(
 @functools.cache
 def _car_system() -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
-        del q
         m, J, _, _, Jw, Js = map(p.__getitem__, _CAR)
         return jnp.array([m, m, J, Jw, Js]) @ v**2 / 2
 
@@ -204,7 +192,6 @@ def two_wheeled_robot(
         return (M * along**2 + K * v[..., 2] ** 2) / 2
 
     def axle(q: Array, v: Array) -> Array:
-        del v
         return q[..., 2] - R / (2 * c) * (q[..., 3] - q[..., 4])
 
     motors = _motors(torques)
@@ -242,7 +229,6 @@ def _robot_system(
         return jnp.array([[-sin, cos, 0.0, 0.0, 0.0], [cos, sin, 0.0, -R / 2, -R / 2], [0.0, 0.0, 1.0, -turn, turn]])
 
     def force(time: Array, q: Array, v: Array) -> Array:
-        del q
         right, left = (0.0, 0.0) if motors is None else motors(time)
         return jnp.array([0.0, 0.0, 0.0, right - d * v[3], left - d * v[4]])
 
@@ -303,7 +289,7 @@ def trailers(
     lengths = array(f"{where}(hitches=...)", hitches, (None,), "Pass one length for each trailer.")
     if not len(lengths):
         raise error(f"{where}(hitches=...)", "have at least one length", "none", "Pass one for each trailer.")
-    d = positives(f"{where}(hitches=...)", lengths)
+    d = scales(f"{where}(hitches=...)", lengths)
     m, J, trailer, moment = mass, inertia, trailer_mass, trailer_inertia
     remedy, n = "Pass the heading of the tractor, then those of the trailers.", len(d) + 1
     headings = array(f"{where}(angles=...)", np.zeros(n) if angles is None else angles, (n,), remedy)

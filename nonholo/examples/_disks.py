@@ -63,21 +63,13 @@ def rolling_disk(
     conserved = {"theta'": rate(2), "phi'": rate(3)}
     facts = ("theta' and phi' are constant, also in the midpoint rule.", "The contact point moves on a circle.")
     v = np.array([R * np.cos(q[3]) * roll, R * np.sin(q[3]) * roll, roll, turn])
-    return Example(
-        "rolling_disk",
-        with_numbers(_disk_system, mass, R, rolling_inertia, turning_inertia),
-        q,
-        v,
-        facts,
-        conserved,
-        exact,
-    )
+    system = with_numbers(_disk_system, mass, R, rolling_inertia, turning_inertia)
+    return Example("rolling_disk", system, q, v, facts, conserved, exact)
 
 
 @functools.cache
 def _disk_system() -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
-        del q
         return jnp.array([p["mass"], p["mass"], p["rolling_inertia"], p["turning_inertia"]]) @ v**2 / 2
 
     def forms(q: Array, p: Numbers) -> Array:

@@ -21,20 +21,18 @@ from nonholo.discrete import discretize
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.simulation import flow, simulate
 
+Place = tuple[float, float]
 
-def wheel(
-    place: tuple[float, float], diameter: float, angle: Array | float = 0.0, width: float = 0.3
-) -> Float[np.ndarray, "4 2"]:
+
+def wheel(place: Place, diameter: float, angle: Array | float = 0.0, width: float = 0.3) -> Float[np.ndarray, "4 2"]:
     """Return a wheel at a place that rolls along a direction, its width in parts of its diameter."""
     corners = diameter / 2 * np.array([[-1.0, -width], [1.0, -width], [1.0, width], [-1.0, width]])
     return np.array(place) + corners @ turn(angle)
 
 
-def pair(
-    place: tuple[float, float], half_width: float, diameter: float, angle: Array | float = 0.0
-) -> list[Float[np.ndarray, "P 2"]]:
+def pair(place: Place, half: float, diameter: float, angle: Array | float = 0.0) -> list[Float[np.ndarray, "P 2"]]:
     """Return an axle and its two wheels, turned together."""
-    ends = np.array(place) + np.array([[0.0, -half_width], [0.0, half_width]]) @ turn(angle)
+    ends = np.array(place) + np.array([[0.0, -half], [0.0, half]]) @ turn(angle)
     return [ends, *(wheel(end, diameter, angle) for end in ends)]
 
 
@@ -161,7 +159,7 @@ def ready(
 def _row(where: str, value: Any, default: Any, words: str, positive: bool) -> tuple[float, ...]:
     """Return a checked array of as many numbers as its default has."""
     rows = array(where, value, np.shape(default), f"Pass {words}.")
-    return positives(where, rows) if positive else tuple(rows.tolist())
+    return scales(where, rows) if positive else tuple(rows.tolist())
 
 
 def _number(where: str, value: Any, default: Any, real: bool) -> Any:
@@ -206,7 +204,6 @@ def rate(index: int) -> Callable[[Array, Array], Array]:
     """Return the function (configuration, velocity) -> one component of the velocity."""
 
     def component(q: Array, v: Array) -> Array:
-        del q
         return v[..., index]
 
     return component
@@ -233,6 +230,6 @@ def energy_of(lagrangian: Callable[[Array, Array], Array]) -> Callable[[Array, A
     return of_states(energy)
 
 
-def positives(where: str, rows: Any) -> tuple[float, ...]:
+def scales(where: str, rows: Any) -> tuple[float, ...]:
     """Return positive numbers."""
     return tuple(float(scale(where.replace("=", f"[{i}]=", 1), value, _POSITIVE)) for i, value in enumerate(rows))

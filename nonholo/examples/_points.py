@@ -65,11 +65,9 @@ def particle(
 @functools.cache
 def _particle_system() -> LagrangeDAlembert:
     def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
-        del q
         return p["mass"] * (v @ v) / 2
 
     def forms(q: Array, p: Numbers) -> Array:
-        del p
         return jnp.array([[-q[1], 0.0, 1.0]])
 
     return system_in("x y z", "Nonholonomic particle", lagrangian, forms, parameters={"mass": 1.0})

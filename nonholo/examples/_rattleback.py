@@ -70,9 +70,8 @@ def rattleback(
     with double_precision():
         v = np.append(np.asarray(boat.rolling(jnp.asarray(q))) @ angles, angles)
     facts = ("Turned in the wrong direction it rattles, stops, and turns back.", "The energy is constant.")
-    return Example(
-        "rattleback", system, q, v, facts, {"energy": energy_of(system.lagrangian)}, time_step=0.002, steps=5000
-    )
+    conserved = {"energy": energy_of(system.lagrangian)}
+    return Example("rattleback", system, q, v, facts, conserved, time_step=0.002, steps=5000)
 
 
 class _Boat(NamedTuple):

@@ -191,9 +191,8 @@ def _checked_logarithm(g: np.ndarray) -> np.ndarray:
     """Return principal logarithms, NaN where the exponential does not lead back."""
     with np.errstate(all="ignore"):
         X = numerics.principal_logarithm(g, _HALVINGS)
-        miss = np.abs(numerics.identity_like(g) + numerics.exponential_increment(X) - g).max(
-            axis=(-2, -1), keepdims=True, initial=0.0
-        )
+        image = numerics.identity_like(g) + numerics.exponential_increment(X)
+        miss = np.abs(image - g).max(axis=(-2, -1), keepdims=True, initial=0.0)
         size = np.abs(g).max(axis=(-2, -1), keepdims=True, initial=1.0)
         return np.where(miss <= _REPRODUCED * size, X, np.nan)
 

@@ -20,6 +20,9 @@ _CUBIC = [(-1) ** k / math.factorial(2 * k + 3) for k in range(8, -1, -1)]  # ex
 class AbstractMotions(AbstractMatrixGroup):
     """Motions: a rotation and a translation."""
 
+    def __repr__(self) -> str:
+        return f"SE({self.size - 1})"
+
     def inverse(self, g: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
         """Return the inverse matrix from the transposed rotation."""
         return _rotations.motion_inverse(self._matrix(g))
@@ -45,9 +48,6 @@ class SpecialEuclidean2(AbstractMotions, AbstractRodriguesGroup):
     )
     coordinates: ClassVar[AbstractCoordinates] = coordinates_of(basis)
     curvature: ClassVar[float] = 0.0
-
-    def __repr__(self) -> str:
-        return "SE(2)"
 
     def _squared_angle(self, x: Float[Array, "... 3"]) -> Float[Array, "..."]:
         return x[..., 0] * x[..., 0]
@@ -117,9 +117,6 @@ class SpecialEuclideanN(AbstractMotions, AbstractBodyGroup):
     def __post_init__(self) -> None:
         self._hold(self.n * (self.n + 1) // 2, self.n + 1, self.n * (self.n + 1))
 
-    def __repr__(self) -> str:
-        return f"SE({self.n})"
-
     @functools.cached_property
     def coordinates(self) -> SeparatedCoordinates:
         """The maps between coordinate vectors and matrices of the algebra."""
@@ -135,9 +132,8 @@ class SpecialEuclideanN(AbstractMotions, AbstractBodyGroup):
         if not isinstance(X, np.ndarray):
             return self._screw(X) if self.n == 3 else numerics.exponential_increment(X)
         skew = X[..., : self.n, : self.n]
-        return self._assemble(
-            _rotations.exp_increment(skew), numerics.of_skew(skew, _mean) @ X[..., : self.n, self.n :]
-        )
+        shift = numerics.of_skew(skew, _mean) @ X[..., : self.n, self.n :]
+        return self._assemble(_rotations.exp_increment(skew), shift)
 
     def _screw(self, X: Float[Array, "... 4 4"]) -> Float[Array, "... 4 4"]:
         r"""Return $e^X - I = X + \frac{1-\cos\theta}{\theta^2}X^2 + \frac{\theta-\sin\theta}{\theta^3}X^3$ on se(3).

@@ -22,6 +22,9 @@ from nonholo.groups._base import AbstractCoordinates, AbstractMatrixGroup, Separ
 class AbstractRotations(AbstractMatrixGroup):
     """Rotations: the inverse is the transpose."""
 
+    def __repr__(self) -> str:
+        return f"SO({self.size})"
+
     def inverse(self, g: Float[Array, "... n n"]) -> Float[Array, "... n n"]:
         """Return the transpose."""
         return self.form_adjoint(self._matrix(g))
@@ -129,9 +132,6 @@ class SpecialOrthogonal3(AbstractRotations, AbstractRodriguesGroup):
     basis: ClassVar[np.ndarray] = np.ascontiguousarray(coordinates.matrix(np.eye(3)))
     curvature: ClassVar[float] = 1.0
 
-    def __repr__(self) -> str:
-        return "SO(3)"
-
     def _squared_angle(self, x: Float[Array, "... 3"]) -> Float[Array, "..."]:
         return (x * x).sum(axis=-1)
 
@@ -188,9 +188,6 @@ class SpecialOrthogonalN(AbstractRotations, AbstractBodyGroup):
 
     def __post_init__(self) -> None:
         self._hold(self.n * (self.n - 1) // 2, self.n, self.n * self.n)
-
-    def __repr__(self) -> str:
-        return f"SO({self.n})"
 
     @functools.cached_property
     def coordinates(self) -> SeparatedCoordinates:

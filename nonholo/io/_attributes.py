@@ -253,7 +253,6 @@ def restore_motion(attributes: dict[str, Any], motion: Any) -> Any:
     Callables and groups of the user's own cannot be stored: such a motion has to be given. In coordinates, where stores
     hold all that an orbit tells, it is one that cannot run.
     """
-    where = "load_orbit(path=...)"
     if motion is not None:
         kinds: Any = (AbstractMotion, AbstractCoordinateDiscretization)
         remedy = "Pass that of the store, or None."
@@ -261,12 +260,12 @@ def restore_motion(attributes: dict[str, Any], motion: Any) -> Any:
     options = json.loads(attributes["motion"])
     kind, route = options.pop("kind"), options.pop("route", None)
     remedy = f"Pass load_orbit(path, discrete=...) with the {kind} that made this store."
-    system = system_of(attributes, where, remedy, missing_part(options))
+    system = system_of(attributes, _WHERE, remedy, missing_part(options))
     if kind not in _MOTIONS:
-        raise error(where, "hold a motion of this version", repr(kind), "Upgrade nonholo.")
+        raise error(_WHERE, "hold a motion of this version", repr(kind), "Upgrade nonholo.")
     motion_again = on_route_of(attributes, _MOTIONS[kind](system, **options))
     if type(motion_again).__name__ != kind or route != motion_again.route_name:
-        raise error(where, "hold a run by a route of this version", repr(route or kind), "Upgrade nonholo.")
+        raise error(_WHERE, "hold a run by a route of this version", repr(route or kind), "Upgrade nonholo.")
     return motion_again
 
 

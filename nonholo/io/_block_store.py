@@ -34,6 +34,8 @@ from nonholo.io._places import sibling
 from nonholo.io._stored_events import EVENTS, Checkpoint, Seen
 from nonholo.io.datasets import CANONICAL, Variable
 
+Shape: TypeAlias = tuple[int, ...]  # of an array, or the place of a chunk in it
+Rows: TypeAlias = Mapping[str, np.ndarray]
 _FILTERS = threading.Lock()  # warning filters belong to the whole process
 
 
@@ -135,7 +137,7 @@ class DamagedError(Exception):
     """Damage of a part of a store; a reader reports it, or computes the part again."""
 
 
-def opened_array(root: Path, name: str, shape: tuple[int, ...] | None) -> zarr.Array:
+def opened_array(root: Path, name: str, shape: Shape | None) -> zarr.Array:
     """Open an array of a store, of a known shape unless the run is not finished."""
     try:
         array = zarr.open_array(root / name, mode="r")
@@ -148,9 +150,7 @@ def opened_array(root: Path, name: str, shape: tuple[int, ...] | None) -> zarr.A
     return array
 
 
-def checked_block(
-    root: Path, name: str, array: zarr.Array, index: tuple[int, ...], *, with_nan: bool = False
-) -> np.ndarray:
+def checked_block(root: Path, name: str, array: zarr.Array, index: Shape, *, with_nan: bool = False) -> np.ndarray:
     """Return one chunk; refuse one that is missing or damaged, with its name."""
     try:
         return read_chunk(root, name, array, index, with_nan=with_nan)
@@ -170,19 +170,17 @@ def checked_array(root: Path, name: str, array: zarr.Array) -> np.ndarray:
     return np.concatenate([checked_block(root, name, array, index) for index in indices])
 
 
-def chunk_name(name: str, array: zarr.Array, index: tuple[int, ...]) -> str:
+def chunk_name(name: str, array: zarr.Array, index: Shape) -> str:
     """Return how messages call a chunk."""
     return f"chunk {array.metadata.encode_chunk_key(index)} of the array {name}"
 
 
-def chunk_path(root: Path, name: str, array: zarr.Array, index: tuple[int, ...]) -> Path:
+def chunk_path(root: Path, name: str, array: zarr.Array, index: Shape) -> Path:
     """Return the file of a chunk."""
     return root / name / array.metadata.encode_chunk_key(index)
 
 
-def read_chunk(
-    root: Path, name: str, array: zarr.Array, index: tuple[int, ...], *, with_nan: bool = False
-) -> np.ndarray:
+def read_chunk(root: Path, name: str, array: zarr.Array, index: Shape, *, with_nan: bool = False) -> np.ndarray:
     """Return one chunk; NaN is wrong, unless it may be a result.
 
     A missing one would be read as its fill value, NaN, so its file is looked for first.
@@ -231,8 +229,8 @@ class Layout(NamedTuple):
         (9, Piece(number=5, place=(slice(1, 2, None), slice(4, 5, None)), first=9, count=1))
     """
 
-    sizes: tuple[int, ...]
-    chunk: tuple[int, ...]
+    sizes: Shape
+    chunk: Shape
 
     @property
     def blocks(self) -> int:
@@ -240,11 +238,11 @@ class Layout(NamedTuple):
         return math.prod(self.counts)
 
     @property
-    def counts(self) -> tuple[int, ...]:
+    def counts(self) -> Shape:
         """Numbers of blocks along each dimension."""
         return tuple(-(-size // chunk) for size, chunk in zip(self.sizes, self.chunk, strict=True))
 
-    def index(self, block: int) -> tuple[int, ...]:
+    def index(self, block: int) -> Shape:
         """Return where a block stands among the blocks."""
         return tuple(int(at) for at in np.unravel_index(block, self.counts))
 
@@ -296,9 +294,7 @@ class BlockStore:
     log: zarr.Array | None = None
     holds_nan: bool = False
 
-    def write(
-        self, block: int, rows: Mapping[str, np.ndarray], about: dict[str, Any], log: np.ndarray | None = None
-    ) -> None:
+    def write(self, block: int, rows: Rows, about: dict[str, Any], log: np.ndarray | None = None) -> None:
         """Write the chunks of a block, of none if there are no rows, and its rows of the log; then its mark."""
         require_identity(self.path, self.made)
         before = self.mark(block - 1) if self.log is not None and block > BEFORE else None
@@ -314,7 +310,7 @@ class BlockStore:
         text = json.dumps(mark._replace(seal=self._seal(block, mark))._asdict())
         write_whole(self._mark_file(block), f"{zlib.crc32(text.encode()):08x} {text}")
 
-    async def _write_chunks(self, block: int, rows: Mapping[str, np.ndarray]) -> None:
+    async def _write_chunks(self, block: int, rows: Rows) -> None:
         """Write the chunks of a block side by side, which takes half of the time; a failure leaves no writer behind."""
         place = self.layout.piece(block).place
         if len(place) == 1:  # a block that ended early has fewer rows
@@ -404,7 +400,7 @@ class BlockStore:
         """Return a part of an array of sound blocks."""
         return np.asarray(self.arrays[name][place])
 
-    def resize(self, rows: int) -> dict[str, tuple[int, ...]]:
+    def resize(self, rows: int) -> dict[str, Shape]:
         """Give all arrays but the log this many rows; return their shapes."""
         require_identity(self.path, self.made)
         shapes = {name: (rows, *array.shape[1:]) for name, array in self.arrays.items()}
@@ -446,7 +442,7 @@ class BlockStore:
                 raise DamagedError(f"no such chunk, {chunk_name(name, self._array(name), index)}")
         raise DamagedError(f"a chunk of another place in block {block}, which {self._mark_file(block).name} seals")
 
-    def _chunks(self, block: int, mark: BlockMark) -> Iterator[tuple[str, tuple[int, ...]]]:
+    def _chunks(self, block: int, mark: BlockMark) -> Iterator[tuple[str, Shape]]:
         """Return the chunks of a block by the names of their arrays."""
         if mark.has_rows and 0 <= block < self.layout.blocks:  # a mark may be that of another block
             yield from ((name, self._index(name, block)) for name in sorted(self.arrays))
@@ -455,7 +451,7 @@ class BlockStore:
     def _array(self, name: str) -> zarr.Array:
         return self.log if name == EVENTS and self.log is not None else self.arrays[name]
 
-    def _index(self, name: str, block: int) -> tuple[int, ...]:
+    def _index(self, name: str, block: int) -> Shape:
         index = self.layout.index(block)
         return index + (0,) * (self.arrays[name].ndim - len(index))
 

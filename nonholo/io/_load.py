@@ -13,18 +13,8 @@ from nonholo.base.checks import error
 from nonholo.base.checks import path as checked_path
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
+from nonholo.io import _block_store as blocks
 from nonholo.io._attributes import FORMAT, SCHEMA, SWEEP_FORMAT, restore_motion
-from nonholo.io._block_store import (
-    AGAIN,
-    WHERE,
-    BlockStore,
-    DamagedError,
-    Layout,
-    checked_array,
-    checked_block,
-    checkpoint_of,
-    opened_array,
-)
 from nonholo.io._metadata import OrbitMetadata, SweepMetadata, check_assertions, check_metadata
 from nonholo.io._stored_events import EVENTS, log_of, without_padding
 from nonholo.io.datasets import CANONICAL, STEP
@@ -56,7 +46,7 @@ def load_orbit(path: str | Path, *, discrete: Any = None) -> Any:
     Example:
         >>> orbit = load_orbit("orbit.zarr")  # doctest: +SKIP
     """
-    return _load(checked_path(WHERE, path), discrete, last=False)
+    return _load(checked_path(blocks.WHERE, path), discrete, last=False)
 
 
 def load_last_block(path: Path, discrete: Any) -> Any:
@@ -68,13 +58,13 @@ def _load(root: Path, discrete: Any, *, last: bool) -> Any:
     attributes = read_attributes(root)
     if "run" in attributes and "outcome" not in attributes:
         remedy = f"Resume with nonholo.resume('{root}') (nonholo resume); `nonholo info` shows its progress."
-        raise error(WHERE, "be a finished run", f"'{root}', which is not", remedy)
+        raise error(blocks.WHERE, "be a finished run", f"'{root}', which is not", remedy)
     try:
         shapes = json.loads(attributes["arrays"])
         motion, every = restore_motion(attributes, discrete), attributes["save_every"]
         outcome = Outcome[attributes["outcome"]]
     except (KeyError, json.JSONDecodeError) as failure:
-        raise error(WHERE, "hold complete attributes", f"'{root}' without {failure}", AGAIN) from failure
+        raise error(blocks.WHERE, "hold complete attributes", f"'{root}' without {failure}", blocks.AGAIN) from failure
     arrays = {name: _read(root, name, tuple(shape), last) for name, shape in shapes.items()}
     if not last:  # whoever asks for the last block has looked at the others
         check_seals(root, attributes)
@@ -91,18 +81,19 @@ def _load(root: Path, discrete: Any, *, last: bool) -> Any:
 
 def check_seals(root: Path, attributes: dict[str, Any]) -> None:
     """Refuse the store of a finished run, or of an orbit saved whole, where a chunk lies at the path of another."""
-    arrays = {name: opened_array(root, name, tuple(shape)) for name, shape in json.loads(attributes["arrays"]).items()}
+    shapes = json.loads(attributes["arrays"]).items()
+    arrays = {name: blocks.opened_array(root, name, tuple(shape)) for name, shape in shapes}
     events = [event["name"] for event in json.loads(attributes["events"])] if "events" in attributes else None
-    log = None if events is None else opened_array(root, EVENTS, None)
-    layout = Layout(arrays["time"].shape, arrays["time"].chunks)
-    store = BlockStore(root, attributes["made"], layout, arrays, log)
+    log = None if events is None else blocks.opened_array(root, EVENTS, None)
+    layout = blocks.Layout(arrays["time"].shape, arrays["time"].chunks)
+    store = blocks.BlockStore(root, attributes["made"], layout, arrays, log)
     try:
         for block in range(plan_of(attributes).blocks if "run" in attributes else layout.blocks):
             about = store.checked_mark(block).about
-            if "run" in attributes and checkpoint_of(about, events).is_last:
+            if "run" in attributes and blocks.checkpoint_of(about, events).is_last:
                 break
-    except DamagedError as flaw:
-        raise error(WHERE, "hold each chunk in its place", f"{flaw}, in '{root}'", AGAIN) from None
+    except blocks.DamagedError as flaw:
+        raise error(blocks.WHERE, "hold each chunk in its place", f"{flaw}, in '{root}'", blocks.AGAIN) from None
 
 
 def plan_of(attributes: dict[str, Any]) -> Plan:
@@ -119,20 +110,20 @@ def stored_names(arrays: Container[str], columns: Iterable[str] = STATES) -> dic
 
 def _events(root: Path, attributes: dict[str, Any], orbit: Orbit, begin: int) -> EventLog:
     """Return the crossings of a stored run after the state of a step."""
-    array = opened_array(root, EVENTS, None)
+    array = blocks.opened_array(root, EVENTS, None)
     events, counts = json.loads(attributes["events"]), json.loads(attributes["crossings"])
-    chunks = (checked_block(root, EVENTS, array, (k, 0), with_nan=True) for k in range(array.cdata_shape[0]))
+    chunks = (blocks.checked_block(root, EVENTS, array, (k, 0), with_nan=True) for k in range(array.cdata_shape[0]))
     rows = np.concatenate([np.empty((0, array.shape[1])), *(without_padding(chunk, begin) for chunk in chunks)])
     log = log_of(rows, events, orbit, attributes.get("stopped_by"))
     lengths = [len(crossings) for crossings in log.found]
     if begin == 0 and lengths != counts:
-        raise error(WHERE, f"hold {counts} crossings in {EVENTS}", str(lengths), AGAIN)
+        raise error(blocks.WHERE, f"hold {counts} crossings in {EVENTS}", str(lengths), blocks.AGAIN)
     return log
 
 
 def read_attributes(path: str | Path, format_name: str = FORMAT, schema: int = SCHEMA) -> dict[str, Any]:
     """Return the attributes of a store, after checking that they are of that format and schema."""
-    where = WHERE if format_name == FORMAT else "load_sweep(store=...)"
+    where = blocks.WHERE if format_name == FORMAT else "load_sweep(store=...)"
     check_assertions(where)
     kind = f"be a store of {_KINDS[format_name]}"
     if not Path(path).exists():
@@ -140,8 +131,7 @@ def read_attributes(path: str | Path, format_name: str = FORMAT, schema: int = S
     try:
         attributes = dict(zarr.open_group(Path(path), mode="r", use_consolidated=False).attrs)
     except Exception as failure:
-        remedy = f"Its metadata cannot be read: {failure}"
-        raise error(where, kind, f"'{path}'", remedy) from failure
+        raise error(where, kind, f"'{path}'", f"Its metadata cannot be read: {failure}") from failure
     if attributes.get("format") != format_name:
         kind_of_store = _KINDS.get(str(attributes.get("format")))
         got = f"'{path}', " + (f"a store of {kind_of_store}" if kind_of_store else "made by another program")
@@ -166,6 +156,8 @@ def format_of(path: str | Path) -> str | None:
 
 
 def _read(root: Path, name: str, shape: tuple[int, ...], last: bool) -> Float[np.ndarray, "..."]:
-    array = opened_array(root, name, shape)
+    array = blocks.opened_array(root, name, shape)
     ends = tuple(count - 1 for count in array.cdata_shape)
-    return checked_block(root, name, array, ends) if last and min(ends) >= 0 else checked_array(root, name, array)
+    if last and min(ends) >= 0:
+        return blocks.checked_block(root, name, array, ends)
+    return blocks.checked_array(root, name, array)

@@ -24,20 +24,8 @@ import zarr
 
 from nonholo.base.checks import error, flags, instance
 from nonholo.base.checks import path as checked_path
+from nonholo.io import _block_store as blocks
 from nonholo.io._attributes import FORMAT, attributes, attributes_of_text, system_of
-from nonholo.io._block_store import (
-    BEFORE,
-    BlockStore,
-    DamagedError,
-    Layout,
-    checked_block,
-    checkpoint_of,
-    create_array,
-    edit_attributes,
-    new_blocks,
-    opened_array,
-    said_of,
-)
 from nonholo.io._load import check_seals, format_of, plan_of, read_attributes, stored_names
 from nonholo.io._metadata import check_array, check_assertions
 from nonholo.io._places import new_beside, owner_of, remove_remains
@@ -85,7 +73,7 @@ class Stream:
         """Write a block, and the state of the run at its end."""
         rows = self.columns(orbit, block * self.plan.rows) if len(orbit) else {}
         log = None if orbit.events is None else rows_of(orbit.events)
-        self._blocks.write(block, rows, said_of(checkpoint), log)
+        self._blocks.write(block, rows, blocks.said_of(checkpoint), log)
 
     def columns(self, orbit: Any, first: int) -> dict[str, np.ndarray]:
         """Return the arrays that the store has, of an orbit whose first state is a row of it."""
@@ -96,8 +84,8 @@ class Stream:
 
     def checkpoint(self, block: int) -> Checkpoint:
         """Return the state at the begin of a block, unless the mark before it is damaged (`DamagedError`)."""
-        mark = self._blocks.checked_mark(BEFORE) if block == 0 else self._blocks.mark_of(block - 1)
-        return checkpoint_of(mark.about, self.events)
+        mark = self._blocks.checked_mark(blocks.BEFORE) if block == 0 else self._blocks.mark_of(block - 1)
+        return blocks.checkpoint_of(mark.about, self.events)
 
     def rows(self, name: str, first: int, count: int) -> np.ndarray:
         """Return some rows of an array of sound blocks."""
@@ -113,14 +101,14 @@ class Stream:
         Raises:
             DamagedError: One is not; the message names it and the damage.
         """
-        return checkpoint_of(self._blocks.sound(block).about, self.events)
+        return blocks.checkpoint_of(self._blocks.sound(block).about, self.events)
 
     def steps_done(self) -> int:
         """Return the step up to which blocks are marked as finished."""
         block = self.finished_blocks()
         try:
             return self.checkpoint(block).done
-        except DamagedError:
+        except blocks.DamagedError:
             return self.plan.begin(block)
 
     def full_blocks(self) -> int:
@@ -164,7 +152,7 @@ class Stream:
     def announce(self, more: int) -> None:
         """Write to the store how long the run is now, and how many steps it is to have."""
         run = json.loads(read_attributes(self.path)["run"]) | {"steps": self.plan.steps, "added": more}
-        edit_attributes(self.path, {"run": json.dumps(run), "outcome": None, "crossings": None})
+        blocks.edit_attributes(self.path, {"run": json.dumps(run), "outcome": None, "crossings": None})
 
     def prepare(self) -> None:
         """Remove what a killed writer left and give the arrays their length; nothing here loses data."""
@@ -173,12 +161,12 @@ class Stream:
             self._blocks.resize(1 + self.plan.steps // self.plan.every)
 
     @functools.cached_property
-    def _blocks(self) -> BlockStore:
+    def _blocks(self) -> blocks.BlockStore:
         shapes = json.loads(read_attributes(self.path)["arrays"])
         arrays = {name: writable_array(self.path, name, shape) for name, shape in shapes.items()}
         log = None if self.events is None else writable_array(self.path, EVENTS)
-        layout = Layout((1 + self.plan.steps // self.plan.every,), (self.plan.rows,))
-        return BlockStore(self.path, self.made, layout, arrays, log)
+        layout = blocks.Layout((1 + self.plan.steps // self.plan.every,), (self.plan.rows,))
+        return blocks.BlockStore(self.path, self.made, layout, arrays, log)
 
 
 def create_stream(
@@ -197,10 +185,10 @@ def create_stream(
     metadata |= {"run": json.dumps(run)} | ({} if events is None else {"events": json.dumps(events)})
     metadata |= {} if scenario is None else attributes_of_text(scenario)
     with new_beside(path) as part:
-        store = new_blocks(part, metadata, stored_variables(first), 1 + plan.steps // plan.every, plan.rows)
+        store = blocks.new_blocks(part, metadata, stored_variables(first), 1 + plan.steps // plan.every, plan.rows)
         if first.events is not None:
             create_log(zarr.open_group(part), rows_of(first.events))
-        store.write(BEFORE, {}, said_of(opening))
+        store.write(blocks.BEFORE, {}, blocks.said_of(opening))
         put_in_place(part, target, overwrite=False)
     return Stream(target, plan, first.has_poses, store.made)
 
@@ -252,7 +240,7 @@ _NUMBERS, _MOST = 1 << 16, 1 << 10  # at most in a chunk: numbers, rows
 def create_log(group: zarr.Group, rows: np.ndarray) -> None:
     """Make the array, without rows yet, for crossings like these."""
     log = Variable(("crossing", "entry"), rows, {})
-    create_array(group, EVENTS, log, 0, max(1, min(_MOST, _NUMBERS // rows.shape[1])))
+    blocks.create_array(group, EVENTS, log, 0, max(1, min(_MOST, _NUMBERS // rows.shape[1])))
 
 
 def save_orbit(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = False, scenario: str | None = None) -> None:
@@ -287,7 +275,7 @@ def save_orbit(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fals
     with new_beside(path) as part:
         metadata = attributes(orbit) | ({} if scenario is None else attributes_of_text(scenario))
         variables = stored_variables(orbit) | steps_apart(orbit)
-        store = new_blocks(part, metadata, variables, len(orbit), max(1, min(_ROWS, len(orbit))))
+        store = blocks.new_blocks(part, metadata, variables, len(orbit), max(1, min(_ROWS, len(orbit))))
         for block in range(store.layout.blocks):
             (rows,) = store.layout.piece(block).place
             store.write(block, {name: variable.values[rows] for name, variable in variables.items()}, {})
@@ -391,7 +379,7 @@ class StoredPoses(NamedTuple):
             columns: dict[str, np.ndarray] = {}
             for name, array in self.arrays.items():
                 index = (number,) + (0,) * (array.ndim - 1)
-                columns[name] = checked_block(self.path, self.places[name], array, index)[own_rows]
+                columns[name] = blocks.checked_block(self.path, self.places[name], array, index)[own_rows]
             time, places = columns.pop("time"), columns.get("canonical_pose", columns.get("configuration"))
             yield Stretch(time, np.asarray(places), columns.get("turned"))
 
@@ -412,7 +400,7 @@ def open_poses(path: Path) -> StoredPoses:
         raise error(_WHERE, "hold poses", f"'{path}', which was run with reconstruct=False", remedy)
     if "outcome" in attributes:
         check_seals(path, attributes)
-        arrays = {name: opened_array(path, array, tuple(shapes[array])) for name, array in places.items()}
+        arrays = {name: blocks.opened_array(path, array, tuple(shapes[array])) for name, array in places.items()}
         return StoredPoses(path, system, shapes["time"][0], places, arrays)
     stream = open_stream(path)
     rows = _state_count(stream)
@@ -421,7 +409,7 @@ def open_poses(path: Path) -> StoredPoses:
     now = f"It is being written by {owner}." if owner else resume
     message = f"The run in '{path}' is not finished: its poses go up to step {steps_done} of {stream.plan.steps}. {now}"
     warnings.warn(message, RuntimeWarning, stacklevel=3)
-    arrays = {name: opened_array(path, array, None) for name, array in places.items()}
+    arrays = {name: blocks.opened_array(path, array, None) for name, array in places.items()}
     return StoredPoses(path, system, rows, places, arrays)
 
 
@@ -431,7 +419,7 @@ def _state_count(stream: Stream) -> int:
         full = stream.full_blocks()
         for block in range(full):
             stream.sound(block)
-    except DamagedError as flaw:
+    except blocks.DamagedError as flaw:
         remedy = f"nonholo.resume({str(stream.path)!r}) computes its block again."
         raise error(_WHERE, "hold sound blocks", f"{flaw}, in '{stream.path}'", remedy) from None
     return stream.state_count(full)

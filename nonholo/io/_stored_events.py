@@ -16,6 +16,7 @@ from nonholo.base.types import Float, Int
 from nonholo.orbit import AbstractOrbit, Crossings, EventLog
 
 EVENTS = "run/events"
+Rows = Float[np.ndarray, "C width"]
 _PLACE = 4  # entries of a row before its state: event, step, fraction, direction
 
 
@@ -54,7 +55,7 @@ class Checkpoint(NamedTuple):
         return self.of_events is not None and self.of_events.last_event >= 0
 
 
-def rows_of(log: EventLog) -> Float[np.ndarray, "C width"]:
+def rows_of(log: EventLog) -> Rows:
     """Return the crossings of a block as rows, one event after another."""
     parts = [_rows(event, crossings) for event, crossings in enumerate(log.found)]
     impacts = [(event, crossings) for event, crossings in enumerate(log.found) if crossings.after is not None]
@@ -69,9 +70,7 @@ def _rows(event: int, crossings: Crossings) -> np.ndarray:
     return np.column_stack([events, crossings.step, crossings.fraction, crossings.direction, *states])
 
 
-def log_of(
-    rows: Float[np.ndarray, "C width"], events: list[dict[str, Any]], orbit: AbstractOrbit, by: str | None
-) -> EventLog:
+def log_of(rows: Rows, events: list[dict[str, Any]], orbit: AbstractOrbit, by: str | None) -> EventLog:
     """Return the crossings in rows of an orbit's run of described events, and which event ended it."""
     crossings = [_crossings_of(rows[rows[:, 0] == event], orbit) for event in range(len(events))]
     for event, about in enumerate(events):
@@ -95,7 +94,7 @@ def _crossings_of(rows: np.ndarray, orbit: AbstractOrbit) -> Crossings:
     return Crossings(step, np.ascontiguousarray(place[:, 2]), direction, states_again)
 
 
-def without_padding(rows: Float[np.ndarray, "D width"], after: int = 0) -> Float[np.ndarray, "C width"]:
+def without_padding(rows: Float[np.ndarray, "D width"], after: int = 0) -> Rows:
     """Return the rows of chunks that hold crossings, of them those after the state of a step."""
     step, fraction = rows[:, 1], rows[:, 2]
     return rows[np.isfinite(rows[:, 0]) & ((step > after) | ((step == after) & (fraction > 0)))]

@@ -351,11 +351,8 @@ def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None)
     """
     if not orbit.is_compact:
         return _variables(orbit)
-    compact = {
-        CANONICAL + name: _variable(orbit, name, getattr(orbit, state))
-        for name, state in zip(_COMPACT, STATES[1:], strict=True)
-        if getattr(orbit, state) is not None
-    }
+    rows = {name: getattr(orbit, state) for name, state in zip(_COMPACT, STATES[1:], strict=True)}
+    compact = {CANONICAL + name: _variable(orbit, name, own) for name, own in rows.items() if own is not None}
     states = {name: _variable(orbit, name) for name in _STORED if _is_known(orbit, name)} | _posed(orbit, before)
     for variable in states.values():
         variable.attrs["coordinates"] = "time"  # those of the group canonical need none
@@ -375,11 +372,8 @@ def _variables(orbit: Any) -> dict[str, Variable]:
     for variable in dataset.data_vars.values():
         own_labels = {"components": list(orbit.coordinates)} if "coordinate" in variable.dims else {}
         variable.attrs |= {"coordinates": "time"} | own_labels
-    variables = {
-        str(name): Variable(tuple(map(str, each.dims)), each.values, each.attrs)
-        for name, each in dataset.reset_coords("time").data_vars.items()
-    }
-    return {name: each for name, each in variables.items() if 0 not in each.shape[1:]}
+    own = {str(name): x for name, x in dataset.reset_coords("time").data_vars.items() if 0 not in x.shape[1:]}
+    return {name: Variable(tuple(map(str, x.dims)), x.values, x.attrs) for name, x in own.items()}
 
 
 def is_known(system: System, name: str, *, posed: bool, discrete: bool) -> bool:

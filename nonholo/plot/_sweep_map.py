@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Unpack
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import PathCollection
 from matplotlib.colorbar import Colorbar
 from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, Normalize
 from matplotlib.ticker import MaxNLocator
@@ -34,6 +33,7 @@ _ENDED = {
     "raised": "#d55e00",
 }
 _OTHER = "#a0522d"
+Ends = list[tuple[int, str, str]]  # code, name and color of each outcome
 _WIDE = 30.0  # quotient of the ends of the middle nine tenths from which a scale is logarithmic: 19 for even numbers
 _FEW = 9  # different integers that get a color each
 
@@ -97,7 +97,7 @@ def label(values: "xarray.DataArray") -> str:
     return str(values.name).replace("_", " ") + ("" if units == "1" else f"  [{units}]")
 
 
-def ends(codes: "xarray.DataArray", *, successful: bool = False) -> list[tuple[int, str, str]]:
+def ends(codes: "xarray.DataArray", *, successful: bool = False) -> Ends:
     """Return the outcomes that occur, but for success, with their names and colors."""
     flags = [int(flag) for flag in np.atleast_1d(codes.attrs.get("flag_values", []))]
     names = dict(zip(flags, str(codes.attrs.get("flag_meanings", "")).split(), strict=False))
@@ -107,15 +107,13 @@ def ends(codes: "xarray.DataArray", *, successful: bool = False) -> list[tuple[i
     return [(k, f"{name.replace('_', ' ')} ({count:,})", own.get(name, _OTHER)) for k, name, count in shown]
 
 
-def key_to(axes: Axes, outcomes: list[tuple[int, str, str]]) -> tuple[PathCollection, ...]:
+def key_to(axes: Axes, outcomes: Ends) -> tuple[Any, ...]:
     """Put a square into the legend for each outcome."""
     look: Any = {"marker": "s", "s": 42, "linewidths": 0.6, "edgecolors": theme.MUTED}
     return tuple(axes.scatter([], [], color=color, label=name, **look) for _, name, color in outcomes)
 
 
-def mark_below(
-    axes: Axes, across: np.ndarray, codes: np.ndarray, outcomes: list[tuple[int, str, str]], marker: str
-) -> tuple[PathCollection, ...]:
+def mark_below(axes: Axes, across: np.ndarray, codes: np.ndarray, outcomes: Ends, marker: str) -> tuple[Any, ...]:
     """Mark members along the bottom of the axes that have no number; call it after the others are drawn."""
     look: Any = {"marker": marker, "s": 18 if marker == "s" else 50, "linewidths": 0.8, "clip_on": False, "zorder": 5}
     axes.update_datalim(np.stack([across, across], axis=-1), updatey=False)
@@ -203,8 +201,7 @@ def _draw_draws(axes: Axes, result: "xarray.Dataset", subject: Subject, x: str |
         members = _dots_over(axes, subject, _number(result, "x", x))
     else:
         members = _histogram(axes, subject)
-    theme.write_title(axes, subject.title)
-    theme.legend_above(axes)
+    theme.legend_above(axes, subject.title)
     return members
 
 
@@ -429,10 +426,7 @@ def _dress_axis(axes: Axes, side: str, array: "xarray.DataArray", name: str) -> 
 
 def _name(axes: Axes, subject: Subject) -> None:
     """Write what is shown, and the values that the rest of the design has."""
-    rest = [
-        f"{str(name).replace('_', ' ')} = {values.values.item():.4g}"
-        for name, values in subject.values.coords.items()
-        if values.size == 1 and values.dtype.kind in "if"
-    ]
-    theme.write_title(axes, ", ".join([subject.title, *rest]))
-    theme.legend_above(axes)
+    coordinates = subject.values.coords.items()
+    single = {str(name): x.values.item() for name, x in coordinates if x.size == 1 and x.dtype.kind in "if"}
+    rest = [f"{name.replace('_', ' ')} = {value:.4g}" for name, value in single.items()]
+    theme.legend_above(axes, ", ".join([subject.title, *rest]))

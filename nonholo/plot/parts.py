@@ -333,6 +333,16 @@ def forbidden_axis(system: AbstractSystem) -> Float[np.ndarray, "3"] | None:
     return axis / np.linalg.norm(axis)
 
 
+def check_directions(where: str, value: Any, system: AbstractSystem, number: tuple[int, str], remedy: str) -> None:
+    """Refuse a constraint fixed in space, and another number of admissible directions than a picture has."""
+    if system.is_spatial:
+        elsewhere = "Its momenta along the constraint are conserved: draw `overview` instead."
+        raise error(where, "have a left-invariant constraint", shown(value), elsewhere)
+    if len(system.constraint_subspace) != number[0]:
+        got = f"dimension {len(system.constraint_subspace)}"
+        raise error(where, f"have a {number[1]}-dimensional constraint subspace", got, remedy)
+
+
 def is_same_body(system: System, other: System) -> bool:
     """Return whether two systems have the same constraint and inertia, up to rounding, in any classes."""
     if (system.group, system.is_spatial, system.rank) != (other.group, other.is_spatial, other.rank):

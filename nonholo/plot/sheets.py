@@ -134,7 +134,6 @@ class DiscSheet:
 
     def dress(self, axes: Axes, curves: list[InvariantCurve], places: Float[np.ndarray, "K 2"]) -> None:
         """Draw the rim; every place is within it."""
-        del curves, places
         draw_rim(axes)
         axes.set(xlim=(-1.14, 1.14), ylim=(-1.14, 1.14), xticks=[], yticks=[], aspect="equal")
         axes.spines[:].set_visible(False)
@@ -190,7 +189,6 @@ class StripSheet:
 
     def facts(self, system: AbstractSystem) -> str:
         """Return m, J, a and b."""
-        del system
         lengths = [np.sqrt(self.variety.inertia / self.variety.mass), *np.abs(self.variety.frame[:2, 2])]
         a, b = without_rounding(self.blade.center, max(lengths))
         symbols = {"m": self.variety.mass, "J": self.variety.inertia, "a": a, "b": b}
@@ -254,7 +252,6 @@ class StripSheet:
 
     def locus_kind(self, locus: MomentumLocus) -> str:
         """Return what the surface is called."""
-        del locus
         return "Plücker's conoid"
 
 

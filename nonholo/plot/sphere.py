@@ -14,6 +14,7 @@ from nonholo.base.types import Float
 from nonholo.orbit import Orbit
 from nonholo.plot import theme
 
+Points = Float[np.ndarray, "K 3"]
 _SHADES = 256
 _BEHIND = 0.22  # opacity of what lies behind the sphere
 
@@ -44,14 +45,14 @@ class View:
         return rotation[..., :2], rotation[..., 2]
 
 
-def view_of(where: str, angles: Any, points: Float[np.ndarray, "K 3"], axes: Float[np.ndarray, "A 3"]) -> View:
+def view_of(where: str, angles: Any, points: Points, axes: Float[np.ndarray, "A 3"]) -> View:
     """Return the view that a caller asks for, by default the best one."""
     if angles is None:
         return best_view(points, axes)
     return View(*(float(number(where, angle)) for angle in pair(where, angles)))
 
 
-def best_view(points: Float[np.ndarray, "K 3"], axes: Float[np.ndarray, "A 3"]) -> View:
+def best_view(points: Points, axes: Float[np.ndarray, "A 3"]) -> View:
     """Return the view that has most of a path in front and sees axes, or that of the path, obliquely."""
     if not len(axes):
         axes = np.linalg.eigh(points.T @ points)[1][:, :1].T
@@ -89,9 +90,7 @@ def draw_globe(axes: Axes, view: View) -> None:
     axes.set_axis_off()
 
 
-def draw_curve(
-    axes: Axes, view: View, points: Float[np.ndarray, "K 3"], colors: Any, width: float, **options: Any
-) -> LineCollection:
+def draw_curve(axes: Axes, view: View, points: Points, colors: Any, width: float, **options: Any) -> LineCollection:
     """Draw a curve on the sphere; parts behind are fainter and thinner, nearer parts are drawn last."""
     collection = LineCollection([], **options)
     axes.add_collection(collection, autolim=False)
@@ -99,9 +98,7 @@ def draw_curve(
     return collection
 
 
-def set_curve(
-    collection: LineCollection, view: View, points: Float[np.ndarray, "K 3"], colors: Any, width: float, side: int = 0
-) -> None:
+def set_curve(collection: LineCollection, view: View, points: Points, colors: Any, width: float, side: int = 0) -> None:
     """Give a collection a new curve.
 
     Args:
@@ -133,7 +130,7 @@ def opacity(depth: Float[np.ndarray, "K"]) -> Float[np.ndarray, "K"]:
     return _BEHIND + (1 - _BEHIND) * _in_front(depth)
 
 
-def arcs(points: Float[np.ndarray, "K 3"], pieces: int) -> Float[np.ndarray, "L 3"]:
+def arcs(points: Points, pieces: int) -> Float[np.ndarray, "L 3"]:
     """Join points of the sphere by arcs of great circles, each of this many pieces."""
     share = np.arange(pieces)[:, None] / pieces
     chords = (1 - share) * points[:-1, None] + share * points[1:, None]
@@ -142,7 +139,7 @@ def arcs(points: Float[np.ndarray, "K 3"], pieces: int) -> Float[np.ndarray, "L 
     return curve / np.where(length > 0, length, 1.0)
 
 
-def great_circle(axis: Float[np.ndarray, "3"]) -> Float[np.ndarray, "K 3"]:
+def great_circle(axis: Float[np.ndarray, "3"]) -> Points:
     """Return the great circle about an axis."""
     seed = np.eye(3)[np.argmin(np.abs(axis))]
     first = np.cross(axis, seed) / np.linalg.norm(np.cross(axis, seed))

@@ -27,6 +27,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from nonholo.base.checks import error, flag, instance, pair, positive, shown, text
+from nonholo.base.progress import setting
 from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit, Orbit
 
@@ -150,17 +151,13 @@ def in_style(draw: Callable[_P, _R]) -> Callable[_P, _R]:
         outer = {name: value for name, value in _DRAWING.get().look.items() if name not in ("title", "size")}
         choices: Any = {name: keywords.pop(name) for name in names if name in keywords}
         look = _valid_look(draw.__name__, {name: value for name, value in choices.items() if value is not None})
-        with matplotlib.style.context(_SHEET):
-            drawing = _Drawing(Look(**{**outer, **look}))
-            token = _DRAWING.set(drawing)
-            try:
-                _settle(option("dark", None), _SETTINGS["axes.facecolor"])
-                _set_fonts(_scale())
-                result = draw(*arguments, **keywords)
-                _choose_words(drawing)
-                return result
-            finally:
-                _DRAWING.reset(token)
+        drawing = _Drawing(Look(**{**outer, **look}))
+        with matplotlib.style.context(_SHEET), setting(_DRAWING, drawing):
+            _settle(option("dark", None), _SETTINGS["axes.facecolor"])
+            _set_fonts(_scale())
+            result = draw(*arguments, **keywords)
+            _choose_words(drawing)
+            return result
 
     return under_sheet
 
@@ -370,11 +367,13 @@ def is_narrow(axes: Axes) -> bool:
     return side < _NARROW * axes.figure.dpi * _scale()
 
 
-def legend_above(axes: Axes) -> None:
-    """Put a one-line legend at the right above the axes, in the line of the title; inside narrow axes instead.
+def legend_above(axes: Axes, title: str | None = None) -> None:
+    """Write a title, if there is one, and a one-line legend at its right above the axes; inside narrow axes instead.
 
     Where both do not fit into one line the title moves up; of one that is the caller's the legend keeps clear inside.
     """
+    if title is not None:
+        write_title(axes, title)
     labels = list(dict.fromkeys(axes.get_legend_handles_labels()[1]))
     if not labels or not option("legend", True):
         return

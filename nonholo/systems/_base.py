@@ -25,6 +25,7 @@ from nonholo.systems._normal_form import NormalForm
 from nonholo.systems._subspace import complement
 
 SystemT = TypeVar("SystemT", bound="AbstractSystem")
+Covectors = Inexact[Array, "... dim"]
 Along = Float[Array, "... k"]
 """Numbers along the rows of a constraint subspace."""
 Poses = Float[Array, "... N N"]
@@ -83,7 +84,6 @@ class AbstractSystem(Keeper, abc.ABC):
         Args:
             numbers: All `leaves` that are used.
         """
-        del numbers
 
     @property
     def is_clear(self) -> Bool[np.ndarray, "..."]:
@@ -219,7 +219,6 @@ class AbstractSystem(Keeper, abc.ABC):
             >>> bool(np.all(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])).carried(quarter) == np.eye(3)))
             True
         """
-        del configuration
         return np.eye(self.group.dim)
 
     def moved(self, configuration: Poses, displacement: Array) -> Poses:
@@ -231,9 +230,7 @@ class AbstractSystem(Keeper, abc.ABC):
         """
         return configuration @ displacement
 
-    def restrict_at(
-        self, momentum: Inexact[Array, "... dim"], configuration: Poses | None = None
-    ) -> Inexact[Array, "... k"]:
+    def restrict_at(self, momentum: Covectors, configuration: Poses | None = None) -> Inexact[Array, "... k"]:
         r"""Return the components of a body momentum along the constraint of a body at a configuration.
 
         Args:
@@ -241,7 +238,6 @@ class AbstractSystem(Keeper, abc.ABC):
             configuration: g; needed where the constraint is fixed in space, where they are those of the spatial
                 momentum, $S\,\mathrm{Ad}^*_{g^{-1}}p$.
         """
-        del configuration
         return self.restrict(momentum)
 
     def restricted_velocity(self, restricted_momentum: Along, configuration: Poses | None = None) -> Along:
@@ -251,7 +247,6 @@ class AbstractSystem(Keeper, abc.ABC):
             restricted_momentum: r.
             configuration: g; needed where the constraint is fixed in space.
         """
-        del configuration
         momentum, inertia = self._along("restricted_momentum", restricted_momentum), self.inertia_along
         if isinstance(momentum, np.ndarray) and self.inertia_factors is not None:
             return solve_by_factors(self.inertia_factors, momentum)
@@ -264,13 +259,12 @@ class AbstractSystem(Keeper, abc.ABC):
             restricted_velocity: w.
             configuration: g, by default the identity; it matters where the constraint is fixed in space.
         """
-        del configuration
         velocity, inertia = self._along("restricted_velocity", restricted_velocity), self.inertia_along
         is_wide = isinstance(inertia, WideInertia)
         return inertia.momenta(velocity) if is_wide else applied(inertia.swapaxes(-1, -2), velocity)
 
     def constrained_energy(
-        self, momentum: Float[Array, "... dim"] | Along, configuration: Poses | None = None
+        self, momentum: Covectors | Along, configuration: Poses | None = None
     ) -> Float[Array, "..."]:
         r"""Return the reduced constrained energy $\tfrac12\,r\cdot(\mathbb{I}|_\mathfrak{d})^{-1}\,r$ of a momentum.
 
@@ -293,7 +287,7 @@ class AbstractSystem(Keeper, abc.ABC):
         r = self._along("momentum", momentum if is_restricted else self.restrict_at(momentum, configuration))
         return (r * self.restricted_velocity(r, configuration)).sum(axis=-1) / 2
 
-    def restrict(self, momentum: Inexact[Array, "... dim"]) -> Inexact[Array, "... k"]:
+    def restrict(self, momentum: Covectors) -> Inexact[Array, "... k"]:
         """Return the components of a momentum along the rows of the constraint subspace."""
         where, remedy = f"{type(self).__name__}.restrict(momentum=...)", "Pass a full momentum."
         return applied(self.constraint_subspace, trailing(where, momentum, (self.group.dim,), remedy))
@@ -415,9 +409,7 @@ class AbstractLRSystem(AbstractSystem):
         """Return W g of a displacement in space."""
         return displacement @ configuration
 
-    def restrict_at(
-        self, momentum: Inexact[Array, "... dim"], configuration: Poses | None = None
-    ) -> Inexact[Array, "... k"]:
+    def restrict_at(self, momentum: Covectors, configuration: Poses | None = None) -> Inexact[Array, "... k"]:
         """Return the components of the spatial momentum along the constraint subspace (`restrict_in_space`)."""
         return self.restrict_in_space(momentum, self._at(configuration))
 

@@ -91,18 +91,15 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
 
     def bound(self, *numbers: Any) -> Any:
         """Return the system whose functions have numbers of its parameters within."""
-        del numbers
         return self
 
     def with_parameters(self, **numbers: Any) -> Any:
         """Return the same system with other numbers of its parameters; refused where there are none."""
-        del numbers
         remedy = "Pass parameters= to a LagrangeDAlembert."
         raise error("with_parameters(...)", "be called on a system with parameters", type(self).__name__, remedy)
 
     def takes_time(self, function: str) -> bool:
         """Return whether a function is called with the time."""
-        del function
         return False
 
     @property
@@ -112,7 +109,6 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
 
     def forced(self, potential: Any, force: Any) -> Any:
         """Return the system with a potential and a force; refused where there is no way to have them."""
-        del potential, force
         remedy = "Put them into a LagrangeDAlembert or an LLSystem."
         raise error("Forced(system=...)", "be a system that forces act on", type(self).__name__, remedy)
 

@@ -197,9 +197,7 @@ class ImpossibleBodyWarning(UserWarning):
     """
 
 
-def mass_tensor_of_body(
-    owner: str, mass: Any, inertia: Any, center_of_mass: Any, group: AbstractMatrixGroup
-) -> Float[Array, "N N"]:
+def mass_tensor_of_body(owner: str, mass: Any, inertia: Any, center_of_mass: Any, group: Any) -> Float[Array, "N N"]:
     r"""Return the mass tensor on which the matrices of SO(n) or SE(n), n = 2 or 3, act; refuse other groups.
 
     $$ J_C = \tfrac12\mathrm{tr}(I_C)\,\mathrm{Id} - I_C, \qquad

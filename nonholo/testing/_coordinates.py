@@ -30,14 +30,12 @@ class CoordinateSamples:
         steps: Number of steps of the orbit.
     """
 
-    def __init__(
-        self, system: Any, rng: np.random.Generator, configuration: Any, time_step: Any = 1.0, steps: int = 4
-    ) -> None:
+    def __init__(self, system: Any, rng: np.random.Generator, place: Any, time_step: Any = 1.0, steps: int = 4) -> None:
         self.system, self.time_step, self.steps, n = system, float(time_step), steps, system.dimension
         self.places: Any = system.places
-        self._place = self.places.step(rng.normal(size=n), 1.0) if configuration is None else configuration
-        self._drawn, self._is_random = rng.normal(size=n), configuration is None
-        if configuration is None:
+        self._place = self.places.step(rng.normal(size=n), 1.0) if place is None else place
+        self._drawn, self._is_random = rng.normal(size=n), place is None
+        if place is None:
             for index, motion in system.plain.prescribed:
                 self._place[index] = self._value(motion, 0.0)
 
@@ -268,6 +266,5 @@ def _order_of_configurations(s: CoordinateSamples) -> float:
 @measures(MAP, "order of the balance", "energy less work changes by the square of the step: |slope - 2|", 0.15)
 def _order_of_balance(s: CoordinateSamples) -> float:
     left = [orbit.energy - orbit.energy[0] - orbit.work for orbit in s.paths]
-    return report.off_two(
-        [largest(each) / (1 + largest(orbit.energy)) for each, orbit in zip(left, s.paths, strict=True)]
-    )
+    pairs = zip(left, s.paths, strict=True)
+    return report.off_two([largest(each) / (1 + largest(orbit.energy)) for each, orbit in pairs])

@@ -40,10 +40,9 @@ class OrbitSamples:
         self.forced = discrete.forces
         inside = getattr(self.system, "system", None)  # of a Forced
         self.free = dataclasses.replace(discrete, system=inside) if inside else discrete
-        self.step = min(STEP, float(discrete.time_step)) if self.forced else STEP
-        self.span = (
-            min(PATH, report.COUNTS[0] * float(discrete.time_step)) if self.forced else float(discrete.time_step)
-        )
+        h = float(discrete.time_step)
+        self.step = min(STEP, h) if self.forced else STEP
+        self.span = min(PATH, report.COUNTS[0] * h) if self.forced else h
         self.path = self.span if self.forced else PATH
         self.S, self.A = np.asarray(self.system.constraint_subspace), np.asarray(self.system.annihilator)
         self.pose = self.group.random(rng)
@@ -248,9 +247,7 @@ def _impulse(
     return scipy.integrate.solve_ivp(rate, (0.0, tau), np.zeros(len(E)), "DOP853", rtol=1e-13, atol=size).y[:, -1]
 
 
-def fields_of(
-    system: AbstractSystem, times: list[float], end: float
-) -> Iterator[tuple[Callable[..., Any], list[float]]]:
+def fields_of(system: AbstractSystem, times: list[float], end: float) -> Iterator[tuple[Any, list[float]]]:
     """Give vector fields with the times at which each is wanted: one, of a table a field for each of ten rows."""
     forced, pieces = system.forces, 10
     if forced is None or forced.table is None:
@@ -378,8 +375,7 @@ def check_discretization(
         return run_checks(title, MAP, there, tolerance_factor, throw)
     refuse_given(owner, "be left out on a group", "Leave it out.", configuration=(configuration, None))
     if not isinstance(discrete, Discretization):
-        remedy = "Pass `discretize(system, time_step)`."
-        raise error(where, "be a discretization", type(discrete).__name__, remedy)
+        raise error(where, "be a discretization", type(discrete).__name__, "Pass `discretize(system, time_step)`.")
     refuse_composition(where, discrete, "Check the discretization of order 2.")
     refuse_slip(where, discrete.system)
     refuse_many_matrices(f"{owner}(steps=...)", discrete, number, "Pass fewer steps.")

@@ -89,9 +89,7 @@ class Check:
     measure: Callable[[Any], float]
 
 
-def measures(
-    table: list[Check], name: str, requirement: str, tolerance: float | None = None
-) -> Callable[[Measure], Measure]:
+def measures(table: list[Check], name: str, requirement: str, tolerance: float | None) -> Callable[[Measure], Measure]:
     """Add the decorated measurement to a table of checks, which has the order of the file."""
 
     def add(measure: Measure) -> Measure:

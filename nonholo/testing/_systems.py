@@ -273,16 +273,13 @@ def check_system(
         there = CoordinateSamples(system, generator("check_system(rng=...)", rng), configuration)
         return run_checks(f"check_system({there.system.name})", SYSTEM, there, tolerance_factor, throw)
     refuse_given("check_system", "be left out on a group", "Leave it out.", configuration=(configuration, None))
+    kind = type(system).__name__
     if not isinstance(system, AbstractSystem):
-        raise error("check_system(system=...)", "be a system", _name_of(system), "Pass an LLSystem or your own class.")
+        raise error("check_system(system=...)", "be a system", kind, "Pass an LLSystem or your own class.")
     refuse_slip("check_system(system=...)", system)
     samples = SystemSamples(system, generator("check_system(rng=...)", rng))
-    owner = f"check_system({_name_of(system)} on {system.group!r})"
+    owner = f"check_system({kind} on {system.group!r})"
     return run_checks(owner, CHECKS, samples, tolerance_factor, throw)
-
-
-def _name_of(thing: Any) -> str:
-    return type(thing).__name__
 
 
 @measures(CHECKS, "equations of motion", "rate of <p, S_i> = <p, [omega, S_i]> (in space: zero) + <f - dU, S_i>", 1e-11)
@@ -319,18 +316,18 @@ def _energy(s: SystemSamples) -> float:
 
 @measures(CHECKS, "potential force", "the force of the potential is -dU", 1e-8)
 def _potential_force(s: SystemSamples) -> float:
-    forced, g, x = s.forced, s.g[:, None], np.eye(s.group.dim)
-    if forced is None or forced.potential is None:
-        raise report.NotApplicableError("no potential")
+    forced: Any = s.forced
+    need(forced and forced.potential is not None, "no potential")
+    g, x = s.g[:, None], np.eye(s.group.dim)
     slope = derivative(lambda t: forced.potential_energy(g @ s.group.exp(t * x)))
     return relative(forced.potential_force(s.g), -slope)
 
 
 @measures(CHECKS, "friction", "friction never adds energy: its largest power", 0.0)
 def _friction(s: SystemSamples) -> float:
-    if s.forced is None or s.forced.friction is None:
-        raise report.NotApplicableError("no friction")
-    return float(np.sum(s.forced.friction.covector(s.body_velocity) * s.body_velocity, axis=-1).max())
+    friction: Any = s.forced and s.forced.friction
+    need(friction, "no friction")
+    return float(np.sum(friction.covector(s.body_velocity) * s.body_velocity, axis=-1).max())
 
 
 def _equilibria(s: SystemSamples) -> tuple[Equilibria, ...]:

@@ -17,7 +17,7 @@ import typer
 
 from nonholo import explorer, io
 from nonholo.base.limits import within_disk
-from nonholo.base.progress import waiting
+from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.cli.scenario.files import Loaded, built_in, effective_text, given_settings, load_scenario
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, scenario_errors, store_errors
@@ -94,7 +94,7 @@ def _report(request: Loaded, ran: Ran, paths: dict[str, str | None], *, json: bo
     if quiet and not json:
         typer.echo(paths["store"])
         return
-    with waiting("measuring", sys.stderr.isatty()):
+    with progress_bar("measuring", sys.stderr.isatty()):
         numbers = figures(orbit)
     if is_part := bool(orbit.step[0] > 0):  # only the last block of so large a run was loaded
         numbers["steps"] = int(orbit.step[-1])
@@ -119,7 +119,7 @@ def run_and_keep(request: Loaded, store: Path | None, *, overwrite: bool, progre
 
     Compilation is over before the clock starts. A run of several blocks goes to the store as it is computed.
     """
-    with waiting("compiling", progress):
+    with progress_bar("compiling", progress):
         scenario, (discrete, starts) = request.scenario, _try(request)
     task: Any = functools.partial(simulate, discrete, steps=scenario.run.steps, progress=progress, **scenario.options())
     text = scenario_text(request)

@@ -188,13 +188,13 @@ def _look(title: str | None, size: str | None, dark: bool | None) -> dict[str, A
 def _draw_run(store: Path, path: Path, look: dict[str, Any], *, gif: bool, **options: Any) -> Collection[str | None]:
     """Draw a picture or the animation of a run, and return the paths of what was drawn."""
     from nonholo import io
-    from nonholo.base.progress import waiting
+    from nonholo.base.progress import progress_bar
     from nonholo.cli.screen.pictures import ALL, draw, draw_all
 
     with store_errors(USAGE):
         io.read_attributes(store)
     progress = sys.stderr.isatty()
-    with store_errors(FAILED), waiting("reading", progress):
+    with store_errors(FAILED), progress_bar("reading", progress):
         orbit = io.load_orbit(store)
     if options["kind"] == ALL:
         return draw_all(orbit, path, progress=progress, look=look, dpi=options["dpi"])

@@ -21,6 +21,7 @@ from nonholo.cli.scenario.sections import Section, suggestion
 from nonholo.groups import components_of
 
 Model = TypeVar("Model", bound=Section)
+Document = dict[str, Any]
 _DEEPEST = 32  # arrays and tables in each other
 
 
@@ -54,7 +55,7 @@ class Loaded(NamedTuple, Generic[Model]):
             raise ScenarioError([problem(key, text, self.source, self.options)]) from None
 
 
-def parse_toml(text: str) -> dict[str, Any]:
+def parse_toml(text: str) -> Document:
     """Return the document of a text.
 
     Raises:
@@ -73,7 +74,7 @@ def parse_toml(text: str) -> dict[str, Any]:
     return document
 
 
-def _depth(document: dict[str, Any]) -> int:
+def _depth(document: Document) -> int:
     """Return how deep arrays and tables are nested, without recursion."""
     depth, level = 0, [document]
     while level:
@@ -103,7 +104,7 @@ def take_module(module: Path | None) -> None:
         raise ScenarioError([Problem(f"--module {module}", "", f"cannot be used. {kind}{failure}")]) from failure
 
 
-def by_table(document: dict[str, Any]) -> None:
+def by_table(document: Document) -> None:
     """Put values under quoted key paths, "body.a" = ..., where unquoted ones stand: in tables."""
     values = table_in(table_in(document, "design"), "values")
     for path in [path for path in values if "." in path]:
@@ -113,7 +114,7 @@ def by_table(document: dict[str, Any]) -> None:
             own.setdefault(name, values.pop(path))
 
 
-def table_in(document: dict[str, Any], name: str) -> dict[str, Any]:
+def table_in(document: Document, name: str) -> Document:
     """Return a table of a document; an empty one where there is none, or a value, which is refused later."""
     inner = document.get(name)
     return inner if isinstance(inner, dict) else {}
@@ -129,7 +130,7 @@ def stored_scenario(attributes: dict[str, Any], module: Path | None, model: type
     return validate(document, model, "", "the scenario of the store", []).scenario
 
 
-def complete(document: dict[str, Any], name: str, source: str, settings: list[Setting], *, start: bool = True) -> None:
+def complete(document: Document, name: str, source: str, settings: list[Setting], *, start: bool = True) -> None:
     """Take from an example what a document leaves out, and read the table of forces that it names.
 
     The table is in the folder of the scenario or, where an option names it, here.
@@ -146,7 +147,7 @@ def complete(document: dict[str, Any], name: str, source: str, settings: list[Se
         raise ScenarioError([problem("forces.table", str(failure), source, options)]) from None
 
 
-def _directions(document: dict[str, Any]) -> tuple[str, ...] | None:
+def _directions(document: Document) -> tuple[str, ...] | None:
     """Return the names of the directions of the body of a document; None if it is no body, which is reported later."""
     try:
         body = document["body"]
@@ -155,7 +156,7 @@ def _directions(document: dict[str, Any]) -> tuple[str, ...] | None:
         return None
 
 
-def read_document(name: str, own: dict[str, str]) -> tuple[str, dict[str, Any]]:
+def read_document(name: str, own: dict[str, str]) -> tuple[str, Document]:
     """Return how the scenario of a file or a built-in name is called in messages, and what it says."""
     source, text = _text_of(name, own)
     try:
@@ -164,9 +165,7 @@ def read_document(name: str, own: dict[str, str]) -> tuple[str, dict[str, Any]]:
         raise ScenarioError([Problem(source, "", f"is not valid TOML: {failure}")]) from None
 
 
-def validate(
-    document: dict[str, Any], model: type[Model], name: str, source: str, settings: list[Setting]
-) -> Loaded[Model]:
+def validate(document: Document, model: type[Model], name: str, source: str, settings: list[Setting]) -> Loaded[Model]:
     """Return a scenario of that model, or raise with all its problems."""
     options = {setting.key: setting.option for setting in settings}
     try:
@@ -264,7 +263,7 @@ def _remedy(name: str, own: dict[str, str], may_be_kind: bool) -> str:
     return nearest_kind(name) if may_be_kind else suggestion(name, own)
 
 
-def assign(document: dict[str, Any], setting: Setting) -> None:
+def assign(document: Document, setting: Setting) -> None:
     """Put a value of the command line into a document."""
     *tables, last = setting.key.split(".")
     for table in tables:

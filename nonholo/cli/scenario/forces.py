@@ -15,10 +15,8 @@ from nonholo.groups import components_of
 if TYPE_CHECKING:
     from nonholo.systems import System
 
-_CLASSES: dict[str, Maker] = {
-    make.__name__.lower(): make
-    for make in (nonholo.Gravity, nonholo.Linear, nonholo.Spring, nonholo.Friction, nonholo.Slip)
-}
+_KINDS = (nonholo.Gravity, nonholo.Linear, nonholo.Spring, nonholo.Friction, nonholo.Slip)
+_CLASSES: dict[str, Maker] = {make.__name__.lower(): make for make in _KINDS}
 
 
 class AbstractForces(Section):
@@ -76,7 +74,7 @@ def _acting(parts: list[Any]) -> dict[str, Any]:
 def _value(word: str, make: Maker) -> Any:
     """Return what a scenario holds of a class: its table, or the value of its only argument."""
     if len(arguments(make)) > 1:
-        return table_of(word, make)
+        return table_of(word, make) | None
 
     def check(value: Any) -> None:
         try:
@@ -87,13 +85,7 @@ def _value(word: str, make: Maker) -> Any:
     return Annotated[Numbers, checked_by(check)]
 
 
-_FIELDS: Any = {
-    word: (
-        _value(word, make) | None if len(arguments(make)) > 1 else _value(word, make),
-        Field(None, description=summary(make)),
-    )
-    for word, make in _CLASSES.items()
-}
+_FIELDS: Any = {w: (_value(w, make), Field(None, description=summary(make))) for w, make in _CLASSES.items()}
 if TYPE_CHECKING:
     Forces = AbstractForces
 else:

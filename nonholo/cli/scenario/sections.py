@@ -90,9 +90,8 @@ def by_kind(table_of: Callable[[str], type[Section]], remedy: Callable[[str], st
         if isinstance(table, Section):
             return table
         if not isinstance(table, dict):
-            raise ValidationError.from_exception_data(
-                "", [{"type": "model_type", "input": table, "ctx": {"class_name": ""}}]
-            )
+            flaw: InitErrorDetails = {"type": "model_type", "input": table, "ctx": {"class_name": ""}}
+            raise ValidationError.from_exception_data("", [flaw])
         kind = table.get("kind")
         try:
             model = table_of(kind) if isinstance(kind, str) else None

@@ -16,24 +16,12 @@ from pydantic import AliasChoices, Field, model_validator
 import nonholo
 from nonholo.base.checks import is_integer, shown
 from nonholo.base.limits import bounded_count
+from nonholo.cli.scenario import files
 from nonholo.cli.scenario.bodies import arguments, is_example
-from nonholo.cli.scenario.files import (
-    Loaded,
-    Setting,
-    assign,
-    built_in,
-    by_table,
-    complete,
-    read_document,
-    table_in,
-    take_module,
-    toml_text,
-    validate,
-)
 from nonholo.cli.scenario.motion import AbstractScenario, Start, is_ready
 from nonholo.cli.scenario.problems import ScenarioError, problem
 from nonholo.cli.scenario.sections import Count, Section, by_kind, checked_by, is_finite, suggestion
-from nonholo.ensembles import REDUCTIONS, component_of, force_numbers
+from nonholo.ensembles import REDUCTIONS, STARTS, component_of, force_numbers, start_component
 from nonholo.ensembles.distributions import DISTRIBUTIONS
 
 if TYPE_CHECKING:
@@ -293,23 +281,21 @@ def library_name(path: str) -> str:
     return name.replace(".", "_") if table in TABLES and name else path
 
 
-_STARTS = ("body_velocity", "restricted_velocity", "momentum")
-_COMPONENT = re.compile(rf"({'|'.join(_STARTS)})(?:_(\d+)|\[(\d+)\])")
-
-
-def load_sweep_scenario(name: str, settings: list[Setting], module: Path | None = None) -> Loaded[SweepScenario]:
+def load_sweep_scenario(
+    name: str, settings: list[files.Setting], module: Path | None = None
+) -> files.Loaded[SweepScenario]:
     """Return the scenario of a sweep with settings applied, or raise with all its problems."""
-    take_module(module)
-    source, document = read_document(name, built_in("sweeps"))
-    by_table(document)
+    files.take_module(module)
+    source, document = files.read_document(name, files.built_in("sweeps"))
+    files.by_table(document)
     for setting in settings:
-        assign(document, setting)
-    by_table(document)
-    body = table_in(document, "body").get("kind")
+        files.assign(document, setting)
+    files.by_table(document)
+    body = files.table_in(document, "body").get("kind")
     if not (isinstance(body, str) and is_example(body)):
         _complete(document)
-    complete(document, name, source, settings, start=False)
-    request = validate(document, SweepScenario, Path(name).stem, source, settings)
+    files.complete(document, name, source, settings, start=False)
+    request = files.validate(document, SweepScenario, Path(name).stem, source, settings)
     if flaws := [problem(*flaw, source, request.options) for flaw in _refusals(request.scenario)]:
         raise ScenarioError(flaws)
     try:
@@ -325,25 +311,25 @@ def sweep_text(scenario: SweepScenario) -> str:
     title, design = document.pop("title"), document.pop("design")
     entries = design.pop("values").items()
     values = {f"{table}.{name}": value for table, own in entries for name, value in own.items()}
-    return toml_text(title, {**document, "design": design, "design.values": values})
+    return files.toml_text(title, {**document, "design": design, "design.values": values})
 
 
 def _complete(document: dict[str, Any]) -> None:
     """Take the size of a distribution from the value it varies; give a value that is varied and not given."""
-    values = table_in(table_in(document, "design"), "values")
+    values = files.table_in(files.table_in(document, "design"), "values")
     for table in ("body", "start", "run"):
-        own = table_in(values, table)
+        own = files.table_in(values, table)
         if own:
             document.setdefault(table, {})
         for name, value in own.items():
-            _complete_one(table_in(document, table), name, value)
-    _complete_start(table_in(document, "start"), table_in(values, "start"))
+            _complete_one(files.table_in(document, table), name, value)
+    _complete_start(files.table_in(document, "start"), files.table_in(values, "start"))
 
 
 def _complete_one(own: dict[str, Any], name: str, value: Any) -> None:
     if needs_size(value) and isinstance(own.get(name), list):
         value["size"] = len(own[name])
-    if name in own or _COMPONENT.fullmatch(name):
+    if name in own or start_component(name):
         return
     with contextlib.suppress(ValueError):  # reported as a problem of the design
         own[name] = _typical(value)
@@ -351,9 +337,8 @@ def _complete_one(own: dict[str, Any], name: str, value: Any) -> None:
 
 def _complete_start(own: dict[str, Any], values: dict[str, Any]) -> None:
     """Give a start of which every component is varied, from the first one on, and none is given."""
-    matches = ((_COMPONENT.fullmatch(name), value) for name, value in values.items())
-    parts = {(part[1], int(part[2] or part[3])): value for part, value in matches if part}
-    if not parts or not set(_STARTS).isdisjoint([*own, *values]):
+    parts = {part: value for name, value in values.items() if (part := start_component(name))}
+    if not parts or not set(STARTS).isdisjoint([*own, *values]):
         return
     owner, _ = next(iter(parts))
     places = [(owner, component) for component in range(len(parts))]
@@ -377,7 +362,7 @@ def _refusals(scenario: SweepScenario) -> list[tuple[str, str]]:
         flaws.append(("start", "is not for sweeps of this body, whose keys have its start"))
     for key in ("displacement", "configuration"):
         if getattr(scenario.start, key, None) is not None:
-            flaws.append((f"start.{key}", f"is not for sweeps. Start by {', '.join(_STARTS)}"))
+            flaws.append((f"start.{key}", f"is not for sweeps. Start by {', '.join(STARTS)}"))
     if scenario.run.save_every != 1:
         flaws.append(("run.save_every", "is not for sweeps: [keep] lists what is kept"))
     return flaws
@@ -419,4 +404,4 @@ def _varied_names(scenario: SweepScenario) -> dict[str, tuple[str, ...]]:
     system: Any = scenario.system()
     leaves = (*(system.system if system.is_forced else system).leaves, "inertia_operator")
     body = tuple(name for name in type(scenario.body).model_fields if name in leaves)
-    return {"body": body, "start": _STARTS, "run": ("time_step",), "forces": tuple(force_numbers(system))}
+    return {"body": body, "start": STARTS, "run": ("time_step",), "forces": tuple(force_numbers(system))}

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import nonholo
-from nonholo.base.progress import progress_bar, waiting
+from nonholo.base.progress import progress_bar
 from nonholo.cli.scenario.files import parse_toml, table_in
 from nonholo.cli.scenario.sweeps import library_name
 from nonholo.cli.screen.errors import FAILED, store_errors, warn
@@ -97,7 +97,7 @@ def _at_no_cost() -> Iterator[None]:
 
 def _save(picture: Path, make: Callable[[], Any], dpi: float, *, progress: bool, what: str = "drawing") -> str:
     """Save the figure that is made; the file appears when it is complete."""
-    with complete_file(picture) as part, waiting(what, progress):
+    with complete_file(picture) as part, progress_bar(what, progress):
         make().savefig(part, dpi=dpi)
     return str(picture)
 
@@ -168,15 +168,13 @@ def _flow(orbit: Any) -> Any:
         return None
 
 
-def draw_sweep(
-    result: "xarray.Dataset", picture: Path, *names: str | None, dpi: float = 150, **look: Any
-) -> str | None:
+def draw_sweep(sweep: "xarray.Dataset", picture: Path, *names: str | None, dpi: float = 150, **look: Any) -> str | None:
     """Draw a quantity over the design; return the path of the picture, None if there is none."""
     from nonholo.ensembles import component_name
 
     own: Any = [None if path is None else component_name(library_name(path)) for path in names]
     with _at_no_cost():
-        figure: Any = nonholo.plot.sweep_map(result, *own, **look).axes.figure
+        figure: Any = nonholo.plot.sweep_map(sweep, *own, **look).axes.figure
         return _save(picture, lambda: figure, dpi, progress=sys.stderr.isatty())
     return None
 

@@ -11,25 +11,25 @@ import typer
 import xarray
 
 from nonholo.base.limits import size_text
-from nonholo.base.progress import waiting
+from nonholo.base.progress import progress_bar
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
 from nonholo.cli.screen.report import duration, figures, show, show_json
 from nonholo.ensembles import SweepStanding, load_sweep, standing_of
-from nonholo.ensembles.stores import attributes_of, open_store
+from nonholo.ensembles.stores import AXIS, OUTCOME, attributes_of, open_store
 from nonholo.io import Standing
 from nonholo.orbit import AbstractOrbit
 
+Facts = dict[str, Any]
 _SLAB = 1 << 22  # members whose numbers are in memory at once
 _MESSAGES = 3
-_OUTCOME, _DRAWN = "outcome", "value of the design"
 _MOST_BLOCKS = 1000  # of a sweep that are read, some milliseconds each
 _NESTED = ("parameters", "motion", "versions", "arrays", "run", "sweep")
 
 
-def show_provenance(store: Path, attributes: dict[str, Any], orbit: AbstractOrbit | None, *, json: bool) -> None:
+def show_provenance(store: Path, attributes: Facts, orbit: AbstractOrbit | None, *, json: bool) -> None:
     """Print attributes and, where the orbit could be loaded, invariants, as tables or as one JSON object."""
     record = _record(attributes)
-    with waiting("measuring", sys.stderr.isatty()):
+    with progress_bar("measuring", sys.stderr.isatty()):
         numbers = {} if orbit is None else figures(orbit)
     if json:
         show_json({"store": str(store), "provenance": record, **numbers})
@@ -39,7 +39,7 @@ def show_provenance(store: Path, attributes: dict[str, Any], orbit: AbstractOrbi
     show(numbers, heading | _origin(record))
 
 
-def show_standing(store: Path, attributes: dict[str, Any], standing: Standing, *, json: bool) -> None:
+def show_standing(store: Path, attributes: Facts, standing: Standing, *, json: bool) -> None:
     """Print the progress of an unfinished run, and who is writing it."""
     record, now = _record(attributes), standing._asdict()
     if json:
@@ -50,7 +50,7 @@ def show_standing(store: Path, attributes: dict[str, Any], standing: Standing, *
     show({}, {"title": str(store), "steps": came, "run": next_one} | _origin(record))
 
 
-def show_sweep_standing(store: Path, attributes: dict[str, Any], *, json: bool) -> None:
+def show_sweep_standing(store: Path, attributes: Facts, *, json: bool) -> None:
     """Print the progress of a sweep and, if it is finished, sound and not too large, the ranges of its quantities."""
     record = _record(attributes)
     result = failure = None
@@ -71,28 +71,26 @@ def show_sweep_standing(store: Path, attributes: dict[str, Any], *, json: bool) 
         leave(str(failure), FAILED)
 
 
-def _record(attributes: dict[str, Any]) -> dict[str, Any]:
+def _record(attributes: Facts) -> Facts:
     return {name: jsonlib.loads(value) if name in _NESTED else value for name, value in attributes.items()}
 
 
-def _origin(record: dict[str, Any]) -> dict[str, str]:
+def _origin(record: Facts) -> dict[str, str]:
     return {"motion": _list_of(record["motion"]), **_scenario(record)}
 
 
-def _scenario(record: dict[str, Any]) -> dict[str, str]:
+def _scenario(record: Facts) -> dict[str, str]:
     return {
         "made with": _list_of(record["versions"] | {"kernels": record.get("kernels", "not recorded")}),
         "scenario": f"sha256 {record['scenario_sha256'][:16]}" if "scenario" in record else "none",
     }
 
 
-def _list_of(entries: dict[str, Any]) -> str:
+def _list_of(entries: Facts) -> str:
     return ", ".join(f"{key} {value}" for key, value in entries.items())
 
 
-def sweep_figures(
-    store: Path, result: xarray.Dataset | None, seconds: float | None = None, before: int = 0
-) -> dict[str, Any]:
+def sweep_figures(store: Path, result: xarray.Dataset | None, seconds: float | None = None, before: int = 0) -> Facts:
     """Return what is known of a sweep as plain numbers.
 
     Args:
@@ -120,9 +118,7 @@ def sweep_figures(
     }
 
 
-def show_sweep(
-    store: Path, figures: dict[str, Any], heading: dict[str, str], more: dict[str, Any], *, json: bool
-) -> None:
+def show_sweep(store: Path, figures: Facts, heading: dict[str, str], more: Facts, *, json: bool) -> None:
     """Print figures of a sweep as a table or as one JSON object, with what else is to be reported."""
     if json:
         show_json({"store": str(store), **more, **figures})
@@ -135,7 +131,7 @@ def show_sweep(
             typer.echo(f"{kind:<9} {path}")
 
 
-def leave_if_all_raised(figures: dict[str, Any]) -> None:
+def leave_if_all_raised(figures: Facts) -> None:
     """End the command with a failure if not one member has a result."""
     if figures["outcomes"].get("raised") == figures["members"]:
         reason = f": {figures['messages'][0][1]}" if figures["messages"] else ""
@@ -148,7 +144,7 @@ def _state(standing: SweepStanding) -> str:
     return f"written by {standing.owner}" if standing.owner else "stopped"
 
 
-def _rows(store: Path, figures: dict[str, Any]) -> dict[str, str]:
+def _rows(store: Path, figures: Facts) -> dict[str, str]:
     members, count_done = figures["members"], figures["done"]
     part = f"{count_done:,} of {members:,}, {100 * count_done / members:.1f} %"
     came = f"{members:,}" if count_done == members else part
@@ -168,13 +164,13 @@ def _rows(store: Path, figures: dict[str, Any]) -> dict[str, str]:
 def _ranges(result: xarray.Dataset) -> dict[str, tuple[float, float, str]]:
     """Return least and largest number of each quantity over the members that succeeded, and what it means."""
     ranges: dict[str, tuple[float, float, str]] = {}
-    first, *others = result[_OUTCOME].dims
+    first, *others = result[OUTCOME].dims
     rows = max(1, _SLAB // math.prod(result.sizes[name] for name in others))  # parts that fit in memory
     for begin in range(0, result.sizes[first], rows):
         part = result.isel({first: slice(begin, begin + rows)})
-        good = part[_OUTCOME] == 0
+        good = part[OUTCOME] == 0
         for name, values in part.data_vars.items():
-            if name == _OUTCOME or values.attrs.get("long_name") == _DRAWN or values.dtype.kind not in "if":
+            if name == OUTCOME or values.attrs.get("long_name") == AXIS["long_name"] or values.dtype.kind not in "if":
                 continue
             finite = values.where(good).values
             finite = finite[np.isfinite(finite)]

@@ -17,6 +17,7 @@ from nonholo.plot.motion.spheres import known_axes, rotation_axes
 from nonholo.plot.parts import forbidden_axis, turn_per_state
 from nonholo.plot.sphere import View, arcs, best_view, draw_globe, set_curve
 
+Axis = Float[np.ndarray, "3"]
 _TURN = np.radians(22.0)  # most between two frames
 _PIECE = np.radians(4.0)
 _LONGEST = 0.72  # from the center of the box to its corners, in radii of the sphere
@@ -44,7 +45,7 @@ def draw_body(axes: Axes, orbit: Orbit, parts: list[Part]) -> Show:
     return together(shows)
 
 
-def _sticks(axes: Axes, view: View, frames: Orbit, gamma: Float[np.ndarray, "3"], name: str) -> Show:
+def _sticks(axes: Axes, view: View, frames: Orbit, gamma: Axis, name: str) -> Show:
     """Draw the box with its axis and its angular velocity, which begin where they leave it."""
     poses = frames.configuration
     spins = frames.body_velocity
@@ -68,7 +69,7 @@ def _box_in_sphere(frames: Orbit) -> Any:
     return box._replace(half=_LONGEST * box.half / np.linalg.norm(box.half))
 
 
-def _beside(axes: Axes, view: View, other: Part, gamma: Float[np.ndarray, "3"]) -> Show:
+def _beside(axes: Axes, view: View, other: Part, gamma: Axis) -> Show:
     colors = np.broadcast_to(to_rgba(theme.CONTINUOUS), (len(other.path) - 1, 4))
     axes.plot([], [], color=theme.CONTINUOUS, label="continuous")
     show_trace = _trace(axes, view, other, gamma, colors, 1.2)
@@ -82,9 +83,7 @@ def _beside(axes: Axes, view: View, other: Part, gamma: Float[np.ndarray, "3"]) 
     return show
 
 
-def _trace(
-    axes: Axes, view: View, of: Part, gamma: Float[np.ndarray, "3"], colors: Float[np.ndarray, "L 4"], width: float
-) -> Show:
+def _trace(axes: Axes, view: View, of: Part, gamma: Axis, colors: Float[np.ndarray, "L 4"], width: float) -> Show:
     """Return what shows the path of an axis up to a frame, beneath the body and above it."""
     points = of.path.configuration @ gamma
     step = np.linalg.norm(np.diff(points, axis=0), axis=1).max(initial=0.0)
@@ -102,11 +101,11 @@ def _trace(
     return show
 
 
-def _stick(axes: Axes, view: View, **look: Any) -> Callable[[Float[np.ndarray, "3"], Float[np.ndarray, "3"]], None]:
+def _stick(axes: Axes, view: View, **look: Any) -> Callable[[Axis, Axis], None]:
     """Return what shows a stick from one point of space to another, under the box if it points away from the eye."""
     line = axes.plot([], [], solid_capstyle="round", markevery=[1], **look)[0]
 
-    def show(foot: Float[np.ndarray, "3"], tip: Float[np.ndarray, "3"]) -> None:
+    def show(foot: Axis, tip: Axis) -> None:
         flat, depth = view(np.stack([foot, tip]))
         line.set_data(*flat.T)
         line.set(zorder=7 if depth[1] >= 0 else 3, alpha=1.0 if depth[1] >= 0 else 0.55)

@@ -96,8 +96,7 @@ def curvature(
     mesh, zero, bar = _map(axes, component, sides, values)
     gait = None if path is None else _draw_gait(axes, path[:, shapes])
     axes.set(xlabel=symbol(names[shapes[0]]), ylabel=symbol(names[shapes[1]]), xlim=sides[0], ylim=sides[1])
-    theme.write_title(axes, f"{connection.system.name}: curvature, {symbol(component)}")
-    theme.legend_above(axes)
+    theme.legend_above(axes, f"{connection.system.name}: curvature, {symbol(component)}")
     return CurvaturePicture(axes, mesh, zero, gait, bar)
 
 

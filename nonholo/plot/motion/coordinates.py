@@ -105,9 +105,7 @@ class Bodies:
 _LAYERS = slice(0, 1), slice(1, None)
 
 
-def bodies_of(
-    orbit: AbstractOrbit, points: Float[np.ndarray, "K d"], states: AbstractOrbit | None = None
-) -> Bodies | None:
+def bodies_of(orbit: AbstractOrbit, points: Float[np.ndarray, "K d"], states: Any = None) -> Bodies | None:
     """Return the bodies to draw along the points of a path in the plane; None of a system that shows no heading.
 
     They are at some of the points, or at all states that are given.

@@ -145,8 +145,7 @@ def phase_portrait(
         path = parts.draw_in_time(axes, orbit, momentum, parts.evenly_in_box(momentum), zorder=6, size=size)
     images, edges = _draw_images(axes, orbit, trees) if orbit is not None and trees else (None, None)
     name_axes(axes, system)
-    theme.write_title(axes, "Phase portrait")
-    theme.legend_above(axes)
+    theme.legend_above(axes, "Phase portrait")
     return PhasePortrait(axes, lines, stable, unstable, neutral, arrows, path, images, edges)
 
 
@@ -155,12 +154,7 @@ def _check(system: AbstractLLSystem, orbit: Orbit | None) -> Orbit | None:
     where = "phase_portrait(system=...)"
     refuse_forces(where, system)
     instance(where, system, AbstractSystem, "be a system", "Pass `orbit.system` first, then the orbit.")
-    if system.is_spatial:
-        remedy = "Its momenta along the constraint are conserved: draw `overview` instead."
-        raise error(where, "have a left-invariant constraint", shown(system), remedy)
-    if len(system.constraint_subspace) != 2:
-        got = f"dimension {len(system.constraint_subspace)}"
-        raise error(where, "have a two-dimensional constraint subspace", got, "Plot `orbit.restricted_momentum`.")
+    parts.check_directions(where, system, system, (2, "two"), "Plot `orbit.restricted_momentum`.")
     smooth = None if orbit is None else parts.drawable("phase_portrait(orbit=...)", orbit)
     if smooth is not None and not parts.is_same_body(smooth.system, system):
         raise error("phase_portrait(orbit=...)", "be an orbit of the system", shown(orbit), "Pass `orbit.system`.")
@@ -270,8 +264,7 @@ def section(
     dots = axes.scatter(*points.T, s=area, linewidths=0, label=theme.option("label", None), **colors)
     axes.set(xlabel=across_label, ylabel=up_label)
     axes.margins(0.06)
-    theme.write_title(axes, f"{len(points)} crossings")
-    theme.legend_above(axes)
+    theme.legend_above(axes, f"{len(points)} crossings")
     return Section(axes, points, dots)
 
 
@@ -282,9 +275,6 @@ def _name_of(quantity: Quantity, otherwise: str) -> str:
 
 def _values(name: str, quantity: Quantity, crossings: Crossings) -> Float[np.ndarray, "C"]:
     where = f"section({name}=...)"
-    words = (
-        "one number for each crossing",
-        "It gets an `Orbit`: return an array with one number for each of its states.",
-    )
-    values = call(where, quantity, crossings.states)
+    remedy = "It gets an `Orbit`: return an array with one number for each of its states."
+    values, words = call(where, quantity, crossings.states), ("one number for each crossing", remedy)
     return check_result(where, quantity, values, (len(crossings),), words, lambda at: f"time {crossings.time[at]:.17g}")

@@ -110,8 +110,7 @@ def body_axis_track(
     sphere.draw_named_axes(axes, eye, _axes_to_draw(before, after, third, orbit))
     sphere.mark_ends(axes, eye, points, part, orbit)
     title = "Body axis 3 in space" if parts.forbidden_axis(orbit.system) is None else "Forbidden body axis in space"
-    theme.write_title(axes, title if body_axis is None else "Body axis in space")
-    theme.legend_above(axes)
+    theme.legend_above(axes, title if body_axis is None else "Body axis in space")
     return BodyAxisTrack(axes, eye, points, path, dots, before, after, third, curve)
 
 
@@ -260,13 +259,8 @@ def momentum_sphere(
 def _check(orbit: Orbit) -> AbstractLLSystem:
     where = "momentum_sphere(orbit=...)"
     system = parts.drawable(where, orbit).system
-    if system.is_spatial:
-        remedy = "Its momenta along the constraint are conserved: draw `overview` instead."
-        raise error(where, "have a left-invariant constraint", shown(orbit), remedy)
-    if len(system.constraint_subspace) != 3:
-        got = f"dimension {len(system.constraint_subspace)}"
-        remedy = "Use `phase_portrait` in two dimensions, `overview` in others."
-        raise error(where, "have a three-dimensional constraint subspace", got, remedy)
+    remedy = "Use `phase_portrait` in two dimensions, `overview` in others."
+    parts.check_directions(where, orbit, system, (3, "three"), remedy)
     return cast(AbstractLLSystem, system)
 
 
@@ -280,9 +274,7 @@ def _attracting(system: AbstractLLSystem, to_sphere: Float[np.ndarray, "3 3"]) -
     return (point / np.linalg.norm(point))[None, :]
 
 
-def _equilibria(
-    axes: Axes, eye: sphere.View, attracting: Float[np.ndarray, "A 3"]
-) -> tuple[PathCollection | None, PathCollection | None]:
+def _equilibria(axes: Axes, eye: sphere.View, attracting: Float[np.ndarray, "A 3"]) -> tuple[Any, Any]:
     if not len(attracting):
         return None, None
     (here, there), depth = eye(np.concatenate([attracting, -attracting]))

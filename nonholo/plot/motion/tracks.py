@@ -87,8 +87,7 @@ def blade_track(
     if not np.allclose(position[0], position[-1]):
         _name(axes, "end", position[-1], middle)
     stars = _stars(axes, position, cusps) if len(cusps) else None
-    theme.write_title(axes, "Track of the blade")
-    theme.legend_above(axes)
+    theme.legend_above(axes, "Track of the blade")
     inset = _enlarge(axes, orbit, flow, cusps, view) if enlarge and len(cusps) else None
     return BladeTrack(axes, track, blades, masses, stars, ends, line, inset)
 
@@ -98,8 +97,7 @@ def _with_blade(where: str, orbit: Any) -> tuple[Orbit, Blade]:
     orbit = parts.drawable(where, orbit)
     blade = blade_of_system(orbit.system)
     if blade is None:
-        remedy = "Use `body_axis_track` for a top."
-        raise error(where, "be an orbit of a sleigh in the plane", shown(orbit), remedy)
+        raise error(where, "be an orbit of a sleigh in the plane", shown(orbit), "Use `body_axis_track` for a top.")
     return parts.with_poses(where, orbit), blade
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from nonholo import kernels
 from nonholo.base.checks import needs
-from nonholo.base.progress import until
+from nonholo.base.progress import setting, until
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
 from nonholo.continuous import has_series, members_by_series
@@ -44,14 +44,9 @@ Report: TypeAlias = Callable[[int], None]
 Starts: TypeAlias = tuple[np.ndarray, np.ndarray]  # scaled momenta and poses
 
 
-@contextlib.contextmanager
-def in_one_thread() -> Iterator[None]:
+def in_one_thread() -> contextlib.AbstractContextManager[None]:
     """Run ensembles inside in one thread, for callers that run several of them at a time."""
-    token = _THREADS.set(1)
-    try:
-        yield
-    finally:
-        _THREADS.reset(token)
+    return setting(_THREADS, 1)
 
 
 def threads_to_use() -> int:
@@ -149,17 +144,15 @@ def _in_lanes(members: Members, starts: Firsts, plan: Plan, threads: int, report
     """Run members of a closed form, 32 at a time, or by JAX."""
     scalar, count, (momenta, first) = ScalarMembers(members), len(members), starts.numbers
     rows = _rows(count, plan.states, with_poses=plan.with_poses)
-    fields, back, run = scalar.fields, scalar.to_canonical, _advance_by_jax if plan.backend == "jax" else _advance
-    advance = functools.partial(run, scalar.body)
+    lanes = _Lanes(scalar.body, scalar.fields, scalar.to_canonical)
+    advance = _advance_by_jax if plan.backend == "jax" else _advance
 
     def work(part: slice, stop: np.ndarray) -> None:
         pieces = _fill_nan(kernels.MemberRows(*(array[part] for array in rows)))
         scale, axes = np.broadcast_to(scalar.scale, (count,))[part, None], scalar.axes.at(part)
         places = axes.poses(first[part] if first.strides[0] else first[:1])
         poses = np.array(np.broadcast_to(places, (len(scale), 4)), order="C")  # never read-only: compiled once
-        own = fields if fields.shape[1] == 1 else fields[:, part]
-        turn = back if len(back.numbers) == 1 else back._replace(numbers=back.numbers[part])
-        advance(own, turn, (scale * axes.momenta(momenta[part]), poses), plan, pieces, stop)
+        advance(lanes.of(part), (scale * axes.momenta(momenta[part]), poses), plan, pieces, stop)
 
     if plan.backend == "jax":
         threads = 1  # XLA has its own
@@ -197,41 +190,43 @@ def _fill_nan(rows: kernels.MemberRows) -> kernels.MemberRows:
     return rows
 
 
-def _advance(
-    body: Any,
-    fields: np.ndarray,
-    axes: kernels.MemberAxes,
-    starts: Starts,
-    plan: Plan,
-    rows: kernels.MemberRows,
-    stop: np.ndarray,
-) -> None:
+class _Lanes(NamedTuple):
+    """The numbers of members that a loop needs.
+
+    Attributes:
+        body: Makes a body of the kernel.
+        fields: Numbers of their bodies, (f, members), or (f, 1) where those of all are the same.
+        axes: How their record is taken to canonical numbers.
+    """
+
+    body: Callable[..., Any]
+    fields: np.ndarray
+    axes: kernels.MemberAxes
+
+    def of(self, some: Any) -> "_Lanes":
+        """Return the same of some members."""
+        fields, numbers = self.fields, self.axes.numbers
+        own = self.axes if len(numbers) == 1 else self.axes._replace(numbers=numbers[some])
+        return self._replace(fields=fields if fields.shape[1] == 1 else fields[:, some], axes=own)
+
+
+def _advance(lanes: _Lanes, starts: Starts, plan: Plan, rows: kernels.MemberRows, stop: np.ndarray) -> None:
     """Run members by the compiled loop."""
-    one = body(*(float(x) for x in fields[:, 0]))
-    tables = None if fields.shape[1] == 1 else kernels.tables_of(fields)
-    kernels.advance_members(one, tables, axes, *starts, plan.steps, plan.every or 0, rows, stop)
+    one = lanes.body(*(float(x) for x in lanes.fields[:, 0]))
+    tables = None if lanes.fields.shape[1] == 1 else kernels.tables_of(lanes.fields)
+    kernels.advance_members(one, tables, lanes.axes, *starts, plan.steps, plan.every or 0, rows, stop)
 
 
-def _advance_by_jax(
-    body: Any,
-    fields: np.ndarray,
-    axes: kernels.MemberAxes,
-    starts: Starts,
-    plan: Plan,
-    rows: kernels.MemberRows,
-    stop: np.ndarray,
-) -> None:
+def _advance_by_jax(lanes: _Lanes, starts: Starts, plan: Plan, rows: kernels.MemberRows, stop: np.ndarray) -> None:
     """Run members by JAX, and those whose roots are not certain by the compiled loop."""
     with needs("jax", "ensemble(backend='jax')"):
         from nonholo.simulation.members._by_jax import advance_by_jax
 
-    uncertain = advance_by_jax(body(*fields), axes, *starts, plan.steps, plan.every or 0, rows)
-    again = np.flatnonzero(uncertain)
+    body, (momenta, poses) = lanes.body(*lanes.fields), starts
+    again = np.flatnonzero(advance_by_jax(body, lanes.axes, momenta, poses, plan.steps, plan.every or 0, rows))
     if again.size:
         fresh = _fill_nan(_rows(len(again), rows.momenta.shape[1], with_poses=plan.with_poses))
-        own, (momenta, poses) = fields if fields.shape[1] == 1 else fields[:, again], starts
-        turn = axes if len(axes.numbers) == 1 else axes._replace(numbers=axes.numbers[again])
-        _advance(body, own, turn, (momenta[again], poses[again]), plan, fresh, stop)
+        _advance(lanes.of(again), (momenta[again], poses[again]), plan, fresh, stop)
         for array, values in zip(rows, fresh, strict=True):
             array[again] = values
 

@@ -61,9 +61,7 @@ class RigidBody(AbstractLLSystem):
         positive_definite(where, self.inertia_operator, "the inertia operator", remedy)
 
     @classmethod
-    def from_inertia(
-        cls, mass: Array, inertia: Array, center_of_mass: Array, group: AbstractMatrixGroup
-    ) -> "RigidBody":
+    def from_inertia(cls, mass: Any, inertia: Any, center_of_mass: Any, group: AbstractMatrixGroup) -> "RigidBody":
         """Build a body from its mass, its inertia about the center of mass, and where that is in the body.
 
         On SO(3) the body turns about the origin of body coordinates, to which Steiner's theorem carries the inertia; on
