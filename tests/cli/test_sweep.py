@@ -310,7 +310,7 @@ def test_a_sweep_without_a_single_result_fails(nonholo: Command, monkeypatch: py
         assert found.stderr.splitlines()[-1] == "Every member raised: ValueError: no luck"
 
 
-def test_failed_members_arejson_of(nonholo: Command) -> None:
+def test_failed_members_are_told(nonholo: Command) -> None:
     """Members for which the task raises do not stop the rest; `info` repeats their first messages."""
     text = GRID.replace('"body.a" = [0.3, 0.5]', '"body.mass" = [1.0, -1.0]')
     store = json_of(nonholo("sweep", _written(text), "--json", "--no-plot"))["store"]
