@@ -128,25 +128,6 @@ def test_full_disk_leaves_a_valid_store(scheduler: str, tmp_path: Path) -> None:
     assert same(resumed(path), swept(tmp_path / "whole.zarr"))
 
 
-@pytest.mark.profile("faults", instead="test_full_disk_leaves_a_valid_store")
-@pytest.mark.parametrize("scheduler", ["threads", "processes"])
-def test_limit_of_the_system_on_file_sizes(scheduler: str, tmp_path: Path) -> None:
-    """A limit met while zarr writes ends in the same clean error, and the sweep continues without it."""
-    path = tmp_path / "run.zarr"
-    told = _printed(f"""
-import resource
-resource.setrlimit(resource.RLIMIT_FSIZE, (15_000, 15_000))
-try:
-    nh.sweep(noisy, SWEEPS["noisy"][1], Path({str(path)!r}), {scheduler!r}, block=1200, workers=1)
-except OSError as failure:
-    print(failure.errno, failure)
-""")
-    assert told.startswith(f"{errno.EFBIG} ")
-    assert "File too large. The sweep stands at 0 of 2400 members, 0 of them failed. Free space, then call" in told
-    task, design, _ = faults.SWEEPS["noisy"]
-    assert same(nh.resume(path, task=task).load(), nh.sweep(task, design, tmp_path / "whole.zarr", block=2400).load())
-
-
 def test_no_room_for_a_store(tmp_path: Path) -> None:
     """If not even the empty store can be written, nothing is left at its path nor beside it."""
     full = OSError(errno.ENOSPC, "No space left on device")

@@ -220,6 +220,7 @@ def test_full_disk_leaves_the_old_store(store: Path, monkeypatch: pytest.MonkeyP
     assert list(store.parent.iterdir()) == [store]
 
 
+@pytest.mark.profile("faults", instead="test_full_disk_leaves_the_old_store")
 def test_refused_write_of_the_system(store: Path) -> None:
     """A limit of the operating system on file sizes, met while zarr writes, ends in the same clean error."""
     script = f"""
