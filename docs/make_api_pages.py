@@ -163,8 +163,8 @@ def _named_by(room: str) -> list[str]:
 
 _READY = """\
 All have pictures, `to_csv`, `to_pandas`, stores whose runs resume and extend, events, `nh.compare`, `nh.ensemble`, and
-sweeps over their parameters and starts by `nh.FamilyTask`. Two tests do all of it with each of them:
-`tests/examples/test_first_class.py` and `tests/examples/test_stores.py`.
+sweeps over their parameters and starts by `nh.FamilyTask`. `tests/examples/` and
+`tests/cli/test_every_example.py` do all of it with each of them.
 """
 
 _TEXT = """\

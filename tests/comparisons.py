@@ -1,6 +1,6 @@
-"""Comparisons of orbits, flows and members by the names of what is read of them."""
+"""Comparisons of orbits, flows and members by the names of what is read of them; derivatives by differences."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -30,3 +30,10 @@ def assert_joined(blocks: Sequence[Any], whole: Any, *names: str) -> None:
     """Compare bits of blocks, one after another, with those of the whole."""
     for name in names or STATE:
         assert np.array_equal(np.concatenate([getattr(block, name) for block in blocks]), getattr(whole, name)), name
+
+
+def derivatives(function: Callable[[np.ndarray], np.ndarray], at: np.ndarray, offset: float = 4e-3) -> np.ndarray:
+    """Return derivatives at a point by central differences of order 6, a column for each coordinate."""
+    offsets, weights = offset * np.arange(1, 4), np.array([45.0, -9.0, 1.0]) / (60 * offset)
+    columns = [weights @ [function(at + x * e) - function(at - x * e) for x in offsets] for e in np.eye(len(at))]
+    return np.transpose(columns)

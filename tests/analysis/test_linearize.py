@@ -7,13 +7,12 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from comparisons import derivatives
 
 import nonholo as nh
 from nonholo.base.types import Array
 
 M, R, AXIS, DIAMETER, G = 1.3, 0.4, 0.12, 0.07, 9.81  # of a disk
-OFFSET = 8e-3
-WEIGHTS = np.array([45.0, -9.0, 1.0]) / (60 * OFFSET)
 
 
 def leaning_disk() -> nh.LagrangeDAlembert:
@@ -62,13 +61,6 @@ def test_an_upright_disk_is_stable_above_its_critical_speed(roll: float) -> None
     assert max(distances.min(axis=0).max(), distances.min(axis=1).max()) < 1e-12  # a difference of 22 and 22 at 3
 
 
-def by_differences(function: Callable[[np.ndarray], np.ndarray], z: np.ndarray) -> np.ndarray:
-    """Return derivatives by central differences of order 6."""
-    offsets = OFFSET * np.arange(1, 4)
-    columns = [WEIGHTS @ [function(z + x * e) - function(z - x * e) for x in offsets] for e in np.eye(len(z))]
-    return np.transpose(columns)
-
-
 CASES = {
     "upright disk": (DISK, rolling(0.0, 0.0, 3.0)),
     "disk on a circle": (DISK, rolling(0.4, 1.5, steady_roll(0.4, 1.5))),
@@ -115,7 +107,7 @@ def test_the_matrix_is_that_of_differences_of_the_equations(system: Any, start: 
         change = field(0.0, np.concatenate([at, moving]))
         return np.concatenate([change[kept], change[n:][free]])
 
-    wanted = by_differences(rates, np.concatenate([q[kept], v[free]]))
+    wanted = derivatives(rates, np.concatenate([q[kept], v[free]]), 8e-3)
     np.testing.assert_allclose(found.matrix, wanted, rtol=0, atol=1e-9)
 
 
@@ -140,7 +132,7 @@ def test_the_matrix_of_a_map_is_that_of_differences_of_steps(name: str) -> None:
         orbit = nh.simulate(discrete, configuration=at, displacement=h * moving, steps=1)
         return np.concatenate([orbit.configuration[1][kept], orbit.body_velocity[1][free]])
 
-    wanted = by_differences(after, np.concatenate([q[kept], v[free]]))
+    wanted = derivatives(after, np.concatenate([q[kept], v[free]]), 8e-3)
     np.testing.assert_allclose(found.matrix, wanted, rtol=0, atol=1e-9)
 
 

@@ -1,11 +1,11 @@
 """The tangent map along orbits against differences of orbits, and Lyapunov exponents where they are known."""
 
-from collections.abc import Callable
 from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from comparisons import derivatives
 
 import nonholo as nh
 from nonholo.systems import AbstractSystem
@@ -30,11 +30,7 @@ def test_tangent_map_is_the_difference_of_orbits(system: AbstractSystem) -> None
     def last(momentum: np.ndarray) -> np.ndarray:
         return nh.simulate(discrete, momentum=momentum, steps=5).restricted_momentum[-1]
 
-    columns = [
-        (8 * (last(start + e) - last(start - e)) - last(start + 2 * e) + last(start - 2 * e)) / 12e-3
-        for e in 1e-3 * np.eye(len(start))
-    ]
-    np.testing.assert_allclose(product, np.transpose(columns), rtol=0, atol=1e-10)
+    np.testing.assert_allclose(product, derivatives(last, start), rtol=0, atol=1e-10)
 
 
 @pytest.mark.parametrize("system", BODIES.values(), ids=BODIES)
@@ -47,11 +43,7 @@ def test_tangent_map_of_flows(system: AbstractSystem, end: float) -> None:
     def last(momentum: np.ndarray) -> np.ndarray:
         return nh.flow(system, momentum=momentum, times=times).restricted_momentum[-1]
 
-    columns = [
-        (8 * (last(start + e) - last(start - e)) - last(start + 2 * e) + last(start - 2 * e)) / 12e-3
-        for e in 1e-3 * np.eye(len(start))
-    ]
-    np.testing.assert_allclose(product, np.transpose(columns), rtol=0, atol=1e-10)
+    np.testing.assert_allclose(product, derivatives(last, start), rtol=0, atol=1e-10)
 
 
 def test_tangent_map_of_a_sleigh_in_closed_form() -> None:
@@ -84,14 +76,6 @@ MAPS = {
 }
 
 
-def sixth(function: Callable[[np.ndarray], np.ndarray], size: int) -> np.ndarray:
-    """Return derivatives at zero by central differences of order 6."""
-    offsets = 4e-3 * np.arange(1, 4)
-    weights = np.array([45.0, -9.0, 1.0]) / (60 * 4e-3)
-    columns = [weights @ [function(x * e) - function(-x * e) for x in offsets] for e in np.eye(size)]
-    return np.transpose(columns)
-
-
 @pytest.mark.profile("routes", keep=["composition"])
 @pytest.mark.parametrize("discrete", MAPS.values(), ids=MAPS)
 def test_tangent_maps_by_jax(discrete: nh.Discretization) -> None:
@@ -109,7 +93,7 @@ def test_tangent_maps_by_jax(discrete: nh.Discretization) -> None:
         away = group.log(group.inverse(orbit.configuration[-1]) @ end.configuration[-1])
         return np.append(away[:posed], end.restricted_momentum[-1])
 
-    np.testing.assert_allclose(product, sixth(last, posed + k), rtol=0, atol=1e-10)
+    np.testing.assert_allclose(product, derivatives(last, np.zeros(posed + k)), rtol=0, atol=1e-10)
 
 
 @pytest.mark.profile("routes", keep=["True"])
@@ -134,7 +118,7 @@ def test_tangent_maps_in_coordinates(is_map: bool) -> None:
         orbit = run(z)
         return np.append(orbit.configuration[-1], orbit.body_velocity[-1])
 
-    carried = sixth(last, 5) @ np.linalg.pinv(sixth(state, 5))
+    carried = derivatives(last, np.zeros(5)) @ np.linalg.pinv(derivatives(state, np.zeros(5)))
     product = np.linalg.multi_dot(run(np.zeros(5)).tangent[::-1])
     wanted = np.linalg.svd(carried, compute_uv=False)[:5]
     np.testing.assert_allclose(np.linalg.svd(product, compute_uv=False), wanted, rtol=0, atol=1e-9)
@@ -167,7 +151,7 @@ def test_tangent_maps_by_functions_on_a_group() -> None:
     def momentum(v: np.ndarray) -> np.ndarray:
         return nh.discrete_legendre(body, nh.SO(3).exp(h * v))
 
-    before, after = (sixth(lambda x, v=v: momentum(v + x), 3) for v in orbit.body_velocity)
+    before, after = (derivatives(momentum, v) for v in orbit.body_velocity)
     wanted = np.linalg.solve(after, known.tangent[0] @ before)
     np.testing.assert_allclose(orbit.tangent[0][3:], np.hstack([np.zeros((3, 3)), wanted]), rtol=0, atol=1e-11)
     np.testing.assert_allclose(orbit.tangent[0][:3, :3], orbit.displacement[0].T, rtol=0, atol=1e-14)

@@ -2,17 +2,15 @@
 
 import re
 import tomllib
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.testing import Result
+from commands import Command, assert_ends
 
 import nonholo as nh
 from nonholo_paper import entries
 
-Command = Callable[..., Result]
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 
@@ -74,9 +72,7 @@ def test_of_a_scenario_it_says_what_runs_it(nonholo: Command, name: str) -> None
 
 def test_another_name_is_refused_with_the_nearest(nonholo: Command) -> None:
     """A name that is not there ends with code 2."""
-    ended = nonholo("examples", "snakbord")
-    assert ended.exit_code == 2
-    assert "Did you mean snakeboard?" in ended.stderr
+    assert_ends(nonholo("examples", "snakbord"), 2, "Did you mean snakeboard?")
 
 
 def test_findings_are_listed_and_not_measured(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,21 +1,18 @@
 """Every ready example from the command line: run, page, sweep, picture, template; and bodies of a user's own file."""
 
-import json
 import sys
 import tomllib
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from typer.testing import Result
+from commands import Command, assert_ends, json_of, output_of
 
 import nonholo as nh
 from nonholo.cli.scenario.bodies import examples
 from nonholo.cli.scenario.files import load_scenario, parse_setting
 
-Command = Callable[..., Result]
 NAMES = sorted(name for name in nh.examples.__all__ if name.islower())
 QUICK = ["particle", "heavy_suslov_top"]  # in coordinates, and on a group
 VARIED = {
@@ -32,11 +29,6 @@ WITHOUT_PAGE = {"chaotic_quartic_oscillator"}
 """Examples that nothing in the plane stands for."""
 
 
-def _done(result: Result) -> str:
-    assert result.exit_code == 0, result.output
-    return result.stdout
-
-
 def test_they_are_the_public_ones() -> None:
     """The kinds of the command line are the functions of `nh.examples`."""
     assert examples() == {name: getattr(nh.examples, name) for name in NAMES}
@@ -47,23 +39,23 @@ def test_they_are_the_public_ones() -> None:
 def test_every_example(name: str, nonholo: Command) -> None:
     """It runs as in Python, from its own start; its store is shown and drawn; its page and a sweep of two are made."""
     orbit = getattr(nh.examples, name)().simulate(steps=6)
-    told = json.loads(_done(nonholo("simulate", name, "--steps", 6, "-o", "a.zarr", "--json")))
+    told = json_of(nonholo("simulate", name, "--steps", 6, "-o", "a.zarr", "--json"))
     assert told["outcome"] == "successful"
     stored = nh.load_orbit("a.zarr")
     np.testing.assert_array_equal(stored.configuration, orbit.configuration)
     assert Path("a.png").stat().st_size > 5_000
-    assert "successful" in _done(nonholo("info", "a.zarr"))
-    assert "a-overview.png" in _done(nonholo("plot", "a.zarr", "--kind", "all", "--dpi", 30))
+    assert "successful" in output_of(nonholo("info", "a.zarr"))
+    assert "a-overview.png" in output_of(nonholo("plot", "a.zarr", "--kind", "all", "--dpi", 30))
     page = nonholo("explore", name, "--steps", 6, "-o", "page.html", "--no-browser")
     if name in WITHOUT_PAGE:
         assert (page.exit_code, page.stderr.count("must have coordinates named x and y")) == (1, 1)
     else:
-        assert _done(page) == "page.html\n"
+        assert output_of(page) == "page.html\n"
         assert Path("page.html").stat().st_size > 50_000
     path, values = VARIED.get(name, ("body.mass", [1.0, 1.5]))
     design = f'[design]\nkind = "grid"\n[design.values]\n"{path}" = {values}'
     Path("many.toml").write_text(f'[body]\nkind = "{name}"\n[run]\nsteps = 6\n{design}')
-    _done(nonholo("sweep", "many.toml", "-o", "s.zarr", "-q"))
+    output_of(nonholo("sweep", "many.toml", "-o", "s.zarr", "-q"))
     swept = nh.load_sweep("s.zarr")
     assert (swept["steps_done"].values == 6).all()
 
@@ -83,7 +75,7 @@ def test_another_speed_keeps_the_pose_of_the_example() -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_every_template(name: str, nonholo: Command) -> None:
     """What `new` writes has every argument with its meaning, and is the scenario that the bare name runs."""
-    text = _done(nonholo("new", name))
+    text = output_of(nonholo("new", name))
     assert max(map(len, text.splitlines())) <= 120
     Path("my.toml").write_text(text)
     body = tomllib.loads(text)["body"]
@@ -148,19 +140,19 @@ def robot(monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_a_body_of_ones_own(robot: Path, nonholo: Command) -> None:
     """Functions of a file that is named are kinds of bodies: run, listed, a template, a page, a run."""
     own = ("--module", robot)
-    assert "cart" in _done(nonholo("systems", *own))
-    Path("cart.toml").write_text(_done(nonholo("new", "cart", *own)))
+    assert "cart" in output_of(nonholo("systems", *own))
+    Path("cart.toml").write_text(output_of(nonholo("new", "cart", *own)))
     assert "mass = 1.0  # m, of the cart." in Path("cart.toml").read_text()
-    told = json.loads(_done(nonholo("simulate", "cart.toml", *own, "--json", "-o", "c.zarr", "--set", "body.mass=2.0")))
+    told = json_of(nonholo("simulate", "cart.toml", *own, "--json", "-o", "c.zarr", "--set", "body.mass=2.0"))
     assert (told["steps"], told["outcome"]) == (8, "successful")
     orbit = nh.load_orbit("c.zarr")
     system = sys_modules_cart(mass=2.0).system
     again = nh.simulate(nh.discretize(system, 0.1), configuration=[0.3, 0.0], body_velocity=[0.5, 0.0], steps=8)
     np.testing.assert_array_equal(orbit.configuration, again.configuration)
-    _done(nonholo("explore", "cart", *own, "-o", "page.html", "--no-browser"))
+    output_of(nonholo("explore", "cart", *own, "-o", "page.html", "--no-browser"))
     start = "start={restricted_velocity=[0.1, 1.0]}"
     run = ("--set", "run.time_step=0.1", "--steps", 4)
-    _done(nonholo("simulate", "plank", *own, *run, "--set", "body.mass=2.0", "--set", start, "--no-plot"))
+    output_of(nonholo("simulate", "plank", *own, *run, "--set", "body.mass=2.0", "--set", start, "--no-plot"))
 
 
 def sys_modules_cart(**numbers: float) -> Any:
@@ -171,14 +163,14 @@ def sys_modules_cart(**numbers: float) -> Any:
 def test_a_sweep_over_a_body_of_ones_own(robot: Path, nonholo: Command) -> None:
     """Members are those of the file's function; the store is resumed with the file, and not without."""
     Path("many.toml").write_text(SWEEP)
-    _done(nonholo("sweep", "many.toml", "--module", robot, "-o", "s.zarr", "--no-plot", "-q"))
+    output_of(nonholo("sweep", "many.toml", "--module", robot, "-o", "s.zarr", "--no-plot", "-q"))
     swept = nh.load_sweep("s.zarr").load()
     member = sys_modules_cart(mass=float(swept["mass"][2]), speed=float(swept["speed"][2]))
     start = {"configuration": member.configuration, "body_velocity": member.body_velocity}
     orbit = nh.simulate(nh.discretize(member.system, 0.1), **start, steps=8)
     np.testing.assert_array_equal(swept["final_configuration"][2], orbit.configuration[-1])
     assert nonholo("resume", "s.zarr").exit_code == 2  # it names what it would run
-    _done(nonholo("resume", "s.zarr", "--module", robot))
+    output_of(nonholo("resume", "s.zarr", "--module", robot))
 
 
 @pytest.mark.parametrize(
@@ -201,6 +193,4 @@ def test_refusals(arguments: tuple[str, ...], told: str, nonholo: Command) -> No
     """A file is never imported unasked; what is wrong with one, or with the numbers of an example, is said."""
     Path("json.py").write_text("")
     Path("broken.py").write_text("def cart(:")
-    result = nonholo(*arguments)
-    assert result.exit_code == 2
-    assert told in " ".join(result.output.replace("│", " ").split())
+    assert_ends(nonholo(*arguments), 2, told)

@@ -3,16 +3,14 @@
 import os
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from commands import Command, assert_ends
 from stopping import stopped_at
-from typer.testing import Result
 
 import nonholo as nh
 
-Command = Callable[..., Result]
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
 START = {"body_velocity": (1.0, 0.3, 0.0)}
 
@@ -26,8 +24,7 @@ def store() -> Path:
 
 def test_standard_output_is_the_file(store: Path, nonholo: Command) -> None:
     """Without -o the rows go to standard output and nothing else does; with it the path does."""
-    shown = nonholo("export", store)
-    assert shown.exit_code == 0
+    shown = assert_ends(nonholo("export", store), 0)
     assert shown.stderr == ""
     kept = nonholo("export", store, "-o", "poses.csv")
     assert kept.stdout == "poses.csv\n"
@@ -49,17 +46,14 @@ def test_unfinished_run_is_told_on_standard_error(nonholo: Command) -> None:
     with stopped_at(2):
         nh.simulate(SLEIGH, steps=50, store="run.zarr", checkpoint_every=20, **START)
     result = nonholo("export", "run.zarr")
-    assert result.exit_code == 0
-    assert "Warning: The run in 'run.zarr' is not finished: its poses go up to step 39 of 50" in result.stderr
+    result = assert_ends(result, 0, "Warning: The run in 'run.zarr' is not finished: its poses go up to step 39 of 50")
     assert len(result.stdout.splitlines()) == 41
 
 
 def test_existing_file_is_refused(store: Path, nonholo: Command) -> None:
     """An older file stays, with exit code 2, until --overwrite is given."""
     Path("poses.csv").write_text("older")
-    refused = nonholo("export", store, "-o", "poses.csv")
-    assert refused.exit_code == 2
-    assert "--overwrite" in refused.stderr
+    assert_ends(nonholo("export", store, "-o", "poses.csv"), 2, "--overwrite")
     assert Path("poses.csv").read_text() == "older"
     assert nonholo("export", store, "-o", "poses.csv", "--overwrite").exit_code == 0
     assert Path("poses.csv").read_text().startswith("t,x,y,theta\n0.0,")
@@ -69,8 +63,7 @@ def test_existing_file_is_refused(store: Path, nonholo: Command) -> None:
 @pytest.mark.usefixtures("store")
 def test_wrong_usage_is_refused(arguments: tuple[object, ...], nonholo: Command) -> None:
     """What can be seen to be wrong before any work has exit code 2."""
-    result = nonholo("export", *arguments)
-    assert result.exit_code == 2
+    result = assert_ends(nonholo("export", *arguments), 2)
     assert result.stdout == ""
 
 

@@ -4,14 +4,13 @@ import itertools
 import json
 import re
 import tomllib
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from commands import Command, assert_ends
 from matplotlib.text import Text
-from typer.testing import Result
 
 import nonholo as nh
 from nonholo.cli.scenario.bodies import SHORT
@@ -92,7 +91,7 @@ def test_a_blade_of_a_scenario_yields(file: Path) -> None:
         np.testing.assert_array_equal(getattr(orbit, name), getattr(other, name))
 
 
-def test_the_text_kept_repeats_the_run(file: Path, nonholo: Callable[..., Result]) -> None:
+def test_the_text_kept_repeats_the_run(file: Path, nonholo: Command) -> None:
     """A store holds the rows of the table, not its path; its scenario alone gives the run again."""
     assert nonholo("simulate", file, "-o", "a.zarr", "--no-plot", "-q").exit_code == 0
     scenario = load_scenario(str(file), []).scenario
@@ -196,7 +195,7 @@ def test_rows_are_read_exactly() -> None:
 
 
 @pytest.mark.parametrize("table", ["[[1,2,3],[1,2,3],[1,2,3]]", '"study/input/motor.csv"'])
-def test_report_says_what_was_read(table: str, file: Path, nonholo: Callable[..., Result]) -> None:
+def test_report_says_what_was_read(table: str, file: Path, nonholo: Command) -> None:
     """Rows and columns of a table stand in the report of a run, so that a row that was lost is seen."""
     result = nonholo("simulate", file, "--no-plot", "--set", f"forces.table={table}")
     assert re.search(r"table of forces +3 rows, columns omega, v1, v2", result.output), result.output
@@ -212,17 +211,14 @@ def test_forces_of_a_template(kind: str) -> None:
 
 
 @pytest.mark.parametrize("option", ['run.difference="logarithmic"'])
-def test_steps_that_take_no_forces(file: Path, option: str, nonholo: Callable[..., Result]) -> None:
+def test_steps_that_take_no_forces(file: Path, option: str, nonholo: Command) -> None:
     """Where there is no forced step the run is refused, with what there is."""
-    result = nonholo("simulate", file, "--set", option)
-    assert result.exit_code == 2
-    assert "must have a compiled step of order 2 inside" in result.stderr
+    assert_ends(nonholo("simulate", file, "--set", option), 2, "must have a compiled step of order 2 inside")
 
 
-def test_thinned_run_under_a_table(file: Path, nonholo: Callable[..., Result]) -> None:
+def test_thinned_run_under_a_table(file: Path, nonholo: Command) -> None:
     """What needs every step is left out of the table, the picture and the page, and the rest is there."""
-    result = nonholo("simulate", file, "--set", "run.save_every=3", "-o", "a.zarr", "--json")
-    assert result.exit_code == 0
+    result = assert_ends(nonholo("simulate", file, "--set", "run.save_every=3", "-o", "a.zarr", "--json"), 0)
     told = json.loads(result.stdout)
     assert (told["work"], told["energy_drift"], told["outcome"]) == (None, None, "successful")
     assert told["constraint_residual"] < 1e-14
@@ -237,11 +233,10 @@ def test_thinned_run_under_a_table(file: Path, nonholo: Callable[..., Result]) -
 DESIGN = '[design]\nkind = "grid"\n[design.values]\n"start.restricted_velocity_0" = [0.1, 0.3]\n'
 
 
-def test_sweep_under_forces(file: Path, nonholo: Callable[..., Result]) -> None:
+def test_sweep_under_forces(file: Path, nonholo: Command) -> None:
     """The members of a sweep move under the forces of its scenario, whose text says all of them."""
     file.write_text(SLEIGH + FORCES + DESIGN)
-    result = nonholo("sweep", file, "-o", "s.zarr", "--no-plot", "-q")
-    assert result.exit_code == 0, result.output
+    assert_ends(nonholo("sweep", file, "-o", "s.zarr", "--no-plot", "-q"), 0)
     swept = nh.load_sweep("s.zarr").load()
     forced = nh.discretize(_forced(potential=GRAVITY, force=(FRICTION, np.array(TABLE))), 0.05)
     for row, rate in enumerate([0.1, 0.3]):
@@ -251,12 +246,11 @@ def test_sweep_under_forces(file: Path, nonholo: Callable[..., Result]) -> None:
     assert load_sweep_scenario("again.toml", [])[0] == load_sweep_scenario(str(file), [])[0]
 
 
-def test_sweep_over_numbers_of_forces(file: Path, nonholo: Callable[..., Result]) -> None:
+def test_sweep_over_numbers_of_forces(file: Path, nonholo: Command) -> None:
     """Members under other forces, and other bodies under them, end where `simulate` ends; a killed one is resumed."""
     own = '"body.a" = [0.1, 0.2]\n"forces.gravity.force_1" = [-2.0, -1.0]\n"forces.gravity.point" = [[0.5, 0.1]]\n'
     file.write_text(SLEIGH + FORCES.replace("friction", "# friction") + DESIGN + own)
-    result = nonholo("sweep", file, "-o", "s.zarr", "--no-plot", "-q")
-    assert result.exit_code == 0, result.output
+    assert_ends(nonholo("sweep", file, "-o", "s.zarr", "--no-plot", "-q"), 0)
     swept = nh.load_sweep("s.zarr").load()
     for a, weight in itertools.product([0.1, 0.2], [-2.0, -1.0]):
         forced = nh.Forced(nh.ChaplyginSleigh(2.0, 0.7, a), nh.Gravity([0.1, weight], [0.5, 0.1]), np.array(TABLE))
@@ -276,10 +270,9 @@ def test_sweep_over_numbers_of_forces(file: Path, nonholo: Callable[..., Result]
         ('"forces.slip.grip" = [1.0]', "cannot be varied. Known: gravity_force, gravity_point, friction."),
     ],
 )
-def test_numbers_that_no_force_has(value: str, told: str, file: Path, nonholo: Callable[..., Result]) -> None:
+def test_numbers_that_no_force_has(value: str, told: str, file: Path, nonholo: Command) -> None:
     """A sweep over what no force of the scenario has is refused with what there is."""
     forces = FORCES.replace("[[0.2, 0.1, 0], [-0.1, 0.3, 0], [0, 0, 0.1]]", "[1, 2, 3]")
     file.write_text(SLEIGH + forces + DESIGN + value)
-    result = nonholo("sweep", file, "--no-plot")
-    assert result.exit_code == 2
+    result = assert_ends(nonholo("sweep", file, "--no-plot"), 2)
     assert told in result.output

@@ -1,23 +1,19 @@
 """Every kind of body: its built-in scenario, its store, its refusals."""
 
+import functools
 import json
 import tomllib
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from typer.testing import Result
+from commands import Command, Figures, assert_ends, problems_of
 
 import nonholo as nh
 from nonholo.cli.scenario.bodies import SHORT, body_table, own_kinds
-from nonholo.cli.scenario.files import built_in, effective_text, load_scenario, parse_setting
-from nonholo.cli.scenario.problems import ScenarioError
+from nonholo.cli.scenario.files import built_in, effective_text, load_scenario
 from nonholo.systems import SYSTEMS, ArrowheadSleigh, ArrowheadTop
 
-Command = Callable[..., Result]
-Figures = Callable[..., dict[str, Any]]
 EXACT = {"suslov", "sleigh", "multidimensional_sleigh", "rigid_body", "left_invariant"}
 HEISENBERG = "{basis = [[[0,1,0],[0,0,0],[0,0,0]], [[0,0,0],[0,0,1],[0,0,0]], [[0,0,1],[0,0,0],[0,0,0]]]}"
 OWN = f"""
@@ -36,11 +32,7 @@ steps = 3
 MASS_WITH_FORM = "mass_tensor = [[1, 0, -0.3], [0, 2, 0], [0.3, 0, -4]]"
 
 
-def _problems(text: str, *settings: str) -> list[str]:
-    Path("my.toml").write_text(text)
-    with pytest.raises(ScenarioError) as caught:
-        load_scenario("my.toml", [parse_setting(setting) for setting in settings])
-    return [str(problem) for problem in caught.value.problems]
+_problems = functools.partial(problems_of, load_scenario)
 
 
 def test_kinds_are_the_same_everywhere() -> None:
@@ -182,10 +174,8 @@ def test_defaults_are_those_of_the_library() -> None:
 def test_what_a_group_does_not_allow_is_told_with_its_key(nonholo: Command) -> None:
     """The matrix difference on a group of the user's own ends with the reason, the remedy and exit code 2."""
     Path("my.toml").write_text(OWN)
-    result = nonholo("simulate", "my.toml", "--set", 'run.difference="matrix"')
-    assert result.exit_code == 2
-    assert "run.difference: must be defined for the system" in result.stderr
-    assert "Pass 'logarithmic'" in result.stderr
+    ended = nonholo("simulate", "my.toml", "--set", 'run.difference="matrix"')
+    assert_ends(ended, 2, "run.difference: must be defined for the system", "Pass 'logarithmic'")
 
 
 @pytest.mark.parametrize(

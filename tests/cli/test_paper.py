@@ -2,17 +2,14 @@
 
 import json
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from commands import Command, assert_ends
 from paper.test_page import minus, raises
-from typer.testing import Result as Ended
 
 import nonholo_paper
 from nonholo_paper import Entry, _registry, _run, sections
-
-Command = Callable[..., Ended]
 
 
 @pytest.fixture(autouse=True)
@@ -29,17 +26,14 @@ def labels(folder: str) -> list[str]:
 
 def test_a_finding_that_fails_ends_the_command_with_1(nonholo: Command) -> None:
     """The page is written all the same, and the finding that fails is named."""
-    ended = nonholo("paper")
-    assert ended.exit_code == 1
-    assert "1 of 2 findings fail: raises." in ended.stderr
+    assert_ends(nonholo("paper"), 1, "1 of 2 findings fail: raises.")
     assert labels("paper") == ["minus", "raises"]
 
 
 def test_findings_that_hold_end_the_command_with_0(nonholo: Command) -> None:
     """With --only the page holds what was chosen, by label or by row of the errata, and each finding has a line."""
     for number, name in enumerate(("minus", "S1")):
-        ended = nonholo("paper", "-o", f"part{number}", "--only", name)
-        assert ended.exit_code == 0, ended.output
+        ended = assert_ends(nonholo("paper", "-o", f"part{number}", "--only", name), 0)
         assert "minus" in ended.stdout
         assert "false" in ended.stdout
         assert f"part{number}/index.html" in ended.stdout
@@ -56,9 +50,7 @@ def test_a_rerun_writes_over_its_own_page(nonholo: Command) -> None:
 
 def test_an_unknown_label_is_refused(nonholo: Command) -> None:
     """An unknown label ends with code 2 and near labels; nothing is measured or written."""
-    ended = nonholo("paper", "--only", "minsu")
-    assert ended.exit_code == 2
-    assert "no finding 'minsu'. Did you mean minus" in ended.stderr
+    assert_ends(nonholo("paper", "--only", "minsu"), 2, "no finding 'minsu'. Did you mean minus")
     assert not Path("paper").exists()
 
 
@@ -67,14 +59,10 @@ def test_a_foreign_folder_is_refused_before_any_work(nonholo: Command, monkeypat
     monkeypatch.setattr(_run, "evaluate", lambda _: pytest.fail("measured"))
     Path("paper").mkdir()
     Path("paper/thesis.tex").write_text("mine")
-    ended = nonholo("paper")
-    assert ended.exit_code == 2
-    assert "Choose an empty or a new one with -o" in ended.stderr
+    assert_ends(nonholo("paper"), 2, "Choose an empty or a new one with -o")
 
 
 def test_without_the_extra_the_command_names_it(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     """What `nonholo paper` needs beyond the core is an extra, and the command says which."""
     monkeypatch.setitem(sys.modules, "nonholo_paper", None)
-    ended = nonholo("paper")
-    assert ended.exit_code == 2
-    assert "pip install 'nonholo[paper]'" in ended.stderr
+    assert_ends(nonholo("paper"), 2, "pip install 'nonholo[paper]'")

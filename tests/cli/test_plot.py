@@ -1,19 +1,16 @@
 """`nonholo plot`: every kind of picture of a run, and what is asked of it."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from commands import Command, assert_ends
 from matplotlib.figure import Figure
 from PIL import Image
-from typer.testing import Result
 
 import nonholo as nh
 from nonholo.cli.screen.pictures import figure_of, kinds
-
-Command = Callable[..., Result]
 
 
 def _sleigh(**options: Any) -> nh.Orbit:
@@ -50,8 +47,7 @@ def test_options_of_pictures(nonholo: Command) -> None:
     """Kind, title, size, dots per inch and background of the picture are what the options say."""
     nh.save_orbit(_sleigh(steps=20), "a.zarr")
     options = ("--kind", "blade-track", "--size", "8x4.5", "--dpi", 40, "--dark", "--title", "Mine")
-    result = nonholo("plot", "a.zarr", *options)
-    assert result.exit_code == 0, result.stderr
+    assert_ends(nonholo("plot", "a.zarr", *options), 0)
     with Image.open("a.png") as picture:
         assert picture.size == (320, 180)
         assert max(picture.convert("RGB").getpixel((0, 0))) < 40
@@ -72,16 +68,13 @@ def test_options_of_pictures(nonholo: Command) -> None:
 def test_refusals(options: tuple[str, ...], words: str, nonholo: Command) -> None:
     """Unknown kinds, sizes and contradictions are refused before the store is read."""
     nh.save_orbit(_sleigh(steps=2), "a.zarr")
-    result = nonholo("plot", "a.zarr", *options)
-    assert result.exit_code == 2
-    assert words in result.stderr
+    assert_ends(nonholo("plot", "a.zarr", *options), 2, words)
 
 
 def test_what_a_section_needs(nonholo: Command) -> None:
     """A run without events has no section, and its refusal says what has one; so does a quantity that is none."""
     nh.save_orbit(_sleigh(steps=2), "a.zarr")
-    result = nonholo("plot", "a.zarr", "--kind", "section", "--x", "heading", "--y", "time")
-    assert result.exit_code == 1
-    assert "must hold crossings of an event" in result.stderr
+    ended = nonholo("plot", "a.zarr", "--kind", "section", "--x", "heading", "--y", "time")
+    assert_ends(ended, 1, "must hold crossings of an event")
     with pytest.raises(ValueError, match=r"needs --x and --y like body_velocity.0. Got 'speed' to run across"):
         figure_of("section", _sleigh(steps=20, events=[nh.cusp]), {}, across="speed", up="time")

@@ -1,20 +1,13 @@
 """What commands refuse so that nothing of the user's is lost or taken for something else, with the remedy."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from typer.testing import Result
+from commands import Command, assert_ends, words_of
 
 import nonholo as nh
 
-Command = Callable[..., Result]
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
-
-
-def _words(result: Result) -> str:
-    """Return what was printed, without the frames and line ends of boxes."""
-    return " ".join(result.output.replace("│", " ").split())
 
 
 @pytest.mark.parametrize(
@@ -28,10 +21,8 @@ def _words(result: Result) -> str:
 )
 def test_unknown_templates_name_the_nearest(kind: str, told: str, nonholo: Command) -> None:
     """A kind that is none is refused in our own words, with the nearest ones."""
-    refused = nonholo("new", kind)
-    assert refused.exit_code == 2
-    assert told in _words(refused)
-    assert "Value error" not in _words(refused)
+    refused = assert_ends(nonholo("new", kind), 2, told)
+    assert "Value error" not in words_of(refused)
 
 
 @pytest.mark.profile("faults", keep=["png"])
@@ -42,10 +33,7 @@ def test_pictures_at_a_path_of_ones_own_are_kept(suffix: str, nonholo: Command) 
     mine = Path(f"mine.{suffix}")
     mine.write_text("mine")
     command = ["plot", "a.zarr", "-o", mine] + (["--gif"] if suffix == "gif" else [])
-    refused = nonholo(*command)
-    assert refused.exit_code == 2
-    assert f"must be new. Got '{mine}', which exists." in _words(refused)
-    assert "--overwrite" in _words(refused)
+    assert_ends(nonholo(*command), 2, f"must be new. Got '{mine}', which exists.", "--overwrite")
     assert mine.read_text() == "mine"
     assert nonholo(*command, "--overwrite").exit_code == 0
     assert mine.read_bytes() != b"mine"
@@ -60,7 +48,6 @@ def test_a_store_is_no_netcdf_file(command: str, nonholo: Command) -> None:
     if command == "sweep":
         scenario = "my.toml"
         Path(scenario).write_text(nonholo("new", "sweep").stdout)
-    refused = nonholo(command, scenario, "-o", "mine.nc")
-    assert refused.exit_code == 2
-    assert "must be the path of a Zarr store, usually *.zarr. Got 'mine.nc'" in _words(refused)
+    ended = nonholo(command, scenario, "-o", "mine.nc")
+    assert_ends(ended, 2, "must be the path of a Zarr store, usually *.zarr. Got 'mine.nc'")
     assert not Path("mine.nc").exists()

@@ -1,20 +1,17 @@
 """`resume`, `extend`, and what `info` says of a run that is not finished."""
 
 import json
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
+from commands import Command, assert_ends
 from stopping import failing_at, stopped_at
-from typer.testing import Result
 
 import nonholo as nh
-from nonholo.io import Stream, write_lock
+from nonholo.io import write_lock
 from nonholo.simulation import _run, _stored
 
-Command = Callable[..., Result]
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
 START = {"body_velocity": (1.0, 0.3, 0.0)}
 
@@ -29,8 +26,7 @@ def stopped() -> Path:
 
 def test_info_says_how_far_a_run_came(stopped: Path, nonholo: Command) -> None:
     """`info` of an unfinished run says how far it came and how to resume, as a table and as JSON."""
-    shown = nonholo("info", stopped)
-    assert shown.exit_code == 0
+    shown = assert_ends(nonholo("info", stopped), 0)
     assert "199 of 500, 39.8 %" in shown.stdout
     assert "nonholo resume run.zarr" in shown.stdout
     told = json.loads(nonholo("info", stopped, "--json").stdout)
@@ -50,8 +46,7 @@ def test_resume_finishes_a_run(stopped: Path, nonholo: Command) -> None:
 def test_extend_goes_past_the_end(stopped: Path, nonholo: Command) -> None:
     """`extend` adds steps to a run."""
     nh.resume(stopped)
-    result = nonholo("extend", stopped, "--steps", 100)
-    assert result.exit_code == 0, result.output
+    assert_ends(nonholo("extend", stopped, "--steps", 100), 0)
     assert np.array_equal(nh.load_orbit(stopped).pose, nh.simulate(SLEIGH, steps=600, **START).pose)
 
 
@@ -82,8 +77,7 @@ def test_simulate_that_was_stopped_is_asked_again(nonholo: Command) -> None:
     with failing_at(3):
         assert nonholo(*command).exit_code == 1
     assert "Choose another path" in nonholo(*command, "--time-step", 0.05).stderr
-    again = nonholo(*command)
-    assert again.exit_code == 0, again.output
+    assert_ends(nonholo(*command), 0)
     assert Path("run.png").exists()
     whole = json.loads(nonholo("simulate", "sleigh", "--steps", 60, "--no-plot", "--json").stdout)["store"]
     assert np.array_equal(nh.load_orbit("run.zarr").pose, nh.load_orbit(whole).pose)
@@ -106,44 +100,23 @@ def test_damage_is_told_on_standard_error(stopped: Path, nonholo: Command) -> No
     """A damaged chunk is named in a warning, and the run is whole again."""
     nh.resume(stopped)
     (stopped / "canonical" / "pose" / "c" / "2" / "0").unlink()
-    result = nonholo("resume", stopped)
-    assert result.exit_code == 0
-    assert "Warning: The store" in result.stderr
-    assert "chunk c/2/0 of the array canonical/pose" in result.stderr
+    assert_ends(nonholo("resume", stopped), 0, "Warning: The store", "chunk c/2/0 of the array canonical/pose")
 
 
-def test_ctrl_c_says_how_to_go_on(stopped: Path, nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Ctrl-C ends the command with a sentence, not a traceback."""
-
-    def interrupted(*_: Any) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(Stream, "write", interrupted)
-    result = nonholo("resume", stopped)
-    assert result.exit_code == 1
-    assert "Stopped at step 199 of 500" in result.stderr
-
-
-def test_ctrl_c_does_not_hide_damage(stopped: Path, nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A damaged chunk is named even if Ctrl-C ends the command before its block is whole again."""
-
-    def interrupted(*_: Any) -> None:
-        raise KeyboardInterrupt
-
+def test_ctrl_c_ends_in_a_sentence(stopped: Path, nonholo: Command) -> None:
+    """Not in a traceback; a damaged chunk is named even if Ctrl-C comes before its block is whole again."""
+    with failing_at(5):
+        assert_ends(nonholo("resume", stopped), 1, "Stopped at step 199 of 500")
     (stopped / "canonical" / "pose" / "c" / "2" / "0").unlink()
-    monkeypatch.setattr(Stream, "write", interrupted)
-    result = nonholo("resume", stopped)
-    assert result.exit_code == 1
-    assert "chunk c/2/0 of the array canonical/pose" in result.stderr
+    with failing_at(2):
+        assert_ends(nonholo("resume", stopped), 1, "chunk c/2/0 of the array canonical/pose")
 
 
 def test_locked_and_foreign_stores_are_refused(stopped: Path, nonholo: Command) -> None:
     """A store that another process writes and one that does not exist end in a sentence and exit code 2."""
     with write_lock(stopped):
         (stopped / "run" / "lock.json").write_text('{"pid": 1, "host": "elsewhere", "since": "today"}')
-        refused = nonholo("resume", stopped)
-        assert refused.exit_code == 2
-        assert "process 1 on elsewhere since today" in refused.stderr
+        assert_ends(nonholo("resume", stopped), 2, "process 1 on elsewhere since today")
         assert "written by process 1 on elsewhere" in nonholo("info", stopped).stdout.replace("\n", " ")
     assert nonholo("extend", "nothing.zarr", "--steps", 3).exit_code == 2
 
@@ -159,9 +132,7 @@ def test_long_run_replaces_a_store_only_when_told(nonholo: Command) -> None:
     """A store of several blocks is refused and replaced like any other, and the next number is taken without -o."""
     command = ("simulate", "sleigh", "--no-plot", "--steps")
     assert nonholo(*command, 50, "-o", "run.zarr").exit_code == 0
-    refused = nonholo(*command, 70, "-o", "run.zarr")
-    assert refused.exit_code == 2
-    assert "--overwrite" in refused.stderr
+    assert_ends(nonholo(*command, 70, "-o", "run.zarr"), 2, "--overwrite")
     assert nonholo(*command, 70, "-o", "run.zarr", "--overwrite").exit_code == 0
     assert len(nh.load_orbit("run.zarr")) == 71
     for number in (1, 2):
@@ -173,9 +144,7 @@ def test_older_store_stays_where_nothing_replaces_it(nonholo: Command) -> None:
     """A start without a principal root keeps nothing, and --overwrite takes nothing away for it."""
     command = ("simulate", "suslov", "--no-plot", "-o", "run.zarr", "--steps", 50)
     assert nonholo(*command).exit_code == 0
-    failed = nonholo(*command, "--overwrite", "--time-step", 1.2)
-    assert failed.exit_code == 1
-    assert "Nothing to keep" in failed.stderr
+    assert_ends(nonholo(*command, "--overwrite", "--time-step", 1.2), 1, "Nothing to keep")
     assert len(nh.load_orbit("run.zarr")) == 51
 
 
@@ -183,9 +152,7 @@ def test_long_run_that_cannot_go_on_is_kept(nonholo: Command, monkeypatch: pytes
     """The good steps of a run of several blocks are in its store, with the outcome."""
     monkeypatch.setattr(_run, "_ROWS", 4)
     given = ("--set", "run.time_step=1.0", "--set", "start={momentum=[1.93257157, -0.68979744]}")
-    result = nonholo("simulate", "suslov", "--steps", 500, "--no-plot", *given)
-    assert result.exit_code == 1
-    assert "the good steps are kept" in result.stderr
+    assert_ends(nonholo("simulate", "suslov", "--steps", 500, "--no-plot", *given), 1, "the good steps are kept")
     orbit = nh.load_orbit("runs/suslov-001.zarr")
     assert orbit.outcome != nh.Outcome.successful
     assert 4 < len(orbit) < 20

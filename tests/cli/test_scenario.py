@@ -1,10 +1,12 @@
 """Scenarios: everything wrong is reported at once, with where it was said; settings pass the same checks."""
 
+import functools
 import tomllib
 from pathlib import Path
 from typing import Any
 
 import pytest
+from commands import problems_of
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -26,11 +28,7 @@ steps = 3
 """
 
 
-def _problems(text: str, *settings: str) -> list[str]:
-    Path("my.toml").write_text(text)
-    with pytest.raises(ScenarioError) as caught:
-        load_scenario("my.toml", [parse_setting(setting) for setting in settings])
-    return [str(problem) for problem in caught.value.problems]
+_problems = functools.partial(problems_of, load_scenario)
 
 
 def test_all_problems_at_once() -> None:

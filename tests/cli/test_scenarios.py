@@ -1,12 +1,11 @@
 """Every scenario under scenarios/ runs and has the motion its title promises."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from typer.testing import Result
+from commands import Command, Figures, assert_ends
 
 import nonholo as nh
 
@@ -16,7 +15,7 @@ _FILES = sorted(path for path in _FOLDER.glob("*.toml") if not path.stem.endswit
 
 @pytest.mark.profile("routes", keep=["suslov*", "*sleigh", "long_run", "tilted_axis", "four_steps"])
 @pytest.mark.parametrize("path", _FILES, ids=lambda path: path.stem)
-def test_example_runs(path: Path, figures: Callable[..., dict[str, Any]]) -> None:
+def test_example_runs(path: Path, figures: Figures) -> None:
     """Each example succeeds, with energy kept to rounding where the discretization promises it; not under forces."""
     told = figures(path, *(["--steps", 20] if path.stem == "logarithmic_difference" else []))
     assert told["outcome"] == "successful"
@@ -26,7 +25,7 @@ def test_example_runs(path: Path, figures: Callable[..., dict[str, Any]]) -> Non
     assert told["constraint_residual"] < 1e-14
 
 
-def test_balanced_sleigh_moves_on_a_circle(figures: Callable[..., dict[str, Any]]) -> None:
+def test_balanced_sleigh_moves_on_a_circle(figures: Figures) -> None:
     """The balanced sleigh keeps one distance from one point."""
     position = nh.load_orbit(figures(_FOLDER / "balanced_sleigh.toml")["store"]).position
     x, y = position.T
@@ -34,14 +33,14 @@ def test_balanced_sleigh_moves_on_a_circle(figures: Callable[..., dict[str, Any]
     assert np.ptp(np.linalg.norm(position - center, axis=1)) < 1e-12
 
 
-def test_hanging_top_comes_to_rest(figures: Callable[..., dict[str, Any]]) -> None:
+def test_hanging_top_comes_to_rest(figures: Figures) -> None:
     """Its center of mass ends below the fixed point, and what it falls short of the lowest energy is small."""
     orbit = nh.load_orbit(figures(_FOLDER / "hanging_top.toml")["store"])
     assert orbit.configuration[-1, 2, 2] > 0.999
     assert 0 < orbit.energy[-1] + 9.81 * 0.3 < 1e-3 * (orbit.energy[0] - orbit.energy[-1])
 
 
-def test_twisting_drives_a_sleigh(figures: Callable[..., dict[str, Any]]) -> None:
+def test_twisting_drives_a_sleigh(figures: Figures) -> None:
     """From rest it gets under way, always forwards, while it swings about; its energy is the work done on it."""
     orbit = nh.load_orbit(figures(_FOLDER / "twisted_sleigh.toml")["store"])
     turning, speed, _ = orbit.body_velocity.T
@@ -50,15 +49,14 @@ def test_twisting_drives_a_sleigh(figures: Callable[..., dict[str, Any]]) -> Non
     assert orbit.energy[-1] == pytest.approx(orbit.work[-1], rel=5e-3)
 
 
-def _swept(nonholo: Callable[..., Result], name: str, members: int) -> Any:
-    result = nonholo("sweep", _FOLDER / f"{name}.toml", "--members", members, "-o", "s.zarr", "-q")
-    assert result.exit_code == 0, result.output
+def _swept(nonholo: Command, name: str, members: int) -> Any:
+    assert_ends(nonholo("sweep", _FOLDER / f"{name}.toml", "--members", members, "-o", "s.zarr", "-q"), 0)
     assert Path("s.png").exists()
     return nh.load_sweep("s.zarr").load()
 
 
 @pytest.mark.profile("routes", instead="test_deviation_of_one_orbit")
-def test_turning_sweep_shows_the_closed_form(nonholo: Callable[..., Result]) -> None:
+def test_turning_sweep_shows_the_closed_form(nonholo: Command) -> None:
     """The lowest row deviates by h^2 J / (24 (1 + J)^2); below the bound no member is lost, most are above."""
     found = _swept(nonholo, "sleigh_turning_sweep", 400)
     J, h = found["inertia"].values, found["time_step"].values
@@ -73,7 +71,7 @@ def test_turning_sweep_shows_the_closed_form(nonholo: Callable[..., Result]) -> 
 
 
 @pytest.mark.profile("problems", instead="test_deviation_of_one_orbit")
-def test_random_tops_keep_their_branch_below_the_saddle(nonholo: Callable[..., Result]) -> None:
+def test_random_tops_keep_their_branch_below_the_saddle(nonholo: Command) -> None:
     """No top whose energy is below its saddle loses its branch; of those above twice that, none keeps it."""
     found = _swept(nonholo, "random_tops_sweep", 100)
     tops = [nh.discretize(nh.SuslovTop(J), 1.0) for J in found["mass_tensor"].values]

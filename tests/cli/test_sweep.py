@@ -1,33 +1,31 @@
 """`nonholo sweep`, and `info`, `plot`, `resume` and `extend` of what it leaves."""
 
 import errno
+import functools
 import itertools
-import json
 import os
 import re
 import signal
 import subprocess
 import sys
 import tomllib
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from commands import Command, assert_ends, json_of, problems_of
 from ensembles.small import HEED_CTRL_C
-from typer.testing import Result
+from stopping import failing_at
 from waiting import wait_for
 
 import nonholo as nh
 from nonholo.cli.scenario.files import Setting, parse_setting
-from nonholo.cli.scenario.problems import ScenarioError
 from nonholo.cli.scenario.sweeps import load_sweep_scenario, sweep_text
 from nonholo.ensembles import standing_of
 from nonholo.ensembles.stores import SweepStore
 from nonholo.io import write_lock
 
-Command = Callable[..., Result]
 BODY = """
 [body]
 kind = "sleigh"
@@ -74,10 +72,7 @@ def _written(text: str) -> str:
     return "my.toml"
 
 
-def _problems(text: str, *settings: str) -> list[str]:
-    with pytest.raises(ScenarioError) as caught:
-        load_sweep_scenario(_written(text), [parse_setting(setting) for setting in settings])
-    return [str(problem) for problem in caught.value.problems]
+_problems = functools.partial(problems_of, load_sweep_scenario)
 
 
 def test_the_branch_rule_reaches_the_members() -> None:
@@ -92,11 +87,6 @@ def _design(text: str, *settings: str, members: int | None = None) -> nh.Grid | 
     return loaded.scenario.design.design()
 
 
-def _told(result: Result) -> dict[str, Any]:
-    assert result.exit_code == 0, result.output
-    return json.loads(result.stdout)
-
-
 def test_the_former_word_for_random_numbers_is_read() -> None:
     """Scenarios that stores hold say `seed` where new ones say `rng`; both at once are refused."""
     assert _design(RANDOM.replace("rng = 3", "seed = 3")).seed == _design(RANDOM).seed == 3
@@ -105,7 +95,7 @@ def test_the_former_word_for_random_numbers_is_read() -> None:
 
 def test_a_sweep_holds_the_orbits_of_simulate(nonholo: Command) -> None:
     """Each cell of a swept grid has the turn of the orbit that `simulate` runs for its values, to rounding."""
-    told = _told(nonholo("sweep", _written(GRID), "--json", "--no-plot"))
+    told = json_of(nonholo("sweep", _written(GRID), "--json", "--no-plot"))
     assert told["store"] == "runs/my-001.zarr"
     assert told["outcomes"] == {"successful": 8}
     found = nh.load_sweep(told["store"])
@@ -117,8 +107,7 @@ def test_a_sweep_holds_the_orbits_of_simulate(nonholo: Command) -> None:
 
 def test_the_table_and_the_picture(nonholo: Command) -> None:
     """The table names members, outcomes, ranges and speed; a picture stands beside the store."""
-    result = nonholo("sweep", _written(GRID), "-o", "study/first.zarr")
-    assert result.exit_code == 0, result.output
+    result = assert_ends(nonholo("sweep", _written(GRID), "-o", "study/first.zarr"), 0)
     for text in ("members", "8", "successful", "(100 %)", "heading_turn", "members/s", "size on disk"):
         assert text in result.stdout
     assert Path("study/first.png").stat().st_size > 5000
@@ -133,22 +122,16 @@ def test_each_sweep_has_a_new_number(nonholo: Command) -> None:
     ]
 
 
-def test_sweep_that_was_stopped_is_asked_again(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_sweep_that_was_stopped_is_asked_again(nonholo: Command) -> None:
     """The same command does what a sweep lacks and draws it, and `resume` of one that is drawn has nothing to say."""
-
-    def full(*_: Any) -> None:
-        raise OSError(errno.ENOSPC, "No space left on device")
-
     command = ("sweep", _written(GRID), "-o", "s.zarr", "--scheduler", "synchronous")
-    with monkeypatch.context() as patch:
-        patch.setattr(SweepStore, "write", full)
+    with failing_at(0, OSError(errno.ENOSPC, "No space left on device")):
         assert nonholo(*command).exit_code == 1
     assert nonholo(*command, "--set", "run.steps=30").exit_code == 2
     for missing in (None, "s.png"):
         if missing:
             Path(missing).unlink()
-        again = nonholo(*command)
-        assert again.exit_code == 0, again.output
+        assert_ends(nonholo(*command), 0)
         assert Path("s.png").exists()
     assert nonholo("resume", "s.zarr", "--scheduler", "synchronous").exit_code == 0
     assert nonholo(*command).exit_code == 2
@@ -177,7 +160,7 @@ def test_members_scale_the_ranges_of_a_grid() -> None:
 
 def test_members_of_a_random_design(nonholo: Command) -> None:
     """`--members 1e2` draws this many, of which the first are those of a smaller design."""
-    few, many = (_told(nonholo("sweep", _written(RANDOM), "--members", n, "--json", "--no-plot")) for n in (5, "1e2"))
+    few, many = (json_of(nonholo("sweep", _written(RANDOM), "--members", n, "--json", "--no-plot")) for n in (5, "1e2"))
     assert (few["members"], many["members"]) == (5, 100)
     first, second = (nh.load_sweep(told["store"]) for told in (few, many))
     assert first.equals(second.isel(member=slice(5)))
@@ -222,7 +205,7 @@ def test_sizes_come_from_the_value_that_varies() -> None:
 def test_what_varies_may_be_left_out(nonholo: Command) -> None:
     """A key that the design varies need not stand in its own table."""
     text = GRID.replace("a = 0.5\n", "", 1)
-    found = nh.load_sweep(_told(nonholo("sweep", _written(text), "--json", "--no-plot"))["store"])
+    found = nh.load_sweep(json_of(nonholo("sweep", _written(text), "--json", "--no-plot"))["store"])
     assert found["a"].values.tolist() == [0.3, 0.5]
 
 
@@ -287,10 +270,10 @@ def test_distributions_that_are_refused(given: str, told: str) -> None:
 
 def test_the_stored_scenario_repeats_the_sweep(nonholo: Command) -> None:
     """`info --scenario` is a scenario with all values in force, counts too, and gives the same bits."""
-    first = _told(nonholo("sweep", _written(GRID), "--members", 30, "--json", "--no-plot"))
+    first = json_of(nonholo("sweep", _written(GRID), "--members", 30, "--json", "--no-plot"))
     text = nonholo("info", first["store"], "--scenario").stdout
     assert tomllib.loads(text)["design"]["values"]["start.restricted_velocity[0]"]["count"] == 15
-    again = _told(nonholo("sweep", _written(text), "--json", "--no-plot"))
+    again = json_of(nonholo("sweep", _written(text), "--json", "--no-plot"))
     assert nh.load_sweep(first["store"]).equals(nh.load_sweep(again["store"]))
 
 
@@ -302,11 +285,11 @@ def test_effective_text_is_stable() -> None:
 
 def test_info_of_a_sweep(nonholo: Command) -> None:
     """`info` tells members, outcomes, ranges, the design and the versions, as a table and as JSON."""
-    store = _told(nonholo("sweep", _written(GRID), "--json", "--no-plot"))["store"]
+    store = json_of(nonholo("sweep", _written(GRID), "--json", "--no-plot"))["store"]
     shown = nonholo("info", store).stdout
     for text in ("ChaplyginSleigh", "Grid, seed 0", "successful", "heading_turn", "members/s", "sha256", "numba"):
         assert text in shown
-    told = _told(nonholo("info", store, "--json"))
+    told = json_of(nonholo("info", store, "--json"))
     assert told["done"] == told["members"] == 8
     assert told["state"] == "finished"
     assert told["provenance"]["task"]["steps"] == 20
@@ -323,16 +306,15 @@ def test_a_sweep_without_a_single_result_fails(nonholo: Command, monkeypatch: py
 
     monkeypatch.setattr(nh.EnsembleTask, "__call__", unlucky)
     for command in (("sweep", _written(GRID), "--no-plot", "-o", "a.zarr"), ("resume", "a.zarr")):
-        found = nonholo(*command)
-        assert found.exit_code == 1
+        found = assert_ends(nonholo(*command), 1)
         assert found.stderr.splitlines()[-1] == "Every member raised: ValueError: no luck"
 
 
 def test_failed_members_are_told(nonholo: Command) -> None:
     """Members for which the task raises do not stop the rest; `info` repeats their first messages."""
     text = GRID.replace('"body.a" = [0.3, 0.5]', '"body.mass" = [1.0, -1.0]')
-    store = _told(nonholo("sweep", _written(text), "--json", "--no-plot"))["store"]
-    told = _told(nonholo("info", store, "--json"))
+    store = json_of(nonholo("sweep", _written(text), "--json", "--no-plot"))["store"]
+    told = json_of(nonholo("info", store, "--json"))
     assert told["outcomes"] == {"successful": 4, "raised": 4}
     shown = nonholo("info", store).stdout
     assert "member 4 raised ValueError" in shown
@@ -373,8 +355,8 @@ def test_a_stopped_sweep_is_resumed(stopped: Path, nonholo: Command) -> None:
         result = nonholo("resume", stopped)
     assert result.exit_code == 2
     assert "is being written by process" in result.stderr
-    assert _told(nonholo("resume", stopped, "--workers", 1, "--json"))["done"] == 12
-    whole = _told(nonholo("sweep", _written(RANDOM), "--json", "--no-plot"))
+    assert json_of(nonholo("resume", stopped, "--workers", 1, "--json"))["done"] == 12
+    whole = json_of(nonholo("sweep", _written(RANDOM), "--json", "--no-plot"))
     assert nh.load_sweep(stopped).equals(nh.load_sweep(whole["store"]))
 
 
@@ -391,23 +373,17 @@ def test_full_disk_does_not_hide_damage(stopped: Path, nonholo: Command, monkeyp
     for chunk in (stopped / "final_time" / "c").iterdir():
         chunk.unlink()
     monkeypatch.setattr(SweepStore, "write", full)
-    result = nonholo("resume", stopped, "--scheduler", "synchronous")
-    assert result.exit_code == 1
-    assert "No space left on device. The sweep stands at" in result.stderr
-    assert "of the array final_time. Block" in result.stderr
+    ended = nonholo("resume", stopped, "--scheduler", "synchronous")
+    assert_ends(ended, 1, "No space left on device. The sweep stands at", "of the array final_time. Block")
 
 
 def test_resume_of_a_damaged_sweep(nonholo: Command) -> None:
     """A lost chunk is named, and computed again; until then `info` says that the result is not sound."""
-    store = Path(_told(nonholo("sweep", _written(GRID), "--json", "--no-plot"))["store"])
+    store = Path(json_of(nonholo("sweep", _written(GRID), "--json", "--no-plot"))["store"])
     before = nh.load_sweep(store).load()
     next((store / "heading_turn" / "c").rglob("[0-9]*/[0-9]*")).unlink()
-    shown = nonholo("info", store)
-    assert shown.exit_code == 1
-    assert "heading_turn" in shown.stderr
-    result = nonholo("resume", store)
-    assert result.exit_code == 0
-    assert "of the array heading_turn" in result.stderr
+    assert_ends(nonholo("info", store), 1, "heading_turn")
+    assert_ends(nonholo("resume", store), 0, "of the array heading_turn")
     assert nh.load_sweep(store).equals(before)
 
 
@@ -440,37 +416,30 @@ def test_stopping_signals(name: str) -> None:
 )
 def test_options_that_are_refused(options: tuple[str, str], told: str, nonholo: Command) -> None:
     """A bad option ends with exit code 2 before there is a store."""
-    result = nonholo("sweep", _written(GRID), *options)
-    assert result.exit_code == 2
-    assert told in " ".join(result.stderr.split())
+    assert_ends(nonholo("sweep", _written(GRID), *options), 2, told)
     assert not list(Path().glob("runs/*"))
 
 
 def test_extend_of_a_sweep_is_refused(nonholo: Command) -> None:
     """A sweep has no end to go past; the refusal says what to do."""
-    store = _told(nonholo("sweep", _written(GRID), "--json", "--no-plot"))["store"]
-    result = nonholo("extend", store, "--steps", 10)
-    assert result.exit_code == 2
-    assert "--set run.steps" in result.stderr
+    store = json_of(nonholo("sweep", _written(GRID), "--json", "--no-plot"))["store"]
+    assert_ends(nonholo("extend", store, "--steps", 10), 2, "--set run.steps")
 
 
 def test_plot_of_a_sweep(nonholo: Command) -> None:
     """`plot` draws what the scenario shows, or what is asked for, by key path or by name."""
-    store = _told(nonholo("sweep", _written(GRID), "--json", "--no-plot"))["store"]
+    store = json_of(nonholo("sweep", _written(GRID), "--json", "--no-plot"))["store"]
     assert nonholo("plot", store, "-o", "own.png").exit_code == 0
     assert nonholo("plot", store, "-o", "other.svg", "--color", "energy_drift", "--x", "body.a").exit_code == 0
     assert Path("own.png").exists()
     assert "energy drift" in Path("other.svg").read_text()
-    missing = nonholo("plot", store, "-o", "none.png", "--color", "nothing")
-    assert missing.exit_code == 1
-    assert "must be one of 'energy_drift', 'heading_turn', 'outcome'" in missing.stderr
+    ended = nonholo("plot", store, "-o", "none.png", "--color", "nothing")
+    assert_ends(ended, 1, "must be one of 'energy_drift', 'heading_turn', 'outcome'")
 
 
 def test_simulate_of_a_sweep_is_refused(nonholo: Command) -> None:
     """`simulate` sends a scenario with a design to `sweep`."""
-    result = nonholo("simulate", _written(GRID))
-    assert result.exit_code == 2
-    assert "nonholo sweep my.toml" in result.stderr
+    assert_ends(nonholo("simulate", _written(GRID)), 2, "nonholo sweep my.toml")
 
 
 def test_help_shows_the_tables(nonholo: Command) -> None:
@@ -482,25 +451,16 @@ def test_help_shows_the_tables(nonholo: Command) -> None:
 def test_template_runs(nonholo: Command) -> None:
     """`nonholo new sweep` prints a scenario that runs as it is."""
     text = nonholo("new", "sweep").stdout
-    told = _told(nonholo("sweep", _written(text), "--members", 12, "--set", "run.steps=50", "--json"))
+    told = json_of(nonholo("sweep", _written(text), "--members", 12, "--set", "run.steps=50", "--json"))
     assert told["outcomes"] == {"successful": 12}
     assert Path(told["picture"]).exists()
-
-
-@pytest.mark.profile("paper", instead="test_a_sweep_holds_the_orbits_of_simulate")
-def test_the_page_runs() -> None:
-    """The Python blocks of the page on sweeps hold what its text says."""
-    page = Path(__file__).parents[2] / "docs" / "how-to" / "run-a-sweep.md"
-    blocks = re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL)
-    exec(compile("\n".join(blocks), page, "exec"), {})  # noqa: S102
-    assert Path("turns.png").exists()
 
 
 def test_the_scenario_of_the_page(nonholo: Command) -> None:
     """Its scenario, with a body and a start, runs."""
     page = Path(__file__).parents[2] / "docs" / "how-to" / "run-a-sweep.md"
     (block,) = re.findall(r"```toml\n(.*?)```", page.read_text(), re.DOTALL)
-    told = _told(nonholo("sweep", _written(BODY + block), "--members", 12, "--json", "--no-plot"))
+    told = json_of(nonholo("sweep", _written(BODY + block), "--members", 12, "--json", "--no-plot"))
     assert told["members"] == 12
 
 
@@ -509,7 +469,7 @@ def test_a_start_that_is_varied_whole_need_not_be_given(given: str, nonholo: Com
     """Where every component of the start is varied the scenario may leave it out; the result is the same."""
     varied = '"start.restricted_velocity[1]" = [-1.0, 0.5]\n[keep]'
     text = GRID.replace("restricted_velocity = [0.3, -1.0]\n", given).replace("[keep]", varied)
-    found = nh.load_sweep(_told(nonholo("sweep", _written(text), "--json", "--no-plot"))["store"])
+    found = nh.load_sweep(json_of(nonholo("sweep", _written(text), "--json", "--no-plot"))["store"])
     cell = found.sel(a=0.5, restricted_velocity_0=0.2, restricted_velocity_1=0.5)
     orbit = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), restricted_velocity=(0.2, 0.5), steps=20)
     assert abs(float(cell.heading_turn) - orbit.heading[-1]) < 1e-14  # sums of 20 angles of some 0.03

@@ -77,18 +77,6 @@ def test_conserved_and_constrained(problem: Problem, method: str | None) -> None
 
 
 @EACH
-def test_vector_field_is_the_flow(problem: Problem) -> None:
-    """A user's own solver, given the vector field, arrives where the flow does."""
-    velocity, g = _start(problem)
-    orbit = nh.flow(problem.system, body_velocity=velocity, configuration=g, times=TIMES)
-    state = np.concatenate([orbit.restricted_momentum[0], g.ravel()])
-    found = solve_ivp(nh.vector_field(problem.system), (0, 3), state, "DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
-    scale = np.abs(found).max()
-    assert np.abs(found[:2] - orbit.restricted_momentum[-1]).max() <= 1e-8 * scale
-    assert np.abs(found[2:].reshape(3, 3) - orbit.configuration[-1]).max() <= 1e-8 * scale
-
-
-@EACH
 def test_vector_field_under_jax(problem: Problem) -> None:
     """Traced and compiled, the vector field is the NumPy one to rounding; leading axes broadcast."""
     field = nh.vector_field(problem.system)

@@ -100,31 +100,6 @@ def _rolling_disk() -> tuple[nh.LLSystem, np.ndarray]:
     )
 
 
-def _special_linear() -> tuple[nh.LLSystem, np.ndarray]:
-    group = nh.MatrixGroup([[[1, 0], [0, -1]], [[0, 1], [0, 0]], [[0, 0], [1, 0]]])
-    inertia = [[2.0, 0.3, 0.1], [0.3, 1.5, -0.2], [0.1, -0.2, 1.0]]
-    return nh.LLSystem(group, annihilator=[[0.0, 1.0, -1.0]], inertia_operator=inertia), np.array([0.4, 0.3])
-
-
-@pytest.mark.profile("routes", instead="test_steps_on_other_groups")
-@pytest.mark.parametrize("build", [_rolling_disk, _special_linear], ids=lambda f: f.__name__[1:])
-def test_slope_two_on_other_groups(build: object) -> None:
-    """On groups without a mass tensor the logarithmic difference is of order two, in momenta along d and pose."""
-    system, velocity = build()
-    exact = nh.flow(system, restricted_velocity=velocity, times=[0.0, 1.0], rtol=1e-12, atol=1e-14)
-    steps, errors = (20, 40, 80), []
-    for n in steps:
-        orbit = nh.simulate(nh.discretize(system, 1 / n), restricted_velocity=velocity, steps=n)
-        assert nh.invariants(orbit).constraint_residual <= 1e-12
-        differences = [
-            getattr(orbit, name)[-1] - getattr(exact, name)[-1] for name in ("restricted_momentum", "configuration")
-        ]
-        errors.append([np.abs(x).max() for x in differences])
-    for column in np.transpose(errors):
-        if column.max() > 1e-12:  # uniform rolling is exact
-            assert abs(-np.polyfit(np.log(steps), np.log(column), 1)[0] - 2) <= 0.1
-
-
 @pytest.mark.profile("routes", instead="test_the_disk_keeps_its_energy")
 def test_the_rolling_disk_rolls_on_a_circle() -> None:
     """Heading and wheel angle advance uniformly, and the wheel rolls on a circle of their ratio times its radius."""

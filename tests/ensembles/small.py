@@ -6,12 +6,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import pytest
 import xarray
 
 import nonholo as nh
-from nonholo.ensembles.stores import SweepStore
-from nonholo.io import Piece
 
 DESIGN = nh.Grid({"x": [1.0, 2.0, 3.0], "start": [[0.0, 1.0], [2.0, 3.0]]}, rng=1)
 
@@ -39,18 +36,6 @@ def same(one: xarray.Dataset, other: xarray.Dataset) -> bool:
         and one[name].values.tobytes() == other[name].values.tobytes()
         for name in one.variables
     )
-
-
-def stop_at(monkeypatch: pytest.MonkeyPatch, block: int, failure: BaseException) -> None:
-    """Let the writing of a block end in a failure."""
-    write = SweepStore.write
-
-    def failing(self: SweepStore, piece: Piece, *rest: Any) -> None:
-        if piece.number == block:
-            raise failure
-        write(self, piece, *rest)
-
-    monkeypatch.setattr(SweepStore, "write", failing)
 
 
 # a test run in the background ignores Ctrl-C, and so would all that it starts

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from damage import DAMAGE, damage, swap
 from ensembles.small import resumed, same, swept
 
 import nonholo as nh
@@ -15,22 +16,13 @@ from nonholo.ensembles import standing_of
 ARRAYS = {"total": "c/1/0", "noise": "c/1/0/0", "outcome": "c/1/0"}
 
 
-def _damage(file: Path, how: str) -> None:
-    content = bytearray(file.read_bytes())
-    if how == "missing":
-        file.unlink()
-        return
-    content[len(content) // 2] ^= 1
-    file.write_bytes({"flipped": content, "cut": content[:-3], "empty": b""}[how])
-
-
 @pytest.mark.parametrize("array", ARRAYS)
-@pytest.mark.parametrize("damage", ["missing", "flipped", "cut", "empty"])
-def test_damaged_chunk_is_named_and_computed_again(array: str, damage: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("how", DAMAGE)
+def test_damaged_chunk_is_named_and_computed_again(array: str, how: str, tmp_path: Path) -> None:
     """A missing, changed or cut chunk is never read: it is named, refused by `load_sweep`, and computed again."""
     path = tmp_path / "run.zarr"
     whole = swept(path)
-    _damage(path / array / ARRAYS[array], damage)
+    damage(path / array / ARRAYS[array], how)
     named = f"chunk {ARRAYS[array]} of the array {array}"
     with pytest.raises(ValueError, match=named):
         nh.load_sweep(path)
@@ -46,21 +38,21 @@ def test_damaged_draws_are_computed_again(name: str, tmp_path: Path) -> None:
     path, design = tmp_path / "run.zarr", nh.RandomDesign(5, {name: nh.Uniform(0.0, 1.0)}, rng=2)
     task: Callable[[nh.MemberBlock], Any] = lambda block: block[name] ** 2  # noqa: E731
     whole = nh.sweep(task, design, path, block=2).load()
-    _damage(path / name / "c" / "2", "flipped")
+    damage(path / name / "c" / "2", "flipped")
     with pytest.warns(RuntimeWarning, match=f"chunk c/2 of the array {name}"):
         assert same(nh.resume(path, task=task).load(), whole)
 
 
-@pytest.mark.parametrize("damage", ["flipped", "cut", "empty", "edited"])
-def test_damaged_mark_is_named_and_its_block_computed_again(damage: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("how", ["flipped", "cut", "empty", "edited"])
+def test_damaged_mark_is_named_and_its_block_computed_again(how: str, tmp_path: Path) -> None:
     """A block whose mark cannot be trusted is computed again."""
     path = tmp_path / "run.zarr"
     whole = swept(path)
     mark = path / "run" / "blocks" / "2.json"
-    if damage == "edited":
+    if how == "edited":
         mark.write_text(mark.read_text().replace('"writer": "', '"writer": "another '))
     else:
-        _damage(mark, damage)
+        damage(mark, how)
     assert standing_of(path).done == 4
     with pytest.warns(RuntimeWarning, match=r"the mark 2\.json is damaged. Block 2 is computed again"):
         assert same(resumed(path), whole)
@@ -71,42 +63,35 @@ def test_lost_mark_is_a_block_to_do(tmp_path: Path) -> None:
     """A block without a mark is one that was not finished, and is done in silence."""
     path = tmp_path / "run.zarr"
     whole = swept(path)
-    _damage(path / "run" / "blocks" / "0.json", "missing")
-    _damage(path / "total" / "c" / "0" / "0", "cut")
+    damage(path / "run" / "blocks" / "0.json", "missing")
+    damage(path / "total" / "c" / "0" / "0", "cut")
     assert same(resumed(path), whole)
 
 
-@pytest.mark.parametrize("damage", ["missing", "flipped", "cut", "empty"])
+@pytest.mark.parametrize("how", DAMAGE)
 @pytest.mark.parametrize("axis", ["x", "start"])
-def test_lost_axis_is_refused(axis: str, damage: str, tmp_path: Path) -> None:
+def test_lost_axis_is_refused(axis: str, how: str, tmp_path: Path) -> None:
     """Where the values along an axis are gone, nothing is invented."""
     path = tmp_path / "run.zarr"
     swept(path)
-    _damage(path / axis / ("c/0" if axis == "x" else "c/0/0"), damage)
+    damage(path / axis / ("c/0" if axis == "x" else "c/0/0"), how)
     with pytest.raises(ValueError, match=f"hold the axis {axis}.*Run the sweep again"):
         resumed(path)
 
 
-@pytest.mark.parametrize("damage", ["missing", "cut", "empty"])
+@pytest.mark.parametrize("how", ["missing", "cut", "empty"])
 @pytest.mark.parametrize(
     ("place", "match"), [("", "zarr.json"), ("noise", "hold the array noise"), ("x", "hold the array x")]
 )
-def test_lost_metadata_are_refused(place: str, match: str, damage: str, tmp_path: Path) -> None:
+def test_lost_metadata_are_refused(place: str, match: str, how: str, tmp_path: Path) -> None:
     """Where metadata are gone, what they are of is named."""
     path = tmp_path / "run.zarr"
     swept(path)
-    _damage(path / place / "zarr.json", damage)
+    damage(path / place / "zarr.json", how)
     with pytest.raises(ValueError, match=match):
         resumed(path)
     with pytest.raises(ValueError, match=match if place else "must be a store of a sweep"):
         swept(path, resume=True)
-
-
-def _swap(store: Path, one: str, other: str) -> None:
-    first, second = (store / one).read_bytes(), (store / other).read_bytes()
-    assert first != second
-    (store / one).write_bytes(second)
-    (store / other).write_bytes(first)
 
 
 @pytest.mark.parametrize(
@@ -117,7 +102,7 @@ def test_a_block_in_the_place_of_another_is_computed_again(one: str, other: str,
     """A checksum does not know where its chunk lies: the mark of the block does."""
     path = tmp_path / "run.zarr"
     whole = swept(path)
-    _swap(path, one, other)
+    swap(path, one, other)
     with pytest.raises(ValueError, match="of another place in block"):
         nh.load_sweep(path)
     with pytest.warns(RuntimeWarning, match="of another place in block"):
@@ -129,11 +114,11 @@ def test_metadata_of_another_array_are_refused(tmp_path: Path) -> None:
     """An array is the one that the description tells: dimensions, type and what is said of it."""
     path = tmp_path / "run.zarr"
     swept(path)
-    _swap(path, "total/zarr.json", "outcome/zarr.json")
+    swap(path, "total/zarr.json", "outcome/zarr.json")
     for opened in (nh.load_sweep, resumed):
         with pytest.raises(ValueError, match=r"hold the array \w+ of its description"):
             opened(path)
-    _swap(path, "total/zarr.json", "outcome/zarr.json")
+    swap(path, "total/zarr.json", "outcome/zarr.json")
     for name in ("outcome", "x"):
         for told in ("a text", {"scale_factor": 2.0}):
             file = path / name / "zarr.json"

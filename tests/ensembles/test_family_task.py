@@ -100,23 +100,17 @@ def test_what_is_no_ready_system_is_not_made(name: str) -> None:
         family_task_from(entry | {"family": name})
 
 
-REFUSED = {
-    "family": (lambda: nh.FamilyTask(5, 0.1, 3), r"FamilyTask\(family=...\)` must be a function"),
-    "time step": (lambda: nh.FamilyTask(sleigh, 0.0, 3), r"FamilyTask\(time_step=...\)` must be positive"),
-    "steps": (lambda: nh.FamilyTask(sleigh, 0.1, 0), r"FamilyTask\(steps=...\)` must be a positive integer"),
-    "parameters": (lambda: nh.FamilyTask(sleigh, 0.1, 3, parameters={"mass": 1.0}), "It has a, speed, velocity"),
-    "mapping": (lambda: nh.FamilyTask(sleigh, 0.1, 3, parameters=[1.0]), "be a mapping of names"),
-    "reductions": (lambda: nh.FamilyTask(sleigh, 0.1, 3, reductions="lyapunov"), "functions of an ensemble"),
-    "save_every": (lambda: nh.FamilyTask(sleigh, 0.1, 3, save_every=1.5), r"FamilyTask\(save_every=...\)"),
-}
-
-
-@pytest.mark.parametrize("name", REFUSED)
-def test_bad_tasks_are_refused(name: str) -> None:
-    """Before any work, with what to pass."""
-    call, words = REFUSED[name]
-    with pytest.raises((ValueError, TypeError), match=words):
-        call()
+# Before any work, with what to pass.
+test_bad_tasks_are_refused = refusals(
+    (lambda: nh.FamilyTask(5, 0.1, 3), r"FamilyTask\(family=...\)` must be a function"),
+    (lambda: nh.FamilyTask(sleigh, 0.0, 3), r"FamilyTask\(time_step=...\)` must be positive"),
+    (lambda: nh.FamilyTask(sleigh, 0.1, 0), r"FamilyTask\(steps=...\)` must be a positive integer"),
+    (lambda: nh.FamilyTask(sleigh, 0.1, 3, parameters={"mass": 1.0}), "It has a, speed, velocity"),
+    (lambda: nh.FamilyTask(sleigh, 0.1, 3, parameters=[1.0]), "be a mapping of names"),
+    (lambda: nh.FamilyTask(sleigh, 0.1, 3, reductions="lyapunov"), "functions of an ensemble"),
+    (lambda: nh.FamilyTask(sleigh, 0.1, 3, save_every=1.5), r"FamilyTask\(save_every=...\)"),
+    kind=(ValueError, TypeError),
+)
 
 
 # Names that the family does not have, components beyond the last.

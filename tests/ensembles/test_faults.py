@@ -11,11 +11,11 @@ from typing import Any
 
 import pytest
 from ensembles import faults
-from ensembles.small import python, resumed, same, stop_at, swept
+from ensembles.small import python, resumed, same, swept
+from stopping import stopped_at, stopped_in
 from waiting import wait_for
 
 import nonholo as nh
-from nonholo import io
 from nonholo.ensembles import standing_of
 from nonholo.ensembles.stores import SweepStore, open_store
 from nonholo.io import Piece
@@ -104,13 +104,11 @@ def test_interruption_after_each_block(tmp_path: Path, monkeypatch: pytest.Monke
     assert same(swept(tmp_path / "run.zarr", resume=True), swept(tmp_path / "whole.zarr"))
 
 
-def test_end_between_the_last_two_writes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_end_between_the_last_two_writes(tmp_path: Path) -> None:
     """A sweep that was killed before its metadata were consolidated is finished by resuming it."""
     path = tmp_path / "run.zarr"
-    with monkeypatch.context() as patch:
-        patch.setattr("nonholo.io._block_store.consolidate", lambda _: (_ for _ in ()).throw(KeyboardInterrupt))
-        with pytest.raises(KeyboardInterrupt, match="Stopped at 6 of 6"):
-            swept(path)
+    with stopped_in("nonholo.io._block_store.consolidate", match="Stopped at 6 of 6"):
+        swept(path)
     with pytest.raises(ValueError, match="must be a finished sweep"):
         nh.load_sweep(path)
     assert same(resumed(path), swept(tmp_path / "whole.zarr"))
@@ -118,43 +116,23 @@ def test_end_between_the_last_two_writes(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 @pytest.mark.parametrize("scheduler", ["synchronous", "threads"])
-def test_full_disk_leaves_a_valid_store(scheduler: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_full_disk_leaves_a_valid_store(scheduler: str, tmp_path: Path) -> None:
     """A full disk is an error that names the store, the standing and the remedy; with room again it continues."""
     path = tmp_path / "run.zarr"
-    with monkeypatch.context() as patch:
-        stop_at(patch, 2, OSError(errno.ENOSPC, "No space left on device"))
-        with pytest.raises(OSError, match=r"No space left.*of 6 members.*Free space, then call.*run\.zarr") as caught:
-            swept(path, scheduler=scheduler)
+    full = OSError(errno.ENOSPC, "No space left on device")
+    with stopped_at(2, full, r"No space left.*of 6 members.*Free space, then call.*run\.zarr") as caught:
+        swept(path, scheduler=scheduler)
     assert caught.value.errno == errno.ENOSPC
     with pytest.raises(ValueError, match="must be a finished sweep"):
         nh.load_sweep(path)
     assert same(resumed(path), swept(tmp_path / "whole.zarr"))
 
 
-@pytest.mark.profile("faults", instead="test_full_disk_leaves_a_valid_store")
-@pytest.mark.parametrize("scheduler", ["threads", "processes"])
-def test_limit_of_the_system_on_file_sizes(scheduler: str, tmp_path: Path) -> None:
-    """A limit met while zarr writes ends in the same clean error, and the sweep continues without it."""
-    path = tmp_path / "run.zarr"
-    told = _printed(f"""
-import resource
-resource.setrlimit(resource.RLIMIT_FSIZE, (15_000, 15_000))
-try:
-    nh.sweep(noisy, SWEEPS["noisy"][1], Path({str(path)!r}), {scheduler!r}, block=1200, workers=1)
-except OSError as failure:
-    print(failure.errno, failure)
-""")
-    assert told.startswith(f"{errno.EFBIG} ")
-    assert "File too large. The sweep stands at 0 of 2400 members, 0 of them failed. Free space, then call" in told
-    task, design, _ = faults.SWEEPS["noisy"]
-    assert same(nh.resume(path, task=task).load(), nh.sweep(task, design, tmp_path / "whole.zarr", block=2400).load())
-
-
-def test_no_room_for_a_store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_room_for_a_store(tmp_path: Path) -> None:
     """If not even the empty store can be written, nothing is left at its path nor beside it."""
     full = OSError(errno.ENOSPC, "No space left on device")
-    monkeypatch.setattr(io, "create_array", lambda *_, **__: (_ for _ in ()).throw(full))
-    with pytest.raises(OSError, match=r"No space left on device. Nothing at this path was changed.*run\.zarr"):
+    told = r"No space left on device. Nothing at this path was changed.*run\.zarr"
+    with stopped_in("nonholo.io.create_array", full, told):
         swept(tmp_path / "run.zarr")
     assert not list(tmp_path.iterdir())
 
@@ -180,13 +158,11 @@ def test_second_process_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert standing_of(path).finished
 
 
-def test_stale_lock_is_recognized(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stale_lock_is_recognized(tmp_path: Path) -> None:
     """A lock that a process left which has ended does not count, and neither do its half-written files."""
     path = tmp_path / "run.zarr"
-    with monkeypatch.context() as patch:
-        stop_at(patch, 1, KeyboardInterrupt())
-        with pytest.raises(KeyboardInterrupt):
-            swept(path)
+    with stopped_at(1):
+        swept(path)
     ended = subprocess.Popen([sys.executable, "-c", ""])
     ended.wait()
     (path / "run" / "lock.json").write_text(json.dumps({"pid": ended.pid, "host": os.uname().nodename, "since": "1"}))

@@ -12,6 +12,7 @@ import xarray
 from ensembles import faults
 from ensembles.small import same
 from refusals import refusals
+from stopping import stopped_in
 
 import nonholo as nh
 from nonholo.base.results import Outcome
@@ -247,15 +248,6 @@ test_bad_arguments_are_refused = refusals(
 )
 
 
-@pytest.mark.parametrize("design", [GRID, nh.RandomDesign(12, {"x": nh.Normal(), "y": nh.Uniform(0, 1)}, rng=7)])
-@pytest.mark.parametrize("block", [1, 7, 64])
-@pytest.mark.parametrize("scheduler", ["threads", "synchronous"])
-def test_bits_do_not_depend_on_blocks(scheduler: str, block: int, design: Any, tmp_path: Path) -> None:
-    """A custom task has the same result in blocks of any size, by any scheduler."""
-    found = _swept(_calm, tmp_path, design, block=block, scheduler=scheduler)
-    assert same(found, nh.sweep(_calm, design, tmp_path / "whole.zarr", "synchronous").load())
-
-
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> xarray.Dataset:
     """The tops in one block."""
@@ -383,15 +375,13 @@ def test_a_random_design_grows(block: int, tmp_path: Path) -> None:
     assert standing_of(path).done == 29
 
 
-def test_a_growth_that_was_killed_continues(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_growth_that_was_killed_continues(tmp_path: Path) -> None:
     """Killed as soon as the store says how many members it is to have, a growth is done by a plain `resume`."""
     few, many = (nh.RandomDesign(size, {"x": nh.Uniform(0.0, 1.0)}, rng=3) for size in (10, 23))
     _swept(_drawn_twice, tmp_path, few, block=4)
     path, how = tmp_path / "run.zarr", {"task": _drawn_twice, "scheduler": "synchronous"}
-    with monkeypatch.context() as patch:
-        patch.setattr("nonholo.ensembles._sweep.continue_sweep", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
-        with pytest.raises(KeyboardInterrupt):
-            nh.resume(path, members=23, **how)
+    with stopped_in("nonholo.ensembles._sweep.continue_sweep"):
+        nh.resume(path, members=23, **how)
     assert not standing_of(path).finished
     assert same(nh.resume(path, **how).load(), _swept(_drawn_twice, tmp_path / "whole", many))
 

@@ -46,31 +46,12 @@ def test_members_are_those_of_ensemble(start: str) -> None:
     _assert_is_ensemble(found, nh.ensemble(SLEIGH, steps=50, parameters=parameters, **{start: rows}))
 
 
-def test_members_are_those_of_simulate() -> None:
-    """Each member ends where `simulate` takes it, to the rounding of 50 steps."""
-    design = nh.RandomDesign(5, {"mass_tensor": nh.MassTensor(3, 0.5, 2.0), "restricted_velocity": nh.Direction(2)})
-    found, values = _called(_task(TOP), design), design.values(0, 5)
-    for member in range(5):
-        top = nh.discretize(nh.SuslovTop(values["mass_tensor"][member]), 0.1)
-        orbit = nh.simulate(top, restricted_velocity=values["restricted_velocity"][member], steps=50)
-        assert orbit.pose is not None
-        assert np.abs(found["final_momentum"][member] - orbit.restricted_momentum[-1]).max() < 1e-14
-        assert np.abs(found["final_pose"][member] - orbit.pose[-1]).max() < 1e-14
-
-
 @pytest.mark.parametrize("start", ["body_velocity", "restricted_velocity", "momentum"])
 def test_whole_starts_of_a_design_replace_that_of_the_task(start: str) -> None:
     """A start of the design is used instead of that of the task, whatever that was."""
     rows = [[*row, 0.0] for row in STARTS] if start == "body_velocity" else STARTS
     found = _called(_task(restricted_velocity=(9.0, 9.0)), nh.Grid({start: rows}))
     _assert_is_ensemble(found, nh.ensemble(SLEIGH, steps=50, **{start: rows}))
-
-
-def test_start_of_the_task_serves_all_members() -> None:
-    """What the design does not name is as in the task."""
-    found = _called(_task(body_velocity=(1.0, 0.2, 0.0)), nh.Grid({"mass": [1.0, 2.0]}))
-    batch = nh.ensemble(SLEIGH, steps=50, body_velocity=(1.0, 0.2, 0.0), parameters={"mass": [1.0, 2.0]})
-    _assert_is_ensemble(found, batch)
 
 
 def _path_length(batch: nh.Ensemble) -> dict[str, Any]:

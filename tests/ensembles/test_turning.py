@@ -8,7 +8,6 @@ import xarray
 
 import nonholo as nh
 
-INERTIAS = np.array([0.1, 0.5, 1.0, 3.0, 10.0])
 START = 1e-8
 """First rate of turning: the turn before the start is missing, START sqrt(I) / pi of the whole."""
 

@@ -88,20 +88,6 @@ def test_stores_as_xarray_opens_them(name: str, tmp_path: Path) -> None:
     assert _close(again.pose, orbit.pose)
 
 
-@pytest.mark.parametrize("name", ["about e2", "about -e3", "sleigh", "sleigh in space"])
-def test_blocks_and_crossings(name: str) -> None:
-    """Poses of blocks are those of the orbit; the pose at a crossing is between those of the states around it."""
-    level = _orbit(name).configuration[10:12, 0, 0].mean()
-    orbit = _orbit(name, events=[nh.Event(lambda orbit: orbit.configuration[:, 0, 0] - level, name="entry")])
-    g = SYSTEMS[name].group.random(np.random.default_rng(4))
-    given = {"configuration": g, "block_steps": 9, **_start(SYSTEMS[name])}
-    blocks = list(nh.iterate(nh.discretize(SYSTEMS[name], 0.1), **given))
-    assert _close(np.concatenate([block.pose for block in blocks]), orbit.pose)
-    found = orbit.events["entry"]
-    assert len(found) > 0
-    assert _close(SYSTEMS[name].group.matrix_from_pose(found.states.pose)[:, 0, 0], level)
-
-
 def _ensemble(name: str, **options: Any) -> nh.Ensemble:
     velocity = _start(SYSTEMS[name])["restricted_velocity"]
     rows = velocity * np.array([1.0, 0.5, -0.8])[:, None]

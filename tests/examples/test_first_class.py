@@ -1,4 +1,4 @@
-"""Every ready system has what tops and sleighs have: pictures, tables, events, ensembles, sweeps."""
+"""Every ready system has what tops and sleighs have: its crossings are steps of the map, members are runs alone."""
 
 import dataclasses
 
@@ -24,30 +24,13 @@ def _profile(name: str) -> list[pytest.MarkDecorator]:
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=_profile(name), id=name) for name in NAMES])
-def test_a_ready_system_is_first_class(name: str, tmp_path) -> None:  # noqa: ANN001
-    """Its orbit is drawn and written, its crossings are steps of the map, members are runs alone, a sweep has both."""
+def test_a_ready_system_is_first_class(name: str) -> None:
+    """Its crossings are steps of the map, and members are runs alone; tests/matrix has pictures, tables and sweeps."""
     ready: Example = getattr(nh.examples, name)()
     discrete = ready.discretize(2 * ready.time_step)
     start = {"configuration": ready.configuration, "body_velocity": ready.body_velocity}
-    orbit = nh.simulate(discrete, **start, steps=STEPS)
-    _drawn_and_written(orbit, tmp_path)
-    _crosses_by_steps_of_the_map(orbit, discrete, start, name)
+    _crosses_by_steps_of_the_map(nh.simulate(discrete, **start, steps=STEPS), discrete, start, name)
     _members_are_runs_alone(name, discrete, start)
-    _is_swept(name, discrete, start, tmp_path)
-
-
-def _drawn_and_written(orbit: nh.Orbit, folder) -> None:  # noqa: ANN001
-    figure = orbit.plot(folder / "motion.png")
-    assert len(figure.axes) >= 3
-    assert (folder / "motion.png").stat().st_size > 10_000
-    assert len(nh.plot.energy_error(orbit).axes.lines) > 0
-    orbit.to_csv(folder / "motion.csv")
-    written = np.genfromtxt(folder / "motion.csv", delimiter=",", names=True)
-    table = orbit.to_pandas()
-    assert np.array_equal(written["t"], orbit.time)
-    assert np.array_equal(table["energy"], orbit.energy)
-    for column in written.dtype.names[1:]:  # which have shorter names than those of the table
-        assert any(np.array_equal(written[column], table[other]) for other in table)
 
 
 def _crosses_by_steps_of_the_map(orbit, discrete, start, name: str) -> None:  # noqa: ANN001
@@ -59,7 +42,6 @@ def _crosses_by_steps_of_the_map(orbit, discrete, start, name: str) -> None:  # 
     found = nh.simulate(discrete, **start, steps=STEPS, events=[event]).events["level"]
     at = int(np.flatnonzero(found.step == 17)[0])
     assert np.abs(event.function(found.states)).max() <= 4 * np.spacing(np.abs(flat[:, place]).max())
-    assert len(nh.plot.section(found, lambda states: states.time, lambda states: states.energy).points) == len(found)
     if name not in DRIVEN:  # whose runs begin at time 0
         part = dataclasses.replace(discrete, time_step=found.fraction[at] * float(discrete.time_step))
         momentum = (orbit.restricted_momentum if name in BODIES else orbit.momentum)[17]
@@ -79,7 +61,6 @@ def _members_are_runs_alone(name: str, discrete, start: dict) -> None:  # noqa: 
     batch = nh.ensemble(discrete, **rows, steps=4, save_every=2)
     assert batch.outcome.tolist() == [0] * MEMBERS
     assert batch.configuration.shape[:2] == batch.time.shape == (MEMBERS, 3)
-    assert dict(batch.to_dataset().sizes) | {"member": MEMBERS, "step": 3} == dict(batch.to_dataset().sizes)
     for member in (0, 500, MEMBERS - 1):
         own = {key: value[member] if len(value) == MEMBERS else value for key, value in rows.items()}
         alone = nh.simulate(discrete, **own, steps=4, save_every=2)
@@ -88,13 +69,3 @@ def _members_are_runs_alone(name: str, discrete, start: dict) -> None:  # noqa: 
                 assert np.array_equal(getattr(batch, row)[member], getattr(alone, row)), row
         # bodies: starts of many are converted by other products of matrices (docs/conventions.md, "Bits")
         assert np.abs(batch.configuration[member] - alone.configuration).max() <= 1e-14
-
-
-def _is_swept(name: str, discrete, start: dict, folder) -> None:  # noqa: ANN001
-    step = float(discrete.time_step)
-    task = nh.FamilyTask(getattr(nh.examples, name), time_step=step, steps=4)
-    found = nh.sweep(task, nh.Grid({"time_step": [step, step / 2]}), folder / "steps.zarr")
-    end = nh.simulate(discrete, **start, steps=4)
-    assert np.abs(found.final_configuration.values[0] - end.configuration[-1]).max() <= 1e-14
-    assert found.final_time.values.tolist() == [4 * step, 2 * step]
-    assert nh.resume(folder / "steps.zarr").equals(found)  # by the name of the ready system, which is data

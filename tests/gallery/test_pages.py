@@ -20,9 +20,11 @@ PAGES = (
     "how-to/drive-a-robot.md",
     "how-to/events-and-sections.md",
     "how-to/explore.md",
+    "how-to/export-poses.md",
     "how-to/gaits.md",
     "how-to/linearize.md",
     "how-to/make-a-dataset.md",
+    "how-to/run-a-sweep.md",
     "how-to/run-an-ensemble.md",
     "how-to/run-for-days.md",
     "how-to/steer.md",
@@ -32,11 +34,10 @@ PAGES = (
 ELSEWHERE = {  # pages whose blocks run with what stands around them, and where
     "how-to/beyond-one-machine.md": "ensembles/test_cluster.py",
     "how-to/define-your-own-system.md": "testing/test_how_to.py",
-    "how-to/export-poses.md": "io/test_csv.py",
-    "how-to/run-a-sweep.md": "cli/test_sweep.py",
 }
 NOTEBOOKS = {"how-to/steer.md", "how-to/differentiate-and-fit.md", "how-to/gaits.md"}
 LONG = {
+    "how-to/run-a-sweep.md",
     "how-to/choose-a-discretisation.md",
     "how-to/drive-a-robot.md",
     "how-to/linearize.md",

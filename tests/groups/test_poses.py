@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import scipy.linalg
-from groups.examples import GROUPS, MOTIONS, ROTATIONS, TWO_BODIES, WHEELED, close, vectors
+from groups.examples import GROUPS, MOTIONS, ROTATIONS, TWO_BODIES, WHEELED, close
 
 from nonholo.groups import SE, SO, AbstractMatrixGroup, Translations
 
@@ -39,16 +39,6 @@ def test_the_nearest_rotation_is_the_polar_factor(group: AbstractMatrixGroup) ->
     rng = np.random.default_rng(3)
     R = group.random(rng) + 1e-5 * rng.normal(size=(group.size, group.size))
     assert close(group.matrix_from_pose(R.reshape(-1)), scipy.linalg.polar(R)[0], 20)
-
-
-@every_group
-def test_pose_rate_is_the_derivative_along_the_motion(group: AbstractMatrixGroup) -> None:
-    """The rate of the pose of g exp(tx) at t = 0, by central differences."""
-    x, small = vectors(group, 1)[0], 1e-5
-    g = group.random(np.random.default_rng(4))
-    ahead, behind = (group.pose_from_matrix(g @ group.exp(t * x)) for t in (small, -small))
-    slope = (ahead - behind) / (2 * small)
-    assert np.abs(slope - group.pose_rate(group.pose_from_matrix(g), x)).max() < 1e-8 * (1 + np.abs(slope).max())
 
 
 def test_layouts_of_poses() -> None:

@@ -11,7 +11,7 @@ import nonholo as nh
 from nonholo.ensembles import sweep_to_csv
 from nonholo.ensembles.stores import SCHEMA as OF_SWEEPS
 from nonholo.io import SCHEMA as OF_ORBITS
-from nonholo.io import checksum, store_to_csv
+from nonholo.io import edit_attributes, store_to_csv
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.3, 0.7, 0.5, b=0.3), 0.1)
 REFUSAL = (
@@ -31,11 +31,8 @@ def _sweep(path: Path) -> None:
 
 
 def _save_as_schema(path: Path, schema: int) -> None:
-    document = json.loads((path / "zarr.json").read_text())
-    told: dict[str, Any] = document["attributes"]
-    told |= {"schema": schema, "versions": json.dumps({"nonholo": "0.2.0", "numpy": "2.2.0"})}
-    told["checksum"] = checksum(told)
-    (path / "zarr.json").write_text(json.dumps(document))
+    versions = json.dumps({"nonholo": "0.2.0", "numpy": "2.2.0"})
+    edit_attributes(path, {"schema": schema, "versions": versions})
 
 
 EARLIER = [(_orbit, OF_ORBITS, schema) for schema in range(1, OF_ORBITS)]

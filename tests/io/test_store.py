@@ -7,7 +7,6 @@ import json
 import re
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +14,7 @@ import numpy as np
 import pytest
 import xarray
 import zarr
+from damage import DAMAGE, damage
 
 import nonholo as nh
 from nonholo.base.compiled import way_of_kernels
@@ -220,6 +220,7 @@ def test_full_disk_leaves_the_old_store(store: Path, monkeypatch: pytest.MonkeyP
     assert list(store.parent.iterdir()) == [store]
 
 
+@pytest.mark.profile("faults", instead="test_full_disk_leaves_the_old_store")
 def test_refused_write_of_the_system(store: Path) -> None:
     """A limit of the operating system on file sizes, met while zarr writes, ends in the same clean error."""
     script = f"""
@@ -270,34 +271,14 @@ def test_failed_swap_brings_the_old_store_back(store: Path, monkeypatch: pytest.
     assert list(store.parent.iterdir()) == [store]
 
 
-def _remove(chunk: Path) -> None:
-    chunk.unlink()
-
-
-def _flip(chunk: Path) -> None:
-    content = bytearray(chunk.read_bytes())
-    content[len(content) // 2] ^= 1
-    chunk.write_bytes(content)
-
-
-def _truncate(chunk: Path) -> None:
-    chunk.write_bytes(chunk.read_bytes()[:-3])
-
-
-def _empty(chunk: Path) -> None:
-    chunk.write_bytes(b"")
-
-
-@pytest.mark.parametrize("damage", [_remove, _flip, _truncate, _empty])
+@pytest.mark.parametrize("how", DAMAGE)
 @pytest.mark.parametrize("name", ["time", "energy", "x", "restricted_momentum", "canonical/cayley", "canonical/pose"])
-def test_damaged_chunk_is_named(
-    damage: Callable[[Path], None], name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_damaged_chunk_is_named(how: str, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A chunk that is missing, changed or cut is an error that names array and chunk, never data."""
     monkeypatch.setattr(_orbit_store, "_ROWS", 8)
     nh.save_orbit(_orbit(), tmp_path / "o.zarr")
     key = "c/1" if name in ("time", "energy", "x") else "c/1/0"
-    damage(tmp_path / "o.zarr" / name / key)
+    damage(tmp_path / "o.zarr" / name / key, how)
     with pytest.raises(ValueError, match=f"chunk {key} of the array {name}"):
         nh.load_orbit(tmp_path / "o.zarr")
 
@@ -364,8 +345,9 @@ def test_other_cuts_are_refused(cut: str, name: str, tmp_path: Path) -> None:
 def test_future_schema_is_refused(store: Path) -> None:
     """A store of a later schema is refused with the advice to upgrade."""
     _edit(store, schema=99)
-    with pytest.raises(ValueError, match=r"schema 99\. Upgrade nonholo: .* wrote it"):
-        nh.load_orbit(store)
+    for opened in (nh.load_orbit, nh.resume):
+        with pytest.raises(ValueError, match=r"schema 99\. Upgrade nonholo: .* wrote it"):
+            opened(store)
 
 
 def test_foreign_stores_are_refused(tmp_path: Path) -> None:

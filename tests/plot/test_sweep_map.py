@@ -137,12 +137,6 @@ def test_curve_along_one_axis(plane: xarray.Dataset) -> None:
     assert picture.axes.get_xlim()[1] >= 3.0
 
 
-def test_part_of_a_space(space: xarray.Dataset) -> None:
-    """A third axis with one value left is reported in the title."""
-    picture = nh.plot.sweep_map(space.sel(c=[6.0]), "value")
-    assert picture.axes.get_title(loc="left") == "A number, c = 6"
-
-
 def test_histogram(draws: xarray.Dataset) -> None:
     """Without x and y the members that succeeded are counted; all of them are in some bar."""
     picture = nh.plot.sweep_map(draws, "wide")

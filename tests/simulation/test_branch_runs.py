@@ -148,6 +148,7 @@ def test_members_of_an_ensemble_take_the_rule(branch: Any) -> None:
     assert np.abs(batch.displacement[0, 0] - principal.displacement[0, 0]).max() > 0.1
 
 
+@pytest.mark.profile("routes", keep=["sleigh"])
 @pytest.mark.parametrize("name", FAMILIES)
 def test_members_that_differ_take_the_rule(name: str) -> None:
     """With parameters, from velocities, where nothing of the ensemble is computed side by side."""

@@ -49,25 +49,6 @@ def _assert_close(found: np.ndarray, wanted: np.ndarray, tolerance: float) -> No
 
 
 @BOTH
-@pytest.mark.parametrize("varied", [False, True], ids=["one body", "many bodies"])
-def test_members_move_as_simulate_moves_them(system: Any, varied: bool) -> None:
-    """Over 1000 steps states agree to rounding, and what is decoded; each has its own parameters and time step."""
-    velocities, parameters = _velocities(35), _parameters(system, 35) if varied else {}
-    run = {"restricted_velocity": velocities, "steps": 1000, "save_every": 250}
-    batch = nh.ensemble(nh.discretize(system, 0.1), **run, parameters=parameters)
-    assert batch.outcome.tolist() == [0] * 35
-    for member in (0, 33):
-        body, own = system, {name: values[member] for name, values in parameters.items()}
-        step = own.pop("time_step", 0.1)
-        if varied:
-            body = nh.SuslovTop(**own, axis=TOP.axis) if system is TOP else nh.ChaplyginSleigh(**own)
-        orbit = nh.simulate(nh.discretize(body, step), **run | {"restricted_velocity": velocities[member]})
-        assert np.array_equal(batch.time[member], orbit.time)
-        for name in DECODED:
-            _assert_close(getattr(batch, name)[member], getattr(orbit, name), 1e-14)
-
-
-@BOTH
 def test_starts_agree(system: Any) -> None:
     """Velocities, restricted velocities and both kinds of momenta name the same starts."""
     discrete, w = nh.discretize(system, 0.1), _velocities(4)
@@ -188,25 +169,6 @@ def test_bodies_by_matrices_run_side_by_side(name: str) -> None:
             found = getattr(batch, quantity)[member, : len(orbit)]
             assert np.array_equal(found, getattr(orbit, quantity)), quantity
         assert batch.outcome[member] == orbit.outcome
-
-
-@pytest.mark.parametrize("name", ["suslov 4", "any d on SE(3)", "veselova 3"])
-def test_other_systems_run_member_by_member(name: str) -> None:
-    """States of systems without a scalar kernel have the bits of `simulate`, with parameters that vary too.
-
-    What is decoded agrees to rounding: BLAS may add in another order where there are more rows.
-    """
-    system, w = GENERAL[name]
-    velocities = w * np.array([[1.0], [0.5], [0.2]])
-    tensors = np.asarray(system.mass_tensor) * np.array([1.0, 1.2, 0.9])[:, None, None]
-    discrete = nh.discretize(system, 0.1)
-    for parameters in ({}, {"mass_tensor": tensors}):
-        batch = nh.ensemble(discrete, restricted_velocity=velocities, parameters=parameters, steps=20)
-        orbit = nh.simulate(batch.members.of(1), restricted_velocity=velocities[1], steps=20)
-        for state in ("reduced_momentum", "cayley", "canonical_pose"):
-            assert np.array_equal(getattr(batch, state)[1, 0], getattr(orbit, state)[-1])
-        for quantity in DECODED:
-            _assert_close(getattr(batch, quantity)[1, 0], getattr(orbit, quantity)[-1], 1e-14)
 
 
 @pytest.mark.parametrize("name", ["top", "sleigh", "suslov 4"])

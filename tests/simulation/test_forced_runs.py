@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 import zarr
-from comparisons import assert_member, assert_same
+from comparisons import assert_same
 from refusals import refusals
 
 import nonholo as nh
-from nonholo.systems import AbstractSystem
 
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
@@ -47,60 +46,16 @@ def test_a_stored_function_is_not_run(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="force is a callable"):
         nh.extend(run, 2)
     assert_same(nh.extend(run, 2, discrete=discrete), nh.simulate(discrete, **START, steps=5), *READ)
+    task = nh.EnsembleTask(discrete, steps=3, **START)
+    nh.sweep(task, nh.Grid({"time_step": [0.05]}), tmp_path / "sweep.zarr")
+    with pytest.raises(ValueError, match="force is a callable"):
+        nh.resume(tmp_path / "sweep.zarr")
     nh.save_orbit(nh.simulate(nh.discretize(FORCED["table"], 0.05), **START, steps=3), tmp_path / "table.zarr")
     described = json.loads(zarr.open_group(tmp_path / "table.zarr", mode="r").attrs["parameters"])  # type: ignore[arg-type]
     assert described["system"] == {
         "kind": "ChaplyginSleigh",
         "parameters": {"mass": 1, "inertia": 1, "a": 0.5, "b": 0.3},
     }
-
-
-@pytest.mark.parametrize("forced", [*FORCED.values(), nh.Forced(TOP, force=_brake)])
-def test_members_are_single_runs(forced: nh.Forced) -> None:
-    """Each member of an ensemble is the run of `simulate`, to the last bit, and its energies are those of the nodes."""
-    discrete, starts = nh.discretize(forced, 0.05), np.random.default_rng(2).normal(size=(3, 2))
-    batch = nh.ensemble(discrete, restricted_velocity=starts, steps=30, save_every=10)
-    for member, start in enumerate(starts):
-        orbit = nh.simulate(discrete, restricted_velocity=start, steps=30, save_every=10)
-        assert_member(batch, member, orbit, "momentum", "configuration", "energy")
-        assert batch.first_energy[member] == pytest.approx(orbit.energy[0], rel=1e-14)
-
-
-@pytest.mark.parametrize("name", ["friction and table", "function"])
-def test_sweeps_end_where_single_runs_do(name: str, tmp_path: Path) -> None:
-    """A sweep of starts and time steps keeps the last states of single runs; its store knows forces that are data."""
-    steps, forced = np.array([0.05, 0.025]), (FORCED | {"function": nh.Forced(TOP, force=_brake)})[name]
-    task = nh.EnsembleTask(nh.discretize(forced, 0.05), steps=30, **START)
-    found = nh.sweep(task, nh.Grid({"time_step": steps}), tmp_path / "a.zarr")
-    for row, h in enumerate(steps):
-        orbit = nh.simulate(nh.discretize(forced, h), **START, steps=30)
-        assert np.array_equal(found["final_momentum"][row], orbit.restricted_momentum[-1])
-        assert float(found["final_energy"][row]) == orbit.energy[-1]
-    if name == "function":
-        with pytest.raises(ValueError, match="force is a callable"):
-            nh.resume(tmp_path / "a.zarr")
-    else:
-        assert nh.resume(tmp_path / "a.zarr").equals(found)
-
-
-@pytest.mark.parametrize(
-    ("system", "heavy"), [(TOP, HEAVY), (SLEIGH, nh.Gravity([0.2, -1.0], [0.1, 0.2]))], ids=["top", "sleigh"]
-)
-def test_events_are_located_to_rounding(system: AbstractSystem, heavy: nh.Gravity) -> None:
-    """Crossings lie on the level to rounding, and approach those of the flow by order 2; a whole part is a step."""
-    forced = nh.Forced(system, heavy, RUB)
-    event = nh.Event(lambda states: states.configuration[:, 0, 0] - 0.95)
-    flow = nh.flow(forced, **START, times=np.linspace(0.0, 3.0, 31), events=[event]).events[0]
-    missed = []
-    for h in (0.05, 0.025):
-        orbit = nh.simulate(nh.discretize(forced, h), **START, steps=round(3 / h), events=[event])
-        found = orbit.events[0]
-        assert len(found) == len(flow) > 0
-        assert np.abs(found.states.configuration[:, 0, 0] - 0.95).max() < 1e-14
-        missed.append(np.abs(found.time - flow.time).max())
-    assert missed[0] / missed[1] == pytest.approx(4, rel=0.2)
-    whole = orbit.motion.after_parts(orbit[:3], np.ones(3))
-    assert np.abs(whole.reduced_momentum - orbit.reduced_momentum[1:4]).max() < 1e-14
 
 
 def test_pictures_show_no_free_motion() -> None:

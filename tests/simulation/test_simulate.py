@@ -61,16 +61,6 @@ def test_shapes_of_an_orbit() -> None:
     assert np.abs(g[1:] - g[:-1] @ W[:-1]).max() < 1e-14
 
 
-@pytest.mark.parametrize("discrete", [TOP, SLEIGH], ids=["top", "sleigh"])
-def test_discrete_equations_hold(discrete: nh.Discretization) -> None:
-    """P_{k+1} - Ad*_{W_k} P_k = lambda a, and P_k is the momentum at W_k."""
-    orbit = nh.simulate(discrete, restricted_velocity=(0.7, -0.3), steps=30)
-    P, W = orbit.momentum, orbit.displacement
-    force = P[1:] - discrete.system.group.coadjoint(W[:-1], P[:-1])
-    assert np.abs(force - orbit.multipliers @ discrete.system.annihilator).max() < 1e-13
-    assert np.abs(P - nh.discrete_legendre(discrete, W)).max() < 1e-13
-
-
 def test_heading_is_unwrapped() -> None:
     """A balanced sleigh turning on the spot gains heading beyond a full turn."""
     discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1)

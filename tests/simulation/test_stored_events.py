@@ -9,7 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from damage import damage
 from simulation import killed
+from stopping import stopped_in
 
 import nonholo as nh
 from nonholo.io import Stream, standing
@@ -149,13 +151,11 @@ def test_stopping_event_ends_the_store(stop: int, tmp_path: Path) -> None:
         nh.extend(path, 10, events=events)
 
 
-def test_stop_that_was_not_cut_is_resumed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stop_that_was_not_cut_is_resumed(tmp_path: Path) -> None:
     """A run that an event ended, killed before its arrays were cut, ends there when it is resumed."""
     path, events = tmp_path / "run.zarr", [nh.Event(east, direction=1, stop=3)]
-    with monkeypatch.context() as patch:
-        patch.setattr(Stream, "finish", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
-        with pytest.raises(KeyboardInterrupt):
-            begun(path, events)
+    with stopped_in("nonholo.io.Stream.finish"):
+        begun(path, events)
     assert same(nh.resume(path, events=events), begun(None, events))
 
 
@@ -173,28 +173,20 @@ def test_extended_run_has_the_crossings_of_the_long_run(lengths: tuple[int, ...]
 
 @pytest.mark.profile("faults", keep=["flipped-run/events*", "missing-canonical/pose*"])
 @pytest.mark.parametrize("chunk", ["run/events/c/2/0", "run/blocks/3.json", "canonical/pose/c/3/0"])
-@pytest.mark.parametrize("damage", ["missing", "flipped"])
-def test_damaged_block_is_computed_again(chunk: str, damage: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("how", ["missing", "flipped"])
+def test_damaged_block_is_computed_again(chunk: str, how: str, tmp_path: Path) -> None:
     """A missing or changed chunk of crossings or of states, or a mark, is named, and the run is whole again."""
     path = tmp_path / "run.zarr"
-    whole, file = begun(path, [TURNS, entry]), path / chunk
-    content = bytearray(file.read_bytes())
-    content[len(content) // 2] ^= 1
-    file.unlink() if damage == "missing" else file.write_bytes(content)
+    whole = begun(path, [TURNS, entry])
+    damage(path / chunk, how)
     array, _, key = chunk.partition("/c/")
-    with pytest.warns(RuntimeWarning, match=f"chunk c/{key} of the array {array}" if key else r"mark 3\.json"):
+    named = f"chunk c/{key} of the array {array}" if key else r"mark 3\.json"
+    with pytest.raises(ValueError, match=named if key else "blocks"):
+        nh.load_orbit(path)
+    with pytest.warns(RuntimeWarning, match=named):
         again = nh.resume(path, events=[TURNS, entry])
     assert same(again, whole)
     assert same(nh.load_orbit(path), whole)
-
-
-def test_damaged_crossings_are_not_read(tmp_path: Path) -> None:
-    """A store that lacks a chunk of crossings is refused by name."""
-    path = tmp_path / "run.zarr"
-    begun(path, [TURNS])
-    (path / "run/events/c/2/0").unlink()
-    with pytest.raises(ValueError, match="chunk c/2/0 of the array run/events"):
-        nh.load_orbit(path)
 
 
 def test_failed_run_keeps_its_crossings(tmp_path: Path) -> None:

@@ -21,17 +21,6 @@ def g(system: AbstractSystem) -> np.ndarray:
     return system.group.random(np.random.default_rng(3))
 
 
-def test_energy_by_its_definition(system: AbstractSystem, g: np.ndarray) -> None:
-    """The constrained energy is the kinetic energy of the admissible body velocity with those momenta."""
-    r = np.random.default_rng(0).normal(size=system.rank)
-    fixed = system.restricted_velocity(r, g) @ system.constraint_subspace
-    velocity = np.linalg.solve(system.carried(g), fixed)
-    momentum = system.inertia_operator @ velocity
-    assert np.allclose(system.restrict_at(momentum, g), r, rtol=1e-12, atol=1e-12 * np.abs(r).max())
-    for given in (r, momentum):
-        assert system.constrained_energy(given, g) == pytest.approx(velocity @ momentum / 2, rel=1e-12)
-
-
 def test_momenta_of_velocities(system: AbstractSystem, g: np.ndarray) -> None:
     """Momenta along the constraint are those of which the velocities are known, one by one or stacked."""
     r = np.random.default_rng(1).normal(size=(3, system.rank))

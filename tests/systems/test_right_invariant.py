@@ -41,19 +41,6 @@ def test_spatial_inertia_by_its_definition(system: AbstractLRSystem) -> None:
     assert np.allclose(system.spatial_inertia(group.identity), system.constrained_inertia, rtol=1e-14, atol=0)
 
 
-@pytest.mark.parametrize("system", SYSTEMS[:6], ids=_name)
-def test_kinetic_energy_is_constant_at_constant_spatial_momentum(system: AbstractLRSystem) -> None:
-    """With r constant and the spatial velocity xi = B(g)^-1 r the energy does not change: the force has no power."""
-    group, S = system.group, system.constraint_subspace
-    g, r = group.random(_RNG), _RNG.normal(size=len(S))
-    xi, step = group.hat(system.restricted_velocity(r, g) @ S), 1e-5
-    ahead, behind = (system.constrained_energy(r, g + sign * step * xi @ g) for sign in (1, -1))
-    energy = system.constrained_energy(r, g)
-    assert abs(ahead - behind) / (2 * step) < 1e-8 * energy * (
-        1 + np.abs(xi).max()
-    )  # truncation step^2, rounding eps/step
-
-
 @pytest.mark.parametrize("system", SYSTEMS, ids=_name)
 def test_the_users_frame_is_the_canonical_one(system: AbstractLRSystem) -> None:
     """A system with a constraint in space is its own canonical form."""
