@@ -80,7 +80,7 @@ Many motions:
     EnsembleTask: Run the members of a design and keep some numbers of each.
     FamilyTask: Run the members of a family: systems that a function of parameters makes, such as ...
     MemberBlock: Some members of a sweep in order: a mapping of names to arrays whose first axis is that of the members.
-    dataset: Write a data set of orbits of a ready system, for people who train models.
+    dataset: Write a data set of orbits of a ready system or your own, for people who train models.
     load_sweep: Open the result of a finished sweep, after checking every chunk of it.
     Grid: Every combination of values along axes.
     RandomDesign: Members drawn from distributions: member i is the same in every design with this `rng`, however ...

@@ -16,7 +16,7 @@ from nonholo.ensembles._ensemble_task import RULE, EnsembleTask, ensemble_task_f
 from nonholo.ensembles._family_task import FamilyTask, family_task_from, imported_functions
 from nonholo.ensembles._names import Axes, check_dimensions
 from nonholo.ensembles._reductions import REDUCTIONS
-from nonholo.ensembles.datasets import DatasetTask, dataset_task_from
+from nonholo.ensembles.datasets import DatasetTask, dataset_task_from, is_own
 from nonholo.ensembles.designs import Design, Grid, RandomDesign, axis_dimensions, block_of
 from nonholo.ensembles.stores import AXIS, Output, SweepStore, Task, create_store, layout_of, open_store, probe_outputs
 from nonholo.simulation import in_one_thread
@@ -111,6 +111,7 @@ def functions_of(store: str | Path) -> list[str]:
     if entry["kind"] == "FamilyTask":
         return imported_functions(entry)
     names = entry.get("reductions", []) if entry["kind"] in _MAKERS else [entry["name"]]
+    names += filter(is_own, [entry.get("dataset", "")])
     return [name for name in names if name not in REDUCTIONS] + [entry[key] for key in (RULE,) if key in entry]
 
 

@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -9,23 +10,25 @@ import numpy as np
 
 from nonholo import io
 from nonholo.base.checks import array, choice, count, error, flags, number, path, refuse_former_names, scale, seed, text
+from nonholo.ensembles._describe import function_name
 from nonholo.ensembles._sweep import sweep
-from nonholo.ensembles.datasets import DEFINITIONS, SPLITS, DatasetTask, card, record_of, system_of, write_tables
+from nonholo.ensembles.datasets import DEFINITIONS, SPLITS, DatasetTask, card, family_of, record_of, write_tables
 from nonholo.ensembles.designs import RandomDesign
 from nonholo.ensembles.stores import open_store
 
 STORE, METADATA, CARD = "orbits.zarr", "metadata.json", "README.md"
 _FORMATS = ("zarr", "csv")
+_REMEDY = "`nonholo dataset --list` describes them; a function may be your own."
 
 
 @refuse_former_names("dataset", seed="rng")
 def dataset(
-    name: str,
+    name: str | Callable[..., Any],
     folder: str | Path,
     *,
     orbits: int = 1000,
     steps: int = 500,
-    time_step: float = 0.05,
+    time_step: float | None = None,
     rng: int | np.random.Generator = 0,
     noise: float = 0.0,
     split: Any = (0.8, 0.1, 0.1),
@@ -33,9 +36,10 @@ def dataset(
     license_name: str = "CC0-1.0",
     progress: bool = False,
 ) -> Path:
-    """Write a data set of orbits of a ready system, for people who train models.
+    """Write a data set of orbits of a ready system or your own, for people who train models.
 
-    First configurations and kinetic energies are drawn from the distributions of the definition, which has a version.
+    First configurations and kinetic energies, or arguments of a function that makes systems with their starts, are
+    drawn from the distributions of the definition, which has a version.
     Orbit i is the same in every data set with this `rng`, time step and version, however many there are. Each row is a
     state; the row after it is the next one. An orbit that ends early has NaN in its later rows, and `outcome` has the
     reason.
@@ -45,11 +49,13 @@ def dataset(
     the same call.
 
     Args:
-        name: A data set; `nonholo dataset --list` lists them.
+        name: A data set; `nonholo dataset --list` lists them. Or a custom function: its result has a `system`, a
+            `configuration` and a `body_velocity`, as an `nh.examples.Example` has, and its arguments whose default is a
+            distribution are drawn for each orbit, of the start, of inputs, of `parameters`. Its version is 0.
         folder: A new folder, or that of the same call, stopped.
         orbits: How many.
         steps: Number of steps N; there are N + 1 states.
-        time_step: h.
+        time_step: h; by default that of the definition, mostly 0.05.
         rng: An integer that all random numbers are made of, or a generator that draws it.
         noise: Standard deviation of normal noise, in the unit of each number: fields `observed_...` have it.
         split: Fractions of the orbits for training, validation and test, in this order.
@@ -74,27 +80,28 @@ def dataset(
         ...     orbits.heading.shape, orbits.split.values[:17].tolist().count(0)
         ((20, 11), 16)
     """
-    choice("dataset(name=...)", name, tuple(DEFINITIONS), "`nonholo dataset --list` describes them.")
+    label = function_name(name) if callable(name) else choice("dataset(name=...)", name, tuple(DEFINITIONS), _REMEDY)
+    definition = family_of(name) if callable(name) else DEFINITIONS[label]
     choice("dataset(file_format=...)", file_format, _FORMATS)
     flags("dataset", progress=progress)
     text("dataset(license_name=...)", license_name)
-    members, definition = count("dataset(orbits=...)", orbits, "Pass how many."), DEFINITIONS[name]
-    h = float(scale("dataset(time_step=...)", time_step, "Pass a positive time step."))
+    members = count("dataset(orbits=...)", orbits, "Pass how many.")
+    h = definition.time_step if time_step is None else time_step
+    h = float(scale("dataset(time_step=...)", h, "Pass a positive time step."))
     steps = count("dataset(steps=...)", steps, "Pass the number of steps.")
     deviation = float(number("dataset(noise=...)", noise))
     if deviation < 0:
         raise error("dataset(noise=...)", "not be negative", f"{deviation}", "Pass a standard deviation, or 0.")
-    task = DatasetTask(name, definition.version, h, steps, deviation, _ends(split, members))
+    task = DatasetTask(label, definition, h, steps, deviation, _ends(split, members))
     design = RandomDesign(members, definition.distributions, seed("dataset(rng=...)", rng))
     target = _checked_folder(folder)
-    system_of(name)  # which says what extra it needs
     sweep(task, design, target / STORE, resume=True, progress=progress)
     store = open_store(target / STORE)
     if file_format == "csv":
         write_tables(store, target, task.ends)
     record = record_of(store, task, file_format, license_name)
     io.write_whole(target / CARD, card(record))
-    io.write_whole(target / METADATA, json.dumps(record, indent=1) + "\n")  # the last one: now it is whole
+    io.write_whole(target / METADATA, json.dumps(record, indent=1, default=repr) + "\n")  # last: now it is whole
     if file_format == "csv":
         shutil.rmtree(store.path)
     return target

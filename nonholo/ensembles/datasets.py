@@ -4,17 +4,20 @@ import dataclasses
 import functools
 import hashlib
 import importlib
+import inspect
 import json
 import shlex
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from nonholo import io
+from nonholo.base.checks import error, shown
 from nonholo.base.limits import within_disk
 from nonholo.discrete import discretize
+from nonholo.ensembles._describe import NO_NAME, function_from
 from nonholo.ensembles._names import OUTCOME
 from nonholo.ensembles.designs import MemberBlock
 from nonholo.ensembles.distributions import AbstractDistribution, Direction, Normal, Uniform
@@ -32,6 +35,10 @@ _BODIES = {
     "sleigh_se3": lambda: MultidimensionalSleigh(1.0, _CENTER[:3], np.diag(_DIAGONAL[:3])),
     "sleigh_se4": lambda: MultidimensionalSleigh(1.0, _CENTER, np.diag(_DIAGONAL)),
 }
+
+
+Member: TypeAlias = tuple[Any, dict[str, Any]]
+"""The system of an orbit, and how it starts: arguments of `simulate`."""
 
 
 class Definition(NamedTuple):
@@ -54,6 +61,14 @@ class Definition(NamedTuple):
     energy: tuple[float, float] = (0.2, 1.0)
     version: int = 1
 
+    time_step = 0.05
+    starts = (
+        "First kinetic energies are uniform in the range of the definition. First momenta are p = s D u: u is uniform "
+        "on the unit sphere, D is diagonal with the weights of the definition, s gives the energy; only their action "
+        "along the constraint counts. First configurations are uniform in a box with the given center and half edges: "
+        "coordinates, of a pose those of its logarithm; a body that moves alike from every pose starts at the identity."
+    )
+
     @property
     def distributions(self) -> dict[str, AbstractDistribution]:
         """The random quantities of each orbit, by name."""
@@ -64,9 +79,62 @@ class Definition(NamedTuple):
             draws["start_configuration"] = Uniform(self.center - half, self.center + half)
         return draws
 
+    def member(self, name: str, draws: dict[str, Any]) -> Member:
+        """Return the system of a data set, and how an orbit starts."""
+        system, q = system_of(name), draws.get("start_configuration")
+        if q is not None and not getattr(system, "coordinates", ()):
+            q = system.group.exp(q)
+
+        def energy(momentum: np.ndarray) -> float:
+            return flow(system, configuration=q, momentum=momentum, times=[0.0]).energy[0]
+
+        p = np.array(self.weights) * draws["start_direction"]
+        kinetic = (energy(p) + energy(-p)) / 2 - energy(0 * p)  # whatever the potential, and what drives it
+        return system, {"configuration": q, "momentum": p * np.sqrt(draws["start_energy"] / kinetic)}
+
+
+class Family(NamedTuple):
+    """A data set of systems that a function makes with their starts, of which some arguments are drawn.
+
+    Attributes:
+        title: The systems.
+        distributions: The random arguments, by name.
+        time_step: That of `dataset`, by default.
+        function: It returns an `nh.examples.Example`, or anything else with a `system`, a `configuration` and a
+            `body_velocity`; None for that of `nonholo.examples` with the name of the data set.
+        version: As that of a `Definition`; 0 of a function of the user's own, which has none.
+    """
+
+    title: str
+    distributions: dict[str, AbstractDistribution]
+    time_step: float = 0.05
+    function: Callable[..., Any] | None = None
+    version: int = 1
+
+    starts = "Arguments of the function that makes systems with starts are drawn. The system above is that of orbit 0."
+
+    def member(self, name: str, draws: dict[str, Any]) -> Member:
+        """Return the system of an orbit, and how it starts."""
+        make = self.function or getattr(importlib.import_module("nonholo.examples"), name)
+        ready = make(**draws)
+        return ready.system, {"configuration": ready.configuration, "body_velocity": ready.body_velocity}
+
+
+def family_of(function: Callable[..., Any]) -> Family:
+    """Return the data set of a function of the user's own: arguments whose default is a distribution are drawn."""
+    arguments = inspect.signature(function).parameters.values()
+    draws = {each.name: each.default for each in arguments if isinstance(each.default, AbstractDistribution)}
+    if not draws:
+        remedy = "Write def robot(speed=nh.Uniform(0.5, 1.0)): ..."
+        got = f"{shown(function)}, which has none"
+        raise error("dataset(name=...)", "have an argument whose default is a distribution", got, remedy)
+    title, *_ = (inspect.getdoc(function) or function.__name__).splitlines()
+    return Family(title.rstrip("."), draws, function=function, version=0)
+
 
 _TURN, _PLANE, _PI = (2.0, 2.0, 2.0), (1.0, 1.0, np.pi), np.pi
-DEFINITIONS = {
+_SLOW, _HALF = Uniform(-0.3, 0.3), Uniform([-0.5, -0.5], [0.5, 0.5])
+DEFINITIONS: dict[str, Definition | Family] = {
     "top": Definition("Suslov top", (1.0, 1.0)),
     "top_so4": Definition("Suslov top on SO(4)", (1.0, 1.0, 1.0)),
     "veselova": Definition("Veselova top", (1.0, 1.0), _TURN),
@@ -89,6 +157,15 @@ DEFINITIONS = {
     ),
     "twistcar": Definition("Twistcar", (1.0, 1.0, 1.0, 0.0), (*_PLANE, 0.0)),
     "two_wheeled_robot": Definition("Robot with two wheels", 5 * (1.0,), (*_PLANE, _PI, _PI)),
+    "ball_in_bowl": Family("Ball in a bowl", {"place": _HALF, "velocity": _HALF, "spin": Uniform(-3.0, 3.0)}),
+    "ball_on_turntable": Family("Ball on a turntable", {"place": _HALF, "velocity": _HALF}),
+    "bicycle": Family("Bicycle", {"speed": Uniform(4.4, 6.0), "lean_rate": _SLOW, "steer_rate": _SLOW}, 0.02),
+    "rattleback": Family("Rattleback", {"spin": Uniform(-6.0, 6.0), "tilt": Uniform([-0.02] * 2, [0.02] * 2)}, 0.002),
+    "snake": Family("Snake", {"joints": Uniform([0.4, -0.8], [0.8, -0.4]), "joint_rates": _HALF}),
+    "tilting_disk": Family(
+        "Tilting disk", {"turning": Uniform(-0.6, 0.6), "lean_rate": _SLOW, "rolling": Uniform(1.0, 2.0)}
+    ),
+    "trailers": Family("Tractor with trailers", {"place": _HALF, "speed": Uniform(0.5, 1.5), "turning": _SLOW}),
 }
 """Data sets by name: bodies, then `nonholo.examples`."""
 
@@ -105,6 +182,8 @@ SPLITS = ("train", "validation", "test")
 _LEFT_OUT = {"displacement", "constraint_residual"}
 _EXACT = {"time", "energy", "momentum", "restricted_momentum", "multipliers"}  # what no one observes
 _NUMBERS, _MEMBERS = 1 << 21, 256  # at most in a block
+_APART = ("title", "function")  # of a definition, what its record has elsewhere
+_RUN = ("time_step", "steps", "noise", "ends")
 
 _FLAGS: dict[str, Any] = {"long_name": "part of the data set", "flag_values": list(range(len(SPLITS)))}
 _FLAGS |= {"flag_meanings": " ".join(SPLITS)}
@@ -118,7 +197,7 @@ class DatasetTask:
 
     Attributes:
         dataset: Its name.
-        version: That of its definition.
+        definition: What is drawn, and what moves.
         time_step: h.
         steps: Number of steps N; there are N + 1 states.
         noise: Standard deviation of what is added to each observed number; with 0 there are none.
@@ -126,7 +205,7 @@ class DatasetTask:
     """
 
     dataset: str
-    version: int
+    definition: Definition | Family
     time_step: float
     steps: int
     noise: float
@@ -152,19 +231,8 @@ class DatasetTask:
 
     def _orbit(self, start: dict[str, np.ndarray]) -> Any:
         """Run the orbit of what is drawn."""
-        system, definition = system_of(self.dataset), DEFINITIONS[self.dataset]
-        q = start.get("start_configuration")
-        if q is not None and not getattr(system, "coordinates", ()):
-            q = system.group.exp(q)
-
-        def energy(momentum: np.ndarray) -> float:
-            return flow(system, configuration=q, momentum=momentum, times=[0.0]).energy[0]
-
-        p = np.array(definition.weights) * start["start_direction"]
-        kinetic = (energy(p) + energy(-p)) / 2 - energy(0 * p)  # whatever the potential, and what drives it
-        p *= np.sqrt(start["start_energy"] / kinetic)
-        discrete = discretize(system, self.time_step)
-        return simulate(discrete, configuration=q, momentum=p, steps=self.steps, throw=False)
+        system, first = self.definition.member(self.dataset, start)
+        return simulate(discretize(system, self.time_step), **first, steps=self.steps, throw=False)
 
     def _observations(self, block: MemberBlock, fields: dict[str, Field]) -> dict[str, Field]:
         """Return what can be observed with normal noise, which depends on nothing but `rng`, orbit and name."""
@@ -183,21 +251,30 @@ class DatasetTask:
         return max(1, min(_MEMBERS, _NUMBERS // (self.steps + 1) // 64))
 
     def check_design(self, names: list[str]) -> None:
-        """Take the design of the definition."""
+        """Take the design of the definition; refuse a ready system whose extra is missing."""
+        del names
+        if not is_own(self.dataset):
+            system_of(self.dataset)
 
     def describe(self) -> dict[str, Any]:
         """Return the task as plain data."""
-        return {"kind": type(self).__name__, **dataclasses.asdict(self)}
+        fields = {name: getattr(self, name) for name in ("dataset", *_RUN)}
+        return {"kind": type(self).__name__, "version": self.definition.version, **fields}
+
+
+def is_own(name: str) -> bool:
+    """Return whether a data set has the name of a function of a user."""
+    return ":" in name or name == NO_NAME
 
 
 def dataset_task_from(entry: dict[str, Any]) -> DatasetTask:
     """Return the task of a description; refuse one of another version."""
-    version = DEFINITIONS[entry["dataset"]].version if entry["dataset"] in DEFINITIONS else None
-    if entry["version"] != version:
-        raise ValueError(f"the data set {entry['dataset']!r} in version {entry['version']}, here {version}")
-    fields: dict[str, Any] = {field.name: entry[field.name] for field in dataclasses.fields(DatasetTask)}
-    fields["ends"] = tuple(fields["ends"])
-    return DatasetTask(**fields)
+    name, run = entry["dataset"], {name: entry[name] for name in _RUN} | {"ends": tuple(entry["ends"])}
+    definition = family_of(function_from(name)) if is_own(name) else DEFINITIONS.get(name)
+    if definition is None or entry["version"] != definition.version:
+        here = definition and definition.version
+        raise ValueError(f"the data set {name!r} in version {entry['version']}, here {here}")
+    return DatasetTask(name, definition, **run)
 
 
 def _fields(orbit: Any) -> dict[str, Field]:
@@ -214,25 +291,17 @@ def _fields(orbit: Any) -> dict[str, Field]:
     return {name: (axes, rows, dict(labels)) for name, (axes, rows, labels) in fields.items() if name not in _LEFT_OUT}
 
 
-_STARTS = (
-    "First kinetic energies are uniform in the range of the definition. First momenta are p = s D u: u is uniform on "
-    "the unit sphere, D is diagonal with the weights of the definition, s gives the energy; only their action along "
-    "the constraint counts. First configurations are uniform in a box with the given center and half edges: "
-    "coordinates, of a pose those of its logarithm; a body that moves alike from every pose starts at the identity."
-)
-
-
 def record_of(store: SweepStore, task: DatasetTask, file_format: str, license_name: str) -> dict[str, Any]:
     """Return the record of a data set whose store is finished."""
-    definition = DEFINITIONS[task.dataset]
-    kind, parameters = io.described_system(system_of(task.dataset))
+    definition, first = task.definition, {name: rows[0] for name, rows in store.design.values(0, 1).items()}
+    kind, parameters = io.described_system(definition.member(task.dataset, first)[0])
     parts = zip(SPLITS, (0, *task.ends), task.ends, strict=False)
     return {
         "name": task.dataset,
         "title": definition.title,
-        "definition": {name: value for name, value in definition._asdict().items() if name != "title"},
+        "definition": {name: value for name, value in definition._asdict().items() if name not in _APART},
         "system": {"kind": kind, "parameters": parameters},
-        "starts": _STARTS,
+        "starts": definition.starts,
         "versions": json.loads(io.versions_text("scipy", "jax")),
         "command": _command(store, task, file_format, license_name),
         "rng": store.design.seed,
@@ -250,12 +319,16 @@ def record_of(store: SweepStore, task: DatasetTask, file_format: str, license_na
 
 def _command(store: SweepStore, task: DatasetTask, file_format: str, license_name: str) -> str:
     """Return the command that writes it again."""
+    if task.dataset == NO_NAME:
+        return "the Python call nonholo.dataset"
     ends, orbits = (0, *task.ends), store.design.members
     split = "/".join(repr((end - begin) / orbits) for begin, end in zip(ends, task.ends, strict=False))
     options = {"orbits": orbits, "steps": task.steps, "time-step": task.time_step, "rng": store.design.seed}
     options |= {"noise": task.noise, "split": split, "format": file_format, "license": license_name}
+    module, _, name = task.dataset.rpartition(":")
+    options |= {"module": f"{module}.py"} if module else {}
     words = [str(word) for name, value in options.items() for word in (f"--{name}", value)]
-    return shlex.join(["nonholo", "dataset", task.dataset, "-o", store.path.parent.name, *words])
+    return shlex.join(["nonholo", "dataset", name, "-o", store.path.parent.name, *words])
 
 
 def _field(store: SweepStore, name: str) -> dict[str, Any]:

@@ -4,8 +4,10 @@ import hashlib
 import json
 import shutil
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 import xarray
@@ -15,9 +17,16 @@ from nonholo.ensembles import DEFINITIONS
 from nonholo.ensembles.datasets import system_of
 
 DIGESTS = Path(__file__).parent / "dataset_definitions.json"
+FAMILIES = [name for name, each in DEFINITIONS.items() if "start_energy" not in each.distributions]
 
 
-def _written(folder: Path, name: str = "sleigh", **options: Any) -> tuple[xarray.Dataset, dict[str, Any]]:
+def sleighs(a: Any = nh.Uniform(0.2, 0.5), speed: Any = nh.Normal(0.0, 0.3, size=2)) -> SimpleNamespace:  # noqa: B008
+    """Sleighs of our own."""
+    system = nh.ChaplyginSleigh(1.0, 1.0, a)
+    return SimpleNamespace(system=system, configuration=np.eye(3), body_velocity=np.append(speed, 0.0))
+
+
+def _written(folder: Path, name: Any = "sleigh", **options: Any) -> tuple[xarray.Dataset, dict[str, Any]]:
     """Write a small data set, and return it with its record."""
     nh.dataset(name, folder, **{"orbits": 10, "steps": 6, **options})
     return nh.load_sweep(folder / "orbits.zarr").load(), json.loads((folder / "metadata.json").read_text())
@@ -61,11 +70,11 @@ def test_the_body_is_named_with_its_parameters(folder: Path) -> None:
 
 
 @pytest.mark.profile("routes", keep=["top", "sleigh_se3"])
-@pytest.mark.parametrize("name", DEFINITIONS)
+@pytest.mark.parametrize("name", [name for name in DEFINITIONS if name not in FAMILIES])
 def test_every_definition_runs_as_it_says(name: str, tmp_path: Path) -> None:
     """Orbits succeed, and their first kinetic energies and configurations are those that were drawn."""
     data, _ = _written(tmp_path / name, name, orbits=3, steps=20, time_step=0.02)
-    system, definition = system_of(name), DEFINITIONS[name]
+    system, definition = system_of(name), cast(Any, DEFINITIONS[name])
     assert (data.outcome == 0).all()
     assert ((definition.energy[0] <= data.start_energy) & (data.start_energy <= definition.energy[1])).all()
     for member in range(3):
@@ -79,6 +88,61 @@ def test_every_definition_runs_as_it_says(name: str, tmp_path: Path) -> None:
         kinetic = np.dot(energies, [0.5, -1.0, 0.5])
         again = nh.flow(system, configuration=q, momentum=np.sqrt(start["start_energy"] / kinetic) * p, times=[0.0])
         assert again.energy[0] == pytest.approx(data.energy.values[member, 0], rel=0.05, abs=0.02)  # of a step
+
+
+@pytest.mark.profile("routes", instead="test_a_function_of_our_own_makes_systems_with_their_starts")
+@pytest.mark.parametrize("name", FAMILIES)
+def test_orbits_of_a_family_are_those_of_the_ready_system(name: str, tmp_path: Path) -> None:
+    """Those that its function makes of the arguments that were drawn, in its own step, to the bit."""
+    data, record = _written(tmp_path / name, name, orbits=3, steps=20)
+    assert (data.outcome == 0).all()
+    arguments = {each: data[each].values[2] for each in DEFINITIONS[name].distributions}
+    orbit = getattr(nh.examples, name)(**arguments).simulate(steps=20, time_step=record["time_step"])
+    assert np.array_equal(data.configuration[2], orbit.configuration)
+
+
+def test_a_function_of_our_own_makes_systems_with_their_starts(tmp_path: Path) -> None:
+    """Its random arguments are fields; a store that is stopped imports it only if it is trusted."""
+    data, record = _written(tmp_path / "own", sleighs)
+    assert record["title"] == "Sleighs of our own"
+    assert record["command"].endswith(f"--module {sleighs.__module__}.py")
+    ready = sleighs(*(data[name].values[3] for name in ("a", "speed")))
+    start: dict[str, Any] = {"configuration": ready.configuration, "body_velocity": ready.body_velocity}
+    orbit = nh.simulate(nh.discretize(ready.system, 0.05), **start, steps=6)
+    assert np.array_equal(data.body_velocity[3], orbit.body_velocity)
+    store = tmp_path / "own" / "orbits.zarr"
+    (store / "run" / "blocks" / "0.json").unlink()
+    with pytest.raises(ValueError, match=r"unless trusted"):
+        nh.resume(store)
+    assert nh.resume(store, trust=True).load().identical(data)
+
+
+@pytest.mark.profile("routes", instead="test_a_function_of_our_own_makes_systems_with_their_starts")
+def test_inputs_of_our_own_system_are_drawn(tmp_path: Path) -> None:
+    """A blade under a random push and torque: each orbit has its own, and the bits of the run that it names."""
+
+    def motors(time: Any, q: Any, v: Any, p: Any) -> Any:
+        push = p["thrust"] @ jnp.stack([jnp.sin(time), jnp.sin(2 * time)])
+        return jnp.stack([push * jnp.cos(q[2]), push * jnp.sin(q[2]), 0.2 * jnp.sin(time)]) - 0.1 * v
+
+    def blade(q: Any, p: Any) -> Any:
+        return jnp.stack([-jnp.sin(q[2]), jnp.cos(q[2]), 0.0 * p["thrust"][0]])[None]
+
+    numbers = {"thrust": np.zeros(2)}
+    kinetic = lambda q, v, p: v @ v / 2 + 0.0 * q[0] * p["thrust"][0]  # noqa: E731
+    blank = nh.LagrangeDAlembert(kinetic, blade, dimension=3, force=motors, parameters=numbers)
+
+    def robot(thrust: Any = nh.Normal(0.0, 0.5, size=2)) -> SimpleNamespace:  # noqa: B008
+        system = blank.with_parameters(thrust=thrust)
+        return SimpleNamespace(system=system, configuration=np.zeros(3), body_velocity=np.zeros(3))
+
+    data, record = _written(tmp_path / "robots", robot, orbits=4, steps=40)
+    assert record["command"] == "the Python call nonholo.dataset"
+    assert len(np.unique(data.thrust)) == 8
+    ready = robot(data.thrust.values[2])
+    rest: dict[str, Any] = {"body_velocity": np.zeros(3), "configuration": np.zeros(3)}
+    orbit = nh.simulate(nh.discretize(ready.system, 0.05), **rest, steps=40)
+    assert np.array_equal(data.configuration[2], orbit.configuration)
 
 
 def test_energies_are_those_that_were_drawn(folder: Path) -> None:
@@ -173,6 +237,7 @@ def test_finished_folders_and_files_are_refused(folder: Path, tmp_path: Path) ->
     ("options", "said"),
     [
         ({"name": "slegh"}, r"must be one of 'top'"),
+        ({"name": len}, r"an argument whose default is a distribution. Got <built-in function len>"),
         ({"split": (0.5, 0.4, 0.2)}, r"fractions whose sum is 1"),
         ({"split": (1.5, -0.4, -0.1)}, r"fractions whose sum is 1"),
         ({"noise": -1.0}, r"not be negative"),

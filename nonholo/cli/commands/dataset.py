@@ -1,4 +1,4 @@
-"""`nonholo dataset`: orbits of a ready system, for people who train models."""
+"""`nonholo dataset`: orbits of a ready or a custom system, for people who train models."""
 
 import sys
 from pathlib import Path
@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
-from nonholo.cli.commands.run import Quiet
-from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, store_errors
+from nonholo.cli.commands.run import Module, Quiet
+from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, scenario_errors, store_errors
 from nonholo.cli.screen.tables import show_table
 
 
@@ -16,7 +16,7 @@ def dataset(
     output: Annotated[Path | None, typer.Option("-o", "--output", metavar="FOLDER", help="A new folder.")] = None,
     orbits: Annotated[int, typer.Option(metavar="N", min=1, help="How many orbits.")] = 1000,
     steps: Annotated[int, typer.Option(metavar="N", min=1, help="Steps of each; there is one state more.")] = 500,
-    time_step: Annotated[float, typer.Option(metavar="H", help="Time between states.")] = 0.05,
+    time_step: Annotated[float | None, typer.Option(metavar="H", help="Time between states.")] = None,
     rng: Annotated[int, typer.Option(metavar="N", min=0, help="The same integer gives the same numbers.")] = 0,
     noise: Annotated[float, typer.Option(metavar="SIGMA", help="Also write fields `observed_...` with noise.")] = 0.0,
     split: Annotated[str, typer.Option(metavar="A/B/C", help="For training, validation, test.")] = "0.8/0.1/0.1",
@@ -25,9 +25,10 @@ def dataset(
         str, typer.Option("--license", metavar="NAME", help="The license in the data card.")
     ] = "CC0-1.0",
     shown: Annotated[bool, typer.Option("--list", help="List the data sets.")] = False,
+    module: Module = None,
     quiet: Quiet = False,
 ) -> None:
-    """Write orbits of a ready system with labels, a split and a data card, for people who train models.
+    """Write orbits of a ready system or your own with labels, a split and a data card, for people who train models.
 
     The folder gets orbits.zarr (or train.csv, validation.csv, test.csv),
     metadata.json with hashes and versions, and README.md, a data card.
@@ -35,27 +36,33 @@ def dataset(
     row k is a state, row k + 1 the next one. Orbit i does not depend on
     how many there are. Stopped? The same command resumes it.
 
+    With --module a name may be that of a function in your own file, whose
+    random arguments have distributions as defaults: speed=nh.Uniform(1, 2).
+
     nonholo dataset --list
     nonholo dataset sleigh -o sleighs
     nonholo dataset snakeboard -o boards --orbits 200 --noise 0.01
     nonholo dataset top -o tops --rng 7 --format csv
+    nonholo dataset robot -o robots --module my_robot.py
     """
     if shown:
         from nonholo.ensembles import DEFINITIONS
 
-        data = DEFINITIONS.items()
-        rows = ((k, each.title, "{:g} to {:g}".format(*each.energy), str(each.version)) for k, each in data)
-        show_table(("name", "system", "energies", "version"), rows, "Data sets")
+        random = {k: ", ".join(each.distributions).replace("start_", "") for k, each in DEFINITIONS.items()}
+        rows = ((k, each.title, random[k], str(each.version)) for k, each in DEFINITIONS.items())
+        show_table(("name", "system", "random", "version"), rows, "Data sets")
         return
     if name is None or output is None:
         leave("Pass a name and -o FOLDER; `nonholo dataset --list` lists the names.", USAGE)
     options = {"orbits": orbits, "steps": steps, "time_step": time_step, "rng": rng, "noise": noise}
-    with store_errors(USAGE), reporting_warnings():
+    with scenario_errors(), store_errors(USAGE), reporting_warnings():
+        from nonholo.cli.scenario.files import take_module
         from nonholo.ensembles import dataset as write
 
+        own = take_module(module)
         try:
             how = {"split": _fractions(split), "file_format": file_format, "license_name": license_name}
-            folder = write(name, output, **options, **how, progress=sys.stderr.isatty() and not quiet)
+            folder = write(own.get(name, name), output, **options, **how, progress=sys.stderr.isatty() and not quiet)
         except KeyboardInterrupt:
             leave("Stopped; the same command resumes it.", FAILED)
     typer.echo(folder if quiet else f"{folder / 'README.md'} describes the files.")

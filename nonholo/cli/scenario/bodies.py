@@ -222,7 +222,7 @@ def is_example(name: str) -> bool:
     return name in _OWN or name not in (*SHORT, *_systems())
 
 
-def import_own(path: Path | None) -> None:
+def import_own(path: Path | None) -> dict[str, Maker]:
     """Run a module of the user's own, asked for by its path: each public function and class in it is a kind of body."""
     _OWN.clear()
     if path is not None:
@@ -230,6 +230,7 @@ def import_own(path: Path | None) -> None:
         for name, value in vars(module).items():
             if callable(value) and not name.startswith("_") and value.__module__ == module.__name__:
                 _OWN[name] = value
+    return _OWN
 
 
 def _module_at(path: Path) -> Any:

@@ -95,10 +95,10 @@ def load_scenario(name: str, settings: list[Setting], module: Path | None = None
     return validate(document, Scenario, Path(name).stem, source, settings)._replace(module=module)
 
 
-def take_module(module: Path | None) -> None:
+def take_module(module: Path | None) -> dict[str, Any]:
     """Run the user's module of `--module`, and no other: it makes kinds of bodies."""
     try:
-        import_own(module)
+        return import_own(module)
     except Exception as failure:
         kind = "" if isinstance(failure, ValueError) else f"{type(failure).__name__}: "
         raise ScenarioError([Problem(f"--module {module}", "", f"cannot be used. {kind}{failure}")]) from failure
