@@ -16,7 +16,7 @@ from nonholo.discrete._scheme import Scheme, legendre, refuse_composition, weigh
 from nonholo.discrete._variety import equations_of
 from nonholo.discrete.routes import AbstractBodyStepper, AbstractRoute, make_route
 from nonholo.orbit import AbstractMotion, First, Orbit, turned_near
-from nonholo.systems import Forced, Slip, Start, Widened, in_group, of_finite_energy, refuse_forces
+from nonholo.systems import Forced, Start, Widened, in_group, of_finite_energy, refuse_forces
 
 _TOLERANCE = 1e-9  # relative, for matrices and momenta that a user computed in floating point
 
@@ -193,9 +193,10 @@ class Discretization(Scheme, AbstractMotion):
         if self.forces is None:
             return momentum
         momentum = momentum - first._impulses(states, 0)
-        if self.forces.slip is None:
+        if not self.forces.slips:
             return momentum
-        body, slip = cast(Widened, self.forces.free), states.restricted_momentum[:, -len(self.forces.slip.rows) :]
+        body = cast(Widened, self.forces.free)
+        slip = states.restricted_momentum[:, -len(body.rows) :]
         return momentum - (applied(body.duals, momentum) - slip) @ body.rows
 
     @functools.cached_property
@@ -217,19 +218,22 @@ class Discretization(Scheme, AbstractMotion):
         group, W = self.system.group, self.displaced(before.canonical_chart)
         X = group.vee((W - group.inverse(W)) / 2)
         gain = (self.mean_force(before) * X).sum(axis=1) + np.diff(forced.potential_energy(states.configuration))
-        if forced.slip is not None:
-            gain = gain + self._work_of_slip(states, applied(forced.slip.rows, X))
+        if forced.slips:
+            gain = gain + self._work_of_slips(states, X)
         return np.concatenate([np.zeros(min(1, len(states))), np.cumsum(gain)])
 
-    def _work_of_slip(self, states: Orbit, slip: Float[np.ndarray, "L s"]) -> Float[np.ndarray, "L"]:
-        """Return the work of friction on slips x over steps, or what is lost where a slip ends."""
-        forced, h = cast(Forced, self.forces), float(self.time_step)
-        rows, size, momenta = cast(Slip, forced.slip), np.linalg.norm(slip, axis=1), states.restricted_momentum.copy()
-        momenta[:, : -len(rows.rows)] = 0.0
-        losses = forced.constrained_energy(momenta)[:-1]
-        turns = (momenta[1:] == -momenta[:-1]).all(axis=1)
-        slid = np.where(size > 0, rows.grip, 0.0) * size + rows.viscous * size**2 / h
-        return -np.where((momenta[1:] == 0).all(axis=1), losses, np.where(turns, 0.0, slid))
+    def _work_of_slips(self, states: Orbit, X: Float[np.ndarray, "L dim"]) -> Float[np.ndarray, "L"]:
+        """Return the work of the impulses of slips over steps, less what is lost where slips end.
+
+        A step begins at momenta whose mean with those after it is M x / h.
+        """
+        body, h, before = cast(Widened, cast(Forced, self.forces).free), float(self.time_step), states.chosen(slice(-1))
+        slip, momenta = applied(body.rows, X), states.restricted_momentum[:, -len(body.rows) :]
+        start = applied(body.slip_inertia, 2 / h * slip) - momenta[1:]
+        left, right = (self._momentum(before, before.canonical_chart, side) for side in ("left", "right"))
+        impulse = applied(body.duals, left - right - h * self.mean_force(before)) + momenta[1:] - start
+        velocities = np.linalg.solve(body.slip_inertia, (momenta[:-1] + start).T).T
+        return (impulse * slip).sum(axis=1) / h - ((momenta[:-1] - start) * velocities).sum(axis=1) / 2
 
     def multipliers(self, states: Orbit) -> Float[np.ndarray, "L s"]:
         r"""Return the impulses $\lambda$ in $P_{k+1} - \mathrm{Ad}^*_{W_k} P_k = \sum_j \lambda_j a^j$.

@@ -371,7 +371,7 @@ def force_numbers(forced: Forced) -> dict[str, float] | None:
 
 def _is_plain(forced: Forced) -> bool:
     """Return whether a weight is the only potential, no function acts, and the body has the canonical axes."""
-    others = forced.scheme == "variational" or forced.slip is not None or (forced.terms and forced.gravity is None)
+    others = forced.scheme == "variational" or forced.slips or (forced.terms and forced.gravity is None)
     return not (forced.needs_function or others) and np.array_equal(forced.system.frame, forced.group.identity)
 
 

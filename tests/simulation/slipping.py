@@ -12,86 +12,110 @@ _RESTING = 1e-9  # a slip velocity that dry friction ends within about this time
 
 
 class Continuous:
-    """The body of a system with slip, in momenta p of the body frame and poses as matrices."""
+    """The body of a system with slips, in momenta p of the body frame and poses as matrices."""
 
     def __init__(self, forced: nh.Forced, force: Callable[..., np.ndarray] | None = None) -> None:
-        inside, slip = forced.system, forced.slip
-        assert slip is not None
-        self.toward = np.zeros(len(slip.rows))
+        inside, self.slips, n = forced.system, forced.slips, forced.group.dim
+        self.toward = [np.zeros(len(slip.rows)) for slip in self.slips]
         self.group, self.inertia, self.force = inside.group, np.asarray(inside.inertia_operator), force
-        self.rows, self.grip, self.viscous = slip.rows, float(slip.grip), float(slip.viscous)
-        self.every = np.asarray(inside.annihilator)
-        self.fixed = np.array([a for a in self.every if np.linalg.matrix_rank([*self.rows, a]) > len(self.rows)])
-        self.potential_force = forced.potential_force
+        rows = np.concatenate([slip.rows for slip in self.slips])
+        fixed = [a for a in np.asarray(inside.annihilator) if np.linalg.matrix_rank([*rows, a]) > len(rows)]
+        self.fixed, self.potential_force = np.reshape(fixed, (-1, n)), forced.potential_force
 
-    def rate(self, omega: np.ndarray, g: np.ndarray, held: bool) -> tuple[np.ndarray, np.ndarray]:
-        """Return the acceleration and the reactions in the rows, from d/dt (I omega) = ad* + f + sum lambda a."""
+    def tied(self, held: list[bool]) -> np.ndarray:
+        """Return the rows that hold."""
+        return np.concatenate([self.fixed, *(slip.rows for slip, rests in zip(self.slips, held, strict=True) if rests)])
+
+    def rate(self, omega: np.ndarray, g: np.ndarray, held: list[bool]) -> tuple[np.ndarray, list[np.ndarray]]:
+        """Return the acceleration and the forces of all contacts, from d/dt (I omega) = ad* + f + sum lambda a."""
         p = self.inertia @ omega
         bent = np.array([p @ self.group.bracket(omega, x) for x in np.eye(self.group.dim)])
         bent = bent + self.potential_force(g) + (0.0 if self.force is None else self.force(g, omega))
-        tied = self.every if held else self.fixed.reshape(-1, self.group.dim)
-        if not held:
-            bent = bent + self.rows.T @ self.friction(omega)
-        n, m = self.group.dim, len(tied)
-        matrix = np.block([[self.inertia, -tied.T], [tied, np.zeros((m, m))]])
-        found = np.linalg.solve(matrix, np.append(bent, np.zeros(m)))
-        return found[:n], np.linalg.lstsq(self.rows.T, tied.T @ found[n:], rcond=None)[0] if held else np.zeros(0)
+        forces = [self.friction(i, omega) for i in range(len(held))]
+        for slip, force, rests in zip(self.slips, forces, held, strict=True):
+            bent = bent + (0.0 if rests else slip.rows.T @ force)
+        n, tied = self.group.dim, self.tied(held)
+        matrix = np.block([[self.inertia, -tied.T], [tied, np.zeros((len(tied),) * 2)]])
+        solution, at = np.linalg.solve(matrix, np.append(bent, np.zeros(len(tied)))), n + len(self.fixed)
+        for i in np.flatnonzero(held):
+            forces[i] = solution[at : at + len(forces[i])]
+            at += len(forces[i])
+        return solution[:n], forces
 
-    def friction(self, omega: np.ndarray) -> np.ndarray:
-        """Return the forces of rows that slide; of those that have only begun along what they yield to."""
-        v = self.rows @ omega
+    def friction(self, i: int, omega: np.ndarray) -> np.ndarray:
+        """Return the force of a contact that slides; of one that has only begun along what it yields to."""
+        slip = self.slips[i]
+        v = slip.rows @ omega
         one = len(v) == 1 or np.linalg.norm(v) < _RESTING  # of one row it is the same up to the next stop
-        along = self.toward if one else v / np.linalg.norm(v)
-        return -self.grip * along - self.viscous * v
+        along = self.toward[i] if one else v / np.linalg.norm(v)
+        return -slip.grip * along - slip.viscous * v
 
     def run(self, omega: Any, time: float) -> tuple[np.ndarray, np.ndarray, list[str]]:
-        """Return the velocity and the pose after a time, and how the rows were."""
+        """Return the velocity and the pose after a time, and how the contacts were."""
         n, size, t, kinds = self.group.dim, self.group.size, 0.0, []
-        state, held = np.append(np.asarray(omega, float), np.eye(size)), None
+        state = np.append(np.asarray(omega, float), np.eye(size))
+        held = [float(np.linalg.norm(slip.rows @ state[:n])) < _RESTING for slip in self.slips]
         while t < time:
-            v = self.rows @ state[:n]
-            if held is None:
-                held = bool(np.linalg.norm(v) == 0)
-            if held:
-                _, reaction = self.rate(state[:n], state[n:].reshape(size, size), True)
-                held = bool(np.linalg.norm(reaction) <= self.grip)
-                if not held:
-                    self.toward = -reaction / np.linalg.norm(reaction)
-            if np.linalg.norm(v) >= _RESTING:
-                self.toward = v / np.linalg.norm(v)
-            kinds.append("hold" if held else "slide")
-            t, state, held = self._stretch(t, time, state, held)
+            self._settle(state, held)
+            kinds.append(" ".join("hold" if rests else "slide" for rests in held))
+            t, state = self._stretch(t, time, state, held)
         return state[:n], state[n:].reshape(size, size), kinds
 
-    def _stretch(self, t: float, time: float, state: np.ndarray, held: bool) -> tuple[float, np.ndarray, bool | None]:
+    def _settle(self, state: np.ndarray, held: list[bool]) -> None:
+        """Let contacts yield whose reactions are beyond their grips, the worst one first; note where slips go."""
+        n, size = self.group.dim, self.group.size
+        for i, slip in enumerate(self.slips):
+            v = slip.rows @ state[:n]
+            if np.linalg.norm(v) >= _RESTING:
+                self.toward[i] = v / np.linalg.norm(v)
+        while True:
+            _, forces = self.rate(state[:n], state[n:].reshape(size, size), held)
+            over = [
+                rests * (np.linalg.norm(force) - slip.grip)
+                for rests, force, slip in zip(held, forces, self.slips, strict=True)
+            ]
+            worst = int(np.argmax(over))
+            if over[worst] <= 0:
+                return
+            held[worst], self.toward[worst] = False, -forces[worst] / np.linalg.norm(forces[worst])
+
+    def _stretch(self, t: float, time: float, state: np.ndarray, held: list[bool]) -> tuple[float, np.ndarray]:
+        """Move on until a contact changes, which is changed then."""
         n, size = self.group.dim, self.group.size
 
         def field(_: float, y: np.ndarray) -> np.ndarray:
             g = y[n:].reshape(size, size)
             return np.append(self.rate(y[:n], g, held)[0], g @ self.group.hat(y[:n]))
 
-        def yields(_: float, y: np.ndarray) -> float:
-            return self.grip - float(np.linalg.norm(self.rate(y[:n], y[n:].reshape(size, size), True)[1]))
+        def change_of(i: int) -> Any:
+            def yields(_: float, y: np.ndarray) -> float:
+                return self.slips[i].grip - float(
+                    np.linalg.norm(self.rate(y[:n], y[n:].reshape(size, size), held)[1][i])
+                )
 
-        def rests(_: float, y: np.ndarray) -> float:
-            v = self.rows @ y[:n]
-            return float(self.toward @ v if len(v) == 1 else np.linalg.norm(v)) - _RESTING
+            def rests(_: float, y: np.ndarray) -> float:
+                v = self.slips[i].rows @ y[:n]
+                return float(self.toward[i] @ v if len(v) == 1 else np.linalg.norm(v)) - _RESTING
 
-        stop: Any = yields if held else rests
-        stop.terminal, stop.direction = True, -1
-        found = solve_ivp(field, (t, time), state, "DOP853", rtol=1e-11, atol=1e-12, events=stop)
-        after = found.y[:, -1].copy()
-        if found.status != 1:
-            return time, after, held
-        if held:
-            self.toward = -self.rate(after[:n], after[n:].reshape(size, size), True)[1] / self.grip
-            return float(found.t[-1]), after, False
-        v, dual = self.rows @ after[:n], self.inertia
-        tied = np.concatenate([self.fixed.reshape(-1, n), self.rows])
-        into = np.linalg.solve(dual, tied.T)
-        jump = np.append(np.zeros(len(tied) - len(v)), v)
-        after[:n] -= into @ np.linalg.solve(tied @ into, jump)
-        return float(found.t[-1]), after, True
+            stop: Any = yields if held[i] else rests
+            stop.terminal, stop.direction = True, -1
+            return stop
+
+        stops = [change_of(i) for i in range(len(held))]
+        path = solve_ivp(field, (t, time), state, "DOP853", rtol=1e-11, atol=1e-12, events=stops)
+        after = path.y[:, -1].copy()
+        if path.status != 1:
+            return time, after
+        i = next(i for i, times in enumerate(path.t_events) if len(times))
+        if held[i]:
+            force = self.rate(after[:n], after[n:].reshape(size, size), held)[1][i]
+            held[i], self.toward[i] = False, -force / np.linalg.norm(force)
+            return float(path.t[-1]), after
+        held[i] = True
+        tied = self.tied(held)
+        into = np.linalg.solve(self.inertia, tied.T)
+        after[:n] -= into @ np.linalg.solve(tied @ into, tied @ after[:n])
+        return float(path.t[-1]), after
 
 
 def space_body() -> nh.LLSystem:
@@ -101,18 +125,28 @@ def space_body() -> nh.LLSystem:
     return nh.LLSystem(nh.SE(3), tensor, annihilator=rows)
 
 
+def car(steering: float = 0.4) -> nh.LLSystem:
+    """Return a plane body on two axles: the rear one at its origin, the front one steered, one length ahead."""
+    tensor = nh.ChaplyginSleigh(1.0, 0.3, 0.45).homogeneous_mass_tensor
+    front = [np.cos(steering), -np.sin(steering), np.cos(steering)]
+    return nh.LLSystem(nh.SE(2), tensor, annihilator=[[0.0, 0.0, 1.0], front])
+
+
 def random_case(rng: np.random.Generator) -> tuple[nh.Forced, float, np.ndarray]:
-    """Return a random body with random rows that may yield, a time step from 0.001 to 3, and a start that may slip."""
+    """Return a random body with one to four random contacts, a time step from 0.001 to 3, a start that may slip."""
     group = (nh.SO(3), nh.SE(2), nh.SE(3), nh.SO(4))[rng.integers(4)]
     n, k = group.size, int(rng.integers(1, group.dim))
     A, rows = rng.normal(size=(n, n)), rng.normal(size=(group.dim - k, group.dim))
     system = nh.LLSystem(group, A @ A.T + 0.1 * np.eye(n), annihilator=rows)
-    grip = (0.0, 10.0 ** rng.uniform(-12, 12), 10.0 ** rng.uniform(-2, 1), 10.0 ** rng.uniform(-2, 1), np.inf)
-    viscous = (0.0, 10.0 ** rng.uniform(-3, 8), 10.0 ** rng.uniform(-2, 0))[rng.integers(3)]
-    slip = nh.Slip(rows[: rng.integers(1, len(rows) + 1)], grip[rng.integers(5)], viscous)
+    ends = np.sort(rng.choice(len(rows), rng.integers(1, min(4, len(rows)) + 1), replace=False)) + 1
+    slips = []
+    for own in np.split(rows[: ends[-1]], ends[:-1]):
+        grip = (0.0, 10.0 ** rng.uniform(-12, 12), 10.0 ** rng.uniform(-2, 1), 10.0 ** rng.uniform(-2, 1), np.inf)
+        viscous = (0.0, 10.0 ** rng.uniform(-3, 8), 10.0 ** rng.uniform(-2, 0))[rng.integers(3)]
+        slips.append(nh.Slip(own, grip[rng.integers(5)], viscous))
     m = n - group.is_affine
     heavy = nh.Gravity(rng.normal(size=m), rng.normal(size=m)) if rng.integers(2) else None
-    forced = nh.Forced(system, heavy, slip)
+    forced = nh.Forced(system, heavy, tuple(slips))
     velocity = rng.normal(size=forced.rank) * (rng.random(forced.rank) < 0.8)
     velocity[k:] *= rng.integers(2)
     return forced, float(10.0 ** rng.uniform(-3, 0.5)), velocity

@@ -257,7 +257,7 @@ def node_of(owner: str, discrete: Discretization, configuration: object, step: i
     """Return where a step under forces begins, refused where not all its values are known."""
     forced, where, group = cast(Forced, discrete.forces), f"{owner}(discrete=...)", discrete.system.group
     demand = "act at the displacement, by the scheme 'energy'"
-    if forced.slip is not None:
+    if forced.slips:
         remedy = "Ask the system without them, or with all its rows."
         raise error(where, demand, "forces of rows that yield, by which a step holds or slides", remedy)
     if not discrete.is_balanced:

@@ -77,7 +77,7 @@ def make_route(scheme: Scheme, route_name: str | None = None) -> AbstractRoute:
         forced = cast(Forced, scheme.system)
         free = dataclasses.replace(cast(Any, scheme), system=forced.system)
         is_balanced = forced.forces is not None and forced.is_balanced(free.conserves_energy, scheme.order > 2)
-        if forced.slip is not None:
+        if forced.slips:
             return slip_route(scheme, forced, functools.partial(make_route, route_name=route_name))
         if is_balanced:
             system, variety = forced.system.canonical, variety_of(forced.system, "skew")

@@ -1,8 +1,9 @@
 r"""The route of rows that may yield: at each step the step of the whole constraint, or one without these rows.
 
 With the displacement W of the step that holds, and $\pi$ the momenta of the slip, the rows need the impulse
-$\lambda = V(P(W) - \mathrm{Ad}^*_WP(W)) - hVf - \pi$ in total. They hold if $|\lambda| \le h\mu + \tfrac h2c|v|$.
-Otherwise the body slides with equal half impulses $\tfrac12j$, $-j \in h\mu\,\partial|x|$ at the slip x of the step.
+$\lambda = V(P(W) - \mathrm{Ad}^*_WP(W)) - hVf - \pi$ in total. They hold if $|\lambda| \le h\mu + \tfrac h2c|v|$ at
+each contact. Otherwise some contacts slide with equal half impulses $\tfrac12j$, $-j \in h\mu\,\partial|x| + cx$ at the
+slip x of the step, and the others hold by any impulse that is not beyond their bound.
 
 Reference: docs/theory/forces.md, Theorem 18.4.
 """
@@ -16,7 +17,7 @@ import numpy as np
 
 from nonholo.base.numerics import applied
 from nonholo.base.results import OUTCOMES, Outcome
-from nonholo.base.types import Float
+from nonholo.base.types import Bool, Float
 from nonholo.discrete._variety import Variety, variety_of
 from nonholo.discrete.routes._balanced import BalancedRoute
 from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledRoute, Compact, poses_of
@@ -24,7 +25,7 @@ from nonholo.discrete.routes._forced import AbstractForcedRoute
 from nonholo.orbit import First, Orbit, Rows, State, configurations, keep_row, write_first
 from nonholo.systems import Forced, Slip, Widened
 
-_MOST = 40  # corrections of a direction
+_MOST, _SWEEPS = 40, 200  # corrections of a direction, and of the slips of several contacts
 _ROUNDING, _SETTLED = 1e-15, 1e-12  # relative, of an impulse; where it does not fall any more
 _SEEN = 1e-8  # relative, of what changes a slope
 _STRETCH = 512  # steps that hold, taken at once
@@ -46,6 +47,7 @@ class Beginning(NamedTuple):
         after: Canonical momenta and pose after a step that slides.
         impulse: The impulse j of its friction.
         slip: Its slip x.
+        rests: Which contacts hold in it.
     """
 
     code: int
@@ -54,6 +56,7 @@ class Beginning(NamedTuple):
     after: tuple[np.ndarray, np.ndarray] | None = None
     impulse: Any = None
     slip: Any = None
+    rests: Any = None
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -77,10 +80,11 @@ class SlipRoute(AbstractForcedRoute):
         """The name of the route of steps that hold."""
         return self.hold.name
 
-    @property
-    def slip(self) -> Slip:
-        """The rows that may yield."""
-        return cast(Slip, self.forced.slip)
+    @functools.cached_property
+    def contacts(self) -> tuple[tuple[slice, Slip], ...]:
+        """The contacts, and the places of their rows."""
+        ends = np.cumsum([0, *(len(one.rows) for one in self.forced.slips)])
+        return tuple(zip(map(slice, ends[:-1], ends[1:]), self.forced.slips, strict=True))
 
     @functools.cached_property
     def body(self) -> Widened:
@@ -119,11 +123,14 @@ class SlipRoute(AbstractForcedRoute):
             jump = jump - h * forced.mean_force(g, W, h, forced.rows(steps), steps * h)
         return applied(self.body.duals, jump)
 
-    def holds(self, impulses: Float[np.ndarray, "K s"], moving: Any = 0.0) -> np.ndarray:
-        """Return which impulses the grip gives, and the viscous friction of a slip that ends in the step."""
+    def grips(self, moving: Float[np.ndarray, "s"]) -> Float[np.ndarray, "contacts"]:
+        """Return the largest impulses by which contacts hold: by the grip, and the viscous friction of what ends."""
         h = float(self.holding.time_step)
-        most = h * self.slip.grip + h / 2 * self.slip.viscous * np.linalg.norm(moving)
-        return np.linalg.norm(impulses, axis=1) <= most
+        return np.array([h * one.grip + h / 2 * one.viscous * np.linalg.norm(moving[at]) for at, one in self.contacts])
+
+    def sizes(self, impulses: Float[np.ndarray, "K s"]) -> Float[np.ndarray, "K contacts"]:
+        """Return the sizes of impulses at each contact."""
+        return np.stack([np.linalg.norm(impulses[:, at], axis=1) for at, _ in self.contacts], axis=1)
 
     def begin(self, r: np.ndarray, pose: np.ndarray, time: float, step: int) -> Beginning:
         """Begin the step from canonical momenta and a pose."""
@@ -134,40 +141,78 @@ class SlipRoute(AbstractForcedRoute):
         if code != 0:
             return Beginning(code, self.wide(chart))
         impulses = self.reaction(chart[None], own_pose[None], np.array([step])) - r[k:]
-        if self.holds(impulses, np.linalg.solve(self.body.slip_inertia, r[k:]))[0]:
+        most = self.grips(np.linalg.solve(self.body.slip_inertia, r[k:]))
+        if (self.sizes(impulses) <= most).all():
             return Beginning(0, self.wide(chart), kernel)
-        turning = impulses[0] - r[k:]
-        if np.linalg.norm(turning) > float(self.holding.time_step) * self.slip.grip:
-            return self.slide((r, pose), (time, step, 1.0), turning, np.zeros_like(turning))
-        beginning = self._push((r, pose), (time, step, 1.0), turning)
-        if beginning.after is not None:
-            beginning.after[0][k:] = -r[k:]  # the slip of the step is none
-        return beginning
+        return self._yield((r, pose), (time, step, 1.0), impulses[0], most)
+
+    def _yield(
+        self, now: tuple[np.ndarray, np.ndarray], when: tuple[float, int, float], impulses: np.ndarray, most: np.ndarray
+    ) -> Beginning:
+        """Begin a step in which not every contact holds; those that do are at rest where impulses act on M alone."""
+        (r, pose), half, s = now, float(self.holding.time_step) / 2, len(impulses)
+        laws = [(at, size, half * one.viscous) for size, (at, one) in zip(most, self.contacts, strict=True)]
+        rests = ~self.sizes(friction(self.body.slip_inertia, -impulses, laws)[0][None])[0].astype(bool)
+        while True:
+            start = np.append(r[:-s], self.stop(r[-s:], rests))
+            turning = impulses - (2 * start[-s:] - r[-s:])
+            beginning = self.slide((start, pose), when, rests, turning, np.zeros_like(turning))
+            if beginning.code != 0:
+                return beginning
+            yields = rests & (self.sizes((beginning.impulse + start[-s:] - r[-s:])[None])[0] > most)
+            if not yields.any():
+                return beginning
+            rests = rests & ~yields
+
+    def stop(self, momenta: Float[np.ndarray, "s"], rests: Bool[np.ndarray, "contacts"]) -> Float[np.ndarray, "s"]:
+        """Return momenta of slips after impulses that end those of some contacts."""
+        places, after = np.repeat(rests, [at.stop - at.start for at, _ in self.contacts]), momenta.copy()
+        inertia = self.body.slip_inertia[:, ~places]
+        after[places] = inertia[places] @ np.linalg.solve(inertia[~places], momenta[~places])
+        return after
 
     def slide(
-        self, now: tuple[np.ndarray, np.ndarray], when: tuple[float, int, float], impulse: np.ndarray, slip: Any = None
+        self,
+        now: tuple[np.ndarray, np.ndarray],
+        when: tuple[float, int, float],
+        rests: Bool[np.ndarray, "contacts"],
+        impulse: np.ndarray,
+        slip: Any = None,
     ) -> Beginning:
         """Slide for a fraction of a step, from an impulse along the rows and the slip that it leaves, known or not.
 
-        The friction of a slip x is the root of a model, $j = j_n + A(x - x_n)$, whose slope is corrected.
+        The friction of a slip x is the root of a model, $j = j_n + A(x - x_n)$, whose slope is corrected. Contacts that
+        hold have no slip, by any impulse.
         """
         part, before = when[2] * float(self.holding.time_step), np.inf
-        slope, law = 2 / part * self.body.slip_inertia, (part * self.slip.grip, self.slip.viscous)
-        goal = impulse if slip is None else friction(slope, slope @ slip - impulse, *law)
+        grips = np.where(rests, np.inf, [part * float(one.grip) for _, one in self.contacts])
+        laws = [(at, most, one.viscous) for most, (at, one) in zip(grips, self.contacts, strict=True)]
+        slope, way, goal = 2 / part * self.body.slip_inertia, np.ones(len(impulse)), impulse
+        if slip is not None:
+            way, goal = friction(slope, slope @ slip - impulse, laws)
         for _ in range(_MOST):
-            beginning = self._push(now, when, goal)
+            beginning = self._push(now, when, goal)._replace(rests=rests)
             if beginning.code != 0:
                 return beginning
             size = np.linalg.norm(goal) + np.linalg.norm(slope) * np.linalg.norm(beginning.chart)
             if slip is not None:
                 slope = update_slope(slope, beginning.slip - slip, goal - impulse, _SEEN * float(size))
             impulse, slip = goal, beginning.slip
-            goal = friction(slope, slope @ slip - impulse, *law)
+            if way.any():  # or none of the step has a slip
+                way, goal = friction(slope, slope @ slip - impulse, laws)
             gap = np.linalg.norm(goal - impulse)
             if gap <= _ROUNDING * np.linalg.norm(goal) or before / 2 < gap <= _SETTLED * size:
+                self._rest(beginning.after[0], now[0], way)  # type: ignore[index]
                 return beginning
             before = gap
         return beginning._replace(code=Outcome.not_converged)
+
+    def _rest(self, after: np.ndarray, start: np.ndarray, way: np.ndarray) -> None:
+        """Clear the momenta after a step of what rounding adds: where it has no slip, velocities turn over."""
+        s, rests = len(way), ~self.sizes(way[None])[0].astype(bool)
+        later = self.stop(start[-s:] + after[-s:], rests) - start[-s:]
+        places = np.repeat(rests, [at.stop - at.start for at, _ in self.contacts])
+        after[-s:][places] = later[places]
 
     def _push(
         self, now: tuple[np.ndarray, np.ndarray], when: tuple[float, int, float], impulse: np.ndarray
@@ -175,7 +220,7 @@ class SlipRoute(AbstractForcedRoute):
         """Take a fraction of a step that slides under an impulse along the rows."""
         route, (r, pose), part = self.free, now, when[2] * float(self.holding.time_step)
         own_pose, k = route.encode_poses(pose), len(r)
-        force = self.slip.rows.T @ impulse / part
+        force = self.body.rows.T @ impulse / part
         code, state = route.after(route.encode(r), own_pose, *when, force)
         chart = route.from_kernel(route.runs.chart_of(route.body, state))
         if code != 0:
@@ -213,7 +258,10 @@ class SlipRoute(AbstractForcedRoute):
             still = dataclasses.replace(one, reduced_momentum=one.reduced_momentum[:, :k], canonical_pose=pose[None])
             momenta, _, ends = self.hold.parts(still, np.array([fraction]))
             return np.append(momenta[0], np.zeros(len(r) - k)), ends[0]
-        beginning = whole if fraction == 1 else self.slide((r, pose), (*when, fraction), fraction * whole.impulse)
+        if fraction == 1:
+            return whole.after
+        start = np.append(r[:k], self.stop(r[k:], whole.rests)), pose
+        beginning = self.slide(start, (*when, fraction), whole.rests, fraction * whole.impulse)
         return beginning.after if beginning.code == 0 else (nothing, np.full_like(pose, np.nan))
 
 
@@ -225,17 +273,54 @@ def update_slope(slope: np.ndarray, way: np.ndarray, change: np.ndarray, least: 
 
 
 def friction(
+    slope: Float[np.ndarray, "s s"], free: Float[np.ndarray, "s"], laws: list[tuple[slice, float, float]]
+) -> tuple[Float[np.ndarray, "s"], Float[np.ndarray, "s"]]:
+    r"""Return x and j of $Ax = b + j$, $-j_i \in m_i\,\partial|x_i| + c_ix_i$: the only ones where A is monotone.
+
+    Contact by contact, and by Newton's method where no slip changes its direction; NaN where that does not end.
+    """
+    x, j = np.zeros_like(free), np.zeros_like(free)
+    for _ in range(_SWEEPS):
+        for at, most, viscous in laws:
+            others = x.copy()
+            others[at] = 0.0
+            x[at], j[at] = friction_of_one(slope[at, at], free[at] - slope[at] @ others, most, viscous)
+        size = np.linalg.norm(free) + np.linalg.norm(slope) * np.linalg.norm(x)
+        if len(laws) == 1 or np.linalg.norm(slope @ x - free - j) <= _ROUNDING * size:
+            return x, j
+        ahead = _correct(slope, free, laws, x)
+        if all(x[at] @ ahead[at] > 0 or not x[at].any() for at, *_ in laws):
+            x = ahead
+    return x, np.full_like(j, np.nan)
+
+
+def _correct(slope: np.ndarray, free: np.ndarray, laws: list[tuple[slice, float, float]], x: np.ndarray) -> np.ndarray:
+    """Return slips after a correction by Newton's method of those that are not zero."""
+    matrix, gap = slope.copy(), free - slope @ x
+    for at, most, viscous in laws:
+        one, length = np.eye(len(x))[at, at], np.linalg.norm(x[at])
+        if length == 0:
+            matrix[at], matrix[at, at], gap[at] = 0.0, one, 0.0
+            continue
+        way = x[at] / length
+        gap[at] -= most * way + viscous * x[at]
+        matrix[at, at] += viscous * one + most / length * (one - np.outer(way, way))
+    return x + np.linalg.solve(matrix, gap)
+
+
+def friction_of_one(
     slope: Float[np.ndarray, "s s"], free: Float[np.ndarray, "s"], most: float, viscous: float
-) -> Float[np.ndarray, "s"]:
-    r"""Return j of $Ax = b + j$, $-j \in m\,\partial|x| + cx$: the only root where A is monotone.
+) -> tuple[Float[np.ndarray, "s"], Float[np.ndarray, "s"]]:
+    r"""Return x and j of $Ax = b + j$, $-j \in m\,\partial|x| + cx$ at one contact.
 
     With $y = (|x|(A + c) + m)^{-1}b$ it is $x = |x|y$ at |y| = 1, and x = 0 if |b| <= m. The size of y falls as |x|
     grows, and its inverse is concave where A is symmetric: Newton's method from below.
     """
     if np.linalg.norm(free) <= most:
-        return -free
+        return 0 * free, -free
     if len(free) == 1:
-        return -most * np.sign(free) - viscous * (free - most * np.sign(free)) / (slope[0] + viscous)
+        push = most * np.sign(free)
+        return (free - push) / (slope[0] + viscous), -push - viscous * (free - push) / (slope[0] + viscous)
     one = np.eye(len(free))
     stiff = slope + viscous * one
     size = (np.linalg.norm(free) - most) / np.linalg.norm(stiff)
@@ -247,7 +332,7 @@ def friction(
         if abs(change) <= _ROUNDING * size:
             break
         size = max(size + change, size / 2)
-    return -(most / length + viscous * size) * y
+    return size * y, -(most / length + viscous * size) * y
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -322,7 +407,8 @@ class SlipStepper(AbstractBodyStepper):
         good, code = hold.runs.advance(hold.body_from(since), run, most, 1, rows)
         m, charts, poses = (column[:good] for column in rows)
         impulses = self.route.reaction(charts, poses, number + np.arange(good))
-        ends = np.flatnonzero(~self.route.holds(impulses))
+        fits = self.route.sizes(impulses) <= self.route.grips(np.zeros(impulses.shape[1]))
+        ends = np.flatnonzero(~fits.all(axis=1))
         momenta = np.concatenate([hold.decode(m), np.zeros((good, len(r) - m.shape[1]))], axis=1)
         states = momenta, self.route.wide(charts), hold.decode_poses(poses)
         if len(ends):

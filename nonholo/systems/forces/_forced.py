@@ -21,7 +21,16 @@ from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
 from nonholo.systems._base import AbstractSystem
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem
-from nonholo.systems.forces._friction import Friction, Slip, Widened, force_of, parts_of, terms_of
+from nonholo.systems.forces._friction import (
+    Friction,
+    Slip,
+    Widened,
+    force_of,
+    parts_of,
+    remaining_rows,
+    slips_of,
+    terms_of,
+)
 from nonholo.systems.forces._potentials import Gravity
 
 _OFFSET = 8e-3  # of a body direction, for central differences: its sixth power is at rounding
@@ -71,7 +80,7 @@ class Forced(AbstractSystem):
         force: f, a function (time, configuration, body_velocity) -> (dim,); or `Friction`; or an array (steps, dim),
             whose row k acts constantly over step k: for maps only; or `Slip`, rows of the constraint that may yield:
             for maps of the scheme "energy" only. Time is that of the orbit, from zero. Several forces are a tuple of
-            them, such as `(Friction(...), table)`, with at most one of each of these kinds. Under "energy" f is asked
+            them, such as `(Friction(...), table)`, with at most one of each kind but `Slip`. Under "energy" f is asked
             in the middle of the step, at its mean velocity X / h.
         scheme: "energy" or "variational"; by default "energy" wherever it is defined and the body is constrained.
 
@@ -139,9 +148,10 @@ class Forced(AbstractSystem):
     def _checked_parts(self) -> dict[str, Any]:
         """Return what the force is made of, checked against the system."""
         parts, inside = parts_of(self.force), self.system
-        for name, where in (("friction", inside.group.dim), ("slip", inside)):
-            if name in parts:
-                parts[name].check(where)
+        if "friction" in parts:
+            parts["friction"].check(inside.group.dim)
+        if slips := slips_of(parts):
+            remaining_rows(inside, slips)
         if "table" in parts:
             remedy = "Pass a function of time, configuration and body velocity, Friction, or one body covector a step."
             parts["table"] = array("Forced(force=...)", parts["table"], (None, inside.group.dim), remedy)
@@ -164,7 +174,7 @@ class Forced(AbstractSystem):
 
     @functools.cached_property
     def parts(self) -> dict[str, Any]:
-        """The parts of the force among "friction", "table" and "function"."""
+        """The parts of the force among "friction", "table" and "function", and a "slip" for each contact."""
         return parts_of(self.force)
 
     @property
@@ -173,29 +183,31 @@ class Forced(AbstractSystem):
         return self.parts.get("friction")
 
     @property
-    def slip(self) -> Slip | None:
-        """The rows that may yield, where there are any."""
-        return self.parts.get("slip")
+    def slips(self) -> tuple[Slip, ...]:
+        """The contacts whose rows may yield."""
+        return slips_of(self.parts)
 
     @functools.cached_property
     def free(self) -> AbstractSystem:
         """The body that moves without forces: the system inside, without the rows of its constraint that may yield."""
-        slip, inside = parts_of(self.force).get("slip"), self.system
-        return inside if slip is None else Widened(inside, slip.rows, slip.remaining(inside))
+        slips, inside = slips_of(parts_of(self.force)), self.system
+        return Widened(inside, *remaining_rows(inside, slips)) if slips else inside
 
     @functools.cached_property
     def holding(self) -> AbstractSystem:
         """The system while no row yields."""
-        rest = force_of({name: each for name, each in self.parts.items() if name != "slip"})
-        system = Forced(self.system, self.potential, rest, self.scheme)
+        system = Forced(self.system, self.potential, force_of(self._others), self.scheme)
         return self.system if system.forces is None else system
 
     @functools.cached_property
     def sliding(self) -> "Forced":
         """The system while rows slide, without the friction of these."""
-        rest = {"friction": Friction(np.zeros(self.group.dim))} | self.parts
-        del rest["slip"]
+        rest = {"friction": Friction(np.zeros(self.group.dim))} | self._others
         return Forced(self.free, self.potential, force_of(rest), "energy")
+
+    @property
+    def _others(self) -> dict[str, Any]:
+        return {name: each for name, each in self.parts.items() if not name.startswith("slip")}
 
     @property
     def table(self) -> Array | None:
@@ -234,7 +246,7 @@ class Forced(AbstractSystem):
         Raises:
             ValueError: The free step does not keep its energy.
         """
-        if self.slip is not None:
+        if self.slips:
             return self._slips(exact and not is_composition)
         if self.scheme == "energy" and not exact:
             got = "an inertia operator, a constraint fixed in space, or another difference or constraint"

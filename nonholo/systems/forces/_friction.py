@@ -3,6 +3,7 @@
 import dataclasses
 import functools
 import operator
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -87,6 +88,7 @@ class Slip:
        \lambda = -\mu\,\frac{v}{|v|} - c\,v, \quad v \ne 0 . $$
 
     Several rows are one contact with a cone: $|\lambda|$ is their norm. With rows of unit velocities $\mu$ is a force.
+    Several slips in a tuple are contacts with separate grips, each of which holds or slides.
 
     `discretize` decides at every step whether the rows hold, then takes the step of the system itself, or slide
     (docs/theory/forces.md, Theorem 18.4). T never grows by a slip, at any step size. Momenta and velocities are those
@@ -135,29 +137,30 @@ class Slip:
                 raise error(place, "never add energy", f"{value:.6g}", "Pass a number that is not negative.")
             object.__setattr__(self, name, value)
 
-    def check(self, system: Any) -> None:
-        """Refuse a system whose constraint does not have the rows."""
-        where, remedy = "Forced(force=Slip(...))", "Pass rows of the system's annihilator."
-        if system.is_spatial:
-            remedy = "Leave the slip out: rows that yield are fixed in the body."
-            raise error(where, "have a constraint fixed in the body", "one fixed in space", remedy)
-        if self.rows.shape[1] != system.group.dim:
-            got = f"rows of {self.rows.shape[1]} numbers"
-            raise error(where, f"have rows of {system.group.dim} numbers", got, remedy)
-        if not len(system.annihilator):
-            raise error(where, "have a constraint that can yield", "a free body", "Leave the slip out.")
-        size = np.abs(self.rows @ system.constraint_subspace.T).max(initial=0.0)
-        if size > _IN_SPAN * np.abs(self.rows).max() * np.abs(system.constraint_subspace).max(initial=1.0):
-            raise error(where, "vanish on the constraint", f"a row that is {size:.6g} along it", remedy)
-        if len(system.annihilator) - len(self.remaining(system)) != len(self.rows):
-            remedy = "Build the LLSystem of annihilator= with the rows that yield and the rows that hold."
-            got = f"{len(self.rows)} rows across them"
-            raise error(where, "span the same as rows of the annihilator", got, remedy)
 
-    def remaining(self, system: Any) -> Float[np.ndarray, "j dim"]:
-        """Return the rows of the annihilator of a system that never yield."""
-        across = system.annihilator - system.annihilator @ np.linalg.pinv(self.rows) @ self.rows
-        return system.annihilator[np.linalg.norm(across, axis=1) > _IN_SPAN * np.linalg.norm(system.annihilator)]
+def remaining_rows(system: Any, slips: Sequence[Slip]) -> tuple[Float[np.ndarray, "s dim"], Float[np.ndarray, "j dim"]]:
+    """Return the rows of all contacts, checked, and the rows of the annihilator that never yield."""
+    where, remedy = "Forced(force=Slip(...))", "Pass rows of the system's annihilator."
+    if system.is_spatial:
+        remedy = "Leave the slip out: rows that yield are fixed in the body."
+        raise error(where, "have a constraint fixed in the body", "one fixed in space", remedy)
+    for each in slips:
+        if each.rows.shape[1] != system.group.dim:
+            got = f"rows of {each.rows.shape[1]} numbers"
+            raise error(where, f"have rows of {system.group.dim} numbers", got, remedy)
+    annihilator, rows = system.annihilator, np.concatenate([each.rows for each in slips])
+    if not len(annihilator):
+        raise error(where, "have a constraint that can yield", "a free body", "Leave the slip out.")
+    size = np.abs(rows @ system.constraint_subspace.T).max(initial=0.0)
+    if size > _IN_SPAN * np.abs(rows).max() * np.abs(system.constraint_subspace).max(initial=1.0):
+        raise error(where, "vanish on the constraint", f"a row that is {size:.6g} along it", remedy)
+    rows = independent_rows("Forced(force=Slip(...))", rows, system.group.dim)
+    across = annihilator - annihilator @ np.linalg.pinv(rows) @ rows
+    remaining = annihilator[np.linalg.norm(across, axis=1) > _IN_SPAN * np.linalg.norm(annihilator)]
+    if len(annihilator) - len(remaining) != len(rows):
+        remedy = "Build the LLSystem of annihilator= with the rows that yield and the rows that hold."
+        raise error(where, "span the same as rows of the annihilator", f"{len(rows)} rows across them", remedy)
+    return rows, remaining
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -234,17 +237,24 @@ def beside(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 def parts_of(force: Any) -> dict[str, Any]:
-    """Return friction, slip, table and function of a force, or of a tuple or list of them; of None nothing.
+    """Return friction, slips, table and function of a force, or of a tuple or list of them; of None nothing.
 
     Rows in a tuple or list are a table, unless friction or a function stands beside them.
     """
     several = isinstance(force, tuple | list) and any(_kind(each) != "table" for each in force)
     forces = force if several else () if force is None else (force,)
-    parts = {_kind(each): each for each in forces}
+    kinds = [_kind(each) for each in forces]
+    names = [kind + f" {k}" * (kind == "slip" and "slip" in kinds[:k]) for k, kind in enumerate(kinds)]
+    parts = dict(zip(names, forces, strict=True))
     if len(parts) < len(forces):
         remedy = "Add coefficients, rows or functions of one kind together."
-        raise error("Forced(force=...)", "have at most one force of each kind", shown(force), remedy)
+        raise error("Forced(force=...)", "have at most one force of each kind but Slip", shown(force), remedy)
     return parts
+
+
+def slips_of(parts: dict[str, Any]) -> tuple[Slip, ...]:
+    """Return the contacts among parts of a force."""
+    return tuple(each for name, each in parts.items() if name.startswith("slip"))
 
 
 def terms_of(potential: Any) -> tuple[Any, ...]:
