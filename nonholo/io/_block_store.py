@@ -200,8 +200,8 @@ def read_chunk(root: Path, name: str, array: zarr.Array, index: Shape, *, with_n
 
 
 def _lacks_numbers(name: str, rows: np.ndarray) -> bool:
-    """Return whether there are NaN; impulses lead from each state to the next, which the last state may not have."""
-    return bool(np.isnan(rows[:-1] if name == "multipliers" else rows).any())
+    """Return whether there are NaN; impulses may be, of a last state and of steps with impacts."""
+    return name != "multipliers" and bool(np.isnan(rows).any())
 
 
 BEFORE = -1

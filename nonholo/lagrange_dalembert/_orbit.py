@@ -59,13 +59,10 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     _labels: ClassVar[Labels]
 
     def _mark_impacts(self) -> None:
-        """Impulses of steps with impacts are not known."""
+        """Steps with impacts have no impulses in the rows at their ends: others act at the wall."""
         if self.is_discrete and self.has_impacts.any():
-            object.__setattr__(self, "multipliers", self._impulses(np.nan))
-
-    def _impulses(self, in_cut_steps: float) -> Float[np.ndarray, "L s"]:
-        """Return the multipliers with a number in place of those of steps with impacts."""
-        return np.where(self.has_impacts[: len(self.multipliers), None], in_cut_steps, self.multipliers)
+            cut = self.has_impacts[: len(self.multipliers), None]
+            object.__setattr__(self, "multipliers", np.where(cut, np.nan, self.multipliers))
 
     @abc.abstractmethod
     def _configurations(self) -> str:
@@ -118,10 +115,10 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         return False if self.is_discrete else None
 
     def rows(self) -> dict[str, np.ndarray]:
-        """Return the arrays with a row for each state; impulses that are not known are NaN, in cut steps zero."""
+        """Return the arrays with a row for each state; impulses that are not known are NaN."""
         missing = np.full((len(self) - len(self.multipliers), self.multipliers.shape[1]), np.nan)
         arrays = {name: rows for name in _ROWS if (rows := getattr(self, name)) is not None}
-        return arrays | {"multipliers": np.concatenate([self._impulses(0.0), missing])}
+        return arrays | {"multipliers": np.concatenate([self.multipliers, missing])}
 
     def of_rows(self, rows: dict[str, np.ndarray]) -> Self:
         """Return the orbit of such arrays, without the impulse of the last state if it is not known."""
@@ -219,8 +216,8 @@ class CoordinateOrbit(AbstractCoordinateOrbit):
         body_velocity: The velocity; for a discrete orbit displacement / time_step, shape (K, n).
         momentum: $P_k = -D_1 L_d(q_k, q_{k+1})$, for a flow $\partial L/\partial v$, shape (K, n).
         multipliers: Impulses $\lambda$ in $P_{k+1} - P^+_k = \sum_j \lambda_j A^j(q_{k+1})$ of the steps from the saved
-            states but the last, shape (K - 1, s), NaN in steps with impacts, where datasets and stores have zero; for a
-            flow the forces at its times, shape (K, s).
+            states but the last, shape (K - 1, s); NaN in steps with impacts, whose impulses act at the wall too, along
+            other rows. For a flow the forces at its times, shape (K, s).
         energy: $-\partial L_d/\partial h$, for a flow $v\cdot\partial L/\partial v - L$, shape (K,).
         constraint_residual: Largest $|F_j(q_k, q_{k+1})|$, of holonomic constraints $|\Phi_j(q_{k+1})|/h$; for a flow
             $|A^j(q) v|$, shape (K,).
@@ -274,8 +271,8 @@ class GroupOrbit(AbstractCoordinateOrbit):
         body_velocity: The body velocity; for a discrete orbit $\log(W_k)/h$, shape (K, dim).
         momentum: $P_k = P(W_k)$, for a flow $\partial l/\partial\omega$, shape (K, dim).
         multipliers: Impulses $\lambda$ in $P_{k+1} - \mathrm{Ad}^*_{W_k}P_k = \sum_j\lambda_j a^j(g_{k+1})$ of the
-            steps from the saved states but the last, shape (K - 1, s), NaN in steps with impacts, where datasets and
-            stores have zero; for a flow the forces at its times, (K, s).
+            steps from the saved states but the last, shape (K - 1, s); NaN in steps with impacts, whose impulses act at
+            the wall too, along other rows. For a flow the forces at its times, (K, s).
         energy: $-\partial l_d/\partial h$ at $W_k$, for a flow $\omega\cdot\partial l/\partial\omega - l$, shape (K,).
         constraint_residual: Largest $|F_j(g_k, W_k)|$, for a flow $|a^j(g)\omega|$, shape (K,).
         outcome: How the run ended.

@@ -42,6 +42,7 @@ def after_contact(
         The state at its end, None if it is not reached; what is known then, and the outcome.
     """
     for _ in range(_MOST):
+        since = there.time[0], watch.reset_by
         there = dataclasses.replace(there.with_headings(watch.heading), step=np.array([number]))
         if (outcome := begin(there)[1]) != Outcome.successful:
             return None, watch, outcome
@@ -53,6 +54,8 @@ def after_contact(
             return state if outcome == Outcome.successful else None, watch, outcome
         hit = watch.impact
         there, share = hit.after, float(hit.fraction[0] + hit.step[0] - number)
+        if (there.time[0], watch.reset_by) == since:  # the body comes back in no time
+            break
     return None, watch, Outcome.lasting_contact
 
 

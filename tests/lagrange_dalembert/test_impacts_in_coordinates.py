@@ -1,5 +1,6 @@
 """Impacts in coordinates: the reflection against the impulses of wall and constraint, and motions that are known."""
 
+import dataclasses
 import pathlib
 import re
 from collections.abc import Callable
@@ -8,6 +9,7 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 import pytest
+import xarray
 from scipy.optimize import brentq
 
 import nonholo as nh
@@ -187,6 +189,25 @@ def test_a_ball_bounces_lower_and_lower() -> None:
     assert np.abs(run.events["floor"].time - wanted).max() < 1e-12  # a parabola is the map's own
 
 
+@pytest.mark.profile("problems", keep=["0.02"])
+@pytest.mark.parametrize("bounce", [0.02, 0.2])
+def test_chattering_ends_where_no_time_passes(bounce: float) -> None:
+    """At a floor at zero bounces are not lost in rounding: the run ends with one that takes no time, as on groups."""
+    limit, floor = (
+        np.sqrt(2) * (1 + 2 * bounce / (1 - bounce)),
+        dataclasses.replace(FLOOR, reset=nh.Impact(None, bounce)),
+    )
+    start: dict[str, Any] = {"configuration": (0.0, 1.0), "body_velocity": (1.0, 0.0), "events": [floor]}
+    orbit = simulate(nh.discretize(FALL, 0.05), steps=1000, throw=False, **start)
+    assert orbit.outcome == nh.Outcome.lasting_contact
+    assert limit - 0.05 <= orbit.time[-1] <= limit
+    assert len(orbit.events["floor"]) < 30
+    if bounce > 0.1:
+        with pytest.raises(nh.OutcomeError, match="lasting_contact") as failure:
+            flow(FALL, times=(0.0, 3.0), **start)
+        assert len(failure.value.orbit.events["floor"]) < 30  # type: ignore[attr-defined]
+
+
 def test_thinned_iterated_and_stored_runs_have_the_same_bits(tmp_path: pathlib.Path) -> None:
     """Whatever is kept and wherever, states, events and the states after them are the same."""
     discrete = nh.discretize(DISK.system, 0.1)
@@ -196,6 +217,8 @@ def test_thinned_iterated_and_stored_runs_have_the_same_bits(tmp_path: pathlib.P
     loaded = nh.load_orbit(tmp_path / "a.zarr", discrete=discrete)
     blocks = list(nh.iterate(discrete, block_steps=35, **run))
     assert len(orbit.events["wall"]) == 3
+    for impulses in (orbit.to_dataset().multipliers, xarray.open_zarr(tmp_path / "a.zarr").multipliers):
+        assert np.array_equal(np.isnan(impulses[:-1, 0]), orbit.has_impacts[:-1])
     for other in (stored, loaded, blocks[0].joined(blocks[1:])):
         for name, rows in orbit.rows().items():
             assert np.array_equal(rows, other.rows()[name], equal_nan=True), name
