@@ -98,6 +98,7 @@ def test_every_value_is_a_step_and_keeps_its_energy(name: str, kind: str) -> Non
     assert values.principal == 0
 
 
+@pytest.mark.profile("routes", cases=["top on SO(4)-*"])
 @pytest.mark.parametrize(("name", "kind"), CASES)
 def test_the_principal_one_is_the_step_of_a_run(name: str, kind: str) -> None:
     """From a momentum, and from each displacement of an orbit, the next one is the principal value."""
