@@ -85,7 +85,7 @@ def flow(
     For a `Forced` system the force -dU + f is added to ad*. With `Gravity` and `Friction`, and a constraint fixed in
     the body, the series solve it too; if friction is much faster than the motion, Radau of SciPy does, with `rtol` of
     1e-9 and more. Other forces are integrated by DOP853, with `rtol` of 1e-13 and more. These two also give the states
-    between.
+    between. Rows that may yield (`Slip`) hold or slide in phases, whose ends are located.
 
     The docstring of `LagrangeDAlembert` has its equations. It starts at a `configuration`, and takes neither
     `restricted_velocity` nor `method`. The acceleration comes from the constraint differentiated once, a holonomic one
