@@ -18,8 +18,9 @@ motion are; in another unit of time all of them are divided by one number.
 
 import contextlib
 import functools
+import operator
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 import scipy  # its parts load on first use
@@ -30,17 +31,20 @@ from nonholo.base.numerics import applied
 from nonholo.base.progress import late_bar
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
+from nonholo.continuous._phases import Field, phases
 from nonholo.continuous._series import body_equations, body_numbers, solve
 from nonholo.continuous._solution import PLANE, Problem, Solved, States, first_heading
 from nonholo.kernels import Quadratic
 from nonholo.orbit import Orbit, turned_near
-from nonholo.systems import Forced
+from nonholo.systems import Forced, Mode, Widened
 
 _LEAST_RTOL, _SHARE = 1e-13, 1e-3  # SciPy allows no less; absolute errors are that part of the relative ones
 _LEAST_IMPLICIT = 1e-9  # relative, for some hundred steps of order 5
 _FIRST, _FEW, _MOST = 1000, 10_000, 10_000_000  # steps tried before any judgment, and in total
 _STABLE = 3.0  # half of h |lambda| at the bound of stability; smooth motions have less than 1
 _PARTS = 1000  # of the time, for progress
+_WHOLE = operator.attrgetter("t")  # the end of a step
+_SLOW = 1e-9  # relative, of a slip that counts as rest
 _STIFF = 2e6  # of a flow, in times in which friction slows the body down: a step of the series has about five
 
 
@@ -66,7 +70,7 @@ class LinearForces(NamedTuple):
 
 def _are_linear(forced: Forced) -> bool:
     """Return whether only friction and a potential linear in the pose act, and the constraint is in the body."""
-    others = forced.function is not None or forced.table is not None or forced.is_spatial
+    others = forced.function is not None or forced.table is not None or forced.is_spatial or bool(forced.slips)
     return not others and (forced.potential is None or hasattr(forced.potential, "levers"))
 
 
@@ -121,6 +125,8 @@ def has_series_under(forced: Forced, span: float) -> bool:
 
 def under_forces(forced: Forced, begins: float, problem: Problem) -> Solved:
     """Solve the equations of a system with forces from the time `begins` on, by series where they serve."""
+    if forced.slips:
+        return by_runge_kutta(forced, begins, problem)
     if not has_series_under(forced, problem.elapsed[-1]):
         return by_runge_kutta(forced, begins, problem, is_stiff=_are_linear(forced))
     (head,), (unit,) = heads(forced, problem.momentum[None], problem.pose[None])
@@ -132,7 +138,7 @@ def under_forces(forced: Forced, begins: float, problem: Problem) -> Solved:
 def by_runge_kutta(forced: Forced, begins: float, problem: Problem, *, is_stiff: bool = False) -> Solved:
     """Solve the equations of a system with forces, from canonical momenta and pose at the time `begins`.
 
-    By DOP853, or if they are known to be stiff by the implicit Radau.
+    By DOP853, or if they are known to be stiff by the implicit Radau; piece by piece where rows may yield.
     """
     reduced_momentum, pose, elapsed, tolerances = problem
     _refuse_table("flow", forced)
@@ -140,8 +146,19 @@ def by_runge_kutta(forced: Forced, begins: float, problem: Problem, *, is_stiff:
     r, g = forced.from_canonical(reduced_momentum), group.matrix_from_pose(pose) @ group.inverse(forced.frame)
     start = np.concatenate([r, g.ravel(), first_heading(group, pose)])
     faults: dict[str, str] = {}
-    field, rtol = _field(forced, begins, k, faults), max(_LEAST_IMPLICIT if is_stiff else _LEAST_RTOL, tolerances[0])
-    nodes, pieces, outcome = _steps(field, start, float(elapsed[-1]), rtol, is_stiff=is_stiff)
+    field, rtol = (
+        _field(forced.sliding if forced.slips else forced, begins, k, faults),
+        max(_LEAST_IMPLICIT if is_stiff else _LEAST_RTOL, tolerances[0]),
+    )
+    span = 0.0, float(elapsed[-1])
+    if forced.slips:
+        if span[1] < 0:
+            remedy = "Start at the first time: a contact at rest has many pasts."
+            raise error("flow(times=...)", "increase where rows of a constraint may yield", "a decrease", remedy)
+        places = slice(k - len(forced.contacts.inertia), k)
+        nodes, pieces, outcome = phases(_steps, forced.contacts, places, field, start, span, rtol)
+    else:
+        nodes, pieces, outcome = _steps(field, start, span, rtol, is_stiff=is_stiff)
 
     def at(times: Float[np.ndarray, "K"]) -> States:
         whole = scipy.integrate.OdeSolution(nodes, pieces) if pieces else lambda t: np.tile(start[:, None], len(t))
@@ -153,39 +170,40 @@ def by_runge_kutta(forced: Forced, begins: float, problem: Problem, *, is_stiff:
 
 
 def _steps(
-    field: Callable[[float, np.ndarray], np.ndarray], start: np.ndarray, end: float, rtol: float, *, is_stiff: bool
+    field: Field, start: np.ndarray, span: tuple[float, float], rtol: float, *, is_stiff: bool, stop: Any = _WHOLE
 ) -> tuple[list[float], list[Any], Outcome]:
-    """Return the ends of the steps from time zero, what interpolates within them, and the outcome.
+    """Return the ends of the steps in a span, what interpolates within them, and the outcome; they may stop earlier.
 
     Steps are too many where the whole time needs more than `_MOST` at the rate so far, or `_FEW` if many of them are as
     short as they are for stability alone, or follow others that were too long, as over jumps.
     """
-    nodes, pieces, tries, vain, first = [0.0], [], 0, 0, field(0.0, start)
+    begin, end = span
+    nodes, pieces, tries, vain, first = [begin], [], 0, 0, field(begin, start)
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"), late_bar("flow under forces") as report:
         if not np.isfinite(np.linalg.norm(first / (_SHARE + np.abs(start)) / rtol)):
             return nodes, pieces, Outcome.nonfinite
-        if not end:
+        if end == begin:
             return nodes, pieces, Outcome.successful
-        solver = _solver(field, start, end, rtol, is_stiff=is_stiff)
-        while solver.status == "running":
+        solver = _solver(field, start, span, rtol, is_stiff=is_stiff)
+        while (solver.status, nodes[-1]) == ("running", solver.t):
             before = solver.nfev
             solver.step()
             attempts = 1 if is_stiff else (solver.nfev - before) // solver.n_stages
             if solver.status == "failed":
                 return nodes, pieces, _failure(solver.f if is_stiff else solver.K)
             tries, vain = tries + attempts, vain + attempts - 1 + (not is_stiff and _is_short(solver))
-            nodes.append(solver.t)
             pieces.append(solver.dense_output())
+            nodes.append(stop(pieces[-1]))
             report(int(_PARTS * solver.t / end), _PARTS)
-            if tries > _FIRST and tries * end / solver.t > _most(tries, vain):
+            if tries > _FIRST and tries * (end - begin) / (solver.t - begin) > _most(tries, vain):
                 return nodes, pieces, Outcome.too_stiff
     return nodes, pieces, Outcome.successful
 
 
-def _solver(field: Any, start: np.ndarray, end: float, rtol: float, *, is_stiff: bool) -> Any:
+def _solver(field: Any, start: np.ndarray, span: tuple[float, float], rtol: float, *, is_stiff: bool) -> Any:
     """Return the solver of SciPy, by the implicit Radau or by DOP853."""
     method = scipy.integrate.Radau if is_stiff else scipy.integrate.DOP853
-    return method(field, 0.0, start, end, rtol=rtol, atol=_SHARE * rtol)
+    return method(field, span[0], start, span[1], rtol=rtol, atol=_SHARE * rtol)
 
 
 def _failure(rates: np.ndarray) -> Outcome:
@@ -266,13 +284,30 @@ def forced_reaction(forced: Forced, states: Orbit) -> Float[np.ndarray, "K dim"]
 
     They vanish along E, which determines the acceleration.
     """
-    group, inertia = forced.group, np.asarray(forced.inertia_operator)
+    group, inertia, alone = (
+        forced.group,
+        np.asarray(forced.inertia_operator),
+        forced.sliding if forced.slips else forced,
+    )
     g, velocity = states.configuration, states.body_velocity
-    acting = [forced.applied_force(*row) for row in zip(states.time, g, velocity, strict=True)]
+    acting = [alone.applied_force(*row) for row in zip(states.time, g, velocity, strict=True)]
     force = group.coad(velocity, applied(inertia, velocity)) + forced.potential_force(g)
     force = force + np.reshape(acting, velocity.shape)
     E = forced.directions(g)
     along = np.swapaxes(E, -1, -2)
-    acceleration = E @ np.linalg.solve(along @ inertia @ E, along @ force[..., None])
+    pull = force + _contact_forces(forced, velocity, force) if forced.slips else force
+    acceleration = E @ np.linalg.solve(along @ inertia @ E, along @ pull[..., None])
     missing = (inertia @ acceleration)[..., 0] - force
     return group.coadjoint(group.inverse(g), missing) if forced.is_spatial else missing
+
+
+def _contact_forces(
+    forced: Forced, velocity: Float[np.ndarray, "K dim"], force: Float[np.ndarray, "K dim"]
+) -> Float[np.ndarray, "K dim"]:
+    """Return the body covectors of contacts at velocities under other forces."""
+    body, contacts = cast(Widened, forced.free), forced.contacts
+    slips, covectors = applied(body.rows, velocity), []
+    for v, free, size in zip(slips, applied(body.duals, force), np.linalg.norm(velocity, axis=1), strict=True):
+        least = _SLOW * size * np.array([np.linalg.norm(one.rows) for one in forced.slips])
+        covectors.append(Mode.of(contacts, v, least).settle(v, free).forces(v, free) @ body.rows)
+    return np.reshape(covectors, velocity.shape)

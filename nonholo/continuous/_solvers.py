@@ -25,7 +25,7 @@ from nonholo.continuous._series import (
 from nonholo.continuous._solution import PLANE, Problem, Solved, States, first_heading
 from nonholo.kernels import Quadratic, solve_members
 from nonholo.orbit import turned_near
-from nonholo.systems import AbstractSystem, System, refuse_slip
+from nonholo.systems import AbstractSystem, System
 
 
 def has_series(system: AbstractSystem, span: float) -> bool:
@@ -93,7 +93,6 @@ def solver_of(
     system: System, method: str | None, begins: float, *, reconstruct: bool
 ) -> tuple[Callable[..., Solved], bool]:
     """Return what solves the equations from a time on, and whether with poses; refuse an unknown method."""
-    refuse_slip("flow(system=...)", system)
     choice("flow(method=...)", method, (None, "closed_form", "diffrax"))
     if system.forces is not None:
         if method is not None:

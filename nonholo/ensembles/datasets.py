@@ -269,7 +269,8 @@ def is_own(name: str) -> bool:
 
 def dataset_task_from(entry: dict[str, Any]) -> DatasetTask:
     """Return the task of a description; refuse one of another version."""
-    name, run = entry["dataset"], {name: entry[name] for name in _RUN} | {"ends": tuple(entry["ends"])}
+    name = entry["dataset"]
+    run: dict[str, Any] = {field: entry[field] for field in _RUN} | {"ends": tuple(entry["ends"])}
     definition = family_of(function_from(name)) if is_own(name) else DEFINITIONS.get(name)
     if definition is None or entry["version"] != definition.version:
         here = definition and definition.version

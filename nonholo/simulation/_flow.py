@@ -86,7 +86,7 @@ def flow(
     For a `Forced` system the force -dU + f is added to ad*. With `Gravity` and `Friction`, and a constraint fixed in
     the body, the series solve it too; if friction is much faster than the motion, Radau of SciPy does, with `rtol` of
     1e-9 and more. Other forces are integrated by DOP853, with `rtol` of 1e-13 and more. `Orbit.at` works with these
-    two solvers too.
+    two solvers too. Rows that may yield (`Slip`) hold or slide in phases, whose ends are located.
 
     `LagrangeDAlembert` documents its equations. Such a flow starts at a `configuration`, and takes neither
     `restricted_velocity` nor `method`. The acceleration comes from the constraint differentiated once, a holonomic one

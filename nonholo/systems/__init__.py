@@ -51,15 +51,18 @@ from nonholo.systems.families import (
     VeselovaTop,
 )
 from nonholo.systems.forces import (
+    Contacts,
     Forced,
     Friction,
     Gravity,
     Linear,
+    Mode,
     Slip,
     Spring,
     Widened,
     central_differences,
     force_of,
+    friction,
     parts_of,
 )
 

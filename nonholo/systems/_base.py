@@ -445,7 +445,7 @@ def refuse_forces(where: str, system: Any) -> None:
 def refuse_slip(where: str, system: Any) -> None:
     """Refuse rows of a constraint that may yield, which steps of the discrete map alone decide."""
     if system.forces is not None and system.forces.slips:
-        remedy = "Run it by `simulate`, `iterate` or `ensemble` of what `discretize` returned, or leave the slip out."
+        remedy = "Run it by `simulate`, `iterate`, `ensemble` or `flow`, or leave the slip out."
         raise error(where, "have a constraint that never yields", "Slip", remedy)
 
 

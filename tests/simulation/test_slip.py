@@ -63,9 +63,12 @@ def _drive(time: float, g: np.ndarray, velocity: np.ndarray) -> np.ndarray:
 @pytest.mark.profile("problems", keep=["sleigh", "top", "two axles"])
 @pytest.mark.parametrize("name", CASES)
 def test_orbits_converge_to_the_continuous_motion(name: str) -> None:
-    """Velocity and pose have order 2, also across the places where rows yield and come to rest."""
+    """Velocity and pose have order 2, also across the places where rows yield and come to rest; a flow has them."""
     forced, velocity = CASES[name]
     omega, g, kinds = Continuous(forced).run(velocity, TIME)
+    flow = nh.flow(forced, body_velocity=velocity, times=(0, TIME))
+    np.testing.assert_allclose(flow.body_velocity[-1], omega, atol=1e-9)
+    np.testing.assert_allclose(flow.configuration[-1], g, atol=1e-9)
     ends = [_run(name, steps, save_every=steps)[-1:] for steps in (200, 400, 800)]
     errors = [max(abs(x.body_velocity[0] - omega).max(), abs(x.configuration[0] - g).max()) for x in ends]
     rates = np.log2(np.divide(errors[:-1], errors[1:]))
@@ -358,8 +361,7 @@ test_what_has_no_slip_is_refused = refusals(
         ),
         "keep their energy",
     ),
-    (lambda: nh.flow(CASES["sleigh"][0], body_velocity=FAST, times=(0, 1)), "never yields"),
-    (lambda: nh.ensemble(CASES["sleigh"][0], body_velocity=[FAST], times=(0, 1)), "never yields"),
+    (lambda: nh.flow(CASES["sleigh"][0], body_velocity=FAST, times=(0, -1)), "increase where rows"),
     (lambda: nh.vector_field(CASES["sleigh"][0]), "never yields"),
     (lambda: nh.linearize(CASES["sleigh"][0], body_velocity=FAST), "never yields"),
     (lambda: nh.linearize(nh.discretize(CASES["sleigh"][0], 0.1), body_velocity=(0.0, 1.0, 0.0)), "never yields"),
@@ -368,6 +370,83 @@ test_what_has_no_slip_is_refused = refusals(
     (lambda: nh.testing.check_discretization(nh.discretize(CASES["sleigh"][0], 0.1)), "never yields"),
     (lambda: nh.branches(nh.discretize(CASES["sleigh"][0], 0.1), momentum=FAST), "rows that yield"),
 )
+
+
+def test_a_slip_ends_after_the_time_and_the_way_of_coulomb() -> None:
+    """A balanced sleigh pushed sideward has v = v0 - mu t / m: it stops after m v0 / mu and m v0^2 / 2 mu, exactly."""
+    mass, grip, speed = 1.5, 0.6, 0.8
+    forced, end = nh.Forced(nh.ChaplyginSleigh(mass, 1.0, 0.0), force=nh.Slip(BLADE, grip)), mass * speed / grip
+    times = np.array([0.0, end / 3, end, 2 * end])
+    orbit = nh.flow(forced, body_velocity=(0.0, 0.0, speed), times=times)
+    expected = speed - grip / mass * np.minimum(times, end)
+    np.testing.assert_allclose(orbit.body_velocity[:, 2], expected, atol=1e-14)
+    assert orbit.body_velocity[-1, 2] == 0
+    np.testing.assert_allclose(orbit.position[:, 1], mass / (2 * grip) * (speed**2 - expected**2), atol=1e-14)
+    np.testing.assert_allclose(orbit.multipliers[[1, 3], 0], [-grip, 0], atol=1e-13)
+
+
+@pytest.mark.parametrize("name", ["viscous", "two axles"])
+def test_a_flow_with_slips_obeys_its_equations(name: str) -> None:
+    """Of the states between, by differences: I omega' = ad* + f + sum lambda a, with grips against slips."""
+    forced, velocity = CASES[name]
+    orbit = nh.flow(forced, body_velocity=velocity, times=np.linspace(0, TIME, 501))
+    h, times = 1e-3, np.linspace(0.1, TIME - 0.1, 60)
+    before, now, after = (orbit.at(times + shift) for shift in (-h, 0, h))
+    rates = (after.body_velocity - before.body_velocity) @ np.asarray(forced.inertia_operator) / (2 * h)
+    push = forced.group.coad(now.body_velocity, now.momentum) + forced.potential_force(now.configuration)
+    gaps = abs(rates - push - now.multipliers @ np.asarray(forced.system.annihilator)).max(axis=1)
+    assert (gaps < 1e-4).mean() > 0.9  # all but those with a stop between
+    assert np.diff(orbit.energy).max() < 1e-12
+    np.testing.assert_allclose(orbit.energy - orbit.energy[0], orbit.work, atol=1e-3)
+    for i, slip in enumerate(forced.slips):
+        v, force = now.body_velocity @ slip.rows[0], now.multipliers[:, i]
+        slides = abs(v) > 1e-9
+        np.testing.assert_allclose(
+            force[slides], -slip.grip * np.sign(v[slides]) - slip.viscous * v[slides], atol=1e-12
+        )
+        assert (abs(force[~slides]) <= slip.grip * (1 + 1e-11)).all()
+
+
+@pytest.mark.profile("problems", instead="test_a_flow_with_slips_obeys_its_equations")
+@pytest.mark.parametrize("seed", range(8))
+def test_no_flow_with_slips_gains_energy(seed: int) -> None:
+    """T + U does not grow beyond the tolerance: any body, contacts, grips and coefficients; or the outcome is said."""
+    forced, _, velocity = random_case(np.random.default_rng(seed))
+    try:
+        orbit = nh.flow(forced, restricted_velocity=velocity, times=np.linspace(0, 2, 21))
+    except nh.OutcomeError as failure:
+        orbit = failure.orbit
+    assert orbit.outcome in (nh.Outcome.successful, nh.Outcome.too_stiff, nh.Outcome.not_converged)
+    assert np.diff(orbit.energy).max(initial=0.0) < 1e-9 * abs(orbit.energy).max()
+
+
+def test_flows_with_slips_have_events_walls_and_ensembles() -> None:
+    """A crossing and an impact of a body that slides are located; members have the bits of single flows."""
+    forced, times = CASES["sleigh"][0], np.linspace(0, 4, 81)
+    wall = nh.Event(
+        lambda orbit: 1.2 - orbit.position[:, 0], reset=nh.Impact([-1.0, 0.0], point=[0.0, 0.0]), name="wall"
+    )
+    line = nh.Event(lambda orbit: orbit.position[:, 0] - 1.0, name="line")
+    orbit = nh.flow(forced, body_velocity=FAST, times=times, events=[wall, line])
+    assert len(orbit.events["wall"]) > 0
+    assert abs(orbit.events["line"].states.position[:, 0] - 1).max() < 1e-12
+    assert orbit.position[:, 0].max() < 1.2 + 1e-12
+    assert np.diff(orbit.energy).max() < 1e-12
+    alone = nh.flow(forced, body_velocity=FAST, times=times)
+    members = nh.ensemble(forced, body_velocity=[FAST, SPIN], times=times)
+    assert np.array_equal(members.restricted_momentum[0], alone.restricted_momentum)
+    momenta = nh.flow(forced, body_velocity=FAST, times=times, reconstruct=False)
+    assert np.array_equal(momenta.restricted_momentum, alone.restricted_momentum)
+
+
+def test_phases_without_end_are_an_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A flow whose rows yield and rest again and again ends with the reason, and has its good states."""
+    monkeypatch.setattr("nonholo.continuous._phases._MOST", 6)
+    forced = nh.Forced(SLEIGH, force=(nh.Slip(BLADE, 0.1), lambda time, *_: np.array([0, 0, np.sin(8 * time)])))
+    with pytest.raises(nh.OutcomeError) as failure:
+        nh.flow(forced, body_velocity=(0.0, 0.1, 0.0), times=np.linspace(0, 9, 91))
+    assert failure.value.outcome == nh.Outcome.too_stiff
+    assert 0 < len(failure.value.orbit) < 91
 
 
 def test_a_slip_may_turn_over_without_a_way() -> None:

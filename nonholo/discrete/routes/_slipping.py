@@ -23,9 +23,9 @@ from nonholo.discrete.routes._balanced import BalancedRoute
 from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledRoute, Compact, poses_of
 from nonholo.discrete.routes._forced import AbstractForcedRoute
 from nonholo.orbit import First, Orbit, Rows, State, configurations, keep_row, write_first
-from nonholo.systems import Forced, Slip, Widened
+from nonholo.systems import Contacts, Forced, Widened, friction
 
-_MOST, _SWEEPS = 40, 200  # corrections of a direction, and of the slips of several contacts
+_MOST = 40  # corrections of a direction
 _ROUNDING, _SETTLED = 1e-15, 1e-12  # relative, of an impulse; where it does not fall any more
 _SEEN = 1e-8  # relative, of what changes a slope
 _STRETCH = 512  # steps that hold, taken at once
@@ -80,11 +80,10 @@ class SlipRoute(AbstractForcedRoute):
         """The name of the route of steps that hold."""
         return self.hold.name
 
-    @functools.cached_property
-    def contacts(self) -> tuple[tuple[slice, Slip], ...]:
-        """The contacts, and the places of their rows."""
-        ends = np.cumsum([0, *(len(one.rows) for one in self.forced.slips)])
-        return tuple(zip(map(slice, ends[:-1], ends[1:]), self.forced.slips, strict=True))
+    @property
+    def contacts(self) -> Contacts:
+        """The contacts whose rows may yield."""
+        return self.forced.contacts
 
     @functools.cached_property
     def body(self) -> Widened:
@@ -126,11 +125,9 @@ class SlipRoute(AbstractForcedRoute):
     def grips(self, moving: Float[np.ndarray, "s"]) -> Float[np.ndarray, "contacts"]:
         """Return the largest impulses by which contacts hold: by the grip, and the viscous friction of what ends."""
         h = float(self.holding.time_step)
-        return np.array([h * one.grip + h / 2 * one.viscous * np.linalg.norm(moving[at]) for at, one in self.contacts])
-
-    def sizes(self, impulses: Float[np.ndarray, "K s"]) -> Float[np.ndarray, "K contacts"]:
-        """Return the sizes of impulses at each contact."""
-        return np.stack([np.linalg.norm(impulses[:, at], axis=1) for at, _ in self.contacts], axis=1)
+        return np.array(
+            [h * one.grip + h / 2 * one.viscous * np.linalg.norm(moving[at]) for at, one in self.contacts.each]
+        )
 
     def begin(self, r: np.ndarray, pose: np.ndarray, time: float, step: int) -> Beginning:
         """Begin the step from canonical momenta and a pose."""
@@ -142,7 +139,7 @@ class SlipRoute(AbstractForcedRoute):
             return Beginning(code, self.wide(chart))
         impulses = self.reaction(chart[None], own_pose[None], np.array([step])) - r[k:]
         most = self.grips(np.linalg.solve(self.body.slip_inertia, r[k:]))
-        if (self.sizes(impulses) <= most).all():
+        if (self.contacts.sizes(impulses) <= most).all():
             return Beginning(0, self.wide(chart), kernel)
         return self._yield((r, pose), (time, step, 1.0), impulses[0], most)
 
@@ -151,25 +148,18 @@ class SlipRoute(AbstractForcedRoute):
     ) -> Beginning:
         """Begin a step in which not every contact holds; those that do are at rest where impulses act on M alone."""
         (r, pose), half, s = now, float(self.holding.time_step) / 2, len(impulses)
-        laws = [(at, size, half * one.viscous) for size, (at, one) in zip(most, self.contacts, strict=True)]
-        rests = ~self.sizes(friction(self.body.slip_inertia, -impulses, laws)[0][None])[0].astype(bool)
+        laws = [(at, size, half * one.viscous) for size, (at, one) in zip(most, self.contacts.each, strict=True)]
+        rests = ~self.contacts.sizes(friction(self.body.slip_inertia, -impulses, laws)[0][None])[0].astype(bool)
         while True:
-            start = np.append(r[:-s], self.stop(r[-s:], rests))
+            start = np.append(r[:-s], self.contacts.stop(r[-s:], rests))
             turning = impulses - (2 * start[-s:] - r[-s:])
             beginning = self.slide((start, pose), when, rests, turning, np.zeros_like(turning))
             if beginning.code != 0:
                 return beginning
-            yields = rests & (self.sizes((beginning.impulse + start[-s:] - r[-s:])[None])[0] > most)
+            yields = rests & (self.contacts.sizes((beginning.impulse + start[-s:] - r[-s:])[None])[0] > most)
             if not yields.any():
                 return beginning
             rests = rests & ~yields
-
-    def stop(self, momenta: Float[np.ndarray, "s"], rests: Bool[np.ndarray, "contacts"]) -> Float[np.ndarray, "s"]:
-        """Return momenta of slips after impulses that end those of some contacts."""
-        places, after = np.repeat(rests, [at.stop - at.start for at, _ in self.contacts]), momenta.copy()
-        inertia = self.body.slip_inertia[:, ~places]
-        after[places] = inertia[places] @ np.linalg.solve(inertia[~places], momenta[~places])
-        return after
 
     def slide(
         self,
@@ -185,8 +175,8 @@ class SlipRoute(AbstractForcedRoute):
         hold have no slip, by any impulse.
         """
         part, before = when[2] * float(self.holding.time_step), np.inf
-        grips = np.where(rests, np.inf, [part * float(one.grip) for _, one in self.contacts])
-        laws = [(at, most, one.viscous) for most, (at, one) in zip(grips, self.contacts, strict=True)]
+        grips = np.where(rests, np.inf, [part * float(one.grip) for _, one in self.contacts.each])
+        laws = [(at, most, one.viscous) for most, (at, one) in zip(grips, self.contacts.each, strict=True)]
         slope, way, goal = 2 / part * self.body.slip_inertia, np.ones(len(impulse)), impulse
         if slip is not None:
             way, goal = friction(slope, slope @ slip - impulse, laws)
@@ -209,9 +199,9 @@ class SlipRoute(AbstractForcedRoute):
 
     def _rest(self, after: np.ndarray, start: np.ndarray, way: np.ndarray) -> None:
         """Clear the momenta after a step of what rounding adds: where it has no slip, velocities turn over."""
-        s, rests = len(way), ~self.sizes(way[None])[0].astype(bool)
-        later = self.stop(start[-s:] + after[-s:], rests) - start[-s:]
-        places = np.repeat(rests, [at.stop - at.start for at, _ in self.contacts])
+        s, rests = len(way), ~self.contacts.sizes(way[None])[0].astype(bool)
+        later = self.contacts.stop(start[-s:] + after[-s:], rests) - start[-s:]
+        places = self.contacts.places(rests)
         after[-s:][places] = later[places]
 
     def _push(
@@ -260,7 +250,7 @@ class SlipRoute(AbstractForcedRoute):
             return np.append(momenta[0], np.zeros(len(r) - k)), ends[0]
         if fraction == 1:
             return whole.after
-        start = np.append(r[:k], self.stop(r[k:], whole.rests)), pose
+        start = np.append(r[:k], self.contacts.stop(r[k:], whole.rests)), pose
         beginning = self.slide(start, (*when, fraction), whole.rests, fraction * whole.impulse)
         return beginning.after if beginning.code == 0 else (nothing, np.full_like(pose, np.nan))
 
@@ -270,69 +260,6 @@ def update_slope(slope: np.ndarray, way: np.ndarray, change: np.ndarray, least: 
     if np.linalg.norm(change) < least or not way @ change > 0:
         return slope
     return slope + np.outer(change - slope @ way, way) / (way @ way)
-
-
-def friction(
-    slope: Float[np.ndarray, "s s"], free: Float[np.ndarray, "s"], laws: list[tuple[slice, float, float]]
-) -> tuple[Float[np.ndarray, "s"], Float[np.ndarray, "s"]]:
-    r"""Return x and j of $Ax = b + j$, $-j_i \in m_i\,\partial|x_i| + c_ix_i$: the only ones where A is monotone.
-
-    Contact by contact, and by Newton's method where no slip changes its direction; NaN where that does not end.
-    """
-    x, j = np.zeros_like(free), np.zeros_like(free)
-    for _ in range(_SWEEPS):
-        for at, most, viscous in laws:
-            others = x.copy()
-            others[at] = 0.0
-            x[at], j[at] = friction_of_one(slope[at, at], free[at] - slope[at] @ others, most, viscous)
-        size = np.linalg.norm(free) + np.linalg.norm(slope) * np.linalg.norm(x)
-        if len(laws) == 1 or np.linalg.norm(slope @ x - free - j) <= _ROUNDING * size:
-            return x, j
-        ahead = _correct(slope, free, laws, x)
-        if all(x[at] @ ahead[at] > 0 or not x[at].any() for at, *_ in laws):
-            x = ahead
-    return x, np.full_like(j, np.nan)
-
-
-def _correct(slope: np.ndarray, free: np.ndarray, laws: list[tuple[slice, float, float]], x: np.ndarray) -> np.ndarray:
-    """Return slips after a correction by Newton's method of those that are not zero."""
-    matrix, gap = slope.copy(), free - slope @ x
-    for at, most, viscous in laws:
-        one, length = np.eye(len(x))[at, at], np.linalg.norm(x[at])
-        if length == 0:
-            matrix[at], matrix[at, at], gap[at] = 0.0, one, 0.0
-            continue
-        way = x[at] / length
-        gap[at] -= most * way + viscous * x[at]
-        matrix[at, at] += viscous * one + most / length * (one - np.outer(way, way))
-    return x + np.linalg.solve(matrix, gap)
-
-
-def friction_of_one(
-    slope: Float[np.ndarray, "s s"], free: Float[np.ndarray, "s"], most: float, viscous: float
-) -> tuple[Float[np.ndarray, "s"], Float[np.ndarray, "s"]]:
-    r"""Return x and j of $Ax = b + j$, $-j \in m\,\partial|x| + cx$ at one contact.
-
-    With $y = (|x|(A + c) + m)^{-1}b$ it is $x = |x|y$ at |y| = 1, and x = 0 if |b| <= m. The size of y falls as |x|
-    grows, and its inverse is concave where A is symmetric: Newton's method from below.
-    """
-    if np.linalg.norm(free) <= most:
-        return 0 * free, -free
-    if len(free) == 1:
-        push = most * np.sign(free)
-        return (free - push) / (slope[0] + viscous), -push - viscous * (free - push) / (slope[0] + viscous)
-    one = np.eye(len(free))
-    stiff = slope + viscous * one
-    size = (np.linalg.norm(free) - most) / np.linalg.norm(stiff)
-    y, length = free, 1.0
-    for _ in range(_MOST):
-        y = np.linalg.solve(size * stiff + most * one, free)
-        falls, length = y @ np.linalg.solve(size * stiff + most * one, stiff @ y), np.linalg.norm(y)
-        change = length**2 * (length - 1) / falls
-        if abs(change) <= _ROUNDING * size:
-            break
-        size = max(size + change, size / 2)
-    return size * y, -(most / length + viscous * size) * y
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -407,7 +334,7 @@ class SlipStepper(AbstractBodyStepper):
         good, code = hold.runs.advance(hold.body_from(since), run, most, 1, rows)
         m, charts, poses = (column[:good] for column in rows)
         impulses = self.route.reaction(charts, poses, number + np.arange(good))
-        fits = self.route.sizes(impulses) <= self.route.grips(np.zeros(impulses.shape[1]))
+        fits = self.route.contacts.sizes(impulses) <= self.route.grips(np.zeros(impulses.shape[1]))
         ends = np.flatnonzero(~fits.all(axis=1))
         momenta = np.concatenate([hold.decode(m), np.zeros((good, len(r) - m.shape[1]))], axis=1)
         states = momenta, self.route.wide(charts), hold.decode_poses(poses)

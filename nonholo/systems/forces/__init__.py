@@ -1,5 +1,6 @@
 """Forces and potentials: what acts on a system beside its constraint, and the system with it."""
 
+from nonholo.systems.forces._contacts import Contacts, Mode, friction
 from nonholo.systems.forces._forced import Forced, central_differences
 from nonholo.systems.forces._friction import Friction, Slip, Widened, force_of, parts_of
 from nonholo.systems.forces._potentials import Gravity, Linear, Spring

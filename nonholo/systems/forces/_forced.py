@@ -21,16 +21,8 @@ from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
 from nonholo.systems._base import AbstractSystem
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem
-from nonholo.systems.forces._friction import (
-    Friction,
-    Slip,
-    Widened,
-    force_of,
-    parts_of,
-    remaining_rows,
-    slips_of,
-    terms_of,
-)
+from nonholo.systems.forces._contacts import Contacts
+from nonholo.systems.forces._friction import Friction, Widened, force_of, parts_of, remaining_rows, slips_of, terms_of
 from nonholo.systems.forces._potentials import Gravity
 
 _OFFSET = 8e-3  # of a body direction, for central differences: its sixth power is at rounding
@@ -79,7 +71,7 @@ class Forced(AbstractSystem):
             their error is about 1e-13 of what U changes by over one radian or one unit of length.
         force: f, a function (time, configuration, body_velocity) -> (dim,); or `Friction`; or an array (steps, dim),
             whose row k acts constantly over step k: for maps only; or `Slip`, rows of the constraint that may yield:
-            for maps of the scheme "energy" only. Time is that of the orbit, from zero. Several forces are a tuple of
+            for flows and the scheme "energy". Time is that of the orbit, from zero. Several forces are a tuple of
             them, such as `(Friction(...), table)`, with at most one of each kind but `Slip`. Under "energy" f is asked
             in the middle of the step, at its mean velocity X / h.
         scheme: "energy" or "variational"; by default "energy" wherever it is defined and the body is constrained.
@@ -183,9 +175,14 @@ class Forced(AbstractSystem):
         return self.parts.get("friction")
 
     @property
-    def slips(self) -> tuple[Slip, ...]:
+    def slips(self) -> tuple[Any, ...]:
         """The contacts whose rows may yield."""
         return slips_of(self.parts)
+
+    @functools.cached_property
+    def contacts(self) -> Contacts:
+        """The contacts, with the momenta of their slips."""
+        return Contacts(cast(Widened, self.free).slip_inertia, self.slips)
 
     @functools.cached_property
     def free(self) -> AbstractSystem:
@@ -336,8 +333,11 @@ class Forced(AbstractSystem):
         return pull - np.divide(change, twice, out=np.zeros_like(change), where=is_significant)[:, None] * along
 
     def applied_force(self, time: float, configuration: np.ndarray, body_velocity: np.ndarray) -> np.ndarray:
-        """Return f, one body covector, of `Friction` and a function; nothing of a table, which belongs to steps."""
+        """Return f, one body covector, of `Friction`, a function and slips; none of a table, which belongs to steps."""
         force = self.driving_force(time, configuration, body_velocity)
+        for one in (one for one in self.slips if one.grip < np.inf):
+            v = one.rows @ body_velocity
+            force = force - one.rows.T @ (one.grip * v / (np.linalg.norm(v) or 1.0) + one.viscous * v)
         return force if self.friction is None else force + self.friction.covector(body_velocity)
 
     def driving_force(self, time: float, configuration: np.ndarray, body_velocity: np.ndarray) -> np.ndarray:

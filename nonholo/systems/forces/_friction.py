@@ -91,8 +91,9 @@ class Slip:
     Several slips in a tuple are contacts with separate grips, each of which holds or slides.
 
     `discretize` decides at every step whether the rows hold, then takes the step of the system itself, or slide
-    (docs/theory/forces.md, Theorem 18.4). T never grows by a slip, at any step size. Momenta and velocities are those
-    of the system without these rows, and an orbit shows the slip: `orbit.body_velocity @ rows.T`, zero while they hold.
+    (docs/theory/forces.md, Theorem 18.4). T never grows by a slip, at any step size. `flow` goes through phases in
+    which each contact holds or slides. Momenta and velocities are those of the system without these rows, and an orbit
+    shows the slip: `orbit.body_velocity @ rows.T`, zero while they hold.
 
     Args:
         rows: A, (s, dim) rows of the system's annihilator, or rows with the span of s of them. The other rows of the
