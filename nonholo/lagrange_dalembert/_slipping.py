@@ -45,10 +45,10 @@ class SlipStepper(AbstractStepper[Any]):
     """
 
     motion: Any
-    branch = "nearest"
-    in_threads = False
     lead: ClassVar[int] = 0
     part_refused = "a form that may yield"  # type: ignore[assignment]
+    in_threads = False
+    branch = "nearest"
 
     @functools.cached_property
     def steppers(self) -> tuple[CoordinateStepper, CoordinateStepper]:
