@@ -68,12 +68,15 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
     def first(self, start: Start, *, with_poses: bool) -> First:
         """Return the checked momentum, place and velocity of a start."""
         del with_poses
-        system, h, subject = self.system, np.float64(self.time_step), (start.owner, self.system)
+        system, h, subject = self.system.free, np.float64(self.time_step), (start.owner, self.system.free)
         checks = room("_start")
         q = checks.point(*subject, start.configuration, project=start.project)
         checks.consistent(system, q, h)
         if start.name == "momentum":
             return First(checks.of_momentum(*subject, q, start.value))
+        if start.name == "displacement" and self.system.slip is not None:
+            got, remedy = "a Slip, which decides over it", "Pass body_velocity= or momentum=."
+            raise error(f"{start.owner}(displacement=...)", "be of forms that never yield", got, remedy)
         if start.name == "displacement":
             v = checks.velocity_of_displacement(system, q, start.value, h)
             return First((in_double(equations.momenta, system, q, v, h)[0], q, v))
@@ -82,7 +85,8 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
 
     @functools.cached_property
     def _stepper(self) -> AbstractStepper[OrbitT]:
-        return cast(Any, CoordinateStepper(self))
+        kind = CoordinateStepper if self.system.slip is None else room("_slipping").SlipStepper
+        return cast(Any, kind(self))
 
     def stepper(self, *, with_poses: bool) -> AbstractStepper[OrbitT]:
         """Return what takes its steps."""
@@ -304,9 +308,7 @@ def _advance(system: Any, h: Array, state: Motion, sign: Array, rows: Array, eve
 def _decoded(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> list[np.ndarray]:
     """Return displacements, momenta, energies and residuals of all saved states, by JAX in blocks of one size."""
     columns = compiled.decoded(_decode, system, h, q, v)
-    if columns is not None:
-        return columns
-    return in_blocks(_decode_all, system, np.broadcast_to(h, len(q)), q, v)
+    return columns or in_blocks(_decode_all, system, np.broadcast_to(h, len(q)), q, v)
 
 
 def _decode_all(system: Any, h: Array, q: Array, v: Array) -> tuple[Array, ...]:

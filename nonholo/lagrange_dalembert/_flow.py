@@ -269,9 +269,7 @@ def refuse_varying_mass(where: str, orbit: Any) -> None:
 
 
 def _orbit(system: Any, time: np.ndarray, rows: list[np.ndarray], outcome: Outcome, solution: Any) -> Any:
-    columns = compiled.flow_rows(system, *rows)
-    if columns is None:
-        columns = room("_integration").columns(system, rows)
+    columns = compiled.flow_rows(system, *rows) or room("_integration").columns(system, rows)
     place = configurations(system, rows[0])
     return ORBITS[system.orbits](time, place, None, rows[1], *columns, outcome, system, solution=solution)
 

@@ -273,6 +273,22 @@ class Bound:
         return getattr(self.function, "is_of_one_step", False)
 
 
+@dataclasses.dataclass(frozen=True)
+class Rows:
+    """Some rows of what a function returns."""
+
+    function: Callable[..., Any]
+    rows: tuple[int, ...]
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Return them."""
+        return self.function(*arguments)[np.array(self.rows, dtype=int)]
+
+    @property
+    def __signature__(self) -> inspect.Signature:
+        return inspect.signature(self.function)
+
+
 _PATIENCE = 1.0  # seconds of silence
 _calls: set[tuple[Any, Any]] = set()
 _announcements: set[Any] = set()

@@ -87,6 +87,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
     has_limit: ClassVar[bool] = True
     prescribed: ClassVar[tuple[()]] = ()
     force: ClassVar[None] = None
+    slip: ClassVar[None] = None
     applied: ClassVar[None] = None
     table: ClassVar[None] = None
     constraint_velocities: ClassVar[None] = None

@@ -139,7 +139,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         """
         if not self.system.has_functions:
             return np.full(len(self), np.nan if self.system.is_driven else 0.0)
-        return room("_flow").work(self) if self.system.is_driven else np.zeros(len(self))
+        return room("_flow").work(self) if self.system.is_driven or self.system.slip else np.zeros(len(self))
 
     @property
     def lacks_forces(self) -> bool:
@@ -150,7 +150,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     @memo
     def restricted_momentum(self) -> Float[np.ndarray, "K n"]:
         r"""Momenta less their parts $A^T\mu$ across the constraint: those along admissible directions."""
-        A = in_double(_forms_at, self.system, places(self.system, self.configuration, self.time))
+        A = in_double(_forms_at, self.system.free, places(self.system, self.configuration, self.time))
         p = self.momentum[..., None]
         return (p - np.linalg.pinv(A) @ (A @ p))[..., 0]
 

@@ -3,7 +3,7 @@
 import dataclasses
 import functools
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
 
 import jax
 import numpy as np
@@ -17,6 +17,7 @@ from nonholo.lagrange_dalembert._functions import (
     Bound,
     ForceTable,
     Parameters,
+    Rows,
     check_forms,
     check_rows_of_places,
     check_value,
@@ -27,7 +28,7 @@ from nonholo.lagrange_dalembert._functions import (
     with_time_step,
 )
 from nonholo.lagrange_dalembert._places import Coordinates
-from nonholo.systems import AbstractCoordinateSystem, force_of, parts_of
+from nonholo.systems import AbstractCoordinateSystem, force_of, parts_of, slips_of
 
 if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization
@@ -83,7 +84,8 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         prescribed: Motions s(time) of coordinates, by index: joints that are driven. Discrete motions follow them
             exactly; their multipliers, the last ones, are the driving forces.
         force: `force(time, q, v)` -> (n,); or `nonholo.Friction`; or an array (steps, n), whose row k acts over step k;
-            or a tuple with at most one of each.
+            or `nonholo.Slip` of the form that may yield, `rows=[[0.0, 1.0]]` for the second of two; or a tuple with at
+            most one of each.
             `nonholo.Forced(system, potential, force)` adds one.
         parameters: Numbers or arrays by name, p. Where there are any, every function takes them as its last argument, a
             dictionary with these names: `lagrangian(q, v, p)` or `(q, v, time, p)`, `constraint_forms(q, p)` or
@@ -179,11 +181,19 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
             self._check("constraint_velocities", (self.velocity_constraints,), q, time)
             if self.applied is not None:
                 check_value(_argument("force"), self.applied, (n,), (time, q, q, *last), *2 * (f"{n} coordinates",))
-        if self.is_driven and (self.discrete_lagrangian or self.discrete_constraints):
+        self._check_slip(self.velocity_constraints)
+        if (self.is_driven or self.slip) and (self.discrete_lagrangian or self.discrete_constraints):
             remedy = 'Use rule="midpoint" or "trapezoidal".'
-            raise error(
-                _argument("discrete_lagrangian"), "be left out of a driven system", "discrete functions", remedy
-            )
+            where, demand = _argument("discrete_lagrangian"), "be left out of a driven system, or one with a Slip"
+            raise error(where, demand, "discrete functions", remedy)
+
+    def _check_slip(self, forms: int) -> None:
+        """Refuse a slip that is not of one of the forms."""
+        rows = [each.rows for each in slips_of(parts_of(self.force))]
+        if len(rows) > 1 or any(row.shape != (1, forms) or np.count_nonzero(row) > 1 for row in rows):
+            demand = f"have at most one Slip, with one row of {forms} numbers, one of them not zero"
+            got, remedy = f"{[row.tolist() for row in rows]}", "Pass rows=[[0.0, 1.0]] for the second of two forms."
+            raise error(_argument("force"), demand, got, remedy)
 
     def _time(self, name: str) -> tuple[Any, ...]:
         count = _OTHERS[name] + len(self._shapes_given)
@@ -202,7 +212,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     @functools.cached_property
     def is_driven(self) -> bool:
         """Whether a force acts, or anything depends on time or moves by itself."""
-        acts = self.force is not None or self.constraint_velocities is not None or bool(self.prescribed)
+        acts = self.holding.force is not None or self.constraint_velocities is not None or bool(self.prescribed)
         return acts or any(map(self.takes_time, _OTHERS))
 
     def with_parameters(self, **numbers: Any) -> Self:
@@ -238,6 +248,9 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
 
     def bound(self, *numbers: Any) -> Self:
         """Return the system without parameters whose functions have these numbers within."""
+        if self.slip is not None:
+            remedy = "Run it by `simulate` or `iterate` of what `discretize` returned, or leave the slip out."
+            raise error(_argument("force"), "have forms that never yield", "a Slip", remedy)
         if not self.parameters:
             return self
         p = dict(zip(self.parameters, numbers, strict=True))
@@ -277,6 +290,27 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         """The force as a function, where there is one."""
         return parts_of(self.force).get("function")
 
+    @property
+    def slip(self) -> Any:
+        """The form that may yield, where there is one."""
+        return parts_of(self.force).get("slip")
+
+    @functools.cached_property
+    def holding(self) -> Self:
+        """The system while the form that may yield holds; itself if none may."""
+        parts = parts_of(self.force)
+        return dataclasses.replace(self, force=force_of(parts)) if parts.pop("slip", None) else self
+
+    @functools.cached_property
+    def free(self) -> Self:
+        """The system without the form that may yield; itself if none may."""
+        if self.slip is None:
+            return self
+        rows = tuple(map(int, np.flatnonzero(~self.slip.rows.any(axis=0))))
+        velocities = self.constraint_velocities and Rows(self.constraint_velocities, rows)
+        forms = Rows(cast(Any, self.constraint_forms), rows) if rows else None
+        return dataclasses.replace(self.holding, constraint_forms=forms, constraint_velocities=velocities)
+
     @functools.cached_property
     def constraints(self) -> int:
         """The number s of constraints, the holonomic ones and those of prescribed coordinates with them."""
@@ -288,7 +322,7 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         return self._rows_of("constraint_forms")
 
     def _rows_of(self, name: str) -> int:
-        return count_of(getattr(self.plain, name), (self.dimension,), *(() for _ in self._time(name)))
+        return count_of(getattr(self.holding.plain, name), (self.dimension,), *(() for _ in self._time(name)))
 
     @property
     def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
@@ -396,8 +430,6 @@ def _motions(motions: Any, dimension: int, last: tuple[Any, ...]) -> tuple[tuple
 def _force(value: Any, dimension: int) -> Any:
     """Return a force as a function, with that of `Friction`, a table, both, or None."""
     parts = parts_of(value)
-    if "slip" in parts:
-        raise error(_argument("force"), "be no Slip", "one", "Rows that may yield need a body on a group: nh.LLSystem.")
     if (friction := parts.pop("friction", None)) is not None:
         friction.check(dimension)
         matrix, other = friction.matrix, parts.get("function")

@@ -64,6 +64,7 @@ from nonholo.systems.forces import (
     force_of,
     friction,
     parts_of,
+    slips_of,
 )
 
 SYSTEMS = tuple(kind for kind in vars(families).values() if isinstance(kind, type))

@@ -80,9 +80,12 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
         """Return a system with other fields, which need no check; it does not have a name for stores."""
         system = object.__new__(type(self))
         vars(system).update(vars(self), **fields)
-        for name in {"description", "family", "plain", "recipe"} - fields.keys():
+        for name in {"description", "family", "free", "holding", "plain", "recipe"} - fields.keys():
             vars(system).pop(name, None)
         return system
+
+    free = property(lambda self: self)
+    """The system without the form of its constraint that may yield; itself if none may."""
 
     @property
     def plain(self) -> Any:
