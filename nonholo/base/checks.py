@@ -12,13 +12,15 @@ import os
 import sys
 from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import Any, TypeAlias, TypeVar, cast
 
 import numpy as np
 
 from nonholo.base.types import Array
 
 Kind = TypeVar("Kind")
+Owner: TypeAlias = str | Callable[[], str]
+"""The argument that an error names, or what names it once there is one."""
 Function = TypeVar("Function", bound=Callable[..., Any])
 _LEAST_RTOL = 1e-14
 LARGEST = 1e150  # what a number may be; squares of larger ones overflow
@@ -37,14 +39,14 @@ COLUMNS = frozenset({"constraint_residual", "energy", "t", "time"})
 """Columns of tables of orbits, beside which those of coordinates stand under their own names."""
 
 
-def error(where: str, requirement: str, got: str, remedy: str) -> ValueError:
+def error(where: Owner, requirement: str, got: str, remedy: str) -> ValueError:
     """Build the error every check raises: owner and argument, requirement, fact, remedy.
 
     Example:
         >>> str(error("simulate(steps=...)", "be a positive integer", "0", "Pass steps=1 or more."))
         '`simulate(steps=...)` must be a positive integer. Got 0. Pass steps=1 or more.'
     """
-    message = f"`{where}` must {requirement}. Got {got}. {remedy}"
+    message = f"`{where if isinstance(where, str) else where()}` must {requirement}. Got {got}. {remedy}"
     return ValueError("\n".join(map(printable, message.split("\n"))))
 
 
@@ -84,7 +86,7 @@ def array(where: str, value: Any, shape: tuple[int | None, ...], remedy: str = "
     return result
 
 
-def real_or_complex(where: str, value: Any, remedy: str) -> np.ndarray:
+def real_or_complex(where: Owner, value: Any, remedy: str) -> np.ndarray:
     """Return an array of integers, floats or complex numbers; refuse all else that NumPy would turn into some.
 
     Texts, dates, truth values, structures, None, and masked arrays, whose hidden numbers NumPy would use.
@@ -113,7 +115,7 @@ def shown(value: Any) -> str:
     return text if len(text) <= 200 else f"{text[:200]}..."
 
 
-def _too_large(where: str, value: np.ndarray, remedy: str) -> ValueError:
+def _too_large(where: Owner, value: np.ndarray, remedy: str) -> ValueError:
     """Return the error of numbers of which there are too many to look at, such as one that is repeated without end."""
     return error(where, "fit into memory", f"shape {value.shape}", remedy)
 
@@ -136,7 +138,7 @@ def _is_moderate(value: np.ndarray) -> bool:
     return float(np.einsum("i,i->", numbers, numbers.conj()).real) <= _LARGEST_SUM
 
 
-def _check_finite(where: str, value: np.ndarray, remedy: str) -> None:
+def _check_finite(where: Owner, value: np.ndarray, remedy: str) -> None:
     finite = np.isfinite(value)
     if not finite.all():
         position = tuple(int(i) for i in np.argwhere(~finite)[0])
@@ -178,7 +180,7 @@ def _as_floats(result: Array) -> Array:
         return result.astype(np.complex128 if result.dtype.kind == "c" else np.float64)
 
 
-def trailing(where: str, value: Any, shape: tuple[int, ...], remedy: str, *, real: bool = False) -> Array:
+def trailing(where: Owner, value: Any, shape: tuple[int, ...], remedy: str, *, real: bool = False) -> Array:
     """Return an array (a sequence becomes float64) whose last axes have the given shape; leading axes are free.
 
     One element has to be finite. In a stack NaN stays NaN: it marks what has no value, such as a member that has ended.
@@ -292,9 +294,10 @@ def step_counts(steps: Any, save_every: Any) -> tuple[int, int]:
 
 def choice(where: str, value: Any, choices: tuple[Any, ...], remedy: str = "Choose one of them.") -> Any:
     """Return `value` if it is one of the allowed ones."""
-    if not any(value is a or value == a for a in choices if isinstance(value, type(a))):
-        raise error(where, "be one of " + ", ".join(repr(a) for a in choices), shown(value), remedy)
-    return value
+    for each in choices:
+        if isinstance(value, type(each)) and (value is each or value == each):
+            return value
+    raise error(where, "be one of " + ", ".join(map(repr, choices)), shown(value), remedy)
 
 
 def flag(where: str, value: Any) -> bool:
@@ -369,7 +372,8 @@ def pair(where: str, value: Any) -> tuple[Any, Any]:
 def flags(owner: str, **values: Any) -> None:
     """Refuse arguments of an owner that are neither True nor False."""
     for name, value in values.items():
-        flag(f"{owner}({name}=...)", value)
+        if value is not True and value is not False:
+            flag(f"{owner}({name}=...)", value)
 
 
 def path(where: str, value: Any) -> Path:

@@ -45,7 +45,7 @@ else:
         def __init__(self, compute: Callable[[Any], Any]) -> None:
             super().__init__(functools.wraps(compute)(lambda owner: read_only(compute(owner))))
 
-    class system_memo(property):  # noqa: N801
+    class system_memo(functools.cached_property):  # noqa: N801
         """A property of a system, computed once; small arrays are kept, and given as copies.
 
         A traced value belongs to its trace: a system with a traced one among its `leaves` keeps nothing.
@@ -55,12 +55,12 @@ else:
             """Return the value."""
             if owner is None:
                 return self
-            name = self.fget.__qualname__  # has a dot, which no name of a field has
-            value = owner.__dict__.get(name)
-            if value is None:
-                value = self.fget(owner)
-                is_large = isinstance(value, np.ndarray) and value.nbytes > _SMALL
-                if is_large or any(is_traced(getattr(owner, leaf)) for leaf in owner.leaves):
-                    return value
-                owner.__dict__[name] = value
-            return value.copy() if isinstance(value, np.ndarray) else value
+            own, name = owner.__dict__, self.func.__qualname__  # has a dot, which no name of a field has
+            if name in own:
+                return own[name].copy()
+            value = self.func(owner)
+            is_array = isinstance(value, np.ndarray)
+            if (is_array and value.nbytes > _SMALL) or any(is_traced(getattr(owner, leaf)) for leaf in owner.leaves):
+                return value
+            own[name if is_array else self.attrname] = value  # what stands under its name is found there
+            return value.copy() if is_array else value

@@ -17,7 +17,6 @@ from rich.text import Text
 _LATE = 2.0  # seconds
 Result = TypeVar("Result")
 _over: contextvars.ContextVar[Callable[[], bool]] = contextvars.ContextVar("over", default=lambda: False)
-_report: contextvars.ContextVar[Any] = contextvars.ContextVar("told", default=lambda *_: go_on())
 _overs: dict[int, Callable[[], bool]] = {}
 _numbers = itertools.count()
 _LOOK = 0.2  # seconds between two looks at the keyboard, where a signal does not end the waiting
@@ -69,10 +68,13 @@ def number_is_over(number: int) -> bool:
     return _overs[int(number)]()
 
 
-def go_on() -> None:
-    """Raise `CancelledError` where the work is over."""
-    if is_over():
+def go_on(*_: float) -> None:
+    """Raise `CancelledError` where the work is over, however much is done."""
+    if _over.get()():
         raise CancelledError
+
+
+_report: contextvars.ContextVar[Any] = contextvars.ContextVar("told", default=go_on)
 
 
 def interruptibly(work: Callable[[], Result]) -> Result:
@@ -98,7 +100,7 @@ def interruptibly(work: Callable[[], Result]) -> Result:
     return future.result()
 
 
-_SILENT = contextlib.nullcontext(lambda *_: go_on())
+_SILENT = contextlib.nullcontext(go_on)
 
 
 class _Rate(ProgressColumn):
@@ -119,14 +121,18 @@ def progress_bar(title: str, is_visible: bool) -> contextlib.AbstractContextMana
     return _shown_bar(title) if is_visible else _SILENT
 
 
-@contextlib.contextmanager
-def telling(title: str, is_visible: bool) -> Iterator[None]:
+def telling(title: str, is_visible: bool) -> contextlib.AbstractContextManager[Any]:
     """Show what the work inside tells.
 
     Example:
         >>> with telling("time", is_visible=False):
         ...     tell(3.0, 10.0)
     """
+    return _telling(title, is_visible) if is_visible or _report.get() is not go_on else _SILENT
+
+
+@contextlib.contextmanager
+def _telling(title: str, is_visible: bool) -> Iterator[None]:
     with progress_bar(title, is_visible) as report:
         token = _report.set(report)
         try:
@@ -174,13 +180,11 @@ def late_bar(title: str) -> Iterator[Callable[[int, int], None]]:
         yield report
 
 
-@contextlib.contextmanager
-def waiting(title: str, is_visible: bool) -> Iterator[None]:
+def waiting(title: str, is_visible: bool) -> contextlib.AbstractContextManager[Any]:
     """Show what is being done, and for how long, where there is nothing to count.
 
     Example:
         >>> with waiting("measuring", is_visible=False):
         ...     pass
     """
-    with progress_bar(title, is_visible):
-        yield
+    return progress_bar(title, is_visible)

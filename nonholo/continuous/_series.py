@@ -106,7 +106,7 @@ def by_series(system: AbstractSystem, problem: Problem) -> Solved:
         unit = power_of_two(system.restricted_velocity(reduced_momentum, system.group.matrix_from_pose(problem.pose)))
         f, head, constant = f._replace(momentum=reduced_momentum / unit), np.zeros(f.tensor.size), reduced_momentum
     else:
-        unit = power_of_two(f.velocities @ reduced_momentum)
+        unit = power_of_two(f.velocities.dot(reduced_momentum))
         head = reduced_momentum / unit
     return solve(system.group, f, head, len(reduced_momentum), constant, unit, problem)
 

@@ -313,19 +313,19 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
         return self.coordinates.dual_vector(transpose @ P - P @ transpose)
 
     def _vector(self, x: Array) -> Array:
-        where = f"{self!r} (coordinates)"
-        return trailing(where, x, (self.dim,), "Use `vee` to turn a matrix into coordinates.", real=True)
+        remedy = "Use `vee` to turn a matrix into coordinates."
+        return trailing(lambda: f"{self!r} (coordinates)", x, (self.dim,), remedy, real=True)
 
     def _pose(self, pose: Array) -> Array:
         remedy = "Use `pose_from_matrix` to turn a matrix into a pose."
-        return trailing(f"{self!r} (pose)", pose, (self.pose_size,), remedy, real=True)
+        return trailing(lambda: f"{self!r} (pose)", pose, (self.pose_size,), remedy, real=True)
 
     def _generator(self, rng: Any) -> np.random.Generator:
         return generator(f"{self!r}.random(rng=...)", rng)
 
     def _matrix(self, g: Array, real: bool = True) -> Array:
-        where, shape = f"{self!r} (element)", (self.size, self.size)
-        return trailing(where, g, shape, "Use `hat`, `exp` or `cayley` to make a matrix.", real=real)
+        shape, remedy = (self.size, self.size), "Use `hat`, `exp` or `cayley` to make a matrix."
+        return trailing(lambda: f"{self!r} (element)", g, shape, remedy, real=real)
 
 
 def _from_identity(increment: Array) -> Array:

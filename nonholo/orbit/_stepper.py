@@ -65,7 +65,7 @@ class Plan(NamedTuple):
 
     def stretch(self, block: int) -> tuple[int, int, bool]:
         """Return where the computation of a block begins and ends, and whether it is the last one."""
-        is_last = block == self.blocks - 1
+        is_last = self.steps // self.every < (block + 1) * self.rows
         return self.begin(block), self.steps if is_last else self.begin(block + 1), is_last
 
     def has_rows(self, block: int, step: int) -> bool:

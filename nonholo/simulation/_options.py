@@ -44,7 +44,6 @@ def check_forces(owner: str, discrete: Any, steps: int, *, free: str | None = No
 def checked_run(
     owner: str,
     discrete: Any,
-    *,
     steps: Any,
     save_every: Any,
     branch: BranchRule,

@@ -97,9 +97,7 @@ def simulate(
         >>> float(np.ptp(orbit.energy)) < 1e-14
         True
     """
-    how = {"branch": branch, "reconstruct": reconstruct, "backend": backend, "events": events}
-    how |= {"steps": steps, "save_every": save_every, "throw": throw, "progress": progress}
-    run = checked_run("simulate", discrete, **how)
+    run = checked_run("simulate", discrete, steps, save_every, branch, backend, reconstruct, events, throw, progress)
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity}
     starts |= {"displacement": displacement, "momentum": momentum}
     start = Start.of("simulate", configuration, choices=discrete.starts, project=project, **starts)
@@ -179,9 +177,7 @@ def iterate(
         >>> [len(block) for block in nh.iterate(sleigh, body_velocity=(1, 0, 0), steps=1000, block_steps=400)]
         [400, 400, 201]
     """
-    how = {"branch": branch, "reconstruct": reconstruct, "backend": backend, "events": events}
-    how |= {"steps": steps, "save_every": save_every, "throw": throw, "progress": progress}
-    run = checked_run("iterate", discrete, **how)
+    run = checked_run("iterate", discrete, steps, save_every, branch, backend, reconstruct, events, throw, progress)
     starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
     starts |= {"restricted_velocity": restricted_velocity}
     start = Start.of("iterate", configuration, choices=discrete.starts, project=project, **starts)

@@ -295,12 +295,12 @@ class AbstractSystem(Keeper, abc.ABC):
 
     def restrict(self, momentum: Inexact[Array, "... dim"]) -> Inexact[Array, "... k"]:
         """Return the components of a momentum along the rows of the constraint subspace."""
-        where, remedy = f"{type(self).__name__}.restrict(momentum=...)", "Pass a full momentum."
+        where, remedy = lambda: f"{type(self).__name__}.restrict(momentum=...)", "Pass a full momentum."
         return applied(self.constraint_subspace, trailing(where, momentum, (self.group.dim,), remedy))
 
     def _along(self, name: str, value: Array) -> Array:
         remedy = "Pass one number for each row of the constraint subspace."
-        return trailing(f"{type(self).__name__} ({name}=...)", value, (self.rank,), remedy)
+        return trailing(lambda: f"{type(self).__name__} ({name}=...)", value, (self.rank,), remedy)
 
 
 def replace_numbers(system: SystemT, /, **numbers: Array) -> SystemT:

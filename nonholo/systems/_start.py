@@ -1,7 +1,6 @@
 """The start of a motion, for every kind of run: exactly one start, a pose of the group, an admissible velocity."""
 
-import dataclasses
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,8 +12,7 @@ from nonholo.systems._base import System
 _TOLERANCE = 1e-9  # relative, for matrices and velocities that a user computed in floating point
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class Start:
+class Start(NamedTuple):
     """The one start that a call was given, and the pose there.
 
     Attributes:
@@ -138,7 +136,7 @@ def _of_momentum(start: Start, system: System, g: np.ndarray | None) -> np.ndarr
 
 def _of_velocity(start: Start, system: System, g: np.ndarray | None) -> np.ndarray:
     velocity = array(start.where, start.value, (system.group.dim,), "Use `vee` to turn a matrix into coordinates.")
-    momentum = system.inertia_operator @ velocity
+    momentum = system.inertia_operator.dot(velocity)  # the bits of @ in half of its time
     along = system.restrict_at(momentum, g)
     if start.project:
         return of_finite_energy(start.owner, system, g, along)
@@ -154,7 +152,7 @@ def _of_coordinates(start: Start, system: System, g: np.ndarray | None) -> np.nd
 
 def _check_admissible(where: str, system: System, g: Any, velocity: np.ndarray) -> None:
     frame_velocity = system.carried(g) @ velocity if system.is_spatial else velocity
-    forbidden = system.annihilator @ frame_velocity
+    forbidden = system.annihilator.dot(frame_velocity)
     if np.count_nonzero(forbidden) and np.abs(forbidden).max() > _TOLERANCE * np.abs(frame_velocity).max():
         nearest = frame_velocity - np.linalg.pinv(system.annihilator) @ forbidden
         back = system.carried(system.group.inverse(g)) if system.is_spatial else np.eye(len(frame_velocity))

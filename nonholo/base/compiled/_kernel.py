@@ -32,6 +32,7 @@ _SCALARS = {
     type(None): "n",
     FUNCTION: "f",
 }
+_ARRAY, _NUMBERS = np.ndarray, frozenset(kind for kind, letter in _SCALARS.items() if letter in "dq?")
 _FORMATS = {"f": "q", "d": "d", "q": "q", "?": "?7x", "n": ""}
 _REFUSED = object()
 _SLOW = (
@@ -76,7 +77,7 @@ class Kernel:
     def __init__(self, options: dict[str, Any], function: Callable[..., Any]) -> None:
         functools.update_wrapper(self, function)
         self.py_func, self.options = function, options
-        self._entries: dict[Any, Entry | None] = {}
+        self._entries: dict[Any, Callable[[list[Any]], Any] | None] = {}
         self._body: tuple[Any, Any, list[Any]] = (), None, []
 
     def __call__(self, *arguments: Any) -> Any:
@@ -135,14 +136,14 @@ def spread(values: tuple[Any, ...], words: list[Any]) -> Any:
     classes: list[Any] = []
     for value in values:
         kind = type(value)
-        if kind is np.ndarray:
+        if kind is _ARRAY:
             words.append(id(value))
+        elif kind in _NUMBERS:
+            words.append(value)
         elif isinstance(value, tuple):
             kind = kind, spread(value, words)
         elif kind is FUNCTION:
             words.append(ctypes.cast(value, ctypes.c_void_p).value)
-        elif value is not None:
-            words.append(value)
         classes.append(kind)
     return tuple(classes)
 
@@ -170,29 +171,28 @@ def _is_readable(value: np.ndarray) -> bool:
     return value.flags.c_contiguous and value.flags.aligned
 
 
-class Entry:
-    """A function of the library for arguments of one kind.
+def _entry_of(function: Any, name: str, key: str, returns: str, release: Any) -> Callable[[list[Any]], Any]:
+    """Return what runs a function of the library on the words of arguments of one kind.
 
-    It takes two addresses: of the words of its arguments, and of a word that becomes 1 with what it returns after it,
-    -1 where it fails.
+    The function takes two addresses: of the words, and of a word that becomes 1 with what it returns after it, -1 where
+    it fails. Where arrays are of another kind `_REFUSED` is returned in place of that.
     """
+    function.restype, function.argtypes = None, (ctypes.c_char_p, ctypes.c_void_p)
+    shape = tokens(returns)
+    arguments = struct.Struct("".join(_FORMATS.get(each, "q" * _is_array(each)) for each in tokens(key)))
+    results = struct.Struct("q" + "".join(map(_result_format, shape)))
+    pack, unpack, make_room = arguments.pack, results.unpack, ctypes.c_char * results.size
+    result_of = _result_of(shape, release)
 
-    def __init__(self, function: Any, name: str, key: str, returns: str, release: Any) -> None:
-        function.restype, function.argtypes = None, (ctypes.c_char_p, ctypes.c_void_p)
-        shape = tokens(returns)
-        self._function, self._name, self._result = function, name, _result_of(shape, release)
-        self._arguments = struct.Struct("".join(_FORMATS.get(each, "q" * _is_array(each)) for each in tokens(key)))
-        self._results = struct.Struct("q" + "".join(map(_result_format, shape)))
-        self._room = ctypes.c_char * self._results.size
-
-    def __call__(self, words: list[Any]) -> Any:
-        """Return what it returns, or what is written in place of that where arrays are of another kind."""
-        room = self._room()
-        self._function(self._arguments.pack(*words), room)
-        values = self._results.unpack(room)
+    def run(words: list[Any]) -> Any:
+        room = make_room()
+        function(pack(*words), room)
+        values = unpack(room)
         if values[0] < 0:
-            raise RuntimeError(_FAILED.format(self._name))
-        return self._result(values) if values[0] else _REFUSED
+            raise RuntimeError(_FAILED.format(name))
+        return result_of(values) if values[0] else _REFUSED
+
+    return run
 
 
 def _result_of(shape: list[str], release: Any) -> Callable[[tuple[Any, ...]], Any]:
@@ -274,7 +274,7 @@ class Library:
         self._release.restype, self._release.argtypes = None, (ctypes.c_void_p,)
         self._variants = ("_wide", "") if _is_wide() else ("",)
 
-    def entry(self, kernel: Kernel, key: str) -> Entry | None:
+    def entry(self, kernel: Kernel, key: str) -> Callable[[list[Any]], Any] | None:
         """Return what runs a kernel for arguments of a kind; None if the library does not have it."""
         name = f"{kernel.__module__}.{kernel.__qualname__}"
         symbol = symbol_of(name, key)
@@ -282,7 +282,7 @@ class Library:
         if function is None:
             return None
         returns = ctypes.string_at(ctypes.addressof(ctypes.c_char.in_dll(self._code, f"{symbol}_returns")))
-        return Entry(function, name, key, returns.decode(), self._release)
+        return _entry_of(function, name, key, returns.decode(), self._release)
 
     def address(self, name: str, key: str) -> int:
         """Return the address of what an emitter, named by its place, wrote for a key; 0 if the library has it not."""

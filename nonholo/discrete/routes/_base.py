@@ -96,8 +96,8 @@ class CompiledStepper(AbstractBodyStepper):
     def advance(self, state: State, steps: int, every: int, rows: Rows) -> tuple[int, int]:
         """Take steps with the state of the kernel."""
         width, begin = self.width, 0
-        for column, size in zip(rows, self.columns.values(), strict=True):
-            column[0], begin = state[begin : begin + size], begin + size
+        for column in rows:
+            column[0], begin = state[begin : begin + column.shape[1]], begin + column.shape[1]
         good, code = self.route.advance(state[width:], steps, every, tuple([column[1:] for column in rows]))
         place = good // every
         np.concatenate([column[place] for column in rows], out=state[:width])

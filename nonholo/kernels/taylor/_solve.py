@@ -58,6 +58,7 @@ def solve_series(
     longest = max(16, min(_STEPS, _NUMBERS // (8 * state.size)))
     block, nodes = min(_FIRST, longest), []
     count, going, stride, total, node_count = 1, True, 1, 0, 0
+    begin, span = float(times[0]), float(abs(times[-1] - times[0]))
     room, expansion = kept_room(f, order_for(tolerance)), expansion or expansion_of(f, ONE)
     while going and count < len(times):
         starts, block = np.empty((block, *state.shape)), min(8 * block, longest)
@@ -67,9 +68,9 @@ def solve_series(
         if node_count * state.size > max(_NUMBERS, 2 * state.size):
             nodes, stride = [np.concatenate(nodes)[::2].copy()], 2 * stride
             node_count = len(nodes[0])
-        come = max(abs(state[0, -1] - times[0]), abs(times[count - 1] - times[0]))
-        tell(come, abs(times[-1] - times[0]))
-        if total * abs(times[-1] - times[0]) / most > come:
+        come = max(abs(float(state[0, -1]) - begin), abs(float(times[count - 1]) - begin))
+        tell(come, span)
+        if total * span / most > come:
             break
     nodes = np.concatenate(nodes) if len(nodes) > 1 else nodes[0] if nodes else state[None]
     return (columns[0][:count], columns[1][:count], columns[2][:count]), nodes

@@ -1,6 +1,5 @@
 """The starts of the members of an ensemble, of tops and plane sleighs for all members at once."""
 
-import dataclasses
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -56,7 +55,7 @@ def in_rows(motion: Any, start: Start, parameters: Mapping[str, np.ndarray]) -> 
     }
     count = _common({name: len(values) for name, values in parameters.items()} | {n: len(rows[n]) for n in several})
     whole = {n: x if n in several else np.broadcast_to(x, (count, *x.shape)) for n, x in rows.items()}
-    return dataclasses.replace(start, value=whole[start.name], configuration=whole.get("configuration")), count
+    return start._replace(value=whole[start.name], configuration=whole.get("configuration")), count
 
 
 def _shape(motion: Any, start: Start, pose: tuple[int, ...], velocity: tuple[int, ...]) -> tuple[int, ...]:
@@ -107,7 +106,7 @@ def _one_by_one(members: Members, start: Start, *, with_poses: bool) -> Firsts:
 def _of_one(members: Members, start: Start, member: int, *, with_poses: bool) -> First:
     """Return the checked start of one member, refused with its number."""
     pose = None if start.configuration is None else start.configuration[member]
-    own = dataclasses.replace(start, value=start.value[member], configuration=pose)
+    own = start._replace(value=start.value[member], configuration=pose)
     try:
         return members.of(member).first(own, with_poses=with_poses)
     except ValueError as failure:
