@@ -26,6 +26,9 @@ STEADY: dict[str, Callable[[], Any]] = {
     "tilting disk": lambda: _made("tilting_disk", configuration=np.zeros(5), turning=0.0, rolling=0.3),
     "knife edge on incline": lambda: _at(_made("knife_edge_on_incline", slope_acceleration=0.6), 0.0, 0.0, np.pi / 2),
     "sleigh in a well": lambda: _made("sleigh_in_a_well", stiffness=0.6, speed=0.0, turning=0.0),
+    "snakeboard": lambda: _made(
+        "snakeboard", configuration=(0, 0, 0.7, 0, 0.4), speed=0.6, rotor_rate=0.3, wheel_rate=0.0
+    ),
     "ball in bowl": lambda: _made("ball_in_bowl", place=(0.0, 0.0), velocity=(0.0, 0.0), spin=0.6),
     "ball on turntable": lambda: _made("ball_on_turntable", table_rate=0.6, place=(0.0, 0.0), velocity=(0.0, 0.0)),
     "heavy suslov top": lambda: _made("heavy_suslov_top", stiffness=(0.5, 1.0, 0.2), velocity=(0.0, 0.0)),
@@ -35,6 +38,8 @@ TELLING: dict[str, dict[str, float]] = {
     "rolling disk": {"radius": 1.2},
     "knife edge on incline": {"slope_acceleration": 1.2},
     "driven sleigh": {"a": 0.35},
+    "roller racer": {"handle": 0.35},
+    "snakeboard": {"half_length": 1.1},
 }
 """A guess of a number that a record tells; by default it is the parameter of the kind."""
 
@@ -53,6 +58,8 @@ READY: dict[str, Kind] = {
         values=(np.diag([0.5, 0.3, 0.7]), np.diag([0.6, 0.3, 0.7])),
     ),
     "driven sleigh": KINDS["driven sleigh"],
+    "roller racer": ready("roller_racer", "coordinates", "driven"),
+    "snakeboard": KINDS["snakeboard"],
 }
 
 ALL = KINDS | READY
