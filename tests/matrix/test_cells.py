@@ -39,7 +39,7 @@ def test_cell(kind: str, ability: str, run_cell: Callable[[str, str], None]) -> 
     run_cell(kind, ability)
 
 
-@pytest.mark.profile("routes", keep=["particle-*", "rolling disk-equilibria"])
+@pytest.mark.profile("routes", keep=["particle-vector field", "particle-linearize", "rolling disk-equilibria"])
 @pytest.mark.parametrize(("kind", "ability"), [cell for cell in NEW if "-".join(cell) not in LONG])
 def test_ready_system(kind: str, ability: str, run_cell: Callable[[str, str], None]) -> None:
     """The same of what is asked of ready systems."""
