@@ -10,6 +10,7 @@ from typing import Any
 
 import jax
 import numpy as np
+from scipy.integrate import solve_ivp
 
 from nonholo.analysis._linearize import Local
 from nonholo.base.checks import error
@@ -24,6 +25,7 @@ from nonholo.systems import AbstractCoordinateSystem, Start, refuse_slip
 
 _TIMES = np.array([0.0, 0.3719, 0.9173])  # not in a ratio that a rotation may have
 _OTHERS, _SPREAD = 3, 0.3
+_RTOL, _ATOL = 1e-11, 1e-12  # of the equations of variation
 _OFFSET = 8e-3  # of a state, for central differences: its sixth power is at rounding
 _WEIGHTS = np.array([45.0, -9.0, 1.0]) / (60 * _OFFSET)  # of order 6, at one, two and three offsets
 
@@ -46,8 +48,7 @@ def on_group(owner: str, subject: Any, configuration: Any, velocity: Any) -> tup
     count, times = len(_TIMES), np.append(_TIMES, np.zeros(_OTHERS))
     poses = np.concatenate([poses[:count], g @ system.group.exp(xi)])
     others = r + (np.abs(r).max() or 1.0) * s
-    take = _by_differences if system.forces is not None and system.forces.needs_function else _by_jax
-    change, slope = take(subject, times, poses, np.concatenate([momenta[:count], others]))
+    change, slope = _slopes(subject, times, poses, np.concatenate([momenta[:count], others]))
     if is_map:  # where forces know the times of steps
         change = change.copy()
         change[:count, dim:] = np.diff(momenta, axis=0)
@@ -79,9 +80,27 @@ def along(orbit: Any) -> Float[np.ndarray, "L d d"]:
     """Return the derivative of each state of a discrete orbit by the one before; momenta alone if they decide."""
     discrete, system, r = orbit.motion, orbit.motion.system, orbit.restricted_momentum[:-1]
     poses = orbit.configuration[:-1] if orbit.has_poses else np.tile(system.group.identity, (len(r), 1, 1))
-    _, slope = _by_jax(discrete, orbit.time[:-1], poses, r)
+    _, slope = _slopes(discrete, orbit.time[:-1], poses, r)
     matters = slice(0 if system.forces is not None or system.is_spatial else system.group.dim, None)
     return (slope + np.eye(slope.shape[-1]))[:, matters, matters]
+
+
+def along_flow(orbit: Any) -> Float[np.ndarray, "L d d"]:
+    """Return the derivative of each state of a flow by the one before, by the equations of variation."""
+    system, (k, N), m = orbit.system, (orbit.system.rank, orbit.system.group.size), orbit.system.group.dim
+    field, m = vector_field(system), m + k
+
+    def rate(time: float, y: np.ndarray) -> np.ndarray:
+        state, D = y[: k + N * N], y[k + N * N :].reshape(m, m)
+        _, slope = _slopes(system, np.array([time]), state[k:].reshape(1, N, N), state[None, :k])
+        return np.concatenate([field(time, state), (slope[0] @ D).ravel()])
+
+    states = np.hstack([orbit.restricted_momentum, orbit.configuration.reshape(len(orbit), -1)])
+    maps = np.empty((len(orbit) - 1, m, m))
+    for i, state in enumerate(states[:-1]):
+        span, begin = orbit.time[i : i + 2], np.append(state, np.eye(m))
+        maps[i] = solve_ivp(rate, span, begin, "DOP853", rtol=_RTOL, atol=_ATOL).y[-m * m :, -1].reshape(m, m)
+    return maps
 
 
 def _refuse(where: str, system: Any) -> None:
@@ -127,6 +146,12 @@ def _beside(
         return xp.concatenate([there - first + group.bracket(xi, first), rate])
 
     return change, xp.concatenate([xp.zeros(group.dim), r])
+
+
+def _slopes(subject: Any, *states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the changes beside states of a system or its map, and their derivatives."""
+    forces = subject.forces
+    return (_by_differences if forces is not None and forces.needs_function else _by_jax)(subject, *states)
 
 
 @compile_double

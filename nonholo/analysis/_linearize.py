@@ -227,14 +227,18 @@ def linearize(system: Any, *, configuration: Any = None, body_velocity: Any = No
 
 def local_motion(owner: str, system: Any, configuration: Any, velocity: Any) -> tuple[Local, Shifted]:
     """Return the changes beside a state, and the function that gives the states beside it."""
-    with needs("jax", owner):
-        from nonholo.analysis import _beside
     if isinstance(system, AbstractCoordinateSystem | AbstractCoordinateDiscretization):
-        return _beside.beside_state(owner, system, configuration, velocity)
+        return _motions(owner).beside_state(owner, system, configuration, velocity)
     if not isinstance(system, AbstractSystem | Discretization):
         remedy = "Pass a system, on a group or in coordinates, or what `discretize` returned."
         raise error(f"{owner}(system=...)", "be a system or its map", shown(system), remedy)
-    return _beside.on_group(owner, system, configuration, velocity)
+    return _motions(owner).on_group(owner, system, configuration, velocity)
+
+
+def _motions(owner: str) -> Any:
+    with needs("jax", owner):
+        from nonholo.analysis import _beside
+    return _beside
 
 
 def _time_step(system: Any) -> float | None:
@@ -282,14 +286,19 @@ class SteadyMotion:
 def steady_motion(system: Any, configuration: Any, body_velocity: Any) -> SteadyMotion:
     """Return the steady motion near a state: each correction is the shortest one of the states that matter."""
     where, state = "equilibria(configuration=...)", (configuration, body_velocity)
-    flow = system.system if isinstance(system, Discretization) else system  # the map rests where the flow does
+    is_map = isinstance(system, Discretization | AbstractCoordinateDiscretization)
+    flow: Any = system.system if is_map else system  # the map rests where the flow does
     for _ in range(_MOST):
         local, beside = local_motion("equilibria", flow, *state)
         if not np.isfinite(local.slope[0]).all():
             got = f"none at {local.state.tolist()}"
             raise error(where, "have a finite linearization", got, "Guess closer to an equilibrium.")
         equations = reduced(local)
-        inverse = np.linalg.pinv(equations.matrix, rcond=_RANK)
+        if getattr(flow, "is_driven", False) and flow.dimension in equations.states:
+            remedy = "Prescribed motions and forces of the time drive it: leave them out."
+            raise error(where, "be near a steady motion", "equations of the time", remedy)
+        is_seen = np.abs(equations.matrix) > _UNSEEN * np.abs(local.slope[0]).max()
+        inverse = np.linalg.pinv(equations.matrix * is_seen, rcond=_RANK)
         change = equations.directions @ inverse @ local.change[0][equations.states]
         state = beside(-change[: local.places], -change[local.places :])
         if np.abs(change).max(initial=0.0) <= _CLOSE * (1 + np.abs(local.state).max()):
@@ -395,13 +404,13 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
     for a left-invariant system, difference "matrix", constraint "skew" and order 2; of other maps by JAX. Where forces
     depend on the pose, or the constraint is fixed in space, a state is $(\xi, r)$ with $\xi$ of the pose
     $g\,e^\xi$, (K - 1, dim + k, dim + k). Of a flow without forces, of a constraint fixed in the body, from the Taylor
-    series of its equation of variation, between its times.
+    series of its equation of variation, between its times; of other flows by Runge-Kutta steps of that equation.
 
     Args:
         orbit: Made by `simulate` with every step saved, or by `flow`. An orbit in coordinates has its own `tangent`.
 
     Raises:
-        ValueError: Another kind of orbit, a map under a table or a function of Python or numba.
+        ValueError: Another kind of orbit, a map under a table or a force that is a function.
 
     Example:
         >>> sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), 0.1)
@@ -416,16 +425,16 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
         raise error(_WHERE, "have no impacts", "some", "Ask it of the part of the orbit before the first one.")
     if isinstance(discrete, ContinuousFlow) and not system.is_spatial and not system.is_forced:
         return flow_tangents(_WHERE, system, orbit.restricted_momentum, orbit.time)
+    if isinstance(discrete, ContinuousFlow):
+        return _motions(_WHERE).along_flow(orbit)
     if not isinstance(discrete, Discretization) or _acts_from_outside(discrete.forces):
         remedy = "Differentiate `nh.rollout` by JAX."
-        raise error(_WHERE, "belong to a free flow, or to a map whose forces are numbers", shown(discrete), remedy)
+        raise error(_WHERE, "belong to a flow, or to a map without forces of the time", shown(discrete), remedy)
     if not orbit.has_every_step:
         raise error(_WHERE, "have every step", f"{len(orbit)} states with others between", "Run with save_every=1.")
     if _has_closed_derivatives(discrete):
         return discrete.displacement_decoder.tangent(orbit.canonical_chart[:-1])
-    with needs("jax", _WHERE):
-        from nonholo.analysis import _beside
-    return _beside.along(orbit)
+    return _motions(_WHERE).along(orbit)
 
 
 def _has_closed_derivatives(discrete: Discretization) -> bool:
@@ -433,5 +442,5 @@ def _has_closed_derivatives(discrete: Discretization) -> bool:
 
 
 def _acts_from_outside(forces: Any) -> bool:
-    """Return whether forces do more than the state does: by a table, or by a function that is not traced."""
-    return forces is not None and (forces.needs_function or forces.table is not None)
+    """Return whether forces do more than the state does: by a table, or by a function of the time."""
+    return forces is not None and (forces.table is not None or forces.function is not None)

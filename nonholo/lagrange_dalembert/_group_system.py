@@ -9,7 +9,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import error, instance
+from nonholo.base.checks import error, instance, shown
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
@@ -162,7 +162,10 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
     def forced(self, potential: Any, force: Any) -> "GroupLagrangeDAlembert":
         """Return the system with a potential U(g); `nonholo.Forced` calls it. Other forces have no way in yet."""
         if force is not None or (potential is not None and self.potential is not None):
-            got, remedy = repr(force or self), "Pass one potential; write a system with forces as an LLSystem."
+            got, remedy = (
+                shown(self if force is None else force),
+                "Pass one potential; write a system with forces as an LLSystem.",
+            )
             raise error("Forced(system=...)", "have at most a potential, as a GroupLagrangeDAlembert", got, remedy)
         return dataclasses.replace(self, potential=potential) if potential is not None else self
 

@@ -84,7 +84,8 @@ def tangent_map(orbit: Any) -> Float[np.ndarray, "L d d"]:
         if orbit.is_discrete
         else room("_integration").transitions(system, x, v, time)
     )
-    matters = np.r_[:n, n + system.is_driven : slope.shape[-1]]  # all but the time
+    matters = np.r_[:n, n + system.is_driven : slope.shape[-1]]  # all but the time, and places that it prescribes
+    matters = np.setdiff1d(matters, [index for index, _ in system.plain.prescribed])
     bases = np.linalg.svd(rows[..., matters])[2][:, rows.shape[1] :].swapaxes(1, 2)
     return bases[1:].swapaxes(1, 2) @ maps[:, matters][:, :, matters] @ bases[:-1]
 

@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matrix.kinds import KINDS, STEPS, H, Kind
+from matrix.kinds import STEPS
+from matrix.ready import ALL
 from PIL import Image
 from stopping import stopped_at
 from typer.testing import CliRunner
@@ -28,8 +29,9 @@ class Case:
     """A kind with its runs, each made once."""
 
     def __init__(self, name: str) -> None:
-        self.kind: Kind = KINDS[name]
-        self.discrete = self.kind.discrete()
+        self.name, self.kind = name, ALL[name]
+        self.h = self.kind.time_step
+        self.discrete = self.kind.discrete(self.h)
         self.system = self.discrete.system
         self.run = {} if self.kind.branch == "principal" else {"branch": self.kind.branch}
         self.known = {"discrete": self.discrete} if "function" in self.kind.traits else {}
@@ -55,12 +57,12 @@ class Case:
     @functools.cached_property
     def halves(self) -> Any:
         """The run with half the time step."""
-        return self.simulated(self.kind.discrete(H / 2), 2 * STEPS)
+        return self.simulated(self.kind.discrete(self.h / 2), 2 * STEPS)
 
     @functools.cached_property
     def flow(self) -> Any:
         """The flow from the start at the times of the run."""
-        return self.flown(H * np.arange(1 + STEPS))
+        return self.flown(self.h * np.arange(1 + STEPS))
 
     def flown(self, times: Any, **how: Any) -> Any:
         """Return the flow at times; of bodies in hundreds of dimensions without its poses."""
@@ -147,7 +149,7 @@ def simulate(c: Case, _: Path) -> None:
         friction, table = c.system.force
         later = dataclasses.replace(c.system, force=(friction, table[5:]))
         first = {"configuration": c.orbit.configuration[5], "momentum": c.orbit.restricted_momentum[5]}
-        rest = nh.simulate(nh.discretize(later, H), steps=STEPS - 5, **first)
+        rest = nh.simulate(nh.discretize(later, c.h), steps=STEPS - 5, **first)
         return np.testing.assert_allclose(rest.configuration, c.orbit.configuration[5:], 0, 1e-13)
     errors = [np.linalg.norm(c.seen(end)[-1] - c.seen(c.flow)[-1]) for end in (c.orbit, c.halves)]
     order = getattr(c.discrete, "order", 2)
@@ -264,7 +266,9 @@ def _assert_member(batch: Any, member: int, alone: Any) -> None:
 @ability
 def ensemble_of_time_steps(c: Case, _: Path) -> None:
     """Members are runs alone with their time steps."""
-    batch = nh.ensemble(c.discrete, steps=STEPS, save_every=1, parameters={"time_step": [H, H / 2]}, **c.start, **c.run)
+    batch = nh.ensemble(
+        c.discrete, steps=STEPS, save_every=1, parameters={"time_step": [c.h, c.h / 2]}, **c.start, **c.run
+    )
     _assert_member(batch, 0, c.orbit)
     _assert_member(batch, 1, c.halves.chosen(slice(0, 1 + STEPS)))
 
@@ -275,7 +279,7 @@ def ensemble_of_parameters(c: Case, _: Path) -> None:
     parameters = {c.kind.parameter: np.stack(c.kind.values)}
     batch = nh.ensemble(c.discrete, steps=STEPS, save_every=1, parameters=parameters, **c.start, **c.run)
     _assert_member(batch, 0, c.orbit)
-    _assert_member(batch, 1, c.simulated(c.kind.discrete(value=1)))
+    _assert_member(batch, 1, c.simulated(c.kind.discrete(c.h, value=1)))
 
 
 @ability
@@ -294,7 +298,7 @@ def ensemble_with_events(c: Case, _: Path) -> None:
 @ability
 def sweep(c: Case, folder: Path) -> None:
     """The members of a sweep end where runs alone do; its store, resumed, is the sweep."""
-    design, task = nh.Grid({"time_step": [H, H / 2]}), _task(c)
+    design, task = nh.Grid({"time_step": [c.h, c.h / 2]}), _task(c)
     found = nh.sweep(task, design, folder / "a.zarr")
     for member, alone in enumerate((c.orbit, c.halves.chosen(slice(0, 1 + STEPS)))):
         np.testing.assert_allclose(found.final_energy[member], alone.energy[-1], 0, 1e-13)
@@ -308,7 +312,7 @@ def sweep(c: Case, folder: Path) -> None:
 
 def _task(c: Case) -> Any:
     if c.in_coordinates:
-        return nh.FamilyTask(c.ready, time_step=H, steps=STEPS)
+        return nh.FamilyTask(c.ready, time_step=c.h, steps=STEPS)
     start = {name: value for name, value in c.start.items() if name != "configuration"}
     return nh.EnsembleTask(c.discrete, steps=STEPS, **start, **c.run)
 
@@ -336,7 +340,7 @@ def flow_with_events(c: Case, _: Path) -> None:
 @ability
 def flow_at_other_times(c: Case, _: Path) -> None:
     """States between are those of a flow that is asked for them."""
-    times = H * np.array([0.3, 4.5])
+    times = c.h * np.array([0.3, 4.5])
     asked = c.flown([0.0, *times]).chosen(slice(1, None))
     assert_close(c.flow.at(times), asked, 1e-11)
 
@@ -522,7 +526,7 @@ def scenario_text(c: Case) -> str:
     tables = {
         "body": c.kind.body,
         "start": {name: np.asarray(value).tolist() for name, value in c.start.items()},
-        "run": {"time_step": H, "steps": STEPS, **c.kind.how, **c.run},
+        "run": {"time_step": c.h, "steps": STEPS, **c.kind.how, **c.run},
         "forces": c.kind.forces,
     }
     return toml_text(c.kind.about, tables)

@@ -64,7 +64,9 @@ class Kind:
         branch: The branch rule.
         traits: What rules of abilities ask for: "composition", "table", "rule", "coordinates", "ready system",
             "function" (of the user's), "opaque" (a function that JAX does not see into), "wide" (hundreds of
-            dimensions), "on a group" (by functions of matrices).
+            dimensions), "on a group" (by functions of matrices), "driven" (by prescribed motions), "constants" (its
+            numbers are within its functions).
+        time_step: That of its runs.
     """
 
     about: str
@@ -77,8 +79,9 @@ class Kind:
     own: Callable[[float], dict[str, Any]] = lambda _: {}
     branch: str = "principal"
     traits: frozenset[str] = frozenset()
+    time_step: float = H
 
-    def discrete(self, time_step: float = H, value: int = 0) -> Any:
+    def discrete(self, time_step: float, value: int = 0) -> Any:
         """Return the discretized system."""
         return nh.discretize(self.system(self.values[value]), time_step, **self.how, **self.own(time_step))
 
@@ -100,7 +103,9 @@ def _loaded(load: Callable[[Any], Any], a: float) -> Any:
     return load(nh.ChaplyginSleigh(2.0, 1.0, a, 0.3))
 
 
-def _ready(name: str, *traits: str, parameter: str = "mass", values: tuple[Any, Any] = (1.0, 1.5)) -> Kind:
+def ready(
+    name: str, *traits: str, parameter: str = "mass", values: tuple[Any, Any] = (1.0, 1.5), time_step: float = H
+) -> Kind:
     """Return the kind of a ready system."""
     return Kind(
         f"`nh.examples.{name}`",
@@ -109,6 +114,7 @@ def _ready(name: str, *traits: str, parameter: str = "mass", values: tuple[Any, 
         values,
         {"kind": name, parameter: values[0]},
         traits=frozenset({"ready system", *traits}),
+        time_step=time_step,
     )
 
 
@@ -184,10 +190,10 @@ KINDS: dict[str, Kind] = {
     "force in numba": _plane(
         "`force=` a compiled function", lambda sleigh: nh.Forced(sleigh, force=compiled_brake()), "function", "opaque"
     ),
-    "particle": _ready("particle", "coordinates"),
-    "rolling disk": _ready("rolling_disk", "coordinates"),
-    "snakeboard": _ready("snakeboard", "coordinates"),
-    "driven sleigh": _ready("driven_sleigh", "coordinates"),
-    "Chaplygin ball": _ready("chaplygin_ball", "coordinates", "on a group"),
-    "sleigh in a well": _ready("sleigh_in_a_well", "opaque", parameter="inertia", values=(0.5, 0.7)),
+    "particle": ready("particle", "coordinates"),
+    "rolling disk": ready("rolling_disk", "coordinates"),
+    "snakeboard": ready("snakeboard", "coordinates"),
+    "driven sleigh": ready("driven_sleigh", "coordinates", "driven"),
+    "Chaplygin ball": ready("chaplygin_ball", "coordinates", "on a group"),
+    "sleigh in a well": ready("sleigh_in_a_well", "opaque", parameter="inertia", values=(0.5, 0.7)),
 }

@@ -1,13 +1,16 @@
 """What works with what: every ability with every kind of motion, its value against the same value by another way."""
 
 import contextlib
+import functools
+from collections.abc import Callable
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import pytest
 from matrix.abilities import ABILITIES, case
 from matrix.kinds import KINDS
-from matrix.verdicts import CELLS, RULES
+from matrix.ready import ALL
+from matrix.verdicts import CELLS, QUESTIONS, RULES
 from scripts import ROOT, script
 
 QUICK = (
@@ -19,20 +22,53 @@ CUT = (
     *("events", "events in stores", "events in iterators", "crossings", "ensemble with events"),
 )
 HERE = ["top, n = 3-*", "sleigh, SE(2)-*", "particle-*", *(f"{kind}-{ability}" for kind in QUICK for ability in CUT)]
+BRIEF = {"vector field", "linearize", "equilibria", "tangent maps"}
+"""Questions that take some seconds; the others take longer."""
 BROKEN = {cell for cell, rule in CELLS.items() if rule is not None and rule.is_broken}
 
 
+OLD = [cell for cell in CELLS if cell[0] in KINDS and cell[1] not in QUESTIONS]
+NEW = [cell for cell in CELLS if cell not in OLD]
+LONG = [f"{kind}-{ability}" for kind, ability in NEW if ability in {*QUESTIONS} - BRIEF]
+
+
 @pytest.mark.profile("routes", keep=HERE)
-@pytest.mark.parametrize(("kind", "ability"), CELLS)
-def test_cell(
-    kind: str, ability: str, tmp_path: Path, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.mark.parametrize(("kind", "ability"), OLD)
+def test_cell(kind: str, ability: str, run_cell: Callable[[str, str], None]) -> None:
     """It works; what is impossible, and what is broken still, is refused in words of the library."""
+    run_cell(kind, ability)
+
+
+@pytest.mark.profile("routes", keep=["particle-vector field", "particle-linearize", "rolling disk-equilibria"])
+@pytest.mark.parametrize(("kind", "ability"), [cell for cell in NEW if "-".join(cell) not in LONG])
+def test_ready_system(kind: str, ability: str, run_cell: Callable[[str, str], None]) -> None:
+    """The same of what is asked of ready systems."""
+    run_cell(kind, ability)
+
+
+@pytest.mark.profile("long", instead="test_ready_system")
+@pytest.mark.parametrize(("kind", "ability"), [cell for cell in NEW if "-".join(cell) in LONG])
+def test_ready_system_in_all(kind: str, ability: str, run_cell: Callable[[str, str], None]) -> None:
+    """The same of what takes longer."""
+    run_cell(kind, ability)
+
+
+@pytest.fixture
+def run_cell(
+    tmp_path: Path, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
+) -> Callable[[str, str], None]:
+    """Return what runs a cell."""
+    return functools.partial(_run_cell, tmp_path, request, monkeypatch)
+
+
+def _run_cell(
+    tmp_path: Path, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch, kind: str, ability: str
+) -> None:
     rule = CELLS[kind, ability]
-    if "wide" in KINDS[kind].traits:  # on every machine
+    if "wide" in ALL[kind].traits:  # on every machine
         monkeypatch.setattr("nonholo.base.limits.memory_limit", lambda: 8e9)
     if rule is not None and rule.is_broken:
-        request.applymarker(pytest.mark.xfail(strict=True, reason=rule.reason))
+        request.applymarker(pytest.mark.xfail(strict=True, raises=(ValueError, TypeError), reason=rule.reason))
     refused = rule is not None and not rule.is_broken
     with pytest.raises((ValueError, TypeError), match=rule.refusal) if refused else contextlib.nullcontext():
         ABILITIES[ability](case(kind), tmp_path)

@@ -3,8 +3,10 @@
 import dataclasses
 import fnmatch
 
+import matrix.questions  # noqa: F401
 from matrix.abilities import ABILITIES
-from matrix.kinds import KINDS
+from matrix.kinds import KINDS, Kind
+from matrix.ready import ALL, READY
 
 
 @dataclasses.dataclass(frozen=True)
@@ -27,7 +29,7 @@ class Rule:
 
     def holds(self, kind: str, ability: str) -> bool:
         """Tell whether a cell is one of the rule."""
-        is_one = bool({*KINDS[kind].traits, kind} & set(self.kinds.split("|")))
+        is_one = bool({*ALL[kind].traits, kind} & set(self.kinds.split("|")))
         return is_one and any(fnmatch.fnmatchcase(ability, each) for each in self.abilities.split("|"))
 
 
@@ -39,7 +41,7 @@ RULES: tuple[Rule, ...] = (
         "multipliers",
     ),
     Rule(
-        "flow*",
+        "flow*|vector field",
         "table",
         "A table has a force for each step; between steps there is none, so there is no flow.",
         "one force for each step",
@@ -51,6 +53,7 @@ RULES: tuple[Rule, ...] = (
         "SO(300) has 44,850 dimensions: its basis takes 32 GB, the complement of the constraint 16 GB.",
         "must (fit into memory|have matrices)",
     ),
+    Rule("vector field", "wide", "Flows in hundreds of dimensions are those of momenta alone.", "needs poses"),
     Rule("scenario file", "wide", "Scenario files hold matrices.", "cannot be run"),
     Rule(
         "events|events in *|crossings|ensemble with events|impacts",
@@ -73,6 +76,34 @@ RULES: tuple[Rule, ...] = (
     ),
     Rule("scenario file", "function", "A file holds numbers, not the functions of a user.", "cannot be run"),
     Rule(
+        "linearize*|equilibria",
+        "driven",
+        "What a prescribed motion drives has no steady motion: its equations contain the time.",
+        "steady motion",
+    ),
+    Rule(
+        "fit|ensemble of parameters",
+        "tilting disk|ball in bowl|ball on turntable",
+        "Their numbers are within their functions, not yet parameters.",
+        "name parameters|name 'time_step' alone",
+        is_broken=True,
+    ),
+    Rule("fit", "particle", "A free motion does not know its unit of mass, its only number.", "unit"),
+    Rule(
+        "rollout|fit|tracking feedback",
+        "opaque",
+        "A potential that is a function is not traced by JAX, even where JAX could.",
+        "forces that are numbers|vary the parameters",
+        is_broken=True,
+    ),
+    Rule(
+        "tracking feedback",
+        "coordinates",
+        "The feedback is that of bodies on groups; in coordinates `rollout(policy=...)` closes a loop.",
+        "discretized system on a group",
+        is_broken=True,
+    ),
+    Rule(
         "ensemble of parameters|gradient",
         "on a group",
         "Systems on groups by functions have constants inside them: no parameters, no derivatives.",
@@ -86,4 +117,12 @@ def rule_of(kind: str, ability: str) -> Rule | None:
     return next((rule for rule in RULES if rule.holds(kind, ability)), None)
 
 
-CELLS = {(kind, ability): rule_of(kind, ability) for kind in KINDS for ability in ABILITIES}
+_ALSO = ("compare", "events", "ensemble of parameters", "sweep", "store", "flow at other times")
+QUESTIONS = [name for name, check in ABILITIES.items() if check.__module__ == "matrix.questions"]
+TABLES: tuple[tuple[dict[str, Kind], list[str]], ...] = (
+    (KINDS, [*(name for name in ABILITIES if name not in QUESTIONS), "vector field"]),
+    (READY, [*QUESTIONS, *_ALSO]),
+)
+CELLS = {
+    (kind, ability): rule_of(kind, ability) for kinds, abilities in TABLES for kind in kinds for ability in abilities
+}

@@ -1,0 +1,227 @@
+"""What is asked of systems and orbits: equations, steady motions, tangent maps, runs in JAX, fits, controls."""
+
+import dataclasses
+import functools
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matrix.abilities import Case, ability
+from matrix.ready import STEADY, TELLING
+from scipy.linalg import expm
+
+import nonholo as nh
+
+_SIZE = 3e-4  # of differences of order 4, along curves of admissible starts
+_WEIGHTS = {1: 2 / 3, 2: -1 / 12}
+_TIME = {-3: -1 / 60, -2: 3 / 20, -1: -3 / 4, 1: 3 / 4, 2: -3 / 20, 3: 1 / 60}
+
+
+def states(c: Case, orbit: Any) -> np.ndarray:
+    """Return the states of an orbit as `nh.vector_field` takes them."""
+    rows = orbit.configuration.reshape(len(orbit), -1)
+    pair = (rows, orbit.body_velocity) if c.in_coordinates else (orbit.restricted_momentum, rows)
+    return np.concatenate(pair, axis=1)
+
+
+@ability
+def vector_field(c: Case, _: Path) -> None:
+    """The derivative of a state in the middle of a flow is that of differences of order 6 in time."""
+    middle, step = 4 * c.h, 0.1 * c.h
+    rows = states(c, c.flown([0.0, *(middle + step * np.arange(-3, 4))]))[1:]
+    wanted = sum(weight * rows[3 + k] for k, weight in _TIME.items()) / step
+    found = nh.vector_field(c.system)(middle, rows[3])
+    np.testing.assert_allclose(found, wanted, 0, 1e-8 * np.abs(wanted).max())
+
+
+Run = Callable[[dict[str, Any]], Any]
+
+
+def seen_from(c: Case, reference: Any, orbit: Any) -> np.ndarray:
+    """Return places and velocities of an orbit, of bodies momenta; poses are seen from those of a reference."""
+    place, velocity = orbit.configuration, orbit.body_velocity if c.in_coordinates else orbit.restricted_momentum
+    if place.ndim > 2:
+        group = c.system.group
+        place = group.log(group.inverse(reference.configuration) @ place)
+    return np.concatenate([place, velocity], axis=1)
+
+
+def moved(c: Case, place: np.ndarray, to: np.ndarray) -> np.ndarray:
+    """Return the place beside one."""
+    return place + to if place.ndim == 1 else place @ c.system.group.exp(to)
+
+
+def changes(c: Case, run: Run, start: dict[str, Any], count: int) -> tuple[Any, np.ndarray]:
+    """Return a run, and how its states change along curves of starts, (K, m, count)."""
+    rng, reference = np.random.default_rng(3), run(start)
+    q, v = start["configuration"], start["body_velocity"]
+    fixed, columns = [i for i, _ in getattr(c.system, "prescribed", ())], []
+    for _ in range(count):
+        to, w = rng.normal(size=len(q) if q.ndim == 1 else c.system.group.dim), rng.normal(size=len(v))
+        to[fixed] = 0.0
+        ends = {}
+        for k in (-2, -1, 1, 2):
+            place = moved(c, q, k * _SIZE * to)
+            orbit = run({"configuration": place, "body_velocity": v + k * _SIZE * w, "project": True})
+            ends[k] = seen_from(c, reference, orbit)
+        columns.append(sum(weight * (ends[k] - ends[-k]) for k, weight in _WEIGHTS.items()) / _SIZE)
+    return reference, np.stack(columns, axis=-1)
+
+
+def names_of(c: Case) -> tuple[str, ...]:
+    """Return the names of the rows of changes."""
+    if coordinates := getattr(c.system, "coordinates", ()):
+        return *coordinates, *(f"{name}'" for name in coordinates)
+    k = c.system.group.dim if c.in_coordinates else c.system.rank
+    letter = "v" if c.in_coordinates else "r"
+    return *(f"xi{i + 1}" for i in range(c.system.group.dim)), *(f"{letter}{i + 1}" for i in range(k))
+
+
+def chosen(c: Case, found: Any) -> list[int]:
+    """Return the rows of changes that are states of a linearization."""
+    return [names_of(c).index(name) for name in found.names]
+
+
+def steady(c: Case) -> Any:
+    """Return the ready system in steady motion; one that is driven as it is."""
+    return STEADY.get(c.name, c.ready)()
+
+
+def start_of(ready: Any) -> dict[str, Any]:
+    """Return its start."""
+    return {name: getattr(ready, name) for name in ("configuration", "body_velocity")}
+
+
+def flowing(system: Any, *times: float) -> Run:
+    """Return what runs the flow to times."""
+    return lambda start: nh.flow(system, times=[0.0, *times], **start)
+
+
+def stepping(discrete: Any, steps: int = 1, **how: Any) -> Run:
+    """Return what runs the map."""
+    return lambda start: nh.simulate(discrete, steps=steps, **how, **start)
+
+
+@ability
+def linearize(c: Case, _: Path) -> None:
+    """Beside a steady motion small changes of runs of the flow go where the exponential of the matrix takes them."""
+    ready = steady(c)
+    found, time = nh.linearize(ready.system, **start_of(ready)), 2 * c.h
+    _, (before, after) = changes(c, flowing(ready.system, time), start_of(ready), 3)
+    rows, carried = chosen(c, found), expm(time * found.matrix)
+    np.testing.assert_allclose(after[rows], carried @ before[rows], 0, 1e-7 * np.abs(after[rows]).max())
+
+
+@ability
+def linearize_maps(c: Case, _: Path) -> None:
+    """Small changes of a step are those of the matrix of the map."""
+    ready = steady(c)
+    discrete = nh.discretize(ready.system, c.h)
+    found = nh.linearize(discrete, **start_of(ready))
+    _, (before, after) = changes(c, stepping(discrete), start_of(ready), 3)
+    rows = chosen(c, found)
+    np.testing.assert_allclose(after[rows], found.matrix @ before[rows], 0, 1e-7 * np.abs(after[rows]).max())
+
+
+@ability
+def equilibria(c: Case, _: Path) -> None:
+    """From beside a steady motion one is found at which `vector_field` has no rates, and the map no changes."""
+    ready = steady(c)
+    start, field = start_of(ready), nh.vector_field(ready.system)
+    beside, discrete = _beside(c, ready), nh.discretize(ready.system, c.h)
+    for subject in (ready.system, discrete):
+        found = nh.equilibria(subject, **beside)
+        there, rows = start_of(found), chosen(c, found.linearization)
+        assert np.abs(found.configuration - start["configuration"]).max() < 0.2
+        orbit, v = stepping(discrete, 2)(there), len(found.body_velocity) if c.in_coordinates else c.system.rank
+        rates = np.diff(seen_from(c, orbit, orbit), axis=0) / c.h
+        if subject is not discrete:
+            rate = field(0.0, states(c, flowing(ready.system, c.h)(there))[0])
+            place = rate[:-v] if found.configuration.ndim == 1 else np.zeros(c.system.group.dim)
+            rates = np.concatenate([place, rate[-v:] if c.in_coordinates else rate[:v]])[None]
+        np.testing.assert_allclose(rates[:, rows], 0, 0, 1e-8)
+
+
+def _beside(c: Case, ready: Any) -> dict[str, Any]:
+    """Return an admissible state next to a start; that itself of a driven system."""
+    start, rng = start_of(ready), np.random.default_rng(2)
+    if c.name not in STEADY:
+        return start
+    q = start["configuration"]
+    to = 0.01 * (rng.normal(size=len(q)) if q.ndim == 1 else np.eye(c.system.group.dim)[0])
+    orbit = flowing(ready.system, c.h)(start | {"configuration": moved(c, q, to), "project": True})
+    return {name: getattr(orbit, name)[0] for name in start}
+
+
+def stretches(c: Case, run: Run) -> tuple[Any, np.ndarray]:
+    """Return a run, and the factors by which it stretches small changes of its start."""
+    start = c.start
+    if c.ready is None:
+        velocity = start["restricted_velocity"] @ np.asarray(c.system.constraint_subspace)
+        start = {"configuration": c.system.group.identity, "body_velocity": velocity}
+    reference, rows = changes(c, run, start, len(names_of(c)))
+    matters = slice(-reference.tangent.shape[-1] if not c.in_coordinates else 0, None)
+    carried = rows[-1][matters] @ np.linalg.pinv(rows[0][matters], rcond=1e-7)
+    return reference, np.linalg.svd(carried, compute_uv=False)[: reference.tangent.shape[-1]]
+
+
+@ability
+def tangent_maps(c: Case, _: Path) -> None:
+    """Their product along a run stretches changes of the start as differences of runs do."""
+    orbit, wanted = stretches(c, stepping(c.discrete, 3, **c.run))
+    product = np.linalg.multi_dot(orbit.tangent[::-1])
+    np.testing.assert_allclose(np.linalg.svd(product, compute_uv=False), wanted, 1e-6, 1e-8)
+
+
+@ability
+def lyapunov_exponents(c: Case, _: Path) -> None:
+    """Their sum is the rate at which differences of runs say that volumes grow."""
+    orbit, wanted = stretches(c, stepping(c.discrete, 3, **c.run))
+    found = nh.lyapunov_exponents(orbit)
+    np.testing.assert_allclose(found.sum() * orbit.time[-1], np.log(wanted).sum(), 0, 1e-6)
+
+
+@ability
+def rollout(c: Case, _: Path) -> None:
+    """It has the numbers of the run."""
+    _assert_rolled(nh.rollout(c.discrete, steps=5, **c.start), c.simulated(steps=5))
+
+
+def _assert_rolled(states: Any, orbit: Any) -> None:
+    assert states.outcome == 0
+    for name in ("time", "configuration", "momentum", "energy"):
+        size = np.abs(getattr(orbit, name)).max()
+        np.testing.assert_allclose(getattr(states, name), getattr(orbit, name), 0, 1e-11 * size, err_msg=name)
+
+
+@ability
+def fit(c: Case, folder: Path) -> None:
+    """From a record of its motion the numbers of a system are found again."""
+    guess, ready = TELLING.get(c.name, {c.kind.parameter: c.kind.values[1]}), c.ready()
+    orbit = nh.simulate(nh.discretize(ready.system, c.h), steps=40, **start_of(ready))
+    orbit.to_csv(folder / "a.csv")
+    found = nh.fit(functools.partial(_system_of, ready.system), folder / "a.csv", guess, time_step=c.h)
+    for name in guess:
+        np.testing.assert_allclose(found.parameters[name], ready.system.parameters[name], 1e-6, err_msg=name)
+
+
+def _system_of(system: Any, p: dict[str, Any]) -> Any:
+    """Return a system of other numbers."""
+    if getattr(system, "forces", None) is None:
+        return system.with_parameters(**p)
+    return dataclasses.replace(system, system=dataclasses.replace(system.system, **p))
+
+
+@ability
+def tracking_feedback(c: Case, _: Path) -> None:
+    """A motion that begins beside the reference ends nearer to it under the feedback than without."""
+    start, n = c.start, c.orbit.body_velocity.shape[1]
+    if not c.in_coordinates:
+        velocity = c.system.restricted_velocity(c.orbit.restricted_momentum[0])
+        start = {"configuration": start["configuration"], "restricted_velocity": velocity}
+    hold = nh.tracking_feedback(c.discrete, start, np.zeros((40, n)), final_weight=100.0)
+    beside = {name: 1.02 * value for name, value in start.items() if "velocity" in name}
+    motion, alone = hold.simulate(**beside), c.simulated(steps=40, **beside)
+    gaps = [np.abs(x.configuration[-1] - hold.reference.configuration[-1]).max() for x in (motion.orbit, alone)]
+    assert gaps[0] < 0.5 * gaps[1]

@@ -1,0 +1,65 @@
+"""Ready systems as kinds of motion: steady motions where they have any, and what a record of each can tell."""
+
+import dataclasses
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from matrix.kinds import KINDS, Kind, ready
+
+import nonholo as nh
+
+
+def _made(name: str, **arguments: Any) -> Any:
+    return getattr(nh.examples, name)(**arguments)
+
+
+def _at(ready: Any, *place: float) -> Any:
+    """Return a ready system at rest at a place."""
+    q = np.array(place)
+    return dataclasses.replace(ready, configuration=q, body_velocity=0 * q)
+
+
+STEADY: dict[str, Callable[[], Any]] = {
+    "particle": lambda: _made("particle", planar_velocity=(0.6, 0.0)),
+    "rolling disk": lambda: _made("rolling_disk", rates=(0.6, 0.5)),
+    "tilting disk": lambda: _made("tilting_disk", configuration=np.zeros(5), turning=0.0, rolling=0.3),
+    "knife edge on incline": lambda: _at(_made("knife_edge_on_incline", slope_acceleration=0.6), 0.0, 0.0, np.pi / 2),
+    "sleigh in a well": lambda: _made("sleigh_in_a_well", stiffness=0.6, speed=0.0, turning=0.0),
+    "snakeboard": lambda: _made(
+        "snakeboard", configuration=(0, 0, 0.7, 0, 0.4), speed=0.6, rotor_rate=0.3, wheel_rate=0.0
+    ),
+    "ball in bowl": lambda: _made("ball_in_bowl", place=(0.0, 0.0), velocity=(0.0, 0.0), spin=0.6),
+    "ball on turntable": lambda: _made("ball_on_turntable", table_rate=0.6, place=(0.0, 0.0), velocity=(0.0, 0.0)),
+    "heavy suslov top": lambda: _made("heavy_suslov_top", stiffness=(0.5, 1.0, 0.2), velocity=(0.0, 0.0)),
+}
+"""A steady motion of each ready system that has one, as its start."""
+TELLING: dict[str, dict[str, float]] = {
+    "rolling disk": {"radius": 1.2},
+    "knife edge on incline": {"slope_acceleration": 1.2},
+    "driven sleigh": {"a": 0.35},
+    "roller racer": {"handle": 0.35},
+    "snakeboard": {"half_length": 1.1},
+}
+"""A guess of a number that a record tells; by default it is the parameter of the kind."""
+
+READY: dict[str, Kind] = {
+    "particle": KINDS["particle"],
+    "rolling disk": KINDS["rolling disk"],
+    "tilting disk": ready("tilting_disk", "coordinates"),
+    "ball in bowl": ready("ball_in_bowl", "coordinates"),
+    "ball on turntable": ready("ball_on_turntable", "coordinates"),
+    "knife edge on incline": ready("knife_edge_on_incline", "coordinates"),
+    "sleigh in a well": KINDS["sleigh in a well"],
+    "heavy suslov top": dataclasses.replace(
+        ready("heavy_suslov_top", "opaque", parameter="inertia", values=(1.0, 1.2, 0.8)),
+        system=lambda tensor: dataclasses.replace(nh.examples.heavy_suslov_top().system, system=nh.SuslovTop(tensor)),
+        parameter="mass_tensor",
+        values=(np.diag([0.5, 0.3, 0.7]), np.diag([0.6, 0.3, 0.7])),
+    ),
+    "driven sleigh": KINDS["driven sleigh"],
+    "roller racer": ready("roller_racer", "coordinates", "driven"),
+    "snakeboard": KINDS["snakeboard"],
+}
+
+ALL = KINDS | READY
