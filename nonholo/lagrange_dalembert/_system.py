@@ -28,7 +28,7 @@ from nonholo.lagrange_dalembert._functions import (
     with_time_step,
 )
 from nonholo.lagrange_dalembert._places import Coordinates
-from nonholo.systems import AbstractCoordinateSystem, force_of, parts_of, slips_of
+from nonholo.systems import AbstractCoordinateSystem, force_of, parts_of, slips_of, without_slips
 
 if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization
@@ -298,8 +298,8 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     @functools.cached_property
     def holding(self) -> Self:
         """The system while the form that may yield holds; itself if none may."""
-        parts = parts_of(self.force)
-        return dataclasses.replace(self, force=force_of(parts)) if parts.pop("slip", None) else self
+        others = without_slips(parts_of(self.force))
+        return dataclasses.replace(self, force=force_of(others)) if slips_of(parts_of(self.force)) else self
 
     @functools.cached_property
     def free(self) -> Self:

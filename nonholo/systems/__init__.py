@@ -65,6 +65,7 @@ from nonholo.systems.forces import (
     friction,
     parts_of,
     slips_of,
+    without_slips,
 )
 
 SYSTEMS = tuple(kind for kind in vars(families).values() if isinstance(kind, type))

@@ -114,8 +114,8 @@ def test_a_body_that_cannot_be_is_told_once(nonholo: Command) -> None:
     """The command says in its own words, and once, that there is no such body, and runs it."""
     body = "body={kind='suslov', inertia=[[5.0, 0, 0], [0, 3.1, 0], [0, 0, 1.5]]}"
     result = assert_ends(nonholo("simulate", "suslov", "--set", body, "--steps", 5, "--no-plot"), 0)
-    assert result.stderr.count("the mass tensor has the eigenvalue -0.2") == 1
-    assert "Warning: `SuslovTop.from_inertia(inertia=...)`" in result.stderr
+    assert result.stderr.count("its mass tensor has the eigenvalue -0.2") == 1
+    assert "Warning: No distribution of mass has `SuslovTop.from_inertia(inertia=...)`" in result.stderr
 
 
 def test_a_start_off_the_locus(nonholo: Command) -> None:

@@ -456,6 +456,7 @@ def test_template_runs(nonholo: Command) -> None:
     assert Path(told["picture"]).exists()
 
 
+@pytest.mark.profile("routes", instead="test_template_runs")
 def test_the_scenario_of_the_page(nonholo: Command) -> None:
     """Its scenario, with a body and a start, runs."""
     page = Path(__file__).parents[2] / "docs" / "how-to" / "run-a-sweep.md"

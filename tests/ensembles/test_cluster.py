@@ -249,6 +249,7 @@ def _printed(code: str, folder: Path) -> str:
     ).stdout
 
 
+@pytest.mark.profile("faults", instead="test_calls_that_need_an_extra")
 def test_a_missing_extra_is_named(tmp_path: Path) -> None:
     """Without distributed threads work, and the address of a cluster is refused with the name of the extra."""
     first, second = _printed(WITHOUT, tmp_path).splitlines()

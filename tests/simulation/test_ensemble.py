@@ -153,6 +153,7 @@ BY_MATRICES = {
 }
 
 
+@pytest.mark.profile("routes", keep=["top", "oblique blade"])
 @pytest.mark.parametrize("name", BY_MATRICES)
 def test_bodies_by_matrices_run_side_by_side(name: str) -> None:
     """Tops and sleighs are known by their closed form, whatever their class; members have the bits of `simulate`."""

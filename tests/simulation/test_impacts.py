@@ -181,6 +181,7 @@ def test_straight_motions_are_the_known_ones() -> None:
     assert [len(orbit.events[side]) for side in SIDES] == [18, 18, 8, 8]
 
 
+@pytest.mark.profile("routes", cases=["1.7-*"])
 @pytest.mark.parametrize(
     ("step", "speed"), [(0.1, (0.7, 0.7)), (0.125, (1.0, 1.0)), (0.25, (1.0, -2.0)), (1.7, (5.1, 3.3))]
 )

@@ -265,7 +265,7 @@ def test_stiff_viscous_friction_tends_to_the_ideal_map() -> None:
     assert 95 < errors[1] / errors[2] < 105
 
 
-@pytest.mark.profile("problems", keep=["sleigh", "cone"])
+@pytest.mark.profile("problems", keep=["sleigh"])
 @pytest.mark.parametrize("name", CASES)
 def test_one_motion_however_it_is_run(name: str, tmp_path: Path) -> None:
     """Blocks, thinned rows, ensembles and stores that are extended have the bits of one run."""

@@ -2,5 +2,5 @@
 
 from nonholo.systems.forces._contacts import Contacts, Mode, friction
 from nonholo.systems.forces._forced import Forced, central_differences
-from nonholo.systems.forces._friction import Friction, Slip, Widened, force_of, parts_of, slips_of
+from nonholo.systems.forces._friction import Friction, Slip, Widened, force_of, parts_of, slips_of, without_slips
 from nonholo.systems.forces._potentials import Gravity, Linear, Spring

@@ -22,7 +22,16 @@ from nonholo.base.types import Array, Float
 from nonholo.systems._base import AbstractSystem
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem
 from nonholo.systems.forces._contacts import Contacts
-from nonholo.systems.forces._friction import Friction, Widened, force_of, parts_of, remaining_rows, slips_of, terms_of
+from nonholo.systems.forces._friction import (
+    Friction,
+    Widened,
+    force_of,
+    parts_of,
+    remaining_rows,
+    slips_of,
+    terms_of,
+    without_slips,
+)
 from nonholo.systems.forces._potentials import Gravity
 
 _OFFSET = 8e-3  # of a body direction, for central differences: its sixth power is at rounding
@@ -193,18 +202,14 @@ class Forced(AbstractSystem):
     @functools.cached_property
     def holding(self) -> AbstractSystem:
         """The system while no row yields."""
-        system = Forced(self.system, self.potential, force_of(self._others), self.scheme)
+        system = Forced(self.system, self.potential, force_of(without_slips(self.parts)), self.scheme)
         return self.system if system.forces is None else system
 
     @functools.cached_property
     def sliding(self) -> "Forced":
         """The system while rows slide, without the friction of these."""
-        rest = {"friction": Friction(np.zeros(self.group.dim))} | self._others
+        rest = {"friction": Friction(np.zeros(self.group.dim))} | without_slips(self.parts)
         return Forced(self.free, self.potential, force_of(rest), "energy")
-
-    @property
-    def _others(self) -> dict[str, Any]:
-        return {name: each for name, each in self.parts.items() if not name.startswith("slip")}
 
     @property
     def table(self) -> Array | None:

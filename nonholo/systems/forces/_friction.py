@@ -258,6 +258,11 @@ def slips_of(parts: dict[str, Any]) -> tuple[Slip, ...]:
     return tuple(each for name, each in parts.items() if name.startswith("slip"))
 
 
+def without_slips(parts: dict[str, Any]) -> dict[str, Any]:
+    """Return the parts of a force that are no contacts."""
+    return {name: each for name, each in parts.items() if not name.startswith("slip")}
+
+
 def terms_of(potential: Any) -> tuple[Any, ...]:
     """Return the potentials of one, or of a tuple or list of them, with at most one function; of None nothing."""
     terms = tuple(potential) if isinstance(potential, tuple | list) else () if potential is None else (potential,)
