@@ -162,10 +162,8 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
     def forced(self, potential: Any, force: Any) -> "GroupLagrangeDAlembert":
         """Return the system with a potential U(g); `nonholo.Forced` calls it. Other forces have no way in yet."""
         if force is not None or (potential is not None and self.potential is not None):
-            got, remedy = (
-                shown(self if force is None else force),
-                "Pass one potential; write a system with forces as an LLSystem.",
-            )
+            got = shown(self if force is None else force)
+            remedy = "Pass one potential; write a system with forces as an LLSystem."
             raise error("Forced(system=...)", "have at most a potential, as a GroupLagrangeDAlembert", got, remedy)
         return dataclasses.replace(self, potential=potential) if potential is not None else self
 

@@ -26,6 +26,7 @@ from nonholo.lagrange_dalembert._discretization import CoordinateStepper
 from nonholo.lagrange_dalembert._flow import bordered_solution
 from nonholo.lagrange_dalembert._functions import in_blocks, in_double
 from nonholo.orbit import AbstractStepper, First, Rows, State
+from nonholo.systems import friction
 
 _MOST, _ROUNDING = 40, 1e-14  # corrections of an impulse; relative
 
@@ -80,8 +81,7 @@ class SlipStepper(AbstractStepper[Any]):
         impulse, slope, most, viscous = 2 * (first - pi), 2 * inertia, h * slip.grip, h * slip.viscous
         u = 0.0
         for _ in range(_MOST):  # corrections of the impulse j(u), whose slope is that of the last two
-            dry = np.clip(impulse - slope * u, -most, most)
-            goal = dry + viscous * (impulse - slope * u - dry) / (slope + viscous)
+            goal = friction(np.array([[slope]]), np.array([slope * u - impulse]), [(slice(1), most, viscous)])[1][0]
             if abs(goal - impulse) <= _ROUNDING * (abs(goal) + slope * np.linalg.norm(form) * np.linalg.norm(v)):
                 return 0, v, goal, None
             start, outcome = self.steppers[1].start(First((p + goal / 2 * form, x, near)))

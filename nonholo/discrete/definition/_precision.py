@@ -3,7 +3,7 @@
 import contextlib
 import contextvars
 import functools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 import equinox
@@ -12,25 +12,21 @@ import numpy as np
 
 from nonholo.base.checks import is_traced
 from nonholo.base.numerics import double_precision
+from nonholo.base.progress import setting
 from nonholo.discrete import _pytrees
 
 _float32 = contextvars.ContextVar("float32_allowed", default=False)
 _pytrees.register()
 
 
-@contextlib.contextmanager
-def allow_float32() -> Iterator[None]:
+def allow_float32() -> contextlib.AbstractContextManager[None]:
     """Let the JAX route be traced in 32 bits, where energy is conserved to 1e-7 instead of rounding.
 
     Example:
         >>> with nh.allow_float32():
         ...     pass
     """
-    token = _float32.set(True)
-    try:
-        yield
-    finally:
-        _float32.reset(token)
+    return setting(_float32, True)
 
 
 def in_double(function: Callable[..., Any], *arguments: Any) -> Any:
