@@ -34,7 +34,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "--every",
         type=int,
         default=1,
-        help="run every n-th case of each test; the number of commits says with which one it begins",
+        help="run every n-th case; the number of commits says with which one it begins",
     )
 
 
