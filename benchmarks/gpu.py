@@ -1,11 +1,16 @@
-"""Steps per second of a million tops on a GPU: the scalar functions of `nonholo.kernels`, mapped and scanned by JAX.
+"""Steps per second of a million bodies on a GPU: the kernels' scalar functions, and `nh.rollout` with its derivatives.
+
+The scalar functions of `nonholo.kernels` are mapped over tops and scanned by JAX.
 
 A step takes a fixed number of Newton corrections from the extrapolated guess; the run counts the members whose last
 root has a residual above rounding, and a few members are compared with `simulate`. The speed is set beside two limits
 that are measured in the same run: copying memory, and multiply-adds in 64 bits. `--unroll` steps are one device loop
 turn: one reads and writes the whole state for each step, more let the compiler keep it in registers.
 
-    python benchmarks/gpu.py [--members 1000000] [--steps 256] [--unroll 1 8 32] [--cpu] [--smoke]
+`jax.vmap` of `nh.rollout` runs a tenth as many tops and sleighs, and derivatives of each last pose by its start; poses
+are compared with `simulate`, derivatives with differences.
+
+    python benchmarks/gpu.py [--members 1000000] [--steps 256] [--unroll 1 4 16] [--cpu] [--smoke]
 
 Without a GPU it says so and ends; with `--cpu` or `--smoke` it runs on the processor, to check the script.
 """
@@ -127,7 +132,7 @@ def main() -> None:
     parser = options(__doc__)
     parser.add_argument("--members", type=int, default=small(1_000_000, 64))
     parser.add_argument("--steps", type=int, default=small(256, 8))
-    parser.add_argument("--unroll", type=int, nargs="+", default=small([1, 8, 32], [1, 2]))
+    parser.add_argument("--unroll", type=int, nargs="+", default=small([1, 4, 16], [1, 2]))
     parser.add_argument("--cpu", action="store_true")
     asked = parser.parse_args()
     device = jax.devices()[0]
@@ -151,6 +156,29 @@ def main() -> None:
     print(f"a step: {each:.0f} operations, {2 * 8 * len(make())} bytes read and written")
     for unroll in asked.unroll:
         print(line(closed.body, make, asked.members, asked.steps, unroll, memory, flops / each))
+    sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), 0.1)
+    for name, body in (("top", discrete), ("sleigh", sleigh)):
+        print(f"rollouts, {name}: {rollouts(body, velocities[: asked.members // 10], asked.steps)}")
+
+
+def rollouts(discrete: nh.Discretization, velocities: np.ndarray, steps: int) -> str:
+    """Return the speed of rollouts and of their derivatives, compared with `simulate` and differences."""
+
+    def last_pose(velocity: Any) -> Any:
+        return nh.rollout(discrete, restricted_velocity=velocity, steps=steps, save_every=steps).configuration[-1]
+
+    poses = jax.jit(jax.vmap(last_pose))
+    slopes = jax.jit(jax.vmap(jax.jacrev(lambda velocity: last_pose(velocity).sum())))
+    ends, derivatives = poses(velocities), slopes(velocities)
+    for j in range(0, len(velocities), max(len(velocities) // 16, 1)):
+        orbit = nh.simulate(discrete, restricted_velocity=velocities[j], steps=steps, save_every=steps)
+        assert np.allclose(ends[j], orbit.configuration[-1], rtol=0, atol=1e-12)
+    near = velocities[0] + 1e-6 * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])
+    sums = np.asarray(poses(near)).sum((1, 2))
+    assert np.allclose(derivatives[0], [sums[0] - sums[1], sums[2] - sums[3]] / np.float64(2e-6), rtol=1e-6, atol=1e-6)
+    work = len(velocities) * steps
+    rate, slope_rate = (work / seconds(lambda: jnp.asarray(velocities), f) for f in (poses, slopes))
+    return f"{rate:.3g} steps/s, with derivatives {slope_rate:.3g}"
 
 
 def line(
