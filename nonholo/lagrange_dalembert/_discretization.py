@@ -81,7 +81,7 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
             v = checks.velocity_of_displacement(system, q, start.value, h)
             return First((in_double(equations.momenta, system, q, v, h)[0], q, v))
         v = checks.velocity(*subject, q, start.value, project=start.project)
-        return First((in_double(equations.momentum, system, q, v), q, v))
+        return First((checks.momentum(system, q, v), q, v))
 
     @functools.cached_property
     def _stepper(self) -> AbstractStepper[OrbitT]:

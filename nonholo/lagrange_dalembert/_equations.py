@@ -110,7 +110,7 @@ def momenta(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[Ar
     leaving, arriving = system.places.momenta(x, step, h, *slopes)
     if system.force is None:
         return leaving, arriving
-    at_start, at_end = _impulses(system, x, v, h)
+    at_start, at_end = impulses(system, x, v, h)
     return leaving - at_start, arriving + at_end
 
 
@@ -141,7 +141,7 @@ def step_residual(
     return jnp.concatenate([step_balance(system, (x, p + kick), z, h), arriving + kick - following, place - end])
 
 
-def _impulses(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[Array, Array]:
+def impulses(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[Array, Array]:
     """Return half the impulse of a step at each of its ends: of a table, half its row at both."""
     row = 0.0 if system.table is None else system.table.row(x[-1] / h)
     if system.applied is None:

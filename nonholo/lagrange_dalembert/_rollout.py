@@ -3,7 +3,6 @@
 import functools
 from typing import Any, NamedTuple
 
-import equinox
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -48,7 +47,6 @@ class _Node(NamedTuple):
     control: Array | None
 
 
-@equinox.filter_jit
 def roll(
     family: Any,
     name: str,

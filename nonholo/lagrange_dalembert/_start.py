@@ -10,6 +10,7 @@ from nonholo.base.checks import array, error, scale
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
+from nonholo.lagrange_dalembert import compiled
 from nonholo.lagrange_dalembert._flow import admissible_velocity, nearest_place
 from nonholo.lagrange_dalembert._functions import in_double, place
 from nonholo.lagrange_dalembert._newton import orientation
@@ -21,6 +22,11 @@ _CONSISTENT = 1e-7  # relative; looser, since the functions may difference numer
 _CORRECTIONS = 8  # of a displacement
 _SMALL = 1e-6  # length of the displacement at which l_d is compared with its limit
 _CLOSE = 1e-4  # what the comparison must reach: far above rounding and the error of the limit
+
+
+def _at(function: Any, system: Any, *arguments: Any) -> Any:
+    """Return the arrays of function(system, ...), by formulas or by JAX."""
+    return compiled.value(function, system, *arguments) or in_double(function, system, *arguments)
 
 
 def _argument(system: Any, name: str) -> str:
@@ -46,7 +52,7 @@ def point(
             got, remedy = f"{q[index]:.17g}", f"Set coordinate {index} to {target:.17g}."
             raise error(where, "agree with prescribed motions", got, remedy)
     x = place(system, q, time)
-    A = in_double(equations.forms, system, x)
+    A, *_ = _at(_constraints, system, x, np.zeros(n))
     if system.holonomic is not None:
         _check_holonomic(where, system, x, A)
     _check_rows(_argument(system, "constraint_forms" if system.holonomic is None else "holonomic"), A, q)
@@ -89,10 +95,10 @@ def consistent(system: Any, q: np.ndarray, h: Any) -> None:
     if system.discrete_constraints is None:
         return
     where, rest = _argument(system, "discrete_constraints"), system.places.at_rest
-    at_rest, slope = in_double(_constraint_slope, system, q, np.zeros(system.dimension), h)
+    at_rest, slope = _at(_constraint_slope, system, q, np.zeros(system.dimension), h)
     if not np.all(np.isfinite(at_rest)) or np.abs(at_rest).max() > _TOLERANCE * (1 + np.abs(slope).max()):
         raise error(where, f"vanish {rest}", f"{at_rest.tolist()} at {q.tolist()}", "Subtract its value there.")
-    A = in_double(equations.forms, system, q)
+    A, *_ = _at(_constraints, system, q, np.zeros(system.dimension))
     directions = np.linalg.svd(A)[2][len(A) :]
     span_gap = np.abs(slope @ directions.T)
     if not span_gap.max() <= _CONSISTENT * np.linalg.norm(slope, axis=1).max() or np.linalg.matrix_rank(slope) < len(A):
@@ -113,7 +119,7 @@ def velocity(
     _check_regular(system, q, v)
     if project:
         return in_double(admissible_velocity, system, q, v)
-    A, residual = in_double(equations.forms, system, q), in_double(equations.constraint, system, q, v)
+    A, residual = _at(_constraints, system, q, v)
     rounding = np.finfo(float).eps * np.linalg.norm(A, axis=1) * np.linalg.norm(v)  # of forms where their terms vanish
     if np.any(np.abs(residual) > _TOLERANCE * (np.abs(A) @ np.abs(v) + np.abs(A @ v - residual)) + rounding):
         raise inadmissible(where, residual, v - np.linalg.pinv(A) @ residual)
@@ -123,13 +129,13 @@ def velocity(
 def _check_regular(system: Any, q: np.ndarray, v: np.ndarray) -> None:
     """Refuse Lagrangians that have no finite derivatives, leave accelerations open or contradict each other."""
     what, at = _argument(system, system.energy_argument), f"at {q.tolist()}, velocity {v.tolist()}"
-    value, gradients = in_double(_value_and_gradients, system, q, v)
+    value, *gradients, matrix = _at(_kinetics, system, q, v)
     if not all(np.all(np.isfinite(x)) for x in (value, *gradients)):
         got = f"value {value.tolist()}, gradients {[x.tolist() for x in gradients]} {at}"
         raise error(what, "be finite and differentiable", got, "Start elsewhere, or smooth it with jnp.where.")
-    least = in_double(_least, system, q, v)
+    least = np.linalg.svd(matrix, compute_uv=False)[-1]
     if not least > _DEGENERATE:
-        got = f"least singular value {float(least):.3g} of the equations {at}"
+        got = f"least singular value {least:.3g} of the equations {at}"
         raise error(what, "determine the accelerations", got, "Give every admissible direction a kinetic energy.")
     if system.has_limit and np.any(v):
         _check_limit(system, q, v)
@@ -137,8 +143,8 @@ def _check_regular(system: Any, q: np.ndarray, v: np.ndarray) -> None:
 
 def _check_limit(system: Any, q: np.ndarray, v: np.ndarray) -> None:
     """Refuse a discrete Lagrangian that is not about h times the Lagrangian in short steps."""
-    h, limit = _SMALL / np.linalg.norm(v), in_double(equations.momentum, system, q, v)
-    p = np.mean(in_double(equations.momenta, system, q, v, h), axis=0)
+    h, limit = _SMALL / np.linalg.norm(v), momentum(system, q, v)
+    p = np.mean(_at(equations.momenta, system, q, v, h), axis=0)
     if not np.linalg.norm(p - limit) <= _CLOSE * np.linalg.norm(limit):
         got = f"momentum {p.tolist()} at the small step {h:.3g}, in the limit {limit.tolist()}"
         remedy = "Include the factor time_step; pass lagrangian= if it is not a quadratic form."
@@ -162,7 +168,7 @@ def velocity_of_displacement(system: Any, q: np.ndarray, value: Any, h: float) -
     where = "simulate(displacement=...)"
     v = system.places.velocity(where, value, h)
     _check_regular(system, q, v)
-    residual, slope = in_double(_constraint_slope, system, q, v, h)
+    residual, slope = _at(_constraint_slope, system, q, v, h)
     if np.any(np.abs(residual) > _TOLERANCE * (np.abs(slope) @ np.abs(v) + np.abs(slope @ v - residual))):
         nearest = system.places.displacement(in_double(_admissible, system, q, v, h), h)
         got = f"residual {np.array2string(residual, precision=6)}"
@@ -186,12 +192,19 @@ def _constraint_slope(system: Any, q: Array, v: Array, h: Array) -> tuple[Array,
     return equations.discrete_constraints(system, q, v, h), slope
 
 
-def _value_and_gradients(system: Any, q: Array, v: Array) -> tuple[Array, tuple[Array, Array]]:
-    return jax.value_and_grad(equations.lagrangian, argnums=(1, 2))(system, q, v)
+def _constraints(system: Any, q: Array, v: Array) -> tuple[Array, Array]:
+    return equations.forms(system, q), equations.constraint(system, q, v)
 
 
-def _least(system: Any, q: Array, v: Array) -> Array:
-    return jnp.linalg.svd(equations.acceleration_matrix(system, q, v)[0], compute_uv=False)[-1]
+def _kinetics(system: Any, q: Array, v: Array) -> tuple[Array, ...]:
+    """Return L, its slopes, the second of which is the momentum, and the scaled matrix of the continuous equations."""
+    value, slopes = jax.value_and_grad(equations.lagrangian, argnums=(1, 2))(system, q, v)
+    return value, *slopes, equations.acceleration_matrix(system, q, v)[0]
+
+
+def momentum(system: Any, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Return the momentum of a velocity."""
+    return _at(_kinetics, system, q, v)[2]
 
 
 def _admissible(system: Any, q: Array, v: Array, h: Array) -> Array:

@@ -20,6 +20,7 @@ from nonholo.simulation._options import check_forces, refuse_many_matrices
 from nonholo.systems import AbstractCoordinateDiscretization, Forced, Start, refuse_in_coordinates
 
 _roll_out = equinox.filter_jit(roll_out)
+_roll_in_coordinates = equinox.filter_jit(rolled_in_coordinates)
 _MANY = 10_000  # steps, which may take longer than a user waits for an answer to Ctrl-C
 
 
@@ -114,7 +115,7 @@ def rollout(
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
     if isinstance(discrete, AbstractCoordinateDiscretization):
         refuse_in_coordinates("rollout", restricted_velocity=(starts.pop("restricted_velocity"), None))
-        run, arguments = rolled_in_coordinates, _in_coordinates
+        run, arguments = _roll_in_coordinates, _in_coordinates
     else:
         as_discretization("rollout(discrete=...)", discrete, compositions=True, forced=True)
         run, arguments = _roll_out, _on_group

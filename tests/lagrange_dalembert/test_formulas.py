@@ -8,13 +8,13 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from formulas import function_of
 from jax import lax
 
 import nonholo as nh
 from nonholo.base.numerics import double_precision
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.lagrange_dalembert.compiled import _run
-from nonholo.lagrange_dalembert.compiled._run import machine_code
 from nonholo.lagrange_dalembert.compiled._scalars import LOGIC, OPERATIONS, Formulas, Scalar, UntranslatableError
 
 EPS = np.finfo(float).eps
@@ -62,7 +62,7 @@ def computed(function: Callable[..., Any], *arrays: np.ndarray) -> tuple[np.ndar
     """Return the values of a function by its formulas, and their doubt."""
     program = _run.program(function, *(array.shape for array in arrays))
     numbers, results = np.concatenate([np.ravel(x) for x in arrays]), np.empty(len(program.results) + 1)
-    machine_code(program.inputs, [*program.results, program.doubt])(numbers.ctypes, results.ctypes)
+    function_of(program.inputs, [*program.results, program.doubt])(numbers.ctypes, results.ctypes)
     return results[:-1], results[-1]
 
 
@@ -126,7 +126,7 @@ def test_constants_have_the_values_of_the_code() -> None:
         ]
 
     folded, values = [each.value for each in every(constants)], np.empty(len(names) + 6)
-    machine_code(inputs, every(inputs))(np.array(points).ctypes, values.ctypes)
+    function_of(inputs, every(inputs))(np.array(points).ctypes, values.ctypes)
     assert None not in folded
     assert np.abs(np.array(folded) - values).max() <= 2 * EPS
 

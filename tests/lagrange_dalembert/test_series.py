@@ -8,6 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 from comparisons import assert_near
+from formulas import function_of
 from llvmlite import ir
 
 import nonholo as nh
@@ -15,7 +16,6 @@ from nonholo.base.compiled.emission import compile_text
 from nonholo.kernels._scalar import expand_at
 from nonholo.lagrange_dalembert.compiled._expansion import Elimination, Expansion
 from nonholo.lagrange_dalembert.compiled._flow import formulation
-from nonholo.lagrange_dalembert.compiled._run import machine_code
 from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError
 
 ORDER = 30
@@ -96,7 +96,7 @@ def test_elimination_solves_bordered_equations(n: int, s: int) -> None:
     numbers = [[numbers[max(i, j)][min(i, j)] for j in range(n + s)] for i in range(n + s)]
     b, values = [Scalar("input") for _ in K], rng.normal(size=n + s)
     inputs = [(numbers[i][j], K[i, j]) for i in range(n + s) for j in range(i + 1) if numbers[i][j].value is None]
-    code = machine_code([*(each for each, _ in inputs), *b], Elimination(f, numbers).solution(b))
+    code = function_of([*(each for each, _ in inputs), *b], Elimination(f, numbers).solution(b))
     given, x = np.array([*(value for _, value in inputs), *values]), np.empty(n + s)
     code(given.ctypes.data, x.ctypes.data)
     assert np.abs(x - np.linalg.solve(K, values)).max() < 1e-12

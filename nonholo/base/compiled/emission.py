@@ -23,23 +23,41 @@ def machine_for(triple: str, processor: str, reloc: str) -> llvm.TargetMachine:
     return llvm.Target.from_triple(triple).create_target_machine(cpu=processor, opt=3, reloc=reloc)
 
 
-def compile_text(text: str, name: str, *, is_long: bool = False) -> int:
-    """Return the address of a function of LLVM text, compiled for this processor, which stays as long as the process.
+def compile_text(text: str, name: str) -> int:
+    """Return the address of a function of LLVM text, compiled for this processor."""
+    return load_object(object_of(text), name)[0]
+
+
+def object_of(text: str, *, is_long: bool = False) -> bytes:
+    """Return the object of LLVM text for this processor.
 
     Nothing in it is reordered or fused: as with numba, arithmetic is strict. For long code there is less search for
     better instructions, which takes seconds and gains nothing.
     """
-    llvm.initialize_native_target()
-    llvm.initialize_native_asmprinter()
-    about = {"cpu": llvm.get_host_cpu_name(), "features": llvm.get_host_cpu_features().flatten(), "jit": True}
-    about |= {"opt": 1} if is_long else {}
-    machine = llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine(**about)
-    code = llvm.parse_assembly(text)
+    machine, code = _this_machine(**{"opt": 1} if is_long else {}), llvm.parse_assembly(text)
     _optimize(code, machine, 1)
-    engine = llvm.create_mcjit_compiler(code, machine)
+    return machine.emit_object(code)
+
+
+def load_object(binary: bytes, *names: str) -> list[int]:
+    """Return the addresses of functions of an object, which stay as long as the process."""
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _this_machine())
+    engine.add_object_file(llvm.ObjectFileRef.from_data(binary))
     engine.finalize_object()
     _KEPT.append(engine)
-    return engine.get_function_address(name)
+    return [engine.get_function_address(name) for name in names]
+
+
+def this_processor() -> dict[str, str]:
+    """Return the name and the features of the processor, as LLVM knows them."""
+    return {"cpu": llvm.get_host_cpu_name(), "features": llvm.get_host_cpu_features().flatten()}
+
+
+def _this_machine(**options: Any) -> llvm.TargetMachine:
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    target = llvm.Target.from_triple(llvm.get_process_triple())
+    return target.create_target_machine(**this_processor(), jit=True, **options)
 
 
 _KEPT: list[Any] = []

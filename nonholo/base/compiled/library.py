@@ -41,11 +41,16 @@ def prefix() -> str:
     return f"kernels-{digest_of_kernels().hex()[:16]}-"
 
 
-@functools.cache
 def digest_of_kernels() -> bytes:
     """Return a digest of the text of all kernels."""
+    return digest_of(*_FOLDERS)
+
+
+@functools.cache
+def digest_of(*folders: str) -> bytes:
+    """Return a digest of the text in folders of the package."""
     digest = hashlib.sha256()
-    for folder in _FOLDERS:
+    for folder in folders:
         for file in sorted((_PACKAGE / folder).rglob("*")):
             if file.suffix in (".py", ".ll", ".txt"):
                 digest.update(file.read_bytes())

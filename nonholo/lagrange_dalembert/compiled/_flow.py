@@ -10,13 +10,12 @@ import jax
 import numpy as np
 from llvmlite import ir
 
-from nonholo.base.compiled.emission import compile_text
 from nonholo.base.types import Array
 from nonholo.kernels import Columns, Quadratic, revisit_series, solve_series
 from nonholo.lagrange_dalembert import _equations as equations
-from nonholo.lagrange_dalembert._functions import compiling
 from nonholo.lagrange_dalembert.compiled._expansion import Expansion, bordered_elimination
-from nonholo.lagrange_dalembert.compiled._run import Values, evaluate, machine_code, program
+from nonholo.lagrange_dalembert.compiled._machine import code_of, function_at, write_function
+from nonholo.lagrange_dalembert.compiled._run import Values, evaluate, program
 from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError
 from nonholo.lagrange_dalembert.compiled._translation import array_of
 from nonholo.orbit import looked_at
@@ -61,7 +60,7 @@ def formulation(family: Any, place: tuple[int, ...], n: int) -> Formulation | No
         matrices = equations.mass_matrix(system, x, v), equations.forms(system, x)
         return *matrices, equations.force(system, x, v), -constraint_rate, rate, *columns
 
-    try:
+    def write(module: ir.Module) -> int:
         whole = program(at, place, (n,), *map(np.shape, family.parameters.values()))
         f, parts = whole.formulas, iter(whole.results)
         mass, A, force, off, rate, momentum, energy, residual, away, leaving = (
@@ -72,21 +71,22 @@ def formulation(family: Any, place: tuple[int, ...], n: int) -> Formulation | No
         across, back, drift = (matrix.solution([*[zero] * n, *rows])[:n] for rows in (residual, away, leaving))
         still = [zero] * (len(whole.inputs) - size - n)
         expansion = Expansion(f, whole.inputs, [*_less(f, rate.ravel(), drift), *acceleration[:n], *still])
+        expansion.write(module, "expansion", -(-len(whole.inputs) // _SIDE) * _SIDE)
+        admissible = [*_less(f, whole.inputs[:size], back), *_less(f, whole.inputs[size : size + n], across)]
+        forces, pivots = (f("neg", each) for each in acceleration[n:]), matrix.pivots[:n]
+        columns = [*momentum, *forces, energy.item(), *residual, *pivots, *np.diagonal(mass)]
+        doubt = functools.reduce(functools.partial(f, "add"), f.doubts, zero)
+        write_function(module, "settle", whole.inputs, [*admissible, doubt])
+        write_function(module, "decode", whole.inputs, [*columns, doubt])
+        return expansion.room
+
+    try:
+        code, room = code_of(family, ("flow",), write)
     except UntranslatableError:
         return None
-    module = ir.Module()
-    expansion.write(module, "expansion", -(-len(whole.inputs) // _SIDE) * _SIDE)
-    admissible = [*_less(f, whole.inputs[:size], back), *_less(f, whole.inputs[size : size + n], across)]
-    forces, pivots = (f("neg", each) for each in acceleration[n:]), matrix.pivots[:n]
-    columns_out = [*momentum, *forces, energy.item(), *residual, *pivots, *np.diagonal(mass)]
-    shapes = [(n,), (len(A),), (), (len(A),), (n,), (n,)]
-
-    def values(results: list[Scalar], shapes: list[tuple[int, ...]]) -> Values:
-        doubt = functools.reduce(functools.partial(f, "add"), f.doubts, f.constant(0.0))
-        return Values(machine_code(whole.inputs, [*results, doubt]), shapes)
-
-    address = compile_text(str(module), "expansion", is_long=True)
-    return Formulation(address, expansion.room, values(admissible, [place, (n,)]), values(columns_out, shapes))
+    rows, settle, decode = (family.constraints,), function_at(code["settle"]), function_at(code["decode"])
+    shapes = [(n,), rows, (), rows, (n,), (n,)]
+    return Formulation(code["expansion"], room, Values(settle, [place, (n,)]), Values(decode, shapes))
 
 
 def _less(f: Formulas, numbers: Iterable[Scalar], others: list[Scalar]) -> list[Scalar]:
@@ -142,8 +142,7 @@ class Series(NamedTuple):
 def flow(system: Any, first: tuple[Any, Any], times: np.ndarray, rtol: float) -> tuple[list[np.ndarray], Series] | None:
     """Return places and velocities at times, and the motion between; None if series do not reach them all."""
     x, v = map(np.asarray, first)
-    with compiling(system):
-        code = formulation(system.family, x.shape, len(v))
+    code = formulation(system.family, x.shape, len(v))
     start = code and _values(code.decode, system, x[None], v[None])
     if not code or start is None or not np.all(start[-2] > _SMALLEST * start[-1]):
         return None

@@ -12,25 +12,15 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from llvmlite import ir
-from numba.core.compiler_lock import global_compiler_lock
-from numba.core.registry import cpu_target
 
-from nonholo.base.compiled import FUNCTION
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array
 from nonholo.kernels import CoordinateBody, advance_coordinates, each_root, each_row, set_out_coordinates
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import _newton
-from nonholo.lagrange_dalembert._functions import ROWS, compiling
-from nonholo.lagrange_dalembert.compiled._scalars import (
-    DOUBLE,
-    OPERATIONS,
-    TRUTH,
-    Formulas,
-    Scalar,
-    UntranslatableError,
-    operations_between,
-)
+from nonholo.lagrange_dalembert._functions import ROWS
+from nonholo.lagrange_dalembert.compiled._machine import code_of, function_at, write_function
+from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError, operations_between
 from nonholo.lagrange_dalembert.compiled._translation import array_of, translate
 
 State = tuple[Any, Any, Any]
@@ -113,18 +103,24 @@ def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
         matrix, residual, units, size = unknown.in_units(v, multipliers, jnp.zeros(n + s))
         return matrix, residual, units.velocity, units.forms, size, doubt
 
-    try:
+    def write(module: ir.Module) -> int:
         own = [np.shape(number) for number in family.parameters.values()]
         first = program(arrive, place, (n,), (), *own)
         whole = program(correct, place, (n,), (), (n,), (), *own, (n,), (s,), varying=2)
+        *results, doubt = whole.results
+        outputs = [*results, whole.formulas("add", doubt, whole.doubt)]
+        constants, varying = ([each for each in whole.inputs if each.varies is kind] for kind in (False, True))
+        border = _border(outputs)
+        write_function(module, "arrive", first.inputs, [*first.results, first.doubt])
+        write_function(module, "settle", constants, border)
+        write_function(module, "correct", [*border, *varying], outputs)
+        return len(border)
+
+    try:
+        code, border = code_of(family, ("step", at_node), write)
     except UntranslatableError:
         return None
-    *results, doubt = whole.results
-    outputs = [*results, whole.formulas("add", doubt, whole.doubt)]
-    constants, varying = ([each for each in whole.inputs if each.varies is kind] for kind in (False, True))
-    border = _border(outputs)
-    settle, corrections = machine_code(constants, border), machine_code([*border, *varying], outputs)
-    return Programs(machine_code(first.inputs, [*first.results, first.doubt]), settle, corrections, len(border))
+    return Programs(function_at(code["arrive"]), function_at(code["settle"]), function_at(code["correct"]), border)
 
 
 @functools.lru_cache(maxsize=64)  # a sweep makes a system for each member
@@ -135,57 +131,22 @@ def values(function: Callable[..., Any], family: Any, *shapes: tuple[int, ...]) 
     def of_numbers(*arguments: Array) -> Any:
         return function(family.bound(*arguments[:count]), *arguments[count:])
 
-    try:
+    def write(module: ir.Module) -> Any:
         whole = program(of_numbers, *shapes)
+        write_function(module, "values", whole.inputs, [*whole.results, whole.doubt])
+        return whole.shapes
+
+    try:
+        code, results = code_of(family, (function.__module__, function.__qualname__, shapes), write)
     except UntranslatableError:
         return None
-    return Values(machine_code(whole.inputs, [*whole.results, whole.doubt]), whole.shapes)
+    return Values(function_at(code["values"]), list(map(tuple, results)))
 
 
 def _border(results: list[Scalar]) -> list[Scalar]:
     """Return the numbers that stay the same and are used by such that vary, or are results."""
     operands = [other for each in operations_between(results, ()) if each.varies for other in each.arguments]
     return list(dict.fromkeys(each for each in [*operands, *results] if not each.varies and each.value is None))
-
-
-@global_compiler_lock
-def machine_code(inputs: list[Scalar], results: list[Scalar]) -> Any:
-    """Return a C function that reads inputs from its first array and writes results to its second one.
-
-    Arithmetic is strict, as in all kernels. LLVM takes a tenth of a second for a system: nothing is kept on disk.
-    """
-    target: Any = cpu_target.target_context
-    library = target.codegen().create_library("formulas")
-    module = library.create_ir_module("formulas")
-    kind = ir.FunctionType(ir.VoidType(), [DOUBLE.as_pointer()] * 2)
-    function = ir.Function(module, kind, f"nonholo.formulas.{id(library)}")
-    _write(ir.IRBuilder(function.append_basic_block()), function.args, inputs, results)
-    library.add_ir_module(module)
-    library.finalize()
-    pointer: Any = FUNCTION(library.get_pointer_to_function(function.name))
-    pointer.memory = library  # which lives as long as the function
-    return pointer
-
-
-def _write(builder: ir.IRBuilder, arrays: Any, inputs: list[Scalar], results: list[Scalar]) -> None:
-    source, target = arrays
-
-    def at(array: Any, index: int) -> Any:
-        return builder.gep(array, [ir.Constant(ir.IntType(64), index)])
-
-    def value(each: Scalar) -> Any:
-        if each.value is None:
-            return values[each]
-        return ir.Constant(TRUTH, int(each.value)) if each.is_truth else ir.Constant(DOUBLE, float(each.value))
-
-    order = operations_between(results, inputs)
-    operands = {other for each in order for other in each.arguments}.union(results)
-    values = {each: builder.load(at(source, i)) for i, each in enumerate(inputs) if each in operands}
-    for each in order:
-        values[each] = OPERATIONS[each.operation].emit(builder, *map(value, each.arguments))
-    for i, each in enumerate(results):
-        builder.store(value(each), at(target, i))
-    builder.ret_void()
 
 
 def _body(system: Any, h: Any, q: Any, v: Any, *, at_node: bool = False) -> CoordinateBody | None:
@@ -206,9 +167,8 @@ def set_out(definition: Callable[..., Any], system: Any, h: Any, q: Any, v: Any,
 
     `definition(q, v, p)` finds it by JAX.
     """
-    with compiling(system):
-        body = _body(system, h, q, v)
-        sign = set_out_coordinates(body, *map(np.array, (np.ravel(q), p, v))) if body else 0.0  # one type of arrays
+    body = _body(system, h, q, v)
+    sign = set_out_coordinates(body, *map(np.array, (np.ravel(q), p, v))) if body else 0.0  # one type of arrays
     if body is None or sign == 0:
         return definition(q, v, p)
     first = body.root[: len(v)].copy()
@@ -265,9 +225,15 @@ def decoded(function: Callable[..., Any], system: Any, h: Any, q: np.ndarray, v:
     numbers = [np.broadcast_to(x, (len(q), *np.shape(x))) for x in (*system.parameters.values(), float(h))]
     columns = [*numbers, q, v, *nodes]
     code = values(function, system.family, *(column.shape[1:] for column in columns))
-    if code is None:
-        return None
-    return evaluate(code, *columns)
+    return code and evaluate(code, *columns)
+
+
+def value(function: Callable[..., Any], system: Any, *arguments: Any) -> list[Any] | None:
+    """Return function(system, ...), some arrays, of arrays; None where there are no formulas, or doubts."""
+    columns = [np.asarray(x, dtype=float)[None] for x in (*system.parameters.values(), *arguments)]
+    code = values(function, system.family, *(column.shape[1:] for column in columns))
+    results = code and evaluate(code, *columns)
+    return results and [each[0] for each in results]
 
 
 def evaluate(code: Values, *columns: np.ndarray) -> list[Any] | None:

@@ -1,11 +1,11 @@
 """Formulas of single numbers: operations, each result made once, constants computed, zeros left out."""
 
+import math
 import operator
 from collections.abc import Callable, Collection
 from typing import Any, NamedTuple
 
 import numpy as np
-import scipy.special
 from llvmlite import ir
 
 DOUBLE, TRUTH = ir.DoubleType(), ir.IntType(1)
@@ -49,7 +49,7 @@ LOGIC = {"and", "or", "not"}
 TRUTHS = LOGIC.union(_COMPARISONS)
 
 _TOTAL = {"sin": np.sin, "cos": np.cos, "tanh": np.tanh, "atan": np.arctan, "atan2": np.arctan2, "asinh": np.arcsinh}
-_TOTAL |= {"cbrt": np.cbrt, "erf": scipy.special.erf, "floor": np.floor, "ceil": np.ceil, "rint": np.rint}
+_TOTAL |= {"cbrt": np.cbrt, "erf": math.erf, "floor": np.floor, "ceil": np.ceil, "rint": np.rint}
 _PARTIAL = {"exp": np.exp, "log": np.log, "pow": np.power, "sqrt": np.sqrt, "tan": np.tan, "asin": np.arcsin}
 _PARTIAL |= {"acos": np.arccos, "sinh": np.sinh, "cosh": np.cosh, "acosh": np.arccosh, "atanh": np.arctanh}
 _PARTIAL |= {"expm1": np.expm1, "log1p": np.log1p}

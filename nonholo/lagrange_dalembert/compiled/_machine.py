@@ -1,0 +1,161 @@
+"""Machine code of formulas, which stays on disk.
+
+A file is named by a digest of all that its formulas depend on: a system's functions as JAX traces them, with every
+number within, the texts of this room, versions and the processor. Functions whose derivatives a user has defined are
+not seen through: nothing is kept of them. A file that is cut or changed is replaced.
+"""
+
+import contextlib
+import functools
+import hashlib
+import json
+import os
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import jax
+import llvmlite
+import numpy as np
+from llvmlite import ir
+
+from nonholo.base.compiled import FUNCTION
+from nonholo.base.compiled.emission import load_object, object_of, this_processor
+from nonholo.base.compiled.library import cache_folder, digest_of, digest_of_kernels
+from nonholo.base.numerics import double_precision
+from nonholo.base.types import Array
+from nonholo.lagrange_dalembert import _equations as equations
+from nonholo.lagrange_dalembert._functions import compiling
+from nonholo.lagrange_dalembert.compiled._scalars import DOUBLE, OPERATIONS, TRUTH, Scalar, operations_between
+
+_MOST = 256  # files
+_OPAQUE = (
+    "custom_jvp_call",
+    "custom_vjp_call",
+    "stop_gradient",
+)  # whose derivatives are not those of what they compute
+
+
+def write_function(module: ir.Module, name: str, inputs: list[Scalar], results: list[Scalar]) -> None:
+    """Write a C function that reads inputs from its first array and writes results to its second one."""
+    function = ir.Function(module, ir.FunctionType(ir.VoidType(), [DOUBLE.as_pointer()] * 2), name)
+    builder, (source, target) = ir.IRBuilder(function.append_basic_block()), function.args
+
+    def at(array: Any, index: int) -> Any:
+        return builder.gep(array, [ir.Constant(ir.IntType(64), index)])
+
+    def value(each: Scalar) -> Any:
+        if each.value is None:
+            return values[each]
+        return ir.Constant(TRUTH, int(each.value)) if each.is_truth else ir.Constant(DOUBLE, float(each.value))
+
+    order = operations_between(results, inputs)
+    operands = {other for each in order for other in each.arguments}.union(results)
+    values = {each: builder.load(at(source, i)) for i, each in enumerate(inputs) if each in operands}
+    for each in order:
+        values[each] = OPERATIONS[each.operation].emit(builder, *map(value, each.arguments))
+    for i, each in enumerate(results):
+        builder.store(value(each), at(target, i))
+    builder.ret_void()
+
+
+def code_of(family: Any, what: tuple[Any, ...], write: Callable[[ir.Module], Any]) -> tuple[dict[str, int], Any]:
+    """Return the addresses of the functions that `write` puts into a module, by name, and what it returns, for JSON.
+
+    They come from disk once they have been made for the family of systems. Arithmetic is strict, as in all kernels.
+
+    Raises:
+        UntranslatableError: `write` cannot make formulas of it.
+    """
+    with compiling(family):
+        return machine_code(write, _file(family, what))
+
+
+def machine_code(write: Callable[[ir.Module], Any], file: Path | None = None) -> tuple[dict[str, int], Any]:
+    """Do the same with a file, or none."""
+    head, binary = _read(file) or (None, b"")
+    if head is None:
+        module = ir.Module()
+        facts = write(module)
+        binary = object_of(str(module), is_long=True)
+        names = [each.name for each in module.functions if not each.is_declaration]
+        head = {"names": names, "facts": facts, "digest": hashlib.sha256(binary).hexdigest()}
+        _keep(file, json.dumps(head).encode() + b"\n" + binary)
+    return dict(zip(head["names"], load_object(binary, *head["names"]), strict=True)), head["facts"]
+
+
+def function_at(address: int) -> Any:
+    """Return the C function of formulas at an address."""
+    return FUNCTION(address)
+
+
+def _read(file: Path | None) -> tuple[dict[str, Any], bytes] | None:
+    with contextlib.suppress(OSError, ValueError, KeyError):
+        line, binary = (file.read_bytes() if file else b"").split(b"\n", 1)
+        head = json.loads(line)
+        if head["digest"] == hashlib.sha256(binary).hexdigest():
+            return head, binary
+    return None
+
+
+def _keep(file: Path | None, content: bytes) -> None:
+    """Write a file at once, where the user has a home with room in it; the oldest of many go."""
+    if file is None or not file.is_absolute():
+        return
+    part = file.with_suffix(f".{os.getpid()}-{threading.get_ident()}")
+    with contextlib.suppress(OSError):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        part.write_bytes(content)
+        part.replace(file)
+        for old in sorted(file.parent.glob("*.o"), key=lambda each: each.stat().st_mtime)[:-_MOST]:
+            old.unlink()
+    with contextlib.suppress(OSError):  # what a full disk leaves
+        part.unlink(missing_ok=True)
+
+
+def _file(family: Any, what: tuple[Any, ...]) -> Path | None:
+    """Return the file of what is made of a family of systems; None if each process must make it."""
+    if (digest := _digest(family)) is None:
+        return None
+    return cache_folder() / "formulas" / f"{hashlib.sha256(f'{digest} {what}'.encode()).hexdigest()}.o"
+
+
+@functools.lru_cache(maxsize=64)
+def _digest(family: Any) -> str | None:
+    """Return a digest of all that formulas of a family depend on; None where that cannot be seen."""
+
+    def parts(x: Array, v: Array, h: Array, *numbers: Array) -> Any:
+        system = family.bound(*numbers)
+        places, step = system.places, system.places.step(v, h)
+        moves = places.rate(x, v), places.momenta(x, step, h, x, step), places.force(v, v, x, x)
+        own = equations.lagrangian(system, x, v), equations.discrete_lagrangian(system, x, step, h)
+        constraints = equations.constraint(system, x, v), equations.discrete_constraints(system, x, v, h)
+        forces = equations.impulses(system, x, v, h) if system.force is not None else ()
+        return moves, own, constraints, forces, equations.forms(system, x), equations.ahead(system, x, v, h)
+
+    place, velocity = family.shapes
+    place = (place[0] + 1,) if family.is_driven else place  # with the time
+    shapes = [place, velocity, (), *map(np.shape, family.parameters.values())]
+    with double_precision():
+        program = jax.make_jaxpr(parts)(*(jax.ShapeDtypeStruct(shape, float) for shape in shapes))
+    text = str(program)
+    if any(name in text for name in _OPAQUE):
+        return None
+    sort = type(family).__name__, family.rule, family.is_driven, family.constraints, family.velocity_constraints
+    texts = digest_of("lagrange_dalembert", "groups"), digest_of_kernels()
+    about = sort, family.has_parts, texts, jax.__version__, llvmlite.__version__, this_processor(), text
+    digest = hashlib.sha256(repr(about).encode())
+    for array in _constants_in(program):
+        digest.update(f"{np.shape(array)} {np.asarray(array).dtype}".encode() + np.asarray(array).tobytes())
+    return digest.hexdigest()
+
+
+def _constants_in(program: Any) -> Iterator[Any]:
+    """Yield the arrays within a program and those that it calls."""
+    yield from getattr(program, "consts", ())
+    for step in getattr(program, "jaxpr", program).eqns:
+        for value in step.params.values():
+            for inner in value if isinstance(value, tuple | list) else (value,):
+                if hasattr(inner, "eqns"):
+                    yield from _constants_in(inner)
