@@ -4,7 +4,7 @@ import dataclasses
 import functools
 import itertools
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 import scipy.linalg
@@ -309,6 +309,7 @@ def steady_motion(system: Any, configuration: Any, body_velocity: Any) -> Steady
     raise error(where, "be near a steady motion", got, "Guess closer to one.")
 
 
+_SHIFT = 1e-14  # relative, of eigenvalues by rounding
 _NEUTRAL = 1e-7  # relative to the largest eigenvalue: what neither grows nor decays, up to rounding
 
 
@@ -345,28 +346,36 @@ def critical_values(
     if not low < high:
         raise error(where, "rise", shown(interval), remedy)
     places = np.linspace(low, high, 1 + count("critical_values(samples=...)", samples, "Pass a positive number."))
-    rows = [_rates(linearization, value) for value in places]
-    least = _NEUTRAL * max(np.abs(row).max(initial=0.0) for row in rows)
+    rows, shifts = zip(*(_rates(linearization, value) for value in places), strict=True)
+    sizes = np.abs(np.real(rows))
+    noise = sizes[sizes <= shifts].max(initial=0.0)
+    least = max(noise, _NEUTRAL * np.abs(rows).max(initial=0.0))
     changes = [
         i for i, (row, other) in enumerate(itertools.pairwise(rows)) if _growing(row, least) != _growing(other, least)
     ]
     return np.array([_change_between(linearization, least, places[i : i + 2], rows[i : i + 2]) for i in changes])
 
 
-def _rates(linearization: Callable[[float], Linearization], value: float) -> Inexact[np.ndarray, "d"]:
-    """Return the eigenvalues at a value, of maps their logarithms."""
+def _rates(linearization: Callable[[float], Linearization], value: float) -> tuple[np.ndarray, np.ndarray]:
+    r"""Return the eigenvalues at a value, of maps their logarithms, and how far rounding moves each.
+
+    With unit eigenvectors x, y of both sides it is $\epsilon\|A\|/|y^*x|$, which has no bound for double ones.
+    """
     result: Any = linearization(float(value))
     remedy = "Return nh.linearize(...) of the value."
     instance("critical_values(linearization=...)", result, Linearization, "return a Linearization", remedy)
-    values = result.eigenvalues.astype(complex)
-    return values if result.time_step is None else np.log(values) / result.time_step
+    values, left, right = cast(Any, scipy.linalg.eig(result.matrix, left=True))
+    with np.errstate(divide="ignore"):
+        shift = _SHIFT * np.linalg.norm(result.matrix) / np.abs((left.conj() * right).sum(axis=0))
+    h = result.time_step
+    return (values, shift) if h is None else (np.log(values) / h, shift / np.abs(values) / h)
 
 
 def _growing(rates: np.ndarray, least: float) -> int:
     return int((np.real(rates) > least).sum())
 
 
-def _change_between(linearization: Any, least: float, ends: np.ndarray, rows: list[np.ndarray]) -> float:
+def _change_between(linearization: Any, least: float, ends: np.ndarray, rows: Sequence[np.ndarray]) -> float:
     """Return where between two values the number of growing eigenvalues changes.
 
     As many eigenvalues as are neutral at both ends, the smallest, are left out.
@@ -379,10 +388,10 @@ def _change_between(linearization: Any, least: float, ends: np.ndarray, rows: li
         return np.sort(np.real(rest))[::-1]
 
     def change(x: float) -> float:
-        return growth(_rates(linearization, x))[few]
+        return growth(_rates(linearization, x)[0])[few]
 
     def is_alike(x: float) -> float:
-        return 1.0 if _growing(_rates(linearization, x), least) == many else -1.0
+        return 1.0 if _growing(_rates(linearization, x)[0], least) == many else -1.0
 
     before, after = (growth(row)[few] for row in rows)
     crosses = before * after < 0 and min(abs(before), abs(after)) > least

@@ -311,3 +311,14 @@ def test_critical_values_of_a_disk_and_a_bead() -> None:
         nh.critical_values(lambda spin: spin, (0.0, 1.0))
     with pytest.raises(ValueError, match="must rise"):
         nh.critical_values(lambda spin: spin, (1.0, 1.0))
+
+
+def test_eigenvalues_that_are_zero_twice_never_grow() -> None:
+    """Of a snakeboard on circles all are zero: rounding, which parts double ones by its root, is no growth."""
+    board = nh.examples.snakeboard()
+
+    def on_a_circle(rate: float) -> Any:
+        velocity = rate * np.asarray(board.body_velocity)
+        return nh.equilibria(board.system, configuration=board.configuration, body_velocity=velocity).linearization
+
+    assert len(nh.critical_values(on_a_circle, (0.5, 2.0))) == 0
