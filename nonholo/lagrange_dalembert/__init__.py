@@ -16,6 +16,7 @@ with needs("jax", "nonholo.lagrange_dalembert"):
         GroupOrbit,
         RecordedSystem,
     )
+    from nonholo.lagrange_dalembert._places import Coordinates, Poses
     from nonholo.lagrange_dalembert._rollout import CoordinateRollout
     from nonholo.lagrange_dalembert._rollout import roll as rolled_in_coordinates
     from nonholo.lagrange_dalembert._system import LagrangeDAlembert

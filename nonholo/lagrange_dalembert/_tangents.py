@@ -161,6 +161,57 @@ def _slopes_of(system: Any, change: Callable[[Array, Array], Array], x: Array, v
 def _after_step(system: Any, h: Array, x: Array, v: Array) -> tuple[Array, Array]:
     """Return the state after a step, with the derivatives of the implicit function."""
     after, p = equations.arrival(system, x, v, h)
-    place, near = jax.lax.stop_gradient((x, v))
-    z, code = step_root(system, ((), h, after, p), (near, near, orientation(system, place, near, h)[0]))
-    return after, jnp.where(code == 0, z[: len(v)], jnp.nan)
+    return after, _step_velocity(system, h, after, p, (x, v))
+
+
+def _step_velocity(system: Any, h: Array, x: Array, p: Array, near: tuple[Array, Array]) -> Array:
+    """Return the velocity of the step from a place with a momentum, next to a state; NaN where there is none."""
+    place, v = jax.lax.stop_gradient(near)
+    z, code = step_root(system, ((), h, x, p), (v, v, orientation(system, place, v, h)[0]))
+    return jnp.where(code == 0, z[: len(v)], jnp.nan)
+
+
+def node_velocities(
+    system: Any, time: Float[np.ndarray, "K"], q: Float[np.ndarray, "K n"], p: Float[np.ndarray, "K n"]
+) -> Float[np.ndarray, "K n"]:
+    """Return the admissible velocities of momenta."""
+    return in_double(_node_velocities, system, places(system, q, time), p)
+
+
+def _node_velocities(system: Any, x: Array, p: Array) -> Array:
+    return jax.vmap(lambda x, p: equations.inverse_legendre(system, x, p))(x, p)
+
+
+def forced_slopes(
+    motion: Any, q: Float[np.ndarray, "K n"], v: Float[np.ndarray, "K n"], forces: Float[np.ndarray, "steps n"]
+) -> tuple[Float[np.ndarray, "steps 2n 2n"], Float[np.ndarray, "steps 2n n"]]:
+    """Return the derivatives of the node after each step by that before it, in admissible directions, and by forces.
+
+    A node is a configuration with the velocity of its momentum. A force is constant over its step.
+    """
+    h, system = motion.time_step, motion.system
+    x = places(system, q, h * np.arange(len(q)))
+    return in_double(_forced_slopes, system, np.float64(h), x[:-1], v[:-1], forces)
+
+
+def _forced_slopes(system: Any, h: Array, *rows: Array) -> tuple[Array, Array]:
+    n = system.dimension
+
+    def after(z: Array, force: Array, x: Array, v: Array) -> Array:
+        place, w, kick = x.at[:n].add(z[:n]), v + z[n:], h / 2 * force
+        p = equations.momentum(system, place, w) + kick
+        end, arriving = equations.arrival(system, place, _step_velocity(system, h, place, p, (x, v)), h)
+        return jnp.append(end[:n], equations.inverse_legendre(system, end, arriving + kick))
+
+    def limits(z: Array, x: Array, v: Array) -> Array:
+        place = x.at[:n].add(z[:n])
+        rates = equations.constraint(system, place, v + z[n:])
+        return jnp.append(rates, equations.place_residual(system, place))
+
+    def one(row: tuple[Array, Array, Array]) -> tuple[Array, Array]:
+        (x, v, force), still = row, jnp.zeros(2 * n)
+        A, B = jax.jacfwd(after, (0, 1))(still, force, x, v)
+        across = jax.jacfwd(limits)(still, x, v)
+        return A - A @ jnp.linalg.pinv(across) @ across, B
+
+    return jax.lax.map(one, rows)

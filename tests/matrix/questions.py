@@ -12,6 +12,7 @@ from matrix.ready import STEADY, TELLING
 from scipy.linalg import expm
 
 import nonholo as nh
+from nonholo.lagrange_dalembert import checked_state
 
 _SIZE = 3e-4  # of differences of order 4, along curves of admissible starts
 _WEIGHTS = {1: 2 / 3, 2: -1 / 12}
@@ -222,6 +223,9 @@ def tracking_feedback(c: Case, _: Path) -> None:
         start = {"configuration": start["configuration"], "restricted_velocity": velocity}
     hold = nh.tracking_feedback(c.discrete, start, np.zeros((40, n)), final_weight=100.0)
     beside = {name: 1.02 * value for name, value in start.items() if "velocity" in name}
+    if getattr(c.system, "is_driven", False):
+        velocity, q = {"body_velocity": start["body_velocity"]}, c.rows["configuration"][0]
+        beside = {"configuration": q, "body_velocity": checked_state(c.system, q, velocity, 0.0, project=True)[1]}
     motion, alone = hold.simulate(**beside), c.simulated(steps=40, **beside)
     gaps = [np.abs(x.configuration[-1] - hold.reference.configuration[-1]).max() for x in (motion.orbit, alone)]
     assert gaps[0] < 0.5 * gaps[1]

@@ -97,13 +97,6 @@ RULES: tuple[Rule, ...] = (
         is_broken=True,
     ),
     Rule(
-        "tracking feedback",
-        "coordinates",
-        "The feedback is that of bodies on groups; in coordinates `rollout(policy=...)` closes a loop.",
-        "discretized system on a group",
-        is_broken=True,
-    ),
-    Rule(
         "ensemble of parameters|gradient",
         "on a group",
         "Systems on groups by functions have constants inside them: no parameters, no derivatives.",

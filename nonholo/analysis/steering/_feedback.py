@@ -7,23 +7,22 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from nonholo.analysis.steering._arguments import check_names, checked_limits
-from nonholo.base.checks import array, error, needs, positive_definite, shape_of, symmetric
+from nonholo.analysis.steering._arguments import checked_limits
+from nonholo.base.checks import array, error, needs, positive_definite, refuse_given, shape_of, symmetric
 from nonholo.base.memo import Keeper
 from nonholo.base.progress import interruptibly
 from nonholo.base.types import Float
-from nonholo.discrete import Discretization, as_discretization
-from nonholo.simulation import refuse_many_matrices
-from nonholo.systems import in_group
+from nonholo.discrete import Discretization
+from nonholo.systems import AbstractCoordinateDiscretization
 
 
 class Tracking(NamedTuple):
     """A motion under feedback.
 
     Attributes:
-        orbit: The states, a `Rollout`.
-        controls: Body covectors that the feedback gave, (steps, dim), without the disturbance.
-        error: Of the states, (K, dim + k): log(g*^-1 g), then w - w*.
+        orbit: The states, a `Rollout` or a `CoordinateRollout`.
+        controls: Body covectors that the feedback gave, (steps, dim), without the disturbance; in coordinates forces.
+        error: Of the states, (K, dim + k): log(g*^-1 g), then w - w*; in coordinates (K, 2 n), q - q*, then v - v*.
     """
 
     orbit: Any
@@ -37,14 +36,14 @@ class Feedback(Keeper):
 
     Attributes:
         discrete: The steered system.
-        controls: Body covectors of the reference, (steps, dim).
-        reference: The reference orbit, a `Rollout`.
-        gains: K, (steps, k, n) with n = dim + k.
+        controls: Body covectors of the reference, (steps, dim), or forces on its coordinates.
+        reference: The reference orbit, a `Rollout` or a `CoordinateRollout`.
+        gains: K, (steps, k, n) with n = dim + k; in coordinates k = dim is their number.
         linearization: A and B of each step, (steps, n, n) and (steps, n, k).
         limits: The least and the largest force along each row, (k,).
     """
 
-    discrete: Discretization
+    discrete: Discretization | AbstractCoordinateDiscretization
     controls: Float[np.ndarray, "steps dim"]
     reference: Any = dataclasses.field(repr=False)
     gains: Float[np.ndarray, "steps k n"] = dataclasses.field(repr=False)
@@ -57,6 +56,7 @@ class Feedback(Keeper):
 
         One that is zero to rounding belongs to an error that no feedback removes, to first order; a small one to an
         error that asks for large forces. Their squares are the eigenvalues of the Gramian of controllability.
+        In coordinates those of errors that the constraints exclude are zero.
         """
         (A, B), ways = self.linearization, np.zeros((self.gains.shape[2], 0))
         for step in range(len(A)):
@@ -67,17 +67,20 @@ class Feedback(Keeper):
         self,
         *,
         restricted_velocity: Any = None,
+        body_velocity: Any = None,
         configuration: Any = None,
         disturbance: Any = None,
         misreading: Any = None,
     ) -> Tracking:
-        """Run the body under the feedback, from a given start, with pushes that the feedback does not include.
+        """Run the system under the feedback, from a given start, with pushes that the feedback does not include.
 
         Args:
-            restricted_velocity: The first velocity along the constraint; by default that of the reference.
-            configuration: The first pose; by default that of the reference.
-            disturbance: Body covectors beside the controls, (steps, dim).
-            misreading: The error added to the state where the feedback reads it, (steps, dim + k).
+            restricted_velocity: The first velocity along the constraint, of a body on a group; by default that of the
+                reference.
+            body_velocity: The first velocity in coordinates; by default that of the reference.
+            configuration: The first configuration; by default that of the reference.
+            disturbance: Body covectors beside the controls, (steps, dim); in coordinates forces.
+            misreading: The error added to the state where the feedback reads it, (steps, n).
 
         Returns:
             The motion. Its `orbit.outcome` is not zero where it ends early, NaN from there on.
@@ -85,26 +88,29 @@ class Feedback(Keeper):
         Raises:
             ValueError: A bad argument.
         """
-        with needs("jax", "Feedback.simulate"):
-            from nonholo.analysis.steering._shooting import closed_loop
-        where, nodes = "Feedback.simulate", _states(self.discrete, self.reference)
-        S = self.discrete.system.constraint_subspace
+        where = "Feedback.simulate"
+        with needs("jax", where):
+            from nonholo.analysis.steering._tracks import closed_loop, track_of
+        track = track_of(where, self.discrete, {})
+        starts = {"restricted_velocity": restricted_velocity, "body_velocity": body_velocity}
+        w, remedy = starts.pop(track.start), f"Pass {track.start}=."
+        refuse_given(where, "be left out", remedy, **{name: (value, None) for name, value in starts.items()})
+        nodes, ways = track.nodes(self.reference), np.linalg.pinv(track.rows)
 
         def table(name: str, value: Any, default: np.ndarray) -> np.ndarray:
             return default if value is None else array(f"{where}({name}=...)", value, default.shape)
 
-        w, g = table("restricted_velocity", restricted_velocity, nodes[0][0]), nodes[1][0]
+        w, g = table(track.start, w, nodes[1][0] @ ways), nodes[0][0]
         if configuration is not None:
-            g = in_group(f"{where}(configuration=...)", self.discrete.system.group, configuration)
+            g = track.places.configuration(f"{where}(configuration=...)", configuration)
         push = table("disturbance", disturbance, np.zeros_like(self.controls))
         misread = table("misreading", misreading, np.zeros_like(self.gains[:, 0]))
-        tables = self.controls @ S.T, self.gains, push, misread
-        orbit, forces, gaps = closed_loop(self.discrete, nodes, (w, g), tables, self.limits)
-        return Tracking(orbit, forces @ np.linalg.pinv(S).T, gaps)
+        tables = self.controls @ track.rows.T, self.gains, misread, push
+        return Tracking(*closed_loop(track, nodes, {"configuration": g, track.start: w}, tables, self.limits))
 
 
 def tracking_feedback(
-    discrete: Discretization,
+    discrete: Discretization | AbstractCoordinateDiscretization,
     start: Mapping[str, Any],
     controls: Any,
     *,
@@ -126,20 +132,27 @@ def tracking_feedback(
     gains do not depend on where it lies. A and B are the exact derivatives of the discrete step. The force is found
     from the state at a node, and is constant over the step after it.
 
+    In coordinates of a `LagrangeDAlembert` forces act on them, $e_j = (q_j - q_j^*, v_j - v_j^*)$ with the velocities v
+    that belong to the momenta at the nodes, and gains act on errors along admissible directions. Its equations may
+    depend on time.
+
     Feedback removes what forces can reach: a sleigh at rest is not moved sideways, to first order, by any.
     `Feedback.controllability` measures this along the whole orbit. Errors of poses must stay below half a turn.
 
     Reference: the recursion [anderson-moore-1990]; errors on a group [bullo-murray-1999].
 
     Args:
-        discrete: The discretized system, of order 2, with a left-invariant constraint; a table of forces goes into the
-            controls.
-        start: `configuration` and `restricted_velocity` of the reference, as for `steer`.
-        controls: Body covectors of the reference, (steps, dim): `Steering.controls`, or zeros for a free motion.
+        discrete: The discretized system, of order 2, with a left-invariant constraint, whose table of forces goes into
+            the controls; or one in coordinates.
+        start: `configuration` and `restricted_velocity` of the reference, in coordinates `body_velocity`, as for
+            `steer`.
+        controls: Body covectors of the reference, (steps, dim), in coordinates forces: `Steering.controls`, or zeros
+            for a free motion.
         state_weight: Q, of errors per time: a number, (n,) for a diagonal, or (n, n), with n = dim + k. Not negative.
         control_weight: R, of forces per time: a number, (k,) or (k, k). Positive.
         final_weight: F, of the last error, as `state_weight`.
-        bounds: Least and largest force, numbers or one for each row; the feedback is clipped to them.
+        bounds: Least and largest force, numbers or one for each row; the feedback is clipped to them. A row whose
+            bounds are equal is left out of the gains: no motor is there.
 
     Returns:
         The feedback; its `simulate` runs a disturbed motion.
@@ -156,10 +169,23 @@ def tracking_feedback(
         >>> motion = hold.simulate(configuration=beside)
         >>> bool(np.abs(motion.error[-1]).max() < 0.01), int((hold.controllability > 1e-9).sum())
         (True, 5)
+
+        A rolling disk is led back to its line by the motors of its rolling and its heading:
+
+        >>> disk = nh.examples.rolling_disk(rates=(1.0, 0.0))
+        >>> line = {"configuration": disk.configuration, "body_velocity": disk.body_velocity}
+        >>> motors = np.array([0.0, 0.0, 1.0, 1.0])
+        >>> steered = nh.tracking_feedback(disk.discretize(0.1), line, np.zeros((100, 4)), bounds=(-motors, motors))
+        >>> motion = steered.simulate(configuration=(0.0, 0.3, 0.0, 0.0))
+        >>> bool(np.abs(motion.error[-1]).max() < 0.01)
+        True
     """
     where = "tracking_feedback"
-    _refuse(where, discrete, start)
-    k, dim = discrete.system.rank, discrete.system.group.dim
+    with needs("jax", where):
+        from nonholo.analysis.steering._tracks import track_of
+        from nonholo.simulation.traced import rollout
+    track = track_of(where, discrete, start)
+    k, dim = track.rows.shape
     Q, F = (
         _weight(f"{where}({name}=...)", value, dim + k)
         for name, value in (("state_weight", state_weight), ("final_weight", final_weight))
@@ -168,16 +194,12 @@ def tracking_feedback(
     positive_definite(f"{where}(control_weight=...)", R, "the weight", "Pass a positive number, or one for each row.")
     table = array(f"{where}(controls=...)", controls, (None, dim), "Pass a body covector for each step.")
     limits = checked_limits(f"{where}(bounds=...)", bounds, k)
-    refuse_many_matrices(f"{where}(controls=...)", discrete, len(table), "Pass fewer.", derivatives=dim + 2 * k)
-    with needs("jax", where):
-        from nonholo.analysis.steering._shooting import linearize_steps
-        from nonholo.simulation.traced import rollout
-    first = {"restricted_velocity": np.zeros(k), **start}
-    reference = rollout(discrete, **first, controls=table, steps=len(table))
+    track.check(where, len(table))
+    reference = rollout(discrete, **{track.start: np.zeros(k), **start}, controls=table, steps=len(table))
     if reference.outcome != 0:
         raise error(f"{where}(controls=...)", "give a motion to the end", "one that ends early", "Take shorter steps.")
-    A, B = interruptibly(lambda: linearize_steps(discrete, _states(discrete, reference), table))
-    h = float(discrete.time_step)
+    A, B = interruptibly(lambda: track.linearize(track.nodes(reference), table))
+    B, h = B * (limits[0] < limits[1]), float(discrete.time_step)
     return Feedback(discrete, table, reference, riccati_gains(A, B, (h * Q, h * R, F)), (A, B), limits)
 
 
@@ -192,23 +214,6 @@ def riccati_gains(
         rest = A[j] - B[j] @ gains[j]
         P = Q + gains[j].T @ R @ gains[j] + rest.T @ P @ rest  # a sum of squares: no rounding makes it negative
     return gains
-
-
-def _refuse(where: str, discrete: Discretization, start: Any) -> None:
-    """Refuse maps without a linearization that is the same at every pose and time, and starts that are none."""
-    as_discretization(f"{where}(discrete=...)", discrete, forced=True)
-    if discrete.system.is_spatial:
-        got, remedy = type(discrete.system).__name__, "Steer it by `nh.rollout`."
-        raise error(f"{where}(discrete=...)", "have a left-invariant constraint", got, remedy)
-    if discrete.forces is not None and discrete.forces.table is not None:
-        got, remedy = "one force for each step", "Add the table to the controls."
-        raise error(f"{where}(discrete=...)", "have forces that do not depend on time", got, remedy)
-    check_names(f"{where}(start=...)", start)
-
-
-def _states(discrete: Discretization, reference: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Return velocities along the constraint and poses of the nodes."""
-    return discrete.system.restricted_velocity(reference.restricted_momentum), reference.configuration
 
 
 def _weight(where: str, value: Any, n: int) -> Float[np.ndarray, "n n"]:

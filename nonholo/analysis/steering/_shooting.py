@@ -72,29 +72,19 @@ State = tuple[Array, Array]
 """A velocity along the constraint and a pose, or those of many nodes."""
 
 
-def _error(discrete: Discretization, reference: State, state: State) -> Array:
-    """Return log(g*^-1 g) and w - w*."""
-    group = discrete.system.group
-    return jnp.concatenate([group.log(group.inverse(reference[1]) @ state[1]), state[0] - reference[0]])
-
-
-def _step(discrete: Discretization, state: State, covector: Array) -> tuple[Rollout, State]:
-    """Return both nodes of a step, and the state after it."""
-    pair = rollout(discrete, restricted_velocity=state[0], configuration=state[1], controls=covector[None], steps=1)
-    return pair, (discrete.system.restricted_velocity(pair.restricted_momentum[1]), pair.configuration[1])
-
-
 @compile_double
 def linearize_steps(
     discrete: Discretization, nodes: State, controls: Float[Array, "steps dim"]
 ) -> tuple[Float[Array, "steps n n"], Float[Array, "steps n k"]]:
     """Return the derivatives of the error after each step by the error before it and by the forces of the step."""
-    system = discrete.system
-    dim, covectors = system.group.dim, jnp.asarray(np.linalg.pinv(system.constraint_subspace).T)
+    system, group = discrete.system, discrete.system.group
+    dim, covectors = group.dim, jnp.asarray(np.linalg.pinv(system.constraint_subspace).T)
 
     def after(error: Array, force: Array, before: State, reference: State, covector: Array) -> Array:
-        state = before[0] + error[dim:], before[1] @ system.group.exp(error[:dim])
-        return _error(discrete, reference, _step(discrete, state, covector + force @ covectors)[1])
+        start = before[0] + error[dim:], before[1] @ group.exp(error[:dim])
+        pair = _orbit(discrete, (covector + force @ covectors)[None], start, 1)
+        turn = group.log(group.inverse(reference[1]) @ pair.configuration[1])
+        return jnp.append(turn, system.restricted_velocity(pair.restricted_momentum[1]) - reference[0])
 
     def at(before: State, reference: State, covector: Array) -> tuple[Array, Array]:
         nothing = jnp.zeros(dim + system.rank, covector.dtype), jnp.zeros(system.rank, covector.dtype)
@@ -102,30 +92,6 @@ def linearize_steps(
 
     before, following = (jax.tree.map(lambda x, part=part: x[part], nodes) for part in (slice(-1), slice(1, None)))
     return jax.vmap(at)(before, following, controls)
-
-
-@compile_double
-def closed_loop(
-    discrete: Discretization, nodes: State, start: State, tables: tuple[Array, ...], limits: tuple[Array, Array]
-) -> tuple[Rollout, Float[Array, "steps k"], Float[Array, "K n"]]:
-    """Return the motion from a start, the forces, and the errors; tables are forces, gains, pushes, misreadings."""
-    covectors = jnp.asarray(np.linalg.pinv(discrete.system.constraint_subspace).T)
-
-    def step(state: State, row: tuple[State, tuple[Array, ...]]) -> tuple[State, tuple[Rollout, Array, Array]]:
-        reference, (force, gain, push, misread) = row
-        error = _error(discrete, reference, state)
-        force = jnp.clip(force - gain @ (error + misread), *limits)
-        pair, state = _step(discrete, state, force @ covectors + push)
-        return state, (pair, force, error)
-
-    rows = jax.tree.map(lambda x: x[:-1], nodes), tables
-    end, (pairs, forces, errors) = jax.lax.scan(step, tuple(map(jnp.asarray, start)), rows)
-    codes, time = pairs.outcome, discrete.time_step * jnp.arange(1 + len(forces))
-    pairs = pairs._replace(outcome=pairs.time)  # of the same shape as all else, for a moment
-    orbit = jax.tree.map(lambda x: jnp.concatenate([x[:, 0], x[-1:, 1]]), pairs)
-    orbit = orbit._replace(time=time, outcome=codes[jnp.argmax(codes != 0)])
-    last = _error(discrete, jax.tree.map(lambda x: x[-1], nodes), end)
-    return orbit, forces, jnp.concatenate([errors, last[None]])
 
 
 _ROUNDS = 40  # of Newton's method
