@@ -1,14 +1,14 @@
 """Bodies with two admissible directions, tops in space and sleighs in the plane, of which all is known.
 
-The differences between the two are in `_disc` and `_strip`, two files of one interface. Theory:
+The differences between the two are in `_disc` and `_strip`, which answer the same questions. Theory:
 docs/theory/momentum-locus.md.
 """
 
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
-from nonholo.analysis.planar._base import AbstractPlanarVariety, HalfPlanes
+from nonholo.analysis.planar._base import HalfPlanes
 from nonholo.analysis.planar._disc import Disc
 from nonholo.analysis.planar._strip import Strip
 from nonholo.base.checks import error, shown
@@ -16,8 +16,11 @@ from nonholo.base.types import Float
 from nonholo.discrete import Discretization, as_discretization, legendre
 from nonholo.systems import AbstractSystem
 
+PlanarVariety: TypeAlias = Disc | Strip
+"""The displacements of either body; both answer the same questions."""
 
-def planar_variety(system: AbstractSystem) -> AbstractPlanarVariety | None:
+
+def planar_variety(system: AbstractSystem) -> PlanarVariety | None:
     """Return the displacements of a top in space or a sleigh in the plane; None for another system."""
     form = system.normal_form
     if form is None or not form.is_planar:
@@ -26,7 +29,7 @@ def planar_variety(system: AbstractSystem) -> AbstractPlanarVariety | None:
     return kind(form, np.asarray(system.form_frame), np.asarray(system.form_map))
 
 
-def planar_map(where: str, value: Any) -> tuple[Discretization, AbstractPlanarVariety]:
+def planar_map(where: str, value: Any) -> tuple[Discretization, PlanarVariety]:
     """Return the discretization of a planar body that conserves energy, with its displacements, or refuse it."""
     discrete = as_discretization(where, value)
     variety = planar_variety(discrete.system)
@@ -40,7 +43,7 @@ def planar_map(where: str, value: Any) -> tuple[Discretization, AbstractPlanarVa
 
 
 def momenta_at(
-    discrete: Discretization, variety: AbstractPlanarVariety, points: Float[np.ndarray, "... c"]
+    discrete: Discretization, variety: PlanarVariety, points: Float[np.ndarray, "... c"]
 ) -> Float[np.ndarray, "... 3"]:
     """Return the momenta, physical and in the user's frame, of the displacements with these coordinates."""
     return legendre(discrete, variety.displacement(points) - discrete.system.group.identity, "left")

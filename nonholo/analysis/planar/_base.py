@@ -1,13 +1,12 @@
-"""The surface of displacements of a body with two admissible directions: one interface of discs and strips.
+"""Half-planes of a body with two admissible directions, and its level curves.
 
 Level curves are arcs over intervals of directions, the two solutions of a quadratic, joined where they meet: an arc
 ends in a fold, where it continues as the other solution, or on the equator, where its mirror image begins.
 """
 
-import abc
 import dataclasses
 from collections.abc import Callable
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,37 +26,9 @@ class HalfPlanes(NamedTuple):
     forward: Float[Array, "..."]
 
 
-class Level(Protocol):
-    """The displacements of one energy."""
-
-    def over(self, direction: float) -> Float[np.ndarray, "m c"]:
-        """Return the points over a direction of the plane."""
-        ...
-
-    def components(self, count: int) -> tuple[Float[np.ndarray, "K c"], ...]:
-        """Return the connected curves, with this many points for each arc."""
-        ...
-
-
-class Surface(Protocol):
-    """The algebra of the momentum locus, in momenta of the user's frame."""
-
-    def implicit(self, momentum: Float[np.ndarray, "... 3"]) -> Float[np.ndarray, "..."]:
-        """Return the polynomial that vanishes on the surface."""
-        ...
-
-    def double_lines(self) -> Float[np.ndarray, "L 2 3"]:
-        """Return the ends of the segments along which the surface meets itself."""
-        ...
-
-    def triple_point(self) -> Float[np.ndarray, "3"] | None:
-        """Return where three such segments meet."""
-        ...
-
-
 @dataclasses.dataclass(frozen=True, eq=False)
-class AbstractPlanarVariety(abc.ABC):
-    """Displacements of a planar body by coordinates that cover all of them, the angle pi included.
+class PlanarBody:
+    """What `Disc` and `Strip` are made of.
 
     Attributes:
         form: The body.
@@ -68,42 +39,6 @@ class AbstractPlanarVariety(abc.ABC):
     form: NormalForm
     frame: Float[np.ndarray, "3 3"]
     to_rows: Float[np.ndarray, "2 2"]
-
-    @abc.abstractmethod
-    def displacement(self, points: Float[np.ndarray, "... c"]) -> Float[np.ndarray, "... 3 3"]:
-        """Return the displacements, in the user's frame, with these coordinates."""
-
-    @abc.abstractmethod
-    def points(self, displacement: Float[np.ndarray, "... 3 3"]) -> Float[np.ndarray, "... c"]:
-        """Return the coordinates of displacements on the variety."""
-
-    @abc.abstractmethod
-    def mesh(self, rows: int) -> tuple[Float[np.ndarray, "R C 2"], Float[np.ndarray, "R C c"]]:
-        """Return parameters of a mesh, step angles first, and its points."""
-
-    @abc.abstractmethod
-    def area_factor(self, points: Float[np.ndarray, "... c"]) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
-        """Return the even and the odd part, under inversion, of the area factor of W -> hr. Folds are its zeros."""
-
-    @abc.abstractmethod
-    def sides(self, points: Float[np.ndarray, "... c"]) -> tuple[HalfPlanes, Float[Array, "..."]]:
-        r"""Return the half-planes of displacements, and a weight $\Lambda$.
-
-        The side of the momentum is $s\,(\Lambda + Q)$ before the step and $s\,(\Lambda - Q)$ after it, times 2 for a
-        top.
-        """
-
-    @abc.abstractmethod
-    def sides_of_momenta(self, restricted: Float[np.ndarray, "... 2"]) -> HalfPlanes:
-        """Return the half-planes of momenta along the user's rows."""
-
-    @abc.abstractmethod
-    def level(self, energy: float) -> Level:
-        """Return the level of an energy times the square of the time step."""
-
-    @abc.abstractmethod
-    def surface(self, time_step: float) -> Surface:
-        """Return the momentum locus."""
 
 
 FOLD, EQUATOR = "fold", "equator"

@@ -21,7 +21,7 @@ import dataclasses
 
 import numpy as np
 
-from nonholo.analysis.planar._base import FOLD, AbstractPlanarVariety, Arc, HalfPlanes
+from nonholo.analysis.planar._base import FOLD, Arc, HalfPlanes, PlanarBody
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE
 
@@ -117,8 +117,8 @@ class StripLevel:
 _BACK = np.array([-1.0, 1.0])  # the plane e_1^e_2 turns against the angle
 
 
-class Strip(AbstractPlanarVariety):
-    """The displacements of a sleigh."""
+class Strip(PlanarBody):
+    """The displacements of a sleigh, by coordinates that cover all of them, the angle pi included."""
 
     @property
     def inertia(self) -> float:
@@ -172,7 +172,10 @@ class Strip(AbstractPlanarVariety):
         return np.cos(angle / 2) * (self.inertia * np.cos(angle) + lever * self.arm), lever * along / 2
 
     def sides(self, points: Float[np.ndarray, "... 2"]) -> tuple[HalfPlanes, Float[Array, "..."]]:
-        r"""Return $(s, Q) = (\sin\tfrac\Delta2, am\nu)$ and $\Lambda = 2I\cos\tfrac\Delta2$."""
+        r"""Return $(s, Q) = (\sin\tfrac\Delta2, am\nu)$ and the weight $\Lambda = 2I\cos\tfrac\Delta2$.
+
+        The side of the momentum is $s\,(\Lambda + Q)$ before the step and $s\,(\Lambda - Q)$ after it.
+        """
         angle, along, lever = points[..., 0], points[..., 1], self.arm * self.mass
         whole = self.inertia + lever * self.arm
         return HalfPlanes(np.sin(angle / 2), lever * along), 2 * whole * np.cos(angle / 2)
