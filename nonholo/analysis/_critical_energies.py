@@ -16,6 +16,7 @@ import numpy as np
 import scipy  # its parts load on first use
 
 from nonholo.analysis._equilibria import highest_energy
+from nonholo.analysis.planar import check_conserves_energy
 from nonholo.base.checks import error, instance
 from nonholo.base.numerics import real_cubic_roots
 from nonholo.base.types import Float
@@ -153,9 +154,7 @@ def _top_form(where: str, discrete: Any) -> NormalForm:
             remedy = "Its level curves are ellipses; `single_valued_region` gives the energy where branches merge."
         raise error(where, "be a discretized Suslov top", f"{type(discrete.system).__name__}", remedy)
     refuse_composition(where, discrete, "Pass the discretization of order 2 that is composed.")
-    if not discrete.conserves_energy:
-        got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"
-        raise error(where, "conserve the energy", got, "Use the defaults of `discretize`.")
+    check_conserves_energy(where, discrete, "conserve the energy")
     return form
 
 

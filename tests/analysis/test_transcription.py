@@ -11,7 +11,7 @@ import nonholo as nh
 from nonholo.analysis.steering import Steering
 from nonholo.analysis.steering._arguments import StateBounds, Way, body_numbers, body_states, resample
 from nonholo.analysis.steering._problems import CoordinateNodes, GroupNodes
-from nonholo.analysis.steering._program import Program, Steps
+from nonholo.analysis.steering._transcription import Program, Steps
 from nonholo.systems import Forced
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.2), 0.25)

@@ -11,10 +11,12 @@ import numpy as np
 from nonholo.analysis.planar._base import HalfPlanes
 from nonholo.analysis.planar._disc import Disc
 from nonholo.analysis.planar._strip import Strip
-from nonholo.base.checks import error, shown
+from nonholo.base.checks import error, shape_of, shown, trailing
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization, as_discretization, legendre
 from nonholo.systems import AbstractSystem
+
+_REMEDY = "Use the defaults of `discretize`."
 
 PlanarVariety: TypeAlias = Disc | Strip
 """The displacements of either body; both answer the same questions."""
@@ -36,10 +38,23 @@ def planar_map(where: str, value: Any) -> tuple[Discretization, PlanarVariety]:
     if variety is None:
         remedy = "For others sample `discrete_legendre`."
         raise error(where, "be of a top with n = 3 or of a sleigh", shown(discrete.system), remedy)
+    check_conserves_energy(where, discrete, "keep energy", "Use difference='matrix' and constraint='skew'.")
+    return discrete, variety
+
+
+def check_conserves_energy(where: str, discrete: Discretization, demand: str, remedy: str = _REMEDY) -> None:
+    """Refuse a map whose energy drifts, in the words of the caller."""
     if not discrete.conserves_energy:
         got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"
-        raise error(where, "keep energy", got, "Use difference='matrix' and constraint='skew'.")
-    return discrete, variety
+        raise error(where, demand, got, remedy)
+
+
+def restricted_momenta(where: str, system: Any, momentum: Any) -> Float[np.ndarray, "... k"]:
+    """Check momenta of the body, or along its constraint; return the latter."""
+    k, dim = system.constraint_subspace.shape
+    size = k if shape_of(momentum)[-1:] == (k,) else dim
+    p = trailing(where, momentum, (size,), f"Pass {dim} body momenta or {k} along the constraint.", real=True)
+    return p if size == k else system.restrict(p)
 
 
 def momenta_at(

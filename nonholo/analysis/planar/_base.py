@@ -28,7 +28,7 @@ class HalfPlanes(NamedTuple):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class PlanarBody:
-    """What `Disc` and `Strip` are made of.
+    """The parts of `Disc` and `Strip`.
 
     Attributes:
         form: The body.
