@@ -33,3 +33,4 @@ from nonholo.analysis._loci import (
     momentum_locus,
     single_valued_region,
 )
+from nonholo.analysis.locomotion import Accessibility, GeometricPhase, LocalConnection

@@ -164,16 +164,10 @@ def _in_more_dimensions(form: NormalForm, step: float) -> CriticalEnergies:
     least, next_least = np.partition(b, 1)[:2]
     sharpness, unit = float(c @ c / least / next_least), 1 / (2 * step * step)
     missing = max(3 * sharpness - 1, 0.0) ** 3 * (1 + sharpness) / (16 * sharpness) if sharpness > 0 else 0.0
-    regular = 2 * sharpness < 1
-    return CriticalEnergies(
-        saddle=None,
-        center=None,
-        equatorial_saddle=None,
-        fold=float((1 - missing) * least * unit) if regular else 0.0,
-        line=float((b * c) @ c / (c @ c) * unit) if form.is_coupled else None,
-        regular=regular,
-        points=(),
-    )
+    regular, unknown = 2 * sharpness < 1, dict.fromkeys(("saddle", "center", "equatorial_saddle"))
+    fold = float((1 - missing) * least * unit) if regular else 0.0
+    line = float((b * c) @ c / (c @ c) * unit) if form.is_coupled else None
+    return CriticalEnergies(**unknown, fold=fold, line=line, regular=regular, points=())
 
 
 def _fold(form: NormalForm, land: Landscape, unit: float, saddle: float | None) -> float:

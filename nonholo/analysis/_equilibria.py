@@ -114,10 +114,8 @@ def _of_form(
         return EquilibriumSpectrum(family.subspace, None, None, nothing, None if steps is None else nothing)
     velocity = _with_energy(body, family.attracting, level)
     rates = np.sort(_rates(body, velocity @ np.linalg.pinv(body.constraint_subspace)))
-    of_map: Any = (
-        (None,) if steps is None else (_multipliers(body, velocity, rates, steps), _highest_energy(body, steps))
-    )
-    return EquilibriumSpectrum(family.subspace, family.attracting, velocity, rates, *of_map)
+    rest: Any = (None,) if steps is None else (_multipliers(body, velocity, rates, steps), _highest_energy(body, steps))
+    return EquilibriumSpectrum(family.subspace, family.attracting, velocity, rates, *rest)
 
 
 def _of_field(
@@ -259,10 +257,8 @@ def lyapunov_function(system: AbstractLLSystem) -> LyapunovFunction:
     if system.normal_form is None and len(family.subspace) < system.rank:
         remedy = "Of other systems no such function of the discrete map is known."
         raise error("lyapunov_function(system=...)", "be a top or a sleigh", type(system).__name__, remedy)
-    attracting = family.attracting
-    return LyapunovFunction(
-        np.zeros(system.group.dim) if attracting is None else attracting, system.constraint_subspace
-    )
+    attracting = np.zeros(system.group.dim) if family.attracting is None else family.attracting
+    return LyapunovFunction(attracting, system.constraint_subspace)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

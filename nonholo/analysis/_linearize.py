@@ -344,9 +344,7 @@ def critical_values(
     places = np.linspace(low, high, 1 + count("critical_values(samples=...)", samples, "Pass a positive number."))
     rows = [_rates(linearization, value) for value in places]
     least = _NEUTRAL * max(np.abs(row).max(initial=0.0) for row in rows)
-    changes = [
-        i for i, (row, other) in enumerate(itertools.pairwise(rows)) if _growing(row, least) != _growing(other, least)
-    ]
+    changes = np.flatnonzero(np.diff([_growing(row, least) for row in rows]))
     return np.array([_change_between(linearization, least, places[i : i + 2], rows[i : i + 2]) for i in changes])
 
 

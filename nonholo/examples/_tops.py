@@ -48,6 +48,10 @@ def rattleback(
     Reference: [kane-levinson-1982], whose parameters are the defaults, in centimeters, seconds and per unit of mass,
     seen with its axis c upwards.
 
+    Facts:
+        Turned in the wrong direction it rattles, stops, and turns back.
+        The energy is constant.
+
     Args:
         semi_axes: a, b, c.
         center: l, between 0 and c.
@@ -70,9 +74,8 @@ def rattleback(
     system = _system(boat, inertia, product, gravity)
     with double_precision():
         v = np.append(np.asarray(boat.rolling(jnp.asarray(q))) @ angles, angles)
-    facts = ("Turned in the wrong direction it rattles, stops, and turns back.", "The energy is constant.")
     conserved = {"energy": energy_of(system.lagrangian)}
-    return Example("rattleback", system, q, v, facts, conserved, time_step=0.002, steps=5000)
+    return Example("rattleback", system, q, v, (), conserved, time_step=0.002, steps=5000)
 
 
 class _Boat(NamedTuple):
@@ -147,6 +150,10 @@ def heavy_suslov_top(
 
     Reference: [hu-santoprete-2017]; the integrals follow at once from the equations above.
 
+    Facts:
+        The equations separate: there are two quadratic integrals.
+        Every solution is one of quadratures.
+
     Args:
         inertia: Principal moments I.
         stiffness: c.
@@ -179,6 +186,5 @@ def heavy_suslov_top(
     def potential(g: Float[np.ndarray, "3 3"]) -> np.float64:
         return c @ g[2] ** 2 / 2
 
-    facts = ("The equations separate: there are two quadratic integrals.", "Every solution is one of quadratures.")
     system = Forced(SuslovTop.from_inertia(np.diag(inertia)), potential)
-    return Example("heavy_suslov_top", system, np.eye(3), np.append(velocity, 0.0), facts, conserved)
+    return Example("heavy_suslov_top", system, np.eye(3), np.append(velocity, 0.0), (), conserved)

@@ -9,7 +9,7 @@ import pytest
 from refusals import refusals
 
 import nonholo as nh
-from nonholo.analysis.locomotion import LocalConnection
+from nonholo.analysis import LocalConnection
 from nonholo.base.types import Array
 
 pytestmark = pytest.mark.profile("routes", instead="test_the_car_has_the_connection_of_the_closed_form")

@@ -247,7 +247,7 @@ def checked_system(owner: str, system: Any) -> Any:
 
 def _free_components(where: str, reduction: Any, shapes: Array, poses: Array) -> tuple[int, ...]:
     """Return the components of the body velocity that the constraints leave free, of those choices the best one."""
-    at_identity, elsewhere = (door().call(door().rows, reduction, g, shapes) for g in (np.zeros(3), poses))
+    at_identity, elsewhere = (door().call(type(reduction).rows, reduction, g, shapes) for g in (np.zeros(3), poses))
     usable = np.isfinite(at_identity).all((1, 2)) & np.isfinite(elsewhere).all((1, 2))
     at_identity, elsewhere = _unit(at_identity[usable]), _unit(elsewhere[usable])
     d = reduction.group.dim
@@ -266,7 +266,7 @@ def _free_components(where: str, reduction: Any, shapes: Array, poses: Array) ->
 
 def _check_energy(where: str, reduction: Any, shapes: Array, poses: Array, u: Array) -> None:
     """Refuse a Lagrangian that depends on the pose, or that is not quadratic in the velocities."""
-    here, there = (door().call(door().lagrangian, reduction, g, shapes, u) for g in (np.zeros(3), poses))
+    here, there = (door().call(type(reduction).lagrangian, reduction, g, shapes, u) for g in (np.zeros(3), poses))
     if np.nanmax(np.abs(there - here) / (1 + np.abs(here))) > _SYMMETRIC:
         got = "one that changes where it is moved and turned"
         raise error(where, "have a Lagrangian that is the same at every pose", got, "Leave potentials of the pose out.")

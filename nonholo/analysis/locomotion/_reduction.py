@@ -120,24 +120,14 @@ def _velocities(r: Planar, pose: Array, u: Array) -> Array:
     return _coordinates(r, jnp.stack([cos * u[1] - sin * u[2], sin * u[1] + cos * u[2], u[0]]), u[3:])
 
 
-def rows(r: Reduction, pose: Array, s: Array) -> Array:
-    """Return the constraints at a pose."""
-    return r.rows(pose, s)
-
-
-def lagrangian(r: Reduction, pose: Array, s: Array, u: Array) -> Array:
-    """Return the Lagrangian at a pose."""
-    return r.lagrangian(pose, s, u)
-
-
 def momenta(r: Reduction, s: Array, u: Array) -> Array:
     """Return the derivative of the Lagrangian by u."""
-    return jax.grad(lagrangian, 3)(r, _HERE, s, u)
+    return jax.grad(r.lagrangian, 2)(_HERE, s, u)
 
 
 def constraint_terms(r: Reduction, s: Array) -> tuple[Array, Array]:
     """Return W and its derivatives by the shape, whose axis is the last."""
-    at_identity = functools.partial(rows, r, _HERE)
+    at_identity = functools.partial(r.rows, _HERE)
     return at_identity(s), jax.jacfwd(at_identity)(s)
 
 

@@ -45,8 +45,7 @@ FOLD, EQUATOR = "fold", "equator"
 _SAME = 1e-8  # angle below which two middles of arcs are one
 
 
-@dataclasses.dataclass(frozen=True)
-class Arc:
+class Arc(NamedTuple):
     """One solution over an interval.
 
     Attributes:
@@ -69,8 +68,7 @@ class Arc:
         return np.clip(middle - half * np.cos(np.linspace(0.0, np.pi, count)), self.start, self.stop)
 
 
-@dataclasses.dataclass(frozen=True)
-class Place:
+class Place(NamedTuple):
     """An arc on one side of the equator, 1 or -1, and whether it is run through forwards."""
 
     arc: Arc
@@ -99,7 +97,7 @@ class Place:
     @property
     def antipode(self) -> "Place":
         """The same displacements with the other sign of the unit vector."""
-        arc = dataclasses.replace(self.arc, start=self.arc.start + np.pi, stop=self.arc.stop + np.pi)
+        arc = self.arc._replace(start=self.arc.start + np.pi, stop=self.arc.stop + np.pi)
         return Place(arc, -self.side, self.forward)
 
 

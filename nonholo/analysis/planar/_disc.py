@@ -15,8 +15,8 @@ With $z = \sqrt\rho\,u(\varphi)$, $b = u\cdot Bu$, $\sigma = c\cdot u^\perp$ and
 $b(\rho - \kappa\rho^2) = e$, $e = h^2E/2$, on $0 \le \rho \le 1$.
 """
 
-import dataclasses
 import itertools
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,8 +24,7 @@ from nonholo.analysis.planar._base import EQUATOR, FOLD, Arc, HalfPlanes, Planar
 from nonholo.base.types import Array, Float
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class DiscLevel:
+class DiscLevel(NamedTuple):
     """The level e of a top with restricted inertia B and coupling c."""
 
     B: Float[np.ndarray, "2 2"]
@@ -111,8 +110,7 @@ _ROWS, _COLUMNS = [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]  # of the entries of a 
 _WEIGHTS = np.sqrt([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class SteinerSurface:
+class SteinerSurface(NamedTuple):
     """The forms of a top, its pencil, and how momenta are expressed in them.
 
     Attributes:

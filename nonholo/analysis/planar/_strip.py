@@ -17,7 +17,7 @@ $Y = p_2$, $Z = \pi$), and the step angle $\Delta$,
 $$ X : Y = \cos\tfrac\Delta2 : \sin\tfrac\Delta2, \qquad Z = J\sin\Delta, \qquad Z(X^2 + Y^2) = 2JXY. $$
 """
 
-import dataclasses
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,8 +26,7 @@ from nonholo.base.types import Array, Float
 from nonholo.groups import SE
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class Conoid:
+class Conoid(NamedTuple):
     """The coordinates X, Y, Z in units of J, as an affine function of momenta in the user's frame.
 
     Attributes:
@@ -55,8 +54,7 @@ class Conoid:
 _NEAR_HALF_TURN = 0.04  # balanced sleighs: the level goes to infinity at the angle pi; it is cut so far from there
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class StripLevel:
+class StripLevel(NamedTuple):
     """The level 2 E h^2 of a sleigh; `whole` is I = J + m a^2."""
 
     mass: float

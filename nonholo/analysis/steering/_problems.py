@@ -259,7 +259,7 @@ def _coordinate_gap(program: Program, goal: Goal, way: Way, orbit: lagrange_dale
         return np.inf
     off = [abs(q[-1, i] - number) for i, number in goal.coordinates.items()]
     off += np.abs(program.goal_gap(np.append(place(system, q[-1], orbit.time[-1]), orbit.momentum[-1]))).tolist()
-    off.append(way.outside(np.concatenate([orbit.body_velocity[:-1], q[1:]], axis=1)))
+    off.append(way.bounds.outside(np.concatenate([orbit.body_velocity[:-1], q[1:]], axis=1)))
     if way.outline.shape[-1]:
         at = _arguments.planar_points(system, q, np.zeros((1, 2)))[:, 0]
         off.append(way.gap(_arguments.planar_points(system, q, way.outline), at))
@@ -324,7 +324,7 @@ def _group_gap(discrete: Discretization, ends: tuple[Any, ...], way: Way, orbits
     off, (_, _, to_pose, to_velocity) = [way.gap(_arguments.body_points(poses, way.outline), poses[:, :-1, -1])], ends
     if not np.isfinite(last).all():
         return np.inf
-    off.append(way.outside(_arguments.body_states(poses, orbits.restricted_momentum[0])))
+    off.append(way.bounds.outside(_arguments.body_states(poses, orbits.restricted_momentum[0])))
     if to_pose is not None:
         off.append(np.abs(system.group.log(system.group.inverse(to_pose) @ poses[-1])).max())
     if to_velocity is not None:

@@ -39,7 +39,7 @@ class Steps(NamedTuple):
     centers: Float[Array, "obstacles n"]
     radii: Float[Array, "obstacles"]
     time_step: Array
-    bounds: StateBounds | None = None
+    bounds: StateBounds
 
     def parts(self, window: Array) -> tuple[Array, ...]:
         """Return state, inner part, forces and the state after them."""
@@ -49,7 +49,7 @@ class Steps(NamedTuple):
     def conditions(self, window: Array, row: Array) -> Array:
         r"""Return equations of a step, clearances $(|x - c|^2 - \rho^2)/2\rho$ after it, and what is bounded."""
         x, z, f, after = self.parts(window)
-        states = jnp.zeros(0) if self.bounds is None else self.bounds.rows @ self.nodes.numbers(z, after)
+        states = self.bounds.rows @ self.nodes.numbers(z, after)
         return jnp.concatenate([self.nodes.residual(x, z, f, after, row), self.clearances(after), states])
 
     def clearances(self, x: Array) -> Array:
@@ -123,10 +123,9 @@ class Program:
     def limits(self) -> tuple[np.ndarray, np.ndarray]:
         """The least and the largest value of each condition: zero of equations, infinity above of clearances."""
         (count, ends), bounds = self.shape, self.steps.bounds
-        low, high = (np.zeros(0), np.zeros(0)) if bounds is None else (bounds.low, bounds.high)
         clear = np.zeros(len(self.steps.radii) * len(self.steps.nodes.outline))
-        zeros = np.zeros(count - len(clear) - len(low))
-        steps = np.concatenate([zeros, clear, low]), np.concatenate([zeros, clear + np.inf, high])
+        zeros = np.zeros(count - len(clear) - len(bounds.low))
+        steps = np.concatenate([zeros, clear, bounds.low]), np.concatenate([zeros, clear + np.inf, bounds.high])
         least, most = (np.append(np.tile(each, len(self.rows)), np.zeros(ends)) for each in steps)
         return least, most
 
@@ -173,9 +172,8 @@ class Program:
 
     def _call(self, function: Any, u: np.ndarray, *more: Any) -> Any:
         whole = np.concatenate([self.first, u])
-        return in_double(
-            function, self.steps, whole[self.windows + len(self.first)], self.rows, whole[-len(self.first) :], *more
-        )
+        windows, last = whole[self.windows + len(self.first)], whole[-len(self.first) :]
+        return in_double(function, self.steps, windows, self.rows, last, *more)
 
     def _laid(self, places: "_Places", entries: tuple[np.ndarray, np.ndarray]) -> sparse.csc_array:
         values = np.concatenate([each.ravel() for each in entries])[places.at]
@@ -188,18 +186,15 @@ class Program:
         (count, ends), steps = self.shape, len(self.rows)
         row = np.arange(steps * count).reshape(steps, count, 1)
         end = np.arange(steps * count, steps * count + ends)[:, None]
-        pattern = self._pattern(_slopes, ())
-        return _Places.of(
-            (row, self.windows[:, None]), (end, self._last), pattern, (steps * count + ends, self.unknowns)
-        )
+        places, shape = ((row, self.windows[:, None]), (end, self._last)), (steps * count + ends, self.unknowns)
+        return _Places.of(*places, self._pattern(_slopes, ()), shape)
 
     @functools.cached_property
     def curvature_places(self) -> "_Places":
         """Where the second derivatives stand."""
         rng, (count, ends) = np.random.default_rng(1), self.shape
         weights = rng.normal(size=(len(self.rows), count)), rng.normal(size=ends)
-        pattern = self._pattern(_curvatures, (weights, np.float64(1.0)))
-        window, last = self.windows, self._last
+        pattern, window, last = self._pattern(_curvatures, (weights, np.float64(1.0))), self.windows, self._last
         places = (window[:, :, None], window[:, None]), (last[:, None], last)
         return _Places.of(*places, pattern, (self.unknowns, self.unknowns), upper=True)
 
@@ -284,10 +279,10 @@ def transcribe(problem: Problem) -> tuple[Float[np.ndarray, "steps k"], float, s
     """Return forces, what their orbit misses, and in a word what became of the search: see `Steering.outcome`."""
     rng, searches = np.random.default_rng(0), []
     for spread in _SPREADS:
-        solution = minimize(problem.program, problem.guess(rng, spread), problem.bounds, _ITERATIONS)
-        forces = problem.program.split(solution.unknowns)[1]
+        unknowns, status = minimize(problem.program, problem.guess(rng, spread), problem.bounds)
+        forces = problem.program.split(unknowns)[1]
         gap = problem.gap_of(forces)
-        searches.append((gap, forces, outcome_of(solution.status, gap)))
+        searches.append((gap, forces, outcome_of(status, gap)))
         if searches[-1][2] == "converged":
             break
     gap, forces, outcome = min(searches, key=lambda each: (each[2] != "converged", each[0]))
@@ -315,15 +310,7 @@ def bounds_of(program: Program, limits: tuple[np.ndarray, np.ndarray], pins: dic
     return tuple(both)
 
 
-class Solution(NamedTuple):
-    """Where IPOPT stopped: unknowns, its word for why, and the number of iterations."""
-
-    unknowns: Float[np.ndarray, "n"]
-    status: str
-    iterations: int
-
-
-def minimize(program: Program, guess: Float[np.ndarray, "n"], bounds: Limits, iterations: int) -> Solution:
+def minimize(program: Program, guess: Float[np.ndarray, "n"], bounds: Limits) -> tuple[np.ndarray, str]:
     """Return unknowns between bounds that meet the conditions of a program with least effort, from a guess."""
     numbers, one, nothing = (casadi.Sparsity.dense(size) for size in (program.unknowns, 1, 0))
     conditions = casadi.Sparsity.dense(len(program.limits[0]))
@@ -345,19 +332,18 @@ def minimize(program: Program, guess: Float[np.ndarray, "n"], bounds: Limits, it
     state = numbers, one, conditions, numbers, conditions, nothing
     calls["iteration_callback"] = _Call("stop", state, (one,), lambda *_: (float(is_over()),))
     u = casadi.MX.sym("u", program.unknowns)
-    options = {**_OPTIONS, **calls, "ipopt.max_iter": iterations}
+    options = {**_OPTIONS, **calls, "ipopt.max_iter": _ITERATIONS}
     solver = casadi.nlpsol("steer", "ipopt", {"x": u, "f": f(u), "g": g(u)}, options)
     result = solver(x0=guess, lbx=bounds[0], ubx=bounds[1], lbg=program.limits[0], ubg=program.limits[1])
     stats = solver.stats()
     go_on()
     if stats["return_status"] == "NonIpopt_Exception_Thrown":  # by a call back, or by the keyboard
         raise next((call.failure for call in (f, g, *calls.values()) if call.failure), KeyboardInterrupt())
-    return Solution(np.array(result["x"]).ravel(), stats["return_status"], stats["iter_count"])
+    return np.array(result["x"]).ravel(), stats["return_status"]
 
 
 def _sparsity(places: Any) -> Any:
-    rows, columns = places.shape
-    return casadi.Sparsity(rows, columns, places.columns.tolist(), places.rows.tolist())
+    return casadi.Sparsity(*places.shape, places.columns.tolist(), places.rows.tolist())
 
 
 class _Call(casadi.Callback):

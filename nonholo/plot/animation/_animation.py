@@ -29,7 +29,7 @@ from nonholo.io import check_file, complete_file
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plot import theme
 from nonholo.plot.animation import _in_plane, _in_space
-from nonholo.plot.animation._part import Show, part_of, part_of_flow, shown_states
+from nonholo.plot.animation._part import Show, part_of, part_of_flow, shown_states, together
 from nonholo.plot.motion.coordinates import momentum_track, track_of
 from nonholo.plot.overviews import name_of
 from nonholo.plot.parts import drawable_in_time, same_space, with_poses
@@ -107,12 +107,7 @@ def animate(
     frame_states = shown_states(orbit, motion(orbit), total)
     figure, axes, set_clock = _stage(orbit, orbit.time[frame_states])
     others = [] if beside is None else [part_of_flow(beside, orbit.time[frame_states])]
-    show = scene(axes, orbit, [part_of(orbit, frame_states), *others])
-
-    def draw(frame: int) -> None:
-        set_clock(frame)
-        show(frame)
-
+    draw = together([set_clock, scene(axes, orbit, [part_of(orbit, frame_states), *others])])
     with complete_file(target) as part:
         write_film(part, figure, draw, len(frame_states), rate, progress)
     return target

@@ -228,12 +228,7 @@ def _beside(axes: Axes, view: View, other: Part, gamma: Axis) -> Show:
     show_trace = _trace(axes, view, other, gamma, colors, 1.2)
     show_box = draw_box(axes, view, _box_in_sphere(other.frames), zorder=4.5, ghost=True)
     poses = other.frames.configuration
-
-    def show(frame: int) -> None:
-        show_trace(frame)
-        show_box(poses[frame])
-
-    return show
+    return together([show_trace, lambda frame: show_box(poses[frame])])
 
 
 def _trace(axes: Axes, view: View, of: Part, gamma: Axis, colors: Float[np.ndarray, "L 4"], width: float) -> Show:

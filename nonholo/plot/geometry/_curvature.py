@@ -9,7 +9,7 @@ from matplotlib.colorbar import Colorbar
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.lines import Line2D
 
-from nonholo.analysis.locomotion import GeometricPhase, LocalConnection
+from nonholo.analysis import GeometricPhase, LocalConnection
 from nonholo.base.checks import array, choice, error, instance, pair, shown
 from nonholo.base.types import Array, Float
 from nonholo.plot import theme
