@@ -106,7 +106,7 @@ DOCTESTS = {  # examples that compile for long
     "nonholo.examples._cars.two_wheeled_robot": "routes",
     "nonholo.analysis.steering._feedback.tracking_feedback": "routes",
     "nonholo.analysis.steering._steer.steer": "routes",
-    "nonholo.analysis.locomotion._accessibility.accessibility": "routes",
+    "nonholo.analysis.locomotion._connection.accessibility": "routes",
     "nonholo.analysis.locomotion._connection.LocalConnection.body_velocity": "routes",
     "nonholo.analysis.locomotion._connection.LocalConnection.momentum_rate": "routes",
     "nonholo.analysis.locomotion._connection.local_connection": "routes",

@@ -11,7 +11,14 @@ from nonholo.analysis._asymptotics import (
 )
 from nonholo.analysis._comparison import Comparison, Convergence, Errors, compare
 from nonholo.analysis._critical_energies import CriticalEnergies, CriticalPoint, critical_energies
-from nonholo.analysis._equilibria import EquilibriumSpectrum, equilibria
+from nonholo.analysis._equilibria import (
+    EquilibriumSpectrum,
+    InvariantMeasure,
+    LyapunovFunction,
+    equilibria,
+    invariant_measure,
+    lyapunov_function,
+)
 from nonholo.analysis._invariants import ConservedMomenta, Invariants, conserved_momenta, invariants, lyapunov_exponents
 from nonholo.analysis._linearize import Linearization, SteadyMotion, critical_values, linearize, tangent
 from nonholo.analysis._loci import (
@@ -26,13 +33,4 @@ from nonholo.analysis._loci import (
     momentum_locus,
     single_valued_region,
 )
-from nonholo.analysis._measure import InvariantMeasure, LyapunovFunction, invariant_measure, lyapunov_function
-from nonholo.analysis.locomotion import (
-    Accessibility,
-    GeometricPhase,
-    LocalConnection,
-    ShapedBody,
-    accessibility,
-    geometric_phase,
-    local_connection,
-)
+from nonholo.analysis.locomotion import Accessibility, GeometricPhase, LocalConnection

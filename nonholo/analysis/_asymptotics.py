@@ -27,12 +27,8 @@ _ROUNDING = 8 * np.finfo(np.float64).eps
 _SETTLED = 34.0  # natural logarithm of the factor by which the distance from the equilibria has fallen: 6e14
 _LONGEST = 1_000_000  # steps
 
-
-class Ends(NamedTuple):
-    """The orbit run backwards (against time, from one step after its first state) and forwards."""
-
-    first: Orbit
-    last: Orbit
+Ends = tuple[Orbit, Orbit]
+"""The orbit run backwards and forwards."""
 
 
 class Approach(NamedTuple):
@@ -77,7 +73,10 @@ def kept_velocity(orbit: Orbit) -> tuple[Float[np.ndarray, "dim"], float]:
 
 
 def follow(orbit: Orbit, limits: Approach, where: str = "asymptotics(subject=...)") -> Ends:
-    """Follow an orbit, from the identity if it has no poses, to both ends; refuse in the name of `where`."""
+    """Follow an orbit, from the identity if it has no poses, to both ends; refuse in the name of `where`.
+
+    The first orbit runs backwards, against time, from one step after the first state on.
+    """
     spectrum, decay = limits.spectrum, _SETTLED - float(np.log(limits.beside))
     if isinstance(orbit.motion, Discretization):
         return _discrete(orbit, orbit.motion, spectrum, decay, where)
@@ -85,7 +84,7 @@ def follow(orbit: Orbit, limits: Approach, where: str = "asymptotics(subject=...
     time = decay / float(np.abs(spectrum.rates).min())
     method = "closed_form" if orbit.system.group.dim == 3 else None
     ends = (flow(orbit.system, **start, times=(0.0, t), rtol=1e-12, atol=1e-13, method=method) for t in (-time, time))
-    return Ends(*ends)
+    return next(ends), next(ends)
 
 
 def _discrete(orbit: Orbit, discrete: Discretization, spectrum: EquilibriumSpectrum, decay: float, where: str) -> Ends:
@@ -104,7 +103,7 @@ def _discrete(orbit: Orbit, discrete: Discretization, spectrum: EquilibriumSpect
     last = simulate(discrete, momentum=orbit.restricted_momentum[0], configuration=g, steps=steps)
     is_composition = discrete.order > 2
     back = {"momentum": -last.restricted_momentum[1]} if is_composition else {"displacement": group.inverse(W)}
-    return Ends(simulate(discrete, **back, configuration=g @ W, steps=steps), last)
+    return simulate(discrete, **back, configuration=g @ W, steps=steps), last
 
 
 def _pose(orbit: Orbit) -> Float[np.ndarray, "N N"]:
@@ -199,13 +198,9 @@ def _of_system(system: AbstractLLSystem, form: NormalForm) -> Asymptotics:
     if attracting is None:
         return Asymptotics()
     if form.is_sleigh and form.is_planar:
-        turn = _turn_of_flow(form)
+        turn = float(turn_of_flow(form.mass, form.stiffness[0, 0], form.arm))
         return Asymptotics(heading_turn=turn, motion_turn=turn - np.pi)
     return Asymptotics(axis_before=_axis(form, -attracting), axis_after=_axis(form, attracting))
-
-
-def _turn_of_flow(form: NormalForm) -> float:
-    return float(turn_of_flow(form.mass, form.stiffness[0, 0], form.arm))
 
 
 def _axis(form: NormalForm, velocity: Float[np.ndarray, "dim"]) -> Float[np.ndarray, "3"] | None:
@@ -237,7 +232,7 @@ def _in_space(orbit: Orbit, axes: tuple, limits: Approach) -> tuple:
     ends = None if axes[1] is None or orbit.canonical_pose is None else _ends(orbit, limits)
     if ends is None:
         return None, None
-    return ends.first.configuration[-1] @ axes[0], ends.last.configuration[-1] @ axes[1]
+    return tuple(end.configuration[-1] @ axis for end, axis in zip(ends, axes, strict=True))
 
 
 def _resting(form: NormalForm, orbit: Orbit, velocity: Float[np.ndarray, "dim"]) -> Asymptotics:
@@ -274,7 +269,7 @@ def _ends(orbit: Orbit, limits: Approach) -> Ends | None:
         ends = follow(orbit, limits)
     except OutcomeError:
         return None
-    return ends if orbit.branch == "principal" or _is_start_of(ends.last, orbit) else None
+    return ends if orbit.branch == "principal" or _is_start_of(ends[1], orbit) else None
 
 
 def _is_start_of(principal: Orbit, orbit: Orbit) -> bool:
@@ -287,7 +282,8 @@ def _is_start_of(principal: Orbit, orbit: Orbit) -> bool:
 def _heading_turn(form: NormalForm, orbit: Orbit, limits: Approach) -> float | None:
     """Return the signed turn: in closed form for a flow, summed over all steps for a discrete orbit."""
     if not isinstance(orbit.motion, Discretization):
-        return float(np.copysign(_turn_of_flow(form), orbit.body_velocity[0, 0]))
+        turn = turn_of_flow(form.mass, form.stiffness[0, 0], form.arm)
+        return float(np.copysign(turn, orbit.body_velocity[0, 0]))
     ends = _ends(orbit, limits)
     if ends is None:
         return None
@@ -359,11 +355,23 @@ def heteroclinic(
 
 
 def both_ways(where: str, point: Orbit) -> Orbit:
-    """Return the whole orbit of a state, refused in the name of `where` on an equilibrium."""
+    r"""Return the whole orbit of a state, refused in the name of `where` on an equilibrium.
+
+    State j of its past has $W_{-j}^{-1}$, the momentum $-r_{1-j}$ and the pose $g_{1-j}$.
+    """
     limits = approach(point)
     if limits is None:
         raise error(where, "start off the equilibria", "a constant velocity", "Start beside it.")
-    return _join(*follow(point, limits, where))
+    past, future = follow(point, limits, where)
+    earlier, later = slice(-2, 0, -1), slice(-1, 1, -1)
+    h = float(future.time[1] - future.time[0])
+    return dataclasses.replace(
+        future,
+        time=h * np.arange(2 - len(past), len(future)),
+        reduced_momentum=np.concatenate([-past.reduced_momentum[later], future.reduced_momentum]),
+        cayley=np.concatenate([-past.canonical_chart[earlier], future.canonical_chart]),
+        canonical_pose=np.concatenate([np.asarray(past.canonical_pose)[later], np.asarray(future.canonical_pose)]),
+    )
 
 
 def _top_or_sleigh(where: str, discrete: Discretization) -> AbstractLLSystem:
@@ -387,22 +395,6 @@ def middle(system: AbstractLLSystem, energy: Any, side: int) -> Float[np.ndarray
     r = np.array([-attracting[1], attracting[0]])
     r = r * np.sqrt(level / float(system.constrained_energy(r)))
     return side * np.sign(variety.sides_of_momenta(r).side) * r
-
-
-def _join(past: Orbit, future: Orbit) -> Orbit:
-    r"""Return one orbit from the first state on and from the inverse of its displacement.
-
-    State j of the past has $W_{-j}^{-1}$, the momentum $-r_{1-j}$ and the pose $g_{1-j}$.
-    """
-    earlier, later = slice(-2, 0, -1), slice(-1, 1, -1)
-    h = float(future.time[1] - future.time[0])
-    return dataclasses.replace(
-        future,
-        time=h * np.arange(2 - len(past), len(future)),
-        reduced_momentum=np.concatenate([-past.reduced_momentum[later], future.reduced_momentum]),
-        cayley=np.concatenate([-past.canonical_chart[earlier], future.canonical_chart]),
-        canonical_pose=np.concatenate([np.asarray(past.canonical_pose)[later], np.asarray(future.canonical_pose)]),
-    )
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

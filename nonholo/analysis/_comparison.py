@@ -186,9 +186,8 @@ def compare(orbit: AbstractOrbit | Sequence[AbstractOrbit], flow: AbstractOrbit)
     if len(steps) < 2 or None in steps or len(set(steps)) < len(steps):
         remedy = "Pass discrete orbits, two or more; one orbit alone without a list."
         raise error("compare(orbit=...)", "have different time steps", shown(steps), remedy)
-    return Convergence(
-        tuple(_compare_two(each, flow) for each in sorted(orbit, key=lambda each: -(each.time_step or 0)))
-    )
+    finest_last = sorted(orbit, key=lambda each: -(each.time_step or 0))
+    return Convergence(tuple(_compare_two(each, flow) for each in finest_last))
 
 
 def _compare_two(orbit: AbstractOrbit, flow: AbstractOrbit) -> Comparison:

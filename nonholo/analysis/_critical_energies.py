@@ -16,6 +16,7 @@ import numpy as np
 import scipy  # its parts load on first use
 
 from nonholo.analysis._equilibria import highest_energy
+from nonholo.analysis.planar import check_conserves_energy
 from nonholo.base.checks import error, instance
 from nonholo.base.numerics import real_cubic_roots
 from nonholo.base.types import Float
@@ -153,9 +154,7 @@ def _top_form(where: str, discrete: Any) -> NormalForm:
             remedy = "Its level curves are ellipses; `single_valued_region` gives the energy where branches merge."
         raise error(where, "be a discretized Suslov top", f"{type(discrete.system).__name__}", remedy)
     refuse_composition(where, discrete, "Pass the discretization of order 2 that is composed.")
-    if not discrete.conserves_energy:
-        got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"
-        raise error(where, "conserve the energy", got, "Use the defaults of `discretize`.")
+    check_conserves_energy(where, discrete, "conserve the energy")
     return form
 
 
@@ -165,16 +164,10 @@ def _in_more_dimensions(form: NormalForm, step: float) -> CriticalEnergies:
     least, next_least = np.partition(b, 1)[:2]
     sharpness, unit = float(c @ c / least / next_least), 1 / (2 * step * step)
     missing = max(3 * sharpness - 1, 0.0) ** 3 * (1 + sharpness) / (16 * sharpness) if sharpness > 0 else 0.0
-    regular = 2 * sharpness < 1
-    return CriticalEnergies(
-        saddle=None,
-        center=None,
-        equatorial_saddle=None,
-        fold=float((1 - missing) * least * unit) if regular else 0.0,
-        line=float((b * c) @ c / (c @ c) * unit) if form.is_coupled else None,
-        regular=regular,
-        points=(),
-    )
+    regular, unknown = 2 * sharpness < 1, dict.fromkeys(("saddle", "center", "equatorial_saddle"))
+    fold = float((1 - missing) * least * unit) if regular else 0.0
+    line = float((b * c) @ c / (c @ c) * unit) if form.is_coupled else None
+    return CriticalEnergies(**unknown, fold=fold, line=line, regular=regular, points=())
 
 
 def _fold(form: NormalForm, land: Landscape, unit: float, saddle: float | None) -> float:

@@ -221,8 +221,9 @@ def linearize(system: Any, *, configuration: Any = None, body_velocity: Any = No
         remedy = "Pass a state of rest or of a steady motion; coordinates that matter have to stay."
         raise error(where, "be that of a steady motion", f"rates {rates}", remedy)
     ignorable = tuple(local.names[i] for i in equations.ignorable)
-    matrix = equations.matrix if _time_step(system) is None else np.eye(len(names)) + equations.matrix
-    return Linearization(matrix, names, ignorable, _time_step(system))
+    step = getattr(system, "time_step", None)
+    matrix = equations.matrix if step is None else np.eye(len(names)) + equations.matrix
+    return Linearization(matrix, names, ignorable, step)
 
 
 def local_motion(owner: str, system: Any, configuration: Any, velocity: Any) -> tuple[Local, Shifted]:
@@ -239,10 +240,6 @@ def _motions(owner: str) -> Any:
     with needs("jax", owner):
         from nonholo.analysis import _beside
     return _beside
-
-
-def _time_step(system: Any) -> float | None:
-    return getattr(system, "time_step", None)
 
 
 _MOST = 50  # corrections
@@ -350,9 +347,7 @@ def critical_values(
     sizes = np.abs(np.real(rows))
     noise = sizes[sizes <= shifts].max(initial=0.0)
     least = max(noise, _NEUTRAL * np.abs(rows).max(initial=0.0))
-    changes = [
-        i for i, (row, other) in enumerate(itertools.pairwise(rows)) if _growing(row, least) != _growing(other, least)
-    ]
+    changes = np.flatnonzero(np.diff([_growing(row, least) for row in rows]))
     return np.array([_change_between(linearization, least, places[i : i + 2], rows[i : i + 2]) for i in changes])
 
 
@@ -441,13 +436,9 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
         raise error(_WHERE, "belong to a flow, or to a map without forces of the time", shown(discrete), remedy)
     if not orbit.has_every_step:
         raise error(_WHERE, "have every step", f"{len(orbit)} states with others between", "Run with save_every=1.")
-    if _has_closed_derivatives(discrete):
+    if discrete.conserves_energy and discrete.order == 2 and discrete.forces is None:
         return discrete.displacement_decoder.tangent(orbit.canonical_chart[:-1])
     return _motions(_WHERE).along(orbit)
-
-
-def _has_closed_derivatives(discrete: Discretization) -> bool:
-    return discrete.conserves_energy and discrete.order == 2 and discrete.forces is None
 
 
 def _acts_from_outside(forces: Any) -> bool:

@@ -8,7 +8,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from nonholo.analysis.planar import HalfPlanes, Strip, momenta_at, planar_map, planar_variety
+from nonholo.analysis import planar
+from nonholo.analysis.planar import HalfPlanes, Strip
 from nonholo.base.checks import array, count, error, number, positive, shape_of, shown, trailing
 from nonholo.base.limits import bounded_count, within_memory
 from nonholo.base.types import Array, Float
@@ -39,7 +40,7 @@ class MomentumLocus:
     @property
     def displacement(self) -> Float[np.ndarray, "R C N N"]:
         """The displacements of the mesh."""
-        return planar_map("MomentumLocus", self.discrete)[1].displacement(self.points)
+        return planar.planar_map("MomentumLocus", self.discrete)[1].displacement(self.points)
 
     @property
     def pinch_points(self) -> Float[np.ndarray, "Q 3"]:
@@ -53,7 +54,7 @@ class MomentumLocus:
         """
         where = "MomentumLocus.implicit(momentum=...)"
         p = trailing(where, momentum, (3,), "Pass full body momenta.", real=True)
-        variety = planar_map("MomentumLocus", self.discrete)[1]
+        variety = planar.planar_map("MomentumLocus", self.discrete)[1]
         return variety.surface(float(self.discrete.time_step)).implicit(p)
 
     def whiskers(self, length: float = 1.0) -> Float[np.ndarray, "V 2 3"]:
@@ -93,13 +94,13 @@ def momentum_locus(discrete: Discretization, resolution: int = 80) -> MomentumLo
         >>> bool(abs(locus.implicit(locus.momentum)).max() < 1e-13)
         True
     """
-    discrete, variety = planar_map("momentum_locus(discrete=...)", discrete)
+    discrete, variety = planar.planar_map("momentum_locus(discrete=...)", discrete)
     rows = count("momentum_locus(resolution=...)", resolution, "Pass 2 or more.")
     within_memory("momentum_locus(resolution=...)", 1000.0 * rows**2, "Pass a lower resolution.")
     if rows < 2:
         raise error("momentum_locus(resolution=...)", "be at least 2", str(rows), "A mesh needs two rows.")
     parameters, points = variety.mesh(rows)
-    surface, momentum = variety.surface(float(discrete.time_step)), momenta_at(discrete, variety, points)
+    surface, momentum = variety.surface(float(discrete.time_step)), planar.momenta_at(discrete, variety, points)
     return MomentumLocus(discrete, parameters, points, momentum, surface.double_lines(), surface.triple_point())
 
 
@@ -123,19 +124,19 @@ class InvariantCurve:
     @property
     def displacement(self) -> tuple[Float[np.ndarray, "K N N"], ...]:
         """The displacements, for each component."""
-        variety = planar_map("InvariantCurve", self.discrete)[1]
+        variety = planar.planar_map("InvariantCurve", self.discrete)[1]
         return tuple(variety.displacement(points) for points in self.components)
 
     @property
     def momentum(self) -> tuple[Float[np.ndarray, "K 3"], ...]:
         """The body momenta, a curve on the momentum locus for each component."""
-        discrete, variety = planar_map("InvariantCurve", self.discrete)
-        return tuple(momenta_at(discrete, variety, points) for points in self.components)
+        discrete, variety = planar.planar_map("InvariantCurve", self.discrete)
+        return tuple(planar.momenta_at(discrete, variety, points) for points in self.components)
 
     def over(self, direction: float) -> Float[np.ndarray, "m c"]:
         """Return the points, two at most, with a direction of z (tops, z_0 >= 0) or with a step angle (sleighs)."""
         angle = float(number("InvariantCurve.over(direction=...)", direction))
-        variety = planar_map("InvariantCurve", self.discrete)[1]
+        variety = planar.planar_map("InvariantCurve", self.discrete)[1]
         return variety.level(self.energy * float(self.discrete.time_step) ** 2).over(angle)
 
 
@@ -168,7 +169,7 @@ def invariant_curve(discrete: Discretization, energy: Array, resolution: int = 4
         >>> bool(np.ptp(top.system.constrained_energy(top.system.restrict(curve.momentum[1]))) < 1e-14)
         True
     """
-    discrete, variety = planar_map("invariant_curve(discrete=...)", discrete)
+    discrete, variety = planar.planar_map("invariant_curve(discrete=...)", discrete)
     level = float(positive("invariant_curve(energy=...)", energy, "An orbit has one: `orbit.energy[0]`."))
     rows = bounded_count("invariant_curve(resolution=...)", resolution, 1000.0, "Pass the points of an arc.")
     curves = variety.level(level * float(discrete.time_step) ** 2).components(rows)
@@ -205,7 +206,7 @@ def half_planes(discrete: Discretization, *, displacement: Any = None, momentum:
         >>> bool(np.all(side < 0)), bool(forward[0] < 0 < forward[-1])
         (True, True)
     """
-    discrete, variety = planar_map("half_planes(discrete=...)", discrete)
+    discrete, variety = planar.planar_map("half_planes(discrete=...)", discrete)
     if (displacement is None) == (momentum is None):
         got = "none" if momentum is None else "both"
         raise error("half_planes(...)", "be given displacement or momentum", got, "Choose one.")
@@ -214,10 +215,7 @@ def half_planes(discrete: Discretization, *, displacement: Any = None, momentum:
         shape = system.group.identity.shape
         W = trailing("half_planes(displacement=...)", displacement, shape, "Pass `orbit.displacement`.", real=True)
         return variety.sides(variety.points(W))[0]
-    k, dim = system.constraint_subspace.shape
-    size = k if shape_of(momentum)[-1:] == (k,) else dim
-    p = trailing("half_planes(momentum=...)", momentum, (size,), f"Pass {dim} body momenta or {k} along d.", real=True)
-    r = p if size == k else system.restrict(p)
+    r = planar.restricted_momenta("half_planes(momentum=...)", system, momentum)
     return variety.sides_of_momenta(float(discrete.time_step) * r)
 
 
@@ -307,7 +305,7 @@ def deltoid(discrete: Discretization) -> Deltoid:
         >>> curve.real_branches([[0.0, -2.5], [0.0, 0.0]]).tolist()
         [3, 1]
     """
-    discrete, variety = planar_map("deltoid(discrete=...)", discrete)
+    discrete, variety = planar.planar_map("deltoid(discrete=...)", discrete)
     if not variety.form.is_sleigh:
         raise error("deltoid(discrete=...)", "be of a sleigh", shown(discrete.system), "Tops have no deltoid.")
     if variety.form.arm == 0:
@@ -317,7 +315,7 @@ def deltoid(discrete: Discretization) -> Deltoid:
 
 
 def _strip(discrete: Discretization) -> Strip:
-    return cast(Strip, planar_map("Deltoid", discrete)[1])
+    return cast(Strip, planar.planar_map("Deltoid", discrete)[1])
 
 
 def _trace(discrete: Discretization, restricted: Float[np.ndarray, "... 2"]) -> np.ndarray:
@@ -330,11 +328,15 @@ def _trace(discrete: Discretization, restricted: Float[np.ndarray, "... 2"]) -> 
 
 def _restricted(discrete: Discretization, trace: np.ndarray) -> Float[np.ndarray, "... 2"]:
     """Return the restricted momenta of kappa."""
+    half = _strip(discrete).inertia / 2
+    return _of_scaled(discrete, np.stack([np.imag(trace) * half, -(np.real(trace) + 1) * half], axis=-1))
+
+
+def _of_scaled(discrete: Discretization, points: Float[np.ndarray, "... 2"]) -> Float[np.ndarray, "... 2"]:
+    r"""Return restricted momenta of scaled points $(\pi, \hat p)$, $\hat p = ap_1 + 2ma^2$."""
     strip = _strip(discrete)
-    phat = -(np.real(trace) + 1) * strip.inertia / 2
-    p1 = (phat - 2 * strip.mass * strip.arm**2) / strip.arm
-    canonical = np.stack([np.imag(trace) * strip.inertia / 2, p1], axis=-1)
-    return strip.restricted_momenta(canonical) / float(discrete.time_step)
+    p1 = (points[..., 1] - 2 * strip.mass * strip.arm**2) / strip.arm
+    return strip.restricted_momenta(np.stack([points[..., 0], p1], axis=-1)) / float(discrete.time_step)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -386,7 +388,7 @@ def single_valued_region(sleigh: Discretization) -> SingleValuedRegion:
         >>> print(f"{region.energy:.10f} {region.principal_energy:.10f} {region.bound_of_the_paper:.10f}")
         50.0000000000 78.1250000000 12.5000000000
     """
-    strip, h = _strip_and_step("single_valued_region(sleigh=...)", sleigh)
+    strip, h = _checked_strip("single_valued_region(sleigh=...)", sleigh), float(sleigh.time_step)
     J, M = strip.inertia, strip.mass * strip.arm**2
     cusp_at = 3 * np.sqrt(3) / 4 * J, J / 4
     cusps = np.array([[0.0, -2 * J], [-cusp_at[0], cusp_at[1]], cusp_at])
@@ -397,27 +399,19 @@ def single_valued_region(sleigh: Discretization) -> SingleValuedRegion:
         energy=float(2 * M / h**2 * min(1.0, at_cusp)),
         principal_energy=float(2 * M / h**2 * at_cusp if ratio <= 2 else (J + M) ** 2 / (2 * J * h**2)),
         bound_of_the_paper=float(M / (2 * h**2)),
-        contact=_momenta(np.array(touching), M, strip, h),
-        cusps=_momenta(cusps, M, strip, h),
+        contact=_of_scaled(sleigh, np.array(touching)),
+        cusps=_of_scaled(sleigh, cusps),
     )
 
 
-def _strip_and_step(where: str, discrete: Any) -> tuple[Strip, float]:
+def _checked_strip(where: str, discrete: Any) -> Strip:
     remedy = "Pass `discretize(ChaplyginSleigh(...), time_step)`."
-    variety = planar_variety(discrete.system) if isinstance(discrete, Discretization) else None
+    variety = planar.planar_variety(discrete.system) if isinstance(discrete, Discretization) else None
     if not isinstance(variety, Strip):
         raise error(where, "be a discretized Chaplygin sleigh", shown(discrete), remedy)
     refuse_composition(where, discrete, "Pass the discretization of order 2 that is composed.")
-    if not discrete.conserves_energy:
-        got = f"difference={discrete.difference!r}, constraint={discrete.constraint!r}"
-        raise error(where, "be the map with three branches", got, "Use the defaults of `discretize`.")
+    planar.check_conserves_energy(where, discrete, "be the map with three branches")
     if variety.arm == 0:
         remedy = "A balanced sleigh has two real branches, with angles D and pi - D, at every |p_theta + b p_1| < J/h."
         raise error(where, "have its center of mass off the blade's normal", "a = 0", remedy)
-    return variety, float(discrete.time_step)
-
-
-def _momenta(plane: Float[np.ndarray, "j 2"], M: float, strip: Strip, h: float) -> Float[np.ndarray, "j 2"]:
-    r"""Return restricted momenta of scaled points $(\pi, \hat p)$, $\hat p = ap_1 + 2M$."""
-    p1 = (plane[:, 1] - 2 * M) / strip.arm
-    return strip.restricted_momenta(np.stack([plane[:, 0], p1], axis=1)) / h
+    return variety

@@ -15,8 +15,8 @@ from ._cars import two_wheeled_robot as two_wheeled_robot
 from ._disks import rolling_disk as rolling_disk
 from ._disks import tilting_disk as tilting_disk
 from ._example import Example as Example
-from ._heavy_suslov_top import heavy_suslov_top as heavy_suslov_top
 from ._points import chaotic_quartic_oscillator as chaotic_quartic_oscillator
 from ._points import non_reversible as non_reversible
 from ._points import particle as particle
-from ._rattleback import rattleback as rattleback
+from ._tops import heavy_suslov_top as heavy_suslov_top
+from ._tops import rattleback as rattleback

@@ -35,6 +35,10 @@ def chaplygin_ball(
 
     Reference: [chaplygin-1903].
 
+    Facts:
+        The angular momentum about the contact is constant in space, and so is the energy.
+        The middle moves at constant height.
+
     Args:
         mass: m.
         radius: r.
@@ -58,16 +62,8 @@ def chaplygin_ball(
         own = omega * inertia + m * r**2 * np.cross(gamma, np.cross(omega, gamma))
         return (R @ own[..., None])[..., 0]
 
-    conserved = {f"momentum along {axis}": functools.partial(_component, momentum, i) for i, axis in enumerate("xyz")}
-    facts = (
-        "The angular momentum about the contact is constant in space, and so is the energy.",
-        "The middle moves at constant height.",
-    )
-    return Example("chaplygin_ball", _chaplygin_system(m, r, inertia), np.eye(4), v, facts, conserved)
-
-
-def _component(function: Array, index: int, g: Array, v: Array) -> Array:
-    return function(g, v)[..., index]
+    conserved = {f"momentum along {axis}": lambda g, v, i=i: momentum(g, v)[..., i] for i, axis in enumerate("xyz")}
+    return Example("chaplygin_ball", _chaplygin_system(m, r, inertia), np.eye(4), v, (), conserved)
 
 
 @functools.cache

@@ -60,6 +60,10 @@ def bicycle(
     Reference: [meijaard-papadopoulos-ruina-schwab-2007]; the nonlinear equations
     [basu-mandal-chatterjee-papadopoulos-2007].
 
+    Facts:
+        With the defaults it rides upright by itself at speeds between 4.292382536 and 6.024262015 m/s.
+        The energy and the height of the front contact are constant; of the map the height is, to rounding.
+
     Args:
         wheelbase: Distance of the contacts of the upright bicycle.
         trail: Of the front contact behind the steering axis, on the ground.
@@ -87,14 +91,10 @@ def bicycle(
     q, v, rolling = np.append(place, np.zeros(5)), speed, (speed / rear_wheel[0], speed / front_wheel[0])
     yaw = -trail * np.cos(tilt) / wheelbase * steer_rate
     start = np.array([v * np.cos(q[2]), v * np.sin(q[2]), yaw, lean_rate, 0.0, steer_rate, *rolling])
-    facts = (
-        "With the defaults it rides upright by itself at speeds between 4.292382536 and 6.024262015 m/s.",
-        "The energy and the height of the front contact are constant; of the map the height is, to rounding.",
-    )
     system = _system(machine, gravity)
     height = of_states(lambda q, v: machine.height(q) + 0.0 * v[0])
     conserved = {"energy": energy_of(system.lagrangian), "height of the front contact": height}
-    return Example("bicycle", system, q, start, facts, conserved, time_step=0.02)
+    return Example("bicycle", system, q, start, (), conserved, time_step=0.02)
 
 
 class _Machine(NamedTuple):

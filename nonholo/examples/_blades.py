@@ -44,6 +44,11 @@ def knife_edge_on_incline(
 
     Reference: [bloch-2003], section 1.6; [neimark-fufaev-1972].
 
+    Facts:
+        phi' is constant, also in the midpoint rule.
+        u phi' - G sin phi is constant; in the midpoint rule u - (G h / sin(h phi')) sin phi in the middle of steps.
+        From rest the blade draws a cycloid.
+
     Args:
         mass: m.
         inertia: J, about the contact point.
@@ -83,13 +88,8 @@ def knife_edge_on_incline(
         return along * v[..., 2] - G * np.sin(q[..., 2])
 
     conserved = {"phi'": rate(2), "u phi' - G sin phi": drive}
-    facts = (
-        "phi' is constant, also in the midpoint rule.",
-        "u phi' - G sin phi is constant; in the midpoint rule u - (G h / sin(h phi')) sin phi in the middle of steps.",
-        "From rest the blade draws a cycloid.",
-    )
     v = np.array([u0 * np.cos(q[2]), u0 * np.sin(q[2]), omega])
-    return Example(name, with_numbers(_edge_system, mass, inertia, G), q, v, facts, conserved, exact)
+    return Example(name, with_numbers(_edge_system, mass, inertia, G), q, v, (), conserved, exact)
 
 
 @functools.cache
@@ -140,6 +140,10 @@ def driven_sleigh(
 
     Reference: [bizyaev-borisov-mamaev-2017], where the system and its acceleration are studied.
 
+    Facts:
+        The speed grows without bound if the moving mass is on the right side of the contact.
+        With the line of the moving mass through the contact the speed settles.
+
     Args:
         mass: m, of the platform.
         inertia: J, of the platform about its center of mass.
@@ -163,11 +167,7 @@ def driven_sleigh(
     body = mass, inertia, moving_mass, frequency, a, ahead, amplitude
     q = np.append(configuration, 0.0)
     v = np.array([speed * np.cos(q[2]), speed * np.sin(q[2]), turning, amplitude * frequency])
-    facts = (
-        "The speed grows without bound if the moving mass is on the right side of the contact.",
-        "With the line of the moving mass through the contact the speed settles.",
-    )
-    return Example("driven_sleigh", with_numbers(_sleigh_system, *body), q, v, facts, {})
+    return Example("driven_sleigh", with_numbers(_sleigh_system, *body), q, v, (), {})
 
 
 @functools.cache
@@ -215,6 +215,10 @@ def sleigh_in_a_well(
 
     Reference: equations of the sleigh of [neimark-fufaev-1972] with a force; no source for the well.
 
+    Facts:
+        The energy is constant.
+        With the center of mass at the contact the turning rate is, too.
+
     Args:
         mass: m.
         inertia: J, about the center of mass.
@@ -245,6 +249,5 @@ def sleigh_in_a_well(
         return (m * v[..., 1] ** 2 + (J + m * a**2) * v[..., 0] ** 2 + well) / 2
 
     conserved = {"energy": energy} | ({} if a else {"turning rate": lambda _g, v: v[..., 0]})
-    facts = ("The energy is constant.", "With the center of mass at the contact the turning rate is, too.")
     system = Forced(ChaplyginSleigh(m, J, a), potential)
-    return Example("sleigh_in_a_well", system, np.eye(3), np.array([turning, speed, 0.0]), facts, conserved)
+    return Example("sleigh_in_a_well", system, np.eye(3), np.array([turning, speed, 0.0]), (), conserved)

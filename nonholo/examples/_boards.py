@@ -44,6 +44,10 @@ def roller_racer(
 
     Reference: [krishnaprasad-tsakiris-2001].
 
+    Facts:
+        Turning the handle to and fro drives it from rest.
+        There is a momentum along the constraint, and it is not conserved.
+
     Args:
         mass: m, of the seat with its rider.
         inertia: I, of the seat about its center of mass.
@@ -102,6 +106,10 @@ def twistcar(
 
     Reference: [chakon-or-2017]; this model and its mean acceleration are derived in the tests.
 
+    Facts:
+        Turning the handle to and fro drives it from rest.
+        There is a momentum along the constraint, and it is not conserved.
+
     Args:
         mass: m, of the body with its rider.
         inertia: I, of the body about its center of mass.
@@ -140,12 +148,8 @@ def _of_handle(name: str, title: str, body: Any, amplitude: float | None, place:
     heading = -body[4] * turning / (body[3] + body[4])
     q, v = np.append(place, 0.0), np.array([speed * np.cos(place[2]), speed * np.sin(place[2]), heading, turning])
     system = with_numbers(functools.partial(_handle_system, title, amplitude is None), *body, amplitude or 0.0)
-    facts = (
-        "Turning the handle to and fro drives it from rest.",
-        "There is a momentum along the constraint, and it is not conserved.",
-    )
     conserved = {} if system.is_driven else {"energy": energy_of(cast(Any, system).plain.lagrangian)}
-    return Example(name, system, q, v, facts, conserved)
+    return Example(name, system, q, v, (), conserved)
 
 
 @functools.cache
@@ -211,6 +215,11 @@ def snakeboard(
 
     Reference: [bloch-krishnaprasad-marsden-murray-1996].
 
+    Facts:
+        phi' and theta' + psi' are constant, also in the midpoint rule.
+        The momentum along the constraint is constant.
+        The motion ends where the wheels are crossed, at phi = pi/2 or -pi/2.
+
     Args:
         mass: m.
         half_length: r, from the center to the wheels.
@@ -246,12 +255,7 @@ def snakeboard(
         return along * np.sqrt(m + (m - J0 / r**2) * np.tan(q[..., 4]) ** 2)
 
     conserved = {"phi'": rate(4), "theta' + psi'": spin, "momentum along the constraint": momentum}
-    facts = (
-        "phi' and theta' + psi' are constant, also in the midpoint rule.",
-        "The momentum along the constraint is constant.",
-        "The motion ends where the wheels are crossed, at |phi| = pi/2.",
-    )
-    return Example("snakeboard", with_numbers(_board_system, m, r, J0, wheel_inertia), q, v, facts, conserved)
+    return Example("snakeboard", with_numbers(_board_system, m, r, J0, wheel_inertia), q, v, (), conserved)
 
 
 @functools.cache
@@ -314,6 +318,10 @@ def snake(
 
     Reference: [shammas-choset-rizzi-2007].
 
+    Facts:
+        The joints determine its motion, but where it is an arc, with both alike: that may roll at any rate.
+        The energy is constant.
+
     Args:
         half_length: l, of each link.
         mass: m, of each link, centered.
@@ -340,11 +348,7 @@ def snake(
     u, omega = np.linalg.solve(rows, -half * np.asarray(joint_rates))
     v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), omega, *joint_rates])
     system = _snake_system(half, mass, inertia)
-    facts = (
-        "The joints determine its motion, but where it is an arc, with both alike: that may roll at any rate.",
-        "The energy is constant.",
-    )
-    return Example("snake", system, np.append(q, a), v, facts, {"energy": energy_of(system.lagrangian)})
+    return Example("snake", system, np.append(q, a), v, (), {"energy": energy_of(system.lagrangian)})
 
 
 @functools.cache

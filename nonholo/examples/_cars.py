@@ -44,6 +44,11 @@ def kinematic_car(
 
     Reference: [kelly-murray-1995]; [bloch-2003].
 
+    Facts:
+        phi' and the momentum along the constraint are constant.
+        With the steering at rest it drives on a circle of radius wheelbase / tan phi.
+        Rolling and steering bring it to every pose: growth (2, 3, 4, 5).
+
     Args:
         mass: m, as if its center were in the middle of the rear axle.
         inertia: J, about that point.
@@ -82,13 +87,8 @@ def kinematic_car(
         return q + np.array([*place, 2 * half, u / R * time, 0 * time]).T
 
     conserved = {"phi'": rate(4), "momentum along the constraint": momentum}
-    facts = (
-        "phi' and the momentum along the constraint are constant.",
-        "With the steering at rest it drives on a circle of radius wheelbase / tan phi.",
-        "Rolling and steering bring it to every pose: growth (2, 3, 4, 5).",
-    )
     system = with_numbers(_car_system, m, J, ell, R, Jw, steering_inertia)
-    return Example("kinematic_car", system, q, v, facts, conserved, None if turn else circle)
+    return Example("kinematic_car", system, q, v, (), conserved, None if turn else circle)
 
 
 @functools.cache
@@ -157,6 +157,11 @@ def two_wheeled_robot(
 
     Reference: [neimark-fufaev-1972] for the equations; [bloch-2003], section 1.7, for the sleigh.
 
+    Facts:
+        Speed and turning rate are those of a Chaplygin sleigh.
+        One constraint is integrable: theta - R (right - left) / (2 c) is constant, also in the midpoint rule.
+        The discrete energy settles to a constant; it does not drift.
+
     Args:
         mass: m, with the wheels.
         inertia: J, about the center of mass.
@@ -197,13 +202,8 @@ def two_wheeled_robot(
     motors = _motors(torques)
     free = motors is None and d == 0
     conserved = {"axle": axle, **({"energy of the sleigh": energy} if free else {})}
-    facts = (
-        "Speed and turning rate are those of a Chaplygin sleigh.",
-        "One constraint is integrable: theta - R (right - left) / (2 c) is constant, also in the midpoint rule.",
-        "The discrete energy settles to a constant; it does not drift.",
-    )
     system = _robot_system(m, J + m * ell**2, ell, c, R, Jw, motors, d)
-    return Example("two_wheeled_robot", system, q, v, facts, conserved)
+    return Example("two_wheeled_robot", system, q, v, (), conserved)
 
 
 def _motors(torques: Any) -> Any:
@@ -266,6 +266,10 @@ def trailers(
 
     Reference: [murray-sastry-1993]; [bloch-2003].
 
+    Facts:
+        The turning of the tractor is constant, also in the midpoint rule, and so is the energy of the flow.
+        Its speed and turning alone determine how all trailers move; they can bring them anywhere.
+
     Args:
         hitches: The lengths d, one for each trailer.
         mass: Of the tractor, centered on its axle.
@@ -307,11 +311,7 @@ def trailers(
         own = m * ahead**2 + trailer * (speeds**2).sum(axis=-1)
         return (own + v[..., 2:] ** 2 @ np.array(moments)) / 2
 
-    facts = (
-        "The turning of the tractor is constant, also in the midpoint rule, and so is the energy of the flow.",
-        "Its speed and turning alone determine how all trailers move; they can bring them anywhere.",
-    )
-    return Example("trailers", _trailer_system(d, masses, moments), q, v, facts, {"theta'": rate(2), "energy": energy})
+    return Example("trailers", _trailer_system(d, masses, moments), q, v, (), {"theta'": rate(2), "energy": energy})
 
 
 @functools.cache

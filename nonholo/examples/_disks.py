@@ -34,6 +34,10 @@ def rolling_disk(
 
     Reference: [bloch-2003], section 1.4.
 
+    Facts:
+        theta' and phi' are constant, also in the midpoint rule.
+        The contact point moves on a circle.
+
     Args:
         mass: m.
         radius: R.
@@ -61,10 +65,9 @@ def rolling_disk(
         return np.stack([x, y, q[2] + roll * t, q[3] + turn * t], axis=-1)
 
     conserved = {"theta'": rate(2), "phi'": rate(3)}
-    facts = ("theta' and phi' are constant, also in the midpoint rule.", "The contact point moves on a circle.")
     v = np.array([R * np.cos(q[3]) * roll, R * np.sin(q[3]) * roll, roll, turn])
     system = with_numbers(_disk_system, mass, R, rolling_inertia, turning_inertia)
-    return Example("rolling_disk", system, q, v, facts, conserved, exact)
+    return Example("rolling_disk", system, q, v, (), conserved, exact)
 
 
 @functools.cache

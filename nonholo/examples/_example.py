@@ -123,6 +123,8 @@ def ready(
 ) -> Callable[[Callable[..., Example]], Callable[..., Example]]:
     """Let the system of what a function makes tell stores the function and its arguments but for those of the start.
 
+    The facts of an example that names none are the lines of the section "Facts" of the function's docstring.
+
     Args:
         start: The arguments of the start, in words.
         reals: Those that may be any numbers; all others with a number as default are positive.
@@ -132,6 +134,8 @@ def ready(
 
     def decorator(make: Callable[..., Example]) -> Callable[..., Example]:
         defaults = {name: each.default for name, each in inspect.signature(make).parameters.items()}
+        _, _, words = inspect.cleandoc(make.__doc__ or "").partition("Facts:\n")
+        facts = tuple(map(str.strip, words.partition("\n\n")[0].splitlines()))
 
         def valid_value(name: str, value: Any) -> Any:
             where, default = f"examples.{make.__name__}({name}=...)", defaults.get(name)
@@ -142,6 +146,7 @@ def ready(
         @functools.wraps(make)
         def make_ready(**arguments: Any) -> Example:
             example = make(**{name: valid_value(name, value) for name, value in (defaults | arguments).items()})
+            example = dataclasses.replace(example, facts=example.facts or facts)
             if any(map(callable, arguments.values())):
                 return example  # which no data describes
             body = {name: _plain(arguments.get(name, default), default) for name, default in defaults.items()}

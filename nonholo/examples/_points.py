@@ -29,6 +29,10 @@ def particle(
 
     Reference: [bates-sniatycki-1993]; [cortes-martinez-2001].
 
+    Facts:
+        y' and x' sqrt(1 + y^2) are constant.
+        The discrete energy settles to a constant; it does not drift.
+
     Args:
         mass: m.
         configuration: (x, y, z) at the start.
@@ -57,9 +61,8 @@ def particle(
         return np.stack([q[0] + x, y, q[2] + z], axis=-1)
 
     conserved = {"y'": rate(1), "x' sqrt(1 + y^2)": lambda q, v: v[..., 0] * np.sqrt(1 + q[..., 1] ** 2)}
-    facts = ("y' and x' sqrt(1 + y^2) are constant.", "The discrete energy settles to a constant; it does not drift.")
     v = np.array([a, b, y0 * a])
-    return Example("particle", with_numbers(_particle_system, mass), q, v, facts, conserved, exact)
+    return Example("particle", with_numbers(_particle_system, mass), q, v, (), conserved, exact)
 
 
 @functools.cache
@@ -85,6 +88,11 @@ def chaotic_quartic_oscillator(*, pairs: int = 3) -> Example:
 
     Reference: [mclachlan-perlmutter-2006]; also [celledoni-farre-hoiseth-martin-2019]. The start is our own.
 
+    Facts:
+        The energy is the only known conserved quantity.
+        The motion is chaotic.
+        The discrete energy error spreads like a random walk of size h^2.
+
     Args:
         pairs: n; there are 2 n + 1 coordinates.
 
@@ -107,12 +115,7 @@ def chaotic_quartic_oscillator(*, pairs: int = 3) -> Example:
         coupling = np.sum(y**2 * z**2, axis=-1) + (z[..., 0] ** 2 * z[..., 1] ** 2 if n > 1 else 0)
         return (np.sum(v**2, axis=-1) + np.sum(q**2, axis=-1) + coupling) / 2
 
-    facts = (
-        "The energy is the only known conserved quantity.",
-        "The motion is chaotic.",
-        "The discrete energy error spreads like a random walk of size h^2.",
-    )
-    return Example("chaotic_quartic_oscillator", _quartic(n), q, v, facts, {"energy": energy})
+    return Example("chaotic_quartic_oscillator", _quartic(n), q, v, (), {"energy": energy})
 
 
 @functools.cache

@@ -3,7 +3,6 @@
 The quantity that is shown, the colors and names of outcomes, and the scales of axes come first.
 """
 
-import dataclasses
 from typing import TYPE_CHECKING, Any, NamedTuple, Unpack
 
 import numpy as np
@@ -38,8 +37,7 @@ _WIDE = 30.0  # quotient of the ends of the middle nine tenths from which a scal
 _FEW = 9  # different integers that get a color each
 
 
-@dataclasses.dataclass(frozen=True)
-class Subject:
+class Subject(NamedTuple):
     """The quantity of a picture.
 
     Attributes:

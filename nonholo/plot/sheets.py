@@ -7,7 +7,7 @@ others those of the canonical frame. The drawing on that plane is not decided he
 """
 
 import dataclasses
-from typing import Any, TypeAlias, cast
+from typing import Any, NamedTuple, TypeAlias, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -25,8 +25,7 @@ from nonholo.plot.parts import forbidden_axis
 from nonholo.systems import AbstractSystem
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class Blade:
+class Blade(NamedTuple):
     """The axes of a blade, and what they carry.
 
     All points of the line across the blade move along it; the contact point is the one nearest to the origin of body

@@ -2,7 +2,7 @@
 
 import dataclasses
 from collections.abc import Callable, Sequence
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -72,8 +72,7 @@ def need(condition: object, otherwise: str) -> None:
         raise NotApplicableError(otherwise)
 
 
-@dataclasses.dataclass(frozen=True)
-class Check:
+class Check(NamedTuple):
     """A property that is measured by one number.
 
     Attributes:

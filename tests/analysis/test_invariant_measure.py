@@ -7,7 +7,7 @@ import pytest
 from bodies import ATTRACTING, mass_tensor
 
 import nonholo as nh
-from nonholo.analysis._measure import step_determinants
+from nonholo.analysis._equilibria import step_determinants
 from nonholo.analysis.planar import planar_variety
 from nonholo.discrete import momentum_slope
 from nonholo.systems import AbstractLLSystem

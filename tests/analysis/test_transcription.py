@@ -11,7 +11,7 @@ import nonholo as nh
 from nonholo.analysis.steering import Steering
 from nonholo.analysis.steering._arguments import StateBounds, Way, body_numbers, body_states, resample
 from nonholo.analysis.steering._problems import CoordinateNodes, GroupNodes
-from nonholo.analysis.steering._program import Program, Steps
+from nonholo.analysis.steering._transcription import Program, Steps
 from nonholo.systems import Forced
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.2), 0.25)
@@ -111,7 +111,8 @@ def test_an_orbit_satisfies_all_equations() -> None:
     orbit = nh.rollout(SLEIGH, restricted_velocity=(0.3, 0.8), controls=controls, steps=6)
     charts = np.array([SLEIGH.variety.coordinates(W) for W in orbit.displacement[:-1]])
     states = np.column_stack([orbit.configuration[:, :2].reshape(7, 6), orbit.restricted_momentum])
-    steps = Steps(GroupNodes(SLEIGH, None, np.zeros((1, 2)), None), *_none(), SLEIGH.time_step)
+    nowhere = StateBounds(np.zeros((0, 11)), np.zeros(0), np.zeros(0))
+    steps = Steps(GroupNodes(SLEIGH, None, np.zeros((1, 2)), None), *_none(), SLEIGH.time_step, nowhere)
     program = Program(steps, states[0], table)
     u = np.column_stack([charts, forces, states[1:]]).ravel()
     np.testing.assert_allclose(program.conditions(u), 0.0, rtol=0, atol=1e-14)

@@ -508,8 +508,7 @@ def test_explanations(visit: Callable, files: dict) -> None:
 
 def test_what_a_title_cannot_do(visit: Callable, tmp_path: Path) -> None:
     """Text that comes with a motion is text."""
-    from nonholo.explorer._explore import page_text
-    from nonholo.explorer._motion import shown_motion
+    from nonholo.explorer._explore import page_text, shown_motion
 
     evil = "</script><script>document.title = 'run'</script><img src=x onerror=\"document.title='run'\">"
     data, _, _ = shown_motion("test", BODIES["sleigh"])

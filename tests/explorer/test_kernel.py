@@ -8,7 +8,7 @@ import nonholo as nh
 from nonholo import kernels
 from nonholo.base.compiled.wasm import module_of
 from nonholo.explorer import kernel
-from nonholo.explorer._motion import KINDS
+from nonholo.explorer._explore import KINDS
 
 wasmtime = pytest.importorskip("wasmtime")
 _STEPS = 1000

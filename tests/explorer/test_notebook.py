@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.explorer._motion import shown_motion, simulate_state
+from nonholo.explorer._explore import shown_motion, simulate_state
 
 NOTEBOOKS = sorted((Path(__file__).parents[2] / "docs/notebooks").glob("*.ipynb"))
 SLEIGH = nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5)

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 import nonholo as nh
 from nonholo.cli._app import app
 from nonholo.explorer import explore
-from nonholo.explorer._motion import simulate_state
+from nonholo.explorer._explore import simulate_state
 from nonholo.lagrange_dalembert import CoordinateOrbit
 
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])

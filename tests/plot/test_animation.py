@@ -14,8 +14,7 @@ from plot.runs import body_tensor, run_of, sleigh_run, top_run
 import nonholo as nh
 from nonholo.lagrange_dalembert import CoordinateOrbit, LagrangeDAlembert
 from nonholo.plot.animation._in_plane import _outline
-from nonholo.plot.animation._in_space import _box
-from nonholo.plot.animation._on_sphere import _box_in_sphere
+from nonholo.plot.animation._in_space import _box, _box_in_sphere
 from nonholo.plot.animation._part import part_of, part_of_flow, shown_states
 
 

@@ -3,12 +3,11 @@
 import dataclasses
 import functools
 from collections.abc import Callable
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.optimize import least_squares
 
-from nonholo.analysis.inverse._profile import Minimum
+from nonholo.analysis.inverse._profile import Minimum, least_squares_at
 from nonholo.base.types import Array, Float
 
 Shapes = tuple[tuple[str, tuple[int, ...]], ...]
@@ -216,10 +215,8 @@ class Search(NamedTuple):
         for _ in range(_ROUNDS):
             point = self.least(point, noise, tolerance)
             now = estimate(self.problem, point, noise, self.loss)
-            before, noise = (
-                noise,
-                np.where(is_known, self.levels, np.maximum(now.levels, [x or _EXACT for x in least])),
-            )
+            before = noise
+            noise = np.where(is_known, self.levels, np.maximum(now.levels, [x or _EXACT for x in least]))
             is_settled = np.abs(noise / before - 1).max() < _SETTLED
             if is_settled and tolerance == _FINE:
                 return Solution(point, noise, now, now.cosine < _MISSED or bool((noise <= least).all()))
@@ -241,18 +238,9 @@ class Search(NamedTuple):
             return self.slope(np.where(is_log, growth, x), scale) * growth
 
         with np.errstate(all="ignore"):  # far from a minimum
-            result = least_squares(
-                rows,
-                np.where(is_log, np.log(point), point),
-                cast(Any, slope),
-                (np.where(is_log, -np.inf, low), high),
-                x_scale="jac",
-                xtol=tolerance,
-                ftol=tolerance,
-                gtol=tolerance,
-                max_nfev=_MOST if tolerance == _COARSE else None,
-            )
-            return np.where(is_log, np.exp(result.x), result.x)
+            begin, ends = np.where(is_log, np.log(point), point), (np.where(is_log, -np.inf, low), high)
+            x = least_squares_at(begin, rows, slope, tolerance, _MOST if tolerance == _COARSE else None, ends)
+            return np.where(is_log, np.exp(x), x)
 
     def exists(self, point: np.ndarray) -> bool:
         """Return whether there is a body at a point."""
@@ -294,10 +282,8 @@ class Search(NamedTuple):
         """Return whether residuals of a kind are many times the noise, which is given or that from sample to sample."""
         there, rows = self.problem.there[kind], self.problem.at(solution.point)[kind][0]
         columns = [rows[t, there[t, :, c], c] for t in range(len(rows)) for c in range(rows.shape[2])]
-        typical, step = (
-            float(np.median(np.abs(np.concatenate(parts)))) / _MEDIAN
-            for parts in (columns, [np.diff(column) / np.sqrt(2) for column in columns])
-        )
+        both = columns, [np.diff(column) / np.sqrt(2) for column in columns]
+        typical, step = (float(np.median(np.abs(np.concatenate(parts)))) / _MEDIAN for parts in both)
         level = float(self.levels[list(self.problem.there).index(kind)])
         if np.isfinite(level):
             return typical > _LOST * level

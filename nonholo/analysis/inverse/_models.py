@@ -1,9 +1,8 @@
 """Residuals of measurements of motions, on groups and in coordinates, and first states: in JAX, compiled once."""
 
-import dataclasses
 import functools
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -15,7 +14,7 @@ from nonholo.base.checks import error
 from nonholo.base.types import Array
 from nonholo.discrete import discretize
 from nonholo.discrete.definition import in_double
-from nonholo.groups import SE
+from nonholo.groups import SE, matrix_from_quaternion
 from nonholo.lagrange_dalembert import checked_state, equations, place
 from nonholo.lagrange_dalembert import in_double as of_system
 from nonholo.orbit import Orbit
@@ -25,8 +24,7 @@ from nonholo.simulation.traced import rollout
 _COPIES = 8  # of matrices at a node, and their derivatives
 
 
-@dataclasses.dataclass(frozen=True)
-class GroupModel:
+class GroupModel(NamedTuple):
     """Motions of a body on a group: what can be measured of them, and where they begin.
 
     Attributes:
@@ -105,28 +103,17 @@ def _gap(group: Any, kind: str, values: Array, orbit: Any, velocity: Array) -> A
         c, s = jnp.cos(values[:, 0]), jnp.sin(values[:, 0])
         gap = jnp.arctan2(s * cos - c * sin, c * cos + s * sin)[:, None]
     else:
-        turn = jnp.swapaxes(g[:, :3, :3], 1, 2) @ _rotations(values)
+        turn = jnp.swapaxes(g[:, :3, :3], 1, 2) @ matrix_from_quaternion(values)
         odd = (turn - jnp.swapaxes(turn, 1, 2)) / 2
         gap, there = jnp.stack([odd[:, 2, 1], odd[:, 0, 2], odd[:, 1, 0]], axis=1), there[:, :3]
     return jnp.where(there, gap, 0.0)
-
-
-def _rotations(q: Array) -> Array:
-    w, x, y, z = (q / jnp.linalg.norm(q, axis=1, keepdims=True)).T
-    rows = (
-        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
-    )
-    return jnp.moveaxis(jnp.array(rows), -1, 0)
 
 
 _CORRECTIONS = 12  # of a first configuration, to holonomic constraints
 _SAMPLES = 3  # states at which coordinates that the equations do not contain are looked for
 
 
-@dataclasses.dataclass(frozen=True)
-class CoordinateModel:
+class CoordinateModel(NamedTuple):
     """Motions of a system in coordinates: what can be measured of them, and where they begin.
 
     A start is the momentum along admissible directions at the first state, and by what the first configuration is

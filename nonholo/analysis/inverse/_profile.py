@@ -84,14 +84,6 @@ class _Place(NamedTuple):
     rate: float
 
 
-class _Side(NamedTuple):
-    """The profile to one side: places outwards, the end of the interval, and what bounds it."""
-
-    places: list[_Place]
-    end: float
-    reason: str
-
-
 def profile_of(minimum: Minimum, at: int, name: str, level: Any) -> Profile:
     """Return the profile of one number of a least sum of squares."""
     level = float(number("Fit.profile(level=...)", level, "Pass a probability."))
@@ -102,12 +94,12 @@ def profile_of(minimum: Minimum, at: int, name: str, level: Any) -> Profile:
     rate = float(np.linalg.norm(_along(minimum.slope(minimum.point), at)[0]))
     begin = _Place(value, minimum.point, 0.0, rate)
     search = _Search(minimum, at, name)
-    low, high = (search.side(begin, sign * cut) for sign in (-1, 1))
-    places = [*low.places[::-1], begin, *high.places]
+    (before, low, why_low), (after, high, why_high) = (search.side(begin, sign * cut) for sign in (-1, 1))
+    places = [*before[::-1], begin, *after]
     values, tau = np.array([(x.value, x.tau) for x in places]).T
-    tau[: len(low.places)] *= -1
+    tau[: len(before)] *= -1
     width = 1 / rate if minimum.errors is None else float(minimum.errors[at])
-    return Profile(name, value, width, level, cut, (low.end, high.end), (low.reason, high.reason), values, tau)
+    return Profile(name, value, width, level, cut, (low, high), (why_low, why_high), values, tau)
 
 
 class _Search(NamedTuple):
@@ -117,8 +109,11 @@ class _Search(NamedTuple):
     at: int
     name: str
 
-    def side(self, begin: _Place, cut: float) -> _Side:
-        """Follow the profile to the side of a signed cut, until it is reached or nothing is there."""
+    def side(self, begin: _Place, cut: float) -> tuple[list[_Place], float, str]:
+        """Follow the profile to the side of a signed cut, until it is reached or nothing is there.
+
+        Return places outwards, the end of the interval, and what bounds it.
+        """
         sign, cut, here, places = np.sign(cut), abs(cut), begin, []
         small, large = sorted((abs(begin.value) or 1 / begin.rate, 1 / begin.rate))
         step, growth = min(cut / begin.rate, small) / _PARTS, 2.0
@@ -129,12 +124,12 @@ class _Search(NamedTuple):
                 continue
             places.append(there)
             if there.tau >= cut:
-                return _Side(places, self.crossing((here, there), cut), "level")
+                return places, self.crossing((here, there), cut), "level"
             if abs(there.value - begin.value) > _FAR[0] * small + _FAR[1] * large:
-                return _Side(places, float(sign * np.inf), "unbounded")
+                return places, float(sign * np.inf), "unbounded"
             step = float(np.clip(cut / _PARTS / max(there.rate, _TINY), step / 2, growth * step))
             here, growth = there, 2.0
-        return _Side(places, float(here.value), "model")
+        return places, float(here.value), "model"
 
     def crossing(self, between: tuple[_Place, _Place], cut: float) -> float:
         """Return where the statistic of a profile has a value."""
@@ -163,18 +158,8 @@ class _Search(NamedTuple):
             full[others] = x
             return full
 
-        point = whole(
-            least_squares(
-                lambda x: minimum.rows(whole(x)),
-                point[others],
-                lambda x: minimum.slope(whole(x))[:, others],  # pyright: ignore[reportArgumentType]
-                x_scale="jac",
-                ftol=1e-10,
-                xtol=1e-10,
-                gtol=1e-10,
-                max_nfev=_ROUNDS,
-            ).x
-        )
+        functions = (lambda x: minimum.rows(whole(x))), (lambda x: minimum.slope(whole(x))[:, others])
+        point = whole(least_squares_at(point[others], *functions, 1e-10, _ROUNDS))
         if not self.holds(point):
             return None
         rows = minimum.rows(point)
@@ -189,6 +174,14 @@ class _Search(NamedTuple):
     def holds(self, point: np.ndarray) -> bool:
         """Return whether there is a motion at a point."""
         return self.minimum.exists(point) and bool(np.isfinite(self.minimum.rows(point)).all())
+
+
+def least_squares_at(
+    begin: np.ndarray, rows: Any, slope: Any, tolerance: float, most: int | None, ends: Any = (-np.inf, np.inf)
+) -> np.ndarray:
+    """Return where a sum of squares is least, from a begin on, by the derivatives of its rows."""
+    options: Any = {"x_scale": "jac", "max_nfev": most, **dict.fromkeys(("ftol", "xtol", "gtol"), tolerance)}
+    return least_squares(rows, begin, slope, ends, **options).x
 
 
 def _along(slope: np.ndarray, at: int) -> tuple[np.ndarray, np.ndarray]:

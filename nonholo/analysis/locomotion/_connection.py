@@ -1,4 +1,4 @@
-"""`local_connection`, the body velocity that a change of shape causes, and `ShapedBody`, a body with such a shape."""
+"""`local_connection`, the body velocity that a change of shape causes; `ShapedBody`; `accessibility`."""
 
 import dataclasses
 import functools
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.analysis.locomotion import _equations
-from nonholo.base.checks import choice, error, instance, names, needs, shown, trailing
+from nonholo.base.checks import array, choice, count, error, instance, names, needs, shown, trailing
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup, components_of
 from nonholo.systems import AbstractCoordinateSystem, checked_group
@@ -148,7 +148,7 @@ class LocalConnection:
 
     def terms(self, shape: Float[np.ndarray, "... m"]) -> _equations.Terms:
         """Return the equations at shapes, for this room."""
-        functions = _door()
+        functions = door()
         W = functions.call(functions.constraint_terms, self._reduction, shape)
         M = functions.call(functions.inertia_terms, self._reduction, shape) if self._free else W
         return _equations.terms(self._free, *W, *M)
@@ -203,7 +203,7 @@ def local_connection(system: Any, *, pose: tuple[str, str, str] = ("x", "y", "th
         (('psi', 'phi'), ('v1',))
     """
     if hasattr(system, "shape_coordinates"):
-        return _connection(_door().Reduced(system), system, system.shape_coordinates)
+        return _connection(door().Reduced(system), system, system.shape_coordinates)
     free = checked_system("local_connection", system)
     names = free.coordinates
     where, argument, remedy = "local_connection(system=...)", "local_connection(pose=...)", "Name x, y and the heading."
@@ -214,7 +214,7 @@ def local_connection(system: Any, *, pose: tuple[str, str, str] = ("x", "y", "th
     if not shape:
         raise error(where, "have a shape beside its pose", shown(names), "A rigid body has no connection.")
     x, y, theta = (names.index(name) for name in pose)
-    return _connection(_door().Planar(free, (x, y, theta), shape), system, tuple(names[i] for i in shape))
+    return _connection(door().Planar(free, (x, y, theta), shape), system, tuple(names[i] for i in shape))
 
 
 def _connection(reduction: Any, system: Any, shape: tuple[str, ...]) -> LocalConnection:
@@ -247,7 +247,7 @@ def checked_system(owner: str, system: Any) -> Any:
 
 def _free_components(where: str, reduction: Any, shapes: Array, poses: Array) -> tuple[int, ...]:
     """Return the components of the body velocity that the constraints leave free, of those choices the best one."""
-    at_identity, elsewhere = (_door().call(_door().rows, reduction, g, shapes) for g in (np.zeros(3), poses))
+    at_identity, elsewhere = (door().call(type(reduction).rows, reduction, g, shapes) for g in (np.zeros(3), poses))
     usable = np.isfinite(at_identity).all((1, 2)) & np.isfinite(elsewhere).all((1, 2))
     at_identity, elsewhere = _unit(at_identity[usable]), _unit(elsewhere[usable])
     d = reduction.group.dim
@@ -266,12 +266,12 @@ def _free_components(where: str, reduction: Any, shapes: Array, poses: Array) ->
 
 def _check_energy(where: str, reduction: Any, shapes: Array, poses: Array, u: Array) -> None:
     """Refuse a Lagrangian that depends on the pose, or that is not quadratic in the velocities."""
-    here, there = (_door().call(_door().lagrangian, reduction, g, shapes, u) for g in (np.zeros(3), poses))
+    here, there = (door().call(type(reduction).lagrangian, reduction, g, shapes, u) for g in (np.zeros(3), poses))
     if np.nanmax(np.abs(there - here) / (1 + np.abs(here))) > _SYMMETRIC:
         got = "one that changes where it is moved and turned"
         raise error(where, "have a Lagrangian that is the same at every pose", got, "Leave potentials of the pose out.")
-    M = _door().call(_door().inertia_terms, reduction, shapes)[0]
-    momenta, quadratic = _door().call(_door().momenta, reduction, shapes, u), np.einsum("...ab,...b->...a", M, u)
+    M = door().call(door().inertia_terms, reduction, shapes)[0]
+    momenta, quadratic = door().call(door().momenta, reduction, shapes, u), np.einsum("...ab,...b->...a", M, u)
     if np.nanmax(np.abs(momenta - quadratic) / (1 + np.abs(quadratic))) > _SYMMETRIC:
         raise error(where, "have a kinetic energy quadratic in velocities", "another one", "Leave other terms out.")
 
@@ -281,9 +281,9 @@ def _unit(rows: Array) -> Array:
 
 
 @functools.cache
-def _door() -> Any:
-    """Return the functions that JAX compiles."""
-    with needs("jax", "local_connection"):
+def door(owner: str = "local_connection") -> Any:
+    """Return the functions that JAX compiles, for a caller whom an error names where there is no JAX."""
+    with needs("jax", owner):
         from nonholo.analysis.locomotion import _reduction
     return _reduction
 
@@ -336,9 +336,93 @@ class ShapedBody:
         if self.lagrangian is None and self.constraint_forms is None:
             remedy = "Pass lagrangian=, constraint_forms= or both."
             raise error("ShapedBody(...)", "have a Lagrangian or constraints", "neither", remedy)
-        with needs("jax", "ShapedBody"):
-            from nonholo.analysis.locomotion import _reduction
-        _reduction.check_functions(self)
+        door("ShapedBody").check_functions(self)
 
     def __repr__(self) -> str:
         return f"<ShapedBody {self.name!r} on {self.group}: shape {', '.join(self.shape_coordinates)}>"
+
+
+_MOST = 8  # the longest bracket: their derivatives are tensors of that order
+_RANK = 1e-9  # of singular values, relative to the largest
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Accessibility:
+    r"""How the brackets of admissible velocities grow at a configuration.
+
+    Attributes:
+        growth: The ranks of $D \subset D + [D, D] \subset \dots$, as far as they were computed.
+        directions: An orthonormal basis of the last of them, in rows.
+        is_accessible: Whether every direction is among them; under holonomic constraints every one along their surface.
+    """
+
+    growth: tuple[int, ...]
+    directions: Float[np.ndarray, "r n"]
+    is_accessible: bool
+
+
+def accessibility(system: Any, configuration: Any, *, depth: int | None = None) -> Accessibility:
+    r"""Return the directions to which brackets of admissible velocities lead from a configuration.
+
+    $$ D_1 = D = \{v : A(q)\,v = 0\}, \qquad D_{i+1} = D_i + [D, D_i], \qquad
+       \text{growth} = (\dim D_1, \dim D_2, \dots). $$
+
+    If some $D_i$ is all of $\mathbb R^n$, motions along the constraint lead to every neighbor (Chow and Rashevskii). Of
+    a kinematic system, whose shape moves as its owner likes, this is controllability. Otherwise it says that no
+    part of the constraint is integrable; what can be reached with forces on the shape alone is another question. The
+    gradients of holonomic constraints are rows of A.
+
+    Derivatives of the constraints are by JAX; ranks count singular values above $10^{-9}$ of the largest, so
+    choose units in which coordinates are of one size.
+
+    Args:
+        system: A `LagrangeDAlembert` system whose constraints do not depend on time, or a `ShapedBody`, whose
+            directions are $(\xi, \dot s)$. Prescribed motions and forces are left aside.
+        configuration: q; of a `ShapedBody` the shape s, which is all that matters.
+        depth: The longest brackets, at most 8; by default n - dim D + 1, enough wherever the ranks are constant nearby.
+
+    Raises:
+        ValueError: Another system, a wrong shape, constraints that are dependent or infinite at q, or holonomic ones
+            that q does not satisfy.
+
+    Example:
+        >>> ready = nh.examples.kinematic_car()
+        >>> nh.accessibility(ready.system, ready.configuration).growth
+        (2, 3, 4, 5)
+    """
+    functions = door("accessibility")
+    where = "accessibility(configuration=...)"
+    rows, q, whole = _constraints(where, system, configuration)
+    forms = functions.forms_at(rows, q)
+    rank = np.linalg.matrix_rank(forms) if np.isfinite(forms).all() else -1
+    if rank < len(forms):
+        remedy = "Choose another configuration, or drop constraints that follow from others."
+        raise error(where, "have independent constraints", f"{forms.tolist()}", remedy)
+    longest = rank + 1 if depth is None else count("accessibility(depth=...)", depth, "Pass a length of brackets.")
+    if longest > _MOST:
+        remedy = "Pass a smaller `depth=`: higher derivatives grow too large."
+        raise error("accessibility(depth=...)", f"be at most {_MOST}", str(longest), remedy)
+    growth, fields = [], np.zeros((len(q), 0))
+    for longer in functions.brackets(rows, q, longest):
+        fields = np.hstack([fields, longer])
+        growth.append(int(np.linalg.matrix_rank(fields, rtol=_RANK)))
+        if growth[-1] == whole:
+            break
+    directions = np.linalg.svd(fields)[0][:, : growth[-1]].T
+    return Accessibility(tuple(growth), directions, growth[-1] == whole)
+
+
+def _constraints(where: str, system: Any, configuration: Any) -> tuple[Any, Float[np.ndarray, "n"], int]:
+    """Return the function of the constraint forms with its system, the checked place, and the reach of brackets."""
+    from nonholo.lagrange_dalembert import checked_state, equations
+
+    has_shape, reduced = hasattr(system, "shape_coordinates"), door("accessibility").Reduced
+    own: Any = reduced(system) if has_shape else checked_system("accessibility", system)
+    names = system.shape_coordinates if has_shape else own.coordinates
+    q = array(where, configuration, (len(names),), f"Pass {len(names)} coordinates.")
+    if has_shape:
+        q = np.append(np.zeros(system.group.dim), q)
+        return (reduced.constraint_forms, own), q, len(q)
+    if own.holonomic is not None:
+        checked_state(own, q, {"body_velocity": np.zeros(len(q))}, 0.0, "accessibility")
+    return (equations.forms, own), q, len(q) - (own.constraints - own.velocity_constraints)

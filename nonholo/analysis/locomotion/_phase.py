@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from nonholo.analysis.locomotion import _equations
-from nonholo.analysis.locomotion._connection import LocalConnection, local_connection
-from nonholo.base.checks import array, error, needs, scale
+from nonholo.analysis.locomotion._connection import LocalConnection, door, local_connection
+from nonholo.base.checks import array, error, scale
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 
@@ -93,14 +93,13 @@ def geometric_phase(
         [ 0.0046 -0.0522] True
     """
     connection = system if hasattr(system, "curvature") else local_connection(system)
-    with needs("jax", "geometric_phase"):
-        from nonholo.analysis.locomotion import _reduction
-    _reduction.check_gait(gait, len(connection.shape_coordinates))
+    functions = door("geometric_phase")
+    functions.check_gait(gait, len(connection.shape_coordinates))
     end = float(scale("geometric_phase(period=...)", period, "Pass the time that the gait takes."))
     breaks = array("geometric_phase(corners=...)", corners, (None,), "Pass times, or () for a smooth gait.")
     p = connection.checked_momentum("geometric_phase", momentum)
     p = array("geometric_phase(momentum=...)", p, (len(connection.momentum_components),))
-    shape_at = functools.partial(_reduction.call, _reduction.moving_shape, gait)
+    shape_at = functools.partial(functions.call, functions.moving_shape, gait)
     _check_closed(connection, shape_at(np.linspace(0.0, end, _LOOKS)[:, None])[0])
     panels, coarse = _PANELS, None
     while True:

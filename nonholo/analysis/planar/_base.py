@@ -1,13 +1,12 @@
-"""The surface of displacements of a body with two admissible directions: one interface of discs and strips.
+"""Half-planes of a body with two admissible directions, and its level curves.
 
 Level curves are arcs over intervals of directions, the two solutions of a quadratic, joined where they meet: an arc
 ends in a fold, where it continues as the other solution, or on the equator, where its mirror image begins.
 """
 
-import abc
 import dataclasses
 from collections.abc import Callable
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,37 +26,9 @@ class HalfPlanes(NamedTuple):
     forward: Float[Array, "..."]
 
 
-class Level(Protocol):
-    """The displacements of one energy."""
-
-    def over(self, direction: float) -> Float[np.ndarray, "m c"]:
-        """Return the points over a direction of the plane."""
-        ...
-
-    def components(self, count: int) -> tuple[Float[np.ndarray, "K c"], ...]:
-        """Return the connected curves, with this many points for each arc."""
-        ...
-
-
-class Surface(Protocol):
-    """The algebra of the momentum locus, in momenta of the user's frame."""
-
-    def implicit(self, momentum: Float[np.ndarray, "... 3"]) -> Float[np.ndarray, "..."]:
-        """Return the polynomial that vanishes on the surface."""
-        ...
-
-    def double_lines(self) -> Float[np.ndarray, "L 2 3"]:
-        """Return the ends of the segments along which the surface meets itself."""
-        ...
-
-    def triple_point(self) -> Float[np.ndarray, "3"] | None:
-        """Return where three such segments meet."""
-        ...
-
-
 @dataclasses.dataclass(frozen=True, eq=False)
-class AbstractPlanarVariety(abc.ABC):
-    """Displacements of a planar body by coordinates that cover all of them, the angle pi included.
+class PlanarBody:
+    """The parts of `Disc` and `Strip`.
 
     Attributes:
         form: The body.
@@ -69,49 +40,12 @@ class AbstractPlanarVariety(abc.ABC):
     frame: Float[np.ndarray, "3 3"]
     to_rows: Float[np.ndarray, "2 2"]
 
-    @abc.abstractmethod
-    def displacement(self, points: Float[np.ndarray, "... c"]) -> Float[np.ndarray, "... 3 3"]:
-        """Return the displacements, in the user's frame, with these coordinates."""
-
-    @abc.abstractmethod
-    def points(self, displacement: Float[np.ndarray, "... 3 3"]) -> Float[np.ndarray, "... c"]:
-        """Return the coordinates of displacements on the variety."""
-
-    @abc.abstractmethod
-    def mesh(self, rows: int) -> tuple[Float[np.ndarray, "R C 2"], Float[np.ndarray, "R C c"]]:
-        """Return parameters of a mesh, step angles first, and its points."""
-
-    @abc.abstractmethod
-    def area_factor(self, points: Float[np.ndarray, "... c"]) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
-        """Return the even and the odd part, under inversion, of the area factor of W -> hr. Folds are its zeros."""
-
-    @abc.abstractmethod
-    def sides(self, points: Float[np.ndarray, "... c"]) -> tuple[HalfPlanes, Float[Array, "..."]]:
-        r"""Return the half-planes of displacements, and a weight $\Lambda$.
-
-        The side of the momentum is $s\,(\Lambda + Q)$ before the step and $s\,(\Lambda - Q)$ after it, times 2 for a
-        top.
-        """
-
-    @abc.abstractmethod
-    def sides_of_momenta(self, restricted: Float[np.ndarray, "... 2"]) -> HalfPlanes:
-        """Return the half-planes of momenta along the user's rows."""
-
-    @abc.abstractmethod
-    def level(self, energy: float) -> Level:
-        """Return the level of an energy times the square of the time step."""
-
-    @abc.abstractmethod
-    def surface(self, time_step: float) -> Surface:
-        """Return the momentum locus."""
-
 
 FOLD, EQUATOR = "fold", "equator"
 _SAME = 1e-8  # angle below which two middles of arcs are one
 
 
-@dataclasses.dataclass(frozen=True)
-class Arc:
+class Arc(NamedTuple):
     """One solution over an interval.
 
     Attributes:
@@ -134,8 +68,7 @@ class Arc:
         return np.clip(middle - half * np.cos(np.linspace(0.0, np.pi, count)), self.start, self.stop)
 
 
-@dataclasses.dataclass(frozen=True)
-class Place:
+class Place(NamedTuple):
     """An arc on one side of the equator, 1 or -1, and whether it is run through forwards."""
 
     arc: Arc
@@ -164,7 +97,7 @@ class Place:
     @property
     def antipode(self) -> "Place":
         """The same displacements with the other sign of the unit vector."""
-        arc = dataclasses.replace(self.arc, start=self.arc.start + np.pi, stop=self.arc.stop + np.pi)
+        arc = self.arc._replace(start=self.arc.start + np.pi, stop=self.arc.stop + np.pi)
         return Place(arc, -self.side, self.forward)
 
 

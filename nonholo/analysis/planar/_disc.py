@@ -15,17 +15,16 @@ With $z = \sqrt\rho\,u(\varphi)$, $b = u\cdot Bu$, $\sigma = c\cdot u^\perp$ and
 $b(\rho - \kappa\rho^2) = e$, $e = h^2E/2$, on $0 \le \rho \le 1$.
 """
 
-import dataclasses
 import itertools
+from typing import NamedTuple
 
 import numpy as np
 
-from nonholo.analysis.planar._base import EQUATOR, FOLD, AbstractPlanarVariety, Arc, HalfPlanes, closed_curves
+from nonholo.analysis.planar._base import EQUATOR, FOLD, Arc, HalfPlanes, PlanarBody, closed_curves
 from nonholo.base.types import Array, Float
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class DiscLevel:
+class DiscLevel(NamedTuple):
     """The level e of a top with restricted inertia B and coupling c."""
 
     B: Float[np.ndarray, "2 2"]
@@ -111,8 +110,7 @@ _ROWS, _COLUMNS = [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]  # of the entries of a 
 _WEIGHTS = np.sqrt([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class SteinerSurface:
+class SteinerSurface(NamedTuple):
     """The forms of a top, its pencil, and how momenta are expressed in them.
 
     Attributes:
@@ -223,8 +221,8 @@ def _matrix(v: Float[np.ndarray, "... 6"]) -> Float[np.ndarray, "... 3 3"]:
     return S
 
 
-class Disc(AbstractPlanarVariety):
-    """The displacements of a top."""
+class Disc(PlanarBody):
+    """The displacements of a top, by coordinates that cover all of them, the angle pi included."""
 
     @property
     def inertia(self) -> Float[np.ndarray, "2 2"]:
@@ -266,7 +264,9 @@ class Disc(AbstractPlanarVariety):
         return np.stack([angle, direction], axis=-1), points
 
     def area_factor(self, points: Float[np.ndarray, "... 3"]) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
-        r"""Return the factor on the sphere, up to a constant.
+        r"""Return the even and the odd part, under inversion, of the area factor of W -> hr on the sphere.
+
+        Folds are its zeros. Up to a constant it is
 
         $$ f = D z_0(z_0^2 - |z|^2) + 2z_0\,(c\cdot z^\perp)^2 \; - \; c\cdot Bz + 2(c\cdot z)(z\cdot Bz). $$
         """
@@ -276,7 +276,10 @@ class Disc(AbstractPlanarVariety):
         return even, 2 * (z @ c) * np.einsum("...i,ij,...j->...", z, B, z) - z @ (B @ c)
 
     def sides(self, points: Float[np.ndarray, "... 3"]) -> tuple[HalfPlanes, Float[Array, "..."]]:
-        r"""Return $(s, Q) = (c\cdot z^\perp, -c\cdot Bz)$ and $\Lambda = Dz_0$, with $z_0 \ge 0$."""
+        r"""Return $(s, Q) = (c\cdot z^\perp, -c\cdot Bz)$ and the weight $\Lambda = Dz_0$, with $z_0 \ge 0$.
+
+        The side of the momentum is $2s\,(\Lambda + Q)$ before the step and $2s\,(\Lambda - Q)$ after it.
+        """
         points = np.where(points[..., :1] < 0, -points, points)
         z0, z = points[..., 0], points[..., 1:]
         sides = HalfPlanes(_quarter_turned(z) @ self.coupling, -z @ (self.inertia @ self.coupling))

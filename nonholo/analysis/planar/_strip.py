@@ -17,17 +17,16 @@ $Y = p_2$, $Z = \pi$), and the step angle $\Delta$,
 $$ X : Y = \cos\tfrac\Delta2 : \sin\tfrac\Delta2, \qquad Z = J\sin\Delta, \qquad Z(X^2 + Y^2) = 2JXY. $$
 """
 
-import dataclasses
+from typing import NamedTuple
 
 import numpy as np
 
-from nonholo.analysis.planar._base import FOLD, AbstractPlanarVariety, Arc, HalfPlanes
+from nonholo.analysis.planar._base import FOLD, Arc, HalfPlanes, PlanarBody
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class Conoid:
+class Conoid(NamedTuple):
     """The coordinates X, Y, Z in units of J, as an affine function of momenta in the user's frame.
 
     Attributes:
@@ -55,8 +54,7 @@ class Conoid:
 _NEAR_HALF_TURN = 0.04  # balanced sleighs: the level goes to infinity at the angle pi; it is cut so far from there
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
-class StripLevel:
+class StripLevel(NamedTuple):
     """The level 2 E h^2 of a sleigh; `whole` is I = J + m a^2."""
 
     mass: float
@@ -117,8 +115,8 @@ class StripLevel:
 _BACK = np.array([-1.0, 1.0])  # the plane e_1^e_2 turns against the angle
 
 
-class Strip(AbstractPlanarVariety):
-    """The displacements of a sleigh."""
+class Strip(PlanarBody):
+    """The displacements of a sleigh, by coordinates that cover all of them, the angle pi included."""
 
     @property
     def inertia(self) -> float:
@@ -172,7 +170,10 @@ class Strip(AbstractPlanarVariety):
         return np.cos(angle / 2) * (self.inertia * np.cos(angle) + lever * self.arm), lever * along / 2
 
     def sides(self, points: Float[np.ndarray, "... 2"]) -> tuple[HalfPlanes, Float[Array, "..."]]:
-        r"""Return $(s, Q) = (\sin\tfrac\Delta2, am\nu)$ and $\Lambda = 2I\cos\tfrac\Delta2$."""
+        r"""Return $(s, Q) = (\sin\tfrac\Delta2, am\nu)$ and the weight $\Lambda = 2I\cos\tfrac\Delta2$.
+
+        The side of the momentum is $s\,(\Lambda + Q)$ before the step and $s\,(\Lambda - Q)$ after it.
+        """
         angle, along, lever = points[..., 0], points[..., 1], self.arm * self.mass
         whole = self.inertia + lever * self.arm
         return HalfPlanes(np.sin(angle / 2), lever * along), 2 * whole * np.cos(angle / 2)

@@ -73,9 +73,8 @@ def check_names(where: str, end: Any, velocity: str = "restricted_velocity") -> 
 
 def checked_ends(system: System, start: Any, goal: Any, is_free: bool) -> tuple[Ends, bool]:
     """Return ends of members, and whether there is but one; a free goal need not name anything."""
-    (w, g), (to_velocity, to_pose) = (
-        _end(f"steer({name}=...)", system, x) for name, x in (("start", start), ("goal", goal))
-    )
+    w, g = _end("steer(start=...)", system, start)
+    to_velocity, to_pose = _end("steer(goal=...)", system, goal)
     if to_pose is None and to_velocity is None and not is_free:
         raise error("steer(goal=...)", "name a pose or a velocity", "neither", "Pass configuration=.")
     first = np.zeros(system.rank) if w is None else w, system.group.identity if g is None else g
@@ -128,14 +127,12 @@ class StateBounds(NamedTuple):
     high: Float[np.ndarray, "b"]
 
     @classmethod
-    def of(cls, bounds: Any, names: Mapping[str, np.ndarray], ends: Mapping[str, np.ndarray]) -> Self | None:
-        """Return checked bounds of rows by name, None where there are none.
+    def of(cls, bounds: Any, names: Mapping[str, np.ndarray], ends: Mapping[str, np.ndarray]) -> Self:
+        """Return checked bounds of rows by name.
 
         Ends are start and goal, (..., x), NaN in what they leave free. A complex row is of an angle: cosine and sine.
         """
-        if bounds is None:
-            return None
-        remedy = f"Pass {{name: (least, largest)}} of {', '.join(names)}."
+        bounds, remedy = {} if bounds is None else bounds, f"Pass {{name: (least, largest)}} of {', '.join(names)}."
         if not isinstance(bounds, Mapping) or not set(bounds) <= set(names):
             raise error(_WHERE, "name components of a state", shown(bounds), remedy)
         parts = {name: cls._one(name, both, names[name]) for name, both in bounds.items()}
@@ -192,15 +189,13 @@ def body_numbers(system: System) -> dict[str, np.ndarray]:
     return names | ({"theta": entries[:1, 0] + 1j * entries[1:2, 0]} if group == SE(2) else {})
 
 
-def bounds_of_body(bounds: Any, system: System, ends: Ends) -> StateBounds | None:
+def bounds_of_body(bounds: Any, system: System, ends: Ends) -> StateBounds:
     """Return checked bounds of states on a group, in which all starts and goals lie."""
     w, g, to_pose, to_velocity = ends
     pose = np.full_like(g, np.nan) if to_pose is None else to_pose
     velocity = np.full_like(w, np.nan) if to_velocity is None else to_velocity
-    numbers = [
-        body_states(*x) for x in ((g, system.restricted_momentum(w)), (pose, system.restricted_momentum(velocity)))
-    ]
-    return StateBounds.of(bounds, body_numbers(system), dict(zip(("start", "goal"), numbers, strict=True)))
+    start, goal = body_states(g, system.restricted_momentum(w)), body_states(pose, system.restricted_momentum(velocity))
+    return StateBounds.of(bounds, body_numbers(system), {"start": start, "goal": goal})
 
 
 def body_states(poses: Float[np.ndarray, "... N N"], momenta: Float[np.ndarray, "... k"]) -> np.ndarray:
@@ -231,7 +226,7 @@ class Way(NamedTuple):
     outline: Any
     via: dict[int, Float[np.ndarray, "n"]]
     guess: Guess = Guess()
-    bounds: StateBounds | None = None
+    bounds: Any = None
 
     @classmethod
     def of(cls, n: int | None, steps: int, obstacles: Any, outline: Any, via: Any, guess: Any) -> "Way":
@@ -259,10 +254,6 @@ class Way(NamedTuple):
         """Return how deep points of the outline lie in an obstacle; zero where all are clear."""
         apart = np.linalg.norm(points[..., None, :] - self.centers, axis=-1) - self.radii
         return max(0.0, -float(apart.min(initial=np.inf)))
-
-    def outside(self, numbers: Float[np.ndarray, "... x"]) -> float:
-        """Return by how much states are out of their bounds, at most."""
-        return 0.0 if self.bounds is None else self.bounds.outside(numbers)
 
     def gap(self, points: Float[np.ndarray, "K points n"], positions: Float[np.ndarray, "K n"]) -> float:
         """Return by how much a motion comes too near to an obstacle, or misses a place, whichever is more.

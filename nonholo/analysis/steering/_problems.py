@@ -12,34 +12,18 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.analysis.steering._arguments import (
-    Limits,
-    Way,
-    body_points,
-    body_states,
-    check_names,
-    evenly,
-    planar_points,
-)
-from nonholo.analysis.steering._program import Program, Steps
+from nonholo import lagrange_dalembert
+from nonholo.analysis.steering import _arguments
+from nonholo.analysis.steering._arguments import Limits, Way
 from nonholo.analysis.steering._shooting import driven, sizes
-from nonholo.analysis.steering._transcription import Problem, bounds_of
+from nonholo.analysis.steering._transcription import Problem, Program, Steps, bounds_of
 from nonholo.base.checks import array, error, shown
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, discretize
 from nonholo.discrete.definition import Rollout, free_rows, step_residual
 from nonholo.groups import SE
-from nonholo.lagrange_dalembert import (
-    CoordinateDiscretization,
-    CoordinateOrbit,
-    LagrangeDAlembert,
-    checked_state,
-    equations,
-    in_double,
-    place,
-    traced_shape,
-)
+from nonholo.lagrange_dalembert import CoordinateDiscretization, LagrangeDAlembert, equations, in_double, place
 from nonholo.simulation import simulate
 from nonholo.systems import Forced
 
@@ -79,7 +63,7 @@ class GroupNodes(NamedTuple):
 
     def places(self, x: Array) -> Array:
         """Return where the points of the outline are, (points, n)."""
-        return body_points(self.state(x)[0], self.outline)
+        return _arguments.body_points(self.state(x)[0], self.outline)
 
     def numbers(self, z: Array, x: Array) -> Array:
         """Return what bounds of states are about: entries of the pose, momenta."""
@@ -112,7 +96,8 @@ class MovingOutline:
         """Return the checked outline of a system."""
         where, of = "steer(outline=...)", f"{system.dimension} coordinates"
         with double_precision():
-            shape = traced_shape(where, function, (jax.ShapeDtypeStruct((system.dimension,), float),), of)
+            q = jax.ShapeDtypeStruct((system.dimension,), float)
+            shape = lagrange_dalembert.traced_shape(where, function, (q,), of)
         if len(shape) != 2 or shape[1] != 2 or not shape[0]:
             remedy = "Return points in axes of the body, x ahead."
             raise error(where, "return an array of shape (points, 2)", f"shape {shape}", remedy)
@@ -168,7 +153,7 @@ class CoordinateNodes(NamedTuple):
 
     def places(self, x: Array) -> Array:
         """Return where the points of the outline are, (points, 2)."""
-        return planar_points(self.system, x, self.outline)
+        return _arguments.planar_points(self.system, x, self.outline)
 
     def numbers(self, z: Array, x: Array) -> Array:
         """Return what bounds of states are about: velocities of the step, coordinates."""
@@ -196,16 +181,16 @@ class Goal(NamedTuple):
 
 def checked_start(discrete: CoordinateDiscretization, start: Any) -> tuple[np.ndarray, np.ndarray]:
     """Return place and velocity of the start."""
-    check_names("steer(start=...)", start, "body_velocity")
+    _arguments.check_names("steer(start=...)", start, "body_velocity")
     discrete.system.forced(None, np.zeros((1, discrete.system.dimension)))  # refuses a system that has forces
-    velocity = start.get("body_velocity", np.zeros(discrete.system.dimension))
-    return checked_state(discrete.system, start.get("configuration"), {"body_velocity": velocity}, 0.0, "steer")
+    motion = {"body_velocity": start.get("body_velocity", np.zeros(discrete.system.dimension))}
+    return lagrange_dalembert.checked_state(discrete.system, start.get("configuration"), motion, 0.0, "steer")
 
 
 def checked_goal(discrete: CoordinateDiscretization, goal: Any, is_free: bool) -> Goal:
     """Return the goal; its configuration may name some coordinates alone, a free one nothing."""
     where, system = "steer(goal=...)", discrete.system
-    check_names(where, goal, "body_velocity")
+    _arguments.check_names(where, goal, "body_velocity")
     remedy = f"Pass {system.dimension} numbers, or some of them by name: {', '.join(system.coordinates)}."
     q, v = goal.get("configuration", {}), goal.get("body_velocity")
     if not isinstance(q, Mapping):
@@ -221,7 +206,7 @@ def checked_goal(discrete: CoordinateDiscretization, goal: Any, is_free: bool) -
 
 def driven_in_coordinates(
     discrete: CoordinateDiscretization, start: tuple[np.ndarray, np.ndarray], forces: Float[np.ndarray, "steps n"]
-) -> CoordinateOrbit:
+) -> lagrange_dalembert.CoordinateOrbit:
     """Return the orbit under forces, as far as it goes."""
     (v, q), table = start, discretize(discrete.system.forced(None, forces), discrete.time_step)
     return simulate(table, configuration=q, body_velocity=v, steps=len(forces), throw=False)
@@ -243,7 +228,7 @@ def coordinate_problem(
     }
     pins[steps] = pins.get(steps, {}) | goal.coordinates
     if way.outline.shape[-1]:
-        way.check("start", planar_points(system, x[:n], way.outline))
+        way.check("start", _arguments.planar_points(system, x[:n], way.outline))
     path, forces = _coordinate_guess(system, (x[:n], last[:n]), way, steps)
 
     def first_guess(rng: np.random.Generator, spread: float) -> np.ndarray:
@@ -267,17 +252,17 @@ def _nodes(discrete: CoordinateDiscretization, way: Way, last: np.ndarray, veloc
     return CoordinateNodes(system, h, way.outline, directions, velocity)
 
 
-def _coordinate_gap(program: Program, goal: Goal, way: Way, orbit: CoordinateOrbit) -> float:
+def _coordinate_gap(program: Program, goal: Goal, way: Way, orbit: lagrange_dalembert.CoordinateOrbit) -> float:
     """Return by what an orbit misses its goal, obstacles and places; infinity where it ends before."""
     q, system = orbit.configuration, program.steps.nodes.system
     if len(orbit) <= len(program.rows):
         return np.inf
     off = [abs(q[-1, i] - number) for i, number in goal.coordinates.items()]
     off += np.abs(program.goal_gap(np.append(place(system, q[-1], orbit.time[-1]), orbit.momentum[-1]))).tolist()
-    off.append(way.outside(np.concatenate([orbit.body_velocity[:-1], q[1:]], axis=1)))
+    off.append(way.bounds.outside(np.concatenate([orbit.body_velocity[:-1], q[1:]], axis=1)))
     if way.outline.shape[-1]:
-        at = planar_points(system, q, np.zeros((1, 2)))[:, 0]
-        off.append(way.gap(planar_points(system, q, way.outline), at))
+        at = _arguments.planar_points(system, q, np.zeros((1, 2)))[:, 0]
+        off.append(way.gap(_arguments.planar_points(system, q, way.outline), at))
     return float(max(off, default=0.0))
 
 
@@ -287,7 +272,7 @@ def _coordinate_guess(
     """Return configurations and forces of a guess: by default evenly from the start to the goal, through places."""
     if way.guess.configuration is not None and way.guess.controls is not None:
         return way.guess.configuration, way.guess.controls
-    q = evenly({0: ends[0], steps: ends[1]}, steps)
+    q = _arguments.evenly({0: ends[0], steps: ends[1]}, steps)
     if way.outline.shape[-1]:
         at = [system.coordinates.index(name) for name in "xy"]
         q[:, at] = way.positions({0: ends[0][at], steps: ends[1][at]}, steps)
@@ -336,10 +321,10 @@ def group_problem(discrete: Discretization, ends: tuple[Any, ...], limits: Limit
 def _group_gap(discrete: Discretization, ends: tuple[Any, ...], way: Way, orbits: Rollout) -> float:
     """Return by what the orbit of one member misses its goal, obstacles and places; infinity where it ends before."""
     system, (poses,), last = discrete.system, orbits.configuration, orbits.restricted_momentum[0, -1]
-    off, (_, _, to_pose, to_velocity) = [way.gap(body_points(poses, way.outline), poses[:, :-1, -1])], ends
+    off, (_, _, to_pose, to_velocity) = [way.gap(_arguments.body_points(poses, way.outline), poses[:, :-1, -1])], ends
     if not np.isfinite(last).all():
         return np.inf
-    off.append(way.outside(body_states(poses, orbits.restricted_momentum[0])))
+    off.append(way.bounds.outside(_arguments.body_states(poses, orbits.restricted_momentum[0])))
     if to_pose is not None:
         off.append(np.abs(system.group.log(system.group.inverse(to_pose) @ poses[-1])).max())
     if to_velocity is not None:

@@ -14,15 +14,12 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.analysis.steering._arguments import BLOCK, Limits
+from nonholo.analysis.steering._arguments import BLOCK, Ends, Limits
 from nonholo.base.progress import go_on
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
 from nonholo.discrete.definition import Rollout, compile_double, in_double
 from nonholo.simulation.traced import rollout
-
-Ends = tuple[Array, Array, Array | None, Array | None]
-"""First velocities and poses of members, and the poses and velocities that they are to have, None where free."""
 
 
 def goal_gaps(

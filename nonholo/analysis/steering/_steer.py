@@ -7,18 +7,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from nonholo.analysis.steering._arguments import (
-    BLOCK,
-    Ends,
-    Limits,
-    StateBounds,
-    Way,
-    body_points,
-    bounds_of_body,
-    checked_ends,
-    coordinate_numbers,
-    limits_of_steps,
-)
+from nonholo.analysis.steering import _arguments
+from nonholo.analysis.steering._arguments import BLOCK, Ends, Limits, StateBounds, Way
 from nonholo.base.checks import choice, count, error, flag, needs, refuse_given
 from nonholo.base.limits import within_memory
 from nonholo.base.memo import Keeper
@@ -170,10 +160,10 @@ def steer(
     if not is_on_group:
         return _steered_in_coordinates(discrete, (start, goal), (bounds, state_bounds), way, steps)
     _check(discrete, steps, way)
-    ends, is_one = checked_ends(discrete.system, start, goal, bool(way.via))
+    ends, is_one = _arguments.checked_ends(discrete.system, start, goal, bool(way.via))
     _refuse_too_many(discrete, steps, method, min(len(ends[0]), BLOCK))
-    way = way._replace(bounds=bounds_of_body(state_bounds, discrete.system, ends))
-    limits = limits_of_steps(bounds, steps, discrete.system.rank)
+    way = way._replace(bounds=_arguments.bounds_of_body(state_bounds, discrete.system, ends))
+    limits = _arguments.limits_of_steps(bounds, steps, discrete.system.rank)
     with progress_bar("members", progress) as report:
         by = functools.partial(_by_ipopt, way=way, report=report) if method == "ipopt" else _by_shooting
         forces, gap, outcome = interruptibly(lambda: by(discrete, ends, limits))
@@ -247,7 +237,7 @@ def _by_ipopt(
         from nonholo.analysis.steering._problems import group_problem
         from nonholo.analysis.steering._transcription import transcribe
     for name, poses in (("start", ends[1]), ("goal", ends[2])):
-        way.check(name, poses if poses is None else body_points(poses, way.outline))
+        way.check(name, poses if poses is None else _arguments.body_points(poses, way.outline))
     results = []
     for member in range(len(ends[0])):
         one = tuple(each if each is None else each[member] for each in ends)
@@ -267,10 +257,10 @@ def _steered_in_coordinates(
     if callable(way.outline):
         way = way._replace(outline=MovingOutline.of(discrete.system, way.outline))
     within_memory("steer(steps=...)", _PER_ENTRY * steps * (7.0 * n) ** 2, "Pass fewer steps.")
-    limits = limits_of_steps(bounds[0], steps, n)
+    limits = _arguments.limits_of_steps(bounds[0], steps, n)
     goal = checked_goal(discrete, ends[1], is_free=bool(way.via))
     both = {"start": np.append(v, x[:n]), "goal": goal.numbers(n)}
-    way = way._replace(bounds=StateBounds.of(bounds[1], coordinate_numbers(discrete.system), both))
+    way = way._replace(bounds=StateBounds.of(bounds[1], _arguments.coordinate_numbers(discrete.system), both))
     problem = coordinate_problem(discrete, ((x, v), goal), limits, way)
     forces, gap, outcome = interruptibly(lambda: transcribe(problem))
     effort = float(discrete.time_step) * (forces**2).sum() / 2

@@ -3,17 +3,241 @@
 A sparse program by IPOPT, from the wheel of casadi, which calls back for values and derivatives.
 """
 
+import dataclasses
+import functools
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import casadi
+import equinox
+import jax
+import jax.numpy as jnp
 import numpy as np
+from scipy import sparse
 
-from nonholo.analysis.steering._arguments import Limits
-from nonholo.analysis.steering._program import Program
+from nonholo.analysis.steering._arguments import Limits, StateBounds
 from nonholo.analysis.steering._shooting import TOLERANCE
 from nonholo.base.progress import go_on, is_over
-from nonholo.base.types import Float
+from nonholo.base.types import Array, Float
+from nonholo.discrete.definition import in_double
+
+_SAMPLES = 3  # random points at which an entry of a derivative vanishes only if it does everywhere
+
+
+class Steps(NamedTuple):
+    """Numbers that all steps share.
+
+    Attributes:
+        nodes: Unknowns and equations of a step.
+        centers: Of obstacles, (obstacles, n).
+        radii: Of obstacles.
+        time_step: h, the weight of the cost.
+        bounds: Of states after steps, None where they are free.
+    """
+
+    nodes: Any
+    centers: Float[Array, "obstacles n"]
+    radii: Float[Array, "obstacles"]
+    time_step: Array
+    bounds: StateBounds
+
+    def parts(self, window: Array) -> tuple[Array, ...]:
+        """Return state, inner part, forces and the state after them."""
+        states, inner, controls = self.nodes.sizes
+        return tuple(jnp.split(window, np.cumsum([states, inner, controls])))
+
+    def conditions(self, window: Array, row: Array) -> Array:
+        r"""Return equations of a step, clearances $(|x - c|^2 - \rho^2)/2\rho$ after it, and what is bounded."""
+        x, z, f, after = self.parts(window)
+        states = self.bounds.rows @ self.nodes.numbers(z, after)
+        return jnp.concatenate([self.nodes.residual(x, z, f, after, row), self.clearances(after), states])
+
+    def clearances(self, x: Array) -> Array:
+        """Return the distance of points from obstacles, exact in the first order where that is little."""
+        if not len(self.radii):
+            return jnp.zeros(0)
+        apart = self.nodes.places(x)[:, None] - self.centers
+        return ((jnp.sum(apart**2, axis=-1) - self.radii**2) / (2 * self.radii)).ravel()
+
+    def cost(self, window: Array) -> Array:
+        """Return the effort of a step."""
+        f = self.parts(window)[2]
+        return self.time_step * f @ f / 2
+
+    def lagrangian(self, window: Array, row: Array, weights: Array, weight: Array) -> Array:
+        """Return the weighted sum of cost and conditions."""
+        return weight * self.cost(window) + weights @ self.conditions(window, row)
+
+
+def _weighted_goal(steps: Steps, last: Array, weights: Array) -> Array:
+    return weights @ steps.nodes.goal_gap(last)
+
+
+@equinox.filter_jit
+def _values(steps: Steps, windows: Array, rows: Array, last: Array) -> Any:
+    return jax.vmap(steps.conditions)(windows, rows), steps.nodes.goal_gap(last)
+
+
+@equinox.filter_jit
+def _goal_gap(steps: Steps, last: Array) -> Array:
+    return steps.nodes.goal_gap(last)
+
+
+@equinox.filter_jit
+def _slopes(steps: Steps, windows: Array, rows: Array, last: Array) -> Any:
+    return jax.vmap(jax.jacfwd(steps.conditions))(windows, rows), jax.jacfwd(steps.nodes.goal_gap)(last)
+
+
+@equinox.filter_jit
+def _curvatures(steps: Steps, windows: Array, rows: Array, last: Array, weights: Any, weight: Array) -> Any:
+    hessian = jax.vmap(jax.hessian(steps.lagrangian), in_axes=(0, 0, 0, None))
+    return hessian(windows, rows, weights[0], weight), jax.hessian(_weighted_goal, argnums=1)(steps, last, weights[1])
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Program:
+    """The least effort under the equations of all steps, clearances and a goal.
+
+    Attributes:
+        steps: The data that all steps share.
+        first: The state at the start.
+        rows: Body covectors that act in the steps beside the forces, (steps, size).
+    """
+
+    steps: Steps
+    first: Float[np.ndarray, "x"]
+    rows: Float[np.ndarray, "steps size"]
+
+    @functools.cached_property
+    def width(self) -> int:
+        """The number of unknowns of a step."""
+        return sum(self.steps.nodes.sizes)
+
+    @functools.cached_property
+    def shape(self) -> tuple[int, int]:
+        """Numbers of conditions of a step and of conditions at the end."""
+        values, end = self._call(_values, np.zeros(self.unknowns))
+        return values.shape[1], len(end)
+
+    @functools.cached_property
+    def limits(self) -> tuple[np.ndarray, np.ndarray]:
+        """The least and the largest value of each condition: zero of equations, infinity above of clearances."""
+        (count, ends), bounds = self.shape, self.steps.bounds
+        clear = np.zeros(len(self.steps.radii) * len(self.steps.nodes.outline))
+        zeros = np.zeros(count - len(clear) - len(bounds.low))
+        steps = np.concatenate([zeros, clear, bounds.low]), np.concatenate([zeros, clear + np.inf, bounds.high])
+        least, most = (np.append(np.tile(each, len(self.rows)), np.zeros(ends)) for each in steps)
+        return least, most
+
+    @property
+    def unknowns(self) -> int:
+        """The number of unknowns."""
+        return self.width * len(self.rows)
+
+    @functools.cached_property
+    def windows(self) -> np.ndarray:
+        """Indices of the unknowns of each step, (steps, window); negative ones are of the first state."""
+        size = len(self.first)
+        return np.arange(len(self.rows))[:, None] * self.width + np.arange(-size, self.width)
+
+    def split(self, u: Float[np.ndarray, "n"]) -> list[np.ndarray]:
+        """Return inner parts, forces and states after steps, each (steps, size)."""
+        return np.split(u.reshape(len(self.rows), -1), np.cumsum(self.steps.nodes.sizes[1:]), axis=1)
+
+    def conditions(self, u: Float[np.ndarray, "n"]) -> Float[np.ndarray, "c"]:
+        """Return equations and clearances, step by step, then what is missed at the end."""
+        values, end = self._call(_values, u)
+        return np.concatenate([values.ravel(), end])
+
+    def goal_gap(self, state: Float[np.ndarray, "x"]) -> Float[np.ndarray, "e"]:
+        """Return what vanishes at the goal, of a last state."""
+        return in_double(_goal_gap, self.steps, state)
+
+    def cost(self, u: Float[np.ndarray, "n"]) -> tuple[float, Float[np.ndarray, "n"]]:
+        """Return the effort and its derivative."""
+        forces, slope, h = self.split(u)[1], np.zeros((len(self.rows), self.width)), float(self.steps.time_step)
+        start = self.steps.nodes.sizes[1]
+        slope[:, start : start + forces.shape[1]] = h * forces
+        return h * float((forces**2).sum()) / 2, slope.ravel()
+
+    def slopes(self, u: Float[np.ndarray, "n"]) -> sparse.csc_array:
+        """Return the derivatives of the conditions."""
+        return self._laid(self.slope_places, self._call(_slopes, u))
+
+    def curvatures(self, u: Float[np.ndarray, "n"], weights: np.ndarray, weight: float) -> sparse.csc_array:
+        """Return the upper triangle of the second derivatives of a weighted sum of cost and conditions."""
+        ends = self.shape[1]
+        both = weights[: len(weights) - ends].reshape(len(self.rows), -1), weights[len(weights) - ends :]
+        return self._laid(self.curvature_places, self._call(_curvatures, u, both, np.float64(weight)))
+
+    def _call(self, function: Any, u: np.ndarray, *more: Any) -> Any:
+        whole = np.concatenate([self.first, u])
+        windows, last = whole[self.windows + len(self.first)], whole[-len(self.first) :]
+        return in_double(function, self.steps, windows, self.rows, last, *more)
+
+    def _laid(self, places: "_Places", entries: tuple[np.ndarray, np.ndarray]) -> sparse.csc_array:
+        values = np.concatenate([each.ravel() for each in entries])[places.at]
+        data = np.bincount(places.entry, values, minlength=len(places.rows))
+        return sparse.csc_array((data, places.rows, places.columns), shape=places.shape)
+
+    @functools.cached_property
+    def slope_places(self) -> "_Places":
+        """Where the derivatives of the conditions stand."""
+        (count, ends), steps = self.shape, len(self.rows)
+        row = np.arange(steps * count).reshape(steps, count, 1)
+        end = np.arange(steps * count, steps * count + ends)[:, None]
+        places, shape = ((row, self.windows[:, None]), (end, self._last)), (steps * count + ends, self.unknowns)
+        return _Places.of(*places, self._pattern(_slopes, ()), shape)
+
+    @functools.cached_property
+    def curvature_places(self) -> "_Places":
+        """Where the second derivatives stand."""
+        rng, (count, ends) = np.random.default_rng(1), self.shape
+        weights = rng.normal(size=(len(self.rows), count)), rng.normal(size=ends)
+        pattern, window, last = self._pattern(_curvatures, (weights, np.float64(1.0))), self.windows, self._last
+        places = (window[:, :, None], window[:, None]), (last[:, None], last)
+        return _Places.of(*places, pattern, (self.unknowns, self.unknowns), upper=True)
+
+    @property
+    def _last(self) -> np.ndarray:
+        return self.windows[-1, -len(self.first) :]
+
+    def _pattern(self, function: Any, more: tuple[Any, ...]) -> tuple[np.ndarray, np.ndarray]:
+        """Return which entries of the derivatives of a step, and at the end, do not vanish everywhere."""
+        rng = np.random.default_rng(0)
+        samples = [self._call(function, rng.normal(size=self.unknowns), *more) for _ in range(_SAMPLES)]
+        step = np.any([np.any(part != 0, axis=0) for part, _ in samples], axis=0)
+        end = np.any([part != 0 for _, part in samples], axis=0)
+        return np.broadcast_to(step, samples[0][0].shape), end
+
+
+class _Places(NamedTuple):
+    """Where the entries of the derivatives of steps stand in a sparse matrix, by columns.
+
+    Attributes:
+        at: Indices of the entries that are laid out.
+        entry: The entry of the matrix that each of them is added to.
+        rows: Of the entries of the matrix.
+        columns: Where columns begin.
+        shape: Of the matrix.
+    """
+
+    at: np.ndarray
+    entry: np.ndarray
+    rows: np.ndarray
+    columns: np.ndarray
+    shape: tuple[int, int]
+
+    @classmethod
+    def of(cls, steps: Any, end: Any, pattern: Any, shape: tuple[int, int], upper: bool = False) -> "_Places":
+        both = [np.broadcast_arrays(*places, mask) for places, mask in zip((steps, end), pattern, strict=True)]
+        row, column, mask = (np.concatenate([part[i].ravel() for part in both]) for i in range(3))
+        is_inside = mask & (column >= 0) & (row >= 0)
+        at = np.flatnonzero(is_inside & (row <= column) if upper else is_inside)
+        keys, entry = np.unique(column[at] * shape[0] + row[at], return_inverse=True)
+        begins = np.searchsorted(keys, np.arange(shape[1] + 1) * shape[0])
+        return cls(at, entry, keys % shape[0], begins, shape)
+
 
 _SPREADS = (0.03, 0.3, 1.0, 2.0)  # of random bends of the first guess, in turn
 _ITERATIONS = 500  # of IPOPT
@@ -55,10 +279,10 @@ def transcribe(problem: Problem) -> tuple[Float[np.ndarray, "steps k"], float, s
     """Return forces, what their orbit misses, and in a word what became of the search: see `Steering.outcome`."""
     rng, searches = np.random.default_rng(0), []
     for spread in _SPREADS:
-        solution = minimize(problem.program, problem.guess(rng, spread), problem.bounds, _ITERATIONS)
-        forces = problem.program.split(solution.unknowns)[1]
+        unknowns, status = minimize(problem.program, problem.guess(rng, spread), problem.bounds)
+        forces = problem.program.split(unknowns)[1]
         gap = problem.gap_of(forces)
-        searches.append((gap, forces, outcome_of(solution.status, gap)))
+        searches.append((gap, forces, outcome_of(status, gap)))
         if searches[-1][2] == "converged":
             break
     gap, forces, outcome = min(searches, key=lambda each: (each[2] != "converged", each[0]))
@@ -86,15 +310,7 @@ def bounds_of(program: Program, limits: tuple[np.ndarray, np.ndarray], pins: dic
     return tuple(both)
 
 
-class Solution(NamedTuple):
-    """Where IPOPT stopped: unknowns, its word for why, and the number of iterations."""
-
-    unknowns: Float[np.ndarray, "n"]
-    status: str
-    iterations: int
-
-
-def minimize(program: Program, guess: Float[np.ndarray, "n"], bounds: Limits, iterations: int) -> Solution:
+def minimize(program: Program, guess: Float[np.ndarray, "n"], bounds: Limits) -> tuple[np.ndarray, str]:
     """Return unknowns between bounds that meet the conditions of a program with least effort, from a guess."""
     numbers, one, nothing = (casadi.Sparsity.dense(size) for size in (program.unknowns, 1, 0))
     conditions = casadi.Sparsity.dense(len(program.limits[0]))
@@ -116,19 +332,18 @@ def minimize(program: Program, guess: Float[np.ndarray, "n"], bounds: Limits, it
     state = numbers, one, conditions, numbers, conditions, nothing
     calls["iteration_callback"] = _Call("stop", state, (one,), lambda *_: (float(is_over()),))
     u = casadi.MX.sym("u", program.unknowns)
-    options = {**_OPTIONS, **calls, "ipopt.max_iter": iterations}
+    options = {**_OPTIONS, **calls, "ipopt.max_iter": _ITERATIONS}
     solver = casadi.nlpsol("steer", "ipopt", {"x": u, "f": f(u), "g": g(u)}, options)
     result = solver(x0=guess, lbx=bounds[0], ubx=bounds[1], lbg=program.limits[0], ubg=program.limits[1])
     stats = solver.stats()
     go_on()
     if stats["return_status"] == "NonIpopt_Exception_Thrown":  # by a call back, or by the keyboard
         raise next((call.failure for call in (f, g, *calls.values()) if call.failure), KeyboardInterrupt())
-    return Solution(np.array(result["x"]).ravel(), stats["return_status"], stats["iter_count"])
+    return np.array(result["x"]).ravel(), stats["return_status"]
 
 
 def _sparsity(places: Any) -> Any:
-    rows, columns = places.shape
-    return casadi.Sparsity(rows, columns, places.columns.tolist(), places.rows.tolist())
+    return casadi.Sparsity(*places.shape, places.columns.tolist(), places.rows.tolist())
 
 
 class _Call(casadi.Callback):

@@ -28,8 +28,8 @@ from nonholo.groups import SE, SO
 from nonholo.io import check_file, complete_file
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plot import theme
-from nonholo.plot.animation import _in_plane, _in_space, _on_sphere
-from nonholo.plot.animation._part import Show, part_of, part_of_flow, shown_states
+from nonholo.plot.animation import _in_plane, _in_space
+from nonholo.plot.animation._part import Show, part_of, part_of_flow, shown_states, together
 from nonholo.plot.motion.coordinates import momentum_track, track_of
 from nonholo.plot.overviews import name_of
 from nonholo.plot.parts import drawable_in_time, same_space, with_poses
@@ -107,12 +107,7 @@ def animate(
     frame_states = shown_states(orbit, motion(orbit), total)
     figure, axes, set_clock = _stage(orbit, orbit.time[frame_states])
     others = [] if beside is None else [part_of_flow(beside, orbit.time[frame_states])]
-    show = scene(axes, orbit, [part_of(orbit, frame_states), *others])
-
-    def draw(frame: int) -> None:
-        set_clock(frame)
-        show(frame)
-
+    draw = together([set_clock, scene(axes, orbit, [part_of(orbit, frame_states), *others])])
     with complete_file(target) as part:
         write_film(part, figure, draw, len(frame_states), rate, progress)
     return target
@@ -120,10 +115,13 @@ def animate(
 
 def _scene_of(where: str, orbit: AbstractOrbit) -> tuple[Callable[[Any], float], Callable[..., Callable[[int], None]]]:
     """Return the motion of an orbit between saved states, in units of what the eye can follow, and what draws it."""
-    scenes = {SO(3): _on_sphere, SE(2): _in_plane, SE(3): _in_space}
+    scenes: dict[Any, tuple[Any, Any]] = {
+        SO(3): (_in_space.motion_on_sphere, _in_space.draw_on_sphere),
+        SE(2): (_in_plane.motion, _in_plane.draw_body),
+        SE(3): (_in_space.motion, _in_space.draw_body),
+    }
     if isinstance(orbit, Orbit) and orbit.system.group in scenes:
-        scene = scenes[with_poses(where, orbit).system.group]
-        return scene.motion, scene.draw_body
+        return scenes[with_poses(where, orbit).system.group]
     track = track_of(orbit) or momentum_track(orbit)
     return lambda _: 0.0, functools.partial((_in_plane if len(track.names) == 2 else _in_space).draw_path, track)
 

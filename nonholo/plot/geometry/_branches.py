@@ -14,20 +14,12 @@ from matplotlib.patches import Polygon
 from matplotlib.text import Annotation
 from matplotlib.ticker import MaxNLocator, NullLocator
 
+from nonholo import discrete as maps
 from nonholo.analysis import Deltoid, deltoid, invariant_curve
 from nonholo.analysis.planar import planar_map
 from nonholo.base.checks import choice, error, instance, pair, shape_of, shown
 from nonholo.base.types import Float
-from nonholo.discrete import (
-    Branches,
-    BranchTree,
-    Discretization,
-    as_discretization,
-    discrete_legendre,
-    displacements_over,
-    inverse_discrete_legendre,
-)
-from nonholo.discrete import branches as values_of
+from nonholo.discrete import Branches, BranchTree, Discretization
 from nonholo.orbit import Orbit
 from nonholo.plot import theme
 from nonholo.plot.parts import draw_orbit, own_orbit
@@ -197,13 +189,13 @@ def branches(
     where = "plot.branches"
     discrete = planar_map(f"{where}(discrete=...)", discrete)[0]
     on_momenta = _is_over_momenta(discrete, plane)
-    values = values_of(discrete, momentum=momentum, displacement=displacement)
+    values = maps.branches(discrete, momentum=momentum, displacement=displacement)
     if displacement is not None:
         W = np.asarray(displacement, dtype=float)
     elif shape_of(momentum) == (discrete.system.group.dim,):
-        W = inverse_discrete_legendre(discrete, momentum)
+        W = maps.inverse_discrete_legendre(discrete, momentum)
     else:
-        over = displacements_over(discrete, momentum)
+        over = maps.displacements_over(discrete, momentum)
         W = over.displacement[over.principal].real
     axes = theme.axes_or_new(axes, (6.4, 5.6))
     return (_over_momenta if on_momenta else _on_displacements)(axes, discrete, values, W)
@@ -240,7 +232,7 @@ def _on_displacements(axes: Axes, discrete: Discretization, values: Branches, W:
 def _over_momenta(axes: Axes, discrete: Discretization, values: Branches, W: np.ndarray) -> BranchesPicture:
     region, system, sheet = deltoid(discrete), discrete.system, _sheet(discrete)
     draw_deltoid(axes, region)
-    before, after = system.restrict(discrete_legendre(discrete, W)), system.restrict(values.momentum[0].real)
+    before, after = system.restrict(maps.discrete_legendre(discrete, W)), system.restrict(values.momentum[0].real)
     here, there = on_plane(system, np.stack([before, after]))
     real = np.flatnonzero(values.is_real)
     places = on_plane(system, region.touching(_angles(sheet, values)[real]))
@@ -387,7 +379,7 @@ def branch_tree(
 
 def _system_of(discrete: Any, tree: Any) -> Any:
     where = "plot.branch_tree(tree=...)"
-    system = as_discretization("plot.branch_tree(discrete=...)", discrete).system
+    system = maps.as_discretization("plot.branch_tree(discrete=...)", discrete).system
     instance(where, tree, BranchTree, "be a tree", "Pass what `nh.branch_tree` returned.")
     if len(tree.counts) < 2:
         raise error(where, "have a generation of images", "the root alone", "Make it with depth=1 or more.")

@@ -1,6 +1,5 @@
 """Orbits in coordinates, or on groups with forms that depend on the pose: path, outline of the body, coordinates."""
 
-import dataclasses
 import functools
 import re
 from collections.abc import Callable
@@ -61,8 +60,7 @@ _SMALL, _ENLARGED = 0.02, 0.035  # radius of a body that is too small to be seen
 _ARROW = 0.6  # from the front of the body, in its radii
 
 
-@dataclasses.dataclass(frozen=True)
-class Bodies:
+class Bodies(NamedTuple):
     """A body at some of its poses, each seen from its reference point.
 
     Attributes:

@@ -225,8 +225,11 @@ def momentum_sphere(
         >>> np.allclose(np.linalg.norm(nh.plot.momentum_sphere(orbit).points, axis=1), 1.0)
         True
     """
-    system = _check(orbit)
-    orbit = parts.drawable("momentum_sphere(orbit=...)", orbit)
+    where, remedy = "momentum_sphere(orbit=...)", "Use `phase_portrait` in two dimensions, `overview` in others."
+    smooth = parts.drawable(where, orbit)
+    system = cast(AbstractLLSystem, smooth.system)
+    parts.check_directions(where, orbit, system, (3, "three"), remedy)
+    orbit = smooth
     values, directions = np.linalg.eigh(np.asarray(system.canonical.constrained_inertia))
     to_sphere = directions @ np.diag(values**-0.5) @ directions.T
     size = np.sqrt(2 * orbit[:1].energy[0]) or 1.0
@@ -254,14 +257,6 @@ def momentum_sphere(
         place = ("lower left", (1.0, 0.0)) if is_narrow else ("lower right", None)
         theme.legend(axes, loc=place[0], bbox_to_anchor=place[1])
     return MomentumSphere(axes, eye, points, path, dots, stable, unstable)
-
-
-def _check(orbit: Orbit) -> AbstractLLSystem:
-    where = "momentum_sphere(orbit=...)"
-    system = parts.drawable(where, orbit).system
-    remedy = "Use `phase_portrait` in two dimensions, `overview` in others."
-    parts.check_directions(where, orbit, system, (3, "three"), remedy)
-    return cast(AbstractLLSystem, system)
 
 
 def _attracting(system: AbstractLLSystem, to_sphere: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "A 3"]:

@@ -1,4 +1,4 @@
-"""The rattleback, or celt: a boat that turns one way only."""
+"""Bodies that turn on a point or on the floor: the rattleback, or celt, a boat that turns one way only; a heavy top."""
 
 import functools
 from typing import NamedTuple
@@ -7,9 +7,10 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.numerics import double_precision
-from nonholo.base.types import Array
+from nonholo.base.types import Array, Float
 from nonholo.examples._example import Example, energy_of, ready, system_in
 from nonholo.lagrange_dalembert import LagrangeDAlembert
+from nonholo.systems import Forced, SuslovTop
 
 
 @ready(
@@ -47,6 +48,10 @@ def rattleback(
     Reference: [kane-levinson-1982], whose parameters are the defaults, in centimeters, seconds and per unit of mass,
     seen with its axis c upwards.
 
+    Facts:
+        Turned in the wrong direction it rattles, stops, and turns back.
+        The energy is constant.
+
     Args:
         semi_axes: a, b, c.
         center: l, between 0 and c.
@@ -69,9 +74,8 @@ def rattleback(
     system = _system(boat, inertia, product, gravity)
     with double_precision():
         v = np.append(np.asarray(boat.rolling(jnp.asarray(q))) @ angles, angles)
-    facts = ("Turned in the wrong direction it rattles, stops, and turns back.", "The energy is constant.")
     conserved = {"energy": energy_of(system.lagrangian)}
-    return Example("rattleback", system, q, v, facts, conserved, time_step=0.002, steps=5000)
+    return Example("rattleback", system, q, v, (), conserved, time_step=0.002, steps=5000)
 
 
 class _Boat(NamedTuple):
@@ -122,3 +126,65 @@ def _outline(boat: _Boat, _q: Array) -> list[Array]:
     a, b, _ = boat.axes
     angle = np.linspace(0.0, 2 * np.pi, 41)
     return [np.stack([a * np.cos(angle), b * np.sin(angle)], axis=1), np.array([[0.5 * a, 0.0], [a, 0.0]])]
+
+
+@ready("velocity", positive="inertia", inertia="three moments", stiffness="three numbers", velocity="two components")
+def heavy_suslov_top(
+    *,
+    inertia: tuple[float, float, float] = (1.0, 1.2, 0.8),
+    stiffness: tuple[float, float, float] = (0.5, 1.0, 2.0),
+    velocity: tuple[float, float] = (0.6, 0.4),
+) -> Example:
+    r"""A top that may not spin about its third axis, in the quadratic potential of Klebsch and Tisserand.
+
+    $$ I\dot\omega = I\omega\times\omega + \gamma\times\nabla U(\gamma) + \lambda e_3, \quad \omega_3 = 0, \qquad
+       \dot\gamma = \gamma\times\omega, \qquad U = \tfrac12(c_1\gamma_1^2 + c_2\gamma_2^2 + c_3\gamma_3^2) $$
+
+    with the vertical $\gamma = R^Te_3$ seen from the body and principal moments I; the third axis is the
+    forbidden one.
+    The two equations separate,
+
+    $$ I_1\omega_1^2 - (c_3 - c_2)\gamma_2^2, \qquad I_2\omega_2^2 - (c_3 - c_1)\gamma_1^2, $$
+
+    are constant, and so half of their sum, the energy but for $c_3/2$.
+
+    Reference: [hu-santoprete-2017]; the integrals follow at once from the equations above.
+
+    Facts:
+        The equations separate: there are two quadratic integrals.
+        Every solution is one of quadratures.
+
+    Args:
+        inertia: Principal moments I.
+        stiffness: c.
+        velocity: (omega_1, omega_2) at the start, where the third axis is vertical.
+
+    Raises:
+        ValueError: A moment that is not positive, moments of no body, a wrong shape.
+
+    Example:
+        >>> ready = nh.examples.heavy_suslov_top()
+        >>> discrete = nh.discretize(ready.system, 0.01)
+        >>> orbit = nh.simulate(discrete, body_velocity=ready.body_velocity, steps=1000)
+        >>> kept = ready.conserved["of the first axis"](orbit.configuration, orbit.body_velocity)
+        >>> bool(np.ptp(kept) < 1e-3)
+        True
+    """
+    c = np.asarray(stiffness)
+
+    def integral(g: Array, v: Array, turning: int, tilting: int) -> Array:
+        return inertia[turning] * v[..., turning] ** 2 - (c[2] - c[tilting]) * g[..., 2, tilting] ** 2
+
+    conserved = {
+        "of the first axis": functools.partial(integral, turning=0, tilting=1),
+        "of the second axis": functools.partial(integral, turning=1, tilting=0),
+    }
+
+    import numba
+
+    @numba.njit
+    def potential(g: Float[np.ndarray, "3 3"]) -> np.float64:
+        return c @ g[2] ** 2 / 2
+
+    system = Forced(SuslovTop.from_inertia(np.diag(inertia)), potential)
+    return Example("heavy_suslov_top", system, np.eye(3), np.append(velocity, 0.0), (), conserved)
