@@ -2,6 +2,5 @@
 
 from nonholo.continuous._closed_form import closed_form
 from nonholo.continuous._equations import ContinuousFlow, vector_field
-from nonholo.continuous._series import flow_tangents
-from nonholo.continuous._solution import Solved, States
+from nonholo.continuous._series import Solved, States, flow_tangents
 from nonholo.continuous._solvers import has_series, members_by_series, solver_of

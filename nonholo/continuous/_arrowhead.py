@@ -12,8 +12,7 @@ import numpy as np
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.continuous._series import GUARD, power_of_two
-from nonholo.continuous._solution import Problem, Solved, States
+from nonholo.continuous._series import GUARD, Problem, Solved, States, power_of_two
 from nonholo.kernels import Arrowhead, solve_arrowhead
 from nonholo.orbit import looked_at
 from nonholo.systems import AbstractSystem, NormalForm

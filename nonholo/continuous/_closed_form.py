@@ -22,8 +22,7 @@ from nonholo.base.numerics import sinc
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.continuous._equations import body_of, momentum_rate
-from nonholo.continuous._series import body_equations, power_of_two, solve
-from nonholo.continuous._solution import Problem, Solved, States
+from nonholo.continuous._series import Problem, Solved, States, body_equations, power_of_two, solve
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractSystem, NormalForm
 

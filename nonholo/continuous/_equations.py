@@ -15,7 +15,7 @@ from nonholo.base.checks import error, number, trailing
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
 from nonholo.continuous._forced import forced_field, forced_reaction
-from nonholo.continuous._solution import States
+from nonholo.continuous._series import States
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractMotion, First, Orbit, times_within
 from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, Start, as_system, inertia_form, refuse_slip

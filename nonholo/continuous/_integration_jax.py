@@ -13,7 +13,7 @@ from nonholo.base.progress import interruptibly
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array
 from nonholo.continuous._equations import Body, body_of, momentum_rate, spatial_velocity
-from nonholo.continuous._solution import PLANE, Problem, Solved, States, first_heading
+from nonholo.continuous._series import PLANE, Problem, Solved, States, first_heading
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import turned_near
 from nonholo.systems import AbstractSystem

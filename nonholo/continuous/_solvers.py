@@ -15,14 +15,18 @@ from nonholo.continuous._closed_form import closed_form
 from nonholo.continuous._forced import has_series_under, heads, quadratic_under, under_forces
 from nonholo.continuous._series import (
     GUARD,
+    PLANE,
+    Problem,
+    Solved,
+    States,
     body_equations,
     body_numbers,
     by_series,
+    first_heading,
     is_compact,
     power_of_two,
     quadratic,
 )
-from nonholo.continuous._solution import PLANE, Problem, Solved, States, first_heading
 from nonholo.kernels import Quadratic, solve_members
 from nonholo.orbit import turned_near
 from nonholo.systems import AbstractSystem, System

@@ -12,8 +12,7 @@ from nonholo import Outcome
 from nonholo.discrete import Branches
 from nonholo.discrete.branching._equations import follow as followed_on_sphere
 from nonholo.discrete.branching._equations import frame_of
-from nonholo.discrete.branching._rules import PRINCIPAL, branch_rule
-from nonholo.discrete.branching._stepper import displacement_at, first_place, next_place
+from nonholo.discrete.branching._rules import PRINCIPAL, branch_rule, displacement_at, first_place, next_place
 
 TOP = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.3)
 FOUR = nh.discretize(nh.SuslovTop([[1.25, 0.0, -0.5], [0.0, 1.0, -0.75], [-0.5, -0.75, 1.25]]), 1.0)

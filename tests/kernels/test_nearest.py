@@ -6,8 +6,7 @@ import pytest
 import nonholo as nh
 from nonholo import kernels
 from nonholo.discrete.branching._equations import Equations, frame_of, nearest_body
-from nonholo.discrete.branching._rules import branch_rule
-from nonholo.discrete.branching._stepper import displacement_at, first_place, next_place
+from nonholo.discrete.branching._rules import branch_rule, displacement_at, first_place, next_place
 
 BODIES = {
     "four values": (nh.SuslovTop([[1.25, 0.0, -0.5], [0.0, 1.0, -0.75], [-0.5, -0.75, 1.25]]), 1.0),

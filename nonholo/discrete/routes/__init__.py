@@ -11,8 +11,13 @@
 | `FunctionRoute` | the definition of the impulses, for constraints fixed in space |
 """
 
-from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledRoute, AbstractRoute, Compact
+from nonholo.discrete.routes._base import (
+    AbstractBodyStepper,
+    AbstractCompiledRoute,
+    AbstractRoute,
+    Compact,
+    reversal_defects,
+)
 from nonholo.discrete.routes._choice import make_route
 from nonholo.discrete.routes._forced import FunctionRoute
 from nonholo.discrete.routes._normal_forms import ScalarRoute, ScalarStep, SecularRoute
-from nonholo.discrete.routes._reversal import reversal_defects

@@ -11,9 +11,8 @@ from nonholo.base.types import Float
 from nonholo.discrete._pytrees import pytree
 from nonholo.discrete._scheme import Scheme
 from nonholo.discrete._variety import variety_of
-from nonholo.discrete.routes._balanced import balanced_route
 from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractRoute, Compact, poses_of
-from nonholo.discrete.routes._forced import ComposedRoute, forced_route
+from nonholo.discrete.routes._forced import ComposedRoute, balanced_route, forced_route
 from nonholo.discrete.routes._matrix import MatrixRoute
 from nonholo.discrete.routes._normal_forms import ScalarRoute, SecularRoute, closed_form
 from nonholo.discrete.routes._slipping import slip_route

@@ -19,9 +19,8 @@ from nonholo.base.numerics import applied
 from nonholo.base.results import OUTCOMES, Outcome
 from nonholo.base.types import Bool, Float
 from nonholo.discrete._variety import Variety, variety_of
-from nonholo.discrete.routes._balanced import BalancedRoute
 from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledRoute, Compact, poses_of
-from nonholo.discrete.routes._forced import AbstractForcedRoute
+from nonholo.discrete.routes._forced import AbstractForcedRoute, BalancedRoute
 from nonholo.orbit import First, Orbit, Rows, State, configurations, keep_row, write_first
 from nonholo.systems import Contacts, Forced, Widened, friction
 
