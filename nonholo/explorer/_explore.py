@@ -23,7 +23,7 @@ from nonholo.base.checks import path as checked_path
 from nonholo.base.memo import Keeper
 from nonholo.base.results import Outcome
 from nonholo.explorer._motion import kernel, kinds_beside, shown_motion, simulate_state
-from nonholo.io import check_file, new_file
+from nonholo.io.places import check_file, new_file
 from nonholo.orbit import Orbit
 
 _HEIGHT = 760  # pixels in a notebook
