@@ -9,7 +9,7 @@ import pytest
 from typer.testing import Result
 
 from nonholo.cli.scenario.files import parse_setting
-from nonholo.cli.scenario.problems import ScenarioError
+from nonholo.cli.scenario.sections import ScenarioError
 
 Command: TypeAlias = Callable[..., Result]
 Figures: TypeAlias = Callable[..., dict[str, Any]]

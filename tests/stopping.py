@@ -7,7 +7,7 @@ from typing import Any, TypeAlias
 import pytest
 
 from nonholo.ensembles.stores import SweepStore
-from nonholo.io import Stream
+from nonholo.io.orbits import Stream
 
 Failure: TypeAlias = type[BaseException] | BaseException
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from nonholo import io
 from nonholo.base.checks import array, choice, count, error, flags, number, path, refuse_former_names, scale, seed, text
-from nonholo.ensembles._describe import function_name
+from nonholo.ensembles._names import function_name
 from nonholo.ensembles._sweep import sweep
 from nonholo.ensembles.datasets import DEFINITIONS, SPLITS, DatasetTask, card, family_of, record_of, write_tables
 from nonholo.ensembles.designs import RandomDesign
@@ -100,8 +100,8 @@ def dataset(
     if file_format == "csv":
         write_tables(store, target, task.ends)
     record = record_of(store, task, file_format, license_name)
-    io.write_whole(target / CARD, card(record))
-    io.write_whole(target / METADATA, json.dumps(record, indent=1, default=repr) + "\n")  # last: now it is whole
+    io.blocks.write_whole(target / CARD, card(record))
+    io.blocks.write_whole(target / METADATA, json.dumps(record, indent=1, default=repr) + "\n")  # last: now it is whole
     if file_format == "csv":
         shutil.rmtree(store.path)
     return target

@@ -14,10 +14,10 @@ from nonholo.base.checks import array, count, error, flag, shown
 from nonholo.base.types import Float
 from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretization
 from nonholo.ensembles import _names
-from nonholo.ensembles._describe import function_from, function_name
+from nonholo.ensembles._names import function_from, function_name
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.ensembles.designs import MemberBlock
-from nonholo.io import missing_part
+from nonholo.io.provenance import missing_part
 from nonholo.simulation import Ensemble, check_forces, ensemble, run_in_lanes, stepper_of
 from nonholo.systems import one_start, refuse_forces
 
@@ -157,7 +157,7 @@ class EnsembleTask:
 
     def on_route_of(self, attributes: dict[str, Any]) -> "EnsembleTask":
         """Return the task by the route that began a store, from the description of that one's task."""
-        return self._with(io.on_route_of(attributes, self.discrete))
+        return self._with(io.provenance.on_route_of(attributes, self.discrete))
 
     def _member(self, block: MemberBlock, member: int, of_forces: list[str]) -> dict[str, Any]:
         """Run one member under its forces."""
@@ -185,7 +185,7 @@ class EnsembleTask:
         rule = {} if self.branch == PRINCIPAL.name else rule  # a store says nothing of the principal one
         return {
             "kind": "EnsembleTask",
-            **io.identity_of(self.discrete),
+            **io.provenance.identity_of(self.discrete),
             "steps": self.steps,
             "start": start,
             "reductions": names,
@@ -205,7 +205,7 @@ def ensemble_task_from(entry: dict[str, Any]) -> EnsembleTask:
     options = {name: entry[name] for name in ("steps", "save_every", "reconstruct", "branch") if name in entry}
     if RULE in entry:
         options["branch"] = function_from(entry[RULE])
-    motion: Any = io.restore_motion(entry, None)
+    motion: Any = io.provenance.restore_motion(entry, None)
     return EnsembleTask(motion, reductions=reductions, **options, **start)
 
 
@@ -222,9 +222,9 @@ def _join(members: list[dict[str, Any]]) -> dict[str, Any]:
     """Return the rows of some members that were reduced one by one."""
     together: dict[str, Any] = {}
     for name, first in members[0].items():
-        is_named = isinstance(first, tuple)
-        whole = np.concatenate([np.asarray(each[name][1] if is_named else each[name]) for each in members])
-        together[name] = (first[0], whole, *first[2:]) if is_named else whole
+        dimensions, _, attributes = _names.entry_of(name, first)
+        whole = np.concatenate([_names.entry_of(name, each[name])[1] for each in members])
+        together[name] = dimensions, whole, attributes
     return together
 
 

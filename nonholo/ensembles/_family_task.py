@@ -11,8 +11,8 @@ import numpy as np
 from nonholo.base.calls import call
 from nonholo.base.checks import count, error, function, instance, scale, shown
 from nonholo.discrete import discretize
-from nonholo.ensembles._describe import function_from, function_name
-from nonholo.ensembles._names import OUTCOME, checked_reductions, component_of, numbering, with_components
+from nonholo.ensembles import _names
+from nonholo.ensembles._names import component_of, entry_of, function_from, function_name, with_components
 from nonholo.ensembles.designs import MemberBlock
 from nonholo.groups import components_of
 from nonholo.simulation import ensemble
@@ -74,7 +74,7 @@ class FamilyTask:
             "time_step": float(scale(_where("time_step"), self.time_step, "Pass a positive time step.")),
             "steps": count(_where("steps"), self.steps, "Pass the number of steps."),
             "parameters": dict(parameters),
-            "reductions": checked_reductions(_where("reductions"), self.reductions, (_FINAL,), remedy),
+            "reductions": _names.checked_reductions(_where("reductions"), self.reductions, (_FINAL,), remedy),
             "save_every": every and count(_where("save_every"), every, "Pass the steps between states, or None."),
         }
         vars(self).update(fields)
@@ -135,16 +135,16 @@ class FamilyTask:
         for name in getattr(systems[0], "parameters", ()):
             parameters[name] = np.stack([system.parameters[name] for system in systems])
         run = {"steps": self.steps, "save_every": self.save_every}
-        with numbering(numbers.__getitem__):
+        with _names.numbering(numbers.__getitem__):
             return ensemble(discrete, parameters=parameters or None, **starts, **run)
 
     def _reduced(self, batch: Any) -> dict[str, tuple[Any, np.ndarray, Any]]:
         """Return dimensions, rows and labels of what is kept of members, by name."""
-        results: dict[str, Any] = {OUTCOME: batch.outcome}
+        results: dict[str, Any] = {_names.OUTCOME: batch.outcome}
         for reduction in self.reductions:
             is_final = reduction == _FINAL
             results |= _final_state(batch) if is_final else call("FamilyTask(reductions=...)", reduction, batch)
-        return {name: _labels(name, entry) for name, entry in results.items()}
+        return {name: entry_of(name, entry) for name, entry in results.items()}
 
     def describe(self) -> dict[str, Any]:
         """Return the task as plain data."""
@@ -175,25 +175,12 @@ def family_task_from(entry: dict[str, Any]) -> FamilyTask:
     return FamilyTask(family, reductions=reductions, **run)
 
 
-def imported_functions(entry: dict[str, Any]) -> list[str]:
-    """Return the names of the functions that the task of a description would import: none of the library."""
-    return [name for name in (entry["family"], *entry["reductions"]) if name != _FINAL and not name.startswith(_READY)]
-
-
 def _ready_names() -> set[str]:
     return {*importlib.import_module(_EXAMPLES).__all__} - {"Example"}
 
 
 def _where(argument: str) -> str:
     return f"FamilyTask({argument}=...)"
-
-
-def _labels(name: str, entry: Any) -> tuple[Any, np.ndarray, Any]:
-    dimensions, rows, *labels = entry if isinstance(entry, tuple) else (None, entry)
-    rows = np.asarray(rows)
-    if dimensions is None:
-        dimensions = tuple(f"{name}_{axis}" for axis in range(1, rows.ndim))
-    return dimensions, rows, labels[0] if labels else {}
 
 
 def _final_state(batch: Any) -> dict[str, Any]:

@@ -1,7 +1,9 @@
-"""Names of arrays, dimensions and components in the store of a sweep, and the numbers of forces by their names."""
+"""Names of arrays, dimensions, components and functions in the store of a sweep; numbers of forces by their names."""
 
 import contextlib
 import dataclasses
+import importlib
+import json
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Any, NamedTuple
@@ -10,9 +12,11 @@ import numpy as np
 
 from nonholo.base.checks import error, shown
 from nonholo.base.checks import name as checked_name
-from nonholo.io import TAKEN
+from nonholo.io.metadata import TAKEN
 from nonholo.systems import Forced, force_of
 
+NO_NAME = "a function without an importable name"
+"""The mark in a description for a function that no other process can import."""
 OUTCOME = "outcome"
 STARTS = ("body_velocity", "restricted_velocity", "momentum")
 _BRACKETS = re.compile(r"\[(\d+)\]")
@@ -162,3 +166,64 @@ def with_force_numbers(system: Any, values: Mapping[str, Any]) -> Any:
     parts = {name: change(part) if dataclasses.is_dataclass(part) else part for name, part in system.parts.items()}
     terms = tuple(change(term) if dataclasses.is_dataclass(term) else term for term in system.terms)
     return Forced(system.system, terms or None, force_of(parts), system.scheme)
+
+
+def function_name(function: Callable[..., Any]) -> str:
+    """Return the name under which any process can import a function, or that there is none."""
+    module, name = getattr(function, "__module__", None), getattr(function, "__qualname__", None)
+    if module in (None, "__main__") or name is None or "<" in name:
+        return NO_NAME
+    return f"{module}:{name}"
+
+
+def is_own(name: str) -> bool:
+    """Return whether a name is that of a function of a user; no other name is imported."""
+    return ":" in name or name == NO_NAME
+
+
+def function_from(name: str) -> Callable[..., Any]:
+    """Import a function, which runs its module: only for who trusts the origin of the name."""
+    module, colon, path = name.partition(":")
+    if not colon:
+        raise ImportError(name)
+    member: Any = importlib.import_module(module)
+    try:
+        for part in path.split("."):
+            member = getattr(member, part)
+    except AttributeError as failure:
+        raise ImportError(str(failure)) from failure
+    return member
+
+
+def differences(ours: Any, theirs: Any, where: str = "") -> Iterator[str]:
+    """Name, one after the other, the entries in which two descriptions differ.
+
+    Example:
+        >>> list(differences({"task": {"steps": 5}, "seed": 0}, {"task": {"steps": 6}, "seed": 0}))
+        ['task.steps is 5 instead of 6']
+    """
+    if isinstance(ours, dict) and isinstance(theirs, dict):
+        for name in dict.fromkeys([*ours, *theirs]):
+            inner = f"{where}.{name}" if where else str(name)
+            if name not in theirs:
+                yield f"{inner} is not in the store"
+            elif name not in ours:
+                yield f"{inner} is only in the store"
+            else:
+                yield from differences(ours[name], theirs[name], inner)
+    elif ours != theirs:
+        yield f"{where} is {_short(ours)} instead of {_short(theirs)}"
+
+
+def _short(value: Any) -> str:
+    text = json.dumps(value)
+    return text if len(text) <= 200 else f"{text[:200]}..."
+
+
+def entry_of(name: str, value: Any) -> tuple[tuple[str, ...], np.ndarray, dict[str, Any]]:
+    """Return dimensions, rows and attributes of one array of what a task or a reduction returned."""
+    dimensions, rows, *rest = value if isinstance(value, tuple) else (None, value)
+    rows = np.asarray(rows)
+    if dimensions is None:
+        dimensions = [f"{name}_{axis}" for axis in range(1, rows.ndim)]
+    return tuple(dimensions), rows, dict(rest[0]) if rest else {}

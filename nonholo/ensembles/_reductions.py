@@ -13,7 +13,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.discrete import displacements_over, has_frame, step_jacobians
 from nonholo.groups import components_of
-from nonholo.io import compact_names
+from nonholo.io.datasets import compact_names
 from nonholo.simulation import Ensemble, ScalarMembers, in_lanes, tangents
 from nonholo.systems import AbstractSystem
 

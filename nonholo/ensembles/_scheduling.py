@@ -50,11 +50,11 @@ def do_block(work: Work, block: int) -> Done:
     mark = damage = None
     try:
         mark = None if store.mark(block) is None else store.sound(block)
-    except io.DamagedError as flaw:
+    except io.blocks.DamagedError as flaw:
         damage = str(flaw)
     piece, begin = store.layout.piece(block), time.perf_counter()
     if mark is not None and mark.members == piece.count:  # or the sweep has grown
-        return Done(block, mark, None, io.versions_text())
+        return Done(block, mark, None, io.provenance.versions_text())
     members, draws = block_of(store.design, piece.first, piece.count), store.design.drawn
     outputs = {name: output for name, output in store.outputs.items() if name not in draws}
     with in_one_thread():
@@ -63,10 +63,9 @@ def do_block(work: Work, block: int) -> Done:
     seconds = time.perf_counter() - begin
     codes, counts = np.unique(results.arrays[OUTCOME], return_counts=True)
     outcomes = {outcome_name(int(code)): int(count) for code, count in zip(codes, counts, strict=True)}
-    messages = [list(message) for message in results.messages]
-    mark = Mark(piece.count, outcomes, seconds, time.time(), _writer(), messages)
+    mark = Mark(piece.count, outcomes, seconds, time.time(), _writer(), results.messages)
     store.write(piece, results, mark)
-    return Done(block, mark, damage, io.versions_text())
+    return Done(block, mark, damage, io.provenance.versions_text())
 
 
 def outcome_name(code: int) -> str:
@@ -218,12 +217,11 @@ Take = Callable[[Done], None]
 
 def checked_scheduler(scheduler: Any, workers: Any) -> tuple[Any, int | None]:
     """Return the scheduler by name, address or client; one that does not answer is refused, as is a missing extra."""
-    where = "sweep(scheduler=...)"
     name = "threads" if scheduler is None else scheduler
     if not (is_client(name) or (isinstance(name, str) and (name in _LOCAL or "://" in name))):
         remedy = "Choose one of them, or leave it out for threads."
         requirement = f"be one of {', '.join(_LOCAL)} or an address tcp://host:port, or a distributed.Client"
-        raise error(where, requirement, shown(scheduler), remedy)
+        raise error(_WHERE, requirement, shown(scheduler), remedy)
     if _is_remote(name):
         if workers is not None:
             remedy = "Leave it out: a cluster has the workers that were started for it."

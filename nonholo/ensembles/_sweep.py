@@ -1,21 +1,38 @@
 """`sweep`: a task for every member of a design, block by block into one store; `load_sweep`: the result.
 
-`resume`: resuming what a store holds, an orbit or a sweep.
+`resume`: resuming what a store holds, an orbit or a sweep. Before any work the task and the design are checked, one
+member is tried, an empty store is made.
 """
 
+import json
+import math
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
+import numpy as np
 import xarray
 
 from nonholo import io, simulation
-from nonholo.base.checks import error, flags, path, shown
+from nonholo.base.checks import count, error, flags, path, shown
+from nonholo.base.limits import within_disk, within_memory
 from nonholo.base.progress import progress_bar
-from nonholo.ensembles._begin import begin_store, check_same, check_task, grow, restored_task
+from nonholo.ensembles import stores
+from nonholo.ensembles._ensemble_task import RULE, EnsembleTask, ensemble_task_from
+from nonholo.ensembles._family_task import FamilyTask, family_task_from
+from nonholo.ensembles._names import NO_NAME, Axes, check_dimensions, differences, function_from, function_name, is_own
 from nonholo.ensembles._scheduling import Done, Work, checked_scheduler, do_all
-from nonholo.ensembles.designs import Design
-from nonholo.ensembles.stores import attributes_of, open_store, opened_result, standing_of
+from nonholo.ensembles.datasets import DatasetTask, dataset_task_from
+from nonholo.ensembles.designs import Design, Grid, MemberBlock, RandomDesign, axis_dimensions, block_of
+from nonholo.ensembles.stores import Output, SweepStore, Task, attributes_of, open_store, standing_of
+
+_BLOCK = 4096  # most members of a block of a task that does not say how many
+_PIECES = 32  # blocks of a small sweep, so that all cores have work to the end
+_FILE = 4096  # bytes that a file takes at least, on most file systems
+_LANES = 32  # members that a compiled loop takes at once
+DESCRIBED = (DatasetTask, EnsembleTask, FamilyTask)
+_MAKERS = {"EnsembleTask": ensemble_task_from, "FamilyTask": family_task_from, "DatasetTask": dataset_task_from}
 
 
 def sweep(
@@ -74,13 +91,12 @@ def sweep(
     name, workers = checked_scheduler(scheduler, workers)
     flags("sweep", resume=resume, progress=progress)
     store = path("sweep(store=...)", store)
-    check_task(task, design)
+    _check_task(task, design)
     if resume and store.exists():
         sweep_store = open_store(store)
-        check_same(sweep_store, task, design)
-        task = restored_task(sweep_store, task)
+        task = _same_task(sweep_store, task, design)
     else:
-        sweep_store = begin_store(task, design, store, block, scenario, progress=progress)
+        sweep_store = _begin_store(task, design, store, block, scenario, progress=progress)
     return continue_sweep(Work(sweep_store, task), name, workers, progress)
 
 
@@ -104,7 +120,7 @@ def load_sweep(store: str | Path) -> xarray.Dataset:
         got, remedy = f"'{store}', at {standing_of(store)}", f"Resume with nonholo.resume('{store}')."
         raise error(where, "be a finished sweep", got, remedy)
     sweep_store.check(where, range(sweep_store.layout.blocks))
-    return opened_result(sweep_store)
+    return stores.opened_result(sweep_store)
 
 
 def resume(
@@ -158,11 +174,11 @@ def resume(
     """
     flags("resume", trust=trust, throw=throw, progress=progress)
     store = path("resume(store=...)", store)
-    kind = io.format_of(store)
+    kind = io.places.format_of(store)
     if kind is None and store.exists():
         got, remedy = f"'{store}', whose zarr.json does not record it", "Check the path, or run it again."
         raise error("resume(store=...)", "be a store of a run or a sweep", got, remedy)
-    if kind == io.SWEEP_FORMAT:
+    if kind == io.places.SWEEP_FORMAT:
         others, owner, remedy = {"discrete": discrete, "events": events}, "an orbit", "Pass task=..., or nothing."
     else:
         others, owner = {"task": task, "members": members, "scheduler": scheduler, "workers": workers}, "a sweep"
@@ -171,24 +187,24 @@ def resume(
         if value is not None:
             got = f"{shown(value)} for '{store}'"
             raise error(f"resume({name}=...)", f"come with the store of {owner}", got, remedy)
-    if kind != io.SWEEP_FORMAT:
+    if kind != io.places.SWEEP_FORMAT:
         return simulation.resume_run(store, discrete=discrete, events=events, throw=throw, progress=progress)
     name, workers = checked_scheduler(scheduler, workers)
     sweep_store = open_store(store)
-    work = Work(sweep_store, restored_task(sweep_store, task, trust=trust))
+    work = Work(sweep_store, _restored_task(sweep_store, task, trust=trust))
     if members is not None:
-        work = work._replace(store=grow(sweep_store, members))
+        work = work._replace(store=_grow(sweep_store, members))
     return continue_sweep(work, name, workers, progress)
 
 
 def continue_sweep(work: Work, scheduler: Any, workers: int | None, progress: bool) -> xarray.Dataset:
     """Do every block that a store lacks, and open the result."""
     store = work.store
-    with io.write_lock(store.path):
+    with io.places.write_lock(store.path):
         store.prepare()
-        with io.reporting_how_to_resume(store.path, "The sweep", lambda: standing_of(store.path)):
+        with io.orbits.reporting_how_to_resume(store.path, "The sweep", lambda: standing_of(store.path)):
             _complete(work, scheduler, workers, progress)
-    return opened_result(store)
+    return stores.opened_result(store)
 
 
 def _complete(work: Work, scheduler: Any, workers: int | None, progress: bool) -> None:
@@ -218,3 +234,186 @@ def _complete(work: Work, scheduler: Any, workers: int | None, progress: bool) -
 
 def _warn(message: str) -> None:
     warnings.warn(message, RuntimeWarning, stacklevel=2)
+
+
+def _check_task(task: Any, design: Any) -> None:
+    """Refuse what is no task and no design, or a design that the task does not know."""
+    if not callable(task):
+        remedy = "Pass an EnsembleTask, or a function of a MemberBlock."
+        raise error("sweep(task=...)", "be callable", shown(task), remedy)
+    if not isinstance(design, Grid | RandomDesign):
+        remedy = "Pass nh.Grid({...}) or nh.RandomDesign(members, {...})."
+        raise error("sweep(design=...)", "be a design", shown(design), remedy)
+    if isinstance(task, DESCRIBED):
+        task.check_design([*design.axes, *design.drawn])
+
+
+def _begin_store(
+    task: Task, design: Design, place: Path, block: Any, scenario: str | None, *, progress: bool
+) -> SweepStore:
+    """Make the store of a sweep, after its task has been tried."""
+    io.places.check_suffix(place, "sweep(store=...)")
+    most, least = (task.block, _LANES) if isinstance(task, DESCRIBED) else (_BLOCK, 1)
+    own = min(most, max(least, -(-design.members // _PIECES)))
+    size = own if block is None else count("sweep(block=...)", block, "Pass how many members.")
+    with simulation.in_one_thread(), progress_bar("compiling and trying a member", progress):
+        results = stores.probe_outputs(task, lambda first, some: block_of(design, first, some), design.members)
+    axes = {name: tuple(f"{name}_{axis}" for axis in range(1, len(shape) + 1)) for name, shape in design.drawn.items()}
+    draws = {name: Output(axes[name], shape, "float64", dict(stores.AXIS)) for name, shape in design.drawn.items()}
+    _check_names(design, draws, results)
+    layout = stores.layout_of(tuple(design.sizes.values()), size)
+    _refuse_too_large(layout, draws | results, place)
+    extra = {} if scenario is None else io.provenance.attributes_of_text(scenario)
+    return stores.create_store(place, _description(task, design), design, layout, draws | results, extra)
+
+
+def _refuse_too_large(layout: io.blocks.Layout, outputs: dict[str, Output], place: Path) -> None:
+    """Refuse blocks that memory does not hold, and results that the disk does not: numbers, and files of each block."""
+    each = float(sum(math.prod(o.shape) * np.dtype(o.dtype).itemsize for o in outputs.values()))
+    within_memory("sweep(block=...)", 2 * each * math.prod(layout.chunk), "Pass fewer members: a block is held whole.")
+    on_disk = each * math.prod(layout.sizes) + _FILE * layout.blocks * (1 + len(outputs))
+    within_disk("sweep(design=...)", on_disk, place, "Ask for fewer members, or for less of each.")
+
+
+def _check_names(design: Design, draws: dict[str, Output], results: dict[str, Output]) -> None:
+    """Refuse names that stand for two things, before anything is computed that nobody could open."""
+    for name in filter(draws.__contains__, results):
+        raise error("sweep(task=...)", "return names that the design does not have", shown(name), "Rename it.")
+    members, lengths = tuple(design.sizes), tuple(design.sizes.values())
+    coordinates = {name: Axes(axis_dimensions(name, x), x.shape) for name, x in design.axes.items()}
+    outputs = (draws | results).items()
+    check_dimensions({n: Axes(members + o.dimensions, lengths + o.shape) for n, o in outputs}, coordinates)
+
+
+def _grow(store: SweepStore, members: Any) -> SweepStore:
+    """Return the store of a random design that is to have more members."""
+    where, remedy = "resume(members=...)", "Pass a larger number, or leave it out."
+    size, design = count(where, members, "Pass how many."), store.design
+    if not isinstance(design, RandomDesign):
+        raise error(where, "come with a random design", "a grid, which has no more members", "Run another grid.")
+    if size < design.members:
+        raise error(where, f"not be below the {design.members} members of the design", shown(size), remedy)
+    if size == design.members:
+        return store
+    _refuse_too_large(io.blocks.Layout((size,), store.layout.chunk), store.outputs, store.path)
+    with io.places.write_lock(store.path):
+        return store.grow(size)
+
+
+def _same_task(store: SweepStore, task: Any, design: Design) -> Task:
+    """Return the task by the route that began a store; refuse another one, or another design, with the differences."""
+    theirs = store.description
+    if isinstance(task, EnsembleTask) and theirs["task"]["kind"] == "EnsembleTask":
+        task = task.on_route_of(theirs["task"])
+    ours = json.loads(json.dumps(_description(task, design)))
+    flaws = list(differences(ours, theirs))
+    if flaws:
+        remedy = "Pass that task and design, or choose another path."
+        raise error("sweep(store=...)", "hold this sweep", f"'{store.path}', where {'; '.join(flaws[:5])}", remedy)
+    return task
+
+
+def functions_of(store: str | Path) -> list[str]:
+    """Return the names of the functions that the task of a store would import: all but those of the library."""
+    entry = open_store(store).description["task"]
+    single = (entry.get(key, "") for key in ("name", "family", "dataset", RULE))
+    return list(filter(is_own, map(str, (*single, *entry.get("reductions", [])))))
+
+
+def _restored_task(store: SweepStore, task: Any, *, trust: bool = False) -> Task:
+    """Return the task of a store: the one that is given, or one made from its description.
+
+    A function is imported by the name that the store gives only if the caller trusts it.
+    """
+    if task is not None:
+        _check_task(task, store.design)
+        return _same_task(store, task, store.design)
+    _refuse_untrusted(store, functions_of(store.path), trust=trust)
+    entry = store.description["task"]
+    try:
+        make = _MAKERS.get(entry["kind"], lambda entry: function_from(entry["name"]))
+        return make(entry)
+    except (ImportError, ValueError) as failure:
+        remedy = f"Pass it: nonholo.resume('{store.path}', task=...)."
+        raise error("resume(store=...)", "be a sweep whose task can be made again", f"{failure}", remedy) from failure
+
+
+def _refuse_untrusted(store: SweepStore, names: list[str], *, trust: bool) -> None:
+    remedy = f"Pass it: nonholo.resume('{store.path}', task=...)"
+    if NO_NAME in names:
+        raise error("resume(store=...)", "be a sweep whose task can be made again", NO_NAME, f"{remedy}.")
+    if names and not trust:
+        remedy += ", or trust=True (--trust) if you trust who made the store: what is named would run with your rights."
+        got = f"'{store.path}', which names {', '.join(names)}"
+        raise error("resume(store=...)", "name no function but the library's, unless trusted", got, remedy)
+
+
+def _description(task: Any, design: Design) -> dict[str, Any]:
+    entry = task.describe() if isinstance(task, DESCRIBED) else {"kind": "function", "name": function_name(task)}
+    return {"task": entry, "design": design.describe()}
+
+
+_CSV = "sweep_to_csv(store=...)"
+_WANTED = ("outcome", "final_time", "final_pose")
+
+
+def sweep_to_csv(store: str | Path, target: str | Path | TextIO, *, overwrite: bool = False) -> None:
+    """Write the last pose of each member of a sweep, with its number, its values of the design, its outcome and time.
+
+    Columns of the pose are those of `Orbit.to_csv`, with angles between -pi and pi. Of a sweep that is not finished the
+    finished blocks are written, and a `RuntimeWarning` gives their number.
+
+    Args:
+        store: A store of a sweep that kept "final_state" with poses.
+        target: A new file, or a stream of text.
+        overwrite: Replace an older file.
+
+    Raises:
+        FileExistsError: The target exists, and is not to be replaced.
+        ValueError: The store holds no poses, or a system that it cannot hold as data, or is damaged; the message names
+            the array and the chunk.
+
+    Example:
+        >>> sweep_to_csv("sweep.zarr", "poses.csv")  # doctest: +SKIP
+    """
+    sweep_store = open_store(path(_CSV, store))
+    task = _task_with_poses(sweep_store)
+    io.places.check_file(target, overwrite=overwrite)
+    blocks = [block for block, _ in sweep_store.marks() if block < sweep_store.layout.blocks]
+    sweep_store.check(_CSV, blocks)
+    if len(blocks) < sweep_store.layout.blocks:
+        warnings.warn(f"The sweep in '{store}' is not finished: {standing_of(store)}.", RuntimeWarning, stacklevel=2)
+    with io.places.new_file(target, overwrite=overwrite) as file:
+        values = [name for name, _ in _flat(block_of(sweep_store.design, 0, 1))]
+        names = ["member", *values, "outcome", *io.datasets.column_names(task.discrete.system.group)]
+        file.writelines(io.tables.table_lines(names, (_columns(sweep_store, task, block) for block in blocks)))
+
+
+def _task_with_poses(store: SweepStore) -> EnsembleTask:
+    """Return the task without its reductions, of which poses need none."""
+    entry = store.description["task"]
+    if "final_state" not in entry.get("reductions", ()) or "final_pose" not in store.outputs:
+        remedy = "Keep 'final_state' with reconstruct=True; nonholo.load_sweep(store) has other results."
+        raise error(_CSV, "hold poses", f"'{store.path}', which holds none", remedy)
+    try:
+        return ensemble_task_from(entry | {"reductions": []})
+    except ValueError as failure:
+        remedy = "nonholo.load_sweep(store) has the poses as they are kept."
+        got = f"'{store.path}', {str(failure).rstrip('.')}"
+        raise error(_CSV, "hold its system as data", got, remedy) from failure
+
+
+def _columns(store: SweepStore, task: EnsembleTask, block: int) -> list[np.ndarray]:
+    piece = store.layout.piece(block)
+    members = block_of(store.design, piece.first, piece.count)
+    outcome, time, compact = (store.rows(name, piece) for name in _WANTED)
+    group = task.discrete.system.group
+    pose = io.datasets.separate_rows(group, group.matrix_from_pose(compact))
+    return [members.index, *(values for _, values in _flat(members)), outcome, time, *pose.T]
+
+
+def _flat(block: MemberBlock) -> Iterator[tuple[str, np.ndarray]]:
+    """Give every number of the values of members a name."""
+    for name, values in block.items():
+        for place in np.ndindex(values.shape[1:]):
+            yield "_".join([name, *map(str, place)]), values[:, *place]

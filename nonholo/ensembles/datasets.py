@@ -8,6 +8,7 @@ import inspect
 import json
 import shlex
 from collections.abc import Callable, Iterator
+from importlib import resources
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
@@ -17,8 +18,7 @@ from nonholo import io
 from nonholo.base.checks import error, shown
 from nonholo.base.limits import within_disk
 from nonholo.discrete import discretize
-from nonholo.ensembles._describe import NO_NAME, function_from
-from nonholo.ensembles._names import OUTCOME
+from nonholo.ensembles._names import NO_NAME, OUTCOME, function_from, is_own
 from nonholo.ensembles.designs import MemberBlock
 from nonholo.ensembles.distributions import AbstractDistribution, Direction, Normal, Uniform
 from nonholo.ensembles.stores import Output, SweepStore, standing_of
@@ -262,11 +262,6 @@ class DatasetTask:
         return {"kind": type(self).__name__, "version": self.definition.version, **fields}
 
 
-def is_own(name: str) -> bool:
-    """Return whether a data set has the name of a function of a user."""
-    return ":" in name or name == NO_NAME
-
-
 def dataset_task_from(entry: dict[str, Any]) -> DatasetTask:
     """Return the task of a description; refuse one of another version."""
     name = entry["dataset"]
@@ -280,13 +275,10 @@ def dataset_task_from(entry: dict[str, Any]) -> DatasetTask:
 
 def _fields(orbit: Any) -> dict[str, Field]:
     """Return what an orbit says of its states by name: poses as people know them, no impulse of the last state."""
-    dataset = orbit.to_dataset()
-    fields: dict[str, Field] = {}
-    for name, variable in dataset.reset_coords("time").data_vars.items():
-        names = {"components": list(orbit.coordinates)} if orbit.coordinates and "coordinate" in variable.dims else {}
-        fields[str(name)] = tuple(map(str, variable.dims[1:])), variable.values, variable.attrs | names
+    variables = io.datasets.variables_of(orbit).items()
+    fields: dict[str, Field] = {name: (axes[1:], rows, labels) for name, (axes, rows, labels) in variables}
     if not orbit.coordinates and "configuration" in fields:
-        fields |= io.separate_variables(orbit.space, fields.pop("configuration")[1])
+        fields |= io.datasets.separate_variables(orbit.space, fields.pop("configuration")[1])
     labels = {"long_name": "impulses of constraint on the way to the next state"}
     fields["multipliers"] = ("constraint",), orbit.multipliers, labels
     return {name: (axes, rows, dict(labels)) for name, (axes, rows, labels) in fields.items() if name not in _LEFT_OUT}
@@ -295,7 +287,7 @@ def _fields(orbit: Any) -> dict[str, Field]:
 def record_of(store: SweepStore, task: DatasetTask, file_format: str, license_name: str) -> dict[str, Any]:
     """Return the record of a data set whose store is finished."""
     definition, first = task.definition, {name: rows[0] for name, rows in store.design.values(0, 1).items()}
-    kind, parameters = io.described_system(definition.member(task.dataset, first)[0])
+    kind, parameters = io.provenance.described_system(definition.member(task.dataset, first)[0])
     parts = zip(SPLITS, (0, *task.ends), task.ends, strict=False)
     return {
         "name": task.dataset,
@@ -303,7 +295,7 @@ def record_of(store: SweepStore, task: DatasetTask, file_format: str, license_na
         "definition": {name: value for name, value in definition._asdict().items() if name not in _APART},
         "system": {"kind": kind, "parameters": parameters},
         "starts": definition.starts,
-        "versions": json.loads(io.versions_text("scipy", "jax")),
+        "versions": json.loads(io.provenance.versions_text("scipy", "jax")),
         "command": _command(store, task, file_format, license_name),
         "rng": store.design.seed,
         "orbits": store.design.members,
@@ -346,49 +338,15 @@ def _field(store: SweepStore, name: str) -> dict[str, Any]:
 
 def card(record: dict[str, Any]) -> str:
     """Return the data card, in Markdown."""
-    fields = "\n".join(f"| `{name}` | {_row(each)} |" for name, each in record["fields"].items())
+    rows = "\n".join(f"| `{name}` | {_row(each)} |" for name, each in record["fields"].items())
     parts = ", ".join(f"{part} {begin} to {end - 1}" for part, (begin, end) in record["split"].items() if begin < end)
-    last = record["split"]["train"][1]
     endings = ", ".join(f"{number} {outcome}" for outcome, number in record["outcomes"].items())
-    definition = "\n".join(f"- {name}: {value}" for name, value in record["definition"].items() if value is not None)
-    system = record["system"]
-    parameters = "\n".join(f"- {name}: {value}" for name, value in system["parameters"].items())
-    return f"""# {record["title"]}: {record["orbits"]} orbits of {record["steps"]} steps
-
-Orbits of the data set `{record["name"]}`, version {record["definition"]["version"]}, computed by the discrete
-map of nonholo {record["versions"]["nonholo"]} with time step {record["time_step"]:g}.
-Row k of an orbit is a state, row k + 1 the next one. How they ended: {endings}; rows after an early end are NaN.
-
-Parts (`split`): {parts}. Orbits are independent draws, so parts are.
-Noise: {record["noise"]:g} (standard deviation of the fields `observed_...`; none if 0). License: {record["license"]}.
-
-Written by
-
-    {record["command"]}
-
-{_LOADING[record["format"]].format(last)}
-
-## System
-
-`{system["kind"]}` with
-
-{parameters}
-
-## Starts
-
-{record["starts"]}
-
-{definition}
-
-## Fields
-
-| name | dimensions | shape | meaning | units |
-|---|---|---|---|---|
-{fields}
-
-`metadata.json` has the SHA-256 of each field and the versions of what computed it; the same call with them gives the
-same bits.
-"""
+    definitions = "\n".join(f"- {name}: {value}" for name, value in record["definition"].items() if value is not None)
+    parameters = "\n".join(f"- {name}: {value}" for name, value in record["system"]["parameters"].items())
+    loading = "\n    ".join(_LOADING[record["format"]]).format(record["split"]["train"][1])
+    words = {"rows": rows, "parts": parts, "endings": endings, "definitions": definitions, "loading": loading}
+    text = (resources.files("nonholo.ensembles") / "data_card.md").read_text("utf-8")
+    return text.format(**record, **words, parameters=parameters)
 
 
 def _row(field: dict[str, Any]) -> str:
@@ -398,18 +356,9 @@ def _row(field: dict[str, Any]) -> str:
 
 
 _LOADING = {
-    "zarr": """Load it with
-
-    import xarray
-    orbits = xarray.open_zarr("orbits.zarr")
-    train = orbits.isel(member=slice(0, {}))""",
-    "csv": """Load it with
-
-    import pandas
-    train = pandas.read_csv("train.csv")  # a row for each state: orbit, time, fields""",
+    "zarr": ["import xarray", 'orbits = xarray.open_zarr("orbits.zarr")', "train = orbits.isel(member=slice(0, {}))"],
+    "csv": ["import pandas", 'train = pandas.read_csv("train.csv")  # a row for each state: orbit, time, fields'],
 }
-
-
 _BYTES = 24.0  # of a number as text
 
 
@@ -422,8 +371,8 @@ def write_tables(store: SweepStore, folder: Path, ends: tuple[int, ...]) -> None
     within_disk("dataset(file_format='csv')", _BYTES * states * len(columns), folder, "Free space, then call it again.")
     for part, begin, end in zip(SPLITS, (0, *ends), ends, strict=False):
         if begin < end:
-            with io.new_file(folder / f"{part}.csv", overwrite=True) as file:
-                file.writelines(io.table_lines(columns, _rows(store, names, begin, end)))
+            with io.places.new_file(folder / f"{part}.csv", overwrite=True) as file:
+                file.writelines(io.tables.table_lines(columns, _rows(store, names, begin, end)))
 
 
 def _columns(name: str, output: Output) -> Iterator[str]:
@@ -437,8 +386,8 @@ def _columns(name: str, output: Output) -> Iterator[str]:
         yield "_".join(own if name == "configuration" else [name.replace("_configuration", ""), *own])
 
 
-def _rows(store: SweepStore, names: list[str], begin: int, end: int) -> Iterator[np.ndarray]:
-    """Give the states of some orbits, block by block; rows after the end of an orbit are left out."""
+def _rows(store: SweepStore, names: list[str], begin: int, end: int) -> Iterator[list[np.ndarray]]:
+    """Give the columns of the states of some orbits, block by block; rows after the end of an orbit are left out."""
     for block in range(store.layout.blocks):
         piece = store.layout.piece(block)
         members = np.arange(piece.first, piece.first + piece.count)
@@ -447,6 +396,5 @@ def _rows(store: SweepStore, names: list[str], begin: int, end: int) -> Iterator
             continue
         fields = [store.rows(name, piece)[is_within] for name in names]
         states = np.concatenate([each.reshape(*each.shape[:2], -1) for each in fields], axis=2)
-        rows = np.empty((*states.shape[:2], 1 + states.shape[2]), dtype=object)  # whole numbers are written as such
-        rows[..., 0], rows[..., 1:] = members[is_within, None], states
-        yield rows[np.isfinite(states[..., 0])]
+        is_state = np.isfinite(states[..., 0])
+        yield [np.broadcast_to(members[is_within, None], is_state.shape)[is_state], *states[is_state].T]

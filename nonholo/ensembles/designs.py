@@ -5,9 +5,10 @@ Random numbers of a member depend on the seed, the stream and its index, and on 
 
 import abc
 import dataclasses
+import hashlib
 import math
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -17,8 +18,9 @@ from nonholo.base.checks import name as checked_name
 from nonholo.base.limits import bounded_count
 from nonholo.base.types import Float
 from nonholo.ensembles._names import OUTCOME, component_name
-from nonholo.ensembles.distributions import AbstractDistribution, checked_list
-from nonholo.io import TAKEN
+from nonholo.ensembles.distributions import DISTRIBUTIONS, AbstractDistribution, checked_list
+from nonholo.io.metadata import TAKEN
+from nonholo.io.provenance import fields_of
 
 _COLUMNS = TAKEN | {"member", OUTCOME, "t", "time"}  # which tables of results have of their own
 _WORDS = 4  # numbers for each value of Philox's counter
@@ -64,6 +66,10 @@ class AbstractDesign(abc.ABC):
     def values(self, first: int, count: int) -> Values:
         """Return the values of some members in order, by name."""
 
+    @abc.abstractmethod
+    def describe(self) -> dict[str, Any]:
+        """Return the design as plain data; values along axes are named by their hash and have their own arrays."""
+
     @property
     def members(self) -> int:
         """Number of members."""
@@ -108,6 +114,11 @@ class Grid(AbstractDesign):
         places = np.unravel_index(np.arange(first, first + count), tuple(self.sizes.values()))
         return {name: values[at] for (name, values), at in zip(self.axes.items(), places, strict=True)}
 
+    def describe(self) -> dict[str, Any]:
+        """Return the design as plain data; values along axes are named by their hash and have their own arrays."""
+        hashes = {name: _hash(values) for name, values in self.axes.items()}
+        return {"kind": "Grid", "seed": self.seed, "axes": hashes}
+
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class RandomDesign(AbstractDesign):
@@ -151,6 +162,11 @@ class RandomDesign(AbstractDesign):
             for name, value in self.distributions.items()
         }
 
+    def describe(self) -> dict[str, Any]:
+        """Return the design as plain data."""
+        each = {name: {"kind": type(d).__name__, **fields_of(d)} for name, d in self.distributions.items()}
+        return {"kind": "RandomDesign", "seed": self.seed, "members": self.members, "distributions": each}
+
 
 def _some(owner: str, first: Any, count: Any) -> tuple[int, int]:
     """Return which members are meant."""
@@ -159,6 +175,24 @@ def _some(owner: str, first: Any, count: Any) -> tuple[int, int]:
 
 
 Design: TypeAlias = Grid | RandomDesign
+
+
+def design_from(text: dict[str, Any], axis: Callable[[str], np.ndarray]) -> Design:
+    """Return the design of a description."""
+    if text["kind"] == "Grid":
+        along = {name: axis(name) for name in text["axes"]}
+        for name, digest in text["axes"].items():
+            if _hash(along[name]) != digest:
+                remedy = "The store is damaged: copy it again from its source, or run it again."
+                raise error("load_sweep(store=...)", f"hold the axis {name} of its design", "another one", remedy)
+        return Grid(along, rng=text["seed"])
+    entries = {name: dict(entry) for name, entry in text["distributions"].items()}
+    distributions = {name: DISTRIBUTIONS[entry.pop("kind")](**entry) for name, entry in entries.items()}
+    return RandomDesign(text["members"], distributions, rng=text["seed"])
+
+
+def _hash(values: np.ndarray) -> str:
+    return hashlib.sha256(np.ascontiguousarray(values).tobytes() + repr(values.shape).encode()).hexdigest()
 
 
 def axis_dimension(name: str, values: Float[np.ndarray, "count ..."]) -> str:

@@ -17,17 +17,15 @@ from typing import Annotated, Any, NamedTuple, TypeAlias
 import numpy as np
 import xarray
 import zarr
-from pydantic import Field, TypeAdapter, ValidationError
+from pydantic import AfterValidator, TypeAdapter, ValidationError
 from zarr.codecs import BloscCodec, Crc32cCodec
 
 from nonholo import io
 from nonholo.base.checks import error, printable
 from nonholo.base.compiled import way_of_kernels
 from nonholo.base.results import Outcome
-from nonholo.ensembles._describe import design_from
-from nonholo.ensembles._names import OUTCOME, array_name
-from nonholo.ensembles.designs import Design, MemberBlock, axis_dimensions
-from nonholo.io import owner_of
+from nonholo.ensembles._names import OUTCOME, array_name, entry_of
+from nonholo.ensembles.designs import Design, MemberBlock, axis_dimensions, design_from
 
 ABSENT, RAISED = -128, 100
 """Outcomes of members that are not computed yet, and for which the task raised; the others are those of `Outcome`."""
@@ -60,12 +58,22 @@ class Output:
         kind = np.dtype(self.dtype)
         return np.nan if kind.kind in "fc" else np.iinfo(kind).min if kind.kind == "i" else np.iinfo(kind).max
 
+    def options(self, design: Design, layout: io.blocks.Layout) -> dict[str, Any]:
+        """Return what an array on disk is made by."""
+        return {
+            "shape": (*layout.sizes, *self.shape),
+            "chunks": (*layout.chunk, *self.shape),
+            "dtype": self.dtype,
+            "dimension_names": (*design.sizes, *self.dimensions),
+            "attributes": self.attributes,
+        }
+
 
 class Results(NamedTuple):
     """Arrays of a block by name, and the first few members for which the task raised, with the messages."""
 
     arrays: dict[str, np.ndarray]
-    messages: list[tuple[int, str]]
+    messages: list[tuple[Any, str]]
 
 
 def attempt(task: Task, block: MemberBlock, outputs: dict[str, Output]) -> Results:
@@ -131,19 +139,16 @@ def _entries(result: Any, count: int) -> dict[str, tuple[tuple[str, ...], np.nda
 
 
 def _entry(name: str, value: Any, count: int) -> tuple[tuple[str, ...], np.ndarray, dict[str, Any]]:
-    dimensions, value, *rest = value if isinstance(value, tuple) else (None, value)
-    rows = _rows(name, value, count)
-    if dimensions is None:
-        dimensions = [f"{name}_{axis}" for axis in range(1, rows.ndim)]
+    dimensions, rows, attributes = entry_of(name, value)
+    rows = _rows(name, rows, count)
     if len(dimensions) != rows.ndim - 1:
         got = f"{len(dimensions)} dimensions for shape {rows.shape}"
         raise error(f"task(...)[{name!r}]", "name each axis but the first", got, "Name them.")
-    return tuple(dimensions), rows, dict(rest[0]) if rest else {}
+    return dimensions, rows, attributes
 
 
-def _rows(name: str, value: Any, count: int) -> np.ndarray:
+def _rows(name: str, rows: np.ndarray, count: int) -> np.ndarray:
     """Return one row for each member."""
-    rows = np.asarray(value)
     if rows.dtype.kind not in "biufc":
         raise error(f"task(...)[{name!r}]", "be an array of numbers", f"dtype {rows.dtype}", "Return numbers.")
     if rows.ndim == 0 or len(rows) != count:
@@ -181,7 +186,7 @@ def _check(entries: dict[str, Any], outputs: dict[str, Output], count: int) -> d
     return {name: rows_by_name[name].astype(output.dtype) for name, output in outputs.items()}
 
 
-def layout_of(sizes: tuple[int, ...], block: int) -> io.Layout:
+def layout_of(sizes: tuple[int, ...], block: int) -> io.blocks.Layout:
     """Cut a design in blocks of `block` members at most: whole last dimensions, a part of one, one of those before.
 
     Example:
@@ -192,27 +197,27 @@ def layout_of(sizes: tuple[int, ...], block: int) -> io.Layout:
     for size in reversed(sizes):
         chunk.append(max(1, min(size, room)))
         room //= chunk[-1] if chunk[-1] == size else room
-    return io.Layout(sizes, tuple(reversed(chunk)))
+    return io.blocks.Layout(sizes, tuple(reversed(chunk)))
 
 
-FORMAT = "nonholo.sweep"
-SCHEMA = 4
-"""Written by this version, and read. Those below 4 are of before 0.3.0, from which on later versions read stores."""
 _AGAIN = "Run the sweep again."
 AXIS = {"long_name": "value of the design"}
 _CODECS = BloscCodec(cname="lz4", clevel=5, shuffle="bitshuffle"), Crc32cCodec()
 """As fast as a sweep: the numbers of its members are too different from each other for a slower one to gain by it."""
 
 
+Line = Annotated[str, AfterValidator(lambda text: printable(text.replace("\n", " ")))]  # that controls no terminal
+
+
 class Mark(NamedTuple):
     """The mark of a finished block."""
 
     members: int
-    outcomes: dict[str, int]
+    outcomes: dict[Line, int]
     seconds: float
     finished: float
-    writer: str
-    messages: list[Annotated[list[Any], Field(min_length=2, max_length=2)]]
+    writer: Line
+    messages: list[tuple[Any, Line]]
 
 
 _MARK = TypeAdapter(Mark)
@@ -234,9 +239,9 @@ class SweepStore:
         return SweepStore, (self.path, self.made)
 
     @functools.cached_property
-    def layout(self) -> io.Layout:
+    def layout(self) -> io.blocks.Layout:
         """The cut of members into blocks."""
-        return io.Layout(*(tuple(sizes) for sizes in self._content["layout"]))
+        return io.blocks.Layout(*(tuple(sizes) for sizes in self._content["layout"]))
 
     @functools.cached_property
     def outputs(self) -> dict[str, Output]:
@@ -259,7 +264,7 @@ class SweepStore:
         document = json.loads((self.path / "zarr.json").read_text())
         return document["attributes"]["finished"] and "consolidated_metadata" in document
 
-    def write(self, piece: io.Piece, results: Results, mark: Mark) -> None:
+    def write(self, piece: io.blocks.Piece, results: Results, mark: Mark) -> None:
         """Write the chunks of a block, then its mark."""
         self._blocks.write(piece.number, results.arrays, mark._asdict())
 
@@ -276,7 +281,7 @@ class SweepStore:
         """Return the numbers of finished blocks in order with their marks, those that can be read."""
         for block in sorted(self._blocks.block_numbers()):
             mark = None
-            with contextlib.suppress(io.DamagedError):
+            with contextlib.suppress(io.blocks.DamagedError):
                 mark = self.mark(block)
             if mark is not None:
                 yield block, mark
@@ -295,11 +300,11 @@ class SweepStore:
         try:
             for block in blocks:
                 self.sound(block)
-        except io.DamagedError as flaw:
+        except io.blocks.DamagedError as flaw:
             remedy = f"nonholo.resume({str(self.path)!r}) computes its block again."
             raise error(where, "be sound", f"'{self.path}', in which there is {flaw}", remedy) from None
 
-    def rows(self, name: str, piece: io.Piece) -> np.ndarray:
+    def rows(self, name: str, piece: io.blocks.Piece) -> np.ndarray:
         """Return an array of a block, one row for each member."""
         rows_of_block = self._blocks.rows(name, piece.place)
         return rows_of_block.reshape(piece.count, *rows_of_block.shape[len(piece.place) :])
@@ -320,14 +325,16 @@ class SweepStore:
         changes = {"design": content["design"] | {"members": members}, "before": before}
         changes["layout"] = [[members], list(self.layout.chunk)]
         identity = uuid.uuid4().hex  # whoever still writes the smaller one is refused
-        io.edit_attributes(self.path, {"made": identity, "sweep": json.dumps(content | changes), "finished": False})
+        io.blocks.edit_attributes(
+            self.path, {"made": identity, "sweep": json.dumps(content | changes), "finished": False}
+        )
         return SweepStore(self.path, identity)
 
     def _axis(self, name: str) -> np.ndarray:
-        array = io.writable_array(self.path, name)
+        array = io.blocks.opened_array("resume(store=...)", self.path, name, is_writable=True)
         try:
-            values = io.read_chunk(self.path, name, array, (0,) * array.ndim)
-        except io.DamagedError as flaw:
+            values = io.blocks.read_chunk(self.path, name, array, (0,) * array.ndim)
+        except io.blocks.DamagedError as flaw:
             raise error("resume(store=...)", f"hold the axis {name}", f"{flaw}, in '{self.path}'", _AGAIN) from None
         description = list(axis_dimensions(name, values)), AXIS
         if (list(array.metadata.dimension_names or ()), array.metadata.attributes) != description:  # type: ignore[union-attr]
@@ -339,38 +346,33 @@ class SweepStore:
         return json.loads(attributes_of(self.path)["sweep"])
 
     @functools.cached_property
-    def _blocks(self) -> io.BlockStore:
-        arrays = {name: io.writable_array(self.path, name) for name in self.outputs}
+    def _blocks(self) -> io.blocks.BlockStore:
+        arrays = {
+            name: io.blocks.opened_array("resume(store=...)", self.path, name, is_writable=True)
+            for name in self.outputs
+        }
         for array in arrays.values():
             if [*array.shape[:1]] == self._content.get("before"):  # a sweep that has grown since it was made
                 array.resize((*self.layout.sizes, *array.shape[1:]))
         for name, array in arrays.items():
             self._check_described(name, array)
-        return io.BlockStore(self.path, self.made, self.layout, arrays, holds_nan=True)
+        return io.blocks.BlockStore(self.path, self.made, self.layout, arrays, holds_nan=True)
 
     def _check_described(self, name: str, array: zarr.Array) -> None:
         """Refuse an array that is not the one of the description, of which the attributes have a checksum."""
-        output, chunk = self.outputs[name], self.layout.chunk
-        shape, chunks = (*self.layout.sizes, *output.shape), (*chunk, *(max(1, size) for size in output.shape))
-        description = [list(shape), list(chunks), output.dtype, json.dumps(output.attributes)]
-        array_text = [list(array.shape), list(array.chunks), str(array.dtype), json.dumps(array.metadata.attributes)]
-        dimensions = [*self.design.sizes, *output.dimensions]
-        if [*array_text, list(array.metadata.dimension_names or ())] != [*description, dimensions]:  # type: ignore[union-attr]
+        metadata: Any = array.metadata
+        there = array.shape, array.chunks, str(array.dtype), metadata.dimension_names or (), metadata.attributes
+        if json.dumps(there) != json.dumps(list(self.outputs[name].options(self.design, self.layout).values())):
             got = f"another one in '{self.path}'"
             raise error("resume(store=...)", f"hold the array {name} of its description", got, _AGAIN)
 
 
 def _mark_of(block: int, about: dict[str, Any]) -> Mark:
-    """Return what a mark says, as data, with texts that control no terminal."""
+    """Return what a mark says, as data."""
     try:
-        mark = _MARK.validate_python(about)
+        return _MARK.validate_python(about)
     except ValidationError:
-        raise io.DamagedError(f"the mark {block}.json is damaged") from None
-    return mark._replace(
-        outcomes={printable(name): count for name, count in mark.outcomes.items()},
-        writer=printable(mark.writer),
-        messages=[[member, printable(str(message).replace("\n", " "))] for member, message in mark.messages],
-    )
+        raise io.blocks.DamagedError(f"the mark {block}.json is damaged") from None
 
 
 @functools.lru_cache(maxsize=16)
@@ -380,29 +382,26 @@ def store_of(store: SweepStore) -> SweepStore:
 
 
 def create_store(
-    path: Path, description: Data, design: Design, layout: io.Layout, outputs: dict[str, Output], extra: Data
+    path: Path, description: Data, design: Design, layout: io.blocks.Layout, outputs: dict[str, Output], extra: Data
 ) -> SweepStore:
     """Make a store without rows; it appears at the path only when it is complete."""
     target, identity = path.resolve(), uuid.uuid4().hex
-    if target.exists():
-        raise _exists(path)
+    io.places.check_target(target, new="sweep(store=...)")
     content = description | {"layout": layout, "outputs": {name: dataclasses.astuple(o) for name, o in outputs.items()}}
-    about = {"format": FORMAT, "schema": SCHEMA, "made": identity, "finished": False, "sweep": json.dumps(content)}
-    with io.new_beside(path) as part:
-        made_with = {"versions": io.versions_text(), "kernels": way_of_kernels()}
-        group = io.new_group(part, about | made_with | extra, io.SweepMetadata)
+    about = {
+        "format": io.places.SWEEP_FORMAT,
+        "schema": io.places.SCHEMAS[io.places.SWEEP_FORMAT],
+        "made": identity,
+        "finished": False,
+        "sweep": json.dumps(content),
+    }
+    with io.places.new_beside(path) as part:
+        made_with = {"versions": io.provenance.versions_text(), "kernels": way_of_kernels()}
+        group = io.blocks.new_group(part, about | made_with | extra, io.metadata.SweepMetadata)
         _create_arrays(group, design, layout, outputs)
-        io.make_marks(group, part)
-        try:
-            io.put_in_place(part, target, overwrite=False)
-        except FileExistsError:
-            raise _exists(path) from None
+        io.blocks.make_marks(group, part)
+        io.places.put_in_place(part, target, new="sweep(store=...)")
     return SweepStore(target, identity)
-
-
-def _exists(path: Path) -> FileExistsError:
-    remedy = "Choose another path, or resume it: nonholo.resume(store), sweep(..., resume=True)."
-    return FileExistsError(f"`sweep(store=...)` must be new. Got '{path}', which exists. {remedy}")
 
 
 def open_store(path: str | Path) -> SweepStore:
@@ -413,24 +412,15 @@ def open_store(path: str | Path) -> SweepStore:
 
 def attributes_of(path: str | Path) -> dict[str, Any]:
     """Return the attributes of the store of a sweep, after checking that it is one of the schema that is read."""
-    return io.read_attributes(path, FORMAT, SCHEMA)
+    return io.metadata.read_attributes(path, io.places.SWEEP_FORMAT)
 
 
-def _create_arrays(group: zarr.Group, design: Design, layout: io.Layout, outputs: dict[str, Output]) -> None:
+def _create_arrays(group: zarr.Group, design: Design, layout: io.blocks.Layout, outputs: dict[str, Output]) -> None:
     for name, values in design.axes.items():
-        variable = io.Variable(axis_dimensions(name, values), values, dict(AXIS))
-        io.create_array(group, name, variable, len(values), len(values))[:] = values
+        variable = io.datasets.Variable(axis_dimensions(name, values), values, dict(AXIS))
+        io.blocks.create_array(group, name, variable, len(values), len(values))[:] = values
     for name, output in outputs.items():
-        group.create_array(
-            name,
-            shape=(*layout.sizes, *output.shape),
-            dtype=output.dtype,
-            chunks=(*layout.chunk, *(max(1, size) for size in output.shape)),
-            compressors=_CODECS,
-            fill_value=output.fill,
-            dimension_names=[*design.sizes, *output.dimensions],
-            attributes=output.attributes,
-        )
+        group.create_array(name, compressors=_CODECS, fill_value=output.fill, **output.options(design, layout))
 
 
 class SweepStanding(NamedTuple):
@@ -450,9 +440,16 @@ class SweepStanding(NamedTuple):
     members: int
     outcomes: dict[str, int]
     rate: float
-    messages: list[list[Any]]
+    messages: list[tuple[Any, str]]
     owner: str | None
     finished: bool
+
+    @property
+    def state(self) -> str:
+        """Whether it is finished, or who works at it."""
+        if self.finished:
+            return "finished"
+        return f"written by {self.owner}" if self.owner else "stopped"
 
     @property
     def failure_count(self) -> int:
@@ -471,7 +468,9 @@ def standing_of(path: str | Path) -> SweepStanding:
     count, seconds = sum(mark.members for mark in marks), sum(mark.seconds for mark in marks)
     messages = [message for mark in marks for message in mark.messages]
     rate, members = count / seconds if seconds else math.nan, math.prod(store.layout.sizes)
-    return SweepStanding(count, members, dict(outcomes), rate, messages, owner_of(store.path), store.is_finished)
+    return SweepStanding(
+        count, members, dict(outcomes), rate, messages, io.places.owner_of(store.path), store.is_finished
+    )
 
 
 def opened_result(store: SweepStore) -> xarray.Dataset:

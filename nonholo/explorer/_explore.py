@@ -30,7 +30,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Float, Int
 from nonholo.discrete import Discretization, discretize
 from nonholo.groups import matrix_from_quaternion
-from nonholo.io import check_file, new_file
+from nonholo.io.places import check_file, new_file
 from nonholo.kernels import FLAT_RUNS
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.simulation import simulate

@@ -13,7 +13,7 @@ import xarray
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.groups import AbstractMatrixGroup, ProductGroup, Translations, quaternion_from_matrix
-from nonholo.io._attributes import attributes, describe_group
+from nonholo.io.provenance import attributes, describe_group
 from nonholo.orbit import STATES, AbstractOrbit, Orbit, configurations, poses, unwrap
 from nonholo.systems import System
 
@@ -350,7 +350,7 @@ def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None)
         before: The heading or the quaternion of the state before the first one, in a row.
     """
     if not orbit.is_compact:
-        return _variables(orbit)
+        return variables_of(orbit)
     rows = {name: getattr(orbit, state) for name, state in zip(_COMPACT, STATES[1:], strict=True)}
     compact = {CANONICAL + name: _variable(orbit, name, own) for name, own in rows.items() if own is not None}
     states = {name: _variable(orbit, name) for name in _STORED if _is_known(orbit, name)} | _posed(orbit, before)
@@ -366,12 +366,12 @@ def steps_apart(orbit: Any) -> dict[str, Variable]:
     return {STEP: Variable(("step",), orbit.step, {"long_name": "number of the step"})}
 
 
-def _variables(orbit: Any) -> dict[str, Variable]:
+def variables_of(orbit: Any) -> dict[str, Variable]:
     """Return what an orbit tells, but for empty rows; names along axes are texts, which are attributes of a store."""
     dataset: Any = orbit.to_dataset()
     for variable in dataset.data_vars.values():
-        own_labels = {"components": list(orbit.coordinates)} if "coordinate" in variable.dims else {}
-        variable.attrs |= {"coordinates": "time"} | own_labels
+        is_named = orbit.coordinates and "coordinate" in variable.dims
+        variable.attrs |= {"coordinates": "time"} | ({"components": list(orbit.coordinates)} if is_named else {})
     own = {str(name): x for name, x in dataset.reset_coords("time").data_vars.items() if 0 not in x.shape[1:]}
     return {name: Variable(tuple(map(str, x.dims)), x.values, x.attrs) for name, x in own.items()}
 

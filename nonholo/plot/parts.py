@@ -20,7 +20,7 @@ from nonholo.base.checks import error, instance, shown
 from nonholo.base.checks import path as checked_path
 from nonholo.base.types import Float, Int
 from nonholo.discrete import Discretization
-from nonholo.io import check_file
+from nonholo.io.places import check_file
 from nonholo.orbit import AbstractOrbit, Orbit, as_orbit
 from nonholo.plot import theme
 from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, System

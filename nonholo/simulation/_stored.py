@@ -15,7 +15,7 @@ from nonholo.base.limits import within_disk
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome
 from nonholo.discrete import BranchRule
-from nonholo.io import Checkpoint, Seen
+from nonholo.io.checkpoints import Checkpoint, Seen
 from nonholo.orbit import AbstractStepper, First
 from nonholo.simulation._crossings import watch_for
 from nonholo.simulation._event import Event, checked_events
@@ -24,7 +24,7 @@ from nonholo.simulation._run import Reached, Run, blocks, compute_block, open_ru
 from nonholo.simulation._search import Watch, search
 
 if TYPE_CHECKING:
-    from nonholo.io import Stream
+    from nonholo.io.orbits import Stream
 
 _LOADED = 1 << 27  # numbers of an orbit that is returned whole, 1 GiB
 
@@ -34,7 +34,7 @@ def into_store(run: Run, first: First, path: Path, checkpoint_every: int | None,
     if run.stepper.branch == "callable":
         remedy = "Name a rule, or run in memory or by `iterate`."
         raise error("simulate(branch=...)", "be a rule that a store can name", "a function", remedy)
-    io.check_target(path, new="simulate(store=...)")
+    io.places.check_target(path, new="simulate(store=...)")
     plan = run.plan(rows_of_block("simulate(checkpoint_every=...)", run, checkpoint_every))
     start, empty = open_run(run, first)
     if empty is not None:
@@ -45,8 +45,8 @@ def into_store(run: Run, first: First, path: Path, checkpoint_every: int | None,
     remedy = "Raise save_every to keep fewer states."
     numbers = 1 + run.stepper.width
     within_disk("simulate(store=...)", 8.0 * (1 + run.steps // run.every) * numbers, path, remedy)
-    stream = io.create_stream(path, there, plan, _checkpoint(start), events, scenario)
-    with io.write_lock(stream.path):
+    stream = io.orbits.create_stream(path, there, plan, _checkpoint(start), events, scenario)
+    with io.places.write_lock(stream.path):
         return continue_run(run, stream)
 
 
@@ -54,7 +54,7 @@ def continue_run(run: Run, stream: "Stream") -> Any:
     """Compute what a locked store lacks, block after block, and return the orbit."""
     stream.prepare()
     _warn_of_other_versions(stream)
-    with io.reporting_how_to_resume(
+    with io.orbits.reporting_how_to_resume(
         stream.path, "The run", lambda: f"step {stream.steps_done()} of {stream.plan.steps}"
     ):
         end = _complete(run, stream)
@@ -63,7 +63,7 @@ def continue_run(run: Run, stream: "Stream") -> Any:
 
 def _warn_of_other_versions(stream: "Stream") -> None:
     """Warn if what is still to compute may differ in its last bits from a run with the versions of the store."""
-    others = io.other_versions(io.read_attributes(stream.path))
+    others = io.provenance.other_versions(io.metadata.read_attributes(stream.path))
     if others and not stream.is_finished:
         message = f"The store '{stream.path}' was begun with {others}: the last bits of what follows may differ."
         warnings.warn(message, RuntimeWarning, stacklevel=4)
@@ -71,7 +71,7 @@ def _warn_of_other_versions(stream: "Stream") -> None:
 
 def _complete(run: Run, stream: "Stream") -> Checkpoint:
     """Compute every block that is missing or damaged; return the end of the run."""
-    last_mark, is_computed = max(stream.block_numbers(), default=-1), not stream.is_finished
+    last_mark, is_computed = max(stream.store.block_numbers(), default=-1), not stream.is_finished
 
     @functools.cache
     def look_up(number: int) -> Reached | None:
@@ -96,7 +96,7 @@ def _sound(stream: "Stream", block: int) -> Checkpoint | None:
     """Return the end of a block that is marked as finished; None, with a warning, if it is damaged."""
     try:
         return stream.sound(block) if _is_final(stream, block, stream.checkpoint(block + 1)) else None
-    except io.DamagedError as flaw:
+    except io.blocks.DamagedError as flaw:
         message = f"The store '{stream.path}' is damaged: {flaw}. Block {block} is computed again from its checkpoint."
         warnings.warn(message, RuntimeWarning, stacklevel=6)
         return None
@@ -110,7 +110,7 @@ def _is_final(stream: "Stream", block: int, end: Checkpoint) -> bool:
 def _first(stream: "Stream") -> Checkpoint:
     try:
         return stream.checkpoint(0)
-    except io.DamagedError as flaw:
+    except io.blocks.DamagedError as flaw:
         remedy = "It is lost: run it again."
         raise error("resume(store=...)", "hold the start of the run", str(flaw), remedy) from None
 
@@ -120,7 +120,7 @@ def _load(run: Run, stream: "Stream", end: Checkpoint) -> Any:
     states = 1 + end.done // run.every + (0 if end.of_events is None else int(end.of_events.counts.sum()))
     if states * (2 + run.stepper.width) <= _LOADED:
         return io.load_orbit(stream.path, discrete=run.stepper.motion)
-    return io.load_last_block(stream.path, run.stepper.motion)
+    return io.orbits.load_states(stream.path, run.stepper.motion, last=True)
 
 
 def descriptions(events: dict[str, Event]) -> list[dict[str, Any]]:
@@ -168,7 +168,7 @@ _SAME = 1e-9  # of 1 + the largest number: rounding of other versions and proces
 
 def watch_of_store(owner: str, stream: "Stream", stepper: AbstractStepper[Any], events: Any) -> Watch | None:
     """Return what the run of a store looks for; refused if it is not what the store says."""
-    text, where = io.read_attributes(stream.path).get("events"), f"{owner}(events=...)"
+    text, where = io.metadata.read_attributes(stream.path).get("events"), f"{owner}(events=...)"
     request, record = [] if events is None else events, json.loads(text or "[]")
     if text is None and not checked_events(owner, request):
         return None
@@ -188,7 +188,7 @@ def _refuse_other_values(where: str, stream: "Stream", stepper: AbstractStepper[
     """Refuse events that have other values at the first state than the store says."""
     try:
         first = stream.checkpoint(0)
-    except io.DamagedError:
+    except io.blocks.DamagedError:
         return  # whoever needs it to continue says so
     if first.of_events is None:
         return
@@ -213,9 +213,9 @@ def refuse_other_functions(owner: str, stream: "Stream", run: Run) -> None:
     if reached_then.watch is None or not reached_then.watch.has_walls:
         reached_then = Reached(begin.done, Outcome.successful, begin.vector, None)
     orbit, again = compute_block(run.stepper, plan, block, reached_then, lambda *_: None)
-    tolerance = _SAME if io.other_versions(io.read_attributes(stream.path)) else 0.0
+    tolerance = _SAME if io.provenance.other_versions(io.metadata.read_attributes(stream.path)) else 0.0
     pairs = {
-        name: (rows, stream.rows(name, block * plan.rows, len(orbit)))
+        name: (rows, stream.store.rows(name, (slice(block * plan.rows, block * plan.rows + len(orbit)),)))
         for name, rows in stream.columns(orbit, block * plan.rows).items()
     }
     pairs["the last step"] = np.array(again.step), np.array(plan.steps)
@@ -236,11 +236,11 @@ def _difference(now: np.ndarray, then: np.ndarray) -> float:
 
 def _last_sound(stream: "Stream") -> int | None:
     """Return the last block that took steps and is sound."""
-    for block in sorted(stream.block_numbers(), reverse=True):
+    for block in sorted(stream.store.block_numbers(), reverse=True):
         try:
             if stream.sound(block).done > stream.checkpoint(block).done:
                 return block
-        except io.DamagedError:
+        except io.blocks.DamagedError:
             continue  # whoever computes it again says so
     return None
 
@@ -248,8 +248,8 @@ def _last_sound(stream: "Stream") -> int | None:
 def resume_run(store: str | Path, *, discrete: Any, events: Any, throw: bool, progress: bool) -> Any:
     """Resume the run of a store: what `resume` does once it has asked the store, and found no sweep."""
     stream, run = _open("resume", store, discrete, events, throw=throw, progress=progress)
-    with io.write_lock(stream.path):
-        return continue_run(run, io.open_stream(stream.path))
+    with io.places.write_lock(stream.path):
+        return continue_run(run, io.orbits.open_stream(stream.path))
 
 
 def extend(
@@ -297,12 +297,12 @@ def extend(
         raise error("extend(task=...)", "come with the store of a sweep", shown(task), "Leave it out for an orbit.")
     steps = count("extend(steps=...)", steps, "Pass how many steps more.")
     stream, run = _open("extend", store, discrete, events, throw=throw, progress=progress)
-    with io.write_lock(stream.path):
-        _refuse_ended(io.read_attributes(stream.path))
+    with io.places.write_lock(stream.path):
+        _refuse_ended(io.metadata.read_attributes(stream.path))
         numbers, remedy = 1 + sum(run.stepper.columns.values()), "Pass fewer steps."
         size = 8.0 * (steps // run.every) * numbers
         within_disk("extend(steps=...)", size, stream.path, remedy)
-        longer = io.open_stream(stream.path).longer(steps)
+        longer = io.orbits.open_stream(stream.path).longer(steps)
         check_forces("extend", run.stepper.motion, longer.plan.steps)
         longer.announce(steps)
         return continue_run(run._replace(steps=longer.plan.steps), longer)
@@ -322,8 +322,8 @@ def _refuse_ended(attributes: dict[str, Any]) -> None:
 def _open(
     owner: str, store: str | Path, discrete: Any, events: Any, *, throw: bool, progress: bool
 ) -> tuple["Stream", Run]:
-    stream, attributes = io.open_stream(store), io.read_attributes(store)
-    motion = io.restore_motion(attributes, discrete)
+    stream, attributes = io.orbits.open_stream(store), io.metadata.read_attributes(store)
+    motion = io.provenance.restore_motion(attributes, discrete)
     backend = "jax" if motion.route_name == "definition" else "auto"
     stepper = stepper_of(motion, attributes.get("branch", "principal"), backend, with_poses=stream.reconstruct)
     watch = watch_of_store(owner, stream, stepper, events)

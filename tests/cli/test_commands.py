@@ -13,7 +13,7 @@ from commands import Command, Figures, assert_ends
 from matplotlib.figure import Figure
 
 import nonholo as nh
-from nonholo.cli.commands import _runs
+from nonholo.cli.commands import runs
 from nonholo.cli.scenario.files import load_scenario
 from nonholo.simulation import _run
 
@@ -63,9 +63,9 @@ def test_runs_at_the_same_time_get_different_stores(rows: int, tmp_path: Path, m
     """Runs that begin and end together all keep their orbit."""
     monkeypatch.setattr(_run, "_ROWS", rows)
     loaded = load_scenario("sleigh", [])
-    _runs.check_output(None, overwrite=False)
+    runs._check_output(None, overwrite=False, new=None)
     with ThreadPoolExecutor(4) as pool:
-        kept = list(pool.map(lambda _: _runs.run_and_keep(loaded, None, overwrite=False, progress=False), range(8)))
+        kept = list(pool.map(lambda _: runs.run_and_keep(loaded, None, overwrite=False, progress=False), range(8)))
     assert len({store for store, _ in kept}) == 8
     assert all(len(nh.load_orbit(store)) == 1 + loaded.scenario.run.steps for store, _ in kept)
     assert len(list((tmp_path / "runs").iterdir())) == 8

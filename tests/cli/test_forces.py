@@ -15,8 +15,8 @@ from matplotlib.text import Text
 import nonholo as nh
 from nonholo.cli.scenario.bodies import SHORT
 from nonholo.cli.scenario.files import built_in, effective_text, load_scenario, parse_setting
-from nonholo.cli.scenario.forces import rows_of
-from nonholo.cli.scenario.problems import ScenarioError
+from nonholo.cli.scenario.motion import rows_of
+from nonholo.cli.scenario.sections import ScenarioError
 from nonholo.cli.scenario.sweeps import load_sweep_scenario, sweep_text
 
 TABLE = [[0.5, 0.25, 0.0], [-0.1, 0.3, 1.0], [0.0, 1e-3, 0.0]]

@@ -9,7 +9,7 @@ from commands import Command, assert_ends
 from stopping import failing_at, stopped_at
 
 import nonholo as nh
-from nonholo.io import write_lock
+from nonholo.io.places import write_lock
 from nonholo.simulation import _run, _stored
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from nonholo.cli.scenario.bodies import SHORT
 from nonholo.cli.scenario.files import effective_text, load_scenario, parse_setting
-from nonholo.cli.scenario.problems import ScenarioError
+from nonholo.cli.scenario.sections import ScenarioError
 
 _GOOD = """
 [body]

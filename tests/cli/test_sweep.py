@@ -24,7 +24,7 @@ from nonholo.cli.scenario.files import Setting, parse_setting
 from nonholo.cli.scenario.sweeps import load_sweep_scenario, sweep_text
 from nonholo.ensembles import standing_of
 from nonholo.ensembles.stores import SweepStore
-from nonholo.io import write_lock
+from nonholo.io.places import write_lock
 
 BODY = """
 [body]
@@ -223,8 +223,8 @@ def test_all_problems_at_once_are_refused() -> None:
     assert "my.toml: body.mass: must be a valid number. Got True" in found
     assert any(f.startswith("my.toml: design.values.body.a: must be a list of numbers") for f in found)
     where = "my.toml: design.values.start.restricted_velocity[0]"
-    assert f"{where}: must have a positive integer as count. Got 0" in found
-    assert any(f.startswith("my.toml: keep.reductions[1]: must be one of final_state, ") for f in found)
+    assert f"{where}.count: must be greater than 0. Got 0" in found
+    assert any(f.startswith("my.toml: keep.reductions[1]: must be 'final_state', ") for f in found)
     assert "my.toml: output.colour: is not a known key. Did you mean color?" in found
 
 
@@ -237,9 +237,9 @@ def test_all_problems_at_once_are_refused() -> None:
         ('"body.a"', '"start.momentum[0]"', "start.momentum: is missing: momentum[0] is varied"),
         ('kind = "grid"', 'kind = "gird"', "design: must have a known kind. Got 'gird'. Did you mean grid?"),
         ('kind = "grid"', 'kind = "random"', "design.members: is missing"),
-        ("[0.3, 0.5]", "{from = 0.1, to = 1}", "Got a table without count"),
+        ("[0.3, 0.5]", "{from = 0.1, to = 1}", "body.a.count: is missing"),
         ("[0.3, 0.5]", "{from = -1, to = 1, count = 3, spacing = 'logarithmic'}", "must have positive bounds"),
-        ("[0.3, 0.5]", "{from = 0, to = 1, count = 3, spacing = 'log'}", 'must have spacing "linear"'),
+        ("[0.3, 0.5]", "{from = 0, to = 1, count = 3, spacing = 'log'}", "body.a.spacing: must be 'linear' or"),
         ("steps = 20", 'steps = 20\nbranch = "next"', "run.branch: must be 'principal', 'nearest', "),
         ("steps = 20", "steps = 20\nsave_every = 2", "run.save_every: is not for sweeps"),
         ("[keep]", "[kep]", "kep: is not a known key. Did you mean keep?"),

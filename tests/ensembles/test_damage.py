@@ -171,4 +171,4 @@ def test_a_mark_is_data(tmp_path: Path) -> None:
         return block["x"]
 
     nh.sweep(failing, nh.Grid({"x": [1.0, 1.5]}), tmp_path / "raised.zarr")
-    assert standing_of(tmp_path / "raised.zarr").messages == [[1, "RuntimeError: a?]0;gone?b"]]
+    assert standing_of(tmp_path / "raised.zarr").messages == [(1, "RuntimeError: a?]0;gone?b")]

@@ -18,7 +18,7 @@ from waiting import wait_for
 import nonholo as nh
 from nonholo.ensembles import standing_of
 from nonholo.ensembles.stores import SweepStore, open_store
-from nonholo.io import Piece
+from nonholo.io.blocks import Piece
 
 KILLS = {
     "noisy-threads": ["client"] * 9,
@@ -107,7 +107,7 @@ def test_interruption_after_each_block(tmp_path: Path, monkeypatch: pytest.Monke
 def test_end_between_the_last_two_writes(tmp_path: Path) -> None:
     """A sweep that was killed before its metadata were consolidated is finished by resuming it."""
     path = tmp_path / "run.zarr"
-    with stopped_in("nonholo.io._block_store.consolidate", match="Stopped at 6 of 6"):
+    with stopped_in("nonholo.io.blocks.consolidate", match="Stopped at 6 of 6"):
         swept(path)
     with pytest.raises(ValueError, match="must be a finished sweep"):
         nh.load_sweep(path)
@@ -132,7 +132,7 @@ def test_no_room_for_a_store(tmp_path: Path) -> None:
     """If not even the empty store can be written, nothing is left at its path nor beside it."""
     full = OSError(errno.ENOSPC, "No space left on device")
     told = r"No space left on device. Nothing at this path was changed.*run\.zarr"
-    with stopped_in("nonholo.io.create_array", full, told):
+    with stopped_in("nonholo.io.blocks.create_array", full, told):
         swept(tmp_path / "run.zarr")
     assert not list(tmp_path.iterdir())
 

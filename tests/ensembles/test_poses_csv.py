@@ -10,7 +10,7 @@ import pytest
 
 import nonholo as nh
 from nonholo.ensembles import sweep_to_csv
-from nonholo.io import checksum
+from nonholo.io.metadata import checksum
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5, b=0.2), time_step=0.1)
 

@@ -16,7 +16,7 @@ from stopping import stopped_at
 
 import nonholo as nh
 from nonholo.ensembles import standing_of
-from nonholo.io import edit_attributes
+from nonholo.io.blocks import edit_attributes
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
 SLEIGHS = nh.Grid({"a": [0.1, 0.2]})

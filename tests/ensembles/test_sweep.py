@@ -112,7 +112,7 @@ def test_members_that_raise_are_recorded(block: int, tmp_path: Path) -> None:
     assert np.isnan(found["value"].values[bad]).all()
     assert np.isnan(found["noise"].values[bad]).all()
     now = standing_of(tmp_path / "run.zarr")
-    assert sorted(now.messages) == [[3, "ZeroDivisionError: at 3"], [8, "ZeroDivisionError: at 8"]]
+    assert sorted(now.messages) == [(3, "ZeroDivisionError: at 3"), (8, "ZeroDivisionError: at 8")]
     assert (now.done, now.failure_count, now.outcomes) == (12, 2, {"successful": 10, "raised": 2})
 
 

@@ -16,7 +16,10 @@ from typer.testing import CliRunner
 import nonholo as nh
 from nonholo.cli._app import app
 from nonholo.examples import Example
-from nonholo.io import described_system, edit_attributes, recorded_system, standing, store_to_csv
+from nonholo.io import store_to_csv
+from nonholo.io.blocks import edit_attributes
+from nonholo.io.orbits import standing
+from nonholo.io.provenance import described_system, recorded_system
 from nonholo.lagrange_dalembert import (
     AbstractCoordinateOrbit,
     GroupLagrangeDAlembert,

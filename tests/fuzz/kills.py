@@ -31,7 +31,7 @@ from ensembles import faults
 from simulation import killed
 
 import nonholo as nh
-from nonholo.io import owner_of
+from nonholo.io.places import owner_of
 
 SWEEPS: dict[str, Any] = {
     "noisy": (faults.noisy, nh.Grid({"x": np.arange(20.0), "y": np.arange(20.0)}, rng=3), 8),

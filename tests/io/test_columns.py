@@ -8,11 +8,11 @@ import pytest
 from stopping import stopped_at
 
 import nonholo as nh
-from nonholo.io import _orbit_store
+from nonholo.io import orbits
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.1, 0.7, 0.3, 0.1), 0.1)
 RUN: dict[str, Any] = {"body_velocity": (0.3, -1.0, 0.0), "steps": 60}
-CHOSEN = _orbit_store.stored_variables
+CHOSEN = orbits.stored_variables
 
 
 def _without_energy(*args: Any) -> Any:
@@ -25,7 +25,7 @@ def test_a_column_added_later_breaks_no_unfinished_store(
 ) -> None:
     """Begun without a column that is written now, a run is resumed, repaired and extended to the bits of one run."""
     path = tmp_path / "run.zarr"
-    monkeypatch.setattr(_orbit_store, "stored_variables", _without_energy)
+    monkeypatch.setattr(orbits, "stored_variables", _without_energy)
     with stopped_at(3):
         nh.simulate(SLEIGH, **RUN, checkpoint_every=10, store=path)
     monkeypatch.undo()

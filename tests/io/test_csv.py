@@ -14,7 +14,10 @@ from scipy.spatial.transform import Rotation
 from stopping import stopped_at
 
 import nonholo as nh
-from nonholo.io import edit_attributes, read_attributes, store_to_csv, write_lock
+from nonholo.io import store_to_csv
+from nonholo.io.blocks import edit_attributes
+from nonholo.io.metadata import read_attributes
+from nonholo.io.places import write_lock
 
 EPS = np.finfo(float).eps
 SPINNING = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0, 0.3), 0.1)  # turns forever

@@ -16,7 +16,9 @@ from typer.testing import CliRunner
 
 import nonholo as nh
 from nonholo.cli._app import app
-from nonholo.io import edit_attributes, open_stream, store_to_csv
+from nonholo.io import store_to_csv
+from nonholo.io.blocks import edit_attributes
+from nonholo.io.orbits import open_stream
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.1, 0.7, 0.3, 0.1), 0.1)
 RUN: dict[str, Any] = {"body_velocity": (0.3, -1.0, 0.0), "steps": 60, "checkpoint_every": 10}
@@ -154,7 +156,7 @@ def test_marked_blocks_are_listed_once(tmp_path: Path, monkeypatch: pytest.Monke
     stream, seen = open_stream(store), []
     listed: Callable[..., list[str]] = os.listdir
     monkeypatch.setattr(os, "listdir", lambda *folders: seen.append(folders) or listed(*folders))
-    assert stream.block_numbers() == {*range(4), 98}
+    assert stream.store.block_numbers() == {*range(4), 98}
     assert stream.finished_blocks() == 4
     assert len(seen) == 2
 

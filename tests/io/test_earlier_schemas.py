@@ -9,9 +9,9 @@ import pytest
 
 import nonholo as nh
 from nonholo.ensembles import sweep_to_csv
-from nonholo.ensembles.stores import SCHEMA as OF_SWEEPS
-from nonholo.io import SCHEMA as OF_ORBITS
-from nonholo.io import edit_attributes, store_to_csv
+from nonholo.io import store_to_csv
+from nonholo.io.blocks import edit_attributes
+from nonholo.io.places import SCHEMAS
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.3, 0.7, 0.5, b=0.3), 0.1)
 REFUSAL = (
@@ -35,8 +35,8 @@ def _save_as_schema(path: Path, schema: int) -> None:
     edit_attributes(path, {"schema": schema, "versions": versions})
 
 
-EARLIER = [(_orbit, OF_ORBITS, schema) for schema in range(1, OF_ORBITS)]
-EARLIER += [(_sweep, OF_SWEEPS, schema) for schema in range(1, OF_SWEEPS)]
+MADE = {"nonholo.orbit": _orbit, "nonholo.sweep": _sweep}
+EARLIER = [(MADE[kind], newest, schema) for kind, newest in SCHEMAS.items() for schema in range(1, newest)]
 EARLIER_NAMES = [f"{make.__name__[1:]}-{schema}" for make, _, schema in EARLIER]
 
 

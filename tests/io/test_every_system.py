@@ -12,8 +12,9 @@ from problems import EVERY
 
 import nonholo as nh
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.io import orbit_to_dataset, read_attributes
-from nonholo.io._attributes import describe_group, restore_group
+from nonholo.io import orbit_to_dataset
+from nonholo.io.metadata import read_attributes
+from nonholo.io.provenance import describe_group, restore_group
 from nonholo.systems import SYSTEMS
 
 _HEISENBERG = nh.MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])

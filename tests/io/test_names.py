@@ -15,8 +15,10 @@ from typer.testing import CliRunner
 import nonholo as nh
 from nonholo.base.checks import is_name
 from nonholo.cli._app import app
-from nonholo.ensembles.stores import SCHEMA
-from nonholo.io import edit_attributes, read_attributes, store_to_csv, table_lines
+from nonholo.io import store_to_csv
+from nonholo.io.blocks import edit_attributes
+from nonholo.io.metadata import read_attributes
+from nonholo.io.tables import table_lines
 from nonholo.lagrange_dalembert import CoordinateOrbit
 
 FORMULA, FORGED = "=cmd|' /C calc'!A0", "a\n9,9,9,9"
@@ -67,7 +69,7 @@ def test_coordinates_of_a_strangers_store(coordinates: list[str], kept: Path, tm
 def test_names_of_a_strangers_sweep(place: str, name: str, kept: Path, tmp_path: Path) -> None:
     """So do the design, the outputs and the dimensions of a sweep."""
     store = shutil.copytree(kept / "sweep.zarr", tmp_path / "sweep.zarr")
-    content = json.loads(read_attributes(store, "nonholo.sweep", SCHEMA)["sweep"])
+    content = json.loads(read_attributes(store, "nonholo.sweep")["sweep"])
     match place:
         case "axes":
             content["design"]["axes"] = {name: content["design"]["axes"]["x"]}

@@ -9,14 +9,13 @@ from pathlib import Path
 import pytest
 
 import nonholo as nh
-from nonholo.io import check_target, complete_file, new_beside, remove_store
-from nonholo.io._metadata import check_assertions
+from nonholo.io.places import check_assertions, check_target, complete_file, new_beside, remove_store
 
 MAKER = """
 import sys
 from pathlib import Path
-from nonholo.io._metadata import check_assertions
-from nonholo.io import check_target, complete_file, new_beside, remove_store
+from nonholo.io.places import check_assertions
+from nonholo.io.places import check_target, complete_file, new_beside, remove_store
 with new_beside(Path(sys.argv[1])) as part:
     part.mkdir()
     print("making", flush=True)
@@ -106,7 +105,7 @@ def test_picture_of_a_killed_one(tmp_path: Path) -> None:
 OPTIMIZED = """
 import sys
 import nonholo as nh
-from nonholo.io import check_target
+from nonholo.io.places import check_target
 doors = (
     lambda: nh.load_orbit(sys.argv[1]),
     lambda: nh.resume(sys.argv[1]),

@@ -18,8 +18,11 @@ from damage import DAMAGE, damage
 
 import nonholo as nh
 from nonholo.base.compiled import way_of_kernels
-from nonholo.io import BlockStore, _orbit_store, checksum, orbit_to_dataset, read_attributes, write_lock
+from nonholo.io import orbit_to_dataset, orbits
+from nonholo.io.blocks import BlockStore
 from nonholo.io.datasets import stored_variables
+from nonholo.io.metadata import checksum, read_attributes
+from nonholo.io.places import write_lock
 
 NAMES = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
 
@@ -86,7 +89,7 @@ def test_flows_round_trip(method: str | None, tmp_path: Path) -> None:
 
 def test_several_chunks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """An orbit longer than a chunk is cut and joined without loss."""
-    monkeypatch.setattr(_orbit_store, "_ROWS", 8)
+    monkeypatch.setattr(orbits, "_ROWS", 8)
     nh.save_orbit(_orbit(), tmp_path / "o.zarr")
     assert zarr.open_array(tmp_path / "o.zarr" / "canonical" / "cayley", mode="r").nchunks == 3
     assert _same(_orbit(), nh.load_orbit(tmp_path / "o.zarr"))
@@ -275,7 +278,7 @@ def test_failed_swap_brings_the_old_store_back(store: Path, monkeypatch: pytest.
 @pytest.mark.parametrize("name", ["time", "energy", "x", "restricted_momentum", "canonical/cayley", "canonical/pose"])
 def test_damaged_chunk_is_named(how: str, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A chunk that is missing, changed or cut is an error that names array and chunk, never data."""
-    monkeypatch.setattr(_orbit_store, "_ROWS", 8)
+    monkeypatch.setattr(orbits, "_ROWS", 8)
     nh.save_orbit(_orbit(), tmp_path / "o.zarr")
     key = "c/1" if name in ("time", "energy", "x") else "c/1/0"
     damage(tmp_path / "o.zarr" / name / key, how)
@@ -444,6 +447,6 @@ def test_a_route_of_another_version_is_refused(tmp_path: Path) -> None:
     )
     motion = json.loads(read_attributes(path)["motion"])
     assert motion["route"] == "scalar"
-    nh.io.edit_attributes(path, {"motion": json.dumps({**motion, "route": "elliptic"})})
+    nh.io.blocks.edit_attributes(path, {"motion": json.dumps({**motion, "route": "elliptic"})})
     with pytest.raises(ValueError, match="hold a run by a route of this version"):
         nh.load_orbit(path)

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from nonholo.io import owner_of, write_lock
+from nonholo.io.places import owner_of, write_lock
 from nonholo.orbit import Plan
 
 
@@ -29,7 +29,7 @@ CONTAINER = ["unshare", "--pid", "--fork", "--kill-child", "--mount-proc"]
 
 
 def _hold(store: Path, inside: str) -> str:
-    start = "import os, pathlib, time\nfrom nonholo.io import write_lock\n"
+    start = "import os, pathlib, time\nfrom nonholo.io.places import write_lock\n"
     return f"{start}with write_lock(pathlib.Path({str(store)!r})):\n    {inside}"
 
 
@@ -130,7 +130,7 @@ def test_one_of_many_takes_a_lock(store: Path) -> None:
     (store / "run" / "lock").touch()
     script = f"""
 import os, pathlib, time
-from nonholo.io import write_lock
+from nonholo.io.places import write_lock
 store, held = pathlib.Path({str(store)!r}), pathlib.Path({str(store)!r}) / "held"
 inside = refused = 0
 for trial in range(6):

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 import nonholo as nh
-from nonholo.io import Standing, standing
+from nonholo.io.orbits import Standing, standing
 
 
 def east(orbit: nh.Orbit) -> np.ndarray:

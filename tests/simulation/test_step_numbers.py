@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.io import load_last_block
+from nonholo.io.orbits import load_states
 
 H = 0.05
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
@@ -100,7 +100,7 @@ def test_stores_keep_the_steps(kind: str, tmp_path: Path) -> None:
     path = tmp_path / "run.zarr"
     STEPPED[kind](steps=14, save_every=2, store=path, checkpoint_every=6)
     assert np.array_equal(nh.extend(path, 6, discrete=whole.motion).step, whole.step)
-    assert load_last_block(path, whole.motion).step.tolist() == [18, 20]
+    assert load_states(path, whole.motion, last=True).step.tolist() == [18, 20]
 
 
 @pytest.mark.parametrize(("every", "steps"), [(None, [9]), (3, [0, 3, 6, 9])])

@@ -14,7 +14,7 @@ from simulation import killed
 from stopping import stopped_in
 
 import nonholo as nh
-from nonholo.io import Stream, standing
+from nonholo.io.orbits import Stream, standing
 
 MASS = [[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]
 TOP = nh.discretize(nh.SuslovTop(MASS), 0.1)
@@ -98,7 +98,7 @@ def cut(path: Path, monkeypatch: pytest.MonkeyPatch, block: int, late: bool, run
 
     def failing(self: Stream, number: int, *rest: Any) -> None:
         if number == block:
-            patch.setattr(f"nonholo.io._block_store.{'write_whole' if late else 'require_identity'}", interrupted)
+            patch.setattr(f"nonholo.io.blocks.{'write_whole' if late else 'require_identity'}", interrupted)
         write(self, number, *rest)
 
     with monkeypatch.context() as patch:
@@ -154,7 +154,7 @@ def test_stopping_event_ends_the_store(stop: int, tmp_path: Path) -> None:
 def test_stop_that_was_not_cut_is_resumed(tmp_path: Path) -> None:
     """A run that an event ended, killed before its arrays were cut, ends there when it is resumed."""
     path, events = tmp_path / "run.zarr", [nh.Event(east, direction=1, stop=3)]
-    with stopped_in("nonholo.io.Stream.finish"):
+    with stopped_in("nonholo.io.orbits.Stream.finish"):
         begun(path, events)
     assert same(nh.resume(path, events=events), begun(None, events))
 
@@ -203,7 +203,7 @@ def test_failed_run_keeps_its_crossings(tmp_path: Path) -> None:
 
 def test_many_crossings_fill_several_chunks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Crossings of a block that do not fit in one chunk of three rows are kept in several, those of none in none."""
-    monkeypatch.setattr("nonholo.io._orbit_store._MOST", 3)
+    monkeypatch.setattr("nonholo.io.orbits._MOST", 3)
     path, rare = tmp_path / "run.zarr", nh.Event(lambda orbit: orbit.heading - 200.0, name="rare")
     for name, events in (("many", [TURNS, entry]), ("few", [rare])):
         stored = begun(path / name, events)

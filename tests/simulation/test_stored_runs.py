@@ -18,7 +18,9 @@ from simulation import killed
 from stopping import stopped_at, stopped_in
 
 import nonholo as nh
-from nonholo.io import Stream, edit_attributes, read_attributes
+from nonholo.io.blocks import edit_attributes
+from nonholo.io.metadata import read_attributes
+from nonholo.io.orbits import Stream
 from nonholo.systems import AbstractSystem
 
 SLEIGH = nh.discretize(PROBLEMS[7].system, 0.1)
@@ -80,7 +82,7 @@ def test_run_that_ends_early_is_kept(block_steps: int, tmp_path: Path) -> None:
 def test_failed_run_that_was_not_cut_is_resumed_in_silence(tmp_path: Path) -> None:
     """A run that failed and was killed before its arrays were cut is no damaged one."""
     path = tmp_path / "run.zarr"
-    with stopped_in("nonholo.io.Stream.finish"):
+    with stopped_in("nonholo.io.orbits.Stream.finish"):
         nh.simulate(FOLDING, steps=500, store=path, checkpoint_every=5, throw=False, **FOLDS)
     assert _same(nh.resume(path, throw=False), nh.simulate(FOLDING, steps=500, throw=False, **FOLDS))
 

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from nonholo.cli import scenario, screen
 from nonholo.cli.commands.run import Module
 from nonholo.cli.screen.errors import USAGE, leave, scenario_errors, store_errors
-from nonholo.cli.screen.tables import show_table
 
 if TYPE_CHECKING:
     from nonholo.examples import Example
@@ -75,25 +75,21 @@ def examples(
     nonholo examples snakeboard
     nonholo examples suslov
     """
-    from nonholo.cli.scenario.bodies import examples as ready_ones
-    from nonholo.cli.scenario.bodies import summary
-    from nonholo.cli.scenario.files import built_in_titles
-    from nonholo.cli.scenario.sections import suggestion
-
-    scenarios = built_in_titles()
+    scenarios = scenario.files.built_in_titles()
     if name in scenarios:
         typer.echo(f"{name}: {scenarios[name]}\n\n{_commands(name)}")
         return
     with store_errors(USAGE):
-        ready = ready_ones()
+        ready = scenario.bodies.examples()
     if name is None:
-        own = ((each, summary(make)) for each, make in ready.items())
-        show_table(_ABOUT, own, "Ready systems, nonholo.examples")
-        show_table(_ABOUT, scenarios.items(), "Built-in scenarios")
+        own = ((each, scenario.bodies.summary(make)) for each, make in ready.items())
+        screen.tables.show_table(_ABOUT, own, "Ready systems, nonholo.examples")
+        screen.tables.show_table(_ABOUT, scenarios.items(), "Built-in scenarios")
     elif name in ready:
         _show(ready[name]())
     else:
-        leave(f"There is no ready system or scenario {name!r}. {suggestion(name, [*ready, *scenarios])}", USAGE)
+        remedy = scenario.sections.suggestion(name, [*ready, *scenarios])
+        leave(f"There is no ready system or scenario {name!r}. {remedy}", USAGE)
 
 
 def _commands(name: str) -> str:
@@ -102,9 +98,6 @@ def _commands(name: str) -> str:
 
 def _show(example: "Example") -> None:
     """Print the start, the facts and the conserved quantities of a system, and how to run it."""
-    from nonholo.cli.scenario.bodies import examples as ready_ones
-    from nonholo.cli.scenario.bodies import summary
-
     parts: dict[str, list[Any]] = {
         "Start": [
             f"coordinates: {', '.join(example.coordinates)}",
@@ -120,7 +113,7 @@ def _show(example: "Example") -> None:
             "orbit = nh.simulate(discrete, **start, steps=400)",
         ],
     }
-    typer.echo(summary(ready_ones()[example.name]))
+    typer.echo(scenario.bodies.summary(scenario.bodies.examples()[example.name]))
     for title, lines in parts.items():
         if lines:
             typer.echo("\n".join([f"\n{title}", *(f"  {line}" for line in lines)]))
@@ -140,21 +133,17 @@ def new(
     nonholo new roller_racer > racer.toml
     nonholo new sweep > many.toml
     """
-    from nonholo.cli.scenario.files import built_in, take_module
-
-    own = {**built_in(), **built_in("sweeps")}
+    files = scenario.files
+    own = {**files.built_in(), **files.built_in("sweeps")}
     with scenario_errors():
-        take_module(module)
+        files.take_module(module)
     if kind in own:
         typer.echo(own[kind], nl=False)
         return
-    from nonholo.cli.scenario.bodies import nearest_kind
-    from nonholo.cli.scenario.templates import template
-
     try:
-        typer.echo(template(kind), nl=False)
+        typer.echo(scenario.files.template(kind), nl=False)
     except KeyError:
-        raise typer.BadParameter(f"there is no kind {kind!r}. {nearest_kind(kind)}") from None
+        raise typer.BadParameter(f"there is no kind {kind!r}. {scenario.bodies.nearest_kind(kind)}") from None
 
 
 def systems(module: Module = None) -> None:
@@ -164,13 +153,10 @@ def systems(module: Module = None) -> None:
     nonholo new suslov > my.toml        a scenario to edit
     nonholo systems --module my_robot.py
     """
-    from nonholo.cli.scenario.bodies import body_table, own_kinds
-    from nonholo.cli.scenario.files import built_in_titles, take_module
-
     with scenario_errors():
-        take_module(module)
-    tables = ((kind, body_table(kind)) for kind in own_kinds())
+        scenario.files.take_module(module)
+    tables = ((kind, scenario.bodies.body_table(kind)) for kind in scenario.bodies.own_kinds())
     rows = ((kind, body.__doc__ or "", ", ".join([*body.model_fields][1:])) for kind, body in tables)
-    show_table(("kind", "description", "parameters"), rows, "Bodies")
-    show_table(_ABOUT, built_in_titles().items(), "Built-in scenarios")
+    screen.tables.show_table(("kind", "description", "parameters"), rows, "Bodies")
+    screen.tables.show_table(_ABOUT, scenario.files.built_in_titles().items(), "Built-in scenarios")
     typer.echo("And every ready system of `nonholo examples`.")

@@ -6,9 +6,10 @@ from typing import Annotated
 
 import typer
 
+import nonholo
+from nonholo.cli import scenario, screen
 from nonholo.cli.commands.run import Module, Quiet
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, scenario_errors, store_errors
-from nonholo.cli.screen.tables import show_table
 
 
 def dataset(
@@ -50,19 +51,18 @@ def dataset(
 
         random = {k: ", ".join(each.distributions).replace("start_", "") for k, each in DEFINITIONS.items()}
         rows = ((k, each.title, random[k], str(each.version)) for k, each in DEFINITIONS.items())
-        show_table(("name", "system", "random", "version"), rows, "Data sets")
+        screen.tables.show_table(("name", "system", "random", "version"), rows, "Data sets")
         return
     if name is None or output is None:
         leave("Pass a name and -o FOLDER; `nonholo dataset --list` lists the names.", USAGE)
     options = {"orbits": orbits, "steps": steps, "time_step": time_step, "rng": rng, "noise": noise}
     with scenario_errors(), store_errors(USAGE), reporting_warnings():
-        from nonholo.cli.scenario.files import take_module
-        from nonholo.ensembles import dataset as write
-
-        own = take_module(module)
+        own = scenario.files.take_module(module)
         try:
             how = {"split": _fractions(split), "file_format": file_format, "license_name": license_name}
-            folder = write(own.get(name, name), output, **options, **how, progress=sys.stderr.isatty() and not quiet)
+            folder = nonholo.dataset(
+                own.get(name, name), output, **options, **how, progress=sys.stderr.isatty() and not quiet
+            )
         except KeyboardInterrupt:
             leave("Stopped; the same command resumes it.", FAILED)
     typer.echo(folder if quiet else f"{folder / 'README.md'} describes the files.")

@@ -1,12 +1,13 @@
 """`nonholo paper`: recompute the paper and write its page."""
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from nonholo.cli import screen
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
-from nonholo.cli.screen.tables import show_table
 
 if TYPE_CHECKING:
     from nonholo_paper import Result
@@ -32,8 +33,6 @@ def paper(
     nonholo paper --list
     nonholo paper -o part --only sus_int --only st
     """
-    import sys
-
     from nonholo.base.checks import needs
     from nonholo.base.progress import progress_bar
 
@@ -43,7 +42,7 @@ def paper(
         selection = select(only) if only else entries()
         if is_list:
             rows = ((", ".join(e.names), e.finding.kind, e.finding.verdict, e.finding.source) for e in selection)
-            show_table(("--only", "kind", "verdict", "where"), rows)
+            screen.tables.show_table(("--only", "kind", "verdict", "where"), rows)
             return
         check_folder(output)
     with progress_bar("findings", sys.stderr.isatty()) as report:
@@ -51,20 +50,15 @@ def paper(
     with store_errors(FAILED):
         remark = f"Only a part, chosen with --only: {', '.join(only)}." if only else ""
         write_folder(output, results, remark)
-    _show(results, each=bool(only))
+    if only:
+        columns = "label", "verdict", "defect", "of what is denied", "tolerance", "holds", "seconds"
+        screen.tables.show_table(columns, _findings(results))
+    else:
+        screen.tables.show_table(("section", "findings", "hold", "seconds"), _sections(results))
     typer.echo(output / "index.html")
     failures = [result.entry.finding.label for result in results if not result.holds]
     if failures:
         leave(f"{len(failures)} of {len(results)} findings fail: {', '.join(failures)}.", FAILED)
-
-
-def _show(results: "list[Result]", *, each: bool) -> None:
-    """Print a line for each section, or for each finding."""
-    if each:
-        columns = "label", "verdict", "defect", "of what is denied", "tolerance", "holds", "seconds"
-        show_table(columns, _findings(results))
-    else:
-        show_table(("section", "findings", "hold", "seconds"), _sections(results))
 
 
 def _findings(results: "list[Result]") -> list[tuple[str, ...]]:

@@ -6,6 +6,9 @@ from typing import Annotated
 
 import typer
 
+import nonholo
+from nonholo import io
+from nonholo.cli import commands
 from nonholo.cli.screen.errors import USAGE, leave
 
 Scenario = Annotated[
@@ -54,12 +57,10 @@ def simulate(
     nonholo simulate my.toml -o study/first.zarr --json
     nonholo simulate robot.toml --module my_robot.py
     """
-    from nonholo.cli.commands._runs import request_of, simulate_and_keep
-
     options = {"run.steps": ("--steps", steps), "run.time_step": ("--time-step", time_step)}
     options |= {"output.plot": ("--plot", plot), "output.gif": ("--gif", gif)}
-    request = request_of(scenario, options, settings, module)
-    simulate_and_keep(request, output, json=json, overwrite=overwrite, quiet=quiet)
+    request = commands.runs.request_of(scenario, options, settings, module)
+    commands.runs.simulate_and_keep(request, output, json=json, overwrite=overwrite, quiet=quiet)
 
 
 Source = Annotated[
@@ -88,11 +89,9 @@ def explore(
     nonholo explore my.toml -o top.html --no-browser
     nonholo explore runs/sleigh-001.zarr
     """
-    from nonholo.cli.commands._runs import request_of, write_page
-
     options = {"run.steps": ("--steps", steps), "run.time_step": ("--time-step", time_step)}
-    ask = functools.partial(request_of, source, options, settings, module)
-    typer.echo(write_page(source, ask, output, browser=browser, overwrite=overwrite))
+    ask = functools.partial(commands.runs.request_of, source, options, settings, module)
+    typer.echo(commands.runs.write_page(source, ask, output, browser=browser, overwrite=overwrite))
 
 
 SweepScenario = Annotated[
@@ -147,14 +146,11 @@ def sweep(
     nonholo sweep robots.toml --module my_robot.py
     nonholo resume large.zarr               resume one that stopped
     """
-    from nonholo.cli.commands._runs import request_of
-    from nonholo.cli.commands._sweeps import sweep_and_keep
-    from nonholo.cli.scenario.sweeps import load_sweep_scenario
-
     whole = int(members) if members is not None and members.is_integer() else members  # 1e6 is a whole number
     options = {"design.members": ("--members", whole), "output.plot": ("--plot", plot)}
-    request = request_of(scenario, options, settings, module, load_sweep_scenario)
-    sweep_and_keep(request, output, {"scheduler": scheduler, "workers": workers}, json=json, quiet=quiet)
+    request = commands.runs.request_of(scenario, options, settings, module, of_sweep=True)
+    how = {"scheduler": scheduler, "workers": workers}
+    commands.runs.sweep_and_keep(request, output, how, json=json, quiet=quiet)
 
 
 Store = Annotated[Path, typer.Argument(metavar="STORE", help="A store made by sweep, or by simulate(..., store=...).")]
@@ -184,14 +180,11 @@ def resume(
     nonholo resume sweep.zarr --workers 4
     nonholo resume sweep.zarr --members 10000
     """
-    from nonholo import ensembles, io
-    from nonholo.cli.commands._sweeps import continue_and_report, resume_sweep
-
     how = {"scheduler": scheduler, "workers": workers, "members": members, "trust": trust}
-    if io.format_of(store) == io.SWEEP_FORMAT:
-        resume_sweep(store, module, how, json=json)
+    if io.places.format_of(store) == io.places.SWEEP_FORMAT:
+        commands.runs.resume_sweep(store, module, how, json=json)
         return
-    continue_and_report(store, module, functools.partial(ensembles.resume, store, **how), json=json)
+    commands.runs.continue_and_report(store, module, functools.partial(nonholo.resume, store, **how), json=json)
 
 
 def extend(
@@ -204,10 +197,7 @@ def extend(
 
     nonholo extend run.zarr --steps 1000000
     """
-    from nonholo import io, simulation
-    from nonholo.cli.commands._sweeps import continue_and_report
-
-    if io.format_of(store) == io.SWEEP_FORMAT:
+    if io.places.format_of(store) == io.places.SWEEP_FORMAT:
         again = f"nonholo info {store} --scenario > more.toml; nonholo sweep more.toml --set run.steps=..."
         leave(f"'{store}' holds a sweep, whose members are not extended. Run it again, longer: {again}", USAGE)
-    continue_and_report(store, module, functools.partial(simulation.extend, store, steps), json=json)
+    commands.runs.continue_and_report(store, module, functools.partial(nonholo.extend, store, steps), json=json)

@@ -3,12 +3,14 @@
 import contextlib
 import os
 import sys
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from nonholo import io
+from nonholo.cli import screen
 from nonholo.cli.commands.run import Json, Overwrite
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, store_errors
 
@@ -27,29 +29,25 @@ def info(
     nonholo info runs/suslov-001.zarr
     nonholo info runs/suslov-001.zarr --scenario > again.toml
     """
-    from nonholo.cli.screen.stores import show_provenance, show_standing, show_sweep_standing
-    from nonholo.ensembles.stores import attributes_of
-    from nonholo.io import SWEEP_FORMAT, format_of, load_orbit, read_attributes, standing
-
-    is_sweep = format_of(store) == SWEEP_FORMAT
+    is_sweep = _is_sweep(store)
     with store_errors(USAGE):
-        attributes = attributes_of(store) if is_sweep else read_attributes(store)
+        attributes = io.metadata.read_attributes(store, io.places.SWEEP_FORMAT if is_sweep else io.places.FORMAT)
     if scenario:
         if "scenario" not in attributes:
             leave("This store was not made from a scenario.", FAILED)
         typer.echo(attributes["scenario"], nl=False)
         return
     if is_sweep:
-        show_sweep_standing(store, attributes, json=json)
+        screen.report.show_sweep_standing(store, attributes, json=json)
         return
-    if partly := standing(store):
-        show_standing(store, attributes, partly, json=json)
+    if partly := io.orbits.standing(store):
+        screen.report.show_standing(store, attributes, partly, json=json)
         return
     try:
-        orbit, failure = load_orbit(store), None
+        orbit, failure = io.load_orbit(store), None
     except (OSError, ValueError) as caught:
         orbit, failure = None, caught
-    show_provenance(store, attributes, orbit, json=json)
+    screen.report.show_provenance(store, attributes, orbit, json=json)
     if failure:
         leave(f"Its orbit cannot be loaded. {failure}", FAILED)
 
@@ -72,16 +70,14 @@ def export(
     nonholo export runs/sleigh-001.zarr -o sleigh.csv
     nonholo export run.zarr --every 100 | head
     """
-    from nonholo.io import SWEEP_FORMAT, check_file, format_of, read_attributes, store_to_csv
-
-    is_sweep = format_of(store) == SWEEP_FORMAT
+    is_sweep = _is_sweep(store)
     with store_errors(USAGE):
         if is_sweep and every != 1:
             raise ValueError("`--every` thins the states of a run. Got it for a sweep. Leave it out.")
         if not is_sweep:
-            read_attributes(store)
+            io.metadata.read_attributes(store)
         if output:
-            check_file(output, overwrite=overwrite)
+            io.places.check_file(output, overwrite=overwrite)
     with store_errors(FAILED), reporting_warnings(), _ending_with_the_reader():
         if is_sweep:
             from nonholo.ensembles import sweep_to_csv
@@ -89,9 +85,13 @@ def export(
             sweep_to_csv(store, output or sys.stdout, overwrite=overwrite)
         else:
             shown = output is not None and sys.stderr.isatty()
-            store_to_csv(store, output or sys.stdout, every=every, overwrite=overwrite, progress=shown)
+            io.store_to_csv(store, output or sys.stdout, every=every, overwrite=overwrite, progress=shown)
     if output:
         typer.echo(output)
+
+
+def _is_sweep(store: Path) -> bool:
+    return io.places.format_of(store) == io.places.SWEEP_FORMAT
 
 
 @contextlib.contextmanager
@@ -140,21 +140,19 @@ def plot(
     nonholo plot crossings.zarr --kind section --x body_velocity.0 --y momentum.1
     nonholo plot sweep.zarr --color outcome --x body.a --y run.time_step
     """
-    from nonholo import io
-    from nonholo.cli.screen.pictures import OVERVIEW, beside, draw_stored_sweep
-
+    pictures = screen.pictures
     if output is not None:
         with store_errors(USAGE):
-            io.check_file(output, overwrite=overwrite, where="nonholo plot -o")
-    path, look = output or beside(store, "gif" if gif else "png"), _look(title, size, dark)
-    if io.format_of(store) == io.SWEEP_FORMAT:
-        if gif or kind != OVERVIEW:
+            io.places.check_file(output, overwrite=overwrite, where="nonholo plot -o")
+    path, look = output or pictures.beside(store, "gif" if gif else "png"), _look(title, size, dark)
+    if _is_sweep(store):
+        if gif or kind != pictures.OVERVIEW:
             leave("A sweep has one kind of picture, its map. Leave --kind and --gif out.", USAGE)
-        paths = draw_stored_sweep(store, path, color, x, y, dpi=dpi, **look)
+        paths = pictures.draw_stored_sweep(store, path, color, x, y, dpi=dpi, **look)
     else:
         _check_kind(kind, gif, color, x or y)
         names = {"across": x, "up": y} if kind == "section" else {}
-        paths = _draw_run(store, path, look, gif=gif, kind=kind, dpi=dpi, **names)
+        paths = pictures.draw_stored_run(store, path, look, gif=gif, kind=kind, dpi=dpi, **names)
     if not any(paths):
         raise typer.Exit(FAILED)
     typer.echo("\n".join(filter(None, paths)))
@@ -162,13 +160,12 @@ def plot(
 
 def _check_kind(kind: str, gif: bool, color: str | None, axis: str | None) -> None:
     """Refuse options that do not belong to this kind of picture of a run."""
-    from nonholo.cli.screen.pictures import ALL, OVERVIEW, kinds
-
-    if kind not in (names := [*kinds(), ALL]):
+    pictures = screen.pictures
+    if kind not in (names := [*pictures.kinds(), pictures.ALL]):
         leave(f"--kind must be one of {', '.join(names)}. Got '{kind}'.", USAGE)
     if color or (axis and kind != "section"):
         leave("--color, --x and --y are for the store of a sweep; --x and --y for --kind section too.", USAGE)
-    if gif and kind != OVERVIEW:
+    if gif and kind != pictures.OVERVIEW:
         leave("--gif is a separate kind. Leave --kind out.", USAGE)
 
 
@@ -183,19 +180,3 @@ def _look(title: str | None, size: str | None, dark: bool | None) -> dict[str, A
         if len(look["size"]) != 2 or not all(1 <= side <= 100 for side in look["size"]):
             leave(f"--size must be width and height in inches, 1 to 100, as 16x9. Got '{size}'.", USAGE)
     return {name: value for name, value in look.items() if value is not None}
-
-
-def _draw_run(store: Path, path: Path, look: dict[str, Any], *, gif: bool, **options: Any) -> Collection[str | None]:
-    """Draw a picture or the animation of a run, and return the paths of what was drawn."""
-    from nonholo import io
-    from nonholo.base.progress import progress_bar
-    from nonholo.cli.screen.pictures import ALL, draw, draw_all
-
-    with store_errors(USAGE):
-        io.read_attributes(store)
-    progress = sys.stderr.isatty()
-    with store_errors(FAILED), progress_bar("reading", progress):
-        orbit = io.load_orbit(store)
-    if options["kind"] == ALL:
-        return draw_all(orbit, path, progress=progress, look=look, dpi=options["dpi"])
-    return draw(orbit, None if gif else path, path if gif else None, progress=progress, look=look, **options).values()

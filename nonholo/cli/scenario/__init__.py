@@ -1,1 +1,5 @@
-"""Scenarios as files: what they may say, reading them, saying what is wrong."""
+"""Scenarios as files: what they may say, reading them, saying what is wrong; each module loads on first use."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

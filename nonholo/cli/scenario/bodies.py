@@ -16,7 +16,7 @@ from pydantic import Field, WithJsonSchema, create_model, model_validator
 
 import nonholo
 from nonholo.base.checks import needs
-from nonholo.cli.scenario.sections import Numbers, Section, checked_by, suggestion
+from nonholo.cli.scenario.sections import Numbers, Section, checked_by, meanings, suggestion, summary
 
 if TYPE_CHECKING:
     from nonholo.groups import AbstractMatrixGroup
@@ -24,30 +24,11 @@ if TYPE_CHECKING:
 Maker = Callable[..., Any]
 _NAME = re.compile(r"(SO|SE|Translations)\((\d{1,4})\)")
 _HOW = 'must be a name such as "SO(4)", "SE(3)" or "SE(2) x Translations(2)", or a table with a basis'
-_ENTRY = re.compile(r"^    (\w+): (.*(?:\n {8,}.*)*)", re.MULTILINE)
 
 
 def arguments(make: Maker) -> dict[str, inspect.Parameter]:
     """Return the arguments of a class or a function by name."""
     return dict(inspect.signature(make).parameters)
-
-
-def meanings(make: Maker) -> dict[str, str]:
-    """Return what a docstring says of each argument.
-
-    Example:
-        >>> import nonholo
-        >>> meanings(nonholo.Gravity)["point"]
-        'x, n body coordinates.'
-    """
-    _, _, entries = (inspect.getdoc(make) or "").partition("Args:\n")
-    entries, *_ = entries.split("\n\n")
-    return {name: " ".join(text.split()) for name, text in _ENTRY.findall(entries)}
-
-
-def summary(make: Maker) -> str:
-    """Return the first line of a docstring."""
-    return (inspect.getdoc(make) or "").partition("\n")[0]
 
 
 class GroupTable(Section):

@@ -1,9 +1,14 @@
-"""Reading a scenario: a file, a built-in name or an example, changed by options, checked as a whole; and writing it."""
+"""Reading a scenario: a file, a built-in name or an example, changed by options, checked as a whole; and writing it.
+
+Commented scenarios of bodies without a file are made from signatures and docstrings.
+"""
 
 import contextlib
+import inspect
 import json
 import operator
 import re
+import textwrap
 import tomllib
 from collections.abc import Iterator
 from importlib import resources
@@ -14,14 +19,13 @@ from pydantic import ValidationError
 
 from nonholo.base.limits import read_text
 from nonholo.cli.scenario.bodies import body_table, import_own, is_example, kinds, nearest_kind, summary
-from nonholo.cli.scenario.forces import read_table
-from nonholo.cli.scenario.motion import Run, Scenario, Start, complete_ready, moving
-from nonholo.cli.scenario.problems import Problem, ScenarioError, problem, problems_of, split_core
-from nonholo.cli.scenario.sections import Section, suggestion
+from nonholo.cli.scenario.motion import Output, Run, Scenario, Start, complete_ready, moving, read_table
+from nonholo.cli.scenario.sections import Problem, ScenarioError, Section, problem, problems_of, split_core, suggestion
 from nonholo.groups import components_of
 
 Model = TypeVar("Model", bound=Section)
 Document = dict[str, Any]
+_WIDTH = 110  # of a commented scenario
 _DEEPEST = 32  # arrays and tables in each other
 
 
@@ -271,3 +275,56 @@ def assign(document: Document, setting: Setting) -> None:
         if not isinstance(document, dict):
             raise ScenarioError([Problem(setting.option, setting.key, f"{table} is a value, not a table")])
     document[last] = setting.value
+
+
+def template(kind: str) -> str:
+    """Return a scenario of a kind of body: every key with its default and its meaning.
+
+    Raises:
+        KeyError: There is no such kind.
+
+    Example:
+        >>> template("ArrowheadTop").splitlines()[2:6]
+        ['title = "ArrowheadTop"', '', '[body]', 'kind = "ArrowheadTop"']
+    """
+    table = body_table(kind)
+    about = inspect.getdoc(table.make) or ""
+    heading = _comment(about.split("\n\n")[0])
+    whole: dict[str, Any] = {"body": {"kind": kind}}
+    with contextlib.suppress(ValueError):  # it needs values, or cannot be made: running the template says why
+        complete_ready(whole)
+    starts = whole.get("start", {})
+    parts = [
+        heading,
+        f"title = {json.dumps(kind)}",
+        _section("body", table, {"kind": kind}),
+        _section("start", Start, starts, as_comments=bool(starts)),
+        _section("run", Run, whole.get("run", {})),
+        _section("output", Output, {}),
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def _section(name: str, table: type[Section], values: dict[str, Any], *, as_comments: bool = False) -> str:
+    """Return a table: keys with a value, its own or by default, then as comments those without; or all as comments."""
+    lines = [f"# [{name}]  # the start of the example, unless this one is given" if as_comments else f"[{name}]"]
+    for key, field in table.model_fields.items():
+        value = values.get(key, None if field.is_required() else field.default)
+        meaning = field.description or ""
+        if value is None:
+            lines.append(_entry(f"# {key} = ...", f"needed: {meaning}" if field.is_required() else meaning))
+        else:
+            lines.append(_entry(f"{'# ' if as_comments else ''}{key} = {as_toml(value)}", meaning))
+    return "\n".join(lines)
+
+
+def _entry(line: str, meaning: str) -> str:
+    """Return a line with its meaning behind it or, where that is long, above it."""
+    if not meaning:
+        return line
+    whole = f"{line}  # {meaning}"
+    return whole if len(whole) <= _WIDTH else f"{_comment(meaning)}\n{line}"
+
+
+def _comment(text: str) -> str:
+    return textwrap.fill(" ".join(text.split()), _WIDTH, initial_indent="# ", subsequent_indent="# ")

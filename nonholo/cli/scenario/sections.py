@@ -1,16 +1,45 @@
-"""The parts of every table of a scenario: plain numbers, no unknown keys, one of several keys, a table by its kind."""
+"""The parts of every table of a scenario: plain numbers, no unknown keys, a table by its kind; problems in words.
+
+Each problem comes with its file or option and its key path.
+"""
 
 import difflib
+import inspect
 import math
+import re
+import reprlib
 from collections.abc import Callable, Iterable, Iterator
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, WithJsonSchema, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
+Finite = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Count = Annotated[int, Field(gt=0, le=10**15)]
 UNKNOWN = "unknown_key"
+_CORE = re.compile(r"`[\w.]+\((\w+)=\.\.\.\)` (.*)", re.DOTALL)
+_TEXTS = {"missing": "is missing", "model_type": "must be a table", "model_attributes_type": "must be a table"}
+Key = tuple[int | str, ...]
+_ENTRY = re.compile(r"^    (\w+): (.*(?:\n {8,}.*)*)", re.MULTILINE)
+
+
+def meanings(make: Callable[..., Any]) -> dict[str, str]:
+    """Return what a docstring says of each argument or attribute.
+
+    Example:
+        >>> import nonholo
+        >>> meanings(nonholo.Gravity)["point"]
+        'x, n body coordinates.'
+    """
+    _, *entries = re.split(r"(?:Args|Attributes):\n", inspect.getdoc(make) or "", maxsplit=1)
+    entries, *_ = "".join(entries).split("\n\n")
+    return {name: " ".join(text.split()) for name, text in _ENTRY.findall(entries)}
+
+
+def summary(make: Callable[..., Any]) -> str:
+    """Return the first line of a docstring."""
+    return (inspect.getdoc(make) or "").partition("\n")[0]
 
 
 def suggestion(name: str, names: Iterable[str], most: int = 1) -> str:
@@ -58,9 +87,15 @@ Numbers = Annotated[Any, checked_by(check_numbers), WithJsonSchema({"type": "num
 
 
 class Section(BaseModel):
-    """A table of a scenario: no unknown keys, no silent conversions. The string below a key describes it."""
+    """A table of a scenario: no unknown keys, no silent conversions. Its docstring describes the keys."""
 
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        own = cls.__annotations__
+        own |= {x: Annotated[own[x], Field(description=text)] for x, text in meanings(cls).items() if x in own}
+        cls.__doc__ = summary(cls)
 
     @model_validator(mode="wrap")
     @classmethod
@@ -103,3 +138,52 @@ def by_kind(table_of: Callable[[str], type[Section]], remedy: Callable[[str], st
         return model.model_validate(table)
 
     return AfterValidator(read)
+
+
+class Problem(NamedTuple):
+    """One thing wrong, and where it was said: a file or an option, and a key path."""
+
+    source: str
+    key: str
+    text: str
+
+    def __str__(self) -> str:
+        return ": ".join(part for part in self if part)
+
+
+class ScenarioError(Exception):
+    """A scenario that cannot be run, with everything that is wrong with it."""
+
+    def __init__(self, problems: list[Problem]) -> None:
+        super().__init__("\n".join(map(str, problems)))
+        self.problems = problems
+
+
+def problems_of(failure: ValidationError, source: str, options: dict[str, str], table: Key = ()) -> list[Problem]:
+    """Return the problems of a validation, all within a table; `options`: key paths of the command line."""
+    entries = [_problem(dict(entry), table) for entry in failure.errors(include_url=False)]
+    return [problem(key, text, source, options) for key, text in entries]
+
+
+def problem(key: str, text: str, source: str, options: dict[str, str]) -> Problem:
+    """Return what is wrong at a key path, with the option that gave it, or the file."""
+    for path, option in options.items():
+        if key == path or key.startswith((f"{path}.", f"{path}[")) or path.startswith(f"{key}."):
+            return Problem(option, key, text)
+    return Problem(source, key, text)
+
+
+def _problem(entry: dict[str, Any], table: Key) -> tuple[str, str]:
+    key = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in (*table, *entry["loc"])).lstrip(".")
+    if entry["type"] == "value_error":
+        return split_core(key, str(entry["ctx"]["error"]))
+    if entry["type"] == UNKNOWN:
+        return key, entry["msg"]
+    text = _TEXTS.get(entry["type"]) or entry["msg"].replace("Input should", "must", 1)
+    return key, text if entry["type"] == "missing" else f"{text}. Got {reprlib.repr(entry['input'])}"
+
+
+def split_core(section: str, message: str) -> tuple[str, str]:
+    """Return the key path of the argument that an error of the library names, and what it says; else the section."""
+    match = _CORE.fullmatch(message)
+    return (f"{section}.{match[1]}", match[2]) if match else (section, message)

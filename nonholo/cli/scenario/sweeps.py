@@ -14,13 +14,21 @@ import numpy as np
 from pydantic import AliasChoices, Field, model_validator
 
 import nonholo
-from nonholo.base.checks import is_integer, shown
 from nonholo.base.limits import bounded_count
 from nonholo.cli.scenario import files
 from nonholo.cli.scenario.bodies import arguments, is_example
 from nonholo.cli.scenario.motion import AbstractScenario, Start, is_ready
-from nonholo.cli.scenario.problems import ScenarioError, problem
-from nonholo.cli.scenario.sections import Count, Section, by_kind, checked_by, is_finite, suggestion
+from nonholo.cli.scenario.sections import (
+    Count,
+    Finite,
+    ScenarioError,
+    Section,
+    by_kind,
+    check_numbers,
+    checked_by,
+    problem,
+    suggestion,
+)
 from nonholo.ensembles import REDUCTIONS, STARTS, component_of, force_numbers, start_component
 from nonholo.ensembles.distributions import DISTRIBUTIONS
 
@@ -28,8 +36,6 @@ if TYPE_CHECKING:
     from nonholo.ensembles import AbstractDistribution
     from nonholo.ensembles.designs import Grid, RandomDesign
 
-_RANGE = "{from = 0.1, to = 10.0, count = 50}"
-_SPACINGS = ("linear", "logarithmic")
 _SIZES = {"size": "vectors", "n": "matrices"}  # what a distribution calls the length of what it draws
 _WORDS = {re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower(): make for name, make in DISTRIBUTIONS.items()}
 TABLES = ("body", "start", "run", "forces")
@@ -37,9 +43,21 @@ Rng = Annotated[int, Field(ge=0, lt=2**63, validation_alias=AliasChoices("rng", 
 Value = TypeVar("Value")
 
 
-def is_range(value: Any) -> bool:
-    """Return whether values of a grid are a range, whose count can be scaled."""
-    return isinstance(value, dict)
+class Range(Section):
+    """Values along one axis of a grid, from one bound to the other."""
+
+    begin: Finite = Field(alias="from")
+    end: Finite = Field(alias="to")
+    count: Count
+    spacing: Literal["linear", "logarithmic"] = "linear"
+
+    @model_validator(mode="after")
+    def _can_be_made(self) -> Self:
+        bounded_count("count", self.count, 64.0, "Pass how many values.")
+        if self.spacing == "logarithmic" and not min(self.begin, self.end) > 0:
+            got = f"{self.begin:g} and {self.end:g}"
+            raise ValueError(f"must have positive bounds for logarithmic spacing. Got {got}")
+        return self
 
 
 def along(value: Any) -> np.ndarray:
@@ -49,47 +67,15 @@ def along(value: Any) -> np.ndarray:
         >>> along({"from": 1.0, "to": 100.0, "count": 3, "spacing": "logarithmic"})
         array([  1.,  10., 100.])
     """
-    return _range(value) if is_range(value) else _list(value)
-
-
-def _range(table: dict[str, Any]) -> np.ndarray:
-    _check_keys(table, ["from", "to", "count", "spacing"], ["from", "to", "count"], _RANGE)
-    begin, end, spacing = table["from"], table["to"], table.get("spacing", "linear")
-    if not (_is_number(begin) and _is_number(end)):
-        raise ValueError(f"must have numbers at from and to. Got {begin!r} and {end!r}")
-    size = _count(table["count"])
-    if spacing not in _SPACINGS:
-        raise ValueError(f'must have spacing "linear" or "logarithmic". Got {spacing!r}')
-    if spacing == "logarithmic" and not (begin > 0 and end > 0):
-        raise ValueError(f"must have positive bounds for logarithmic spacing. Got {begin} and {end}")
-    return (np.geomspace if spacing == "logarithmic" else np.linspace)(begin, end, size)
-
-
-def _count(value: Any) -> int:
-    if not is_integer(value) or value < 1:
-        raise ValueError(f"must have a positive integer as count. Got {shown(value)}")
-    try:
-        return bounded_count("count", value, 64.0, "Pass how many values.")
-    except ValueError as failure:
-        raise ValueError(f"must have a count that is possible: {failure}") from None
-
-
-def _list(value: Any) -> np.ndarray:
-    requirement = f"must be a list of numbers, vectors or matrices of one shape, or a range such as {_RANGE}"
-    try:
-        if isinstance(value, list) and value and _are_numbers(value):
+    if isinstance(value, dict):
+        own = Range.model_validate(value)
+        return (np.geomspace if own.spacing == "logarithmic" else np.linspace)(own.begin, own.end, own.count)
+    requirement = "must be a list of numbers, vectors or matrices of one shape, or a range such as"
+    with contextlib.suppress(ValueError):
+        if isinstance(value, list) and value:
+            check_numbers(value)
             return np.array(value, dtype=float)
-    except ValueError:
-        pass
-    raise ValueError(f"{requirement}. Got {value!r}")
-
-
-def _are_numbers(value: Any) -> bool:
-    return all(map(_are_numbers, value)) if isinstance(value, list) else _is_number(value)
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and is_finite(value)
+    raise ValueError(f"{requirement} {{from = 0.1, to = 10.0, count = 50}}. Got {value!r}")
 
 
 def distribution_of(table: Any) -> "AbstractDistribution":
@@ -103,7 +89,8 @@ def distribution_of(table: Any) -> "AbstractDistribution":
     """
     word = _word_in(table)
     own, sizes = _arguments(word)
-    _check_keys(table, [word, "size"] if sizes else [word], [word], f"{{{word} = ...}}")
+    if unknown := table.keys() - {word, *(["size"] if sizes else [])}:
+        raise ValueError(f"must have the keys of {{{word} = ...}}. Got a table with {', '.join(unknown)}")
     values = [table[word]] if len(own) == 1 else table[word]
     if not (isinstance(values, list) and len(values) == len(own)):
         raise ValueError(f"must be {word} = [{', '.join(own)}]. Got {values!r}")
@@ -137,13 +124,6 @@ def needs_size(table: Any) -> bool:
     return any(argument.default is argument.empty for argument in each)
 
 
-def _check_keys(table: dict[str, Any], keys: list[str], necessary: list[str], example: str) -> None:
-    unknown, missing = [key for key in table if key not in keys], [key for key in necessary if key not in table]
-    if unknown or missing:
-        fault = f"without {', '.join(missing)}" if missing else f"with {', '.join(unknown)}"
-        raise ValueError(f"must have the keys of {example}. Got a table {fault}")
-
-
 class Values(Section, Generic[Value]):
     """The varied keys, by table and key: values along the axes of a grid, or distributions."""
 
@@ -160,22 +140,25 @@ class Values(Section, Generic[Value]):
 
 
 class GridDesign(Section):
-    """Every combination of values along axes; with `members`, about this many of them."""
+    """Every combination of values along axes; with `members`, about this many of them.
+
+    Attributes:
+        members: About this many: counts of ranges are scaled alike.
+        rng: The integer that random numbers are made of.
+        values: The varied keys, by path, and their values: a list, or a range with a count.
+    """
 
     kind: Literal["grid"]
     members: Count | None = None
-    """About this many: counts of ranges are scaled alike."""
     rng: Rng = 0
-    """The integer that random numbers are made of."""
     values: Values[Annotated[Any, checked_by(along)]]
-    """The varied keys, by path, and their values: a list, or a range with a count."""
 
     def with_members(self) -> Self:
         """Return the design with the counts of its ranges multiplied by one factor, for the members asked for."""
         if self.members is None:
             return self
         values = self.values.model_dump()
-        ranges = [table[name] for table in values.values() for name in table if is_range(table[name])]
+        ranges = [table[name] for table in values.values() for name in table if isinstance(table[name], dict)]
         if not ranges:
             raise ValueError("needs a range with a count to scale")
         whole = math.prod(len(along(value)) for table in values.values() for value in table.values())
@@ -190,15 +173,18 @@ class GridDesign(Section):
 
 
 class RandomMembers(Section):
-    """Members drawn from distributions."""
+    """Members drawn from distributions.
+
+    Attributes:
+        members: How many.
+        rng: The integer that random numbers are made of.
+        values: The varied keys, by path, and their distributions.
+    """
 
     kind: Literal["random"]
     members: Count
-    """How many."""
     rng: Rng = 0
-    """The integer that random numbers are made of."""
     values: Values[Annotated[Any, checked_by(distribution_of)]]
-    """The varied keys, by path, and their distributions."""
 
     def with_members(self) -> Self:
         """Return the design itself: it has the members asked for."""
@@ -213,31 +199,32 @@ class RandomMembers(Section):
 DESIGNS: dict[str, type[Section]] = {"grid": GridDesign, "random": RandomMembers}
 
 
-def _check_reduction(name: str) -> None:
-    if name not in REDUCTIONS:
-        raise ValueError(f"must be one of {', '.join(REDUCTIONS)}. Got {name!r}")
-
-
 class Keep(Section):
-    """The quantities kept of each member."""
+    """The quantities kept of each member.
 
-    reductions: list[Annotated[str, checked_by(_check_reduction)]] = Field(default_factory=lambda: ["final_state"])
-    """Names of the quantities."""
+    Attributes:
+        reductions: Names of the quantities.
+        poses: Compute them: for final_state, and for limit_angle of a top.
+    """
+
+    reductions: list[Literal[tuple(REDUCTIONS)]] = Field(default_factory=lambda: ["final_state"])  # type: ignore[valid-type]
     poses: bool = True
-    """Compute them: for final_state, and for limit_angle of a top."""
 
 
 class SweepOutput(Section):
-    """The picture beside the store: a quantity by color, over one or two values of the design."""
+    """The picture beside the store: a quantity by color, over one or two values of the design.
+
+    Attributes:
+        plot: Draw a picture beside the store.
+        color: The quantity that it shows.
+        x: The key along the horizontal axis, by its path.
+        y: The key along the vertical axis.
+    """
 
     plot: bool = True
-    """Draw a picture beside the store."""
     color: str | None = None
-    """The quantity that it shows."""
     x: str | None = None
-    """The key along the horizontal axis, by its path."""
     y: str | None = None
-    """The key along the vertical axis."""
 
 
 class SweepScenario(AbstractScenario):

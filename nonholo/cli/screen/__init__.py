@@ -1,1 +1,5 @@
-"""The view of the user: errors in words, figures, pictures."""
+"""The view of the user: errors in words, figures, pictures; each module loads on first use."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

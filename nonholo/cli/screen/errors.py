@@ -9,6 +9,8 @@ from typing import NoReturn
 
 import typer
 
+from nonholo.cli import scenario
+
 FAILED = 1
 USAGE = 2
 
@@ -44,11 +46,9 @@ def reporting_warnings() -> Iterator[None]:
 @contextlib.contextmanager
 def scenario_errors() -> Iterator[None]:
     """Report everything that is wrong with a scenario."""
-    from nonholo.cli.scenario.problems import ScenarioError
-
     try:
         yield
-    except ScenarioError as failure:
+    except scenario.sections.ScenarioError as failure:
         count = len(failure.problems)
         heading = "The scenario cannot be run" + (f", {count} problems:" if count > 1 else ":")
         leave("\n".join([heading, *(f"  {problem}" for problem in failure.problems)]), USAGE)

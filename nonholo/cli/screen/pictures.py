@@ -8,7 +8,7 @@ import functools
 import inspect
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,8 +16,10 @@ import nonholo
 from nonholo.base.progress import progress_bar
 from nonholo.cli.scenario.files import parse_toml, table_in
 from nonholo.cli.scenario.sweeps import library_name
-from nonholo.cli.screen.errors import FAILED, store_errors, warn
-from nonholo.io import complete_file
+from nonholo.cli.screen.errors import FAILED, USAGE, store_errors, warn
+from nonholo.ensembles import component_name
+from nonholo.io.metadata import read_attributes
+from nonholo.io.places import SWEEP_FORMAT, complete_file
 
 if TYPE_CHECKING:
     import numpy as np
@@ -170,8 +172,6 @@ def _flow(orbit: Any) -> Any:
 
 def draw_sweep(sweep: "xarray.Dataset", picture: Path, *names: str | None, dpi: float = 150, **look: Any) -> str | None:
     """Draw a quantity over the design; return the path of the picture, None if there is none."""
-    from nonholo.ensembles import component_name
-
     own: Any = [None if path is None else component_name(library_name(path)) for path in names]
     with _at_no_cost():
         figure: Any = nonholo.plot.sweep_map(sweep, *own, **look).axes.figure
@@ -179,17 +179,29 @@ def draw_sweep(sweep: "xarray.Dataset", picture: Path, *names: str | None, dpi: 
     return None
 
 
+def draw_stored_run(
+    store: Path, path: Path, look: dict[str, Any], *, gif: bool, **options: Any
+) -> Collection[str | None]:
+    """Draw a picture or the animation of a run, and return the paths of what was drawn."""
+    with store_errors(USAGE):
+        read_attributes(store)
+    progress = sys.stderr.isatty()
+    with store_errors(FAILED), progress_bar("reading", progress):
+        orbit = nonholo.load_orbit(store)
+    if options["kind"] == ALL:
+        return draw_all(orbit, path, progress=progress, look=look, dpi=options["dpi"])
+    paths = (None, path) if gif else (path, None)
+    return draw(orbit, *paths, progress=progress, look=look, **options).values()
+
+
 def draw_stored_sweep(
     store: Path, picture: Path, color: str | None, x: str | None, y: str | None, **options: Any
 ) -> tuple[str | None]:
     """Draw the sweep of a store: the given quantities, or those of its scenario."""
-    from nonholo.ensembles import load_sweep
-    from nonholo.ensembles.stores import attributes_of
-
     with store_errors(FAILED):
-        result = load_sweep(store)
+        result = nonholo.load_sweep(store)
     if not (color or x or y):
         with contextlib.suppress(ValueError):  # a store may keep a text that is no scenario
-            output = table_in(parse_toml(attributes_of(store).get("scenario", "")), "output")
+            output = table_in(parse_toml(read_attributes(store, SWEEP_FORMAT).get("scenario", "")), "output")
             color, x, y = (output.get(name) for name in ("color", "x", "y"))
     return (draw_sweep(result, picture, color, x, y, **options),)

@@ -25,7 +25,7 @@ from nonholo.base.checks import path as checked_path
 from nonholo.base.limits import within_memory
 from nonholo.base.types import Float
 from nonholo.groups import SE, SO
-from nonholo.io import check_file, complete_file
+from nonholo.io.places import check_file, complete_file
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plot import theme
 from nonholo.plot.animation import _in_plane, _in_space

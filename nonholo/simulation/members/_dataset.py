@@ -33,7 +33,7 @@ def ensemble_to_dataset(ensemble: Ensemble, none: Any) -> xarray.Dataset:
     labels: dict[str, Any] = {str(x): rows for x, rows in coordinates.items() if x not in ("step", "time")}
     if ensemble.save_every is not None:
         labels["step"] = ensemble.save_every * np.arange(ensemble.time.shape[1])
-    common = io.attributes(none)
+    common = io.provenance.attributes(none)
     del common["outcome"]
     attributes = {**common, "format": "nonholo.ensemble", "steps": ensemble.steps}
     return xarray.Dataset(variables, labels, attributes).set_coords("time")
@@ -44,11 +44,11 @@ def _of_bodies(ensemble: Ensemble) -> dict[str, Any]:
     system, has_poses = ensemble.members.discrete.system, ensemble.canonical_pose is not None
     variables: dict[str, Any] = {}
     for name in ("energy", "restricted_momentum"):
-        if io.is_known(system, name, posed=has_poses, discrete=True):
-            axes, labels = io.labels_of(system, name)
+        if io.datasets.is_known(system, name, posed=has_poses, discrete=True):
+            axes, labels = io.datasets.labels_of(system, name)
             variables[name] = (*_EACH, *axes), getattr(ensemble, name), labels
     if has_poses:
-        poses = io.separate_variables(system.group, ensemble.configuration)
+        poses = io.datasets.separate_variables(system.group, ensemble.configuration)
         variables |= {name: ((*_EACH, *axes), values, labels) for name, (axes, values, labels) in poses.items()}
     return variables
 

@@ -8,6 +8,7 @@ import datetime
 import glob
 import json
 import os
+import re
 import shutil
 import socket
 import uuid
@@ -17,10 +18,25 @@ from typing import TextIO
 
 from filelock import FileLock, Timeout
 
-from nonholo.base.checks import path as checked_path
-from nonholo.base.checks import printable
+from nonholo.base import checks
+from nonholo.base.checks import error, printable
 
+FORMAT, SWEEP_FORMAT = "nonholo.orbit", "nonholo.sweep"
+SCHEMAS = {FORMAT: 5, SWEEP_FORMAT: 4}
+"""Written by this version, and read. Those below are of before 0.3.0, from which on later versions read stores."""
+WHERE = "load_orbit(path=...)"
 _PATIENCE = 0.2  # seconds to wait for who only asks whether the store is locked
+_NETCDF, _CSV = "use orbit.to_dataset().to_netcdf(path)", "use orbit.to_csv(path)"
+_OTHER_FORMATS = {
+    **dict.fromkeys((".nc", ".nc4", ".netcdf", ".h5", ".hdf5"), _NETCDF),
+    **dict.fromkeys((".csv", ".txt"), _CSV),
+    **dict.fromkeys((".parquet", ".feather", ".xlsx"), "use orbit.to_pandas()"),
+    **dict.fromkeys((".png", ".svg", ".pdf"), "use orbit.plot(path)"),
+    **dict.fromkeys((".gif", ".json", ".toml", ".npy", ".npz", ".mat", ".pkl", ".zip"), ""),
+}
+"""Suffixes that no store may have, and what writes such files."""
+_OWN_RUN = r"run/(?:lock|lock\.json|blocks/(?:start|\d+)\.json)"
+_OWN = re.compile(rf"(?:[^/]+/)*(?:zarr\.json|c(?:/\d+)*|\.[^/]+\.partial)|{_OWN_RUN}")
 
 
 @contextlib.contextmanager
@@ -169,8 +185,85 @@ def check_file(target: str | Path | TextIO, *, overwrite: bool, where: str = "to
     """Refuse, in the name of `where`, a path that exists, unless it is a file that may be replaced."""
     if hasattr(target, "writelines"):
         return
-    path = checked_path(where, target)
+    path = checks.path(where, target)
     if path.exists() and not (overwrite and path.is_file()):
         how = "Choose another path"
         remedy = f"It is not a file. {how}." if overwrite else f"{how}, or pass overwrite=True (--overwrite)."
         raise FileExistsError(f"`{where}` must be new. Got '{path}', which exists. {remedy}")
+
+
+def check_assertions(where: str) -> None:
+    """Refuse to read or write a store where Python leaves assertions out: some assertions of zarr do work."""
+    if not __debug__:
+        got = "python -O or PYTHONOPTIMIZE, which leaves out assertions in which zarr does a part of its work"
+        raise error(where, "be run by Python with assertions", got, "Run it without -O, and unset PYTHONOPTIMIZE.")
+
+
+def format_of(path: str | Path) -> str | None:
+    """Return the format that a store claims to have; None if it has no readable one."""
+    try:
+        return json.loads((Path(path) / "zarr.json").read_text())["attributes"]["format"]
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return None
+
+
+def check_suffix(path: str | Path, where: str = "save_orbit(path=...)") -> None:
+    """Refuse, in the name of `where`, a path with the suffix of another format, and any where zarr does not work."""
+    check_assertions(where)
+    suffix = Path(path).suffix.lower()
+    if suffix in _OTHER_FORMATS:
+        store, how = f"Write a store: '{Path(path).with_suffix('.zarr')}'", _OTHER_FORMATS[suffix]
+        remedy = f"{store}, or {how}." if how and where.startswith("save_orbit") else f"{store}."
+        raise error(where, "be the path of a Zarr store, usually *.zarr", f"'{path}'", remedy)
+
+
+def check_target(path: str | Path, *, overwrite: bool = False, new: str | None = None) -> None:
+    """Refuse a path that exists, unless it is a store of an orbit that may be replaced, and one of another format.
+
+    Args:
+        path: Where the store shall be.
+        overwrite: Whether the caller asked to replace one.
+        new: In whose name, if it has no such argument.
+    """
+    check_suffix(path)
+    if not Path(path).exists():
+        remove_remains(Path(path).resolve())  # which may put back what a killed process was about to replace
+    if not Path(path).exists():
+        return
+    if new:
+        ways = f"nonholo.resume({str(path)!r}), nonholo resume, or sweep(..., resume=True) of a sweep"
+        raise _exists(path, f"Choose another path, or resume what is there: {ways}.", new)
+    if not overwrite:
+        raise _exists(path, "Choose another path, or pass overwrite=True (--overwrite) to replace it.")
+    if format_of(path) != FORMAT:
+        raise _exists(path, "It is not a store of an orbit, so it is not replaced. Choose another path.")
+    files = (file.relative_to(path).as_posix() for file in Path(path).rglob("*") if not file.is_dir())
+    if foreign := next((name for name in files if not _OWN.fullmatch(name)), None):
+        raise _exists(path, f"It holds '{foreign}', which is no part of a store, so it is not replaced.")
+    if owner := owner_of(Path(path)):
+        remedy = "so it is not replaced. Wait, or stop it."
+        raise BlockingIOError(f"The store '{path}' is being written by {owner}, {remedy}")
+
+
+def _exists(path: str | Path, remedy: str, where: str = "save_orbit(path=...)") -> FileExistsError:
+    return FileExistsError(f"`{where}` must be new. Got '{path}', which exists. {remedy}")
+
+
+def put_in_place(part: Path, target: Path, *, overwrite: bool = False, new: str | None = None) -> None:
+    """Rename a complete store to its path; an older one there is replaced only if asked (see `check_target`)."""
+    if not (overwrite and target.exists()):
+        try:
+            part.rename(target)
+            return
+        except OSError:
+            check_target(target, new=new)
+            raise
+    check_target(target, overwrite=True)  # once more, after the time that writing took
+    old = part.with_suffix(".old")  # which remove_remains knows
+    target.rename(old)
+    try:
+        part.rename(target)
+    except OSError:
+        old.rename(target)
+        raise
+    shutil.rmtree(old, ignore_errors=True)

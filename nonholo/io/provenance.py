@@ -23,6 +23,7 @@ from nonholo.base.compiled import way_of_kernels
 from nonholo.continuous import ContinuousFlow
 from nonholo.discrete import MeasuredMotion, discretize
 from nonholo.groups import SE, SO, AbstractMatrixGroup, MatrixGroup, ProductGroup, Translations
+from nonholo.io.places import FORMAT, SCHEMAS, WHERE
 from nonholo.orbit import AbstractMotion, AbstractOrbit
 from nonholo.systems import AbstractCoordinateDiscretization, AbstractSystem, Friction, Gravity, Linear, Slip, Spring
 
@@ -143,7 +144,6 @@ def _is_own(data: dict[str, Any]) -> bool:
 
 READY = "examples."
 """How stores call ready systems, before their names."""
-_WHERE = "load_orbit(path=...)"
 
 
 def restore_ready(name: str, parameters: dict[str, Any]) -> Any:
@@ -151,11 +151,11 @@ def restore_ready(name: str, parameters: dict[str, Any]) -> Any:
     with needs("jax", f"load_orbit(...) of nonholo.examples.{name}"):
         ready = importlib.import_module("nonholo.examples")
     if name not in ready.__all__ or not name.islower():
-        raise error(_WHERE, "hold a ready system of this version", repr(name), "Upgrade nonholo.")
+        raise error(WHERE, "hold a ready system of this version", repr(name), "Upgrade nonholo.")
     try:
         return getattr(ready, name)(**parameters).system
     except TypeError as failure:
-        raise error(_WHERE, f"hold parameters of nonholo.examples.{name}", str(failure), "Upgrade nonholo.") from None
+        raise error(WHERE, f"hold parameters of nonholo.examples.{name}", str(failure), "Upgrade nonholo.") from None
 
 
 class _Recorded(BaseModel):
@@ -185,16 +185,12 @@ def recorded_system(kind: str, parameters: dict[str, Any], group: Any) -> Any:
     except ValidationError as failure:
         problem = failure.errors()[0]
         got = f"{'.'.join(map(str, problem['loc']))}: {problem['msg'].removeprefix('Value error, ').rstrip('.')}"
-        raise error(_WHERE, "describe its system", got, "It was edited: run it again.") from None
+        raise error(WHERE, "describe its system", got, "It was edited: run it again.") from None
     with needs("jax", "load_orbit(...) of an orbit in coordinates"):
         room = importlib.import_module("nonholo.lagrange_dalembert")
     return room.RecordedSystem(record | ({} if group is None else {"group": group}), (kind, parameters))
 
 
-FORMAT = "nonholo.orbit"
-SWEEP_FORMAT = "nonholo.sweep"
-SCHEMA = 5
-"""Written by this version, and read. Those below 5 are of before 0.3.0, from which on later versions read stores."""
 _MOTIONS: dict[str, Callable[..., Any]] = {
     **dict.fromkeys(("Discretization", "CoordinateDiscretization", "GroupDiscretization"), discretize),
     "CoordinateFlow": lambda system: importlib.import_module("nonholo.lagrange_dalembert").CoordinateFlow(system),
@@ -229,7 +225,7 @@ def attributes(orbit: AbstractOrbit) -> dict[str, Any]:
     """Return everything but arrays that is needed to rebuild an orbit and to describe its making."""
     return {
         "format": FORMAT,
-        "schema": SCHEMA,
+        "schema": SCHEMAS[FORMAT],
         **identity_of(orbit.motion),
         "outcome": orbit.outcome.name,
         "save_every": orbit.save_every,
@@ -260,12 +256,12 @@ def restore_motion(attributes: dict[str, Any], motion: Any) -> Any:
     options = json.loads(attributes["motion"])
     kind, route = options.pop("kind"), options.pop("route", None)
     remedy = f"Pass load_orbit(path, discrete=...) with the {kind} that made this store."
-    system = system_of(attributes, _WHERE, remedy, missing_part(options))
+    system = system_of(attributes, WHERE, remedy, missing_part(options))
     if kind not in _MOTIONS:
-        raise error(_WHERE, "hold a motion of this version", repr(kind), "Upgrade nonholo.")
+        raise error(WHERE, "hold a motion of this version", repr(kind), "Upgrade nonholo.")
     motion_again = on_route_of(attributes, _MOTIONS[kind](system, **options))
     if type(motion_again).__name__ != kind or route != motion_again.route_name:
-        raise error(_WHERE, "hold a run by a route of this version", repr(route or kind), "Upgrade nonholo.")
+        raise error(WHERE, "hold a run by a route of this version", repr(route or kind), "Upgrade nonholo.")
     return motion_again
 
 

@@ -17,7 +17,7 @@ import threading
 import uuid
 import warnings
 import zlib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
@@ -28,11 +28,10 @@ from zarr.codecs import BloscCodec, Crc32cCodec
 from zarr.core.sync import sync
 
 from nonholo.base.checks import error, printable
-from nonholo.base.results import Outcome
-from nonholo.io._metadata import OrbitMetadata, check_array, check_metadata, checksum, require_identity
-from nonholo.io._places import sibling
-from nonholo.io._stored_events import EVENTS, Checkpoint, Seen
+from nonholo.io.checkpoints import EVENTS, DamagedError
 from nonholo.io.datasets import CANONICAL, Variable
+from nonholo.io.metadata import OrbitMetadata, check_array, check_metadata, checksum, require_identity
+from nonholo.io.places import WHERE, sibling
 
 Shape: TypeAlias = tuple[int, ...]  # of an array, or the place of a chunk in it
 Rows: TypeAlias = Mapping[str, np.ndarray]
@@ -44,12 +43,6 @@ def new_group(path: Path, metadata: dict[str, Any], kind: type[BaseModel]) -> za
     metadata |= {"checksum": checksum(metadata)}
     check_metadata("store=...", str(path), json.loads(json.dumps(metadata)), kind)
     return zarr.create_group(path, zarr_format=3, attributes=metadata)
-
-
-def create_groups(group: zarr.Group, names: Iterable[str]) -> None:
-    """Make the group of compact states, where arrays lie in it."""
-    if any(name.startswith(CANONICAL) for name in names):
-        group.create_group(CANONICAL.rstrip("/"))
 
 
 def consolidate(path: Path) -> None:
@@ -97,14 +90,6 @@ def settle(path: Path) -> None:
             os.close(descriptor)
 
 
-def remove_partials(store: Path) -> None:
-    """Remove what killed writers left in a store."""
-    for folder, _, files in os.walk(store):
-        for file in files:
-            if file.endswith(".partial"):
-                Path(folder, file).unlink(missing_ok=True)
-
-
 def write_whole(path: Path, text: str, *, is_settled: bool = False) -> None:
     """Write a small file at once: a reader sees the old one or the new one, and a killed writer leaves a `.partial`."""
     part = sibling(path, "partial")
@@ -128,46 +113,50 @@ def edit_attributes(path: Path, changes: dict[str, Any]) -> None:
     settle(path)
 
 
-WHERE = "load_orbit(path=...)"
 AGAIN = "The store is damaged: copy it again from its source, or run it again."
 _NAN = "NaN"
 
 
-class DamagedError(Exception):
-    """Damage of a part of a store; a reader reports it, or computes the part again."""
-
-
-def opened_array(root: Path, name: str, shape: Shape | None) -> zarr.Array:
-    """Open an array of a store, of a known shape unless the run is not finished."""
+def opened_array(
+    where: str, root: Path, name: str, shape: Sequence[int] | None = None, *, is_writable: bool = False
+) -> zarr.Array:
+    """Open an array of a store, of a known shape; the number of rows is that of the array where it is to be written."""
     try:
-        array = zarr.open_array(root / name, mode="r")
+        array = zarr.open_array(root / name, mode="r+" if is_writable else "r", zarr_format=3)
     except Exception as failure:
-        raise error(WHERE, f"hold the array {name}", f"{type(failure).__name__}: {failure}", AGAIN) from failure
-    if array.shape != (shape or array.shape) or array.dtype != np.float64:
-        got = f"{array.dtype} of shape {array.shape}"
-        raise error(WHERE, f"hold the array {name} as float64 of shape {shape}", got, AGAIN)
-    check_array(WHERE, name, array)
-    return array
+        got = f"'{root}', where its metadata cannot be read: {type(failure).__name__}: {failure}"
+        raise error(where, f"hold the array {name}", got, AGAIN) from failure
+    first = 1 if is_writable else 0
+    if shape is not None and (array.shape[first:] != tuple(shape[first:]) or array.dtype != np.float64):
+        got = f"{array.dtype} of shape {array.shape} in '{root}'"
+        raise error(where, f"hold the array {name} as float64 of shape {tuple(shape)}", got, AGAIN)
+    check_array(where, name, array)
+    return array.with_config({"write_empty_chunks": True})  # of NaN alone too: an impulse that is not known
 
 
-def checked_block(root: Path, name: str, array: zarr.Array, index: Shape, *, with_nan: bool = False) -> np.ndarray:
-    """Return one chunk; refuse one that is missing or damaged, with its name."""
+def checked_block(store: "BlockStore", name: str, chunk: int, *, with_nan: bool = False) -> np.ndarray:
+    """Return one chunk of rows; refuse one that is missing or damaged, with its name."""
+    array = store.array(name)
+    index = (chunk, *(0,) * (array.ndim - 1))
     try:
-        return read_chunk(root, name, array, index, with_nan=with_nan)
+        return read_chunk(store.path, name, array, index, with_nan=with_nan)
     except DamagedError as wrong:
         requirement = f"hold {chunk_name(name, array, index)}" + (" free of NaN" if str(wrong) == _NAN else "")
         raise error(WHERE, requirement, str(wrong), AGAIN) from None
 
 
-def checked_array(root: Path, name: str, array: zarr.Array) -> np.ndarray:
-    """Return all chunks, read at once; refuse one that is missing or damaged, with its name."""
+def checked_array(store: "BlockStore", name: str, *, last: bool) -> np.ndarray:
+    """Return all chunks, read at once, or the last one; refuse one that is missing or damaged, with its name."""
+    array = store.array(name)
     indices = list(np.ndindex(array.cdata_shape))
-    if all(chunk_path(root, name, array, index).is_file() for index in indices):
+    if last and indices:
+        return checked_block(store, name, len(indices) - 1)
+    if all(chunk_path(store.path, name, array, index).is_file() for index in indices):
         with contextlib.suppress(Exception):  # which one it is appears when they are read one by one
             values = np.asarray(array[...])
             if not _lacks_numbers(name, values):
                 return values
-    return np.concatenate([checked_block(root, name, array, index) for index in indices])
+    return np.concatenate([checked_block(store, name, chunk) for chunk in range(len(indices))])
 
 
 def chunk_name(name: str, array: zarr.Array, index: Shape) -> str:
@@ -326,7 +315,7 @@ class BlockStore:
 
     def _write_log(self, begin: int, rows: np.ndarray) -> int:
         """Write rows into whole chunks of the log from one on; return the number of the first one after them."""
-        log = self._array(EVENTS)
+        log = self.array(EVENTS)
         size, width = log.chunks
         end = begin - (-len(rows) // size)
         full = np.full(((end - begin) * size, width), np.nan)
@@ -388,7 +377,7 @@ class BlockStore:
         """
         mark = self.mark_of(block)
         for name, index in self._chunks(block, mark):
-            array, with_nan = self._array(name), self.holds_nan or name == EVENTS
+            array, with_nan = self.array(name), self.holds_nan or name == EVENTS
             try:
                 read_chunk(self.path, name, array, index, with_nan=with_nan)
             except DamagedError as wrong:
@@ -417,7 +406,8 @@ class BlockStore:
     def prepare(self) -> None:
         """Remove what killed writers left; nothing here loses data."""
         (self.path / _MARKS).mkdir(exist_ok=True)  # what copies stores may leave out empty folders
-        remove_partials(self.path)
+        for partial in self.path.rglob("*.partial"):
+            partial.unlink(missing_ok=True)
 
     def finish(self, changes: dict[str, Any]) -> None:
         """Add attributes that say that it came to its end, and consolidate the metadata."""
@@ -429,7 +419,7 @@ class BlockStore:
         """Return one number of the places and the checksums of the chunks of a block, and of the block's number."""
         seal = hashlib.sha256(f"{block}".encode())
         for name, index in self._chunks(block, mark):
-            chunk = chunk_path(self.path, name, self._array(name), index)
+            chunk = chunk_path(self.path, name, self.array(name), index)
             seal.update(f"\n{chunk.relative_to(self.path).as_posix()} {_crc(chunk).hex()}".encode())
         return int.from_bytes(seal.digest()[: _BITS // 8])
 
@@ -438,8 +428,8 @@ class BlockStore:
         if mark.seal == self._seal(block, mark):
             return
         for name, index in self._chunks(block, mark):
-            if not chunk_path(self.path, name, self._array(name), index).is_file():
-                raise DamagedError(f"no such chunk, {chunk_name(name, self._array(name), index)}")
+            if not chunk_path(self.path, name, self.array(name), index).is_file():
+                raise DamagedError(f"no such chunk, {chunk_name(name, self.array(name), index)}")
         raise DamagedError(f"a chunk of another place in block {block}, which {self._mark_file(block).name} seals")
 
     def _chunks(self, block: int, mark: BlockMark) -> Iterator[tuple[str, Shape]]:
@@ -448,7 +438,8 @@ class BlockStore:
             yield from ((name, self._index(name, block)) for name in sorted(self.arrays))
         yield from ((EVENTS, (chunk, 0)) for chunk in range(*mark.log))
 
-    def _array(self, name: str) -> zarr.Array:
+    def array(self, name: str) -> zarr.Array:
+        """Return an array of rows, or the log."""
         return self.log if name == EVENTS and self.log is not None else self.arrays[name]
 
     def _index(self, name: str, block: int) -> Shape:
@@ -463,7 +454,8 @@ def new_blocks(path: Path, metadata: dict[str, Any], variables: Variables, rows:
     """Make the store of an orbit, whose arrays have this many rows, this many in a block; none is written yet."""
     identity, shapes = uuid.uuid4().hex, {name: (rows, *variable.shape[1:]) for name, variable in variables.items()}
     group = new_group(path, metadata | {"made": identity, "arrays": json.dumps(shapes)}, OrbitMetadata)
-    create_groups(group, variables)
+    if any(name.startswith(CANONICAL) for name in variables):
+        group.create_group(CANONICAL.rstrip("/"))  # of compact states
     arrays = {name: create_array(group, name, variable, rows, chunk) for name, variable in variables.items()}
     make_marks(group, path)
     return BlockStore(path, identity, Layout((rows,), (chunk,)), arrays)
@@ -481,41 +473,3 @@ def _crc(chunk: Path) -> bytes:
         file.seek(-_CRC, 2)
         return file.read()
     return b""  # there is none, or it is too short
-
-
-_NONE = "a mark without the state of a run"
-
-
-def said_of(checkpoint: Checkpoint) -> dict[str, Any]:
-    """Return a checkpoint as what the mark of a block says; JSON has every bit of a number."""
-    events, state = checkpoint.of_events, checkpoint.vector.tolist()
-    about = {"done": int(checkpoint.done), "outcome": checkpoint.outcome.name, "state": state, "seen": None}
-    if events is not None:
-        lists = {"counts": events.counts.tolist(), "values": events.values.tolist()}
-        about["seen"] = {**lists, "heading": float(events.heading), "stopped": int(events.last_event)}
-    return about
-
-
-def checkpoint_of(about: dict[str, Any], events: Sequence[str] | None) -> Checkpoint:
-    """Return the checkpoint of a mark, of a run that looks for these events; None if it looks for none.
-
-    Raises:
-        DamagedError: The mark says something else.
-
-    Example:
-        >>> reached = Checkpoint(7, Outcome.successful, np.array([0.1]), Seen(np.array([3]), np.array([0.3]), 1.2, -1))
-        >>> checkpoint_of(said_of(reached), events=['cusp']).of_events
-        Seen(counts=array([3]), values=array([0.3]), heading=1.2, last_event=-1)
-    """
-    try:
-        vector, of_events = np.array(about["state"], dtype=np.float64), about["seen"]
-        if of_events is not None:
-            counts, values = np.array(of_events["counts"], np.int64), np.array(of_events["values"], np.float64)
-            of_events = Seen(counts, values, float(of_events["heading"]), int(of_events["stopped"]))
-        checkpoint = Checkpoint(int(about["done"]), Outcome[about["outcome"]], vector, of_events)
-    except (KeyError, TypeError, ValueError, OverflowError):
-        raise DamagedError(_NONE) from None
-    shapes = None if of_events is None else (of_events.counts.shape, of_events.values.shape)
-    if vector.ndim != 1 or shapes != (None if events is None else ((len(events),),) * 2):
-        raise DamagedError(_NONE)
-    return checkpoint

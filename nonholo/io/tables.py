@@ -2,18 +2,17 @@
 
 import csv
 import io
+import itertools
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any, TextIO
 
 import numpy as np
 
-from nonholo.base.checks import count, error, flags, instance
-from nonholo.base.checks import path as checked_path
+from nonholo.base import checks
 from nonholo.base.progress import progress_bar
-from nonholo.base.types import Float
-from nonholo.io._places import check_file, new_file
 from nonholo.io.datasets import Stretch, column_names, coordinate_rows, rows_of
+from nonholo.io.places import check_file, new_file
 from nonholo.orbit import AbstractOrbit
 
 _NUMBERS = 1 << 16  # formatted at once
@@ -50,15 +49,17 @@ def orbit_to_csv(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fa
     Example:
         >>> orbit_to_csv(orbit, "poses.csv")  # doctest: +SKIP
     """
-    flags("Orbit.to_csv", overwrite=overwrite)
-    instance("orbit_to_csv(orbit=...)", orbit, AbstractOrbit, "be an orbit", "Pass what `simulate` or `flow` returned.")
+    checks.flags("Orbit.to_csv", overwrite=overwrite)
+    checks.instance(
+        "orbit_to_csv(orbit=...)", orbit, AbstractOrbit, "be an orbit", "Pass what `simulate` or `flow` returned."
+    )
     if not orbit.has_poses:
         remedy = "Run with reconstruct=True."
-        raise error("Orbit.to_csv(...)", "be called on an orbit with poses", "reconstruct=False", remedy)
+        raise checks.error("Orbit.to_csv(...)", "be called on an orbit with poses", "reconstruct=False", remedy)
     own: Any = orbit
     pose, heading = (own.canonical_pose, own.turned) if orbit.is_compact else (own.configuration, None)
     lines = _lines(orbit.system, [Stretch(orbit.time, np.asarray(pose), heading)], 1)
-    with new_file(checked_path("Orbit.to_csv(path=...)", path), overwrite=overwrite) as file:
+    with new_file(checks.path("Orbit.to_csv(path=...)", path), overwrite=overwrite) as file:
         file.writelines(lines)
 
 
@@ -85,12 +86,12 @@ def store_to_csv(
     Example:
         >>> store_to_csv("run.zarr", "poses.csv", every=100)  # doctest: +SKIP
     """
-    every = count("store_to_csv(every=...)", every, "Pass 1 for every saved state.")
+    every = checks.count("store_to_csv(every=...)", every, "Pass 1 for every saved state.")
     check_file(target, overwrite=overwrite)
-    flags("store_to_csv", overwrite=overwrite, progress=progress)
-    from nonholo.io._orbit_store import open_poses  # loads zarr, which a CSV of an orbit does not need
+    checks.flags("store_to_csv", overwrite=overwrite, progress=progress)
+    from nonholo.io.orbits import open_poses  # loads zarr, which a CSV of an orbit does not need
 
-    poses = open_poses(checked_path("store_to_csv(store=...)", store))
+    poses = open_poses(checks.path("store_to_csv(store=...)", store))
     for _ in poses.stretches():  # so that damage is found before the first row is used
         pass
     with new_file(target, overwrite=overwrite) as file, progress_bar("states", progress) as report:
@@ -103,17 +104,19 @@ def _lines(system: Any, stretches: Iterable[Stretch], every: int) -> Iterator[st
     coordinates = getattr(system, "coordinates", ())
     names = ["t", *coordinates] if coordinates else column_names(system.group)
     parts = _cut(stretches, max(1, _NUMBERS // len(names)))
-    return table_lines(names, coordinate_rows(parts, every) if coordinates else rows_of(system, parts, every))
+    pieces = coordinate_rows(parts, every) if coordinates else rows_of(system, parts, every)
+    return table_lines(names, (rows.T for rows in pieces))
 
 
-def table_lines(names: list[str], pieces: Iterable[Float[np.ndarray, "R c"]]) -> Iterator[str]:
-    """Return a header, then many lines at a time: one template for all of them is faster than a writer of rows."""
+def table_lines(names: list[str], pieces: Iterable[Iterable[np.ndarray]]) -> Iterator[str]:
+    """Return a header, then many lines of columns at a time: one template for them is faster than a writer of rows."""
     header = io.StringIO()
     csv.writer(header, lineterminator="\n").writerow(names)
     yield header.getvalue()
     line = ",".join(["%r"] * len(names)) + "\n"
-    for rows in pieces:
-        yield line * len(rows) % tuple(rows.ravel().tolist())
+    for columns in pieces:
+        cells = [column.tolist() for column in columns]  # whole numbers are written as such
+        yield line * len(cells[0]) % tuple(itertools.chain.from_iterable(zip(*cells, strict=True)))
 
 
 def _cut(stretches: Iterable[Stretch], most: int) -> Iterator[Stretch]:

@@ -12,39 +12,27 @@ import dataclasses
 import errno
 import functools
 import json
-import re
-import shutil
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import zarr
 
-from nonholo.base.checks import error, flags, instance
-from nonholo.base.checks import path as checked_path
-from nonholo.io import _block_store as blocks
-from nonholo.io._attributes import FORMAT, attributes, attributes_of_text, system_of
-from nonholo.io._load import check_seals, format_of, plan_of, read_attributes, stored_names
-from nonholo.io._metadata import check_array, check_assertions
-from nonholo.io._places import new_beside, owner_of, remove_remains
-from nonholo.io._stored_events import EVENTS, Checkpoint, rows_of
-from nonholo.io.datasets import HEADED, Stretch, Variable, steps_apart, stored_variables
-from nonholo.orbit import AbstractOrbit, Plan
+from nonholo.base import checks
+from nonholo.base.checks import error
+from nonholo.base.results import Outcome
+from nonholo.io import blocks
+from nonholo.io.checkpoints import EVENTS, Checkpoint, checkpoint_of, log_of, rows_of, said_of, without_padding
+from nonholo.io.datasets import CANONICAL, HEADED, STEP, Stretch, Variable, steps_apart, stored_variables
+from nonholo.io.metadata import read_attributes
+from nonholo.io.places import WHERE, check_target, new_beside, owner_of, put_in_place
+from nonholo.io.provenance import attributes, attributes_of_text, restore_motion, system_of
+from nonholo.orbit import STATES, AbstractOrbit, EventLog, Orbit, Plan
 
 _ROWS = 100_000  # states in one chunk
-_NETCDF, _CSV = "use orbit.to_dataset().to_netcdf(path)", "use orbit.to_csv(path)"
-_OTHER_FORMATS = {
-    **dict.fromkeys((".nc", ".nc4", ".netcdf", ".h5", ".hdf5"), _NETCDF),
-    **dict.fromkeys((".csv", ".txt"), _CSV),
-    **dict.fromkeys((".parquet", ".feather", ".xlsx"), "use orbit.to_pandas()"),
-    **dict.fromkeys((".png", ".svg", ".pdf"), "use orbit.plot(path)"),
-    **dict.fromkeys((".gif", ".json", ".toml", ".npy", ".npz", ".mat", ".pkl", ".zip"), ""),
-}
-"""Suffixes that no store may have, and what writes such files."""
-_OWN_RUN = r"run/(?:lock|lock\.json|blocks/(?:start|\d+)\.json)"
-_OWN = re.compile(rf"(?:[^/]+/)*(?:zarr\.json|c(?:/\d+)*|\.[^/]+\.partial)|{_OWN_RUN}")
+_NUMBERS, _MOST = 1 << 16, 1 << 10  # at most in a chunk of crossings: numbers, rows
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
@@ -73,27 +61,19 @@ class Stream:
         """Write a block, and the state of the run at its end."""
         rows = self.columns(orbit, block * self.plan.rows) if len(orbit) else {}
         log = None if orbit.events is None else rows_of(orbit.events)
-        self._blocks.write(block, rows, blocks.said_of(checkpoint), log)
+        self.store.write(block, rows, said_of(checkpoint), log)
 
     def columns(self, orbit: Any, first: int) -> dict[str, np.ndarray]:
         """Return the arrays that the store has, of an orbit whose first state is a row of it."""
-        turns = [array for name, array in self._blocks.arrays.items() if name in HEADED] if first > 0 else []
+        turns = [array for name, array in self.store.arrays.items() if name in HEADED] if first > 0 else []
         before = np.ravel(turns[0][first - 1 : first])[None] if turns else None  # on which what follows continues
         variables = stored_variables(orbit, before)
-        return {name: variables[name].values for name in self._blocks.arrays}
+        return {name: variables[name].values for name in self.store.arrays}
 
     def checkpoint(self, block: int) -> Checkpoint:
         """Return the state at the begin of a block, unless the mark before it is damaged (`DamagedError`)."""
-        mark = self._blocks.checked_mark(blocks.BEFORE) if block == 0 else self._blocks.mark_of(block - 1)
-        return blocks.checkpoint_of(mark.about, self.events)
-
-    def rows(self, name: str, first: int, count: int) -> np.ndarray:
-        """Return some rows of an array of sound blocks."""
-        return self._blocks.rows(name, (slice(first, first + count),))
-
-    def block_numbers(self) -> set[int]:
-        """Return the blocks that are marked as finished, sound or not; the folder is read once."""
-        return self._blocks.block_numbers()
+        mark = self.store.checked_mark(blocks.BEFORE) if block == 0 else self.store.mark_of(block - 1)
+        return checkpoint_of(mark.about, self.events)
 
     def sound(self, block: int) -> Checkpoint:
         """Return the state at the end of a block that is marked as finished, of which every chunk is sound.
@@ -101,7 +81,7 @@ class Stream:
         Raises:
             DamagedError: One is not; the message names it and the damage.
         """
-        return blocks.checkpoint_of(self._blocks.sound(block).about, self.events)
+        return checkpoint_of(self.store.sound(block).about, self.events)
 
     def steps_done(self) -> int:
         """Return the step up to which blocks are marked as finished."""
@@ -111,30 +91,20 @@ class Stream:
         except blocks.DamagedError:
             return self.plan.begin(block)
 
-    def full_blocks(self) -> int:
-        """Return the number of blocks from the first one on with all their rows, unless the last one is damaged."""
-        full = self.finished_blocks()
-        last = self.checkpoint(full).done
-        return full - (full > 0 and last != self.plan.stop(full - 1))  # it failed, or was extended
-
-    def state_count(self, full: int) -> int:
-        """Return the number of saved states in this many full blocks."""
-        return min(full * self.plan.rows, 1 + self.plan.steps // self.plan.every)
-
     def finished_blocks(self) -> int:
         """Return the number of blocks, from the first one on, that are marked as finished."""
-        numbers = self.block_numbers()
+        numbers = self.store.block_numbers()
         return next(block for block in range(len(numbers) + 1) if block not in numbers)
 
     def finish(self, end: Checkpoint, block: int) -> None:
         """Cut the arrays to the good states of a run that ended in a block, and add the outcome."""
-        shapes = self._blocks.resize(1 + end.done // self.plan.every)
+        shapes = self.store.resize(1 + end.done // self.plan.every)
         metadata: dict[str, Any] = {"outcome": end.outcome.name, "arrays": json.dumps(shapes)}
         if self.events is not None and end.of_events is not None:
-            self._blocks.cut_log(block)
+            self.store.cut_log(block)
             metadata["crossings"] = json.dumps(end.of_events.counts.tolist())
             metadata["stopped_by"] = self.events[end.of_events.last_event] if end.is_stopped else None
-        self._blocks.finish(metadata)
+        self.store.finish(metadata)
 
     @functools.cached_property
     def events(self) -> tuple[str, ...] | None:
@@ -156,17 +126,30 @@ class Stream:
 
     def prepare(self) -> None:
         """Remove what a killed writer left and give the arrays their length; nothing here loses data."""
-        self._blocks.prepare()
+        self.store.prepare()
         if not self.is_finished:
-            self._blocks.resize(1 + self.plan.steps // self.plan.every)
+            self.store.resize(1 + self.plan.steps // self.plan.every)
 
     @functools.cached_property
-    def _blocks(self) -> blocks.BlockStore:
-        shapes = json.loads(read_attributes(self.path)["arrays"])
-        arrays = {name: writable_array(self.path, name, shape) for name, shape in shapes.items()}
-        log = None if self.events is None else writable_array(self.path, EVENTS)
-        layout = blocks.Layout((1 + self.plan.steps // self.plan.every,), (self.plan.rows,))
-        return blocks.BlockStore(self.path, self.made, layout, arrays, log)
+    def store(self) -> blocks.BlockStore:
+        """Its blocks, to be written."""
+        rows = 1 + self.plan.steps // self.plan.every
+        return _blocks_of(self.path, read_attributes(self.path), rows, where="resume(store=...)", is_writable=True)
+
+
+def _blocks_of(
+    path: Path, attributes: dict[str, Any], rows: int, *, where: str = WHERE, is_writable: bool = False
+) -> blocks.BlockStore:
+    """Return the blocks of a store, of this many rows."""
+
+    def array_of(name: str, shape: list[int] | None = None) -> zarr.Array:
+        return blocks.opened_array(where, path, name, shape, is_writable=is_writable)
+
+    arrays = {name: array_of(name, shape) for name, shape in json.loads(attributes["arrays"]).items()}
+    layout = blocks.Layout((rows,), arrays["time"].chunks)
+    return blocks.BlockStore(
+        path, attributes["made"], layout, arrays, array_of(EVENTS) if "events" in attributes else None
+    )
 
 
 def create_stream(
@@ -187,9 +170,11 @@ def create_stream(
     with new_beside(path) as part:
         store = blocks.new_blocks(part, metadata, stored_variables(first), 1 + plan.steps // plan.every, plan.rows)
         if first.events is not None:
-            create_log(zarr.open_group(part), rows_of(first.events))
-        store.write(blocks.BEFORE, {}, blocks.said_of(opening))
-        put_in_place(part, target, overwrite=False)
+            rows = rows_of(first.events)
+            size = max(1, min(_MOST, _NUMBERS // rows.shape[1]))
+            blocks.create_array(zarr.open_group(part), EVENTS, Variable(("crossing", "entry"), rows, {}), 0, size)
+        store.write(blocks.BEFORE, {}, said_of(opening))
+        put_in_place(part, target, new="simulate(store=...)")
     return Stream(target, plan, first.has_poses, store.made)
 
 
@@ -201,20 +186,6 @@ def open_stream(path: str | Path) -> Stream:
         raise error("resume(store=...)", "have checkpoints", f"'{path}', which was saved whole", remedy)
     run = json.loads(attributes["run"])
     return Stream(Path(path).resolve(), plan_of(attributes), run["reconstruct"], attributes["made"])
-
-
-def writable_array(path: Path, name: str, shape: Sequence[int] | None = None) -> zarr.Array:
-    """Open an array of a store to continue, of a known shape but for the number of rows."""
-    where = "resume(store=...)"
-    try:
-        array = zarr.open_array(path / name, mode="r+", zarr_format=3)
-    except Exception as failure:
-        got = f"'{path}', where its metadata cannot be read: {failure}"
-        raise error(where, f"hold the array {name}", got, "Run it again.") from failure
-    check_array(where, name, array)
-    if shape is not None and array.shape[1:] != tuple(shape[1:]):
-        raise error(where, f"hold the array {name} with rows of shape {shape[1:]}", f"'{path}'", "Run it again.")
-    return array.with_config({"write_empty_chunks": True})  # of NaN alone too: an impulse that is not known
 
 
 class Standing(NamedTuple):
@@ -232,15 +203,6 @@ def standing(path: str | Path) -> Standing | None:
         return None
     stream = open_stream(path)
     return Standing(stream.steps_done(), stream.plan.steps, owner_of(stream.path))
-
-
-_NUMBERS, _MOST = 1 << 16, 1 << 10  # at most in a chunk: numbers, rows
-
-
-def create_log(group: zarr.Group, rows: np.ndarray) -> None:
-    """Make the array, without rows yet, for crossings like these."""
-    log = Variable(("crossing", "entry"), rows, {})
-    blocks.create_array(group, EVENTS, log, 0, max(1, min(_MOST, _NUMBERS // rows.shape[1])))
 
 
 def save_orbit(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = False, scenario: str | None = None) -> None:
@@ -264,12 +226,12 @@ def save_orbit(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fals
         >>> save_orbit(orbit, "orbit.zarr")  # doctest: +SKIP
     """
     remedy = "Pass what `simulate` or `flow` returned."
-    instance("save_orbit(orbit=...)", orbit, AbstractOrbit, "be an orbit", remedy)
+    checks.instance("save_orbit(orbit=...)", orbit, AbstractOrbit, "be an orbit", remedy)
     if orbit.is_discrete and orbit.has_impacts.any():
         got, remedy = "one with impacts, which its events tell", "Run with store=..., which keeps them, or save a part."
         raise error("save_orbit(orbit=...)", "be an orbit whose events are not needed", got, remedy)
-    flags("save_orbit", overwrite=overwrite)
-    path = checked_path("save_orbit(path=...)", path)
+    checks.flags("save_orbit", overwrite=overwrite)
+    path = checks.path("save_orbit(path=...)", path)
     target = path.resolve()
     check_target(target, overwrite=overwrite)
     with new_beside(path) as part:
@@ -297,65 +259,92 @@ def reporting_how_to_resume(store: Path, what: str, standing: Callable[[], objec
         raise OSError(failure.errno or errno.EIO, reason, str(store)) from failure
 
 
-def check_suffix(path: str | Path, where: str = "save_orbit(path=...)") -> None:
-    """Refuse, in the name of `where`, a path with the suffix of another format, and any where zarr does not work."""
-    check_assertions(where)
-    suffix = Path(path).suffix.lower()
-    if suffix in _OTHER_FORMATS:
-        store, how = f"Write a store: '{Path(path).with_suffix('.zarr')}'", _OTHER_FORMATS[suffix]
-        remedy = f"{store}, or {how}." if how and where.startswith("save_orbit") else f"{store}."
-        raise error(where, "be the path of a Zarr store, usually *.zarr", f"'{path}'", remedy)
+def load_orbit(path: str | Path, *, discrete: Any = None) -> Any:
+    """Load an orbit saved by `save_orbit`, bit for bit.
 
-
-def check_target(path: str | Path, *, overwrite: bool = False, new: str | None = None) -> None:
-    """Refuse a path that exists, unless it is a store of an orbit that may be replaced, and one of another format.
+    Nothing in a store is ever run. In coordinates it names a system of `nonholo.examples` with its parameters, which is
+    made again; of a custom Lagrangian it holds everything that the orbit tells, for pictures and tables, and what
+    asks for the functions (`restricted_momentum`, another run) says to pass `discrete`.
 
     Args:
-        path: Where the store shall be.
-        overwrite: Whether the caller asked to replace one.
-        new: In whose name, if it has no such argument.
+        path: The store.
+        discrete: The discretization that made the store; needed only if its difference or its constraint is callable,
+            or its system or group is custom, which a store cannot hold.
+
+    Returns:
+        An `Orbit`, or a `CoordinateOrbit` or `GroupOrbit` of `nonholo.lagrange_dalembert`.
+
+    Raises:
+        FileNotFoundError: There is nothing at the path.
+        ValueError: The path is no store of an orbit, has another schema, or is damaged; the message names the array
+            and the chunk.
+
+    Example:
+        >>> orbit = load_orbit("orbit.zarr")  # doctest: +SKIP
     """
-    check_suffix(path)
-    if not Path(path).exists():
-        remove_remains(Path(path).resolve())  # which may put back what a killed process was about to replace
-    if not Path(path).exists():
-        return
-    if new:
-        raise _exists(path, "Choose another path, or resume what is there: nonholo.resume(path).", new)
-    if not overwrite:
-        raise _exists(path, "Choose another path, or pass overwrite=True (--overwrite) to replace it.")
-    if format_of(path) != FORMAT:
-        raise _exists(path, "It is not a store of an orbit, so it is not replaced. Choose another path.")
-    files = (file.relative_to(path).as_posix() for file in Path(path).rglob("*") if not file.is_dir())
-    if foreign := next((name for name in files if not _OWN.fullmatch(name)), None):
-        raise _exists(path, f"It holds '{foreign}', which is no part of a store, so it is not replaced.")
-    if owner := owner_of(Path(path)):
-        remedy = "so it is not replaced. Wait, or stop it."
-        raise BlockingIOError(f"The store '{path}' is being written by {owner}, {remedy}")
+    return load_states(checks.path(WHERE, path), discrete)
 
 
-def _exists(path: str | Path, remedy: str, where: str = "save_orbit(path=...)") -> FileExistsError:
-    return FileExistsError(f"`{where}` must be new. Got '{path}', which exists. {remedy}")
-
-
-def put_in_place(part: Path, target: Path, *, overwrite: bool) -> None:
-    """Rename a complete store to its path; an older one there is replaced only if asked."""
-    if not (overwrite and target.exists()):
-        try:
-            part.rename(target)
-            return
-        except OSError:
-            check_target(target)
-            raise
-    check_target(target, overwrite=True)  # once more, after the time that writing took
-    old = part.with_suffix(".old")  # which remove_remains knows
-    target.rename(old)
+def load_states(root: Path, discrete: Any, *, last: bool = False) -> Any:
+    """Load the states in all chunks of a store, or in the last one."""
+    attributes = read_attributes(root)
+    if "run" in attributes and "outcome" not in attributes:
+        remedy = f"Resume with nonholo.resume('{root}') (nonholo resume); `nonholo info` shows its progress."
+        raise error(WHERE, "be a finished run", f"'{root}', which is not", remedy)
     try:
-        part.rename(target)
-    except OSError:
-        old.rename(target)
-        raise
-    shutil.rmtree(old, ignore_errors=True)
+        motion, every = restore_motion(attributes, discrete), attributes["save_every"]
+        outcome, total = Outcome[attributes["outcome"]], json.loads(attributes["arrays"])["time"][0]
+    except (KeyError, json.JSONDecodeError) as failure:
+        raise error(WHERE, "hold complete attributes", f"'{root}' without {failure}", blocks.AGAIN) from failure
+    store = _blocks_of(root, attributes, total)
+    arrays = {name: blocks.checked_array(store, name, last=last) for name in store.arrays}
+    if not last:  # whoever asks for the last block has looked at the others
+        _check_seals(store, attributes)
+    rows = {name: arrays.get(array) for name, array in _stored_names(arrays, motion.columns).items()}
+    step = arrays[STEP].astype(np.int64) if STEP in arrays else every * np.arange(total - len(arrays["time"]), total)
+    orbit = motion.orbit(outcome=outcome, save_every=every, branch=attributes["branch"], step=step, **rows)
+    if "events" not in attributes:
+        return orbit
+    plan = plan_of(attributes)
+    begin = plan.begin((total - 1) // plan.rows) if last else 0
+    return dataclasses.replace(orbit, events=_events(store, attributes, orbit, begin))
+
+
+def _check_seals(store: blocks.BlockStore, attributes: dict[str, Any]) -> None:
+    """Refuse the store of a finished run, or of an orbit saved whole, where a chunk lies at the path of another."""
+    events = [event["name"] for event in json.loads(attributes["events"])] if "events" in attributes else None
+    try:
+        for block in range(plan_of(attributes).blocks if "run" in attributes else store.layout.blocks):
+            about = store.checked_mark(block).about
+            if "run" in attributes and checkpoint_of(about, events).is_last:
+                break
+    except blocks.DamagedError as flaw:
+        raise error(WHERE, "hold each chunk in its place", f"{flaw}, in '{store.path}'", blocks.AGAIN) from None
+
+
+def plan_of(attributes: dict[str, Any]) -> Plan:
+    """Return the plan of a store with these attributes."""
+    run = json.loads(attributes["run"])
+    return Plan(run["steps"], attributes["save_every"], run["rows"], run["lead"])
+
+
+def _stored_names(arrays: Container[str], columns: Iterable[str] = STATES) -> dict[str, str]:
+    """Return the names of the arrays of a store that hold the columns of an orbit: compact ones lie in a group."""
+    names = {name: name.removeprefix("canonical_") for name in columns}
+    return {name: CANONICAL + array if CANONICAL + array in arrays else array for name, array in names.items()}
+
+
+def _events(store: blocks.BlockStore, attributes: dict[str, Any], orbit: Orbit, begin: int) -> EventLog:
+    """Return the crossings of a stored run after the state of a step."""
+    array: Any = store.log
+    events, counts = json.loads(attributes["events"]), json.loads(attributes["crossings"])
+    chunks = (blocks.checked_block(store, EVENTS, chunk, with_nan=True) for chunk in range(array.cdata_shape[0]))
+    rows = np.concatenate([np.empty((0, array.shape[1])), *(without_padding(chunk, begin) for chunk in chunks)])
+    log = log_of(rows, events, orbit, attributes.get("stopped_by"))
+    lengths = [len(crossings) for crossings in log.found]
+    if begin == 0 and lengths != counts:
+        raise error(WHERE, f"hold {counts} crossings in {EVENTS}", str(lengths), blocks.AGAIN)
+    return log
 
 
 _WHERE = "store_to_csv(store=...)"
@@ -363,23 +352,20 @@ _COMPACT, _RECORDED = ("time", "canonical_pose", "turned"), ("time", "configurat
 
 
 class StoredPoses(NamedTuple):
-    """The part of a store that holds the poses: its system, the number of saved states, their arrays and the names."""
+    """The part of a store that holds the poses: its system, the number of saved states, and the names of the arrays."""
 
-    path: Path
+    store: blocks.BlockStore
     system: Any
     rows: int
     places: dict[str, str]
-    arrays: dict[str, zarr.Array]
 
     def stretches(self) -> Iterator[Stretch]:
         """Return the states chunk after chunk; only one chunk is in memory."""
-        chunk = self.arrays["time"].chunks[0]
+        (chunk,) = self.store.layout.chunk
         for number in range(-(-self.rows // chunk)):
             own_rows = slice(self.rows - number * chunk)
-            columns: dict[str, np.ndarray] = {}
-            for name, array in self.arrays.items():
-                index = (number,) + (0,) * (array.ndim - 1)
-                columns[name] = blocks.checked_block(self.path, self.places[name], array, index)[own_rows]
+            arrays = self.places.items()
+            columns = {name: blocks.checked_block(self.store, array, number)[own_rows] for name, array in arrays}
             time, places = columns.pop("time"), columns.get("canonical_pose", columns.get("configuration"))
             yield Stretch(time, np.asarray(places), columns.get("turned"))
 
@@ -392,16 +378,16 @@ def open_poses(path: Path) -> StoredPoses:
         remedy = "Write the orbit of nonholo.load_orbit(path, discrete=...) with its to_csv."
         system = system_of(attributes, _WHERE, remedy)
         names = _RECORDED if "constraint_residual" in shapes else _COMPACT
-        places = {name: array for name, array in stored_names(shapes, names).items() if array in shapes}
+        places = {name: array for name, array in _stored_names(shapes, names).items() if array in shapes}
     except KeyError as failure:
         raise error(_WHERE, "hold complete attributes", f"'{path}' without {failure}", "Run it again.") from failure
     if names[1] not in places:
         remedy = "Run it again with reconstruct=True: poses cannot be added later."
         raise error(_WHERE, "hold poses", f"'{path}', which was run with reconstruct=False", remedy)
     if "outcome" in attributes:
-        check_seals(path, attributes)
-        arrays = {name: blocks.opened_array(path, array, tuple(shapes[array])) for name, array in places.items()}
-        return StoredPoses(path, system, shapes["time"][0], places, arrays)
+        store = _blocks_of(path, attributes, shapes["time"][0])
+        _check_seals(store, attributes)
+        return StoredPoses(store, system, shapes["time"][0], places)
     stream = open_stream(path)
     rows = _state_count(stream)
     owner, steps_done = owner_of(path), max(0, rows - 1) * stream.plan.every
@@ -409,17 +395,18 @@ def open_poses(path: Path) -> StoredPoses:
     now = f"It is being written by {owner}." if owner else resume
     message = f"The run in '{path}' is not finished: its poses go up to step {steps_done} of {stream.plan.steps}. {now}"
     warnings.warn(message, RuntimeWarning, stacklevel=3)
-    arrays = {name: blocks.opened_array(path, array, None) for name, array in places.items()}
-    return StoredPoses(path, system, rows, places, arrays)
+    return StoredPoses(stream.store, system, rows, places)
 
 
 def _state_count(stream: Stream) -> int:
     """Return the number of saved states in the full blocks of an unfinished run, refused if one is damaged."""
+    plan, full = stream.plan, stream.finished_blocks()
     try:
-        full = stream.full_blocks()
+        last = stream.checkpoint(full).done
+        full -= full > 0 and last != plan.stop(full - 1)  # it failed, or was extended
         for block in range(full):
             stream.sound(block)
     except blocks.DamagedError as flaw:
         remedy = f"nonholo.resume({str(stream.path)!r}) computes its block again."
         raise error(_WHERE, "hold sound blocks", f"{flaw}, in '{stream.path}'", remedy) from None
-    return stream.state_count(full)
+    return min(full * plan.rows, 1 + plan.steps // plan.every)

@@ -10,21 +10,13 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import zarr
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    ConfigDict,
-    Field,
-    Json,
-    NonNegativeInt,
-    ValidationError,
-    model_validator,
-)
+from pydantic import AfterValidator, BaseModel, Field, Json, NonNegativeInt, ValidationError, model_validator
 
 from nonholo.base.checks import error, is_name, printable, shown
 from nonholo.base.limits import within_memory
 from nonholo.base.results import Outcome
-from nonholo.io._attributes import attributes_of_text
+from nonholo.io.places import FORMAT, SCHEMAS, SWEEP_FORMAT, WHERE, check_assertions
+from nonholo.io.provenance import attributes_of_text
 
 _MOST, _MOST_CHUNKS = 2**53, 2**26
 TAKEN = frozenset({"run"})
@@ -46,11 +38,7 @@ Name = Annotated[str, AfterValidator(_name)]
 Shape = list[Annotated[NonNegativeInt, Field(le=_MOST)]]
 
 
-class _Data(BaseModel):
-    model_config = ConfigDict(extra="ignore")
-
-
-class _About(_Data):
+class _About(BaseModel):
     format: str
     schema_: Annotated[int, Field(alias="schema", strict=True)]
     versions: Json[dict[str, str]]
@@ -60,7 +48,7 @@ class _About(_Data):
     scenario_sha256: str | None = None
 
 
-class _Run(_Data):
+class _Run(BaseModel):
     steps: Positive
     rows: Positive
     reconstruct: bool
@@ -94,7 +82,7 @@ class OrbitMetadata(_About):
         return self
 
 
-class _Sweep(_Data):
+class _Sweep(BaseModel):
     task: dict[str, Any]
     design: dict[str, Any]
     layout: tuple[list[Positive], list[Positive]]
@@ -178,13 +166,6 @@ def require_identity(path: Path, identity: str) -> None:
         raise OSError(errno.ESTALE, reason, str(path))
 
 
-def check_assertions(where: str) -> None:
-    """Refuse to read or write a store where Python leaves assertions out: some assertions of zarr do work."""
-    if not __debug__:
-        got = "python -O or PYTHONOPTIMIZE, which leaves out assertions in which zarr does a part of its work"
-        raise error(where, "be run by Python with assertions", got, "Run it without -O, and unset PYTHONOPTIMIZE.")
-
-
 def check_array(where: str, name: str, array: zarr.Array) -> None:
     """Refuse an array that is not cut as ours are, with chunks too large for memory, or with bytes in another order."""
     remedy, (sizes, chunks) = f"The array {name} is damaged or was edited.", (array.shape, array.chunks)
@@ -204,3 +185,32 @@ def _problems(failure: Exception) -> str:
     places = [".".join(map(str, problem["loc"])) or "they" for problem in problems]
     reasons = [problem["msg"].removeprefix("Value error, ") for problem in problems]
     return printable("; ".join(f"{place}: {reason}" for place, reason in zip(places, reasons, strict=True)))
+
+
+_KINDS = {FORMAT: "an orbit", SWEEP_FORMAT: "a sweep", "nonholo.ensemble": "an ensemble"}
+
+
+def read_attributes(path: str | Path, format_name: str = FORMAT) -> dict[str, Any]:
+    """Return the attributes of a store, after checking that they are of that format, in the schema that is read."""
+    where, schema = WHERE if format_name == FORMAT else "load_sweep(store=...)", SCHEMAS[format_name]
+    check_assertions(where)
+    kind = f"be a store of {_KINDS[format_name]}"
+    if not Path(path).exists():
+        raise FileNotFoundError(f"`{where}` must exist. Got '{path}'. Check the path; runs are kept under 'runs/'.")
+    try:
+        attributes = dict(zarr.open_group(Path(path), mode="r", use_consolidated=False).attrs)
+    except Exception as failure:
+        raise error(where, kind, f"'{path}'", f"Its metadata cannot be read: {failure}") from failure
+    if attributes.get("format") != format_name:
+        kind_of_store = _KINDS.get(str(attributes.get("format")))
+        got = f"'{path}', " + (f"a store of {kind_of_store}" if kind_of_store else "made by another program")
+        raise error(where, kind, got, "Pass a store of nonholo that is one.")
+    if attributes.get("schema") != schema:
+        number, versions = attributes.get("schema"), attributes.get("versions")
+        got, remedy = f"schema {number}", f"Upgrade nonholo: {versions} wrote it."
+        if isinstance(number, int) and number < schema:
+            got += ", of before 0.3.0, from which on later versions read stores"
+            remedy = f"Read it with the version that wrote it, {versions}, and save it as CSV, or repeat the run."
+        raise error(where, f"have schema {schema}, the one that this version reads", got, remedy)
+    check_metadata(where, str(path), attributes, OrbitMetadata if format_name == FORMAT else SweepMetadata)
+    return attributes

@@ -7,6 +7,7 @@ rows of a block begin with a new chunk; what is left of its last chunk is NaN. T
 
 import dataclasses
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple, cast
 
 import numpy as np
@@ -53,6 +54,48 @@ class Checkpoint(NamedTuple):
     def is_stopped(self) -> bool:
         """Whether an event ended the run here."""
         return self.of_events is not None and self.of_events.last_event >= 0
+
+
+class DamagedError(Exception):
+    """Damage of a part of a store; a reader reports it, or computes the part again."""
+
+
+_NONE = "a mark without the state of a run"
+
+
+def said_of(checkpoint: Checkpoint) -> dict[str, Any]:
+    """Return a checkpoint as what the mark of a block says; JSON has every bit of a number."""
+    events, state = checkpoint.of_events, checkpoint.vector.tolist()
+    about = {"done": int(checkpoint.done), "outcome": checkpoint.outcome.name, "state": state, "seen": None}
+    if events is not None:
+        lists = {"counts": events.counts.tolist(), "values": events.values.tolist()}
+        about["seen"] = {**lists, "heading": float(events.heading), "stopped": int(events.last_event)}
+    return about
+
+
+def checkpoint_of(about: dict[str, Any], events: Sequence[str] | None) -> Checkpoint:
+    """Return the checkpoint of a mark, of a run that looks for these events; None if it looks for none.
+
+    Raises:
+        DamagedError: The mark says something else.
+
+    Example:
+        >>> reached = Checkpoint(7, Outcome.successful, np.array([0.1]), Seen(np.array([3]), np.array([0.3]), 1.2, -1))
+        >>> checkpoint_of(said_of(reached), events=['cusp']).of_events
+        Seen(counts=array([3]), values=array([0.3]), heading=1.2, last_event=-1)
+    """
+    try:
+        vector, of_events = np.array(about["state"], dtype=np.float64), about["seen"]
+        if of_events is not None:
+            counts, values = np.array(of_events["counts"], np.int64), np.array(of_events["values"], np.float64)
+            of_events = Seen(counts, values, float(of_events["heading"]), int(of_events["stopped"]))
+        checkpoint = Checkpoint(int(about["done"]), Outcome[about["outcome"]], vector, of_events)
+    except (KeyError, TypeError, ValueError, OverflowError):
+        raise DamagedError(_NONE) from None
+    shapes = None if of_events is None else (of_events.counts.shape, of_events.values.shape)
+    if vector.ndim != 1 or shapes != (None if events is None else ((len(events),),) * 2):
+        raise DamagedError(_NONE)
+    return checkpoint
 
 
 def rows_of(log: EventLog) -> Rows:

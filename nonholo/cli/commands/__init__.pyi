@@ -1,0 +1,1 @@
+from . import runs as runs

@@ -1,0 +1,3 @@
+from . import pictures as pictures
+from . import report as report
+from . import tables as tables
