@@ -80,7 +80,7 @@ def test_commands_work(tmp_path: Path) -> None:
         assert done.returncode == 0, f"{command}: {done.stdout}{done.stderr}"
 
 
-@pytest.mark.profile("faults", keep=["paper", "logarithmic difference"])
+@pytest.mark.profile("faults", keep=["paper"])
 @pytest.mark.parametrize(
     ("command", "extra"),
     [

@@ -188,6 +188,7 @@ def test_the_ball_in_the_bowl_is_a_spherical_pendulum_in_a_magnetic_field(spin: 
     assert abs(np.log2(errors[0] / errors[1]) - 2.0) <= 0.1
 
 
+@pytest.mark.profile("routes", keep=["one"])
 @pytest.mark.parametrize("hitches", [(1.0,), (0.7, 1.2, 0.5)], ids=["one", "three"])
 def test_trailers_follow_by_the_recursion_of_speeds(hitches: tuple[float, ...]) -> None:
     """Headings and place to 1e-10 from the speed along the axle that the energy leaves; the map keeps the turning."""

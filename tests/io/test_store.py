@@ -271,6 +271,7 @@ def test_failed_swap_brings_the_old_store_back(store: Path, monkeypatch: pytest.
     assert list(store.parent.iterdir()) == [store]
 
 
+@pytest.mark.profile("faults", keep=["x-*", "canonical/pose-cut"])
 @pytest.mark.parametrize("how", DAMAGE)
 @pytest.mark.parametrize("name", ["time", "energy", "x", "restricted_momentum", "canonical/cayley", "canonical/pose"])
 def test_damaged_chunk_is_named(how: str, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -322,6 +323,17 @@ CUTS = {
 }
 
 
+@pytest.mark.profile(
+    "faults",
+    cases=[
+        "canonical/pose-*axes",
+        "*-backwards",
+        "*-endless",
+        "canonical/pose-no*",
+        "run/events-no c*",
+        "run/events-h*",
+    ],
+)
 @pytest.mark.parametrize("cut", CUTS)
 @pytest.mark.parametrize("name", ["canonical/pose", "run/events"])
 def test_other_cuts_are_refused(cut: str, name: str, tmp_path: Path) -> None:

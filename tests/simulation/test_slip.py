@@ -60,7 +60,7 @@ def _drive(time: float, g: np.ndarray, velocity: np.ndarray) -> np.ndarray:
     return np.array([0.4 * np.sin(3 * time), 0.1, 0.3 * g[0, 0] - 0.1 * velocity[2]])
 
 
-@pytest.mark.profile("problems", keep=["sleigh", "top", "two axles"])
+@pytest.mark.profile("problems", keep=["sleigh"])
 @pytest.mark.parametrize("name", CASES)
 def test_orbits_converge_to_the_continuous_motion(name: str) -> None:
     """Velocity and pose have order 2, also across the places where rows yield and come to rest; a flow has them."""
@@ -77,6 +77,7 @@ def test_orbits_converge_to_the_continuous_motion(name: str) -> None:
     assert (rates > 1.7).all()
 
 
+@pytest.mark.profile("problems", instead="test_a_slip_may_turn_over_without_a_way")
 def test_a_slip_that_turns_over_at_once_is_of_order_one() -> None:
     """Where friction is far below what drives the slip back, it turns over within a step; the error falls with h."""
     forced = nh.Forced(SLEIGH, nh.Gravity([0.5, -2.7], [0.3, 0.1]), nh.Slip(BLADE, 0.05))
@@ -91,6 +92,7 @@ def test_a_slip_that_turns_over_at_once_is_of_order_one() -> None:
     assert errors[0] / errors[2] > 10
 
 
+@pytest.mark.profile("problems", cases=["viscous", "body in space", "weight"])
 @pytest.mark.parametrize("name", CASES)
 def test_every_step_satisfies_its_equations(name: str) -> None:
     """From the definition: contacts hold or their friction opposes the slip of the step, in equal halves at both ends.
@@ -148,7 +150,7 @@ def _lawful(forced: nh.Forced, h: float, velocity: np.ndarray, steps: int) -> tu
     return np.diff(energy).max() / turned, gap / turned - bent, len(orbit)
 
 
-@pytest.mark.profile("problems", keep=["0", "1"])
+@pytest.mark.profile("problems", keep=["1"])
 @pytest.mark.parametrize("seed", range(40))
 def test_no_slip_adds_energy(seed: int) -> None:
     """T + U never grows and the balance closes to rounding: any body, contacts, step, grips and coefficients."""
@@ -287,7 +289,7 @@ def test_one_motion_however_it_is_run(name: str, tmp_path: Path) -> None:
     assert all(isinstance(each, nh.Slip) for each in stored.system.forces.slips)
 
 
-@pytest.mark.profile("problems", keep=["sleigh", "top", "weight", "two axles"])
+@pytest.mark.profile("problems", keep=["sleigh", "top", "weight"])
 @pytest.mark.parametrize("name", CASES)
 def test_parts_of_steps_lead_to_the_next_state(name: str) -> None:
     """Events have parts of steps of both kinds: they begin at the state, end at the next one, and are continuous."""
