@@ -102,6 +102,7 @@ def test_commands_that_need_an_extra(command: list[str], extra: str, tmp_path: P
 RUN = "o = nh.simulate(nh.discretize(sleigh, 0.1), body_velocity=(1, 0, 0), steps=9)"
 
 
+@pytest.mark.profile("faults", keep=["simulate", "flow"])
 @pytest.mark.parametrize(
     ("run", "heavy"),
     [

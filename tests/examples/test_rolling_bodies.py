@@ -40,6 +40,7 @@ def disk_by_newton_and_euler(_time: float, z: Array) -> list[float]:
     return [dlean, ddlean, -spun[2] / J, dw2, turning, roll, R * roll * np.cos(heading), R * roll * np.sin(heading)]
 
 
+@pytest.mark.profile("routes", instead="test_steady_circles_are_the_closed_form")
 def test_the_disk_moves_as_balances_of_momentum_say() -> None:
     """A disk that wobbles, to 1e-10; the map is of order two."""
     body = {"mass": 1.2, "radius": 0.7, "rolling_inertia": 0.3, "turning_inertia": 0.11, "gravity": 9.81}

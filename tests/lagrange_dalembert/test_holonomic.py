@@ -204,6 +204,7 @@ def test_flows_stay_on_the_surface() -> None:
     )
 
 
+@pytest.mark.profile("routes", instead="test_moving_constraints_and_a_lagrangian_of_time")
 def test_a_moving_constraint_is_a_prescribed_coordinate() -> None:
     """q_0 = s(t), as a holonomic constraint or prescribed: one motion, one multiplier, one work."""
 

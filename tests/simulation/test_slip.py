@@ -194,6 +194,7 @@ def test_the_friction_of_several_contacts_is_the_root_of_its_laws(seed: int) -> 
             np.testing.assert_allclose(j[at], -(most / size + viscous) * x[at], rtol=1e-9, atol=1e-12 * abs(free).max())
 
 
+@pytest.mark.profile("problems", instead="test_an_infinite_grip_has_the_bits_of_the_ideal_map")
 def test_a_contact_that_never_yields_is_rows_that_hold() -> None:
     """Of two axles one with an infinite grip: the motion, the impulses and the work of the other one alone."""
     rear, front = nh.Slip(BLADE, 0.5), nh.Slip(CAR.annihilator[1:], np.inf)
@@ -422,6 +423,7 @@ def test_no_flow_with_slips_gains_energy(seed: int) -> None:
     assert np.diff(orbit.energy).max(initial=0.0) < 1e-9 * abs(orbit.energy).max()
 
 
+@pytest.mark.profile("problems", instead="test_events_and_walls_are_found_while_rows_slide")
 def test_flows_with_slips_have_events_walls_and_ensembles() -> None:
     """A crossing and an impact of a body that slides are located; members have the bits of single flows."""
     forced, times = CASES["sleigh"][0], np.linspace(0, 4, 81)
