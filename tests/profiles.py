@@ -113,6 +113,11 @@ DOCTESTS = {  # examples that compile for long
     "nonholo.analysis.locomotion._phase.geometric_phase": "routes",
     "nonholo.analysis.locomotion._connection.ShapedBody": "routes",
     "nonholo.plot.geometry._curvature.curvature": "routes",
+    "nonholo.simulation.traced.rollout": "routes",
+    "nonholo.analysis.inverse._fit.fit": "routes",
+    "nonholo.analysis._linearize.linearize": "routes",
+    "nonholo.examples._balls.ball_in_bowl": "routes",
+    "nonholo.examples._disks.tilting_disk": "routes",
 }
 
 

@@ -6,6 +6,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+import words
 from participles import ARGUED, MEMBERS, MOST, every_name, nodes_of, participles
 
 ROOT = Path(__file__).parents[1]
@@ -68,6 +69,11 @@ def test_what_it_counts() -> None:
     assert f"at most {_BOXES} files and folders" in PAGE
     assert f"the house itself has {_ROOMS} rooms" in PAGE
     assert f"at most {_LINES} lines of code" in PAGE
+
+
+def test_no_word_of_the_list_is_written() -> None:
+    """No file of the repository has a word of `words.toml`."""
+    assert words.complaints() == []
 
 
 def test_values_have_nouns_and_functions_verbs() -> None:

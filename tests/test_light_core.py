@@ -80,7 +80,7 @@ def test_commands_work(tmp_path: Path) -> None:
         assert done.returncode == 0, f"{command}: {done.stdout}{done.stderr}"
 
 
-@pytest.mark.profile("faults", keep=["paper", "logarithmic difference"])
+@pytest.mark.profile("faults", keep=["paper"])
 @pytest.mark.parametrize(
     ("command", "extra"),
     [
@@ -102,6 +102,7 @@ def test_commands_that_need_an_extra(command: list[str], extra: str, tmp_path: P
 RUN = "o = nh.simulate(nh.discretize(sleigh, 0.1), body_velocity=(1, 0, 0), steps=9)"
 
 
+@pytest.mark.profile("faults", keep=["simulate", "flow"])
 @pytest.mark.parametrize(
     ("run", "heavy"),
     [

@@ -41,6 +41,7 @@ def _run(name: str, speed: float, mass: float = 1.0, time: float = 1.0, order: i
     return nh.simulate(discrete, restricted_velocity=velocity / time, steps=20, throw=False)
 
 
+@pytest.mark.profile("problems", keep=["LL on SE(3)*", "LR on SO(3)*", "free body-*"])
 @pytest.mark.parametrize("unit", UNITS)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_units_of_mass_and_time_do_not_matter(name: str, unit: float) -> None:

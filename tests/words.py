@@ -11,6 +11,8 @@ import tomllib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from participles import nodes_of
+
 ROOT = Path(__file__).parents[1]
 TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
 FOLDERS = ("nonholo", "nonholo_paper", "docs", "tests", "benchmarks", "scenarios")
@@ -67,7 +69,7 @@ def complaints(root: Path = ROOT) -> list[str]:
     pages = {"README.md", "CONTRIBUTING.md", *(f"docs/{name}" for name in lengths(root) if name not in NO_PROSE)}
     checked = [(name, 1, text, patterns) for name, text in texts.items()]
     checked += [(name, 1, texts[name], TABLE["prose"]) for name in sorted(pages)]
-    checked += [(name, *each, TABLE["prose"]) for name in texts if in_library(name) for each in strings(texts[name])]
+    checked += [(name, *each, TABLE["prose"]) for name in texts if in_library(name) for each in strings(root / name)]
     return [
         f"{name}:{first + text.count(chr(10), 0, at)}: {complaint}"
         for name, first, text, wanted in checked
@@ -80,9 +82,9 @@ def in_library(name: str) -> bool:
     return name.startswith(("nonholo/", "nonholo_paper/")) and name.endswith((".py", ".pyi"))
 
 
-def strings(text: str) -> Iterator[tuple[int, str]]:
+def strings(file: Path) -> Iterator[tuple[int, str]]:
     """Yield the docstrings and messages of a file with their first lines."""
-    for node in ast.walk(ast.parse(text)):
+    for node in nodes_of(file):
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and " " in node.value:
             yield node.lineno, inspect.cleandoc(node.value)
 

@@ -149,7 +149,7 @@ def swings(seed: int, noise: float) -> dict[str, np.ndarray]:
     return {"t": orbit.time, "x": rows[:, 0], "y": rows[:, 1]}
 
 
-@pytest.mark.profile("routes", keep=["5"])
+@pytest.mark.profile("routes", instead="test_noisy_positions_tell_two_numbers")
 @pytest.mark.parametrize("records", [5, 20])
 def test_a_motion_under_holonomic_constraints_is_fitted(records: int) -> None:
     """Numbers of the energy and of the constraint; errors are as large as the fit says, in both alike."""

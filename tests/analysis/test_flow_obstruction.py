@@ -107,7 +107,7 @@ def _spread(h: float) -> Any:
     return max(found) - min(found)
 
 
-@pytest.mark.profile("problems", keep=["0.6-0.5"])
+@pytest.mark.profile("problems", instead="test_difference_against_fifty_digits")
 @pytest.mark.parametrize(("h", "shorter"), [(0.6, 0.5), (0.5, 0.4), (0.4, 0.3)])
 def test_it_falls_as_an_exponential_of_the_inverse_step(h: float, shorter: float) -> None:
     """Its logarithm falls as -pi^2/(nu h), up to five parts in a hundred that become less with h."""

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import mpmath
 import numpy as np
+import pytest
 
 import nonholo as nh
 
@@ -62,6 +63,7 @@ def test_turn_of_a_discrete_sleigh() -> None:
     assert abs(nh.asymptotics(orbit).heading_turn - expected) <= 1e-12
 
 
+@pytest.mark.profile("problems", instead="test_turn_of_a_discrete_sleigh")
 def test_axes_in_space_of_a_discrete_top() -> None:
     """The product of all rotations in 40 digits carries the limit axes to those that `asymptotics` finds."""
     orbit = nh.simulate(TOP, restricted_velocity=(0.5, 0.4), steps=2)

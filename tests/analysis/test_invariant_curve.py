@@ -51,6 +51,7 @@ def test_number_of_components(discrete: nh.Discretization, energies: list[float]
     assert [len(nh.invariant_curve(discrete, energy).components) for energy in energies] == counts
 
 
+@pytest.mark.profile("problems", keep=["[0-4]"])
 @pytest.mark.parametrize("seed", range(12))
 def test_curves_of_random_bodies(seed: int) -> None:
     """Whatever the arcs that make them up: closed, without jumps, and every change of sign on a grid is near them."""

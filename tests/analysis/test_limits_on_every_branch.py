@@ -166,7 +166,7 @@ FAMILIES = [("top", 2), ("top", 3), ("top", 4), ("top", 5), ("sleigh", 1), ("sle
 NAMES = [f"{kind} {'SE' if kind == 'sleigh' else 'SO'}({k + 1})" for kind, k in FAMILIES]
 
 
-@pytest.mark.profile("long", cases=["1500-*"])
+@pytest.mark.profile("long", keep=["30-top SO(4)", "30-sleigh SE(3)", "30-sleigh SE(2)"])
 @pytest.mark.parametrize(("kind", "k"), FAMILIES, ids=NAMES)
 @pytest.mark.parametrize("count", [30, 1500])
 def test_random_branches_tend_to_the_attracting_momentum(kind: str, k: int, count: int) -> None:
@@ -203,6 +203,7 @@ BODIES = {
 }
 
 
+@pytest.mark.profile("problems", keep=["sleigh"])
 @pytest.mark.parametrize("name", BODIES)
 def test_random_walks_of_the_library_have_the_limits_of_asymptotics(name: str) -> None:
     """Two random walks end on the velocity that `asymptotics` says, to the rate of the last steps."""

@@ -90,7 +90,7 @@ def forms_at(system: Any, q: np.ndarray) -> np.ndarray:
         return np.asarray(system.plain.constraint_forms(jnp.asarray(q)))
 
 
-@pytest.mark.profile("routes", cases=["oscillators"])
+@pytest.mark.profile("routes", keep=["upright disk", "disk on a circle"])
 @pytest.mark.parametrize(("system", "start"), CASES.values(), ids=CASES)
 def test_the_matrix_is_that_of_differences_of_the_equations(system: Any, start: dict[str, Any]) -> None:
     """From the definition: vary kept states, find the other velocities from the constraint, difference the rates."""
@@ -289,6 +289,7 @@ def test_refusals(subject: Any, state: dict[str, Any], words: str) -> None:
         nh.linearize(subject, **state)
 
 
+@pytest.mark.profile("routes", instead="nonholo.analysis._linearize.critical_values")
 def test_critical_values_of_a_disk_and_a_bead() -> None:
     """Where eigenvalues meet on the axis, and where one crosses it: a bead on a hoop with friction, and its map."""
     disk = nh.critical_values(lambda roll: nh.linearize(DISK, **rolling(0.0, 0.0, roll)), (0.5, 6.0), samples=4)

@@ -298,6 +298,7 @@ def test_the_curvature_of_two_wheels_is_a_bracket() -> None:
     np.testing.assert_allclose(F, [0, 0, -2 * turn * ahead], rtol=0, atol=1e-16)
 
 
+@pytest.mark.profile("routes", instead="test_the_car_has_the_connection_of_the_closed_form")
 def test_forces_leave_the_connection_as_it_is() -> None:
     """Under friction and a push a car whose shape is driven has the body velocity that the connection says."""
     ready = nh.examples.kinematic_car(wheel_radius=RADIUS, wheelbase=BASE)
@@ -312,6 +313,7 @@ def test_forces_leave_the_connection_as_it_is() -> None:
     np.testing.assert_allclose(connection.body_velocity(orbit.configuration[:, 3:], v[:, 3:]), xi, 0, 1e-12)
 
 
+@pytest.mark.profile("routes", instead="test_the_car_has_the_connection_of_the_closed_form")
 def test_gradients_of_holonomic_constraints_are_rows() -> None:
     """A blade whose heading is geared to its shape: connection, curvature and brackets are those of the rows."""
     blade = lambda q: jnp.array([[-jnp.sin(q[2]), jnp.cos(q[2]), 0.0, 0.0], [jnp.cos(q[2]), jnp.sin(q[2]), 0.0, -0.5]])  # noqa: E731

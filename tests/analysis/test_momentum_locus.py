@@ -55,6 +55,7 @@ def test_equation_fails_beside_the_locus(discrete: nh.Discretization) -> None:
     assert np.median(np.abs(implicit(moved))) > 1e6 * np.abs(implicit(p)).max()
 
 
+@pytest.mark.profile("problems", keep=["?"])
 @pytest.mark.parametrize("seed", range(20))
 def test_any_body_has_three_double_segments(seed: int) -> None:
     """Random bodies: value and gradient of the quartic vanish on three lines, whiskers included."""
@@ -68,6 +69,7 @@ def test_any_body_has_three_double_segments(seed: int) -> None:
     assert np.allclose(locus.implicit(locus.triple_point), 0.0, atol=1e-14)
 
 
+@pytest.mark.profile("problems", keep=["generic", "other axis"])
 @pytest.mark.parametrize("name", TOPS)
 def test_two_displacements_over_double_points(name: str) -> None:
     """The surface near an inner point of a segment consists of two sheets: displacements there are of two kinds."""

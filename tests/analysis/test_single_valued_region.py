@@ -24,6 +24,7 @@ def _real_branches(discrete: nh.Discretization, momentum: np.ndarray) -> int:
     return int(np.sum(np.abs(np.roots([phat, -pi, 2 * s.inertia + phat, -pi]).imag) < 1e-9))
 
 
+@pytest.mark.profile("problems", keep=["0.2", "0.499", "0.501", "0.8258", "2.0"])
 @pytest.mark.parametrize("ratio", RATIOS)
 def test_sharp_bound_to_ten_digits(ratio: float) -> None:
     """It is the least energy on the deltoid: all stationary points in T = tan^2(D/2), the cusps and T = infinity."""
@@ -77,7 +78,7 @@ def test_principal_energy_is_the_least_on_two_sides(ratio: float) -> None:
     assert bound * (1 - 1e-13) <= least <= bound * (1 + 1e-5)  # the mesh is one of 7e-4
 
 
-@pytest.mark.profile("problems", keep=["1-0.5", "-1-50.0", "1-0.8256"])
+@pytest.mark.profile("problems", keep=["1-0.5"])
 @pytest.mark.parametrize("ratio", RATIOS)
 @pytest.mark.parametrize("sign", [1, -1])
 def test_every_momentum_has_a_principal_value_below(ratio: float, sign: int) -> None:

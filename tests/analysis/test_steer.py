@@ -27,7 +27,7 @@ def test_thousand_sleighs_are_parked() -> None:
 @pytest.mark.profile("routes", instead="test_bounds_hold")
 def test_many_are_parked_at_once() -> None:
     """Each of three members side by side meets its goal, in the compiled run of its controls too."""
-    starts, found = _starts(3), _parked()
+    starts, found = _starts(3), _parked(3)
     assert found.failures == 0
     assert found.controls.shape == (3, 40, 3)
     np.testing.assert_allclose(found.orbit.configuration[:, -1], np.broadcast_to(ASIDE, (3, 3, 3)), rtol=0, atol=1e-8)
@@ -40,8 +40,8 @@ def test_many_are_parked_at_once() -> None:
 
 
 @functools.cache
-def _parked() -> Steering:
-    return nh.steer(SLEIGH, _starts(3), {"configuration": ASIDE, **REST}, steps=40)
+def _parked(count: int = 1) -> Steering:
+    return nh.steer(SLEIGH, _starts(count), {"configuration": ASIDE, **REST}, steps=40)
 
 
 def _starts(count: int) -> dict[str, np.ndarray]:
@@ -62,10 +62,9 @@ def test_least_effort_to_a_speed_is_a_constant_thrust() -> None:
 def test_bounds_hold() -> None:
     """Forces stay within their bounds, and cost more than without them."""
     goal, size = {"configuration": ASIDE, **REST}, 0.8 * np.abs(_parked().controls).max()
-    bounded = nh.steer(SLEIGH, _starts(3), goal, steps=40, bounds=(-size, size))
+    bounded = nh.steer(SLEIGH, _starts(1), goal, steps=40, bounds=(-size, size))
     assert bounded.failures == 0
     assert np.abs(bounded.controls).max() <= size + 1e-12
-    assert (bounded.cost > _parked().cost - 1e-9).all()
     assert bounded.cost.sum() > _parked().cost.sum() + 1e-6
 
 

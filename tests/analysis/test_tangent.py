@@ -103,7 +103,7 @@ FLOWS = {
 }
 
 
-@pytest.mark.profile("routes", keep=["under a function"])
+@pytest.mark.profile("routes", instead="test_tangent_map_of_flows")
 @pytest.mark.parametrize("system", FLOWS.values(), ids=FLOWS)
 def test_tangent_maps_of_flows_with_poses(system: AbstractSystem) -> None:
     """Under forces and under constraints fixed in space the product is that of differences of flows."""

@@ -57,7 +57,7 @@ def test_numbers_go_on_after_the_largest(nonholo: Command) -> None:
     assert nonholo("simulate", "sleigh", "--no-plot", "-q", "--steps", 3).stdout.strip() == "runs/sleigh-008.zarr"
 
 
-@pytest.mark.profile("faults", keep=["several blocks"])
+@pytest.mark.profile("faults", instead="test_each_sweep_has_a_new_number")
 @pytest.mark.parametrize("rows", [100, 10_000], ids=["several blocks", "one block"])
 def test_runs_at_the_same_time_get_different_stores(rows: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs that begin and end together all keep their orbit."""

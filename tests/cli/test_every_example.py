@@ -34,7 +34,7 @@ def test_they_are_the_public_ones() -> None:
     assert examples() == {name: getattr(nh.examples, name) for name in NAMES}
 
 
-@pytest.mark.profile("routes", keep=[f"*{name}*" for name in QUICK])
+@pytest.mark.profile("routes", keep=["*particle*"])
 @pytest.mark.parametrize("name", NAMES)
 def test_every_example(name: str, nonholo: Command) -> None:
     """It runs as in Python, from its own start; its store is shown and drawn; its page and a sweep of two are made."""
@@ -160,6 +160,7 @@ def sys_modules_cart(**numbers: float) -> Any:
     return sys.modules["cart_of_mine"].cart(**numbers)
 
 
+@pytest.mark.profile("routes", instead="test_a_function_in_a_file_is_a_data_set")
 def test_a_sweep_over_a_body_of_ones_own(robot: Path, nonholo: Command) -> None:
     """Members are those of the file's function; the store is resumed with the file, and not without."""
     Path("many.toml").write_text(SWEEP)

@@ -67,6 +67,7 @@ def test_wrong_usage_is_refused(arguments: tuple[object, ...], nonholo: Command)
     assert result.stdout == ""
 
 
+@pytest.mark.profile("faults", instead="test_standard_output_is_the_file")
 def test_reader_that_stops_is_no_error() -> None:
     """A pipe that is closed after the first rows, as `head` does, ends the command without a word."""
     nh.simulate(SLEIGH, steps=20_000, store="run.zarr", **START)  # a megabyte of text, more than a pipe holds

@@ -49,6 +49,7 @@ def test_kinds_are_the_same_everywhere() -> None:
     assert all(body_table(each.__name__).make is each for each in SYSTEMS)
 
 
+@pytest.mark.profile("routes", keep=["suslov", "right_invariant"])
 @pytest.mark.parametrize("kind", SHORT)
 def test_built_in_scenario(kind: str, figures: Figures, nonholo: Command) -> None:
     """Each runs to its end, conserves what it says, and its store is shown and drawn again."""

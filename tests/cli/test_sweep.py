@@ -387,7 +387,7 @@ def test_resume_of_a_damaged_sweep(nonholo: Command) -> None:
     assert nh.load_sweep(store).equals(before)
 
 
-@pytest.mark.profile("faults", keep=["SIGTERM"])
+@pytest.mark.profile("faults", instead="test_a_stopped_sweep_is_resumed")
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
 def test_stopping_signals(name: str) -> None:
     """Ctrl-C, the end of a container and a closed terminal leave an unlocked store to resume, and exit code 1."""

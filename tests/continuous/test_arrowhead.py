@@ -74,6 +74,7 @@ def test_the_equations_are_the_vector_field(name: str) -> None:
         assert np.abs(_arrowhead.decode(form, x[None])[0] - r).max() <= 1e-14 * np.abs(r).max()
 
 
+@pytest.mark.profile("routes", cases=["top in other axes", "top 12", "sleigh 9"])
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_momenta_alone_are_those_with_poses(name: str) -> None:
     """Forward and backward, to rounding; the energy too."""

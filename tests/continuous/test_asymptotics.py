@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from problems import systems, velocities
 
 import nonholo as nh
@@ -115,7 +115,6 @@ def test_balanced_top_keeps_its_velocity(coupling: float) -> None:
     assert np.abs(orbit.configuration[-1] - top.group.exp(2 * orbit.body_velocity[0])).max() <= 1e-9
 
 
-@settings(max_examples=100)
 @given(systems, velocities)
 def test_closed_form_of_random_systems(system: AbstractLLSystem, velocity: np.ndarray) -> None:
     """Closed form and numerical flow agree to 1e-8, backwards too, unless a sleigh turns too slowly for the latter."""

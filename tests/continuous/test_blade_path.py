@@ -30,6 +30,7 @@ def _reference(ratio: float, start: float, elapsed: float) -> tuple[mpf, mpmath.
         return _gudermannian(last) - phi, mp.exp(-mp.j * L * phi) * moved
 
 
+@pytest.mark.profile("problems", keep=["2.0--3.0-7.0"])
 @pytest.mark.parametrize(("ratio", "start", "elapsed"), [(1.3, -0.7, 2.0), (2.0, -3.0, 7.0), (20.0, -2.0, 4.5)])
 def test_antiderivative_by_quadrature(ratio: float, start: float, elapsed: float) -> None:
     """The hypergeometric reference of this file is the integral, to 40 digits of a Gauss-Legendre quadrature."""
@@ -43,7 +44,7 @@ def test_antiderivative_by_quadrature(ratio: float, start: float, elapsed: float
         assert abs(found - _reference(ratio, start, elapsed)[1]) <= mpf(10) ** -40
 
 
-@pytest.mark.profile("problems", keep=["0.3-7.3", "-20.0-2.6"])
+@pytest.mark.profile("problems", instead="test_closed_form")
 @pytest.mark.parametrize("ratio", RATIOS)
 @pytest.mark.parametrize("start", STARTS)
 def test_blade_path(ratio: float, start: float) -> None:

@@ -59,6 +59,7 @@ def _missed(found: np.ndarray, wanted: np.ndarray) -> float:
     return float((gaps / scale).max())
 
 
+@pytest.mark.profile("problems", cases=["heavy top on SO(4)"])
 @pytest.mark.parametrize("case", golden("linear_forces.json"), ids=lambda case: case["name"])
 def test_sixty_digits(case: dict[str, Any]) -> None:
     """Velocities and poses are right to 3e-13 of their size over twenty units of time; rounding alone is 1e-14."""
@@ -72,6 +73,7 @@ def test_sixty_digits(case: dict[str, Any]) -> None:
     assert _missed(orbit.configuration, numbers(case["configurations"])) <= 3e-13
 
 
+@pytest.mark.profile("routes", cases=["product*", "top on SO(7)*", "*SO(4)-friction", "*SO(4)-weight", "any d*-weight"])
 @pytest.mark.parametrize("kinds", ["weight", "friction", "weight and friction"])
 @pytest.mark.parametrize("name", BODIES)
 def test_the_definition_solved_by_another_method(name: str, kinds: str) -> None:
@@ -86,6 +88,7 @@ def test_the_definition_solved_by_another_method(name: str, kinds: str) -> None:
     assert _missed(orbit.configuration.reshape(len(TIMES), -1), rows[:, k:]) <= 2e-12
 
 
+@pytest.mark.profile("routes", keep=["tilted top", "sleigh*"])
 @pytest.mark.parametrize("name", ["tilted top", "sleigh with b", "top on SO(4)", "any d on SE(3)"])
 def test_potentials_of_several_vectors(name: str) -> None:
     """U = tr(A^T g), told by the levers of the rows of g, moves a body as the function U does, by its differences."""
@@ -132,6 +135,9 @@ def test_states_between_and_among_others(name: str) -> None:
             assert_same(orbit, chosen, "reduced_momentum", "configuration")
 
 
+@pytest.mark.profile(
+    "routes", keep=["any d on SE(3)-friction", "sleigh*-weight", "tilted top-weight and friction", "free body-weight"]
+)
 @pytest.mark.parametrize("kinds", ["weight", "friction", "weight and friction"])
 @pytest.mark.parametrize("name", [name for name, body in BODIES.items() if body.homogeneous_mass_tensor is not None])
 def test_members_have_the_bits_of_flows_alone(name: str, kinds: str) -> None:

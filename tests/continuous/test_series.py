@@ -63,6 +63,9 @@ def test_the_quadratic_equations_are_the_vector_field(
     assert np.abs(found - np.concatenate([moved, turning, rates])).max() <= scale
 
 
+@pytest.mark.profile(
+    "routes", cases=["right-invariant on SE(3)", "product", "veselova 4", "point*", "free on S?([34])", "any d*"]
+)
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_compact_poses_and_matrices_arrive_at_the_same_states(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two systems of equations for one motion, backward in time, agree to 1e-12."""
@@ -152,8 +155,8 @@ def test_fifty_digits() -> None:
             moved = g * mpmath.matrix(_hat(velocity))
             return [*(rows * torque), *(moved[i // 3, i % 3] for i in range(9))]
 
-        expected = np.array([float(x) for x in mpmath.odefun(field, 0, [mpmath.mpf(x) for x in start.tolist()])(2)])
-    orbit = nh.flow(system, momentum=start[:2], times=(0.0, 2.0))
+        expected = np.array([float(x) for x in mpmath.odefun(field, 0, [mpmath.mpf(x) for x in start.tolist()])(1)])
+    orbit = nh.flow(system, momentum=start[:2], times=(0.0, 1.0))
     assert np.abs(orbit.reduced_momentum[-1] - expected[:2]).max() <= 1e-14
     assert np.abs(orbit.configuration[-1].ravel() - expected[2:]).max() <= 1e-14
 

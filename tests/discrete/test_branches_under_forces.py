@@ -76,6 +76,7 @@ def _values(name: str, kind: str) -> tuple[nh.Forced, np.ndarray, np.ndarray, Br
     return forced, g, r, nh.displacements_over(nh.discretize(forced, H), r, configuration=g, step=2)
 
 
+@pytest.mark.profile("problems", cases=["top on SO(4)-weight"])
 @pytest.mark.parametrize(("name", "kind"), CASES)
 def test_every_value_is_a_step_and_keeps_its_energy(name: str, kind: str) -> None:
     """F(W) = r + h/2 f on the variety, as often as there are values; T' - T = <f, X>, on complex branches too."""
@@ -98,7 +99,7 @@ def test_every_value_is_a_step_and_keeps_its_energy(name: str, kind: str) -> Non
     assert values.principal == 0
 
 
-@pytest.mark.profile("routes", cases=["top on SO(4)-*"])
+@pytest.mark.profile("routes", keep=["*-all"])
 @pytest.mark.parametrize(("name", "kind"), CASES)
 def test_the_principal_one_is_the_step_of_a_run(name: str, kind: str) -> None:
     """From a momentum, and from each displacement of an orbit, the next one is the principal value."""

@@ -80,6 +80,7 @@ def test_the_lipschitz_constant_is_not_exceeded(index: int) -> None:
             assert np.linalg.norm(slopes, 2) <= claimed + 1e-9  # rounding of the quotients
 
 
+@pytest.mark.profile("problems", keep=["SO(3)", "SE(2)"])
 @pytest.mark.parametrize("index", range(len(GROUPS)), ids=map(str, GROUPS))
 def test_roots_on_the_level_are_principal_and_certified(index: int) -> None:
     """For momenta at the level the followed root is the fixed point of the contraction, and it is certified."""

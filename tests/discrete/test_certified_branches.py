@@ -48,6 +48,7 @@ def _exact(discrete: Discretization, r: list[float], W: np.ndarray) -> mpmath.ma
     return displaced(tuple(mpmath.findroot(defect, [mpmath.mpc(x) for x in start], tol=1e-60)))
 
 
+@pytest.mark.profile("problems", keep=["top", "sleigh"])
 @pytest.mark.parametrize(("discrete", "r"), _ENCLOSED.values(), ids=_ENCLOSED)
 def test_enclosures_hold_the_displacements(discrete: Discretization, r: list[float]) -> None:
     """Each 40-digit root of the matrix equations lies in its enclosure, which is a few roundings wide."""
@@ -61,6 +62,7 @@ def test_enclosures_hold_the_displacements(discrete: Discretization, r: list[flo
             assert radius <= 32 * np.finfo(float).eps * (1 + np.abs(W).max())
 
 
+@pytest.mark.profile("problems", keep=["top 3", "sleigh*"])
 @pytest.mark.parametrize("kind", ["top 3", "sleigh", "top 4", "top 6", "sleigh SE(3)"])
 def test_random_problems_are_certified_and_agree(kind: str) -> None:
     """All of 60 random problems are certified; further than 1e-11 from a fold values, counts and reality agree.
@@ -77,6 +79,7 @@ def test_random_problems_are_certified_and_agree(kind: str) -> None:
             assert module.disagreement(certified, nh.displacements_over(discrete, r)) == ""
 
 
+@pytest.mark.profile("problems", cases=["top 6"])
 @pytest.mark.parametrize("kind", ["top 3", "sleigh", "top 4", "top 6", "sleigh SE(3)"])
 def test_random_counts_are_exact(kind: str) -> None:
     """For 40 random problems, some of them nearly on a fold, the real values are as many as Sturm's theorem says."""

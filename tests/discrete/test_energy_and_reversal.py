@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from problems import PROBLEMS, Problem, systems, velocities
 
 import nonholo as nh
 from nonholo.systems import AbstractLLSystem
 
 
-@pytest.mark.profile("problems", keep=["0.1-*"])
+@pytest.mark.profile("problems", keep=["0.1-offset sleigh", "0.1-top", "0.1-rod"])
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda p: p.name)
 @pytest.mark.parametrize("time_step", [0.01, 0.1, 0.5])
 def test_energy_drift_over_long_runs(problem: Problem, time_step: float) -> None:
@@ -27,7 +27,6 @@ def test_energy_drift_over_long_runs(problem: Problem, time_step: float) -> None
         assert np.ptp(orbit[:1000].spatial_momentum, axis=0).max() > 1e-2
 
 
-@settings(max_examples=150, deadline=None)
 @given(systems, velocities)
 def test_energy_and_reversal_of_random_systems(system: AbstractLLSystem, velocity: np.ndarray) -> None:
     """Wherever the principal branch exists, at a large step, energy is exact and each step reverses."""

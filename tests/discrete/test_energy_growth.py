@@ -52,6 +52,7 @@ def test_general_rows_on_a_motion_group() -> None:
     assert growth(system, np.array([0.1, 0.05]), 10_000) <= 5e-14
 
 
+@pytest.mark.profile("problems", keep=["on SO(4)"])
 @pytest.mark.parametrize("seed", [8, 11, 25], ids=["on SO(5)", "on SE(4)", "on SO(4)"])
 def test_a_few_bodies(seed: int) -> None:
     """Bodies whose energy changed by more than 1e-17 a step, over 10,000 steps."""

@@ -110,6 +110,9 @@ def _midpoint(A: Any) -> tuple[Callable, Callable]:
     return potential, slope
 
 
+@pytest.mark.profile(
+    "problems", keep=["SO(3)-any-complex", "SE(2)-any-real", "SE(3)-linear-real", "Sp(4)-linear-complex"]
+)
 @pytest.mark.parametrize("unreal", [False, True], ids=["real", "complex"])
 @pytest.mark.parametrize("potential", [_linear, _midpoint], ids=["linear", "any"])
 @pytest.mark.parametrize("name", ["SO(3)", "SO(4)", "SE(2)", "SE(3)", "SO(2,1)", "Sp(4)"])

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from os import kill
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import distributed
@@ -43,8 +44,8 @@ except ValueError as failure:
 
 @pytest.fixture(scope="module")
 def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
-    """A cluster of two workers that nobody kills."""
-    with cluster(tmp_path_factory.mktemp("running")) as made:
+    """A cluster of a worker that nobody kills; who needs more adds them."""
+    with cluster(tmp_path_factory.mktemp("running"), workers=1) as made:
         yield made
 
 
@@ -73,12 +74,13 @@ def _worker_of(store: Path) -> int:
     return int(done(store)[0].rpartition(":")[2])
 
 
-@pytest.mark.profile("faults", instead="test_a_cluster_without_workers_is_told")
+@pytest.mark.profile("faults", instead="test_functions_without_a_module")
 def test_workers_compute_the_bits_of_threads(running: Cluster, tmp_path: Path) -> None:
     """Two worker processes share the blocks of an ensemble, and write what threads write."""
     top = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.1)
     task = nh.EnsembleTask(top, steps=100, reductions=["final_state", "energy_drift", "limit_angle"])
     design = nh.RandomDesign(200, {"mass_tensor": nh.MassTensor(3, 0.5, 2.0), "restricted_velocity": nh.Direction(2)})
+    running.add_worker()
     with distributed.Client(running.address, set_as_default=False) as client:
         client.wait_for_workers(2, timeout=120)
     found = nh.sweep(task, design, tmp_path / "a.zarr", running.address, block=8)
@@ -151,7 +153,7 @@ def test_the_address_of_a_worker_is_refused(running: Cluster, tmp_path: Path) ->
         nh.sweep(slow, DESIGN, tmp_path / "a.zarr", worker)
 
 
-@pytest.mark.profile("faults", instead="test_a_cluster_without_workers_is_told")
+@pytest.mark.profile("faults", instead="test_functions_without_a_module")
 def test_the_page(running: Cluster, tmp_path: Path) -> None:
     """The code of the page on clusters runs, for fewer members: the script on a cluster, and its groups."""
     run, groups = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
@@ -214,7 +216,7 @@ def _kill_scheduler(made: Cluster) -> None:
     made.scheduler.kill()
 
 
-@pytest.mark.profile("faults", instead="test_a_cluster_without_workers_is_told")
+@pytest.mark.profile("faults", instead="test_nobody_to_work_is_told")
 @pytest.mark.parametrize("strike", [_kill_scheduler, Cluster.kill], ids=["scheduler", "all"])
 def test_a_killed_cluster_is_told(
     strike: Callable[[Cluster], Any], tmp_path: Path, undisturbed: xarray.Dataset, monkeypatch: pytest.MonkeyPatch
@@ -232,6 +234,16 @@ def test_a_killed_cluster_is_told(
     assert same(nh.resume(tmp_path / "a.zarr", trust=True), undisturbed)
 
 
+def test_nobody_to_work_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where no block is ready, and no worker is known, a warning says what the sweep waits for."""
+    monkeypatch.setattr(_scheduling, "_PATIENCE", 0.0)
+    running = SimpleNamespace(count=lambda: 1, has_ready=lambda: False)
+    client = SimpleNamespace(ncores=dict, scheduler=SimpleNamespace(address="tcp://here:1"))
+    with pytest.raises(RuntimeWarning, match=r"at tcp://here:1 has no workers\. The .* dask worker tcp://here:1$"):
+        next(_scheduling._batches(running, client))
+
+
+@pytest.mark.profile("faults", instead="test_nobody_to_work_is_told")
 def test_a_cluster_without_workers_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A sweep for which there are no workers says what it waits for."""
     monkeypatch.setattr(_scheduling, "_PATIENCE", 0.1)

@@ -16,6 +16,7 @@ from nonholo.ensembles import standing_of
 ARRAYS = {"total": "c/1/0", "noise": "c/1/0/0", "outcome": "c/1/0"}
 
 
+@pytest.mark.profile("faults", keep=["cut-outcome", "flipped-noise", "missing-total", "empty-total"])
 @pytest.mark.parametrize("array", ARRAYS)
 @pytest.mark.parametrize("how", DAMAGE)
 def test_damaged_chunk_is_named_and_computed_again(array: str, how: str, tmp_path: Path) -> None:
@@ -43,6 +44,7 @@ def test_damaged_draws_are_computed_again(name: str, tmp_path: Path) -> None:
         assert same(nh.resume(path, task=task).load(), whole)
 
 
+@pytest.mark.profile("faults", keep=["edited", "flipped"])
 @pytest.mark.parametrize("how", ["flipped", "cut", "empty", "edited"])
 def test_damaged_mark_is_named_and_its_block_computed_again(how: str, tmp_path: Path) -> None:
     """A block whose mark cannot be trusted is computed again."""
@@ -68,6 +70,7 @@ def test_lost_mark_is_a_block_to_do(tmp_path: Path) -> None:
     assert same(resumed(path), whole)
 
 
+@pytest.mark.profile("faults", keep=["x-flipped", "start-missing"])
 @pytest.mark.parametrize("how", DAMAGE)
 @pytest.mark.parametrize("axis", ["x", "start"])
 def test_lost_axis_is_refused(axis: str, how: str, tmp_path: Path) -> None:
@@ -79,6 +82,7 @@ def test_lost_axis_is_refused(axis: str, how: str, tmp_path: Path) -> None:
         resumed(path)
 
 
+@pytest.mark.profile("faults", keep=["*-cut"])
 @pytest.mark.parametrize("how", ["missing", "cut", "empty"])
 @pytest.mark.parametrize(
     ("place", "match"), [("", "zarr.json"), ("noise", "hold the array noise"), ("x", "hold the array x")]

@@ -137,6 +137,7 @@ def test_no_room_for_a_store(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.profile("faults", instead="test_second_process_is_refused")
 def test_second_process_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """While one process writes a store, another one is refused, and told who writes it."""
     path, told = tmp_path / "run.zarr", []

@@ -100,6 +100,7 @@ def _calm(block: nh.MemberBlock) -> dict[str, Any]:
     return {"value": np.sin(block["x"]) * block["y"], "noise": block.random(2, "noise"), "count": block.index}
 
 
+@pytest.mark.profile("faults", keep=["1", "5"])
 @pytest.mark.parametrize("block", [1, 3, 5, 12])
 def test_members_that_raise_are_recorded(block: int, tmp_path: Path) -> None:
     """Members for which the task raises have no numbers, outcome 100 and a message; the others have the same bits."""
@@ -254,7 +255,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> xarray.Dataset:
     return nh.sweep(faults.TOPS, FEW, tmp_path_factory.mktemp("whole") / "run.zarr", "synchronous").load()
 
 
-@pytest.mark.profile("faults", keep=["threads-*", "synchronous-7"])
+@pytest.mark.profile("faults", keep=["threads-7", "synchronous-7"])
 @pytest.mark.parametrize(
     ("scheduler", "block"), [("threads", 1), ("threads", 7), ("threads", 64), ("synchronous", 7), ("processes", 7)]
 )
@@ -265,6 +266,7 @@ def test_bits_of_ensembles_do_not_depend_on_blocks(
     assert same(_swept(faults.TOPS, tmp_path, FEW, block=block, scheduler=scheduler, workers=2), whole)
 
 
+@pytest.mark.profile("faults", cases=["_calm-1000*"])
 @pytest.mark.parametrize(
     ("task", "members", "blocks"), [(_calm, 1000, 32), (_calm, 20, 20), (faults.TOPS, 1000, 32), (faults.TOPS, 40, 2)]
 )
@@ -351,7 +353,7 @@ def _drawn_twice(block: nh.MemberBlock) -> dict[str, Any]:
     return {"twice": 2 * block["x"], "noise": block.random(1)[:, 0]}
 
 
-@pytest.mark.profile("faults", cases=["7"])
+@pytest.mark.profile("faults", keep=["4"])
 @pytest.mark.parametrize("block", [4, 7, 100])
 def test_a_random_design_grows(block: int, tmp_path: Path) -> None:
     """With more members, once and again, a store has the bits of a sweep of all of them; what is there is not done."""

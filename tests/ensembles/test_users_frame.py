@@ -73,6 +73,7 @@ def test_orbits_and_their_datasets(name: str) -> None:
         assert (np.diff(found["quaternion"], axis=0) ** 2).sum(axis=1).max() < 0.1, "signs have to continue"
 
 
+@pytest.mark.profile("routes", keep=["sleigh", "askew"])
 @pytest.mark.parametrize("name", ["about e2", "about -e3", "askew", "sleigh", "sleigh in space", "Veselova"])
 def test_stores_as_xarray_opens_them(name: str, tmp_path: Path) -> None:
     """A store has the variables of the dataset bit for bit, saved whole or block by block, and no canonical ones."""
@@ -138,6 +139,7 @@ def test_last_poses_of_sweeps(name: str, axes: dict[str, Any], tmp_path: Path) -
         assert _close(_matrices({**told, "energy": 0.0}, system.group), g)
 
 
+@pytest.mark.profile("routes", keep=["sleigh", "askew"])
 @pytest.mark.parametrize("name", ["about e2", "about -e3", "askew", "sleigh", "sleigh in space"])
 def test_tables(name: str, tmp_path: Path) -> None:
     """CSV from an orbit and from a store has the numbers of the dataset."""

@@ -62,7 +62,7 @@ def test_the_map_rides_as_the_flow() -> None:
     assert np.ptp(energy) <= 1e-11 * energy[0]
 
 
-@pytest.mark.profile("routes", instead="test_critical_values_of_a_disk_and_a_bead")
+@pytest.mark.profile("routes", instead="nonholo.analysis._linearize.critical_values")
 def test_one_call_gives_the_weave_and_the_capsize_speed() -> None:
     """To the nine decimals that are published."""
 

@@ -78,7 +78,7 @@ def _is_drawn(system: object) -> bool:
     return bool(getattr(system, "outline", ())) or (body is not None and body.group == nh.SE(2))
 
 
-@pytest.mark.profile("routes", keep=["k*", "r*disk", "snakeboard", "two*", "s*well"])
+@pytest.mark.profile("routes", keep=["snakeboard", "rolling_disk", "s*well"])
 @pytest.mark.parametrize("name", sorted(ROLLING))
 def test_a_wheel_that_is_drawn_does_not_slip(name: str) -> None:
     """Along a run the middle of a drawn wheel or blade moves along it: across by the error of differences of 1e-5."""

@@ -40,6 +40,7 @@ def disk_by_newton_and_euler(_time: float, z: Array) -> list[float]:
     return [dlean, ddlean, -spun[2] / J, dw2, turning, roll, R * roll * np.cos(heading), R * roll * np.sin(heading)]
 
 
+@pytest.mark.profile("routes", instead="test_steady_circles_are_the_closed_form")
 def test_the_disk_moves_as_balances_of_momentum_say() -> None:
     """A disk that wobbles, to 1e-10; the map is of order two."""
     body = {"mass": 1.2, "radius": 0.7, "rolling_inertia": 0.3, "turning_inertia": 0.11, "gravity": 9.81}
@@ -188,6 +189,7 @@ def test_the_ball_in_the_bowl_is_a_spherical_pendulum_in_a_magnetic_field(spin: 
     assert abs(np.log2(errors[0] / errors[1]) - 2.0) <= 0.1
 
 
+@pytest.mark.profile("routes", keep=["one"])
 @pytest.mark.parametrize("hitches", [(1.0,), (0.7, 1.2, 0.5)], ids=["one", "three"])
 def test_trailers_follow_by_the_recursion_of_speeds(hitches: tuple[float, ...]) -> None:
     """Headings and place to 1e-10 from the speed along the axle that the energy leaves; the map keeps the turning."""

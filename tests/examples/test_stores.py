@@ -83,6 +83,7 @@ def test_a_run_that_is_stopped_resumed_and_extended_is_the_run(name: str, tmp_pa
     assert stored["scenario"] == "mine"
 
 
+@pytest.mark.profile("routes", keep=["20"])
 @pytest.mark.parametrize("rows", [1, 20, 21])
 def test_blocks_of_any_size_hold_the_run(rows: int, tmp_path: Path) -> None:
     """Also a last block of one state, whose impulse is not known, and is NaN for xarray."""

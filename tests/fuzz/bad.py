@@ -3,6 +3,7 @@
 import datetime
 import decimal
 import fractions
+import functools
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -30,6 +31,7 @@ def _in_itself() -> list[Any]:
     return found
 
 
+NUMBERS = ("10**400", "-10**400", "10**5000", "10**30", "2**63", "2**53", "10**12", "-1", "0", "-0.0", "0.5", "2.0")
 CONSTANT: dict[str, Callable[[], Any]] = {
     "None": lambda: None,
     "text": lambda: "abc",
@@ -52,25 +54,10 @@ CONSTANT: dict[str, Callable[[], Any]] = {
     "nan of 16 bits": lambda: np.float16("nan"),
     "1j": lambda: 1j,
     "complex without imaginary part": lambda: np.complex128(1.0),
-    "10**400": lambda: 10**400,
-    "-10**400": lambda: -(10**400),
-    "10**5000": lambda: 10**5000,
-    "10**30": lambda: 10**30,
-    "2**63": lambda: 2**63,
-    "2**53": lambda: 2**53,
-    "10**12": lambda: 10**12,
-    "-1": lambda: -1,
-    "0": lambda: 0,
-    "-0.0": lambda: -0.0,
-    "0.5": lambda: 0.5,
-    "2.0": lambda: 2.0,
+    **{text: functools.partial(eval, text) for text in NUMBERS},
     "np.int8": lambda: np.int8(3),
     "np.uint64": lambda: np.uint64(2**64 - 1),
-    "1e308": lambda: 1e308,
-    "-1e308": lambda: -1e308,
-    "1e160": lambda: 1e160,
-    "1e-160": lambda: 1e-160,
-    "5e-324": lambda: 5e-324,
+    **{text: functools.partial(float, text) for text in ("1e308", "-1e308", "1e160", "1e-160", "5e-324")},
     "longdouble": lambda: np.longdouble("1e4000"),
     "fraction": lambda: fractions.Fraction(1, 3),
     "decimal": lambda: decimal.Decimal("0.1"),
@@ -178,12 +165,7 @@ DERIVED: dict[str, Callable[[np.ndarray], Any]] = {
     "one None": lambda v: _with_none(v),
     "zeros": np.zeros_like,
     "negative": np.negative,
-    "times 1e308": lambda v: v * 1e308,
-    "times 1e160": lambda v: v * 1e160,
-    "times 1e20": lambda v: v * 1e20,
-    "times 1e-20": lambda v: v * 1e-20,
-    "times 1e-160": lambda v: v * 1e-160,
-    "times 5e-324": lambda v: v * 5e-324,
+    **{f"times {x}": lambda v, x=float(x): v * x for x in ("1e308", "1e160", "1e20", "1e-20", "1e-160", "5e-324")},
     "one axis more": lambda v: v[None],
     "two axes more": lambda v: v[None, None],
     "one axis less": lambda v: v[0] if v.ndim and len(v) else v,

@@ -13,6 +13,7 @@ PLANE = nh.ChaplyginSleigh(1.0, 0.3, -0.5)
 SPACE = nh.MultidimensionalSleigh(1.0, [0.8, 0.2, -0.1], np.diag([0.2, 0.4, 0.5]))
 
 
+@pytest.mark.profile("problems", keep=["SE2-3.141592653589793", "SE3-3.1414*", "SE2-3.5"])
 @pytest.mark.parametrize("angle", [3.0, np.pi - 1e-4, np.pi, np.pi + 1e-4, 3.5])
 @pytest.mark.parametrize(("system", "turn"), [(PLANE, (1.0,)), (SPACE, (0.8, 0.6))], ids=["SE2", "SE3"])
 def test_half_turns_are_passed(system: Any, turn: tuple[float, ...], angle: float) -> None:

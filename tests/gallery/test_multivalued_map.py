@@ -28,6 +28,7 @@ def script(name: str) -> ModuleType:
     return scripts.script(f"docs/gallery/{name}.py")
 
 
+@pytest.mark.profile("paper", cases=["loci", "*_5_*", "*_6_*"])
 @pytest.mark.parametrize("name", PANELS)
 def test_the_page_quotes_what_the_script_prints(name: str) -> None:
     """The block below the link to a script is its output, line by line."""
@@ -37,6 +38,7 @@ def test_the_page_quotes_what_the_script_prints(name: str) -> None:
     assert block.group(1).splitlines() == [f"{what}: {value:.8g}" for what, value in script(name).numbers().items()]
 
 
+@pytest.mark.profile("paper", keep=["*_1_*", "*_2_*", "*_3_*", "*_7_*"])
 @pytest.mark.parametrize("name", [name for name in PANELS if name != "loci"])
 def test_pictures_are_drawn(name: str) -> None:
     """Each script draws its panels, and its picture lies where the page looks for it."""

@@ -37,6 +37,8 @@ ELSEWHERE = {  # pages whose blocks run with what stands around them, and where
 }
 NOTEBOOKS = {"how-to/steer.md", "how-to/differentiate-and-fit.md", "how-to/gaits.md"}
 LONG = {
+    "how-to/events-and-sections.md",
+    "how-to/style-a-picture.md",
     "how-to/run-a-sweep.md",
     "how-to/choose-a-discretisation.md",
     "how-to/drive-a-robot.md",

@@ -11,6 +11,7 @@ from nonholo.groups import SE, SO, AbstractMatrixGroup
 every_group = pytest.mark.parametrize("group", GROUPS, ids=str)
 
 
+@pytest.mark.profile("routes", keep=["1.0-*"])
 @every_group
 @pytest.mark.parametrize("scale", [3.0, 1.0, 1e-3, 1e-9, 0.0])
 def test_exp_is_the_matrix_exponential(group: AbstractMatrixGroup, scale: float) -> None:

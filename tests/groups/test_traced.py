@@ -40,7 +40,7 @@ def _everything(group: AbstractMatrixGroup, x: jax.Array) -> dict[str, jax.Array
     }
 
 
-@pytest.mark.profile("routes", keep=["SO(3)", "SE(2)", "Translations(3)", "ProductGroup(SE(2)*"])
+@pytest.mark.profile("routes", keep=["SO(3)", "ProductGroup(SE(2)*"])
 @pytest.mark.parametrize("group", COMPILED, ids=str)
 def test_compiled_functions_agree_with_numpy(group: AbstractMatrixGroup) -> None:
     """One jit over everything, the group a static argument, on several points at once."""
@@ -50,7 +50,7 @@ def test_compiled_functions_agree_with_numpy(group: AbstractMatrixGroup) -> None
         assert close(np.asarray(found[name]), expected, 300), name
 
 
-@pytest.mark.profile("routes", keep=["0.0", "3.14*"])
+@pytest.mark.profile("routes", keep=["0.0"])
 @pytest.mark.parametrize("angle", [0.0, 1e-9, 1e-3, 0.9999, 1.0001, np.pi, 2 * np.pi, 30.0])
 def test_the_closed_form_of_screws_is_the_series(angle: float) -> None:
     """On se(3) exp(x) - I and its derivatives are those of the exponential of matrices, to rounding of each entry."""
@@ -64,7 +64,7 @@ def test_the_closed_form_of_screws_is_the_series(angle: float) -> None:
     assert np.abs(tiny - group.hat(1e-12 * x)[:3, :3]).max() <= 1e-24 * angle**2
 
 
-@pytest.mark.profile("routes", keep=["*-SE(3)"])
+@pytest.mark.profile("routes", keep=["1e-09-SE(3)", "3.1-SE(3)"])
 @pytest.mark.parametrize("group", [SO(4), SO(6), SE(3), SE(4)], ids=str)
 @pytest.mark.parametrize("angle", [1e-9, 0.5, 2.5, 3.1])
 def test_traced_logarithm_of_large_turns(group: AbstractMatrixGroup, angle: float) -> None:
@@ -75,7 +75,7 @@ def test_traced_logarithm_of_large_turns(group: AbstractMatrixGroup, angle: floa
     assert np.abs(found - x).max() <= (2e-14 if angle < 3 else 1e-12) * np.abs(x).max()
 
 
-@pytest.mark.profile("routes", keep=["*-ProductGroup*", "forward-SO(3)"])
+@pytest.mark.profile("routes", keep=["forward-SO(3)", "reverse-ProductGroup*"])
 @pytest.mark.parametrize(
     "group", [SO(2), SO(3), SO(4), SE(3), HEISENBERG, SL2, SL3, ProductGroup(SE(2), Translations(1))], ids=str
 )

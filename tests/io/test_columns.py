@@ -19,6 +19,7 @@ def _without_energy(*args: Any) -> Any:
     return {name: variable for name, variable in CHOSEN(*args).items() if name != "energy"}
 
 
+@pytest.mark.profile("faults", keep=["given"])
 @pytest.mark.parametrize("given", [False, True], ids=["restored", "given"])
 def test_a_column_added_later_breaks_no_unfinished_store(
     given: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

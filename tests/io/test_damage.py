@@ -29,7 +29,7 @@ def _run(store: Path, **more: Any) -> nh.Orbit:
     return nh.simulate(SLEIGH, **RUN, **more, store=store)
 
 
-@pytest.mark.profile("faults", keep=["time*", "run/blocks/1*", "canonical*"])
+@pytest.mark.profile("faults", keep=["canonical*"])
 @pytest.mark.parametrize(
     ("one", "other"),
     [
@@ -94,6 +94,7 @@ def test_a_run_that_failed_before_a_row_is_sealed_too(tmp_path: Path) -> None:
     assert nh.resume(store, events=[stop]).time.tobytes() == nh.load_orbit(store).time.tobytes() == found.time.tobytes()
 
 
+@pytest.mark.profile("faults", keep=["run"])
 @pytest.mark.parametrize("group", ["run", "canonical"])
 def test_metadata_of_inner_groups_are_written_again(group: str, tmp_path: Path) -> None:
     """They say nothing that is not known, so a run continues where they are damaged."""

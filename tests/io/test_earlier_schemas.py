@@ -40,6 +40,7 @@ EARLIER = [(MADE[kind], newest, schema) for kind, newest in SCHEMAS.items() for 
 EARLIER_NAMES = [f"{make.__name__[1:]}-{schema}" for make, _, schema in EARLIER]
 
 
+@pytest.mark.profile("faults", keep=["*-1", "*-3"])
 @pytest.mark.parametrize(("make", "now", "schema"), EARLIER, ids=EARLIER_NAMES)
 def test_every_earlier_schema_is_refused(make: Callable[[Path], None], now: int, schema: int, tmp_path: Path) -> None:
     """Whoever reads, resumes, extends or exports it reads its schema, that of this version, and what to do."""

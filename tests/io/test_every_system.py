@@ -59,7 +59,18 @@ def _run(made: Any, **options: Any) -> nh.Orbit:
     return nh.simulate(motion, restricted_velocity=0.3 * np.cos(np.arange(k)), steps=6, **options)
 
 
-@pytest.mark.profile("routes", keep=["[!n]*", "nothing moves"])
+@pytest.mark.profile(
+    "routes",
+    keep=[
+        "nothing moves",
+        "sleigh 3",
+        "right-invariant on SE(3)",
+        "offset sleigh",
+        "free on SO(4)",
+        "veselova 3",
+        "any d on SE(3)",
+    ],
+)
 @pytest.mark.parametrize("make", MOTIONS.values(), ids=MOTIONS)
 def test_round_trip(make: Callable[[], Any], tmp_path: Path) -> None:
     """Compact arrays, fields of the system and everything decoded from them have the bits of the saved orbit."""

@@ -28,6 +28,7 @@ def hidden(folder: Path) -> list[str]:
     return [path.name for path in folder.iterdir() if path.name.startswith(".")]
 
 
+@pytest.mark.profile("faults", keep=["odd*"])
 @pytest.mark.parametrize("name", ["run.zarr", "odd [1]*.zarr"])
 def test_the_next_maker_removes_what_a_killed_one_left(name: str, tmp_path: Path) -> None:
     """Only of the same path, and only if its maker is dead."""

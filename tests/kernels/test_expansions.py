@@ -85,7 +85,7 @@ def _bits(f: Quadratic, lanes: tuple[int, ...], expansion: int, state: np.ndarra
     return room.series.view(np.int64)
 
 
-@pytest.mark.profile("routes", keep=["top*"])
+@pytest.mark.profile("routes", keep=["top-*", "top on SO(4)*"])
 @pytest.mark.parametrize(("name", "lanes"), cases(BODIES), ids=lambda x: x if isinstance(x, str) else str(len(x)))
 def test_emitted_code_has_the_bits_of_the_general_kernel(name: str, lanes: tuple[int, ...]) -> None:
     """At random states, with zeros of both signs, tiny and huge numbers, and at any order."""
@@ -99,6 +99,7 @@ def test_emitted_code_has_the_bits_of_the_general_kernel(name: str, lanes: tuple
             assert np.array_equal(general, emitted)
 
 
+@pytest.mark.profile("routes", keep=["?"])
 @pytest.mark.parametrize("seed", range(20))
 def test_emitted_code_of_random_structures(seed: int) -> None:
     """Rows in any order, components with many terms or none, velocities in several vectors."""

@@ -59,7 +59,7 @@ def test_the_equations_hold_with_their_sign(rule: str) -> None:
     orbit = run(rule, h, 50)
     action, constraint = by_definition(rule, h)
     with jax.enable_x64(True):
-        for k in range(1, 50):
+        for k in range(1, 50, 6):
             q, r, before = (jnp.asarray(orbit.configuration[j]) for j in (k, k + 1, k - 1))
             left = jax.grad(action)(q, r) + jax.grad(action, argnums=1)(before, q)
             # the velocity (r - q)/h loses a factor 1/h of the rounding unit

@@ -112,6 +112,7 @@ def test_constraints_of_places_hold_at_every_node(name: str) -> None:
     assert change.max() <= 2 * change[:10_000].max() <= 0.05 * np.ptp([q[1] for q in orbit.configuration])
 
 
+@pytest.mark.profile("routes", keep=["midpoint"])
 @pytest.mark.parametrize("rule", ["midpoint", "trapezoidal"])
 def test_pendulum_beside_elliptic_functions(rule: str) -> None:
     """Places and forces of the rod have errors of order two: a quarter for half the step, to the next order."""
@@ -137,6 +138,7 @@ def corners(angles):  # noqa: ANN001, ANN201
     return jnp.concatenate([first, first + 0.8 * jnp.array([jnp.sin(angles[1]), -jnp.cos(angles[1])])])
 
 
+@pytest.mark.profile("routes", instead="test_pendulum_beside_elliptic_functions")
 @pytest.mark.parametrize("rule", ["midpoint", "trapezoidal"])
 def test_the_map_is_that_of_the_discrete_lagrangian_on_the_surface(rule: str) -> None:
     """Proposition 15.2: in angles, with the same L_d of the places of the masses, the nodes are the same.
@@ -202,6 +204,7 @@ def test_flows_stay_on_the_surface() -> None:
     )
 
 
+@pytest.mark.profile("routes", instead="test_moving_constraints_and_a_lagrangian_of_time")
 def test_a_moving_constraint_is_a_prescribed_coordinate() -> None:
     """q_0 = s(t), as a holonomic constraint or prescribed: one motion, one multiplier, one work."""
 

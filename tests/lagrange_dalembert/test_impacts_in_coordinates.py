@@ -105,6 +105,7 @@ def test_reflection_is_that_of_the_impulses(name: str, bounce: float) -> None:
             assert abs(wanted @ mass @ wanted / (w @ mass @ w) - 1) < 1e-13
 
 
+@pytest.mark.profile("routes", instead="test_normals_of_all_kinds_are_one")
 def test_normals_of_all_kinds_are_one() -> None:
     """The derivative by differences is that of numbers and of a function, in coordinates and on a group."""
     state = simulate(nh.discretize(SYSTEMS["contact"], 0.1), steps=2, configuration=(0.3, 0.5, -0.2),
@@ -158,6 +159,7 @@ def rolled(times: np.ndarray) -> tuple[np.ndarray, list[float]]:
     return np.array(rows), hits
 
 
+@pytest.mark.profile("routes", instead="test_a_particle_goes_to_and_fro")
 def test_a_disk_rolls_back_from_a_wall() -> None:
     """The wall turns the rolling around, and leaves the turning: arcs of circles, on the other side after each hit."""
     times = np.linspace(0, 15, 31)

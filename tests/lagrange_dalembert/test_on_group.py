@@ -215,6 +215,7 @@ def height(g):  # noqa: ANN001, ANN201
     return 0.4 * (g[0, 2] - 0.3) ** 2 + 0.7 * g[1, 2] + 0.2 * g[0, 0] * g[1, 2]
 
 
+@pytest.mark.profile("routes", keep=["0.4"])
 @pytest.mark.parametrize("step", [0.05, 0.4])
 def test_a_free_body_in_a_potential_is_that_of_the_forced_map(step: float) -> None:
     """The trapezoidal rule in the action: half a kick at each node, as `nh.Forced` has it, which differences U."""

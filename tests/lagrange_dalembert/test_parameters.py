@@ -110,7 +110,7 @@ def made(name: str, numbers: dict[str, Any] | None = None) -> LagrangeDAlembert:
     return LagrangeDAlembert(**plain, dimension=3)
 
 
-@pytest.mark.profile("routes", keep=["midpoint", "force", "moving"])
+@pytest.mark.profile("routes", keep=["midpoint", "force"])
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_parameters_are_numbers_within_the_functions(name: str) -> None:
     """A run has what it has with the numbers within, but for constants that were computed before: to rounding."""
@@ -121,7 +121,7 @@ def test_parameters_are_numbers_within_the_functions(name: str) -> None:
         assert np.abs(ours - theirs).max(initial=0.0) <= 1e-13 * (1 + np.abs(theirs).max(initial=0.0)), row
 
 
-@pytest.mark.profile("routes", keep=["midpoint", "force"])
+@pytest.mark.profile("routes", keep=["force"])
 @pytest.mark.parametrize("name", ["midpoint", "of time", "force", "moving", "joint"])
 def test_flows_and_work_have_the_parameters(name: str) -> None:
     """A flow, and the work along it, agree with those of numbers within, to the errors of its steps."""
@@ -163,17 +163,19 @@ def test_a_force_and_friction_go_with_parameters() -> None:
     assert_near(runs[0], runs[1], 1e-13, "configuration", "work")
 
 
-def test_a_force_of_the_time_goes_with_parameters() -> None:
+@pytest.mark.profile("routes", keep=["force"])
+@pytest.mark.parametrize("part", ["potential", "force"])
+def test_a_force_of_the_time_goes_with_parameters(part: str) -> None:
     """`Forced` keeps the time of a Lagrangian between velocity and parameters; what it adds need not take them."""
     well, drag = lambda q: NUMBERS["mass"] * q @ q, lambda _time, q, v: -0.1 * v + 0 * q
     plain = nh.Forced(made("of time", NUMBERS), potential=well, force=drag)
-    for parts in (
-        {"potential": lambda q, p: p["mass"] * q @ q, "force": drag},
-        {"potential": well, "force": lambda time, q, v, p: drag(time, q, v) + 0 * p["mass"]},
-    ):
-        pair = nh.Forced(made("of time"), **parts), plain
-        ends = [nh.simulate(nh.discretize(each, 0.05), **START, steps=9).configuration[-1] for each in pair]
-        assert np.abs(ends[0] - ends[1]).max() <= 1e-14
+    own = {
+        "potential": lambda q, p: p["mass"] * q @ q,
+        "force": lambda time, q, v, p: drag(time, q, v) + 0 * p["mass"],
+    }
+    pair = nh.Forced(made("of time"), **{"potential": well, "force": drag, part: own[part]}), plain
+    ends = [nh.simulate(nh.discretize(each, 0.05), **START, steps=9).configuration[-1] for each in pair]
+    assert np.abs(ends[0] - ends[1]).max() <= 1e-14
 
 
 def test_systems_know_their_parameters() -> None:

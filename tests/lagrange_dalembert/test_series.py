@@ -60,6 +60,7 @@ def _check(series: np.ndarray, of: int, function: Any) -> None:
     assert np.all(np.abs(series[1:, of] - wanted) <= 1e-9 * np.abs(wanted) + 1e-17)
 
 
+@pytest.mark.profile("routes", keep=["asinh", "log", "atan", "sin", "exp", "sqrt"])
 @pytest.mark.parametrize("name", UNARY)
 def test_coefficients_of_functions(name: str) -> None:
     """Order by order they are those of mpmath in 60 digits, also of a function of a function."""

@@ -33,7 +33,7 @@ def test_labels_are_known() -> None:
     assert {figure.finding.kind for figure in FIGURES.values()} == {"figure"}
 
 
-@pytest.mark.profile("routes", keep=["[!n]*"])
+@pytest.mark.profile("paper", keep=["st1", "generic_xy", "cusps", "mom_dynamics"])
 @pytest.mark.parametrize("figure", FIGURES.values(), ids=FIGURES)
 def test_axes_are_named(figure: Figure) -> None:
     """All axes with ticks have labels, and the caption and the claims can be shown."""
@@ -46,6 +46,7 @@ def test_axes_are_named(figure: Figure) -> None:
     to_html(figure.finding.claim)
 
 
+@pytest.mark.profile("paper", keep=["svg"])
 @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
 def test_a_figure_can_be_saved(suffix: str) -> None:
     """A surface in space, of which a part is drawn in pixels, becomes a file of each format and of bounded size."""

@@ -18,6 +18,7 @@ from nonholo.plot.animation._in_space import _box, _box_in_sphere
 from nonholo.plot.animation._part import part_of, part_of_flow, shown_states
 
 
+@pytest.mark.profile("paper", keep=["sleigh_orbit"])
 @pytest.mark.parametrize("kind", ["top_orbit", "sleigh_orbit"])
 def test_number_and_time_of_frames(kind: str, tmp_path: Path, request: pytest.FixtureRequest) -> None:
     """A GIF has as many frames as asked for, all different, at the rate asked for, and progress is reported."""
@@ -31,6 +32,7 @@ def test_number_and_time_of_frames(kind: str, tmp_path: Path, request: pytest.Fi
     assert told == [(k, 7) for k in range(1, 8)]
 
 
+@pytest.mark.profile("paper", keep=["one state"])
 @pytest.mark.parametrize(
     "orbit", [top_run((0.0, 0.0, 0.0), steps=3), sleigh_run((0.0, 0.0, 0.0), steps=3)[:1]], ids=["rest", "one state"]
 )
@@ -110,6 +112,7 @@ BODIES = {
 }
 
 
+@pytest.mark.profile("paper", keep=["SO(3)", "outline", "forced"])
 @pytest.mark.parametrize("name", BODIES)
 def test_every_kind_of_body_moves(name: str, tmp_path: Path) -> None:
     """Frames of any body have the size asked for and differ, and the motion beside it is drawn in its own color."""

@@ -65,6 +65,7 @@ def _same(one: Any, other: Any) -> None:
         assert np.allclose(one.get_offsets(), other.get_offsets(), atol=1e-9)
 
 
+@pytest.mark.profile("paper", keep=["sleigh", "arrowhead"])
 @by_pair
 def test_values(pair: Pair) -> None:
     """All values of the map, on displacements and, where there is a deltoid, on momenta; trees; counts."""
@@ -80,6 +81,7 @@ def test_values(pair: Pair) -> None:
         _same(*(nh.plot.branch_counts(o.motion, o).cusps for o in (one, other)))
 
 
+@pytest.mark.profile("paper", keep=["arrowhead"])
 @by_pair
 def test_overviews(pair: Pair, tmp_path: Path) -> None:
     """The overview has the same panels and parameters, and says what an LLSystem is; the same frames of animations."""

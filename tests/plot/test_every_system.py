@@ -97,6 +97,9 @@ def _titles(orbit: nh.Orbit, **options: object) -> list[str]:
     return [title for one in axes if (title := one.get_title(loc="left"))]
 
 
+@pytest.mark.profile(
+    "paper", keep=["dart", "top", "sleigh of SE(3)", "Veselova", "nothing moves", "plate", "one direction", "two"]
+)
 @pytest.mark.parametrize("name", CASES)
 def test_panels(name: str) -> None:
     """Each orbit has the panels that are defined for it, the large one first, and none is a failure."""
@@ -222,6 +225,7 @@ def test_portraits_of_any_plane() -> None:
         nh.plot.phase_portrait(_orbit("plate").system)
 
 
+@pytest.mark.profile("paper", keep=["translations"])
 @pytest.mark.parametrize("name", ["top of SO(4)", "sleigh of SE(4)", "translations"])
 def test_other_systems_move_in_a_plane_of_momenta(name: str, tmp_path: Path) -> None:
     """A film of no body shows a point in the plane of the two largest momenta, or one momentum against time."""

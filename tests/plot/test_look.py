@@ -121,6 +121,7 @@ def test_without_legend_and_words(name: str) -> None:
     assert not _titles(axes)
 
 
+@pytest.mark.profile("paper", keep=["branches", "blade_track", "momentum_sphere", "section"])
 @pytest.mark.parametrize("name", PICTURES)
 def test_dark_colors_are_legible(name: str) -> None:
     """On a dark background words have a contrast of 4.5 or more, in a style of matplotlib as by keyword."""
@@ -155,6 +156,7 @@ def test_dark_palette() -> None:
     assert theme.INK == "#222222"
 
 
+@pytest.mark.profile("paper", keep=["False-center"])
 @pytest.mark.parametrize("place", ["left", "center"])
 @pytest.mark.parametrize("before", [True, False])
 def test_a_title_of_the_caller_replaces_ours(place: str, before: bool, sleigh_orbit: nh.Orbit) -> None:
@@ -254,6 +256,7 @@ def _on_a_spring() -> CoordinateOrbit:
     return nh.simulate(nh.discretize(spring, 0.1), configuration=(1, 0), body_velocity=(0, 1), steps=40)
 
 
+@pytest.mark.profile("paper", keep=["group"])
 @pytest.mark.parametrize(
     ("run", "titles"),
     [

@@ -21,7 +21,7 @@ FEW = {
 }
 
 
-@pytest.mark.profile("paper", keep=["one state", "top at rest", "backward sleigh"])
+@pytest.mark.profile("paper", keep=["one state"])
 @pytest.mark.parametrize("run", FEW.values(), ids=FEW)
 def test_unusual_orbits_are_drawn(run: object, tmp_path: Path) -> None:
     """Short, resting, balanced and thinned orbits are drawn and saved without a warning."""
@@ -52,6 +52,7 @@ def test_words_name_system_step_and_outcome(sleigh_orbit: nh.Orbit) -> None:
     assert any("stopped: no_real_branch" in text.get_text() for text in nh.plot.overview(stopped).texts)
 
 
+@pytest.mark.profile("paper", keep=["png"])
 @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
 def test_files(suffix: str, sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:
     """The suffix chooses the format, and `Orbit.plot` is the same picture."""

@@ -11,7 +11,6 @@ from comparisons import assert_member
 from refusals import refusals
 
 import nonholo as nh
-from nonholo import Outcome
 
 TOP = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.3)
 ALONG = {"restricted_velocity": None, "body_velocity": [[1.0, 0.0, 0.0]]}
@@ -90,16 +89,6 @@ def test_other_systems_follow_by_their_definition() -> None:
     whole = nh.simulate(discrete, restricted_velocity=GENERAL["any d on SO(4)"][1], steps=8)
     later = nh.simulate(discrete, displacement=whole.displacement[3], steps=5, branch="nearest")
     np.testing.assert_allclose(later.momentum, whole.momentum[3:], rtol=0, atol=1e-12)
-
-
-def test_a_run_that_ends_keeps_its_good_steps() -> None:
-    """A sleigh with a large step folds: the error names the step and holds the orbit so far."""
-    sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1.0)
-    with pytest.raises(nh.OutcomeError, match=r"Step 2 of 30.*no_real_branch") as caught:
-        nh.simulate(sleigh, momentum=[0.473, -1.307], steps=30, branch="nearest")
-    orbit = caught.value.orbit
-    assert isinstance(orbit, nh.Orbit)
-    assert (len(orbit), orbit.outcome, orbit.branch) == (2, Outcome.no_real_branch, "nearest")
 
 
 def test_thinned_runs_keep_every_so_many_states() -> None:

@@ -101,16 +101,3 @@ def test_an_ensemble_has_the_bits_of_each_run(kind: str, count: int, flows: bool
             for name in names if flows else ("cayley", *names):
                 last = getattr(alone, name)[0 if flows else -1 :]
                 assert np.array_equal(getattr(batch, name)[j], last), (body, name)
-
-
-def test_a_body_of_one_closed_form_runs_side_by_side(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Members that are tops or plane sleighs are not run one by one, whatever the class of their system."""
-
-    def alone(*_: Any) -> None:
-        raise AssertionError
-
-    monkeypatch.setattr("nonholo.simulation.members._executors.run_one_by_one", alone)
-    blade = nh.LLSystem(nh.SE(2), nh.ChaplyginSleigh(1.0, 0.8, 0.4, 0.3).homogeneous_mass_tensor, np.eye(3)[:2])
-    for system in (WIDER["slanted"](np.random.default_rng(5)), blade):
-        batch = nh.ensemble(nh.discretize(system, 0.1), restricted_velocity=[[0.3, 0.2], [0.1, -0.4]], steps=5)
-        assert np.all(batch.outcome == 0)

@@ -29,6 +29,7 @@ CASES = {
 }
 
 
+@pytest.mark.profile("routes", keep=["None-tops", "7-tops, order 4", "1-sleighs"])
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize("every", [None, 1, 7])
 def test_members_have_the_crossings_of_their_own_runs(name: str, every: int | None) -> None:

@@ -51,6 +51,7 @@ def _same(member: nh.Orbit, alone: nh.Orbit) -> bool:
     return all(np.array_equal(a, b) for a, b in pairs)
 
 
+@pytest.mark.profile("routes", cases=["general*-False", "top on SO(7)*", "* plane-True"])
 @pytest.mark.parametrize("backward", [False, True])
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_members_are_flows(name: str, backward: bool) -> None:

@@ -98,7 +98,7 @@ def _slope(errors: list[float]) -> float:
     return float(np.polyfit(range(len(errors)), -np.log2(errors), 1)[0])
 
 
-@pytest.mark.profile("routes", cases=["any d*", "veselova*"])
+@pytest.mark.profile("routes", cases=["any d*", "veselova*", "*-both functions", "sleigh on SE(3)-p*", "tilted top-*"])
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("system", SYSTEMS.values(), ids=SYSTEMS)
 def test_the_map_is_of_order_two(system: AbstractSystem, kind: str) -> None:

@@ -132,7 +132,7 @@ def test_impacts_are_values() -> None:
         assert np.array_equal(other.point, given.point)
 
 
-@pytest.mark.profile("routes", keep=["2-*"])
+@pytest.mark.profile("routes", keep=["2-sleigh in a square", "2-top"])
 @pytest.mark.parametrize("name", MOTIONS)
 @pytest.mark.parametrize("order", [2, 4])
 def test_energy_is_kept_over_impacts(name: str, order: int) -> None:
@@ -146,6 +146,7 @@ def test_energy_is_kept_over_impacts(name: str, order: int) -> None:
     assert min(event.function(orbit).min() for event in walls) > -1e-14
 
 
+@pytest.mark.profile("routes", keep=["top", "right-invariant", "sleigh in a circle"])
 @pytest.mark.parametrize("name", [*MOTIONS, *FIXED])
 def test_impacts_are_roots_of_the_parts_of_steps(name: str) -> None:
     """Times are those of another root finder; the state after the step is the other part of it, from the reflection."""
@@ -209,6 +210,7 @@ def test_impacts_converge_to_those_of_the_flow() -> None:
     assert np.ptp(flow.energy) < 1e-13
 
 
+@pytest.mark.profile("routes", keep=["None"])
 @pytest.mark.parametrize("method", [None, "closed_form"])
 def test_flows_go_on_at_impacts(method: Any) -> None:
     """Between impacts a flow is the one from the reflected state; `at` knows it; times asked for make no difference."""
@@ -242,6 +244,7 @@ def test_forced_flows_and_maps_bounce() -> None:
         assert np.abs(found.position[:, 0] - 0.1 * found.time).max() < 1e-11
 
 
+@pytest.mark.profile("problems", keep=["potential0"])
 @pytest.mark.parametrize(
     "potential", [nh.Gravity([0.3, -1.0], [0.3, 0.1]), lambda g: ((g[:2, 2] - 0.1) ** 2).sum() / 4]
 )
@@ -394,6 +397,7 @@ def test_other_events_see_the_parts_of_the_step() -> None:
     assert len(last.events["east"].after) == 1
 
 
+@pytest.mark.profile("problems", keep=["[0-3]", "8", "9"])
 @pytest.mark.parametrize("seed", range(12))
 def test_random_bodies_in_random_polygons(seed: int) -> None:
     """With any step, corners, contact point and a post: no wall is left behind, no energy gained, each hit is at it."""

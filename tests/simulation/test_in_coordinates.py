@@ -114,6 +114,7 @@ FLOWS = {
 }
 
 
+@pytest.mark.profile("routes", cases=["None-on a group", "None-by diffrax"])
 @pytest.mark.parametrize("name", FLOWS)
 @pytest.mark.parametrize("rtol", [None, 1e-9])
 def test_members_of_flows_are_flows_alone(name: str, rtol: float | None) -> None:

@@ -88,6 +88,7 @@ def test_each_way_to_take_rows_keeps_the_steps(kind: str) -> None:
     assert joined.chosen(slice(0, 0)).step.tolist() == []
 
 
+@pytest.mark.profile("faults", keep=["table"])
 @pytest.mark.parametrize("kind", ["scalar", "table", "coordinates"])
 def test_stores_keep_the_steps(kind: str, tmp_path: Path) -> None:
     """Of whole runs, of parts that were saved, of the last block, and of what `extend` adds."""
@@ -132,7 +133,7 @@ def test_motions_without_steps_number_their_rows() -> None:
     assert flows[0].at([0.3, 0.1]).step.tolist() == [0, 1]
 
 
-@pytest.mark.profile("problems", cases=["table fixed in space"])
+@pytest.mark.profile("problems", cases=["table fixed in space", "table and function on a sleigh"])
 @pytest.mark.parametrize("name", [name for name in FORCED if "table" in name])
 def test_work_under_a_table_is_that_of_every_step(name: str) -> None:
     """However rows are taken: that of the whole run at these rows, less that before the first, to rounding."""
@@ -163,6 +164,7 @@ def test_multipliers_of_some_rows_are_those_of_their_steps(system: Any) -> None:
     assert np.abs(whole.chosen(rows).multipliers - whole.multipliers[rows[:-1]]).max() < 1e-14
 
 
+@pytest.mark.profile("problems", cases=["table fixed in space", "*on a top"])
 @pytest.mark.parametrize("name", FORCED)
 def test_the_whole_part_of_a_step_under_forces_is_the_step(name: str) -> None:
     """At s = 1 a part is the next state: momenta, poses, displacements and node momenta, to a few units of rounding."""

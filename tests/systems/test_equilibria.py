@@ -56,6 +56,7 @@ _GROUPS = {
 }
 
 
+@pytest.mark.profile("problems", keep=["*-0"])
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("name", _GROUPS)
 def test_every_zero_is_an_equilibrium(name: str, seed: int) -> None:

@@ -62,6 +62,7 @@ def test_systems(name: str, seed: object) -> None:
     assert {each.name for each in tight.failed} <= {"reconstruction"}
 
 
+@pytest.mark.profile("routes", keep=["0.1-*"])
 @pytest.mark.parametrize("name", COMPILED)
 @pytest.mark.parametrize("time_step", [0.1, 1e-3])
 def test_compiled_steps(name: str, time_step: float) -> None:
