@@ -12,11 +12,11 @@ from typing import Annotated, Any, Literal
 import zarr
 from pydantic import AfterValidator, BaseModel, Field, Json, NonNegativeInt, ValidationError, model_validator
 
-from nonholo.base.checks import error, is_name, printable, shown
+from nonholo.base.checks import error, is_name, shown
 from nonholo.base.limits import within_memory
 from nonholo.base.results import Outcome
 from nonholo.io.places import FORMAT, SCHEMAS, SWEEP_FORMAT, WHERE, check_assertions
-from nonholo.io.provenance import attributes_of_text
+from nonholo.io.provenance import attributes_of_text, problems_in
 
 _MOST, _MOST_CHUNKS = 2**53, 2**26
 TAKEN = frozenset({"run"})
@@ -131,7 +131,7 @@ def check_metadata(where: str, path: str, attributes: dict[str, Any], kind: type
         controls = [name for name, value in about.items() if _has_controls(value)]
         differs = attributes.get("checksum") != checksum(attributes)
     except (ValidationError, RecursionError, TypeError, AttributeError) as failure:
-        raise error(where, "hold sound attributes", f"'{path}', in which {_problems(failure)}", remedy) from None
+        raise error(where, "hold sound attributes", f"'{path}', in which {problems_in(failure)}", remedy) from None
     scenario = about["scenario"]
     if scenario is not None and attributes_of_text(scenario)["scenario_sha256"] != about["scenario_sha256"]:
         raise error(where, "hold the scenario that was run", f"'{path}', whose scenario_sha256 differs", remedy)
@@ -176,15 +176,6 @@ def check_array(where: str, name: str, array: zarr.Array) -> None:
     orders = {getattr(codec, "endian", None) for codec in array.metadata.codecs}  # type: ignore[union-attr]
     if {getattr(order, "value", order) for order in orders} - {None, "little"}:  # an enumeration before zarr 3.4
         raise error(where, f"hold the array {name} in the order of bytes that is written", "another one", remedy)
-
-
-def _problems(failure: Exception) -> str:
-    if not isinstance(failure, ValidationError):
-        return printable(str(failure))
-    problems = failure.errors()[:5]
-    places = [".".join(map(str, problem["loc"])) or "they" for problem in problems]
-    reasons = [problem["msg"].removeprefix("Value error, ") for problem in problems]
-    return printable("; ".join(f"{place}: {reason}" for place, reason in zip(places, reasons, strict=True)))
 
 
 _KINDS = {FORMAT: "an orbit", SWEEP_FORMAT: "a sweep", "nonholo.ensemble": "an ensemble"}

@@ -22,6 +22,7 @@ import zarr
 
 from nonholo.base import checks
 from nonholo.base.checks import error
+from nonholo.base.progress import go_on
 from nonholo.base.results import Outcome
 from nonholo.io import blocks
 from nonholo.io.checkpoints import EVENTS, Checkpoint, checkpoint_of, log_of, rows_of, said_of, without_padding
@@ -359,8 +360,8 @@ class StoredPoses(NamedTuple):
     rows: int
     places: dict[str, str]
 
-    def stretches(self) -> Iterator[Stretch]:
-        """Return the states chunk after chunk; only one chunk is in memory."""
+    def stretches(self, report: Callable[[float, float], object] = go_on) -> Iterator[Stretch]:
+        """Return the states chunk after chunk, and report how many; only one chunk is in memory."""
         (chunk,) = self.store.layout.chunk
         for number in range(-(-self.rows // chunk)):
             own_rows = slice(self.rows - number * chunk)
@@ -368,6 +369,7 @@ class StoredPoses(NamedTuple):
             columns = {name: blocks.checked_block(self.store, array, number)[own_rows] for name, array in arrays}
             time, places = columns.pop("time"), columns.get("canonical_pose", columns.get("configuration"))
             yield Stretch(time, np.asarray(places), columns.get("turned"))
+            report(min(self.rows, (number + 1) * chunk), self.rows)
 
 
 def open_poses(path: Path) -> StoredPoses:

@@ -24,12 +24,11 @@ from nonholo.base.checks import error, printable
 FORMAT, SWEEP_FORMAT = "nonholo.orbit", "nonholo.sweep"
 SCHEMAS = {FORMAT: 5, SWEEP_FORMAT: 4}
 """Written by this version, and read. Those below are of before 0.3.0, from which on later versions read stores."""
-WHERE = "load_orbit(path=...)"
+WHERE = "load_orbit(path=...)"  # in whose name a store that is read is refused
 _PATIENCE = 0.2  # seconds to wait for who only asks whether the store is locked
-_NETCDF, _CSV = "use orbit.to_dataset().to_netcdf(path)", "use orbit.to_csv(path)"
 _OTHER_FORMATS = {
-    **dict.fromkeys((".nc", ".nc4", ".netcdf", ".h5", ".hdf5"), _NETCDF),
-    **dict.fromkeys((".csv", ".txt"), _CSV),
+    **dict.fromkeys((".nc", ".nc4", ".netcdf", ".h5", ".hdf5"), "use orbit.to_dataset().to_netcdf(path)"),
+    **dict.fromkeys((".csv", ".txt"), "use orbit.to_csv(path)"),
     **dict.fromkeys((".parquet", ".feather", ".xlsx"), "use orbit.to_pandas()"),
     **dict.fromkeys((".png", ".svg", ".pdf"), "use orbit.plot(path)"),
     **dict.fromkeys((".gif", ".json", ".toml", ".npy", ".npz", ".mat", ".pkl", ".zip"), ""),

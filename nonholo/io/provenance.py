@@ -18,7 +18,7 @@ import numpy as np
 from pydantic import AfterValidator, BaseModel, NonNegativeInt, ValidationError, model_validator
 
 from nonholo import systems
-from nonholo.base.checks import error, instance, names, needs, text
+from nonholo.base.checks import error, instance, names, needs, printable, text
 from nonholo.base.compiled import way_of_kernels
 from nonholo.continuous import ContinuousFlow
 from nonholo.discrete import MeasuredMotion, discretize
@@ -178,14 +178,20 @@ class _Recorded(BaseModel):
         return self
 
 
+def problems_in(failure: Exception) -> str:
+    """Return what is wrong with data, each with its place."""
+    if not isinstance(failure, ValidationError):
+        return printable(str(failure))
+    flaws = [(".".join(map(str, flaw["loc"])) or "they", flaw["msg"]) for flaw in failure.errors()[:5]]
+    return printable("; ".join(f"{place}: {text.removeprefix('Value error, ').rstrip('.')}" for place, text in flaws))
+
+
 def recorded_system(kind: str, parameters: dict[str, Any], group: Any) -> Any:
     """Return what was recorded of a system, on a group if there is one, for orbits as they were computed."""
     try:
         record = _Recorded.model_validate(parameters).model_dump()
     except ValidationError as failure:
-        problem = failure.errors()[0]
-        got = f"{'.'.join(map(str, problem['loc']))}: {problem['msg'].removeprefix('Value error, ').rstrip('.')}"
-        raise error(WHERE, "describe its system", got, "It was edited: run it again.") from None
+        raise error(WHERE, "describe its system", problems_in(failure), "It was edited: run it again.") from None
     with needs("jax", "load_orbit(...) of an orbit in coordinates"):
         room = importlib.import_module("nonholo.lagrange_dalembert")
     return room.RecordedSystem(record | ({} if group is None else {"group": group}), (kind, parameters))

@@ -3,7 +3,7 @@
 import csv
 import io
 import itertools
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -95,8 +95,7 @@ def store_to_csv(
     for _ in poses.stretches():  # so that damage is found before the first row is used
         pass
     with new_file(target, overwrite=overwrite) as file, progress_bar("states", progress) as report:
-        stretches = _reporting(poses.stretches(), lambda row: report(row, poses.rows))
-        file.writelines(_lines(poses.system, stretches, every))
+        file.writelines(_lines(poses.system, poses.stretches(report), every))
 
 
 def _lines(system: Any, stretches: Iterable[Stretch], every: int) -> Iterator[str]:
@@ -125,11 +124,3 @@ def _cut(stretches: Iterable[Stretch], most: int) -> Iterator[Stretch]:
         for first in range(0, len(time), most):
             part = slice(first, first + most)
             yield Stretch(time[part], pose[part], None if headings is None else headings[part])
-
-
-def _reporting(stretches: Iterable[Stretch], report: Callable[[int], object]) -> Iterator[Stretch]:
-    row_count = 0
-    for stretch in stretches:
-        yield stretch
-        row_count += len(stretch.time)
-        report(row_count)
