@@ -427,18 +427,22 @@ def tangent(orbit: Orbit) -> Float[np.ndarray, "L k k"]:
     discrete, system = orbit.motion, orbit.system
     if orbit.has_impacts.any():
         raise error(_WHERE, "have no impacts", "some", "Ask it of the part of the orbit before the first one.")
-    if isinstance(discrete, ContinuousFlow) and not system.is_spatial and not system.is_forced:
-        return flow_tangents(_WHERE, system, orbit.restricted_momentum, orbit.time)
     if isinstance(discrete, ContinuousFlow):
-        return _motions(_WHERE).along_flow(orbit)
+        if system.is_spatial or system.is_forced:
+            return _motions(_WHERE).along_flow(orbit)
+        return flow_tangents(_WHERE, system, orbit.restricted_momentum, orbit.time)
     if not isinstance(discrete, Discretization) or _acts_from_outside(discrete.forces):
         remedy = "Differentiate `nh.rollout` by JAX."
         raise error(_WHERE, "belong to a flow, or to a map without forces of the time", shown(discrete), remedy)
     if not orbit.has_every_step:
         raise error(_WHERE, "have every step", f"{len(orbit)} states with others between", "Run with save_every=1.")
-    if discrete.conserves_energy and discrete.order == 2 and discrete.forces is None:
+    if _has_closed_derivatives(discrete):
         return discrete.displacement_decoder.tangent(orbit.canonical_chart[:-1])
     return _motions(_WHERE).along(orbit)
+
+
+def _has_closed_derivatives(discrete: Discretization) -> bool:
+    return discrete.conserves_energy and discrete.order == 2 and discrete.forces is None
 
 
 def _acts_from_outside(forces: Any) -> bool:

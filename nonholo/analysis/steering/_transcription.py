@@ -343,7 +343,8 @@ def minimize(program: Program, guess: Float[np.ndarray, "n"], bounds: Limits) ->
 
 
 def _sparsity(places: Any) -> Any:
-    return casadi.Sparsity(*places.shape, places.columns.tolist(), places.rows.tolist())
+    rows, columns = places.shape
+    return casadi.Sparsity(rows, columns, places.columns.tolist(), places.rows.tolist())
 
 
 class _Call(casadi.Callback):
