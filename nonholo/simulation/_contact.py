@@ -20,6 +20,7 @@ from nonholo.simulation._crossings import between_times, of_requested
 from nonholo.simulation._event import Event
 from nonholo.simulation._search import Watch, search, struck, values_of
 
+_TURN = 2 * np.pi
 _MOST = 200  # impacts in a step
 _LEAST = 2.0**-52  # of the part that is left, where the body is looked at
 _SHORT = 2.0**-36  # of a step: too short for the sign of a gap
@@ -144,9 +145,6 @@ class Flights(Protocol):
     def joined(self, begins: list[Any], until: float) -> dict[str, Any]:
         """Return the field by which orbits know the motion from several states, each up to the next one."""
         ...
-
-
-_TURN = 2 * np.pi
 
 
 class BodyFlights(NamedTuple):
