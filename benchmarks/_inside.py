@@ -53,8 +53,8 @@ def __getattr__(name: str) -> Any:
 
 def integration(system: Any, times: np.ndarray, rtol: float, **start: Any) -> Callable[[], Any]:
     """Return the integration without the checks and the orbit of `nh.flow`."""
-    from nonholo.continuous import solver_of
+    from nonholo.continuous import Problem, solver_of
 
     first = nh.flow(system, times=times[:1], **start)
     solve, _ = solver_of(system, None, float(times[0]), reconstruct=True)
-    return lambda: solve(first.reduced_momentum[0], first.canonical_pose[0], times, (rtol, 1e-12))
+    return lambda: solve(Problem(first.reduced_momentum[0], first.canonical_pose[0], times, (rtol, 1e-12)))

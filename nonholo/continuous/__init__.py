@@ -2,5 +2,5 @@
 
 from nonholo.continuous._closed_form import closed_form
 from nonholo.continuous._equations import ContinuousFlow, vector_field
-from nonholo.continuous._series import Solved, States, flow_tangents
-from nonholo.continuous._solvers import has_series, members_by_series, solver_of
+from nonholo.continuous._series import Problem, Solved, States, flow_tangents
+from nonholo.continuous._solvers import Solver, has_series, members_by_series, solver_of

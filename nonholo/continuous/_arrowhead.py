@@ -57,14 +57,10 @@ def equations(form: NormalForm) -> tuple[Arrowhead, Float[np.ndarray, "k"]]:
 def encode(form: NormalForm, momentum: Float[np.ndarray, "k"]) -> Float[np.ndarray, "k"]:
     """Return the numbers of the kernel from canonical momenta."""
     r = momentum if form.frame_map is None else form.frame_map @ momentum
-    if form.is_sleigh:
-        r = np.append(r[:-1] - r[-1] * form.offset, r[-1])
-    return form.to_principal(r) / equations(form)[1]
+    return form.to_principal(form.turned_about(r, -1.0)) / equations(form)[1]
 
 
 def decode(form: NormalForm, rows: Float[np.ndarray, "K k"]) -> Float[np.ndarray, "K k"]:
     """Return canonical momenta from the numbers of the kernel."""
-    momenta = form.from_principal(rows * equations(form)[1])
-    if form.is_sleigh:
-        momenta[..., :-1] += momenta[..., -1:] * form.offset
+    momenta = form.turned_about(form.from_principal(rows * equations(form)[1]), 1.0)
     return momenta if form.frame_map is None else applied(np.linalg.inv(form.frame_map), momenta)

@@ -184,13 +184,13 @@ def closed_form(system: AbstractSystem, problem: Problem) -> Solved:
 
     Heading and path of a sleigh are exact; other poses are a quadrature by Taylor series.
     """
-    reduced_momentum, pose, elapsed, _ = problem
+    elapsed = problem.elapsed
     if system.is_spatial or system.rank != 2:
         remedy = "Leave method out to integrate numerically."
         raise error("flow(method='closed_form')", "have a closed-form solution", type(system).__name__, remedy)
-    motion, form = heteroclinic(system, reduced_momentum), system.normal_form
+    motion, form = heteroclinic(system, problem.momentum), system.normal_form
     if form is not None and form.is_sleigh:
-        at = functools.partial(_sleigh_states, system, form, motion, reduced_momentum, pose)
+        at = functools.partial(_sleigh_states, system, form, motion, problem)
         return Solved(at(elapsed), Outcome.successful, at)
     series = _pose_by_series(system.group, motion, body_of(system)[2], problem)
     times = elapsed[: len(series.states.momenta)]
@@ -221,14 +221,9 @@ def _with_momenta(motion: Heteroclinic, series: Callable[[np.ndarray], States], 
 
 
 def _sleigh_states(
-    system: AbstractSystem,
-    form: NormalForm,
-    motion: Heteroclinic,
-    reduced_momentum: np.ndarray,
-    pose: np.ndarray,
-    elapsed: np.ndarray,
+    system: AbstractSystem, form: NormalForm, motion: Heteroclinic, problem: Problem, elapsed: np.ndarray
 ) -> States:
-    group, foot = system.group, _foot(form)
+    group, foot, (reduced_momentum, pose, _, _) = system.group, _foot(form), problem
     first = pose if foot is None else group.pose_from_matrix(group.matrix_from_pose(pose) @ foot)
     facing = _facing(first)
     omega, u = _turn_and_slide(system, form, reduced_momentum)

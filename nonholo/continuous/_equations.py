@@ -15,7 +15,7 @@ from nonholo.base.checks import error, number, trailing
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
 from nonholo.continuous._forced import forced_field, forced_reaction
-from nonholo.continuous._series import States
+from nonholo.continuous._series import Covectors, States
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractMotion, First, Orbit, times_within
 from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, Start, as_system, inertia_form, refuse_slip
@@ -41,9 +41,7 @@ def momentum_rate(
     return applied(S, torque), velocity, torque
 
 
-def reaction(
-    group: AbstractMatrixGroup, body: Body, restricted_momentum: Float[np.ndarray, "K k"]
-) -> Float[np.ndarray, "K dim"]:
+def reaction(group: AbstractMatrixGroup, body: Body, restricted_momentum: Float[np.ndarray, "K k"]) -> Covectors:
     r"""Return the force of constraint $p' - \mathrm{ad}^*_\omega p$.
 
     Here $p' = \mathbb{I} S^T (S\mathbb{I}S^T)^{-1} r'$: the full inertia operator is not inverted, so rods are allowed.
@@ -144,9 +142,7 @@ def spatial_velocity(
     return applied(rows.T, w)
 
 
-def spatial_reaction(
-    system: AbstractSystem, g: Float[np.ndarray, "K N N"], velocity: Float[np.ndarray, "K dim"]
-) -> Float[np.ndarray, "K dim"]:
+def spatial_reaction(system: AbstractSystem, g: Float[np.ndarray, "K N N"], velocity: Covectors) -> Covectors:
     r"""Return the constraint force in space, $\mathrm{Ad}^*_{g^{-1}}(\mathbb{I}\dot\omega - \mathrm{ad}^*_\omega p)$.
 
     The spatial velocity $S^T w$ accelerates such that the momentum along $S$ stays:

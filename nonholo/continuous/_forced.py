@@ -38,16 +38,8 @@ from nonholo.base.numerics import applied
 from nonholo.base.progress import late_bar
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.continuous._series import (
-    PLANE,
-    Problem,
-    Solved,
-    States,
-    body_equations,
-    body_numbers,
-    first_heading,
-    solve,
-)
+from nonholo.continuous import _series
+from nonholo.continuous._series import PLANE, Covectors, Problem, Solved, States
 from nonholo.kernels import Quadratic
 from nonholo.orbit import Orbit, turned_near
 from nonholo.systems import Contacts, Forced, Mode, Widened
@@ -215,12 +207,11 @@ def _linear_forces(forced: Forced) -> LinearForces:
         vectors, levers = vectors.reshape(-1, group.size), levers.reshape(group.dim, -1, group.size)
     body_levers = np.tensordot(rows, levers, 1) @ np.linalg.inv(forced.frame).T
     C = np.zeros((group.dim, group.dim)) if forced.friction is None else forced.friction.matrix
-    V, _ = body_numbers(group, body.constraint_subspace, body.inertia_operator)
+    V, _ = _series.body_numbers(group, body.constraint_subspace, body.inertia_operator)
     friction, turns = rows @ C @ rows.T, group.hat(body.constraint_subspace).swapaxes(-1, -2)[:, :n, :n]
-    fastest = np.linalg.eigvals(V @ friction).real.max(initial=0.0)
-    return LinearForces(
-        vectors, turns, body_levers[..., :n].reshape(len(rows), n * len(vectors)), friction, V, float(fastest)
-    )
+    fastest = float(np.linalg.eigvals(V @ friction).real.max(initial=0.0))
+    own_levers = body_levers[..., :n].reshape(len(rows), n * len(vectors))
+    return LinearForces(vectors, turns, own_levers, friction, V, fastest)
 
 
 @functools.lru_cache(maxsize=16)
@@ -229,10 +220,10 @@ def quadratic_under(forced: Forced) -> Quadratic:
     body, acting = forced.canonical, _linear_forces(forced)
     S, (k, m) = body.constraint_subspace, acting.levers.shape
     velocities, torques = np.eye(k + m + 1), np.zeros((k + m + 1,) * 3)
-    velocities[:k, :k], torques[:k, :k, :k] = body_numbers(body.group, S, body.inertia_operator)
+    velocities[:k, :k], torques[:k, :k, :k] = _series.body_numbers(body.group, S, body.inertia_operator)
     torques[-1, :k, :k], torques[-1, k:-1, :k] = -acting.friction.T, acting.levers.T
     torques[:k, k:-1, k:-1] = np.kron(np.eye(len(acting.vectors)), acting.turns).swapaxes(-1, -2)
-    return body_equations(body.group, S, velocities, torques, (k, m, 1))
+    return _series.body_equations(body.group, S, velocities, torques, (k, m, 1))
 
 
 def heads(
@@ -261,7 +252,7 @@ def under_forces(forced: Forced, begins: float, problem: Problem) -> Solved:
         return by_runge_kutta(forced, begins, problem, is_stiff=_are_linear(forced))
     (head,), (unit,) = heads(forced, problem.momentum[None], problem.pose[None])
     f, rank = quadratic_under(forced), forced.rank
-    solution = solve(forced.group, f, head, rank, None, float(unit), problem, _MOST)
+    solution = _series.solve(forced.group, f, head, rank, None, float(unit), problem, _MOST)
     return solution if solution.outcome == Outcome.successful else solution._replace(outcome=Outcome.too_stiff)
 
 
@@ -274,12 +265,10 @@ def by_runge_kutta(forced: Forced, begins: float, problem: Problem, *, is_stiff:
     _refuse_table("flow", forced)
     group, k = forced.group, forced.rank
     r, g = forced.from_canonical(reduced_momentum), group.matrix_from_pose(pose) @ group.inverse(forced.frame)
-    start = np.concatenate([r, g.ravel(), first_heading(group, pose)])
+    start = np.concatenate([r, g.ravel(), _series.first_heading(group, pose)])
     faults: dict[str, str] = {}
-    field, rtol = (
-        _field(forced.sliding if forced.slips else forced, begins, k, faults),
-        max(_LEAST_IMPLICIT if is_stiff else _LEAST_RTOL, tolerances[0]),
-    )
+    field = _field(forced.sliding if forced.slips else forced, begins, k, faults)
+    rtol = max(_LEAST_IMPLICIT if is_stiff else _LEAST_RTOL, tolerances[0])
     span = 0.0, float(elapsed[-1])
     if forced.slips:
         if span[1] < 0:
@@ -354,7 +343,7 @@ def _is_short(solver: Any) -> bool:
     return bool(solver.step_size * slope > _STABLE * gap)
 
 
-def forced_field(forced: Forced) -> Callable[[float, np.ndarray], np.ndarray]:
+def forced_field(forced: Forced) -> Field:
     """Return the equations of motion as a function of time and states, as `vector_field` does."""
     _refuse_table("vector_field", forced)
     field = _field(forced, 0.0, forced.rank, None)
@@ -374,9 +363,7 @@ def _refuse_table(owner: str, forced: Forced) -> None:
         raise error(f"{owner}(system=Forced(...))", "have forces at times", "one force for each step", remedy)
 
 
-def _field(
-    forced: Forced, begins: float, k: int, faults: dict[str, str] | None
-) -> Callable[[float, np.ndarray], np.ndarray]:
+def _field(forced: Forced, begins: float, k: int, faults: dict[str, str] | None) -> Field:
     """Return the right-hand side: momenta along the rows of the user, the pose row by row, the heading in the plane.
 
     Given a place to note it, what is not finite is NaN, so that the solver comes as near to it as it can.
@@ -409,16 +396,13 @@ def _states(forced: Forced, rows: Float[np.ndarray, "K size"]) -> States:
     return States(forced.to_canonical(rows[:, :k]), poses, headings)
 
 
-def forced_reaction(forced: Forced, states: Orbit) -> Float[np.ndarray, "K dim"]:
+def forced_reaction(forced: Forced, states: Orbit) -> Covectors:
     r"""Return the forces of constraint $\mathbb{I}\dot\omega - \mathrm{ad}^*_\omega p - f$; on LR systems in space.
 
     They vanish along E, which determines the acceleration.
     """
-    group, inertia, alone = (
-        forced.group,
-        np.asarray(forced.inertia_operator),
-        forced.sliding if forced.slips else forced,
-    )
+    group, inertia = forced.group, np.asarray(forced.inertia_operator)
+    alone = forced.sliding if forced.slips else forced
     g, velocity = states.configuration, states.body_velocity
     acting = [alone.applied_force(*row) for row in zip(states.time, g, velocity, strict=True)]
     force = group.coad(velocity, applied(inertia, velocity)) + forced.potential_force(g)
@@ -431,9 +415,7 @@ def forced_reaction(forced: Forced, states: Orbit) -> Float[np.ndarray, "K dim"]
     return group.coadjoint(group.inverse(g), missing) if forced.is_spatial else missing
 
 
-def _contact_forces(
-    forced: Forced, velocity: Float[np.ndarray, "K dim"], force: Float[np.ndarray, "K dim"]
-) -> Float[np.ndarray, "K dim"]:
+def _contact_forces(forced: Forced, velocity: Covectors, force: Covectors) -> Covectors:
     """Return the body covectors of contacts at velocities under other forces."""
     body, contacts = cast(Widened, forced.free), forced.contacts
     slips, covectors = applied(body.rows, velocity), []

@@ -30,8 +30,14 @@ def integrate_by_diffrax(system: AbstractSystem, problem: Problem) -> Solved:
         rate, numbers = _spatial_rate, (system.constraint_subspace, system.homogeneous_mass_tensor)
     else:
         rate, numbers = _motion_rate, body_of(system)
-    rows, outcome = _solve(rate, system.group, start, numbers, elapsed, tolerances)
-    momenta, poses, headings = rows
+
+    def solve() -> list[np.ndarray]:
+        with double_precision():
+            rest, good = _sweep(rate, system.group, start, numbers, pad(elapsed), tolerances)
+        return good_rows(start, rest, good, len(elapsed))
+
+    momenta, poses, headings = interruptibly(solve)
+    outcome = Outcome.successful if len(momenta) == len(elapsed) else Outcome.not_converged
     poses = system.group.normalize_pose(poses)
     at = functools.partial(_solved_again, system, problem)
     return Solved(States(momenta, poses, turned_near(headings[:, 0], poses) if planar else None), outcome, at)
@@ -58,23 +64,6 @@ def _spatial_rate(group: AbstractMatrixGroup, time: Array, state: State, numbers
     spatial = spatial_velocity(group, *numbers, momentum, g)
     velocity = group.adjoint(group.inverse(g)) @ spatial
     return jax.numpy.zeros_like(momentum), group.pose_rate(pose, velocity), velocity[: heading.shape[0]]
-
-
-def _solve(
-    rate: Rate,
-    group: AbstractMatrixGroup,
-    state: State,
-    numbers: Any,
-    elapsed: np.ndarray,
-    tolerances: tuple[float, float],
-) -> tuple[list[np.ndarray], Outcome]:
-    def solve() -> list[np.ndarray]:
-        with double_precision():
-            rest, good = _sweep(rate, group, state, numbers, pad(elapsed), tolerances)
-        return good_rows(state, rest, good, len(elapsed))
-
-    rows = interruptibly(solve)
-    return rows, Outcome.successful if len(rows[0]) == len(elapsed) else Outcome.not_converged
 
 
 @functools.partial(jax.jit, static_argnums=(0, 1))

@@ -27,6 +27,8 @@ from nonholo.orbit import looked_at, turned_near
 from nonholo.systems import AbstractSystem
 
 PLANE = SE(2)
+Covectors = Float[np.ndarray, "K dim"]
+"""Body velocities, momenta or forces at the states of an orbit."""
 
 
 class States(NamedTuple):

@@ -10,23 +10,11 @@ import numpy as np
 
 from nonholo.base.checks import choice, error, needs
 from nonholo.base.types import Bool, Float, Int
+from nonholo.continuous import _series
 from nonholo.continuous._arrowhead import momenta_by_series
 from nonholo.continuous._closed_form import closed_form
 from nonholo.continuous._forced import has_series_under, heads, quadratic_under, under_forces
-from nonholo.continuous._series import (
-    GUARD,
-    PLANE,
-    Problem,
-    Solved,
-    States,
-    body_equations,
-    body_numbers,
-    by_series,
-    first_heading,
-    is_compact,
-    power_of_two,
-    quadratic,
-)
+from nonholo.continuous._series import Problem, Solved, States
 from nonholo.kernels import Quadratic, solve_members
 from nonholo.orbit import turned_near
 from nonholo.systems import AbstractSystem, System
@@ -40,7 +28,7 @@ def has_series(system: AbstractSystem, span: float) -> bool:
         [True, False]
     """
     is_linear = system.forces is None or has_series_under(system.forces, span)
-    return not system.is_spatial and is_compact(system.group) and is_linear
+    return not system.is_spatial and _series.is_compact(system.group) and is_linear
 
 
 def _equations(
@@ -48,13 +36,13 @@ def _equations(
 ) -> tuple[Quadratic, Float[np.ndarray, "m k k"], Float[np.ndarray, "m Q"]]:
     """Return the equations of members, and their velocities and factors; those of one body are known."""
     if len(inertias) == 1:
-        f = quadratic(system.canonical) if system.forces is None else quadratic_under(system.forces)
+        f = _series.quadratic(system.canonical) if system.forces is None else quadratic_under(system.forces)
         return f, f.velocities[None], f.factors
     system = system.canonical
     group, S = system.group, system.constraint_subspace
-    velocities, torques = body_numbers(group, S, inertias)
+    velocities, torques = _series.body_numbers(group, S, inertias)
     is_nonzero = (torques != 0).any(axis=0)
-    f = body_equations(group, S, velocities[0], is_nonzero.astype(np.float64))
+    f = _series.body_equations(group, S, velocities[0], is_nonzero.astype(np.float64))
     own = np.moveaxis(torques, -1, 1)[:, np.moveaxis(is_nonzero, -1, 0)]  # row by row of the equations
     return f, velocities, np.hstack([np.tile(f.factors[0, : f.factors.size - own.shape[1]], (len(own), 1)), own])
 
@@ -82,38 +70,36 @@ def members_by_series(
     group, k = system.group, momenta.shape[1]
     f, velocities, factors = _equations(system, inertias)
     if system.forces is None:
-        units = np.array([power_of_two(w) for w in (velocities @ momenta[..., None])[..., 0]])
+        units = np.array([_series.power_of_two(w) for w in (velocities @ momenta[..., None])[..., 0]])
         head = momenta / units[:, None]
     else:
         head, units = heads(system.forces, momenta, poses)
-    parts, numbers = (poses, first_heading(group, poses), head), (velocities, factors)
-    (path, angles, heads_after), counts = solve_members(f, numbers, parts, (elapsed, units), tolerance * GUARD, stop)
+    parts, numbers = (poses, _series.first_heading(group, poses), head), (velocities, factors)
+    limits = (elapsed, units), tolerance * _series.GUARD
+    (path, angles, heads_after), counts = solve_members(f, numbers, parts, *limits, stop)
     path = group.normalize_pose(path)
-    headings = turned_near(angles[..., 0], path) if group == PLANE else None
+    headings = turned_near(angles[..., 0], path) if group == _series.PLANE else None
     return States(heads_after[..., :k] * units[:, None, None], path, headings), counts
 
 
-def solver_of(
-    system: System, method: str | None, begins: float, *, reconstruct: bool
-) -> tuple[Callable[..., Solved], bool]:
+Solver = Callable[[Problem], Solved]
+
+
+def solver_of(system: System, method: str | None, begins: float, *, reconstruct: bool) -> tuple[Solver, bool]:
     """Return what solves the equations from a time on, and whether with poses; refuse an unknown method."""
     choice("flow(method=...)", method, (None, "closed_form", "diffrax"))
     if system.forces is not None:
         if method is not None:
             remedy = "Leave it out: the forces decide it."
             raise error("flow(method=...)", "be None under forces", repr(method), remedy)
-        return _of_problem(functools.partial(under_forces, system.forces, begins)), True
+        return functools.partial(under_forces, system.forces, begins), True
     alone = not reconstruct and method is None and system.canonical.normal_form is not None
-    return _of_problem(functools.partial(_method_solver(method, alone=alone), system.canonical)), not alone
-
-
-def _of_problem(solve: Callable[[Problem], Solved]) -> Callable[..., Solved]:
-    return lambda *parts, **others: solve(Problem(*parts, **others))
+    return functools.partial(_method_solver(method, alone=alone), system.canonical), not alone
 
 
 def _method_solver(method: str | None, *, alone: bool) -> Callable[..., Solved]:
     if method is None:
-        return momenta_by_series if alone else by_series
+        return momenta_by_series if alone else _series.by_series
     if method == "closed_form":
         return closed_form
     with needs("jax", "flow(method='diffrax')"):

@@ -16,6 +16,8 @@ from nonholo.discrete._scheme import Scheme, legendre, matrix_legendre
 from nonholo.kernels import decoding
 from nonholo.orbit import Decoder
 
+Charts = Float[np.ndarray, "K m"]
+
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class DisplacementDecoder:
@@ -38,9 +40,7 @@ class DisplacementDecoder:
         frame = self.discrete.system.frame
         return frame @ self.discrete.variety.displaced(charts) @ self.discrete.system.group.inverse(frame)
 
-    def multipliers(
-        self, charts: Float[np.ndarray, "K m"], following: Float[np.ndarray, "K m"]
-    ) -> Float[np.ndarray, "K s"]:
+    def multipliers(self, charts: Charts, following: Charts) -> Float[np.ndarray, "K s"]:
         """Return the impulses between displacements and those that follow."""
         jump = self.momentum(following, "left") - self.momentum(charts, "right")
         return applied(np.linalg.pinv(self.discrete.system.annihilator).T, jump)
@@ -67,9 +67,7 @@ class ClosedDisplacementDecoder:
         matrices = decoding.read(decoding.write_displacements, self.numbers, (charts.reshape(-1, 2),), (3, 3))
         return matrices.reshape(*charts.shape[:-1], 3, 3)
 
-    def multipliers(
-        self, charts: Float[np.ndarray, "K 2"], following: Float[np.ndarray, "K 2"]
-    ) -> Float[np.ndarray, "K 1"]:
+    def multipliers(self, charts: Charts, following: Charts) -> Float[np.ndarray, "K 1"]:
         """Return the impulses between displacements and those that follow."""
         return decoding.read(decoding.write_multipliers, self.numbers, (charts, following), (1,), self.time_step)
 

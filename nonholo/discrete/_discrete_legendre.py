@@ -86,7 +86,6 @@ def moser_veselov_displacement(mass_tensor: Any, momentum: Any, time_step: Array
     try:
         S = scipy.linalg.solve_continuous_are(-M / 2, np.eye(n), M @ M / 4 + J @ J, np.eye(n))
     except (np.linalg.LinAlgError, ValueError) as failure:  # what is not finite is a ValueError
-        raise error(
-            f"{owner}(momentum=...)", "lie on the branch of small steps", f"{failure}", "Take smaller steps."
-        ) from None
+        where = f"{owner}(momentum=...)"
+        raise error(where, "lie on the branch of small steps", f"{failure}", "Take smaller steps.") from None
     return np.linalg.solve(J, (M / 2 + S).T).T

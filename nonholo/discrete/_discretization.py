@@ -6,14 +6,14 @@ from typing import Any, ClassVar, cast
 
 import numpy as np
 
-from nonholo.base.checks import error, needs, shape_of, shown, trailing
+from nonholo.base.checks import error, shape_of, shown, trailing
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Float
 from nonholo.discrete._decoder import AnyDisplacementDecoder, displacement_decoder
 from nonholo.discrete._pytrees import pytree
 from nonholo.discrete._scheme import Scheme, legendre, refuse_composition, weights
-from nonholo.discrete._variety import equations_of
+from nonholo.discrete._variety import definition, equations_of
 from nonholo.discrete.routes import AbstractBodyStepper, AbstractRoute, make_route
 from nonholo.orbit import AbstractMotion, First, Orbit, turned_near
 from nonholo.systems import Forced, Start, Widened, in_group, of_finite_energy, refuse_forces
@@ -120,10 +120,7 @@ class Discretization(Scheme, AbstractMotion):
         """
         if not callable(self.difference):
             return True
-        with needs("jax", "discretize(difference=...)"):
-            from nonholo.discrete.definition import is_even
-
-        return is_even(self.difference, self.system.group)
+        return definition("discretize(difference=...)").is_even(self.difference, self.system.group)
 
     def displaced(self, cayley: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
         """Return the elements of the variety, in the user's frame, with canonical chart coordinates."""

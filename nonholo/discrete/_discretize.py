@@ -5,11 +5,11 @@ from typing import Any, overload
 
 import numpy as np
 
-from nonholo.base.checks import choice, error, function, needs, scale
+from nonholo.base.checks import choice, error, function, scale
 from nonholo.base.types import Array
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._scheme import Difference, checked_order
-from nonholo.discrete._variety import Constraint, checked_constraint
+from nonholo.discrete._variety import Constraint, checked_constraint, definition
 from nonholo.systems import (
     AbstractCoordinateSystem,
     AbstractSystem,
@@ -75,9 +75,8 @@ def discretize(
         'matrix'
     """
     if isinstance(system, AbstractCoordinateSystem):
-        refuse_in_coordinates(
-            "discretize", difference=(difference, None), constraint=(constraint, None), order=(order, 2)
-        )
+        others = {"difference": (difference, None), "constraint": (constraint, None), "order": (order, 2)}
+        refuse_in_coordinates("discretize", **others)
         return system.discrete_map(time_step)
     as_system("discretize(system=...)", system)
     step = scale("discretize(time_step=...)", time_step, "Pass a positive real time step.")
@@ -105,11 +104,9 @@ def _difference(system: AbstractSystem, difference: Difference | None) -> Differ
 
 def _scalar(where: str, system: AbstractSystem, difference: Callable[[Array], Array]) -> Callable[[Array], Array]:
     """Refuse a discrete Lagrangian that is not a finite number with finite derivatives at the identity."""
-    with needs("jax", where):
-        from nonholo.discrete.definition import value_and_slope
-
+    of_jax = definition(where)
     try:
-        value, slope = value_and_slope(difference, system.group)
+        value, slope = of_jax.value_and_slope(difference, system.group)
     except Exception as failure:
         got = f"{type(failure).__name__}: {f'{failure}'.splitlines()[0]}"
         remedy = "Write L_d(W) with jax.numpy, returning one number."
@@ -162,20 +159,18 @@ def consistency_defect(discrete: Discretization, discretization_map: Callable[[A
         True
     """
     as_discretization("consistency_defect(discrete=...)", discrete)
-    with needs("jax", "consistency_defect(...)"):
-        from nonholo.discrete.definition import map_each, sample_displacements
-
+    of_jax = definition("consistency_defect(...)")
     group, annihilator = discrete.system.group, np.asarray(discrete.system.annihilator)
     where = "consistency_defect(discretization_map=...)"
     own = {"matrix": lambda W: group.vee(W - group.identity), "logarithmic": group.log}
     if discretization_map is not None:
         function(where, discretization_map)
-        velocities = map_each(discretization_map, sample_displacements(discrete, _SAMPLES))
+        velocities = of_jax.map_each(discretization_map, of_jax.sample_displacements(discrete, _SAMPLES))
     elif callable(discrete.difference):
         got = "none, with a callable difference"
         raise error(where, "be given", got, "Pass the map W -> velocity that the difference was made with.")
     else:
-        velocities = own[discrete.difference](sample_displacements(discrete, _SAMPLES))
+        velocities = own[discrete.difference](of_jax.sample_displacements(discrete, _SAMPLES))
     if velocities.shape != (_SAMPLES, group.dim) or not np.all(np.isfinite(velocities)):
         got = f"shape {velocities.shape[1:]}" if velocities.shape[1:] != (group.dim,) else "a value that is not finite"
         raise error(where, f"return {group.dim} finite coordinates", got, "Use `vee` on a matrix of the algebra.")

@@ -32,11 +32,9 @@ def register() -> None:
 
     keep_programs()
     for kind in _TREES:
-        jax.tree_util.register_pytree_node(
-            kind,
-            functools.partial(_flatten, kind.leaves, kind.structure),
-            functools.partial(_unflatten, kind, kind.leaves, kind.structure),
-        )
+        names = kind.leaves, kind.structure
+        flatten, unflatten = functools.partial(_flatten, *names), functools.partial(_unflatten, kind, *names)
+        jax.tree_util.register_pytree_node(kind, flatten, unflatten)
 
 
 def _flatten(leaves: tuple[str, ...], static: tuple[str, ...], thing: Any) -> tuple[tuple[Any, ...], tuple[Any, ...]]:

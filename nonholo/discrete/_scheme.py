@@ -17,10 +17,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from nonholo.base.checks import choice, error, needs
+from nonholo.base.checks import choice, error
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float, Inexact, read_only
-from nonholo.discrete._variety import Constraint, Variety, variety_of
+from nonholo.discrete._variety import Constraint, Variety, definition, variety_of
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import System
 
@@ -68,10 +68,8 @@ def legendre(discrete: Scheme, increment: Inexact[Array, "... N N"], side: str) 
         return matrix_legendre(group, tensor, increment, side) / discrete.time_step
     if isinstance(discrete.difference, str):
         return logarithmic_legendre(discrete, increment + group.identity, side)
-    with needs("jax", "discretize(difference=...)"):
-        from nonholo.discrete.definition import momenta_by_derivative
-
-    return momenta_by_derivative(discrete.difference, group, increment + group.identity, side)
+    by_derivative = definition("discretize(difference=...)").momenta_by_derivative
+    return by_derivative(discrete.difference, group, increment + group.identity, side)
 
 
 def logarithmic_legendre(discrete: Scheme, W: Float[Array, "... N N"], side: str) -> Float[Array, "... dim"]:

@@ -10,27 +10,9 @@ import numpy as np
 from nonholo.base.checks import array, error, is_traced, shape_of, shown
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
+from nonholo.discrete import branching, definition
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._scheme import legendre
-from nonholo.discrete.branching import (
-    AbstractBranchRule,
-    BranchRule,
-    branch_rule,
-    displacement_at,
-    first_place,
-    frame_of,
-    has_frame,
-    next_place,
-)
-from nonholo.discrete.definition import (
-    ON_LOCUS,
-    displacement_of,
-    in_double,
-    momentum_of,
-    nearest_displacement,
-    principal_of,
-    traceable,
-)
 from nonholo.discrete.routes import ScalarRoute, ScalarStep
 
 
@@ -50,7 +32,7 @@ class StepResult(NamedTuple):
     outcome: Array
 
 
-def step(discrete: Discretization, momentum: Any, branch: BranchRule = "principal") -> StepResult:
+def step(discrete: Discretization, momentum: Any, branch: branching.BranchRule = "principal") -> StepResult:
     r"""Take one step of the discrete map: from $P_k$ to $P_{k+1}$, with the displacement $W_{k+1}$ at the new momentum.
 
     $$ P_{k+1} = \mathrm{Ad}^*_{W_k} P_k + \sum_j \lambda_j a^j, \qquad P_k = P(W_k),\ P_{k+1} = P(W_{k+1}). $$
@@ -91,31 +73,31 @@ def step(discrete: Discretization, momentum: Any, branch: BranchRule = "principa
     where = "step(momentum=...)"
     value = array(where, momentum, (size,), f"Pass {dim} body momenta or the {k} along the constraint subspace.")
     in_jax = any(is_traced(x) for x in jax.tree.leaves((discrete, value)))
-    rule = branch_rule("step", branch)
+    rule = branching.branch_rule("step", branch)
     if in_jax and rule.needs_all_values:
         got = f"{shown(branch)} under a JAX transformation"
         raise error("step(branch=...)", "be 'principal' or 'nearest'", got, "Take this step outside of it.")
     rule.check("step(branch=...)", discrete)
-    if rule.is_principal or in_jax or not has_frame(discrete):
+    if rule.is_principal or in_jax or not branching.has_frame(discrete):
         route = discrete.route
-        scalar_step = jax.tree.map(traceable, route.step) if isinstance(route, ScalarRoute) else None
-        return in_double(_step, discrete, scalar_step, not rule.is_principal, value)
+        scalar_step = jax.tree.map(definition.traceable, route.step) if isinstance(route, ScalarRoute) else None
+        return definition.in_double(_step, discrete, scalar_step, not rule.is_principal, value)
     return _step_by_rule(discrete, rule, value)
 
 
-def _step_by_rule(discrete: Discretization, rule: AbstractBranchRule, momentum: np.ndarray) -> StepResult:
+def _step_by_rule(discrete: Discretization, rule: branching.AbstractBranchRule, momentum: np.ndarray) -> StepResult:
     """Take a step in NumPy, from a state that need not be on the principal branch."""
     system = discrete.system
-    frame = frame_of("step(discrete=...)", discrete)
+    frame = branching.frame_of("step(discrete=...)", discrete)
     full = momentum if momentum.shape != (len(system.constraint_subspace),) else None
     canonical = system.to_canonical(momentum if full is None else system.restrict(full))
-    code, place = first_place("step", discrete, frame, rule, canonical, full)
+    code, place = branching.first_place("step", discrete, frame, rule, canonical, full)
     after, W = np.full(system.group.dim, np.nan), np.full_like(system.group.identity, np.nan)
     multipliers = np.full(len(system.annihilator), np.nan)
     if place is not None:
-        code, following = next_place(discrete, frame, rule, place)
+        code, following = branching.next_place(discrete, frame, rule, place)
         if code == 0:
-            now, W = (displacement_at(discrete, frame, x.point) for x in (place, following))
+            now, W = (branching.displacement_at(discrete, frame, x.point) for x in (place, following))
             after = legendre(discrete, W - system.group.identity, "left")
             arriving = legendre(discrete, now - system.group.identity, "right")
             multipliers = (after - arriving) @ np.linalg.pinv(system.annihilator)
@@ -127,22 +109,22 @@ def _step(discrete: Discretization, scalar_step: ScalarStep | None, nearest: boo
     system = discrete.system
     subspace = jnp.asarray(system.constraint_subspace)
     full, nowhere = momentum.shape[0] != subspace.shape[0], system.group.identity
-    y, code = principal_of(discrete, scalar_step, subspace @ momentum if full else momentum, nowhere)
+    y, code = definition.principal_of(discrete, scalar_step, subspace @ momentum if full else momentum, nowhere)
     if full:
         code = jnp.where((code == 0) & _off_locus(discrete, y, momentum), int(Outcome.off_momentum_locus), code)
-    arriving = momentum_of(discrete, y, nowhere, "right")
+    arriving = definition.momentum_of(discrete, y, nowhere, "right")
     if nearest:
-        following, later = nearest_displacement(discrete, y, subspace @ arriving)
+        following, later = definition.nearest_displacement(discrete, y, subspace @ arriving)
     else:
-        following, later = principal_of(discrete, scalar_step, subspace @ arriving, nowhere)
+        following, later = definition.principal_of(discrete, scalar_step, subspace @ arriving, nowhere)
     code = jnp.where(code == 0, later, code)
-    after = momentum_of(discrete, following, nowhere, "left")
+    after = definition.momentum_of(discrete, following, nowhere, "left")
     multipliers = (after - arriving) @ jnp.linalg.pinv(jnp.asarray(system.annihilator))
     good = code == 0
-    W = displacement_of(discrete, following)
+    W = definition.displacement_of(discrete, following)
     return StepResult(*(jnp.where(good, x, jnp.nan) for x in (after, W, multipliers)), outcome=code)
 
 
 def _off_locus(discrete: Discretization, y: Array, momentum: Array) -> Array:
-    gap = momentum_of(discrete, y, discrete.system.group.identity, "left") - momentum
-    return jnp.sum(gap**2) > ON_LOCUS**2 * jnp.sum(momentum**2)
+    gap = definition.momentum_of(discrete, y, discrete.system.group.identity, "left") - momentum
+    return jnp.sum(gap**2) > definition.ON_LOCUS**2 * jnp.sum(momentum**2)

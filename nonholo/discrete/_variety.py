@@ -9,11 +9,12 @@ first two are the same set, and the Cayley image of $\mathfrak{d}$ too.
 import dataclasses
 import functools
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 from nonholo.base.checks import choice, error, needs
-from nonholo.base.numerics import applied
+from nonholo.base.numerics import applied, identity_like
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractSystem
@@ -52,8 +53,8 @@ class Variety:
 
     def displaced(self, y: Float[Array, "... m"]) -> Float[Array, "... N N"]:
         """Return the displacement with chart coordinates y, tangent to 2 y."""
-        x = applied(y.__array_namespace__().asarray(self.chart, dtype=y.dtype).T, 2 * y)
-        return self.group.exp(x) if self.exponential else self.group.retract(x)
+        X = self.increment(y)
+        return identity_like(X) + X
 
     def increment(self, y: Float[Array, "... m"]) -> Float[Array, "... N N"]:
         """Return the displacement minus the identity, without cancellation."""
@@ -130,13 +131,18 @@ def forbidden_matrices(group: AbstractMatrixGroup, annihilator: np.ndarray) -> F
     return (group.vee(units) @ annihilator.T).T.reshape(-1, N, N)
 
 
+def definition(owner: str) -> Any:
+    """Import the functions of the definition, or name the extra that they need and the call that needs it."""
+    with needs("jax", owner):
+        from nonholo.discrete import definition
+    return definition
+
+
 def equations_of(variety: Variety, D: Float[np.ndarray, "... N N"]) -> Float[np.ndarray, "... j"]:
     """Return the equations of a variety at displacements in the canonical frame, in 64 bits."""
     if isinstance(variety.constraint, str):
         return variety.equations(D)
-    with needs("jax", "discretize(constraint=...)"):
-        from nonholo.discrete.definition import map_each
-
+    map_each = definition("discretize(constraint=...)").map_each
     values = map_each(variety.equations, D.reshape(-1, *D.shape[-2:]))  # functions take one matrix at a time
     return values.reshape(*D.shape[:-2], -1)
 
@@ -163,13 +169,9 @@ def checked_constraint(where: str, system: AbstractSystem, constraint: object) -
     return functions
 
 
-def _at_identity(
-    where: str, functions: tuple[Callable[[Array], Array], ...], group: AbstractMatrixGroup
-) -> tuple[Float[np.ndarray, "s"], Float[np.ndarray, "s dim"]]:
+def _at_identity(where: str, functions: Any, group: AbstractMatrixGroup) -> tuple[np.ndarray, np.ndarray]:
     """Return the values of functions at the identity and their derivatives along the group."""
-    with needs("jax", where):
-        from nonholo.discrete.definition import value_and_slope
-
+    value_and_slope = definition(where).value_and_slope
     values, slopes = np.zeros(len(functions)), np.zeros((len(functions), group.dim))
     for j, function in enumerate(functions):
         try:

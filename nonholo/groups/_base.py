@@ -6,7 +6,7 @@ All functions broadcast over leading axes.
 
 import abc
 import functools
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -17,27 +17,7 @@ from nonholo.base.numerics import applied, identity_like, integrated_exponential
 from nonholo.base.types import Array, Float, Inexact, Int
 
 
-class AbstractCoordinates(abc.ABC):
-    """The four linear maps between coordinate vectors and matrices."""
-
-    @abc.abstractmethod
-    def matrix(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
-        r"""Return $\sum x_i E_i$."""
-
-    @abc.abstractmethod
-    def vector(self, X: Inexact[Array, "... N N"]) -> Inexact[Array, "... dim"]:
-        r"""Return $x_i = \mathrm{tr}\,D_i^TX$, the coordinates of the orthogonal projection of X on the algebra."""
-
-    @abc.abstractmethod
-    def dual_matrix(self, p: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
-        r"""Return $\sum p_i D_i$."""
-
-    @abc.abstractmethod
-    def dual_vector(self, P: Inexact[Array, "... N N"]) -> Inexact[Array, "... dim"]:
-        r"""Return $p_i = \mathrm{tr}\,E_i^TP$."""
-
-
-class SeparatedCoordinates(AbstractCoordinates):
+class SeparatedCoordinates:
     """A basis of which no two matrices share an entry: every map picks entries, and no (dim, N, N) array is needed.
 
     Args:
@@ -82,7 +62,7 @@ class SeparatedCoordinates(AbstractCoordinates):
         return xp.sum(P[..., self._rows, self._columns] * xp.asarray(self._values, dtype=P.dtype), axis=-1)
 
 
-class DenseCoordinates(AbstractCoordinates):
+class DenseCoordinates:
     """Any basis, orthogonal or not.
 
     Args:
@@ -99,7 +79,7 @@ class DenseCoordinates(AbstractCoordinates):
         return _combine(x, self._basis)
 
     def vector(self, X: Inexact[Array, "... N N"]) -> Inexact[Array, "... dim"]:
-        r"""Return $x_i = \mathrm{tr}\,D_i^TX$."""
+        r"""Return $x_i = \mathrm{tr}\,D_i^TX$, the coordinates of the orthogonal projection of X on the algebra."""
         return _pair(X, self._dual)
 
     def dual_matrix(self, p: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
@@ -111,7 +91,11 @@ class DenseCoordinates(AbstractCoordinates):
         return _pair(P, self._basis)
 
 
-def coordinates_of(basis: Float[np.ndarray, "dim N N"]) -> AbstractCoordinates:
+Coordinates: TypeAlias = SeparatedCoordinates | DenseCoordinates
+"""The four linear maps between coordinate vectors and matrices."""
+
+
+def coordinates_of(basis: Float[np.ndarray, "dim N N"]) -> Coordinates:
     """Return the coordinates of a basis: by picking entries, if no two matrices share one."""
     is_nonzero = basis != 0
     if np.any(is_nonzero.sum(axis=0) > 1):
@@ -158,7 +142,7 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
     """G of a quadratic group, whose inverse is G^-1 W^T G; None for SO(n), where it is the identity, and all others."""
 
     @functools.cached_property
-    def coordinates(self) -> AbstractCoordinates:
+    def coordinates(self) -> Coordinates:
         """The maps between coordinate vectors and matrices that the basis defines."""
         return coordinates_of(self.basis)
 

@@ -139,21 +139,6 @@ def residual(R: Float[Array, "... n n"]) -> Float[Array, "..."]:
     return xp.maximum(defect, 1 - xp.sign(xp.linalg.det(R)))
 
 
-def motion_inverse(g: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
-    """Return the inverse motion."""
-    xp = g.__array_namespace__()
-    transpose = xp.swapaxes(g[..., :-1, :-1], -1, -2)
-    upper = xp.concatenate([transpose, -(transpose @ g[..., :-1, -1:])], axis=-1)
-    return xp.concatenate([upper, g[..., -1:, :]], axis=-2)
-
-
-def motion_residual(g: Float[Array, "... N N"]) -> Float[Array, "..."]:
-    """Return the residual of the rotation or the largest error of the last row, whichever is larger."""
-    xp = g.__array_namespace__()
-    last = xp.max(abs(g[..., -1, :] - identity_like(g)[-1]), axis=-1)
-    return xp.maximum(residual(g[..., :-1, :-1]), last)
-
-
 def random(n: int, rng: np.random.Generator) -> Float[np.ndarray, "n n"]:
     """Draw a uniform rotation: the QR factor with positive diagonal of normal numbers, reflections turned."""
     Q, U = np.linalg.qr(rng.normal(size=(n, n)))

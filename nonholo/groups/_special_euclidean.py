@@ -11,7 +11,7 @@ from nonholo.base import numerics
 from nonholo.base.checks import dimension
 from nonholo.base.types import Array, Float
 from nonholo.groups import _rotations
-from nonholo.groups._base import AbstractCoordinates, AbstractMatrixGroup, SeparatedCoordinates, coordinates_of
+from nonholo.groups._base import AbstractMatrixGroup, Coordinates, SeparatedCoordinates, coordinates_of
 from nonholo.groups._special_orthogonal import AbstractBodyGroup, AbstractRodriguesGroup
 
 _CUBIC = [(-1) ** k / math.factorial(2 * k + 3) for k in range(8, -1, -1)]  # exact to rounding for angles up to 1
@@ -25,11 +25,18 @@ class AbstractMotions(AbstractMatrixGroup):
 
     def inverse(self, g: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
         """Return the inverse matrix from the transposed rotation."""
-        return _rotations.motion_inverse(self._matrix(g))
+        g = self._matrix(g)
+        xp = g.__array_namespace__()
+        transpose = xp.swapaxes(g[..., :-1, :-1], -1, -2)
+        upper = xp.concatenate([transpose, -(transpose @ g[..., :-1, -1:])], axis=-1)
+        return xp.concatenate([upper, g[..., -1:, :]], axis=-2)
 
     def residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
         """Return the residual of the rotation or the largest error of the last row, whichever is larger."""
-        return _rotations.motion_residual(self._matrix(g))
+        g = self._matrix(g)
+        xp = g.__array_namespace__()
+        last = xp.max(abs(g[..., -1, :] - numerics.identity_like(g)[-1]), axis=-1)
+        return xp.maximum(_rotations.residual(g[..., :-1, :-1]), last)
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
@@ -46,7 +53,7 @@ class SpecialEuclidean2(AbstractMotions, AbstractRodriguesGroup):
             [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]],
         ]
     )
-    coordinates: ClassVar[AbstractCoordinates] = coordinates_of(basis)
+    coordinates: ClassVar[Coordinates] = coordinates_of(basis)
     curvature: ClassVar[float] = 0.0
 
     def _squared_angle(self, x: Float[Array, "... 3"]) -> Float[Array, "..."]:

@@ -16,7 +16,7 @@ from nonholo.base.limits import within_memory
 from nonholo.base.numerics import cayley_increment, cotangent_deficit, identity_like, of_length_one, sinc, versine
 from nonholo.base.types import Array, Float
 from nonholo.groups import _rotations
-from nonholo.groups._base import AbstractCoordinates, AbstractMatrixGroup, SeparatedCoordinates
+from nonholo.groups._base import AbstractMatrixGroup, Coordinates, SeparatedCoordinates
 
 
 class AbstractRotations(AbstractMatrixGroup):
@@ -128,7 +128,7 @@ class SpecialOrthogonal3(AbstractRotations, AbstractRodriguesGroup):
     tan(angle / 2) = |x| / 2.
     """
 
-    coordinates: ClassVar[AbstractCoordinates] = SeparatedCoordinates(3, *_rotations.planes(3))
+    coordinates: ClassVar[Coordinates] = SeparatedCoordinates(3, *_rotations.planes(3))
     basis: ClassVar[np.ndarray] = np.ascontiguousarray(coordinates.matrix(np.eye(3)))
     curvature: ClassVar[float] = 1.0
 

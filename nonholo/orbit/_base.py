@@ -170,9 +170,9 @@ class AbstractOrbit(Keeper, abc.ABC):
         """Refuse impacts of motions that have no reflection in the energy."""
 
     @property
-    @abc.abstractmethod
     def space(self) -> Any:
         """Where it moves: a group, or the names of coordinates."""
+        return self.group
 
     @abc.abstractmethod
     def at(self, times: Any) -> "AbstractOrbit":
@@ -210,12 +210,8 @@ class AbstractOrbit(Keeper, abc.ABC):
     @memo
     def has_every_step(self) -> bool:
         """Whether each state but the first is one step after the one before, without an impact between them."""
-        h = self.time_step
-        return (
-            not self.has_impacts.any()
-            and bool((np.diff(self.step) == 1).all())
-            and (h is None or np.allclose(np.diff(self.time), h))
-        )
+        h, is_next = self.time_step, bool((np.diff(self.step) == 1).all())
+        return is_next and not self.has_impacts.any() and (h is None or np.allclose(np.diff(self.time), h))
 
     @memo
     def has_impacts(self) -> Bool[np.ndarray, "K"]:

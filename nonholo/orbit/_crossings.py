@@ -53,6 +53,12 @@ class Crossings:
         after = None if self.after is None else self.after.chosen(at)
         return Crossings(self.step[at], self.fraction[at], self.direction[at], self.states.chosen(at), after)
 
+    def of_steps(self, step: Int[np.ndarray, "C"], fraction: Float[np.ndarray, "C"], **fields: Any) -> "Crossings":
+        """Return the same crossings in other steps; their states may have other fields."""
+        rows = {"states": self.states} | ({} if self.after is None else {"after": self.after})
+        states = {name: dataclasses.replace(each, step=step, **fields) for name, each in rows.items()}
+        return dataclasses.replace(self, step=step, fraction=fraction, **states)
+
 
 FoundT = TypeVar("FoundT")
 
@@ -107,10 +113,8 @@ class EventLog(AbstractEventLog[Crossings]):
 
     def joined(self, others: "Sequence[EventLog]") -> "EventLog":
         """Return the crossings with those of later parts of the same run."""
-        columns = tuple(
-            joined_crossings(column) for column in zip(*(log.found for log in (self, *others)), strict=True)
-        )
-        return EventLog(self.names, columns, others[-1].stopped_by)
+        columns = zip(*(log.found for log in (self, *others)), strict=True)
+        return EventLog(self.names, tuple(map(joined_crossings, columns)), others[-1].stopped_by)
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{name}: {len(crossings)}" for name, crossings in zip(self.names, self.found, strict=True))
@@ -120,9 +124,8 @@ class EventLog(AbstractEventLog[Crossings]):
 
 def joined_crossings(parts: Sequence[Crossings]) -> Crossings:
     """Return the crossings of stretches of a run one after another."""
-    step, fraction, direction = (
-        np.concatenate([getattr(part, name) for part in parts]) for name in ("step", "fraction", "direction")
-    )
+    columns = zip(*((part.step, part.fraction, part.direction) for part in parts), strict=True)
+    step, fraction, direction = map(np.concatenate, columns)
     states, after = ([getattr(part, name) for part in parts] for name in ("states", "after"))
     later = None if after[0] is None else after[0].joined(after[1:])
     return Crossings(step, fraction, direction, states[0].joined(states[1:]), later)

@@ -275,11 +275,6 @@ class Orbit(AbstractOrbit):
         return self.system.group
 
     @property
-    def space(self) -> AbstractMatrixGroup:
-        """The group on which it moves."""
-        return self.system.group
-
-    @property
     def time_step(self) -> float | None:
         """The time step of a discrete orbit; None for a flow."""
         step = getattr(self.motion, "time_step", None)

@@ -14,12 +14,13 @@ import numpy as np
 
 from nonholo.base.results import Outcome
 from nonholo.base.types import Bool, Float
-from nonholo.continuous import ContinuousFlow, Solved, States
+from nonholo.continuous import ContinuousFlow, Problem, Solved, States, solver_of
 from nonholo.orbit import Crossings, EventLog, Orbit
 from nonholo.simulation._crossings import between_times, of_requested
 from nonholo.simulation._event import Event
 from nonholo.simulation._search import Watch, search, struck, values_of
 
+_TURN = 2 * np.pi
 _MOST = 200  # impacts in a step
 _LEAST = 2.0**-52  # of the part that is left, where the body is looked at
 _SHORT = 2.0**-36  # of a step: too short for the sign of a gap
@@ -124,21 +125,13 @@ def _search_rest(watch: Watch, there: Orbit, places: np.ndarray, looks: Orbit, s
     def place(crossings: Crossings) -> Crossings:
         fraction = share + rest * (places[crossings.step] + crossings.fraction * widths[crossings.step])
         step = there.step[0] + (fraction == 1)
-        own = {
-            name: None if (rows := getattr(crossings, name)) is None else dataclasses.replace(rows, step=step)
-            for name in ("states", "after")
-        }
-        return Crossings(step, np.where(fraction == 1, 0.0, fraction), crossings.direction, **own)
+        return crossings.of_steps(step, np.where(fraction == 1, 0.0, fraction))
 
     alone = dataclasses.replace(watch, part=between, parts=())
     new_watch, _ = search(alone, dataclasses.replace(looks, step=np.arange(len(looks))))
     crossings = tuple(map(place, new_watch.parts[0]))
     parts = (*watch.parts, crossings) if any(map(len, crossings)) else watch.parts
     return dataclasses.replace(new_watch, part=watch.part, parts=parts)
-
-
-SolverAt = Callable[[float], Callable[..., Solved]]
-"""Gives what solves the equations with poses from a time on."""
 
 
 @runtime_checkable
@@ -155,32 +148,55 @@ class Flights(Protocol):
 
 
 class BodyFlights(NamedTuple):
-    """The flows of a body.
+    """The flows of a body, by a method and to tolerances."""
 
-    Attributes:
-        solver_at: Gives what solves the equations with poses from a time on.
-    """
-
-    solver_at: SolverAt
+    system: Any
+    method: str | None
+    tolerances: tuple[float, float]
 
     def fly(self, there: Orbit, elapsed: np.ndarray) -> tuple[Orbit, Outcome, str]:
         """Return the flow from a state up to times since then where it is looked at, the outcome and what it says."""
-        flow, solution = _flow(self.solver_at, there, elapsed)
+        flow, solution = self._flow(there, elapsed)
         return flow, solution.outcome, solution.fault
 
     def joined(self, begins: list[Orbit], until: float) -> dict[str, Any]:
         """Return the motion from several states, each up to the next one."""
-        states = functools.partial(_states, self.solver_at, begins)
-        return {"motion": ContinuousFlow(begins[0].system, (float(begins[0].time[0]), until), states)}
+        states = functools.partial(self._states, begins)
+        return {"motion": ContinuousFlow(self.system, (float(begins[0].time[0]), until), states)}
+
+    def _flow(self, there: Orbit, elapsed: np.ndarray) -> tuple[Orbit, Solved]:
+        """Return the flow from a state, with headings that continue from its own, where solver or caller looks."""
+        begin, pose, elapsed = float(there.time[0]), there.canonical_pose[0], np.union1d(0.0, elapsed)  # type: ignore[index]
+        solve, _ = solver_of(self.system, self.method, begin, reconstruct=True)
+        solution, turns = solve(Problem(there.reduced_momentum[0], pose, elapsed, self.tolerances)), 0.0
+        if there.turned is not None:
+            turns = _TURN * np.rint((there.turned[0] - np.arctan2(pose[1], pose[0])) / _TURN)
+
+        def turn(states: States) -> States:
+            return states if states.turned is None else states._replace(turned=states.turned + turns)
+
+        good_times, steps = elapsed[: len(solution.states.momenta)], solution.steps()
+        inside = np.union1d(good_times, steps[(steps > 0) & (steps < good_times[-1])])
+        motion = ContinuousFlow(self.system, (begin, begin + good_times[-1]), lambda times: turn(solution.at(times)))
+        flow = dataclasses.replace(there, motion=motion).at(begin + inside)
+        return flow, solution._replace(states=turn(solution.states))
+
+    def _states(self, begins: list[Orbit], elapsed: Float[np.ndarray, "K"]) -> States:
+        """Return the states at times since the first of several states, each from the last one before it."""
+        times = np.concatenate([each.time for each in begins])
+        at = times[0] + elapsed
+        owner = np.searchsorted(times, at, "right") - 1
+        each = [(begins[k], at[owner == k] - times[k]) for k in np.unique(owner)]
+        places = [np.searchsorted(np.union1d(0.0, since), since) for _, since in each]  # a flow begins at zero
+        flows = [self._flow(*one)[1].states.chosen(there) for one, there in zip(each, places, strict=True)]
+        rows: Any = [None if column[0] is None else np.concatenate(column) for column in zip(*flows, strict=True)]
+        return States(*rows)
 
 
-_TURN = 2 * np.pi
 _SPAN = 2.0  # times that from one impact to the next are solved for at first after it
 
 
-def flow_through_impacts(
-    first: Any, time: Float[np.ndarray, "K"], flights: Flights, events: dict[str, Event]
-) -> tuple[Any, str]:
+def flow_through_impacts(first: Any, time: np.ndarray, flights: Flights, events: dict[str, Event]) -> tuple[Any, str]:
     """Return the flow from its first state at requested times, and what a function said that ended it."""
     there, span, since, end = first.with_headings(None), np.inf, float(time[0]), float(time[-1])
     watch, _ = search(Watch(events, between_times(there, 1.0)), there)
@@ -198,22 +214,6 @@ def flow_through_impacts(
     return _whole(first, time, flights, watch, float(there.time[0]), outcome), message
 
 
-def _flow(solver_at: SolverAt, there: Orbit, elapsed: np.ndarray) -> tuple[Orbit, Solved]:
-    """Return the flow from a state, with headings that continue from its own, where its solver or its caller looks."""
-    begin, pose = float(there.time[0]), there.canonical_pose[0]  # type: ignore[index]
-    elapsed = np.union1d(0.0, elapsed)
-    solution = solver_at(begin)(there.reduced_momentum[0], pose, elapsed)
-    turns = 0.0 if there.turned is None else _TURN * np.rint((there.turned[0] - np.arctan2(pose[1], pose[0])) / _TURN)
-
-    def turn(states: States) -> States:
-        return states if states.turned is None else states._replace(turned=states.turned + turns)
-
-    good_times, steps = elapsed[: len(solution.states.momenta)], solution.steps()
-    inside = np.union1d(good_times, steps[(steps > 0) & (steps < good_times[-1])])
-    motion = ContinuousFlow(there.system, (begin, begin + good_times[-1]), lambda times: turn(solution.at(times)))
-    return dataclasses.replace(there, motion=motion).at(begin + inside), solution._replace(states=turn(solution.states))
-
-
 def _pass_impact(flights: Flights, watch: Watch, looks: Orbit) -> tuple[Orbit, Watch, Outcome]:
     """Return the state after the first step between two looks with an impact, or the last one; what is known there."""
     there, at, share = looks.chosen(slice(0, 1)), 0, 0.0
@@ -223,16 +223,12 @@ def _pass_impact(flights: Flights, watch: Watch, looks: Orbit) -> tuple[Orbit, W
             return looks.chosen(slice(last - 1, last)), watch, Outcome.successful
         there, at, share = watch.begun_at(last - 1)
     ends = looks.time[at + 1 : at + 2]
-    part = functools.partial(_part, flights, float(ends[0] - looks.time[at]), {})
-    after, watch, outcome = after_contact(
-        lambda states: (states, Outcome.successful), dataclasses.replace(watch, part=part), there, at, share
-    )
+    watch = dataclasses.replace(watch, part=functools.partial(_part, flights, float(ends[0] - looks.time[at]), {}))
+    after, watch, outcome = after_contact(lambda states: (states, Outcome.successful), watch, there, at, share)
     return there if after is None else dataclasses.replace(after, time=ends), watch, outcome
 
 
-def _part(
-    flights: Flights, length: float, flows: dict[bytes, Any], states: Orbit, fractions: Float[np.ndarray, "K"]
-) -> Orbit:
+def _part(flights: Flights, length: float, flows: dict[bytes, Any], states: Orbit, fractions: np.ndarray) -> Orbit:
     """Return what is reached from one state, in all rows, after fractions of a time; NaN if that is not solved for."""
     if not len(states):
         return states
@@ -253,24 +249,5 @@ def _whole(first: Any, time: np.ndarray, flights: Flights, watch: Watch, until: 
         until = float(log[log.stopped_by].time[-1])
     motion = flights.joined([first.with_headings(None), *watch.impacts], until)
     orbit = dataclasses.replace(first, **motion).at(time[time <= until])
-    crossings = tuple(of_requested(_of_motion(part, motion), time, 1.0) for part in log.found)
+    crossings = tuple(of_requested(part, time, 1.0, **motion) for part in log.found)
     return dataclasses.replace(orbit, outcome=outcome, events=EventLog(log.names, crossings, log.stopped_by))
-
-
-def _of_motion(crossings: Crossings, motion: dict[str, Any]) -> Crossings:
-    """Return crossings with states of the whole flow."""
-    states = dataclasses.replace(crossings.states, **motion)
-    after = None if crossings.after is None else dataclasses.replace(crossings.after, **motion)
-    return dataclasses.replace(crossings, states=states, after=after)
-
-
-def _states(solver_at: SolverAt, begins: list[Orbit], elapsed: Float[np.ndarray, "K"]) -> States:
-    """Return the states at times since the first of several states, each from the last one before it."""
-    times = np.concatenate([each.time for each in begins])
-    at = times[0] + elapsed
-    owner = np.searchsorted(times, at, "right") - 1
-    each = [(begins[k], at[owner == k] - times[k]) for k in np.unique(owner)]
-    places = [np.searchsorted(np.union1d(0.0, since), since) for _, since in each]  # a flow begins at zero
-    flows = [_flow(solver_at, *one)[1].states.chosen(there) for one, there in zip(each, places, strict=True)]
-    rows: Any = [None if column[0] is None else np.concatenate(column) for column in zip(*flows, strict=True)]
-    return States(*rows)

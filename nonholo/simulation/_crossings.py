@@ -143,30 +143,17 @@ def flow_with_events(events: dict[str, Event], orbit: Any, steps: Float[np.ndarr
         orbit: The flow.
         steps: Times at which steps of its solver begin: there, too, its states are looked at.
     """
-    forward = _direction(orbit)
+    forward = 1.0 if orbit.time[-1] >= orbit.time[0] else -1.0
     outputs = forward * orbit.time
     inside = steps[(forward * steps > outputs[0]) & (forward * steps < outputs[-1])]
     times = np.unique(np.concatenate([outputs, forward * inside]))
     looks = orbit.at(forward * times) if len(inside) else orbit
-    return _search_flow(orbit, looks, Watch(events, between_times(looks, forward)))
-
-
-def _direction(orbit: AbstractOrbit) -> float:
-    return 1.0 if orbit.time[-1] >= orbit.time[0] else -1.0
-
-
-def _search_flow(orbit: Any, looks: Any, watch: Watch) -> Any:
-    """Return the orbit up to the event that ends it, with what is found between the states that are looked at."""
-    forward = _direction(orbit)
-    outputs, times = forward * orbit.time, forward * looks.time
-    watch, last = search(watch, looks)
-    outcome = Outcome.successful if watch.stopped_by else orbit.outcome
-    count = int(np.searchsorted(outputs, times[last - 1], "right"))
-    log = watch.log()
+    watch, last = search(Watch(events, between_times(looks, forward)), looks)
+    outcome, log = Outcome.successful if watch.stopped_by else orbit.outcome, watch.log()
+    count = int(np.searchsorted(outputs, forward * looks.time[last - 1], "right"))
     parts = tuple(of_requested(part, outputs, forward) for part in log.found)
-    return dataclasses.replace(
-        orbit.chosen(slice(0, count)), outcome=outcome, events=EventLog(log.names, parts, log.stopped_by)
-    )
+    events_there = EventLog(log.names, parts, log.stopped_by)
+    return dataclasses.replace(orbit.chosen(slice(0, count)), outcome=outcome, events=events_there)
 
 
 def between_times(looks: Orbit, forward: float) -> Part:
@@ -182,12 +169,9 @@ def between_times(looks: Orbit, forward: float) -> Part:
     return between
 
 
-def of_requested(crossings: Crossings, outputs: np.ndarray, forward: float) -> Crossings:
-    """Return crossings with the numbers of the requested times before them."""
+def of_requested(crossings: Crossings, outputs: np.ndarray, forward: float, **fields: Any) -> Crossings:
+    """Return crossings with the numbers of the requested times before them, and other fields of their states."""
     times = forward * crossings.time
     step = np.searchsorted(outputs, times, "right") - 1
     gaps = np.append(np.diff(outputs), np.inf)
-    fraction, after = (times - outputs[step]) / gaps[step], crossings.after
-    states = dataclasses.replace(crossings.states, step=step)
-    after = None if after is None else dataclasses.replace(after, step=step)
-    return Crossings(step, fraction, crossings.direction, states, after)
+    return crossings.of_steps(step, (times - outputs[step]) / gaps[step], **fields)

@@ -101,10 +101,10 @@ class Impact:
     def covector(self, gap: Any, states: AbstractOrbit) -> Float[np.ndarray, "dim"]:
         """Return n at a state; `gap` gives the values of the event at states."""
         place, dim = states.configuration[0], states.body_velocity.shape[1]
+        if self.has_plane and states.group is None:
+            return self.normal
         if self.has_plane:
-            return (
-                self.normal if states.group is None else Gravity(self.normal, self.point).covector(states.group, place)
-            )
+            return Gravity(self.normal, self.point).covector(states.group, place)
         if callable(self.normal):
             return numbers_of("Impact(normal=...)", self.normal, (dim,), "Return a body covector.", place)
         offsets, weights = central_differences(dim)

@@ -2,7 +2,6 @@
 
 import functools
 import importlib
-from collections.abc import Callable
 from typing import Any, NamedTuple, TypeAlias, overload
 
 import numpy as np
@@ -11,7 +10,7 @@ from nonholo.base.checks import error, flags, flow_times, flow_tolerances
 from nonholo.base.limits import within_memory
 from nonholo.base.progress import telling
 from nonholo.base.results import Outcome, OutcomeError
-from nonholo.continuous import ContinuousFlow, Solved, solver_of
+from nonholo.continuous import ContinuousFlow, Problem, Solver, solver_of
 from nonholo.orbit import First, Orbit
 from nonholo.simulation._contact import BodyFlights, Flights, flow_through_impacts
 from nonholo.simulation._crossings import check_resets, flow_in_coordinates, flow_with_events, refuse_resets
@@ -146,7 +145,7 @@ def flow(
     time = flow_times(times)
     solver, with_poses = solver_of(system, method, float(time[0]), reconstruct=reconstruct)
     tolerances = flow_tolerances((1e-10 if method == "diffrax" else 1e-14) if rtol is None else rtol, atol)
-    task = _Task(system, time, tolerances, method, reconstruct)
+    task = _Task(system, time, tolerances, reconstruct)
     start = Start.of("flow", configuration, project=project, restricted_velocity=restricted_velocity, **starts)
     first = _first_state(task, start, with_poses)
     by_name = None if events is None else checked_events("flow", events)
@@ -154,7 +153,7 @@ def flow(
         if by_name is not None and has_resets(by_name):
             if not task.reconstruct:
                 refuse_resets("flow", by_name, "impacts of a flow without poses: reconstruct=False")
-            flights = BodyFlights(functools.partial(_solver_at, task))
+            flights = BodyFlights(system, method, tolerances)
             return _successful(task, *_flow_between_walls(task.opening(first), time, flights, by_name))
         return _solve_flow(task, solver, first, by_name)
 
@@ -173,20 +172,17 @@ def _flow_in_coordinates(system: AbstractCoordinateSystem, events: Any, **how: A
 
 
 class _Task(NamedTuple):
-    """The equations of a system at times, by a method, and whether with poses."""
+    """The equations of a system at times, and whether with poses."""
 
     system: System
     time: np.ndarray
     tolerances: tuple[float, float]
-    method: str | None
     reconstruct: bool
 
     def opening(self, first: FirstState) -> Orbit:
         """Return the first state alone."""
-        reduced, pose = first
-        return Orbit(
-            ContinuousFlow(self.system), self.time[:1], reduced[None], None, None if pose is None else pose[None]
-        )
+        reduced, pose = first[0][None], None if first[1] is None else first[1][None]
+        return Orbit(ContinuousFlow(self.system), self.time[:1], reduced, None, pose)
 
 
 def _first_state(task: _Task, start: Start, with_poses: bool) -> FirstState:
@@ -205,18 +201,16 @@ def flow_from(system: System, first: First, time: np.ndarray, rtol: float, *, re
     """Return the flow from a checked start, with a pose where one is solved for, by the method that is the default."""
     solver, with_poses = solver_of(system, None, float(time[0]), reconstruct=reconstruct)
     reduced, pose = first.numbers
-    task = _Task(system, time, (rtol, 1.0), None, reconstruct)
+    task = _Task(system, time, (rtol, 1.0), reconstruct)
     return _solve_flow(task, solver, (reduced, pose if with_poses else None), None)
 
 
-def _solve_flow(
-    task: _Task, solver: Callable[..., Solved], first: FirstState, events: dict[str, Event] | None
-) -> Orbit:
+def _solve_flow(task: _Task, solver: Solver, first: FirstState, events: dict[str, Event] | None) -> Orbit:
     """Return the orbit from a first state, with what events found."""
     time, reconstruct = task.time, task.reconstruct
     if events is not None:
         values_of(events, task.opening(first if reconstruct else (first[0], None)))  # refused where there is none
-    solution = solver(*first, time - time[0], tolerances=task.tolerances)
+    solution = solver(Problem(*first, time - time[0], task.tolerances))
     states = solution.states
     if not reconstruct:  # nor is the memory kept, of which the momenta are a part
         states = states._replace(momenta=states.momenta.copy(), poses=None, turned=None)
@@ -235,12 +229,6 @@ def _flow_between_walls(opening: Any, time: np.ndarray, flights: Flights, events
     values_of(events, opening)
     check_resets(events, opening)
     return flow_through_impacts(opening, time, flights, events)
-
-
-def _solver_at(task: _Task, begins: float) -> Callable[..., Solved]:
-    """Return what solves the equations with poses from a time on."""
-    solver, _ = solver_of(task.system, task.method, begins, reconstruct=True)
-    return functools.partial(solver, tolerances=task.tolerances)
 
 
 def _successful(task: _Task, orbit: Orbit, message: str) -> Orbit:

@@ -120,9 +120,7 @@ def refuse_too_large(owner: str, widths: tuple[int, ...], states: int) -> None:
     within_memory(f"{owner}({what}=...)", 8.0 * states * (sum(others) + pose), remedy)
 
 
-def refuse_many_matrices(
-    where: str, discrete: Discretization, states: int, remedy: str, *, derivatives: int = 0
-) -> None:
+def refuse_many_matrices(where: str, discrete: Any, states: int, remedy: str, *, derivatives: int = 0) -> None:
     """Refuse more states in matrices, with derivatives of each, than memory holds."""
     numbers = 2 + discrete.system.rank + discrete.system.group.dim + 2 * discrete.system.group.size**2
     within_memory(where, 8.0 * states * numbers * (1 + derivatives), remedy)

@@ -4,7 +4,7 @@ import dataclasses
 import functools
 import time
 from collections.abc import Callable, Iterator
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -24,6 +24,13 @@ _ROWS, _NUMBERS = 1 << 16, 1 << 22  # at most in a block: saved states, numbers 
 _SOON, _LATE = 0.1, 0.3  # seconds: Ctrl-C waits for a call, whose steps are doubled and halved
 
 
+Stepper: TypeAlias = AbstractStepper[Any]
+Report: TypeAlias = Callable[[int, int], object]
+"""Takes how many steps are done, and of how many."""
+Searched: TypeAlias = tuple[State, int, int, Watch]
+"""The state after the last good step, how many steps were good, the outcome, and what was seen."""
+
+
 class Run(NamedTuple):
     """The motion of a run and its options.
 
@@ -36,7 +43,7 @@ class Run(NamedTuple):
         progress: Whether a progress bar is shown.
     """
 
-    stepper: AbstractStepper[Any]
+    stepper: Stepper
     steps: int
     every: int
     watch: Watch | None
@@ -92,14 +99,14 @@ def open_run(run: Run, first: First) -> tuple[Reached, AbstractOrbit | None]:
     return start, None if outcome == Outcome.successful else run.finish(there, 0)
 
 
-def orbit_at(stepper: AbstractStepper[Any], state: State, step: int) -> Any:
+def orbit_at(stepper: Stepper, state: State, step: int) -> Any:
     """Return the row of a state as an orbit."""
     rows = empty_rows(stepper, 1)
     write_first(state, rows)
     return stepper.orbit(_certain_rows(stepper, rows), step, 1, Outcome.successful)
 
 
-def empty_rows(stepper: AbstractStepper[Any], places: int) -> Rows:
+def empty_rows(stepper: Stepper, places: int) -> Rows:
     """Return rows to be written."""
     return tuple([np.empty((places, width)) for width in stepper.columns.values()])
 
@@ -109,7 +116,7 @@ def part_of(rows: Rows, begin: int, end: int) -> Rows:
     return rows if begin == 0 and end >= len(rows[0]) else tuple([column[begin:end] for column in rows])
 
 
-def _certain_rows(stepper: AbstractStepper[Any], rows: Rows) -> Rows:
+def _certain_rows(stepper: Stepper, rows: Rows) -> Rows:
     """Return rows without what belongs to the step ahead of the last one, which may not be taken."""
     return rows if stepper.lead else (*rows[:-1], rows[-1][:-1])
 
@@ -117,7 +124,7 @@ def _certain_rows(stepper: AbstractStepper[Any], rows: Rows) -> Rows:
 class _Table:
     """The rows of a block: where the steps of a call are written, and which of them are kept."""
 
-    def __init__(self, stepper: AbstractStepper[Any], plan: Plan, number: int, *, fine: bool) -> None:
+    def __init__(self, stepper: Stepper, plan: Plan, number: int, *, fine: bool) -> None:
         self.stepper, self.every, self.fine = stepper, plan.every, fine
         self.number, self.begin, self.stop, self.ends = number, *plan.stretch(number)
         self.places = 1 + (self.stop - self.begin) // self.every
@@ -161,11 +168,7 @@ class _Table:
 
 
 def blocks(
-    run: Run,
-    plan: Plan,
-    start: Reached,
-    report: Callable[[int, int], object],
-    look_up: Callable[[int], Reached | None] | None = None,
+    run: Run, plan: Plan, start: Reached, report: Report, look_up: Callable[[int], Reached | None] | None = None
 ) -> Iterator[Block]:
     """Give the blocks of a run in order, up to the one that ends it; nothing of those that are known is computed."""
     standing = start
@@ -181,9 +184,7 @@ def blocks(
             return
 
 
-def compute_block(
-    stepper: AbstractStepper[Any], plan: Plan, number: int, start: Reached, report: Callable[[int, int], object]
-) -> tuple[Any, Reached]:
+def compute_block(stepper: Stepper, plan: Plan, number: int, start: Reached, report: Report) -> tuple[Any, Reached]:
     """Take the steps of a block: the only loop over steps."""
     table, watch = _Table(stepper, plan, number, fine=start.watch is not None), start.watch
     state, step, code, pace = start.state.copy(), table.begin, 0, stepper.pace
@@ -208,9 +209,7 @@ def compute_block(
     return _orbit_of(stepper, table, plan, standing), standing
 
 
-def _watch_steps(
-    stepper: AbstractStepper[Any], watch: Watch, state: State, stretch: tuple[int, int], room: Rows
-) -> tuple[State, int, int, Watch]:
+def _watch_steps(stepper: Stepper, watch: Watch, state: State, stretch: tuple[int, int], room: Rows) -> Searched:
     """Take single steps up to an event that ends the motion, or through the step with an impact; search them."""
     step, steps = stretch
     if watch.is_at_wall:
@@ -226,9 +225,7 @@ def _watch_steps(
     return state, states - 1, code, watch
 
 
-def _through(
-    stepper: AbstractStepper[Any], watch: Watch, state: State, place: tuple[int, int], room: Rows
-) -> tuple[State, int, int, Watch]:
+def _through(stepper: Stepper, watch: Watch, state: State, place: tuple[int, int], room: Rows) -> Searched:
     """Take the step from a node at a wall, or the part that is left of the step with the impact that was seen last."""
     step, good = place
     if watch.reset_by is None:
@@ -243,7 +240,7 @@ def _through(
     return after, good + 1, outcome, watch
 
 
-def _advance(stepper: AbstractStepper[Any], state: State, steps: int, each: int, room: Rows) -> tuple[State, int, int]:
+def _advance(stepper: Stepper, state: State, steps: int, each: int, room: Rows) -> tuple[State, int, int]:
     """Return the state after the last good step, how many steps were good, and the outcome."""
     before = state.copy() if each > 1 else state
     good, code = stepper.advance(state, steps, each, room)
@@ -253,7 +250,7 @@ def _advance(stepper: AbstractStepper[Any], state: State, steps: int, each: int,
     return state, good, code
 
 
-def _orbit_of(stepper: AbstractStepper[Any], table: _Table, plan: Plan, standing: Reached) -> Any:
+def _orbit_of(stepper: Stepper, table: _Table, plan: Plan, standing: Reached) -> Any:
     """Return the saved states of a block as an orbit."""
     last, ends = (standing.step - table.begin) // plan.every, table.ends or standing.is_last
     first = int(stepper.lead == 1 and table.number > 0)

@@ -15,6 +15,9 @@ from nonholo.simulation._event import Event, Impact, has_resets, values_at
 Part = Callable[[Any, Float[np.ndarray, "K"]], Any]
 """Gives what is reached from states after fractions of the steps that begin there."""
 
+Events = dict[str, Event]
+Values = Float[np.ndarray, "E K"]
+"""Of each event, a row, at each state."""
 _PIECE, _NUMBERS = 1 << 14, 1 << 20  # at most in a stretch that is searched at once: states, numbers in an array
 _ROUNDING = 2.0**-54  # of a step, beside its end
 _TOUCH = 5e-324  # the value of an event at a wall, with the sign of the side where the body is
@@ -158,14 +161,12 @@ def search(watch: Watch, stretch: AbstractOrbit) -> tuple[Watch, int]:
     return new_watch.after_impact(values[:, before : before + 1]), count
 
 
-def _crossings_of(
-    watch: Watch, first: int, position: int, stretch: Any, values: np.ndarray, at: np.ndarray
-) -> Crossings:
+def _crossings_of(watch: Watch, first: int, position: int, stretch: Any, row: np.ndarray, at: np.ndarray) -> Crossings:
     """Return the crossings of one event, with the states after its impacts; of two walls at a moment the first acts."""
     name, event = tuple(watch.events.items())[position]
     if event.reset is not None and position != first:
         at = at[:0]
-    crossings = locate(name, event, stretch, values, at, watch.part)
+    crossings = locate(name, event, stretch, row, at, watch.part)
     if event.reset is None:
         return crossings
     after = struck(watch, name, crossings.states, crossings.direction) if len(crossings) else None
@@ -180,13 +181,13 @@ def struck(watch: Watch, name: str, states: Any, direction: Int[np.ndarray, "1"]
     return None if after is None else watch.begin(after)
 
 
-def _opening_values(events: dict[str, Event], values: Float[np.ndarray, "E K"]) -> Float[np.ndarray, "E K"]:
+def _opening_values(events: Events, values: Values) -> Values:
     """Return values at the first state: one at a wall with a direction is on the side that leads through it."""
     side = [[-event.direction * (event.reset is not None)] for event in events.values()]
     return np.where(values == 0, _TOUCH * np.reshape(side, (-1, 1)), values)
 
 
-def values_of(events: dict[str, Event], states: AbstractOrbit) -> Float[np.ndarray, "E K"]:
+def values_of(events: Events, states: AbstractOrbit) -> Values:
     """Return the values of all events at states."""
     values = [values_at(name, event, states) if len(states) else np.empty(0) for name, event in events.items()]
     return np.array(values).reshape(len(events), len(states))
@@ -207,12 +208,7 @@ class Crossed(NamedTuple):
 
 
 def find_crossings(
-    events: dict[str, Event],
-    states: AbstractOrbit,
-    values: Float[np.ndarray, "E K"],
-    owner: Int[np.ndarray, "K"],
-    left: Float[np.ndarray, "E M"],
-    part: Part,
+    events: Events, states: AbstractOrbit, values: Values, owner: Int[np.ndarray, "K"], left: np.ndarray, part: Part
 ) -> Crossed:
     """Return where motions cross, none of it after a crossing that ends one.
 
@@ -237,13 +233,7 @@ def _rank(owner: Int[np.ndarray, "C"]) -> Int[np.ndarray, "C"]:
 
 
 def _cut_ends(
-    events: dict[str, Event],
-    states: AbstractOrbit,
-    values: np.ndarray,
-    owner: np.ndarray,
-    places: Crossed,
-    ending: list[np.ndarray],
-    part: Part,
+    events: Events, states: AbstractOrbit, values: Values, owner: np.ndarray, places: Crossed, ending: Any, part: Part
 ) -> Crossed:
     """Leave out crossings after those that end a motion, by where they are in its last step."""
     _, stopper, end = places
@@ -274,12 +264,7 @@ def changes(event: Event, values: Float[np.ndarray, "... K"]) -> Bool[np.ndarray
 
 
 def locate(
-    name: str,
-    event: Event,
-    stretch: AbstractOrbit,
-    values: Float[np.ndarray, "K"],
-    at: Int[np.ndarray, "C"],
-    part: Part,
+    name: str, event: Event, stretch: AbstractOrbit, values: np.ndarray, at: Int[np.ndarray, "C"], part: Part
 ) -> Crossings:
     """Return the crossings in the steps from given states of a stretch; a zero at a state is that state."""
     exact = values[at + 1] == 0
@@ -293,9 +278,7 @@ def locate(
     return Crossings(step, fraction, direction, states.chosen(order))
 
 
-def _roots(
-    name: str, event: Event, base: AbstractOrbit, ends: tuple[np.ndarray, np.ndarray], part: Part
-) -> Float[np.ndarray, "C"]:
+def _roots(name: str, event: Event, base: Any, ends: tuple[np.ndarray, np.ndarray], part: Part) -> np.ndarray:
     """Return the fractions of steps at which an event is zero, between ends where its signs differ.
 
     Chandrupatla's bracketing method, for all of them at once, to the last bits.

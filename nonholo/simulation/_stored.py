@@ -214,10 +214,10 @@ def refuse_other_functions(owner: str, stream: "Stream", run: Run) -> None:
         reached_then = Reached(begin.done, Outcome.successful, begin.vector, None)
     orbit, again = compute_block(run.stepper, plan, block, reached_then, lambda *_: None)
     tolerance = _SAME if io.provenance.other_versions(io.metadata.read_attributes(stream.path)) else 0.0
-    pairs = {
-        name: (rows, stream.store.rows(name, (slice(block * plan.rows, block * plan.rows + len(orbit)),)))
-        for name, rows in stream.columns(orbit, block * plan.rows).items()
-    }
+    begins = block * plan.rows
+    columns = stream.columns(orbit, begins).items()
+    place = (slice(begins, begins + len(orbit)),)
+    pairs = {name: (rows, stream.store.rows(name, place)) for name, rows in columns}
     pairs["the last step"] = np.array(again.step), np.array(plan.steps)
     if again.step == end.done:  # of the row, which is among the variables, nothing is asked
         own = slice(run.stepper.width, None)
@@ -319,9 +319,7 @@ def _refuse_ended(attributes: dict[str, Any]) -> None:
         raise error("extend(store=...)", "be a run that can continue", f"outcome {outcome}", remedy)
 
 
-def _open(
-    owner: str, store: str | Path, discrete: Any, events: Any, *, throw: bool, progress: bool
-) -> tuple["Stream", Run]:
+def _open(owner: str, store: Any, discrete: Any, events: Any, *, throw: bool, progress: bool) -> tuple["Stream", Run]:
     stream, attributes = io.orbits.open_stream(store), io.metadata.read_attributes(store)
     motion = io.provenance.restore_motion(attributes, discrete)
     backend = "jax" if motion.route_name == "definition" else "auto"

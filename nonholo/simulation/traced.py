@@ -108,10 +108,8 @@ def rollout(
         ...     print(distance(2.0).round(4), jax.grad(distance)(2.0).round(4))
         -0.0015 -0.0323
     """
-    sizes = tuple(
-        count(f"rollout({name}=...)", value, "Pass a number of steps.")
-        for name, value in (("steps", steps), ("save_every", save_every))
-    )
+    numbers = {"steps": steps, "save_every": save_every}
+    sizes = tuple(count(f"rollout({name}=...)", x, "Pass a number of steps.") for name, x in numbers.items())
     starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
     if isinstance(discrete, AbstractCoordinateDiscretization):
         refuse_in_coordinates("rollout", restricted_velocity=(starts.pop("restricted_velocity"), None))
@@ -205,7 +203,6 @@ def _checked_start(discrete: Discretization, start: Start) -> tuple[Array, Array
         return array(start.where, start.value, shape_of(start.value)), g
     pose = group.identity if start.configuration is None else start.configuration
     g = array("rollout(configuration=...)", pose, group.identity.shape, f"Pass an element of {group} as a matrix.")
-    along = start.name == "restricted_velocity" or (
-        start.name == "momentum" and shape_of(start.value) == (system.rank,)
-    )
+    is_along = start.name == "momentum" and shape_of(start.value) == (system.rank,)
+    along = is_along or start.name == "restricted_velocity"
     return array(start.where, start.value, (system.rank if along else group.dim,)), g

@@ -17,6 +17,8 @@ from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 
+Tensor = Float[Array, "... N N"]
+"""A mass tensor, as large as the matrices of its group."""
 LARGEST = 100_000
 """Components of the longest full momentum that is made; a momentum of SO(n) has n (n - 1) / 2."""
 
@@ -100,9 +102,7 @@ def mass_tensor_from_inertia(inertia: Float[Array, "3 3"]) -> Float[Array, "3 3"
     return xp.trace(tensor) / 2 * xp.eye(3) - tensor
 
 
-def inertia_form(
-    group: AbstractMatrixGroup, matrices: Float[Array, "k N N"], mass_tensor: Float[Array, "... N N"]
-) -> Float[Array, "... k k"]:
+def inertia_form(group: AbstractMatrixGroup, matrices: Array, mass_tensor: Tensor) -> Float[Array, "... k k"]:
     r"""Return $\bigl(\mathrm{tr}(D_i\mathbb{J}D_j^*)\bigr)_{ij}$ for velocities $D_i$ and a (homogeneous) mass tensor.
 
     A body that moves with the velocity $\xi$, a matrix, has kinetic energy $\tfrac12\mathrm{tr}(\xi\mathbb{J}\xi^*)$;
@@ -117,9 +117,7 @@ def inertia_form(
     return flat @ xp.reshape(duals, (-1, size * size)).T
 
 
-def inertia_from_mass_tensor(
-    group: AbstractMatrixGroup, mass_tensor: Float[Array, "... N N"]
-) -> Float[Array, "... dim dim"]:
+def inertia_from_mass_tensor(group: AbstractMatrixGroup, mass_tensor: Tensor) -> Float[Array, "... dim dim"]:
     r"""Return the inertia operator $\mathbb{I}_{ij} = \mathrm{tr}(E_i\mathbb{J}E_j^*)$ in the basis $E_i$.
 
     Example:

@@ -118,6 +118,13 @@ class NormalForm(Keeper):
         b, axes = np.linalg.eigh(self.stiffness)
         return b, axes
 
+    def turned_about(self, momenta: Float[np.ndarray, "... m"], share: float) -> Float[np.ndarray, "... m"]:
+        """Return momenta of a sleigh about a point that is moved along the offset by a share of it; those of a top."""
+        if not self.is_sleigh:
+            return momenta
+        along = momenta[..., -1:]
+        return np.concatenate([momenta[..., :-1] + share * along * self.offset, along], axis=-1)
+
     def to_principal(self, vectors: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... m"]:
         """Return vectors in the principal axes of B; a last component along the blade stays."""
         axes = self.principal[1]

@@ -445,7 +445,7 @@ def test_flows_with_slips_have_events_walls_and_ensembles() -> None:
 
 def test_phases_without_end_are_an_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
     """A flow whose rows yield and rest again and again ends with the reason, and has its good states."""
-    monkeypatch.setattr("nonholo.continuous._phases._MOST", 6)
+    monkeypatch.setattr("nonholo.continuous._forced._PHASES", 6)
     forced = nh.Forced(SLEIGH, force=(nh.Slip(BLADE, 0.1), lambda time, *_: np.array([0, 0, np.sin(8 * time)])))
     with pytest.raises(nh.OutcomeError) as failure:
         nh.flow(forced, body_velocity=(0.0, 0.1, 0.0), times=np.linspace(0, 9, 91))

@@ -229,10 +229,8 @@ def _mark_real(equations: Equations, roots: list[Root]) -> list[Root]:
     """Mark roots that cannot be distinguished from their own conjugates as real, and make them so."""
     x = equations.points([root.point for root in roots])
     real = _distance(x, x.conj()) <= _blur(equations.regularity(x))
-    result = [
-        Root(root.point.real.copy(), root.multiplicity, True) if on else root
-        for root, on in zip(roots, real, strict=True)
-    ]
+    pairs = zip(roots, real, strict=True)
+    result = [Root(root.point.real.copy(), root.multiplicity, True) if on else root for root, on in pairs]
     simple = [i for i, root in enumerate(result) if root.is_real and root.multiplicity == 1]
     points, converged = _newton(equations, np.real(x[simple]))
     for i, point, good in zip(simple, points, converged, strict=True):

@@ -19,22 +19,12 @@ from nonholo.base.checks import choice, error, is_integer, shown
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
 from nonholo.discrete._discretization import Discretization
+from nonholo.discrete.branching import _values
 from nonholo.discrete.branching._equations import Equations, Frame, follow, frame_of, has_frame, nearest_body
-from nonholo.discrete.branching._values import (
-    SAME,
-    Branches,
-    Roots,
-    branches_of,
-    inverse_discrete_legendre,
-    is_regular,
-    principal_increment,
-    regions,
-    roots_over,
-)
-from nonholo.discrete.routes import AbstractBodyStepper, Compact
+from nonholo.discrete.routes import AbstractBodyStepper
 from nonholo.orbit import First, Rows, State, keep_row, write_first
 
-Chooser: TypeAlias = Callable[[Branches, np.ndarray], int | None]
+Chooser: TypeAlias = Callable[[_values.Branches, np.ndarray], int | None]
 BranchRule: TypeAlias = str | Chooser
 _REGIONS = ("inner", "outer")
 _TIED = 1e-9  # relative difference of two norms that rounding may have made
@@ -138,7 +128,7 @@ class Extreme(AbstractBranchRule):
 
     def following(self, kick: Kick) -> Following:
         """Choose by the norm; a tie is not decided."""
-        roots, values = _values(kick)
+        roots, values = _values_after(kick)
         real = np.flatnonzero(values.is_real)
         if len(real) == 0:
             return _only(kick, roots, values, [])
@@ -156,7 +146,7 @@ class Region(AbstractBranchRule):
     def check(self, where: str, discrete: Discretization) -> None:
         """Refuse systems whose invariant curves have no parts."""
         super().check(where, discrete)
-        if not is_regular(discrete):
+        if not _values.is_regular(discrete):
             kind = type(discrete.system).__name__
             got = f"{self.name!r} for {kind}, whose invariant curves have no inner and outer part"
             remedy = "Pass 'nearest'. Only a SuslovTop with n = 3 and det B > 2|c|^2 has regions."
@@ -164,14 +154,14 @@ class Region(AbstractBranchRule):
 
     def check_start(self, where: str, discrete: Discretization, displacement: Float[np.ndarray, "N N"]) -> None:
         """Refuse a start whose energy level is connected."""
-        if regions(discrete, displacement[None])[0] not in _REGIONS:
+        if _values.regions(discrete, displacement[None])[0] not in _REGIONS:
             high = "an energy from the saddle's on, where both parts of the invariant curve are connected"
             remedy = "Pass 'nearest', or start slower (`critical_energies` has the saddle's energy)."
             raise error(where, "have a start in the inner or the outer region", f"{self.name!r} and {high}", remedy)
 
     def following(self, kick: Kick) -> Following:
         """Choose by the region, then by continuation."""
-        roots, values = _values(kick)
+        roots, values = _values_after(kick)
         inside = np.flatnonzero(values.is_real & (values.region == self.name)).tolist()
         if len(inside) > 1:
             nearest = _nearest_of(kick, roots)
@@ -192,7 +182,7 @@ class Chosen(AbstractBranchRule):
 
     def following(self, kick: Kick) -> Following:
         """Ask the function, and refuse an answer that is no real value."""
-        roots, values = _values(kick)
+        roots, values = _values_after(kick)
         index = call("branch(found, present)", self.function, values, kick.present)
         if index is None:
             return _only(kick, roots, values, [])
@@ -224,7 +214,7 @@ def checked_rule(owner: str, discrete: Discretization, branch: BranchRule) -> Ab
 
 def principal_point(discrete: Discretization, frame: Frame, canonical: Float[np.ndarray, "k"]) -> Following:
     """Return the outcome and the point over the verified principal displacement of a canonical momentum."""
-    code, X = principal_increment(discrete, canonical)
+    code, X = _values.principal_increment(discrete, canonical)
     return code, np.empty(0) if code != 0 else frame.point(X + discrete.system.group.identity)
 
 
@@ -248,12 +238,12 @@ def _check_values_known(where: str, discrete: Discretization, branch: BranchRule
         raise error(where, "be 'principal' or 'nearest'", got, remedy)
 
 
-def _values(kick: Kick) -> tuple[Roots, Branches]:
-    roots = roots_over(kick.discrete, kick.frame, kick.momentum)
-    return roots, branches_of(kick.discrete, kick.momentum, roots)
+def _values_after(kick: Kick) -> tuple[_values.Roots, _values.Branches]:
+    roots = _values.roots_over(kick.discrete, kick.frame, kick.momentum)
+    return roots, _values.branches_of(kick.discrete, kick.momentum, roots)
 
 
-def _only(kick: Kick, roots: Roots, values: Branches, choices: list[int]) -> Following:
+def _only(kick: Kick, roots: _values.Roots, values: _values.Branches, choices: list[int]) -> Following:
     """Return the one value that is left, or why there is none."""
     if not choices:
         return Outcome.no_real_branch, kick.point
@@ -262,12 +252,12 @@ def _only(kick: Kick, roots: Roots, values: Branches, choices: list[int]) -> Fol
     return Outcome.successful, roots.zeros[choices[0]].point.real
 
 
-def _nearest_of(kick: Kick, roots: Roots) -> int | None:
+def _nearest_of(kick: Kick, roots: _values.Roots) -> int | None:
     """Return the index of the root that the present point is followed to; None if it is lost."""
     code, end = follow(kick.now, roots.equations, kick.point)
     distances = [min(np.linalg.norm(end - root.point), np.linalg.norm(end + root.point)) for root in roots.zeros]
     best = int(np.argmin(distances))
-    return best if code == 0 and distances[best] <= SAME * np.linalg.norm(end) else None
+    return best if code == 0 and distances[best] <= _values.SAME * np.linalg.norm(end) else None
 
 
 class Place(NamedTuple):
@@ -278,12 +268,7 @@ class Place(NamedTuple):
 
 
 def first_place(
-    owner: str,
-    discrete: Discretization,
-    frame: Frame,
-    rule: AbstractBranchRule,
-    canonical: Float[np.ndarray, "k"],
-    demand: np.ndarray | None,
+    owner: str, discrete: Discretization, frame: Frame, rule: AbstractBranchRule, canonical: np.ndarray, demand: Any
 ) -> tuple[Outcome, Place | None]:
     """Return the state of a start: of a displacement, of a full momentum, or else the principal one."""
     if demand is None:
@@ -292,18 +277,13 @@ def first_place(
             return code, None
         place = Place(point, canonical)
     else:
-        W = demand if demand.ndim == 2 else inverse_discrete_legendre(discrete, demand)
-        place = _place_of(discrete, frame, W)
+        W = demand if demand.ndim == 2 else _values.inverse_discrete_legendre(discrete, demand)
+        group, k = discrete.system.group, len(frame.stiffness)
+        x = frame.point(group.inverse(discrete.system.frame) @ W @ discrete.system.frame)
+        rows = frame.equations(np.zeros(discrete.system.rank)).residual(x)[0]
+        place = Place(x, frame.momentum(rows[:k], rows[k]) / discrete.time_step)
     rule.check_start(f"{owner}(branch=...)", discrete, displacement_at(discrete, frame, place.point))
     return Outcome.successful, place
-
-
-def _place_of(discrete: Discretization, frame: Frame, W: Float[np.ndarray, "N N"]) -> Place:
-    """Return the state with a displacement of the variety."""
-    system, k = discrete.system, len(frame.stiffness)
-    x = frame.point(system.group.inverse(system.frame) @ W @ system.frame)
-    rows = frame.equations(np.zeros(len(system.constraint_subspace))).residual(x)[0]
-    return Place(x, frame.momentum(rows[:k], rows[k]) / discrete.time_step)
 
 
 def next_place(discrete: Discretization, frame: Frame, rule: AbstractBranchRule, place: Place) -> tuple[Outcome, Place]:
@@ -322,12 +302,7 @@ def goal_of(discrete: Discretization, frame: Frame, momentum: Float[np.ndarray, 
 
 
 def clear_places(
-    discrete: Discretization,
-    frame: Frame,
-    begin: Float[np.ndarray, "k"],
-    goal: Float[np.ndarray, "g"],
-    point: Float[np.ndarray, "m"],
-    count: int,
+    discrete: Discretization, frame: Frame, begin: np.ndarray, goal: np.ndarray, point: np.ndarray, count: int
 ) -> tuple[Place, Float[np.ndarray, "C g"]]:
     """Return the states that follow by clear steps to the nearest value, up to `count` of them, and their goals.
 
@@ -357,7 +332,6 @@ class RuleStepper(AbstractBodyStepper):
     motion: Any
     rule: AbstractBranchRule
     with_poses: bool
-    in_threads = False
 
     @property
     def branch(self) -> str:  # type: ignore[override]
@@ -431,16 +405,10 @@ class RuleStepper(AbstractBodyStepper):
         """Return the numbers of a state."""
         k, size = self.motion.system.rank, self.motion.system.group.size
         own, goal = state[self.width :], len(self._origin(frame, state[:k])[0])
-        point, goals, begin, g, (step,) = np.split(
-            own, np.cumsum([len(own) - goal - k - size**2 - 1, goal, k, size**2])
-        )
+        ends = np.cumsum([len(own) - goal - k - size**2 - 1, goal, k, size**2])
+        point, goals, begin, g, (step,) = np.split(own, ends)
         place = Place(point.copy(), state[:k].copy())
         return _Now(place, goals.copy(), begin.copy(), g.reshape(size, size).copy(), int(step))
-
-    def decode(self, rows: Rows) -> Compact:
-        """Return the rows, which are canonical."""
-        momenta, charts, poses = rows
-        return momenta, charts, poses
 
 
 class _Now(NamedTuple):

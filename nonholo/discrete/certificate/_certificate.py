@@ -54,7 +54,7 @@ def enclosures(discrete: Discretization, canonical: np.ndarray) -> Enclosures | 
         places = [x._replace(balls=sharpen(x.factor, x.balls, bits) or x.balls) for x in places]
         values = _values(problem, places, bits)
         if values is not None:
-            return _as_matrices(discrete, problem, *values)
+            return _as_matrices(discrete, problem, values)
     return f"{PRECISIONS[-1]} bits do not separate the values from infinity"
 
 
@@ -89,15 +89,9 @@ def _values(problem: Problem, places: list[Located], bits: int) -> tuple[np.ndar
     return (products, radii, multiplicities, real) if sharp.all() else None
 
 
-def _as_matrices(
-    discrete: Discretization,
-    problem: Problem,
-    products: np.ndarray,
-    radii: np.ndarray,
-    multiplicity: np.ndarray,
-    is_real: np.ndarray,
-) -> Enclosures:
+def _as_matrices(discrete: Discretization, problem: Problem, values: tuple[np.ndarray, ...]) -> Enclosures:
     """Return the displacements in the user's frame."""
+    products, radii, multiplicity, is_real = values
     X = _increments(products, len(problem.excess), problem.lever is not None)
     group, frame = discrete.system.group, np.asarray(discrete.system.frame)
     if not np.array_equal(frame, group.identity):

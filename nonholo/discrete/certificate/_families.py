@@ -70,9 +70,8 @@ def _quadratic(problem: Problem) -> Iterator[Family]:
         yield Family(_X, [_ONE, *(fmpz_poly() for _ in w)], _ONE)
         return
     square = unit * unit
-    yield Family(
-        fmpz_poly([_dot(w, w), -square, square]), [fmpz_poly([0, unit]), *(fmpz_poly([x]) for x in w)], square * _X
-    )
+    q = [fmpz_poly([0, unit]), *(fmpz_poly([x]) for x in w)]
+    yield Family(fmpz_poly([_dot(w, w), -square, square]), q, square * _X)
     if problem.lever is not None and problem.lever.arm != 0:
         yield _half_turn(problem, 1)
 

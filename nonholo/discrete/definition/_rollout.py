@@ -19,16 +19,7 @@ from nonholo.base.traced import NodeState, marked_rows, rows_of, run_nodes, with
 from nonholo.base.types import Array, Float
 from nonholo.discrete._scheme import Scheme, weights
 from nonholo.discrete._variety import free_rows
-from nonholo.discrete.definition._step import (
-    ON_LOCUS,
-    closed_step_of,
-    displacement_of,
-    equations_at,
-    kernel_root,
-    momentum_of,
-    principal_of,
-    restricted,
-)
+from nonholo.discrete.definition import _step
 from nonholo.discrete.routes import ScalarStep
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import Forced
@@ -79,8 +70,13 @@ class _Node(NamedTuple):
 
 _Step = Callable[[Array, Array, Array | None, Array | None], _Node]
 """From momenta, pose, a guess of the chart and the control of the step to the node."""
+_Pair = tuple[Array, Array]
+_State = tuple[Array, Array, Any]
+"""Momenta along the constraint, a pose and the body covector of the step."""
 _Impulse = Callable[[Array, Array, Array], Array]
 """From momenta along the constraint, pose and control to half the impulse of a step, a body covector."""
+_Forces = tuple[_Impulse | None, Forced | None]
+"""Kicks at the nodes, or forces that act at the displacement."""
 
 
 def roll_out(
@@ -109,9 +105,10 @@ def roll_out(
     begin = _Node(m, pose, nothing, (m, pose), code, jnp.sum(nothing), none)
 
     def closed_step(m: Array, g: Array, guess: Array | None, row: Array | None) -> _Node:
-        control = (
-            None if row is None else control_of(row, lambda: _state_at(discrete, *at(begin._replace(m=m, g=g))[::2]))
-        )
+        def now() -> NodeState:
+            return _state_at(discrete, *at(begin._replace(m=m, g=g))[::2])
+
+        control = None if row is None else control_of(row, now)
         return step(m, g, guess, control)._replace(control=control)
 
     nodes = run_nodes(closed_step, begin, rows, sizes, work)
@@ -133,7 +130,7 @@ def _state_at(discrete: Scheme, r: Array, g: Array) -> NodeState:
 
 
 def _step_from(
-    discrete: Scheme, scalar: ScalarStep | None, forces: tuple[_Impulse | None, Forced | None], r: Array, g: Array
+    discrete: Scheme, scalar: ScalarStep | None, forces: _Forces, r: Array, g: Array
 ) -> tuple[_Step, Callable[[_Node], Any], tuple[Array, Array, int]]:
     """Return the step, what its nodes are in the user's frame, and momenta, pose and length of a chart at the start."""
     impulse, balance = forces
@@ -147,9 +144,7 @@ def _step_from(
     return step, _as_it_is, (r, g, len(discrete.variety.chart))
 
 
-def _half_impulses(
-    discrete: Scheme, forces: tuple[_Impulse | None, Forced | None], states: tuple[Array, ...], rows: Array | None
-) -> Array:
+def _half_impulses(discrete: Scheme, forces: _Forces, states: tuple[Array, ...], rows: Array | None) -> Array:
     """Return the half impulses at saved nodes."""
     impulse, balance = forces
     if balance is not None:
@@ -188,7 +183,7 @@ def is_balanced(discrete: Scheme, forced: Forced | None) -> bool:
 def half_impulse(discrete: Scheme, forced: Forced, y: Array, g: Array, row: Array) -> Float[Array, "dim"]:
     """Return half the impulse of a balanced step by the chart of its displacement, a body covector."""
     h = discrete.time_step
-    return h / 2 * forced.mean_force(g, displacement_of(discrete, y), h, row)
+    return h / 2 * forced.mean_force(g, _step.displacement_of(discrete, y), h, row)
 
 
 def _as_it_is(node: _Node) -> tuple[Array, ...]:
@@ -209,7 +204,7 @@ def _closed_step(
     discrete: Scheme, scalar: ScalarStep, g: Array, impulse: _Impulse | None
 ) -> tuple[_Step, Array, Callable[[_Node], Any]]:
     """Return the step of a kernel, the matrix of its momenta, and what its nodes are in the user's frame."""
-    (body, C, rows), system = closed_step_of(discrete, scalar), discrete.system
+    (body, C, rows), system = _step.closed_step_of(discrete, scalar), discrete.system
     group, frame, inverse = system.group, jnp.asarray(system.form_frame), jnp.linalg.inv(C)
 
     def pose(q: Array) -> Array:
@@ -220,7 +215,7 @@ def _closed_step(
 
     def step(m: Array, q: Array, guess: Array | None, row: Array | None) -> _Node:
         m_half = kick(m, q, row)
-        y, code = kernel_root(body, m_half, guess)
+        y, code = _step.kernel_root(body, m_half, guess)
         after = jnp.stack(kernels.move(body, *y, *q))
         arriving = kick(m_half + jnp.stack(kernels.increment(body, *m_half, *y)), after, row)
         return _Node(m, q, y, (arriving, after), code, jnp.sum(y))
@@ -236,12 +231,12 @@ def _matrix_step(discrete: Scheme, impulse: _Impulse | None) -> _Step:
     """Return the step by the matrix equations."""
 
     def kick(r: Array, g: Array, row: Array | None) -> Array:
-        return r if impulse is None else r + restricted(discrete, impulse(r, g, row), g)
+        return r if impulse is None else r + _step.restricted(discrete, impulse(r, g, row), g)
 
     def step(r: Array, g: Array, guess: Array | None, row: Array | None) -> _Node:
         del guess  # there is no certificate
         r_half = kick(r, g, row)
-        y, code = principal_of(discrete, None, r_half, g)
+        y, code = _step.principal_of(discrete, None, r_half, g)
         following, after = _move(discrete, r_half, y, g)
         return _Node(r, g, y, (kick(following, after, row), after), code, jnp.sum(y))
 
@@ -267,24 +262,15 @@ def _in_stages(discrete: Scheme, scalar: ScalarStep | None, take: Callable[..., 
     return step
 
 
-def _free_stage(part: Any, scalar: ScalarStep | None, state: tuple[Any, ...]) -> tuple[Array, ...]:
+def _free_stage(part: Any, scalar: ScalarStep | None, state: _State) -> tuple[Array, ...]:
     """Take the step of order 2 without forces."""
     r, g, _ = state
-    y, outcome = principal_of(part, scalar, r, g)
+    y, outcome = _step.principal_of(part, scalar, r, g)
     return y, outcome, *_move(part, r, y, g)
 
 
-def _balanced_stage(
-    forced: Forced, part: Any, scalar: ScalarStep | None, state: tuple[Array, ...]
-) -> tuple[Array, ...]:
-    """Take the step whose half impulses are those at its displacement."""
-    s, j, y, outcome = _balance(part, scalar, forced, state)
-    ahead, after = _move(part, s, y, state[1])
-    return y, outcome, ahead + j, after
-
-
-def _balance(part: Any, scalar: ScalarStep | None, forced: Forced, state: tuple[Array, ...]) -> tuple[Array, ...]:
-    """Return momenta s = r + j, half impulses j, the chart of the displacement over s, and the outcome.
+def _balanced_stage(forced: Forced, part: Any, scalar: ScalarStep | None, state: _State) -> tuple[Array, ...]:
+    """Take the step over momenta r + j whose half impulses j are those at its displacement.
 
     Newton's method from the free displacement, which derivatives do not see; two corrections with its last slope give
     them up to the second.
@@ -292,11 +278,11 @@ def _balance(part: Any, scalar: ScalarStep | None, forced: Forced, state: tuple[
 
     def push(problem: Any, y: Array) -> Array:
         part, forced, (_, g, row) = problem
-        return restricted(part, half_impulse(part, forced, y, g, row), g)
+        return _step.restricted(part, half_impulse(part, forced, y, g, row), g)
 
     def residual(problem: Any, y: Array) -> Array:
         part, _, (r, g, _) = problem
-        return equations_at(part, g)(y, r + push(problem, y))
+        return _step.equations_at(part, g)(y, r + push(problem, y))
 
     def better(carry: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
         y, _, count = carry
@@ -305,14 +291,15 @@ def _balance(part: Any, scalar: ScalarStep | None, forced: Forced, state: tuple[
 
     problem = part, forced, state
     constants, still = jax.tree.map(jax.lax.stop_gradient, (problem, scalar))
-    free, code = principal_of(constants[0], still, constants[2][0], constants[2][1])
+    free, code = _step.principal_of(constants[0], still, constants[2][0], constants[2][1])
     begin = jnp.where(code == 0, free, 0 * free), jnp.asarray(jnp.inf, free.dtype), 0
     y, last, _ = jax.lax.while_loop(lambda c: (c[1] > _CLOSE) & (c[2] < _MOST), better, begin)
     slope = jax.lax.stop_gradient(jax.jacfwd(lambda y: residual(constants, y))(y))
     for _ in range(2):
         y = y - jnp.linalg.solve(slope, residual(problem, y))
     j, is_lost = push(problem, y), ~(last <= _CLOSE)
-    return state[0] + j, j, y, jnp.where((code == 0) & is_lost, int(Outcome.not_converged), code)
+    ahead, after = _move(part, state[0] + j, y, state[1])
+    return y, jnp.where((code == 0) & is_lost, int(Outcome.not_converged), code), ahead + j, after
 
 
 def _move(discrete: Scheme, r: Array, y: Array, g: Array) -> tuple[Array, Array]:
@@ -321,9 +308,9 @@ def _move(discrete: Scheme, r: Array, y: Array, g: Array) -> tuple[Array, Array]
     The momenta change by the difference of two, in which the error of the root is not seen.
     """
     system = discrete.system
-    after = _rectify(system.group, system.moved(g, displacement_of(discrete, y)))
-    arriving = restricted(discrete, momentum_of(discrete, y, g, "right"), after)
-    return r + (arriving - restricted(discrete, momentum_of(discrete, y, g, "left"), g)), after
+    after = _rectify(system.group, system.moved(g, _step.displacement_of(discrete, y)))
+    arriving = _step.restricted(discrete, _step.momentum_of(discrete, y, g, "right"), after)
+    return r + (arriving - _step.restricted(discrete, _step.momentum_of(discrete, y, g, "left"), g)), after
 
 
 def _rectify(group: AbstractMatrixGroup, g: Array) -> Array:
@@ -337,12 +324,7 @@ def _rectify(group: AbstractMatrixGroup, g: Array) -> Array:
 
 
 def _decode(
-    discrete: Scheme,
-    nodes: _Node,
-    states: tuple[Array, ...],
-    momentum: Array | None,
-    forces: tuple[Array, Array],
-    time: Array,
+    discrete: Scheme, nodes: _Node, states: tuple[Array, ...], momentum: Array | None, forces: Any, time: Array
 ) -> Rollout:
     """Return what saved momenta, charts, poses and those that follow are, from the first one without a step on NaN.
 
@@ -354,13 +336,13 @@ def _decode(
 
     def at(r: Array, y: Array, g: Array, after: Array) -> tuple[Array, ...]:
         whole = discrete.order > 2 or system.is_spatial
-        W = system.group.inverse(g) @ after if whole else displacement_of(discrete, y)
-        return r, momentum_of(first, y, g, "left"), W, g, system.constrained_energy(r, g)
+        W = system.group.inverse(g) @ after if whole else _step.displacement_of(discrete, y)
+        return r, _step.momentum_of(first, y, g, "left"), W, g, system.constrained_energy(r, g)
 
     (r, P, W, g, energy), code = jax.vmap(at)(*states), nodes.code
     P, energy = P - forces[0], energy + forces[1]
     if momentum is not None:
-        is_off = jnp.sum((P[0] - momentum) ** 2) > ON_LOCUS**2 * jnp.sum(momentum**2)
+        is_off = jnp.sum((P[0] - momentum) ** 2) > _step.ON_LOCUS**2 * jnp.sum(momentum**2)
         code = jnp.where((code == 0) & is_off, int(Outcome.off_momentum_locus), code)
 
     acting = jnp.zeros_like(P) if nodes.control is None else nodes.control
@@ -368,28 +350,21 @@ def _decode(
     return Rollout(time, *rows, outcome=code[-1])
 
 
-def step_residual(
-    discrete: Scheme,
-    forced: Forced | None,
-    state: tuple[Array, Array],
-    y: Array,
-    after: tuple[Array, Array],
-    force: Array,
-) -> Array:
+def step_residual(discrete: Scheme, forced: Forced | None, state: _Pair, y: Array, after: _Pair, force: Array) -> Array:
     """Return what vanishes if y is the chart of a step between two states under a constant body covector.
 
     A state is a pose and the momenta of its node along the constraint; the discretization is that of the free system.
     Poses may be any matrices whose constant rows are those of the group: it is kept by the equations.
     """
     (g, r), (ahead, following), system = state, after, discrete.system
-    arriving = restricted(discrete, momentum_of(discrete, y, g, "right"), ahead)
+    arriving = _step.restricted(discrete, _step.momentum_of(discrete, y, g, "right"), ahead)
     if is_balanced(discrete, forced):
-        push = restricted(discrete, half_impulse(discrete, cast(Forced, forced), y, g, force), g)
+        push = _step.restricted(discrete, half_impulse(discrete, cast(Forced, forced), y, g, force), g)
         r_half, arriving = r + push, arriving + push
     else:
         impulse, _ = impulse_of(discrete, forced, jnp.zeros((0, system.group.dim)), 0)
-        r_half = r + restricted(discrete, impulse(r, g, force), g)
-        arriving = arriving + restricted(discrete, impulse(arriving, ahead, force), ahead)
-    gap = system.moved(g, displacement_of(discrete, y)) - ahead
-    root = equations_at(discrete, g)(y, r_half)
+        r_half = r + _step.restricted(discrete, impulse(r, g, force), g)
+        arriving = arriving + _step.restricted(discrete, impulse(arriving, ahead, force), ahead)
+    gap = system.moved(g, _step.displacement_of(discrete, y)) - ahead
+    root = _step.equations_at(discrete, g)(y, r_half)
     return jnp.concatenate([root, arriving - following, gap[: free_rows(system.group)].ravel()])

@@ -23,14 +23,13 @@ _FAR = 1e3  # size of y where a chart of the displacements ends: an angle of 179
 
 Residual = Callable[[Array, Array], Array]
 Certificate = Callable[[Array, Array], Array]
+Root = tuple[Float[Array, "m"], Float[Array, "k"]]
+"""A root and its target."""
+Guess = Float[Array, "m"] | None
 
 
 def principal_root(
-    residual: Residual,
-    target: Float[Array, "k"],
-    unknowns: int,
-    certificate: Certificate | None = None,
-    guess: Float[Array, "m"] | None = None,
+    residual: Residual, target: Array, unknowns: int, certificate: Certificate | None = None, guess: Guess = None
 ) -> tuple[Float[Array, "m"], Array]:
     r"""Solve residual(y, target) = 0 for the root that (0, 0) reaches along s target, 0 <= s <= 1.
 
@@ -53,11 +52,7 @@ def principal_root(
 
 
 def followed_root(
-    residual: Residual,
-    start: tuple[Float[Array, "m"], Float[Array, "k"]],
-    target: Float[Array, "k"],
-    certificate: Certificate | None = None,
-    guess: Float[Array, "m"] | None = None,
+    residual: Residual, start: Root, target: Array, certificate: Certificate | None = None, guess: Guess = None
 ) -> tuple[Float[Array, "m"], Array]:
     """Solve residual(y, target) = 0 for the root that a given one reaches while the momenta move straight to target.
 
@@ -74,13 +69,7 @@ def _uncertain(_y: Array, _m: Array) -> Array:
 
 @functools.partial(jax.custom_jvp, nondiff_argnums=(0, 1))
 def _search(
-    residual: Callable[..., Array],
-    certificate: Callable[..., Array],
-    numbers: list[Array],
-    facts: list[Array],
-    start: tuple[Array, Array],
-    target: Array,
-    guess: Array | None,
+    residual: Any, certificate: Any, numbers: list[Array], facts: list[Array], start: Root, target: Array, guess: Any
 ) -> tuple[Array, Array]:
     """Return where the search ends, and its outcome; what the functions are made of stands in `numbers` and `facts`."""
 
@@ -150,7 +139,7 @@ class _Path(NamedTuple):
 
 
 def _continue(
-    residual: Residual, known_root: tuple[Array, Array], target: Array, guess: Array | None, is_certain: Certificate
+    residual: Residual, known_root: Root, target: Array, guess: Array | None, is_certain: Certificate
 ) -> tuple[_Path, Array, Array]:
     """Return the end of the path, where its last root is corrected at s = 1, and whether it met a fold or was lost.
 

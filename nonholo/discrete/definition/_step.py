@@ -97,14 +97,12 @@ def next_charts_by_definition(discrete: Scheme, states: Orbit) -> Float[np.ndarr
     """Return the canonical chart coordinates that follow, one step from each state."""
     eye = states.system.group.identity
     poses = states.configuration if states.system.is_spatial else np.broadcast_to(eye, (len(states), *eye.shape))
-    return in_double(_steps_from, discrete, states.canonical_chart, poses)[1]
+    return in_double(_next_charts, discrete, states.canonical_chart, poses)
 
 
-def step_from(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array, Array, Array]:
-    """Return restricted momentum, chart and pose after one step to the principal value, and the outcome."""
-    r, after = push(discrete, y, g)
-    following, code = principal_displacement(discrete, r, after)
-    return r, following, after, code
+def _next_chart(discrete: Scheme, y: Array, g: Array) -> Array:
+    """Return the chart after one step to the principal value."""
+    return principal_displacement(discrete, *push(discrete, y, g))[0]
 
 
 def push(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
@@ -114,7 +112,7 @@ def push(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
     return restricted(discrete, momentum_of(discrete, y, g, "right"), after), after
 
 
-_steps_from = equinox.filter_jit(jax.vmap(step_from, in_axes=(None, 0, 0)))
+_next_charts = equinox.filter_jit(jax.vmap(_next_chart, in_axes=(None, 0, 0)))
 
 
 @compile_double

@@ -11,17 +11,10 @@ import numpy as np
 
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
-from nonholo.base.types import Array, Float
+from nonholo.base.types import Array
 from nonholo.discrete._scheme import Scheme, weights
+from nonholo.discrete.definition import _step
 from nonholo.discrete.definition._precision import in_double
-from nonholo.discrete.definition._step import (
-    displacement_of,
-    momentum_of,
-    nearest_displacement,
-    principal_displacement,
-    push,
-    restricted,
-)
 from nonholo.discrete.routes import AbstractBodyStepper, Compact
 from nonholo.orbit import First, Orbit, Rows, State, keep_row, write_first
 
@@ -29,10 +22,10 @@ from nonholo.orbit import First, Orbit, Rows, State, keep_row, write_first
 def _substep(discrete: Scheme, weight: Array, r: Array, g: Array) -> tuple[Array, Array, Array, Array]:
     """Return momentum and pose after a substep, the chart of its displacement and the outcome."""
     part = discrete.part(weight)
-    y, code = principal_displacement(part, r, g)
-    W = displacement_of(part, y)
+    y, code = _step.principal_displacement(part, r, g)
+    W = _step.displacement_of(part, y)
     after = discrete.system.moved(g, W)
-    return restricted(part, momentum_of(part, y, g, "right"), after), after, y, code
+    return _step.restricted(part, _step.momentum_of(part, y, g, "right"), after), after, y, code
 
 
 def _sweep(discrete: Scheme, r: Array, g: Array) -> tuple[tuple[Array, Array], Array, Array]:
@@ -54,9 +47,7 @@ sweep = equinox.filter_jit(_sweep)
 _swept_each = equinox.filter_jit(jax.vmap(_sweep, in_axes=(None, 0, 0)))
 
 
-def whole_steps_by_definition(
-    discrete: Scheme, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def whole_steps_by_definition(discrete: Scheme, momenta: np.ndarray, g: np.ndarray) -> Compact:
     """Take one step from each row of canonical momenta and poses; return both after it, and the outcomes."""
     system = discrete.system
     (after, poses), _, codes = in_double(_swept_each, discrete, applied(system.inverse_frame_map, momenta), np.array(g))
@@ -77,17 +68,12 @@ class DefinitionStepper(AbstractBodyStepper):
     motion: Any
     with_poses: bool
     branch: str = "principal"
-    in_threads = False
 
     @functools.cached_property
     def columns(self) -> dict[str, int]:  # type: ignore[override]
         """The names and sizes of what a row holds."""
-        system = self.motion.system
-        return {
-            "reduced_momentum": system.rank,
-            "cayley": len(self.motion.variety.chart),
-            "canonical_pose": system.group.size**2,
-        }
+        system, charts = self.motion.system, len(self.motion.variety.chart)
+        return {"reduced_momentum": system.rank, "cayley": charts, "canonical_pose": system.group.size**2}
 
     def start(self, first: First) -> tuple[State, Outcome]:
         """Solve for the principal displacement, or take the one that is demanded of a run to the nearest value."""
@@ -162,14 +148,14 @@ def _advance(
 
     From zero the nearest value is the principal one, and the root is compiled once for both.
     """
-    group = discrete.system.group
+    group, principal = discrete.system.group, _step.principal_displacement
 
     def body(carry: tuple[Array, ...]) -> tuple[Array, ...]:
         count, _, *now = carry
-        r, g = push(discrete, now[1], now[2])
+        r, g = _step.push(discrete, now[1], now[2])
         g = group.matrix_from_pose(group.normalize_pose(group.pose_from_matrix(g)))
         r, g = (jnp.where(count < 0, old, new) for new, old in ((r, now[0]), (g, now[2])))
-        y, code = nearest_displacement(discrete, now[1], r) if nearest else principal_displacement(discrete, r, g)
+        y, code = _step.nearest_displacement(discrete, now[1], r) if nearest else principal(discrete, r, g)
         code = jnp.where(jnp.all(jnp.isfinite(g)), code, int(Outcome.nonfinite))
         good = code == 0
         return count + good, code, *(jnp.where(good, new, old) for new, old in zip((r, y, g), now, strict=True))
@@ -178,13 +164,11 @@ def _advance(
     return jax.lax.while_loop(lambda c: (c[0] < steps) & (c[1] == 0), body, start)
 
 
-_root = equinox.filter_jit(principal_displacement)
-_push = equinox.filter_jit(push)
+_root = equinox.filter_jit(_step.principal_displacement)
+_push = equinox.filter_jit(_step.push)
 
 
-def parts_by_definition(
-    discrete: Scheme, states: Orbit, poses: np.ndarray, fractions: Float[np.ndarray, "K"]
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def parts_by_definition(discrete: Scheme, states: Orbit, poses: np.ndarray, fractions: np.ndarray) -> Compact:
     """Return canonical momenta, charts and poses after fractions of the steps from states; NaN where none starts."""
     group, frame, C = discrete.system.group, discrete.system.frame, discrete.system.frame_map
     g = group.matrix_from_pose(poses) @ group.inverse(frame)
@@ -194,9 +178,7 @@ def parts_by_definition(
     return applied(C, momenta), charts, group.pose_from_matrix(ends @ frame)
 
 
-def _partial_step(
-    discrete: Scheme, fraction: float, r: np.ndarray, g: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _partial_step(discrete: Scheme, fraction: float, r: np.ndarray, g: np.ndarray) -> Compact:
     """Return momentum, chart and pose after a fraction of a step from a momentum and a pose, in the user's frame."""
     one, parts = discrete.part(1.0), weights(discrete.order)
     for part in fraction * parts:

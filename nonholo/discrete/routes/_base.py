@@ -17,6 +17,8 @@ from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractStepper, First, Orbit, Rows, State
 from nonholo.systems import System
 
+Part = Callable[[np.ndarray, np.ndarray, float, int, float], "Compact | None"]
+"""From momenta, pose, time, step and a fraction of it to what is reached; None where there is no such step."""
 Compact = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Canonical momenta and charts, and compact canonical poses, of which each is empty where there are none."""
 
@@ -41,9 +43,12 @@ class AbstractBodyStepper(AbstractStepper[Orbit]):
             return "a step that depends on the pose, without reconstruct=True"
         return None
 
-    @abc.abstractmethod
+    in_threads = False
+
     def decode(self, rows: Rows) -> Compact:
-        """Return rows as canonical momenta, charts and poses."""
+        """Return rows as canonical momenta, charts and poses, which they are by default."""
+        momenta, charts, poses = rows
+        return momenta, charts, poses
 
     def orbit(self, rows: Rows, step: int, every: int, outcome: Outcome) -> Orbit:
         """Return rows as an orbit."""
@@ -117,11 +122,11 @@ class AbstractRoute(abc.ABC):
     are canonical.
     """
 
-    order: int
+    order: int = 2
     """Of the steps that it takes: 2, or that of a composition."""
-    is_scalar: ClassVar[bool]
+    is_scalar: ClassVar[bool] = False
     """Whether it works with scalars, so that members of an ensemble can run side by side."""
-    needs_pose: bool
+    needs_pose: bool = True
     """Whether it carries a pose along even where none is kept."""
 
     @property
@@ -201,13 +206,15 @@ class AbstractCompiledRoute(AbstractRoute):
         """Return canonical chart coordinates from those of the kernel."""
         return self.axes.canonical_charts(charts)
 
-    @abc.abstractmethod
     def encode_poses(self, poses: np.ndarray) -> np.ndarray:
-        """Return the poses of the kernel from compact canonical ones."""
+        """Return the poses of the kernel from compact canonical ones: by default matrices, row by row."""
+        group = self.system.group
+        return group.matrix_from_pose(poses).reshape(*poses.shape[:-1], group.size**2)
 
-    @abc.abstractmethod
     def decode_poses(self, poses: np.ndarray) -> np.ndarray:
         """Return compact canonical poses from those of the kernel."""
+        group = self.system.group
+        return group.pose_from_matrix(poses.reshape(*poses.shape[:-1], group.size, group.size))
 
     @property
     def compiled_route(self) -> "AbstractCompiledRoute":
@@ -238,9 +245,7 @@ class AbstractCompiledRoute(AbstractRoute):
         """Take up to `steps` steps into rows of the kernel; return how many were good and the outcome."""
         return self.runs.advance(self.body, state, steps, every, rows)
 
-    def step_each(
-        self, states: tuple[np.ndarray, np.ndarray, np.ndarray | None], guesses: np.ndarray, *, principal_only: bool
-    ) -> Compact:
+    def step_each(self, states: Any, guesses: np.ndarray, *, principal_only: bool) -> Compact:
         """Take one step from each of the kernel's momenta, charts and poses; return momenta, charts and outcomes."""
         return kernels.step_each(self.single.body, states, guesses, principal_only)
 
@@ -295,11 +300,7 @@ class AbstractCompiledRoute(AbstractRoute):
 
 
 def parts_by(
-    route: AbstractCompiledRoute,
-    part: Callable[[np.ndarray, np.ndarray, float, int, float], Compact | None],
-    poses: np.ndarray,
-    states: Orbit,
-    fractions: Float[np.ndarray, "K"],
+    route: AbstractCompiledRoute, part: Part, poses: np.ndarray, states: Orbit, fractions: np.ndarray
 ) -> Compact:
     """Return canonical momenta, charts and poses after parts of steps, taken one by one with the numbers of a kernel.
 
@@ -426,9 +427,8 @@ def _of_single_steps(route: AbstractCompiledRoute, states: Orbit) -> Float[np.nd
     else:
         returning = (-momenta, -charts, _two_ahead(states, charts))
     back, charts_back, behind = route.step_each(returning, -cayley, principal_only=False)
-    distances = np.maximum(
-        _largest(charts_back + cayley) / _largest(cayley), _largest(back + momenta) / _largest(momenta)
-    )
+    gaps = _largest(back + momenta) / _largest(momenta)
+    distances = np.maximum(_largest(charts_back + cayley) / _largest(cayley), gaps)
     return np.where(ahead != 0, np.nan, np.where(behind != 0, np.inf, distances))
 
 

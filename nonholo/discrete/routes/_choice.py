@@ -6,11 +6,10 @@ from typing import Any, ClassVar, cast
 
 import numpy as np
 
-from nonholo.base.checks import needs
 from nonholo.base.types import Float
 from nonholo.discrete._pytrees import pytree
 from nonholo.discrete._scheme import Scheme
-from nonholo.discrete._variety import variety_of
+from nonholo.discrete._variety import definition, variety_of
 from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractRoute, Compact, poses_of
 from nonholo.discrete.routes._forced import ComposedRoute, balanced_route, forced_route
 from nonholo.discrete.routes._matrix import MatrixRoute
@@ -26,37 +25,25 @@ class DefinitionRoute(Scheme, AbstractRoute):
     """Steps of one length or compositions, by derivatives of the discrete Lagrangian in JAX."""
 
     name: ClassVar[str] = "definition"
-    is_scalar: ClassVar[bool] = False
-    needs_pose: ClassVar[bool] = True
     compiled_route: ClassVar[None] = None
 
     def stepper(self, motion: Any, *, with_poses: bool, branch: str = "principal") -> AbstractBodyStepper:
         """Return what takes the steps by the definition."""
-        with needs("jax", "simulate(...) of a step that is not compiled"):
-            from nonholo.discrete.definition import DefinitionStepper
-
-        return DefinitionStepper(motion, with_poses, branch)
+        owner = "simulate(...) of a step that is not compiled"
+        return definition(owner).DefinitionStepper(motion, with_poses, branch)
 
     def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
         """Return the displacements that follow, one step of order 2 from each state."""
-        with needs("jax", "A step that is not compiled"):
-            from nonholo.discrete.definition import next_charts_by_definition
-
-        return next_charts_by_definition(self, states)
+        return definition("A step that is not compiled").next_charts_by_definition(self, states)
 
     def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Compact:
         """Return momenta, charts and poses after fractions of the steps from states; NaN where none starts."""
-        with needs("jax", "A part of a step that is not compiled"):
-            from nonholo.discrete.definition import parts_by_definition
-
-        return parts_by_definition(self, states, poses_of(states, is_needed=True), fractions)
+        by_definition = definition("A part of a step that is not compiled").parts_by_definition
+        return by_definition(self, states, poses_of(states, is_needed=True), fractions)
 
     def whole_steps(self, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]) -> Compact:
         """Take one step from each row of momenta and poses; return both after it, and the outcomes."""
-        with needs("jax", "A step that is not compiled"):
-            from nonholo.discrete.definition import whole_steps_by_definition
-
-        return whole_steps_by_definition(self, momenta, g)
+        return definition("A step that is not compiled").whole_steps_by_definition(self, momenta, g)
 
 
 _SCALAR = (None, "scalar")
@@ -89,11 +76,10 @@ def make_route(scheme: Scheme, route_name: str | None = None) -> AbstractRoute:
 
 
 def _single(scheme: Scheme, route_name: str | None) -> AbstractRoute:
-    route = None
     if scheme.difference == "matrix" and scheme.constraint in ("skew", "exponential"):
         route = _of_form(scheme, route_name) or _of_matrices(scheme, route_name)
-    if route is not None:
-        return route
+        if route is not None:
+            return route
     return DefinitionRoute(scheme.system, scheme.time_step, scheme.difference, scheme.constraint, scheme.order)
 
 

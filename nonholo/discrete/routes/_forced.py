@@ -25,21 +25,15 @@ from nonholo.groups import SE, SO
 from nonholo.orbit import Orbit
 from nonholo.systems import Forced
 
+_OF_SINGLE = "name needs_pose system time_step scale encode decode to_kernel from_kernel encode_poses decode_poses"
+"""Properties that are those of the route inside."""
+
 
 class AbstractOuterRoute(AbstractCompiledRoute):
     """A route that runs the kernel of another one, its `single`, and has its units, axes and poses."""
 
-    name = property(attrgetter("single.name"))
-    needs_pose: Any = property(attrgetter("single.needs_pose"))
-    system: Any = property(attrgetter("single.system"))
-    time_step = property(attrgetter("single.time_step"))
-    scale = property(attrgetter("single.scale"))
-    encode: Any = property(attrgetter("single.encode"))
-    decode: Any = property(attrgetter("single.decode"))
-    to_kernel: Any = property(attrgetter("single.to_kernel"))
-    from_kernel: Any = property(attrgetter("single.from_kernel"))
-    encode_poses: Any = property(attrgetter("single.encode_poses"))
-    decode_poses: Any = property(attrgetter("single.decode_poses"))
+    name = scale = system = time_step = cast(Any, None)  # seen by type checkers
+    locals().update((name, property(attrgetter(f"single.{name}"))) for name in _OF_SINGLE.split())
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -53,7 +47,6 @@ class ComposedRoute(AbstractOuterRoute):
 
     substep: AbstractCompiledRoute
     order: int
-    is_scalar: ClassVar[bool] = False
 
     @functools.cached_property
     def body(self) -> kernels.ComposedBody:
@@ -93,8 +86,6 @@ class AbstractForcedRoute(AbstractRoute):
     free: AbstractCompiledRoute
     forced: Forced
     faults: dict[str, str] = dataclasses.field(default_factory=dict, repr=False, kw_only=True)
-    order = 2
-    is_scalar: ClassVar[bool] = False
 
     @property
     def single(self) -> AbstractCompiledRoute:
@@ -117,19 +108,27 @@ class AbstractForcedRoute(AbstractRoute):
     def _part(self, m: np.ndarray, pose: np.ndarray, time: float, step: int, fraction: float) -> Compact | None:
         half, free = float(self.free.time_step) / 2, self.free
         end = time + fraction * 2 * half
-
-        def kick(m: np.ndarray, pose: np.ndarray, time: float, step: int, tau: float) -> np.ndarray:
-            return m + kick_of(free, self.forced, tau, np.array([time]), m, pose, np.array([step]))
-
         with contextlib.suppress(OutcomeError):  # the midpoint rule of a half impulse may fail
-            after, place, (code,) = free.parts_of_steps(
-                kick(m[None], pose[None], time, step, fraction * half), pose[None], fraction
-            )
+            start = self.kick(m[None], pose[None], (time, step), fraction * half, {})
+            after, place, (code,) = free.parts_of_steps(start, pose[None], fraction)
             if code == 0:
-                after = kick(after, place, end, step, fraction * half)
-                m_half = kick(after, place, end, step + int(fraction), half)
+                after = self.kick(after, place, (end, step), fraction * half, {})
+                m_half = self.kick(after, place, (end, step + int(fraction)), half, {})
                 return free.ahead(after[0], place[0], m_half[0])
         return None
+
+    def kick(
+        self, m: np.ndarray, pose: np.ndarray, when: tuple[float, int], tau: float, faults: dict[str, str]
+    ) -> np.ndarray:
+        """Return one row of the kernel's momenta after impulses over a time; NaN where they are not finite."""
+        free, forced, group, j = self.free, self.forced, self.forced.group, np.array(np.nan)
+        g = group.matrix_from_pose(free.decode_poses(pose)) @ group.inverse(forced.frame)
+        time, step = (np.array([number]) for number in when)
+        with note_fault(faults, "potential"):
+            j = forced.impulses(forced.from_canonical(free.decode(m.copy())), g, time, step, tau, faults)
+        if not np.isfinite(j).all():
+            return np.full_like(m, np.nan)
+        return m + free.encode(forced.to_canonical(forced.restrict_at(j, g)))
 
     def next_charts(self, states: Orbit) -> Float[np.ndarray, "K m"]:
         """Return the displacements that follow, one step from each state."""
@@ -175,15 +174,14 @@ class FunctionRoute(AbstractForcedRoute, AbstractOuterRoute):
     def body(self) -> kernels.ForcedBody:
         """The body, with no half impulse: those are added here."""
         n = self.free.sizes[0]
-        return kernels.ForcedBody(
-            self.free.body, kernels.Kick(np.zeros((0, 0)), np.zeros(0), np.zeros((n, 0)), np.zeros((1, n)))
-        )
+        nothing = kernels.Kick(np.zeros((0, 0)), np.zeros(0), np.zeros((n, 0)), np.zeros((1, n)))
+        return kernels.ForcedBody(self.free.body, nothing)
 
     def start(self, momenta: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray, np.ndarray]:
         """Return the outcome of the first root, its chart and the state of a run."""
         failure, m_half = None, np.array(momenta)
         try:  # the midpoint rule of a half impulse may fail
-            m_half += self._impulse(0, 0, momenta, pose)
+            m_half = self._after_half(0, 0, momenta, pose)
         except OutcomeError:
             failure = Outcome.no_half_impulse
         code, state = self.runs.start(self.body, m_half, np.array(pose))
@@ -197,8 +195,8 @@ class FunctionRoute(AbstractForcedRoute, AbstractOuterRoute):
             for good in range(steps):
                 ahead, number = state[:-1].copy(), int(state[-1])
                 place = ahead[2 * n : 2 * n + size].copy()
-                m = ahead[:n] + self._impulse(number + 1, number, ahead[:n], place)
-                ahead[:n] = m + self._impulse(number + 1, number + 1, m, place)
+                m = self._after_half(number + 1, number, ahead[:n], place)
+                ahead[:n] = self._after_half(number + 1, number + 1, m, place)
                 _, code = self.runs.advance(self.body, ahead, 1, 1, room)
                 if code != 0:
                     return good, code
@@ -209,32 +207,10 @@ class FunctionRoute(AbstractForcedRoute, AbstractOuterRoute):
             return steps, 0
         return good, Outcome.no_half_impulse
 
-    def _impulse(self, node: int, step: int, m: np.ndarray, pose: np.ndarray) -> np.ndarray:
-        """Return what half the impulse of a step at a node adds to the kernel's momenta."""
+    def _after_half(self, node: int, step: int, m: np.ndarray, pose: np.ndarray) -> np.ndarray:
+        """Return the kernel's momenta after half the impulse of a step at a node."""
         half = float(self.free.time_step) / 2
-        time, steps = np.array([2 * half * node]), np.array([step])
-        return kick_of(self.free, self.forced, half, time, m[None], pose[None], steps, self.faults)[0]
-
-
-def kick_of(
-    free: AbstractCompiledRoute,
-    forced: Forced,
-    half: float,
-    time: np.ndarray,
-    momenta: np.ndarray,
-    poses: np.ndarray,
-    steps: np.ndarray,
-    faults: dict[str, str] | None = None,
-) -> np.ndarray:
-    """Return what the impulses of a time add to momenta of a kernel; NaN where they are not finite."""
-    group = forced.group
-    g = group.matrix_from_pose(free.decode_poses(poses)) @ group.inverse(forced.frame)
-    j, faults = np.array(np.nan), {} if faults is None else faults
-    with note_fault(faults, "potential"):
-        j = forced.impulses(forced.from_canonical(free.decode(momenta.copy())), g, time, steps, half, faults)
-    if not np.isfinite(j).all():
-        return np.full_like(momenta, np.nan)
-    return free.encode(forced.to_canonical(forced.restrict_at(j, g)))
+        return self.kick(m[None], pose[None], (2 * half * node, step), half, self.faults)[0]
 
 
 def half_kick(free: AbstractCompiledRoute, forced: Forced) -> kernels.Kick:

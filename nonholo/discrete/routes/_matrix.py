@@ -37,10 +37,7 @@ class MatrixRoute(AbstractCompiledRoute):
     system: System
     variety: Variety
     time_step: Array
-    order: ClassVar[int] = 2
     name: ClassVar[str] = "matrix"
-    is_scalar: ClassVar[bool] = False
-    needs_pose: ClassVar[bool] = True
 
     @functools.cached_property
     def _body_and_unit(self) -> tuple[kernels.GeneralBody, float]:
@@ -55,16 +52,6 @@ class MatrixRoute(AbstractCompiledRoute):
     def scale(self) -> Array:
         """The time step over the unit of momenta."""
         return self.time_step / self._body_and_unit[1]
-
-    def encode_poses(self, poses: np.ndarray) -> np.ndarray:
-        """Return the matrices of poses, row by row."""
-        group = self.system.group
-        return group.matrix_from_pose(poses).reshape(*poses.shape[:-1], group.size**2)
-
-    def decode_poses(self, poses: np.ndarray) -> np.ndarray:
-        """Return compact poses from matrices row by row."""
-        group = self.system.group
-        return group.pose_from_matrix(poses.reshape(*poses.shape[:-1], group.size, group.size))
 
 
 def general_body(system: AbstractSystem, variety: Variety) -> tuple[kernels.GeneralBody, float]:

@@ -92,10 +92,8 @@ class ScalarRoute(AbstractCompiledRoute):
     form: NormalForm
     closed_form: ClosedForm
     time_step: Array
-    order: ClassVar[int] = 2
     name: ClassVar[str] = "scalar"
     is_scalar: ClassVar[bool] = True
-    needs_pose: ClassVar[bool] = True
 
     @functools.cached_property
     def body(self) -> kernels.Body:
@@ -152,9 +150,7 @@ class SecularRoute(AbstractCompiledRoute):
     system: System
     form: NormalForm
     time_step: Array
-    order: ClassVar[int] = 2
     name: ClassVar[str] = "secular"
-    is_scalar: ClassVar[bool] = False
     needs_pose: ClassVar[bool] = False
 
     @staticmethod
@@ -178,18 +174,13 @@ class SecularRoute(AbstractCompiledRoute):
 
     def encode(self, momenta: np.ndarray) -> np.ndarray:
         """Return the momenta of the kernel from canonical ones."""
-        momenta = self.axes.momenta(momenta)
-        if self.form.is_sleigh:
-            along = momenta[..., -1:]
-            momenta = np.concatenate([momenta[..., :-1] - along * self.form.offset, along], axis=-1)
+        momenta = self.form.turned_about(self.axes.momenta(momenta), -1.0)
         return self.form.to_principal(self.scale * momenta)
 
     def decode(self, momenta: np.ndarray) -> np.ndarray:
         """Return canonical momenta from those of the kernel."""
         momenta = self.form.from_principal(momenta) / self.scale
-        if self.form.is_sleigh:
-            momenta[..., :-1] += momenta[..., -1:] * self.form.offset
-        return self.axes.canonical_momenta(momenta)
+        return self.axes.canonical_momenta(self.form.turned_about(momenta, 1.0))
 
     def to_kernel(self, charts: np.ndarray) -> np.ndarray:
         """Return the chart coordinates of the kernel from canonical ones."""

@@ -36,6 +36,12 @@ def slip_route(scheme: Any, forced: Forced, route_of: Callable[[Any], Any]) -> "
     return SlipRoute(route_of(sliding), forced, route_of(holding), holding)
 
 
+Here = tuple[np.ndarray, np.ndarray]
+"""Canonical momenta and a pose."""
+When = tuple[float, int, float]
+"""The time, the number of the step and the fraction of it."""
+
+
 class Beginning(NamedTuple):
     """How a step begins.
 
@@ -109,9 +115,7 @@ class SlipRoute(AbstractForcedRoute):
         """Return canonical charts of steps that hold as those of the body without the rows."""
         return self.hold.from_kernel(charts) @ self._wide
 
-    def reaction(
-        self, charts: Float[np.ndarray, "K m"], poses: Float[np.ndarray, "K p"], steps: np.ndarray
-    ) -> Float[np.ndarray, "K s"]:
+    def reaction(self, charts: np.ndarray, poses: np.ndarray, steps: np.ndarray) -> Float[np.ndarray, "K s"]:
         """Return the impulses that the rows need over steps that hold, from no slip."""
         holding, forced, h = self.holding, self.holding.forces, float(self.holding.time_step)
         decoder, charts = holding.displacement_decoder, self.hold.from_kernel(charts)
@@ -124,9 +128,8 @@ class SlipRoute(AbstractForcedRoute):
     def grips(self, moving: Float[np.ndarray, "s"]) -> Float[np.ndarray, "contacts"]:
         """Return the largest impulses by which contacts hold: by the grip, and the viscous friction of what ends."""
         h = float(self.holding.time_step)
-        return np.array(
-            [h * one.grip + h / 2 * one.viscous * np.linalg.norm(moving[at]) for at, one in self.contacts.each]
-        )
+        each = self.contacts.each
+        return np.array([h * one.grip + h / 2 * one.viscous * np.linalg.norm(moving[at]) for at, one in each])
 
     def begin(self, r: np.ndarray, pose: np.ndarray, time: float, step: int) -> Beginning:
         """Begin the step from canonical momenta and a pose."""
@@ -142,9 +145,7 @@ class SlipRoute(AbstractForcedRoute):
             return Beginning(0, self.wide(chart), kernel)
         return self._yield((r, pose), (time, step, 1.0), impulses[0], most)
 
-    def _yield(
-        self, now: tuple[np.ndarray, np.ndarray], when: tuple[float, int, float], impulses: np.ndarray, most: np.ndarray
-    ) -> Beginning:
+    def _yield(self, now: Here, when: When, impulses: np.ndarray, most: np.ndarray) -> Beginning:
         """Begin a step in which not every contact holds; those that do are at rest where impulses act on M alone."""
         (r, pose), half, s = now, float(self.holding.time_step) / 2, len(impulses)
         laws = [(at, size, half * one.viscous) for size, (at, one) in zip(most, self.contacts.each, strict=True)]
@@ -161,12 +162,7 @@ class SlipRoute(AbstractForcedRoute):
             rests = rests & ~yields
 
     def slide(
-        self,
-        now: tuple[np.ndarray, np.ndarray],
-        when: tuple[float, int, float],
-        rests: Bool[np.ndarray, "contacts"],
-        impulse: np.ndarray,
-        slip: Any = None,
+        self, now: Here, when: When, rests: Bool[np.ndarray, "contacts"], impulse: np.ndarray, slip: Any = None
     ) -> Beginning:
         """Slide for a fraction of a step, from an impulse along the rows and the slip that it leaves, known or not.
 
@@ -203,9 +199,7 @@ class SlipRoute(AbstractForcedRoute):
         places = self.contacts.places(rests)
         after[-s:][places] = later[places]
 
-    def _push(
-        self, now: tuple[np.ndarray, np.ndarray], when: tuple[float, int, float], impulse: np.ndarray
-    ) -> Beginning:
+    def _push(self, now: Here, when: When, impulse: np.ndarray) -> Beginning:
         """Take a fraction of a step that slides under an impulse along the rows."""
         route, (r, pose), part = self.free, now, when[2] * float(self.holding.time_step)
         own_pose, k = route.encode_poses(pose), len(r)
@@ -277,7 +271,6 @@ class SlipStepper(AbstractBodyStepper):
     motion: Any
     route: SlipRoute
     with_poses: bool
-    in_threads = False
 
     @functools.cached_property
     def columns(self) -> dict[str, int]:  # type: ignore[override]
@@ -368,7 +361,3 @@ class SlipStepper(AbstractBodyStepper):
     def _kernel(self, state: State) -> np.ndarray:
         k, _, size = self.columns.values()
         return state[self.width + k + size + 2 :]
-
-    def decode(self, rows: Rows) -> Compact:
-        """Return the rows."""
-        return rows  # type: ignore[return-value]

@@ -5,6 +5,7 @@ loop, from its start. Processors take the members in chunks that stay in their c
 """
 
 import functools
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -13,6 +14,7 @@ import numpy as np
 from nonholo import kernels
 from nonholo.discrete.definition import in_double
 
+Starts = tuple[np.ndarray, np.ndarray]  # scaled momenta and poses
 State = tuple[jax.Array, ...]  # momenta, compensations, three charts (2, n) each, pose (4, n), who is certain (n,)
 
 
@@ -22,27 +24,14 @@ def chunk() -> int | None:
 
 
 def advance_by_jax(
-    body: kernels.Body,
-    axes: kernels.MemberAxes,
-    momenta: np.ndarray,
-    poses: np.ndarray,
-    steps: int,
-    every: int,
-    rows: kernels.MemberRows,
+    body: kernels.Body, axes: kernels.MemberAxes, starts: Starts, steps: int, every: int, rows: kernels.MemberRows
 ) -> np.ndarray:
     """Take steps as `kernels.advance_members` does, with fields of the body that are arrays; tell who was uncertain."""
     save_count = steps // every if every else 1
     each = every or steps
-    with_poses = rows.poses.shape[1] > 0
-    first, history, certain = in_double(
-        functools.partial(_run, save_count=save_count, with_poses=with_poses, turns=axes[1:]),
-        body,
-        axes.numbers.T,
-        momenta.T,
-        poses.T,
-        each,
-        steps - save_count * each,
-    )
+    run = functools.partial(_run, how=(save_count, rows.poses.shape[1] > 0, axes[1:]))
+    numbers = (x.T for x in (axes.numbers, *starts))
+    first, history, certain = in_double(run, body, *numbers, (each, steps - save_count * each))
     for target, start, later in zip(rows[:3], first, history, strict=True):
         if every and target.shape[1]:
             target[:, 0] = start.T
@@ -52,20 +41,12 @@ def advance_by_jax(
     return ~certain
 
 
-@functools.partial(jax.jit, static_argnames=("save_count", "with_poses", "turns"))
+@functools.partial(jax.jit, static_argnames=("how",))
 def _run(
-    body: kernels.Body,
-    axes: jax.Array,
-    m: jax.Array,
-    q: jax.Array,
-    each: jax.Array,
-    rest: jax.Array,
-    *,
-    save_count: int,
-    with_poses: bool,
-    turns: tuple[bool, int],
+    body: kernels.Body, axes: jax.Array, m: jax.Array, q: jax.Array, paces: tuple[Any, Any], *, how: tuple[Any, ...]
 ) -> tuple[State, State, jax.Array]:
     """Return the first states, the saved ones, and which members were certain all the time."""
+    (save_count, with_poses, turns), (each, rest) = how, paces
     y, certain = _root(body, m, jnp.zeros_like(m))
     state = (m, jnp.zeros_like(m), y, y, y, q, certain)
     step = functools.partial(_step, body, with_poses)
@@ -117,7 +98,6 @@ def _root(body: kernels.Body, m: jax.Array, guess: jax.Array) -> tuple[jax.Array
         y = jnp.where(further, y + d, y)
         return count + 1, y, further & ~kernels.converged(*d, *y)
 
-    _, y, further = jax.lax.while_loop(
-        is_unfinished, correct, (jnp.asarray(0), guess, jnp.ones(m.shape[1], dtype=bool))
-    )
+    begin = jnp.asarray(0), guess, jnp.ones(m.shape[1], dtype=bool)
+    _, y, further = jax.lax.while_loop(is_unfinished, correct, begin)
     return y, ~further & kernels.is_certain(body, *m, *y)

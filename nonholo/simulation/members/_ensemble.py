@@ -36,7 +36,9 @@ _DEFAULTS = {"branch": PRINCIPAL.name, "backend": "auto", "reconstruct": True}
 _BLOCK = 1 << 23  # numbers in a block of members that is reduced, 64 MiB
 
 Reduced: TypeAlias = np.ndarray | dict[str, np.ndarray]
-
+Options: TypeAlias = dict[str, Any]
+Work: TypeAlias = tuple[Any, Plan, tuple[int, ...]]
+"""A motion, what is done with every member, and how wide its columns are."""
 _WHERE = "ensemble(reduce=...)"
 _ONE = ""  # the name of an array that comes without one
 
@@ -152,9 +154,7 @@ def _refuse(what: str, **arguments: Any) -> None:
     refuse_given("ensemble", f"be left out {what}", "A discretization has steps, a system times and rtol.", **arguments)
 
 
-def _of_times(
-    system: Any, of_flow: dict[str, Any], of_steps: dict[str, Any], starts: dict[str, Any]
-) -> tuple[Any, Plan, tuple[int, ...]]:
+def _of_times(system: Any, of_flow: Options, of_steps: Options, starts: Options) -> Work:
     """Return the motion of flows, their plan, and how wide their columns are."""
     reconstruct = bool(of_steps.pop("reconstruct"))
     _refuse("for a flow", displacement=starts.pop("displacement"), **of_steps)
@@ -170,9 +170,7 @@ def _of_times(
     return ContinuousFlow(system), plan, (1, system.rank, system.group.pose_size * with_poses)
 
 
-def _of_steps(
-    discrete: Any, of_flow: dict[str, Any], of_steps: dict[str, Any], starts: dict[str, Any]
-) -> tuple[Any, Plan, tuple[int, ...]]:
+def _of_steps(discrete: Any, of_flow: Options, of_steps: Options, starts: Options) -> Work:
     """Return the motion of runs, their plan, and how wide their columns are."""
     del starts
     steps, save_every, events, branch, backend, reconstruct = of_steps.values()
@@ -216,9 +214,7 @@ def _check_momenta(members: Members, starts: Firsts, plan: Plan) -> None:
         raise error("ensemble(momentum=...)", "belong to admissible velocities", got, remedy)
 
 
-def _run_all(
-    members: Members, starts: Firsts, plan: Plan, width: int, reduce: Callable[[Ensemble], Any] | None, report: Report
-) -> Any:
+def _run_all(members: Members, starts: Firsts, plan: Plan, width: int, reduce: Any, report: Report) -> Any:
     """Run all members, block by block where only what is found of them is kept, and join that."""
     has_search = plan.events is not None and are_side_by_side(members, plan)  # in every step of a block
     if reduce is None and not has_search:

@@ -52,11 +52,8 @@ def in_one_thread() -> contextlib.AbstractContextManager[None]:
 def threads_to_use() -> int:
     """Return one `in_one_thread`, else as many as `NUMBA_NUM_THREADS` says, else one for each core."""
     text = os.environ.get("NUMBA_NUM_THREADS", "")
-    return _THREADS.get() or (int(text) if text.isdigit() and int(text) > 0 else _cores())
-
-
-def _cores() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return _THREADS.get() or (int(text) if text.isdigit() and int(text) > 0 else cores)
 
 
 def counting(show: Callable[[int, int], None], total: int) -> Report:
@@ -109,14 +106,11 @@ def run_members(members: Members, starts: Firsts, plan: Plan, report: Report = l
         plan: The plan of the run.
         report: Called with the number of members that are done.
     """
-    return executor_of(members, plan)(members, starts, plan, threads_to_use(), report)
-
-
-def executor_of(members: Members, plan: Plan) -> Callable[..., Ensemble]:
-    """Return what runs members: side by side where their closed form or their series allows it, else one by one."""
     if plan.times is not None:
-        return run_by_series if _has_series(members, plan) else run_one_by_one
-    return run_in_lanes if are_side_by_side(members, plan) else run_one_by_one
+        run = run_by_series if _has_series(members, plan) else run_one_by_one
+    else:
+        run = run_in_lanes if are_side_by_side(members, plan) else run_one_by_one
+    return run(members, starts, plan, threads_to_use(), report)
 
 
 def _has_series(members: Members, plan: Plan) -> bool:
@@ -223,7 +217,7 @@ def _advance_by_jax(lanes: _Lanes, starts: Starts, plan: Plan, rows: kernels.Mem
         from nonholo.simulation.members._by_jax import advance_by_jax
 
     body, (momenta, poses) = lanes.body(*lanes.fields), starts
-    again = np.flatnonzero(advance_by_jax(body, lanes.axes, momenta, poses, plan.steps, plan.every or 0, rows))
+    again = np.flatnonzero(advance_by_jax(body, lanes.axes, starts, plan.steps, plan.every or 0, rows))
     if again.size:
         fresh = _fill_nan(_rows(len(again), rows.momenta.shape[1], with_poses=plan.with_poses))
         _advance(lanes.of(again), (momenta[again], poses[again]), plan, fresh, stop)

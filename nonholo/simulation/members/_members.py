@@ -118,9 +118,8 @@ def _rebuilt(system: Any, own: dict[str, Any]) -> Any:
         return system.with_parameters(**own)
     if system.is_forced:
         return dataclasses.replace(system, system=_rebuilt(system.system, own))
-    fields = {
-        _ARGUMENTS.get(field.name, field.name): getattr(system, field.name) for field in dataclasses.fields(system)
-    }
+    names = [field.name for field in dataclasses.fields(system)]
+    fields = {_ARGUMENTS.get(name, name): getattr(system, name) for name in names}
     return type(system)(**{**fields, **own})
 
 

@@ -54,9 +54,8 @@ class MemberEvents(AbstractEventLog[MemberCrossings]):
     stopped_by: Int[np.ndarray, "M"]
 
     def __repr__(self) -> str:
-        counts = ", ".join(
-            f"{name}: {crossings.count.sum()}" for name, crossings in zip(self.names, self.found, strict=True)
-        )
+        each = zip(self.names, self.found, strict=True)
+        counts = ", ".join(f"{name}: {crossings.count.sum()}" for name, crossings in each)
         return f"<MemberEvents of crossings: {counts}, {np.sum(self.stopped_by >= 0)} members stopped>"
 
 

@@ -14,6 +14,11 @@ from nonholo.systems.forces._friction import Slip
 
 _MOST, _SWEEPS = 40, 200  # corrections of a direction, and of the slips of several contacts
 _ROUNDING = 1e-15  # relative, of an impulse
+Slips = Float[np.ndarray, "s"]
+"""Velocities, momenta or forces along the rows of contacts."""
+SlipMap = Float[np.ndarray, "s s"]
+Law = tuple[slice, float, float]
+"""The places of the rows of a contact, the most that dry friction is there, and viscous friction."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -25,7 +30,7 @@ class Contacts:
         slips: The rows of each and its friction.
     """
 
-    inertia: Float[np.ndarray, "s s"]
+    inertia: SlipMap
     slips: tuple[Slip, ...]
 
     @functools.cached_property
@@ -38,7 +43,7 @@ class Contacts:
         """Return the sizes of slips or impulses at each."""
         return np.stack([np.linalg.norm(slips[:, at], axis=1) for at, _ in self.each], axis=1)
 
-    def directions(self, slips: Float[np.ndarray, "s"]) -> Float[np.ndarray, "s"]:
+    def directions(self, slips: Slips) -> Slips:
         """Return the unit directions of slips."""
         return np.concatenate([slips[at] / (np.linalg.norm(slips[at]) or 1.0) for at, _ in self.each])
 
@@ -46,7 +51,7 @@ class Contacts:
         """Return the places of the rows of some."""
         return np.repeat(rests, [len(one.rows) for one in self.slips])
 
-    def stop(self, momenta: Float[np.ndarray, "s"], rests: Bool[np.ndarray, "m"]) -> Float[np.ndarray, "s"]:
+    def stop(self, momenta: Slips, rests: Bool[np.ndarray, "m"]) -> Slips:
         """Return momenta of slips after impulses that end those of some, or rates without acceleration of these."""
         places, after = self.places(rests), momenta.copy()
         inertia = self.inertia[:, ~places]
@@ -67,15 +72,15 @@ class Mode(NamedTuple):
     contacts: Contacts
     least: Float[np.ndarray, "m"]
     rests: Bool[np.ndarray, "m"]
-    ways: Float[np.ndarray, "s"]
+    ways: Slips
 
     @classmethod
-    def of(cls, contacts: Contacts, v: Float[np.ndarray, "s"], least: Float[np.ndarray, "m"]) -> "Mode":
+    def of(cls, contacts: Contacts, v: Slips, least: Float[np.ndarray, "m"]) -> "Mode":
         """Return the mode of slip velocities alone, in which all that are at rest hold."""
         rests = (contacts.sizes(v[None])[0] <= least) | np.isinf([one.grip for one in contacts.slips])
         return cls(contacts, least, rests, contacts.directions(v))
 
-    def forces(self, v: Float[np.ndarray, "s"], free: Float[np.ndarray, "s"]) -> Float[np.ndarray, "s"]:
+    def forces(self, v: Slips, free: Slips) -> Slips:
         """Return friction along ways, of several rows only as slips vanish, and reactions against free rates."""
         force = np.zeros_like(v)
         for (at, one), rest, slow in zip(self.contacts.each, self.rests, self.least, strict=True):
@@ -85,7 +90,7 @@ class Mode(NamedTuple):
                 force[at] = -one.grip * way - one.viscous * v[at]
         return np.where(self.contacts.places(self.rests), self.contacts.stop(free + force, self.rests) - free, force)
 
-    def settle(self, v: Float[np.ndarray, "s"], free: Float[np.ndarray, "s"]) -> "Mode":
+    def settle(self, v: Slips, free: Slips) -> "Mode":
         """Return the mode in which those at rest hold or begin to slide: the one solution for their accelerations."""
         contacts, rests = self.contacts, self.rests
         laws = [(at, one.grip if rest else 0.0, 0.0) for rest, (at, one) in zip(rests, contacts.each, strict=True)]
@@ -96,9 +101,7 @@ class Mode(NamedTuple):
         return self._replace(rests=holds, ways=ways)
 
 
-def friction(
-    slope: Float[np.ndarray, "s s"], free: Float[np.ndarray, "s"], laws: list[tuple[slice, float, float]]
-) -> tuple[Float[np.ndarray, "s"], Float[np.ndarray, "s"]]:
+def friction(slope: SlipMap, free: Slips, laws: list[Law]) -> tuple[Slips, Slips]:
     r"""Return x and j of $Ax = b + j$, $-j_i \in m_i\,\partial|x_i| + c_ix_i$: the only ones where A is monotone.
 
     Contact by contact, and by Newton's method where no slip changes its direction; NaN where that does not end.
@@ -118,7 +121,7 @@ def friction(
     return x, np.full_like(j, np.nan)
 
 
-def _correct(slope: np.ndarray, free: np.ndarray, laws: list[tuple[slice, float, float]], x: np.ndarray) -> np.ndarray:
+def _correct(slope: np.ndarray, free: np.ndarray, laws: list[Law], x: np.ndarray) -> np.ndarray:
     """Return slips after a correction by Newton's method of those that are not zero."""
     matrix, gap = slope.copy(), free - slope @ x
     for at, most, viscous in laws:
@@ -132,9 +135,7 @@ def _correct(slope: np.ndarray, free: np.ndarray, laws: list[tuple[slice, float,
     return x + np.linalg.solve(matrix, gap)
 
 
-def friction_of_one(
-    slope: Float[np.ndarray, "s s"], free: Float[np.ndarray, "s"], most: float, viscous: float
-) -> tuple[Float[np.ndarray, "s"], Float[np.ndarray, "s"]]:
+def friction_of_one(slope: SlipMap, free: Slips, most: float, viscous: float) -> tuple[Slips, Slips]:
     r"""Return x and j of $Ax = b + j$, $-j \in m\,\partial|x| + cx$ at one contact.
 
     With $y = (|x|(A + c) + m)^{-1}b$ it is $x = |x|y$ at |y| = 1, and x = 0 if |b| <= m. The size of y falls as |x|

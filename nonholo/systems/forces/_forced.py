@@ -19,19 +19,10 @@ from nonholo.base.checks import array, choice, error, shown, trailing
 from nonholo.base.numerics import applied, exponential_increment, inverse_of
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
-from nonholo.systems._base import AbstractSystem
+from nonholo.systems._base import AbstractSystem, Covectors, Poses
 from nonholo.systems._coordinate_system import AbstractCoordinateSystem
+from nonholo.systems.forces import _friction
 from nonholo.systems.forces._contacts import Contacts
-from nonholo.systems.forces._friction import (
-    Friction,
-    Widened,
-    force_of,
-    parts_of,
-    remaining_rows,
-    slips_of,
-    terms_of,
-    without_slips,
-)
 from nonholo.systems.forces._potentials import Gravity
 
 _OFFSET = 8e-3  # of a body direction, for central differences: its sixth power is at rounding
@@ -139,20 +130,19 @@ class Forced(AbstractSystem):
             remedy = "Pass a SuslovTop, a sleigh or an LLSystem, with all forces at once."
             raise error("Forced(system=...)", "be a system on a group, with matrices", shown(inside), remedy)
         choice("Forced(scheme=...)", self.scheme, (None, *SCHEMES), "Leave it out for the one that keeps most.")
-        terms = terms_of(self.potential)
+        terms = _friction.terms_of(self.potential)
         for each in terms:
             if not callable(each):
                 each.check(inside.group)
         object.__setattr__(self, "potential", terms if len(terms) > 1 else terms[0] if terms else None)
-        object.__setattr__(self, "force", force_of(self._checked_parts()))
+        object.__setattr__(self, "force", _friction.force_of(self._checked_parts()))
 
     def _checked_parts(self) -> dict[str, Any]:
         """Return what the force is made of, checked against the system."""
-        parts, inside = parts_of(self.force), self.system
+        parts, inside = _friction.parts_of(self.force), self.system
         if "friction" in parts:
             parts["friction"].check(inside.group.dim)
-        if slips := slips_of(parts):
-            remaining_rows(inside, slips)
+        _ = self.free  # refused here where rows do not fit
         if "table" in parts:
             remedy = "Pass a function of time, configuration and body velocity, Friction, or one body covector a step."
             parts["table"] = array("Forced(force=...)", parts["table"], (None, inside.group.dim), remedy)
@@ -161,7 +151,7 @@ class Forced(AbstractSystem):
     @functools.cached_property
     def terms(self) -> tuple[Any, ...]:
         """The potentials, one by one."""
-        return terms_of(self.potential)
+        return _friction.terms_of(self.potential)
 
     @property
     def gravity(self) -> Gravity | None:
@@ -176,40 +166,41 @@ class Forced(AbstractSystem):
     @functools.cached_property
     def parts(self) -> dict[str, Any]:
         """The parts of the force among "friction", "table" and "function", and a "slip" for each contact."""
-        return parts_of(self.force)
+        return _friction.parts_of(self.force)
 
     @property
-    def friction(self) -> Friction | None:
+    def friction(self) -> _friction.Friction | None:
         """The viscous friction, where there is one."""
         return self.parts.get("friction")
 
     @property
     def slips(self) -> tuple[Any, ...]:
         """The contacts whose rows may yield."""
-        return slips_of(self.parts)
+        return _friction.slips_of(self.parts)
 
     @functools.cached_property
     def contacts(self) -> Contacts:
         """The contacts, with the momenta of their slips."""
-        return Contacts(cast(Widened, self.free).slip_inertia, self.slips)
+        return Contacts(cast(_friction.Widened, self.free).slip_inertia, self.slips)
 
     @functools.cached_property
     def free(self) -> AbstractSystem:
         """The body that moves without forces: the system inside, without the rows of its constraint that may yield."""
-        slips, inside = slips_of(parts_of(self.force)), self.system
-        return Widened(inside, *remaining_rows(inside, slips)) if slips else inside
+        slips, inside = _friction.slips_of(_friction.parts_of(self.force)), self.system
+        return _friction.Widened(inside, *_friction.remaining_rows(inside, slips)) if slips else inside
 
     @functools.cached_property
     def holding(self) -> AbstractSystem:
         """The system while no row yields."""
-        system = Forced(self.system, self.potential, force_of(without_slips(self.parts)), self.scheme)
+        rest = _friction.without_slips(self.parts)
+        system = Forced(self.system, self.potential, _friction.force_of(rest), self.scheme)
         return self.system if system.forces is None else system
 
     @functools.cached_property
     def sliding(self) -> "Forced":
         """The system while rows slide, without the friction of these."""
-        rest = {"friction": Friction(np.zeros(self.group.dim))} | without_slips(self.parts)
-        return Forced(self.free, self.potential, force_of(rest), "energy")
+        rest = {"friction": _friction.Friction(np.zeros(self.group.dim))} | _friction.without_slips(self.parts)
+        return Forced(self.free, self.potential, _friction.force_of(rest), "energy")
 
     @property
     def table(self) -> Array | None:
@@ -295,14 +286,7 @@ class Forced(AbstractSystem):
         covectors = (_each(self._slope, g) if callable(each) else each.covector(self.group, g) for each in self.terms)
         return functools.reduce(operator.add, covectors)
 
-    def mean_force(
-        self,
-        g: Float[Array, "K N N"],
-        W: Float[Array, "K N N"],
-        h: Array,
-        constant: Float[Array, "K dim"],
-        time: Float[Array, "K"] | None = None,
-    ) -> Float[Array, "K dim"]:
+    def mean_force(self, g: Poses, W: Poses, h: Array, constant: Covectors, time: Any = None) -> Covectors:
         r"""Return the covectors f whose impulse $\tfrac h2f$ acts at both ends of a step under the scheme "energy".
 
         $$ f = -G(g, W) + f_k - C\,X/h + f(t + \tfrac h2, g\,W^{1/2}, X/h), \qquad X = \tfrac12(W - W^{-1}), $$
@@ -375,9 +359,7 @@ class Forced(AbstractSystem):
         blocks = exponential_increment(tau * block)[..., :k, :] + np.eye(k, 3 * k)
         return blocks.__array_namespace__().stack([blocks[..., j * k : (j + 1) * k] for j in range(3)])
 
-    def impulse(
-        self, r: Array, g: Array, constant: Array, tau: Array, propagator: Any = None
-    ) -> Float[Array, "... dim"]:
+    def impulse(self, r: Array, g: Array, constant: Array, tau: Array, propagator: Any = None) -> Covectors:
         """Return the impulses of constant body covectors and friction over a time, as `impulses`."""
         if self.friction is None:
             return tau * constant
@@ -466,10 +448,7 @@ def _each(function: Callable[[np.ndarray], Any], g: np.ndarray) -> np.ndarray:
 
 
 def midpoint_impulse(
-    impulse_at: Callable[[np.ndarray], np.ndarray],
-    r: Float[np.ndarray, "k"],
-    E: Float[np.ndarray, "dim k"],
-    to_velocity: Float[np.ndarray, "dim k"],
+    impulse_at: Function, r: Float[np.ndarray, "k"], E: Float[np.ndarray, "dim k"], to_velocity: np.ndarray
 ) -> Float[np.ndarray, "dim"]:
     """Return the impulse at the velocity of the mean of the momenta before and after it; NaN where there is none.
 

@@ -10,6 +10,7 @@ from nonholo.base.checks import array, error
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
+from nonholo.systems._base import Covectors, Poses
 
 
 class AbstractLinear(abc.ABC):
@@ -23,17 +24,15 @@ class AbstractLinear(abc.ABC):
     def check(self, group: AbstractMatrixGroup) -> None:
         """Refuse a group of another size."""
 
-    def energy(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "..."]:
+    def energy(self, group: AbstractMatrixGroup, configuration: Poses) -> Float[Array, "..."]:
         """Return U at configurations."""
         return (self.matrix_for(group) * configuration).sum(axis=(-2, -1))
 
-    def covector(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
+    def covector(self, group: AbstractMatrixGroup, configuration: Poses) -> Covectors:
         """Return -dU along the body directions at configurations."""
         return covector_of(group, self.matrix_for(group), configuration)
 
-    def mean_covector(
-        self, group: AbstractMatrixGroup, g: Float[Array, "... N N"], W: Float[Array, "... N N"]
-    ) -> Float[Array, "... dim"]:
+    def mean_covector(self, group: AbstractMatrixGroup, g: Poses, W: Poses) -> Covectors:
         r"""Return -G of steps W from poses, $\langle G, x\rangle = \mathrm{tr}(A^Tg(I + Y)x)$: exactly what U loses."""
         return covector_of(group, self.matrix_for(group), leaning(g, W))
 
@@ -84,13 +83,13 @@ class Linear(AbstractLinear):
         return -self.matrix.T, group.basis.swapaxes(-1, -2)
 
 
-def covector_of(group: AbstractMatrixGroup, A: Array, g: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
+def covector_of(group: AbstractMatrixGroup, A: Array, g: Poses) -> Covectors:
     r"""Return the covectors $-\mathrm{tr}(A^Tg\,x)$ of body directions x at matrices g."""
     xp: Any = g.__array_namespace__()
     return -xp.einsum("...ab,...ac,dcb->...d", xp.asarray(A), g, xp.asarray(group.basis))
 
 
-def leaning(g: Float[Array, "... N N"], W: Float[Array, "... N N"]) -> Float[Array, "... N N"]:
+def leaning(g: Poses, W: Poses) -> Poses:
     r"""Return $g(I + Y) = 2 g W(I + W)^{-1}$ with the Cayley matrix Y of displacements."""
     xp: Any = W.__array_namespace__()
     one = xp.eye(W.shape[-1])
@@ -154,12 +153,12 @@ class Gravity(AbstractLinear):
         weight, place = self.homogeneous(group)
         return -weight[:, None] * place
 
-    def energy(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "..."]:
+    def energy(self, group: AbstractMatrixGroup, configuration: Poses) -> Float[Array, "..."]:
         """Return U at configurations."""
         weight, place = self.homogeneous(group)
         return -applied(weight[None], configuration @ place)[..., 0]
 
-    def covector(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
+    def covector(self, group: AbstractMatrixGroup, configuration: Poses) -> Covectors:
         """Return -dU along the body directions at configurations."""
         force, levers = self.levers(group)
         return applied(levers, force @ configuration)
@@ -220,18 +219,16 @@ class Spring:
         """Refuse a group whose matrices move points of another dimension."""
         check_point("Forced(potential=Spring(...))", group, self.body_point)
 
-    def energy(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "..."]:
+    def energy(self, group: AbstractMatrixGroup, configuration: Poses) -> Float[Array, "..."]:
         """Return U at configurations."""
         return self.stiffness * (self._size(self._arm(group, configuration)) - self.length) ** 2 / 2
 
-    def covector(self, group: AbstractMatrixGroup, configuration: Float[Array, "... N N"]) -> Float[Array, "... dim"]:
+    def covector(self, group: AbstractMatrixGroup, configuration: Poses) -> Covectors:
         """Return -dU along the body directions at configurations."""
         arm = self._arm(group, configuration)
         return self._pull(group, arm, 2 * self._size(arm), configuration)
 
-    def mean_covector(
-        self, group: AbstractMatrixGroup, g: Float[Array, "... N N"], W: Float[Array, "... N N"]
-    ) -> Float[Array, "... dim"]:
+    def mean_covector(self, group: AbstractMatrixGroup, g: Poses, W: Poses) -> Covectors:
         """Return -G of steps W from poses: what U loses, exactly."""
         arm, ahead = self._arm(group, g), self._arm(group, g @ W)
         return self._pull(group, (arm + ahead) / 2, self._size(arm) + self._size(ahead), leaning(g, W))
