@@ -192,7 +192,7 @@ def test_failed_run_keeps_its_crossings(tmp_path: Path) -> None:
 def test_many_crossings_fill_several_chunks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Crossings of a block that do not fit in one chunk of three rows are kept in several, those of none in none."""
     monkeypatch.setattr("nonholo.io._orbit_store._MOST", 3)
-    path, rare = tmp_path / "run.zarr", nh.Event(lambda orbit: orbit.heading - 200.0, name="rare")
+    path, rare = tmp_path / "run.zarr", nh.Event(lambda orbit: orbit.heading - 70.0, name="rare")
     for name, events in (("many", [TURNS, entry]), ("few", [rare])):
         stored = begun(path / name, events, 210)
         assert same(stored, begun(None, events, 210))
