@@ -159,7 +159,7 @@ def test_extended_run_has_the_crossings_of_the_long_run(lengths: tuple[int, ...]
     assert same(nh.load_orbit(path), whole)
 
 
-@pytest.mark.profile("faults", keep=["flipped-run/events*"])
+@pytest.mark.profile("faults", instead="test_damaged_chunk_is_named_and_computed_again")
 @pytest.mark.parametrize("chunk", ["run/events/c/2/0", "run/blocks/3.json", "canonical/pose/c/3/0"])
 @pytest.mark.parametrize("how", ["missing", "flipped"])
 def test_damaged_block_is_computed_again(chunk: str, how: str, tmp_path: Path) -> None:
