@@ -46,6 +46,8 @@ except ValueError as failure:
 def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
     """A cluster of a worker that nobody kills; who needs more adds them."""
     with cluster(tmp_path_factory.mktemp("running"), workers=1) as made:
+        with distributed.Client(made.address, set_as_default=False) as client:
+            client.wait_for_workers(1, timeout=120)
         yield made
 
 
@@ -147,7 +149,6 @@ def test_addresses_without_a_scheduler_are_refused(
 def test_the_address_of_a_worker_is_refused(running: Cluster, tmp_path: Path) -> None:
     """Workers listen too; whoever passes the address of one is informed."""
     with distributed.Client(running.address, set_as_default=False) as client:
-        client.wait_for_workers(1, timeout=120)
         worker = next(iter(client.scheduler_info()["workers"]))
     with pytest.raises(ValueError, match=rf"must be the address of a Dask scheduler\. Got {worker}, a worker\."):
         nh.sweep(slow, DESIGN, tmp_path / "a.zarr", worker)

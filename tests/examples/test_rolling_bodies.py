@@ -18,7 +18,7 @@ from nonholo.base.types import Array
 
 X = nh.examples
 ACCURATE = {"rtol": 1e-13, "atol": 1e-13}
-ROUTES = pytest.mark.profile("routes", instead="test_the_disk_moves_as_balances_of_momentum_say")
+ROUTES = pytest.mark.profile("routes", instead="test_the_disk_has_the_equations_that_a_page_of_sympy_lacks")
 
 
 def solved(rate: Callable, first: Array, times: Array) -> Array:
@@ -40,7 +40,7 @@ def disk_by_newton_and_euler(_time: float, z: Array) -> list[float]:
     return [dlean, ddlean, -spun[2] / J, dw2, turning, roll, R * roll * np.cos(heading), R * roll * np.sin(heading)]
 
 
-@pytest.mark.profile("routes", instead="test_steady_circles_are_the_closed_form")
+@pytest.mark.profile("routes", instead="test_the_disk_has_the_equations_that_a_page_of_sympy_lacks")
 def test_the_disk_moves_as_balances_of_momentum_say() -> None:
     """A disk that wobbles, to 1e-10; the map is of order two."""
     body = {"mass": 1.2, "radius": 0.7, "rolling_inertia": 0.3, "turning_inertia": 0.11, "gravity": 9.81}

@@ -21,13 +21,15 @@ from fuzz.worker import Worker
 import nonholo as nh
 
 
+@pytest.mark.profile("faults", instead="test_no_value_passes_a_check_unseen")
 def test_calls_with_bad_values_are_refused() -> None:
     """A few trials of each seed: none is raw, silent, hangs or aborts."""
     calls = {name: call for name, call in all_calls().items() if not (call.slow or call.stores)}
-    found = api.figures(api.verdicts(draw(calls, 20, seed=5), workers=1))
+    found = api.figures(api.verdicts(draw(calls, 60, seed=5), workers=1))
     assert not found["broken"], api.lines(found)
 
 
+@pytest.mark.profile("faults", instead="test_damaged_chunk_is_named")
 def test_damaged_stores_are_refused_or_right(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut, changed and missing files of an unfinished run and of a sweep."""
     chosen = [*openings.trials("orbit", "damage", 3, seed=2)[10:], *openings.trials("sweep", "damage", 1, seed=0)]

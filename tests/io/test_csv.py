@@ -132,7 +132,7 @@ def test_headings_near_half_a_turn_go_on_over_chunks(tmp_path: Path) -> None:
     assert _of_store(tmp_path / "run.zarr") == _written(orbit, tmp_path)
 
 
-@pytest.mark.profile("faults", keep=["8"])
+@pytest.mark.profile("faults", keep=["13"])
 @pytest.mark.parametrize("every", [3, 8, 13, 200])
 def test_thinned_rows_are_rows_of_the_whole(every: int, store: Path) -> None:
     """`every` keeps states 0, N, 2 N, ...; headings still count every turn between them."""

@@ -21,7 +21,7 @@ FEW = {
 }
 
 
-@pytest.mark.profile("paper", keep=["one state"])
+@pytest.mark.profile("paper", instead="test_panels")
 @pytest.mark.parametrize("run", FEW.values(), ids=FEW)
 def test_unusual_orbits_are_drawn(run: object, tmp_path: Path) -> None:
     """Short, resting, balanced and thinned orbits are drawn and saved without a warning."""
