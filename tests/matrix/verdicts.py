@@ -81,13 +81,6 @@ RULES: tuple[Rule, ...] = (
         "What a prescribed motion drives has no steady motion: its equations contain the time.",
         "steady motion",
     ),
-    Rule(
-        "fit|ensemble of parameters",
-        "tilting disk|ball in bowl|ball on turntable",
-        "Their numbers are within their functions, not yet parameters.",
-        "name parameters|name 'time_step' alone",
-        is_broken=True,
-    ),
     Rule("fit", "particle", "A free motion does not know its unit of mass, its only number.", "unit"),
     Rule(
         "rollout|fit|tracking feedback",
