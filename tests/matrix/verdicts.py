@@ -46,7 +46,12 @@ RULES: tuple[Rule, ...] = (
         "A table has a force for each step; between steps there is none, so there is no flow.",
         "one force for each step",
     ),
-    Rule("gradient", "opaque", "No derivative goes through a Python or compiled function.", "forces that are numbers"),
+    Rule(
+        "gradient",
+        "force in Python|force in numba",
+        "No derivative goes through a force that is a Python or compiled function.",
+        "forces that are numbers",
+    ),
     Rule(
         "multipliers|checks|page|gradient",
         "wide",
@@ -82,13 +87,6 @@ RULES: tuple[Rule, ...] = (
         "steady motion",
     ),
     Rule("fit", "particle", "A free motion does not know its unit of mass, its only number.", "unit"),
-    Rule(
-        "rollout|fit|tracking feedback",
-        "opaque",
-        "A potential that is a function is not traced by JAX, even where JAX could.",
-        "forces that are numbers|vary the parameters",
-        is_broken=True,
-    ),
     Rule(
         "ensemble of parameters|gradient",
         "on a group",
