@@ -1,13 +1,14 @@
 """Balls that roll without sliding: that of Chaplygin on a plane, uniform ones in a bowl and on a table that turns."""
 
 import functools
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.checks import error
 from nonholo.base.types import Array
-from nonholo.examples._example import Example, energy_of, ready, system_in
+from nonholo.examples._example import Example, Numbers, energy_of, ready, system_in, with_numbers
 from nonholo.groups import SE, SO
 from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, LagrangeDAlembert, mass_tensor_lagrangian
 from nonholo.systems import mass_tensor_from_inertia
@@ -141,8 +142,8 @@ def ball_in_bowl(
         n, dn = _normal(rho, q, v)
         return np.cross(n, dn)[..., 2] - kappa * spinning(q, v) * n[..., 2]
 
-    system = _bowl_system(m, r, J, rho, g)
-    conserved = {"spin": spinning, "momentum": momentum, "energy": energy_of(system.lagrangian)}
+    system = with_numbers(_bowl_system, m, r, J, rho, g)
+    conserved = {"spin": spinning, "momentum": momentum, "energy": energy_of(system.plain.lagrangian)}
     facts = (
         "Without spin it moves like a spherical pendulum with five sevenths of its weight.",
         "Spin, energy and a momentum about the vertical are constant.",
@@ -158,19 +159,24 @@ def _normal(rho: float, q: Array, v: Array) -> tuple[Array, Array]:
     return n / rho, dn / rho
 
 
+_BOWL = ("mass", "radius", "inertia", "reach", "gravity")
+
+
 @functools.cache
-def _bowl_system(m: float, r: float, J: float, rho: float, g: float) -> LagrangeDAlembert:
-    def lagrangian(q: Array, v: Array) -> Array:
+def _bowl_system() -> LagrangeDAlembert:
+    def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
+        m, _, J, rho, g = map(p.__getitem__, _BOWL)
         depth = jnp.sqrt(rho**2 - q[0] ** 2 - q[1] ** 2)
         falling = (q[0] * v[0] + q[1] * v[1]) / depth
         return (m * (v[0] ** 2 + v[1] ** 2 + falling**2) + J * (v[2:] @ v[2:])) / 2 + m * g * depth
 
-    def forms(q: Array) -> Array:
+    def forms(q: Array, p: Numbers) -> Array:
+        r, rho = p["radius"], p["reach"]
         x, y, z = q[0] / rho, q[1] / rho, -jnp.sqrt(rho**2 - q[0] ** 2 - q[1] ** 2) / rho
         ahead = jnp.stack([1.0 + 0 * x, 0 * x, 0 * x, r * z, -r * y])
         return jnp.stack([ahead, jnp.stack([0 * x, 1.0 + 0 * x, -r * z, 0 * x, r * x])])
 
-    return system_in("x y alpha beta gamma", "Ball in a bowl", lagrangian, forms)
+    return system_in("x y alpha beta gamma", "Ball in a bowl", lagrangian, forms, parameters=dict.fromkeys(_BOWL, 1.0))
 
 
 @ready("place velocity", reals="table_rate", place="x and y", velocity="x' and y'")
@@ -230,7 +236,8 @@ def ball_on_turntable(
     }
     facts = ("The middle runs on a circle, at 2/7 of the rate of the table.", "So it does in the midpoint rule.")
     q, v = np.array([x, y, 0.0, 0.0]), np.array([u, w, (Omega * x - w) / r, (u + Omega * y) / r])
-    return Example("ball_on_turntable", _turntable_system(m, r, J, Omega), q, v, facts, conserved, exact)
+    system = with_numbers(_turntable_system, m, r, J, Omega)
+    return Example("ball_on_turntable", system, q, v, facts, conserved, exact)
 
 
 def _circle(z: complex, velocity: complex, kappa: float, t: Array) -> Array:
@@ -249,15 +256,17 @@ def _area(z: complex, velocity: complex, kappa: float, t: Array) -> Array:
 
 
 @functools.cache
-def _turntable_system(m: float, r: float, J: float, Omega: float) -> LagrangeDAlembert:
-    def lagrangian(q: Array, v: Array) -> Array:
-        return jnp.array([m, m, J, J]) @ v**2 / 2
+def _turntable_system() -> LagrangeDAlembert:
+    def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
+        return jnp.array([p["mass"], p["mass"], p["inertia"], p["inertia"]]) @ v**2 / 2
 
-    def forms(q: Array) -> Array:
+    def forms(q: Array, p: Numbers) -> Array:
+        r = p["radius"]
         return jnp.array([[1.0, 0.0, 0.0, -r], [0.0, 1.0, r, 0.0]])
 
-    def velocities(q: Array, _time: Array) -> Array:
-        return Omega * jnp.stack([-q[1], q[0]])
+    def velocities(q: Array, _time: Array, p: Numbers) -> Array:
+        return p["table_rate"] * jnp.stack([-q[1], q[0]])
 
-    options = {"constraint_velocities": velocities}
+    parameters = dict.fromkeys(("mass", "radius", "inertia", "table_rate"), 1.0)
+    options: Any = {"constraint_velocities": velocities, "parameters": parameters}
     return system_in("x y alpha beta", "Ball on a turntable", lagrangian, forms, **options)

@@ -163,29 +163,35 @@ def tilting_disk(
         "Upright it rolls on without falling if it is faster than sqrt(g R / 3), a uniform disk.",
     )
     v = np.array([R * np.cos(q[2]) * roll, R * np.sin(q[2]) * roll, turn, falling, roll])
-    system = _tilting_system(m, R, axle, J, g)
-    return Example(name, system, q, v, facts, {"energy": energy_of(system.lagrangian)}, circle if steady else None)
+    system = with_numbers(_tilting_system, m, R, axle, J, g)
+    exact = circle if steady else None
+    return Example(name, system, q, v, facts, {"energy": energy_of(system.plain.lagrangian)}, exact)
+
+
+_TILTING = ("mass", "radius", "rolling_inertia", "turning_inertia", "gravity")
 
 
 @functools.cache
-def _tilting_system(m: float, R: float, axle: float, J: float, g: float) -> LagrangeDAlembert:
-    def lagrangian(q: Array, v: Array) -> Array:
+def _tilting_system() -> LagrangeDAlembert:
+    def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
+        m, R, axle, J, g = map(p.__getitem__, _TILTING)
         cos, sin, rise, lean = jnp.cos(q[2]), jnp.sin(q[2]), jnp.cos(q[3]), jnp.sin(q[3])
         ahead, left = cos * v[0] + sin * v[1], cos * v[1] - sin * v[0]
         middle = (ahead + R * lean * v[2]) ** 2 + (left - R * rise * v[3]) ** 2 + (R * lean * v[3]) ** 2
         turning = J * (v[3] ** 2 + (rise * v[2]) ** 2) + axle * (v[4] + lean * v[2]) ** 2
         return (m * middle + turning) / 2 - m * g * R * rise
 
-    def forms(q: Array) -> Array:
-        ahead, left = -R * jnp.cos(q[2]), -R * jnp.sin(q[2])
+    def forms(q: Array, p: Numbers) -> Array:
+        ahead, left = -p["radius"] * jnp.cos(q[2]), -p["radius"] * jnp.sin(q[2])
         return jnp.array([[1.0, 0.0, 0.0, 0.0, ahead], [0.0, 1.0, 0.0, 0.0, left]])
 
-    looks = {"heading": "theta", "outline": functools.partial(_outline, R)}
-    return system_in("x y theta lean roll", "Tilting disk", lagrangian, forms, **looks)
+    options: Any = {"heading": "theta", "outline": _outline, "parameters": dict.fromkeys(_TILTING, 1.0)}
+    return system_in("x y theta lean roll", "Tilting disk", lagrangian, forms, **options)
 
 
-def _outline(R: float, q: Array) -> list[Array]:
+def _outline(q: Array, p: Numbers) -> list[Array]:
     """Return the rim and a spoke as they look from above, and the piece of the rim that touches the ground."""
+    R = p["radius"]
     angle = np.linspace(0.0, 2 * np.pi, 49)
     across = -R * np.sin(q[3])  # of the middle, to the left
     rim = np.stack([R * np.sin(angle), across * (1 - np.cos(angle))], axis=1)

@@ -4,6 +4,7 @@ from nonholo.base.checks import needs
 
 with needs("jax", "nonholo.lagrange_dalembert"):
     from nonholo.lagrange_dalembert import _equations as equations
+    from nonholo.lagrange_dalembert import _places as places
     from nonholo.lagrange_dalembert import _tangents as tangents
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization, GroupDiscretization, checked_state
     from nonholo.lagrange_dalembert._flow import flights, flow, vector_field
@@ -16,7 +17,6 @@ with needs("jax", "nonholo.lagrange_dalembert"):
         GroupOrbit,
         RecordedSystem,
     )
-    from nonholo.lagrange_dalembert._places import Coordinates, Poses
     from nonholo.lagrange_dalembert._rollout import CoordinateRollout
     from nonholo.lagrange_dalembert._rollout import roll as rolled_in_coordinates
     from nonholo.lagrange_dalembert._system import LagrangeDAlembert

@@ -171,10 +171,8 @@ def _step_velocity(system: Any, h: Array, x: Array, p: Array, near: tuple[Array,
     return jnp.where(code == 0, z[: len(v)], jnp.nan)
 
 
-def node_velocities(
-    system: Any, time: Float[np.ndarray, "K"], q: Float[np.ndarray, "K n"], p: Float[np.ndarray, "K n"]
-) -> Float[np.ndarray, "K n"]:
-    """Return the admissible velocities of momenta."""
+def node_velocities(system: Any, time: np.ndarray, q: np.ndarray, p: np.ndarray) -> np.ndarray:
+    """Return the admissible velocities of momenta at configurations, (K, n) all three."""
     return in_double(_node_velocities, system, places(system, q, time), p)
 
 
@@ -182,12 +180,11 @@ def _node_velocities(system: Any, x: Array, p: Array) -> Array:
     return jax.vmap(lambda x, p: equations.inverse_legendre(system, x, p))(x, p)
 
 
-def forced_slopes(
-    motion: Any, q: Float[np.ndarray, "K n"], v: Float[np.ndarray, "K n"], forces: Float[np.ndarray, "steps n"]
-) -> tuple[Float[np.ndarray, "steps 2n 2n"], Float[np.ndarray, "steps 2n n"]]:
+def forced_slopes(motion: Any, q: np.ndarray, v: np.ndarray, forces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the derivatives of the node after each step by that before it, in admissible directions, and by forces.
 
-    A node is a configuration with the velocity of its momentum. A force is constant over its step.
+    A node is a configuration with the velocity of its momentum. A force is constant over its step. Of K nodes the
+    derivatives are (K - 1, 2 n, 2 n) and (K - 1, 2 n, n).
     """
     h, system = motion.time_step, motion.system
     x = places(system, q, h * np.arange(len(q)))
@@ -205,8 +202,7 @@ def _forced_slopes(system: Any, h: Array, *rows: Array) -> tuple[Array, Array]:
 
     def limits(z: Array, x: Array, v: Array) -> Array:
         place = x.at[:n].add(z[:n])
-        rates = equations.constraint(system, place, v + z[n:])
-        return jnp.append(rates, equations.place_residual(system, place))
+        return jnp.append(equations.constraint(system, place, v + z[n:]), equations.place_residual(system, place))
 
     def one(row: tuple[Array, Array, Array]) -> tuple[Array, Array]:
         (x, v, force), still = row, jnp.zeros(2 * n)

@@ -6,6 +6,7 @@ from typing import Any, cast
 
 import equinox
 import jax
+import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.checks import array, count, error, function, is_traced, shape_of
@@ -21,6 +22,7 @@ from nonholo.systems import AbstractCoordinateDiscretization, Forced, Start, ref
 
 _roll_out = equinox.filter_jit(roll_out)
 _roll_in_coordinates = equinox.filter_jit(rolled_in_coordinates)
+_UNSEEN = 2e-15  # relative, of differences of U
 _MANY = 10_000  # steps, which may take longer than a user waits for an answer to Ctrl-C
 
 
@@ -41,7 +43,8 @@ def rollout(
     $$ P(W_k)|_{\mathfrak d} = r_k + \tfrac h2 u_k|_{\mathfrak d}, \qquad
        r_{k+1} = (\mathrm{Ad}^*_{W_k}P(W_k) + \tfrac h2 u_k)|_{\mathfrak d}, \qquad g_{k+1} = g_kW_k. $$
 
-    `Gravity`, `Friction` and the table of a `Forced` system act as in `simulate`, with derivatives by their numbers.
+    `Gravity`, `Friction` and the table of a `Forced` system act as in `simulate`, with derivatives by their numbers. A
+    potential that is a function acts by its exact derivative, if JAX can trace it (of numba the function of Python).
 
     In coordinates the numbers are the `parameters` of a `LagrangeDAlembert`, and controls are forces u_k, half of whose
     impulse acts at each end of a step as the rows of a table do.
@@ -126,10 +129,55 @@ def rollout(
     return _call(run, *own, many=sizes[0] >= _MANY)
 
 
+class _Potential(equinox.Module):
+    """A potential that is a function of a pose, and traced, beside a body; `Gravity` has the same functions."""
+
+    function: Callable[..., Array] = equinox.field(static=True)
+    weights: tuple[Array, ...]
+    inertia: Array
+
+    def check(self, group: Any) -> None:
+        """Accept any group: the function was checked."""
+
+    def energy(self, group: Any, g: Array) -> Array:
+        """Return U."""
+        del group
+        return jnp.vectorize(lambda g: self.function(g, *self.weights), signature="(n,n)->()")(g)
+
+    def covector(self, group: Any, g: Array) -> Array:
+        """Return -dU."""
+        slope = jax.grad(lambda xi, g: self.energy(group, g @ group.exp(xi)))
+        return -jnp.vectorize(slope, signature="(d),(n,n)->(d)")(jnp.zeros(group.dim, g.dtype), g)
+
+    def mean_covector(self, group: Any, g: Array, W: Array) -> Array:
+        """Return -dU in the middle of a step, and what it lacks along the displacement."""
+        X, pull = group.vee((W - group.inverse(W)) / 2), self.covector(group, g @ group.exp(group.log(W) / 2))
+        before, after, along = self.energy(group, g), self.energy(group, g @ W), self.inertia @ X
+        change, twice = after - before + pull @ X, along @ X
+        is_seen = (twice > 0) & (jnp.abs(change) > _UNSEEN * (jnp.abs(before) + jnp.abs(after)))
+        return pull - jnp.where(is_seen, change / jnp.where(is_seen, twice, 1.0), 0.0) * along
+
+
+def with_traced_potential(owner: str, discrete: Any) -> Any:
+    """Return a discretization whose potential, if it is a function, is one that JAX differentiates."""
+    forced = discrete.forces
+    if forced is None or forced.own_potential is None:
+        return discrete
+    function = getattr(forced.own_potential, "py_func", forced.own_potential)
+    pose, of = jax.ShapeDtypeStruct(forced.group.identity.shape, float), f"poses of {forced.group}"
+    with double_precision():
+        check_value(f"{owner}(discrete=...)", function, (), (pose,), of, of)
+        apart, weights = jax.closure_convert(function, pose)
+    own = _Potential(apart if weights else function, tuple(weights), forced.inertia_operator)
+    terms = tuple(own if callable(each) else each for each in forced.terms)
+    return dataclasses.replace(discrete, system=dataclasses.replace(forced, potential=terms))
+
+
 def _on_group(discrete: Any, start: Start, sizes: tuple[int, ...], controls: Any) -> tuple[Any, ...]:
     """Return the arguments of a rollout on a group; of traced starts the shapes are checked."""
     if discrete.system.is_wide:
         raise error("rollout(discrete=...)", "have matrices", "a system without", "Discretize `system.dense`.")
+    discrete = with_traced_potential("rollout", discrete)
     refuse_many_matrices("rollout(steps=...)", discrete, 1 + sizes[0] // sizes[1], "Raise save_every.")
     value, g = _checked_start(discrete, start)
     if controls is not None:

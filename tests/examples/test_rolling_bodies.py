@@ -70,7 +70,7 @@ def test_the_disk_has_the_equations_that_a_page_of_sympy_lacks(seed: int) -> Non
 @functools.cache
 def of_the_disk(gravity: float) -> Callable:
     """Return the accelerations of a uniform disk, compiled once."""
-    return jax.jit(functools.partial(acceleration, X.tilting_disk(gravity=gravity).system))
+    return jax.jit(functools.partial(acceleration, X.tilting_disk(gravity=gravity).system.plain))
 
 
 @ROUTES

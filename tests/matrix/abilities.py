@@ -474,10 +474,10 @@ def gradient(c: Case, _: Path) -> None:
     """The derivative of the end of a rollout by its start is the difference of two runs."""
     import jax
 
-    name, start = next(iter(c.start.items())) if c.ready is None else ("body_velocity", c.start["body_velocity"])
-    rest = {key: value for key, value in c.start.items() if key != name}
-    if "coordinates" in c.kind.traits:  # whose velocities have to be admissible
-        name, start = "momentum", c.orbit.momentum[0]
+    name, start = next(iter(c.start.items()))
+    if c.ready is not None:  # whose velocities have to be admissible
+        name, start = "momentum", getattr(c.orbit, "momentum" if c.in_coordinates else "restricted_momentum")[0]
+    rest = {key: value for key, value in c.start.items() if key not in (name, "body_velocity")}
 
     def end(run: Callable[..., Any], value: Any) -> Any:
         return run(c.discrete, **{name: value}, **rest, steps=3).configuration[-1].ravel()[-2]

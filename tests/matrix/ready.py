@@ -40,8 +40,30 @@ TELLING: dict[str, dict[str, float]] = {
     "driven sleigh": {"a": 0.35},
     "roller racer": {"handle": 0.35},
     "snakeboard": {"half_length": 1.1},
+    "sleigh in a well": {"inertia": 0.6, "stiffness": 0.4},
+    "heavy suslov top": {"first": 0.55, "second": 0.35},
 }
 """A guess of a number that a record tells; by default it is the parameter of the kind."""
+
+
+def _sleigh_in_a_well(p: Any) -> Any:
+    """Return it with numbers of the body and of the well."""
+    well = nh.ChaplyginSleigh(1.0, p["inertia"], 0.0)
+    return nh.Forced(well, lambda g: p["stiffness"] * (g[0, 2] ** 2 + g[1, 2] ** 2) / 2)
+
+
+def _heavy_top(p: Any) -> Any:
+    """Return it with numbers of its mass tensor."""
+    unit, potential = np.eye(3), nh.examples.heavy_suslov_top().system.potential
+    first, second = (p[name] * np.diag(row) for name, row in zip(("first", "second"), unit, strict=False))
+    return nh.Forced(nh.SuslovTop(first + second + 0.7 * np.diag(unit[2])), potential)
+
+
+BODIES: dict[str, tuple[Callable[[Any], Any], dict[str, float]]] = {
+    "sleigh in a well": (_sleigh_in_a_well, {"inertia": 0.5, "stiffness": 0.3}),
+    "heavy suslov top": (_heavy_top, {"first": 0.5, "second": 0.3}),
+}
+"""Bodies on groups as functions of numbers that a record tells, and these."""
 
 READY: dict[str, Kind] = {
     "particle": KINDS["particle"],

@@ -46,7 +46,12 @@ RULES: tuple[Rule, ...] = (
         "A table has a force for each step; between steps there is none, so there is no flow.",
         "one force for each step",
     ),
-    Rule("gradient", "opaque", "No derivative goes through a Python or compiled function.", "forces that are numbers"),
+    Rule(
+        "gradient",
+        "force in Python|force in numba",
+        "No derivative goes through a force that is a Python or compiled function.",
+        "forces that are numbers",
+    ),
     Rule(
         "multipliers|checks|page|gradient",
         "wide",
@@ -81,21 +86,7 @@ RULES: tuple[Rule, ...] = (
         "What a prescribed motion drives has no steady motion: its equations contain the time.",
         "steady motion",
     ),
-    Rule(
-        "fit|ensemble of parameters",
-        "tilting disk|ball in bowl|ball on turntable",
-        "Their numbers are within their functions, not yet parameters.",
-        "name parameters|name 'time_step' alone",
-        is_broken=True,
-    ),
     Rule("fit", "particle", "A free motion does not know its unit of mass, its only number.", "unit"),
-    Rule(
-        "rollout|fit|tracking feedback",
-        "opaque",
-        "A potential that is a function is not traced by JAX, even where JAX could.",
-        "forces that are numbers|vary the parameters",
-        is_broken=True,
-    ),
     Rule(
         "ensemble of parameters|gradient",
         "on a group",

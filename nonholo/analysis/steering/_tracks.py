@@ -1,6 +1,5 @@
 """Motions as a feedback sees them, on a group and in coordinates: nodes, errors, and how steps move these."""
 
-import functools
 from typing import Any, NamedTuple
 
 import jax
@@ -14,32 +13,22 @@ from nonholo.base.limits import within_memory
 from nonholo.base.types import Array
 from nonholo.discrete import Discretization, as_discretization
 from nonholo.discrete.definition import compile_double
-from nonholo.lagrange_dalembert import Coordinates, Poses, tangents
+from nonholo.lagrange_dalembert import places, tangents
 from nonholo.simulation import refuse_many_matrices
 from nonholo.simulation.traced import rollout
 from nonholo.systems import AbstractCoordinateDiscretization
-
-_COPIES = 4.0  # of the derivatives of a step
 
 Nodes = tuple[np.ndarray, np.ndarray]
 """Configurations, and body velocities of the momenta there."""
 
 
 class GroupTrack(NamedTuple):
-    """Motions of a body on a group; errors of velocities are along the rows of the constraint subspace."""
+    """Motions of a body on a group: where it moves, and the directions of forces and of errors of velocities."""
 
     discrete: Discretization
+    places: Any
+    rows: np.ndarray
     start = "restricted_velocity"
-
-    @property
-    def rows(self) -> np.ndarray:
-        """The directions of forces and of errors of velocities."""
-        return np.asarray(self.discrete.system.constraint_subspace)
-
-    @property
-    def places(self) -> Poses:
-        """Where it moves."""
-        return Poses(self.discrete.system.group)
 
     def check(self, where: str, steps: int) -> None:
         """Refuse constraints that are fixed in space, a table of forces, and what does not fit in memory."""
@@ -66,22 +55,13 @@ class CoordinateTrack(NamedTuple):
     """Motions in coordinates, with a force on each."""
 
     discrete: AbstractCoordinateDiscretization[Any]
+    places: Any
+    rows: np.ndarray
     start = "body_velocity"
-
-    @property
-    def rows(self) -> np.ndarray:
-        """The directions of forces and of errors of velocities."""
-        return np.eye(self.discrete.system.dimension)
-
-    @property
-    def places(self) -> Coordinates:
-        """Where it moves; the time is not asked for."""
-        return Coordinates(self.discrete.system.dimension, is_driven=False)
 
     def check(self, where: str, steps: int) -> None:
         """Refuse what does not fit in memory."""
-        n = self.discrete.system.dimension
-        within_memory(f"{where}(controls=...)", 8.0 * _COPIES * steps * 2 * n * 3 * n, "Pass fewer.")
+        within_memory(f"{where}(controls=...)", 200.0 * steps * self.rows.size, "Pass fewer.")  # four copies of A and B
 
     def nodes(self, orbit: Any) -> Nodes:
         """Return configurations and velocities of a rollout."""
@@ -95,13 +75,14 @@ class CoordinateTrack(NamedTuple):
 
 def track_of(where: str, discrete: Any, start: Any) -> GroupTrack | CoordinateTrack:
     """Return the kind of motion of a discretization, whose start has the right names."""
-    is_on_group = not isinstance(discrete, AbstractCoordinateDiscretization)
-    if is_on_group:
-        as_discretization(f"{where}(discrete=...)", discrete, forced=True)
-    elif discrete.system.orbits != "CoordinateOrbit":
+    if not isinstance(discrete, AbstractCoordinateDiscretization):
+        system = as_discretization(f"{where}(discrete=...)", discrete, forced=True).system
+        track = GroupTrack(discrete, places.Poses(system.group), np.asarray(system.constraint_subspace))
+    elif discrete.system.orbits == "CoordinateOrbit":
+        track = CoordinateTrack(discrete, discrete.system.places, np.eye(discrete.system.dimension))
+    else:
         got, remedy = type(discrete.system).__name__, "Use an `LLSystem` or a `LagrangeDAlembert`."
         raise error(f"{where}(discrete=...)", "be a body on a group, or in coordinates", got, remedy)
-    track = GroupTrack(discrete) if is_on_group else CoordinateTrack(discrete)
     check_names(f"{where}(start=...)", start, track.start)
     return track
 
@@ -123,7 +104,7 @@ def _error(places: Any, ways: Array, reference: tuple[Array, Array], state: tupl
 
 @compile_double
 def _errors(places: Any, ways: Array, nodes: Nodes, states: Nodes) -> Array:
-    return jax.vmap(functools.partial(_error, places, ways))(nodes, states)
+    return jax.vmap(lambda *pair: _error(places, ways, *pair))(nodes, states)
 
 
 def closed_loop(
