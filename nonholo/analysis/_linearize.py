@@ -352,7 +352,7 @@ def critical_values(
 
 
 def _rates(linearization: Callable[[float], Linearization], value: float) -> tuple[np.ndarray, np.ndarray]:
-    r"""Return the eigenvalues at a value, of maps their logarithms, and how far rounding moves each.
+    r"""Return the eigenvalues at a value, of maps their logarithms, and the distance by which rounding moves each.
 
     With unit eigenvectors x, y of both sides it is $\epsilon\|A\|/|y^*x|$, which has no bound for double ones.
     """

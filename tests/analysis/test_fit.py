@@ -189,7 +189,6 @@ def test_noise_may_be_given() -> None:
     np.testing.assert_allclose(np.diff([*one.intervals.values()])[:, 0] / 2, half, rtol=1e-12)
 
 
-@pytest.mark.profile("problems", instead="test_exact_record_is_fitted_exactly")
 def test_robust_loss_bears_outliers() -> None:
     """Of 8 records with 5 % of numbers far off intervals hold the truth 13 of 16 times, where squares tell nothing.
 
