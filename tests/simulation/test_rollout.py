@@ -302,7 +302,7 @@ test_bad_arguments_are_refused = refusals(
     ({"discrete": nh.discretize(nh.SuslovTop.arrowhead(np.ones(4), np.zeros(3)), 0.1)}, "system.dense"),
     ({"discrete": TOP}, "discretized system"),
     ({"discrete": nh.discretize(nh.Forced(TOP, force=np.zeros((2, 3))), 0.1)}, "one for each row of the forces"),
-    ({"discrete": nh.discretize(nh.Forced(TOP, np.trace), 0.1)}, "have forces that are numbers"),
+    ({"discrete": nh.discretize(nh.Forced(TOP, np.trace), 0.1)}, "be traceable by JAX on poses"),
     ({"discrete": nh.discretize(TOP, 0.1, order=4), "controls": np.zeros((3, 3))}, "have a step of order 2"),
     ask=lambda change: nh.rollout(**{"discrete": SLEIGH, "restricted_velocity": (0.1, 0.2), "steps": 3} | change),
 )
