@@ -15,7 +15,8 @@ import pytest
 from refusals import refusals
 
 import nonholo as nh
-from nonholo.analysis import LocalConnection, _equations
+from nonholo.analysis import LocalConnection
+from nonholo.analysis.locomotion import _equations
 from nonholo.base.types import Array
 
 LONG = pytest.mark.profile("routes", instead="test_the_car_has_the_connection_of_the_closed_form")
