@@ -64,7 +64,7 @@ def chaplygin_ball(
         return (R @ own[..., None])[..., 0]
 
     conserved = {f"momentum along {axis}": lambda g, v, i=i: momentum(g, v)[..., i] for i, axis in enumerate("xyz")}
-    return Example("chaplygin_ball", _chaplygin_system(m, r, inertia), np.eye(4), v, (), conserved)
+    return Example("chaplygin_ball", _chaplygin_system(m, r, inertia), np.eye(4), v, conserved)
 
 
 @functools.cache
@@ -148,7 +148,7 @@ def ball_in_bowl(
         "Without spin it moves like a spherical pendulum with five sevenths of its weight.",
         "Spin, energy and a momentum about the vertical are constant.",
     )
-    return Example("ball_in_bowl", system, q, rates, facts, conserved)
+    return Example("ball_in_bowl", system, q, rates, conserved, facts=facts)
 
 
 def _normal(rho: float, q: Array, v: Array) -> tuple[Array, Array]:
@@ -237,7 +237,7 @@ def ball_on_turntable(
     facts = ("The middle runs on a circle, at 2/7 of the rate of the table.", "So it does in the midpoint rule.")
     q, v = np.array([x, y, 0.0, 0.0]), np.array([u, w, (Omega * x - w) / r, (u + Omega * y) / r])
     system = with_numbers(_turntable_system, m, r, J, Omega)
-    return Example("ball_on_turntable", system, q, v, facts, conserved, exact)
+    return Example("ball_on_turntable", system, q, v, conserved, exact, facts=facts)
 
 
 def _circle(z: complex, velocity: complex, kappa: float, t: Array) -> Array:

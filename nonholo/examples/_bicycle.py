@@ -94,7 +94,7 @@ def bicycle(
     system = _system(machine, gravity)
     height = of_states(lambda q, v: machine.height(q) + 0.0 * v[0])
     conserved = {"energy": energy_of(system.lagrangian), "height of the front contact": height}
-    return Example("bicycle", system, q, start, (), conserved, time_step=0.02)
+    return Example("bicycle", system, q, start, conserved, time_step=0.02)
 
 
 class _Machine(NamedTuple):

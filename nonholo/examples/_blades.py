@@ -89,7 +89,7 @@ def knife_edge_on_incline(
 
     conserved = {"phi'": rate(2), "u phi' - G sin phi": drive}
     v = np.array([u0 * np.cos(q[2]), u0 * np.sin(q[2]), omega])
-    return Example(name, with_numbers(_edge_system, mass, inertia, G), q, v, (), conserved, exact)
+    return Example(name, with_numbers(_edge_system, mass, inertia, G), q, v, conserved, exact)
 
 
 @functools.cache
@@ -167,7 +167,7 @@ def driven_sleigh(
     body = mass, inertia, moving_mass, frequency, a, ahead, amplitude
     q = np.append(configuration, 0.0)
     v = np.array([speed * np.cos(q[2]), speed * np.sin(q[2]), turning, amplitude * frequency])
-    return Example("driven_sleigh", with_numbers(_sleigh_system, *body), q, v, (), {})
+    return Example("driven_sleigh", with_numbers(_sleigh_system, *body), q, v, {})
 
 
 @functools.cache
@@ -250,4 +250,4 @@ def sleigh_in_a_well(
 
     conserved = {"energy": energy} | ({} if a else {"turning rate": lambda _g, v: v[..., 0]})
     system = Forced(ChaplyginSleigh(m, J, a), potential)
-    return Example("sleigh_in_a_well", system, np.eye(3), np.array([turning, speed, 0.0]), (), conserved)
+    return Example("sleigh_in_a_well", system, np.eye(3), np.array([turning, speed, 0.0]), conserved)

@@ -149,7 +149,7 @@ def _of_handle(name: str, title: str, body: Any, amplitude: float | None, place:
     q, v = np.append(place, 0.0), np.array([speed * np.cos(place[2]), speed * np.sin(place[2]), heading, turning])
     system = with_numbers(functools.partial(_handle_system, title, amplitude is None), *body, amplitude or 0.0)
     conserved = {} if system.is_driven else {"energy": energy_of(cast(Any, system).plain.lagrangian)}
-    return Example(name, system, q, v, (), conserved)
+    return Example(name, system, q, v, conserved)
 
 
 @functools.cache
@@ -255,7 +255,7 @@ def snakeboard(
         return along * np.sqrt(m + (m - J0 / r**2) * np.tan(q[..., 4]) ** 2)
 
     conserved = {"phi'": rate(4), "theta' + psi'": spin, "momentum along the constraint": momentum}
-    return Example("snakeboard", with_numbers(_board_system, m, r, J0, wheel_inertia), q, v, (), conserved)
+    return Example("snakeboard", with_numbers(_board_system, m, r, J0, wheel_inertia), q, v, conserved)
 
 
 @functools.cache
@@ -348,7 +348,7 @@ def snake(
     u, omega = np.linalg.solve(rows, -half * np.asarray(joint_rates))
     v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), omega, *joint_rates])
     system = _snake_system(half, mass, inertia)
-    return Example("snake", system, np.append(q, a), v, (), {"energy": energy_of(system.lagrangian)})
+    return Example("snake", system, np.append(q, a), v, {"energy": energy_of(system.lagrangian)})
 
 
 @functools.cache

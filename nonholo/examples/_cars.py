@@ -88,7 +88,7 @@ def kinematic_car(
 
     conserved = {"phi'": rate(4), "momentum along the constraint": momentum}
     system = with_numbers(_car_system, m, J, ell, R, Jw, steering_inertia)
-    return Example("kinematic_car", system, q, v, (), conserved, None if turn else circle)
+    return Example("kinematic_car", system, q, v, conserved, None if turn else circle)
 
 
 @functools.cache
@@ -203,7 +203,7 @@ def two_wheeled_robot(
     free = motors is None and d == 0
     conserved = {"axle": axle, **({"energy of the sleigh": energy} if free else {})}
     system = _robot_system(m, J + m * ell**2, ell, c, R, Jw, motors, d)
-    return Example("two_wheeled_robot", system, q, v, (), conserved)
+    return Example("two_wheeled_robot", system, q, v, conserved)
 
 
 def _motors(torques: Any) -> Any:
@@ -311,7 +311,7 @@ def trailers(
         own = m * ahead**2 + trailer * (speeds**2).sum(axis=-1)
         return (own + v[..., 2:] ** 2 @ np.array(moments)) / 2
 
-    return Example("trailers", _trailer_system(d, masses, moments), q, v, (), {"theta'": rate(2), "energy": energy})
+    return Example("trailers", _trailer_system(d, masses, moments), q, v, {"theta'": rate(2), "energy": energy})
 
 
 @functools.cache

@@ -67,7 +67,7 @@ def rolling_disk(
     conserved = {"theta'": rate(2), "phi'": rate(3)}
     v = np.array([R * np.cos(q[3]) * roll, R * np.sin(q[3]) * roll, roll, turn])
     system = with_numbers(_disk_system, mass, R, rolling_inertia, turning_inertia)
-    return Example("rolling_disk", system, q, v, (), conserved, exact)
+    return Example("rolling_disk", system, q, v, conserved, exact)
 
 
 @functools.cache
@@ -165,7 +165,7 @@ def tilting_disk(
     v = np.array([R * np.cos(q[2]) * roll, R * np.sin(q[2]) * roll, turn, falling, roll])
     system = with_numbers(_tilting_system, m, R, axle, J, g)
     exact = circle if steady else None
-    return Example(name, system, q, v, facts, {"energy": energy_of(system.plain.lagrangian)}, exact)
+    return Example(name, system, q, v, {"energy": energy_of(system.plain.lagrangian)}, exact, facts=facts)
 
 
 _TILTING = ("mass", "radius", "rolling_inertia", "turning_inertia", "gravity")

@@ -55,12 +55,12 @@ class Example(Keeper):
         system: The system.
         configuration: Where it starts.
         body_velocity: How it starts; it satisfies the constraint.
-        facts: Known facts, a sentence each.
         conserved: Functions (configuration, velocity) -> number, constant along the continuous motion. On a discrete
             orbit the velocity is that of a step: take the middle of the step, configuration + displacement / 2.
         exact: The configurations at given times, (K,) -> (K, n), from this start; None where no formula is known.
         time_step: A step that resolves the motion, of `simulate` by default.
         steps: How many of them show it, by default; the flow is as long.
+        facts: Known facts, a sentence each: by default the lines of the section "Facts" of the function's docstring.
 
     Example:
         >>> nh.examples.particle().coordinates
@@ -71,11 +71,11 @@ class Example(Keeper):
     system: Any
     configuration: Float[np.ndarray, "n"]
     body_velocity: Float[np.ndarray, "n"]
-    facts: tuple[str, ...]
     conserved: Mapping[str, Callable[[Array, Array], Array]]
     exact: Callable[[Array], Array] | None = None
     time_step: float = 0.05
     steps: int = 400
+    facts: tuple[str, ...] = ()
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -122,8 +122,6 @@ def ready(
     start: str = "", *, reals: str = "", positive: str = "", **arrays: str
 ) -> Callable[[Callable[..., Example]], Callable[..., Example]]:
     """Let the system of what a function makes tell stores the function and its arguments but for those of the start.
-
-    The facts of an example that names none are the lines of the section "Facts" of the function's docstring.
 
     Args:
         start: The arguments of the start, in words.

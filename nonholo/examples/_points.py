@@ -62,7 +62,7 @@ def particle(
 
     conserved = {"y'": rate(1), "x' sqrt(1 + y^2)": lambda q, v: v[..., 0] * np.sqrt(1 + q[..., 1] ** 2)}
     v = np.array([a, b, y0 * a])
-    return Example("particle", with_numbers(_particle_system, mass), q, v, (), conserved, exact)
+    return Example("particle", with_numbers(_particle_system, mass), q, v, conserved, exact)
 
 
 @functools.cache
@@ -115,7 +115,7 @@ def chaotic_quartic_oscillator(*, pairs: int = 3) -> Example:
         coupling = np.sum(y**2 * z**2, axis=-1) + (z[..., 0] ** 2 * z[..., 1] ** 2 if n > 1 else 0)
         return (np.sum(v**2, axis=-1) + np.sum(q**2, axis=-1) + coupling) / 2
 
-    return Example("chaotic_quartic_oscillator", _quartic(n), q, v, (), {"energy": energy})
+    return Example("chaotic_quartic_oscillator", _quartic(n), q, v, {"energy": energy})
 
 
 @functools.cache
@@ -176,7 +176,7 @@ def non_reversible(*, asymmetry: float = 0.5, turning: float = 2.6) -> Example:
         else "The reflection (x, -y, -xi) reverses the motion: the discrete energy does not drift.",
     )
     conserved = {"energy": energy, "energy of the pendulum": pendulum}
-    return Example("non_reversible", _gearbox(asymmetry), q, v, facts, conserved)
+    return Example("non_reversible", _gearbox(asymmetry), q, v, conserved, facts=facts)
 
 
 @functools.cache

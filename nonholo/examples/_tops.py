@@ -75,7 +75,7 @@ def rattleback(
     with double_precision():
         v = np.append(np.asarray(boat.rolling(jnp.asarray(q))) @ angles, angles)
     conserved = {"energy": energy_of(system.lagrangian)}
-    return Example("rattleback", system, q, v, (), conserved, time_step=0.002, steps=5000)
+    return Example("rattleback", system, q, v, conserved, time_step=0.002, steps=5000)
 
 
 class _Boat(NamedTuple):
@@ -187,4 +187,4 @@ def heavy_suslov_top(
         return c @ g[2] ** 2 / 2
 
     system = Forced(SuslovTop.from_inertia(np.diag(inertia)), potential)
-    return Example("heavy_suslov_top", system, np.eye(3), np.append(velocity, 0.0), (), conserved)
+    return Example("heavy_suslov_top", system, np.eye(3), np.append(velocity, 0.0), conserved)

@@ -85,6 +85,7 @@ def test_disturbed_motion_is_led_back() -> None:
     left = SLEIGH.system.group.log(np.linalg.inv(goal) @ alone.configuration[-1])
     assert np.abs(motion.error[-1]).max() < 0.05 * np.abs(left).max()
     np.testing.assert_allclose(np.abs(motion.controls).max(axis=0), [0.9, 0.4, 0.0], rtol=0, atol=1e-15)
+    np.testing.assert_allclose(motion.orbit.controls[:-1] - push, motion.controls, rtol=0, atol=1e-12)
 
 
 @pytest.mark.profile("routes", instead="test_gains_are_those_of_the_dense_problem")

@@ -146,15 +146,15 @@ def test_a_library_of_another_text_is_not_used(tmp_path: Path, monkeypatch: pyte
         (tmp_path / folder).mkdir(parents=True)
     for file in ("kernels/one.py", "kernels/ahead.txt"):
         (tmp_path / file).write_text("one")
-    library.digest_of_kernels.cache_clear()
+    library.digest_of.cache_clear()
     assert library.place() is None
     file = tmp_path / "nonholo" / library.name_of_library()
     file.write_bytes(b"")
     assert library.place() == file
     (tmp_path / "kernels/one.py").write_text("another")
-    library.digest_of_kernels.cache_clear()
+    library.digest_of.cache_clear()
     assert library.place() is None
-    library.digest_of_kernels.cache_clear()
+    library.digest_of.cache_clear()
 
 
 def test_arrays_of_another_kind_go_to_numba(known: compiled.Library) -> None:

@@ -56,7 +56,7 @@ def test_a_second_process_translates_nothing(folder: Path, monkeypatch: pytest.M
     with monkeypatch.context() as patch:
         patch.setattr(_machine, "object_of", lambda *_, **__: pytest.fail("compiled again"))
         assert all(map(np.array_equal, _motions(_particle()), first))
-    for file, damage in zip(files, (b"", b"{}\n", b"\xff", files[0].read_bytes()[:-1]), strict=False):
+    for file, damage in zip(files, (b"", b"{}\n", b"[1]\n\xff", files[0].read_bytes()[:-1]), strict=False):
         file.write_bytes(damage)
     _forget()
     assert all(map(np.array_equal, _motions(_particle()), first))

@@ -12,7 +12,7 @@ from refusals import refusals
 import nonholo as nh
 from nonholo.simulation.traced import with_traced_potential
 
-START = {"body_velocity": np.array([0.4, 0.7, 0.0]), "configuration": nh.SE(2).exp([0.3, 0.2, -0.1])}
+START = {"body_velocity": np.array([0.4, 0.7, 0.0]), "configuration": nh.SE(2).exp(np.array([0.3, 0.2, -0.1]))}
 
 
 def _well(stiffness: Any, scheme: str | None = None) -> Any:

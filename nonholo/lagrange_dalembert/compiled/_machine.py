@@ -91,7 +91,7 @@ def function_at(address: int) -> Any:
 
 
 def _read(file: Path | None) -> tuple[dict[str, Any], bytes] | None:
-    with contextlib.suppress(OSError, ValueError, KeyError):
+    with contextlib.suppress(OSError, ValueError, KeyError, TypeError):
         line, binary = (file.read_bytes() if file else b"").split(b"\n", 1)
         head = json.loads(line)
         if head["digest"] == hashlib.sha256(binary).hexdigest():
@@ -100,8 +100,8 @@ def _read(file: Path | None) -> tuple[dict[str, Any], bytes] | None:
 
 
 def _keep(file: Path | None, content: bytes) -> None:
-    """Write a file at once, where the user has a home with room in it; the oldest of many go."""
-    if file is None or not file.is_absolute():
+    """Write a file at once, where there is room for it; the oldest of many go."""
+    if file is None:
         return
     part = file.with_suffix(f".{os.getpid()}-{threading.get_ident()}")
     with contextlib.suppress(OSError):
@@ -115,10 +115,11 @@ def _keep(file: Path | None, content: bytes) -> None:
 
 
 def _file(family: Any, what: tuple[Any, ...]) -> Path | None:
-    """Return the file of what is made of a family of systems; None if each process must make it."""
-    if (digest := _digest(family)) is None:
+    """Return the file of what is made of a family of systems; None if each process must make it, or without a home."""
+    folder, digest = cache_folder() / "formulas", _digest(family)
+    if digest is None or not folder.is_absolute():
         return None
-    return cache_folder() / "formulas" / f"{hashlib.sha256(f'{digest} {what}'.encode()).hexdigest()}.o"
+    return folder / f"{hashlib.sha256(f'{digest} {what}'.encode()).hexdigest()}.o"
 
 
 @functools.lru_cache(maxsize=64)
