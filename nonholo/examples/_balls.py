@@ -75,7 +75,7 @@ def _chaplygin_system(m: float, r: float, moments: tuple[float, ...]) -> GroupLa
     def forms(g: Array) -> Array:
         return jnp.concatenate([r * SO(3).hat(g[2, :3]), jnp.eye(3)], axis=1)
 
-    return GroupLagrangeDAlembert(SE(3), mass_tensor_lagrangian(SE(3), tensor), forms)
+    return GroupLagrangeDAlembert(SE(3), mass_tensor_lagrangian(SE(3), tensor), forms, name="Chaplygin's ball")
 
 
 @ready("place velocity spin", reals="spin", place="x and y", velocity="x and y")

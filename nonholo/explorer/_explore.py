@@ -27,8 +27,9 @@ from nonholo.base.checks import path as checked_path
 from nonholo.base.compiled import library
 from nonholo.base.memo import Keeper
 from nonholo.base.results import Outcome
-from nonholo.base.types import Float, Int
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization, discretize
+from nonholo.explorer._replay import replay, spread
 from nonholo.groups import matrix_from_quaternion
 from nonholo.io.places import check_file, new_file
 from nonholo.kernels import FLAT_RUNS
@@ -142,9 +143,6 @@ def shown_motion(where: str, value: Any) -> Shown:
     if not orbit.has_poses or not len(orbit):
         got = "reconstruct=False" if len(orbit) else "no state"
         raise error(where, "have poses", got, "Run with reconstruct=True, from a start that has a real branch.")
-    if orbit.coordinates and not {"x", "y"} <= set(orbit.coordinates):
-        remedy = "Name its coordinates: LagrangeDAlembert(coordinates=...)."
-        raise error(where, "have coordinates named x and y", ", ".join(orbit.coordinates), remedy)
     return (_live(orbit) if isinstance(orbit, Orbit) else None) or _replay(orbit)
 
 
@@ -186,7 +184,7 @@ def _live(orbit: Orbit) -> Shown | None:
 
 
 def _shown_state(system: AbstractSystem, orbit: Orbit, state: dict[str, Any], table: Any, cut: str = "") -> Shown:
-    preview = _numbers(orbit, _spread(orbit, _RECORDED))[0] if len(orbit) else None
+    preview = replay(orbit, spread(orbit, _RECORDED))[0] if len(orbit) else None
     data = {"kind": state["kind"], "state": state, "recorded": preview, "table": table}
     return Shown(data, _name(system), _frame_note(system) + cut)
 
@@ -297,73 +295,14 @@ def _frame_note(system: AbstractSystem) -> str:
 
 
 def _replay(orbit: AbstractOrbit, why: str = "there is no kernel in the page for this motion") -> Shown:
-    states = _spread(orbit, MOST_STATES)
-    replay, forces = _numbers(orbit, states)
+    states = spread(orbit, MOST_STATES)
+    numbers, forces = replay(orbit, states)
     names = [f"p({name})" for name in orbit.coordinates[:2]] or ["r\u2081", "r\u2082"]
-    data = {"kind": "replay", "replay": replay, "momenta": names}
+    data = {"kind": "replay", "replay": numbers, "momenta": names}
     part = f" {len(states):,} of {len(orbit):,} saved states." if len(states) < len(orbit) else ""
     note = f"A replay of numbers from Python: {why}.{part}{forces}"
     title = _name(orbit.system) if isinstance(orbit, Orbit) else orbit.system.name
     return Shown(data, title, note)
-
-
-def _spread(orbit: AbstractOrbit, most: int) -> Int[np.ndarray, "L"]:
-    """Return at most this many states, evenly over an orbit."""
-    return np.unique(np.linspace(0, len(orbit) - 1, min(len(orbit), most)).round().astype(np.int64))
-
-
-def _numbers(orbit: AbstractOrbit, states: Int[np.ndarray, "L"]) -> tuple[dict[str, Any], str]:
-    """Return what a page replays of some states, and a note on their energy."""
-    part = orbit.chosen(states) if isinstance(orbit, Orbit) and len(states) < len(orbit) else orbit
-    rows = states if len(part) > len(states) else slice(None)
-    momenta = np.pad(part.restricted_momentum, ((0, 0), (0, 2)))[rows, :2]
-    energy, forces = _shown_energy(orbit)
-    frames = (_planar_frames(part) if orbit.coordinates else _frames(part))[rows]
-    arrays = {"time": orbit.time[states], "energy": energy[states], "frames": frames, "momentum": momenta}
-    replay = {name: base64.b64encode(each.astype("<f8").tobytes()).decode() for name, each in arrays.items()}
-    return {**replay, "outcome": int(orbit.outcome)}, forces
-
-
-def _shown_energy(orbit: AbstractOrbit) -> tuple[Float[np.ndarray, "K"], str]:
-    """Return the energy, under forces less their work and from its largest value on, and a note on that."""
-    work = np.nan_to_num(orbit.known_work)
-    if not work.any():
-        return orbit.energy, ""
-    left = orbit.energy - orbit.energy[0] - work
-    return np.abs(orbit.energy).max() + left, " The energy is shown less the work of forces, from its largest value on."
-
-
-def _planar_frames(orbit: AbstractOrbit) -> Float[np.ndarray, "K 12"]:
-    """Return the same of an orbit in coordinates: the place, and axes along the heading where it is known."""
-    frames, names = np.zeros((len(orbit), 4, 3)), orbit.coordinates
-    for axis, name in enumerate("xyz"):
-        if name in names:
-            frames[:, 0, axis] = orbit.configuration[:, names.index(name)]
-    if orbit.system.heading is not None:
-        heading = orbit.configuration[:, names.index(orbit.system.heading)]
-        frames[:, 1, 0] = frames[:, 2, 1] = np.cos(heading)
-        frames[:, 1, 1], frames[:, 2, 0] = np.sin(heading), -np.sin(heading)
-        frames[:, 3, 2] = 1.0
-    return frames.reshape(len(orbit), 12)
-
-
-def _frames(orbit: AbstractOrbit) -> Float[np.ndarray, "K 12"]:
-    """Return for each state an origin and three body axes in space: the first two and the last, in three coordinates.
-
-    Components that a matrix does not have are zero.
-    """
-    g, group = orbit.configuration, orbit.space
-    turns = g[:, :-1, :-1] if group.is_affine else g
-    n = turns.shape[1]
-    axes = turns.transpose(0, 2, 1)[:, [0, 1, n - 1] if n > 2 else list(range(n)), :3]
-    frames = np.zeros((len(g), 4, 3))
-    frames[:, 1 : 1 + axes.shape[1], : axes.shape[2]] = axes
-    if group.is_affine:
-        places = g[:, :-1, -1][:, :3]
-        frames[:, 0, : places.shape[1]] = places
-    if n == 2:
-        frames[:, 3, 2] = 1.0
-    return frames.reshape(len(g), 12)
 
 
 def force_numbers(forced: Forced) -> dict[str, float] | None:
@@ -502,7 +441,7 @@ def explore(value: Any) -> Page:
     security policy lets nothing run in it but its own view.
 
     Args:
-        value: A system, what `discretize` returned, or an orbit with poses; in coordinates with x and y among them.
+        value: A system, what `discretize` returned, or an orbit with poses.
 
     Raises:
         ValueError: Something else, an orbit without poses, a system without a kernel for the page.

@@ -9,7 +9,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import error, instance, shown
+from nonholo.base.checks import error, instance, shown, text
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
@@ -53,6 +53,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
             and for starts from a velocity or a momentum, and only if it is not a quadratic form.
         potential: `potential(g)` -> scalar, U; steps take it at both ends, $l_d(W) - \tfrac h2(U(g) + U(gW))$.
             `nonholo.Forced(system, potential)` adds it.
+        name: The name of the system in pictures.
 
     Raises:
         ValueError: Something that is no group; a function that JAX cannot trace, or whose value has the wrong shape.
@@ -77,12 +78,12 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
     discrete_constraints: Callable[[Array, Array, Array], Array] | None = dataclasses.field(default=None, repr=False)
     lagrangian: Callable[[Array], Array] | None = dataclasses.field(default=None, kw_only=True, repr=False)
     potential: Callable[[Array], Array] | None = dataclasses.field(default=None, kw_only=True, repr=False)
+    name: str = dataclasses.field(default="Constraints that depend on the pose", kw_only=True)
     holonomic: ClassVar[None] = None
     is_driven: ClassVar[bool] = False
     coordinates: ClassVar[tuple[str, ...]] = ()
-    name: ClassVar[str] = "Constraints that depend on the pose"
     orbits: ClassVar[str] = "GroupOrbit"
-    in_stores: ClassVar[tuple[str, ...]] = ("constraints", "coordinates", "is_driven", "name", "orbits", "shapes")
+    in_stores: ClassVar[tuple[str, ...]] = ("constraints", "coordinates", "is_driven", "orbits", "shapes")
     rule: ClassVar[str] = "midpoint"
     has_limit: ClassVar[bool] = True
     prescribed: ClassVar[tuple[()]] = ()
@@ -95,6 +96,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
     def __post_init__(self) -> None:
         remedy = "Pass nonholo.SO(n), SE(n), MatrixGroup or a product."
         instance(_argument("group"), self.group, AbstractMatrixGroup, "be a matrix group", remedy)
+        text(_argument("name"), self.name)
         with double_precision():
             g = jax.ShapeDtypeStruct((self.group.size, self.group.size), float)
             w, h = jax.ShapeDtypeStruct((self.group.dim,), float), jax.ShapeDtypeStruct((), float)

@@ -176,10 +176,7 @@ class StripSheet:
     @property
     def blade(self) -> Blade:
         """The blade."""
-        across = (SE(2).inverse(self.variety.frame) @ [0.0, 0.0, 1.0])[1]  # the origin of body coordinates
-        shift = np.eye(3)
-        shift[1, 2] = across
-        return Blade(self.variety.frame @ shift, np.array([self.variety.arm, -across]))
+        return Blade(self.variety.blade, np.array([self.variety.arm, -self.variety.across]))
 
     @property
     def has_deltoid(self) -> bool:

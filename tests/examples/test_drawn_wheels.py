@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import nonholo as nh
+from nonholo.analysis.bodies import blade_axes, plate
 from nonholo.base.types import Array
 from nonholo.examples import Example
-from nonholo.plot.animation import _in_plane
 
 ROLLING = {
     "bicycle": [3, 4],
@@ -58,7 +58,7 @@ def in_coordinates(name: str, q: Array, v: Array) -> Callable[[float], list[tupl
 def on_group(name: str, g: Array, v: Array) -> Callable[[float], list[tuple[Array, Array]]]:
     """Return the parts at poses along a body velocity."""
     system = ready(name).system.system
-    parts, axes = _in_plane._outline(system), _in_plane._axes(system)
+    parts, axes = plate(system), blade_axes(system)
 
     def at(s: float) -> list[tuple[Array, Array]]:
         pose = g @ system.group.exp(s * v) @ axes

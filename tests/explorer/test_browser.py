@@ -1,5 +1,6 @@
 """The live page in Chromium: what it computes, shows, shares and refuses."""
 
+import io
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -7,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import nonholo as nh
 from nonholo import kernels
@@ -38,14 +40,15 @@ ORBIT = nh.simulate(nh.discretize(_top4(FOUR), 0.1), **START, steps=300)
 
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """Pages of a top and a sleigh, free, under forces and a table; of a top on SO(4); of one on SO(5), replayed."""
+    """Pages of a top and a sleigh, free, under forces and a table; on SO(4); replayed: on SO(5), a snakeboard."""
     folder = tmp_path_factory.mktemp("pages")
-    found = {name: folder / f"{name}.html" for name in (*BODIES, *FORCED, *DRIVEN, "replay", "top4")}
+    found = {name: folder / f"{name}.html" for name in (*BODIES, *FORCED, *DRIVEN, "replay", "outline", "top4")}
     for name, body in (BODIES | FORCED | DRIVEN).items():
         _sent(name, body).to_html(found[name])
     ORBIT.to_html(found["top4"])
     wide = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0, 5.0]) + 0.3), 0.1)
     nh.simulate(wide, restricted_velocity=(1.0, 0.5, 0.2, 0.1), steps=100).to_html(found["replay"])
+    nh.examples.snakeboard().simulate(steps=50).to_html(found["outline"])
     return found
 
 
@@ -63,7 +66,7 @@ def _same(page: Any, orbit: nh.Orbit, rounding: float = 0.0, poses: float = 0.0)
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("size", [(1280, 800), (390, 844)], ids=["desk", "phone"])
-@pytest.mark.parametrize("name", [*BODIES, *FORCED, *DRIVEN, "replay", "top4"])
+@pytest.mark.parametrize("name", [*BODIES, *FORCED, *DRIVEN, "replay", "outline", "top4"])
 def test_opens_quietly(visit: Callable, files: dict, name: str, size: tuple[int, int], scheme: str) -> None:
     """No error, no request but the file, nothing wider than the screen, and pictures that are not empty."""
     look = {"viewport": {"width": size[0], "height": size[1]}, "color_scheme": scheme}
@@ -233,6 +236,18 @@ def test_where_the_kernel_may_not_run(visit: Callable, files: dict, tmp_path: Pa
     assert opened.page.is_visible("#body-canvas")
     assert len(opened.requests) == 1
     assert all("Content Security Policy" in said for said in opened.errors)
+
+
+def test_outlines_are_drawn(visit: Callable, files: dict) -> None:
+    """A snakeboard is a blue board with black wheels on a floor, and its coordinates are read beside it."""
+    page = visit(files["outline"])
+    page.settle()
+    picture = np.asarray(Image.open(io.BytesIO(page.page.locator("#body-canvas").screenshot())).convert("RGB")).astype(
+        int
+    )
+    red, blue, most = picture[..., 0], picture[..., 2], picture.max(axis=-1)
+    assert min(np.sum(blue - red > 60), np.sum(most < 60)) > 100
+    assert {"theta", "psi", "energy"} <= set(page.page.locator("#now dt").all_inner_texts())
 
 
 def test_no_real_branch(visit: Callable, files: dict) -> None:

@@ -4,6 +4,7 @@ import base64
 import hashlib
 import json
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ import pytest
 from typer.testing import CliRunner
 
 import nonholo as nh
+from nonholo.analysis.bodies import blade_axes, plate
 from nonholo.cli._app import app
 from nonholo.explorer import explore
 from nonholo.explorer._explore import simulate_state
@@ -224,6 +226,52 @@ def test_replays_in_coordinates(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "less the work of forces" in text
 
 
+@pytest.mark.parametrize(
+    ("orbit", "drawing"),
+    [
+        (lambda: nh.examples.snakeboard().simulate(steps=3), [4, 2, 2, 4, 4, 2, 4, 4]),
+        (lambda: nh.examples.rolling_disk().simulate(steps=3), [4]),
+        (lambda: nh.examples.ball_on_turntable().simulate(steps=3), "ball"),
+        (lambda: nh.examples.chaplygin_ball().simulate(steps=3), "ball"),
+        (lambda: nh.examples.sleigh_in_a_well().simulate(steps=3), [121, 121, 4]),
+        (lambda: nh.examples.heavy_suslov_top().simulate(steps=3), "box"),
+        (lambda: nh.simulate(nh.discretize(nh.SuslovTop(np.eye(5)), 0.1), body_velocity=np.zeros(10), steps=3), None),
+    ],
+    ids=["outline that moves", "outline", "point", "ball", "sleigh", "box", "axes"],
+)
+def test_drawings(orbit: Callable[[], Any], drawing: Any) -> None:
+    """A replay has the corners of outlines, of sleighs in the axes of the blade, or a box, a ball, or nothing."""
+    motion = orbit()
+    replay = _data(explore(motion).text)["replay"]
+    drawn = replay["drawing"]
+    if not isinstance(drawing, list):
+        assert list(drawn) == ([] if drawing is None else [drawing])
+        return
+    assert drawn["sizes"] == drawing
+    corners = np.frombuffer(base64.b64decode(drawn["corners"]), "<f4").reshape(drawn["rows"], -1, 2)
+    frames = np.frombuffer(base64.b64decode(replay["frames"])).reshape(-1, 4, 3)
+    system = motion.system
+    if motion.coordinates:
+        expected = [np.concatenate(system.parts(q)) for q in motion.configuration]
+        np.testing.assert_array_equal(replay["names"], motion.coordinates)
+        shown = np.frombuffer(base64.b64decode(replay["coordinates"])).reshape(motion.configuration.shape)
+        np.testing.assert_array_equal(shown, motion.configuration)
+    else:
+        expected = [np.concatenate(plate(system))] * 4
+        np.testing.assert_array_equal(frames[:, 0, :2], (motion.configuration @ blade_axes(system))[:, :2, 2])
+    np.testing.assert_allclose(np.broadcast_to(corners, (4, *corners.shape[1:])), expected, rtol=1e-6, atol=1e-6)
+
+
+@pytest.mark.parametrize("names", [("x", "u"), ("q",)], ids=["two", "one"])
+def test_replays_without_a_place(names: tuple[str, ...]) -> None:
+    """Where x and y are no coordinates the first two are the place, and one beside its rate."""
+    orbit = _in_coordinates(names)
+    replay = _data(explore(orbit).text)["replay"]
+    frames = np.frombuffer(base64.b64decode(replay["frames"])).reshape(-1, 4, 3)
+    np.testing.assert_array_equal(frames[:, 0, :2], np.hstack([orbit.configuration, orbit.body_velocity])[:, :2])
+    assert replay["drawing"] == {"ball": True}
+
+
 def test_long_orbits_are_thinned() -> None:
     """A replay of many states has some of them, the first and the last too, and says how many."""
     orbit = nh.simulate(nh.discretize(TOP, 0.1, order=4), restricted_velocity=(1.0, 0.5), steps=10_000)
@@ -244,10 +292,9 @@ def test_long_orbits_are_thinned() -> None:
             nh.simulate(nh.discretize(TOP, 0.1), restricted_velocity=(1.0, 0.5), steps=2, reconstruct=False),
             "have poses",
         ),
-        (_in_coordinates(("x", "u")), "coordinates named x and y. Got x, u"),
         (nh.simulate(nh.discretize(TOP, 2.0), momentum=(3.0, 3.0), steps=2, throw=False), "have poses"),
     ],
-    ids=["number", "free body", "wide top", "wide top under forces", "no poses", "no place", "no state"],
+    ids=["number", "free body", "wide top", "wide top under forces", "no poses", "no state"],
 )
 def test_refusals(value: Any, message: str) -> None:
     """What cannot be shown is refused with a remedy."""

@@ -12,9 +12,9 @@ from PIL import Image
 from plot.runs import body_tensor, run_of, sleigh_run, top_run
 
 import nonholo as nh
+from nonholo.analysis.bodies import box as box_in_space
+from nonholo.analysis.bodies import box_in_sphere, plate
 from nonholo.lagrange_dalembert import CoordinateOrbit, LagrangeDAlembert
-from nonholo.plot.animation._in_plane import _outline
-from nonholo.plot.animation._in_space import _box, _box_in_sphere
 from nonholo.plot.animation._part import part_of, part_of_flow, shown_states
 
 
@@ -63,7 +63,7 @@ def test_a_trail_ends_where_the_body_is(top_orbit: nh.Orbit) -> None:
 
 def test_box_of_a_top_has_its_mass_tensor(top_orbit: nh.Orbit) -> None:
     """The drawn box has the principal axes of the mass tensor and sides as the roots of its moments."""
-    tensor, box = np.asarray(top_orbit.system.mass_tensor), _box_in_sphere(top_orbit)
+    tensor, box = np.asarray(top_orbit.system.mass_tensor), box_in_sphere(top_orbit.system)
     scaled = box.axes @ np.diag(box.half**2) @ box.axes.T
     assert np.allclose(scaled / scaled[0, 0], tensor / tensor[0, 0])
     corners = box.corners(np.eye(3)).reshape(-1, 3) @ box.axes
@@ -77,7 +77,7 @@ def test_box_in_space_is_the_body() -> None:
     turn = nh.SO(3).exp(np.array([0.4, -0.7, 0.2]))
     inertia = turn @ np.diag(mass / 3 * (np.sum(half**2) - half**2)) @ turn.T
     body = nh.RigidBody.from_inertia(mass, inertia, center, nh.SE(3))
-    box = _box(body)
+    box = box_in_space(body)
     assert np.allclose(np.sort(box.half), half)
     assert np.allclose(box.center, center)
     assert np.allclose(np.abs(box.axes.T @ turn), np.eye(3), atol=1e-7)
@@ -85,7 +85,7 @@ def test_box_in_space_is_the_body() -> None:
 
 def test_ellipse_in_the_plane_is_the_body() -> None:
     """A uniform ellipse of the drawn half axes, at the drawn center, has the inertia of the sleigh."""
-    body, center, blade = _outline(nh.ChaplyginSleigh(mass=2.0, inertia=0.7, a=0.5, b=0.3))
+    body, center, blade = plate(nh.ChaplyginSleigh(mass=2.0, inertia=0.7, a=0.5, b=0.3))
     p, q = np.ptp(body, axis=0) / 2
     assert 2.0 * (p**2 + q**2) / 4 == pytest.approx(0.7, rel=1e-3)  # the polygon is within the ellipse
     assert np.allclose([part[:-1].mean(axis=0) for part in (body, center)], [0.5, 0.3])

@@ -133,6 +133,18 @@ class Strip(PlanarBody):
         """The coordinate a of the center of mass along the blade."""
         return float(self.form.arm)
 
+    @property
+    def across(self) -> float:
+        """The coordinate of the origin of body coordinates across the blade."""
+        return float((SE(2).inverse(self.frame) @ [0.0, 0.0, 1.0])[1])
+
+    @property
+    def blade(self) -> Float[np.ndarray, "3 3"]:
+        """The axes of the blade at its contact point, the first along it, as seen from the user's frame."""
+        shift = np.eye(3)
+        shift[1, 2] = self.across
+        return self.frame @ shift
+
     def displacement(self, points: Float[np.ndarray, "... 2"]) -> Float[np.ndarray, "... 3 3"]:
         """Return the motions with these angles and translations."""
         angle, along = np.moveaxis(points, -1, 0)

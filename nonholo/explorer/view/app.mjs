@@ -8,7 +8,7 @@ import { kernelOf, seriesOf } from "./kernel.mjs";
 import { colors, short } from "./look.mjs";
 import { flowOf, orbitOf } from "./orbit.mjs";
 import { EnergyError, PhasePortrait } from "./plots.mjs";
-import { AxesView, noFlow, replayed } from "./replay.mjs";
+import { noFlow, replayed, ReplayView } from "./replay.mjs";
 import { SleighView } from "./sleigh_view.mjs";
 import { isSoftware, Stage } from "./stage.mjs";
 import { checked, fragmentOf, stateOf } from "./state.mjs";
@@ -22,8 +22,8 @@ import { WORDS } from "./words.mjs";
 const SECONDS = 16;
 const HOLD = 1.2;
 const RESTRICTED = ["r₁", "r₂"]; // momenta along the constraint
-const VIEWS = { top: TopView, sleigh: SleighView, top4: WideTopView, replay: AxesView };
-const EYES = { top: [1.6, -2, 0.9], sleigh: [0.25, -1.1, 1.25], top4: [1.6, -2, 0.9], replay: [1.6, -2, 1.1] };
+const VIEWS = { top: TopView, sleigh: SleighView, top4: WideTopView, replay: ReplayView };
+const EYES = { top: [1.6, -2, 0.9], sleigh: [0.25, -1.1, 1.25], top4: [1.6, -2, 0.9] };
 const byId = (id) => document.getElementById(id);
 
 export class App {
@@ -156,7 +156,7 @@ export class App {
     this.bodyStage.turned = false;
     const seen = this.body.kind ?? kind;
     if (this.body.isForced) this.values = false; // values of the map are those of free steps
-    this.bodyStage.eye.set(...EYES[seen]).normalize();
+    this.bodyStage.eye.set(...(EYES[seen] ?? ReplayView.eye(this.orbit))).normalize();
     this.view = new VIEWS[seen](this.bodyStage);
     this.shown = kind;
     document.documentElement.dataset.kind = kind;

@@ -111,6 +111,7 @@ export class Controls {
   now() {
     const { app } = this, { k, orbit, body } = app, list = byId("now"), part = (rows) => rows.subarray(orbit.rank * k, orbit.rank * (k + 1));
     const known = orbit.count ? [
+      ...(orbit.coordinate?.(k) ?? []).map(([name, x]) => [name, short(x, 6)]),
       ...body.momenta.map((label, i) => [label, short(part(orbit.r)[i], 6)]),
       ["energy", short(orbit.energy[k], 6)],
       ...(app.state?.table ? [["force", body.acting(app.state.parameters, k).map((f) => short(f, 3)).join(", ")]] : []),

@@ -1,10 +1,9 @@
 // The sleigh on the plane: an elliptic plate on a blade, its center of mass, and the track of the contact point.
 
 import {
-  BoxGeometry, BufferAttribute, BufferGeometry, CylinderGeometry, ExtrudeGeometry, Group, Line, LineSegments, Mesh,
-  Shape, SphereGeometry, Vector3,
+  BoxGeometry, BufferAttribute, BufferGeometry, CylinderGeometry, ExtrudeGeometry, Group, Line, Mesh, Shape, SphereGeometry,
 } from "three";
-import { clear, ribbon, solid, thin } from "./stage.mjs";
+import { clear, grid, ribbon, solid, thin } from "./stage.mjs";
 
 const SLENDER = 1.6;
 
@@ -42,7 +41,7 @@ export class SleighView {
     const center = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2, 0];
     this.reach = reach;
     this.height = 0.42 * this.enlarged * long; // of the center of mass
-    this.ground(center, reach, look);
+    this.fixed.add(grid(center, reach, look));
     this.track = count > 1 ? ribbon(track, () => {}, 0.02 * reach, look.dark) : null;
     if (this.track) this.track.position.z = 0.004 * reach;
     if (count > 1) this.fixed.add(this.whole(track, 0.002 * reach, look));
@@ -59,16 +58,6 @@ export class SleighView {
     const line = new Line(geometry, thin(look.muted));
     line.position.z = height;
     return line;
-  }
-
-  ground(center, reach, look) {
-    const step = 10 ** Math.floor(Math.log10(reach)), size = reach > 5 * step ? 2 * step : reach > 2 * step ? step : step / 2;
-    const [x0, y0] = center.map((x) => Math.round(x / size) * size), count = Math.ceil((1.6 * reach) / size), points = [];
-    for (let k = -count; k <= count; k++) {
-      points.push(new Vector3(x0 + k * size, y0 - count * size, 0), new Vector3(x0 + k * size, y0 + count * size, 0));
-      points.push(new Vector3(x0 - count * size, y0 + k * size, 0), new Vector3(x0 + count * size, y0 + k * size, 0));
-    }
-    this.fixed.add(new LineSegments(new BufferGeometry().setFromPoints(points), thin(look.ground)));
   }
 
   /** The body in units of its half length; the plate and the center of mass lie ahead of the blade. */

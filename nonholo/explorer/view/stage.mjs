@@ -1,7 +1,8 @@
 // A stage in space: one canvas, light, a camera that turns, and a picture that is drawn only when something changed.
 
 import {
-  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, LineBasicMaterial, Mesh, MeshBasicMaterial,
+  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide,
+  LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial,
   MeshStandardMaterial, PerspectiveCamera, SRGBColorSpace, Scene, ShaderMaterial, Spherical, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
@@ -203,6 +204,19 @@ function timeShades(dark) {
     for (let k = 0; k < SHADES; k++) all.set(color.setRGB(...timeColor(k / (SHADES - 1), dark), SRGBColorSpace).toArray(), 3 * k);
   }
   return all;
+}
+
+/** The lines of a floor about a point, at its height. */
+export function grid(center, reach, look) {
+  const step = 10 ** Math.floor(Math.log10(reach)), size = reach > 5 * step ? 2 * step : reach > 2 * step ? step : step / 2;
+  const [x0, y0] = center.map((x) => Math.round(x / size) * size), count = Math.ceil((1.6 * reach) / size), points = [];
+  for (let k = -count; k <= count; k++) {
+    points.push(new Vector3(x0 + k * size, y0 - count * size, 0), new Vector3(x0 + k * size, y0 + count * size, 0));
+    points.push(new Vector3(x0 - count * size, y0 + k * size, 0), new Vector3(x0 + count * size, y0 + k * size, 0));
+  }
+  const lines = new LineSegments(new BufferGeometry().setFromPoints(points), thin(look.ground));
+  lines.position.z = center[2];
+  return lines;
 }
 
 /** Free the shapes that a group holds on the graphics card, and empty it. */

@@ -52,8 +52,9 @@ export const WORDS = {
     energy: ENERGY(math(i("E"), o("="), frac(sup(i("π"), n(2)), n(2) + o("(") + i("J") + o("+") + i("m") + sup(i("a"), n(2)) + o(")")), o("+"), frac(`<msubsup>${i("p")}${n(1)}${n(2)}</msubsup>`, n(2) + i("m")))),
   },
   replay: {
-    body: `<p>The motion was computed by nonholo and is replayed from numbers in this file, as the line below says why. The three body axes are
-      drawn where they point; in more than three dimensions their first three coordinates.</p>`,
+    body: `<p>The motion was computed by nonholo and is replayed from numbers in this file, as the line below says why. The ribbon is the path, from violet to
+      yellow. On a plane the body is its outline as in pictures, with wheels and blades in black; in space it is the box with its mass tensor, or a ball, with
+      its three axes. A system without a body is a ball at its place. Elsewhere the body axes are drawn; in more than three dimensions their first three coordinates.</p>`,
     phase: "<p>The first two momenta along the constraint. Dots are the saved states, from violet to yellow.</p>",
     energy: "<p>The relative change of the energy since the first state, on a logarithmic axis; zeros stand on its floor. The dashed line is the spacing of double precision, 2.2·10<sup>−16</sup>.</p>",
   },

@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 
+from nonholo.analysis.bodies import blade_axes, plate
 from nonholo.base.types import Float
 from nonholo.groups import SE
 from nonholo.orbit import AbstractOrbit, Orbit
@@ -14,11 +15,7 @@ from nonholo.plot import theme
 from nonholo.plot.animation._part import Part, Points, Show, draw_point, draw_trail, motion_of, name_of_trail, together
 from nonholo.plot.motion.coordinates import Bodies, Track, bodies_of
 from nonholo.plot.parts import fit_view
-from nonholo.plot.sheets import blade_of_system
 from nonholo.systems import System
-
-_SLENDER = 1.6  # length of the drawn body over its width
-
 
 Drawn: TypeAlias = Callable[[Any], Bodies | None]
 """A function of states that gives their bodies."""
@@ -27,12 +24,12 @@ Drawn: TypeAlias = Callable[[Any], Bodies | None]
 def motion(orbit: Orbit) -> float:
     """Return the motion of the body between saved states, in units of what the eye can follow from frame to frame."""
     point = SE(2).adjoint(SE(2).inverse(_axes(orbit.system)))[1:]
-    return motion_of(orbit, point, float(np.ptp(_outline(orbit.system)[0][:, 0])))
+    return motion_of(orbit, point, float(np.ptp(plate(orbit.system)[0][:, 0])))
 
 
 def draw_body(axes: Axes, orbit: Orbit, parts: list[Part]) -> Show:
     """Draw a body on SE(2) and others beside; return what shows a frame."""
-    frame, outline = _axes(orbit.system), _outline(orbit.system)
+    frame, outline = _axes(orbit.system), plate(orbit.system)
     radius = max(float(np.linalg.norm(part, axis=1).max()) for part in outline)
 
     def points(states: Orbit) -> Float[np.ndarray, "K 2"]:
@@ -62,26 +59,8 @@ def draw_path(track: Track, axes: Axes, orbit: AbstractOrbit, parts: list[Part])
 
 def _axes(system: System) -> Float[np.ndarray, "3 3"]:
     """Return the axes in the body that are drawn: those of its blade, if it has one."""
-    blade = blade_of_system(system)
-    return np.eye(3) if blade is None else blade.frame
-
-
-def _outline(system: System) -> list[Float[np.ndarray, "P 2"]]:
-    r"""Return the uniform ellipse with the mass and moment of inertia of a body, its center, and its blade.
-
-    The ellipse with half axes $p$, $q$ has $J = m(p^2 + q^2)/4$.
-    """
-    inertia, frame = np.asarray(system.inertia_operator), _axes(system)
-    mass = float(np.trace(inertia[1:, 1:])) / 2
-    center = np.array([inertia[0, 2], -inertia[0, 1]]) / mass
-    moment = max(float(inertia[0, 0] - mass * center @ center), 0.0)
-    length = _SLENDER * np.sqrt(4 * moment / mass / (1 + _SLENDER**2)) or 1.0
-    angle = np.linspace(0, 2 * np.pi, 121)
-    circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    middle = (SE(2).inverse(frame) @ [*center, 1.0])[:2]
-    outline = [middle + length * circle * [1.0, 1 / _SLENDER], middle + 0.05 * length * circle]
-    stroke = np.array([[-0.4, -0.025], [0.4, -0.025], [0.4, 0.025], [-0.4, 0.025]])
-    return outline if blade_of_system(system) is None else [*outline, length * stroke]
+    axes = blade_axes(system)
+    return np.eye(3) if axes is None else axes
 
 
 def _draw(

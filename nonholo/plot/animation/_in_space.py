@@ -1,13 +1,15 @@
 """Films of bodies in space: boxes over their shadows, and on the sphere that a body axis of theirs travels on."""
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgb, to_rgba
 
+from nonholo.analysis.bodies import Box, box_in_sphere
+from nonholo.analysis.bodies import box as box_in_space
 from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plot import theme
@@ -16,50 +18,8 @@ from nonholo.plot.motion.coordinates import Track
 from nonholo.plot.motion.spheres import known_axes, rotation_axes
 from nonholo.plot.parts import fit_view, forbidden_axis, turn_per_state
 from nonholo.plot.sphere import View, arcs, best_view, draw_globe, set_curve
-from nonholo.systems import System
 
-_THINNEST = 0.12  # of the drawn box, over its longest side
 _LIGHT = np.array([-0.4, 0.6, 0.7]) / np.linalg.norm([-0.4, 0.6, 0.7])  # right, up, toward the eye
-_NORMALS = np.concatenate([np.eye(3), -np.eye(3)])
-
-
-class Box(NamedTuple):
-    """A uniform box that is fixed in a body.
-
-    Attributes:
-        half: Its half sides.
-        axes: Its axes in the body, in columns.
-        center: Its center in the body.
-    """
-
-    half: Float[np.ndarray, "3"]
-    axes: Float[np.ndarray, "3 3"]
-    center: Float[np.ndarray, "3"]
-
-    def corners(self, g: Float[np.ndarray, "N N"]) -> Float[np.ndarray, "6 4 3"]:
-        """Return the corners of its faces in space, in a pose of SO(3) or SE(3)."""
-        faces = []
-        for normal in _NORMALS:
-            along, across = np.eye(3)[normal == 0]
-            faces.append([normal + i * along + j * across for i, j in ((1, 1), (1, -1), (-1, -1), (-1, 1))])
-        inside = self.half * np.array(faces) @ self.axes.T + self.center
-        return inside @ g[:3, :3].T + (g[:3, 3] if len(g) == 4 else 0.0)
-
-    def way_out(self, direction: Float[np.ndarray, "3"]) -> float:
-        """Return how many times a vector, in body axes, goes from the center to the surface."""
-        size = np.abs(self.axes.T @ direction)
-        ways = np.divide(self.half, size, out=np.full(3, np.inf), where=size > 1e-12 * size.max(initial=1e-300))
-        return float(ways.min())
-
-
-def box_of(inertia: Float[np.ndarray, "3 3"], mass: float) -> Box:
-    """Return the uniform box about the origin with an inertia tensor: sides with $J_i = m s_i^2 / 3$ of half sides $s$.
-
-    A moment that is too small, or negative, as no body has it, gives a thin box.
-    """
-    moments, axes = np.linalg.eigh(np.trace(inertia) / 2 * np.eye(3) - inertia)
-    longest = max(float(moments[-1]), 0.0)
-    return Box(np.sqrt(3 / mass * np.maximum(moments, _THINNEST**2 * longest)), axes, np.zeros(3))
 
 
 def draw_box(axes: Axes, view: View, box: Box, *, zorder: float, ghost: bool = False) -> Callable[[Any], None]:
@@ -70,7 +30,7 @@ def draw_box(axes: Axes, view: View, box: Box, *, zorder: float, ghost: bool = F
     shade = np.array(to_rgb("#56b4e9" if theme.is_dark() else "#a8d4f2"))
 
     def show(g: Float[np.ndarray, "N N"]) -> None:
-        facing = _NORMALS @ (g[:3, :3] @ box.axes).T @ view.frame.T
+        facing = box.normals(g) @ view.frame.T
         front = facing[:, 2] > 0
         faces.set_verts(list(view(box.corners(g)[front])[0]))
         if not ghost:
@@ -87,27 +47,17 @@ _ARM = 1.5  # of a body axis, in half diagonals of the box
 
 def motion(orbit: Orbit) -> float:
     """Return the motion of the body between saved states, in units of what the eye can follow from frame to frame."""
-    return motion_of(orbit, np.eye(6)[3:], 2 * float(np.linalg.norm(_box(orbit.system).half)))
+    return motion_of(orbit, np.eye(6)[3:], 2 * float(np.linalg.norm(box_in_space(orbit.system).half)))
 
 
 def draw_body(axes: Axes, orbit: Orbit, parts: list[Part]) -> Show:
     """Draw a body on SE(3) as a box, and others beside; return what shows a frame."""
-    return _draw(axes, orbit, parts, lambda states: states.configuration[:, :3, 3], _box(orbit.system))
+    return _draw(axes, orbit, parts, lambda states: states.configuration[:, :3, 3], box_in_space(orbit.system))
 
 
 def draw_path(track: Track, axes: Axes, orbit: AbstractOrbit, parts: list[Part]) -> Show:
     """Draw a path in three coordinates and a point on it; return what shows a frame."""
     return _draw(axes, orbit, parts, track.points, None)
-
-
-def _box(system: System) -> Box:
-    """Return the uniform box with the mass tensor of a body about its center of mass."""
-    inertia = np.asarray(system.inertia_operator)
-    mass = float(np.trace(inertia[3:, 3:])) / 3
-    lever = inertia[:3, 3:] / mass  # hat(center)
-    center = np.array([lever[2, 1] - lever[1, 2], lever[0, 2] - lever[2, 0], lever[1, 0] - lever[0, 1]]) / 2
-    steiner = mass * (center @ center * np.eye(3) - np.outer(center, center))
-    return box_of(inertia[:3, :3] - steiner, mass)._replace(center=center)
 
 
 def _draw(axes: Axes, orbit: AbstractOrbit, parts: list[Part], points: Points, box: Box | None) -> Show:
@@ -173,7 +123,6 @@ def _draw_body(axes: Axes, part: Part, box: Box, floor: float) -> Show:
 Axis = Float[np.ndarray, "3"]
 _TURN = np.radians(22.0)  # most between two frames
 _PIECE = np.radians(4.0)
-_LONGEST = 0.72  # from the center of the box to its corners, in radii of the sphere
 _AXIS = {"linewidth": 3.0, "marker": "o", "markersize": 6}
 _SPIN = {"linewidth": 2.0, "marker": "D", "markersize": 4, "label": "angular velocity"}
 
@@ -203,7 +152,7 @@ def _sticks(axes: Axes, view: View, frames: Orbit, gamma: Axis, name: str) -> Sh
     poses = frames.configuration
     spins = frames.body_velocity
     spins = spins * 1.12 / (np.linalg.norm(spins, axis=1).max() or 1.0)
-    box = _box_in_sphere(frames)
+    box = box_in_sphere(frames.system)
     show_box = draw_box(axes, view, box, zorder=4)
     show_axis = _stick(axes, view, color=theme.INK, label=theme.option("label", name), **_AXIS)
     show_spin = _stick(axes, view, color=theme.UNSTABLE, **_SPIN)
@@ -217,16 +166,11 @@ def _sticks(axes: Axes, view: View, frames: Orbit, gamma: Axis, name: str) -> Sh
     return show
 
 
-def _box_in_sphere(frames: Orbit) -> Any:
-    box = box_of(np.asarray(frames.system.inertia_operator), 1.0)
-    return box._replace(half=_LONGEST * box.half / np.linalg.norm(box.half))
-
-
 def _beside(axes: Axes, view: View, other: Part, gamma: Axis) -> Show:
     colors = np.broadcast_to(to_rgba(theme.CONTINUOUS), (len(other.path) - 1, 4))
     axes.plot([], [], color=theme.CONTINUOUS, label="continuous")
     show_trace = _trace(axes, view, other, gamma, colors, 1.2)
-    show_box = draw_box(axes, view, _box_in_sphere(other.frames), zorder=4.5, ghost=True)
+    show_box = draw_box(axes, view, box_in_sphere(other.frames.system), zorder=4.5, ghost=True)
     poses = other.frames.configuration
     return together([show_trace, lambda frame: show_box(poses[frame])])
 
