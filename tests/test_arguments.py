@@ -76,3 +76,11 @@ def test_the_free_top_has_no_unit_of_mass() -> None:
     expected = nh.moser_veselov_displacement(J, P, 0.1)
     for mass in (2.0**-490, 2.0**490):
         np.testing.assert_array_equal(nh.moser_veselov_displacement(mass * J, mass * P, 0.1), expected)
+
+
+def test_what_was_got_stands_on_one_line() -> None:
+    """An error about a body with matrices is a line, not the middle of a table."""
+    wide = nh.discretize(nh.SuslovTop(np.eye(4)), 0.1)
+    with pytest.raises(ValueError, match=r"Got SuslovTop\(n=4, .*\. For others") as failure:
+        nh.momentum_locus(wide)
+    assert "\n" not in str(failure.value)

@@ -9,6 +9,7 @@ import functools
 import math
 import numbers
 import os
+import re
 import sys
 from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
@@ -107,9 +108,9 @@ def real_or_complex(where: Owner, value: Any, remedy: str) -> np.ndarray:
 
 
 def shown(value: Any) -> str:
-    """Return any value as a text of limited length."""
+    """Return any value as a line of limited length."""
     try:
-        text = repr(value)
+        text = re.sub(r"\s*\n\s*", " ", repr(value))
     except Exception:  # an integer of thousands of digits, nested lists, whatever it is made of
         text = f"a {type(value).__name__} that cannot be shown"
     return text if len(text) <= 200 else f"{text[:200]}..."
