@@ -21,7 +21,8 @@ export function replayed({ time, energy, frames, momentum, coordinates, names, d
 export const noFlow = (orbit) => ({ size: 0, back: () => [0, 0], attracting: null, at: () => [NaN, NaN], orbit });
 
 const SMALLEST = 7; // the radius of a body is at least the extent of its path over this
-const THIN = 0.04; // half the width of a stroke, in radii of the body
+const LOW = 0.08, HIGH = 0.18, TOP = 0.26; // heights of the body and of what it carries, in radii of its first part
+const THIN = 0.04; // half the width of a stroke, in the same
 const FLOOR = 0.004; // height of the track, in parts of the picture
 
 /** Flat parts as prisms, between two heights, whose corners may move. */
@@ -36,8 +37,8 @@ class Prism {
     this.mesh.frustumCulled = false;
   }
 
-  set(corners, radius) {
-    const { size, place, geometry, heights: [low, high] } = this, ring = corners.length < 6 ? stroke(corners, THIN * radius) : corners;
+  set(corners, half) {
+    const { size, place, geometry, heights: [low, high] } = this, ring = corners.length < 6 ? stroke(corners, half) : corners;
     const points = Array.from({ length: size }, (_, i) => new Vector2(ring[2 * i], ring[2 * i + 1]));
     if (ShapeUtils.isClockWise(points)) points.reverse();
     points.forEach((p, i) => {
@@ -93,7 +94,6 @@ export class ReplayView {
     const reach = extent / 2 + this.enlarged * Math.max(radius, drawing.sizes ? 0 : this.length);
     if (isFlat) this.fixed.add(grid(center, reach, look));
     this.trail(extent, reach, isFlat, look);
-    this.bodyRadius = radius;
     this.body(drawing, radius, look);
     this.rods = drawing.sizes ? [] : [look.body, look.flow, look.accent].map((color) => this.add(new CapsuleGeometry((drawing.ball ? 0.08 : 0.025) * radius, 1, 4, 12), color));
     this.moving.scale.setScalar(this.enlarged);
@@ -104,6 +104,8 @@ export class ReplayView {
   radius({ sizes, corners, box }, extent) {
     if (sizes) {
       this.corners = numbersOf(corners, Float32Array);
+      const first = this.corners.subarray(0, 2 * sizes[0]), [x, y] = [0, 1].map((j) => first.filter((_, i) => i % 2 === j));
+      this.unit = Math.hypot(...[x, y].map((side) => Math.max(...side) - Math.min(...side))) / 2 || 1;
       let most = 0;
       for (let i = 0; i < this.corners.length; i += 2) most = Math.max(most, Math.hypot(this.corners[i], this.corners[i + 1]));
       return most || 1;
@@ -131,7 +133,7 @@ export class ReplayView {
   }
 
   body({ sizes, box, ball }, radius, look) {
-    this.parts = (sizes ?? []).map((size, k) => new Prism(size, k ? [0, 0.3 * radius] : [0.1 * radius, 0.22 * radius], k ? look.ink : look.body));
+    this.parts = (sizes ?? []).map((size, k) => new Prism(size, (k ? [0, TOP] : [LOW, HIGH]).map((z) => z * this.unit), k ? look.ink : look.body));
     for (const { mesh } of this.parts) this.moving.add(mesh);
     this.solid = box ? this.add(new BoxGeometry(...box.half.map((x) => 2 * x)), look.body) : null;
     if (this.solid) {
@@ -150,7 +152,7 @@ export class ReplayView {
       let at = rows > 1 ? width * k : 0;
       this.moving.rotation.z = Math.atan2(f[4], f[3]);
       this.parts.forEach((part, i) => {
-        if (rows > 1 || !part.geometry.index) part.set(this.corners.subarray(at, (at += 2 * sizes[i])), this.bodyRadius);
+        if (rows > 1 || !part.geometry.index) part.set(this.corners.subarray(at, (at += 2 * sizes[i])), THIN * this.unit);
       });
     }
     if (this.solid) this.solid.matrix.makeBasis(...axes).multiply(this.inside);
