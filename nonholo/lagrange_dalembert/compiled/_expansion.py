@@ -198,11 +198,11 @@ class Expansion:
         entry, loop, end = b.block, b.append_basic_block(), b.append_basic_block()
         b.branch(loop)
         b.position_at_end(loop)
-        order, k = _internal(module, f"{name}.order", ir.VoidType(), [pointer, pointer, _WORD]), b.phi(_WORD)
+        order = _internal(module, f"{name}.order", ir.VoidType(), [pointer, pointer, _WORD])
+        k = _phi(b, {entry: _constant(1)})
         b.call(order, [self.first, self.series, k])
         following = b.add(k, _constant(1))
-        for value, block in ((_constant(1), entry), (following, loop)):
-            k.add_incoming(value, block)
+        k.add_incoming(following, loop)
         b.cbranch(b.icmp_signed("<=", following, last), loop, end)
         b.position_at_end(end)
         b.ret_void()
@@ -251,10 +251,9 @@ class Expansion:
     def _table(self, module: Any, name: str) -> Any:
         """Put the kinds and the rows of all operations into a module, each a word."""
         kinds = {kind: i for i, kind in enumerate(dict.fromkeys(map(self._kind, self.order)))}
-        rows = (
-            [kinds[self._kind(x)], *(np.array(each).view(np.int64) for each in self._row(x))] for x in self._in_groups()
-        )
-        text = bytearray(np.array([*itertools.chain(*rows), len(kinds)], dtype=np.int64).tobytes())
+        rows = ([kinds[self._kind(x)], *self._row(x)] for x in self._in_groups())
+        words = [np.array(each).view(np.int64) for each in itertools.chain(*rows, [len(kinds)])]
+        text = bytearray(np.array(words).tobytes())
         table: Any = ir.GlobalVariable(module, ir.ArrayType(ir.IntType(8), len(text)), name)
         table.initializer, table.linkage, table.align = ir.Constant(table.value_type, text), "internal", 8
         return table.bitcast(_WORD.as_pointer())
@@ -293,9 +292,8 @@ class Expansion:
             if rate.value is None:
                 coefficient = b.fdiv(self._of(_constant(self._place(rate)), earlier), self.divisor)
             else:
-                coefficient = b.select(
-                    b.icmp_signed("==", self.before, _constant(0)), _constant(float(rate.value)), _constant(0.0)
-                )
+                is_first = b.icmp_signed("==", self.before, _constant(0))
+                coefficient = b.select(is_first, _constant(float(rate.value)), _constant(0.0))
             row = b.add(b.mul(self.k, _constant(self.width)), _constant(m))
             b.store(coefficient, b.gep(self.series, [row]))
             self._keep(x, coefficient, *map(_constant, self._row(x)))
@@ -303,10 +301,10 @@ class Expansion:
     def _write_coefficient(self, x: Scalar, *row: Any) -> None:
         """Write the coefficient of order k."""
         end = 1 + len(x.arguments)
-        coefficient = (
-            self._integral(*row[end:]) if x in self.functions else getattr(self, f"_{x.operation}")(*row[:end])
-        )
-        self._keep(x, coefficient, *row)
+        if x in self.functions:
+            self._keep(x, self._integral(*row[end:]), *row)
+        else:
+            self._keep(x, getattr(self, f"_{x.operation}")(*row[:end]), *row)
 
     def _keep(self, x: Scalar, coefficient: Any, *row: Any) -> None:
         """Store a coefficient, and k times it where a function needs that."""
