@@ -300,11 +300,9 @@ class Expansion:
 
     def _write_coefficient(self, x: Scalar, *row: Any) -> None:
         """Write the coefficient of order k."""
-        end = 1 + len(x.arguments)
-        if x in self.functions:
-            self._keep(x, self._integral(*row[end:]), *row)
-        else:
-            self._keep(x, getattr(self, f"_{x.operation}")(*row[:end]), *row)
+        end, is_function = 1 + len(x.arguments), x in self.functions
+        write = self._integral if is_function else getattr(self, f"_{x.operation}")
+        self._keep(x, write(*(row[end:] if is_function else row[:end])), *row)
 
     def _keep(self, x: Scalar, coefficient: Any, *row: Any) -> None:
         """Store a coefficient, and k times it where a function needs that."""
@@ -348,11 +346,8 @@ class Expansion:
     def _integral(self, *rates: Any) -> Any:
         b, total = self.builder, _constant(0.0)
         for move, slope in zip(rates[::2], rates[1::2], strict=False):
-            if slope.type == DOUBLE:
-                term = b.fmul(slope, self._of(b.add(move, self.before), self.first))
-            else:
-                term = self._sum(move, slope, self.k)
-            total = b.fadd(total, term)
+            latest = self._of(b.add(move, self.before), self.first)
+            total = b.fadd(total, b.fmul(slope, latest) if slope.type == DOUBLE else self._sum(move, slope, self.k))
         return b.fdiv(total, self.divisor)
 
     def _sum(self, first: Any, last: Any, terms: Any) -> Any:
