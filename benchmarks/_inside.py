@@ -23,6 +23,7 @@ HOMES = {
     "best": "nonholo.analysis.steering._shooting",
     "continuation": "",  # of the tests
     "correction": "nonholo.kernels._scalar",
+    "Expansion": "nonholo.lagrange_dalembert.compiled._expansion",
     "enclosures": "nonholo.discrete.certificate._certificate",
     "flow_by_diffrax": "nonholo.lagrange_dalembert._integration:flow",
     "flow_by_series": "nonholo.lagrange_dalembert.compiled._flow:flow",

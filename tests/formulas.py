@@ -2,10 +2,11 @@
 
 from typing import Any
 
-from nonholo.lagrange_dalembert.compiled._machine import function_at, machine_code, write_function
+from nonholo.base.compiled import FUNCTION
+from nonholo.lagrange_dalembert.compiled._machine import machine_code, write_function
 
 
 def function_of(inputs: list[Any], results: list[Any]) -> Any:
     """Return a C function of inputs and results, of which nothing is kept."""
     addresses, _ = machine_code(lambda module: write_function(module, "function", inputs, results))
-    return function_at(addresses["function"])
+    return FUNCTION(addresses["function"])

@@ -19,4 +19,5 @@ with needs("jax", "nonholo.lagrange_dalembert"):
     )
     from nonholo.lagrange_dalembert._rollout import CoordinateRollout
     from nonholo.lagrange_dalembert._rollout import roll as rolled_in_coordinates
+    from nonholo.lagrange_dalembert._start import momentum
     from nonholo.lagrange_dalembert._system import LagrangeDAlembert

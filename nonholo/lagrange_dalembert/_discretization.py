@@ -80,8 +80,8 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
         if start.name == "displacement":
             v = checks.velocity_of_displacement(system, q, start.value, h)
             return First((in_double(equations.momenta, system, q, v, h)[0], q, v))
-        v = checks.velocity(*subject, q, start.value, project=start.project)
-        return First((checks.momentum(system, q, v), q, v))
+        p, v = checks.velocity(*subject, q, start.value, project=start.project)
+        return First((p, q, v))
 
     @functools.cached_property
     def _stepper(self) -> AbstractStepper[OrbitT]:
@@ -170,7 +170,7 @@ def checked_state(
     q = checks.point(owner, system, configuration, time, project=project)
     if name == "momentum":
         return checks.of_momentum(owner, system, q, starts[name])[1:]
-    return q, checks.velocity(owner, system, q, starts[name], project=project)
+    return q, checks.velocity(owner, system, q, starts[name], project=project)[1]
 
 
 def _fixed_time_step(value: Any) -> float:

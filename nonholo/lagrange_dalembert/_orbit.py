@@ -382,7 +382,7 @@ class CoordinateFlow(CoordinateMotion):
         state = room("_discretization").checked_state(
             self.system, start.configuration, {start.name: start.value}, self.begins, start.owner, project=start.project
         )
-        return First((in_double(equations.momentum, self.system, *state), *state))
+        return First((room("_start").momentum(self.system, *state), *state))
 
     def solve(self, first: First, times: Float[np.ndarray, "K"], rtol: float, *, reconstruct: bool) -> Any:
         """Return the orbit from a checked start, with the default error of its method where `rtol` is 0."""

@@ -109,25 +109,26 @@ def consistent(system: Any, q: np.ndarray, h: Any) -> None:
 
 def velocity(
     owner: str, system: Any, q: Float[np.ndarray, "x"], value: Any, *, project: bool
-) -> Float[np.ndarray, "n"]:
-    """Return a velocity that satisfies the constraint, at which the Lagrangian is regular.
+) -> tuple[Float[np.ndarray, "n"], Float[np.ndarray, "n"]]:
+    """Return the momentum of a velocity that satisfies the constraint, at which the Lagrangian is regular, and this.
 
     With `project` it is the admissible one next to the given one in the kinetic energy.
     """
     where = f"{owner}(body_velocity=...)"
     v = array(where, value, (system.dimension,), f"Pass the {system.dimension} velocities.")
-    _check_regular(system, q, v)
+    p = _check_regular(system, q, v)
     if project:
-        return in_double(admissible_velocity, system, q, v)
+        v = in_double(admissible_velocity, system, q, v)
+        return momentum(system, q, v), v
     A, residual = _at(_constraints, system, q, v)
     rounding = np.finfo(float).eps * np.linalg.norm(A, axis=1) * np.linalg.norm(v)  # of forms where their terms vanish
     if np.any(np.abs(residual) > _TOLERANCE * (np.abs(A) @ np.abs(v) + np.abs(A @ v - residual)) + rounding):
         raise inadmissible(where, residual, v - np.linalg.pinv(A) @ residual)
-    return v
+    return p, v
 
 
-def _check_regular(system: Any, q: np.ndarray, v: np.ndarray) -> None:
-    """Refuse Lagrangians that have no finite derivatives, leave accelerations open or contradict each other."""
+def _check_regular(system: Any, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Return the momentum, of a Lagrangian with finite derivatives, of accelerations and without contradictions."""
     what, at = _argument(system, system.energy_argument), f"at {q.tolist()}, velocity {v.tolist()}"
     value, *gradients, matrix = _at(_kinetics, system, q, v)
     if not all(np.all(np.isfinite(x)) for x in (value, *gradients)):
@@ -138,12 +139,13 @@ def _check_regular(system: Any, q: np.ndarray, v: np.ndarray) -> None:
         got = f"least singular value {least:.3g} of the equations {at}"
         raise error(what, "determine the accelerations", got, "Give every admissible direction a kinetic energy.")
     if system.has_limit and np.any(v):
-        _check_limit(system, q, v)
+        _check_limit(system, q, v, gradients[1])
+    return gradients[1]
 
 
-def _check_limit(system: Any, q: np.ndarray, v: np.ndarray) -> None:
+def _check_limit(system: Any, q: np.ndarray, v: np.ndarray, limit: np.ndarray) -> None:
     """Refuse a discrete Lagrangian that is not about h times the Lagrangian in short steps."""
-    h, limit = _SMALL / np.linalg.norm(v), momentum(system, q, v)
+    h = _SMALL / np.linalg.norm(v)
     p = np.mean(_at(equations.momenta, system, q, v, h), axis=0)
     if not np.linalg.norm(p - limit) <= _CLOSE * np.linalg.norm(limit):
         got = f"momentum {p.tolist()} at the small step {h:.3g}, in the limit {limit.tolist()}"

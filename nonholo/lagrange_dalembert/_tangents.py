@@ -36,7 +36,7 @@ def begin(motion: Any, owner: str, configuration: Any, velocity: Any) -> tuple[n
     if motion.time_step is None:
         return x, v
     h = np.float64(motion.time_step)
-    p = in_double(equations.momentum, system, x, v)
+    p = room("_start").momentum(system, x, v)
     (_, v, _), _, code = in_double(set_out, system, h, x, v, p)
     return x, np.where(code == 0, v, np.nan)
 

@@ -1,5 +1,6 @@
 """Taylor series of formulas: the coefficients of each operation, flows beside numbers of other sources, and kinks."""
 
+import functools
 import sys
 from typing import Any
 
@@ -14,6 +15,7 @@ from llvmlite import ir
 import nonholo as nh
 from nonholo.base.compiled.emission import compile_text
 from nonholo.kernels._scalar import expand_at
+from nonholo.lagrange_dalembert.compiled import _expansion
 from nonholo.lagrange_dalembert.compiled._expansion import Elimination, Expansion
 from nonholo.lagrange_dalembert.compiled._flow import formulation
 from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError
@@ -77,6 +79,22 @@ def test_coefficients_of_operations_on_two_numbers(name: str) -> None:
     _check(_series(lambda f, x, y: f(name, x, f("mul", y, y)), [x, y]), 2, lambda t: function(x + t, (y + t) ** 2))
     _check(_series(lambda f, x: f(name, x, f.constant(c)), [x]), 1, lambda t: function(x + t, mpmath.mpf(c)))
     _check(_series(lambda f, x: f(name, f.constant(c), x), [x]), 1, lambda t: function(mpmath.mpf(c), x + t))
+
+
+def test_many_operations_are_a_table_with_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every operation at once, with constants on either side, beside code that has them one after another."""
+
+    def build(f: Formulas, x: Scalar, y: Scalar) -> Scalar:
+        moved = {name: f("add", x, f.constant(start - 0.5)) for name, (_, start) in UNARY.items()}
+        terms = [f(name, f("mul", x, each)) for name, each in moved.items() if name != "acosh"]
+        terms += [f(name, *pair) for name in BINARY for pair in [(x, y), (x, f.constant(2.5)), (f.constant(2.5), x)]]
+        return functools.reduce(lambda total, each: f("add", total, f("sub", each, f("neg", total))), terms)
+
+    straight = _series(build, [0.5, 0.7])
+    monkeypatch.setattr(_expansion, "_MANY", 1)
+    table = _series(build, [0.5, 0.7])
+    assert np.all(np.isfinite(table))
+    assert table.tobytes() == straight.tobytes()
 
 
 @pytest.mark.parametrize("name", ["abs", "max", "floor", "lt"])

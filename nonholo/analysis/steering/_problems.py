@@ -221,7 +221,7 @@ def coordinate_problem(
     last = place(system, x[:n].copy(), steps * discrete.time_step)
     last[list(goal.coordinates)] = list(goal.coordinates.values())
     nodes = _nodes(discrete, way, last, goal.velocity)
-    first = np.append(x, in_double(equations.momentum, system, x, v))
+    first = np.append(x, lagrange_dalembert.momentum(system, x, v))
     program = Program(Steps(nodes, way.centers, way.radii, nodes.time_step, way.bounds), first, np.zeros((steps, n)))
     pins: dict[int, dict[int, Any]] = {
         step: dict(zip(map(system.coordinates.index, "xy"), place, strict=True)) for step, place in way.via.items()
@@ -284,7 +284,7 @@ def _coordinate_unknowns(nodes: CoordinateNodes, q: np.ndarray, forces: np.ndarr
     system, steps, h = nodes.system, len(forces), float(nodes.time_step)
     times, v = h * np.arange(steps + 1), np.diff(q, axis=0) / h
     places = np.array([place(system, each, time) for each, time in zip(q, times, strict=True)])
-    momenta = np.array([in_double(equations.momentum, system, *each) for each in zip(places[:-1], v, strict=True)])
+    momenta = np.array([lagrange_dalembert.momentum(system, *each) for each in zip(places[:-1], v, strict=True)])
     return np.concatenate([v, np.zeros((steps, system.constraints)), forces, places[1:], momenta], axis=1).ravel()
 
 

@@ -8,10 +8,14 @@ by `nonholo.kernels.solve_series`.
 Derivatives of functions, and linear equations by elimination, are formulas, too.
 """
 
+import collections
+import graphlib
+import itertools
 import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
 
 from nonholo.lagrange_dalembert.compiled._scalars import (
@@ -138,16 +142,13 @@ def bordered_elimination(f: Formulas, mass: Any, rows: Any) -> Elimination:
 
 ORDERS = 48
 """Room for coefficients of a number."""
+_MANY = 256  # operations; more of them are a table, which LLVM need not compile
 _SIDE = 4  # numbers of a vector
 _WORD, _LANE, _VECTOR = ir.IntType(64), ir.IntType(32), ir.VectorType(DOUBLE, _SIDE)
 
 
-def _word(value: int) -> Any:
-    return ir.Constant(_WORD, value)
-
-
-def _number(value: float) -> Any:
-    return ir.Constant(DOUBLE, float(value))
+def _constant(value: float) -> Any:
+    return ir.Constant(_WORD if type(value) is int else DOUBLE, value)
 
 
 class Expansion:
@@ -187,126 +188,189 @@ class Expansion:
         pointer, self.width = DOUBLE.as_pointer(), width
         kind = ir.FunctionType(ir.VoidType(), [pointer] * 5 + [_WORD])
         function = ir.Function(module, kind, name)
-        _, self.coefficients, self.series, _, _, last = function.args
-        arguments = [self.coefficients, self.series]
+        _, self.first, self.series, _, _, last = function.args
+        self.table = self._table(module, f"{name}.table") if len(self.order) >= _MANY else None
+        self.dot = _dot(module, f"{name}.dot", "alwaysinline" if self.table else "noinline")
         self.builder = b = ir.IRBuilder(function.append_basic_block())
-        self._write_values()
+        for m, x in enumerate(self.inputs):
+            b.store(b.load(b.gep(self.series, [_constant(m)])), b.gep(self.first, [_constant(self._place(x))]))
+        self._write_operations(self._write_value)
         entry, loop, end = b.block, b.append_basic_block(), b.append_basic_block()
         b.branch(loop)
         b.position_at_end(loop)
-        order, k = _internal(module, f"{name}.order", ir.VoidType(), [pointer, pointer, _WORD]), b.phi(_WORD)
-        b.call(order, [*arguments, k])
-        following = b.add(k, _word(1))
-        for value, block in ((_word(1), entry), (following, loop)):
-            k.add_incoming(value, block)
+        order = _internal(module, f"{name}.order", ir.VoidType(), [pointer, pointer, _WORD])
+        k = _phi(b, {entry: _constant(1)})
+        b.call(order, [self.first, self.series, k])
+        following = b.add(k, _constant(1))
+        k.add_incoming(following, loop)
         b.cbranch(b.icmp_signed("<=", following, last), loop, end)
         b.position_at_end(end)
         b.ret_void()
-        self.dot, self.builder = _dot(module, f"{name}.dot"), ir.IRBuilder(order.append_basic_block())
-        self.coefficients, self.series, self.k = order.args
-        self._write_order()
-        self.builder.ret_void()
+        self.builder = b = ir.IRBuilder(order.append_basic_block())
+        self.first, self.series, self.k = order.args
+        self.before, self.divisor = b.sub(self.k, _constant(1)), b.sitofp(self.k, DOUBLE)
+        self.latest = b.gep(self.first, [self.k])
+        self._write_states()
+        self._write_operations(self._write_coefficient)
+        b.ret_void()
 
-    def _write_values(self) -> None:
-        """Write the coefficients of order 0: the values."""
-        b, none = self.builder, _word(0)
-        for m, x in enumerate(self.inputs):
-            b.store(b.load(b.gep(self.series, [_word(m)])), self._at(self.places[x], none))
-        for x in self.order:
-            values = (self._of(y, none) if y.value is None else _number(y.value) for y in x.arguments)
-            b.store(OPERATIONS[x.operation].emit(b, *values), self._at(self.places[x], none))
+    def _place(self, x: Scalar) -> int | float:
+        """Return where the coefficients of a number begin, or a constant itself."""
+        return ORDERS * self.places[x] if x.value is None else float(x.value)
 
-    def _write_order(self) -> None:
-        """Write the coefficients of order k."""
-        b, before, divisor = self.builder, self.builder.sub(self.k, _word(1)), self.builder.sitofp(self.k, DOUBLE)
+    def _row(self, x: Scalar) -> list[int | float]:
+        """Return the places of an operation, its arguments, their rates and the slopes, and of the rate that it has."""
+        row = [*map(self._place, (x, *x.arguments))]
+        for a, slope in self.functions.get(x, ()):
+            row += [ORDERS * self.moves[a], self._place(slope)]
+        return [*row, ORDERS * self.moves[x]] if x in self.moves else row
+
+    def _kind(self, x: Scalar) -> Any:
+        """Return what operations have in common that differ in places and constants alone."""
+        return x.operation, x in self.moves, *map(type, self._row(x))
+
+    def _in_groups(self) -> list[Scalar]:
+        """Return the operations in an order in which many of a kind follow each other, as processors foresee.
+
+        Of those whose arguments are there, the kind comes next on which the longest chain depends.
+        """
+        kinds, chain = {x: self._kind(x) for x in self.order}, dict.fromkeys(self.places, 0)
+        for x in reversed(self.order):
+            chain |= {y: max(chain[y], 1 + chain[x]) for y in x.arguments if y.value is None}
+        sorter = graphlib.TopologicalSorter({x: [y for y in x.arguments if y in kinds] for x in self.order})
+        sorter.prepare()
+        ready, order = collections.defaultdict[Any, list[Scalar]](list), list[Scalar]()
+        while sorter.is_active():
+            for x in sorter.get_ready():
+                ready[kinds[x]].append(x)
+            group = ready.pop(max(ready, key=lambda kind: max(chain[x] for x in ready[kind])))
+            sorter.done(*group)
+            order += group
+        return order
+
+    def _table(self, module: Any, name: str) -> Any:
+        """Put the kinds and the rows of all operations into a module, each a word."""
+        kinds = {kind: i for i, kind in enumerate(dict.fromkeys(map(self._kind, self.order)))}
+        rows = ([kinds[self._kind(x)], *self._row(x)] for x in self._in_groups())
+        words = [np.array(each).view(np.int64) for each in itertools.chain(*rows, [len(kinds)])]
+        text = bytearray(np.array(words).tobytes())
+        table: Any = ir.GlobalVariable(module, ir.ArrayType(ir.IntType(8), len(text)), name)
+        table.initializer, table.linkage, table.align = ir.Constant(table.value_type, text), "internal", 8
+        return table.bitcast(_WORD.as_pointer())
+
+    def _write_operations(self, write: Callable[..., None]) -> None:
+        """Write all operations by `write`, one after another; many as a loop, which reads them from a table."""
+        if self.table is None:
+            for x in self.order:
+                write(x, *map(_constant, self._row(x)))
+            return
+        b = self.builder
+        before, loop, end = b.block, b.append_basic_block(), b.append_basic_block()
+        b.branch(loop)
+        b.position_at_end(loop)
+        at = _phi(b, {before: _constant(0)})
+        choice = b.switch(b.load(b.gep(self.table, [at])), end)
+        for number, x in enumerate({self._kind(x): x for x in self.order}.values()):
+            block, row = b.append_basic_block(), self._row(x)
+            choice.add_case(_constant(number), block)
+            b.position_at_end(block)
+            words = (b.load(b.gep(self.table, [b.add(at, _constant(1 + m))])) for m in range(len(row)))
+            write(x, *(b.bitcast(word, _constant(each).type) for word, each in zip(words, row, strict=True)))
+            at.add_incoming(b.add(at, _constant(1 + len(row))), b.block)
+            b.branch(loop)
+        b.position_at_end(end)
+
+    def _write_value(self, x: Scalar, target: Any, *rest: Any) -> None:
+        """Write the coefficient of order 0: the value."""
+        values = [y if y.type == DOUBLE else self._of(y, self.first) for y in rest[: len(x.arguments)]]
+        self.builder.store(OPERATIONS[x.operation].emit(self.builder, *values), self.builder.gep(self.first, [target]))
+
+    def _write_states(self) -> None:
+        """Write the coefficients of order k of the state."""
+        b, earlier = self.builder, self.builder.gep(self.first, [self.before])
         for m, (x, rate) in enumerate(zip(self.inputs, self.rates, strict=True)):
             if rate.value is None:
-                coefficient = b.fdiv(self._of(rate, before), divisor)
+                coefficient = b.fdiv(self._of(_constant(self._place(rate)), earlier), self.divisor)
             else:
-                coefficient = b.select(b.icmp_signed("==", before, _word(0)), _number(rate.value), _number(0.0))
-            row = b.add(b.mul(self.k, _word(self.width)), _word(m))
+                is_first = b.icmp_signed("==", self.before, _constant(0))
+                coefficient = b.select(is_first, _constant(float(rate.value)), _constant(0.0))
+            row = b.add(b.mul(self.k, _constant(self.width)), _constant(m))
             b.store(coefficient, b.gep(self.series, [row]))
-            self._keep(x, coefficient, divisor)
-        for x in self.order:
-            write = self._integral if x in self.functions else getattr(self, f"_{x.operation}")
-            self._keep(x, write(x, divisor), divisor)
+            self._keep(x, coefficient, *map(_constant, self._row(x)))
 
-    def _keep(self, x: Scalar, coefficient: Any, divisor: Any) -> None:
+    def _write_coefficient(self, x: Scalar, *row: Any) -> None:
+        """Write the coefficient of order k."""
+        end, is_function = 1 + len(x.arguments), x in self.functions
+        write = self._integral if is_function else getattr(self, f"_{x.operation}")
+        self._keep(x, write(*(row[end:] if is_function else row[:end])), *row)
+
+    def _keep(self, x: Scalar, coefficient: Any, *row: Any) -> None:
         """Store a coefficient, and k times it where a function needs that."""
         b = self.builder
-        b.store(coefficient, self._at(self.places[x], self.k))
+        b.store(coefficient, b.gep(self.latest, [row[0]]))
         if x in self.moves:
-            b.store(b.fmul(divisor, coefficient), self._at(self.moves[x], b.sub(self.k, _word(1))))
+            b.store(b.fmul(self.divisor, coefficient), b.gep(self.first, [b.add(row[-1], self.before)]))
 
-    def _of(self, x: Scalar, order: Any) -> Any:
+    def _of(self, word: Any, order: Any) -> Any:
         """Load a coefficient."""
-        return self.builder.load(self._at(self.places[x], order))
+        return self.builder.load(self.builder.gep(order, [word]))
 
-    def _add(self, x: Scalar, _: Any) -> Any:
-        terms = [self._of(each, self.k) for each in x.arguments if each.value is None]
+    def _add(self, _: Any, *arguments: Any) -> Any:
+        terms = [self._of(each, self.latest) for each in arguments if each.type == _WORD]
         return self.builder.fadd(*terms) if len(terms) > 1 else terms[0]
 
-    def _sub(self, x: Scalar, _: Any) -> Any:
-        first, last = x.arguments
-        if last.value is not None:
-            return self._of(first, self.k)
-        if first.value is not None:
-            return self.builder.fneg(self._of(last, self.k))
-        return self.builder.fsub(self._of(first, self.k), self._of(last, self.k))
+    def _sub(self, _: Any, first: Any, last: Any) -> Any:
+        if last.type == DOUBLE:
+            return self._of(first, self.latest)
+        if first.type == DOUBLE:
+            return self.builder.fneg(self._of(last, self.latest))
+        return self.builder.fsub(self._of(first, self.latest), self._of(last, self.latest))
 
-    def _neg(self, x: Scalar, _: Any) -> Any:
-        return self.builder.fneg(self._of(x.arguments[0], self.k))
+    def _neg(self, _: Any, x: Any) -> Any:
+        return self.builder.fneg(self._of(x, self.latest))
 
-    def _mul(self, x: Scalar, _: Any) -> Any:
-        first, last = sorted(x.arguments, key=lambda each: each.value is None)
-        if first.value is not None:
-            return self.builder.fmul(_number(first.value), self._of(last, self.k))
-        return self._sum(self.places[first], self.places[last], self.builder.add(self.k, _word(1)))
+    def _mul(self, _: Any, *factors: Any) -> Any:
+        first, last = sorted(factors, key=lambda each: each.type == _WORD)
+        if first.type == DOUBLE:
+            return self.builder.fmul(first, self._of(last, self.latest))
+        return self._sum(first, last, self.builder.add(self.k, _constant(1)))
 
-    def _div(self, x: Scalar, _: Any) -> Any:
-        b, (above, below) = self.builder, x.arguments
-        if below.value is not None:
-            return b.fdiv(self._of(above, self.k), _number(below.value))
-        earlier = self._sum(self.places[below], self.places[x], self.k, skip=1)
-        left = b.fneg(earlier) if above.value is not None else b.fsub(self._of(above, self.k), earlier)
-        return b.fdiv(left, self._of(below, _word(0)))
+    def _div(self, target: Any, above: Any, below: Any) -> Any:
+        b = self.builder
+        if below.type == DOUBLE:
+            return b.fdiv(self._of(above, self.latest), below)
+        earlier = self._sum(b.add(below, _constant(1)), target, self.k)
+        left = b.fneg(earlier) if above.type == DOUBLE else b.fsub(self._of(above, self.latest), earlier)
+        return b.fdiv(left, self._of(below, self.first))
 
-    def _integral(self, x: Scalar, divisor: Any) -> Any:
-        b, total = self.builder, _number(0.0)
-        for a, slope in self.functions[x]:
-            if slope.value is None:
-                term = self._sum(self.moves[a], self.places[slope], self.k)
-            else:
-                term = b.fmul(_number(slope.value), b.load(self._at(self.moves[a], b.sub(self.k, _word(1)))))
-            total = b.fadd(total, term)
-        return b.fdiv(total, divisor)
+    def _integral(self, *rates: Any) -> Any:
+        b, total = self.builder, _constant(0.0)
+        for move, slope in zip(rates[::2], rates[1::2], strict=False):
+            latest = self._of(b.add(move, self.before), self.first)
+            total = b.fadd(total, b.fmul(slope, latest) if slope.type == DOUBLE else self._sum(move, slope, self.k))
+        return b.fdiv(total, self.divisor)
 
-    def _sum(self, first: int, last: int, terms: Any, skip: int = 0) -> Any:
+    def _sum(self, first: Any, last: Any, terms: Any) -> Any:
         """Write a sum of products of coefficients, the first ones of one number with the last ones of another."""
-        places = _word(ORDERS * first + skip), _word(ORDERS * last)
-        return self.builder.call(self.dot, [self.coefficients, *places, terms])
-
-    def _at(self, place: int, order: Any) -> Any:
-        """Return where a coefficient stands."""
-        return self.builder.gep(self.coefficients, [self.builder.add(_word(ORDERS * place), order)])
+        return self.builder.call(self.dot, [self.first, first, last, terms])
 
 
-def _dot(module: Any, name: str) -> Any:
+def _dot(module: Any, name: str, inlining: str) -> Any:
     """Write a function of an array, two places and n: the sum of a[i] b[n - 1 - i], four products at once."""
-    function = _internal(module, name, DOUBLE, [DOUBLE.as_pointer(), *[_WORD] * 3])
+    function = _internal(module, name, DOUBLE, [DOUBLE.as_pointer(), *[_WORD] * 3], inlining)
     array, *places, n = function.args
     b, zero = ir.IRBuilder(function.append_basic_block()), ir.Constant(_VECTOR, [0.0] * _SIDE)
     a, other = (b.gep(array, [place]) for place in places)
     entry, wide, middle, narrow, end = b.block, *(b.append_basic_block() for _ in range(4))
-    full = b.and_(n, _word(-_SIDE))
-    b.cbranch(b.icmp_signed(">", full, _word(0)), wide, middle)
+    full = b.and_(n, _constant(-_SIDE))
+    b.cbranch(b.icmp_signed(">", full, _constant(0)), wide, middle)
     b.position_at_end(wide)
-    i, sums = _phi(b, {entry: _word(0)}), _phi(b, {entry: zero})
+    i, sums = _phi(b, {entry: _constant(0)}), _phi(b, {entry: zero})
     left = b.load(b.bitcast(b.gep(a, [i]), _VECTOR.as_pointer()), align=8)
-    right = b.load(b.bitcast(b.gep(other, [b.sub(b.sub(n, i), _word(_SIDE))]), _VECTOR.as_pointer()), align=8)
+    right = b.load(b.bitcast(b.gep(other, [b.sub(b.sub(n, i), _constant(_SIDE))]), _VECTOR.as_pointer()), align=8)
     backward = ir.Constant(ir.VectorType(_LANE, _SIDE), list(range(_SIDE))[::-1])
     total = b.fadd(sums, b.fmul(left, b.shuffle_vector(right, right, backward)))
-    following = b.add(i, _word(_SIDE))
+    following = b.add(i, _constant(_SIDE))
     i.add_incoming(following, wide)
     sums.add_incoming(total, wide)
     b.cbranch(b.icmp_signed("<", following, full), wide, middle)
@@ -317,8 +381,8 @@ def _dot(module: Any, name: str) -> Any:
     b.cbranch(b.icmp_signed("<", full, n), narrow, end)
     b.position_at_end(narrow)
     j, sofar = _phi(b, {middle: full}), _phi(b, {middle: lane_sum})
-    product = b.fmul(b.load(b.gep(a, [j])), b.load(b.gep(other, [b.sub(b.sub(n, j), _word(1))])))
-    longer, after = b.fadd(sofar, product), b.add(j, _word(1))
+    product = b.fmul(b.load(b.gep(a, [j])), b.load(b.gep(other, [b.sub(b.sub(n, j), _constant(1))])))
+    longer, after = b.fadd(sofar, product), b.add(j, _constant(1))
     j.add_incoming(after, narrow)
     sofar.add_incoming(longer, narrow)
     b.cbranch(b.icmp_signed("<", after, n), narrow, end)
@@ -327,11 +391,11 @@ def _dot(module: Any, name: str) -> Any:
     return function
 
 
-def _internal(module: Any, name: str, result: Any, arguments: list[Any]) -> Any:
-    """Return a function that is called and never copied into its callers."""
+def _internal(module: Any, name: str, result: Any, arguments: list[Any], inlining: str = "noinline") -> Any:
+    """Return a function that is called and never copied into its callers, or always."""
     function = ir.Function(module, ir.FunctionType(result, arguments), name)
     function.linkage = "internal"
-    function.attributes.add("noinline")
+    function.attributes.add(inlining)
     return function
 
 

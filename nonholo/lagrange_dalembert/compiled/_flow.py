@@ -10,11 +10,12 @@ import jax
 import numpy as np
 from llvmlite import ir
 
+from nonholo.base.compiled import FUNCTION
 from nonholo.base.types import Array
 from nonholo.kernels import Columns, Quadratic, revisit_series, solve_series
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert.compiled._expansion import Expansion, bordered_elimination
-from nonholo.lagrange_dalembert.compiled._machine import code_of, function_at, write_function
+from nonholo.lagrange_dalembert.compiled._machine import code_of, write_function
 from nonholo.lagrange_dalembert.compiled._run import Values, evaluate, program
 from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError
 from nonholo.lagrange_dalembert.compiled._translation import array_of
@@ -84,7 +85,7 @@ def formulation(family: Any, place: tuple[int, ...], n: int) -> Formulation | No
         code, room = code_of(family, ("flow",), write)
     except UntranslatableError:
         return None
-    rows, settle, decode = (family.constraints,), function_at(code["settle"]), function_at(code["decode"])
+    rows, settle, decode = (family.constraints,), FUNCTION(code["settle"]), FUNCTION(code["decode"])
     shapes = [(n,), rows, (), rows, (n,), (n,)]
     return Formulation(code["expansion"], room, Values(settle, [place, (n,)]), Values(decode, shapes))
 

@@ -20,7 +20,6 @@ import llvmlite
 import numpy as np
 from llvmlite import ir
 
-from nonholo.base.compiled import FUNCTION
 from nonholo.base.compiled.emission import load_object, object_of, this_processor
 from nonholo.base.compiled.library import cache_folder, digest_of, digest_of_kernels
 from nonholo.base.numerics import double_precision
@@ -83,11 +82,6 @@ def machine_code(write: Callable[[ir.Module], Any], file: Path | None = None) ->
         head = {"names": names, "facts": facts, "digest": hashlib.sha256(binary).hexdigest()}
         _keep(file, json.dumps(head).encode() + b"\n" + binary)
     return dict(zip(head["names"], load_object(binary, *head["names"]), strict=True)), head["facts"]
-
-
-def function_at(address: int) -> Any:
-    """Return the C function of formulas at an address."""
-    return FUNCTION(address)
 
 
 def _read(file: Path | None) -> tuple[dict[str, Any], bytes] | None:

@@ -13,13 +13,14 @@ import jax.numpy as jnp
 import numpy as np
 from llvmlite import ir
 
+from nonholo.base.compiled import FUNCTION
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array
 from nonholo.kernels import CoordinateBody, advance_coordinates, each_root, each_row, set_out_coordinates
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import _newton
 from nonholo.lagrange_dalembert._functions import ROWS
-from nonholo.lagrange_dalembert.compiled._machine import code_of, function_at, write_function
+from nonholo.lagrange_dalembert.compiled._machine import code_of, write_function
 from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError, operations_between
 from nonholo.lagrange_dalembert.compiled._translation import array_of, translate
 
@@ -120,7 +121,7 @@ def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
         code, border = code_of(family, ("step", at_node), write)
     except UntranslatableError:
         return None
-    return Programs(function_at(code["arrive"]), function_at(code["settle"]), function_at(code["correct"]), border)
+    return Programs(FUNCTION(code["arrive"]), FUNCTION(code["settle"]), FUNCTION(code["correct"]), border)
 
 
 @functools.lru_cache(maxsize=64)  # a sweep makes a system for each member
@@ -140,7 +141,7 @@ def values(function: Callable[..., Any], family: Any, *shapes: tuple[int, ...]) 
         code, results = code_of(family, (function.__module__, function.__qualname__, shapes), write)
     except UntranslatableError:
         return None
-    return Values(function_at(code["values"]), list(map(tuple, results)))
+    return Values(FUNCTION(code["values"]), list(map(tuple, results)))
 
 
 def _border(results: list[Scalar]) -> list[Scalar]:
