@@ -33,7 +33,7 @@ _MOST_AXES = 16  # NumPy broadcasts 32
 _OTHER_REMEDIES = {  # of a list with a tracer in it
     "TracerArrayConversionError": "JAX traces some of these numbers: put them together with jax.numpy.array([...])."
 }
-_FEW = 1 << 12  # numbers that are looked at by one sum; one that is repeated without end has no sum
+_FEW = 1 << 13  # numbers that are looked at by one sum: BLAS wakes no other thread for them
 _LONGEST_NAME = 255  # bytes; more is more than any file system has
 _LONGEST_WORD = 100  # letters of a name, to which suffixes are added
 COLUMNS = frozenset({"constraint_residual", "energy", "t", "time"})
@@ -76,11 +76,12 @@ def array(where: str, value: Any, shape: tuple[int | None, ...], remedy: str = "
     raw = real_or_complex(where, value, remedy)
     if raw.dtype.kind == "c":
         raise error(where, "be real", "complex numbers", remedy)
-    if not _fits(raw.shape, shape):
+    if raw.shape != shape and not _fits(raw.shape, shape):
         raise error(where, f"have shape {_shape_text(shape)}", f"shape {raw.shape}", remedy)
     try:
-        result = np.array(_as_floats(raw), dtype=np.float64)
-        _check_size(where, result, remedy)
+        result = np.array(raw if raw.dtype.char == "d" else _as_floats(raw), dtype=np.float64)
+        if not _is_moderate(result):
+            _refuse_large(where, result, remedy)
     except MemoryError:
         raise error(where, "fit into memory", f"shape {raw.shape}", remedy) from None
     result.setflags(write=False)
@@ -122,16 +123,13 @@ def is_moderate(value: np.ndarray, most: float) -> bool:
 
 
 def _is_moderate(value: np.ndarray) -> bool:
-    """Show by one sum of squares, without copies, that no number lies beyond the largest; False decides nothing.
-
-    Of many numbers it takes one thread: BLAS would wake all.
-    """
-    if value.size < _FEW:
+    """Show by sums of squares, without copies, that no number lies beyond the largest; False decides nothing."""
+    if value.size <= _FEW:
         return float(np.vdot(value, value).real) <= _LARGEST_SUM
     if not value.flags.c_contiguous:  # one number that is repeated without end, among others
         return False
     numbers = value.reshape(-1)
-    return float(np.einsum("i,i->", numbers, numbers.conj()).real) <= _LARGEST_SUM
+    return all(_is_moderate(numbers[begin : begin + _FEW]) for begin in range(0, value.size, _FEW))
 
 
 def _check_finite(where: Owner, value: np.ndarray, remedy: str) -> None:
@@ -142,16 +140,14 @@ def _check_finite(where: Owner, value: np.ndarray, remedy: str) -> None:
         raise error(where, "be finite", f"{value[position]}{place}", remedy)
 
 
-def _check_size(where: str, value: np.ndarray, remedy: str) -> None:
+def _refuse_large(where: str, value: np.ndarray, remedy: str) -> None:
     """Refuse numbers that are not finite, or whose squares overflow."""
-    if not _is_moderate(value) and not (most := float(np.abs(value).max(initial=0.0))) <= LARGEST:
+    if not (most := float(np.abs(value).max(initial=0.0))) <= LARGEST:
         _check_finite(where, value, remedy)
         raise error(where, f"have no number beyond {LARGEST:g}", f"{most:g}", "Use other units.")
 
 
 def _fits(actual: tuple[int, ...], demand: tuple[int | None, ...]) -> bool:
-    if actual == demand:
-        return True
     return len(actual) == len(demand) and all(w in (None, a) for a, w in zip(actual, demand, strict=True))
 
 

@@ -259,9 +259,12 @@ class AbstractSystem(Keeper, abc.ABC):
             restricted_velocity: w.
             configuration: g, by default the identity; it matters where the constraint is fixed in space.
         """
-        velocity, inertia = self._along("restricted_velocity", restricted_velocity), self.inertia_along
-        is_wide = isinstance(inertia, WideInertia)
-        return inertia.momenta(velocity) if is_wide else applied(inertia.swapaxes(-1, -2), velocity)
+        return self.momenta_along(self._along("restricted_velocity", restricted_velocity), configuration)
+
+    def momenta_along(self, velocity: Along, configuration: Poses | None) -> Along:
+        """Return the momenta of `restricted_momentum` for velocities that are checked."""
+        form = self.inertia_along
+        return form.momenta(velocity) if isinstance(form, WideInertia) else applied(form.swapaxes(-1, -2), velocity)
 
     def constrained_energy(
         self, momentum: Covectors | Along, configuration: Poses | None = None
@@ -418,9 +421,8 @@ class AbstractLRSystem(AbstractSystem):
         inertia = self.spatial_inertia(self._at(configuration))
         return _solve(inertia, self._along("restricted_momentum", restricted_momentum))
 
-    def restricted_momentum(self, restricted_velocity: Along, configuration: Poses | None = None) -> Along:
+    def momenta_along(self, velocity: Along, configuration: Poses | None) -> Along:
         """Return the spatial momenta along the constraint subspace of spatial velocities in its rows."""
-        velocity = self._along("restricted_velocity", restricted_velocity)
         inertia = self.constrained_inertia if configuration is None else self.spatial_inertia(configuration)
         return applied(inertia.swapaxes(-1, -2), velocity)
 

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from nonholo.base.checks import array, error, flags, refuse_given, shape_of
+from nonholo.base.numerics import applied
 from nonholo.base.types import Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._base import System
@@ -73,8 +74,7 @@ class Start(NamedTuple):
 
     def momentum(self, system: System, g: Float[np.ndarray, "N N"] | None) -> Float[np.ndarray, "k"]:
         """Return the canonical momentum along the constraint that a velocity or a momentum has at a pose."""
-        along = {"momentum": _of_momentum, "body_velocity": _of_velocity}.get(self.name, _of_coordinates)
-        return along(self, system, g)
+        return _ALONG[self.name](self, system, g)
 
 
 def refuse_in_coordinates(owner: str, **arguments: tuple[Any, Any]) -> None:
@@ -123,7 +123,7 @@ def of_finite_energy(owner: str, system: System, g: np.ndarray | None, along: np
             pair = along, system.restricted_velocity(along, g)
     if not abs(energy := np.vdot(*pair) / 2) < np.inf:
         raise error(f"{owner}(...)", "start with a finite energy", f"{energy}", "Start slower, or use other units.")
-    return along if system.canonical is system else system.to_canonical(along)
+    return along if system.canonical is system else applied(system.frame_map, along)
 
 
 def _of_momentum(start: Start, system: System, g: np.ndarray | None) -> np.ndarray:
@@ -146,8 +146,11 @@ def _of_velocity(start: Start, system: System, g: np.ndarray | None) -> np.ndarr
 
 def _of_coordinates(start: Start, system: System, g: np.ndarray | None) -> np.ndarray:
     rows = array(start.where, start.value, (system.rank,), "Pass one number per admissible direction.")
-    along = system.restricted_momentum(rows, g)
+    along = system.momenta_along(rows, g)
     return of_finite_energy(start.owner, system, g, along, (along, rows))
+
+
+_ALONG = {"momentum": _of_momentum, "body_velocity": _of_velocity, "restricted_velocity": _of_coordinates}
 
 
 def _check_admissible(where: str, system: System, g: Any, velocity: np.ndarray) -> None:

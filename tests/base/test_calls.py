@@ -164,10 +164,18 @@ def test_reductions_cannot_change_an_ensemble() -> None:
 
 
 def test_an_orbit_that_is_not_finite_is_not_successful() -> None:
-    """Whatever made it: momenta whose square overflows, and NaN."""
+    """Whatever made it: momenta whose square overflows."""
     g = nh.SE(2).exp(np.linspace(0, 1, 5)[:, None] * [1.0, 1.0, 0.0])
     assert nh.Orbit.from_poses(SLEIGH, np.arange(5) * 1e-300, g).outcome == nh.Outcome.nonfinite
-    orbit = nh.simulate(nh.discretize(SLEIGH, 0.1), **START, steps=5)
-    momenta = np.where(np.arange(6)[:, None] == 3, np.nan, orbit.reduced_momentum)
+
+
+@pytest.mark.parametrize("number", [np.nan, -np.inf, 1e151])
+@pytest.mark.parametrize(("steps", "place"), [(5, 3), (9000, 0), (9000, 4096), (9000, 9000)])
+def test_one_number_that_is_not_finite_is_seen(number: float, steps: int, place: int) -> None:
+    """In few numbers, and in each piece of many."""
+    orbit = nh.simulate(nh.discretize(SLEIGH, 0.1), **START, steps=steps)
+    momenta = orbit.reduced_momentum.copy()
     rows = {"time": orbit.time, "cayley": orbit.cayley, "canonical_pose": orbit.canonical_pose}
+    assert orbit.motion.orbit(**rows, reduced_momentum=momenta).outcome == nh.Outcome.successful
+    momenta[place, 1] = number
     assert orbit.motion.orbit(**rows, reduced_momentum=momenta).outcome == nh.Outcome.nonfinite
