@@ -49,8 +49,7 @@ def _drawing(orbit: AbstractOrbit) -> dict[str, Any]:
     Corners that are the same in all states are there once.
     """
     if orbit.coordinates:
-        bodies = [orbit.system.parts(q) for q in orbit.configuration] if orbit.system.heading else []
-        return _outlines(bodies) if bodies and bodies[0] else _BALL
+        return _outlines([orbit.system.parts(q) for q in orbit.configuration] if orbit.system.heading else [()])
     if not isinstance(orbit, Orbit):
         return _BALL if orbit.space.is_affine else {}
     if orbit.space == SE(2):
@@ -66,7 +65,7 @@ def _lists(body: Box) -> dict[str, Any]:
 
 def _outlines(bodies: list[Any]) -> dict[str, Any]:
     sizes = [len(part) for part in bodies[0]]
-    if any([len(part) for part in parts] != sizes for parts in bodies):
+    if not sizes or any([len(part) for part in parts] != sizes for parts in bodies):
         return _BALL
     rows = np.array([np.concatenate(parts) for parts in bodies])
     rows = rows[:1] if (rows == rows[0]).all() else rows
