@@ -100,6 +100,40 @@ def test_orbits_obey_the_equations_of_the_step(name: str, acting: tuple[str, str
     np.testing.assert_allclose(after - group.coadjoint(W[0], p) - h / 2 * (f[0] + f[1]), jump[0], atol=2e-14)
 
 
+@pytest.mark.parametrize("blade", [None, nh.Slip([[0.0, 0.0, 1.0]], 0.4, 0.1)], ids=["holds", "slips"])
+@pytest.mark.parametrize("more", [{}, {"weight": True}, {"motor": True}], ids=["alone", "heavy", "driven"])
+def test_dissipation_is_what_friction_and_slips_take(blade: Any, more: dict[str, bool]) -> None:
+    """It never falls, is X.CX/h of friction, minus the work without motors, and with it the work of motors, <f, X>."""
+    system = nh.ChaplyginSleigh(1.0, 1.0, -0.4)
+    rub, table = FORCES["friction"](system), FORCES["table"](system)
+    force = (rub, *([table] if "motor" in more else []), *([blade] if blade else []))
+    discrete = nh.discretize(nh.Forced(system, weight(system) if more else None, force), 0.1)
+    orbit = nh.simulate(discrete, body_velocity=(1.0, 1.0, 0.0), steps=50)
+    W, group = orbit.displacement, system.group
+    X = group.vee((W - group.inverse(W)) / 2)[:-1]
+    motors = (table[:50] * X).sum(axis=1) if "motor" in more else np.zeros(50)
+    took = np.diff(orbit.dissipation)
+    assert took.min() > -1e-15
+    np.testing.assert_allclose(orbit.work[1:] + orbit.dissipation[1:], np.cumsum(motors), atol=3e-14)
+    rubbed = (X @ rub.matrix * X).sum(axis=1) / 0.1
+    assert np.abs(took - rubbed).max() < 1e-15 if blade is None else (took - rubbed).max() > 1e-3
+
+
+@pytest.mark.parametrize("way", ["kicks", "order 4", "states left out", "flow"])
+def test_dissipation_of_other_motions_is_that_of_the_nodes(way: str) -> None:
+    """It is minus the work of friction alone, and what the energy falls by up to order 2."""
+    forced = nh.Forced(TOP, None, FORCES["friction"](TOP), "variational" if way == "kicks" else None)
+    start: dict[str, Any] = {"restricted_velocity": [0.5, -0.3]}
+    if way == "flow":
+        orbit = nh.flow(forced, **start, times=np.linspace(0.0, 2.0, 41))
+    else:
+        discrete = nh.discretize(forced, 0.05, order=4 if way == "order 4" else 2)
+        orbit = nh.simulate(discrete, **start, steps=40, save_every=2 if "left" in way else 1)
+    assert orbit.dissipation[-1] > 0.05
+    np.testing.assert_array_equal(orbit.dissipation, -orbit.work)
+    np.testing.assert_allclose(orbit.dissipation, orbit.energy[0] - orbit.energy, rtol=2e-2, atol=1e-15)
+
+
 @pytest.mark.parametrize("name", SYSTEMS)
 @pytest.mark.parametrize("kind", ["weight", "magnet", "spring", "own", "all"])
 def test_slopes_do_the_work_and_are_the_same_from_both_ends(name: str, kind: str) -> None:

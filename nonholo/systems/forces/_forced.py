@@ -202,6 +202,12 @@ class Forced(AbstractSystem):
         rest = {"friction": _friction.Friction(np.zeros(self.group.dim))} | _friction.without_slips(self.parts)
         return Forced(self.free, self.potential, _friction.force_of(rest), "energy")
 
+    @functools.cached_property
+    def resistance(self) -> "Forced":
+        """The system under what takes energy alone: friction and slips."""
+        takes = {name: each for name, each in self.parts.items() if name not in ("table", "function")}
+        return Forced(self.system, None, _friction.force_of(takes))
+
     @property
     def table(self) -> Array | None:
         """The forces of the steps, (steps, dim), where they are given one by one."""
