@@ -134,6 +134,17 @@ def test_dissipation_of_other_motions_is_that_of_the_nodes(way: str) -> None:
     np.testing.assert_allclose(orbit.dissipation, orbit.energy[0] - orbit.energy, rtol=2e-2, atol=1e-15)
 
 
+@pytest.mark.parametrize(("order", "least"), [(4, -0.6579630871775028), (6, -0.7062461725576393)])
+def test_substeps_back_in_time_give_the_energy_of_friction_back(order: int, least: float) -> None:
+    """Proposition 18.5: near hc/2m = 1/|gamma| a step of higher order multiplies T, and one of order 2 takes of it."""
+    grown = []
+    for way in (2, order):
+        forced = nh.Forced(nh.ChaplyginSleigh(1.0, 1.0, 0.0), force=nh.Friction([0.0, -20 * (1 - 1e-4) / least, 0.0]))
+        orbit = nh.simulate(nh.discretize(forced, 0.1, order=way), body_velocity=(0.0, 1.0, 0.0), steps=1)
+        grown.append(orbit.energy[1] / orbit.energy[0])
+    assert grown[0] < 1 < 100 < grown[1]
+
+
 @pytest.mark.parametrize("name", SYSTEMS)
 @pytest.mark.parametrize("kind", ["weight", "magnet", "spring", "own", "all"])
 def test_slopes_do_the_work_and_are_the_same_from_both_ends(name: str, kind: str) -> None:
