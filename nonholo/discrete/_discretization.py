@@ -201,20 +201,21 @@ class Discretization(Scheme, AbstractMotion):
         """The first step of order 2 of a composition."""
         return self.part(weights(self.order)[0])
 
-    def mean_force(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
+    def mean_force(self, states: Orbit, forced: Forced | None = None) -> Float[np.ndarray, "K dim"]:
         """Return the covectors f that act over single steps from states, where forces are balanced."""
-        forced, W = cast(Forced, self.forces), self.displaced(states.canonical_chart)
+        forced, W = forced or cast(Forced, self.forces), self.displaced(states.canonical_chart)
         h, rows = float(self.time_step), forced.rows(states.step)
         return forced.mean_force(states.configuration, W, h, rows, states.time)
 
-    def work(self, states: Orbit) -> Float[np.ndarray, "K"]:
-        """Return the work of the force along states since the first: exact of balanced steps of order 2."""
+    def work(self, states: Orbit, forced: Forced) -> Float[np.ndarray, "K"]:
+        """Return the work of a force along states since the first: exact of balanced steps of order 2."""
         if self.order > 2 or not (self.is_balanced and states.has_every_step):
-            return super().work(states)
-        before, forced = states.chosen(slice(None, -1)), cast(Forced, self.forces)
+            return super().work(states, forced)
+        before = states.chosen(slice(None, -1))
         group, W = self.system.group, self.displaced(before.canonical_chart)
         X = group.vee((W - group.inverse(W)) / 2)
-        gain = (self.mean_force(before) * X).sum(axis=1) + np.diff(forced.potential_energy(states.configuration))
+        gain = np.diff(forced.potential_energy(states.configuration))
+        gain += (self.mean_force(before, forced) * X).sum(axis=1)
         if forced.slips:
             gain = gain + self._work_of_slips(states, X)
         return np.concatenate([np.zeros(min(1, len(states))), np.cumsum(gain)])

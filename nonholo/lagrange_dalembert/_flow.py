@@ -274,8 +274,8 @@ def _orbit(system: Any, time: np.ndarray, rows: list[np.ndarray], outcome: Outco
     return ORBITS[system.orbits](time, place, None, rows[1], *columns, outcome, system, solution=solution)
 
 
-def work(orbit: Any) -> Float[np.ndarray, "K"]:
-    """Return the work on a driven system along an orbit since its first state, by the trapezoidal rule."""
+def works(orbit: Any) -> Float[np.ndarray, "K 2"]:
+    """Return the work on a driven system since the first state, and minus that of friction, by the trapezoidal rule."""
     system, time, h = orbit.system, orbit.time, np.diff(orbit.time)
     x, p = places(system, orbit.configuration, time), orbit.momentum
     if system.table is not None:
@@ -286,20 +286,23 @@ def work(orbit: Any) -> Float[np.ndarray, "K"]:
         before, after = _powers(system, x, p, rows), _powers(system, x, p, np.roll(rows, 1, axis=0))
     else:
         before = after = _powers(system, x, p, np.zeros_like(p))
-    return np.concatenate([np.zeros(min(1, len(time))), np.cumsum(h * (before[:-1] + after[1:]) / 2)])
+    gains = np.cumsum(h[:, None] * (before[:-1] + after[1:]) / 2, axis=0)
+    return np.concatenate([np.zeros((min(1, len(time)), 2)), gains])
 
 
-def _powers(system: Any, *columns: Float[np.ndarray, "K n"]) -> Float[np.ndarray, "K"]:
-    """Return the power on each state: of places, momenta and rows of a table."""
-    return in_blocks(_power, system, *columns)[0]
+def _powers(system: Any, *columns: Float[np.ndarray, "K n"]) -> Float[np.ndarray, "K 2"]:
+    """Return the power on each state and what friction takes: of places, momenta and rows of a table."""
+    power, v = in_blocks(_power, system, *columns)
+    C = getattr(system.applied, "friction", np.zeros((v.shape[1],) * 2))
+    return np.stack([power, (v @ C * v).sum(axis=1)], axis=1)
 
 
-def _power(system: Any, x: Array, p: Array, row: Array) -> tuple[Array]:
-    def one(x: Array, p: Array, row: Array) -> Array:
+def _power(system: Any, x: Array, p: Array, row: Array) -> tuple[Array, Array]:
+    def one(x: Array, p: Array, row: Array) -> tuple[Array, Array]:
         v = equations.inverse_legendre(system, x, p)
         force = row + equations.applied(system, x, v)
         rates = equations.forms(system, x) @ v - equations.constraint(system, x, v)
         time_slope = jax.grad(equations.lagrangian, argnums=1)(system, x, v)[-1]
-        return force @ v + acceleration(system, x, v, row)[1] @ rates - time_slope
+        return force @ v + acceleration(system, x, v, row)[1] @ rates - time_slope, v
 
-    return (jax.vmap(one)(x, p, jnp.asarray(row)),)
+    return jax.vmap(one)(x, p, jnp.asarray(row))

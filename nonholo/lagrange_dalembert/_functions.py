@@ -120,6 +120,18 @@ def takes_time(function: Any, others: int) -> bool:
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
+class Resistance:
+    """A force -C v beside a function, where there is one."""
+
+    function: Callable[..., Any] | None
+    friction: Float[np.ndarray, "n n"]
+
+    def __call__(self, time: Array, q: Array, v: Array, *p: Any) -> Array:
+        """Return the force."""
+        return (0 if self.function is None else self.function(time, q, v, *p)) - self.friction @ v
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
 class ForceTable:
     """Forces of the steps, one row a step; after the last one nothing acts."""
 

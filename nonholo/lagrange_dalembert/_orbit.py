@@ -137,9 +137,22 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         the power of the force, of moving constraints and driven joints, and of a Lagrangian of the time. The energy
         less this work is constant up to an error of order 2 in the time between states.
         """
+        return self._works[:, 0]
+
+    @memo
+    def dissipation(self) -> Float[np.ndarray, "K"]:
+        r"""Energy that `Friction` has taken since the first state, $\int v\cdot Cv\,dt$ by the trapezoidal rule.
+
+        `work + dissipation` is the work of all else. Friction that is part of a function counts as that. Of a store
+        that holds no functions it is not known: NaN.
+        """
+        return self._works[:, 1]
+
+    @memo
+    def _works(self) -> Float[np.ndarray, "K 2"]:
         if not self.system.has_functions:
-            return np.full(len(self), np.nan if self.system.is_driven else 0.0)
-        return room("_flow").work(self) if self.system.is_driven or self.system.slip else np.zeros(len(self))
+            return np.full((len(self), 2), np.nan if self.system.is_driven else 0.0)
+        return room("_flow").works(self) if self.system.is_driven or self.system.slip else np.zeros((len(self), 2))
 
     @property
     def lacks_forces(self) -> bool:

@@ -17,6 +17,7 @@ from nonholo.lagrange_dalembert._functions import (
     Bound,
     ForceTable,
     Parameters,
+    Resistance,
     Rows,
     check_forms,
     check_rows_of_places,
@@ -432,8 +433,7 @@ def _force(value: Any, dimension: int) -> Any:
     parts = parts_of(value)
     if (friction := parts.pop("friction", None)) is not None:
         friction.check(dimension)
-        matrix, other = friction.matrix, parts.get("function")
-        parts["function"] = lambda time, q, v, *p: (0 if other is None else other(time, q, v, *p)) - matrix @ v
+        parts["function"] = Resistance(parts.get("function"), friction.matrix)
     if "table" in parts and not isinstance(parts["table"], ForceTable):
         remedy = "Pass a function of time, configuration and velocity, Friction, or one force a step."
         parts["table"] = ForceTable(array(_argument("force"), parts["table"], (None, dimension), remedy))

@@ -73,9 +73,9 @@ class AbstractMotion(Keeper, abc.ABC):
         got = f"a discrete orbit with {len(states)} states; not {shown(times)}"
         raise error("Orbit.at(...)", "be called on a flow", got, "Slice the orbit, or run with another time step.")
 
-    def work(self, states: "Orbit") -> Float[np.ndarray, "K"]:
-        """Return the work of the force along states since the first, by the trapezoidal rule."""
-        return self.system.forces.work(states.time, states.configuration, states.body_velocity, states.step)
+    def work(self, states: "Orbit", forced: Any) -> Float[np.ndarray, "K"]:
+        """Return the work of a force along states since the first, by the trapezoidal rule."""
+        return forced.work(states.time, states.configuration, states.body_velocity, states.step)
 
     def after_parts(self, states: Any, fractions: Float[np.ndarray, "K"]) -> Any:
         """Return what is reached from states after parts of the steps that begin there; refused where none do."""
@@ -435,12 +435,38 @@ class Orbit(AbstractOrbit):
             ValueError: Poses that are not reconstructed; under a table given poses with some left out, or states that
                 are not at steps of one run, in their order.
         """
+        return self._work_of(self.system.forces)
+
+    @memo
+    def dissipation(self) -> Float[np.ndarray, "K"]:
+        r"""Energy that `Friction` and `Slip` have taken since the first state; it never falls, but by rounding.
+
+        It is as exact as `work`, and `work + dissipation` is the work of the other forces: of motors. Friction that is
+        part of a function counts as a motor. Under the scheme "energy" a step of order 2 takes
+        $\langle CX, X\rangle/h$, and by slips what Theorem 18.4 says (docs/theory/forces.md).
+
+        Raises:
+            ValueError: As `work`.
+
+        Example:
+            A cart with a motor and friction:
+
+            >>> force = nh.Friction([0.0, 0.5, 0.0]), np.tile([0.0, 2.0, 0.0], (40, 1))
+            >>> cart = nh.discretize(nh.Forced(nh.ChaplyginSleigh(1.0, 1.0, 0.0), force=force), 0.1)
+            >>> orbit = nh.simulate(cart, body_velocity=(0.0, 0.0, 0.0), steps=40)
+            >>> float((orbit.work + orbit.dissipation)[-1].round(6)), float(2 * orbit.position[-1, 0].round(6))
+            (18.164462, 18.164462)
+        """
         forced = self.system.forces
+        return 0.0 - self._work_of(None if forced is None else forced.resistance)
+
+    def _work_of(self, forced: Any) -> Float[np.ndarray, "K"]:
+        """Return the work of the forces of a system that moves as this one."""
         if forced is None or forced.force is None:
             return np.zeros(len(self))
         if self.lacks_forces:
-            return self.with_every_step().work[self.step - self.step[0]]
-        return self.motion.work(self)
+            return self.with_every_step()._work_of(forced)[self.step - self.step[0]]
+        return self.motion.work(self, forced)
 
     @property
     def lacks_forces(self) -> bool:

@@ -46,8 +46,9 @@ def test_what_is_traced_is_not_kept() -> None:
 
 
 READINGS = [
-    *("body_velocity", "chart", "configuration", "displacement", "energy", "heading", "momentum", "multipliers"),
-    *("pose", "position", "restricted_momentum", "spatial_displacement", "spatial_momentum", "tangent", "work"),
+    *("body_velocity", "chart", "configuration", "displacement", "dissipation", "energy", "heading", "momentum"),
+    *("multipliers", "pose", "position", "restricted_momentum", "spatial_displacement", "spatial_momentum"),
+    *("tangent", "work"),
 ]
 
 

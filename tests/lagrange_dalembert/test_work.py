@@ -83,6 +83,17 @@ def test_work_of_friction_is_known() -> None:
     times = np.linspace(0.0, 2.0, 4001)
     orbit = nh.flow(body, configuration=[0.0], body_velocity=[1.0], times=times)
     assert np.abs(orbit.work - (np.exp(-1.4 * times) - 1) / 2).max() < 1e-7  # trapezoidal: 1.4^2 h^2 / 12
+    np.testing.assert_allclose(orbit.dissipation, -orbit.work, rtol=1e-15)
+
+
+@pytest.mark.parametrize("table", [None, np.full((9, 1), 0.4)], ids=["function", "table"])
+def test_dissipation_less_work_is_that_of_motors(table: Any) -> None:
+    """A constant force of 0.4 beside friction does the work 0.4 q, known by the trapezoidal rule up to order 2."""
+    motor = (lambda _time, _q, v: 0.4 + 0 * v) if table is None else table
+    body = nh.Forced(LagrangeDAlembert(lambda _, v: v @ v / 2, None, dimension=1), force=(nh.Friction([0.7]), motor))
+    orbit = nh.simulate(nh.discretize(body, 0.1), configuration=[0.0], body_velocity=[1.0], steps=9)
+    assert np.diff(orbit.dissipation).min() > 0
+    np.testing.assert_allclose(orbit.work + orbit.dissipation, 0.4 * orbit.configuration[:, 0], rtol=1e-2)
 
 
 def test_a_table_belongs_to_steps() -> None:

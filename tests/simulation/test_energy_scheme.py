@@ -100,6 +100,63 @@ def test_orbits_obey_the_equations_of_the_step(name: str, acting: tuple[str, str
     np.testing.assert_allclose(after - group.coadjoint(W[0], p) - h / 2 * (f[0] + f[1]), jump[0], atol=2e-14)
 
 
+@pytest.mark.parametrize("blade", [None, nh.Slip([[0.0, 0.0, 1.0]], 0.4, 0.1)], ids=["holds", "slips"])
+@pytest.mark.parametrize("more", [{}, {"weight": True}, {"motor": True}], ids=["alone", "heavy", "driven"])
+def test_dissipation_is_what_friction_and_slips_take(blade: Any, more: dict[str, bool]) -> None:
+    """It never falls, is X.CX/h of friction, minus the work without motors, and with it the work of motors, <f, X>."""
+    system = nh.ChaplyginSleigh(1.0, 1.0, -0.4)
+    rub, table = FORCES["friction"](system), FORCES["table"](system)
+    force = (rub, *([table] if "motor" in more else []), *([blade] if blade else []))
+    discrete = nh.discretize(nh.Forced(system, weight(system) if more else None, force), 0.1)
+    orbit = nh.simulate(discrete, body_velocity=(1.0, 1.0, 0.0), steps=50)
+    W, group = orbit.displacement, system.group
+    X = group.vee((W - group.inverse(W)) / 2)[:-1]
+    motors = (table[:50] * X).sum(axis=1) if "motor" in more else np.zeros(50)
+    took = np.diff(orbit.dissipation)
+    assert took.min() > -1e-15
+    np.testing.assert_allclose(orbit.work[1:] + orbit.dissipation[1:], np.cumsum(motors), atol=3e-14)
+    rubbed = (X @ rub.matrix * X).sum(axis=1) / 0.1
+    assert np.abs(took - rubbed).max() < 1e-15 if blade is None else (took - rubbed).max() > 1e-3
+
+
+@pytest.mark.parametrize("way", ["kicks", "order 4", "states left out", "flow"])
+def test_dissipation_of_other_motions_is_that_of_the_nodes(way: str) -> None:
+    """It is minus the work of friction alone, and what the energy falls by up to order 2."""
+    forced = nh.Forced(TOP, None, FORCES["friction"](TOP), "variational" if way == "kicks" else None)
+    start: dict[str, Any] = {"restricted_velocity": [0.5, -0.3]}
+    if way == "flow":
+        orbit = nh.flow(forced, **start, times=np.linspace(0.0, 2.0, 41))
+    else:
+        discrete = nh.discretize(forced, 0.05, order=4 if way == "order 4" else 2)
+        orbit = nh.simulate(discrete, **start, steps=40, save_every=2 if "left" in way else 1)
+    assert orbit.dissipation[-1] > 0.05
+    np.testing.assert_array_equal(orbit.dissipation, -orbit.work)
+    np.testing.assert_allclose(orbit.dissipation, orbit.energy[0] - orbit.energy, rtol=2e-2, atol=1e-15)
+
+
+@pytest.mark.profile("routes", instead="test_orbits_obey_the_equations_of_the_step")
+def test_energy_does_not_drift_one_way_by_rounding() -> None:
+    """T + U of a sleigh on a spring, order 6: the median slope of its errors was -1e-17 a step, for every start."""
+    forced, slopes = nh.Forced(nh.ChaplyginSleigh(1.0, 1.0, 0.5), _spring(SYSTEMS["sleigh"])), []
+    for start in np.random.default_rng(0).normal(size=(9, 2)) / 2:
+        orbit = nh.simulate(nh.discretize(forced, 0.5, order=6), restricted_velocity=start, steps=1500)
+        U = forced.potential_energy(orbit.configuration)
+        scale = (orbit.energy - U + np.abs(U - U[0])).max()
+        slopes.append(np.polyfit(orbit.step, (orbit.energy - orbit.energy[0]) / scale, 1)[0])
+    assert abs(np.median(slopes)) < 4e-18, slopes
+
+
+@pytest.mark.parametrize(("order", "least"), [(4, -0.6579630871775028), (6, -0.7062461725576393)])
+def test_substeps_back_in_time_give_the_energy_of_friction_back(order: int, least: float) -> None:
+    """Proposition 18.5: near hc/2m = 1/|gamma| a step of higher order multiplies T, and one of order 2 takes of it."""
+    grown = []
+    for way in (2, order):
+        forced = nh.Forced(nh.ChaplyginSleigh(1.0, 1.0, 0.0), force=nh.Friction([0.0, -20 * (1 - 1e-4) / least, 0.0]))
+        orbit = nh.simulate(nh.discretize(forced, 0.1, order=way), body_velocity=(0.0, 1.0, 0.0), steps=1)
+        grown.append(orbit.energy[1] / orbit.energy[0])
+    assert grown[0] < 1 < 100 < grown[1]
+
+
 @pytest.mark.parametrize("name", SYSTEMS)
 @pytest.mark.parametrize("kind", ["weight", "magnet", "spring", "own", "all"])
 def test_slopes_do_the_work_and_are_the_same_from_both_ends(name: str, kind: str) -> None:

@@ -61,7 +61,7 @@ class Forced(AbstractSystem):
     - "variational": kicks at the nodes, with the trapezoidal rule for U in the action. The map of a body without
       constraint is symplectic; T + U has an error of order 2, which may grow on constrained bodies.
 
-    Momenta and energies of orbits are those at the nodes. Under friction alone T never grows.
+    Momenta and energies of orbits are those at the nodes. Under friction alone T never grows in steps of order 2.
 
     Args:
         system: A system on a group, `LLSystem` or `LRSystem` or one of their kinds; or a `LagrangeDAlembert`, which is
@@ -202,6 +202,12 @@ class Forced(AbstractSystem):
         rest = {"friction": _friction.Friction(np.zeros(self.group.dim))} | _friction.without_slips(self.parts)
         return Forced(self.free, self.potential, _friction.force_of(rest), "energy")
 
+    @functools.cached_property
+    def resistance(self) -> "Forced":
+        """The system under what takes energy alone: friction and slips."""
+        takes = {name: each for name, each in self.parts.items() if name not in ("table", "function")}
+        return Forced(self.system, None, _friction.force_of(takes))
+
     @property
     def table(self) -> Array | None:
         """The forces of the steps, (steps, dim), where they are given one by one."""
@@ -252,7 +258,8 @@ class Forced(AbstractSystem):
     def _slips(self, exact: bool) -> bool:
         """Refuse steps of rows that yield beside those of order 2 that keep their energy."""
         if not exact or self.scheme == "variational":
-            got = "another order, scheme, difference or constraint, or an inertia operator"
+            got = "another order (in substeps back in time slips add energy), scheme, difference or constraint, "
+            got += "or an inertia operator"
             remedy = "Pass a mass tensor, order=2, and leave scheme, difference and constraint out."
             raise error("Forced(force=Slip(...))", "stand in steps of order 2 that keep their energy", got, remedy)
         return True

@@ -23,9 +23,10 @@ _ROUNDING = 1e-13  # relative, of an eigenvalue
 class Friction:
     r"""The force $-C\omega$ against a body velocity, with $\omega\cdot C\omega \ge 0$: it never adds energy.
 
-    It never adds energy, at any step size. Under the scheme "energy" it is $-C X/h$ over a step, which takes
-    $X\cdot CX/h$ exactly; under "variational" half kicks are the exact exponentials of $\dot r = -D r$ along the
-    constraint, which stiff friction needs. The antisymmetric part of C, if there is one, does no work.
+    In steps of order 2 it never adds energy, at any step size; of higher orders see Proposition 18.5. Under the scheme
+    "energy" it is $-C X/h$ over a step, which takes $X\cdot CX/h$ exactly; under "variational" half kicks are the exact
+    exponentials of $\dot r = -D r$ along the constraint, which stiff friction needs. The antisymmetric part of C, if
+    there is one, does no work.
 
     Args:
         coefficients: C, a matrix (dim, dim), or its diagonal (dim,).
