@@ -228,7 +228,7 @@ def _robot_system(motors: Any, is_free: bool) -> LagrangeDAlembert:
 
     def forms(q: Array, p: Numbers) -> Array:
         cos, sin, R = jnp.cos(q[2]), jnp.sin(q[2]), p["wheel_radius"]
-        turn = R / (2 * p["half_width"])
+        turn = jnp.divide(R, 2 * p["half_width"])  # of the family, whose numbers are zero, without a warning
         return jnp.array([[-sin, cos, 0.0, 0.0, 0.0], [cos, sin, 0.0, -R / 2, -R / 2], [0.0, 0.0, 1.0, -turn, turn]])
 
     def force(time: Array, q: Array, v: Array, p: Numbers) -> Array:
