@@ -38,7 +38,7 @@ EIGENVALUES = {
 @functools.cache
 def derivatives() -> Callable[..., Any]:
     """Return the derivatives of the accelerations of lean and steer, compiled once, as a function of the speed."""
-    system, freely = nh.examples.bicycle().system, jnp.array([LEAN, STEER])
+    system, freely = nh.examples.bicycle().system.plain, jnp.array([LEAN, STEER])
 
     def rates(state: Array, torque: Array, speed: Array) -> Array:
         q = jnp.zeros(8).at[freely].set(state[:2])  # the pitch is of second order
@@ -99,9 +99,10 @@ def turning_state() -> tuple[float, float, Array, Array]:
     rear, front = 1.8472554144217 + 0.1205543897884, 2.4548072904550
     published = 0.8353281706379, 7.8555281128244, 0.1205543897884, 4.6198904039403, rear, front
     ready = nh.examples.bicycle()
+    system = ready.system.plain
     q, v = np.array([0.0, 0.0, 0.0, lean, pitch, steer, 0.0, 0.0]), np.array([0.3 * rates[4], 0.0, *rates])
     with double_precision():
-        slip = np.abs(ready.system.constraint_forms(jnp.asarray(q)) @ v).max()
-        found = np.asarray(jax.jit(functools.partial(acceleration, ready.system))(jnp.asarray(q), jnp.asarray(v)))
+        slip = np.abs(system.constraint_forms(jnp.asarray(q)) @ v).max()
+        found = np.asarray(jax.jit(functools.partial(acceleration, system))(jnp.asarray(q), jnp.asarray(v)))
     height = ready.conserved["height of the front contact"](q, v)
     return float(height), float(slip), found[2:], np.array(published)

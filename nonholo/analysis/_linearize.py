@@ -211,7 +211,7 @@ def linearize(system: Any, *, configuration: Any = None, body_velocity: Any = No
     """
     local, _ = local_motion("linearize", system, configuration, body_velocity)
     where = "linearize(body_velocity=...)"
-    if not np.isfinite(local.slope[0]).all():
+    if not (np.isfinite(local.slope[0]).all() and np.isfinite(local.rows[0]).all()):
         remedy = "Take a smaller time step, or another state."
         raise error(where, "have a finite linearization", f"none at {local.state.tolist()}", remedy)
     equations = reduced(local)
@@ -240,6 +240,14 @@ def _motions(owner: str) -> Any:
     with needs("jax", owner):
         from nonholo.analysis import _beside
     return _beside
+
+
+def _step(matrix: Float[np.ndarray, "d d"], defect: Float[np.ndarray, "d"]) -> Float[np.ndarray, "d"]:
+    """Return the step of Levenberg and Marquardt: damped by the defect, Newton's where steady motions are families."""
+    left, sizes, right = np.linalg.svd(matrix)
+    rank = np.count_nonzero(sizes > _RANK * sizes.max(initial=0.0))
+    gains = sizes[:rank] / (sizes[:rank] ** 2 + defect @ defect)
+    return right[:rank].T @ (gains * (left[:, :rank].T @ defect))
 
 
 _MOST = 50  # corrections
@@ -295,8 +303,7 @@ def steady_motion(system: Any, configuration: Any, body_velocity: Any) -> Steady
             remedy = "Prescribed motions and forces of the time drive it: leave them out."
             raise error(where, "be near a steady motion", "equations of the time", remedy)
         is_seen = np.abs(equations.matrix) > _UNSEEN * np.abs(local.slope[0]).max()
-        inverse = np.linalg.pinv(equations.matrix * is_seen, rcond=_RANK)
-        change = equations.directions @ inverse @ local.change[0][equations.states]
+        change = equations.directions @ _step(equations.matrix * is_seen, local.change[0][equations.states])
         state = beside(-change[: local.places], -change[local.places :])
         if np.abs(change).max(initial=0.0) <= _CLOSE * (1 + np.abs(local.state).max()):
             if not equations.is_steady:

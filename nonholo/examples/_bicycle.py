@@ -1,14 +1,15 @@
 """The bicycle of Whipple: two frames, two wheels, a rider who holds on."""
 
 import functools
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 
+from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
-from nonholo.examples._example import Example, energy_of, of_states, ready, system_in, wheel
+from nonholo.examples._example import Example, Numbers, energy_of, of_states, ready, system_in, wheel, with_numbers
 from nonholo.groups import SO
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
@@ -91,49 +92,53 @@ def bicycle(
     q, v, rolling = np.append(place, np.zeros(5)), speed, (speed / rear_wheel[0], speed / front_wheel[0])
     yaw = -trail * np.cos(tilt) / wheelbase * steer_rate
     start = np.array([v * np.cos(q[2]), v * np.sin(q[2]), yaw, lean_rate, 0.0, steer_rate, *rolling])
-    system = _system(machine, gravity)
+    rows = map(np.array, (rear_wheel, rear_frame, front_frame, front_wheel))
+    system = with_numbers(_system, wheelbase, trail, tilt, *rows, gravity)
     height = of_states(lambda q, v: machine.height(q) + 0.0 * v[0])
-    conserved = {"energy": energy_of(system.lagrangian), "height of the front contact": height}
+    conserved = {"energy": energy_of(system.plain.lagrangian), "height of the front contact": height}
     return Example("bicycle", system, q, start, conserved, time_step=0.02)
 
 
 class _Machine(NamedTuple):
     """The parts of the bicycle, and how they move; vectors in axes of the rear frame or, turned, of the front one."""
 
-    wheelbase: float
-    trail: float
-    tilt: float
-    rear: _Wheel
-    frame: _Body
-    fork: _Body
-    front: _Wheel
+    wheelbase: Any
+    trail: Any
+    tilt: Any
+    rear: Any
+    frame: Any
+    fork: Any
+    front: Any
 
     @property
-    def pivot(self) -> Float[np.ndarray, "3"]:
+    def pivot(self) -> Float[Array, "3"]:
         """Where the steering axis meets the ground, from the rear axle, upright."""
-        return np.array([self.wheelbase + self.trail, 0.0, -self.rear[0]])
+        return jnp.array([self.wheelbase + self.trail, 0.0, -self.rear[0]])
 
-    def of_fork(self, x: float, z: float) -> Float[np.ndarray, "3"]:
+    def of_fork(self, x: Any, z: Any) -> Float[Array, "3"]:
         """Return a point of the upright front frame from the pivot, in its axes."""
-        return self.axes @ (x - self.wheelbase - self.trail, 0.0, z)
+        return self.axes @ jnp.array([x - self.wheelbase - self.trail, 0.0, z])
 
     @property
-    def axle(self) -> Float[np.ndarray, "3"]:
+    def axle(self) -> Float[Array, "3"]:
         """The front axle from the pivot."""
         return self.of_fork(self.wheelbase, self.front[0])
 
     @property
-    def axes(self) -> Float[np.ndarray, "3 3"]:
-        cos, sin = np.cos(self.tilt), np.sin(self.tilt)
-        return np.array([[cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]])
+    def axes(self) -> Float[Array, "3 3"]:
+        cos, sin = jnp.cos(self.tilt), jnp.sin(self.tilt)
+        return jnp.array([[cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]])
 
-    def inertias(self) -> list[Float[np.ndarray, "3 3"]]:
+    def inertias(self) -> list[Float[Array, "3 3"]]:
         """Return the tensors of rear wheel, rear frame, front frame and front wheel, each in its axes."""
         frame, fork = (
-            np.array([[xx, 0.0, xz], [0.0, yy, 0.0], [xz, 0.0, zz]])
+            jnp.array([[xx, 0.0, xz], [0.0, yy, 0.0], [xz, 0.0, zz]])
             for _, _, _, xx, yy, zz, xz in (self.frame, self.fork)
         )
-        rear, front = (np.diag([across, axle, across]) for _, _, across, axle in (self.rear, self.front))
+        rear, front = (
+            jnp.array([[across, 0.0, 0.0], [0.0, axle, 0.0], [0.0, 0.0, across]])
+            for _, _, across, axle in (self.rear, self.front)
+        )
         return [rear, frame, self.axes @ fork @ self.axes.T, front]
 
     def to_fork(self, q: Array, vector: Array) -> Array:
@@ -188,13 +193,13 @@ def _pitch(q: Array, vector: Array) -> Array:
 
 
 @functools.cache
-def _system(machine: _Machine, g: float) -> LagrangeDAlembert:
-    (R, rear, *_), (_, front, *_) = machine.rear, machine.front
-    (x, z, frame, *_), (x_fork, z_fork, fork, *_) = machine.frame, machine.fork
-    body, bars, tensors = np.array([x, 0.0, z - R]), machine.of_fork(x_fork, z_fork), machine.inertias()
-    masses = rear, frame, fork, front
-
-    def lagrangian(q: Array, v: Array) -> Array:
+def _system() -> LagrangeDAlembert:
+    def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
+        machine = _machine(p)
+        (R, rear, *_), (_, front, *_) = machine.rear, machine.front
+        (x, z, frame, *_), (x_fork, z_fork, fork, *_) = machine.frame, machine.fork
+        body, bars, tensors = jnp.array([x, 0.0, z - R]), machine.of_fork(x_fork, z_fork), machine.inertias()
+        masses = rear, frame, fork, front
         axle, omega, pivot, fork_rate = machine.motion(q, v)
         of_fork = (pivot + jnp.cross(fork_rate, at) for at in (bars, machine.axle))
         velocities = axle, axle + jnp.cross(omega, body), *of_fork
@@ -204,27 +209,38 @@ def _system(machine: _Machine, g: float) -> LagrangeDAlembert:
         kinetic = sum(mass * (u @ u) + w @ tensor @ w for mass, u, tensor, w in bodies) / 2
         up = machine.up(q)
         heights = up @ (frame * body + (fork + front) * machine.pivot) + sum(masses) * R * jnp.cos(q[3])
-        return kinetic - g * (heights + machine.to_fork(q, up) @ (fork * bars + front * machine.axle))
+        return kinetic - p["gravity"] * (heights + machine.to_fork(q, up) @ (fork * bars + front * machine.axle))
 
-    def forms(q: Array) -> Array:
-        return jax.jacfwd(lambda v: machine.slip(q, v))(jnp.zeros(8))
+    def forms(q: Array, p: Numbers) -> Array:
+        return jax.jacfwd(lambda v: _machine(p).slip(q, v))(jnp.zeros(8))
 
-    def discrete(q: Array, q_next: Array, h: Array) -> Array:
+    def discrete(q: Array, q_next: Array, h: Array, p: Numbers) -> Array:
+        machine = _machine(p)
         level = machine.slip((q + q_next) / 2, (q_next - q) / h)[:4]
         return jnp.stack([*level, machine.height(q_next) - machine.height(q)])
 
-    looks = {"heading": "theta", "outline": functools.partial(_outline, machine), "discrete_constraints": discrete}
-    return system_in("x y theta lean pitch steer rear front", "Bicycle", lagrangian, forms, **looks)
+    numbers = dict.fromkeys(("wheelbase", "trail", "tilt"), 1.0) | {"rear_wheel": np.ones(4), "rear_frame": np.ones(7)}
+    numbers |= {"front_frame": np.ones(7), "front_wheel": np.ones(4), "gravity": 1.0}
+    options: Any = {"heading": "theta", "outline": _outline, "discrete_constraints": discrete, "parameters": numbers}
+    return system_in("x y theta lean pitch steer rear front", "Bicycle", lagrangian, forms, **options)
 
 
-def _outline(machine: _Machine, q: Array) -> list[Array]:
+def _machine(p: Numbers) -> _Machine:
+    wheels = "rear_wheel", "rear_frame", "front_frame", "front_wheel"
+    return _Machine(p["wheelbase"], p["trail"], p["tilt"], *map(p.__getitem__, wheels))
+
+
+def _outline(q: Array, p: Numbers) -> list[Array]:
     """Return the rider, the frame, the handlebar, and the wheels where they touch the ground, seen from above."""
+    machine = _machine(p)
+    with double_precision():
+        axes, base, hub = map(np.asarray, (machine.axes, machine.pivot, machine.axle))
     lean, pitch, steer = SO(3).exp(np.diag([*q[3:5], -q[5]]))
     frame, R, w = lean @ pitch, machine.rear[0], machine.wheelbase
-    fork, axle = frame @ machine.axes.T @ steer, lean @ (0.0, 0.0, R)
-    pivot, across = axle + frame @ machine.pivot, fork[:, 1]
+    fork, axle = frame @ axes.T @ steer, lean @ (0.0, 0.0, R)
+    pivot, across = axle + frame @ base, fork[:, 1]
     low = across * across[2] - (0.0, 0.0, 1.0)
-    contact = pivot + fork @ machine.axle + machine.front[0] * low / np.linalg.norm(low)
+    contact = pivot + fork @ hub + machine.front[0] * low / np.linalg.norm(low)
     head = pivot + fork @ (0.0, 0.0, machine.frame[1])
     x, z, size = machine.frame[0], machine.frame[1] - R, w * np.array([0.12, 0.2])
     rider = axle + np.array([[x + size[0] * ahead, size[1] * left, z] for ahead, left in _CORNERS]) @ frame.T

@@ -347,13 +347,13 @@ def snake(
     rows = np.stack([sign * np.sin(a), -sign * half * (1 + np.cos(a))], axis=1)
     u, omega = np.linalg.solve(rows, -half * np.asarray(joint_rates))
     v = np.array([u * np.cos(q[2]), u * np.sin(q[2]), omega, *joint_rates])
-    system = _snake_system(half, mass, inertia)
-    return Example("snake", system, np.append(q, a), v, {"energy": energy_of(system.lagrangian)})
+    system = with_numbers(_snake_system, half, mass, inertia)
+    return Example("snake", system, np.append(q, a), v, {"energy": energy_of(system.plain.lagrangian)})
 
 
 @functools.cache
-def _snake_system(half: float, m: float, J: float) -> LagrangeDAlembert:
-    def links(q: Array) -> tuple[Array, Array, Array]:
+def _snake_system() -> LagrangeDAlembert:
+    def links(q: Array, half: Any) -> tuple[Array, Array, Array]:
         """Return the headings of the links, and matrices from velocities to those of their middles along x and y."""
         headings = q[2] + jnp.stack([-q[3], 0.0 * q[3], q[4]])
         cos, sin = jnp.cos(headings), jnp.sin(headings)
@@ -364,21 +364,23 @@ def _snake_system(half: float, m: float, J: float) -> LagrangeDAlembert:
         across = jnp.stack([ones, zeros, x, -half * sin[0] * first, -half * sin[2] * last], axis=1)
         return headings, across, jnp.stack([zeros, ones, y, half * cos[0] * first, half * cos[2] * last], axis=1)
 
-    def lagrangian(q: Array, v: Array) -> Array:
-        _, x, y = links(q)
+    def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
+        _, x, y = links(q, p["half_length"])
         turning = v[2] + jnp.stack([-v[3], 0.0 * v[3], v[4]])
-        return (m * ((x @ v) @ (x @ v) + (y @ v) @ (y @ v)) + J * (turning @ turning)) / 2
+        return (p["mass"] * ((x @ v) @ (x @ v) + (y @ v) @ (y @ v)) + p["inertia"] * (turning @ turning)) / 2
 
-    def forms(q: Array) -> Array:
-        headings, x, y = links(q)
+    def forms(q: Array, p: Numbers) -> Array:
+        headings, x, y = links(q, p["half_length"])
         return jnp.cos(headings)[:, None] * y - jnp.sin(headings)[:, None] * x
 
-    looks = {"heading": "theta", "outline": functools.partial(_outline, half)}
-    return system_in("x y theta alpha1 alpha2", "Snake", lagrangian, forms, **looks)
+    options: Any = {"heading": "theta", "outline": _outline}
+    options["parameters"] = dict.fromkeys(("half_length", "mass", "inertia"), 1.0)
+    return system_in("x y theta alpha1 alpha2", "Snake", lagrangian, forms, **options)
 
 
-def _outline(half: float, q: Array) -> list[Array]:
+def _outline(q: Array, p: Numbers) -> list[Array]:
     """Return the three links, each with its wheels; the middle one first."""
+    half = p["half_length"]
     link = half * np.array([[-0.95, -0.15], [0.95, -0.15], [0.95, 0.15], [-0.95, 0.15]])
     parts = [link, *pair((0.0, 0.0), 0.35 * half, 0.35 * half)]
     for side, angle in ((-1.0, -q[3]), (1.0, q[4])):

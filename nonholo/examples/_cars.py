@@ -199,42 +199,51 @@ def two_wheeled_robot(
     def axle(q: Array, v: Array) -> Array:
         return q[..., 2] - R / (2 * c) * (q[..., 3] - q[..., 4])
 
-    motors = _motors(torques)
-    free = motors is None and d == 0
+    free = torques is None and d == 0
     conserved = {"axle": axle, **({"energy of the sleigh": energy} if free else {})}
-    system = _robot_system(m, J + m * ell**2, ell, c, R, Jw, motors, d)
+    motors = torques if callable(torques) else None
+    system = _robot_system(motors, free).with_parameters(
+        **dict(zip(_ROBOT, (m, J, ell, c, R, Jw), strict=True)),
+        **({} if free else {"friction": d}),
+        **({} if free or motors else {"torques": _torques(torques)}),
+    )
     return Example("two_wheeled_robot", system, q, v, conserved)
 
 
-def _motors(torques: Any) -> Any:
-    """Return torques as a function of the time, or None."""
-    if torques is None or callable(torques):
-        return torques
+_ROBOT = ("mass", "inertia", "offset", "half_width", "wheel_radius", "wheel_inertia")
+
+
+def _torques(value: Any) -> Array:
+    """Return two torques, none if there are none."""
     where, remedy = "examples.two_wheeled_robot(torques=...)", "Pass a function of the time, or two torques."
-    right, left = array(where, torques, (2,), remedy).tolist()
-    return lambda time: (right + 0.0 * time, left + 0.0 * time)
+    return array(where, (0.0, 0.0) if value is None else value, (2,), remedy)
 
 
 @functools.cache
-def _robot_system(
-    m: float, about_axle: float, ell: float, c: float, R: float, Jw: float, motors: Any, d: float
-) -> LagrangeDAlembert:
-    def lagrangian(q: Array, v: Array) -> Array:
+def _robot_system(motors: Any, is_free: bool) -> LagrangeDAlembert:
+    def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
+        m, J, ell, _, _, Jw = map(p.__getitem__, _ROBOT)
         across = v[1] * jnp.cos(q[2]) - v[0] * jnp.sin(q[2])
-        return jnp.array([m, m, about_axle, Jw, Jw]) @ v**2 / 2 + m * ell * v[2] * across
+        return jnp.array([m, m, J + m * ell**2, Jw, Jw]) @ v**2 / 2 + m * ell * v[2] * across
 
-    def forms(q: Array) -> Array:
-        cos, sin = jnp.cos(q[2]), jnp.sin(q[2])
-        turn = R / (2 * c)
+    def forms(q: Array, p: Numbers) -> Array:
+        cos, sin, R = jnp.cos(q[2]), jnp.sin(q[2]), p["wheel_radius"]
+        turn = jnp.divide(R, 2 * p["half_width"])  # of the family, whose numbers are zero, without a warning
         return jnp.array([[-sin, cos, 0.0, 0.0, 0.0], [cos, sin, 0.0, -R / 2, -R / 2], [0.0, 0.0, 1.0, -turn, turn]])
 
-    def force(time: Array, q: Array, v: Array) -> Array:
-        right, left = (0.0, 0.0) if motors is None else motors(time)
-        return jnp.array([0.0, 0.0, 0.0, right - d * v[3], left - d * v[4]])
+    def force(time: Array, q: Array, v: Array, p: Numbers) -> Array:
+        right, left = motors(time) if motors else p["torques"]
+        return jnp.array([0.0, 0.0, 0.0, right - p["friction"] * v[3], left - p["friction"] * v[4]])
 
-    chassis = c * np.array([[-0.7, -0.75], [0.7, -0.75], [1.2, -0.3], [1.2, 0.3], [0.7, 0.75], [-0.7, 0.75]])
-    options: Any = {"heading": "theta", "outline": [chassis, wheel((0.0, -c), 2 * R), wheel((0.0, c), 2 * R)]}
-    options["force"] = None if motors is None and d == 0 else force
+    chassis = np.array([[-0.7, -0.75], [0.7, -0.75], [1.2, -0.3], [1.2, 0.3], [0.7, 0.75], [-0.7, 0.75]])
+
+    def outline(_: Array, p: Numbers) -> list[Array]:
+        c, diameter = p["half_width"], 2 * p["wheel_radius"]
+        return [c * chassis, wheel((0.0, -c), diameter), wheel((0.0, c), diameter)]
+
+    driven = {} if is_free else {"friction": 0.0} | ({} if motors else {"torques": np.zeros(2)})
+    options: Any = {"heading": "theta", "outline": outline, "parameters": dict.fromkeys(_ROBOT, 1.0) | driven}
+    options["force"] = None if is_free else force
     return system_in("x y theta right left", "Two-wheeled robot", lagrangian, forms, **options)
 
 
@@ -303,43 +312,45 @@ def trailers(
         along *= np.cos(bend)
     q = np.append(place, headings)
     v = np.array([u * np.cos(headings[0]), u * np.sin(headings[0]), *rates])
-    masses, moments = (m, *len(d) * (trailer,)), (J, *len(d) * (moment,))
 
     def energy(q: Array, v: Array) -> Array:
         angles, ahead = q[..., 2:], v[..., 0] * np.cos(q[..., 2]) + v[..., 1] * np.sin(q[..., 2])
         speeds = ahead[..., None] * np.cumprod(np.cos(angles[..., :-1] - angles[..., 1:]), axis=-1)
         own = m * ahead**2 + trailer * (speeds**2).sum(axis=-1)
-        return (own + v[..., 2:] ** 2 @ np.array(moments)) / 2
+        return (own + v[..., 2:] ** 2 @ np.array([J, *len(d) * (moment,)])) / 2
 
-    return Example("trailers", _trailer_system(d, masses, moments), q, v, {"theta'": rate(2), "energy": energy})
+    system = with_numbers(functools.partial(_trailer_system, n), np.array(d), m, J, trailer, moment)
+    return Example("trailers", system, q, v, {"theta'": rate(2), "energy": energy})
 
 
 @functools.cache
-def _trailer_system(d: tuple[float, ...], masses: tuple[float, ...], moments: tuple[float, ...]) -> LagrangeDAlembert:
-    n = len(d) + 1
-    behind = np.tril(np.tile([0.0, *d], (n, 1)))  # of each axle, how far it is behind along each heading
+def _trailer_system(n: int) -> LagrangeDAlembert:
+    ones, zeros, follows = np.ones((n, 1)), np.zeros((n, 1)), np.tril(np.ones((n, n)))[:, 1:]
 
-    def velocities(q: Array) -> tuple[Array, Array]:
+    def velocities(q: Array, p: Numbers) -> tuple[Array, Array]:
         """Return matrices from velocities to those of the axles along x and along y."""
         cos, sin = jnp.cos(q[2:]), jnp.sin(q[2:])
-        ones, zeros = np.ones((n, 1)), np.zeros((n, 1))
+        behind = jnp.hstack([zeros, follows * p["hitches"]])  # of each axle, how far it is behind along each heading
         return jnp.hstack([ones, zeros, behind * sin]), jnp.hstack([zeros, ones, -behind * cos])
 
-    def lagrangian(q: Array, v: Array) -> Array:
-        x, y = velocities(q)
-        return (np.array(masses) @ ((x @ v) ** 2 + (y @ v) ** 2) + np.array(moments) @ v[2:] ** 2) / 2
+    def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
+        x, y = velocities(q, p)
+        masses, moments = (jnp.array([p[name], *(n - 1) * (p[f"trailer_{name}"],)]) for name in ("mass", "inertia"))
+        return (masses @ ((x @ v) ** 2 + (y @ v) ** 2) + moments @ v[2:] ** 2) / 2
 
-    def forms(q: Array) -> Array:
-        x, y = velocities(q)
+    def forms(q: Array, p: Numbers) -> Array:
+        x, y = velocities(q, p)
         return jnp.cos(q[2:])[:, None] * y - jnp.sin(q[2:])[:, None] * x
 
-    looks = {"heading": "theta", "outline": functools.partial(_outline, d)}
+    numbers = {"hitches": np.ones(n - 1)} | dict.fromkeys(("mass", "inertia", "trailer_mass", "trailer_inertia"), 1.0)
+    options: Any = {"heading": "theta", "outline": _outline, "parameters": numbers}
     names = " ".join(f"theta{i}" for i in range(1, n))
-    return system_in(f"x y theta {names}", "Trailers", lagrangian, forms, **looks)
+    return system_in(f"x y theta {names}", "Trailers", lagrangian, forms, **options)
 
 
-def _outline(d: tuple[float, ...], q: Array) -> list[Array]:
+def _outline(q: Array, p: Numbers) -> list[Array]:
     """Return the cab with its wheels, and of each trailer the box, the bar and the wheels."""
+    d = p["hitches"]
     size, place = 0.5 * min(d), np.zeros(2)
     cab = size * np.array([[-0.5, -0.6], [0.9, -0.45], [0.9, 0.45], [-0.5, 0.6]])
     parts = [cab, *pair((0.0, 0.0), 0.6 * size, 0.6 * size)]

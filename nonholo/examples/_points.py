@@ -76,11 +76,11 @@ def _particle_system() -> LagrangeDAlembert:
     return system_in("x y z", "Nonholonomic particle", lagrangian, forms, parameters={"mass": 1.0})
 
 
-@ready()
-def chaotic_quartic_oscillator(*, pairs: int = 3) -> Example:
+@ready(reals="coupling")
+def chaotic_quartic_oscillator(*, pairs: int = 3, coupling: float = 1.0) -> Example:
     r"""Oscillators with quartic couplings and one constraint, whose motion is chaotic: q = (x, y_1.., z_1..).
 
-    $$ L = \tfrac12|\dot q|^2 - \tfrac12\Bigl(|q|^2 + z_1^2 z_2^2 + \sum_{i=1}^n y_i^2 z_i^2\Bigr), \qquad
+    $$ L = \tfrac12|\dot q|^2 - \tfrac12|q|^2 - \tfrac\kappa2\Bigl(z_1^2 z_2^2 + \sum_{i=1}^n y_i^2 z_i^2\Bigr), \qquad
        \dot x + \sum_{i=1}^n y_i\,\dot z_i = 0. $$
 
     Only the energy is known to be conserved. (For one pair the term $z_1^2 z_2^2$ is left out.) The energy error of the
@@ -95,9 +95,10 @@ def chaotic_quartic_oscillator(*, pairs: int = 3) -> Example:
 
     Args:
         pairs: n; there are 2 n + 1 coordinates.
+        coupling: kappa, 1 in the source.
 
     Raises:
-        ValueError: A number of pairs that is not a positive integer.
+        ValueError: A number of pairs that is not a positive integer, a coupling that is no finite number.
 
     Example:
         >>> nh.examples.chaotic_quartic_oscillator().coordinates
@@ -112,24 +113,25 @@ def chaotic_quartic_oscillator(*, pairs: int = 3) -> Example:
 
     def energy(q: Array, v: Array) -> Array:
         y, z = q[..., 1 : n + 1], q[..., n + 1 :]
-        coupling = np.sum(y**2 * z**2, axis=-1) + (z[..., 0] ** 2 * z[..., 1] ** 2 if n > 1 else 0)
-        return (np.sum(v**2, axis=-1) + np.sum(q**2, axis=-1) + coupling) / 2
+        quartic = np.sum(y**2 * z**2, axis=-1) + (z[..., 0] ** 2 * z[..., 1] ** 2 if n > 1 else 0)
+        return (np.sum(v**2, axis=-1) + np.sum(q**2, axis=-1) + coupling * quartic) / 2
 
-    return Example("chaotic_quartic_oscillator", _quartic(n), q, v, {"energy": energy})
+    system = with_numbers(functools.partial(_quartic, n), coupling)
+    return Example("chaotic_quartic_oscillator", system, q, v, {"energy": energy})
 
 
 @functools.cache
 def _quartic(n: int) -> LagrangeDAlembert:
-    def lagrangian(q: Array, v: Array) -> Array:
+    def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
         y, z = q[1 : n + 1], q[n + 1 :]
-        coupling = jnp.sum(y**2 * z**2) + (z[0] ** 2 * z[1] ** 2 if n > 1 else 0.0)
-        return (v @ v - q @ q - coupling) / 2
+        quartic = jnp.sum(y**2 * z**2) + (z[0] ** 2 * z[1] ** 2 if n > 1 else 0.0)
+        return (v @ v - q @ q - p["coupling"] * quartic) / 2
 
-    def forms(q: Array) -> Array:
+    def forms(q: Array, _: Numbers) -> Array:
         return jnp.concatenate([jnp.ones(1), jnp.zeros(n), q[1 : n + 1]])[None]
 
     pairs = " ".join(f"{letter}{i}" for letter in "yz" for i in range(1, n + 1))
-    return system_in(f"x {pairs}", "Chaotic oscillator", lagrangian, forms)
+    return system_in(f"x {pairs}", "Chaotic oscillator", lagrangian, forms, parameters={"coupling": 1.0})
 
 
 @ready("turning", reals="asymmetry turning")
@@ -176,16 +178,17 @@ def non_reversible(*, asymmetry: float = 0.5, turning: float = 2.6) -> Example:
         else "The reflection (x, -y, -xi) reverses the motion: the discrete energy does not drift.",
     )
     conserved = {"energy": energy, "energy of the pendulum": pendulum}
-    return Example("non_reversible", _gearbox(asymmetry), q, v, conserved, facts=facts)
+    system = with_numbers(functools.partial(_gearbox, asymmetry == 0), asymmetry)
+    return Example("non_reversible", system, q, v, conserved, facts=facts)
 
 
 @functools.cache
-def _gearbox(epsilon: float) -> LagrangeDAlembert:
-    def lagrangian(q: Array, v: Array) -> Array:
-        return (v @ v - q[0] ** 2 - q[1] ** 2) / 2 + jnp.cos(q[2]) - epsilon / 2 * jnp.sin(2 * q[2])
+def _gearbox(is_reversible: bool) -> LagrangeDAlembert:
+    def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
+        return (v @ v - q[0] ** 2 - q[1] ** 2) / 2 + jnp.cos(q[2]) - p["asymmetry"] / 2 * jnp.sin(2 * q[2])
 
-    def forms(q: Array) -> Array:
+    def forms(q: Array, _: Numbers) -> Array:
         return jnp.stack([jnp.ones(()), jnp.sin(q[2]), jnp.zeros(())])[None]
 
-    name = "Oscillators, not reversible" if epsilon else "Oscillators, reversible"
-    return system_in("x y xi", name, lagrangian, forms)
+    name = "Oscillators, reversible" if is_reversible else "Oscillators, not reversible"
+    return system_in("x y xi", name, lagrangian, forms, parameters={"asymmetry": 0.0})

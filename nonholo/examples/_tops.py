@@ -1,14 +1,14 @@
 """Bodies that turn on a point or on the floor: the rattleback, or celt, a boat that turns one way only; a heavy top."""
 
 import functools
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
-from nonholo.examples._example import Example, energy_of, ready, system_in
+from nonholo.examples._example import Example, Numbers, energy_of, ready, system_in, with_numbers
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 from nonholo.systems import Forced, SuslovTop
 
@@ -71,23 +71,23 @@ def rattleback(
         (('x', 'y', 'theta', 'lean', 'pitch'), 5.0)
     """
     boat, q, angles = _Boat(semi_axes, center), np.array([0.0, 0.0, 0.0, *tilt]), np.array([spin, *rates])
-    system = _system(boat, inertia, product, gravity)
+    system = with_numbers(_system, np.array(semi_axes), center, np.array(inertia), product, gravity)
     with double_precision():
         v = np.append(np.asarray(boat.rolling(jnp.asarray(q))) @ angles, angles)
-    conserved = {"energy": energy_of(system.lagrangian)}
+    conserved = {"energy": energy_of(system.plain.lagrangian)}
     return Example("rattleback", system, q, v, conserved, time_step=0.002, steps=5000)
 
 
 class _Boat(NamedTuple):
     """The ellipsoid, and how it rolls."""
 
-    axes: tuple[float, ...]
-    low: float
+    axes: Any
+    low: Any
 
     def support(self, q: Array) -> tuple[Array, Array, Array]:
         """Return the height of the center of mass, its gradient by the vertical, and the vertical, in body axes."""
         (lean, rise), (sin, cos) = (jnp.sin(q[3]), jnp.cos(q[3])), (jnp.sin(q[4]), jnp.cos(q[4]))
-        up, D = jnp.stack([-sin * rise, lean, cos * rise]), np.array(self.axes) ** 2
+        up, D = jnp.stack([-sin * rise, lean, cos * rise]), jnp.asarray(self.axes) ** 2
         width = jnp.sqrt(up @ (D * up))
         return width - self.low * up[2], D * up / width - self.low * np.array([0.0, 0.0, 1.0]), up
 
@@ -104,26 +104,32 @@ class _Boat(NamedTuple):
 
 
 @functools.cache
-def _system(boat: _Boat, moments: tuple[float, ...], I12: float, g: float) -> LagrangeDAlembert:
-    tensor = np.diag(moments) + I12 * np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+def _system() -> LagrangeDAlembert:
+    exchange = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 
-    def lagrangian(q: Array, v: Array) -> Array:
+    def lagrangian(q: Array, v: Array, p: Numbers) -> Array:
+        boat, tensor = _boat(p), p["inertia"] * np.eye(3) + p["product"] * exchange
         height, gradient, up = boat.support(q)
         omega = boat.turns(q) @ v[2:]
         velocity = jnp.stack([v[0], v[1], gradient @ jnp.cross(up, omega)])
-        return (velocity @ velocity + omega @ tensor @ omega) / 2 - g * height
+        return (velocity @ velocity + omega @ tensor @ omega) / 2 - p["gravity"] * height
 
-    def forms(q: Array) -> Array:
+    def forms(q: Array, p: Numbers) -> Array:
         cos, sin = jnp.cos(q[2]), jnp.sin(q[2])
-        return jnp.concatenate([jnp.eye(2), -jnp.array([[cos, -sin], [sin, cos]]) @ boat.rolling(q)], axis=1)
+        return jnp.concatenate([jnp.eye(2), -jnp.array([[cos, -sin], [sin, cos]]) @ _boat(p).rolling(q)], axis=1)
 
-    looks = {"heading": "theta", "outline": functools.partial(_outline, boat)}
-    return system_in("x y theta lean pitch", "Rattleback", lagrangian, forms, **looks)
+    numbers = {"semi_axes": np.ones(3), "center": 1.0, "inertia": np.ones(3), "product": 0.0, "gravity": 1.0}
+    options: Any = {"heading": "theta", "outline": _outline, "parameters": numbers}
+    return system_in("x y theta lean pitch", "Rattleback", lagrangian, forms, **options)
 
 
-def _outline(boat: _Boat, _q: Array) -> list[Array]:
+def _boat(p: Numbers) -> _Boat:
+    return _Boat(p["semi_axes"], p["center"])
+
+
+def _outline(_: Array, p: Numbers) -> list[Array]:
     """Return the rim as it looks from above, and the long axis ahead."""
-    a, b, _ = boat.axes
+    a, b, _ = p["semi_axes"]
     angle = np.linspace(0.0, 2 * np.pi, 41)
     return [np.stack([a * np.cos(angle), b * np.sin(angle)], axis=1), np.array([[0.5 * a, 0.0], [a, 0.0]])]
 

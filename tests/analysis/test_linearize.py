@@ -323,3 +323,11 @@ def test_eigenvalues_that_are_zero_twice_never_grow() -> None:
         return nh.equilibria(board.system, configuration=board.configuration, body_velocity=velocity).linearization
 
     assert len(nh.critical_values(on_a_circle, (0.5, 2.0))) == 0
+
+
+def test_the_nearest_of_a_family_of_steady_motions_is_found() -> None:
+    """A bent trailer that turns is straightened where it is, not turned about and stopped, as by undamped steps."""
+    bent = nh.examples.trailers(hitches=(1.0,), angles=(0.4, 0.35), speed=0.6, turning=0.1)
+    steady = nh.equilibria(bent.system, configuration=bent.configuration, body_velocity=bent.body_velocity)
+    assert np.abs(steady.configuration - bent.configuration).max() < 0.05
+    assert np.linalg.norm(steady.body_velocity[:2]) == pytest.approx(0.6, abs=0.02)

@@ -154,7 +154,7 @@ def test_torques_of_the_robot() -> None:
     assert not robot().system.is_driven
     assert robot(torques=lambda time: (time, 0.0)).system.description is None  # no store holds a function
     assert robot(torques=(0.3, 0.1)).system.description[1]["torques"] == [0.3, 0.1]
-    force = robot(torques=(0.3, 0.1), friction=0.5).system.force
+    force = robot(torques=(0.3, 0.1), friction=0.5).system.plain.force
     with double_precision():
         pushed = np.asarray(force(jnp.asarray(2.0), jnp.zeros(5), jnp.arange(5.0)))
     assert np.allclose(pushed, [0, 0, 0, 0.3 - 1.5, 0.1 - 2.0], rtol=0, atol=1e-15)

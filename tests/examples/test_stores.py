@@ -208,7 +208,7 @@ def test_what_is_changed_is_no_ready_system_any_more() -> None:
     assert nh.examples.particle(mass=1, planar_velocity=(2.0, 3.0)).system is system
     assert nh.Forced(system, lambda q: q[2]).description is None
     assert dataclasses.replace(system, rule="trapezoidal").description is None
-    assert nh.examples.chaotic_quartic_oscillator(pairs=1).system.description[1] == {"pairs": 1}
+    assert nh.examples.chaotic_quartic_oscillator(pairs=1).system.description[1] == {"pairs": 1, "coupling": 1.0}
 
 
 def test_arguments_of_stores_are_refused_as_those_of_bodies(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from scipy.linalg import expm
 import nonholo as nh
 from nonholo.lagrange_dalembert import checked_state
 
-_SIZE = 3e-4  # of differences of order 4, along curves of admissible starts
+_SIZE = {"rattleback": 3e-5}  # of differences of order 4, along curves of admissible starts; its shape is in cm
 _WEIGHTS = {1: 2 / 3, 2: -1 / 12}
 _TIME = {-3: -1 / 60, -2: 3 / 20, -1: -3 / 4, 1: 3 / 4, 2: -3 / 20, 3: 1 / 60}
 
@@ -54,17 +54,17 @@ def moved(c: Case, place: np.ndarray, to: np.ndarray) -> np.ndarray:
 def changes(c: Case, run: Run, start: dict[str, Any], count: int) -> tuple[Any, np.ndarray]:
     """Return a run, and how its states change along curves of starts, (K, m, count)."""
     rng, reference = np.random.default_rng(3), run(start)
-    q, v = start["configuration"], start["body_velocity"]
+    q, v, size = start["configuration"], start["body_velocity"], _SIZE.get(c.name, 3e-4)
     fixed, columns = [i for i, _ in getattr(c.system, "prescribed", ())], []
     for _ in range(count):
         to, w = rng.normal(size=len(q) if q.ndim == 1 else c.system.group.dim), rng.normal(size=len(v))
         to[fixed] = 0.0
         ends = {}
         for k in (-2, -1, 1, 2):
-            place = moved(c, q, k * _SIZE * to)
-            orbit = run({"configuration": place, "body_velocity": v + k * _SIZE * w, "project": True})
+            place = moved(c, q, k * size * to)
+            orbit = run({"configuration": place, "body_velocity": v + k * size * w, "project": True})
             ends[k] = seen_from(c, reference, orbit)
-        columns.append(sum(weight * (ends[k] - ends[-k]) for k, weight in _WEIGHTS.items()) / _SIZE)
+        columns.append(sum(weight * (ends[k] - ends[-k]) for k, weight in _WEIGHTS.items()) / size)
     return reference, np.stack(columns, axis=-1)
 
 
@@ -148,7 +148,7 @@ def _beside(c: Case, ready: Any) -> dict[str, Any]:
     if c.name not in STEADY:
         return start
     q = start["configuration"]
-    to = 0.01 * (rng.normal(size=len(q)) if q.ndim == 1 else np.eye(c.system.group.dim)[0])
+    to = 100 / 3 * _SIZE.get(c.name, 3e-4) * (rng.normal(size=len(q)) if q.ndim == 1 else np.eye(c.system.group.dim)[0])
     orbit = flowing(ready.system, c.h)(start | {"configuration": moved(c, q, to), "project": True})
     return {name: getattr(orbit, name)[0] for name in start}
 
@@ -213,7 +213,9 @@ def tracking_feedback(c: Case, _: Path) -> None:
     if not c.in_coordinates:
         velocity = c.system.restricted_velocity(c.orbit.restricted_momentum[0])
         start = {"configuration": start["configuration"], "restricted_velocity": velocity}
-    hold = nh.tracking_feedback(c.discrete, start, np.zeros((40, n)), final_weight=100.0)
+    hold = nh.tracking_feedback(
+        c.discrete, start, np.zeros((40, n)), final_weight=1e6 if c.name == "rattleback" else 100.0
+    )
     beside = {name: 1.02 * value for name, value in start.items() if "velocity" in name}
     if getattr(c.system, "is_driven", False):
         velocity, q = {"body_velocity": start["body_velocity"]}, c.rows["configuration"][0]

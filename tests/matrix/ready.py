@@ -32,9 +32,17 @@ STEADY: dict[str, Callable[[], Any]] = {
     "ball in bowl": lambda: _made("ball_in_bowl", place=(0.0, 0.0), velocity=(0.0, 0.0), spin=0.6),
     "ball on turntable": lambda: _made("ball_on_turntable", table_rate=0.6, place=(0.0, 0.0), velocity=(0.0, 0.0)),
     "heavy suslov top": lambda: _made("heavy_suslov_top", stiffness=(0.5, 1.0, 0.2), velocity=(0.0, 0.0)),
+    "chaotic quartic oscillator": lambda: _at(_made("chaotic_quartic_oscillator"), *np.zeros(7)),
+    "non reversible": lambda: _at(_made("non_reversible"), 0.0, 0.0, np.arcsin((1 - np.sqrt(3)) / 2)),
+    "Chaplygin ball": lambda: _made("chaplygin_ball", angular_velocity=(0.0, 0.0, 0.6)),
+    "rattleback": lambda: _made("rattleback", tilt=(0.0, 0.0), spin=0.6),
+    "snake": lambda: _made("snake", joint_rates=(0.0, 0.0)),
+    "two wheeled robot": lambda: _made("two_wheeled_robot", speed=0.6, turning=0.0),
+    "trailers": lambda: _made("trailers", speed=0.6, turning=0.0),
+    "bicycle": lambda: _made("bicycle", lean_rate=0.0),
 }
 """A steady motion of each ready system that has one, as its start."""
-TELLING: dict[str, dict[str, float]] = {
+TELLING: dict[str, dict[str, Any]] = {
     "rolling disk": {"radius": 1.2},
     "knife edge on incline": {"slope_acceleration": 1.2},
     "driven sleigh": {"a": 0.35},
@@ -42,6 +50,10 @@ TELLING: dict[str, dict[str, float]] = {
     "snakeboard": {"half_length": 1.1},
     "sleigh in a well": {"inertia": 0.6, "stiffness": 0.4},
     "heavy suslov top": {"first": 0.55, "second": 0.35},
+    "snake": {"half_length": 0.55},
+    "kinematic car": {"wheelbase": 1.1},
+    "two wheeled robot": {"offset": 0.35},
+    "trailers": {"hitches": np.array([1.1, 0.9, 1.2])},
 }
 """A guess of a number that a record tells; by default it is the parameter of the kind."""
 
@@ -82,6 +94,16 @@ READY: dict[str, Kind] = {
     "driven sleigh": KINDS["driven sleigh"],
     "roller racer": ready("roller_racer", "coordinates", "driven"),
     "snakeboard": KINDS["snakeboard"],
+    "chaotic quartic oscillator": ready("chaotic_quartic_oscillator", "coordinates", parameter="coupling"),
+    "non reversible": ready("non_reversible", "coordinates", parameter="asymmetry", values=(0.5, 0.6)),
+    "Chaplygin ball": KINDS["Chaplygin ball"],
+    "rattleback": ready("rattleback", "coordinates", parameter="gravity", values=(980.665, 900.0), time_step=0.01),
+    "twistcar": ready("twistcar", "coordinates", "driven"),
+    "snake": ready("snake", "coordinates"),
+    "kinematic car": ready("kinematic_car", "coordinates"),
+    "two wheeled robot": ready("two_wheeled_robot", "coordinates"),
+    "trailers": ready("trailers", "coordinates"),
+    "bicycle": ready("bicycle", "coordinates", parameter="gravity", values=(9.81, 9.0), time_step=0.05),
 }
 
 ALL = KINDS | READY
