@@ -86,7 +86,7 @@ READY: dict[str, Kind] = {
     "knife edge on incline": ready("knife_edge_on_incline", "coordinates"),
     "sleigh in a well": KINDS["sleigh in a well"],
     "heavy suslov top": dataclasses.replace(
-        ready("heavy_suslov_top", "opaque", parameter="inertia", values=(1.0, 1.2, 0.8)),
+        ready("heavy_suslov_top", "opaque", "function", parameter="inertia", values=(1.0, 1.2, 0.8)),
         system=lambda tensor: dataclasses.replace(nh.examples.heavy_suslov_top().system, system=nh.SuslovTop(tensor)),
         parameter="mass_tensor",
         values=(np.diag([0.5, 0.3, 0.7]), np.diag([0.6, 0.3, 0.7])),
