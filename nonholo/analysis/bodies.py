@@ -73,7 +73,7 @@ class Box(NamedTuple):
         return float(ways.min())
 
 
-def box(system: System) -> Box:
+def box_in_space(system: System) -> Box:
     """Return the uniform box with the mass tensor of a body on SE(3) about its center of mass."""
     inertia = np.asarray(system.inertia_operator)
     mass = float(np.trace(inertia[3:, 3:])) / 3

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.analysis.bodies import Box, blade_axes, box, box_in_sphere, plate
+from nonholo.analysis.bodies import Box, blade_axes, box_in_space, box_in_sphere, plate
 from nonholo.base.types import Float, Int
 from nonholo.groups import SE, SO
 from nonholo.orbit import AbstractOrbit, Orbit
@@ -54,7 +54,7 @@ def _drawing(orbit: AbstractOrbit) -> dict[str, Any]:
         return _BALL if orbit.space.is_affine else {}
     if orbit.space == SE(2):
         return _outlines([plate(orbit.system)])
-    boxes: dict[Any, Any] = {SO(3): box_in_sphere, SE(3): box}
+    boxes: dict[Any, Any] = {SO(3): box_in_sphere, SE(3): box_in_space}
     body = boxes[orbit.space](orbit.system) if orbit.space in boxes else None
     return {} if body is None or not np.isfinite(body.half).all() else {"box": _lists(body)}
 

@@ -254,8 +254,8 @@ def test_drawings(orbit: Callable[[], Any], drawing: Any) -> None:
     if motion.coordinates:
         expected = [np.concatenate(system.parts(q)) for q in motion.configuration]
         np.testing.assert_array_equal(replay["names"], motion.coordinates)
-        shown = np.frombuffer(base64.b64decode(replay["coordinates"])).reshape(motion.configuration.shape)
-        np.testing.assert_array_equal(shown, motion.configuration)
+        places = np.frombuffer(base64.b64decode(replay["coordinates"])).reshape(motion.configuration.shape)
+        np.testing.assert_array_equal(places, motion.configuration)
     else:
         expected = [np.concatenate(plate(system))] * 4
         np.testing.assert_array_equal(frames[:, 0, :2], (motion.configuration @ blade_axes(system))[:, :2, 2])

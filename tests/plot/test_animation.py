@@ -12,8 +12,7 @@ from PIL import Image
 from plot.runs import body_tensor, run_of, sleigh_run, top_run
 
 import nonholo as nh
-from nonholo.analysis.bodies import box as box_in_space
-from nonholo.analysis.bodies import box_in_sphere, plate
+from nonholo.analysis.bodies import box_in_space, box_in_sphere, plate
 from nonholo.lagrange_dalembert import CoordinateOrbit, LagrangeDAlembert
 from nonholo.plot.animation._part import part_of, part_of_flow, shown_states
 

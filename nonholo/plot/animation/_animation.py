@@ -152,12 +152,7 @@ def film_path(where: str, path: str | Path, *, overwrite: bool) -> Path:
     target = checked_path(where, path)
     suffix = target.suffix.lower()
     if suffix not in (".gif", *_CODECS):
-        raise error(
-            where,
-            "end in .gif, .mp4 or .webm",
-            shown(str(path)),
-            "Use `orbit.to_html` for a page.",
-        )
+        raise error(where, "end in .gif, .mp4 or .webm", shown(str(path)), "Use `orbit.to_html` for a page.")
     if suffix in _CODECS and not FFMpegWriter.isAvailable():
         remedy = "Install it (on Debian the package ffmpeg), or write a .gif."
         raise error(where, "end in .gif without the program ffmpeg", shown(str(path)), remedy)

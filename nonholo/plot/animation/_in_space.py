@@ -8,8 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgb, to_rgba
 
-from nonholo.analysis.bodies import Box, box_in_sphere
-from nonholo.analysis.bodies import box as box_in_space
+from nonholo.analysis.bodies import Box, box_in_space, box_in_sphere
 from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plot import theme
