@@ -156,28 +156,46 @@ def main() -> None:
     print(f"a step: {each:.0f} operations, {2 * 8 * len(make())} bytes read and written")
     for unroll in asked.unroll:
         print(line(closed.body, make, asked.members, asked.steps, unroll, memory, flops / each))
+    few = velocities[: asked.members // 10]
     sleigh = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5), 0.1)
     for name, body in (("top", discrete), ("sleigh", sleigh)):
-        print(f"rollouts, {name}: {rollouts(body, velocities[: asked.members // 10], asked.steps)}")
+        print(f"rollouts, {name}: {rollouts(functools.partial(started, body), few, asked.steps)}")
+    for name, number in (("snakeboard", "mass"), ("rattleback", "gravity")):
+        example = getattr(nh.examples, name)()
+        values = example.system.parameters[number] * (1 + 0.1 * few[:, :1])
+        print(f"rollouts, {name}, by its {number}: {rollouts(functools.partial(varied, example, number), values, 64)}")
 
 
-def rollouts(discrete: nh.Discretization, velocities: np.ndarray, steps: int) -> str:
+def started(discrete: nh.Discretization, numbers: Any) -> tuple[nh.Discretization, dict[str, Any]]:
+    """Return the body and the start with these velocities."""
+    return discrete, {"restricted_velocity": numbers}
+
+
+def varied(example: Any, name: str, numbers: Any) -> tuple[Any, dict[str, Any]]:
+    """Return the robot with another number, and its own start."""
+    system = example.system.with_parameters(**{name: numbers[0]})
+    start = {"configuration": example.configuration, "body_velocity": example.body_velocity}
+    return nh.discretize(system, example.time_step), start
+
+
+def rollouts(member: Callable[[Any], tuple[Any, dict[str, Any]]], numbers: np.ndarray, steps: int) -> str:
     """Return the speed of rollouts and of their derivatives, compared with `simulate` and differences."""
 
-    def last_pose(velocity: Any) -> Any:
-        return nh.rollout(discrete, restricted_velocity=velocity, steps=steps, save_every=steps).configuration[-1]
+    def last(run: Callable[..., Any], own: Any) -> Any:
+        discrete, start = member(own)
+        return run(discrete, **start, steps=steps, save_every=steps).configuration[-1]
 
-    poses = jax.jit(jax.vmap(last_pose))
-    slopes = jax.jit(jax.vmap(jax.jacrev(lambda velocity: last_pose(velocity).sum())))
-    ends, derivatives = poses(velocities), slopes(velocities)
-    for j in range(0, len(velocities), max(len(velocities) // 16, 1)):
-        orbit = nh.simulate(discrete, restricted_velocity=velocities[j], steps=steps, save_every=steps)
-        assert np.allclose(ends[j], orbit.configuration[-1], rtol=0, atol=1e-12)
-    near = velocities[0] + 1e-6 * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])
-    sums = np.asarray(poses(near)).sum((1, 2))
-    assert np.allclose(derivatives[0], [sums[0] - sums[1], sums[2] - sums[3]] / np.float64(2e-6), rtol=1e-6, atol=1e-6)
-    work = len(velocities) * steps
-    rate, slope_rate = (work / seconds(lambda: jnp.asarray(velocities), f) for f in (poses, slopes))
+    ends = jax.jit(jax.vmap(functools.partial(last, nh.rollout)))
+    slopes = jax.jit(jax.vmap(jax.jacrev(lambda own: last(nh.rollout, own).sum())))
+    poses, derivatives = ends(numbers), slopes(numbers)
+    for j in range(0, len(numbers), max(len(numbers) // 16, 1)):
+        assert np.allclose(poses[j], last(nh.simulate, numbers[j]), rtol=0, atol=1e-12)
+    step = 1e-6 * np.eye(numbers.shape[1])
+    sums = np.asarray(ends(np.concatenate([numbers[0] + step, numbers[0] - step])))
+    sums = sums.reshape(2, len(step), -1).sum(-1)
+    assert np.allclose(derivatives[0], (sums[0] - sums[1]) / np.float64(2e-6), rtol=1e-6, atol=1e-6)
+    work = len(numbers) * steps
+    rate, slope_rate = (work / seconds(lambda: jnp.asarray(numbers), f) for f in (ends, slopes))
     return f"{rate:.3g} steps/s, with derivatives {slope_rate:.3g}"
 
 
