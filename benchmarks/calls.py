@@ -1,4 +1,4 @@
-"""Calls that cost nothing: what a warm call takes, and a first one in a fresh process above the import of numba.
+"""Calls that cost nothing: what a warm call takes, and a first one in a fresh process above the import of NumPy.
 
 Every call returns what its tests check; here they are only timed. With the folder of another commit the warm calls of
 both are timed in turns, process after process.
@@ -26,7 +26,7 @@ CALLS = small(30, 1)  # in one round
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 SLEIGH = nh.ChaplyginSleigh(1.0, 0.75, 0.5)
 VELOCITY = (0.4, 0.9, 0.0)
-FLOOR = "import numba\n@numba.njit(cache=True)\ndef one(x):\n    return x + 1\none(1.0)\n"
+FLOOR = "import numpy"
 FIRST = {
     "simulate": "import nonholo as nh\nnh.simulate(nh.discretize(nh.{}, 0.1), body_velocity=(1, 1, 0), steps=100)\n",
     "flow": "import nonholo as nh\nnh.flow(nh.{}, body_velocity=(0.4, 0.9, 0), times=(0, 20))\n",
@@ -118,14 +118,14 @@ def main() -> None:
     for name, taken in warm(rounds).items():
         print(f"| {name} | {taken:.0f} |", flush=True)
     with tempfile.TemporaryDirectory() as folder:
-        texts = {"numba and one function": FLOOR}
+        texts = {"NumPy": FLOOR}
         texts |= {f"{what}, {body}": text.format(made) for what, text in FIRST.items() for body, made in BODIES.items()}
         programs = {name: Path(folder, f"{name.replace(' ', '_')}.py") for name in texts}
         for name, file in programs.items():
             file.write_text(texts[name])
         found = seconds(programs, rounds)
-    floor = found.pop("numba and one function")
-    print(f"\n| first call in a process | s above the {floor:.2f} s of numba |\n| --- | ---: |")
+    floor = found.pop("NumPy")
+    print(f"\n| first call in a process | s above the {floor:.2f} s of NumPy |\n| --- | ---: |")
     for name, taken in found.items():
         print(f"| {name} | {taken - floor:.2f} |")
 
