@@ -16,7 +16,7 @@ from nonholo.analysis.planar import planar_map, planar_variety
 from nonholo.base.checks import choice, error, positive, shown
 from nonholo.base.limits import bounded_count
 from nonholo.base.progress import progress_bar
-from nonholo.base.results import OutcomeError
+from nonholo.base.results import OutcomeError, result
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization, as_discretization
 from nonholo.orbit import Orbit
@@ -113,7 +113,7 @@ def _pose(orbit: Orbit) -> Float[np.ndarray, "N N"]:
 _SAME = 1e-6  # relative distance of displacements beyond which two orbits are on different branches
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class Asymptotics:
     r"""Limits at $t \to -\infty$ (before) and $t \to \infty$ (after); None where a quantity is not defined.
 
@@ -291,7 +291,7 @@ def _heading_turn(form: NormalForm, orbit: Orbit, limits: Approach) -> float | N
     return float(last.heading[-1] - last.heading[0] + first.heading[1] - first.heading[-1])
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class HeteroclinicOrbit:
     """An orbit traced both ways.
 
@@ -397,7 +397,7 @@ def middle(system: AbstractLLSystem, energy: Any, side: int) -> Float[np.ndarray
     return side * np.sign(variety.sides_of_momenta(r).side) * r
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class FlowObstruction:
     r"""The conjugacy invariant of the map on one side of the equilibria, on one energy.
 

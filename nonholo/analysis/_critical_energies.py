@@ -8,7 +8,6 @@ with one axis $\cot(\theta/2)$ of a fold is a root of a cubic; the least energy 
 the circle of axes. For n > 3 it has a lower bound. Theory: docs/theory/critical-energies.md.
 """
 
-import dataclasses
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -19,6 +18,7 @@ from nonholo.analysis._equilibria import highest_energy
 from nonholo.analysis.planar import check_conserves_energy
 from nonholo.base.checks import error, instance
 from nonholo.base.numerics import real_cubic_roots
+from nonholo.base.results import result
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization, Landscape, landscape, refuse_composition
 from nonholo.systems import NormalForm
@@ -30,7 +30,7 @@ _UNIFORM = 720  # directions around the circle, once in the metric of the energy
 _NEAR_SADDLE = 200  # on each side: folds leave the saddle at every scale
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class CriticalPoint:
     r"""A displacement at which the energy is stationary on the displacement variety.
 
@@ -50,7 +50,7 @@ class CriticalPoint:
     half_turn_vector: Float[np.ndarray, "2"]
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class CriticalEnergies:
     r"""Critical values of the energy of a discrete top, in physical units; None where there is no such point.
 

@@ -6,7 +6,6 @@ With $F(W) = P(W)|_\mathfrak{d}$ a step takes $r = F(W)$ to $r' = -F(W^{-1})$, s
 volumes change by $\det(\partial r'/\partial r) = \det F'(W^{-1})/\det F'(W)$. Theory: docs/theory/invariant-measure.md.
 """
 
-import dataclasses
 from typing import Any, cast, overload
 
 import numpy as np
@@ -14,13 +13,14 @@ import numpy as np
 from nonholo.analysis._linearize import SteadyMotion, steady_motion
 from nonholo.analysis.planar import check_conserves_energy, planar_variety, restricted_momenta
 from nonholo.base.checks import array, error, instance, positive, refuse_given, shape_of, shown, trailing
+from nonholo.base.results import result
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.discrete import Discretization, momentum_slope, weights
 from nonholo.orbit import Orbit
 from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, NormalForm, refuse_forces
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class EquilibriumSpectrum:
     """Constant body velocities, and what happens beside them within their energy level.
 
@@ -204,7 +204,7 @@ def _multipliers(body: AbstractLLSystem, velocity: np.ndarray, rates: np.ndarray
     return np.prod((share + change) / (share - change), axis=0)
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class LyapunovFunction:
     r"""The linear function $L(p) = -\langle p, x\rangle$ with an attracting velocity $x$.
 
@@ -261,7 +261,7 @@ def lyapunov_function(system: AbstractLLSystem) -> LyapunovFunction:
     return LyapunovFunction(attracting, system.constraint_subspace)
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class InvariantMeasure:
     r"""Statements about densities $\rho(r)\,dr$ that a motion keeps; r are momenta along the constraint subspace.
 

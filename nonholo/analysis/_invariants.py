@@ -3,13 +3,12 @@
 The integrals follow from linear algebra on the quadratic terms of the equations; no motion is computed.
 """
 
-import dataclasses
 from typing import Any, cast
 
 import numpy as np
 
 from nonholo.base.checks import error, instance
-from nonholo.base.results import Outcome
+from nonholo.base.results import Outcome, result
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, reversal_defects
 from nonholo.groups import AbstractMatrixGroup
@@ -20,7 +19,7 @@ _SAMPLED = 100_000  # states on which the matrix residuals are measured, spread 
 _SAMPLED_LARGE = 1_000  # of them where the group has more than three dimensions, and logarithms cost more
 
 
-@dataclasses.dataclass(frozen=True)
+@result
 class Invariants:
     """Measured defects of an orbit; None where a quantity is not defined for it.
 
@@ -142,7 +141,7 @@ def _reversal_defect(discrete: Discretization, orbit: Orbit) -> float | None:
 _RANK = 1e-11  # relative size below which a rate of change counts as zero
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class ConservedMomenta:
     r"""The linear integrals of a system.
 

@@ -1,6 +1,5 @@
 """Steady motions of flows and maps, the linear equations beside them, and where these lose their stability."""
 
-import dataclasses
 import functools
 import itertools
 from collections.abc import Callable, Iterator, Sequence
@@ -12,6 +11,7 @@ from scipy.optimize import bisect, brentq
 
 from nonholo.base.checks import array, count, error, instance, needs, shown
 from nonholo.base.memo import Keeper
+from nonholo.base.results import result
 from nonholo.base.types import Bool, Float, Inexact, Int
 from nonholo.continuous import ContinuousFlow, flow_tangents
 from nonholo.discrete import Discretization
@@ -124,7 +124,7 @@ Shifted = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 """Takes changes of coordinates and of velocities to a configuration and a body velocity."""
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class Linearization(Keeper):
     r"""The linear equations beside a steady motion, $\delta\dot z = A\,\delta z$, of a map $\delta z' = A\,\delta z$.
 
@@ -256,7 +256,7 @@ _RANK = 1e-10  # of the largest singular value
 _STABLE = 1e-7  # of the largest eigenvalue: rounding moves double ones by its root
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class SteadyMotion:
     """A state of rest, or a motion whose velocity stays, and what happens beside it.
 

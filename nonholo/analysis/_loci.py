@@ -3,7 +3,6 @@
 Theory: docs/theory/momentum-locus.md, docs/theory/invariant-measure.md.
 """
 
-import dataclasses
 from typing import Any, cast
 
 import numpy as np
@@ -12,11 +11,12 @@ from nonholo.analysis import planar
 from nonholo.analysis.planar import HalfPlanes, Strip
 from nonholo.base.checks import array, count, error, number, positive, shape_of, shown, trailing
 from nonholo.base.limits import bounded_count, within_memory
+from nonholo.base.results import result
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, refuse_composition
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class MomentumLocus:
     r"""A mesh of the momentum locus and its singular points; momenta are physical, in the user's frame.
 
@@ -104,7 +104,7 @@ def momentum_locus(discrete: Discretization, resolution: int = 80) -> MomentumLo
     return MomentumLocus(discrete, parameters, points, momentum, surface.double_lines(), surface.triple_point())
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class InvariantCurve:
     r"""The displacements with one reduced constrained energy.
 
@@ -219,7 +219,7 @@ def half_planes(discrete: Discretization, *, displacement: Any = None, momentum:
     return variety.sides_of_momenta(float(discrete.time_step) * r)
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class Deltoid:
     r"""The discriminant curve of the discrete sleigh; momenta are restricted ones, $(p_\theta, p_1)$, physical.
 
@@ -339,7 +339,7 @@ def _of_scaled(discrete: Discretization, points: Float[np.ndarray, "... 2"]) -> 
     return strip.restricted_momenta(np.stack([points[..., 0], p1], axis=-1)) / float(discrete.time_step)
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class SingleValuedRegion:
     """The region in which the discrete sleigh has one real branch, and where its branches merge.
 

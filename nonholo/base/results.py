@@ -1,10 +1,42 @@
-"""Outcomes of a run: one enumeration, whose texts are the messages that users read.
+"""Outcomes of a run: one enumeration, whose texts are the messages that users read; and how results are printed.
 
 Three failures are never confused: the solve did not converge, the root lies on another branch, the branch ends here.
 """
 
+import dataclasses
 import enum
-from typing import Any
+import textwrap
+from typing import Any, TypeVar, dataclass_transform
+
+import numpy as np
+
+_T = TypeVar("_T")
+_WIDE = 110  # characters of a value
+_MANY = 40  # numbers of an array that is not printed
+
+
+@dataclass_transform(frozen_default=True, eq_default=False, field_specifiers=(dataclasses.field,))
+def result(kind: type[_T]) -> type[_T]:
+    """Make a frozen dataclass of values that are found, printed as a table unless it prints itself."""
+    if "__repr__" not in vars(kind):
+        kind.__repr__ = _table
+    return dataclasses.dataclass(frozen=True, eq=False)(kind)
+
+
+def _table(self: Any) -> str:
+    names = [field.name for field in dataclasses.fields(self) if field.repr]
+    margin = max(map(len, names)) + 4
+    rows = (f"{name:>{margin - 2}}: {_cell(getattr(self, name), ' ' * margin)}" for name in names)
+    return "\n".join([type(self).__name__, *rows])
+
+
+def _cell(value: Any, margin: str) -> str:
+    if isinstance(value, np.ndarray):
+        return f"shape {value.shape}" if value.size > _MANY else np.array2string(value, _WIDE, 6, prefix=margin)
+    if isinstance(value, tuple) and value and dataclasses.is_dataclass(value[0]):
+        return f"{len(value)} of {type(value[0]).__name__}"
+    text = f"{value:.6g}" if isinstance(value, float) else str(value)
+    return textwrap.shorten(text, _WIDE, placeholder=" ...")
 
 
 class Outcome(enum.IntEnum):

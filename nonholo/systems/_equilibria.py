@@ -19,6 +19,7 @@ import numpy as np
 
 from nonholo.base.checks import array, error
 from nonholo.base.numerics import real_eigenspaces
+from nonholo.base.results import result
 from nonholo.base.types import Float
 from nonholo.systems._normal_form import NormalForm
 
@@ -106,7 +107,7 @@ def _orthonormal(system: "AbstractLLSystem", inertia: np.ndarray) -> tuple[np.nd
     return (axes / np.sqrt(np.abs(values))).T @ (rows / units[:, None]), np.sign(values)
 
 
-@dataclasses.dataclass(frozen=True)
+@result
 class Equilibria:
     """The body velocities that stay constant: a linear space, and the half of it that attracts.
 

@@ -13,6 +13,7 @@ from nonholo.analysis.inverse._likelihood import LOSSES, Estimate, Problem, Rang
 from nonholo.analysis.inverse._measurements import WHERE, kinds_of
 from nonholo.analysis.inverse._profile import Minimum, Profile, profile_of
 from nonholo.base.checks import array, choice, error, function, instance, needs, number, pair, scale, shown
+from nonholo.base.results import result
 from nonholo.base.types import Array, Float
 from nonholo.orbit import Orbit
 from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, System
@@ -21,7 +22,7 @@ _FLAT = 1e-10  # least singular value of scaled derivatives, relative to the lar
 _LEAST_FREE = 0.1  # numbers of a kind that tell its noise
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class Fit:
     """A body fitted to recorded motion.
 

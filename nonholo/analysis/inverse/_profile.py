@@ -10,6 +10,7 @@ from scipy.optimize import least_squares, root_scalar
 from scipy.special import stdtrit
 
 from nonholo.base.checks import error, number
+from nonholo.base.results import result
 from nonholo.base.types import Float
 
 _PARTS = 8  # steps in which the level is reached where the profile is a parabola
@@ -42,7 +43,7 @@ class Minimum(NamedTuple):
     wider: Any = 1.0
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class Profile:
     r"""The likelihood profile of a fitted number: $\tau$ over its values, all others fitted again at each.
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from nonholo.analysis.locomotion import _equations
 from nonholo.base.checks import array, choice, count, error, instance, names, needs, shown, trailing
+from nonholo.base.results import result
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup, components_of
 from nonholo.systems import AbstractCoordinateSystem, checked_group
@@ -19,7 +20,7 @@ _SYMMETRIC = 1e-9  # relative
 _INDEPENDENT = 1e-7  # least singular value of rows of length one
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class LocalConnection:
     r"""The local connection of a system, $\xi = -A(s)\,\dot s + \Gamma(s)\,p$.
 
@@ -346,7 +347,7 @@ _MOST = 8  # the longest bracket: their derivatives are tensors of that order
 _RANK = 1e-9  # of singular values, relative to the largest
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class Accessibility:
     r"""How the brackets of admissible velocities grow at a configuration.
 

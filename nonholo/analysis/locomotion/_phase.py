@@ -9,6 +9,7 @@ import numpy as np
 from nonholo.analysis.locomotion import _equations
 from nonholo.analysis.locomotion._connection import LocalConnection, door, local_connection
 from nonholo.base.checks import array, error, scale
+from nonholo.base.results import result
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 
@@ -26,7 +27,7 @@ _TO_NODES = (
 _NODES, _WEIGHTS = (_NODES + 1) / 2, _WEIGHTS / 2
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class GeometricPhase:
     """Where a gait takes a body that starts at the identity pose.
 

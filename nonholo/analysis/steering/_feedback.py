@@ -11,6 +11,7 @@ from nonholo.analysis.steering._arguments import checked_limits
 from nonholo.base.checks import array, error, needs, positive_definite, refuse_given, shape_of, symmetric
 from nonholo.base.memo import Keeper
 from nonholo.base.progress import interruptibly
+from nonholo.base.results import result
 from nonholo.base.types import Float
 from nonholo.discrete import Discretization
 from nonholo.systems import AbstractCoordinateDiscretization
@@ -30,7 +31,7 @@ class Tracking(NamedTuple):
     error: Float[np.ndarray, "K n"]
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class Feedback(Keeper):
     """A reference orbit and the feedback along it.
 

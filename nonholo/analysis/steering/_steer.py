@@ -1,6 +1,5 @@
 """`steer`: the controls that take a body from one state to another, by shooting over the exact step or by IPOPT."""
 
-import dataclasses
 import functools
 from collections.abc import Callable, Mapping
 from typing import Any, cast
@@ -13,6 +12,7 @@ from nonholo.base.checks import choice, count, error, flag, needs, refuse_given
 from nonholo.base.limits import within_memory
 from nonholo.base.memo import Keeper
 from nonholo.base.progress import interruptibly, progress_bar
+from nonholo.base.results import result
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, as_discretization
 from nonholo.simulation import check_forces, refuse_many_matrices
@@ -21,7 +21,7 @@ from nonholo.systems import AbstractCoordinateDiscretization, in_coordinates
 _PER_ENTRY = 24.0  # bytes of a second derivative: its value, and where it stands
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class Steering(Keeper):
     """Controls that lead to a goal; of many members at once every array has an axis of them in front.
 

@@ -4,7 +4,6 @@ On a level of the energy with $R = \sqrt{2E}$ the momenta $\pi = \sqrt I\,R\cos\
 $e^{i\phi} = ie^x$, x real, stay such momenta on all three branches. Reference: docs/theory/branches.md, Theorem 5.3.
 """
 
-import dataclasses
 import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -13,6 +12,7 @@ import numpy as np
 import scipy  # its parts load on first use
 
 from nonholo.base.checks import error, flags, needs, positive
+from nonholo.base.results import result
 from nonholo.base.types import Float
 from nonholo.discrete._discretization import Discretization, as_discretization
 
@@ -25,7 +25,7 @@ _CLOSE = 1 - 2.0**-10  # how close to the image of the equilibrium an end is
 Words = tuple[tuple[int, ...], ...]
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class BranchGrowth:
     r"""Words of branches of the plane sleigh and what they say of the number of images.
 

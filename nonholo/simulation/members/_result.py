@@ -9,7 +9,7 @@ import numpy as np
 
 from nonholo.base.checks import error, natural
 from nonholo.base.numerics import applied
-from nonholo.base.results import Outcome
+from nonholo.base.results import Outcome, result
 from nonholo.base.types import Bool, Float, Int
 from nonholo.groups import SE
 from nonholo.orbit import AbstractEventLog
@@ -17,7 +17,7 @@ from nonholo.simulation.members._members import Members, ScalarMembers, in_lanes
 from nonholo.simulation.members._start import energies
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@result
 class MemberCrossings:
     """The crossings of one event in the members of an ensemble.
 
