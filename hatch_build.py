@@ -26,7 +26,8 @@ _TAGS = {
 class KernelsHook(BuildHookInterface):  # pyright: ignore[reportMissingTypeArgument]
     """Compile the kernels once for each text of them; what was compiled is kept in the user's cache.
 
-    The variable NONHOLO_MACHINE names the machine of a wheel, by default this one.
+    The variable NONHOLO_MACHINE names the machine of a wheel, by default this one; `python` makes one of no machine,
+    whose kernels run by numba or as Python.
     """
 
     PLUGIN_NAME = "custom"
@@ -34,16 +35,19 @@ class KernelsHook(BuildHookInterface):  # pyright: ignore[reportMissingTypeArgum
     def dependencies(self) -> list[str]:
         """Return what compiles: nothing where the library of this text is there."""
         library, machine = _library(), _machine()
-        if self.target_name == "sdist" or library.place(library.name_of_library(machine)):
+        if not self._compiles(machine) or library.place(library.name_of_library(machine)):
             return []
         is_here = machine == library.this_machine() and machine.startswith("linux")
         return _NEEDS if is_here and any(map(shutil.which, ("ld", "ld.lld"))) else [*_NEEDS, "ziglang>=0.13"]
 
+    def _compiles(self, machine: str) -> bool:
+        return self.target_name == "wheel" and machine != "python"
+
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Put the library beside the kernels, compiled now unless there is one."""
-        if self.target_name != "wheel":
-            return
         library, machine = _library(), _machine()
+        if not self._compiles(machine):
+            return
         name = library.name_of_library(machine)
         folder, there = _ROOT / "nonholo" / "kernels", library.place(name)
         if there is None:

@@ -4,6 +4,7 @@ import base64
 import csv
 import hashlib
 import importlib
+import importlib.metadata
 import os
 import shutil
 import subprocess
@@ -35,6 +36,14 @@ def _undefined(file: Path) -> set[str]:
     return {line.split()[-1] for line in told.stdout.splitlines()}
 
 
+def _wheel(machine: str, folder: Path) -> Path:
+    pytest.importorskip("hatchling")
+    command = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(folder)]
+    subprocess.run(command, cwd=ROOT, env={**os.environ, "NONHOLO_MACHINE": machine}, check=True)  # noqa: S603
+    (file,) = folder.iterdir()
+    return file
+
+
 @pytest.mark.parametrize("machine", TAGS)
 def test_wheel_of_a_machine(machine: str, tmp_path: Path) -> None:
     """It has the tag of its machine, that machine's library alone, the modules of pages, and true hashes."""
@@ -43,10 +52,7 @@ def test_wheel_of_a_machine(machine: str, tmp_path: Path) -> None:
         pytest.skip(f"no library for {machine} here")
     if first_way() != "library":
         pytest.skip("kernels run by another way")
-    pytest.importorskip("hatchling")
-    command = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)]
-    subprocess.run(command, cwd=ROOT, env={**os.environ, "NONHOLO_MACHINE": machine}, check=True)  # noqa: S603
-    (file,) = tmp_path.iterdir()
+    file = _wheel(machine, tmp_path)
     assert file.name.endswith(f"-py3-none-{TAGS[machine]}.whl")
     assert file.stat().st_size < LARGEST
     with zipfile.ZipFile(file) as wheel:
@@ -64,3 +70,56 @@ def test_wheel_of_a_machine(machine: str, tmp_path: Path) -> None:
     assert compiled == {name, *map(library.name_of_module, runs)}
     if machine.startswith("linux"):
         assert _undefined(tmp_path / "nonholo" / "kernels" / name) <= OF_C
+
+
+def test_wheel_of_no_machine(tmp_path: Path) -> None:
+    """Kernels run as Python from it, and it has nothing compiled."""
+    file = _wheel("python", tmp_path)
+    assert file.name.endswith("-py3-none-any.whl")
+    assert not [name for name in zipfile.ZipFile(file).namelist() if "kernels-" in name]
+
+
+PACKAGES = ("pyodide@0.25.1", "@emscripten-forge/numpy@2.1.1-py311hc8e14bb-0")
+"""Python 3.11 and NumPy for a browser. npm has no SciPy for it: an empty module shows that nothing uses it."""
+PURE = ("jaxtyping", "lazy_loader", "markdown_it", "mdurl", "pygments", "rich", "wadler_lindig")
+PROGRAM = """
+import numpy as np
+import nonholo as nh
+top = nh.SuslovTop(np.diag([1.0, 2.0, 3.0]) + 0.1)
+start = {"restricted_velocity": (0.3, 0.4)}
+orbit = nh.simulate(nh.discretize(top, 0.1), **start, steps=100)
+flow = nh.flow(top, **start, times=np.linspace(0.0, 2.0, 5))
+bits = orbit.configuration[-1].tobytes().hex() + flow.configuration[-1].tobytes().hex()
+"""
+IN_NODE = """
+import { loadPyodide } from "./node_modules/pyodide/pyodide.mjs";
+const python = await loadPyodide();
+for (const name of ["numpy/lib/python3.11/site-packages", "packages", "wheel"]) {
+  python.FS.mkdirTree("/" + name);
+  python.FS.mount(python.FS.filesystems.NODEFS, { root: name }, "/" + name);
+  python.runPython(`import sys; sys.path.insert(0, "/${name}")`);
+}
+python.runPython(process.argv[2]);
+console.log(python.globals.get("bits"));
+"""
+
+
+@pytest.mark.profile("browser", instead="test_wheel_of_no_machine")
+def test_a_browser_runs_it_with_the_same_bits(tmp_path: Path) -> None:
+    """A map and a flow in Pyodide, under node."""
+    node, npm = (shutil.which(tool) or pytest.skip(f"there is no {tool}") for tool in ("node", "npm"))
+    subprocess.run([npm, "install", "--no-audit", "--no-fund", *PACKAGES], cwd=tmp_path, check=True)  # noqa: S603
+    (numpy,) = tmp_path.glob("node_modules/@emscripten-forge/numpy/pkg/*.tar.gz")
+    shutil.unpack_archive(numpy, tmp_path / "numpy", filter="data")
+    packages = tmp_path / "packages"
+    for name in PURE:
+        shutil.copytree(Path(str(importlib.import_module(name).__file__)).parent, packages / name)
+    (record,) = (file for file in importlib.metadata.files("jaxtyping") or () if file.name == "METADATA")
+    shutil.copytree(Path(str(record.locate())).parent, packages / record.parent.name)
+    (packages / "scipy.py").touch()
+    shutil.unpack_archive(_wheel("python", tmp_path / "wheels"), tmp_path / "wheel", "zip")
+    (tmp_path / "run.mjs").write_text(IN_NODE)
+    found = subprocess.run([node, "run.mjs", PROGRAM], cwd=tmp_path, capture_output=True, text=True, check=True)  # noqa: S603
+    here: dict[str, str] = {}
+    exec(PROGRAM, here)  # noqa: S102
+    assert found.stdout.split()[-1] == here["bits"]

@@ -270,8 +270,9 @@ def assemble(velocities: np.ndarray, rates: Rates, torques: np.ndarray, parts: S
     part, cycles = np.searchsorted(ends, np.arange(head), "right"), [np.roll(x, 1) for x in np.split(momenta, ends)]
     o, n = (x[part[o] != part[n]] + before for x in (o, n))
     edges = np.stack([np.concatenate([momenta, b, o]), np.concatenate([*cycles, m, n])])
-    order = np.append(places, momenta)
-    sparse = products, first, index[rows], factors[None, rows], order
+    counts = (products, first, index[rows], np.append(places, momenta))
+    products, first, index, order = (x.astype(np.int64, copy=False) for x in counts)  # in a browser they have 32 bits
+    sparse = products, first, index, factors[None, rows], order
     nothing = np.zeros(0), np.zeros((0, 0)), np.zeros(0)
     return Quadratic(velocities, *sparse, *_blocks(before + head, edges, i), *nothing)
 
