@@ -156,9 +156,14 @@ def applied(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
     return jnp.zeros_like(v) if function is None else jnp.asarray(function(x[-1], x[:-1], v), dtype=x.dtype)
 
 
+def slopes(system: LagrangeDAlembert, x: Array, v: Array) -> tuple[Array, Array]:
+    r"""Return $\partial L/\partial x$ and $\partial L/\partial v$."""
+    return jax.grad(lagrangian, argnums=(1, 2))(system, x, v)
+
+
 def momentum(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
     r"""Return $\partial L/\partial v$."""
-    return jax.grad(lagrangian, argnums=2)(system, x, v)
+    return slopes(system, x, v)[1]
 
 
 def discrete_energy(system: LagrangeDAlembert, x: Array, v: Array, h: Array, node: Any = None) -> Array:
@@ -187,9 +192,8 @@ def ahead(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> Array:
 
 def force(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
     r"""Return $\partial L/\partial q + f$ less the change of $\partial L/\partial v$ with q and t."""
-    p, momentum_drift = jax.jvp(lambda y: momentum(system, y, v), (x,), (system.places.rate(x, v),))
-    along_x = jax.grad(lagrangian, argnums=1)(system, x, v)
-    return system.places.force(v, p, x, along_x) - momentum_drift + applied(system, x, v)
+    (along_x, p), (_, drift) = jax.jvp(lambda y: slopes(system, y, v), (x,), (system.places.rate(x, v),))
+    return system.places.force(v, p, x, along_x) - drift + applied(system, x, v)
 
 
 def inverse_legendre(system: LagrangeDAlembert, x: Array, p: Array) -> Array:
@@ -236,7 +240,7 @@ def solve_bordered(matrix: Array, units: Scaled, force: Array, off: Array) -> tu
 
 def mass_matrix(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
     r"""Return $\partial^2 L/\partial v^2$."""
-    return jax.hessian(lagrangian, argnums=2)(system, x, v)
+    return jax.jacfwd(momentum, argnums=2)(system, x, v)
 
 
 def acceleration_matrix(system: LagrangeDAlembert, q: Array, v: Array) -> tuple[Array, Scaled]:

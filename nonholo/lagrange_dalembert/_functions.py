@@ -28,14 +28,25 @@ ROWS = 1024
 _END = 120  # letters of either end of a long message
 
 
+_program_of = functools.lru_cache(maxsize=256)(jax.jit)
+
+
+def traced_once(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function that JAX traces once for arguments of a kind, however often it is differentiated.
+
+    One without a hash, which cannot be found again, stays as it is.
+    """
+    return _program_of(function) if getattr(function, "__hash__", None) else function
+
+
 def traced_shape(where: str, function: Any, arguments: tuple[Any, ...], of: str) -> tuple[int, ...]:
     """Return the shape of a function's value; `of` says in words what it is called with."""
     if not callable(function):
         raise error(where, "be a function", shown(function), "Pass a function of jax.numpy arrays.")
     if arguments and isinstance(arguments[-1], dict):
         _check_parameters(where, function, len(arguments))
-    program = _trace(where, lambda *x: _array(function(*x)), arguments, of)
-    if any(getattr(constant, "dtype", None) == jnp.float32 for constant in program.consts):
+    program = _trace(where, lambda *x: _array(traced_once(function)(*x)), arguments, of)
+    if any(getattr(constant, "dtype", None) == jnp.float32 for constant in constants_in(program)):
         remedy = "Keep parameters as Python numbers or NumPy arrays, not as jax.numpy arrays made outside."
         raise error(where, "use 64-bit numbers", "a captured 32-bit array", remedy)
     shape, kind = program.out_avals[0].shape, program.out_avals[0].dtype.kind
@@ -43,6 +54,15 @@ def traced_shape(where: str, function: Any, arguments: tuple[Any, ...], of: str)
         got = "complex numbers" if kind == "c" else "an integer"
         raise error(where, "return real numbers that it computes from its arguments", got, "Return a smooth formula.")
     return shape
+
+
+def constants_in(program: Any) -> Iterator[Any]:
+    """Yield the arrays within a program and those that it calls."""
+    yield from getattr(program, "consts", ())
+    for step in getattr(program, "jaxpr", program).eqns:
+        for inner in jax.tree.leaves(list(step.params.values())):
+            if hasattr(inner, "eqns"):
+                yield from constants_in(inner)
 
 
 def _check_parameters(where: str, function: Callable[..., Any], count: int) -> None:
@@ -76,7 +96,8 @@ def check_value(
         demand = "a scalar" if shape == () else f"an array of shape {shape}"
         raise error(where, f"return {demand}", f"shape {result_shape}", f"It is called with arrays of {arrays}.")
     if shape == ():
-        _trace(where, jax.grad(lambda *x: _array(function(*x)), tuple(range(len(arguments)))), arguments, of)
+        numbers = tuple(i for i, each in enumerate(arguments) if hasattr(each, "shape"))
+        _trace(where, jax.grad(traced_once(function), numbers), arguments, of)
 
 
 def check_forms(where: str, forms: Any, n: int, arguments: tuple[Any, ...], of: str, remedy: str) -> None:
@@ -265,19 +286,22 @@ def _valid_number(where: str, key: str, value: Any, shape: tuple[int, ...] | Non
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Bound:
-    """A function with its last argument put in: parameters by name."""
+    """A function with its last argument put in: parameters by name, where there are any.
+
+    JAX traces the function once for arguments of a kind, and differentiates what it has traced.
+    """
 
     function: Callable[..., Any]
     parameters: Mapping[str, Any]
 
     def __call__(self, *arguments: Any) -> Any:
         """Return the value."""
-        return self.function(*arguments, self.parameters)
+        return traced_once(self.function)(*arguments, *([self.parameters] if self.parameters else []))
 
     @property
     def __signature__(self) -> inspect.Signature:
         signature = inspect.signature(self.function)
-        return signature.replace(parameters=[*signature.parameters.values()][:-1])
+        return signature.replace(parameters=[*signature.parameters.values()][: -1 if self.parameters else None])
 
     @property
     def is_of_one_step(self) -> bool:

@@ -198,10 +198,9 @@ def _constraints(system: Any, q: Array, v: Array) -> tuple[Array, Array]:
     return equations.forms(system, q), equations.constraint(system, q, v)
 
 
-def _kinetics(system: Any, q: Array, v: Array) -> tuple[Array, ...]:
+def _kinetics(*at: Any) -> tuple[Array, ...]:
     """Return L, its slopes, the second of which is the momentum, and the scaled matrix of the continuous equations."""
-    value, slopes = jax.value_and_grad(equations.lagrangian, argnums=(1, 2))(system, q, v)
-    return value, *slopes, equations.acceleration_matrix(system, q, v)[0]
+    return equations.lagrangian(*at), *equations.slopes(*at), equations.acceleration_matrix(*at)[0]
 
 
 def momentum(system: Any, q: np.ndarray, v: np.ndarray) -> np.ndarray:

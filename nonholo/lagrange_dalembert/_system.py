@@ -252,8 +252,6 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         if self.slip is not None:
             remedy = "Run it by `simulate` or `iterate` of what `discretize` returned, or leave the slip out."
             raise error(_argument("force"), "have forms that never yield", "a Slip", remedy)
-        if not self.parameters:
-            return self
         p = dict(zip(self.parameters, numbers, strict=True))
         own = {name: getattr(self, name) for name in _FUNCTIONS}
         functions = {name: each and Bound(each, p) for name, each in own.items()}
@@ -398,7 +396,8 @@ def _of_numbers(system: Any, parameters: Parameters, **fields: Any) -> Any:
 
 def _plain(system: Any) -> Any:
     """Return a system whose numbers stand within its functions, pickled as such."""
-    plain, recipe = system.bound(*system.parameters.values()), vars(system).get("recipe")
+    plain = system.bound(*system.parameters.values()) if system.parameters else system
+    recipe = vars(system).get("recipe")
     if recipe and plain is not system:
         vars(plain)["recipe"] = (_plain, (system,))
     return plain

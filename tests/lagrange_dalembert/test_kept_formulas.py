@@ -1,5 +1,6 @@
 """Compiled formulas stay on disk: a process that has them traces a system once, and its orbits have the same bits."""
 
+import collections
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -61,6 +62,25 @@ def test_a_second_process_translates_nothing(folder: Path, monkeypatch: pytest.M
     _forget()
     assert all(map(np.array_equal, _motions(_particle()), first))
     assert sorted(folder.iterdir()) == files
+
+
+@pytest.mark.parametrize("parameters", [{}, {"mass": 2.0}], ids=["none", "mass"])
+def test_each_function_is_called_once(parameters: dict[str, float]) -> None:
+    """From its check to the ends of a run and of a flow JAX traces a function of a user once, then its program."""
+    calls = collections.Counter[str]()
+
+    def noted(name: str, function: Any) -> Any:
+        def call(*arguments: Any) -> Any:
+            calls[name] += 1
+            return function(*arguments)
+
+        return call
+
+    energy = noted("energy", lambda q, v, *p: v @ v / 2 * (p[0]["mass"] if p else 1.0) - jnp.cos(q[0]))
+    forms = noted("forms", lambda q, *_: jnp.stack([jnp.stack([-q[1], 0.0 * q[0], 1.0 + 0.0 * q[0]])]))
+    force = noted("force", lambda _time, _q, v, *_: -0.1 * v)
+    _motions(nh.LagrangeDAlembert(energy, forms, dimension=3, force=force, parameters=parameters))
+    assert calls == {"energy": 1, "forms": 1, "force": 1}
 
 
 def test_numbers_within_functions_count(folder: Path) -> None:

@@ -41,10 +41,6 @@ def _squares(f: Formulas, constant: float, sign: str, x: Scalar) -> Scalar:
     return f(sign, f.constant(constant), f("mul", x, x))
 
 
-def _root(f: Formulas, x: Scalar) -> Scalar:
-    return f("sqrt", x)
-
-
 _SLOPES: dict[str, Callable[[Formulas, Scalar, Scalar], Scalar]] = {
     "exp": lambda _, _x, y: y,
     "expm1": lambda f, _, y: f("add", y, f.constant(1.0)),
@@ -55,14 +51,14 @@ _SLOPES: dict[str, Callable[[Formulas, Scalar, Scalar], Scalar]] = {
     "sin": lambda f, x, _: f("cos", x),
     "cos": lambda f, x, _: f("neg", f("sin", x)),
     "tan": lambda f, _, y: _squares(f, 1.0, "add", y),
-    "asin": lambda f, x, _: _over(f, 1.0, _root(f, _squares(f, 1.0, "sub", x))),
-    "acos": lambda f, x, _: _over(f, -1.0, _root(f, _squares(f, 1.0, "sub", x))),
+    "asin": lambda f, x, _: _over(f, 1.0, f("sqrt", _squares(f, 1.0, "sub", x))),
+    "acos": lambda f, x, _: _over(f, -1.0, f("sqrt", _squares(f, 1.0, "sub", x))),
     "atan": lambda f, x, _: _over(f, 1.0, _squares(f, 1.0, "add", x)),
     "sinh": lambda f, x, _: f("cosh", x),
     "cosh": lambda f, x, _: f("sinh", x),
     "tanh": lambda f, _, y: _squares(f, 1.0, "sub", y),
-    "asinh": lambda f, x, _: _over(f, 1.0, _root(f, _squares(f, 1.0, "add", x))),
-    "acosh": lambda f, x, _: _over(f, 1.0, _root(f, f("sub", f("mul", x, x), f.constant(1.0)))),
+    "asinh": lambda f, x, _: _over(f, 1.0, f("sqrt", _squares(f, 1.0, "add", x))),
+    "acosh": lambda f, x, _: _over(f, 1.0, f("sqrt", f("sub", f("mul", x, x), f.constant(1.0)))),
     "atanh": lambda f, x, _: _over(f, 1.0, _squares(f, 1.0, "sub", x)),
     "erf": lambda f, x, _: f("mul", f.constant(2 / math.sqrt(math.pi)), f("exp", f("neg", f("mul", x, x)))),
 }

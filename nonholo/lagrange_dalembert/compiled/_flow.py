@@ -158,13 +158,15 @@ def flow(system: Any, first: tuple[Any, Any], times: np.ndarray, rtol: float) ->
 
 
 def _equations(code: Formulation, shapes: tuple[tuple[int, ...], tuple[int, ...]], size: int) -> Quadratic:
-    """Return equations without quadratic terms, whose numbers are the room of the code.
+    """Return equations without quadratic terms, whose numbers are the room of the code."""
+    return _structure(*map(math.prod, shapes), size)._replace(factors=np.zeros((1, code.room)))
 
-    Places are measured apart from their rates, and from constants.
-    """
-    places, rates = map(math.prod, shapes)
+
+@functools.lru_cache(maxsize=64)
+def _structure(places: int, rates: int, size: int) -> Quadratic:
+    """Return what equations of one size have in common; places are measured apart from their rates, and constants."""
     blocks, none = np.repeat([0, 1, 2], [places, rates, size - places - rates]), np.zeros(0, dtype=np.int64)
-    sparse = np.zeros((2, 0), dtype=np.int64), np.zeros(size + 1, dtype=np.int64), none, np.zeros((1, code.room))
+    sparse = np.zeros((2, 0), dtype=np.int64), np.zeros(size + 1, dtype=np.int64), none, np.zeros((1, 0))
     ends = np.zeros(0), np.zeros((0, 0)), np.zeros(0)
     return Quadratic(np.zeros((0, 0)), *sparse, np.arange(size), blocks, np.zeros(3, dtype=np.bool_), *ends)
 
@@ -180,5 +182,4 @@ def flow_rows(system: Any, x: np.ndarray, v: np.ndarray) -> list[np.ndarray] | N
 
 
 def _values(code: Values, system: Any, x: np.ndarray, v: np.ndarray) -> list[np.ndarray] | None:
-    numbers = (np.broadcast_to(number, (len(x), *np.shape(number))) for number in system.parameters.values())
-    return evaluate(code, x, v, *numbers)
+    return evaluate(code, len(x), x, v, *(np.asarray(number)[None] for number in system.parameters.values()))

@@ -11,7 +11,7 @@ import hashlib
 import json
 import os
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -25,15 +25,12 @@ from nonholo.base.compiled.library import cache_folder, digest_of, digest_of_ker
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import _equations as equations
-from nonholo.lagrange_dalembert._functions import compiling
+from nonholo.lagrange_dalembert._functions import compiling, constants_in
 from nonholo.lagrange_dalembert.compiled._scalars import DOUBLE, OPERATIONS, TRUTH, Scalar, operations_between
 
 _MOST = 256  # files
-_OPAQUE = (
-    "custom_jvp_call",
-    "custom_vjp_call",
-    "stop_gradient",
-)  # whose derivatives are not those of what they compute
+_OPAQUE = "custom_jvp_call", "custom_vjp_call", "stop_gradient"
+"""Calls whose derivatives are not those of what they compute."""
 
 
 def write_function(module: ir.Module, name: str, inputs: list[Scalar], results: list[Scalar]) -> None:
@@ -141,16 +138,6 @@ def _digest(family: Any) -> str | None:
     texts = digest_of("lagrange_dalembert", "groups"), digest_of_kernels()
     about = sort, family.has_parts, texts, jax.__version__, llvmlite.__version__, this_processor(), text
     digest = hashlib.sha256(repr(about).encode())
-    for array in _constants_in(program):
+    for array in constants_in(program):
         digest.update(f"{np.shape(array)} {np.asarray(array).dtype}".encode() + np.asarray(array).tobytes())
     return digest.hexdigest()
-
-
-def _constants_in(program: Any) -> Iterator[Any]:
-    """Yield the arrays within a program and those that it calls."""
-    yield from getattr(program, "consts", ())
-    for step in getattr(program, "jaxpr", program).eqns:
-        for value in step.params.values():
-            for inner in value if isinstance(value, tuple | list) else (value,):
-                if hasattr(inner, "eqns"):
-                    yield from _constants_in(inner)

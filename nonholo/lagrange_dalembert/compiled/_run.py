@@ -4,6 +4,7 @@ The equations of a system become C functions, made of the definitions of this ro
 """
 
 import functools
+import itertools
 import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -223,30 +224,34 @@ def decoded(function: Callable[..., Any], system: Any, h: Any, q: np.ndarray, v:
     nodes = _nodes(system, h, q, v) if system.is_driven and len(q) else ()
     if nodes is None:
         return None
-    numbers = [np.broadcast_to(x, (len(q), *np.shape(x))) for x in (*system.parameters.values(), float(h))]
-    columns = [*numbers, q, v, *nodes]
+    columns = [*(np.asarray(x)[None] for x in (*system.parameters.values(), float(h))), q, v, *nodes]
     code = values(function, system.family, *(column.shape[1:] for column in columns))
-    return code and evaluate(code, *columns)
+    return code and evaluate(code, len(q), *columns)
 
 
 def value(function: Callable[..., Any], system: Any, *arguments: Any) -> list[Any] | None:
     """Return function(system, ...), some arrays, of arrays; None where there are no formulas, or doubts."""
     columns = [np.asarray(x, dtype=float)[None] for x in (*system.parameters.values(), *arguments)]
     code = values(function, system.family, *(column.shape[1:] for column in columns))
-    results = code and evaluate(code, *columns)
+    results = code and evaluate(code, 1, *columns)
     return results and [each[0] for each in results]
 
 
-def evaluate(code: Values, *columns: np.ndarray) -> list[Any] | None:
-    """Return the values of each row of columns; None where they may not be trusted."""
-    sizes, count = [math.prod(shape) for shape in code.shapes], len(columns[0])
-    table = np.empty((count, sum(sizes) + 1))
-    inputs = np.column_stack([x.reshape(count, math.prod(x.shape[1:])) for x in columns])
-    each_row(code.function, np.ascontiguousarray(inputs), table)  # of repeated rows the stack has another layout
-    if np.any(table[:, -1] != 0):
-        return None
-    parts = np.split(table[:, :-1], np.cumsum(sizes)[:-1], axis=1)
-    return [part.reshape(count, *shape) for part, shape in zip(parts, code.shapes, strict=True)]
+def evaluate(code: Values, count: int, *columns: np.ndarray) -> list[Any] | None:
+    """Return the values of `count` rows; None where they may not be trusted. A column of one row stands for all."""
+    shapes = [x.shape[1:] for x in columns]
+    inputs, table = (np.empty((count, sum(map(math.prod, each)))) for each in (shapes, [*code.shapes, ()]))
+    for part, column in zip(_blocks(inputs, shapes), columns, strict=True):
+        part[...] = column
+    each_row(code.function, inputs, table)
+    *results, doubt = _blocks(table, [*code.shapes, ()])
+    return None if np.any(doubt) else results
+
+
+def _blocks(table: np.ndarray, shapes: list[tuple[int, ...]]) -> list[np.ndarray]:
+    """Return arrays of these shapes, whose numbers stand side by side in each row of a table."""
+    ends = [0, *itertools.accumulate(map(math.prod, shapes))]
+    return [table[:, a:b].reshape(len(table), *s) for a, b, s in zip(ends[:-1], ends[1:], shapes, strict=True)]
 
 
 def _nodes(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray] | None:

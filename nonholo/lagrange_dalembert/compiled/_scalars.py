@@ -110,9 +110,8 @@ class Scalar:
     ) -> None:
         self.operation, self.arguments, self.value = operation, arguments, value
         self.varies = varies or any(each.varies for each in arguments)
-        self.is_total = operation not in OPERATIONS or (
-            OPERATIONS[operation].is_total and all(each.is_total for each in arguments)
-        )
+        own = OPERATIONS.get(operation)
+        self.is_total = own is None or (own.is_total and all(each.is_total for each in arguments))
         chooses_truth = operation == "select" and arguments[1].is_truth
         self.is_truth = chooses_truth or operation in TRUTHS or value is True or value is False
 
@@ -139,14 +138,15 @@ class Formulas:
         self._asked += 1
         if self._asked > _MOST:
             raise UntranslatableError("too many operations")
-        if all(each.value is not None for each in arguments):
-            with np.errstate(all="ignore"):
-                return self.constant(OPERATIONS[name].evaluate(*(each.value for each in arguments)))
-        return self._shorter(name, arguments) or self._result(name, arguments)
+        key = name, arguments
+        return self._made.get(key) or self._made.setdefault(key, self._result(name, arguments))
 
     def _result(self, name: str, arguments: tuple[Scalar, ...]) -> Scalar:
-        key = name, arguments
-        return self._made.get(key) or self._made.setdefault(key, Scalar(name, arguments))
+        values = [each.value for each in arguments]
+        if None not in values:
+            with np.errstate(all="ignore"):
+                return self.constant(OPERATIONS[name].evaluate(*values))
+        return self._shorter(name, arguments) or Scalar(name, arguments)
 
     def _shorter(self, name: str, arguments: tuple[Scalar, ...]) -> Scalar | None:
         """Return what an operation with 0 or 1, or a choice that is fixed, comes to."""
@@ -158,7 +158,7 @@ class Formulas:
         return rule and rule(self, name, first, last)
 
     def _zero(self, name: str, *factors: Scalar) -> Scalar:
-        product = self._result(name, factors)
+        product = Scalar(name, factors)
         if not product.is_total:
             self.doubts[product] = None
         return self.constant(0.0)
