@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from nonholo.discrete._discretization import Discretization
 
 _BALANCED = 8 * np.finfo(np.float64).eps  # coupling, relative to the inertia, that counts as zero
+_RANK = 1e-13  # relative singular value below which a direction is left alone
 _AT_PI = 1e-75  # stands for the cosine of half the angle pi, which Cayley coordinates cannot be divided by
 
 
@@ -69,6 +70,14 @@ class Equations:
     def starts(self) -> Inexact[np.ndarray, "B m"] | None:
         """Return approximate roots; None where the secular polynomial has them."""
         return None
+
+    def around(self) -> tuple["Equations", Inexact[np.ndarray, "B m"]]:
+        """Return a generic problem and its roots, for equations without starts."""
+        return self, self.points([])
+
+    def solve(self, x: Inexact[Array, "... m"], right: Inexact[Array, "... e"]) -> Inexact[Array, "... m"]:
+        """Return the shortest move from a point that changes the residual by the right-hand side, or nearly."""
+        return (np.linalg.pinv(self.slope(x), rcond=_RANK) @ right[..., None])[..., 0]
 
     def residual(self, x: Inexact[Array, "... m"]) -> tuple[Inexact[Array, "... m"], Inexact[Array, "... m"]]:
         """Return the equations, the last one that of the sphere, and the sizes of their terms."""

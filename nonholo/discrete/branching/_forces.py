@@ -20,12 +20,14 @@ from nonholo.base.types import Array, Float, Inexact
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._scheme import legendre
 from nonholo.discrete.branching._equations import Equations, Frame, frame_of
+from nonholo.discrete.branching._roots import by_loops, disturb, polish
 from nonholo.systems import Forced, in_group
 
 _CIRCLES = 0.83, 6.0, 40.0  # radii on which polynomials are sampled: each sees the roots of its own size
 _BEGIN = 0.1  # the angle of the first place on them
 _TURN = 0.7  # by which coordinates are turned, lest two roots share one
 _SEEN = 1e-13  # of the largest term of a resultant, below which one is none
+_STARTS = 400  # of Newton's method on a generic problem
 _DEGREE = 4  # of a polynomial in each coordinate
 
 
@@ -72,6 +74,10 @@ class Pulled(Equations):
             return (k + 1) ** 2 - (k == 2 and _is_weight(self.pull))
         return k * k + k + 1 if np.any(self.coupling) else 2 * k + 1
 
+    def around(self) -> tuple[Equations, Inexact[np.ndarray, "B m"]]:
+        """Return a generic problem of as many coordinates and its roots."""
+        return _around(len(self.stiffness), self.lever is not None)
+
     def residual(self, x: Inexact[Array, "... m"]) -> tuple[Inexact[Array, "... m"], Inexact[Array, "... m"]]:
         """Return the equations and the sizes of their terms."""
         (rows, sizes), m, z0 = super().residual(x), len(self.drag), x[..., :1]
@@ -109,6 +115,17 @@ class Pulled(Equations):
         q, _ = _eliminate(self, y)
         points = np.concatenate([np.ones((len(y), 1)), y, q], axis=1)
         return points / np.sqrt(1 + (y * y).sum(axis=1, keepdims=True))
+
+
+@functools.cache
+def _around(k: int, slides: bool) -> tuple[Pulled, Inexact[np.ndarray, "B m"]]:
+    """Return a generic problem and its roots: some by Newton's method, the others where loops of problems lead them."""
+    rng, still = np.random.default_rng(0), Pulled.at_rest(k, slides)
+    generic = disturb(still, rng)
+    points = rng.normal(size=(_STARTS, 1 + k + slides, 2)) @ np.array([1.0, 1j])
+    points[:, : 1 + k] /= np.sqrt((points[:, : 1 + k] ** 2).sum(axis=1, keepdims=True))
+    first = polish(generic, points)
+    return generic, by_loops(generic, first, lambda: disturb(still, rng), lambda roots: len(roots) >= generic.count)
 
 
 def _is_weight(pull: Inexact[Array, "3 2"]) -> bool:

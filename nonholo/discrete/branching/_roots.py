@@ -9,7 +9,7 @@ Reference: docs/theory/branches.md.
 import dataclasses
 import functools
 import itertools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -114,9 +114,8 @@ _ISOLATED = 1e-10  # least singular value of a root that has no other close by
 _FAR = 1e5  # size of a root that counts as infinite
 _SETTLED = 1e-14  # relative residual below which an iteration that gains no more has converged
 _TINY = 1e-10  # part of the largest equation that others are measured by, where their own terms vanish
-_RANK = 1e-13  # relative singular value below which a direction is left alone
 _REACHED = 1e-13  # relative residual of a root
-_STARTS, _LOOPS = 400, 40  # of Newton's method on a generic problem; of problems around it
+_LOOPS = 40  # of problems around a generic one
 _ARRIVED = 1e-12  # of the homotopy parameter, from where Newton's method takes over
 
 
@@ -130,7 +129,7 @@ class Root(NamedTuple):
 
 def roots_of(equations: Equations) -> list[Root]:
     """Return the isolated roots: of a real problem the real ones by step angle, then the complex ones."""
-    roots = _merge(equations, _polish(equations, candidates(equations)))
+    roots = _merge(equations, polish(equations, candidates(equations)))
     complete = equations.is_balanced or _count(roots) == equations.count
     if not complete or _is_crowded(equations, roots):
         by_path = _merge(equations, _by_continuation(equations))
@@ -154,7 +153,8 @@ def place(root: Root) -> tuple:
     return not root.is_real, np.linalg.norm(root.point[1:]), root.point[0].imag
 
 
-def _polish(equations: Equations, starts: Inexact[Array, "B m"]) -> Inexact[Array, "C m"]:
+def polish(equations: Equations, starts: Inexact[Array, "B m"]) -> Inexact[Array, "C m"]:
+    """Return the roots that Newton's method reaches from points."""
     roots, converged = _newton(equations, _finite(starts))
     return _finite(roots[converged])
 
@@ -178,7 +178,7 @@ def _newton(
         active, residual = active[on], residual[on]
         if len(active) == 0:
             break
-        correction = (np.linalg.pinv(equations.slope(x[active]), rcond=_RANK) @ residual[:, :, None])[..., 0]
+        correction = equations.solve(x[active], residual)
         if i == 0:
             near = np.linalg.norm(correction, axis=1) <= reach * np.linalg.norm(x[active], axis=1)
             active, correction = active[near], correction[near]
@@ -219,7 +219,7 @@ def _distance(x: Inexact[Array, "... m"], y: Inexact[Array, "... m"]) -> Float[n
 def _center(equations: Equations, x: Array) -> Array:
     """Correct the mean of a multiple root across the direction in which it is not determined."""
     for _ in range(3):
-        U, values, V = np.linalg.svd(equations.slope(x))
+        U, values, V = np.linalg.svd(equations.slope(x), full_matrices=False)
         right = U.conj().T @ equations.residual(x)[0]
         x = x - V[:-1].conj().T @ (right[:-1] / values[:-1])
     return x
@@ -242,13 +242,13 @@ def _by_continuation(equations: Equations) -> Inexact[Array, "B m"]:
     """Return the ends of all paths from a generic problem; roots at infinity have none."""
     rng = np.random.default_rng(0)
     for _ in range(5):
-        generic = _disturb(equations, rng)
-        starts = _polish(generic, candidates(generic))
+        generic = disturb(equations, rng)
+        starts = polish(generic, candidates(generic))
         if _count(_merge(generic, starts)) == generic.count:
             break
     if len(starts) == 0:
-        generic, starts = _around(type(equations), len(equations.stiffness), equations.lever is not None)
-    ends = _finite(_follow(equations, generic, starts))
+        generic, starts = equations.around()
+    ends = _finite(follow_all(equations, generic, starts))
     if _is_complex(equations) or len(ends) == 0:
         return ends
     alone = _distance(ends.conj()[:, None], ends).min(axis=1) > _BLURRED  # real problems have them in pairs
@@ -259,24 +259,32 @@ def _is_complex(equations: Equations) -> bool:
     return np.iscomplexobj(equations.target) or np.iscomplexobj(equations.push)
 
 
-@functools.cache
-def _around(kind: Any, k: int, slides: bool) -> tuple[Equations, Inexact[Array, "B m"]]:
-    """Return a generic problem and its roots: some by Newton's method, the others where loops of problems lead them."""
-    rng, still = np.random.default_rng(0), kind.at_rest(k, slides)
-    generic = _disturb(still, rng)
-    points = rng.normal(size=(_STARTS, 1 + k + slides, 2)) @ np.array([1.0, 1j])
-    points[:, : 1 + k] /= np.sqrt((points[:, : 1 + k] ** 2).sum(axis=1, keepdims=True))
-    roots, left = _merge(generic, _polish(generic, points)), _LOOPS
-    while _count(roots) < generic.count and left:
-        way, left = (generic, _disturb(still, rng), _disturb(still, rng), generic), left - 1
-        points = starts = generic.points([root.point for root in roots])
+def by_loops(
+    generic: Equations,
+    points: Inexact[Array, "B m"],
+    draw: Callable[[], Equations],
+    is_complete: Callable[[Inexact[Array, "B m"]], bool],
+) -> Inexact[Array, "C m"]:
+    """Return the roots of a generic problem: the known ones, and those where loops of problems lead them."""
+    points = distinct(generic, points)
+    for _ in range(_LOOPS):
+        if is_complete(points):
+            break
+        ends, way = points, (generic, draw(), draw(), generic)
         for begin, end in itertools.pairwise(way):
-            points = _follow(end, begin, points)
-        roots = _merge(generic, np.concatenate([starts, points]))
-    return generic, generic.points([root.point for root in roots])
+            ends = follow_all(end, begin, ends)
+        points = distinct(generic, np.concatenate([points, ends]))
+    return points
 
 
-def _disturb(equations: Equations, rng: np.random.Generator) -> Equations:
+def distinct(equations: Equations, points: Inexact[Array, "B m"]) -> Inexact[Array, "C m"]:
+    """Return isolated roots, each once."""
+    return equations.points([root.point for root in _merge(equations, points)])
+
+
+def disturb(equations: Any, rng: np.random.Generator) -> Any:
+    """Return a generic complex problem near one."""
+
     def near(value: Array) -> Array:
         noise = rng.normal(size=np.shape(value)) + 1j * rng.normal(size=np.shape(value))
         return value + 0.2 * (1 + np.abs(value).max()) * noise
@@ -285,18 +293,17 @@ def _disturb(equations: Equations, rng: np.random.Generator) -> Equations:
     return dataclasses.replace(equations, **values)
 
 
-def _between(start: Equations, end: Equations, t: float) -> Equations:
+def _between(start: Equations, end: Any, t: float) -> Equations:
     values = {name: (1 - t) * getattr(end, name) + t * getattr(start, name) for name in end.parameters}
     return dataclasses.replace(end, **values)
 
 
-def _follow(end: Equations, start: Equations, x: Inexact[Array, "B m"]) -> Inexact[Array, "C m"]:
+def follow_all(end: Equations, start: Equations, x: Inexact[Array, "B m"]) -> Inexact[Array, "C m"]:
     """Follow roots while t falls from 1 to almost 0 by factors, then solve the given problem; some are lost."""
     t, ratio = 1.0, 0.8
     while t > _ARRIVED and len(x) > 0:
         change = start.residual(x)[0] - end.residual(x)[0]
-        tangent = np.linalg.pinv(_between(start, end, t).slope(x), rcond=_RANK) @ change[:, :, None]
-        guess = x + (1 - ratio) * t * tangent[..., 0]
+        guess = x + (1 - ratio) * t * _between(start, end, t).solve(x, change)
         points, converged = _newton(_between(start, end, ratio * t), guess, 6, 0.05)
         good = converged & (np.linalg.norm(points - x, axis=1) <= 0.5 * np.linalg.norm(x, axis=1))
         if not good.all() and ratio < 1 - 1e-4:

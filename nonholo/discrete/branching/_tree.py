@@ -12,7 +12,7 @@ from nonholo.base.checks import array, error, natural
 from nonholo.base.types import Array, Bool, Int
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._scheme import legendre
-from nonholo.discrete.branching._equations import Frame, frame_of
+from nonholo.discrete.branching._sections import AnyFrame, frame_for
 from nonholo.discrete.branching._values import point_over, roots_over
 
 _MOST = 10_000  # nodes of a tree
@@ -76,7 +76,7 @@ def branch_tree(discrete: Discretization, displacement: Any, depth: int) -> Bran
         array([ 1,  3,  9, 27])
     """
     where = "branch_tree(discrete=...)"
-    frame = frame_of(where, as_discretization(where, discrete))
+    frame = frame_for(where, as_discretization(where, discrete))
     group = discrete.system.group
     where = "branch_tree(displacement=...)"
     W = array(where, displacement, group.identity.shape, f"Pass an element of {group} as a matrix.")
@@ -102,7 +102,7 @@ def branch_tree(discrete: Discretization, displacement: Any, depth: int) -> Bran
     )
 
 
-def _checked_depth(discrete: Discretization, frame: Frame, depth: Any) -> int:
+def _checked_depth(discrete: Discretization, frame: AnyFrame, depth: Any) -> int:
     where = "branch_tree(depth=...)"
     depth = natural(where, depth, "Pass the number of generations, 0 for the root alone.")
     images = frame.equations(np.zeros(len(discrete.system.constraint_subspace))).count
@@ -114,7 +114,7 @@ def _checked_depth(discrete: Discretization, frame: Frame, depth: Any) -> int:
 
 
 def _next_generation(
-    discrete: Discretization, frame: Frame, X: Array, is_real: Array
+    discrete: Discretization, frame: AnyFrame, X: Array, is_real: Array
 ) -> tuple[Array, Array, Int[np.ndarray, "G"]]:
     """Return the distinct images of displacements minus the identity, which are real, and the index of the parent."""
     if len(X) == 0:
@@ -126,7 +126,7 @@ def _next_generation(
     return matrices[first], reality[first], parents[first]
 
 
-def _images(discrete: Discretization, frame: Frame, X: Array, is_real: Array) -> tuple[Array, Array]:
+def _images(discrete: Discretization, frame: AnyFrame, X: Array, is_real: Array) -> tuple[Array, Array]:
     r = discrete.system.restrict(legendre(discrete, X, "right"))
     if is_real or np.abs(r.imag).max() <= _ROUNDING * np.abs(r).max():
         r = r.real

@@ -19,9 +19,10 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Bool, Float, Inexact, Int
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._scheme import legendre
-from nonholo.discrete.branching._equations import Equations, Frame, frame_of
+from nonholo.discrete.branching._equations import Equations, has_frame
 from nonholo.discrete.branching._forces import Node, node_of
 from nonholo.discrete.branching._roots import Root, place, roots_of
+from nonholo.discrete.branching._sections import AnyFrame, frame_for
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import AbstractLLSystem, NormalForm
 
@@ -155,7 +156,7 @@ class Branches:
         return table(repr(self), rows, head)
 
 
-def values_over(discrete: Discretization, frame: Frame, r: Inexact[np.ndarray, "k"]) -> Branches:
+def values_over(discrete: Discretization, frame: AnyFrame, r: Inexact[np.ndarray, "k"]) -> Branches:
     """Return all values over a restricted momentum in the user's frame."""
     canonical = discrete.system.to_canonical(r)
     return branches_of(discrete, canonical, roots_over(discrete, frame, canonical))
@@ -178,12 +179,12 @@ class Roots(NamedTuple):
     increments: Inexact[np.ndarray, "B N N"]
 
 
-def roots_over(discrete: Discretization, frame: Frame, canonical: Inexact[np.ndarray, "k"]) -> Roots:
+def roots_over(discrete: Discretization, frame: AnyFrame, canonical: Inexact[np.ndarray, "k"]) -> Roots:
     """Return the roots over a canonical restricted momentum, real or complex."""
     return _roots_of(discrete, frame, frame.equations(discrete.time_step * canonical))
 
 
-def _roots_of(discrete: Discretization, frame: Frame, equations: Equations) -> Roots:
+def _roots_of(discrete: Discretization, frame: AnyFrame, equations: Equations) -> Roots:
     system, zeros = discrete.system, roots_of(equations)
     back = system.group.inverse(system.frame)
     increments = [system.frame @ frame.increment(root.point.astype(complex)) @ back for root in zeros]
@@ -207,7 +208,7 @@ def branches_of(discrete: Discretization, canonical: Inexact[np.ndarray, "k"], r
     )
 
 
-def point_over(where: str, discrete: Discretization, frame: Frame, W: np.ndarray) -> Float[np.ndarray, "m"]:
+def point_over(where: str, discrete: Discretization, frame: AnyFrame, W: np.ndarray) -> Float[np.ndarray, "m"]:
     """Return the point over a real displacement, refused with its distance from the variety."""
     system = discrete.system
     canonical = system.group.inverse(system.frame) @ W @ system.frame
@@ -240,10 +241,10 @@ def _index_of(discrete: Discretization, code: int, increment: Array, W: np.ndarr
     return best if distances[best] <= SAME * max(1.0, float(np.linalg.norm(principal))) else None
 
 
-def certified_over(owner: str, discrete: Discretization, frame: Frame, r: Float[np.ndarray, "k"]) -> Branches:
+def certified_over(owner: str, discrete: Discretization, frame: AnyFrame, r: Float[np.ndarray, "k"]) -> Branches:
     """Return all values over a restricted momentum, certified where that can be decided."""
     canonical = discrete.system.to_canonical(r)
-    balls = _enclosures(owner)(discrete, canonical)
+    balls = _enclosures(owner)(discrete, canonical) if has_frame(discrete) else _FOLLOWED
     if isinstance(balls, str):
         return dataclasses.replace(values_over(discrete, frame, r), uncertified=balls)
     system, facts = discrete.system, zip(balls.multiplicity, balls.is_real, strict=True)
@@ -254,6 +255,9 @@ def certified_over(owner: str, discrete: Discretization, frame: Frame, r: Float[
     roots = Roots(frame.equations(discrete.time_step * canonical), [zeros[i] for i in order], balls.increment[order])
     values = branches_of(discrete, canonical, roots)
     return dataclasses.replace(values, certified=True, radius=balls.radius[order])
+
+
+_FOLLOWED = "they are followed from those of a general momentum; that these are all is observed"
 
 
 def _enclosures(owner: str) -> Callable[..., Any]:
@@ -289,10 +293,14 @@ def displacements_over(
     2, 3 have 4 and 8, and T + U after the step is the same for all. Beyond these n roots of a generic problem are
     followed: that they are all is observed, not proved.
 
+    Values of any other constraint are linear sections of S, which are followed from a general one. Its points are all
+    of them by a numerical test, so that these are all is observed too. The first call of a subspace takes seconds.
+
     Reference: [fedorov-zenkov-2004], section 3, item 3; docs/theory/branches.md.
 
     Args:
-        discrete: A discretized SuslovTop, ChaplyginSleigh or MultidimensionalSleigh with difference "matrix".
+        discrete: A discretized system with difference "matrix": a top or a sleigh, or any constraint of rank up to 4
+            that is fixed in the body, on a group of matrices of up to 5 rows, with constraint "skew".
         restricted_momentum: r, in physical units, along the rows of `constraint_subspace`: of a `SuslovTop` with n = 3
             about e3, whose rows are (0, 1, 0) and (-1, 0, 0), r = (P_2, -P_1).
         certify: Also prove that these are all of them, with exact multiplicities and enclosures; needs the extra
@@ -305,6 +313,7 @@ def displacements_over(
     Raises:
         ValueError: Another system, difference or force, a wrong shape, a value that is not finite, `certify=True`
             without python-flint or under forces.
+        RuntimeError: Loops did not find all points of a general section.
 
     Example:
         A top has four values, here two of them complex:
@@ -422,7 +431,8 @@ def fold_distance(discrete: Discretization, displacement: Any) -> float:
 
     The least singular value of $(\mathbb{I}|_{\mathfrak{d}})^{-1}\,d(hP|_{\mathfrak{d}})$ along the displacement
     variety, whose points are written $\pm(z_0, z)$ on the sphere $z_0^2 + |z|^2 = 1$, of a sleigh with a length too;
-    all in the body's units of inertia and length. It depends on no unit and not on the time step.
+    all in the body's units of inertia and length. It depends on no unit and not on the time step. Points of other
+    varieties move by $W^{-1}dW$, which on SO(n) is the same.
 
     Args:
         discrete: As in `displacements_over`.
@@ -456,8 +466,8 @@ def _node(owner: str, discrete: Any, certify: bool, configuration: Any, step: An
     return node_of(owner, discrete, configuration, number)
 
 
-def _frame_for(owner: str, discrete: Discretization) -> Frame:
-    return frame_of(f"{owner}(discrete=...)", as_discretization(f"{owner}(discrete=...)", discrete))
+def _frame_for(owner: str, discrete: Discretization) -> AnyFrame:
+    return frame_for(f"{owner}(discrete=...)", as_discretization(f"{owner}(discrete=...)", discrete))
 
 
 def _restricted(where: str, discrete: Discretization, momentum: Any) -> Float[np.ndarray, "k"]:
@@ -465,7 +475,7 @@ def _restricted(where: str, discrete: Discretization, momentum: Any) -> Float[np
     return array(where, momentum, (k,), f"Pass the {k} components along the constraint subspace.")
 
 
-def _before(where: str, discrete: Discretization, frame: Frame, momentum: Any) -> Float[np.ndarray, "N N"]:
+def _before(where: str, discrete: Discretization, frame: AnyFrame, momentum: Any) -> Float[np.ndarray, "N N"]:
     """Return the displacement minus the identity that a full or restricted momentum belongs to."""
     if shape_of(momentum) != (len(discrete.system.constraint_subspace),):
         return _inverse(where, discrete, frame, momentum)
@@ -480,7 +490,7 @@ def _increment(where: str, discrete: Discretization, values: Branches) -> Float[
     return values.displacement[values.principal].real - discrete.system.group.identity
 
 
-def _inverse(where: str, discrete: Discretization, frame: Frame, momentum: Any) -> Float[np.ndarray, "N N"]:
+def _inverse(where: str, discrete: Discretization, frame: AnyFrame, momentum: Any) -> Float[np.ndarray, "N N"]:
     system = discrete.system
     p = array(where, momentum, (system.group.dim,), "Pass all components of a body momentum.")
     values = values_over(discrete, frame, system.restrict(p))
