@@ -306,7 +306,7 @@ def deltoid(discrete: Discretization) -> Deltoid:
         [3, 1]
     """
     discrete, variety = planar.planar_map("deltoid(discrete=...)", discrete)
-    if not variety.form.is_sleigh:
+    if variety.blade is None:
         raise error("deltoid(discrete=...)", "be of a sleigh", shown(discrete.system), "Tops have no deltoid.")
     if variety.form.arm == 0:
         remedy = "A balanced sleigh has two real values if h |pi| < J, none beyond."

@@ -168,6 +168,11 @@ class AbstractSystem(Keeper, abc.ABC):
     def forces(self) -> Any:
         """The system itself where a potential or a force acts on it (`Forced`); None of a free one."""
         return None
+    @property
+    def inside(self) -> "AbstractSystem":
+        """The body on which forces act: a `Forced` has it inside; the system itself where there are none."""
+        return self
+
 
     @property
     def is_wide(self) -> bool:

@@ -30,7 +30,7 @@ class SystemSamples:
 
     def __init__(self, system: AbstractSystem, rng: np.random.Generator) -> None:
         self.moving = system
-        self.system: AbstractSystem = getattr(system, "system", system)  # a Forced has it inside, and adds forces alone
+        self.system = system.inside  # forces are all that is added to it
         self.group = system.group
         self.spatial = system.is_spatial
         self.S, self.A = np.asarray(system.constraint_subspace), np.asarray(system.annihilator)

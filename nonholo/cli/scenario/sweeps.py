@@ -389,6 +389,6 @@ def _varied_names(scenario: SweepScenario) -> dict[str, tuple[str, ...]]:
         names = tuple(arguments(type(scenario.body).make))
         return {"body": names, "start": ("configuration", "body_velocity"), "run": ("time_step",), "forces": ()}
     system: Any = scenario.system()
-    leaves = (*(system.system if system.is_forced else system).leaves, "inertia_operator")
+    leaves = (*system.inside.leaves, "inertia_operator")
     body = tuple(name for name in type(scenario.body).model_fields if name in leaves)
     return {"body": body, "start": STARTS, "run": ("time_step",), "forces": tuple(force_numbers(system))}

@@ -115,6 +115,7 @@ class Forced(AbstractSystem):
     normal_form: ClassVar[None] = None
     is_forced: ClassVar[bool] = True
     homogeneous_mass_tensor = constraint_subspace = cast(Any, None)  # seen by type checkers
+    inside = property(operator.attrgetter("system"))
     locals().update((name, property(operator.attrgetter(f"free.{name}"))) for name in _SAME.split())
 
     def __new__(cls, system: Any = None, potential: Any = None, force: Any = None, scheme: str | None = None) -> Any:
