@@ -23,7 +23,7 @@ from nonholo.discrete import Discretization
 from nonholo.io.places import check_file
 from nonholo.orbit import AbstractOrbit, Orbit, as_orbit
 from nonholo.plot import theme
-from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, System
+from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, System, refuse_fixed_in_space
 
 MOST_DOTS = 1500  # of most pictures
 
@@ -335,9 +335,8 @@ def forbidden_axis(system: AbstractSystem) -> Float[np.ndarray, "3"] | None:
 
 def check_directions(where: str, value: Any, system: AbstractSystem, number: tuple[int, str], remedy: str) -> None:
     """Refuse a constraint fixed in space, and another number of admissible directions than a picture has."""
-    if system.is_spatial:
-        elsewhere = "Its momenta along the constraint are conserved: draw `overview` instead."
-        raise error(where, "have a left-invariant constraint", shown(value), elsewhere)
+    elsewhere = "Its momenta along the constraint are conserved: draw `overview` instead."
+    refuse_fixed_in_space(where, system, elsewhere, shown(value))
     if len(system.constraint_subspace) != number[0]:
         got = f"dimension {len(system.constraint_subspace)}"
         raise error(where, f"have a {number[1]}-dimensional constraint subspace", got, remedy)

@@ -459,3 +459,15 @@ def refuse_slip(where: str, system: Any) -> None:
 def _solve(matrix: Float[Array, "... k k"], vector: Float[Array, "... k"]) -> Float[Array, "... k"]:
     xp = (vector if is_traced(vector) else matrix).__array_namespace__()
     return xp.linalg.solve(xp.asarray(matrix), xp.asarray(vector)[..., None])[..., 0]
+def refuse_fixed_in_space(where: str, system: Any, remedy: str, got: str = "") -> None:
+    """Refuse a system whose constraint is fixed in space, where steps or momenta depend on the pose."""
+    if system.is_spatial:
+        raise error(where, "have a left-invariant constraint", got or type(system).__name__, remedy)
+
+
+def refuse_wide(where: str, system: Any, remedy: str = "Discretize `system.dense`.") -> None:
+    """Refuse a system that has its mass tensor without a matrix."""
+    if system.is_wide:
+        raise error(where, "have matrices", "a system without", remedy)
+
+
