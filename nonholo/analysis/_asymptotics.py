@@ -13,8 +13,7 @@ from nonholo.analysis._critical_energies import critical_energies
 from nonholo.analysis._equilibria import EquilibriumSpectrum, equilibria, highest_energy
 from nonholo.analysis._loci import single_valued_region
 from nonholo.analysis.planar import planar_map, planar_variety
-from nonholo.base.checks import choice, error, positive, shown
-from nonholo.base.limits import bounded_count
+from nonholo.base.checks import bounded_count, choice, error, positive, shown
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import OutcomeError
 from nonholo.base.types import Float

@@ -10,8 +10,8 @@ import numpy as np
 
 from nonholo.analysis import planar
 from nonholo.analysis.planar import HalfPlanes, Strip
-from nonholo.base.checks import array, count, error, number, positive, shape_of, shown, trailing
-from nonholo.base.limits import bounded_count, within_memory
+from nonholo.base import checks
+from nonholo.base.checks import array, bounded_count, count, error, number, positive, shape_of, shown, trailing
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, refuse_composition
 
@@ -96,7 +96,7 @@ def momentum_locus(discrete: Discretization, resolution: int = 80) -> MomentumLo
     """
     discrete, variety = planar.planar_map("momentum_locus(discrete=...)", discrete)
     rows = count("momentum_locus(resolution=...)", resolution, "Pass 2 or more.")
-    within_memory("momentum_locus(resolution=...)", 1000.0 * rows**2, "Pass a lower resolution.")
+    checks.within_memory("momentum_locus(resolution=...)", 1000.0 * rows**2, "Pass a lower resolution.")
     if rows < 2:
         raise error("momentum_locus(resolution=...)", "be at least 2", str(rows), "A mesh needs two rows.")
     parameters, points = variety.mesh(rows)

@@ -22,8 +22,7 @@ import jinja2
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from nonholo.base.checks import MissingExtraError, error, flags, instance, needs, number, printable, shown
-from nonholo.base.checks import path as checked_path
+from nonholo.base.checks import MissingExtraError, checked_path, error, flags, instance, needs, number, printable, shown
 from nonholo.base.compiled import library
 from nonholo.base.memo import Keeper
 from nonholo.base.results import Outcome

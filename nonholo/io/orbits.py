@@ -232,7 +232,7 @@ def save_orbit(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fals
         got, remedy = "one with impacts, which its events tell", "Run with store=..., which keeps them, or save a part."
         raise error("save_orbit(orbit=...)", "be an orbit whose events are not needed", got, remedy)
     checks.flags("save_orbit", overwrite=overwrite)
-    path = checks.path("save_orbit(path=...)", path)
+    path = checks.checked_path("save_orbit(path=...)", path)
     target = path.resolve()
     check_target(target, overwrite=overwrite)
     with new_beside(path) as part:
@@ -283,7 +283,7 @@ def load_orbit(path: str | Path, *, discrete: Any = None) -> Any:
     Example:
         >>> orbit = load_orbit("orbit.zarr")  # doctest: +SKIP
     """
-    return load_states(checks.path(WHERE, path), discrete)
+    return load_states(checks.checked_path(WHERE, path), discrete)
 
 
 def load_states(root: Path, discrete: Any, *, last: bool = False) -> Any:

@@ -59,7 +59,7 @@ def orbit_to_csv(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fa
     own: Any = orbit
     pose, heading = (own.canonical_pose, own.turned) if orbit.is_compact else (own.configuration, None)
     lines = _lines(orbit.system, [Stretch(orbit.time, np.asarray(pose), heading)], 1)
-    with new_file(checks.path("Orbit.to_csv(path=...)", path), overwrite=overwrite) as file:
+    with new_file(checks.checked_path("Orbit.to_csv(path=...)", path), overwrite=overwrite) as file:
         file.writelines(lines)
 
 
@@ -91,7 +91,7 @@ def store_to_csv(
     checks.flags("store_to_csv", overwrite=overwrite, progress=progress)
     from nonholo.io.orbits import open_poses  # loads zarr, which a CSV of an orbit does not need
 
-    poses = open_poses(checks.path("store_to_csv(store=...)", store))
+    poses = open_poses(checks.checked_path("store_to_csv(store=...)", store))
     for _ in poses.stretches():  # so that damage is found before the first row is used
         pass
     with new_file(target, overwrite=overwrite) as file, progress_bar("states", progress) as report:

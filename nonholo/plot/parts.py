@@ -16,8 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
-from nonholo.base.checks import error, instance, shown
-from nonholo.base.checks import path as checked_path
+from nonholo.base.checks import checked_path, error, instance, shown
 from nonholo.base.types import Float, Int
 from nonholo.discrete import Discretization
 from nonholo.io.places import check_file

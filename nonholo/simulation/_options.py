@@ -3,8 +3,7 @@
 import dataclasses
 from typing import Any
 
-from nonholo.base.checks import choice, error, flags, shown, step_counts
-from nonholo.base.limits import within_memory
+from nonholo.base.checks import choice, error, flags, shown, step_counts, within_memory
 from nonholo.discrete import (
     BranchRule,
     Discretization,

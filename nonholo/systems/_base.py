@@ -12,9 +12,8 @@ from typing import Any, ClassVar, TypeVar, cast
 
 import numpy as np
 
-from nonholo.base.checks import error, instance, is_traced, shape_of, trailing
+from nonholo.base.checks import error, instance, is_traced, shape_of, trailing, within_memory
 from nonholo.base.html import table
-from nonholo.base.limits import within_memory
 from nonholo.base.memo import Keeper, system_memo
 from nonholo.base.numerics import Factors, applied, factors_of, solve_by_factors
 from nonholo.base.types import Array, Bool, Float, Inexact

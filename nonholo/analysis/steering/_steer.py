@@ -9,8 +9,7 @@ import numpy as np
 
 from nonholo.analysis.steering import _arguments
 from nonholo.analysis.steering._arguments import BLOCK, Ends, Limits, StateBounds, Way
-from nonholo.base.checks import choice, count, error, flag, needs, refuse_given
-from nonholo.base.limits import within_memory
+from nonholo.base.checks import choice, count, error, flag, needs, refuse_given, within_memory
 from nonholo.base.memo import Keeper
 from nonholo.base.progress import interruptibly, progress_bar
 from nonholo.base.types import Array, Float

@@ -8,8 +8,7 @@ import numpy as np
 
 from nonholo.analysis.steering._arguments import check_names
 from nonholo.analysis.steering._shooting import linearize_steps
-from nonholo.base.checks import error
-from nonholo.base.limits import within_memory
+from nonholo.base.checks import error, within_memory
 from nonholo.base.types import Array
 from nonholo.discrete import Discretization, as_discretization
 from nonholo.discrete.definition import compile_double

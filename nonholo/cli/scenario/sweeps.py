@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import AliasChoices, Field, model_validator
 
 import nonholo
-from nonholo.base.limits import bounded_count
+from nonholo.base.checks import bounded_count
 from nonholo.cli.scenario import files
 from nonholo.cli.scenario.bodies import arguments, is_example
 from nonholo.cli.scenario.motion import AbstractScenario, Start, is_ready

@@ -20,9 +20,7 @@ from matplotlib.colors import to_rgba_array
 from matplotlib.figure import Figure
 from PIL import Image
 
-from nonholo.base.checks import count, error, function, positive, shown
-from nonholo.base.checks import path as checked_path
-from nonholo.base.limits import within_memory
+from nonholo.base.checks import checked_path, count, error, function, positive, shown, within_memory
 from nonholo.base.types import Float
 from nonholo.groups import SE, SO
 from nonholo.io.places import check_file, complete_file
