@@ -22,7 +22,7 @@ import jinja2
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from nonholo.base.checks import MissingExtraError, checked_path, error, flags, instance, needs, number, printable, shown
+from nonholo.base.checks import MissingExtraError, checked_path, error, flags, needs, number, printable, shown
 from nonholo.base.compiled import library
 from nonholo.base.memo import Keeper
 from nonholo.base.results import Outcome
@@ -32,7 +32,7 @@ from nonholo.explorer._replay import replay, spread
 from nonholo.groups import matrix_from_quaternion
 from nonholo.io.places import check_file, new_file
 from nonholo.kernels import FLAT_RUNS
-from nonholo.orbit import AbstractOrbit, Orbit
+from nonholo.orbit import AbstractOrbit, Orbit, any_orbit
 from nonholo.simulation import simulate
 from nonholo.systems import AbstractSystem, ChaplyginSleigh, Forced, Friction, Gravity, NormalForm, SuslovTop
 
@@ -138,7 +138,7 @@ def shown_motion(where: str, value: Any) -> Shown:
         value = discretize(cast(Any, value), _TIME_STEP)
     if isinstance(value, Discretization):
         return _of_discretization(where, value)
-    orbit = instance(where, value, AbstractOrbit, "be an orbit", "Pass what `simulate` or `flow` returned.")
+    orbit = any_orbit(where, value)
     if not orbit.has_poses or not len(orbit):
         got = "reconstruct=False" if len(orbit) else "no state"
         raise error(where, "have poses", got, "Run with reconstruct=True, from a start that has a real branch.")

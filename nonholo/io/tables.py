@@ -13,7 +13,7 @@ from nonholo.base import checks
 from nonholo.base.progress import progress_bar
 from nonholo.io.datasets import Stretch, column_names, coordinate_rows, rows_of
 from nonholo.io.places import check_file, new_file
-from nonholo.orbit import AbstractOrbit
+from nonholo.orbit import AbstractOrbit, any_orbit
 
 _NUMBERS = 1 << 16  # formatted at once
 
@@ -50,9 +50,7 @@ def orbit_to_csv(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fa
         >>> orbit_to_csv(orbit, "poses.csv")  # doctest: +SKIP
     """
     checks.flags("Orbit.to_csv", overwrite=overwrite)
-    checks.instance(
-        "orbit_to_csv(orbit=...)", orbit, AbstractOrbit, "be an orbit", "Pass what `simulate` or `flow` returned."
-    )
+    any_orbit("orbit_to_csv(orbit=...)", orbit)
     if not orbit.has_poses:
         remedy = "Run with reconstruct=True."
         raise checks.error("Orbit.to_csv(...)", "be called on an orbit with poses", "reconstruct=False", remedy)

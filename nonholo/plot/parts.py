@@ -16,11 +16,11 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
-from nonholo.base.checks import checked_path, error, instance, shown
+from nonholo.base.checks import checked_path, error, shown
 from nonholo.base.types import Float, Int
 from nonholo.discrete import Discretization
 from nonholo.io.places import check_file
-from nonholo.orbit import AbstractOrbit, Orbit, as_orbit
+from nonholo.orbit import AbstractOrbit, Orbit, any_orbit, as_orbit
 from nonholo.plot import theme
 from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, System, refuse_fixed_in_space
 
@@ -287,8 +287,7 @@ def drawable(where: str, orbit: Any) -> Orbit:
 
 def drawable_in_time(where: str, orbit: Any) -> Any:
     """Return an orbit of any kind with at least one state; a flow that knows those between with enough for a curve."""
-    remedy = "Pass what `simulate` or `flow` returned."
-    if len(instance(where, orbit, AbstractOrbit, "be an orbit", remedy)) == 0:
+    if len(any_orbit(where, orbit)) == 0:
         raise error(where, "have a state to draw", "none", "`orbit.outcome` has the reason.")
     if orbit.span is None or not 1 < len(orbit) < _SMOOTH:
         return orbit

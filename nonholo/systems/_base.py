@@ -234,6 +234,14 @@ class AbstractSystem(Keeper, abc.ABC):
         """
         return configuration @ displacement
 
+    def constraint_poses(self, states: Any) -> Poses | None:
+        """Return the poses of states where the constraint is fixed in space, and so turns in the body; else None."""
+        return None
+
+    def in_body(self, displacement: Array, configuration: Poses | None) -> Array:
+        r"""Return a displacement D as the body sees it: D, or $g^{-1}Dg$ where the constraint is fixed in space."""
+        return displacement
+
     def restrict_at(self, momentum: Covectors, configuration: Poses | None = None) -> Inexact[Array, "... k"]:
         r"""Return the components of a body momentum along the constraint of a body at a configuration.
 
@@ -415,6 +423,14 @@ class AbstractLRSystem(AbstractSystem):
     def moved(self, configuration: Poses, displacement: Array) -> Poses:
         """Return W g of a displacement in space."""
         return displacement @ configuration
+
+    def constraint_poses(self, states: Any) -> Poses:
+        """Return the poses of states."""
+        return states.configuration
+
+    def in_body(self, displacement: Array, configuration: Poses) -> Array:
+        r"""Return $g^{-1}Dg$."""
+        return self.group.inverse(configuration) @ displacement @ configuration
 
     def restrict_at(self, momentum: Covectors, configuration: Poses | None = None) -> Inexact[Array, "... k"]:
         """Return the components of the spatial momentum along the constraint subspace (`restrict_in_space`)."""
