@@ -296,7 +296,7 @@ def drawable_in_time(where: str, orbit: Any) -> Any:
     return orbit.at(times if more[-1] > more[0] else times[::-1])
 
 
-def with_poses(where: str, orbit: Any) -> Orbit:
+def orbit_with_poses(where: str, orbit: Any) -> Orbit:
     """Return the same of an orbit with poses."""
     orbit = drawable(where, orbit)
     if orbit.canonical_pose is None:
@@ -313,7 +313,7 @@ def same_space(where: str, flow: Any, orbit: AbstractOrbit, remedy: str) -> Any:
 
 def same_group(where: str, orbit: Any, other: Orbit) -> Orbit | None:
     """Return the same of an orbit, if there is one, that moves on the same group as the orbit it is drawn beside."""
-    if orbit is not None and (orbit := with_poses(where, orbit)).system.group != other.system.group:
+    if orbit is not None and (orbit := orbit_with_poses(where, orbit)).system.group != other.system.group:
         raise error(where, f"move on {other.system.group}", f"{orbit.system.group}", "Pass a motion of the same body.")
     return orbit
 
