@@ -280,10 +280,10 @@ def _integer(where: str, value: Any, bounds: tuple[int, int], requirement: str, 
     return number
 
 
-def step_counts(steps: Any, save_every: Any) -> tuple[int, int]:
+def step_counts(owner: str, steps: Any, save_every: Any) -> tuple[int, int]:
     """Return the numbers of steps of a run, in total and between saved states."""
-    steps = count("simulate(steps=...)", steps, "Pass the number of steps.")
-    return steps, count("simulate(save_every=...)", save_every, "Pass the number of steps between saved states.")
+    steps = count(f"{owner}(steps=...)", steps, "Pass the number of steps.")
+    return steps, count(f"{owner}(save_every=...)", save_every, "Pass the number of steps between saved states.")
 
 
 def choice(where: str, value: Any, choices: tuple[Any, ...], remedy: str = "Choose one of them.") -> Any:
