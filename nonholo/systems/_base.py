@@ -167,11 +167,11 @@ class AbstractSystem(Keeper, abc.ABC):
     def forces(self) -> Any:
         """The system itself where a potential or a force acts on it (`Forced`); None of a free one."""
         return None
+
     @property
     def inside(self) -> "AbstractSystem":
         """The body on which forces act: a `Forced` has it inside; the system itself where there are none."""
         return self
-
 
     @property
     def is_wide(self) -> bool:
@@ -464,16 +464,6 @@ def refuse_forces(where: str, system: Any) -> None:
         raise error(where, "be a system without forces", "Forced", remedy)
 
 
-def refuse_slip(where: str, system: Any) -> None:
-    """Refuse rows of a constraint that may yield, which steps of the discrete map alone decide."""
-    if system.forces is not None and system.forces.slips:
-        remedy = "Run it by `simulate`, `iterate`, `ensemble` or `flow`, or leave the slip out."
-        raise error(where, "have a constraint that never yields", "Slip", remedy)
-
-
-def _solve(matrix: Float[Array, "... k k"], vector: Float[Array, "... k"]) -> Float[Array, "... k"]:
-    xp = (vector if is_traced(vector) else matrix).__array_namespace__()
-    return xp.linalg.solve(xp.asarray(matrix), xp.asarray(vector)[..., None])[..., 0]
 def refuse_fixed_in_space(where: str, system: Any, remedy: str, got: str = "") -> None:
     """Refuse a system whose constraint is fixed in space, where steps or momenta depend on the pose."""
     if system.is_spatial:
@@ -486,3 +476,13 @@ def refuse_wide(where: str, system: Any, remedy: str = "Discretize `system.dense
         raise error(where, "have matrices", "a system without", remedy)
 
 
+def refuse_slip(where: str, system: Any) -> None:
+    """Refuse rows of a constraint that may yield, which steps of the discrete map alone decide."""
+    if system.forces is not None and system.forces.slips:
+        remedy = "Run it by `simulate`, `iterate`, `ensemble` or `flow`, or leave the slip out."
+        raise error(where, "have a constraint that never yields", "Slip", remedy)
+
+
+def _solve(matrix: Float[Array, "... k k"], vector: Float[Array, "... k"]) -> Float[Array, "... k"]:
+    xp = (vector if is_traced(vector) else matrix).__array_namespace__()
+    return xp.linalg.solve(xp.asarray(matrix), xp.asarray(vector)[..., None])[..., 0]

@@ -370,11 +370,8 @@ def _growth(s: SystemSamples) -> float:
 def _growth_beside(s: SystemSamples, family: Equilibria) -> float:
     velocity = np.asarray(family.attracting)
     w = velocity @ np.linalg.pinv(s.S)
-
-    def nearby(t: float) -> np.ndarray:
-        return _rate_at(s, (w + t * np.eye(len(w))) @ s.S)
-
-    rates = np.sort(np.linalg.eigvals(derivative(nearby, 0.1).T).real)
+    slope = derivative(lambda t: _rate_at(s, (w + t * np.eye(len(w))) @ s.S), 0.1)
+    rates = np.sort(np.linalg.eigvals(slope.T).real)
     across = len(w) - len(family.subspace)
     return float(rates[across - 1] / np.linalg.norm(velocity))
 
