@@ -374,7 +374,7 @@ def checked_path(where: str, value: Any) -> Path:
     """Return a path that a file system can have.
 
     Example:
-        >>> path("load_orbit(path=...)", 5)
+        >>> checked_path("load_orbit(path=...)", 5)
         Traceback (most recent call last):
         ...
         ValueError: `load_orbit(path=...)` must be a path. Got 5. Pass a text or a pathlib.Path.
