@@ -13,8 +13,7 @@ from nonholo.analysis._critical_energies import critical_energies
 from nonholo.analysis._equilibria import EquilibriumSpectrum, equilibria, highest_energy
 from nonholo.analysis._loci import single_valued_region
 from nonholo.analysis.planar import planar_map, planar_variety
-from nonholo.base.checks import choice, error, positive, shown
-from nonholo.base.limits import bounded_count
+from nonholo.base.checks import bounded_count, choice, error, positive, shown
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import OutcomeError, result
 from nonholo.base.types import Float
@@ -72,7 +71,7 @@ def kept_velocity(orbit: Orbit) -> tuple[Float[np.ndarray, "dim"], float]:
     return constant, float(orbit.energy[0]) - float(own)
 
 
-def follow(orbit: Orbit, limits: Approach, where: str = "asymptotics(subject=...)") -> Ends:
+def both_ends(orbit: Orbit, limits: Approach, where: str = "asymptotics(subject=...)") -> Ends:
     """Follow an orbit, from the identity if it has no poses, to both ends; refuse in the name of `where`.
 
     The first orbit runs backwards, against time, from one step after the first state on.
@@ -197,10 +196,15 @@ def _of_system(system: AbstractLLSystem, form: NormalForm) -> Asymptotics:
     attracting = system.equilibria().attracting
     if attracting is None:
         return Asymptotics()
-    if form.is_sleigh and form.is_planar:
+    if _turns_once(form):
         turn = float(turn_of_flow(form.mass, form.stiffness[0, 0], form.arm))
         return Asymptotics(heading_turn=turn, motion_turn=turn - np.pi)
     return Asymptotics(axis_before=_axis(form, -attracting), axis_after=_axis(form, attracting))
+
+
+def _turns_once(form: NormalForm) -> bool:
+    """Return whether a body in the plane has a center of mass before or behind its blade, so that its turn ends."""
+    return form.is_planar and form.arm != 0
 
 
 def _axis(form: NormalForm, velocity: Float[np.ndarray, "dim"]) -> Float[np.ndarray, "3"] | None:
@@ -218,7 +222,7 @@ def _of_orbit(form: NormalForm, orbit: Orbit) -> Asymptotics:
     change = np.zeros_like(limits.constant) if limits.spectrum.velocity is None else limits.spectrum.velocity
     persists = _known_to_persist(form, orbit, limits.energy)
     before, after = limits.constant - change, limits.constant + change
-    if form.is_sleigh and form.is_planar:
+    if _turns_once(form):
         turn = _heading_turn(form, orbit, limits)
         forwards = None if turn is None else turn - float(np.copysign(np.pi, velocity[0]))
         return Asymptotics(before, after, heading_turn=turn, motion_turn=forwards, persists=persists)
@@ -239,8 +243,7 @@ def _resting(form: NormalForm, orbit: Orbit, velocity: Float[np.ndarray, "dim"])
     """Return the limits of a motion with constant velocity: the heading of a balanced sleigh turns forever."""
     axis = _axis(form, velocity)
     in_space = None if axis is None or orbit.canonical_pose is None else orbit.configuration[0] @ axis
-    straight = form.is_sleigh and form.is_planar and form.arm != 0
-    turn = 0.0 if straight else None
+    turn = 0.0 if _turns_once(form) else None
     return Asymptotics(velocity, velocity, axis, axis, in_space, in_space, turn, turn)
 
 
@@ -266,7 +269,7 @@ def _known_to_persist(form: NormalForm, orbit: Orbit, energy: float) -> bool:
 def _ends(orbit: Orbit, limits: Approach) -> Ends | None:
     """Return both ends of an orbit; None where its principal branch ends, or is not the one that the orbit took."""
     try:
-        ends = follow(orbit, limits)
+        ends = both_ends(orbit, limits)
     except OutcomeError:
         return None
     return ends if orbit.branch == "principal" or _is_start_of(ends[1], orbit) else None
@@ -362,7 +365,7 @@ def both_ways(where: str, point: Orbit) -> Orbit:
     limits = approach(point)
     if limits is None:
         raise error(where, "start off the equilibria", "a constant velocity", "Start beside it.")
-    past, future = follow(point, limits, where)
+    past, future = both_ends(point, limits, where)
     earlier, later = slice(-2, 0, -1), slice(-1, 1, -1)
     h = float(future.time[1] - future.time[0])
     return dataclasses.replace(

@@ -21,7 +21,7 @@ from nonholo.discrete.definition import compile_double
 from nonholo.lagrange_dalembert import CoordinateFlow, tangents
 from nonholo.simulation import refuse_many_matrices, simulate
 from nonholo.simulation.traced import rollout
-from nonholo.systems import AbstractCoordinateSystem, Start, refuse_slip
+from nonholo.systems import AbstractCoordinateSystem, Start, refuse_slip, refuse_wide
 
 _TIMES = np.array([0.0, 0.3719, 0.9173])  # not in a ratio that a rotation may have
 _OTHERS, _SPREAD = 3, 0.3
@@ -104,8 +104,7 @@ def along_flow(orbit: Any) -> Float[np.ndarray, "L d d"]:
 
 
 def _refuse(where: str, system: Any) -> None:
-    if system.is_wide:
-        raise error(where, "have matrices", "a system without", "Linearize `system.dense`.")
+    refuse_wide(where, system, "Linearize `system.dense`.")
     refuse_slip(where, system)
     if system.forces is not None and system.forces.table is not None:
         got, remedy = "one force for each step", "Linearize it without the table."

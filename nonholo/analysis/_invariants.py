@@ -12,7 +12,7 @@ from nonholo.base.results import Outcome, result
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, reversal_defects
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.orbit import AbstractOrbit, Orbit
+from nonholo.orbit import AbstractOrbit, Orbit, any_orbit
 from nonholo.systems import AbstractSystem, NormalForm, gyroscopic_form, null_space, refuse_forces, row_space
 
 _SAMPLED = 100_000  # states on which the matrix residuals are measured, spread evenly; the energy uses all
@@ -68,8 +68,7 @@ def invariants(orbit: AbstractOrbit) -> Invariants:
         >>> invariants(orbit).energy_drift < 1e-14
         True
     """
-    where, remedy = "invariants(orbit=...)", "Pass what `simulate` or `flow` returned."
-    if len(instance(where, orbit, AbstractOrbit, "be an orbit", remedy)) == 0:
+    if len(any_orbit(where := "invariants(orbit=...)", orbit)) == 0:
         raise error(where, "have at least one state", str(orbit), "Its outcome gives the reason.")
     driven = orbit.system.forces is not None if isinstance(orbit, Orbit) else orbit.system.is_driven
     work = orbit.known_work
@@ -286,8 +285,7 @@ def lyapunov_exponents(orbit: AbstractOrbit) -> Float[np.ndarray, "k"]:
         >>> nh.lyapunov_exponents(nh.simulate(sleigh, restricted_velocity=(0.0, 1.0), steps=200)).round(3) + 0.0
         array([ 0. , -0.4])
     """
-    remedy = "Pass what `simulate` or `flow` returned."
-    steps = instance("lyapunov_exponents(orbit=...)", orbit, AbstractOrbit, "be an orbit", remedy).tangent
+    steps = any_orbit("lyapunov_exponents(orbit=...)", orbit).tangent
     if not len(steps):
         raise error("lyapunov_exponents(orbit=...)", "have a step", "one state", "Run longer.")
     frame, growth = np.eye(steps.shape[-1]), np.zeros(steps.shape[-1])

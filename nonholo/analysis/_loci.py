@@ -9,8 +9,8 @@ import numpy as np
 
 from nonholo.analysis import planar
 from nonholo.analysis.planar import HalfPlanes, Strip
-from nonholo.base.checks import array, count, error, number, positive, shape_of, shown, trailing
-from nonholo.base.limits import bounded_count, within_memory
+from nonholo.base import checks
+from nonholo.base.checks import array, bounded_count, count, error, number, positive, shape_of, shown, trailing
 from nonholo.base.results import result
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, refuse_composition
@@ -96,7 +96,7 @@ def momentum_locus(discrete: Discretization, resolution: int = 80) -> MomentumLo
     """
     discrete, variety = planar.planar_map("momentum_locus(discrete=...)", discrete)
     rows = count("momentum_locus(resolution=...)", resolution, "Pass 2 or more.")
-    within_memory("momentum_locus(resolution=...)", 1000.0 * rows**2, "Pass a lower resolution.")
+    checks.within_memory("momentum_locus(resolution=...)", 1000.0 * rows**2, "Pass a lower resolution.")
     if rows < 2:
         raise error("momentum_locus(resolution=...)", "be at least 2", str(rows), "A mesh needs two rows.")
     parameters, points = variety.mesh(rows)
@@ -306,7 +306,7 @@ def deltoid(discrete: Discretization) -> Deltoid:
         [3, 1]
     """
     discrete, variety = planar.planar_map("deltoid(discrete=...)", discrete)
-    if not variety.form.is_sleigh:
+    if variety.blade is None:
         raise error("deltoid(discrete=...)", "be of a sleigh", shown(discrete.system), "Tops have no deltoid.")
     if variety.form.arm == 0:
         remedy = "A balanced sleigh has two real values if h |pi| < J, none beyond."

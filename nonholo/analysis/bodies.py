@@ -1,6 +1,6 @@
 """Bodies as pictures, films and pages show them: an elliptic plate with its blade in the plane, a box in space."""
 
-from typing import Any, NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,8 +17,8 @@ _NORMALS = np.concatenate([np.eye(3), -np.eye(3)])
 
 def blade_axes(system: System) -> Float[np.ndarray, "3 3"] | None:
     """Return the axes of the blade of a sleigh in the plane, at its contact point; None for other systems."""
-    variety: Any = planar_variety(cast(Any, system).system if system.is_forced else system)
-    return variety.blade if variety is not None and variety.form.is_sleigh else None
+    variety = planar_variety(system.inside)
+    return None if variety is None else variety.blade
 
 
 def plate(system: System) -> list[Float[np.ndarray, "P 2"]]:

@@ -10,6 +10,7 @@ import math
 import numbers
 import os
 import re
+import shutil
 import sys
 from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
@@ -17,6 +18,7 @@ from typing import Any, TypeAlias, TypeVar, cast
 
 import numpy as np
 
+from nonholo.base import limits
 from nonholo.base.types import Array
 
 Kind = TypeVar("Kind")
@@ -278,10 +280,10 @@ def _integer(where: str, value: Any, bounds: tuple[int, int], requirement: str, 
     return number
 
 
-def step_counts(steps: Any, save_every: Any) -> tuple[int, int]:
+def step_counts(owner: str, steps: Any, save_every: Any) -> tuple[int, int]:
     """Return the numbers of steps of a run, in total and between saved states."""
-    steps = count("simulate(steps=...)", steps, "Pass the number of steps.")
-    return steps, count("simulate(save_every=...)", save_every, "Pass the number of steps between saved states.")
+    steps = count(f"{owner}(steps=...)", steps, "Pass the number of steps.")
+    return steps, count(f"{owner}(save_every=...)", save_every, "Pass the number of steps between saved states.")
 
 
 def choice(where: str, value: Any, choices: tuple[Any, ...], remedy: str = "Choose one of them.") -> Any:
@@ -335,7 +337,7 @@ def is_name(value: Any) -> bool:
     return fits and value.isidentifier() and not value.startswith("_")
 
 
-def name(where: str, value: Any, others: Collection[str] = ()) -> str:
+def checked_name(where: str, value: Any, others: Collection[str] = ()) -> str:
     """Return a name (`is_name`), refused if it is a reserved one."""
     if not is_name(value) or value in others:
         remedy = f"Rename it; taken: {', '.join(sorted(others))}." if others else "Rename it."
@@ -368,11 +370,11 @@ def flags(owner: str, **values: Any) -> None:
             flag(f"{owner}({name}=...)", value)
 
 
-def path(where: str, value: Any) -> Path:
+def checked_path(where: str, value: Any) -> Path:
     """Return a path that a file system can have.
 
     Example:
-        >>> path("load_orbit(path=...)", 5)
+        >>> checked_path("load_orbit(path=...)", 5)
         Traceback (most recent call last):
         ...
         ValueError: `load_orbit(path=...)` must be a path. Got 5. Pass a text or a pathlib.Path.
@@ -460,7 +462,7 @@ def positive_definite(where: str, matrix: Array, what: str, remedy: str) -> None
         raise error(where, f"make {what} positive definite", got, remedy)
 
 
-def energies(where: str, value: Any) -> Array:
+def checked_energies(where: str, value: Any) -> Array:
     """Return positive energies, at least one."""
     remedy = "Pass a list of positive energies."
     levels = array(where, value, (None,), remedy)
@@ -490,6 +492,35 @@ def flow_tolerances(rtol: Any, atol: Any) -> tuple[float, float]:
     if relative < _LEAST_RTOL:
         raise error("flow(rtol=...)", "be at least 1e-14", f"{relative:g}", "Rounding errors are as large as that.")
     return relative, float(positive("flow(atol=...)", atol, "Pass a positive absolute error."))
+
+
+def within_memory(where: str, size: float, remedy: str) -> None:
+    """Refuse what needs more bytes than this process can have.
+
+    Example:
+        >>> within_memory("f(n=...)", 1e30, "Pass a smaller n.")
+        Traceback (most recent call last):
+        ...
+        ValueError: `f(n=...)` must fit into memory. Got about 1e+12 EB of ... GB. Pass a smaller n.
+    """
+    if size > (limit := limits.memory_limit()):
+        raise error(where, "fit into memory", f"about {limits.size_text(size)} of {limits.size_text(limit)}", remedy)
+
+
+def within_disk(where: str, size: float, folder: Path, remedy: str) -> None:
+    """Refuse what needs more bytes than are free on the disk of a folder, or of the one that it would be made in."""
+    there = next(path for path in (folder.absolute(), *folder.absolute().parents) if path.exists())
+    if size > (free := shutil.disk_usage(there).free):
+        need, rest = limits.size_text(size), limits.size_text(free)
+        got = f"about {need} before compression, of which {rest} are free in '{there}'"
+        raise error(where, "fit on the disk", got, remedy)
+
+
+def bounded_count(where: str, value: Any, each: float, remedy: str) -> int:
+    """Return a positive integer, refused if this many things of `each` bytes do not fit into memory."""
+    number = count(where, value, remedy)
+    within_memory(where, number * each, remedy)
+    return number
 
 
 class MissingExtraError(ModuleNotFoundError, ValueError):

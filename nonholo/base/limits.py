@@ -1,29 +1,12 @@
-"""Limits, refused before any work: more memory or disk than there is."""
+"""How much there is: memory of this process, text in a file; and sizes in words."""
 
 import functools
 import math
 import os
-import shutil
 from pathlib import Path
-from typing import Any
-
-from nonholo.base.checks import count, error
 
 _UNITS = ("B", "kB", "MB", "GB", "TB", "PB", "EB")
 _LARGEST_TEXT = 1 << 22  # bytes of a file: a mass tensor of some hundred dimensions fits
-
-
-def within_memory(where: str, size: float, remedy: str) -> None:
-    """Refuse what needs more bytes than this process can have.
-
-    Example:
-        >>> within_memory("f(n=...)", 1e30, "Pass a smaller n.")
-        Traceback (most recent call last):
-        ...
-        ValueError: `f(n=...)` must fit into memory. Got about 1e+12 EB of ... GB. Pass a smaller n.
-    """
-    if size > (limit := memory_limit()):
-        raise error(where, "fit into memory", f"about {size_text(size)} of {size_text(limit)}", remedy)
 
 
 def read_text(path: Path, largest: int = _LARGEST_TEXT) -> str:
@@ -35,21 +18,6 @@ def read_text(path: Path, largest: int = _LARGEST_TEXT) -> str:
     if len(content) > largest:
         raise OSError(f"it has more than {size_text(largest)}")
     return content.decode("utf-8-sig")
-
-
-def within_disk(where: str, size: float, folder: Path, remedy: str) -> None:
-    """Refuse what needs more bytes than are free on the disk of a folder, or of the one that it would be made in."""
-    there = next(path for path in (folder.absolute(), *folder.absolute().parents) if path.exists())
-    if size > (free := shutil.disk_usage(there).free):
-        got = f"about {size_text(size)} before compression, of which {size_text(free)} are free in '{there}'"
-        raise error(where, "fit on the disk", got, remedy)
-
-
-def bounded_count(where: str, value: Any, each: float, remedy: str) -> int:
-    """Return a positive integer, refused if this many things of `each` bytes do not fit into memory."""
-    number = count(where, value, remedy)
-    within_memory(where, number * each, remedy)
-    return number
 
 
 def size_text(size: float) -> str:

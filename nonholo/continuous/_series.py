@@ -174,7 +174,7 @@ def by_series(system: AbstractSystem, problem: Problem) -> Solved:
     return solve(system.group, f, head, len(reduced_momentum), constant, unit, problem)
 
 
-def is_compact(group: AbstractMatrixGroup) -> bool:
+def has_compact_rates(group: AbstractMatrixGroup) -> bool:
     """Return whether poses are integrated as compact ones where the constraint is fixed in the body."""
     return group.pose_size <= _COMPACT
 
@@ -196,7 +196,7 @@ def solve(
 ) -> Solved:
     """Solve equations from a head and a pose, in up to as many steps; see `Series` for the others."""
     _, pose, elapsed, tolerances = problem
-    compact, tolerance = is_compact(group) and not len(f.forms), tolerances[0] * GUARD
+    compact, tolerance = has_compact_rates(group) and not len(f.forms), tolerances[0] * GUARD
     g = pose if compact else group.matrix_from_pose(pose).ravel()
     columns, nodes = solve_series(f, (g, first_heading(group, pose), head), elapsed * unit, tolerance, most)
     series = Series(group, f, len(head), rank, compact, constant, unit, tolerance, float(elapsed[-1]), nodes)
@@ -229,7 +229,7 @@ def body_equations(
     group: AbstractMatrixGroup, S: np.ndarray, velocities: np.ndarray, torques: np.ndarray, parts: Sequence[int] = ()
 ) -> Quadratic:
     """Return equations of momenta with rates torques[a, b] w_a w_b, w = V r, and of a pose that moves along rows S."""
-    rates = _compact_rates(group, S) if is_compact(group) else _matrix_rates(group.hat(S), False)
+    rates = _compact_rates(group, S) if has_compact_rates(group) else _matrix_rates(group.hat(S), False)
     if group == PLANE:
         rates = rates._replace(lone=np.concatenate([rates.lone, S[:, :1]], axis=1))
     return assemble(velocities, rates, torques, parts)

@@ -28,7 +28,7 @@ def has_series(system: AbstractSystem, span: float) -> bool:
         [True, False]
     """
     is_linear = system.forces is None or has_series_under(system.forces, span)
-    return not system.is_spatial and _series.is_compact(system.group) and is_linear
+    return not system.is_spatial and _series.has_compact_rates(system.group) and is_linear
 
 
 def _equations(

@@ -51,13 +51,11 @@ class MeasuredMotion(AbstractMotion):
 
     def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
         """Return the discrete momenta at the displacements, with the default difference of the system."""
-        return self.momenta(states.canonical_chart, states.configuration if self.system.is_spatial else None)
+        return self.momenta(states.canonical_chart, self.system.constraint_poses(states))
 
     def momenta(self, chart: Float[np.ndarray, "K m"], g: Float[np.ndarray, "K N N"] | None) -> np.ndarray:
         """Return the momenta at which displacements from poses set out; the poses count where U is given, not W."""
-        group, X = self.system.group, self._increments(chart)
-        if g is not None and self.system.is_spatial:
-            X = group.inverse(g) @ X @ g
+        X = self.system.in_body(self._increments(chart), g)
         return legendre(discretize(self.system, 1.0), X, "left") / chart[:, -1:]
 
     def multipliers(self, states: Orbit) -> Float[np.ndarray, "L s"]:

@@ -14,6 +14,7 @@ from nonholo.discrete import branching, definition
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._scheme import legendre
 from nonholo.discrete.routes import ScalarRoute, ScalarStep
+from nonholo.systems import refuse_fixed_in_space
 
 
 class StepResult(NamedTuple):
@@ -65,9 +66,8 @@ def step(discrete: Discretization, momentum: Any, branch: branching.BranchRule =
         (array([0., 1., 0.]), 0)
     """
     as_discretization("step(discrete=...)", discrete)
-    if discrete.system.is_spatial:
-        got = f"{type(discrete.system).__name__}, whose step depends on the configuration"
-        raise error("step(discrete=...)", "have a left-invariant constraint", got, "Use simulate(..., steps=1).")
+    got = f"{type(discrete.system).__name__}, whose step depends on the configuration"
+    refuse_fixed_in_space("step(discrete=...)", discrete.system, "Use simulate(..., steps=1).", got)
     k, dim = discrete.system.constraint_subspace.shape
     size = k if shape_of(momentum) == (k,) else dim
     where = "step(momentum=...)"

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from nonholo import io
-from nonholo.base.checks import array, choice, count, error, flags, number, path, refuse_former_names, scale, seed, text
+from nonholo.base import checks
+from nonholo.base.checks import array, choice, count, error, flags, number, refuse_former_names, scale, seed, text
 from nonholo.ensembles._names import function_name
 from nonholo.ensembles._sweep import sweep
 from nonholo.ensembles.datasets import DEFINITIONS, SPLITS, DatasetTask, card, family_of, record_of, write_tables
@@ -118,7 +119,7 @@ def _ends(split: Any, orbits: int) -> tuple[int, ...]:
 
 def _checked_folder(folder: Any) -> Path:
     """Return a folder that is new, or that of a call that was stopped."""
-    target = path("dataset(folder=...)", folder)
+    target = checks.checked_path("dataset(folder=...)", folder)
     is_partial = (target / STORE / "zarr.json").exists() and not (target / METADATA).exists()
     is_empty = target.is_dir() and all(each.name.startswith(".") for each in target.iterdir())  # left by a killed call
     if target.exists() and not (is_partial or is_empty):

@@ -174,8 +174,7 @@ class EnsembleTask:
     @property
     def _fields(self) -> list[str]:
         """The parameters in which members may differ."""
-        system: Any = self.discrete.system
-        return [*(system.system if system.is_forced else system).leaves, "inertia_operator", "time_step"]
+        return [*self.discrete.system.inside.leaves, "inertia_operator", "time_step"]
 
     def describe(self) -> dict[str, Any]:
         """Return the task as plain data."""

@@ -10,8 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from nonholo.base.checks import error, shown
-from nonholo.base.checks import name as checked_name
+from nonholo.base.checks import checked_name, error, shown
 from nonholo.io.metadata import TAKEN
 from nonholo.systems import Forced, force_of
 

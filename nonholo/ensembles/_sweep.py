@@ -15,8 +15,7 @@ import numpy as np
 import xarray
 
 from nonholo import io, simulation
-from nonholo.base.checks import count, error, flags, path, shown
-from nonholo.base.limits import within_disk, within_memory
+from nonholo.base.checks import checked_path, count, error, flags, shown, within_disk, within_memory
 from nonholo.base.progress import progress_bar
 from nonholo.ensembles import stores
 from nonholo.ensembles._ensemble_task import RULE, EnsembleTask, ensemble_task_from
@@ -90,7 +89,7 @@ def sweep(
     """
     name, workers = checked_scheduler(scheduler, workers)
     flags("sweep", resume=resume, progress=progress)
-    store = path("sweep(store=...)", store)
+    store = checked_path("sweep(store=...)", store)
     _check_task(task, design)
     if resume and store.exists():
         sweep_store = open_store(store)
@@ -115,7 +114,7 @@ def load_sweep(store: str | Path) -> xarray.Dataset:
         >>> result = nh.load_sweep("sweep.zarr")  # doctest: +SKIP
     """
     where = "load_sweep(store=...)"
-    sweep_store = open_store(path(where, store))
+    sweep_store = open_store(checked_path(where, store))
     if not sweep_store.is_finished:
         got, remedy = f"'{store}', at {standing_of(store)}", f"Resume with nonholo.resume('{store}')."
         raise error(where, "be a finished sweep", got, remedy)
@@ -173,7 +172,7 @@ def resume(
         >>> orbit = nh.resume("run.zarr")  # doctest: +SKIP
     """
     flags("resume", trust=trust, throw=throw, progress=progress)
-    store = path("resume(store=...)", store)
+    store = checked_path("resume(store=...)", store)
     kind = io.places.format_of(store)
     if kind is None and store.exists():
         got, remedy = f"'{store}', whose zarr.json does not record it", "Check the path, or run it again."
@@ -376,7 +375,7 @@ def sweep_to_csv(store: str | Path, target: str | Path | TextIO, *, overwrite: b
     Example:
         >>> sweep_to_csv("sweep.zarr", "poses.csv")  # doctest: +SKIP
     """
-    sweep_store = open_store(path(_CSV, store))
+    sweep_store = open_store(checked_path(_CSV, store))
     task = _task_with_poses(sweep_store)
     io.places.check_file(target, overwrite=overwrite)
     blocks = [block for block, _ in sweep_store.marks() if block < sweep_store.layout.blocks]

@@ -15,8 +15,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from nonholo import io
-from nonholo.base.checks import error, shown
-from nonholo.base.limits import within_disk
+from nonholo.base.checks import error, shown, within_disk
 from nonholo.discrete import discretize
 from nonholo.ensembles._names import NO_NAME, OUTCOME, function_from, is_own
 from nonholo.ensembles.designs import MemberBlock

@@ -13,9 +13,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from nonholo.base.checks import count, error, natural, refuse_former_names, seed, shown, text
-from nonholo.base.checks import name as checked_name
-from nonholo.base.limits import bounded_count
+from nonholo.base import checks
+from nonholo.base.checks import bounded_count, checked_name, count, error, natural, refuse_former_names, shown, text
 from nonholo.base.types import Float
 from nonholo.ensembles._names import OUTCOME, component_name
 from nonholo.ensembles.distributions import DISTRIBUTIONS, AbstractDistribution, checked_list
@@ -102,7 +101,7 @@ class Grid(AbstractDesign):
         if len(sizes) < len(axes_by_name):
             requirement = "have other names than its vectors and matrices"
             raise error("Grid(axes=...)", requirement, ", ".join(axes_by_name), "Rename one.")
-        vars(self).update(axes=axes_by_name, sizes=sizes, drawn={}, seed=seed("Grid(rng=...)", rng))
+        vars(self).update(axes=axes_by_name, sizes=sizes, drawn={}, seed=checks.seed("Grid(rng=...)", rng))
 
     def __repr__(self) -> str:
         sizes = " x ".join(f"{size} {name}" for name, size in self.sizes.items())
@@ -147,7 +146,7 @@ class RandomDesign(AbstractDesign):
         own = {name: distributions[name_given] for name, name_given in names.items()}
         sizes = {"member": count("RandomDesign(members=...)", members, "Pass how many.")}
         shapes = {name: value.shape for name, value in own.items()}
-        number = seed("RandomDesign(rng=...)", rng)
+        number = checks.seed("RandomDesign(rng=...)", rng)
         vars(self).update(distributions=own, sizes=sizes, drawn=shapes, axes={}, seed=number)
 
     def __repr__(self) -> str:

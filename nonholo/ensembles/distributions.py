@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import scipy  # its parts load on first use
 
-from nonholo.base.checks import array, count, error, number, positive, shape_of, trailing
-from nonholo.base.limits import bounded_count, within_memory
+from nonholo.base.checks import array, bounded_count, count, error, number, positive, shape_of, trailing, within_memory
 from nonholo.base.types import Float
 
 _LEAST = 2.0**-54  # instead of a uniform number zero, where its logarithm is needed

@@ -5,7 +5,7 @@ import functools
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.limits import bounded_count
+from nonholo.base.checks import bounded_count
 from nonholo.base.types import Array
 from nonholo.examples._example import Example, Numbers, rate, ready, system_in, with_numbers
 from nonholo.lagrange_dalembert import LagrangeDAlembert

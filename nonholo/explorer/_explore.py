@@ -22,8 +22,7 @@ import jinja2
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from nonholo.base.checks import MissingExtraError, error, flags, instance, needs, number, printable, shown
-from nonholo.base.checks import path as checked_path
+from nonholo.base.checks import MissingExtraError, checked_path, error, flags, needs, number, printable, shown
 from nonholo.base.compiled import library
 from nonholo.base.memo import Keeper
 from nonholo.base.results import Outcome
@@ -33,7 +32,7 @@ from nonholo.explorer._replay import replay, spread
 from nonholo.groups import matrix_from_quaternion
 from nonholo.io.places import check_file, new_file
 from nonholo.kernels import FLAT_RUNS
-from nonholo.orbit import AbstractOrbit, Orbit
+from nonholo.orbit import AbstractOrbit, Orbit, any_orbit
 from nonholo.simulation import simulate
 from nonholo.systems import AbstractSystem, ChaplyginSleigh, Forced, Friction, Gravity, NormalForm, SuslovTop
 
@@ -139,7 +138,7 @@ def shown_motion(where: str, value: Any) -> Shown:
         value = discretize(cast(Any, value), _TIME_STEP)
     if isinstance(value, Discretization):
         return _of_discretization(where, value)
-    orbit = instance(where, value, AbstractOrbit, "be an orbit", "Pass what `simulate` or `flow` returned.")
+    orbit = any_orbit(where, value)
     if not orbit.has_poses or not len(orbit):
         got = "reconstruct=False" if len(orbit) else "no state"
         raise error(where, "have poses", got, "Run with reconstruct=True, from a start that has a real branch.")
@@ -191,7 +190,7 @@ def _shown_state(system: AbstractSystem, orbit: Orbit, state: dict[str, Any], ta
 
 def _kind(discrete: Discretization) -> str | None:
     """Return the kernel of a discretization, which runs in canonical axes, for n = 4 in principal ones; or None."""
-    system, form = discrete.system, _inside(discrete.system).normal_form
+    system, form = discrete.system, discrete.system.inside.normal_form
     if form is None or discrete.order != 2 or form.frame is not None or np.any(form.offset) or _forces(system) is None:
         return None
     if form.frame_map is not None and not form.is_sleigh:
@@ -213,13 +212,8 @@ def _table(system: Any, kind: str, first: int) -> dict[str, Any] | None:
     return packed_table(kind.removeprefix("forced_"), np.asarray(system.table)[first : first + MOST_STEPS + 1])
 
 
-def _inside(system: Any) -> AbstractSystem:
-    """Return the system without its forces."""
-    return system.system if system.is_forced else system
-
-
 def _parameters(system: AbstractSystem) -> dict[str, float]:
-    form = cast(NormalForm, _inside(system).normal_form)
+    form = cast(NormalForm, system.inside.normal_form)
     if form.is_sleigh:
         names = {"mass": form.mass, "inertia": form.stiffness[0, 0], "a": form.arm}
     elif not form.is_planar:
@@ -235,7 +229,7 @@ def _parameters(system: AbstractSystem) -> dict[str, float]:
 def _state(
     discrete: Discretization, kind: str, momentum: np.ndarray, pose: np.ndarray, steps: int, table: Any
 ) -> dict[str, Any]:
-    form = cast(NormalForm, _inside(discrete.system).normal_form)
+    form = cast(NormalForm, discrete.system.inside.normal_form)
     if kind == "top4" and form.principal[1] is not None:  # a matrix with rows of the pose turned, its last column stays
         momentum, g = form.to_principal(momentum), pose.reshape(4, 4)
         pose = np.column_stack([g[:, :3] @ form.principal[1], g[:, 3]]).ravel()
@@ -279,7 +273,7 @@ def _body_and_pose(state: dict[str, Any]) -> tuple[Any, Any]:
 
 def _name(system: AbstractSystem) -> str:
     if system.is_forced:
-        return f"{_name(_inside(system))}, under forces"
+        return f"{_name(system.inside)}, under forces"
     words = re.findall("[A-Z][a-z]+|[A-Z]+(?![a-z])", type(system).__name__)
     name = " ".join([words[0], *(word.lower() for word in words[1:])])
     return name if system.normal_form is not None and system.normal_form.is_planar else f"{name}, {system.group}"
@@ -287,7 +281,7 @@ def _name(system: AbstractSystem) -> str:
 
 def _frame_note(system: AbstractSystem) -> str:
     is_turned = system.canonical is not system and np.any(system.frame != np.eye(len(system.frame)))
-    form = _inside(system).normal_form
+    form = system.inside.normal_form
     axes = None if form is None or form.is_planar else form.principal[1]
     if axes is not None and np.any(axes != np.eye(len(axes))):
         return "Shown in the principal axes of the constrained inertia, with the forbidden axis as the last one."

@@ -10,8 +10,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from nonholo.base.checks import generator, trailing
-from nonholo.base.limits import within_memory
+from nonholo.base.checks import generator, trailing, within_memory
 from nonholo.base.memo import Keeper
 from nonholo.base.numerics import applied, identity_like, integrated_exponential, inverse_of
 from nonholo.base.types import Array, Float, Inexact, Int

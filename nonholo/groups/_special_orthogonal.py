@@ -11,8 +11,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo.base.checks import dimension
-from nonholo.base.limits import within_memory
+from nonholo.base.checks import dimension, within_memory
 from nonholo.base.numerics import cayley_increment, cotangent_deficit, identity_like, of_length_one, sinc, versine
 from nonholo.base.types import Array, Float
 from nonholo.groups import _rotations

@@ -12,8 +12,7 @@ from typing import Annotated, Any, Literal
 import zarr
 from pydantic import AfterValidator, BaseModel, Field, Json, NonNegativeInt, ValidationError, model_validator
 
-from nonholo.base.checks import error, is_name, shown
-from nonholo.base.limits import within_memory
+from nonholo.base.checks import error, is_name, shown, within_memory
 from nonholo.base.results import Outcome
 from nonholo.io.places import FORMAT, SCHEMAS, SWEEP_FORMAT, WHERE, check_assertions
 from nonholo.io.provenance import attributes_of_text, problems_in

@@ -30,7 +30,7 @@ from nonholo.io.datasets import CANONICAL, HEADED, STEP, Stretch, Variable, step
 from nonholo.io.metadata import read_attributes
 from nonholo.io.places import WHERE, check_target, new_beside, owner_of, put_in_place
 from nonholo.io.provenance import attributes, attributes_of_text, restore_motion, system_of
-from nonholo.orbit import STATES, AbstractOrbit, EventLog, Orbit, Plan
+from nonholo.orbit import STATES, AbstractOrbit, EventLog, Orbit, Plan, any_orbit
 
 _ROWS = 100_000  # states in one chunk
 _NUMBERS, _MOST = 1 << 16, 1 << 10  # at most in a chunk of crossings: numbers, rows
@@ -226,13 +226,12 @@ def save_orbit(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fals
     Example:
         >>> save_orbit(orbit, "orbit.zarr")  # doctest: +SKIP
     """
-    remedy = "Pass what `simulate` or `flow` returned."
-    checks.instance("save_orbit(orbit=...)", orbit, AbstractOrbit, "be an orbit", remedy)
+    any_orbit("save_orbit(orbit=...)", orbit)
     if orbit.is_discrete and orbit.has_impacts.any():
         got, remedy = "one with impacts, which its events tell", "Run with store=..., which keeps them, or save a part."
         raise error("save_orbit(orbit=...)", "be an orbit whose events are not needed", got, remedy)
     checks.flags("save_orbit", overwrite=overwrite)
-    path = checks.path("save_orbit(path=...)", path)
+    path = checks.checked_path("save_orbit(path=...)", path)
     target = path.resolve()
     check_target(target, overwrite=overwrite)
     with new_beside(path) as part:
@@ -283,7 +282,7 @@ def load_orbit(path: str | Path, *, discrete: Any = None) -> Any:
     Example:
         >>> orbit = load_orbit("orbit.zarr")  # doctest: +SKIP
     """
-    return load_states(checks.path(WHERE, path), discrete)
+    return load_states(checks.checked_path(WHERE, path), discrete)
 
 
 def load_states(root: Path, discrete: Any, *, last: bool = False) -> Any:

@@ -184,7 +184,7 @@ def check_file(target: str | Path | TextIO, *, overwrite: bool, where: str = "to
     """Refuse, in the name of `where`, a path that exists, unless it is a file that may be replaced."""
     if hasattr(target, "writelines"):
         return
-    path = checks.path(where, target)
+    path = checks.checked_path(where, target)
     if path.exists() and not (overwrite and path.is_file()):
         how = "Choose another path"
         remedy = f"It is not a file. {how}." if overwrite else f"{how}, or pass overwrite=True (--overwrite)."

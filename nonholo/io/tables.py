@@ -13,7 +13,7 @@ from nonholo.base import checks
 from nonholo.base.progress import progress_bar
 from nonholo.io.datasets import Stretch, column_names, coordinate_rows, rows_of
 from nonholo.io.places import check_file, new_file
-from nonholo.orbit import AbstractOrbit
+from nonholo.orbit import AbstractOrbit, any_orbit
 
 _NUMBERS = 1 << 16  # formatted at once
 
@@ -50,16 +50,14 @@ def orbit_to_csv(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fa
         >>> orbit_to_csv(orbit, "poses.csv")  # doctest: +SKIP
     """
     checks.flags("Orbit.to_csv", overwrite=overwrite)
-    checks.instance(
-        "orbit_to_csv(orbit=...)", orbit, AbstractOrbit, "be an orbit", "Pass what `simulate` or `flow` returned."
-    )
+    any_orbit("orbit_to_csv(orbit=...)", orbit)
     if not orbit.has_poses:
         remedy = "Run with reconstruct=True."
         raise checks.error("Orbit.to_csv(...)", "be called on an orbit with poses", "reconstruct=False", remedy)
     own: Any = orbit
     pose, heading = (own.canonical_pose, own.turned) if orbit.is_compact else (own.configuration, None)
     lines = _lines(orbit.system, [Stretch(orbit.time, np.asarray(pose), heading)], 1)
-    with new_file(checks.path("Orbit.to_csv(path=...)", path), overwrite=overwrite) as file:
+    with new_file(checks.checked_path("Orbit.to_csv(path=...)", path), overwrite=overwrite) as file:
         file.writelines(lines)
 
 
@@ -91,7 +89,7 @@ def store_to_csv(
     checks.flags("store_to_csv", overwrite=overwrite, progress=progress)
     from nonholo.io.orbits import open_poses  # loads zarr, which a CSV of an orbit does not need
 
-    poses = open_poses(checks.path("store_to_csv(store=...)", store))
+    poses = open_poses(checks.checked_path("store_to_csv(store=...)", store))
     for _ in poses.stretches():  # so that damage is found before the first row is used
         pass
     with new_file(target, overwrite=overwrite) as file, progress_bar("states", progress) as report:

@@ -19,7 +19,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import array, error, instance, is_traced, name, number, shape_of, shown
+from nonholo.base.checks import array, checked_name, error, instance, is_traced, number, shape_of, shown
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float, Int
 
@@ -223,7 +223,8 @@ class Parameters(Mapping[str, Any]):
 
     def __init__(self, numbers: Any) -> None:
         instance(_WHERE, numbers, Mapping, "be a mapping of names to numbers", "Pass a dict.")
-        self._hold({name(_WHERE, key, ("time_step",)): _valid_number(_WHERE, key, x) for key, x in numbers.items()})
+        own = {checked_name(_WHERE, key, ("time_step",)): _valid_number(_WHERE, key, x) for key, x in numbers.items()}
+        self._hold(own)
 
     def _hold(self, numbers: dict[str, Any]) -> None:
         self._numbers = numbers

@@ -9,8 +9,7 @@ import jax
 import numpy as np
 
 from nonholo.base.calls import call
-from nonholo.base.checks import array, choice, count, error, names, shown, text
-from nonholo.base.limits import within_memory
+from nonholo.base.checks import array, choice, count, error, names, shown, text, within_memory
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._functions import (

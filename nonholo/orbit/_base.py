@@ -9,9 +9,8 @@ from typing import Any, ClassVar, TypeVar, cast
 
 import numpy as np
 
-from nonholo.base.checks import LARGEST, array, error, is_moderate, selection, shape_of
+from nonholo.base.checks import LARGEST, array, error, is_moderate, selection, shape_of, within_memory
 from nonholo.base.html import table
-from nonholo.base.limits import within_memory
 from nonholo.base.memo import Keeper, memo
 from nonholo.base.results import Outcome
 from nonholo.base.types import Bool, Float, Int

@@ -116,9 +116,7 @@ class BodyDecoder:
 
     def kinetic_energy(self, orbit: Any) -> Float[np.ndarray, "K"]:
         """Return the energies of these velocities."""
-        if self.system.is_spatial:
-            return self.system.constrained_energy(orbit.reduced_momentum, orbit.configuration)
-        return self.system.canonical.constrained_energy(orbit.reduced_momentum)
+        return self.system.canonical.constrained_energy(orbit.reduced_momentum, self.system.constraint_poses(orbit))
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

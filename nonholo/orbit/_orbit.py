@@ -36,6 +36,17 @@ def as_orbit(where: str, value: Any, coordinates: str) -> "Orbit":
     return instance(where, value, Orbit, "be an orbit of a system on a group", remedy)
 
 
+def any_orbit(where: str, value: Any) -> AbstractOrbit:
+    """Refuse what is not an orbit, on a group or in coordinates."""
+    return instance(where, value, AbstractOrbit, "be an orbit", "Pass what `simulate` or `flow` returned.")
+
+
+def step_poses(states: Any) -> Float[np.ndarray, "K N N"]:
+    """Return the poses of states where the constraint needs them; else the identity: steps are the same from each."""
+    eye, g = states.system.group.identity, states.system.constraint_poses(states)
+    return np.broadcast_to(eye, (len(states), *eye.shape)) if g is None else g
+
+
 class AbstractMotion(Keeper, abc.ABC):
     """A rule of motion of a system: a discretization or the continuous flow."""
 
@@ -353,11 +364,7 @@ class Orbit(AbstractOrbit):
     @memo
     def displacement(self) -> Float[np.ndarray, "K N N"]:
         """Displacements W_k = g_k^-1 g_(k+1) of single steps at the saved states."""
-        D = self.motion.displacements(self)
-        if not self.system.is_spatial:
-            return D
-        g = self.configuration
-        return self.system.group.inverse(g) @ D @ g
+        return self.system.in_body(self.motion.displacements(self), self.system.constraint_poses(self))
 
     @memo
     def spatial_displacement(self) -> Float[np.ndarray, "K N N"]:

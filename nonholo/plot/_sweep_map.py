@@ -43,12 +43,12 @@ class Subject(NamedTuple):
     Attributes:
         values: The quantity, NaN where a member did not succeed.
         codes: How members ended.
-        whole: Whether the quantity consists of whole numbers.
+        has_integers: Whether the quantity consists of whole numbers.
     """
 
     values: "xarray.DataArray"
     codes: "xarray.DataArray"
-    whole: bool
+    has_integers: bool
 
     @property
     def title(self) -> str:
@@ -125,11 +125,11 @@ def scale_of(subject: Subject) -> Normalize:
     """Return how numbers become colors: whole numbers one each if they are few, by logarithm if they range widely."""
     finite = subject.finite
     distinct = np.unique(finite)
-    if subject.whole and 0 < len(distinct) <= _FEW:
+    if subject.has_integers and 0 < len(distinct) <= _FEW:
         middles = (distinct[:-1] + distinct[1:]) / 2
         borders = np.concatenate([[distinct[0] - 1], middles, [distinct[-1] + 1]])
         return BoundaryNorm(borders, theme.TIME.N)
-    if is_wide(finite):
+    if ranges_widely(finite):
         return LogNorm(finite.min(), finite.max())
     return Normalize(finite.min(), finite.max()) if len(finite) else Normalize(0.0, 1.0)
 
@@ -148,7 +148,7 @@ def color_key(axes: Axes, mappable: ScalarMappable, subject: Subject) -> Colorba
     return bar
 
 
-def is_wide(values: Float[np.ndarray, "..."]) -> bool:
+def ranges_widely(values: Float[np.ndarray, "..."]) -> bool:
     """Return whether positive numbers range over orders of magnitude."""
     if not values.size or not values.min() > 0:
         return False
@@ -158,7 +158,7 @@ def is_wide(values: Float[np.ndarray, "..."]) -> bool:
 
 def scale_along(values: Float[np.ndarray, "K"]) -> str:
     """Return the scale of an axis for these numbers, of which some may be missing."""
-    return "log" if is_wide(values[np.isfinite(values)]) else "linear"
+    return "log" if ranges_widely(values[np.isfinite(values)]) else "linear"
 
 
 def is_geometric(values: Float[np.ndarray, "K"]) -> bool:
@@ -257,9 +257,9 @@ def _look(across: np.ndarray, faintest: float) -> Any:
 def _histogram(axes: Axes, subject: Subject) -> _Drawn:
     """Count the members that succeeded; the legend counts the others."""
     look = theme.own_look(theme.DISCRETE)
-    bars = axes.hist(subject.finite, bins=_bins(subject.finite, subject.whole), rwidth=0.94, **look)[2]
+    bars = axes.hist(subject.finite, bins=_bins(subject.finite, subject.has_integers), rwidth=0.94, **look)[2]
     axes.set(xlabel=label(subject.values), ylabel="members")
-    if subject.whole:
+    if subject.has_integers:
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     else:
         axes.set_xscale(scale_along(subject.finite))
@@ -281,7 +281,7 @@ def _bins(values: Float[np.ndarray, "K"], whole: bool) -> Any:
         return 1
     if whole and np.ptp(values) < _BARS:
         return np.arange(values.min() - 0.5, values.max() + 1)
-    if is_wide(values):
+    if ranges_widely(values):
         return np.geomspace(values.min(), values.max(), _BARS + 1)
     return min(_BARS, max(1, int(np.sqrt(len(values)))))
 

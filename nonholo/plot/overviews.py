@@ -127,7 +127,7 @@ def _facts(orbit: AbstractOrbit) -> list[str]:
         run = f"{steps:,} step{'s' * (steps != 1)} of $h$ = {step:g}".replace(",", "\u2009")
     end = [] if orbit.outcome == Outcome.successful else [f"stopped: {orbit.outcome}"]
     if isinstance(orbit, Orbit):
-        return [_parameters(_inside(orbit.system)), run, *end]
+        return [_parameters(orbit.system.inside), run, *end]
     names = [coordinates.symbol(name) for name in orbit.coordinates]
     where = ", ".join(names if len(names) <= 7 else [*names[:3], "...", names[-1]]) or str(orbit.space)
     s = orbit.system.constraints
@@ -139,11 +139,6 @@ def name_of(orbit: AbstractOrbit) -> str:
     return _name_of_body(orbit.system) if isinstance(orbit, Orbit) else orbit.system.name
 
 
-def _inside(system: Any) -> System:
-    """Return a system without its forces."""
-    return system.system if system.is_forced else system
-
-
 _NAMES = {  # by is_sleigh and is_planar: of its own class, and of an LLSystem that equals one
     (True, True): ("Chaplygin sleigh", "a sleigh in the plane"),
     (True, False): ("Multidimensional sleigh", "a multidimensional sleigh"),
@@ -153,7 +148,7 @@ _NAMES = {  # by is_sleigh and is_planar: of its own class, and of an LLSystem t
 
 def _name_of_body(system: System) -> str:
     if system.is_forced:
-        return f"{_name_of_body(_inside(system))}, under forces"
+        return f"{_name_of_body(system.inside)}, under forces"
     form = system.normal_form
     if form is not None:
         name, synonym = _NAMES[form.is_sleigh, form.is_planar]

@@ -16,14 +16,13 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
-from nonholo.base.checks import error, instance, shown
-from nonholo.base.checks import path as checked_path
+from nonholo.base.checks import checked_path, error, shown
 from nonholo.base.types import Float, Int
 from nonholo.discrete import Discretization
 from nonholo.io.places import check_file
-from nonholo.orbit import AbstractOrbit, Orbit, as_orbit
+from nonholo.orbit import AbstractOrbit, Orbit, any_orbit, as_orbit
 from nonholo.plot import theme
-from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, System
+from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, System, refuse_fixed_in_space
 
 MOST_DOTS = 1500  # of most pictures
 
@@ -288,8 +287,7 @@ def drawable(where: str, orbit: Any) -> Orbit:
 
 def drawable_in_time(where: str, orbit: Any) -> Any:
     """Return an orbit of any kind with at least one state; a flow that knows those between with enough for a curve."""
-    remedy = "Pass what `simulate` or `flow` returned."
-    if len(instance(where, orbit, AbstractOrbit, "be an orbit", remedy)) == 0:
+    if len(any_orbit(where, orbit)) == 0:
         raise error(where, "have a state to draw", "none", "`orbit.outcome` has the reason.")
     if orbit.span is None or not 1 < len(orbit) < _SMOOTH:
         return orbit
@@ -298,7 +296,7 @@ def drawable_in_time(where: str, orbit: Any) -> Any:
     return orbit.at(times if more[-1] > more[0] else times[::-1])
 
 
-def with_poses(where: str, orbit: Any) -> Orbit:
+def orbit_with_poses(where: str, orbit: Any) -> Orbit:
     """Return the same of an orbit with poses."""
     orbit = drawable(where, orbit)
     if orbit.canonical_pose is None:
@@ -315,7 +313,7 @@ def same_space(where: str, flow: Any, orbit: AbstractOrbit, remedy: str) -> Any:
 
 def same_group(where: str, orbit: Any, other: Orbit) -> Orbit | None:
     """Return the same of an orbit, if there is one, that moves on the same group as the orbit it is drawn beside."""
-    if orbit is not None and (orbit := with_poses(where, orbit)).system.group != other.system.group:
+    if orbit is not None and (orbit := orbit_with_poses(where, orbit)).system.group != other.system.group:
         raise error(where, f"move on {other.system.group}", f"{orbit.system.group}", "Pass a motion of the same body.")
     return orbit
 
@@ -335,9 +333,8 @@ def forbidden_axis(system: AbstractSystem) -> Float[np.ndarray, "3"] | None:
 
 def check_directions(where: str, value: Any, system: AbstractSystem, number: tuple[int, str], remedy: str) -> None:
     """Refuse a constraint fixed in space, and another number of admissible directions than a picture has."""
-    if system.is_spatial:
-        elsewhere = "Its momenta along the constraint are conserved: draw `overview` instead."
-        raise error(where, "have a left-invariant constraint", shown(value), elsewhere)
+    elsewhere = "Its momenta along the constraint are conserved: draw `overview` instead."
+    refuse_fixed_in_space(where, system, elsewhere, shown(value))
     if len(system.constraint_subspace) != number[0]:
         got = f"dimension {len(system.constraint_subspace)}"
         raise error(where, f"have a {number[1]}-dimensional constraint subspace", got, remedy)

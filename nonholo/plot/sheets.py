@@ -265,12 +265,12 @@ def draw_level(axes: Axes, sheet: Sheet, curve: InvariantCurve, **look: Any) -> 
 def sheet_of(system: AbstractSystem) -> Sheet | None:
     """Return the sheet of a top in space or a sleigh in the plane, of any class; None for other systems."""
     variety: Any = planar_variety(system)
-    return None if variety is None else (StripSheet if variety.form.is_sleigh else DiscSheet)(variety)
+    return None if variety is None else (DiscSheet if variety.blade is None else StripSheet)(variety)
 
 
 def blade_of_system(system: AbstractSystem) -> Blade | None:
     """Return the blade of a sleigh in the plane, under any forces; None for other systems."""
-    sheet = sheet_of(cast(Any, system).system if system.is_forced else system)
+    sheet = sheet_of(system.inside)
     return None if sheet is None else sheet.blade
 
 

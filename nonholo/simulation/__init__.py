@@ -9,7 +9,6 @@ from nonholo.simulation._simulate import iterate, simulate
 from nonholo.simulation._stored import extend, resume_run, size_in_blocks
 from nonholo.simulation.members import (
     Ensemble,
-    Members,
     ScalarMembers,
     ensemble,
     in_lanes,

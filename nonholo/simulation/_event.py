@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.calls import call, check_result, numbers_of
-from nonholo.base.checks import array, choice, error, instance, is_name, natural, number, shown
-from nonholo.base.checks import name as checked_name
+from nonholo.base.checks import array, checked_name, choice, error, instance, is_name, natural, number, shown
 from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit
 from nonholo.systems import Gravity, central_differences

@@ -6,8 +6,7 @@ from typing import Any, NamedTuple, TypeAlias, overload
 
 import numpy as np
 
-from nonholo.base.checks import error, flags, flow_times, flow_tolerances
-from nonholo.base.limits import within_memory
+from nonholo.base.checks import error, flags, flow_times, flow_tolerances, within_memory
 from nonholo.base.progress import telling
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.continuous import ContinuousFlow, Problem, Solver, solver_of

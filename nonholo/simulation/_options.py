@@ -3,8 +3,7 @@
 import dataclasses
 from typing import Any
 
-from nonholo.base.checks import choice, error, flags, shown, step_counts
-from nonholo.base.limits import within_memory
+from nonholo.base.checks import choice, error, flags, shown, step_counts, within_memory
 from nonholo.discrete import (
     BranchRule,
     Discretization,
@@ -55,11 +54,11 @@ def checked_run(
 ) -> Run:
     """Return a run with checked options, for any start."""
     flags(owner, reconstruct=reconstruct, throw=throw, progress=progress)
-    count, every = step_counts(steps, save_every)
+    count, every = step_counts(owner, steps, save_every)
     if isinstance(discrete, AbstractCoordinateDiscretization):
         others = {"branch": (branch, "principal"), "reconstruct": (reconstruct, True), "backend": (backend, "auto")}
         refuse_in_coordinates(owner, **others)
-    stepper = stepper_of(discrete, branch, backend, with_poses=reconstruct)
+    stepper = stepper_of(discrete, branch, backend, with_poses=reconstruct, owner=owner)
     if discrete.forces is not None:
         check_forces(owner, discrete, count)
     return Run(stepper, count, every, None if events is None else watch_for(owner, stepper, events), throw, progress)
@@ -71,7 +70,7 @@ def stepper_of(
     """Return what takes the steps of a run: the one place that asks for rule, backend and extra."""
     if isinstance(discrete, AbstractCoordinateDiscretization):
         return discrete.stepper(with_poses=True)
-    as_discretization("simulate(discrete=...)", discrete, compositions=True, forced=True)
+    as_discretization(f"{owner}(discrete=...)", discrete, compositions=True, forced=True)
     if isinstance(branch, str) and isinstance(backend, str) and (branch, backend) == ("principal", "auto"):
         return discrete.stepper(with_poses=with_poses)
     return _other_stepper(owner, discrete, branch, backend, with_poses=with_poses)

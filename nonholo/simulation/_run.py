@@ -8,8 +8,7 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from nonholo.base.checks import count, error
-from nonholo.base.limits import within_memory
+from nonholo.base.checks import count, error, within_memory
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import OUTCOMES, Outcome, OutcomeError, conclude
 from nonholo.discrete import check_first_state

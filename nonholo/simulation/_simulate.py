@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from nonholo.base.checks import error, path, shown
+from nonholo.base.checks import checked_path, error, shown
 from nonholo.discrete import BranchRule
 from nonholo.orbit import DiscreteMotion, OrbitT
 from nonholo.simulation._options import FEW, checked_run, refuse_too_large
@@ -112,7 +112,7 @@ def simulate(
     first = discrete.first(start, with_poses=run.stepper.has_poses)
     if store is None:
         return run.finish(*run_to_end(run, first, whole=True))
-    return into_store(run, first, path("simulate(store=...)", store), checkpoint_every, scenario)
+    return into_store(run, first, checked_path("simulate(store=...)", store), checkpoint_every, scenario)
 
 
 def _refuse_without_store(**arguments: Any) -> None:

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from nonholo import io
-from nonholo.base.checks import count, error, flags, path, shown
-from nonholo.base.limits import within_disk
+from nonholo.base.checks import checked_path, count, error, flags, shown, within_disk
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome
 from nonholo.discrete import BranchRule
@@ -292,7 +291,7 @@ def extend(
         >>> orbit = nh.extend("run.zarr", 1_000_000)  # doctest: +SKIP
     """
     flags("extend", trust=trust, throw=throw, progress=progress)
-    store = path("extend(store=...)", store)
+    store = checked_path("extend(store=...)", store)
     if task is not None:
         raise error("extend(task=...)", "come with the store of a sweep", shown(task), "Leave it out for an orbit.")
     steps = count("extend(steps=...)", steps, "Pass how many steps more.")

@@ -2,7 +2,7 @@
 
 import dataclasses
 from collections.abc import Callable
-from typing import Any, cast
+from typing import Any
 
 import equinox
 import jax
@@ -18,7 +18,7 @@ from nonholo.discrete import Discretization, ScalarRoute, as_discretization
 from nonholo.discrete.definition import in_double, roll_out, traceable
 from nonholo.lagrange_dalembert import check_value, rolled_in_coordinates
 from nonholo.simulation._options import check_forces, refuse_many_matrices
-from nonholo.systems import AbstractCoordinateDiscretization, Forced, Start, refuse_in_coordinates
+from nonholo.systems import AbstractCoordinateDiscretization, Start, refuse_in_coordinates, refuse_wide
 
 _roll_out = equinox.filter_jit(roll_out)
 _roll_in_coordinates = equinox.filter_jit(rolled_in_coordinates)
@@ -175,8 +175,7 @@ def with_traced_potential(owner: str, discrete: Any) -> Any:
 
 def _on_group(discrete: Any, start: Start, sizes: tuple[int, ...], controls: Any) -> tuple[Any, ...]:
     """Return the arguments of a rollout on a group; of traced starts the shapes are checked."""
-    if discrete.system.is_wide:
-        raise error("rollout(discrete=...)", "have matrices", "a system without", "Discretize `system.dense`.")
+    refuse_wide("rollout(discrete=...)", discrete.system)
     discrete = with_traced_potential("rollout", discrete)
     refuse_many_matrices("rollout(steps=...)", discrete, 1 + sizes[0] // sizes[1], "Raise save_every.")
     value, g = _checked_start(discrete, start)
@@ -187,9 +186,7 @@ def _on_group(discrete: Any, start: Start, sizes: tuple[int, ...], controls: Any
             got = f"order {discrete.order}"
             raise error("rollout(controls=...)", "have a step of order 2", got, "Use discretize(..., order=2).")
     check_forces("rollout", discrete, sizes[0], in_jax=True)
-    free, forced = discrete, discrete.forces
-    if discrete.system.is_forced:
-        free = dataclasses.replace(discrete, system=cast(Forced, discrete.system).system)
+    free, forced = dataclasses.replace(discrete, system=discrete.system.inside), discrete.forces
     route = dataclasses.replace(free, order=2).route
     scalar = jax.tree.map(traceable, route.step) if isinstance(route, ScalarRoute) else None
     return free, scalar, (start.name, value, g), controls, sizes, forced

@@ -8,9 +8,10 @@ from nonholo.systems._base import (
     Equilibria,
     System,
     as_system,
+    refuse_fixed_in_space,
     refuse_forces,
     refuse_slip,
-    replace_numbers,
+    refuse_wide,
 )
 from nonholo.systems._coordinate_system import (
     AbstractCoordinateDiscretization,

@@ -12,9 +12,8 @@ from typing import Any, ClassVar, TypeVar, cast
 
 import numpy as np
 
-from nonholo.base.checks import error, instance, is_traced, shape_of, trailing
+from nonholo.base.checks import error, instance, is_traced, shape_of, trailing, within_memory
 from nonholo.base.html import table
-from nonholo.base.limits import within_memory
 from nonholo.base.memo import Keeper, system_memo
 from nonholo.base.numerics import Factors, applied, factors_of, solve_by_factors
 from nonholo.base.types import Array, Bool, Float, Inexact
@@ -170,6 +169,11 @@ class AbstractSystem(Keeper, abc.ABC):
         return None
 
     @property
+    def inside(self) -> "AbstractSystem":
+        """The body on which forces act: a `Forced` has it inside; the system itself where there are none."""
+        return self
+
+    @property
     def is_wide(self) -> bool:
         """Whether the system has its mass tensor without a matrix."""
         form = self.normal_form
@@ -229,6 +233,14 @@ class AbstractSystem(Keeper, abc.ABC):
             displacement: W, (..., N, N).
         """
         return configuration @ displacement
+
+    def constraint_poses(self, states: Any) -> Poses | None:
+        """Return the poses of states where the constraint is fixed in space, and so turns in the body; else None."""
+        return None
+
+    def in_body(self, displacement: Array, configuration: Poses | None) -> Array:
+        r"""Return a displacement D as the body sees it: D, or $g^{-1}Dg$ where the constraint is fixed in space."""
+        return displacement
 
     def restrict_at(self, momentum: Covectors, configuration: Poses | None = None) -> Inexact[Array, "... k"]:
         r"""Return the components of a body momentum along the constraint of a body at a configuration.
@@ -412,6 +424,14 @@ class AbstractLRSystem(AbstractSystem):
         """Return W g of a displacement in space."""
         return displacement @ configuration
 
+    def constraint_poses(self, states: Any) -> Poses:
+        """Return the poses of states."""
+        return states.configuration
+
+    def in_body(self, displacement: Array, configuration: Poses) -> Array:
+        r"""Return $g^{-1}Dg$."""
+        return self.group.inverse(configuration) @ displacement @ configuration
+
     def restrict_at(self, momentum: Covectors, configuration: Poses | None = None) -> Inexact[Array, "... k"]:
         """Return the components of the spatial momentum along the constraint subspace (`restrict_in_space`)."""
         return self.restrict_in_space(momentum, self._at(configuration))
@@ -442,6 +462,18 @@ def refuse_forces(where: str, system: Any) -> None:
     if getattr(system, "is_forced", False):
         remedy = "Ask it of the system inside, or measure it on an orbit of simulate or flow."
         raise error(where, "be a system without forces", "Forced", remedy)
+
+
+def refuse_fixed_in_space(where: str, system: Any, remedy: str, got: str = "") -> None:
+    """Refuse a system whose constraint is fixed in space, where steps or momenta depend on the pose."""
+    if system.is_spatial:
+        raise error(where, "have a left-invariant constraint", got or type(system).__name__, remedy)
+
+
+def refuse_wide(where: str, system: Any, remedy: str = "Discretize `system.dense`.") -> None:
+    """Refuse a system that has its mass tensor without a matrix."""
+    if system.is_wide:
+        raise error(where, "have matrices", "a system without", remedy)
 
 
 def refuse_slip(where: str, system: Any) -> None:

@@ -134,7 +134,7 @@ def equilibria_of(system: "AbstractLLSystem") -> Equilibria:
 
 def _of_form(system: "AbstractLLSystem", form: NormalForm) -> Equilibria:
     rows = system.form_map @ system.constraint_subspace
-    if form.is_sleigh and form.arm != 0:
+    if form.arm != 0:  # 0 of tops
         return Equilibria(rows[-1:], np.copysign(1.0, form.arm) * rows[-1])
     if not form.is_coupled:
         return Equilibria(system.constraint_subspace, None)

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nonholo.base.checks import is_traced
-from nonholo.base.limits import within_memory
+from nonholo.base.checks import is_traced, within_memory
 from nonholo.base.memo import Keeper
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.checks import array, dimension, error, is_traced
-from nonholo.base.limits import within_memory
+from nonholo.base.checks import array, dimension, error, is_traced, within_memory
 from nonholo.base.types import Array, Float, read_only
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._mass import checked_group, narrow

@@ -38,8 +38,7 @@ class OrbitSamples:
         self.discrete, self.system, self.group = discrete, discrete.system, discrete.system.group
         self.spatial, self.steps = self.system.is_spatial, steps
         self.forced = discrete.forces
-        inside = getattr(self.system, "system", None)  # of a Forced
-        self.free = dataclasses.replace(discrete, system=inside) if inside else discrete
+        self.free = dataclasses.replace(discrete, system=self.system.inside)
         h = float(discrete.time_step)
         self.step = min(STEP, h) if self.forced else STEP
         self.span = min(PATH, report.COUNTS[0] * h) if self.forced else h

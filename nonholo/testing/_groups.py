@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
-from nonholo.base.checks import error, flags, generator
-from nonholo.base.limits import within_memory
+from nonholo.base.checks import error, flags, generator, within_memory
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Float
 from nonholo.groups import AbstractMatrixGroup

@@ -30,7 +30,7 @@ class SystemSamples:
 
     def __init__(self, system: AbstractSystem, rng: np.random.Generator) -> None:
         self.moving = system
-        self.system: AbstractSystem = getattr(system, "system", system)  # a Forced has it inside, and adds forces alone
+        self.system = system.inside  # forces are all that is added to it
         self.group = system.group
         self.spatial = system.is_spatial
         self.S, self.A = np.asarray(system.constraint_subspace), np.asarray(system.annihilator)
@@ -370,11 +370,8 @@ def _growth(s: SystemSamples) -> float:
 def _growth_beside(s: SystemSamples, family: Equilibria) -> float:
     velocity = np.asarray(family.attracting)
     w = velocity @ np.linalg.pinv(s.S)
-
-    def nearby(t: float) -> np.ndarray:
-        return _rate_at(s, (w + t * np.eye(len(w))) @ s.S)
-
-    rates = np.sort(np.linalg.eigvals(derivative(nearby, 0.1).T).real)
+    slope = derivative(lambda t: _rate_at(s, (w + t * np.eye(len(w))) @ s.S), 0.1)
+    rates = np.sort(np.linalg.eigvals(slope.T).real)
     across = len(w) - len(family.subspace)
     return float(rates[across - 1] / np.linalg.norm(velocity))
 

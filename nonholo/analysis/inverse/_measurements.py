@@ -6,9 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.checks import array, error, printable, shown, trailing
-from nonholo.base.checks import path as checked_path
-from nonholo.base.limits import read_text, within_memory
+from nonholo.base.checks import array, checked_path, error, printable, shown, trailing, within_memory
+from nonholo.base.limits import read_text
 from nonholo.base.types import Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.systems import System

@@ -224,6 +224,8 @@ def _matrix(v: Float[np.ndarray, "... 6"]) -> Float[np.ndarray, "... 3 3"]:
 class Disc(PlanarBody):
     """The displacements of a top, by coordinates that cover all of them, the angle pi included."""
 
+    blade = None
+
     @property
     def inertia(self) -> Float[np.ndarray, "2 2"]:
         """B."""

@@ -6,7 +6,7 @@ step has besides, a chart of the displacement or a velocity with multipliers; f 
 
 import dataclasses
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -290,9 +290,8 @@ def _coordinate_unknowns(nodes: CoordinateNodes, q: np.ndarray, forces: np.ndarr
 
 def group_problem(discrete: Discretization, ends: tuple[Any, ...], limits: Limits, way: Way) -> Problem:
     """Return the problem of one member, from velocity and pose of the start, pose and velocity of the goal."""
-    (w, g, to_pose, to_velocity), system, free = ends, discrete.system, discrete
-    if system.is_forced:
-        free = dataclasses.replace(discrete, system=cast(Forced, system).system)
+    (w, g, to_pose, to_velocity), system = ends, discrete.system
+    free = dataclasses.replace(discrete, system=system.inside)
     steps, n = len(limits[0]) // system.rank, system.group.size
     nodes = GroupNodes(free, discrete.forces, way.outline, to_pose)
     table = np.zeros((steps, system.group.dim)) if discrete.forces is None else discrete.forces.rows(np.arange(steps))

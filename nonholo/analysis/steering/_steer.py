@@ -8,15 +8,14 @@ import numpy as np
 
 from nonholo.analysis.steering import _arguments
 from nonholo.analysis.steering._arguments import BLOCK, Ends, Limits, StateBounds, Way
-from nonholo.base.checks import choice, count, error, flag, needs, refuse_given
-from nonholo.base.limits import within_memory
+from nonholo.base.checks import choice, count, error, flag, needs, refuse_given, within_memory
 from nonholo.base.memo import Keeper
 from nonholo.base.progress import interruptibly, progress_bar
 from nonholo.base.results import result
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, as_discretization
 from nonholo.simulation import check_forces, refuse_many_matrices
-from nonholo.systems import AbstractCoordinateDiscretization, in_coordinates
+from nonholo.systems import AbstractCoordinateDiscretization, in_coordinates, refuse_fixed_in_space, refuse_wide
 
 _PER_ENTRY = 24.0  # bytes of a second derivative: its value, and where it stands
 
@@ -192,12 +191,8 @@ def _check(discrete: Discretization, steps: int, way: Way) -> None:
     if callable(way.outline):
         remedy = "Bodies on groups have no shape: pass points."
         raise error("steer(outline=...)", "be points of a body on a group", "a function", remedy)
-    where, system = "steer(discrete=...)", discrete.system
-    if system.is_spatial:
-        got = type(system).__name__
-        raise error(where, "have a left-invariant constraint", got, "Steer it by `nh.rollout`.")
-    if system.is_wide:
-        raise error(where, "have matrices", "a system without", "Discretize `system.dense`.")
+    refuse_fixed_in_space("steer(discrete=...)", discrete.system, "Steer it by `nh.rollout`.")
+    refuse_wide("steer(discrete=...)", discrete.system)
     check_forces("steer", discrete, steps, in_jax=True)
 
 

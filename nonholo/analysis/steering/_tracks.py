@@ -8,15 +8,14 @@ import numpy as np
 
 from nonholo.analysis.steering._arguments import check_names
 from nonholo.analysis.steering._shooting import linearize_steps
-from nonholo.base.checks import error
-from nonholo.base.limits import within_memory
+from nonholo.base.checks import error, within_memory
 from nonholo.base.types import Array
 from nonholo.discrete import Discretization, as_discretization
 from nonholo.discrete.definition import compile_double
 from nonholo.lagrange_dalembert import places, tangents
 from nonholo.simulation import refuse_many_matrices
 from nonholo.simulation.traced import rollout
-from nonholo.systems import AbstractCoordinateDiscretization
+from nonholo.systems import AbstractCoordinateDiscretization, refuse_fixed_in_space
 
 Nodes = tuple[np.ndarray, np.ndarray]
 """Configurations, and body velocities of the momenta there."""
@@ -33,9 +32,7 @@ class GroupTrack(NamedTuple):
     def check(self, where: str, steps: int) -> None:
         """Refuse constraints that are fixed in space, a table of forces, and what does not fit in memory."""
         discrete, system = self.discrete, self.discrete.system
-        if system.is_spatial:
-            got, remedy = type(system).__name__, "Steer it by `nh.rollout`."
-            raise error(f"{where}(discrete=...)", "have a left-invariant constraint", got, remedy)
+        refuse_fixed_in_space(f"{where}(discrete=...)", system, "Steer it by `nh.rollout`.")
         if discrete.forces is not None and discrete.forces.table is not None:
             got, remedy = "one force for each step", "Add the table to the controls."
             raise error(f"{where}(discrete=...)", "have forces that do not depend on time", got, remedy)

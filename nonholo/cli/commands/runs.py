@@ -17,7 +17,7 @@ from typing import Any, NamedTuple, TypeVar
 import typer
 
 from nonholo import ensembles, explorer, io
-from nonholo.base.limits import within_disk
+from nonholo.base.checks import within_disk
 from nonholo.base.progress import progress_bar
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.cli.scenario.files import Loaded, built_in, effective_text, given_settings, load_scenario, stored_scenario

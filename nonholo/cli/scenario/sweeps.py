@@ -14,21 +14,10 @@ import numpy as np
 from pydantic import AliasChoices, Field, model_validator
 
 import nonholo
-from nonholo.base.limits import bounded_count
-from nonholo.cli.scenario import files
+from nonholo.base.checks import bounded_count
+from nonholo.cli.scenario import files, sections
 from nonholo.cli.scenario.bodies import arguments, is_example
 from nonholo.cli.scenario.motion import AbstractScenario, Start, is_ready
-from nonholo.cli.scenario.sections import (
-    Count,
-    Finite,
-    ScenarioError,
-    Section,
-    by_kind,
-    check_numbers,
-    checked_by,
-    problem,
-    suggestion,
-)
 from nonholo.ensembles import REDUCTIONS, STARTS, component_of, force_numbers, start_component
 from nonholo.ensembles.distributions import DISTRIBUTIONS
 
@@ -43,12 +32,12 @@ Rng = Annotated[int, Field(ge=0, lt=2**63, validation_alias=AliasChoices("rng", 
 Value = TypeVar("Value")
 
 
-class Range(Section):
+class Range(sections.Section):
     """Values along one axis of a grid, from one bound to the other."""
 
-    begin: Finite = Field(alias="from")
-    end: Finite = Field(alias="to")
-    count: Count
+    begin: sections.Finite = Field(alias="from")
+    end: sections.Finite = Field(alias="to")
+    count: sections.Count
     spacing: Literal["linear", "logarithmic"] = "linear"
 
     @model_validator(mode="after")
@@ -73,7 +62,7 @@ def along(value: Any) -> np.ndarray:
     requirement = "must be a list of numbers, vectors or matrices of one shape, or a range such as"
     with contextlib.suppress(ValueError):
         if isinstance(value, list) and value:
-            check_numbers(value)
+            sections.check_numbers(value)
             return np.array(value, dtype=float)
     raise ValueError(f"{requirement} {{from = 0.1, to = 10.0, count = 50}}. Got {value!r}")
 
@@ -124,7 +113,7 @@ def needs_size(table: Any) -> bool:
     return any(argument.default is argument.empty for argument in each)
 
 
-class Values(Section, Generic[Value]):
+class Values(sections.Section, Generic[Value]):
     """The varied keys, by table and key: values along the axes of a grid, or distributions."""
 
     body: dict[str, Value] = Field(default_factory=dict)
@@ -139,7 +128,7 @@ class Values(Section, Generic[Value]):
                 yield library_name(f"{table}.{name}"), value
 
 
-class GridDesign(Section):
+class GridDesign(sections.Section):
     """Every combination of values along axes; with `members`, about this many of them.
 
     Attributes:
@@ -149,9 +138,9 @@ class GridDesign(Section):
     """
 
     kind: Literal["grid"]
-    members: Count | None = None
+    members: sections.Count | None = None
     rng: Rng = 0
-    values: Values[Annotated[Any, checked_by(along)]]
+    values: Values[Annotated[Any, sections.checked_by(along)]]
 
     def with_members(self) -> Self:
         """Return the design with the counts of its ranges multiplied by one factor, for the members asked for."""
@@ -172,7 +161,7 @@ class GridDesign(Section):
         return nonholo.Grid({name: along(value) for name, value in self.values.by_name()}, rng=self.rng)
 
 
-class RandomMembers(Section):
+class RandomMembers(sections.Section):
     """Members drawn from distributions.
 
     Attributes:
@@ -182,9 +171,9 @@ class RandomMembers(Section):
     """
 
     kind: Literal["random"]
-    members: Count
+    members: sections.Count
     rng: Rng = 0
-    values: Values[Annotated[Any, checked_by(distribution_of)]]
+    values: Values[Annotated[Any, sections.checked_by(distribution_of)]]
 
     def with_members(self) -> Self:
         """Return the design itself: it has the members asked for."""
@@ -196,10 +185,10 @@ class RandomMembers(Section):
         return nonholo.RandomDesign(self.members, drawings, rng=self.rng)
 
 
-DESIGNS: dict[str, type[Section]] = {"grid": GridDesign, "random": RandomMembers}
+DESIGNS: dict[str, type[sections.Section]] = {"grid": GridDesign, "random": RandomMembers}
 
 
-class Keep(Section):
+class Keep(sections.Section):
     """The quantities kept of each member.
 
     Attributes:
@@ -211,7 +200,7 @@ class Keep(Section):
     poses: bool = True
 
 
-class SweepOutput(Section):
+class SweepOutput(sections.Section):
     """The picture beside the store: a quantity by color, over one or two values of the design.
 
     Attributes:
@@ -231,7 +220,7 @@ class SweepScenario(AbstractScenario):
     """The scenario of a sweep."""
 
     start: Start | None = None
-    design: Annotated[Any, by_kind(DESIGNS.__getitem__, lambda name: suggestion(name, DESIGNS))]
+    design: Annotated[Any, sections.by_kind(DESIGNS.__getitem__, lambda name: sections.suggestion(name, DESIGNS))]
     keep: Keep = Keep()
     output: SweepOutput = SweepOutput()
 
@@ -283,12 +272,14 @@ def load_sweep_scenario(
         _complete(document)
     files.complete(document, name, source, settings, start=False)
     request = files.validate(document, SweepScenario, Path(name).stem, source, settings)
-    if flaws := [problem(*flaw, source, request.options) for flaw in _refusals(request.scenario)]:
-        raise ScenarioError(flaws)
+    if flaws := [sections.problem(*flaw, source, request.options) for flaw in _refusals(request.scenario)]:
+        raise sections.ScenarioError(flaws)
     try:
         design = request.scenario.design.with_members()
     except ValueError as failure:
-        raise ScenarioError([problem("design.members", str(failure), source, request.options)]) from None
+        raise sections.ScenarioError(
+            [sections.problem("design.members", str(failure), source, request.options)]
+        ) from None
     return request._replace(scenario=request.scenario.model_copy(update={"design": design}))
 
 
@@ -371,7 +362,7 @@ def _flaw(scenario: SweepScenario, table: str, name: str, names: tuple[str, ...]
     whole = _whole(own, names)
     is_part = whole != own
     if whole not in names or (is_part and table == "body" and not scenario.is_family):
-        return f"design.values.{table}.{name}", f"cannot be varied. {suggestion(own, names)}"
+        return f"design.values.{table}.{name}", f"cannot be varied. {sections.suggestion(own, names)}"
     if is_part and table == "start" and scenario.start and getattr(scenario.start, whole) is None:
         return f"start.{whole}", f"is missing: {name} is varied, the other components are given here"
     return None
@@ -389,6 +380,6 @@ def _varied_names(scenario: SweepScenario) -> dict[str, tuple[str, ...]]:
         names = tuple(arguments(type(scenario.body).make))
         return {"body": names, "start": ("configuration", "body_velocity"), "run": ("time_step",), "forces": ()}
     system: Any = scenario.system()
-    leaves = (*(system.system if system.is_forced else system).leaves, "inertia_operator")
+    leaves = (*system.inside.leaves, "inertia_operator")
     body = tuple(name for name in type(scenario.body).model_fields if name in leaves)
     return {"body": body, "start": STARTS, "run": ("time_step",), "forces": tuple(force_numbers(system))}

@@ -174,7 +174,7 @@ def _sleigh(where: str, discrete: Discretization) -> tuple[float, float, float, 
     """Return m, J, the size of a, and h."""
     form = as_discretization(where, discrete).system.normal_form
     remedy = "Pass `discretize(ChaplyginSleigh(...), time_step)`; `branch_tree` counts the images of tops."
-    if form is None or not form.is_sleigh or not form.is_planar or form.arm == 0:
+    if form is None or not form.is_planar or form.arm == 0:  # as of tops
         got = f"{type(discrete.system).__name__}{', a = 0' if form is not None and form.is_sleigh else ''}"
         raise error(where, "be a discretized plane sleigh with a != 0", got, remedy)
     if not discrete.conserves_energy:

@@ -23,7 +23,7 @@ from nonholo.discrete.definition._precision import compile_double, in_double
 from nonholo.discrete.definition._root import followed_root, principal_root
 from nonholo.discrete.routes import ScalarStep
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.orbit import Orbit
+from nonholo.orbit import Orbit, step_poses
 
 _SAMPLES = 16
 _EVEN = 1e-10  # relative difference of values that counts as rounding
@@ -95,9 +95,7 @@ def equations_at(discrete: Scheme, g: Array) -> Callable[[Array, Array], Array]:
 
 def next_charts_by_definition(discrete: Scheme, states: Orbit) -> Float[np.ndarray, "K m"]:
     """Return the canonical chart coordinates that follow, one step from each state."""
-    eye = states.system.group.identity
-    poses = states.configuration if states.system.is_spatial else np.broadcast_to(eye, (len(states), *eye.shape))
-    return in_double(_next_charts, discrete, states.canonical_chart, poses)
+    return in_double(_next_charts, discrete, states.canonical_chart, step_poses(states))
 
 
 def _next_chart(discrete: Scheme, y: Array, g: Array) -> Array:

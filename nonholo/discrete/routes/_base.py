@@ -14,7 +14,7 @@ from nonholo.base.results import OUTCOMES, Outcome, OutcomeError
 from nonholo.base.types import Array, Float
 from nonholo.discrete._scheme import weights
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.orbit import AbstractStepper, First, Orbit, Rows, State
+from nonholo.orbit import AbstractStepper, First, Orbit, Rows, State, step_poses
 from nonholo.systems import System
 
 Part = Callable[[np.ndarray, np.ndarray, float, int, float], "Compact | None"]
@@ -333,9 +333,8 @@ def plain(array: Any) -> np.ndarray:
 
 def matrices_of(states: Orbit) -> Float[np.ndarray, "K size"] | None:
     """Return poses as rows of matrix entries where the step depends on them, for right-invariant constraints."""
-    if not states.system.is_spatial:
-        return None
-    return states.configuration.reshape(len(states), states.system.group.size**2).copy()  # kernels write to none
+    g = states.system.constraint_poses(states)
+    return None if g is None else g.reshape(len(states), states.system.group.size**2).copy()  # kernels write to none
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -440,10 +439,8 @@ def _two_ahead(states: Orbit, following: np.ndarray) -> Float[np.ndarray, "K siz
 
 def _of_compositions(route: AbstractCompiledRoute, states: Orbit) -> Float[np.ndarray, "K"]:
     """Return them for steps back from the opposite momentum."""
-    r, group = states.reduced_momentum, states.system.group
-    moves = states.system.is_spatial
-    g = states.configuration if moves else np.broadcast_to(group.identity, (len(r), group.size, group.size))
-    after, there, ahead = route.whole_steps(r, g)
+    r = states.reduced_momentum
+    after, there, ahead = route.whole_steps(r, step_poses(states))
     good = ahead == Outcome.successful
     back, _, behind = route.whole_steps(-after[good], there[good])
     distances = np.full(len(r), np.nan)

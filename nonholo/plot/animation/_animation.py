@@ -20,9 +20,7 @@ from matplotlib.colors import to_rgba_array
 from matplotlib.figure import Figure
 from PIL import Image
 
-from nonholo.base.checks import count, error, function, positive, shown
-from nonholo.base.checks import path as checked_path
-from nonholo.base.limits import within_memory
+from nonholo.base.checks import checked_path, count, error, function, positive, shown, within_memory
 from nonholo.base.types import Float
 from nonholo.groups import SE, SO
 from nonholo.io.places import check_file, complete_file
@@ -32,7 +30,7 @@ from nonholo.plot.animation import _in_plane, _in_space
 from nonholo.plot.animation._part import Show, part_of, part_of_flow, shown_states, together
 from nonholo.plot.motion.coordinates import momentum_track, track_of
 from nonholo.plot.overviews import name_of
-from nonholo.plot.parts import drawable_in_time, same_space, with_poses
+from nonholo.plot.parts import drawable_in_time, orbit_with_poses, same_space
 
 _SIZE = 4.8  # inches; 480 pixels
 
@@ -121,7 +119,7 @@ def _scene_of(where: str, orbit: AbstractOrbit) -> tuple[Callable[[Any], float],
         SE(3): (_in_space.motion, _in_space.draw_body),
     }
     if isinstance(orbit, Orbit) and orbit.system.group in scenes:
-        return scenes[with_poses(where, orbit).system.group]
+        return scenes[orbit_with_poses(where, orbit).system.group]
     track = track_of(orbit) or momentum_track(orbit)
     return lambda _: 0.0, functools.partial((_in_plane if len(track.names) == 2 else _in_space).draw_path, track)
 

@@ -13,8 +13,7 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from nonholo.analysis import InvariantCurve, MomentumLocus, invariant_curve
 from nonholo.analysis.planar import planar_map
-from nonholo.base.checks import array, error, instance, pair
-from nonholo.base.checks import energies as checked_energies
+from nonholo.base.checks import array, checked_energies, error, instance, pair
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit

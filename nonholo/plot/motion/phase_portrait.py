@@ -13,8 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch
 
 from nonholo.base.calls import call, check_result
-from nonholo.base.checks import choice, error, function, instance, pair, shown, text
-from nonholo.base.checks import energies as checked_energies
+from nonholo.base.checks import checked_energies, choice, error, function, instance, pair, shown, text
 from nonholo.base.types import Float
 from nonholo.discrete import BranchTree, Discretization, branch_tree
 from nonholo.orbit import Orbit

@@ -89,7 +89,7 @@ def body_axis_track(
         (True, True)
     """
     where = "body_axis_track(orbit=...)"
-    orbit = parts.with_poses(where, orbit)
+    orbit = parts.orbit_with_poses(where, orbit)
     if orbit.system.group != SO(3):
         raise error(where, "be an orbit on SO(3)", shown(orbit), _REMEDY)
     flow = parts.same_group("body_axis_track(flow=...)", flow, orbit)

@@ -17,7 +17,7 @@ from nonholo.discrete import Discretization
 from nonholo.groups import SE, SO, AbstractMatrixGroup
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plot import theme
-from nonholo.plot.parts import drawable_in_time, evenly_in_box, with_poses
+from nonholo.plot.parts import drawable_in_time, evenly_in_box, orbit_with_poses
 from nonholo.plot.sheets import Blade, blade_of_system
 
 AnyOrbit = TypeVar("AnyOrbit", bound=AbstractOrbit)
@@ -179,7 +179,7 @@ def energy_error(orbit: AbstractOrbit, axes: Axes | None = None, **look: Unpack[
     """
     orbit = drawable_in_time("energy_error(orbit=...)", orbit)
     if not orbit.has_poses and orbit.system.is_spatial:
-        with_poses("energy_error(orbit=...)", orbit)
+        orbit_with_poses("energy_error(orbit=...)", orbit)
     axes = theme.axes_or_new(axes, (6.0, 2.6))
     work, is_known = np.nan_to_num(orbit.known_work), bool(np.isfinite(orbit.known_work).all())
     has_work = bool(work.any())

@@ -98,7 +98,7 @@ def _with_blade(where: str, orbit: Any) -> tuple[Orbit, Blade]:
     blade = blade_of_system(orbit.system)
     if blade is None:
         raise error(where, "be an orbit of a sleigh in the plane", shown(orbit), "Use `body_axis_track` for a top.")
-    return parts.with_poses(where, orbit), blade
+    return parts.orbit_with_poses(where, orbit), blade
 
 
 def _contact(orbit: Orbit) -> Float[np.ndarray, "K 2"]:
@@ -219,7 +219,7 @@ def point_track(
     orbit = parts.drawable_in_time(where, orbit)
     if orbit.coordinates:
         return _in_coordinates(where, orbit, axes, flow)
-    orbit = parts.with_poses(where, orbit)
+    orbit = parts.orbit_with_poses(where, orbit)
     group = orbit.system.group
     n = group.size - 1
     if n < 2 or group != SE(n):

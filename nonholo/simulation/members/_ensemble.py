@@ -11,8 +11,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from nonholo.base.calls import call
-from nonholo.base.checks import count, error, flags, flow_times, flow_tolerances, function, refuse_given
-from nonholo.base.limits import within_memory
+from nonholo.base.checks import count, error, flags, flow_times, flow_tolerances, function, refuse_given, within_memory
 from nonholo.base.progress import progress_bar
 from nonholo.continuous import ContinuousFlow, solver_of
 from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretization

@@ -84,7 +84,7 @@ class Members(Keeper):
             return self.discrete.system
         if self.in_coordinates:
             return None
-        system = _inside(self.discrete.system)
+        system = self.discrete.system.inside
         values = {name: self.values(_ARGUMENTS.get(name, name)) for name in _leaves(system)}
         return system.stack(**{name: np.broadcast_to(x, (len(self), *x.shape[1:])) for name, x in values.items()})
 
@@ -108,11 +108,6 @@ class Members(Keeper):
         return Members(self.discrete, numbers, len(range(*which.indices(self.count))))
 
 
-def _inside(system: Any) -> Any:
-    """Return the body on which forces act, or the system itself."""
-    return system.system if system.is_forced else system
-
-
 def _rebuilt(system: Any, own: dict[str, Any]) -> Any:
     if isinstance(system, AbstractCoordinateSystem):
         return system.with_parameters(**own)
@@ -131,7 +126,7 @@ def _numbers(motion: Any) -> Mapping[str, Any]:
     """Return what may differ from member to member, by the name that its constructor has for it."""
     if in_coordinates(motion):
         return motion.system.parameters
-    system = _inside(motion.system)
+    system = motion.system.inside
     return {_ARGUMENTS.get(name, name): getattr(system, name) for name in _leaves(system)}
 
 
@@ -142,7 +137,7 @@ def checked_parameters(motion: Any, parameters: Any) -> dict[str, Any]:
     if not isinstance(parameters, Mapping):
         raise error("ensemble(parameters=...)", "be a mapping of names to arrays", shown(parameters), "Pass a dict.")
     numbers = dict(_numbers(motion)) | ({} if motion.time_step is None else {STEP: motion.time_step})
-    kind, arrays = type(motion.system if in_coordinates(motion) else _inside(motion.system)).__name__, {}
+    kind, arrays = type(motion.system if in_coordinates(motion) else motion.system.inside).__name__, {}
     for name, value in parameters.items():
         if name not in numbers:
             raise _unknown(name, kind, [*numbers])

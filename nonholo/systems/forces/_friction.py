@@ -8,8 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from nonholo.base.checks import array, error, is_traced, number, shape_of, shown
-from nonholo.base.limits import within_memory
+from nonholo.base.checks import array, error, is_traced, number, shape_of, shown, within_memory
 from nonholo.base.memo import system_memo
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
