@@ -140,7 +140,7 @@ class AbstractOrbit(Keeper, abc.ABC):
         def __getattr__(self, name: str) -> Any:
             """Compute the numbers of steps of a run, or its times, when they are first read."""
             if name not in ("step", "time") or (steps := vars(self).get("steps")) is None:
-                raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+                return object.__getattribute__(self, name)  # raises what it raised before
             number = np.arange(steps.start, steps.stop, steps.step)
             object.__setattr__(self, name, number if name == "step" else self.motion.time_step * number)
             return vars(self)[name]

@@ -271,8 +271,7 @@ def _orbit_of(stepper: Stepper, table: _Table, plan: Plan, standing: Reached) ->
         table.take(table.rows, standing.step, 0, plan.every)
     rows = part_of(table.rows, first, last + (stepper.lead or ends))
     rows = _certain_rows(stepper, rows) if ends else rows
-    outcome = standing.outcome or table.outcome
-    orbit = stepper.orbit(rows, table.begin + first * plan.every, plan.every, outcome)
+    orbit = stepper.orbit(rows, table.begin + first * plan.every, plan.every, standing.outcome or table.outcome)
     return orbit if standing.watch is None else dataclasses.replace(orbit, events=standing.watch.log())
 
 
