@@ -139,11 +139,13 @@ class AbstractOrbit(Keeper, abc.ABC):
 
         def __getattr__(self, name: str) -> Any:
             """Compute the numbers of steps of a run, or its times, when they are first read."""
-            if name not in ("step", "time") or (steps := vars(self).get("steps")) is None:
+            own, key = vars(self), f"{name}.of_run"  # has a dot, which no name of a field has
+            if name not in ("step", "time") or "steps" not in own:
                 return object.__getattribute__(self, name)  # raises what it raised before
-            number = np.arange(steps.start, steps.stop, steps.step)
-            object.__setattr__(self, name, number if name == "step" else self.motion.time_step * number)
-            return vars(self)[name]
+            if key not in own:
+                number = np.arange(own["steps"].start, own["steps"].stop, own["steps"].step)
+                own[key] = number if name == "step" else self.motion.time_step * number
+            return own[key]
 
     def _mark_impacts(self) -> None:
         """Mark what steps with impacts do not have."""
