@@ -6,13 +6,14 @@ are checked for shape alone, since their values are not known yet.
 
 import contextlib
 import functools
+import inspect
 import math
 import numbers
 import os
 import re
 import shutil
 import sys
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from pathlib import Path
 from typing import Any, TypeAlias, TypeVar, cast
 
@@ -24,6 +25,7 @@ from nonholo.base.types import Array
 Kind = TypeVar("Kind")
 Owner: TypeAlias = str | Callable[[], str]
 """The argument that an error names, or what names it once there is one."""
+_vdot = inspect.unwrap(np.vdot)  # of NumPy's own arrays: it asks no other library
 Function = TypeVar("Function", bound=Callable[..., Any])
 _LEAST_RTOL = 1e-14
 LARGEST = 1e150  # what a number may be; squares of larger ones overflow
@@ -82,7 +84,7 @@ def array(where: str, value: Any, shape: tuple[int | None, ...], remedy: str = "
         raise error(where, f"have shape {_shape_text(shape)}", f"shape {raw.shape}", remedy)
     try:
         result = np.array(raw if raw.dtype.char == "d" else _as_floats(raw), dtype=np.float64)
-        if not _is_moderate(result):
+        if not is_moderate(result):
             _refuse_large(where, result, remedy)
     except MemoryError:
         raise error(where, "fit into memory", f"shape {raw.shape}", remedy) from None
@@ -119,19 +121,18 @@ def shown(value: Any) -> str:
     return text if len(text) <= 200 else f"{text[:200]}..."
 
 
-def is_moderate(value: np.ndarray, most: float) -> bool:
-    """Return whether every number is finite and at most as large."""
-    return _is_moderate(value) or bool((np.isfinite(value) & (np.abs(value) <= most)).all())
+def are_moderate(columns: Iterable[tuple[np.ndarray | None, float]]) -> bool:
+    """Return whether every number of columns, if there is any, is finite and at most as large as it may be."""
+    return all(rows is None or is_moderate(rows, most) for rows, most in columns)
 
 
-def _is_moderate(value: np.ndarray) -> bool:
-    """Show by sums of squares, without copies, that no number lies beyond the largest; False decides nothing."""
-    if value.size <= _FEW:
-        return float(np.vdot(value, value).real) <= _LARGEST_SUM
-    if not value.flags.c_contiguous:  # one number that is repeated without end, among others
-        return False
-    numbers = value.reshape(-1)
-    return all(_is_moderate(numbers[begin : begin + _FEW]) for begin in range(0, value.size, _FEW))
+def is_moderate(value: np.ndarray, most: float = LARGEST) -> bool:
+    """Return whether every number is finite and at most as large: without copies, if sums of squares show it."""
+    if value.size > _FEW and value.flags.c_contiguous:  # other arrays may repeat one number without end
+        numbers = value.reshape(-1)
+        return all(is_moderate(numbers[begin : begin + _FEW], most) for begin in range(0, value.size, _FEW))
+    are_few = value.size <= _FEW and float(_vdot(value, value).real) <= _LARGEST_SUM
+    return are_few or bool((np.isfinite(value) & (np.abs(value) <= most)).all())
 
 
 def _check_finite(where: Owner, value: np.ndarray, remedy: str) -> None:
@@ -190,7 +191,7 @@ def trailing(where: Owner, value: Any, shape: tuple[int, ...], remedy: str, *, r
         raise error(where, "be real", "complex numbers", remedy)
     try:
         result = _as_floats(raw)
-        if not _is_moderate(result):
+        if not is_moderate(result):
             _check_finite(where, result if result.ndim == len(shape) else np.where(np.isnan(result), 0, result), remedy)
     except MemoryError:
         raise error(where, "fit into memory", f"shape {raw.shape}", remedy) from None
@@ -200,7 +201,8 @@ def trailing(where: Owner, value: Any, shape: tuple[int, ...], remedy: str, *, r
 def _is_as_wanted(value: Any, shape: tuple[int, ...]) -> bool:
     """Return whether nothing is left to look at: moderate floats in an array that ends in this shape."""
     is_plain = type(value) is np.ndarray and value.dtype.char == "d" and 0 < len(shape) <= value.ndim <= _MOST_AXES
-    return is_plain and value.shape[-len(shape) :] == shape and _is_moderate(value)
+    is_plain = is_plain and (value.size <= _FEW or value.flags.c_contiguous)
+    return is_plain and value.shape[-len(shape) :] == shape and is_moderate(value)
 
 
 def shape_of(value: Any) -> tuple[int, ...]:

@@ -5,11 +5,11 @@ import dataclasses
 import functools
 import importlib
 from collections.abc import Sequence
-from typing import Any, ClassVar, TypeVar, cast
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, cast
 
 import numpy as np
 
-from nonholo.base.checks import LARGEST, array, error, is_moderate, selection, shape_of, within_memory
+from nonholo.base.checks import LARGEST, are_moderate, array, error, selection, shape_of, within_memory
 from nonholo.base.html import table
 from nonholo.base.memo import Keeper, memo
 from nonholo.base.results import Outcome
@@ -119,15 +119,32 @@ class AbstractOrbit(Keeper, abc.ABC):
 
         Nor with a momentum whose square overflows.
         """
-        if self.outcome == Outcome.successful:
-            for name, most in _bounds(type(self)):
-                rows = getattr(self, name)
-                if rows is not None and not is_moderate(rows, most):
-                    object.__setattr__(self, "outcome", Outcome.nonfinite)
+        good = self.outcome == Outcome.successful
+        if good and not are_moderate((getattr(self, name), most) for name, most in _bounds(type(self))):
+            object.__setattr__(self, "outcome", Outcome.nonfinite)
         if self.step is None or len(self.step) != len(self.time):
             object.__setattr__(self, "step", np.arange(0, self.save_every * len(self.time), self.save_every))
         if self.events is not None:
             self._mark_impacts()
+
+    @classmethod
+    def of_run(cls: type[SelfT], steps: range, **fields: Any) -> SelfT:
+        """Return the orbit after these steps of a run, whose outcome is known: nothing is looked at again."""
+        orbit = object.__new__(cls)
+        vars(orbit).update(fields, steps=steps)
+        return orbit
+
+    if not TYPE_CHECKING:  # which would take every name for one of an orbit
+
+        def __getattr__(self, name: str) -> Any:
+            """Compute the numbers of steps of a run, or its times, when they are first read."""
+            own, key = vars(self), f"{name}.of_run"  # has a dot, which no name of a field has
+            if name not in ("step", "time") or "steps" not in own:
+                return object.__getattribute__(self, name)  # raises what it raised before
+            if key not in own:
+                number = np.arange(own["steps"].start, own["steps"].stop, own["steps"].step)
+                own[key] = number if name == "step" else self.motion.time_step * number
+            return own[key]
 
     def _mark_impacts(self) -> None:
         """Mark what steps with impacts do not have."""
@@ -252,7 +269,7 @@ class AbstractOrbit(Keeper, abc.ABC):
             return np.full(len(self), np.nan)
 
     def __len__(self) -> int:
-        return len(self.time)
+        return len(getattr(self, self.momenta[0]))
 
     def _repr_html_(self) -> str:
         rows = [("system", repr(self.system)), ("states", f"{len(self):,}")]

@@ -68,10 +68,6 @@ class Plan(NamedTuple):
         is_last = self.steps // self.every < (block + 1) * self.rows
         return self.begin(block), self.steps if is_last else self.begin(block + 1), is_last
 
-    def has_rows(self, block: int, step: int) -> bool:
-        """Return whether a block has saved states if the run stands at a step: it may fail before the first one."""
-        return block * self.rows <= step // self.every
-
 
 class AbstractStepper(abc.ABC, Generic[OrbitT]):
     """A map with a way to compute its steps.
@@ -123,9 +119,14 @@ class AbstractStepper(abc.ABC, Generic[OrbitT]):
         cut into calls.
         """
 
+    def settle(self, rows: Rows) -> Outcome:
+        """Bring rows to the numbers of an orbit, in place, as far as they fit; return what is known of them then."""
+        del rows
+        return Outcome.successful
+
     @abc.abstractmethod
     def orbit(self, rows: Rows, step: int, every: int, outcome: Outcome) -> OrbitT:
-        """Return rows as an orbit, the first one after `step` steps, the others `every` steps apart.
+        """Return settled rows as an orbit, the first one after `step` steps, the others `every` steps apart.
 
         The column of the step ahead is a row shorter where the last row is the end of the run.
         """

@@ -68,7 +68,8 @@ def _with_step(stepper: AbstractStepper[Any], states: Any) -> Any:
     """Return a state with the step that begins there."""
     state, outcome = begun_at(stepper, states)
     split = np.split(state[: stepper.width], np.cumsum(list(stepper.columns.values()))[:-1])
-    return states.with_step(stepper.orbit(tuple(row[None] for row in split), 0, 1, Outcome.successful), outcome)
+    rows = tuple(row[None] for row in split)
+    return states.with_step(stepper.orbit(rows, 0, 1, stepper.settle(rows)), outcome)
 
 
 def crossings(orbit: AbstractOrbit, event: Any) -> Crossings:

@@ -19,6 +19,7 @@ from nonholo.simulation._search import Watch, piece_of, search
 
 _PIECE, _SHORT = 1 << 20, 256  # steps of a call at most; of the first searched call, which an event may soon end
 _AGAIN = 32  # steps of the first searched call after an impact
+_NEAR = 1 << 19  # numbers in the rows of a call, which are settled while they are near the processor
 _ROWS, _NUMBERS = 1 << 16, 1 << 22  # at most in a block: saved states, numbers in an array
 _SOON, _LATE = 0.1, 0.3  # seconds: Ctrl-C waits for a call, whose steps are doubled and halved
 
@@ -102,7 +103,13 @@ def orbit_at(stepper: Stepper, state: State, step: int) -> Any:
     """Return the row of a state as an orbit."""
     rows = empty_rows(stepper, 1)
     write_first(state, rows)
-    return stepper.orbit(_certain_rows(stepper, rows), step, 1, Outcome.successful)
+    return _states(stepper, rows, step)
+
+
+def _states(stepper: Stepper, rows: Rows, step: int) -> Any:
+    """Return rows of single steps as an orbit."""
+    outcome = stepper.settle(rows)
+    return stepper.orbit(_certain_rows(stepper, rows), step, 1, outcome)
 
 
 def empty_rows(stepper: Stepper, places: int) -> Rows:
@@ -129,6 +136,7 @@ class _Table:
         self.places = 1 + (self.stop - self.begin) // self.every
         self.rows = empty_rows(stepper, 1 if fine else self.places)  # an event may stop the run long before
         self.fresh, self.least = 0, _SHORT  # where steps of searched calls begin to double, and from how many on
+        self.outcome = Outcome.successful
 
     def room(self, step: int, pace: int) -> tuple[int, int, Rows]:
         """Return how many steps to take from a step, after how many of them a row is written, and where.
@@ -142,7 +150,7 @@ class _Table:
             each, count = 1, min(most, piece_of(self.stepper.columns.values()))
             self._reserve(1 + (step - self.begin + count) // self.every)
         elif past == 0 and most >= self.every:
-            each, count = self.every, most // self.every
+            each, count = self.every, min(most // self.every, 1 + _NEAR // self.stepper.width)
         else:
             each, count = min(most, self.every - past), 1
         if each != self.every:
@@ -159,11 +167,15 @@ class _Table:
             self.rows = longer
 
     def take(self, room: Rows, step: int, good: int, each: int) -> None:
-        """Keep the saved states among the rows of a call, if they are not in place."""
-        past = step - self.begin + each * np.arange(1 + good // each)
-        at = np.flatnonzero(past % self.every == 0)
-        for column, new in zip(self.rows, room, strict=True):
-            column[past[at] // self.every] = new[at]
+        """Keep the saved states among the rows of a call, if they are not in place; settle them while they are near."""
+        begin, end = step - self.begin, step - self.begin + good
+        if each != self.every:
+            past = begin + each * np.arange(1 + good // each)
+            at = np.flatnonzero(past % self.every == 0)
+            for column, new in zip(self.rows, room, strict=True):
+                column[past[at] // self.every] = new[at]
+        rows = part_of(self.rows, -(-begin // self.every), 1 + end // self.every)
+        self.outcome = self.stepper.settle(rows) or self.outcome
 
 
 def blocks(
@@ -200,10 +212,10 @@ def compute_block(stepper: Stepper, plan: Plan, number: int, start: Reached, rep
             over = watch.stopped_by is not None
             if good < steps:  # up to an impact
                 table.fresh, table.least = step + good, _AGAIN
-        if each != plan.every:
-            table.take(room, step, good, each)
-        step, pace = step + good, _pace(pace, time.monotonic() - since)
+        table.take(room, step, good, each)
+        step += good
         report(step, plan.steps)
+        pace = _pace(pace, time.monotonic() - since)
     standing = Reached(step, Outcome.successful if over else OUTCOMES[code], state, watch)
     return _orbit_of(stepper, table, plan, standing), standing
 
@@ -215,8 +227,8 @@ def _watch_steps(stepper: Stepper, watch: Watch, state: State, stretch: tuple[in
         write_first(state, room)
         return _through(stepper, watch, state, (step, 0), room)
     state, good, code = _advance(stepper, state, steps, 1, room)
-    rows = _certain_rows(stepper, part_of(room, 0, 1 + good))
-    watch, states = search(watch, stepper.orbit(rows, step, 1, Outcome.successful))
+    rows = tuple([column[: 1 + good].copy() for column in room])
+    watch, states = search(watch, _states(stepper, rows, step))
     if watch.reset_by is not None:
         return _through(stepper, watch, state, (step, states - 1), room)
     if watch.stopped_by is not None:
@@ -255,9 +267,10 @@ def _orbit_of(stepper: Stepper, table: _Table, plan: Plan, standing: Reached) ->
     first = int(stepper.lead == 1 and table.number > 0)
     if standing.step == table.begin:  # no step was taken
         write_first(standing.state, table.rows)
+        table.take(table.rows, standing.step, 0, plan.every)
     rows = part_of(table.rows, first, last + (stepper.lead or ends))
     rows = _certain_rows(stepper, rows) if ends else rows
-    orbit = stepper.orbit(rows, table.begin + first * plan.every, plan.every, standing.outcome)
+    orbit = stepper.orbit(rows, table.begin + first * plan.every, plan.every, standing.outcome or table.outcome)
     return orbit if standing.watch is None else dataclasses.replace(orbit, events=standing.watch.log())
 
 

@@ -100,8 +100,8 @@ def simulate(
         True
     """
     run = checked_run("simulate", discrete, steps, save_every, branch, backend, reconstruct, events, throw, progress)
-    starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity}
-    starts |= {"displacement": displacement, "momentum": momentum}
+    starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
+    starts["restricted_velocity"] = restricted_velocity
     start = Start.of("simulate", configuration, choices=discrete.starts, project=project, **starts)
     if store is None and (checkpoint_every is not None or scenario is not None):
         _refuse_without_store(checkpoint_every=checkpoint_every, scenario=scenario)
@@ -181,7 +181,7 @@ def iterate(
     """
     run = checked_run("iterate", discrete, steps, save_every, branch, backend, reconstruct, events, throw, progress)
     starts = {"body_velocity": body_velocity, "displacement": displacement, "momentum": momentum}
-    starts |= {"restricted_velocity": restricted_velocity}
+    starts["restricted_velocity"] = restricted_velocity
     start = Start.of("iterate", configuration, choices=discrete.starts, project=project, **starts)
     refuse_too_large("iterate", tuple(run.stepper.columns.values()), 1)
     rows = rows_of_block("iterate(block_steps=...)", run, block_steps)

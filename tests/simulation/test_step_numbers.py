@@ -1,6 +1,8 @@
 """The numbers of steps that an orbit knows, and what reads them: work, multipliers and events under forces."""
 
+import copy
 import functools
+import pickle
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,6 +12,7 @@ import pytest
 
 import nonholo as nh
 from nonholo.io.orbits import load_states
+from nonholo.simulation import _run as _run_room
 
 H = 0.05
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
@@ -86,6 +89,46 @@ def test_each_way_to_take_rows_keeps_the_steps(kind: str) -> None:
     assert joined.step.tolist() == [6, 14, 22, 0, 6, 12, 18, 24, 10, 4, 4]
     assert orbit.to_dataset()["step"].values.tolist() == orbit.step.tolist()
     assert joined.chosen(slice(0, 0)).step.tolist() == []
+
+
+@pytest.mark.profile("routes", keep=["scalar", "order 4", "right-invariant"])
+@pytest.mark.parametrize("kind", STEPPED)
+def test_rows_have_the_same_bits_in_calls_of_any_length(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of all maps: rows are settled call by call, and the first of a call, the last of the one before, twice."""
+    runs: list[dict[str, Any]] = [{"steps": 50}, {"steps": 50, "save_every": 3}]
+    runs.append(runs[1] | {"events": [_level]})
+    whole = [STEPPED[kind](**run).rows() for run in runs]
+    monkeypatch.setattr(_run_room, "_NEAR", 60)
+    for rows, run in zip(whole, runs, strict=True):
+        again = STEPPED[kind](**run).rows()
+        assert rows.keys() == again.keys()
+        assert all(np.array_equal(rows[name], again[name], equal_nan=True) for name in rows)
+
+
+@pytest.mark.parametrize(("column", "most"), [(0, 1e150), (1, np.inf), (2, np.inf)])
+@pytest.mark.parametrize("system", [TOP, FOUR], ids=["scalar", "matrices"])
+def test_rows_that_are_not_finite_are_no_success(system: Any, column: int, most: float) -> None:
+    """One number in a column is seen when the rows are settled, a pose that is not saved excepted."""
+    for with_poses in (True, False):
+        stepper = nh.discretize(system, H).stepper(with_poses=with_poses)
+        sizes = stepper.columns.values()
+        for bad in (np.nan, -np.inf, 1.01 * most / stepper.route.scale if column == 0 else np.nan):
+            rows = tuple(np.ones((3, size)) for size in sizes)
+            rows[column][1, -1:] = bad
+            expected = nh.Outcome.nonfinite if with_poses or column < 2 else nh.Outcome.successful
+            assert stepper.settle(rows) == expected
+
+
+def test_times_of_a_run_are_computed_when_they_are_read() -> None:
+    """They are h times the numbers of steps, also in copies; other names do not exist."""
+    orbit = _run(TOP, steps=24, save_every=2)
+    assert not {"time", "step"} & vars(orbit).keys()
+    assert len(orbit) == 13
+    for each in (pickle.loads(pickle.dumps(orbit)), copy.copy(orbit), orbit):  # noqa: S301
+        assert np.array_equal(each.time, np.float64(H) * np.arange(0, 25, 2))
+        assert each.time is each.time
+    with pytest.raises(AttributeError, match="'Orbit' object has no attribute 'times'"):
+        _ = orbit.times
 
 
 @pytest.mark.profile("faults", keep=["table"])

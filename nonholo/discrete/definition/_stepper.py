@@ -119,11 +119,14 @@ class DefinitionStepper(AbstractBodyStepper):
             state[:] = np.concatenate((r, y, g.ravel(), *self._normal(ahead)))
         return steps, 0
 
-    def decode(self, rows: Rows) -> Compact:
-        """Return canonical momenta, charts and compact poses."""
-        (momenta, charts, poses), system = rows, self.motion.system
-        compact = system.group.pose_from_matrix(self._matrix(poses) @ system.frame)
-        return applied(system.frame_map, momenta), charts, compact
+    def decode(self, momenta: np.ndarray, charts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return canonical momenta and charts."""
+        return applied(self.motion.system.frame_map, momenta), charts
+
+    def decode_poses(self, poses: np.ndarray) -> np.ndarray:
+        """Return compact canonical poses."""
+        system = self.motion.system
+        return system.group.pose_from_matrix(self._matrix(poses) @ system.frame)
 
     def _take(self, number: int, steps: int, r: np.ndarray, y: np.ndarray, g: np.ndarray) -> Any:
         nearest = self.branch == "nearest"

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from nonholo import kernels
+from nonholo.base.checks import LARGEST, are_moderate
 from nonholo.base.numerics import applied
 from nonholo.base.results import OUTCOMES, Outcome, OutcomeError
 from nonholo.base.types import Array, Float
@@ -45,17 +46,29 @@ class AbstractBodyStepper(AbstractStepper[Orbit]):
 
     in_threads = False
 
-    def decode(self, rows: Rows) -> Compact:
-        """Return rows as canonical momenta, charts and poses, which they are by default."""
+    def decode(self, momenta: np.ndarray, charts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return momenta and charts as canonical ones, which they are by default."""
+        return momenta, charts
+
+    def decode_poses(self, poses: np.ndarray) -> np.ndarray:
+        """Return poses as compact canonical ones, which they are by default."""
+        return poses
+
+    def settle(self, rows: Rows) -> Outcome:
+        """Bring momenta and charts to canonical ones, in place; return whether all that is saved is finite."""
         momenta, charts, poses = rows
-        return momenta, charts, poses
+        momenta[:], charts[:] = self.decode(momenta, charts)
+        good = are_moderate(((momenta, LARGEST), (charts, np.inf), (poses if self.with_poses else None, np.inf)))
+        return Outcome.successful if good else Outcome.nonfinite
 
     def orbit(self, rows: Rows, step: int, every: int, outcome: Outcome) -> Orbit:
-        """Return rows as an orbit."""
-        momenta, charts, poses = self.decode(rows)
-        number, saved_poses = np.arange(step, step + every * len(momenta), every), poses if self.with_poses else None
-        time = self.motion.time_step * number
-        return Orbit(self.motion, time, momenta, charts, saved_poses, outcome, every, branch=self.branch, step=number)
+        """Return settled rows as an orbit."""
+        (momenta, charts, raw), poses = rows, None
+        if self.with_poses and (poses := self.decode_poses(raw)) is not raw and not are_moderate([(poses, np.inf)]):
+            outcome = outcome or Outcome.nonfinite
+        steps, motion = range(step, step + every * len(momenta), every), self.motion
+        states = {"reduced_momentum": momenta, "cayley": charts, "canonical_pose": poses}
+        return Orbit.of_run(steps, motion=motion, **states, outcome=outcome, save_every=every, branch=self.branch)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -108,11 +121,13 @@ class CompiledStepper(AbstractBodyStepper):
         np.concatenate([column[place] for column in rows], out=state[:width])
         return good, code
 
-    def decode(self, rows: Rows) -> Compact:
-        """Return rows of the kernel in canonical numbers."""
-        momenta, charts, poses = rows
-        canonical = self.route.decode_poses(poses) if self.with_poses else poses
-        return self.route.decode(momenta), self.route.from_kernel(charts), canonical
+    def decode(self, momenta: np.ndarray, charts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return momenta and charts of the kernel as canonical ones."""
+        return self.route.decode(momenta), self.route.from_kernel(charts)
+
+    def decode_poses(self, poses: np.ndarray) -> np.ndarray:
+        """Return poses of the kernel as compact canonical ones."""
+        return self.route.decode_poses(poses)
 
 
 class AbstractRoute(abc.ABC):
