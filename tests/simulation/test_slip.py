@@ -152,12 +152,17 @@ def _lawful(forced: nh.Forced, h: float, velocity: np.ndarray, steps: int) -> tu
 @pytest.mark.profile("problems", keep=["1"])
 @pytest.mark.parametrize("seed", range(40))
 def test_no_slip_adds_energy(seed: int) -> None:
-    """T + U never grows and the balance closes to rounding: any body, contacts, step, grips and coefficients."""
-    rng = np.random.default_rng(seed)
+    """T + U never grows and the balance closes to rounding: any body, contacts, step, grips and coefficients.
+
+    Of 25 cases at least half have all their steps.
+    """
+    rng, long = np.random.default_rng(seed), 0
     for _ in range(25):
-        growth, gap, _ = _lawful(*random_case(rng), 4)
+        growth, gap, states = _lawful(*random_case(rng), 4)
         assert growth < 1e-13
         assert gap < 1e-13
+        long += states == 5
+    assert long > 12
 
 
 @pytest.mark.parametrize("seed", range(50))
