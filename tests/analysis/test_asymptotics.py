@@ -95,16 +95,6 @@ def test_turn_of_an_orbit_without_poses() -> None:
         assert np.sign(turn) == np.sign(omega)
 
 
-def test_map_tends_to_the_flow_in_space() -> None:
-    """The axes in space of discrete orbits tend to those of the flow, with h^2."""
-    start = {"restricted_velocity": (0.6, 0.7)}
-    exact, errors = nh.asymptotics(nh.flow(TOP, times=[0.0, 1.0], **start)), []
-    for h in (0.1, 0.05):
-        found = nh.asymptotics(nh.simulate(nh.discretize(TOP, h), steps=2, **start))
-        errors.append(np.linalg.norm(found.spatial_axis_after - exact.spatial_axis_after))
-    assert 1.9 <= np.log2(errors[0] / errors[1]) <= 2.1
-
-
 @pytest.mark.profile("routes", keep=["turning sleigh 3"])
 @pytest.mark.parametrize("name", ["top 5", "sleigh 3", "turning sleigh 3"])
 def test_limits_in_higher_dimensions(name: str) -> None:

@@ -71,15 +71,6 @@ def test_runs_at_the_same_time_get_different_stores(rows: int, tmp_path: Path, m
     assert len(list((tmp_path / "runs").iterdir())) == 8
 
 
-def test_existing_output_is_refused_before_the_run(nonholo: Command) -> None:
-    """An existing -o is refused with exit code 2 and the remedy; --overwrite replaces it."""
-    assert nonholo("simulate", "sleigh", "--no-plot", "-o", "a.zarr", "--steps", 3).exit_code == 0
-    assert_ends(nonholo("simulate", "sleigh", "--no-plot", "-o", "a.zarr", "--steps", 4), 2, "--overwrite")
-    assert len(nh.load_orbit("a.zarr")) == 4
-    assert nonholo("simulate", "sleigh", "--no-plot", "-o", "a.zarr", "--steps", 4, "--overwrite").exit_code == 0
-    assert len(nh.load_orbit("a.zarr")) == 5
-
-
 def test_a_picture_of_an_older_run_is_told(nonholo: Command) -> None:
     """After --overwrite --no-plot a warning says that the picture beside the store is that of the run before."""
     nonholo("simulate", "suslov", "-o", "a.zarr", "--steps", 20)
@@ -102,12 +93,6 @@ def test_a_run_that_stops_keeps_its_good_steps(nonholo: Command) -> None:
     told = json.loads(nonholo("simulate", "sleigh", "--no-plot", "--time-step", 1.3, "--json").stdout)
     assert told["steps"] == 4
     assert "Step 5 of 300" in told["stopped"]
-
-
-def test_a_run_without_a_start_keeps_nothing(nonholo: Command) -> None:
-    """If not even the first displacement exists there is no store, and the message says so."""
-    assert_ends(nonholo("simulate", "suslov", "--time-step", 1.2), 1, "Nothing to keep. Start of the run")
-    assert not list(Path("runs").iterdir())
 
 
 def test_a_body_that_cannot_be_is_told_once(nonholo: Command) -> None:
@@ -165,15 +150,6 @@ def test_a_failing_picture_does_not_cost_the_run(nonholo: Command, monkeypatch: 
     assert_ends(nonholo("simulate", "suslov", "--steps", 5), 0, "no picture: RuntimeError: no ink")
     assert len(nh.load_orbit("runs/suslov-001.zarr")) == 6
     assert [path.name for path in Path("runs").iterdir()] == ["suslov-001.zarr"]
-
-
-def test_pictures(nonholo: Command) -> None:
-    """A run draws its picture beside the store; `plot` draws it again elsewhere, in the format of the name."""
-    result = nonholo("simulate", "sleigh", "--steps", 60)
-    assert (result.exit_code, result.stderr) == (0, "")
-    assert Path("runs/sleigh-001.png").read_bytes().startswith(b"\x89PNG")
-    assert nonholo("plot", "runs/sleigh-001.zarr", "-o", "again.pdf").exit_code == 0
-    assert Path("again.pdf").read_bytes().startswith(b"%PDF")
 
 
 def test_animation(nonholo: Command) -> None:

@@ -32,15 +32,6 @@ def test_standard_output_is_the_file(store: Path, nonholo: Command) -> None:
     assert shown.stdout == Path("poses.csv").read_text() == Path("orbit.csv").read_text()
 
 
-def test_a_simulated_scenario_is_exported(nonholo: Command) -> None:
-    """The store of `simulate` gives quaternions of a top, thinned by --every."""
-    kept = nonholo("simulate", "suslov", "--steps", 20, "--no-plot", "-q").stdout.strip()
-    lines = nonholo("export", kept, "--every", 10).stdout.splitlines()
-    assert lines[0] == "t,qw,qx,qy,qz"
-    orbit = nh.load_orbit(kept)
-    assert [float(line.split(",")[0]) for line in lines[1:]] == orbit.time[::10].tolist()
-
-
 def test_unfinished_run_is_told_on_standard_error(nonholo: Command) -> None:
     """The finished blocks of a stopped run are exported, and standard error says how far they go."""
     with stopped_at(2):
@@ -48,15 +39,6 @@ def test_unfinished_run_is_told_on_standard_error(nonholo: Command) -> None:
     result = nonholo("export", "run.zarr")
     result = assert_ends(result, 0, "Warning: The run in 'run.zarr' is not finished: its poses go up to step 39 of 50")
     assert len(result.stdout.splitlines()) == 41
-
-
-def test_existing_file_is_refused(store: Path, nonholo: Command) -> None:
-    """An older file stays, with exit code 2, until --overwrite is given."""
-    Path("poses.csv").write_text("older")
-    assert_ends(nonholo("export", store, "-o", "poses.csv"), 2, "--overwrite")
-    assert Path("poses.csv").read_text() == "older"
-    assert nonholo("export", store, "-o", "poses.csv", "--overwrite").exit_code == 0
-    assert Path("poses.csv").read_text().startswith("t,x,y,theta\n0.0,")
 
 
 @pytest.mark.parametrize("arguments", [("nothing.zarr",), ("run.zarr", "--every", 0)], ids=["no store", "every 0"])

@@ -17,7 +17,6 @@ from nonholo.cli.scenario.bodies import SHORT
 from nonholo.cli.scenario.files import built_in, effective_text, load_scenario, parse_setting
 from nonholo.cli.scenario.motion import rows_of
 from nonholo.cli.scenario.sections import ScenarioError
-from nonholo.cli.scenario.sweeps import load_sweep_scenario, sweep_text
 
 TABLE = [[0.5, 0.25, 0.0], [-0.1, 0.3, 1.0], [0.0, 1e-3, 0.0]]
 RUN = """
@@ -231,19 +230,6 @@ def test_thinned_run_under_a_table(file: Path, nonholo: Command) -> None:
 
 
 DESIGN = '[design]\nkind = "grid"\n[design.values]\n"start.restricted_velocity_0" = [0.1, 0.3]\n'
-
-
-def test_sweep_under_forces(file: Path, nonholo: Command) -> None:
-    """The members of a sweep move under the forces of its scenario, whose text says all of them."""
-    file.write_text(SLEIGH + FORCES + DESIGN)
-    assert_ends(nonholo("sweep", file, "-o", "s.zarr", "--no-plot", "-q"), 0)
-    swept = nh.load_sweep("s.zarr").load()
-    forced = nh.discretize(_forced(potential=GRAVITY, force=(FRICTION, np.array(TABLE))), 0.05)
-    for row, rate in enumerate([0.1, 0.3]):
-        last = nh.simulate(forced, restricted_velocity=(rate, 0.4), steps=3).restricted_momentum[-1]
-        np.testing.assert_array_equal(swept["final_momentum"].values[row], last)
-    Path("again.toml").write_text(sweep_text(load_sweep_scenario(str(file), []).scenario))
-    assert load_sweep_scenario("again.toml", [])[0] == load_sweep_scenario(str(file), [])[0]
 
 
 def test_sweep_over_numbers_of_forces(file: Path, nonholo: Command) -> None:

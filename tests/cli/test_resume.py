@@ -148,16 +148,6 @@ def test_older_store_stays_where_nothing_replaces_it(nonholo: Command) -> None:
     assert len(nh.load_orbit("run.zarr")) == 51
 
 
-def test_long_run_that_cannot_go_on_is_kept(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The good steps of a run of several blocks are in its store, with the outcome."""
-    monkeypatch.setattr(_run, "_ROWS", 4)
-    given = ("--set", "run.time_step=1.0", "--set", "start={momentum=[1.93257157, -0.68979744]}")
-    assert_ends(nonholo("simulate", "suslov", "--steps", 500, "--no-plot", *given), 1, "the good steps are kept")
-    orbit = nh.load_orbit("runs/suslov-001.zarr")
-    assert orbit.outcome != nh.Outcome.successful
-    assert 4 < len(orbit) < 20
-
-
 @pytest.mark.usefixtures("short_blocks")
 def test_figures_of_the_last_block_say_so(nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where an orbit is too large to be loaded the steps are all of them, and the figures say what they are of."""

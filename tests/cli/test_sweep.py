@@ -173,12 +173,6 @@ def test_members_of_lists_are_refused() -> None:
     assert told == ["--set design.members=100: design.members: needs a range with a count to scale"]
 
 
-def test_refusals_name_the_option() -> None:
-    """What the command line gave is reported as an option, not as the file."""
-    option = "design.values.body.kind=[1]"
-    assert _problems(GRID, option)[0].startswith(f"--set {option}: design.values.body.kind: cannot be varied")
-
-
 @pytest.mark.parametrize(
     ("given", "kind"),
     [
@@ -440,12 +434,6 @@ def test_plot_of_a_sweep(nonholo: Command) -> None:
 def test_simulate_of_a_sweep_is_refused(nonholo: Command) -> None:
     """`simulate` sends a scenario with a design to `sweep`."""
     assert_ends(nonholo("simulate", _written(GRID)), 2, "nonholo sweep my.toml")
-
-
-def test_help_shows_the_tables(nonholo: Command) -> None:
-    """The help names the tables of a scenario, whose brackets are no markup."""
-    shown = nonholo("sweep", "--help").stdout
-    assert all(f"[{table}]" in shown for table in ("body", "start", "run", "design", "design.values", "keep", "output"))
 
 
 def test_template_runs(nonholo: Command) -> None:

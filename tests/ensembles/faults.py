@@ -42,28 +42,26 @@ def done(path: Path) -> int:
     return len(list((path / "run" / "blocks").glob("*.json")))
 
 
-def kill_often(name: str, path: Path, scheduler: str, victims: list[str]) -> None:
+def kill_often(name: str, path: Path, victims: list[str]) -> None:
     """Resume a sweep and kill client, worker or all, again and again; print how often that ended as it has to."""
     chance = np.random.default_rng(len(victims))
-    TOPS(nh.MemberBlock(0, 1, 0, nh.RandomDesign(1, TOP_DESIGN).values(0, 1)))  # compiled before the first fork
     ended = 0
     for victim in victims:
         before = done(path)
         client = os.fork()
         if client == 0:
-            _as_client(name, path, scheduler)
-        if scheduler == "processes" or chance.random() < 0.7:  # at some block, else when it begins
-            enough = before + chance.integers(1, 20)
-            wait_for(lambda: done(path) >= enough)  # noqa: B023
+            _as_client(name, path)
+        enough = before + chance.integers(1, 20)
+        wait_for(lambda: done(path) >= enough)  # noqa: B023
         time.sleep(chance.uniform(0.0, 0.1))
         ended += _killed(client, victim)
     sys.stdout.write(f"{ended}")
 
 
-def _as_client(name: str, path: Path, scheduler: str) -> None:
+def _as_client(name: str, path: Path) -> None:
     os.setsid()
     try:
-        go_on(name, path, scheduler)
+        go_on(name, path, "processes")
     except OSError as failure:
         os._exit(3 if "A worker process was killed" in str(failure) else 1)
     os._exit(0)

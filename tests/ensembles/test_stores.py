@@ -7,7 +7,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 import xarray
 from ensembles import faults
@@ -151,13 +150,6 @@ def test_nothing_at_the_path_is_refused(tmp_path: Path) -> None:
     for call in (nh.resume, nh.load_sweep):
         with pytest.raises(FileNotFoundError, match=r"nothing\.zarr"):
             call(tmp_path / "nothing.zarr")
-
-
-def test_orbits_are_resumed_as_ever(tmp_path: Path) -> None:
-    """A finished orbit's store is an orbit, whatever the door."""
-    _orbit(tmp_path / "run.zarr")
-    orbit = nh.simulate(SLEIGH, steps=20, restricted_velocity=(1.0, 0.0))
-    assert np.array_equal(nh.resume(tmp_path / "run.zarr").reduced_momentum, orbit.reduced_momentum)
 
 
 def test_tasks_without_a_name_have_to_be_passed(tmp_path: Path) -> None:

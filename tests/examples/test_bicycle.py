@@ -48,20 +48,6 @@ def test_the_front_wheel_stays_on_the_ground() -> None:
     assert np.ptp(orbit.configuration[:, 2]) > 0.1
 
 
-@pytest.mark.profile("routes", instead="test_accelerations_far_from_upright_are_published")
-def test_the_map_rides_as_the_flow() -> None:
-    """Order two; the flow keeps its energy."""
-    ready = nh.examples.bicycle()
-    exact = ready.flow(times=(0.0, 1.0), rtol=1e-13, atol=1e-14)
-    errors = [
-        np.abs(ready.simulate(steps=n, time_step=1.0 / n).configuration[-1] - exact.configuration[-1]).max()
-        for n in (100, 200)
-    ]
-    assert abs(np.log2(errors[0] / errors[1]) - 2.0) <= 0.1
-    energy = ready.conserved["energy"](exact.configuration, exact.body_velocity)
-    assert np.ptp(energy) <= 1e-11 * energy[0]
-
-
 @pytest.mark.profile("routes", instead="nonholo.analysis._linearize.critical_values")
 def test_one_call_gives_the_weave_and_the_capsize_speed() -> None:
     """To the nine decimals that are published."""

@@ -179,17 +179,6 @@ def test_the_ball_moves_as_derived_by_hand() -> None:
     assert np.ptp(kept, axis=1).max() <= 1e-11
 
 
-@pytest.mark.profile("routes", instead="test_the_maps_have_order_two")
-def test_what_drives_them() -> None:
-    """The handle alone moves the racer from rest; the mass on the right side of the contact makes the sleigh faster."""
-    racer, sleigh = nh.examples.roller_racer(), nh.examples.driven_sleigh()
-    path = nh.simulate(nh.discretize(racer.system, 0.02), **_start(racer), steps=1000)
-    assert np.linalg.norm(path.configuration[-1, :2]) > 1.0
-    run = nh.simulate(nh.discretize(sleigh.system, 0.05), **_start(sleigh), steps=2000)
-    speed = np.linalg.norm(run.body_velocity[:, :2], axis=1)
-    assert speed[-200:].mean() > 1.5 * speed[:200].mean()
-
-
 @pytest.mark.profile("routes", instead="test_paths_are_those_derived_by_hand")
 @pytest.mark.parametrize("name", ["heavy_suslov_top", "sleigh_in_a_well"])
 def test_integrals_under_a_potential(name: str) -> None:
@@ -216,22 +205,6 @@ def test_the_sleigh_in_a_well_obeys_a_linear_system() -> None:
         assert np.abs(velocity - [omega, u, 0.0]).max() <= 1e-10
 
 
-@pytest.mark.profile("routes", keep=["roller_racer"])
-@pytest.mark.parametrize("name", ["driven_sleigh", "roller_racer", "chaplygin_ball"])
-def test_the_maps_have_order_two(name: str) -> None:
-    """Configurations at the end; the constraint, and what is prescribed, to rounding."""
-    ready = getattr(nh.examples, name)()
-    exact = nh.flow(ready.system, **_start(ready), times=(0.0, 2.0), rtol=1e-13, atol=1e-14).configuration[-1]
-    errors = []
-    for steps in (100, 200):
-        orbit = nh.simulate(nh.discretize(ready.system, 2.0 / steps), **_start(ready), steps=steps)
-        errors.append(np.abs(orbit.configuration[-1] - exact).max())
-        assert orbit.constraint_residual.max() <= 1e-13
-    assert abs(np.log2(errors[0] / errors[1]) - 2.0) <= 0.1
-    if name == "driven_sleigh":
-        assert np.abs(orbit.configuration[:, 3] - 0.5 * np.sin(orbit.time)).max() <= 1e-14
-
-
 def _blade(q):  # noqa: ANN001, ANN202
     return jnp.array([[-jnp.sin(q[2]), jnp.cos(q[2]), 0.0]])
 
@@ -240,7 +213,7 @@ def _skate(**more) -> LagrangeDAlembert:  # noqa: ANN003
     return LagrangeDAlembert(lambda _q, v: (v[0] ** 2 + v[1] ** 2 + 0.3 * v[2] ** 2) / 2, _blade, dimension=3, **more)
 
 
-@pytest.mark.profile("routes", instead="test_the_maps_have_order_two")
+@pytest.mark.profile("routes", instead="test_paths_are_those_derived_by_hand")
 def test_a_table_acts_row_by_row() -> None:
     """A constant table is a constant force; after its last row nothing acts."""
     push = np.array([0.2, -0.1, 0.3])

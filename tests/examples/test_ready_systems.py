@@ -13,12 +13,7 @@ from nonholo.lagrange_dalembert import CoordinateOrbit
 FORCED = {"heavy_suslov_top", "sleigh_in_a_well"}  # bodies, whose orbits are those of nh.Orbit: test_driven.py
 NAMES = sorted(set(nh.examples.__all__) - {"Example"} - FORCED)
 COORDINATES = [name for name in NAMES if name != "chaplygin_ball"]
-DRIVEN = {"driven_sleigh", "roller_racer", "twistcar", "ball_on_turntable"}
 HERE = pytest.mark.profile("routes", keep=["particle"])
-PATHS = {
-    "particle": ("Path", 3),
-    "chaotic_quartic_oscillator": ("Plane of $x$ and $y_{1}$", 2),
-}
 
 
 @functools.cache
@@ -41,31 +36,6 @@ def flow(name: str) -> CoordinateOrbit:
     return nh.flow(
         ready(name).system, **start, times=80 * ready(name).time_step * np.linspace(0.0, 1.0, 9), rtol=1e-13, atol=1e-14
     )
-
-
-@HERE
-@pytest.mark.parametrize("name", COORDINATES)
-def test_the_picture_shows_path_coordinates_velocities_and_errors(name: str) -> None:
-    """Each panel draws the numbers of the orbit; the head has the name of the system and its coordinates."""
-    orbit = run(name)
-    figure = orbit.plot()
-    titles = [axes.get_title(loc="left") for axes in figure.axes]
-    path, d = PATHS.get(name, ("Path", 2))
-    energy = "Energy less work" if name in DRIVEN else "Energy error"
-    assert titles == [path, "Coordinates", "Velocity", energy, "Residual of the constraint"]
-    assert ("of order 2 in the time between states" in [text.get_text() for text in figure.axes[3].texts]) == (
-        name in DRIVEN
-    )
-    drawn = np.ma.getdata(figure.axes[0].collections[0].get_offsets())
-    assert drawn.shape == (len(orbit), 2)
-    if d == 2:
-        assert np.array_equal(drawn, orbit.configuration[:, :2])
-    assert (
-        len([line for line in figure.axes[2].lines if len(line.get_xdata()) == len(orbit)])
-        == orbit.body_velocity.shape[1]
-    )
-    assert ready(name).system.name in [text.get_text() for text in figure.texts]
-    assert "40 steps" in figure.texts[1].get_text()
 
 
 @HERE

@@ -18,7 +18,6 @@ from nonholo.cli._app import app
 from nonholo.examples import Example
 from nonholo.io import store_to_csv
 from nonholo.io.blocks import edit_attributes
-from nonholo.io.orbits import standing
 from nonholo.io.provenance import described_system, recorded_system
 from nonholo.lagrange_dalembert import (
     AbstractCoordinateOrbit,
@@ -26,10 +25,6 @@ from nonholo.lagrange_dalembert import (
     LagrangeDAlembert,
     mass_tensor_lagrangian,
 )
-
-NAMES = sorted(set(nh.examples.__all__) - {"Example"})
-BODIES = {"heavy_suslov_top", "sleigh_in_a_well"}  # whose blocks begin with the state at their end
-HERE = pytest.mark.profile("routes", keep=["particle*"])
 
 
 @functools.cache
@@ -58,29 +53,6 @@ def same(one: AbstractCoordinateOrbit, other: AbstractCoordinateOrbit) -> bool:
     rows = [[getattr(orbit, name) for name in orbit.motion.columns] for orbit in (one, other)]
     bits = [[row if row is None else (row.shape, row.tobytes()) for row in each] for each in rows]
     return bits[0] == bits[1] and (one.outcome, one.save_every) == (other.outcome, other.save_every)
-
-
-@HERE
-@pytest.mark.parametrize("name", NAMES)
-def test_a_run_that_is_stopped_resumed_and_extended_is_the_run(name: str, tmp_path: Path) -> None:
-    """Stores name the system and its parameters; what is stopped has lost one block, and opens by itself."""
-    run, path, last = {**start(name), "save_every": 3}, tmp_path / "run.zarr", 33 if name in BODIES else 36
-    with stopped_at(3, match=rf"Stopped at step {last} of 50\. Resume with nonholo\.resume"):
-        nh.simulate(discrete(name), **run, steps=50, store=path, checkpoint_every=12, scenario="mine")
-    found = standing(path)
-    assert found is not None
-    assert (found.done, found.steps) == (last, 50)
-    assert same(nh.resume(path), nh.simulate(discrete(name), **run, steps=50))
-    whole = nh.simulate(discrete(name), **run, steps=74)
-    assert same(nh.extend(path, 24), whole)
-    opened = nh.load_orbit(path)
-    assert same(opened, whole)
-    assert opened.system.description == whole.system.description == (f"examples.{name}", opened.system.description[1])
-    assert name in BODIES or opened.system == whole.system
-    assert np.array_equal(opened.restricted_momentum, whole.restricted_momentum)
-    stored = json.loads((path / "zarr.json").read_text())["attributes"]
-    assert stored["system"] == f"examples.{name}"
-    assert stored["scenario"] == "mine"
 
 
 @pytest.mark.profile("routes", keep=["20"])

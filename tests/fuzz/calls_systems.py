@@ -1,8 +1,7 @@
 """Calls that make systems, ready ones of the literature included, and methods of systems."""
 
 import functools
-import inspect
-from collections.abc import Callable
+from inspect import Parameter, signature
 from typing import Any
 
 import numpy as np
@@ -203,48 +202,27 @@ def _locomotion() -> list[Call]:
     ]
 
 
+_POSITIVE = {
+    *("mass", "inertia", "radius", "rolling_inertia", "half_length", "rotor_inertia", "wheelbase", "wheel_radius"),
+    *("joint", "moving_mass", "handle_mass", "frequency", "reach"),
+}
+_ROWS = {"hitches"}
+
+
 def _examples() -> list[Call]:
-    made = nh.examples
-    common: dict[str, Argument] = {"mass": positive(1.0), "inertia": positive(1.0), "speed": number(0.5)}
-    disk = {"radius": positive(1.0), "rolling_inertia": positive(0.5), "rates": array([1.0, 0.5])}
-    board = {"half_length": positive(1.0), "rotor_inertia": positive(0.5), "wheel_rate": number(0.05)}
-    robot = {"offset": number(0.3), "wheel_radius": positive(0.25), "wheel_inertia": positive(0.01)}
-    place, upright = array([0.0, 0.0, 0.0]), array([0.0, 0.0, 0.0, 0.0])
-    odd = {"asymmetry": number(0.5), "turning": number(2.6)}
-    velocity = array([1.0, 1.0])
-    car = {"wheelbase": positive(1.0), "wheel_radius": positive(0.25), "steering_rate": number(0.1)}
-    racer = {"mass": positive(1.0), "inertia": positive(0.2), "joint": positive(1.0), "amplitude": number(0.5)}
-    driven = {**common, "moving_mass": positive(0.3), "ahead": number(-0.3), "frequency": positive(1.0)}
-    calls = [
-        call(
-            "examples.ball_on_turntable", made.ball_on_turntable, table_rate=number(1.0), velocity=velocity, slow=True
-        ),
-        call("examples.bicycle", made.bicycle, wheelbase=positive(1.0), speed=number(4.6), place=place),
-        call("examples.rattleback", made.rattleback, center=number(1.0), tilt=array([0.01, 0.02])),
-        call("examples.snake", made.snake, half_length=positive(0.5), place=place, joint_rates=velocity),
-        call("examples.tilting_disk", made.tilting_disk, gravity=positive(1.0), turning=number(0.5)),
-        call("examples.trailers", made.trailers, hitches=array([1.0, 0.5], "any"), speed=number(0.5)),
-        call("examples.ball_in_bowl", made.ball_in_bowl, reach=positive(1.0), spin=number(3.0)),
-        call("examples.chaplygin_ball", made.chaplygin_ball, mass=positive(1.0), radius=positive(1.0)),
-        call("examples.heavy_suslov_top", made.heavy_suslov_top, velocity=array([0.6, 0.4])),
-        call("examples.sleigh_in_a_well", made.sleigh_in_a_well, **common, stiffness=number(0.3)),
-        call("examples.driven_sleigh", made.driven_sleigh, **driven),
-        call("examples.roller_racer", made.roller_racer, **racer),
-        call("examples.twistcar", made.twistcar, **racer, handle_mass=positive(0.2)),
-        call("examples.chaotic_quartic_oscillator", made.chaotic_quartic_oscillator, pairs=count(3)),
-        call("examples.kinematic_car", made.kinematic_car, **common, **car),
-        call("examples.knife_edge_on_incline", made.knife_edge_on_incline, **common, configuration=place),
-        call("examples.non_reversible", made.non_reversible, **odd),
-        call("examples.particle", made.particle, configuration=place, planar_velocity=velocity),
-        call("examples.rolling_disk", made.rolling_disk, **disk, configuration=upright),
-        call("examples.snakeboard", made.snakeboard, mass=positive(1.0), **board),
-        call("examples.two_wheeled_robot", made.two_wheeled_robot, **common, **robot),
+    """Return the calls of ready systems, by their signatures."""
+    made = {name: getattr(nh.examples, name) for name in nh.examples.__all__ if name != "Example"}
+    return [
+        call(f"examples.{name}", make, **{each.name: _kind(each) for each in signature(make).parameters.values()})
+        for name, make in made.items()
     ]
-    others = {*made.__all__} - {"Example"} - {each.name.removeprefix("examples.") for each in calls}
-    return calls + [_by_signature(f"examples.{name}", getattr(made, name)) for name in sorted(others)]
 
 
-def _by_signature(name: str, make: Callable[..., Any]) -> Call:
-    """Return a call of which nothing but the defaults is known."""
-    arguments = inspect.signature(make).parameters.values()
-    return call(name, make, **{each.name: anything(each.default) for each in arguments})
+def _kind(parameter: Parameter) -> Argument:
+    """Return the kind of an argument by its default and its name."""
+    name, value = parameter.name, parameter.default
+    if value is None:
+        return anything(value)
+    if isinstance(value, tuple):
+        return array(value, "any" if name in _ROWS else "same")
+    return count(value) if isinstance(value, int) else (positive if name in _POSITIVE else number)(value)

@@ -28,17 +28,38 @@ compilers.use_caches()
 
 import numpy as np
 from ensembles import faults
-from simulation import killed
 
 import nonholo as nh
 from nonholo.io.places import owner_of
 
+
+def east(orbit: nh.Orbit) -> np.ndarray:
+    """Zero where the sleigh looks along the first axis, or back."""
+    return np.sin(orbit.heading)
+
+
+RUNS: dict[str, tuple[nh.Discretization, dict[str, Any], list[nh.Event] | None]] = {
+    "sleigh": (
+        nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 1e-3),
+        {"body_velocity": (1.0, 0.3, 0.0), "steps": 60_000, "save_every": 2},
+        None,
+    ),
+    "tumbling body": (
+        nh.discretize(nh.RigidBody(np.diag([1.0, 1.5, 2.0, 2.5])), 0.1),
+        {"body_velocity": (1.0, -0.4, 0.9, 0.8, -0.7, 0.9), "steps": 50_000, "save_every": 2},
+        None,
+    ),
+    "events": (
+        nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1),
+        {"body_velocity": (4.0, 1.0, 0.0), "steps": 30_000, "save_every": 5},
+        [nh.Event(east, direction=1)],
+    ),
+}
 SWEEPS: dict[str, Any] = {
     "noisy": (faults.noisy, nh.Grid({"x": np.arange(20.0), "y": np.arange(20.0)}, rng=3), 8),
     "tops": (faults.TOPS, nh.RandomDesign(20_000, faults.TOP_DESIGN, rng=4), 500),
 }
-FAMILIES = {"orbit": ("sleigh", "events"), "sweep": tuple(SWEEPS)}
-_SHORTER = 5  # this many times shorter than the runs of the tests of kills at chosen blocks
+FAMILIES = {"orbit": tuple(RUNS), "sweep": tuple(SWEEPS)}
 _AGAIN = 0.4
 _RESTARTS = ("unshare", "--pid", "--fork", "--kill-child", "--mount-proc")
 
@@ -49,12 +70,11 @@ def go_on(family: str, name: str, store: Path) -> None:
         task, design, block = SWEEPS[name]
         nh.sweep(task, design, store, "threads", block=block, workers=2, resume=True)
         return
-    discrete, run, events = killed.RUNS[name]
+    discrete, run, events = RUNS[name]
     if store.exists():
         nh.resume(store, events=events)
     else:
-        shorter = run | {"steps": run["steps"] // _SHORTER}
-        nh.simulate(discrete, **shorter, events=events, store=store, checkpoint_every=500 * run["save_every"])
+        nh.simulate(discrete, **run, events=events, store=store, checkpoint_every=500 * run["save_every"])
 
 
 def print_of(family: str, store: Path) -> str:
@@ -162,7 +182,7 @@ def _undisturbed(family: str, name: str, home: Path) -> tuple[str, float]:
 def _compile(family: str, name: str) -> None:
     """Compile before the first fork, in one thread."""
     if family == "orbit":
-        discrete, run, events = killed.RUNS[name]
+        discrete, run, events = RUNS[name]
         nh.simulate(discrete, **run | {"steps": 100}, events=events)
     elif name == "tops":
         faults.TOPS(nh.MemberBlock(0, 1, 0, SWEEPS[name][1].values(0, 1)))

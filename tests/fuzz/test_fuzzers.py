@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import os
 import random
 import subprocess
 import sys
@@ -40,25 +41,15 @@ def test_damaged_stores_are_refused_or_right(tmp_path: Path, monkeypatch: pytest
 
 
 @pytest.mark.profile("faults", instead="test_runs_cut_at_random_blocks_go_on")
-def test_a_killed_run_goes_on(tmp_path: Path) -> None:
-    """One SIGKILL at a random time: the bits are those of a run that nobody disturbed, and nothing is left."""
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="kills forked processes")
+def test_killed_runs_and_sweeps_go_on(tmp_path: Path) -> None:
+    """SIGKILL at random times: the bits are those of a run that nobody disturbed, and nothing is left."""
     file = tmp_path / "kills.json"
-    command = [
-        sys.executable,
-        kills.__file__,
-        "--trials",
-        "1",
-        "--restarts",
-        "0",
-        "--only",
-        "sleigh",
-        "--json",
-        str(file),
-    ]
+    command = [sys.executable, kills.__file__, "--trials", "6", "--restarts", "0", "--json", str(file)]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)  # noqa: S603  # it forks: a process without threads
-    found = json.loads(file.read_text())["orbit"]
-    assert found["killed"] == 1
-    assert not found["wrong"]
+    for found in json.loads(file.read_text()).values():
+        assert found["killed"] >= 6
+        assert not found["wrong"]
 
 
 def test_random_steps_are_right() -> None:

@@ -365,20 +365,6 @@ def test_unknown_system_and_lost_attributes(store: Path) -> None:
         nh.load_orbit(store)
 
 
-def test_callable_difference_must_be_given(store: Path) -> None:
-    """A store made with a callable is refused, unless the discretization is passed; a different one is refused."""
-    described = json.loads(read_attributes(store)["motion"]) | {"difference": "callable", "route": "definition"}
-    _edit(store, motion=json.dumps(described))
-    with pytest.raises(ValueError, match=r"difference is a callable.*discrete="):
-        nh.load_orbit(store)
-    system = nh.ChaplyginSleigh(1.1, 0.7, 0.3, 0.1)
-    own = nh.discretize(system, 0.1, difference=lambda W: W.sum())
-    assert nh.load_orbit(store, discrete=own).motion is own
-    other = nh.discretize(system, 0.2, difference=lambda W: W.sum())
-    with pytest.raises(ValueError, match="be the discretization of the store"):
-        nh.load_orbit(store, discrete=other)
-
-
 @pytest.mark.parametrize(
     ("name", "value", "told"),
     [

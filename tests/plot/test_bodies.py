@@ -4,8 +4,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.axes import Axes
-from matplotlib.colors import to_rgba
 from refusals import refusals
 
 import nonholo as nh
@@ -72,21 +70,6 @@ def test_small_bodies_are_drawn_larger() -> None:
     corners = drawn.frames[0].get_paths()[0].vertices[:3]  # at the first pose, which is not turned
     assert np.allclose(corners, larger * np.array(CART[0]), rtol=0.05, atol=1e-12)
     assert larger > 2
-
-
-def test_colors_and_scale_are_the_callers() -> None:
-    """One color for path, outline and arrow; several motions in one axes are all within the limits."""
-    first = nh.plot.point_track(_orbit(_free()), color="C1", label="one", title="Mine")
-    axes: Axes = first.axes
-    second = nh.plot.point_track(_orbit(_free(), -9.0), axes=axes, color="C2", label="two")
-    assert axes.get_title(loc="left") == "Mine"
-    assert {"one", "two"} <= {text.get_text() for text in axes.get_legend().get_texts()}
-    for drawn, color in ((first, "C1"), (second, "C2")):
-        assert np.allclose(drawn.frames[0].get_edgecolor(), to_rgba(color))
-        corners = np.concatenate([path.vertices for path in drawn.frames[0].get_paths()])
-        (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
-        assert x0 <= corners[:, 0].min() <= corners[:, 0].max() <= x1
-        assert y0 <= corners[:, 1].min() <= corners[:, 1].max() <= y1
 
 
 def test_without_heading_there_is_a_path() -> None:

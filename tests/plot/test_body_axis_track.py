@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-from plot.runs import MASS_TENSOR, top_run
+from plot.runs import top_run
 
 import nonholo as nh
-from nonholo.plot.sphere import opacity
 
 
 def test_points_are_the_forbidden_axis_in_space(top_orbit: nh.Orbit) -> None:
@@ -38,16 +37,6 @@ def test_axes_of_the_permanent_rotations() -> None:
     assert np.allclose(drawn.axis_after, orbit.configuration[-1] @ -line)
 
 
-def test_axes_of_a_backward_flow() -> None:
-    """A motion followed into the past has its repelling rotation before and its attracting one after, if it is near."""
-    times = np.linspace(0.0, -150.0, 400)
-    flow = nh.flow(nh.SuslovTop(MASS_TENSOR), body_velocity=(0.4, 0.9, 0.0), times=times)
-    drawn = nh.plot.body_axis_track(flow)
-    line = flow.system.equilibria().subspace[0] / np.linalg.norm(flow.system.equilibria().subspace[0])
-    assert np.allclose(drawn.axis_before, flow.configuration[-1] @ line)
-    assert drawn.axis_after is None
-
-
 def test_balanced_top_has_one_axis() -> None:
     """Every motion of a balanced top is a permanent rotation, with the same axis before and after."""
     discrete = nh.discretize(nh.SuslovTop(np.diag([1.4, 1.0, 0.9])), 0.1)
@@ -60,26 +49,6 @@ def test_axes_are_left_out_where_the_orbit_is_not_near() -> None:
     drawn = nh.plot.body_axis_track(top_run((0.4, 0.9, 0.0), steps=40))
     assert drawn.axis_before is None
     assert drawn.axis_after is None
-
-
-def test_long_runs_show_the_transition() -> None:
-    """Of 50001 states a stretch without gaps is drawn, and it holds the fastest change of momentum."""
-    orbit = top_run((0.465, 0.75, 0.0), steps=50000)
-    drawn = nh.plot.body_axis_track(orbit)
-    fastest = int(np.abs(np.diff(orbit.reduced_momentum, axis=0)).sum(axis=1).argmax())
-    assert len(drawn.points) <= 1200
-    assert np.linalg.norm(drawn.points - orbit.configuration[fastest, :, 2], axis=1).min() < 1e-12
-    assert np.linalg.norm(np.diff(drawn.points, axis=0), axis=1).max() < 0.12
-
-
-def test_what_lies_behind_is_faint(top_orbit: nh.Orbit) -> None:
-    """Dots behind the sphere are fainter than those in front."""
-    drawn = nh.plot.body_axis_track(top_orbit, view=(0.0, 20.0))
-    alpha = drawn.dots.get_facecolor()[:, 3]
-    depth = np.sort(drawn.view(drawn.points)[1])
-    assert np.allclose(alpha, opacity(depth))
-    assert alpha.min() < 0.3
-    assert alpha.max() == 1.0
 
 
 def test_refuses_a_sleigh(sleigh_orbit: nh.Orbit) -> None:

@@ -39,15 +39,6 @@ def test_edges_lead_from_parents_to_images() -> None:
     assert np.allclose(np.array(picture.edges.get_segments()), expected, rtol=1e-12)
 
 
-def test_first_generation_has_the_color_of_the_start_of_time() -> None:
-    """Generations have different colors and shrinking dots, so that later ones do not hide earlier ones."""
-    picture = nh.plot.branch_tree(SLEIGH, TREE)
-    colors = np.array([dots.get_facecolor()[0] for dots in picture.images])
-    sizes = [float(dots.get_sizes()[0]) for dots in picture.images]
-    assert np.linalg.norm(np.diff(colors, axis=0), axis=1).min() > 0.1
-    assert np.all(np.diff(sizes) < 0)
-
-
 def test_a_system_with_three_momenta_is_drawn_on_given_axes() -> None:
     """A top on SO(4) shows two of its three restricted momenta, and six images."""
     top = run_of(nh.SuslovTop(np.diag([1.0, 1.5, 2.0, 2.5]) + 0.2), steps=1)
@@ -69,17 +60,6 @@ def test_other_things_are_refused() -> None:
         nh.plot.branch_tree(four, TREE)
 
 
-def test_all_branches_beside_the_orbit() -> None:
-    """Images on the portrait have the orbit's energy, and none of them is a state of the orbit."""
-    picture = nh.plot.phase_portrait(SLEIGH.system, ORBIT, branches="all")
-    places = np.asarray(picture.images.get_offsets())
-    assert len(places) > 0
-    assert np.allclose(SLEIGH.system.canonical.constrained_energy(places), ORBIT.energy[0], rtol=1e-12)
-    apart = np.linalg.norm(places[:, None] - ORBIT.reduced_momentum, axis=2)
-    assert apart.min() > 1e-6
-    assert len(picture.edges.get_segments()) == len(places)
-
-
 def test_images_on_the_portrait_are_values_of_the_map() -> None:
     """The far end of an edge from the first image of the orbit is reached by one of its other values."""
     picture = nh.plot.phase_portrait(SLEIGH.system, ORBIT, branches="all")
@@ -89,13 +69,6 @@ def test_images_on_the_portrait_are_values_of_the_map() -> None:
     expected = SLEIGH.system.restrict(np.array(reached)) @ SLEIGH.system.frame_map.T
     for place in expected:
         assert np.linalg.norm(ends[:, 1] - place, axis=1).min() < 1e-9
-
-
-def test_principal_portrait_has_no_images() -> None:
-    """Nothing is added by default."""
-    picture = nh.plot.phase_portrait(SLEIGH.system, ORBIT)
-    assert picture.images is None
-    assert picture.edges is None
 
 
 def test_all_branches_without_an_orbit_are_refused() -> None:

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 import nonholo as nh
@@ -61,31 +60,11 @@ def test_dots_of_a_sleigh_are_on_the_deltoid() -> None:
     assert np.abs(deltoid(SLEIGH).discriminant(restricted)).max() < 1e-12
 
 
-def test_principal_filled_others_empty() -> None:
-    """The principal value is black, the others white; labels count as `nh.branches` does."""
-    picture = nh.plot.branches(SLEIGH, momentum=INSIDE)
-    assert np.allclose(picture.principal.get_facecolor()[0, :3], to_rgb("#1a1a1a"))
-    assert np.allclose(picture.others.get_facecolor()[0, :3], to_rgb("white"))
-    assert [label.get_text()[0] for label in picture.labels] == ["0", "1", "2"]
-
-
 def test_complex_values_are_counted() -> None:
     """A sleigh outside the deltoid has two complex values: the legend and the title say so."""
     picture = nh.plot.branches(SLEIGH, momentum=OUTSIDE)
     assert "and 2 complex" in [text.get_text() for text in picture.axes.get_legend().get_texts()]
     assert picture.axes.get_title(loc="left") == "Values: 1 real, 2 complex"
-
-
-def test_momentum_and_displacement_draw_the_same() -> None:
-    """A full momentum, its restriction and the displacement itself give the same dots."""
-    W = nh.displacements_over(SLEIGH, INSIDE)
-    W = W.displacement[W.principal].real
-    full = nh.discrete_legendre(SLEIGH, W)
-    starts = ({"momentum": INSIDE}, {"momentum": full}, {"displacement": W})
-    pictures = [nh.plot.branches(SLEIGH, **start) for start in starts]
-    for picture in pictures[1:]:
-        assert np.allclose(picture.others.get_offsets(), pictures[0].others.get_offsets(), atol=1e-9)
-        assert np.allclose(picture.present.get_offsets(), pictures[0].present.get_offsets(), atol=1e-9)
 
 
 def test_rest_has_no_level() -> None:
@@ -96,13 +75,6 @@ def test_rest_has_no_level() -> None:
     assert picture.axes is axes
     assert picture.tangents == ()
     axes.figure.canvas.draw()
-
-
-def test_far_values_of_a_strip_are_within_the_axes() -> None:
-    """A balanced sleigh that hardly turns has a second value that moves far; it is in the picture."""
-    picture = nh.plot.branches(BALANCED, momentum=[0.02, 1.0])
-    assert 0 < np.abs(picture.others.get_offsets()[:, 1]).max() < picture.axes.get_ylim()[1]
-    assert np.abs(picture.others.get_offsets()[:, 1]).max() > 20 * np.abs(picture.principal.get_offsets()[:, 1]).max()
 
 
 def test_planes_that_do_not_exist_are_refused() -> None:

@@ -100,29 +100,6 @@ def test_overviews(pair: Pair, tmp_path: Path) -> None:
     assert np.mean(np.abs(frames[0] - frames[1]).max(axis=-1) > 8) < 1e-3  # shades of a palette may differ
 
 
-@pytest.mark.parametrize("pair", [SAME_AXES["sleigh"], TURNED_SLEIGH], ids=["same axes", "turned axes"])
-def test_tracks_of_a_blade(pair: Pair) -> None:
-    """Contact points, cusps and centers of mass are carried to the other coordinates of space."""
-    one, other = (nh.plot.blade_track(orbit) for orbit in pair.runs(0.1, 60))
-    for drawn in ("track", "masses", "cusps"):
-        here, there = (np.asarray(getattr(picture, drawn).get_offsets()) for picture in (one, other))
-        assert np.allclose(here @ pair.d[:2, :2].T + pair.d[:2, 2], there, atol=1e-9)
-    speeds = [blade_of_system(orbit.system).speed(orbit) for orbit in pair.runs(0.1, 10)]
-    assert np.allclose(*speeds, atol=1e-12)
-
-
-def test_tracks_of_an_axis_and_curves_in_other_axes() -> None:
-    """In turned axes the path of the axis is turned, up to its sign, and every step angle on the disc is the same."""
-    orbits = TURNED_TOP.runs(0.5, 12)
-    one, other = (nh.plot.body_axis_track(orbit) for orbit in orbits)
-    turned = one.points @ TURNED_TOP.d.T
-    assert np.allclose(np.sign(turned[0] @ other.points[0]) * turned, other.points, atol=1e-9)
-    curves = [nh.plot.invariant_curves(orbit.motion, orbit) for orbit in orbits]
-    for dots in ("orbit", "stable"):
-        radii = [np.linalg.norm(getattr(picture, dots).get_offsets(), axis=1) for picture in curves]
-        assert np.allclose(*radii, atol=1e-9)
-
-
 @pytest.mark.parametrize("pair", EVERY.values(), ids=EVERY)
 def test_ellipses_are_levels_of_the_energy(pair: Pair) -> None:
     """Momenta of one energy, taken along the user's rows by their definition, are on the drawn ellipse."""
@@ -141,14 +118,6 @@ def test_blades_by_their_definition(pair: Pair) -> None:
     assert np.allclose(seen[:, 2], 0.0, atol=1e-14)
     assert np.isclose(blade.frame[:2, 2] @ blade.frame[:2, 1], 0.0, atol=1e-14)
     assert np.allclose(blade.frame @ [*blade.center, 1.0], tensor[:, 2] / tensor[2, 2], atol=1e-14)
-
-
-@pytest.mark.parametrize("b", [0.0, 20.0])
-def test_heads_show_no_rounding(b: float) -> None:
-    """The parameters of a sleigh are recovered from any axes, and zeros are zeros."""
-    named = nh.ChaplyginSleigh(1.0, 1.0, 0.2, b)
-    equal = moved(named, _turn(0.6, 0.7))
-    assert sheet_of(equal).facts(equal) == sheet_of(named).facts(named)
 
 
 def test_orbits_of_another_body_are_refused() -> None:

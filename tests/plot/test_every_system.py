@@ -12,7 +12,6 @@ from plot.runs import body_tensor, made_up, run_of, sleigh_run, top_run
 import nonholo as nh
 from nonholo.plot.motion.coordinates import momentum_track
 from nonholo.plot.motion.time_series import velocity_names
-from nonholo.plot.overviews import panels_of
 from nonholo.systems import SYSTEMS
 
 _HEISENBERG = nh.MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
@@ -137,14 +136,6 @@ def test_energy_without_poses_is_refused() -> None:
     """The energy of a right-invariant system needs poses, and the refusal says how to get them."""
     with pytest.raises(ValueError, match=r"`energy_error\(orbit=...\)` must have poses. .* reconstruct=True"):
         nh.plot.energy_error(_orbit("Veselova without poses"))
-
-
-def test_large_panel_is_not_a_constant() -> None:
-    """The conserved momenta of a right-invariant constraint never fill the large panel if there is another one."""
-    orbit = _orbit("Veselova of SO(4)")
-    assert np.ptp(orbit.restricted_momentum, axis=0).max() < 1e-14
-    assert len(panels_of(orbit, None)) == 3
-    assert _titles(orbit)[0] != _SPATIAL
 
 
 def test_momentum_sphere_is_the_energy_level() -> None:

@@ -3,8 +3,6 @@
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
-from mpl_toolkits.mplot3d import proj3d
 
 import nonholo as nh
 from nonholo.analysis import deltoid
@@ -48,18 +46,6 @@ def test_curves_on_the_surface_are_those_of_one_energy() -> None:
     drawn = nh.plot.momentum_locus(nh.momentum_locus(TOP, 8), curve=curve).curves
     for line, momentum in zip(drawn, curve.momentum, strict=True):
         assert np.allclose(np.stack(line.get_data_3d(), axis=1), momentum)
-
-
-@pytest.mark.parametrize("discrete", BOTH.values(), ids=BOTH)
-def test_pictures_can_be_drawn_on_given_axes(discrete: nh.Discretization) -> None:
-    """Axes that are passed are used, in space and in the plane, and the figure renders."""
-    figure = Figure(figsize=(8, 3))
-    space = figure.add_subplot(131, projection="3d")
-    assert nh.plot.momentum_locus(nh.momentum_locus(discrete, 8), axes=space).axes is space
-    section, disc = figure.add_subplot(132), figure.add_subplot(133)
-    assert nh.plot.locus_section(nh.momentum_locus(discrete, 8), offset=0.3, axes=section).axes is section
-    assert nh.plot.invariant_curves(discrete, axes=disc).axes is disc
-    figure.canvas.draw()
 
 
 def test_section_points_are_on_plane_and_locus() -> None:
@@ -127,25 +113,6 @@ def test_curves_do_not_cross_the_rim() -> None:
             for run_of_points in level.get_segments():
                 assert np.abs(run_of_points[:, 0]).max() <= edge + 1e-12
                 assert np.linalg.norm(np.diff(run_of_points, axis=0), axis=1).max() < 0.2
-
-
-@pytest.mark.parametrize("width", [4.3, 5.0, 7.0])
-def test_title_and_legend_do_not_overlap(width: float) -> None:
-    """Where title and legend do not fit into one line the title is above the legend."""
-    axes = Figure(figsize=(width, 4.0), layout="constrained").add_subplot()
-    nh.plot.invariant_curves(SLEIGH, run(SLEIGH), axes)
-    axes.figure.canvas.draw()
-    assert not axes._left_title.get_window_extent().overlaps(axes.get_legend().get_window_extent())
-
-
-def test_usual_view_sees_the_double_lines_apart() -> None:
-    """On the picture any two double segments of the top differ by 15 degrees or more."""
-    picture = nh.plot.momentum_locus(nh.momentum_locus(TOP, 8))
-    projection = picture.axes.get_proj()
-    ends = [np.stack(proj3d.proj_transform(*line.get_data_3d(), projection)[:2]) for line in picture.double_lines]
-    angles = [np.degrees(np.arctan2(*np.diff(points, axis=1)[::-1, 0])) for points in ends]
-    for i in range(3):
-        assert 15 < (angles[i] - angles[i - 1]) % 180 < 165
 
 
 def test_branch_counts_draw_the_deltoid() -> None:

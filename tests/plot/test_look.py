@@ -242,15 +242,6 @@ def test_size_and_fonts(sleigh_orbit: nh.Orbit) -> None:
     assert nh.plot.energy_error(sleigh_orbit, axes=axes, size=(12.0, 5.2)).axes.figure.get_size_inches()[0] == 3.0
 
 
-def test_a_wide_figure_is_used(sleigh_orbit: nh.Orbit) -> None:
-    """In 16:9 the plane around a track is as wide as the axes, not a square in their middle."""
-    axes = nh.plot.blade_track(sleigh_orbit, size=(16, 9)).axes
-    axes.figure.draw_without_rendering()
-    box = axes.get_window_extent()
-    assert box.width > 1.5 * box.height
-    assert np.ptp(axes.get_xlim()) / np.ptp(axes.get_ylim()) == pytest.approx(box.width / box.height)
-
-
 def _on_a_spring() -> CoordinateOrbit:
     spring = LagrangeDAlembert(lambda q, v: (v @ v - q @ q) / 2, None, dimension=2, coordinates=("x", "y"))
     return nh.simulate(nh.discretize(spring, 0.1), configuration=(1, 0), body_velocity=(0, 1), steps=40)

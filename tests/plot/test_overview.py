@@ -6,27 +6,9 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 from PIL import Image
-from plot.runs import MASS_TENSOR, sleigh_run, top_run
+from plot.runs import MASS_TENSOR
 
 import nonholo as nh
-
-FEW = {
-    "one state": lambda: top_run((0.4, 0.9, 0.0), steps=1)[:1],
-    "two states": lambda: top_run((0.4, 0.9, 0.0), steps=1),
-    "top at rest": lambda: top_run((0.0, 0.0, 0.0), steps=3),
-    "sleigh at rest": lambda: sleigh_run((0.0, 0.0, 0.0), steps=3),
-    "balanced sleigh": lambda: sleigh_run((1.0, 0.0, 0.0), a=0.0, steps=30),
-    "backward sleigh": lambda: sleigh_run((0.3, 1.0, 0.0), a=-0.5, steps=150),
-    "thinned top": lambda: top_run((0.4, 0.9, 0.0), steps=600, save_every=20),
-}
-
-
-@pytest.mark.profile("paper", instead="test_panels")
-@pytest.mark.parametrize("run", FEW.values(), ids=FEW)
-def test_unusual_orbits_are_drawn(run: object, tmp_path: Path) -> None:
-    """Short, resting, balanced and thinned orbits are drawn and saved without a warning."""
-    nh.plot.overview(run(), tmp_path / "few.png")
-    assert (tmp_path / "few.png").stat().st_size > 10_000
 
 
 def test_series_are_the_velocities(top_orbit: nh.Orbit, sleigh_orbit: nh.Orbit) -> None:
@@ -97,16 +79,3 @@ def test_global_settings_are_unchanged(sleigh_orbit: nh.Orbit, tmp_path: Path) -
     before = dict(mpl.rcParams)
     nh.plot.overview(sleigh_orbit, tmp_path / "picture.png")
     assert dict(mpl.rcParams) == before
-
-
-def test_flows_with_few_times_have_smooth_curves() -> None:
-    """Two requested times, forward or backward, give the curve of the flow; a flow from elsewhere has its states."""
-    sleigh = nh.ChaplyginSleigh(1.0, 0.75, 0.5)
-    for times in ((0.0, 10.0), (10.0, 0.0)):
-        flow = nh.flow(sleigh, body_velocity=(1.0, 0.5, 0.0), times=times)
-        track = nh.plot.overview(flow).axes[0].collections[0].get_paths()
-        points = np.concatenate([path.vertices for path in track])
-        exact = nh.flow(sleigh, body_velocity=(1.0, 0.5, 0.0), times=np.linspace(*times, 4000), method="closed_form")
-        assert len(points) > 500
-        gaps = np.abs(points[::50, None] - exact.position[None]).max(axis=-1).min(axis=1)
-        assert gaps.max() < 0.01

@@ -178,12 +178,6 @@ def test_bars_of_outcomes(draws: xarray.Dataset) -> None:
     assert [bar.get_width() for bar in picture.drawn] == [good, 400 - good]
 
 
-def test_given_axes_are_used(plane: xarray.Dataset) -> None:
-    """A picture can be one panel of a figure."""
-    axes = nh.plot.sweep_map(plane, "value").axes.figure.add_subplot(2, 2, 1)
-    assert nh.plot.sweep_map(plane, "value", axes=axes).axes is axes
-
-
 @pytest.mark.parametrize(
     ("result", "arguments", "told"),
     [
@@ -206,15 +200,6 @@ def test_one_member_is_refused(plane: xarray.Dataset) -> None:
     """A result without axes has no picture."""
     with pytest.raises(ValueError, match="Got one member"):
         nh.plot.sweep_map(plane.isel(a=0, b=0), "value")
-
-
-@pytest.mark.parametrize("columns", [slice(2, 4), slice(0, 1)])
-def test_parts_without_success_or_without_failure(plane: xarray.Dataset, columns: slice) -> None:
-    """A part in which all failed has only cells of outcomes, one in which none failed has no legend."""
-    part = plane.isel(b=columns)
-    picture = nh.plot.sweep_map(part, "value", x="a", y="b")
-    assert picture.drawn.get_array().mask.all() == (columns.start == 2)
-    assert len(_legend(picture)) == (2 if columns.start == 2 else 0)
 
 
 def test_draws_that_all_failed(draws: xarray.Dataset) -> None:

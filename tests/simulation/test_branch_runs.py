@@ -1,13 +1,11 @@
 """Runs by a branch rule: the same orbit where the rule means the same value, and orbits off the principal branch."""
 
-import dataclasses
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from bodies import GENERAL
-from comparisons import assert_member
 from refusals import refusals
 
 import nonholo as nh
@@ -135,19 +133,6 @@ def test_members_of_an_ensemble_take_the_rule(branch: Any) -> None:
     assert batch.to_dataset().attrs["branch"] == batch.branch
     principal = nh.ensemble(TOP, momentum=batch.restricted_momentum[:, 0], steps=1, save_every=1)
     assert np.abs(batch.displacement[0, 0] - principal.displacement[0, 0]).max() > 0.1
-
-
-@pytest.mark.profile("routes", keep=["sleigh"])
-@pytest.mark.parametrize("name", FAMILIES)
-def test_members_that_differ_take_the_rule(name: str) -> None:
-    """With parameters, from velocities, where nothing of the ensemble is computed side by side."""
-    discrete, steps = FAMILIES[name], [0.05, 0.1]
-    v = 0.3 * np.arange(1, len(discrete.system.constraint_subspace) + 1)
-    run = {"restricted_velocity": v, "branch": "nearest"}
-    batch = nh.ensemble(discrete, **run, steps=12, save_every=3, parameters={"time_step": steps})
-    for member, step in enumerate(steps):
-        alone = nh.simulate(dataclasses.replace(discrete, time_step=step), **run, steps=12, save_every=3)
-        assert_member(batch, member, alone, "reduced_momentum", "cayley", "canonical_pose")
 
 
 SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5)

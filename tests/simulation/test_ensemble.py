@@ -111,19 +111,6 @@ def test_no_array_of_a_run_is_read_only(members: int, monkeypatch: pytest.Monkey
     assert all(writeable)
 
 
-@BOTH
-def test_bits_of_simulate(system: Any) -> None:
-    """From the same momenta a member has the bits of `simulate`, up to where it fails: arithmetic is strict."""
-    discrete = nh.discretize(system, 0.5)
-    started = nh.ensemble(discrete, restricted_velocity=_velocities(60, 2.0), steps=1, save_every=1)
-    momenta = started.restricted_momentum[started.steps_done > 0, 0]
-    batch = nh.ensemble(discrete, momentum=momenta, steps=100, save_every=1)
-    for member, momentum in enumerate(momenta):
-        orbit = nh.simulate(discrete, momentum=momentum, steps=100, throw=False)
-        for name in ("reduced_momentum", "cayley", "canonical_pose"):
-            assert np.array_equal(getattr(orbit, name), getattr(batch, name)[member, : len(orbit)]), (member, name)
-
-
 @pytest.mark.parametrize("name", ["top", "suslov 4", "any d on SE(3)", "flow", "rule"])
 def test_little_work_starts_no_threads(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Members that are soon done run in the calling thread, all others beside it, where Ctrl-C ends them."""

@@ -196,17 +196,6 @@ def test_a_stored_run_without_start_has_no_crossings(tmp_path: pathlib.Path) -> 
     assert not list(tmp_path.iterdir())
 
 
-def test_a_run_that_cannot_go_on_keeps_its_crossings() -> None:
-    """Crossings before a fold are kept with the good states."""
-    fold = nh.discretize(nh.SuslovTop([[0.6, 0.1, 1.0], [0.1, 2.0, 0.1], [1.0, 0.1, 2.0]]), 1.0)
-    run = {"restricted_velocity": (0.7, 0.7), "steps": 500, "throw": False}
-    orbit = nh.simulate(fold, **run, events=[lambda orbit: orbit.time - 0.5])
-    plain = nh.simulate(fold, **run)
-    assert orbit.outcome == plain.outcome != nh.Outcome.successful
-    assert np.array_equal(orbit.pose, plain.pose)
-    assert orbit.events[0].time.tolist() == [0.5]
-
-
 def test_cusp_of_the_discrete_sleigh_tends_to_the_continuous_one() -> None:
     """A backward sleigh turns round once; the time of its cusp has an error of second order in h."""
     sleigh, velocity = nh.ChaplyginSleigh(1.0, 0.75, 0.5), (0.3, -1.0, 0.0)
@@ -279,19 +268,6 @@ def test_states_at_crossings_have_the_energy_of_the_run() -> None:
     orbit = nh.simulate(top, **run, events=[lambda orbit: orbit.configuration[:, 2, 2]])
     assert len(orbit.events[0]) > 10
     assert np.abs(orbit.events[0].states.energy / orbit.energy[0] - 1).max() < 2e-15
-
-
-def test_seen_from_its_end_a_step_has_other_parts_to_third_order() -> None:
-    """Half a step on and half a step back from the next state differ by terms of third order in h."""
-    gaps = []
-    for h in (0.2, 0.1, 0.05):
-        top = nh.discretize(TOP.system, h)
-        there = nh.simulate(top, restricted_velocity=(0.7, -0.3), steps=1)
-        end = {"momentum": -there.restricted_momentum[1], "configuration": there.configuration[1]}
-        half = top.after_parts(there[:1], np.array([0.5]))
-        back = top.after_parts(nh.simulate(top, **end, steps=1)[:1], np.array([0.5]))
-        gaps.append(np.abs(half.configuration - back.configuration).max())
-    assert np.abs(np.log2(np.divide(gaps[:-1], gaps[1:])) - 3).max() < 0.15
 
 
 OFFSET = nh.ChaplyginSleigh(1.0, 0.75, 0.5)  # rho^2 = a^2 + J/m = 1

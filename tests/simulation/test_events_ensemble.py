@@ -9,7 +9,6 @@ from nonholo.simulation.members import _ensemble
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
 TOP = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.1)
-FOUR = nh.discretize(nh.SuslovTop(np.diag([1.0, 1.3, 0.8, 1.1]) + 0.1), 0.1)
 ROWS = {"restricted_velocity": np.random.default_rng(3).normal(size=(9, 2)) * (1.5, 3.0)}
 TILT = nh.Event(lambda orbit: orbit.configuration[:, 0, 0], name="tilt")
 SIDE = nh.Event(lambda orbit: np.sin(orbit.heading), direction=1, name="side", stop=2)
@@ -106,10 +105,3 @@ def test_members_that_fail_keep_their_crossings() -> None:
     assert batch.outcome.tolist() == [0, int(nh.Outcome.no_real_branch)]
     assert batch.events["cusp"].count.tolist() == [1, 0]
     assert np.isnan(batch.pose[1]).all()
-
-
-def test_no_events_at_all() -> None:
-    """An empty list of events finds nothing and changes nothing."""
-    batch = nh.ensemble(FOUR, restricted_velocity=np.eye(3), steps=20, events=[])
-    assert len(batch.events) == 0
-    assert np.array_equal(batch.pose, nh.ensemble(FOUR, restricted_velocity=np.eye(3), steps=20).pose)

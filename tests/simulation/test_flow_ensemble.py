@@ -91,20 +91,6 @@ def test_members_with_their_own_parameters(name: str) -> None:
             assert np.abs(batch.heading[member] - alone.heading).max() < 1e-12
 
 
-def test_reduction_block_by_block(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What a function makes of blocks is joined in order."""
-    from nonholo.simulation.members import _ensemble
-
-    w = np.random.default_rng(2).normal(size=(50, 2))
-    whole = nh.ensemble(TOP, restricted_velocity=w, times=TIMES)
-    monkeypatch.setattr(_ensemble, "_BLOCK", 64)
-    last = nh.ensemble(TOP, restricted_velocity=w, times=TIMES, reduce=lambda batch: batch.momentum[:, -1])
-    assert np.array_equal(last, whole.momentum[:, -1])
-    data = whole.to_dataset()
-    assert data.sizes["member"] == 50
-    assert np.array_equal(data["energy"], whole.energy)
-
-
 def test_a_member_that_cannot_go_on_has_no_later_states() -> None:
     """The others are not disturbed."""
     w = [[0.4, 0.9], [1e140, 2e140], [0.3, -0.2]]

@@ -58,17 +58,6 @@ def test_a_stored_function_is_not_run(tmp_path: Path) -> None:
     }
 
 
-def test_pictures_show_no_free_motion() -> None:
-    """The overview of a forced orbit is drawn, with the blade of a sleigh, and marks no equilibria of free motions."""
-    for forced in FORCED.values():
-        orbit = nh.simulate(nh.discretize(forced, 0.05), **START, steps=30)
-        figure = orbit.plot()
-        assert len(figure.axes) > 2
-    assert nh.plot.blade_track(orbit).track is not None
-    assert nh.plot.energy_error(orbit).unit < 1e-2  # of what is left of the balance; the energy changes by more
-    assert np.ptp(orbit.energy) > 0.05 * np.abs(orbit.energy).max()
-
-
 SLOPE = nh.Gravity(force=[0.4, -1.0], point=[0.5, 0.3])
 
 

@@ -170,19 +170,6 @@ def test_gradients_of_every_system_are_differences(system: AbstractSystem, optio
         np.testing.assert_allclose(slope, difference, rtol=1e-7, atol=1e-9)
 
 
-@pytest.mark.profile("routes", instead="test_derivatives_agree_with_40_digits")
-def test_start_may_be_a_momentum_or_a_full_velocity() -> None:
-    """A full momentum, one along the constraint and a body velocity start the same orbit, which `simulate` runs too."""
-    discrete = nh.discretize(TOP, 0.1)
-    orbit = nh.simulate(discrete, body_velocity=(0.4, 0.9, 0.0), steps=5)
-    for start in (
-        {"body_velocity": (0.4, 0.9, 0.0)},
-        {"momentum": orbit.momentum[0]},
-        {"momentum": orbit.restricted_momentum[0]},
-    ):
-        _assert_same(nh.rollout(discrete, **start, steps=5), orbit, 1e-14)
-
-
 def test_momentum_off_the_locus_is_an_outcome() -> None:
     """A full momentum that no displacement has gives NaN and says why."""
     found = nh.rollout(nh.discretize(TOP, 0.1), momentum=(0.4, 0.9, 2.0), steps=5)

@@ -281,12 +281,3 @@ def test_a_function_that_fails_on_the_way_leaves_a_valid_store(tmp_path: Path) -
     assert now is not None
     assert now.done == 273, "the last block of 35 steps that ends before step 300"
     assert same(nh.resume(path, events=sound), begun(None, sound))
-
-
-@pytest.mark.profile("faults", keep=["{}"])
-@pytest.mark.parametrize("events", [np.eye(2), 0, "", {}], ids=repr)
-def test_what_is_no_list_is_refused_by_stores_without_events(events: object, tmp_path: Path) -> None:
-    """Empty or not, of a kind that has a truth value or not."""
-    begun(tmp_path / "run.zarr", None)
-    with pytest.raises(ValueError, match=r"resume\(events=\.\.\.\)` must be a list of events"):
-        nh.resume(tmp_path / "run.zarr", events=events)

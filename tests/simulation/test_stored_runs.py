@@ -14,7 +14,6 @@ import pytest
 from bodies import GENERAL
 from damage import DAMAGE, damage
 from problems import PROBLEMS
-from simulation import killed
 from stopping import stopped_at, stopped_in
 
 import nonholo as nh
@@ -122,19 +121,6 @@ def test_lost_start_is_refused(tmp_path: Path) -> None:
         (path / chunk).unlink()
     with pytest.warns(RuntimeWarning, match="c/0"), pytest.raises(ValueError, match=r"hold the start.*run it again"):
         nh.resume(path)
-
-
-@pytest.mark.profile("faults", instead="test_runs_cut_at_random_blocks_go_on")
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="kills forked processes")
-@pytest.mark.parametrize(("name", "kills"), [("short sleigh", 1), ("sleigh", 20), ("tumbling body", 5)])
-def test_killed_runs_go_on(name: str, kills: int, tmp_path: Path) -> None:
-    """Killed at random moments and resumed each time, a run is the undisturbed one, and leaves no rubbish."""
-    path = tmp_path / "run.zarr"
-    now = killed.leave_killed(name, path, kills)
-    assert 0 < now.done < now.steps
-    discrete, run, _ = killed.RUNS[name]
-    assert _same(nh.resume(path), nh.simulate(discrete, **run))
-    assert not list(path.rglob("*.partial"))
 
 
 @pytest.mark.profile("faults", instead="test_full_disk_leaves_a_valid_store")
