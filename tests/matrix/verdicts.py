@@ -102,13 +102,6 @@ RULES: tuple[Rule, ...] = (
         "near a steady motion",
         is_broken=True,
     ),
-    Rule(
-        "ensemble of parameters|gradient|rollout|fit|tracking feedback",
-        "on a group",
-        "Systems on groups by functions have constants inside them, and JAX runs none of them yet.",
-        "must (name|be)",
-        is_broken=True,
-    ),
 )
 
 
