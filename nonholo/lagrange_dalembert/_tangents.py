@@ -53,6 +53,15 @@ def following(motion: Any, x: np.ndarray, v: np.ndarray) -> np.ndarray:
     return np.stack([in_double(_frame, motion.system, x, v, t) for t in times])
 
 
+def units(system: Any, x: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Return units of the velocities in which each has the same kinetic energy."""
+    return in_double(_units, system, x, v)
+
+
+def _units(system: Any, x: Array, v: Array) -> Array:
+    return equations.acceleration_matrix(system, x, v)[1].velocity
+
+
 def _frame(system: Any, x: Array, v: Array, time: Array) -> Array:
     return system.places.frame(x, v, time)
 
