@@ -304,10 +304,18 @@ def test_derivatives_of_rollouts_are_those_of_the_ll_map(derive) -> None:  # noq
 
 
 def test_parameters_are_numbers_of_one_system() -> None:
-    """Maps and flows with parameters are those whose functions have the numbers within, and one code serves all."""
-    system = OF_NUMBERS.with_parameters(a=0.1)
+    """The system of other numbers has the code of the first, and functions with these numbers within."""
+    system, W = OF_NUMBERS.with_parameters(a=0.1), PLANE.exp(np.array([0.1, 0.2, -0.3]))
     assert (system.family, dict(system.parameters)) == (OF_NUMBERS.family, {"a": 0.1})
-    own = rewritten(sleigh(0.1))
+    with jax.enable_x64(True):
+        value = system.plain.discrete_lagrangian(np.eye(3), W, 0.2)
+    assert abs(value - mass_tensor_lagrangian(PLANE, sleigh(0.1).homogeneous_mass_tensor)(W, 0.2)) <= 1e-14
+
+
+@pytest.mark.profile("routes", instead="test_parameters_are_numbers_of_one_system")
+def test_motions_with_parameters_are_those_with_numbers_within() -> None:
+    """Maps, and flows under a potential, whose inertia is derived from the discrete Lagrangian."""
+    system, own = OF_NUMBERS.with_parameters(a=0.1), rewritten(sleigh(0.1))
     start = {**START, "body_velocity": (1.0, -1.0, 0.0)}
     ours, known = (nh.simulate(nh.discretize(each, 0.2), **start, steps=10) for each in (system, own))
     assert_near(ours, known, 1e-13, "momentum", "configuration", "energy", "multipliers")
