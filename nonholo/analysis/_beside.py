@@ -45,7 +45,7 @@ def on_group(owner: str, subject: Any, configuration: Any, velocity: Any) -> tup
     poses, momenta = _by_steps(subject, g, r) if is_map else _by_flow(system, g, r)
     rng, dim = np.random.default_rng(0), system.group.dim
     xi, s = _SPREAD * rng.uniform(-1, 1, (_OTHERS, dim)), _SPREAD * rng.uniform(-1, 1, (_OTHERS, len(r)))
-    count, times = len(_TIMES), np.append(_TIMES, np.zeros(_OTHERS))
+    count, times, units = len(_TIMES), np.append(_TIMES, np.zeros(_OTHERS)), np.ones(len(r))
     poses = np.concatenate([poses[:count], g @ system.group.exp(xi)])
     others = r + (np.abs(r).max() or 1.0) * s
     change, slope = _slopes(subject, times, poses, np.concatenate([momenta[:count], others]))
@@ -54,8 +54,13 @@ def on_group(owner: str, subject: Any, configuration: Any, velocity: Any) -> tup
         change[:count, dim:] = np.diff(momenta, axis=0)
     rows = np.zeros((len(slope), 0, slope.shape[-1]))
     names = *(f"xi{i}" for i in range(1, 1 + dim)), *(f"r{i}" for i in range(1, 1 + len(r)))
-    local = Local(names, dim, np.append(np.zeros(dim), r), change, slope, rows, count - 1)
+    local = Local(names, dim, np.append(np.zeros(dim), r), change, slope, rows, _TIMES, units, _frame(slope[0], dim))
     return local, functools.partial(_pose_beside, system, g, r)
+
+
+def _frame(slope: Float[np.ndarray, "m m"], places: int) -> Float[np.ndarray, "m m"]:
+    """Return the rows of the places of derivatives, and zeros."""
+    return np.where(np.arange(len(slope))[:, None] < places, slope, 0.0)
 
 
 def _pose_beside(system: Any, g: Array, r: Array, xi: Array, s: Array) -> tuple[np.ndarray, np.ndarray]:
@@ -185,7 +190,10 @@ def beside_state(owner: str, subject: Any, configuration: Any, velocity: Any) ->
     places, velocities = tangents.beside(motion, x, v, xi, (np.abs(v).max() or 1.0) * w)
     velocities = np.concatenate([np.tile(v, (1 + len(later), 1)), velocities])
     slopes = tangents.slopes(motion, np.concatenate([x[None], later, places]), velocities)
-    local = Local(_names_of_coordinates(motion.system, size), size, np.append(np.zeros(size), v), *slopes, len(later))
+    names, state = _names_of_coordinates(motion.system, size), np.append(np.zeros(size), v)
+    frame = None if motion.system.coordinates else _frame(slopes[1][0], size)
+    times = np.append(0.0, tangents.LATER)
+    local = Local(names, size, state, *slopes, times, tangents.units(motion.system, x, v), frame)
     return local, functools.partial(_coordinates_beside, motion, x, v)
 
 

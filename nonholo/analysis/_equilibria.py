@@ -68,7 +68,7 @@ def equilibria(
 
     With `configuration`, of any system, or its map: the state of rest near it, or the steady motion near a velocity, by
     Newton's method. Such states come in families, of as many directions as there are constraints, ignorable coordinates
-    and conserved momenta; each correction is the shortest one. Of a body on a group, states of rest under forces.
+    and conserved momenta; each correction is the shortest one. On a group the body velocity stays.
 
     Reference: [fedorov-zenkov-2004], sections 6 and 7, "stationary solutions".
 

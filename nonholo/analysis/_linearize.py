@@ -19,7 +19,7 @@ from nonholo.orbit import Orbit, as_orbit
 from nonholo.systems import AbstractCoordinateDiscretization, AbstractCoordinateSystem, AbstractSystem
 
 _CHOICES = 1000  # of velocities
-_SHARE = 0.05  # least singular value of the dependent columns of orthonormal constraints; a good choice has more
+_SHARE = 0.05  # least singular value of the dependent columns of constraints, orthonormal in units of equal energy
 _UNSEEN = 1e-11  # of the largest derivative
 _STEADY = 1e-7  # of a state
 
@@ -34,7 +34,10 @@ class Local(NamedTuple):
         change: Rates of the states, or what a step adds to them, shape (K, m).
         slope: Their derivatives by the states, shape (K, m, m).
         rows: Derivatives of the constraints, shape (K, s, m); those of holonomic ones by velocities are zero.
-        later: How many of the states after the first one are the steady motion at later times.
+        times: Those of the first states, which are the steady motion.
+        units: Units of the velocities, in which each has the same kinetic energy, shape (n,).
+        frame: How places move that are seen from a frame which moves with the state: the derivatives of their rates,
+            and zeros as those of the velocities, shape (m, m); None in coordinates.
     """
 
     names: tuple[str, ...]
@@ -43,7 +46,9 @@ class Local(NamedTuple):
     change: Float[np.ndarray, "K m"]
     slope: Float[np.ndarray, "K m m"]
     rows: Float[np.ndarray, "K s m"]
-    later: int
+    times: Float[np.ndarray, "1+L"]
+    units: Float[np.ndarray, "n"]
+    frame: Float[np.ndarray, "m m"] | None
 
 
 class Reduced(NamedTuple):
@@ -70,8 +75,9 @@ def reduced(local: Local) -> Reduced:
     """Return the equations in the velocities that leave the fewest coordinates, steady if there are such."""
     rows, places = local.rows[0], local.places
     of_places = ~rows[:, places:].any(axis=1)  # holonomic constraints
-    holonomic = list(next(_choices(rows[of_places, :places])))
-    choices = _choices(rows[~of_places, places:])
+    sizes = np.resize(local.units, places)  # with one for the time
+    holonomic = list(next(_choices(rows[of_places, :places] * sizes)))
+    choices = _choices(rows[~of_places, places:] * local.units)
     equations = (_without(local, holonomic + [places + i for i in dependent]) for dependent in choices)
     return min(equations, key=lambda each: (not each.is_steady, len(each.states)))
 
@@ -91,7 +97,7 @@ def _without(local: Local, dependent: list[int]) -> Reduced:
     independent = np.setdiff1d(np.arange(len(local.state)), dependent)
     dependence = -np.linalg.solve(local.rows[:, :, dependent], local.rows[:, :, independent])
     slope = local.slope[:, independent][:, :, independent] + local.slope[:, independent][:, :, dependent] @ dependence
-    change, count = local.change[:, independent], 1 + local.later
+    change, count = local.change[:, independent], len(local.times)
     matters = _influences(_depends(slope), int((independent < local.places).sum()))
     states = independent[matters]
     matrix, defects = slope[:count, matters][:, :, matters], change[:count, matters]
@@ -302,8 +308,10 @@ def steady_motion(system: Any, configuration: Any, body_velocity: Any) -> Steady
         if getattr(flow, "is_driven", False) and flow.dimension in equations.states:
             remedy = "Prescribed motions and forces of the time drive it: leave them out."
             raise error(where, "be near a steady motion", "equations of the time", remedy)
-        is_seen = np.abs(equations.matrix) > _UNSEEN * np.abs(local.slope[0]).max()
-        change = equations.directions @ _step(equations.matrix * is_seen, local.change[0][equations.states])
+        is_rest = body_velocity is None or not np.any(body_velocity)
+        matrix, defect = _balance(local._replace(frame=None) if is_rest else local, equations)
+        is_seen = np.abs(matrix) > _UNSEEN * np.abs(local.slope[0]).max()
+        change = equations.directions @ _step(matrix * is_seen, defect)
         state = beside(-change[: local.places], -change[local.places :])
         if np.abs(change).max(initial=0.0) <= _CLOSE * (1 + np.abs(local.state).max()):
             if not equations.is_steady:
@@ -311,6 +319,19 @@ def steady_motion(system: Any, configuration: Any, body_velocity: Any) -> Steady
             return SteadyMotion(*state, linearize(system, configuration=state[0], body_velocity=state[1]))
     got = f"none, after corrections that lead to {np.asarray(state[0]).tolist()}"
     raise error(where, "be near a steady motion", got, "Guess closer to one.")
+
+
+def _balance(local: Local, equations: Reduced) -> tuple[np.ndarray, np.ndarray]:
+    r"""Return derivatives of what vanishes in a steady motion by the states that matter, and its values.
+
+    In coordinates and at rest these are the changes of the states. Seen from a frame that moves along, a motion is
+    steady if its velocity is constant at all its poses: $\dot w(g e^{\xi} e^{t (v + w)}, v + w) = 0$.
+    """
+    if local.frame is None:
+        return equations.matrix, local.change[0][equations.states]
+    rates, count = slice(local.places, None), len(local.times)
+    transport = scipy.linalg.expm(local.times[:, None, None] * local.frame) @ equations.directions
+    return np.concatenate(local.slope[:count, rates] @ transport), local.change[:count, rates].ravel()
 
 
 _SHIFT = 1e-14  # relative, of eigenvalues by rounding

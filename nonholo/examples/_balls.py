@@ -10,8 +10,7 @@ from nonholo.base.checks import error
 from nonholo.base.types import Array
 from nonholo.examples._example import Example, Numbers, energy_of, ready, system_in, with_numbers
 from nonholo.groups import SE, SO
-from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, LagrangeDAlembert, mass_tensor_lagrangian
-from nonholo.systems import mass_tensor_from_inertia
+from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, LagrangeDAlembert
 
 
 @ready("angular_velocity", positive="inertia", inertia="three moments", angular_velocity="three components")
@@ -64,18 +63,25 @@ def chaplygin_ball(
         return (R @ own[..., None])[..., 0]
 
     conserved = {f"momentum along {axis}": lambda g, v, i=i: momentum(g, v)[..., i] for i, axis in enumerate("xyz")}
-    return Example("chaplygin_ball", _chaplygin_system(m, r, inertia), np.eye(4), v, conserved)
+    return Example("chaplygin_ball", with_numbers(_rolling_ball, m, r, inertia), np.eye(4), v, conserved)
 
 
 @functools.cache
-def _chaplygin_system(m: float, r: float, moments: tuple[float, ...]) -> GroupLagrangeDAlembert:
-    tensor = np.zeros((4, 4))
-    tensor[:3, :3], tensor[3, 3] = mass_tensor_from_inertia(np.diag(moments)), m
+def _rolling_ball() -> GroupLagrangeDAlembert:
+    def action(W: Array, time_step: Array, p: Numbers) -> Array:
+        moments = p["inertia"]
+        masses = jnp.append(jnp.sum(moments) / 2 - moments, p["mass"])
+        return masses @ ((W - jnp.eye(4)) ** 2).sum(axis=0) / (2 * time_step)
 
-    def forms(g: Array) -> Array:
-        return jnp.concatenate([r * SO(3).hat(g[2, :3]), jnp.eye(3)], axis=1)
+    def lagrangian(w: Array, p: Numbers) -> Array:
+        return (p["inertia"] @ w[:3] ** 2 + p["mass"] * w[3:] @ w[3:]) / 2
 
-    return GroupLagrangeDAlembert(SE(3), mass_tensor_lagrangian(SE(3), tensor), forms, name="Chaplygin's ball")
+    def forms(g: Array, p: Numbers) -> Array:
+        return jnp.concatenate([p["radius"] * SO(3).hat(g[2, :3]), jnp.eye(3)], axis=1)
+
+    numbers = {"mass": 1.0, "radius": 1.0, "inertia": np.ones(3)}
+    options: Any = {"lagrangian": lagrangian, "parameters": numbers, "name": "Chaplygin's ball"}
+    return GroupLagrangeDAlembert(SE(3), action, forms, **options)
 
 
 @ready("place velocity spin", reals="spin", place="x and y", velocity="x and y")

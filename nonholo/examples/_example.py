@@ -197,7 +197,7 @@ def system_in(coordinates: str, name: str, *functions: Any, **options: Any) -> L
     return LagrangeDAlembert(*functions, dimension=len(names), coordinates=names, name=name, **options)
 
 
-def with_numbers(make: Callable[[], LagrangeDAlembert], *numbers: Any) -> LagrangeDAlembert:
+def with_numbers(make: Callable[[], Any], *numbers: Any) -> Any:
     """Return a system that is made once, with these parameters in its order."""
     system = make()
     return system.with_parameters(**dict(zip(system.parameters, numbers, strict=True)))

@@ -13,7 +13,7 @@ import inspect
 import sys
 import threading
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import jax
 import jax.numpy as jnp
@@ -22,6 +22,7 @@ import numpy as np
 from nonholo.base.checks import array, checked_name, error, instance, is_traced, number, shape_of, shown
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float, Int
+from nonholo.systems import AbstractCoordinateSystem, DiscretizationT, OrbitT
 
 ROWS = 1024
 """Saved states of one call of JAX: one size of table, one compilation."""
@@ -210,9 +211,6 @@ def _binds(function: Callable[..., Any], count: int) -> bool:
     return True
 
 
-_WHERE = "LagrangeDAlembert(parameters=...)"
-
-
 class Parameters(Mapping[str, Any]):
     """Numbers and arrays by name, in an order; equal where names, shapes and numbers are.
 
@@ -221,10 +219,12 @@ class Parameters(Mapping[str, Any]):
         (True, {'mass': 1.0})
     """
 
-    def __init__(self, numbers: Any) -> None:
-        instance(_WHERE, numbers, Mapping, "be a mapping of names to numbers", "Pass a dict.")
-        own = {checked_name(_WHERE, key, ("time_step",)): _valid_number(_WHERE, key, x) for key, x in numbers.items()}
-        self._hold(own)
+    def __init__(self, numbers: Any, owner: str = "LagrangeDAlembert") -> None:
+        where = f"{owner}(parameters=...)"
+        instance(where, numbers, Mapping, "be a mapping of names to numbers", "Pass a dict.")
+        self._hold(
+            {checked_name(where, key, ("time_step",)): _valid_number(where, key, x) for key, x in numbers.items()}
+        )
 
     def _hold(self, numbers: dict[str, Any]) -> None:
         self._numbers = numbers
@@ -265,7 +265,7 @@ class Parameters(Mapping[str, Any]):
         """Return them with other numbers of the same names and shapes."""
         for key in numbers.keys() - self.keys():
             near = difflib.get_close_matches(key, self, n=1)
-            remedy = f"It has {', '.join(self)}." if self else "It has none: pass LagrangeDAlembert(parameters=...)."
+            remedy = f"It has {', '.join(self)}." if self else "It has none: make it with parameters=..."
             raise error(
                 where, "name parameters of the system", shown(key), f"Did you mean {near[0]}?" if near else remedy
             )
@@ -308,6 +308,83 @@ class Bound:
     def is_of_one_step(self) -> bool:
         """Whether it was made for one time step."""
         return getattr(self.function, "is_of_one_step", False)
+
+
+class AbstractParametricSystem(AbstractCoordinateSystem[DiscretizationT, OrbitT]):
+    """A system whose functions take its parameters last, where it has any."""
+
+    functions: ClassVar[tuple[str, ...]]
+    """The fields that are such functions."""
+    parameters: Any
+
+    @property
+    def _shapes_given(self) -> tuple[dict[str, jax.ShapeDtypeStruct], ...]:
+        """The last argument of all functions, the shapes of the parameters, if there are any."""
+        return (self.parameters.structure,) if self.parameters else ()
+
+    def with_parameters(self, **numbers: Any) -> Self:
+        r"""Return the same system with other numbers of some of its parameters; nothing is compiled again.
+
+        Args:
+            numbers: Numbers or arrays by name, as in `parameters`; JAX may trace them (`nonholo.rollout`).
+
+        Raises:
+            ValueError: A name that is none of its parameters, another shape, a value that is not finite.
+
+        Example:
+            >>> def energy(q, v, p):
+            ...     return (p["mass"] * v @ v - p["stiffness"] * q @ q) / 2
+            >>> spring = nh.LagrangeDAlembert(energy, None, dimension=1, parameters={"mass": 1.0, "stiffness": 4.0})
+            >>> heavy = spring.with_parameters(mass=4.0)
+            >>> heavy.parameters, heavy == spring
+            ({'mass': 4.0, 'stiffness': 4.0}, False)
+            >>> orbit = nh.flow(heavy, configuration=[1], body_velocity=[0], times=[0, np.pi])
+            >>> print(orbit.configuration[-1].round(9))
+            [-1.]
+        """
+        return _of_numbers(self, self.parameters.replace("with_parameters(...)", numbers), family=self.family)
+
+    @functools.cached_property
+    def family(self) -> Self:
+        """The system with zeros as parameters, which stands for all their numbers."""
+        if not self.parameters:
+            return self
+        family = self._with_fields(parameters=self.parameters.nothing)
+        vars(family)["family"] = family
+        return family
+
+    def bound(self, *numbers: Any) -> Self:
+        """Return the system without parameters whose functions have these numbers within."""
+        p = dict(zip(self.parameters, numbers, strict=True))
+        return self._with_fields(parameters=Parameters({}), **self._bound_fields(p))
+
+    def _bound_fields(self, p: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the fields that are functions, with parameters within."""
+        own = {name: getattr(self, name) for name in self.functions}
+        return {name: each and Bound(each, p) for name, each in own.items()}
+
+    @functools.cached_property
+    def plain(self) -> Self:
+        """The same system without parameters: its functions have them within."""
+        return _plain(self)
+
+
+def _of_numbers(system: Any, parameters: Parameters, **fields: Any) -> Any:
+    """Return a system with other numbers, which is pickled as such where it is made by a call that has a name."""
+    other, recipe = system._with_fields(parameters=parameters, **fields), vars(system).get("recipe")
+    if recipe:
+        origin = recipe[1][0] if recipe[0] is _of_numbers else system
+        vars(other)["recipe"] = (_of_numbers, (origin, parameters))
+    return other
+
+
+def _plain(system: Any) -> Any:
+    """Return a system whose numbers stand within its functions, pickled as such."""
+    plain = system.bound(*system.parameters.values()) if system.parameters else system
+    recipe = vars(system).get("recipe")
+    if recipe and plain is not system:
+        vars(plain)["recipe"] = (_plain, (system,))
+    return plain
 
 
 @dataclasses.dataclass(frozen=True)

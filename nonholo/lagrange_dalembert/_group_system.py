@@ -13,9 +13,17 @@ from nonholo.base.checks import error, instance, shown, text
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.lagrange_dalembert._functions import check_forms, check_value, count_of, room
+from nonholo.lagrange_dalembert._functions import (
+    AbstractParametricSystem,
+    Parameters,
+    check_forms,
+    check_value,
+    count_of,
+    room,
+    with_parameters,
+)
 from nonholo.lagrange_dalembert._places import Poses
-from nonholo.systems import AbstractCoordinateSystem, checked_group, group_mass_tensor, inertia_form
+from nonholo.systems import checked_group, group_mass_tensor, inertia_form
 
 if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._discretization import GroupDiscretization
@@ -23,7 +31,7 @@ if TYPE_CHECKING:
 
 
 @dataclasses.dataclass(frozen=True)
-class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "GroupOrbit"]):
+class GroupLagrangeDAlembert(AbstractParametricSystem["GroupDiscretization", "GroupOrbit"]):
     r"""A left-invariant Lagrangian on a matrix group with velocity constraints that may depend on the configuration.
 
     $$ \dot p = \mathrm{ad}^*_\omega p + \sum_j\lambda_j a^j(g), \quad p = \frac{\partial l}{\partial\omega}, \qquad
@@ -53,6 +61,8 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
             and for starts from a velocity or a momentum, and only if it is not a quadratic form.
         potential: `potential(g)` -> scalar, U; steps take it at both ends, $l_d(W) - \tfrac h2(U(g) + U(gW))$.
             `nonholo.Forced(system, potential)` adds it.
+        parameters: Numbers or arrays by name, p, which all functions take last, `constraint_forms(g, p)`: see
+            `LagrangeDAlembert` and `with_parameters`.
         name: The name of the system in pictures.
 
     Raises:
@@ -73,12 +83,17 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
     """
 
     group: AbstractMatrixGroup
-    discrete_lagrangian: Callable[[Array, Array], Array] = dataclasses.field(repr=False)
-    constraint_forms: Callable[[Array], Array] | None = dataclasses.field(repr=False)
-    discrete_constraints: Callable[[Array, Array, Array], Array] | None = dataclasses.field(default=None, repr=False)
-    lagrangian: Callable[[Array], Array] | None = dataclasses.field(default=None, kw_only=True, repr=False)
-    potential: Callable[[Array], Array] | None = dataclasses.field(default=None, kw_only=True, repr=False)
+    discrete_lagrangian: Callable[..., Array] = dataclasses.field(repr=False)
+    constraint_forms: Callable[..., Array] | None = dataclasses.field(repr=False)
+    discrete_constraints: Callable[..., Array] | None = dataclasses.field(default=None, repr=False)
+    lagrangian: Callable[..., Array] | None = dataclasses.field(default=None, kw_only=True, repr=False)
+    potential: Callable[..., Array] | None = dataclasses.field(default=None, kw_only=True, repr=False)
+    parameters: Any = dataclasses.field(default_factory=dict, kw_only=True)
     name: str = dataclasses.field(default="Constraints that depend on the pose", kw_only=True)
+    functions: ClassVar[tuple[str, ...]] = (
+        *("discrete_lagrangian", "constraint_forms", "discrete_constraints"),
+        *("lagrangian", "potential"),
+    )
     holonomic: ClassVar[None] = None
     is_driven: ClassVar[bool] = False
     coordinates: ClassVar[tuple[str, ...]] = ()
@@ -97,6 +112,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
         remedy = "Pass nonholo.SO(n), SE(n), MatrixGroup or a product."
         instance(_argument("group"), self.group, AbstractMatrixGroup, "be a matrix group", remedy)
         text(_argument("name"), self.name)
+        object.__setattr__(self, "parameters", Parameters(self.parameters, type(self).__name__))
         with double_precision():
             g = jax.ShapeDtypeStruct((self.group.size, self.group.size), float)
             w, h = jax.ShapeDtypeStruct((self.group.dim,), float), jax.ShapeDtypeStruct((), float)
@@ -104,7 +120,8 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
             if self.constraint_forms is not None:
                 where = _argument("constraint_forms")
                 remedy = "Stack one row per constraint, in body coordinates; pass None for no constraint."
-                check_forms(where, self.constraint_forms, self.group.dim, (g,), repr(self.group), remedy)
+                arguments = (g, *self._shapes_given)
+                check_forms(where, self.constraint_forms, self.group.dim, arguments, repr(self.group), remedy)
             if self.discrete_constraints is not None:
                 self._check("discrete_constraints", (self.constraints,), g, g, h)
             if self.lagrangian is not None:
@@ -113,13 +130,13 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
                 self._check("potential", (), g)
 
     def _check(self, name: str, shape: tuple[int, ...], *arguments: Any) -> None:
-        arrays = f"shapes {[x.shape for x in arguments]}"
+        arrays, arguments = f"shapes {[x.shape for x in arguments]}", (*arguments, *self._shapes_given)
         check_value(_argument(name), getattr(self, name), shape, arguments, repr(self.group), arrays)
 
     @property
     def constraints(self) -> int:
         """The number s of constraints."""
-        return count_of(self.constraint_forms, (self.group.size, self.group.size))
+        return count_of(self.plain.constraint_forms, self.shapes[0])
 
     velocity_constraints = constraints
 
@@ -141,18 +158,21 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
     @functools.cached_property
     def plain(self) -> Any:
         """The system as the equations see it: Lagrangians of the pose and the velocity or displacement."""
-        plain = self._with_fields(lagrangian=self._lagrangian, discrete_lagrangian=self._discrete_lagrangian)
-        vars(plain)["plain"] = plain
-        return plain
+        return super().plain if self.parameters else self._in_full(_numbers_of_inertia)
 
     def bound(self, *numbers: Any) -> Any:
-        """Return the system as the equations see it: it has no parameters."""
-        del numbers
-        return self.plain
+        """Return the system as the equations see it, with numbers of its parameters within."""
+        return super().bound(*numbers)._in_full(_inertia) if self.parameters else self.plain
 
-    def _lagrangian(self, g: Array, w: Array) -> Array:
+    def _in_full(self, inertia: Callable[..., Array]) -> Any:
+        lagrangian = functools.partial(self._lagrangian, inertia)
+        full = self._with_fields(lagrangian=lagrangian, discrete_lagrangian=self._discrete_lagrangian)
+        vars(full)["plain"] = full
+        return full
+
+    def _lagrangian(self, inertia: Callable[..., Array], g: Array, w: Array) -> Array:
         r"""Return $l(\omega) - U(g)$ with the given l, or the quadratic form that belongs to l_d."""
-        kinetic = w @ _inertia(self) @ w / 2 if self.lagrangian is None else self.lagrangian(w)
+        kinetic = w @ inertia(self) @ w / 2 if self.lagrangian is None else self.lagrangian(w)
         return kinetic if self.potential is None else kinetic - self.potential(g)
 
     def _discrete_lagrangian(self, g: Array, W: Array, time_step: Array) -> Array:
@@ -167,6 +187,7 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
             got = shown(self if force is None else force)
             remedy = "Pass one potential; write a system with forces as an LLSystem."
             raise error("Forced(system=...)", "have at most a potential, as a GroupLagrangeDAlembert", got, remedy)
+        potential = with_parameters(potential, 1) if self.parameters else potential
         return dataclasses.replace(self, potential=potential) if potential is not None else self
 
     @property
@@ -179,15 +200,19 @@ class GroupLagrangeDAlembert(AbstractCoordinateSystem["GroupDiscretization", "Gr
         return room("_discretization").GroupDiscretization(self, time_step)
 
 
-@functools.lru_cache(maxsize=64)
-def _inertia(system: GroupLagrangeDAlembert) -> Any:
-    """Return the inertia operator as numbers: h times the second derivative of $l_d(e^x)$ at x = 0, for h = 1."""
+def _inertia(system: GroupLagrangeDAlembert) -> Array:
+    """Return the inertia operator: h times the second derivative of $l_d(e^x)$ at x = 0, for h = 1."""
 
     def at(x: Array) -> Array:
         return system.discrete_lagrangian(system.group.exp(x), jnp.ones(()))
 
+    return jax.hessian(at)(jnp.zeros(system.group.dim))
+
+
+@functools.lru_cache(maxsize=64)
+def _numbers_of_inertia(system: GroupLagrangeDAlembert) -> Any:
     with jax.ensure_compile_time_eval(), double_precision():
-        return np.asarray(jax.jit(jax.hessian(at))(jnp.zeros(system.group.dim)))
+        return np.asarray(jax.jit(lambda: _inertia(system))())
 
 
 def _argument(argument: str) -> str:

@@ -60,8 +60,17 @@ def orientation(system: Any, q: Array, v: Array, h: Array) -> tuple[Array, Array
 def solve(
     system: Any, h: Array, q: Array, p: Array, near: Array, guess: Array, sign: Array
 ) -> tuple[Array, Array, Array]:
-    """Return velocity, multipliers and outcome of the root with this orientation next to `near`."""
-    return root(of_step(system, q, p, near, h), near, guess, sign)
+    """Return velocity, multipliers and outcome of the root with this orientation next to `near`.
+
+    Where forces balance at rest velocities are rounding errors, and so are corrections: they are compared with what the
+    rounding of a place does to the momentum, too.
+    """
+    unknown, tangent = of_step(system, q, p, near, h), q.at[-1].set(0.0) if system.is_driven else q
+    _, slope = jax.jvp(lambda x: equations.momenta(system, x, near, h)[0], (q,), (tangent,))
+    masses = jnp.abs(jnp.diag(equations.mass_matrix(system, q, near)))
+    rounding = _ROUNDING / TOLERANCE * jnp.abs(slope) / jnp.where(masses == 0, 1.0, masses)
+    rounding = rounding if unknown.rounding is None else rounding + unknown.rounding
+    return root(unknown._replace(rounding=rounding), near, guess, sign)
 
 
 class Equations(NamedTuple):

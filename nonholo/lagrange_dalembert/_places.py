@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import array, error
+from nonholo.base.checks import array, error, is_traced
 from nonholo.base.types import Array
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import in_group
@@ -162,7 +162,9 @@ class Poses(NamedTuple):
 
     def configuration(self, where: str, value: Any) -> np.ndarray:
         """Return the checked configuration of a start, the identity by default."""
-        return self.group.identity if value is None else in_group(where, self.group, value)
+        if value is None or is_traced(value):
+            return self.group.identity if value is None else array(where, value, self.group.identity.shape)
+        return in_group(where, self.group, value)
 
     def velocity(self, where: str, displacement: Any, h: Any) -> np.ndarray:
         """Return the velocity of a checked displacement."""

@@ -1,4 +1,4 @@
-"""Orbits in coordinates as JAX functions of parameters, start and controls; derivatives of the implicit function."""
+"""Orbits as JAX functions of parameters, start and controls; derivatives of the implicit function."""
 
 import functools
 from typing import Any, NamedTuple
@@ -14,12 +14,12 @@ from nonholo.lagrange_dalembert._newton import orientation, solve
 
 
 class CoordinateRollout(NamedTuple):
-    """The states of a rollout in coordinates; arrays as those of a `CoordinateOrbit`, K = 1 + steps // save_every.
+    """The states of a rollout; arrays as those of a `CoordinateOrbit` or `GroupOrbit`, K = 1 + steps // save_every.
 
     Attributes:
         time: Times of the states, shape (K,).
-        configuration: q_k, shape (K, n).
-        body_velocity: (q_{k+1} - q_k) / time_step, shape (K, n).
+        configuration: q_k, shape (K, n), or g_k, (K, N, N).
+        body_velocity: (q_{k+1} - q_k) / time_step, or log(W_k) / time_step, shape (K, n).
         momentum: P_k, shape (K, n).
         energy: Energies, shape (K,).
         controls: Forces u_k of the step from each state, of controls or a policy, shape (K, n); zero after the last.
@@ -28,7 +28,7 @@ class CoordinateRollout(NamedTuple):
     """
 
     time: Float[Array, "K"]
-    configuration: Float[Array, "K n"]
+    configuration: Float[Array, "K ..."]
     body_velocity: Float[Array, "K n"]
     momentum: Float[Array, "K n"]
     energy: Float[Array, "K"]
@@ -94,7 +94,7 @@ def roll(
 
 def _state_at(system: Any, x: Array, p: Array) -> NodeState:
     """Return what a policy sees of a place with a momentum."""
-    return NodeState(x[: system.dimension], equations.inverse_legendre(system, x, p))
+    return NodeState(x[:-1] if system.is_driven else x, equations.inverse_legendre(system, x, p))
 
 
 def _decoded(system: Any, h: Array, x: Array, v: Array, row: Array | None) -> tuple[Array, Array, Array, Array]:
@@ -102,7 +102,8 @@ def _decoded(system: Any, h: Array, x: Array, v: Array, row: Array | None) -> tu
     p = equations.momenta(system, x, v, h)[0] - (0.0 if row is None else h / 2 * row)
     if not system.is_driven and row is None:
         return x, v, p, equations.discrete_energy(system, x, v, h)
-    return x[: system.dimension], v, p, equations.energy(system, x, equations.inverse_legendre(system, x, p))
+    state = _state_at(system, x, p)
+    return state.configuration, v, p, equations.energy(system, x, state.body_velocity)
 
 
 @functools.partial(jax.custom_jvp, nondiff_argnums=(0,))

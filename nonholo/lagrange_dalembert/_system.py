@@ -2,7 +2,7 @@
 
 import dataclasses
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
 
 import jax
@@ -13,6 +13,7 @@ from nonholo.base.checks import array, choice, count, error, names, shown, text,
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._functions import (
+    AbstractParametricSystem,
     Bound,
     ForceTable,
     Parameters,
@@ -28,24 +29,20 @@ from nonholo.lagrange_dalembert._functions import (
     with_time_step,
 )
 from nonholo.lagrange_dalembert._places import Coordinates
-from nonholo.systems import AbstractCoordinateSystem, force_of, parts_of, slips_of, without_slips
+from nonholo.systems import force_of, parts_of, slips_of, without_slips
 
 if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization
     from nonholo.lagrange_dalembert._orbit import CoordinateOrbit  # noqa: F401  (named by the base class)
 
 Parts = tuple[Float[np.ndarray, "P 2"], ...]
-_FUNCTIONS = (
-    *("lagrangian", "constraint_forms", "holonomic"),
-    *("discrete_lagrangian", "discrete_constraints", "constraint_velocities"),
-)
 _OTHERS = {"lagrangian": 2, "constraint_forms": 1, "holonomic": 1}
 """How many arguments the functions have that may be called with the time after them."""
 _REMEDY = "Pass the corners of each part in body axes: [[(-0.1, -0.1), (0.2, 0.0), (-0.1, 0.1)], ...]."
 
 
 @dataclasses.dataclass(frozen=True)
-class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "CoordinateOrbit"]):
+class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "CoordinateOrbit"]):
     r"""A mechanical system on $\mathbb{R}^n$ with linear velocity constraints, and its discrete principle.
 
     $$ \frac{d}{dt}\frac{\partial L}{\partial v} - \frac{\partial L}{\partial q} = \sum_j \lambda_j A^j(q), \qquad
@@ -141,6 +138,10 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     parameters: Any = dataclasses.field(default_factory=dict, kw_only=True)
     coordinates: tuple[str, ...] = dataclasses.field(default=(), kw_only=True)
     name: str = dataclasses.field(default="System in coordinates", kw_only=True)
+    functions: ClassVar[tuple[str, ...]] = (
+        *("lagrangian", "constraint_forms", "holonomic"),
+        *("discrete_lagrangian", "discrete_constraints", "constraint_velocities"),
+    )
     orbits: ClassVar[str] = "CoordinateOrbit"
     in_stores: ClassVar[tuple[str, ...]] = ("constraints", "is_driven", "orbits", "shapes")
     energy_argument: ClassVar[str] = "lagrangian"
@@ -199,11 +200,6 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         count = _OTHERS[name] + len(self._shapes_given)
         return (jax.ShapeDtypeStruct((), float),) if takes_time(getattr(self, name), count) else ()
 
-    @property
-    def _shapes_given(self) -> tuple[dict[str, jax.ShapeDtypeStruct], ...]:
-        """The last argument of all functions, the shapes of the parameters, if there are any."""
-        return (self.parameters.structure,) if self.parameters else ()
-
     def _check(self, name: str, shape: tuple[int, ...], *arguments: Any) -> None:
         function, of = getattr(self, name), f"{self.dimension} coordinates"
         if function is not None or name == "lagrangian":
@@ -215,59 +211,23 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
         acts = self.holding.force is not None or self.constraint_velocities is not None or bool(self.prescribed)
         return acts or any(map(self.takes_time, _OTHERS))
 
-    def with_parameters(self, **numbers: Any) -> Self:
-        r"""Return the same system with other numbers of some of its parameters; nothing is compiled again.
-
-        Args:
-            numbers: Numbers or arrays by name, as in `parameters`; JAX may trace them (`nonholo.rollout`).
-
-        Raises:
-            ValueError: A name that is none of its parameters, another shape, a value that is not finite.
-
-        Example:
-            >>> def energy(q, v, p):
-            ...     return (p["mass"] * v @ v - p["stiffness"] * q @ q) / 2
-            >>> spring = nh.LagrangeDAlembert(energy, None, dimension=1, parameters={"mass": 1.0, "stiffness": 4.0})
-            >>> heavy = spring.with_parameters(mass=4.0)
-            >>> heavy.parameters, heavy == spring
-            ({'mass': 4.0, 'stiffness': 4.0}, False)
-            >>> orbit = nh.flow(heavy, configuration=[1], body_velocity=[0], times=[0, np.pi])
-            >>> print(orbit.configuration[-1].round(9))
-            [-1.]
-        """
-        return _of_numbers(self, self.parameters.replace("with_parameters(...)", numbers), family=self.family)
-
-    @functools.cached_property
-    def family(self) -> Self:
-        """The system with zeros as parameters, which stands for all their numbers."""
-        if not self.parameters:
-            return self
-        family = self._with_fields(parameters=self.parameters.nothing)
-        vars(family)["family"] = family
-        return family
-
     def bound(self, *numbers: Any) -> Self:
         """Return the system without parameters whose functions have these numbers within."""
         if self.slip is not None:
             remedy = "Run it by `simulate` or `iterate` of what `discretize` returned, or leave the slip out."
             raise error(_argument("force"), "have forms that never yield", "a Slip", remedy)
-        p = dict(zip(self.parameters, numbers, strict=True))
-        own = {name: getattr(self, name) for name in _FUNCTIONS}
-        functions = {name: each and Bound(each, p) for name, each in own.items()}
+        return super().bound(*numbers)
+
+    def _bound_fields(self, p: Mapping[str, Any]) -> dict[str, Any]:
         parts = parts_of(self.force)
         parts |= {"function": Bound(parts["function"], p)} if "function" in parts else {}
         motions = tuple((index, Bound(motion, p)) for index, motion in self.prescribed)
-        return self._with_fields(parameters=Parameters({}), force=force_of(parts), prescribed=motions, **functions)
+        return super()._bound_fields(p) | {"force": force_of(parts), "prescribed": motions}
 
     @property
     def places(self) -> Coordinates:
         """Where it moves."""
         return Coordinates(self.dimension, self.is_driven)
-
-    @functools.cached_property
-    def plain(self) -> Self:
-        """The same system without parameters: its functions have them within."""
-        return _plain(self)
 
     def parts(self, q: Any) -> tuple[Float[np.ndarray, "P 2"], ...]:
         """Return the parts of the outline at a configuration, in body axes."""
@@ -382,24 +342,6 @@ class LagrangeDAlembert(AbstractCoordinateSystem["CoordinateDiscretization", "Co
     def discrete_map(self, time_step: Any) -> "CoordinateDiscretization":
         """Return the discretized system, see `nonholo.discretize`."""
         return room("_discretization").CoordinateDiscretization(self, time_step)
-
-
-def _of_numbers(system: Any, parameters: Parameters, **fields: Any) -> Any:
-    """Return a system with other numbers, which is pickled as such where it is made by a call that has a name."""
-    other, recipe = system._with_fields(parameters=parameters, **fields), vars(system).get("recipe")
-    if recipe:
-        origin = recipe[1][0] if recipe[0] is _of_numbers else system
-        vars(other)["recipe"] = (_of_numbers, (origin, parameters))
-    return other
-
-
-def _plain(system: Any) -> Any:
-    """Return a system whose numbers stand within its functions, pickled as such."""
-    plain = system.bound(*system.parameters.values()) if system.parameters else system
-    recipe = vars(system).get("recipe")
-    if recipe and plain is not system:
-        vars(plain)["recipe"] = (_plain, (system,))
-    return plain
 
 
 def _with_potential(lagrangian: Callable[..., Array], potential: Any, *, last: bool) -> Callable[..., Array]:

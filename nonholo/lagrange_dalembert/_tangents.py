@@ -53,6 +53,15 @@ def following(motion: Any, x: np.ndarray, v: np.ndarray) -> np.ndarray:
     return np.stack([in_double(_frame, motion.system, x, v, t) for t in times])
 
 
+def units(system: Any, x: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Return units of the velocities in which each has the same kinetic energy."""
+    return in_double(_units, system, x, v)
+
+
+def _units(system: Any, x: Array, v: Array) -> Array:
+    return equations.acceleration_matrix(system, x, v)[1].velocity
+
+
 def _frame(system: Any, x: Array, v: Array, time: Array) -> Array:
     return system.places.frame(x, v, time)
 
@@ -194,14 +203,18 @@ def forced_slopes(motion: Any, q: np.ndarray, v: np.ndarray, forces: np.ndarray)
 def _forced_slopes(system: Any, h: Array, *rows: Array) -> tuple[Array, Array]:
     n = system.dimension
 
+    def beside(z: Array, x: Array) -> Array:
+        return system.places.beside(x, jnp.pad(z[:n], (0, int(system.is_driven))))
+
     def after(z: Array, force: Array, x: Array, v: Array) -> Array:
-        place, w, kick = x.at[:n].add(z[:n]), v + z[n:], h / 2 * force
+        place, w, kick = beside(z, x), v + z[n:], h / 2 * force
         p = equations.momentum(system, place, w) + kick
         end, arriving = equations.arrival(system, place, _step_velocity(system, h, place, p, (x, v)), h)
-        return jnp.append(end[:n], equations.inverse_legendre(system, end, arriving + kick))
+        there = system.places.departure(jax.lax.stop_gradient(end), end)[:n]
+        return jnp.append(there, equations.inverse_legendre(system, end, arriving + kick))
 
     def limits(z: Array, x: Array, v: Array) -> Array:
-        place = x.at[:n].add(z[:n])
+        place = beside(z, x)
         return jnp.append(equations.constraint(system, place, v + z[n:]), equations.place_residual(system, place))
 
     def one(row: tuple[Array, Array, Array]) -> tuple[Array, Array]:

@@ -46,8 +46,8 @@ def rollout(
     `Gravity`, `Friction` and the table of a `Forced` system act as in `simulate`, with derivatives by their numbers. A
     potential that is a function acts by its exact derivative, if JAX can trace it (of numba the function of Python).
 
-    In coordinates the numbers are the `parameters` of a `LagrangeDAlembert`, and controls are forces u_k, half of whose
-    impulse acts at each end of a step as the rows of a table do.
+    The numbers of a `LagrangeDAlembert` or `GroupLagrangeDAlembert` are its `parameters`. In coordinates controls are
+    forces u_k, half of whose impulse acts at each end of a step as the rows of a table do.
 
     A policy closes the loop, $u_k = \pi(t_k, x_k)$ with the configuration at node k and the velocity $v_k$ that belongs
     to the momentum there: u_k is held over step k, as a computer in the loop does. Derivatives by its weights are those
@@ -80,7 +80,7 @@ def rollout(
         save_every: Steps between saved states.
 
     Returns:
-        The states with their controls, in coordinates a `CoordinateRollout`. Values are those of `simulate` to
+        The states with their controls; of systems by functions a `CoordinateRollout`. Values are those of `simulate` to
         rounding.
 
     Raises:
@@ -224,17 +224,13 @@ def _call(run: Callable[..., Any], *arguments: Any, many: bool) -> Any:
 def _in_coordinates(discrete: Any, start: Start, sizes: tuple[int, ...], controls: Any) -> tuple[Any, ...]:
     """Return the arguments of a rollout in coordinates; of traced starts the shapes are checked."""
     system, numbers = discrete.system, tuple(discrete.system.parameters.values())
-    if not system.coordinates:
-        got, remedy = type(system).__name__, "Use `LLSystem`, `LRSystem` or `LagrangeDAlembert`."
-        raise error("rollout(discrete=...)", "be a body on a group, or in coordinates", got, remedy)
     if not any(map(is_traced, (start.value, start.configuration, *numbers))):
         with jax.ensure_compile_time_eval():  # what is known is checked where jax.jit traces the call, too
             discrete.first(start, with_poses=True)
-    n = system.dimension
-    value = array(start.where, start.value, (n,))
-    q = array("rollout(configuration=...)", start.configuration, (n,), f"Pass the {n} coordinates of the start.")
+    value = array(start.where, start.value, (system.dimension,))
+    q = system.places.configuration("rollout(configuration=...)", start.configuration)
     if controls is not None:
-        controls = _checked_controls(controls, sizes[0], (n,), (n,))
+        controls = _checked_controls(controls, sizes[0], (system.dimension,), system.shapes[0])
     numbers, h = jax.tree.map(traceable, numbers), np.float64(discrete.time_step)
     return system.family, start.name, sizes, numbers, h, (q, value), controls
 

@@ -105,11 +105,9 @@ def test_motors_lead_a_board_back_to_a_steered_path() -> None:
 DISK = READY["disk"].discretize(0.1)
 _NONE = np.zeros((0, 0))
 HOLD = Feedback(DISK, np.zeros((4, 4)), None, np.zeros((4, 4, 8)), (_NONE, _NONE), (_NONE, _NONE))
-_ON_POSES = nh.examples.chaplygin_ball().discretize(0.1)
 
 # What cannot be held is named before any work.
 test_bad_arguments_are_refused = refusals(
-    (lambda: nh.tracking_feedback(_ON_POSES, {}, np.zeros((4, 6))), "be a body on a group, or in coordinates"),
     (lambda: HOLD.simulate(restricted_velocity=(0.0, 0.0)), "be left out"),
     ({"start": {"restricted_velocity": (0.0, 1.0)}}, "name only configuration and body_velocity"),
     ({"controls": np.zeros((4, 2))}, "have shape"),

@@ -10,6 +10,7 @@ import pytest
 from comparisons import derivatives
 
 import nonholo as nh
+from nonholo.analysis._linearize import Local, reduced
 from nonholo.base.types import Array
 
 M, R, AXIS, DIAMETER, G = 1.3, 0.4, 0.12, 0.07, 9.81  # of a disk
@@ -331,3 +332,47 @@ def test_the_nearest_of_a_family_of_steady_motions_is_found() -> None:
     steady = nh.equilibria(bent.system, configuration=bent.configuration, body_velocity=bent.body_velocity)
     assert np.abs(steady.configuration - bent.configuration).max() < 0.05
     assert np.linalg.norm(steady.body_velocity[:2]) == pytest.approx(0.6, abs=0.02)
+
+
+def test_the_independent_velocities_do_not_depend_on_units() -> None:
+    """Equations of a blade, in meters and in kilometers, leave the same states and have the same matrix."""
+    rng, results = np.random.default_rng(0), []
+    slope = rng.normal(size=(4, 6, 6))
+    for length in (1.0, 1e3):
+        units = np.array([length, length, 1.0])
+        both = np.tile(units, 2)
+        rows = np.tile(np.append(np.zeros(3), 1 / units), (4, 1, 1))
+        state, still = np.zeros(6), np.zeros((4, 6))
+        names = tuple("xyzuvw")
+        local = Local(names, 3, state, still, slope * both[:, None] / both, rows, np.zeros(1), units, None)
+        found = reduced(local)
+        results.append((found.states, found.matrix / both[found.states][:, None] * both[found.states]))
+    np.testing.assert_array_equal(results[0][0], results[1][0])
+    np.testing.assert_allclose(results[0][1], results[1][1], 1e-12)
+
+
+def in_units(system: Any, length: float, mass: float, time: float) -> tuple[Any, np.ndarray]:
+    """Return a system of x, y and angles in other units, and the factors of its coordinates."""
+    plain, names = system.plain, system.coordinates
+    factors = np.where(np.isin(names, ["x", "y"]), length, 1.0)
+
+    def lagrangian(q: Array, v: Array) -> Array:
+        return mass * length**2 / time**2 * plain.lagrangian(q / factors, v * time / factors)
+
+    def forms(q: Array) -> Array:
+        return plain.constraint_forms(q / factors) / factors
+
+    return nh.LagrangeDAlembert(lagrangian, forms, dimension=len(names), coordinates=names), factors
+
+
+@pytest.mark.profile("long", instead="test_the_independent_velocities_do_not_depend_on_units")
+@pytest.mark.parametrize("unit", range(3))
+@pytest.mark.parametrize("factor", [1e-3, 1e3])
+def test_a_board_in_other_units_has_the_same_linear_equations(unit: int, factor: float) -> None:
+    """Lengths, masses and times in other units: the names stay, and eigenvalues are rates in the new unit."""
+    board, (length, mass, time) = CASES["snakeboard on a circle"], np.where(np.arange(3) == unit, factor, 1.0)
+    system, factors = in_units(board[0], length, mass, time)
+    q, v = np.array(board[1]["configuration"]) * factors, np.array(board[1]["body_velocity"]) * factors / time
+    found, known = nh.linearize(system, configuration=q, body_velocity=v), nh.linearize(board[0], **board[1])
+    assert found.names == known.names
+    np.testing.assert_allclose(found.eigenvalues * time, known.eigenvalues, 0, 1e-12)

@@ -25,6 +25,7 @@ RESULTS = {
 
 @pytest.mark.parametrize("line", RESULTS)
 def test_a_result_is_printed_as_a_short_table(line: str) -> None:
+    """Its name, and a line for each value."""
     found = RESULTS[line]()
     lines = repr(found).splitlines()
     assert lines[0] == type(found).__name__

@@ -268,6 +268,61 @@ def test_a_step_beyond_the_fold_has_no_branch() -> None:
         run(0.2, 3, body_velocity=admissible(40.0, 1.0))
 
 
+def sleigh(a) -> nh.ChaplyginSleigh:  # noqa: ANN001
+    """Return a sleigh whose center of mass is somewhere."""
+    return nh.ChaplyginSleigh(mass=1.3, inertia=0.7, a=a, b=0.2)
+
+
+LINE = np.asarray(sleigh(0.5).annihilator)
+OF_NUMBERS = GroupLagrangeDAlembert(
+    PLANE,
+    lambda W, h, p: mass_tensor_lagrangian(PLANE, sleigh(p["a"]).homogeneous_mass_tensor)(W, h),
+    lambda _g, _p: jnp.asarray(LINE),
+    lambda _g, W, _h, _p: jnp.asarray(LINE) @ PLANE.vee((W - PLANE.inverse(W)) / 2),
+    parameters={"a": 0.5},
+)
+PUSHES = np.random.default_rng(4).normal(size=(6, 3))
+
+
+def end_of(system, pose, velocity, pushes):  # noqa: ANN001, ANN201
+    """Return where a rollout ends."""
+    start = {"configuration": pose, "body_velocity": velocity}
+    return nh.rollout(nh.discretize(system, 0.2), **start, controls=pushes, steps=6).configuration[-1]
+
+
+@pytest.mark.profile("routes", instead="test_parameters_are_numbers_of_one_system")
+@pytest.mark.parametrize("derive", [jax.jacfwd, jax.jacrev])
+def test_derivatives_of_rollouts_are_those_of_the_ll_map(derive) -> None:  # noqa: ANN001
+    """By a number of the body, the start and controls: the definition of left-invariant maps is other code."""
+    start = (0.5, np.array([1.0, -1.0, 0.0]), PUSHES)
+    pose = START["configuration"]
+    with jax.enable_x64(True):
+        ours = derive(lambda a, *rest: end_of(OF_NUMBERS.with_parameters(a=a), pose, *rest), (0, 1, 2))(*start)
+        known = jax.jacfwd(lambda a, *rest: end_of(sleigh(a), pose, *rest), (0, 1, 2))(*start)
+    for one, other in zip(ours, known, strict=True):
+        np.testing.assert_allclose(one, other, 0, 1e-11 * np.abs(other).max())
+
+
+def test_parameters_are_numbers_of_one_system() -> None:
+    """The system of other numbers has the code of the first, and functions with these numbers within."""
+    system, W = OF_NUMBERS.with_parameters(a=0.1), PLANE.exp(np.array([0.1, 0.2, -0.3]))
+    assert (system.family, dict(system.parameters)) == (OF_NUMBERS.family, {"a": 0.1})
+    with jax.enable_x64(True):
+        value = system.plain.discrete_lagrangian(np.eye(3), W, 0.2)
+    assert abs(value - mass_tensor_lagrangian(PLANE, sleigh(0.1).homogeneous_mass_tensor)(W, 0.2)) <= 1e-14
+
+
+@pytest.mark.profile("routes", instead="test_parameters_are_numbers_of_one_system")
+def test_motions_with_parameters_are_those_with_numbers_within() -> None:
+    """Maps, and flows under a potential, whose inertia is derived from the discrete Lagrangian."""
+    system, own = OF_NUMBERS.with_parameters(a=0.1), rewritten(sleigh(0.1))
+    start = {**START, "body_velocity": (1.0, -1.0, 0.0)}
+    ours, known = (nh.simulate(nh.discretize(each, 0.2), **start, steps=10) for each in (system, own))
+    assert_near(ours, known, 1e-13, "momentum", "configuration", "energy", "multipliers")
+    ours, known = (nh.flow(nh.Forced(each, height), **start, times=[0.0, 1.0]) for each in (system, own))
+    assert_near(ours, known, 1e-12, "momentum", "configuration", "energy")
+
+
 def rotation_only(W, h):  # noqa: ANN001, ANN201
     """Return the discrete Lagrangian of a body without mass."""
     return ((W[0, 0] - 1) ** 2 + W[1, 0] ** 2) / (2 * h)
@@ -297,10 +352,10 @@ test_bad_definitions_are_refused = refusals(
     (lambda: nh.Forced(MIXED, force=lambda _t, _g, w: w), "at most a potential"),
     (lambda: nh.Forced(nh.Forced(MIXED, height), height), "at most a potential"),
     (lambda: nh.Forced(MIXED, lambda g: g[0]), r"potential=\.\.\..* scalar"),
-    (
-        lambda: nh.rollout(nh.discretize(MIXED, 0.1), **START, body_velocity=admissible(0.9, 1.0), steps=2),
-        "be a body on a group, or in coordinates. Got GroupLagrangeDAlembert",
-    ),
+    (lambda: GroupLagrangeDAlembert(PLANE, ACTION, blade, parameters={"a": 1.0}), "take the parameters of the system"),
+    (lambda: GroupLagrangeDAlembert(PLANE, ACTION, blade, parameters=3), "be a mapping of names"),
+    (lambda: MIXED.with_parameters(a=1.0), "It has none"),
+    (lambda: OF_NUMBERS.with_parameters(b=1.0), "It has a"),
 )
 
 

@@ -252,7 +252,7 @@ test_bad_numbers_are_refused = refusals(
     ({"q": 1.0}, r"Got 'q'. It has mass, inertia, arm, pull\."),
     ({"mass": [1.0, 2.0]}, r"with_parameters\(\{'mass': \.\.\.\}\)` must have shape \(\). Got shape \(2,\)"),
     ({"mass": np.inf}, "must be finite"),
-    ({}, "It has none: pass LagrangeDAlembert"),
+    ({}, "It has none: make it with parameters="),
     ask=lambda given: made("midpoint", None if given else NUMBERS).with_parameters(**given or {"mass": 1.0}),
 )
 

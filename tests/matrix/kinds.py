@@ -64,8 +64,7 @@ class Kind:
         branch: The branch rule.
         traits: What rules of abilities ask for: "composition", "table", "rule", "coordinates", "ready system",
             "function" (of the user's), "opaque" (a function that JAX does not see into), "wide" (hundreds of
-            dimensions), "on a group" (by functions of matrices), "driven" (by prescribed motions), "constants" (its
-            numbers are within its functions).
+            dimensions), "driven" (by prescribed motions).
         time_step: That of its runs.
     """
 
@@ -194,6 +193,6 @@ KINDS: dict[str, Kind] = {
     "rolling disk": ready("rolling_disk", "coordinates"),
     "snakeboard": ready("snakeboard", "coordinates"),
     "driven sleigh": ready("driven_sleigh", "coordinates", "driven"),
-    "Chaplygin ball": ready("chaplygin_ball", "coordinates", "on a group"),
+    "Chaplygin ball": ready("chaplygin_ball", "coordinates"),
     "sleigh in a well": ready("sleigh_in_a_well", "opaque", parameter="inertia", values=(0.5, 0.7)),
 }

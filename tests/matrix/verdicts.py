@@ -87,28 +87,6 @@ RULES: tuple[Rule, ...] = (
         "steady motion",
     ),
     Rule("fit", "particle", "A free motion does not know its unit of mass, its only number.", "unit"),
-    Rule(
-        "equilibria",
-        "non reversible",
-        "A step of the map from rest, where other forces than those of constraint balance, has a velocity of rounding "
-        "errors, and counts as not converged.",
-        "finite linearization",
-        is_broken=True,
-    ),
-    Rule(
-        "equilibria",
-        "Chaplygin ball",
-        "Beside a spin of the ball corrections of its pose end where it is not steady.",
-        "near a steady motion",
-        is_broken=True,
-    ),
-    Rule(
-        "ensemble of parameters|gradient|rollout|fit|tracking feedback",
-        "on a group",
-        "Systems on groups by functions have constants inside them, and JAX runs none of them yet.",
-        "must (name|be)",
-        is_broken=True,
-    ),
 )
 
 

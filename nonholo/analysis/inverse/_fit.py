@@ -143,8 +143,9 @@ def fit(
 
     Args:
         system_of: Makes the system, with a left-invariant constraint on SE(2), SO(3) or SE(3), from the parameters by
-            name, which JAX traces; or returns `system.with_parameters(**p)` of a `LagrangeDAlembert`. The same function
-            is compiled once for all data, in coordinates once for each time step.
+            name, which JAX traces; or returns `system.with_parameters(**p)` of a `LagrangeDAlembert` or, with turns
+            measured, of a `GroupLagrangeDAlembert`. The same function is compiled once for all data, with `parameters`
+            once for each time step.
         measurements: A pandas DataFrame, an xarray Dataset, a dictionary of columns, the path of a CSV file with a
             header, or a list of such trials. Columns: `t`; `x`, `y`, (`z`); `theta` or `heading` in the plane, `qw`,
             `qx`, `qy`, `qz` or `quaternion` in space; angular velocities in the body `omega`, or `omega_x`, `omega_y`,

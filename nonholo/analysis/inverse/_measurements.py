@@ -10,7 +10,6 @@ from nonholo.base.checks import array, checked_path, error, printable, shown, tr
 from nonholo.base.limits import read_text
 from nonholo.base.types import Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
-from nonholo.systems import System
 
 Kinds = dict[str, Float[np.ndarray, "T K _"]]
 """Measured numbers of all trials by kind, "position", "turn" and "rate"; NaN where nothing was measured."""
@@ -149,13 +148,14 @@ _ENOUGH = 12  # rows, of which a few may be outliers
 _NEAR = 5  # nodes between the poses that a first velocity is taken from
 
 
-def first(system: System, h: float, kinds: dict[str, np.ndarray], *, is_robust: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Return a first pose and a first start: velocity along the constraint, and what is fitted of the change of pose.
+def first(
+    group: AbstractMatrixGroup, S: np.ndarray, h: float, kinds: dict[str, np.ndarray], *, is_robust: bool
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return a first pose and a first start: velocity along rows S, and what is fitted of the change of pose.
 
     Positions see all of a pose, turns alone its turn, angular velocities nothing of it. Outliers do not count
     if they are to be borne.
     """
-    group, S = system.group, system.constraint_subspace
     poses = {
         kind: measured_rows(kind, rows, is_robust, is_angle=rows.shape[1] == 1)
         for kind, rows in kinds.items()
@@ -168,7 +168,7 @@ def first(system: System, h: float, kinds: dict[str, np.ndarray], *, is_robust: 
     if "turn" not in poses and group != SE(2):
         raise error(WHERE, "have turns beside positions in space", "positions", "Measure turns, such as quaternions.")
     begin, end = ends = ends_of(poses)
-    g = _matrices(system, {kind: at_nodes(ends, *rows) for kind, rows in poses.items()}, poses, ends)
+    g = _matrices(group, S, {kind: at_nodes(ends, *rows) for kind, rows in poses.items()}, poses, ends)
     velocity = group.log(group.inverse(g[0]) @ g[1]) / ((end - begin) * h)
     unseen = 0 if "position" in poses else kinds.get("position", np.zeros((0, 0))).shape[1]
     start = np.concatenate([np.linalg.lstsq(S.T, velocity)[0], np.zeros(group.dim - unseen)])
@@ -211,9 +211,10 @@ def at_nodes(where: tuple[int, ...], nodes: np.ndarray, rows: np.ndarray) -> np.
     return np.stack([np.interp(where, nodes, column) for column in rows.T], axis=1)
 
 
-def _matrices(system: System, at: dict[str, np.ndarray], poses: dict, ends: tuple[int, int]) -> np.ndarray:
+def _matrices(
+    group: AbstractMatrixGroup, S: np.ndarray, at: dict[str, np.ndarray], poses: dict, ends: tuple[int, int]
+) -> np.ndarray:
     """Return two poses as matrices; where no turn is measured, a body that moves forward along its blade."""
-    group, S = system.group, system.constraint_subspace
     g = np.broadcast_to(group.identity, (2, group.size, group.size)).copy()
     if "position" in at:
         g[:, :-1, -1] = at["position"]

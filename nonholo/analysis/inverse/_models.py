@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo.analysis.inverse._likelihood import Shapes, by_name
-from nonholo.analysis.inverse._measurements import Names, at_nodes, ends_of, first, measured_rows, names_of
+from nonholo.analysis.inverse._measurements import WHERE, Names, at_nodes, ends_of, first, measured_rows, names_of
 from nonholo.base.checks import error
 from nonholo.base.types import Array
 from nonholo.discrete import discretize
@@ -45,7 +45,7 @@ class GroupModel(NamedTuple):
 
     def first(self, h: float, kinds: dict[str, np.ndarray], *, is_robust: bool) -> tuple[np.ndarray, np.ndarray]:
         """Return a first pose and a first start."""
-        return first(self.system, h, kinds, is_robust=is_robust)
+        return first(self.system.group, self.system.constraint_subspace, h, kinds, is_robust=is_robust)
 
     def residuals(
         self, system_of: Callable[..., Any], shapes: Shapes, time_step: float, numbers: Array, starts: Array, *data: Any
@@ -113,11 +113,8 @@ _CORRECTIONS = 12  # of a first configuration, to holonomic constraints
 _SAMPLES = 3  # states at which coordinates that the equations do not contain are looked for
 
 
-class CoordinateModel(NamedTuple):
-    """Motions of a system in coordinates: what can be measured of them, and where they begin.
-
-    A start is the momentum along admissible directions at the first state, and by what the first configuration is
-    another one, along holonomic constraints. A pose has beside the latter columns of both, and of ways back to these.
+class CoordinateReadings(NamedTuple):
+    """Measurements of motions in coordinates: positions, and each other coordinate by itself.
 
     Attributes:
         system: The system of the guess.
@@ -127,7 +124,7 @@ class CoordinateModel(NamedTuple):
 
     @property
     def names(self) -> Names:
-        """The names of columns by kind: positions, and each other coordinate by itself."""
+        """The names of columns by kind."""
         own = self.system.coordinates
         place = tuple(name for name in "xyz" if name in own) if {"x", "y"} <= set(own) else ()
         kinds: Names = {"position": (place,)} if place else {}
@@ -135,17 +132,14 @@ class CoordinateModel(NamedTuple):
             kinds[name] = ((name,), ("heading",)) if name == self.system.heading else ((name,),)
         return kinds
 
-    def each(self, count: int) -> float:
-        """Return the bytes of a node under a number of parameters."""
-        n = self.system.dimension
-        return 8.0 * 8.0 * (1 + count + 2 * n) * 3 * n
-
     def columns(self, kind: str) -> list[int]:
         """Return the coordinates of a kind."""
         return [self.system.coordinates.index(name) for name in self.names[kind][0]]
 
-    def first(self, h: float, kinds: dict[str, np.ndarray], *, is_robust: bool) -> tuple[np.ndarray, np.ndarray]:
-        """Return a first pose and a first start, from straight lines between nodes."""
+    def first(
+        self, h: float, kinds: dict[str, np.ndarray], *, is_robust: bool
+    ) -> tuple[np.ndarray, np.ndarray, list[int]]:
+        """Return a first configuration and rates, from straight lines between nodes, and of what these are."""
         system, heading = self.system, self.system.heading
         series = {
             kind: measured_rows(kind, rows, is_robust, is_angle=kind == heading)
@@ -164,21 +158,91 @@ class CoordinateModel(NamedTuple):
             q[index] = float(motion(np.float64(0.0)))
         if system.holonomic is not None:
             q = checked_state(system, q, {"body_velocity": 0 * q}, 0.0, "fit", project=True)[0][: len(q)]
-        x = place(system, q, 0.0)
-        A, b = of_system(equations.forms, system, x), -of_system(equations.constraint, system, x, 0 * q)
+        return q, rates, at
+
+    def gap(self, kind: str, values: Array, system: Any, states: Any) -> Array:
+        """Return measured minus computed numbers, zero where nothing was measured; of a heading less full turns."""
+        del system
+        there = jnp.isfinite(values)
+        gap = jnp.where(there, values, 0.0) - states.configuration[:, np.array(self.columns(kind))]
+        return jnp.where(there, jnp.arctan2(jnp.sin(gap), jnp.cos(gap)) if kind == self.system.heading else gap, 0.0)
+
+
+class PoseReadings(NamedTuple):
+    """Measurements of motions of a system by functions on a group: those of bodies on groups.
+
+    Attributes:
+        system: The system of the guess.
+    """
+
+    system: Any
+
+    @property
+    def names(self) -> Names:
+        """The names of columns by kind."""
+        return names_of(self.system.group)
+
+    def first(
+        self, h: float, kinds: dict[str, np.ndarray], *, is_robust: bool
+    ) -> tuple[np.ndarray, np.ndarray, list[int]]:
+        """Return a first pose and body velocities, and of which directions these are."""
+        group = self.system.group
+        if not np.isfinite(kinds["turn"]).any():
+            raise error(WHERE, "have turns where the constraint depends on the pose", "none", "Measure turns.")
+        g, motion = first(group, np.eye(group.dim), h, kinds, is_robust=is_robust)
+        count = len(motion) - group.dim  # of turns, which come first, and of positions where there are any
+        return g, motion[:count], list(range(count))
+
+    def gap(self, kind: str, values: Array, system: Any, states: Any) -> Array:
+        """Return measured minus computed numbers, zero where nothing was measured."""
+        velocity = jax.vmap(functools.partial(equations.inverse_legendre, system.plain))
+        return _gap(system.group, kind, values, states, velocity(states.configuration, states.momentum))
+
+
+class CoordinateModel(NamedTuple):
+    """Motions of a system by functions: where they begin.
+
+    A start is the momentum along admissible directions at the first state, and by what the first configuration is
+    another one, along holonomic constraints. A pose has beside the latter both, and ways back to these.
+
+    Attributes:
+        system: The system of the guess.
+        readings: Its measurements.
+    """
+
+    system: Any
+    readings: Any
+
+    @property
+    def names(self) -> Names:
+        """The names of columns by kind."""
+        return self.readings.names
+
+    def each(self, count: int) -> float:
+        """Return the bytes of a node under a number of parameters."""
+        n = self.system.dimension
+        return 8.0 * 8.0 * (1 + count + 2 * n) * 3 * n
+
+    def first(self, h: float, kinds: dict[str, np.ndarray], *, is_robust: bool) -> tuple[np.ndarray, np.ndarray]:
+        """Return a first pose and a first start."""
+        system, (q, rates, at) = self.system, self.readings.first(h, kinds, is_robust=is_robust)
+        x, still = place(system, q, 0.0), np.zeros(system.dimension)
+        A, b = of_system(equations.forms, system, x), -of_system(equations.constraint, system, x, still)
         basis, v = np.linalg.svd(A)[2][len(A) :].T, np.linalg.pinv(A) @ b
         v = v + basis @ np.linalg.lstsq(basis[at], rates - v[at])[0]
-        free = np.eye(len(q))[:, self._free(at, x, v, h)]
+        free = np.eye(len(v))[:, self._free(at, x, v, h)]
         gradients = A[system.velocity_constraints : len(A) - len(system.prescribed)] @ free
         shifts, back = free @ np.linalg.svd(gradients)[2][len(gradients) :].T, free @ np.linalg.pinv(gradients)
         momentum = basis.T @ of_system(equations.momentum, system, x, v)
-        return np.column_stack([q, basis, shifts, back]), np.append(momentum, np.zeros(shifts.shape[1]))
+        pose = np.concatenate([np.ravel(part) for part in (q, basis, shifts, back)])
+        return pose, np.append(momentum, np.zeros(shifts.shape[1]))
 
     def _free(self, at: list[int], x: np.ndarray, v: np.ndarray, h: float) -> list[int]:
-        """Return the coordinates whose beginning is fitted: those measured, and those that the equations contain."""
+        """Return the directions whose beginning is fitted: those measured, and those that the equations contain."""
         rng, n = np.random.default_rng(0), len(v)
-        xs, vs = x + rng.normal(0.0, 0.3, (_SAMPLES, len(x))), v + rng.normal(0.0, 0.3, (_SAMPLES, n))
-        matters = np.abs(of_system(_slopes, self.system, xs, vs, np.float64(h))).max((0, 1))[:n] > 0
+        xis = rng.normal(0.0, 0.3, (_SAMPLES, n + self.system.is_driven))
+        vs = v + rng.normal(0.0, 0.3, (_SAMPLES, n))
+        matters = np.abs(of_system(_slopes, self.system, x, xis, vs, np.float64(h))).max((0, 1))[:n] > 0
         driven = {index for index, _ in self.system.prescribed}
         return [i for i in range(n) if (i in at or matters[i]) and i not in driven]
 
@@ -193,12 +257,6 @@ class CoordinateModel(NamedTuple):
         q, p = of_system(_begin, system, start, pose)
         return simulate(discretize(system, h), momentum=p, configuration=q, steps=steps)
 
-    def gap(self, kind: str, values: Array, q: Array) -> Array:
-        """Return measured minus computed numbers, zero where nothing was measured; of a heading less full turns."""
-        there = jnp.isfinite(values)
-        gap = jnp.where(there, values, 0.0) - q[:, np.array(self.columns(kind))]
-        return jnp.where(there, jnp.arctan2(jnp.sin(gap), jnp.cos(gap)) if kind == self.system.heading else gap, 0.0)
-
 
 def _course(ends: tuple[int, int], nodes: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """Return headings at two nodes of what moves forward, from the chords after them."""
@@ -210,8 +268,10 @@ def _course(ends: tuple[int, int], nodes: np.ndarray, rows: np.ndarray) -> np.nd
 def _begin(system: Any, start: Array, pose: Array) -> tuple[Array, Array]:
     """Return the first configuration and momentum of a trial."""
     k, n = system.dimension - system.constraints, system.dimension
-    _, basis, shifts, back = jnp.split(pose, [1, 1 + k, 1 + len(start)], axis=1)
-    q, p = pose[:, 0] + shifts @ start[k:], basis @ start[:k]
+    ends = np.cumsum([np.prod(system.shapes[0]), n * k, n * (len(start) - k)])
+    q, *parts = jnp.split(pose, ends)
+    basis, shifts, back = (part.reshape(n, -1) for part in parts)
+    q, p = system.places.beside(q.reshape(system.shapes[0]), shifts @ start[k:]), basis @ start[:k]
     if system.holonomic is None:
         return q, p
 
@@ -223,14 +283,15 @@ def _begin(system: Any, start: Array, pose: Array) -> tuple[Array, Array]:
     return jax.lax.fori_loop(0, _CORRECTIONS, onward, q), p  # the last correction has the derivative of the root
 
 
-def _slopes(system: Any, xs: Array, vs: Array, h: Array) -> Array:
-    """Return the derivatives of the equations of steps by their places."""
+def _slopes(system: Any, place: Array, xis: Array, vs: Array, h: Array) -> Array:
+    """Return the derivatives of the equations of steps by their places, beside one."""
 
-    def of_step(x: Array, v: Array) -> Array:
+    def of_step(shift: Array, xi: Array, v: Array) -> Array:
+        x = system.places.beside(system.places.beside(place, xi), shift)
         parts = *equations.momenta(system, x, v, h), equations.discrete_constraints(system, x, v, h)
         return jnp.concatenate([*parts, equations.forms(system, x).ravel()])
 
-    return jax.vmap(jax.jacfwd(of_step))(xs, vs)
+    return jax.vmap(functools.partial(jax.jacfwd(of_step), jnp.zeros(xis.shape[1])))(xis, vs)
 
 
 @functools.lru_cache(maxsize=8)
@@ -242,7 +303,7 @@ def _compile_in_coordinates(
         q, p = _begin(system.plain, start, pose)
         steps = len(next(iter(kinds.values()))) - 1
         states = rollout(discretize(system, time_step), momentum=p, configuration=q, steps=steps)
-        rows = {kind: model.gap(kind, values, states.configuration) for kind, values in kinds.items()}
+        rows = {kind: model.readings.gap(kind, values, system, states) for kind, values in kinds.items()}
         return rows, rows
 
     return _with_slopes(one, (0, 1))
@@ -253,4 +314,4 @@ def coordinate_model(system: Any, again: Any) -> CoordinateModel:
     if not (system.parameters and system.family == again.family):
         remedy = "Make the system once, with parameters=..., and return system.with_parameters(**p)."
         raise error("fit(system_of=...)", "vary the parameters of one system", type(system).__name__, remedy)
-    return CoordinateModel(system)
+    return CoordinateModel(system, (CoordinateReadings if system.coordinates else PoseReadings)(system))

@@ -135,7 +135,7 @@ def tracking_feedback(
 
     In coordinates of a `LagrangeDAlembert` forces act on them, $e_j = (q_j - q_j^*, v_j - v_j^*)$ with the velocities v
     that belong to the momenta at the nodes, and gains act on errors along admissible directions. Its equations may
-    depend on time.
+    depend on time. So it is for a `GroupLagrangeDAlembert`, with body covectors and errors of poses.
 
     Feedback removes what forces can reach: a sleigh at rest is not moved sideways, to first order, by any.
     `Feedback.controllability` measures this along the whole orbit. Errors of poses must stay below half a turn.
@@ -144,7 +144,7 @@ def tracking_feedback(
 
     Args:
         discrete: The discretized system, of order 2, with a left-invariant constraint, whose table of forces goes into
-            the controls; or one in coordinates.
+            the controls; or one in coordinates, or by functions on a group.
         start: `configuration` and `restricted_velocity` of the reference, in coordinates `body_velocity`, as for
             `steer`.
         controls: Body covectors of the reference, (steps, dim), in coordinates forces: `Steering.controls`, or zeros

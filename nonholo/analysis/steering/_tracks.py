@@ -49,7 +49,7 @@ class GroupTrack(NamedTuple):
 
 
 class CoordinateTrack(NamedTuple):
-    """Motions in coordinates, with a force on each."""
+    """Motions in coordinates, with a force on each, or on a group by functions, with a covector."""
 
     discrete: AbstractCoordinateDiscretization[Any]
     places: Any
@@ -75,11 +75,8 @@ def track_of(where: str, discrete: Any, start: Any) -> GroupTrack | CoordinateTr
     if not isinstance(discrete, AbstractCoordinateDiscretization):
         system = as_discretization(f"{where}(discrete=...)", discrete, forced=True).system
         track = GroupTrack(discrete, places.Poses(system.group), np.asarray(system.constraint_subspace))
-    elif discrete.system.orbits == "CoordinateOrbit":
-        track = CoordinateTrack(discrete, discrete.system.places, np.eye(discrete.system.dimension))
     else:
-        got, remedy = type(discrete.system).__name__, "Use an `LLSystem` or a `LagrangeDAlembert`."
-        raise error(f"{where}(discrete=...)", "be a body on a group, or in coordinates", got, remedy)
+        track = CoordinateTrack(discrete, discrete.system.places, np.eye(discrete.system.dimension))
     check_names(f"{where}(start=...)", start, track.start)
     return track
 
