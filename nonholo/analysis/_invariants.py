@@ -3,12 +3,13 @@
 The integrals follow from linear algebra on the quadratic terms of the equations; no motion is computed.
 """
 
+import dataclasses
 from typing import Any, cast
 
 import numpy as np
 
 from nonholo.base.checks import error, instance
-from nonholo.base.results import Outcome, result
+from nonholo.base.results import Outcome, as_table, result
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, reversal_defects
 from nonholo.groups import AbstractMatrixGroup
@@ -19,7 +20,7 @@ _SAMPLED = 100_000  # states on which the matrix residuals are measured, spread 
 _SAMPLED_LARGE = 1_000  # of them where the group has more than three dimensions, and logarithms cost more
 
 
-@result
+@dataclasses.dataclass(frozen=True)
 class Invariants:
     """Measured defects of an orbit; None where a quantity is not defined for it.
 
@@ -49,6 +50,7 @@ class Invariants:
     largest_step_angle: float | None
     outcome: Outcome
     work: float | None = None
+    __repr__ = as_table
 
 
 def invariants(orbit: AbstractOrbit) -> Invariants:

@@ -19,11 +19,12 @@ _MANY = 40  # numbers of an array that is not printed
 def result(kind: type[_T]) -> type[_T]:
     """Make a frozen dataclass of values that are found, printed as a table unless it prints itself."""
     if "__repr__" not in vars(kind):
-        kind.__repr__ = _table
+        kind.__repr__ = as_table
     return dataclasses.dataclass(frozen=True, eq=False)(kind)
 
 
-def _table(self: Any) -> str:
+def as_table(self: Any) -> str:
+    """Return the values of a dataclass as lines."""
     names = [field.name for field in dataclasses.fields(self) if field.repr]
     margin = max(map(len, names)) + 4
     rows = (f"{name:>{margin - 2}}: {_cell(getattr(self, name), ' ' * margin)}" for name in names)

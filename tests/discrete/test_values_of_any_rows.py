@@ -108,7 +108,7 @@ def _exact_roots(E: np.ndarray, J: np.ndarray, target: np.ndarray) -> np.ndarray
     return np.array([complex(root) for root, _ in polynomial.numer().complex_roots()])
 
 
-@pytest.mark.profile("routes")
+@pytest.mark.profile("routes", instead="test_every_value_solves_the_equations")
 @pytest.mark.parametrize("name", ["SO(4)", "Sp(4)", "SO(3,1)"])
 def test_values_are_the_roots_of_an_exact_resultant(name: str) -> None:
     """Two rows on groups of matrices of four rows: as many values as the exact polynomial has roots, and the same X."""
@@ -123,7 +123,7 @@ def test_values_are_the_roots_of_an_exact_resultant(name: str) -> None:
     assert apart.min(axis=1).max() < 1e-9
 
 
-@pytest.mark.profile("routes")
+@pytest.mark.profile("routes", instead="test_every_value_solves_the_equations")
 def test_a_free_top_has_the_roots_of_the_riccati_equation() -> None:
     """Of the 8 solutions of Moser's and Veselov's equation, one for each Lagrangian subspace, 4 are rotations."""
     discrete, r, values = _values("SO(3)", 3)
@@ -150,7 +150,7 @@ FORMED = {
 }
 
 
-@pytest.mark.profile("routes")
+@pytest.mark.profile("routes", instead="test_every_value_solves_the_equations")
 @pytest.mark.parametrize("name", FORMED)
 def test_tops_and_sleighs_have_the_values_of_their_closed_form(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Without their normal form: the same displacements in the same order, the same fold distance of tops, one tree."""
@@ -172,7 +172,7 @@ def test_tops_and_sleighs_have_the_values_of_their_closed_form(name: str, monkey
 LORENTZ = ("SO(2,1) oblique", 2)
 
 
-@pytest.mark.profile("routes")
+@pytest.mark.profile("routes", instead="test_every_value_solves_the_equations")
 def test_branches_follow_a_displacement() -> None:
     """The displacement of a momentum and back, its values, and the images of images: 4, 16."""
     discrete, r = _body(*LORENTZ), np.array([0.2, 0.1])
@@ -189,7 +189,7 @@ def test_branches_follow_a_displacement() -> None:
     assert "observed" in certified.uncertified
 
 
-@pytest.mark.profile("routes")
+@pytest.mark.profile("routes", instead="test_every_value_solves_the_equations")
 def test_the_fold_distance_is_that_of_the_momenta() -> None:
     """Against differences of the chart: the least singular value along S, seen from W; 1 at the identity."""
     discrete = _body("SO(4)", 2)

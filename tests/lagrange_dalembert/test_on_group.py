@@ -308,7 +308,7 @@ def test_parameters_are_numbers_of_one_system() -> None:
     system, W = OF_NUMBERS.with_parameters(a=0.1), PLANE.exp(np.array([0.1, 0.2, -0.3]))
     assert (system.family, dict(system.parameters)) == (OF_NUMBERS.family, {"a": 0.1})
     with jax.enable_x64(True):
-        value = system.plain.discrete_lagrangian(np.eye(3), W, 0.2)
+        value = float(system.plain.discrete_lagrangian(np.eye(3), W, 0.2))
     assert abs(value - mass_tensor_lagrangian(PLANE, sleigh(0.1).homogeneous_mass_tensor)(W, 0.2)) <= 1e-14
 
 
