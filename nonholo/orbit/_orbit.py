@@ -163,7 +163,7 @@ class Orbit(AbstractOrbit):
     turned: Float[np.ndarray, "K"] | None = None
     branch: str = "principal"
     events: Any = None
-    step: Int[np.ndarray, "K"] = dataclasses.field(default_factory=lambda: cast(Any, None))
+    step: Int[np.ndarray, "K"] = dataclasses.field(default_factory=lambda: cast(Any, None))  # none of the class
     is_compact: ClassVar[bool] = True
     momenta: ClassVar[tuple[str, ...]] = ("reduced_momentum",)
 

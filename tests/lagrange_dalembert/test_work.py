@@ -51,7 +51,7 @@ HEADING = {"driven heading": 2.0, "all that changes": 1.0}  # its rate at the st
 
 
 def _start(name: str) -> dict[str, Any]:
-    return {"configuration": np.zeros(3), "body_velocity": [0.7, 0.0, HEADING.get(name, 0.5)]}
+    return {"configuration": np.zeros(3), "body_velocity": [0.7, 0.3 * (name == "moving belt"), HEADING.get(name, 0.5)]}
 
 
 def _run(name: str, h: float) -> Any:
