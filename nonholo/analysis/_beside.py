@@ -14,13 +14,14 @@ from scipy.integrate import solve_ivp
 
 from nonholo.analysis._linearize import Local
 from nonholo.base.checks import error
+from nonholo.base.traced import FEW, call_in_blocks
 from nonholo.base.types import Array, Float
 from nonholo.continuous import vector_field
 from nonholo.discrete import Discretization
-from nonholo.discrete.definition import compile_double
+from nonholo.discrete.definition import compile_double, step_slopes
 from nonholo.lagrange_dalembert import CoordinateFlow, tangents
 from nonholo.simulation import refuse_many_matrices, simulate
-from nonholo.simulation.traced import rollout
+from nonholo.simulation.traced import definition_of
 from nonholo.systems import AbstractCoordinateSystem, Start, refuse_slip, refuse_wide
 
 _TIMES = np.array([0.0, 0.3719, 0.9173])  # not in a ratio that a rotation may have
@@ -85,9 +86,12 @@ def along(orbit: Any) -> Float[np.ndarray, "L d d"]:
     """Return the derivative of each state of a discrete orbit by the one before; momenta alone if they decide."""
     discrete, system, r = orbit.motion, orbit.motion.system, orbit.restricted_momentum[:-1]
     poses = orbit.configuration[:-1] if orbit.has_poses else np.tile(system.group.identity, (len(r), 1, 1))
-    _, slope = _slopes(discrete, orbit.time[:-1], poses, r)
+    if _needs_function(discrete):
+        slope = _by_differences(discrete, orbit.time[:-1], poses, r)[1] + np.eye(system.group.dim + system.rank)
+    else:
+        slope = _step_slopes(discrete, r, poses, orbit.canonical_chart[:-1])
     matters = slice(0 if system.forces is not None or system.is_spatial else system.group.dim, None)
-    return (slope + np.eye(slope.shape[-1]))[:, matters, matters]
+    return slope[:, matters, matters]
 
 
 def along_flow(orbit: Any) -> Float[np.ndarray, "L d d"]:
@@ -126,20 +130,18 @@ def _flowing(system: Any) -> Move:
     return move
 
 
-def _stepping(discrete: Discretization, run: Any) -> Move:
+def _stepping(discrete: Discretization) -> Move:
     def move(_: Array, g: Array, r: Array) -> tuple[Array, Array]:
-        pair = run(discrete, momentum=r, configuration=g, steps=1)
+        pair = simulate(discrete, momentum=r, configuration=g, steps=1, throw=False)
         return pair.configuration[-1], pair.restricted_momentum[-1] - r
 
     return move
 
 
-def _beside(
-    subject: Any, run: Any, time: Array, g: Array, r: Array
-) -> tuple[Callable[[Array], Array], Float[Array, "m"]]:
+def _beside(subject: Any, time: Array, g: Array, r: Array) -> tuple[Callable[[Array], Array], Float[Array, "m"]]:
     """Return the change of a state as a function of what it is beside one, and where it is that state."""
     is_map = isinstance(subject, Discretization)
-    move = _stepping(subject, run) if is_map else _flowing(subject)
+    move = _stepping(subject) if is_map else _flowing(subject)
     group, (first, _), xp = (subject.system if is_map else subject).group, move(time, g, r), g.__array_namespace__()
 
     def change(z: Array) -> Array:
@@ -152,16 +154,32 @@ def _beside(
     return change, xp.concatenate([xp.zeros(group.dim), r])
 
 
+def _needs_function(subject: Any) -> bool:
+    return subject.forces is not None and subject.forces.needs_function
+
+
 def _slopes(subject: Any, *states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the changes beside states of a system or its map, and their derivatives."""
-    forces = subject.forces
-    return (_by_differences if forces is not None and forces.needs_function else _by_jax)(subject, *states)
+    if _needs_function(subject):
+        return _by_differences(subject, *states)
+    if not isinstance(subject, Discretization):
+        change, slope = call_in_blocks(functools.partial(_by_jax, subject), FEW, *states)
+        return change, slope
+    _, poses, momenta = states
+    pairs = [simulate(subject, momentum=r, configuration=g, steps=1) for g, r in zip(poses, momenta, strict=True)]
+    slope = _step_slopes(subject, momenta, poses, np.stack([pair.canonical_chart[0] for pair in pairs]))
+    change = np.stack([pair.restricted_momentum[1] - pair.restricted_momentum[0] for pair in pairs])
+    return np.pad(change, ((0, 0), (slope.shape[-1] - change.shape[-1], 0))), slope - np.eye(slope.shape[-1])
+
+
+def _step_slopes(discrete: Discretization, *states: np.ndarray) -> Float[np.ndarray, "K m m"]:
+    return call_in_blocks(lambda *rows: (step_slopes(*definition_of(discrete), *rows),), FEW, *states)[0]
 
 
 @compile_double
-def _by_jax(subject: Any, *states: Array) -> tuple[Array, Array]:
+def _by_jax(system: Any, *states: Array) -> tuple[Array, Array]:
     def at(*state: Array) -> tuple[Array, Array]:
-        change, z = _beside(subject, rollout, *state)
+        change, z = _beside(system, *state)
         return change(z), jax.jacfwd(change)(z)
 
     return jax.vmap(at)(*states)
@@ -169,8 +187,7 @@ def _by_jax(subject: Any, *states: Array) -> tuple[Array, Array]:
 
 def _by_differences(subject: Any, *states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return what a function of the user's leads to, which is not traced."""
-    run = functools.partial(simulate, throw=False)
-    pairs = [_beside(subject, run, *state) for state in zip(*states, strict=True)]
+    pairs = [_beside(subject, *state) for state in zip(*states, strict=True)]
     return np.stack([change(z) for change, z in pairs]), np.stack([_differences(*pair) for pair in pairs])
 
 

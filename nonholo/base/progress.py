@@ -14,11 +14,12 @@ from rich.console import Console
 from rich.progress import Progress, ProgressColumn, Task, TimeElapsedColumn
 from rich.text import Text
 
-_LATE = 2.0  # seconds
+_LATE, _PATIENCE = 2.0, 1.0  # seconds
 Result = TypeVar("Result")
 _over: contextvars.ContextVar[Callable[[], bool]] = contextvars.ContextVar("over", default=lambda: False)
 _overs: dict[int, Callable[[], bool]] = {}
 _numbers = itertools.count()
+_announcements: set[Any] = set()
 _LOOK = 0.2  # seconds between two looks at the keyboard, where a signal does not end the waiting
 
 
@@ -55,6 +56,24 @@ def until(over: Callable[[], bool]) -> contextlib.AbstractContextManager[None]:
 def is_over() -> bool:
     """Return whether the work is over: see `until`."""
     return _over.get()()
+
+
+@contextlib.contextmanager
+def compiling(name: str, kind: Any) -> Iterator[None]:
+    """Report a wait on standard error, once for a kind of what is compiled."""
+
+    def say() -> None:
+        if kind not in _announcements:
+            _announcements.add(kind)
+            sys.stderr.write(f"compiling {name}, once ...\n")
+
+    timer = threading.Timer(_PATIENCE, say)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
 
 
 @contextlib.contextmanager

@@ -21,6 +21,7 @@ from nonholo.base.types import Array, Float
 _HUGE = 1e300
 _MANY = 2048  # steps that take much longer than the question whether they are wanted
 _SHORT = 64  # steps between saved states from which on reverse mode keeps checkpoints alone
+FEW = 32  # states, each of which takes long
 _ROOT = "root of a step"  # what a checkpoint keeps, so that no root is searched for twice
 
 
@@ -76,6 +77,15 @@ def implicit(
     y = checkpoint_name(root, _ROOT)
     _, change = jax.jvp(lambda *numbers: residual(y, *numbers), at, changes)
     return y, -solve(jax.jacfwd(residual)(y, *at), change[:, None])[:, 0]
+
+
+def call_in_blocks(function: Callable[..., Any], size: int, *columns: np.ndarray) -> list[np.ndarray]:
+    """Call a function of many states in blocks of one size, so that it is compiled once."""
+    count = len(columns[0])
+    missing = (-count % size) or (0 if count else size)
+    rows = [np.concatenate([x, np.broadcast_to(x[-1] if count else 0.0, (missing, *x.shape[1:]))]) for x in columns]
+    parts = [function(*(x[i : i + size] for x in rows)) for i in range(0, len(rows[0]), size)]
+    return [np.concatenate(column)[:count] for column in zip(*parts, strict=True)]
 
 
 def rows_of(controls: Any, steps: int, size: int) -> Array | None:

@@ -10,8 +10,6 @@ import difflib
 import functools
 import importlib
 import inspect
-import sys
-import threading
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, ClassVar, Self
 
@@ -21,6 +19,8 @@ import numpy as np
 
 from nonholo.base.checks import array, checked_name, error, instance, is_traced, number, shape_of, shown
 from nonholo.base.numerics import double_precision
+from nonholo.base.progress import compiling
+from nonholo.base.traced import call_in_blocks
 from nonholo.base.types import Array, Float, Int
 from nonholo.systems import AbstractCoordinateSystem, DiscretizationT, OrbitT
 
@@ -403,9 +403,8 @@ class Rows:
         return inspect.signature(self.function)
 
 
-_PATIENCE = 1.0  # seconds of silence
+SYSTEM = "a system in coordinates"
 _calls: set[tuple[Any, Any]] = set()
-_announcements: set[Any] = set()
 
 
 @functools.cache
@@ -439,34 +438,12 @@ def place(system: Any, q: Any, time: Any) -> Any:
 def in_double(function: Callable[..., Any], system: Any, *arguments: Any) -> Any:
     """Call a JAX function of a system, compiled once for all of its numbers, in 64 bits; return NumPy arrays."""
     family, numbers = system.family, tuple(system.parameters.values())
-    with double_precision(), contextlib.nullcontext() if (function, family) in _calls else compiling(family):
+    with double_precision(), contextlib.nullcontext() if (function, family) in _calls else compiling(SYSTEM, family):
         result = jax.tree.map(np.asarray, _compile(function)(family, numbers, *arguments))
     _calls.add((function, family))
     return result
 
 
 def in_blocks(function: Callable[..., Any], system: Any, *columns: np.ndarray) -> list[np.ndarray]:
-    """Call a JAX function of a system and many states in blocks of one size, so that it is compiled once."""
-    count = len(columns[0])
-    missing = (-count % ROWS) or (0 if count else ROWS)
-    rows = [np.concatenate([x, np.broadcast_to(x[-1] if count else 0.0, (missing, *x.shape[1:]))]) for x in columns]
-    parts = [in_double(function, system, *(x[i : i + ROWS] for x in rows)) for i in range(0, len(rows[0]), ROWS)]
-    return [np.concatenate(column)[:count] for column in zip(*parts, strict=True)]
-
-
-@contextlib.contextmanager
-def compiling(system: Any) -> Iterator[None]:
-    """Report a wait on standard error, once for a system: JAX compiles at the first call of each function."""
-
-    def say() -> None:
-        if system not in _announcements:
-            _announcements.add(system)
-            sys.stderr.write("compiling a system in coordinates, once ...\n")
-
-    timer = threading.Timer(_PATIENCE, say)
-    timer.daemon = True
-    timer.start()
-    try:
-        yield
-    finally:
-        timer.cancel()
+    """Call a JAX function of a system and many states in blocks."""
+    return call_in_blocks(functools.partial(in_double, function, system), ROWS, *columns)

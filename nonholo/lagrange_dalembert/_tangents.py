@@ -4,6 +4,7 @@ A state is a place with a velocity. Coordinates are seen from where the state is
 as $g\,e^\xi$.
 """
 
+import functools
 from collections.abc import Callable
 from typing import Any
 
@@ -12,6 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.checks import error
+from nonholo.base.traced import FEW, call_in_blocks
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._discretization import checked_state, set_out
@@ -70,10 +72,10 @@ def slopes(
     motion: Any, x: Float[np.ndarray, "K ..."], v: Float[np.ndarray, "K n"]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return how states change beside given ones; NaN where there is no next step."""
-    h, missing = _step_of(motion), (1 << (len(x) - 1).bit_length()) - len(x)  # few sizes are compiled
-    states = (np.concatenate([rows, np.repeat(rows[-1:], missing, axis=0)]) for rows in (x, v))
-    change, slope, rows = in_double(_each, motion.system, *h, *states)
-    return change[: len(x)], slope[: len(x)], rows[: len(x)]
+    change, slope, rows = call_in_blocks(
+        functools.partial(in_double, _each, motion.system, *_step_of(motion)), FEW, x, v
+    )
+    return change, slope, rows
 
 
 def tangent_map(orbit: Any) -> Float[np.ndarray, "L d d"]:

@@ -186,10 +186,15 @@ def _on_group(discrete: Any, start: Start, sizes: tuple[int, ...], controls: Any
             got = f"order {discrete.order}"
             raise error("rollout(controls=...)", "have a step of order 2", got, "Use discretize(..., order=2).")
     check_forces("rollout", discrete, sizes[0], in_jax=True)
-    free, forced = dataclasses.replace(discrete, system=discrete.system.inside), discrete.forces
-    route = dataclasses.replace(free, order=2).route
-    scalar = jax.tree.map(traceable, route.step) if isinstance(route, ScalarRoute) else None
+    free, scalar, forced = definition_of(discrete)
     return free, scalar, (start.name, value, g), controls, sizes, forced
+
+
+def definition_of(discrete: Any) -> tuple[Any, Any, Any]:
+    """Return the discretization of the free system, the closed form of its step or None, and the system with forces."""
+    free = dataclasses.replace(discrete, system=discrete.system.inside)
+    route = dataclasses.replace(free, order=2).route
+    return free, jax.tree.map(traceable, route.step) if isinstance(route, ScalarRoute) else None, discrete.forces
 
 
 def _checked_controls(controls: Any, steps: int, size: tuple[int], shape: tuple[int, ...]) -> Any:

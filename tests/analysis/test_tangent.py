@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -94,6 +95,18 @@ def test_tangent_maps_by_jax(discrete: nh.Discretization) -> None:
         return np.append(away[:posed], end.restricted_momentum[-1])
 
     np.testing.assert_allclose(product, derivatives(last, np.zeros(posed + k)), rtol=0, atol=1e-10)
+
+
+def test_orbits_of_any_length_share_a_program(caplog: pytest.LogCaptureFixture) -> None:
+    """Nothing is compiled again for the tangent maps of a longer orbit."""
+    orbits = [nh.simulate(MAPS["composition"], momentum=(0.3, 0.4), steps=steps) for steps in (4, 70)]
+    few, compiled = orbits[0].tangent, "Finished XLA compilation"
+    assert compiled not in caplog.text
+    with jax.log_compiles():
+        np.testing.assert_array_equal(orbits[1].tangent[:4], few)
+        assert compiled not in caplog.text
+        jax.jit(lambda x: x + len(few))(1.0)
+        assert compiled in caplog.text
 
 
 FLOWS = {

@@ -2,7 +2,7 @@
 
 from nonholo.discrete._variety import free_rows
 from nonholo.discrete.definition._precision import allow_float32, compile_double, in_double
-from nonholo.discrete.definition._rollout import Rollout, roll_out, step_residual
+from nonholo.discrete.definition._rollout import Rollout, roll_out, step_residual, step_slopes
 from nonholo.discrete.definition._step import (
     ON_LOCUS,
     displacement_of,

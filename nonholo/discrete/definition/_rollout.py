@@ -20,6 +20,7 @@ from nonholo.base.types import Array, Float
 from nonholo.discrete._scheme import Scheme, weights
 from nonholo.discrete._variety import free_rows
 from nonholo.discrete.definition import _step
+from nonholo.discrete.definition._precision import compile_double
 from nonholo.discrete.routes import ScalarStep
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems import Forced
@@ -137,10 +138,8 @@ def _step_from(
     if balance is None and scalar is not None and discrete.order == 2:
         step, C, at = _closed_step(discrete, scalar, g, impulse)
         return step, at, (C @ r, jnp.asarray([1.0, 0.0, 0.0, 0.0], r.dtype), 2)
-    if balance is not None:
-        step = _in_stages(discrete, scalar, functools.partial(_balanced_stage, balance))
-    else:
-        step = _in_stages(discrete, scalar, _free_stage) if discrete.order > 2 else _matrix_step(discrete, impulse)
+    has_stages = balance is not None or discrete.order > 2
+    step = _in_stages(discrete, scalar, _stage_of(balance)) if has_stages else _matrix_step(discrete, impulse)
     return step, _as_it_is, (r, g, len(discrete.variety.chart))
 
 
@@ -230,17 +229,27 @@ def _closed_step(
 def _matrix_step(discrete: Scheme, impulse: _Impulse | None) -> _Step:
     """Return the step by the matrix equations."""
 
-    def kick(r: Array, g: Array, row: Array | None) -> Array:
-        return r if impulse is None else r + _step.restricted(discrete, impulse(r, g, row), g)
-
     def step(r: Array, g: Array, guess: Array | None, row: Array | None) -> _Node:
         del guess  # there is no certificate
-        r_half = kick(r, g, row)
-        y, code = _step.principal_of(discrete, None, r_half, g)
-        following, after = _move(discrete, r_half, y, g)
-        return _Node(r, g, y, (kick(following, after, row), after), code, jnp.sum(y))
+        kick = 0.0 if impulse is None else _step.restricted(discrete, impulse(r, g, row), g)
+        y, code = _step.principal_of(discrete, None, r + kick, g)
+        _, following, after = _taken(discrete, (impulse, None), (r, g, row), y)
+        return _Node(r, g, y, (following, after), code, jnp.sum(y))
 
     return step
+
+
+def _taken(part: Any, forces: _Forces, state: _State, y: Array) -> tuple[Array, Array, Array]:
+    """Return what vanishes at the chart of the step of order 2 from a state, and momenta and pose after it."""
+    (impulse, balance), (r, g, row), push = forces, state, 0.0
+    if balance is not None:
+        push = _step.restricted(part, half_impulse(part, balance, y, g, row), g)
+    elif impulse is not None:
+        push = _step.restricted(part, impulse(r, g, row), g)
+    gap, (ahead, after) = _step.equations_at(part, g)(y, r + push), _move(part, r + push, y, g)
+    if impulse is not None:
+        push = _step.restricted(part, impulse(ahead, after, row), after)
+    return gap, ahead + push, after
 
 
 def _in_stages(discrete: Scheme, scalar: ScalarStep | None, take: Callable[..., tuple[Array, ...]]) -> _Step:
@@ -262,6 +271,10 @@ def _in_stages(discrete: Scheme, scalar: ScalarStep | None, take: Callable[..., 
     return step
 
 
+def _stage_of(balance: Forced | None) -> Callable[..., tuple[Array, ...]]:
+    return _free_stage if balance is None else functools.partial(_balanced_stage, balance)
+
+
 def _free_stage(part: Any, scalar: ScalarStep | None, state: _State) -> tuple[Array, ...]:
     """Take the step of order 2 without forces."""
     r, g, _ = state
@@ -276,13 +289,9 @@ def _balanced_stage(forced: Forced, part: Any, scalar: ScalarStep | None, state:
     them up to the second.
     """
 
-    def push(problem: Any, y: Array) -> Array:
-        part, forced, (_, g, row) = problem
-        return _step.restricted(part, half_impulse(part, forced, y, g, row), g)
-
     def residual(problem: Any, y: Array) -> Array:
-        part, _, (r, g, _) = problem
-        return _step.equations_at(part, g)(y, r + push(problem, y))
+        part, forced, state = problem
+        return _taken(part, (None, forced), state, y)[0]
 
     def better(carry: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
         y, _, count = carry
@@ -297,9 +306,8 @@ def _balanced_stage(forced: Forced, part: Any, scalar: ScalarStep | None, state:
     slope = jax.lax.stop_gradient(jax.jacfwd(lambda y: residual(constants, y))(y))
     for _ in range(2):
         y = y - jnp.linalg.solve(slope, residual(problem, y))
-    j, is_lost = push(problem, y), ~(last <= _CLOSE)
-    ahead, after = _move(part, state[0] + j, y, state[1])
-    return y, jnp.where((code == 0) & is_lost, int(Outcome.not_converged), code), ahead + j, after
+    code = jnp.where((code == 0) & ~(last <= _CLOSE), int(Outcome.not_converged), code)
+    return y, code, *_taken(part, (None, forced), state, y)[1:]
 
 
 def _move(discrete: Scheme, r: Array, y: Array, g: Array) -> tuple[Array, Array]:
@@ -348,6 +356,52 @@ def _decode(
     acting = jnp.zeros_like(P) if nodes.control is None else nodes.control
     rows = (marked_rows(each, nodes.cause, code == 0) for each in (r, P, W, g, energy, acting))
     return Rollout(time, *rows, outcome=code[-1])
+
+
+@compile_double
+def step_slopes(
+    discrete: Scheme, scalar: ScalarStep | None, forced: Forced | None, *states: Array
+) -> Float[Array, "K m m"]:
+    r"""Return the derivative of each state after a step by that before it: $(\xi, s)$ is pose g e^xi, momenta r + s.
+
+    States are momenta along the constraint, poses, and charts, with which nothing is solved for; the parts of a
+    composition search for their own.
+    """
+    impulse, _ = impulse_of(discrete, forced, None, 0)
+    balance, row = forced if is_balanced(discrete, forced) else None, jnp.zeros(discrete.system.group.dim)
+
+    def composed(r: Array, g: Array, _: Array) -> Array:
+        def stage(carry: tuple[Array, ...], weight: Array) -> tuple[tuple[Array, ...], None]:
+            slope, r, g = carry
+            part, own = discrete.part(weight), scalar and scalar._replace(scale=weight * scalar.scale)
+            y, _, ahead, after = _stage_of(balance)(part, own, (r, g, row))
+            return (_slope_of(part, (impulse, balance), (r, g, row), y) @ slope, ahead, after), None
+
+        begin = jnp.eye(len(row) + len(r)), r, g
+        return jax.lax.scan(stage, begin, jnp.asarray(weights(discrete.order)))[0][0]
+
+    def single(r: Array, g: Array, y: Array) -> Array:
+        return _slope_of(discrete, (impulse, balance), (r, g, row), y)
+
+    return jax.vmap(single if discrete.order == 2 else composed)(*states)
+
+
+def _slope_of(part: Any, forces: _Forces, state: _State, y: Array) -> Float[Array, "m m"]:
+    """Return the derivative of the state after a step of order 2 by that before it, of the implicit function."""
+    (r, g, row), group = state, part.system.group
+
+    def taken(z: Array, y: Array) -> tuple[Array, Array, Array]:
+        return _taken(part, forces, (r + z[group.dim :], g @ group.exp(z[: group.dim]), row), y)
+
+    still = jnp.zeros(group.dim + len(r))
+    _, _, end = taken(still, y)
+
+    def there(z: Array, y: Array) -> tuple[Array, Array]:
+        gap, ahead, after = taken(z, y)
+        return gap, jnp.append(group.log(group.inverse(end) @ after), ahead)
+
+    (gap, across), (along, through) = jax.jacfwd(there, (0, 1))(still, y)
+    return along - through @ jnp.linalg.solve(across, gap)
 
 
 def step_residual(discrete: Scheme, forced: Forced | None, state: _Pair, y: Array, after: _Pair, force: Array) -> Array:

@@ -23,9 +23,10 @@ from llvmlite import ir
 from nonholo.base.compiled.emission import load_object, object_of, this_processor
 from nonholo.base.compiled.library import cache_folder, digest_of, digest_of_kernels
 from nonholo.base.numerics import double_precision
+from nonholo.base.progress import compiling
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import _equations as equations
-from nonholo.lagrange_dalembert._functions import compiling, constants_in
+from nonholo.lagrange_dalembert._functions import SYSTEM, constants_in
 from nonholo.lagrange_dalembert.compiled._scalars import DOUBLE, OPERATIONS, TRUTH, Scalar, operations_between
 
 _MOST = 256  # files
@@ -64,7 +65,7 @@ def code_of(family: Any, what: tuple[Any, ...], write: Callable[[ir.Module], Any
     Raises:
         UntranslatableError: `write` cannot make formulas of it.
     """
-    with compiling(family):
+    with compiling(SYSTEM, family):
         return machine_code(write, _file(family, what))
 
 
