@@ -116,8 +116,8 @@ DOCTESTS = {  # examples that compile for long
     "nonholo.simulation.traced.rollout": "routes",
     "nonholo.analysis.inverse._fit.fit": "routes",
     "nonholo.analysis._linearize.linearize": "routes",
-    "nonholo.examples._balls.ball_in_bowl": "routes",
-    "nonholo.examples._disks.tilting_disk": "routes",
+    "nonholo.examples._rolling.ball_in_bowl": "routes",
+    "nonholo.examples._rolling.tilting_disk": "routes",
 }
 
 

@@ -18,7 +18,7 @@ from nonholo.ensembles._names import function_from, function_name
 from nonholo.ensembles._reductions import REDUCTIONS
 from nonholo.ensembles.designs import MemberBlock
 from nonholo.io.provenance import missing_part
-from nonholo.simulation import Ensemble, check_forces, ensemble, run_in_lanes, stepper_of
+from nonholo.simulation import Ensemble, Members, check_forces, ensemble, in_lanes, stepper_of
 from nonholo.systems import one_start, refuse_forces
 
 _BLOCK, _NUMBERS = 1 << 16, 1 << 22  # most members of a block, and numbers of all their states
@@ -131,7 +131,7 @@ class EnsembleTask:
     @property
     def block(self) -> int:
         """Members of a block that make a good piece of work: their states fit in memory, and it takes some seconds."""
-        is_compiled = self.branch == PRINCIPAL.name and run_in_lanes(self.discrete)
+        is_compiled = self.branch == PRINCIPAL.name and in_lanes(Members(self.discrete, {}, 1))
         lanes, steps = (_LANES, _STEPS) if is_compiled else (1, _STEPS_EACH)
         states = 1 if self._every is None else 1 + self.steps // self._every
         state = 2 * self.discrete.system.rank + self.discrete.system.group.pose_size

@@ -13,6 +13,7 @@ from nonholo.base.checks import count, error, function, instance, scale, shown
 from nonholo.discrete import discretize
 from nonholo.ensembles import _names
 from nonholo.ensembles._names import component_of, entry_of, function_from, function_name, with_components
+from nonholo.ensembles._reductions import last_states
 from nonholo.ensembles.designs import MemberBlock
 from nonholo.groups import components_of
 from nonholo.simulation import ensemble
@@ -185,17 +186,14 @@ def _where(argument: str) -> str:
 
 def _final_state(batch: Any) -> dict[str, Any]:
     """Return what is known of the last good state of each member that is kept."""
-    every, members = batch.save_every, np.arange(len(batch))
-    last = np.zeros_like(members) if every is None else batch.steps_done // every
-    configuration, velocity = batch.configuration[members, last], batch.body_velocity[members, last]
-    system = batch.members.discrete.system
-    names = list(getattr(system, "coordinates", ()))
+    last, system = last_states(batch), batch.members.discrete.system
+    configuration, names = last.configuration[:, 0], list(getattr(system, "coordinates", ()))
     axes, of_places = (("coordinate",), {"components": names}) if configuration.ndim == 2 else (("row", "column"), {})
     of_rates = {"components": names or list(components_of(system.group))}
     return {
-        "final_time": ((), batch.time[members, last], {"long_name": "time of the last good state"}),
+        "final_time": ((), last.time[:, 0], {"long_name": "time of the last good state"}),
         "final_configuration": (axes, configuration, of_places | {"long_name": "configuration of the last good state"}),
-        "final_velocity": (("component",), velocity, of_rates | {"long_name": "velocity there"}),
-        "final_energy": ((), batch.energy[members, last], {"long_name": "energy there"}),
+        "final_velocity": (("component",), last.body_velocity[:, 0], of_rates | {"long_name": "velocity there"}),
+        "final_energy": ((), last.energy[:, 0], {"long_name": "energy there"}),
         "steps_done": ((), batch.steps_done, {"long_name": "good steps"}),
     }

@@ -29,7 +29,7 @@ class Reduction(NamedTuple):
 
 
 def _final_state(batch: Ensemble) -> Reduced:
-    last, system = _last_states(batch), batch.members.discrete.system
+    last, system = last_states(batch), batch.members.discrete.system
     momentum = _labels("restricted momentum") | _names(_names_along(system))
     results: Reduced = {
         "final_time": ((), last.time[:, 0], _labels("time of the last good state", "time unit")),
@@ -58,7 +58,7 @@ def _names(components: list[str]) -> dict[str, Any]:
 
 
 def _energy_drift(batch: Ensemble) -> Reduced:
-    first, last = batch.first_energy, _last_states(batch).energy[:, 0]
+    first, last = batch.first_energy, last_states(batch).energy[:, 0]
     with np.errstate(invalid="ignore"):  # 0/0 at rest, where energy cannot drift
         drift = np.where(last == first, 0.0, np.abs((last - first) / first))
     return {"energy_drift": ((), np.where(np.isfinite(last), drift, np.nan), _labels("relative error of energy", "1"))}
@@ -100,7 +100,7 @@ def _turning_deviation(batch: Ensemble) -> Reduced:
 
 
 def _axis_angle(batch: Ensemble) -> Float[np.ndarray, "M"]:
-    scalar, last = ScalarMembers(batch.members), _last_states(batch)
+    scalar, last = ScalarMembers(batch.members), last_states(batch)
     if last.canonical_pose is None:
         raise error("reduction 'limit_angle'", "have poses", "reconstruct=False", "Leave that out.")
     pose = np.stack([np.broadcast_to(scalar.pose, (len(batch), 4)), last.canonical_pose[:, 0]], axis=1)
@@ -156,7 +156,7 @@ def _jacobians(batch: Ensemble) -> Float[np.ndarray, "M K k k"]:
     return slopes
 
 
-def _last_states(batch: Ensemble) -> Ensemble:
+def last_states(batch: Ensemble) -> Ensemble:
     """Return the last good state of each member alone; of one that did not start any row, which is NaN."""
     every, rows = batch.save_every, np.arange(len(batch))
     last = np.zeros_like(rows) if every is None else batch.steps_done // every

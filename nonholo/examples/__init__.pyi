@@ -1,6 +1,3 @@
-from ._balls import ball_in_bowl as ball_in_bowl
-from ._balls import ball_on_turntable as ball_on_turntable
-from ._balls import chaplygin_ball as chaplygin_ball
 from ._bicycle import bicycle as bicycle
 from ._blades import driven_sleigh as driven_sleigh
 from ._blades import knife_edge_on_incline as knife_edge_on_incline
@@ -12,11 +9,14 @@ from ._boards import twistcar as twistcar
 from ._cars import kinematic_car as kinematic_car
 from ._cars import trailers as trailers
 from ._cars import two_wheeled_robot as two_wheeled_robot
-from ._disks import rolling_disk as rolling_disk
-from ._disks import tilting_disk as tilting_disk
 from ._example import Example as Example
 from ._points import chaotic_quartic_oscillator as chaotic_quartic_oscillator
 from ._points import non_reversible as non_reversible
 from ._points import particle as particle
+from ._rolling import ball_in_bowl as ball_in_bowl
+from ._rolling import ball_on_turntable as ball_on_turntable
+from ._rolling import chaplygin_ball as chaplygin_ball
+from ._rolling import rolling_disk as rolling_disk
+from ._rolling import tilting_disk as tilting_disk
 from ._tops import heavy_suslov_top as heavy_suslov_top
 from ._tops import rattleback as rattleback

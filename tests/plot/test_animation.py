@@ -14,7 +14,7 @@ from plot.runs import body_tensor, run_of, sleigh_run, top_run
 import nonholo as nh
 from nonholo.analysis.bodies import box_in_space, box_in_sphere, plate
 from nonholo.lagrange_dalembert import CoordinateOrbit, LagrangeDAlembert
-from nonholo.plot.animation._part import part_of, part_of_flow, shown_states
+from nonholo.plot.animation._scenes import part_of, part_of_flow, shown_states
 
 
 @pytest.mark.profile("paper", keep=["sleigh_orbit"])

@@ -231,7 +231,7 @@ class Search(NamedTuple):
 
         def rows(x: np.ndarray) -> np.ndarray:
             here = np.where(is_log, np.exp(x), x)
-            return self.rows(here, scale) if self.exists(here) else np.full(len(scale), np.inf)  # not a step to take
+            return self.rows(here, scale) if self.has_body(here) else np.full(len(scale), np.inf)  # not a step to take
 
         def slope(x: np.ndarray) -> np.ndarray:
             growth = np.exp(np.where(is_log, x, 0.0))
@@ -242,7 +242,7 @@ class Search(NamedTuple):
             x = least_squares_at(begin, rows, slope, tolerance, _MOST if tolerance == _COARSE else None, ends)
             return np.where(is_log, np.exp(x), x)
 
-    def exists(self, point: np.ndarray) -> bool:
+    def has_body(self, point: np.ndarray) -> bool:
         """Return whether there is a body at a point."""
         try:
             self.system_at(point)
@@ -265,7 +265,7 @@ class Search(NamedTuple):
         return Minimum(
             lambda x: self.rows(x, scale) * units,
             lambda x: self.slope(x, scale) * units[:, None],
-            lambda x: bool(((low < x[:P]) & (x[:P] < high)).all()) and self.exists(x),
+            lambda x: bool(((low < x[:P]) & (x[:P] < high)).all()) and self.has_body(x),
             solution.point,
             *widths,
         )

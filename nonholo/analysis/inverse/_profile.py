@@ -27,7 +27,7 @@ class Minimum(NamedTuple):
     Attributes:
         rows: Residuals at a point, in units of their noise.
         slope: Their derivatives, (rows, numbers).
-        exists: Whether there is a model at a point.
+        has_body: Whether there is a model at a point.
         point: Where the sum is least.
         free: Degrees of freedom of the noise, one number or one for each.
         errors: Standard deviations of the numbers for known noise; None for those of the slope.
@@ -36,7 +36,7 @@ class Minimum(NamedTuple):
 
     rows: Callable[[np.ndarray], np.ndarray]
     slope: Callable[[np.ndarray], np.ndarray]
-    exists: Callable[[np.ndarray], bool]
+    has_body: Callable[[np.ndarray], bool]
     point: Float[np.ndarray, "P"]
     free: Any
     errors: Any = None
@@ -149,7 +149,7 @@ class _Search(NamedTuple):
         slope, others = minimum.slope(near.point), np.arange(len(near.point)) != at
         step = value - near.value
         starts = [near.point + step * _along(slope, at)[1], near.point + step * ~others]  # along, or plainly
-        starts = [x for x in starts if self.holds(x)]
+        starts = [x for x in starts if self.has_motion(x)]
         if not starts:
             return None
         point = min(starts, key=lambda x: float(np.sum(minimum.rows(x) ** 2)))
@@ -161,7 +161,7 @@ class _Search(NamedTuple):
 
         functions = (lambda x: minimum.rows(whole(x))), (lambda x: minimum.slope(whole(x))[:, others])
         point = whole(least_squares_at(point[others], *functions, 1e-10, _ROUNDS))
-        if not self.holds(point):
+        if not self.has_motion(point):
             return None
         rows = minimum.rows(point)
         square = float(rows @ rows - np.sum(minimum.rows(minimum.point) ** 2))
@@ -172,9 +172,9 @@ class _Search(NamedTuple):
         rate = abs(float(rows @ minimum.slope(point)[:, at])) / tau if square > _SAME else near.rate
         return _Place(value, point, tau, rate)
 
-    def holds(self, point: np.ndarray) -> bool:
+    def has_motion(self, point: np.ndarray) -> bool:
         """Return whether there is a motion at a point."""
-        return self.minimum.exists(point) and bool(np.isfinite(self.minimum.rows(point)).all())
+        return self.minimum.has_body(point) and bool(np.isfinite(self.minimum.rows(point)).all())
 
 
 def least_squares_at(

@@ -26,8 +26,8 @@ from nonholo.groups import SE, SO
 from nonholo.io.places import check_file, complete_file
 from nonholo.orbit import AbstractOrbit, Orbit
 from nonholo.plot import theme
-from nonholo.plot.animation import _in_plane, _in_space
-from nonholo.plot.animation._part import Show, part_of, part_of_flow, shown_states, together
+from nonholo.plot.animation import _scenes
+from nonholo.plot.animation._scenes import Show, part_of, part_of_flow, shown_states, together
 from nonholo.plot.motion.coordinates import momentum_track, track_of
 from nonholo.plot.overviews import name_of
 from nonholo.plot.parts import drawable_in_time, orbit_with_poses, same_space
@@ -114,14 +114,15 @@ def animate(
 def _scene_of(where: str, orbit: AbstractOrbit) -> tuple[Callable[[Any], float], Callable[..., Callable[[int], None]]]:
     """Return the motion of an orbit between saved states, in units of what the eye can follow, and what draws it."""
     scenes: dict[Any, tuple[Any, Any]] = {
-        SO(3): (_in_space.motion_on_sphere, _in_space.draw_on_sphere),
-        SE(2): (_in_plane.motion, _in_plane.draw_body),
-        SE(3): (_in_space.motion, _in_space.draw_body),
+        SO(3): (_scenes.motion_on_sphere, _scenes.draw_on_sphere),
+        SE(2): (_scenes.motion_in_plane, _scenes.draw_body_in_plane),
+        SE(3): (_scenes.motion_in_space, _scenes.draw_body_in_space),
     }
     if isinstance(orbit, Orbit) and orbit.system.group in scenes:
         return scenes[orbit_with_poses(where, orbit).system.group]
     track = track_of(orbit) or momentum_track(orbit)
-    return lambda _: 0.0, functools.partial((_in_plane if len(track.names) == 2 else _in_space).draw_path, track)
+    draw = _scenes.draw_path_in_plane if len(track.names) == 2 else _scenes.draw_path_in_space
+    return lambda _: 0.0, functools.partial(draw, track)
 
 
 def _stage(orbit: AbstractOrbit, times: Float[np.ndarray, "F"]) -> tuple[Figure, Axes, Callable[[int], None]]:

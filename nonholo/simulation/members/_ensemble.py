@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from nonholo import systems
 from nonholo.base.calls import call
 from nonholo.base.checks import count, error, flags, flow_times, flow_tolerances, function, refuse_given, within_memory
 from nonholo.base.progress import progress_bar
@@ -17,19 +18,10 @@ from nonholo.continuous import ContinuousFlow, solver_of
 from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretization
 from nonholo.simulation._crossings import refuse_resets, watch_for
 from nonholo.simulation._options import check_forces, refuse_too_large, stepper_of
-from nonholo.simulation.members._events import joined_blocks
 from nonholo.simulation.members._executors import Plan, Report, are_side_by_side, counting, run_members
-from nonholo.simulation.members._members import Members, check_systems, checked_parameters
-from nonholo.simulation.members._result import Ensemble
-from nonholo.simulation.members._start import Firsts, are_others, firsts, in_rows
-from nonholo.systems import (
-    AbstractCoordinateDiscretization,
-    AbstractCoordinateSystem,
-    AbstractSystem,
-    Start,
-    System,
-    refuse_in_coordinates,
-)
+from nonholo.simulation.members._members import Firsts, Members, are_others, check_systems, firsts, in_rows
+from nonholo.simulation.members._result import Ensemble, joined_blocks
+from nonholo.systems import AbstractCoordinateDiscretization, AbstractCoordinateSystem, AbstractSystem, Start, System
 
 _DEFAULTS = {"branch": PRINCIPAL.name, "backend": "auto", "reconstruct": True}
 _BLOCK = 1 << 23  # numbers in a block of members that is reduced, 64 MiB
@@ -137,7 +129,7 @@ def ensemble(
     make: Any = _of_times if isinstance(discrete, AbstractSystem | AbstractCoordinateSystem) else _of_steps
     motion, plan, widths = make(discrete, {"times": times, "rtol": rtol}, of_steps, starts)
     start = Start.of("ensemble", configuration, choices=motion.starts, project=project, **starts)
-    start, several = in_rows(motion, start, numbers := checked_parameters(motion, parameters))
+    start, several, numbers = in_rows(motion, start, parameters)
     members = Members(motion, numbers, several)
     _refuse_too_large(plan, widths, 1 if reduce is not None else several)
     check_systems(members)
@@ -159,7 +151,7 @@ def _of_times(system: Any, of_flow: Options, of_steps: Options, starts: Options)
     _refuse("for a flow", displacement=starts.pop("displacement"), **of_steps)
     time, rtol = flow_times(of_flow["times"]), of_flow["rtol"]
     if isinstance(system, AbstractCoordinateSystem):
-        refuse_in_coordinates("ensemble", reconstruct=(reconstruct, True))
+        systems.refuse_in_coordinates("ensemble", reconstruct=(reconstruct, True))
         motion, error = system.flow_from(float(time[0])), 0.0 if rtol is None else flow_tolerances(rtol, 1.0)[0]
         widths = 1, *map(math.prod, motion.system.shapes)
         return motion, Plan(len(time) - 1, 1, times=time, rtol=error), widths
@@ -175,7 +167,7 @@ def _of_steps(discrete: Any, of_flow: Options, of_steps: Options, starts: Option
     steps, save_every, events, branch, backend, reconstruct = of_steps.values()
     if isinstance(discrete, AbstractCoordinateDiscretization):
         absent = {"branch": branch, "backend": backend, "reconstruct": reconstruct, **of_flow}
-        refuse_in_coordinates("ensemble", **{name: (value, _DEFAULTS.get(name)) for name, value in absent.items()})
+        systems.refuse_in_coordinates("ensemble", **{x: (value, _DEFAULTS.get(x)) for x, value in absent.items()})
     else:
         _refuse("for a discretization", **of_flow)
         as_discretization("ensemble(discrete=...)", discrete, compositions=True, forced=True)

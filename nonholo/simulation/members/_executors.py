@@ -24,10 +24,8 @@ from nonholo.simulation._flow import flow_from
 from nonholo.simulation._options import stepper_of
 from nonholo.simulation._run import Run, run_to_end
 from nonholo.simulation._search import Watch
-from nonholo.simulation.members._events import log_of, watched_block
-from nonholo.simulation.members._members import Members, ScalarMembers, in_lanes, inertias_of, refusal
-from nonholo.simulation.members._result import Ensemble, stack_rows
-from nonholo.simulation.members._start import Firsts, are_others
+from nonholo.simulation.members._members import Firsts, Members, ScalarMembers, are_others, inertias_of, refusal
+from nonholo.simulation.members._result import Ensemble, log_of, stack_rows, watched_block
 from nonholo.systems import in_coordinates
 
 _PART = 8192  # members in a piece of work of one thread, a multiple of what a compiled block holds
@@ -124,7 +122,7 @@ def _has_series(members: Members, plan: Plan) -> bool:
 
 def are_side_by_side(members: Members, plan: Plan) -> bool:
     """Return whether members are computed side by side, in numbers of their closed form."""
-    return plan.branch == PRINCIPAL.name and in_lanes(members)
+    return plan.branch == PRINCIPAL.name and members.lanes is not None
 
 
 def run_in_lanes(members: Members, starts: Firsts, plan: Plan, threads: int, report: Report) -> Ensemble:
