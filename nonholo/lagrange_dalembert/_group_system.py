@@ -16,8 +16,8 @@ from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert._functions import (
     AbstractParametricSystem,
     Parameters,
-    check_forms,
-    check_value,
+    checked_rows,
+    checked_value,
     count_of,
     room,
     with_parameters,
@@ -113,30 +113,25 @@ class GroupLagrangeDAlembert(AbstractParametricSystem["GroupDiscretization", "Gr
         instance(_argument("group"), self.group, AbstractMatrixGroup, "be a matrix group", remedy)
         text(_argument("name"), self.name)
         object.__setattr__(self, "parameters", Parameters(self.parameters, type(self).__name__))
-        with double_precision():
-            g = jax.ShapeDtypeStruct((self.group.size, self.group.size), float)
-            w, h = jax.ShapeDtypeStruct((self.group.dim,), float), jax.ShapeDtypeStruct((), float)
-            self._check("discrete_lagrangian", (), g, h)
-            if self.constraint_forms is not None:
-                where = _argument("constraint_forms")
-                remedy = "Stack one row per constraint, in body coordinates; pass None for no constraint."
-                arguments = (g, *self._shapes_given)
-                check_forms(where, self.constraint_forms, self.group.dim, arguments, repr(self.group), remedy)
-            if self.discrete_constraints is not None:
-                self._check("discrete_constraints", (self.constraints,), g, g, h)
-            if self.lagrangian is not None:
-                self._check("lagrangian", (), w)
-            if self.potential is not None:
-                self._check("potential", (), g)
+        g = jax.ShapeDtypeStruct((self.group.size, self.group.size), float)
+        w, h = jax.ShapeDtypeStruct((self.group.dim,), float), jax.ShapeDtypeStruct((), float)
+        self._trace_at("discrete_lagrangian", (), g, h)
+        stack = "Stack one row per constraint, in body coordinates; pass None for no constraint."
+        self._trace(
+            "constraint_forms", repr(self.group), (g,), checked_rows, self.group.dim - 1, (self.group.dim,), stack
+        )
+        self._trace_at("discrete_constraints", (self.constraints,), g, g, h)
+        self._trace_at("lagrangian", (), w)
+        self._trace_at("potential", (), g)
 
-    def _check(self, name: str, shape: tuple[int, ...], *arguments: Any) -> None:
-        arrays, arguments = f"shapes {[x.shape for x in arguments]}", (*arguments, *self._shapes_given)
-        check_value(_argument(name), getattr(self, name), shape, arguments, repr(self.group), arrays)
+    def _trace_at(self, name: str, shape: tuple[int, ...], *arguments: Any) -> None:
+        arrays = f"shapes {[x.shape for x in arguments]}"
+        self._trace(name, repr(self.group), arguments, checked_value, shape, arrays)
 
     @property
     def constraints(self) -> int:
         """The number s of constraints."""
-        return count_of(self.plain.constraint_forms, self.shapes[0])
+        return count_of(self.constraint_forms)
 
     velocity_constraints = constraints
 

@@ -3,14 +3,13 @@
 import dataclasses
 import functools
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import jax
 import numpy as np
 
 from nonholo.base.calls import call
 from nonholo.base.checks import array, choice, count, error, names, shown, text, within_memory
-from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert._functions import (
     AbstractParametricSystem,
@@ -18,12 +17,11 @@ from nonholo.lagrange_dalembert._functions import (
     ForceTable,
     Parameters,
     Resistance,
-    Rows,
-    check_forms,
-    check_rows_of_places,
-    check_value,
+    checked_rows,
+    checked_value,
     count_of,
     room,
+    rows_of,
     takes_time,
     with_parameters,
     with_time_step,
@@ -50,7 +48,8 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
 
     where $P_k = -D_1 L_d(q_k, q_{k+1})$ and $P^+_k = D_2 L_d(q_k, q_{k+1})$. With v = (q' - q)/h the rule "midpoint" is
     $L_d = h L((q + q')/2, v)$, $F = A((q + q')/2) v$; "trapezoidal" takes the means of L and A over both ends.
-    Nothing needs to be invariant under a group.
+    Nothing needs to be invariant under a group. A system keeps the numbers that its functions read when it is made, of
+    globals and arrays; a function under `jax.jit` those of its first call, a rule of JAX.
 
     A *driven* system has constraints $A(q, t)\,v = b(q, t)$, prescribed coordinates, a Lagrangian of the time or a
     force f(t, q, v), or it has holonomic constraints of the time: then
@@ -163,25 +162,22 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
             object.__setattr__(self, name, with_time_step(getattr(self, name), len(self._shapes_given)))
         object.__setattr__(self, "prescribed", _motions(self.prescribed, dimension, self._shapes_given))
         object.__setattr__(self, "force", _force(self.force, dimension))
-        self._check_functions()
+        self._trace_functions()
 
-    def _check_functions(self) -> None:
-        n = self.dimension
-        q, time, last = jax.ShapeDtypeStruct((n,), float), jax.ShapeDtypeStruct((), float), self._shapes_given
-        with double_precision():
-            self._check("lagrangian", (), q, q, *self._time("lagrangian"))
-            if self.constraint_forms is not None:
-                arguments = (q, *self._time("constraint_forms"), *last)
-                remedy = "Stack one row per constraint; pass None for no constraint."
-                where = _argument("constraint_forms")
-                check_forms(where, self.constraint_forms, n, arguments, f"{n} coordinates", remedy)
-            if self.holonomic is not None:
-                check_rows_of_places(_argument("holonomic"), self.holonomic, n, (q, *self._time("holonomic"), *last))
-            self._check("discrete_lagrangian", (), q, q, time)
-            self._check("discrete_constraints", (self.velocity_constraints,), q, q, time)
-            self._check("constraint_velocities", (self.velocity_constraints,), q, time)
-            if self.applied is not None:
-                check_value(_argument("force"), self.applied, (n,), (time, q, q, *last), *2 * (f"{n} coordinates",))
+    def _trace_functions(self) -> None:
+        n, of, last = self.dimension, f"{self.dimension} coordinates", self._shapes_given
+        q, time = jax.ShapeDtypeStruct((n,), float), jax.ShapeDtypeStruct((), float)
+        self._trace("lagrangian", of, (q, q), checked_value, (), of)
+        stack = "Stack one row per constraint; pass None for no constraint."
+        self._trace("constraint_forms", of, (q,), checked_rows, n - 1, (n,), stack)
+        stack = "Return one number per constraint, jnp.array([...]); pass None for no constraint."
+        self._trace("holonomic", of, (q,), checked_rows, n, (), stack)
+        self._trace("discrete_lagrangian", of, (q, q, time), checked_value, (), of)
+        self._trace("discrete_constraints", of, (q, q, time), checked_value, (self.velocity_constraints,), of)
+        self._trace("constraint_velocities", of, (q, time), checked_value, (self.velocity_constraints,), of)
+        if self.applied is not None:
+            force = checked_value(_argument("force"), self.applied, of, (time, q, q, *last), (n,), of)
+            object.__setattr__(self, "force", force_of(parts_of(self.force) | {"function": force}))
         self._check_slip(self.velocity_constraints)
         if (self.is_driven or self.slip) and (self.discrete_lagrangian or self.discrete_constraints):
             remedy = 'Use rule="midpoint" or "trapezoidal".'
@@ -197,13 +193,8 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
             raise error(_argument("force"), demand, got, remedy)
 
     def _time(self, name: str) -> tuple[Any, ...]:
-        count = _OTHERS[name] + len(self._shapes_given)
+        count = _OTHERS.get(name, 9) + len(self._shapes_given)
         return (jax.ShapeDtypeStruct((), float),) if takes_time(getattr(self, name), count) else ()
-
-    def _check(self, name: str, shape: tuple[int, ...], *arguments: Any) -> None:
-        function, of = getattr(self, name), f"{self.dimension} coordinates"
-        if function is not None or name == "lagrangian":
-            check_value(_argument(name), function, shape, (*arguments, *self._shapes_given), of, of)
 
     @functools.cached_property
     def is_driven(self) -> bool:
@@ -264,23 +255,20 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
         """The system without the form that may yield; itself if none may."""
         if self.slip is None:
             return self
-        rows = tuple(map(int, np.flatnonzero(~self.slip.rows.any(axis=0))))
-        velocities = self.constraint_velocities and Rows(self.constraint_velocities, rows)
-        forms = Rows(cast(Any, self.constraint_forms), rows) if rows else None
+        rows = np.flatnonzero(~self.slip.rows.any(axis=0))
+        velocities = self.constraint_velocities and rows_of(self.constraint_velocities, rows)
+        forms = rows_of(self.constraint_forms, rows) if len(rows) else None
         return dataclasses.replace(self.holding, constraint_forms=forms, constraint_velocities=velocities)
 
     @functools.cached_property
     def constraints(self) -> int:
         """The number s of constraints, the holonomic ones and those of prescribed coordinates with them."""
-        return self.velocity_constraints + self._rows_of("holonomic") + len(self.prescribed)
+        return self.velocity_constraints + count_of(self.holonomic) + len(self.prescribed)
 
     @functools.cached_property
     def velocity_constraints(self) -> int:
         """The number of constraint forms."""
-        return self._rows_of("constraint_forms")
-
-    def _rows_of(self, name: str) -> int:
-        return count_of(getattr(self.holding.plain, name), (self.dimension,), *(() for _ in self._time(name)))
+        return count_of(self.constraint_forms)
 
     @property
     def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
@@ -308,9 +296,8 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
             force = force_of(parts)
         if potential is not None:
             q = jax.ShapeDtypeStruct((self.dimension,), float)
-            with double_precision():
-                of = f"{self.dimension} coordinates"
-                check_value("Forced(potential=...)", potential, (), (q, *self._shapes_given), of, of)
+            of = f"{self.dimension} coordinates"
+            potential = checked_value("Forced(potential=...)", potential, of, (q, *self._shapes_given), (), of)
         lagrangian = _with_potential(self.lagrangian, potential, last=bool(self.parameters))
         return dataclasses.replace(self, lagrangian=lagrangian, force=force)
 
@@ -359,13 +346,12 @@ def _with_potential(lagrangian: Callable[..., Array], potential: Any, *, last: b
 def _motions(motions: Any, dimension: int, last: tuple[Any, ...]) -> tuple[tuple[int, Callable[[Array], Array]], ...]:
     """Return prescribed motions as pairs of index and function, in the order of the coordinates."""
     where = _argument("prescribed")
-    pairs = sorted(dict(motions).items(), key=lambda pair: pair[0])
-    for index, motion in pairs:
+    time, motion_of = jax.ShapeDtypeStruct((), float), {}
+    for index, motion in sorted(dict(motions).items(), key=lambda pair: pair[0]):
         if not isinstance(index, int) or not 0 <= index < dimension:
             raise error(where, f"have indices from 0 to {dimension - 1}", shown(index), "Name coordinates by index.")
-        with double_precision():
-            check_value(where, motion, (), (jax.ShapeDtypeStruct((), float), *last), "the time", "the time")
-    return tuple(pairs)
+        motion_of[index] = checked_value(where, motion, "the time", (time, *last), (), "the time")
+    return tuple(motion_of.items())
 
 
 def _force(value: Any, dimension: int) -> Any:
