@@ -41,7 +41,9 @@ class TracedFunction:
     Attributes:
         function: The function itself, asked for its present numbers.
         program: The function as JAX traces it, with copies of the arrays that it captures.
+        constants: These arrays.
         shape: That of its value.
+        is_of_one_step: Whether it was made for one time step.
     """
 
     def __init__(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
@@ -49,9 +51,10 @@ class TracedFunction:
         self.function, self.arguments = function, arguments
         with jax.enable_x64(True):  # of a function of its own: JAX remembers those that it has traced
             self.program = jax.make_jaxpr(jax.jit(lambda *x: _array(function(*x))))(*arguments)
-        self.shape = self.program.out_avals[0].shape
+        self.shape, self.is_of_one_step = self.program.out_avals[0].shape, getattr(function, "is_of_one_step", False)
         for each in _programs_in(self.program):
             each.consts[:] = map(copy.deepcopy, each.consts)
+        self.constants = [x for each in _programs_in(self.program) for x in each.consts]
 
     def __call__(self, *arguments: Any) -> Any:
         """Return the value."""
@@ -80,27 +83,11 @@ class TracedFunction:
     @functools.cached_property
     def digest(self) -> str | None:
         """A digest of the program and its numbers; None of one that does not show all that it does."""
-        return digest_of_program(self.program, self.is_of_one_step)
-
-    @property
-    def is_of_one_step(self) -> bool:
-        """Whether the function was made for one time step."""
-        return getattr(self.function, "is_of_one_step", False)
-
-
-def digest_of_program(program: Any, *about: Any) -> str | None:
-    """Return a digest of a program and the arrays within; None of one that does not show all that it does."""
-    text, constants = str(program), list(constants_in(program))
-    if any(name in text for name in _OPAQUE) or any(map(is_traced, constants)):
-        return None
-    arrays = ((np.shape(x), str(np.asarray(x).dtype), np.asarray(x).tobytes()) for x in constants)
-    return hashlib.sha256(repr((about, text, *arrays)).encode()).hexdigest()
-
-
-def constants_in(program: Any) -> Iterator[Any]:
-    """Yield the arrays within a program and those that it calls."""
-    for each in _programs_in(program):
-        yield from each.consts
+        text = str(self.program)
+        if any(name in text for name in _OPAQUE) or any(map(is_traced, self.constants)):
+            return None
+        arrays = ((np.shape(x), str(np.asarray(x).dtype), np.asarray(x).tobytes()) for x in self.constants)
+        return hashlib.sha256(repr((self.is_of_one_step, text, *arrays)).encode()).hexdigest()
 
 
 def _programs_in(program: Any) -> Iterator[Any]:

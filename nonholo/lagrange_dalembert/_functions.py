@@ -22,7 +22,7 @@ import numpy as np
 
 from nonholo.base.checks import array, checked_name, error, instance, is_traced, number, shape_of, shown
 from nonholo.base.numerics import double_precision
-from nonholo.base.traced import TracedFunction, constants_in
+from nonholo.base.traced import TracedFunction
 from nonholo.base.types import Array, Float, Int
 from nonholo.systems import AbstractCoordinateSystem, DiscretizationT, OrbitT
 
@@ -37,10 +37,9 @@ def trace(where: str, function: Any, of: str, arguments: tuple[Any, ...]) -> Tra
         return function
     if not callable(function):
         raise error(where, "be a function", shown(function), "Pass a function of jax.numpy arrays.")
-    if arguments and isinstance(arguments[-1], dict):
-        _check_parameters(where, function, len(arguments))
+    _check_parameters(where, function, arguments)
     result = _attempt(where, of, lambda: TracedFunction(function, arguments))
-    if any(getattr(constant, "dtype", None) == jnp.float32 for constant in constants_in(result.program)):
+    if any(getattr(constant, "dtype", None) == jnp.float32 for constant in result.constants):
         remedy = "Keep parameters as Python numbers or NumPy arrays, not as jax.numpy arrays made outside."
         raise error(where, "use 64-bit numbers", "a captured 32-bit array", remedy)
     kind = result.program.out_avals[0].dtype.kind
@@ -50,9 +49,9 @@ def trace(where: str, function: Any, of: str, arguments: tuple[Any, ...]) -> Tra
     return result
 
 
-def _check_parameters(where: str, function: Callable[..., Any], count: int) -> None:
+def _check_parameters(where: str, function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
     """Refuse a function that does not take the parameters of its system, last."""
-    if not _binds(function, count):
+    if isinstance(arguments[-1], dict) and not _binds(function, count := len(arguments)):
         got, remedy = f"{inspect.signature(function)}", f"Let it take {count} arguments, the last a dict of parameters."
         raise error(where, "take the parameters of the system as its last argument", got, remedy)
 
@@ -103,7 +102,7 @@ def count_of(function: Any) -> int:
     return 0 if function is None else function.shape[0]
 
 
-def takes_time(function: Any, others: int) -> bool:
+def takes_time(function: Any, others: float) -> bool:
     """Return whether a function must be called with one argument more than the others."""
     try:
         parameters = inspect.signature(function).parameters.values()
@@ -282,6 +281,8 @@ class AbstractParametricSystem(AbstractCoordinateSystem[DiscretizationT, OrbitT]
 
     functions: ClassVar[tuple[str, ...]]
     """The fields that are such functions."""
+    of_time: ClassVar[dict[str, int]] = {}
+    """How many arguments those have that may be called with the time after them."""
     parameters: Any
 
     @property
@@ -291,8 +292,8 @@ class AbstractParametricSystem(AbstractCoordinateSystem[DiscretizationT, OrbitT]
 
     def _time(self, name: str) -> tuple[Any, ...]:
         """Return the shape of the time if a function is called with it."""
-        del name
-        return ()
+        count = self.of_time.get(name, np.inf) + len(self._shapes_given)
+        return (jax.ShapeDtypeStruct((), float),) if takes_time(getattr(self, name), count) else ()
 
     def _trace(self, name: str, of: str, arguments: tuple[Any, ...], check: Any, *demands: Any) -> None:
         """Put a function as JAX traces it now in its own place, where there is one; the first of all is needed."""

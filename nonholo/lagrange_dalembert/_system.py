@@ -11,21 +11,7 @@ import numpy as np
 from nonholo.base.calls import call
 from nonholo.base.checks import array, choice, count, error, names, shown, text, within_memory
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert._functions import (
-    AbstractParametricSystem,
-    Bound,
-    ForceTable,
-    Parameters,
-    Resistance,
-    checked_rows,
-    checked_value,
-    count_of,
-    room,
-    rows_of,
-    takes_time,
-    with_parameters,
-    with_time_step,
-)
+from nonholo.lagrange_dalembert import _functions as tracing
 from nonholo.lagrange_dalembert._places import Coordinates
 from nonholo.systems import force_of, parts_of, slips_of, without_slips
 
@@ -34,13 +20,11 @@ if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._orbit import CoordinateOrbit  # noqa: F401  (named by the base class)
 
 Parts = tuple[Float[np.ndarray, "P 2"], ...]
-_OTHERS = {"lagrangian": 2, "constraint_forms": 1, "holonomic": 1}
-"""How many arguments the functions have that may be called with the time after them."""
 _REMEDY = "Pass the corners of each part in body axes: [[(-0.1, -0.1), (0.2, 0.0), (-0.1, 0.1)], ...]."
 
 
 @dataclasses.dataclass(frozen=True)
-class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "CoordinateOrbit"]):
+class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretization", "CoordinateOrbit"]):
     r"""A mechanical system on $\mathbb{R}^n$ with linear velocity constraints, and its discrete principle.
 
     $$ \frac{d}{dt}\frac{\partial L}{\partial v} - \frac{\partial L}{\partial q} = \sum_j \lambda_j A^j(q), \qquad
@@ -141,6 +125,7 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
         *("lagrangian", "constraint_forms", "holonomic"),
         *("discrete_lagrangian", "discrete_constraints", "constraint_velocities"),
     )
+    of_time: ClassVar[dict[str, int]] = {"lagrangian": 2, "constraint_forms": 1, "holonomic": 1}
     orbits: ClassVar[str] = "CoordinateOrbit"
     in_stores: ClassVar[tuple[str, ...]] = ("constraints", "is_driven", "orbits", "shapes")
     energy_argument: ClassVar[str] = "lagrangian"
@@ -152,14 +137,15 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
         dimension = count(_argument("dimension"), self.dimension, "Pass the number of coordinates.")
         within_memory(_argument("dimension"), 8.0 * dimension**2, "Pass the number of coordinates.")  # the mass matrix
         object.__setattr__(self, "dimension", dimension)
-        object.__setattr__(self, "parameters", Parameters(self.parameters))
+        object.__setattr__(self, "parameters", tracing.Parameters(self.parameters))
         object.__setattr__(self, "coordinates", _names(self.coordinates, dimension))
         text(_argument("name"), self.name)
         _check_heading(_argument("heading"), self.heading, self.coordinates)
-        object.__setattr__(self, "outline", _checked_outline(_argument("outline"), self.outline))
+        if not callable(self.outline):
+            object.__setattr__(self, "outline", _as_parts(_argument("outline"), self.outline))
         choice(_argument("rule"), self.rule, ("midpoint", "trapezoidal"))
         for name in ("discrete_lagrangian", "discrete_constraints"):
-            object.__setattr__(self, name, with_time_step(getattr(self, name), len(self._shapes_given)))
+            object.__setattr__(self, name, tracing.with_time_step(getattr(self, name), len(self._shapes_given)))
         object.__setattr__(self, "prescribed", _motions(self.prescribed, dimension, self._shapes_given))
         object.__setattr__(self, "force", _force(self.force, dimension))
         self._trace_functions()
@@ -167,16 +153,16 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
     def _trace_functions(self) -> None:
         n, of, last = self.dimension, f"{self.dimension} coordinates", self._shapes_given
         q, time = jax.ShapeDtypeStruct((n,), float), jax.ShapeDtypeStruct((), float)
-        self._trace("lagrangian", of, (q, q), checked_value, (), of)
+        self._trace("lagrangian", of, (q, q), tracing.checked_value, (), of)
         stack = "Stack one row per constraint; pass None for no constraint."
-        self._trace("constraint_forms", of, (q,), checked_rows, n - 1, (n,), stack)
+        self._trace("constraint_forms", of, (q,), tracing.checked_rows, n - 1, (n,), stack)
         stack = "Return one number per constraint, jnp.array([...]); pass None for no constraint."
-        self._trace("holonomic", of, (q,), checked_rows, n, (), stack)
-        self._trace("discrete_lagrangian", of, (q, q, time), checked_value, (), of)
-        self._trace("discrete_constraints", of, (q, q, time), checked_value, (self.velocity_constraints,), of)
-        self._trace("constraint_velocities", of, (q, time), checked_value, (self.velocity_constraints,), of)
+        self._trace("holonomic", of, (q,), tracing.checked_rows, n, (), stack)
+        self._trace("discrete_lagrangian", of, (q, q, time), tracing.checked_value, (), of)
+        self._trace("discrete_constraints", of, (q, q, time), tracing.checked_value, (self.velocity_constraints,), of)
+        self._trace("constraint_velocities", of, (q, time), tracing.checked_value, (self.velocity_constraints,), of)
         if self.applied is not None:
-            force = checked_value(_argument("force"), self.applied, of, (time, q, q, *last), (n,), of)
+            force = tracing.checked_value(_argument("force"), self.applied, of, (time, q, q, *last), (n,), of)
             object.__setattr__(self, "force", force_of(parts_of(self.force) | {"function": force}))
         self._check_slip(self.velocity_constraints)
         if (self.is_driven or self.slip) and (self.discrete_lagrangian or self.discrete_constraints):
@@ -192,15 +178,11 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
             got, remedy = f"{[row.tolist() for row in rows]}", "Pass rows=[[0.0, 1.0]] for the second of two forms."
             raise error(_argument("force"), demand, got, remedy)
 
-    def _time(self, name: str) -> tuple[Any, ...]:
-        count = _OTHERS.get(name, 9) + len(self._shapes_given)
-        return (jax.ShapeDtypeStruct((), float),) if takes_time(getattr(self, name), count) else ()
-
     @functools.cached_property
     def is_driven(self) -> bool:
         """Whether a force acts, or anything depends on time or moves by itself."""
         acts = self.holding.force is not None or self.constraint_velocities is not None or bool(self.prescribed)
-        return acts or any(map(self.takes_time, _OTHERS))
+        return acts or any(map(self.takes_time, self.of_time))
 
     def bound(self, *numbers: Any) -> Self:
         """Return the system without parameters whose functions have these numbers within."""
@@ -211,8 +193,8 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
 
     def _bound_fields(self, p: Mapping[str, Any]) -> dict[str, Any]:
         parts = parts_of(self.force)
-        parts |= {"function": Bound(parts["function"], p)} if "function" in parts else {}
-        motions = tuple((index, Bound(motion, p)) for index, motion in self.prescribed)
+        parts |= {"function": tracing.Bound(parts["function"], p)} if "function" in parts else {}
+        motions = tuple((index, tracing.Bound(motion, p)) for index, motion in self.prescribed)
         return super()._bound_fields(p) | {"force": force_of(parts), "prescribed": motions}
 
     @property
@@ -230,7 +212,7 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
         return bool(self._time(function))
 
     @property
-    def table(self) -> ForceTable | None:
+    def table(self) -> tracing.ForceTable | None:
         """The forces of the steps, where they are given one by one."""
         return parts_of(self.force).get("table")
 
@@ -256,19 +238,19 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
         if self.slip is None:
             return self
         rows = np.flatnonzero(~self.slip.rows.any(axis=0))
-        velocities = self.constraint_velocities and rows_of(self.constraint_velocities, rows)
-        forms = rows_of(self.constraint_forms, rows) if len(rows) else None
+        velocities = self.constraint_velocities and tracing.rows_of(self.constraint_velocities, rows)
+        forms = tracing.rows_of(self.constraint_forms, rows) if len(rows) else None
         return dataclasses.replace(self.holding, constraint_forms=forms, constraint_velocities=velocities)
 
     @functools.cached_property
     def constraints(self) -> int:
         """The number s of constraints, the holonomic ones and those of prescribed coordinates with them."""
-        return self.velocity_constraints + count_of(self.holonomic) + len(self.prescribed)
+        return self.velocity_constraints + tracing.count_of(self.holonomic) + len(self.prescribed)
 
     @functools.cached_property
     def velocity_constraints(self) -> int:
         """The number of constraint forms."""
-        return count_of(self.constraint_forms)
+        return tracing.count_of(self.constraint_forms)
 
     @property
     def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
@@ -291,13 +273,13 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
         if self.force is not None:
             raise error("Forced(system=...)", "have no force yet", repr(self), "Pass all forces at once.")
         if self.parameters:
-            potential, parts = with_parameters(potential, 1), parts_of(force)
-            parts |= {"function": with_parameters(parts["function"], 3)} if "function" in parts else {}
+            potential, parts = tracing.with_parameters(potential, 1), parts_of(force)
+            parts |= {"function": tracing.with_parameters(parts["function"], 3)} if "function" in parts else {}
             force = force_of(parts)
         if potential is not None:
             q = jax.ShapeDtypeStruct((self.dimension,), float)
             of = f"{self.dimension} coordinates"
-            potential = checked_value("Forced(potential=...)", potential, of, (q, *self._shapes_given), (), of)
+            potential = tracing.checked_value("Forced(potential=...)", potential, of, (q, *self._shapes_given), (), of)
         lagrangian = _with_potential(self.lagrangian, potential, last=bool(self.parameters))
         return dataclasses.replace(self, lagrangian=lagrangian, force=force)
 
@@ -324,11 +306,11 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
             >>> round(free.regularity((0, 0), (1, 2), time_step=0.5), 12)
             1.0
         """
-        return room("_start").regularity(self, q, q_next, time_step)
+        return tracing.room("_start").regularity(self, q, q_next, time_step)
 
     def discrete_map(self, time_step: Any) -> "CoordinateDiscretization":
         """Return the discretized system, see `nonholo.discretize`."""
-        return room("_discretization").CoordinateDiscretization(self, time_step)
+        return tracing.room("_discretization").CoordinateDiscretization(self, time_step)
 
 
 def _with_potential(lagrangian: Callable[..., Array], potential: Any, *, last: bool) -> Callable[..., Array]:
@@ -350,7 +332,7 @@ def _motions(motions: Any, dimension: int, last: tuple[Any, ...]) -> tuple[tuple
     for index, motion in sorted(dict(motions).items(), key=lambda pair: pair[0]):
         if not isinstance(index, int) or not 0 <= index < dimension:
             raise error(where, f"have indices from 0 to {dimension - 1}", shown(index), "Name coordinates by index.")
-        motion_of[index] = checked_value(where, motion, "the time", (time, *last), (), "the time")
+        motion_of[index] = tracing.checked_value(where, motion, "the time", (time, *last), (), "the time")
     return tuple(motion_of.items())
 
 
@@ -359,10 +341,10 @@ def _force(value: Any, dimension: int) -> Any:
     parts = parts_of(value)
     if (friction := parts.pop("friction", None)) is not None:
         friction.check(dimension)
-        parts["function"] = Resistance(parts.get("function"), friction.matrix)
-    if "table" in parts and not isinstance(parts["table"], ForceTable):
+        parts["function"] = tracing.Resistance(parts.get("function"), friction.matrix)
+    if "table" in parts and not isinstance(parts["table"], tracing.ForceTable):
         remedy = "Pass a function of time, configuration and velocity, Friction, or one force a step."
-        parts["table"] = ForceTable(array(_argument("force"), parts["table"], (None, dimension), remedy))
+        parts["table"] = tracing.ForceTable(array(_argument("force"), parts["table"], (None, dimension), remedy))
     return force_of(parts)
 
 
@@ -382,11 +364,6 @@ def _check_heading(where: str, heading: Any, coordinates: tuple[str, ...]) -> No
     if heading is not None and not {"x", "y", heading} <= set(coordinates) - ({heading} & {"x", "y"}):
         remedy = 'Name the coordinates: coordinates=("x", "y", "theta"), heading="theta".'
         raise error(where, f"be a coordinate beside x and y of {', '.join(coordinates)}", shown(heading), remedy)
-
-
-def _checked_outline(where: str, outline: Any) -> Any:
-    """Return an outline: a function as it is, parts as arrays."""
-    return outline if callable(outline) else _as_parts(where, outline)
 
 
 def _as_parts(where: str, value: Any) -> Parts:

@@ -21,6 +21,7 @@ from nonholo.lagrange_dalembert import in_double as of_system
 from nonholo.orbit import Orbit
 from nonholo.simulation import simulate
 from nonholo.simulation.traced import rollout
+from nonholo.systems import AbstractCoordinateSystem
 
 _COPIES = 8  # of matrices at a node, and their derivatives
 
@@ -314,28 +315,21 @@ def _compile_in_coordinates(
     return _with_slopes(one, (0, 1))
 
 
-def group_model(system_of: Callable[..., Any], shapes: Shapes, numbers: np.ndarray) -> GroupModel:
-    """Return the model of the body that a function makes."""
-    system = system_of(by_name(shapes, numbers))
-    return GroupModel(system, (_numbers_of(system_of, shapes, numbers, jax.tree.leaves), jax.tree.structure(system)))
-
-
-def _numbers_of(
-    system_of: Callable[..., Any], shapes: Shapes, numbers: np.ndarray, leaves_of: Callable[[Any], Any]
-) -> TracedFunction:
-    """Return the numbers of the system that a function makes, as they depend on its own and on what it reads now."""
+def maker_of(system_of: Callable[..., Any], shapes: Shapes, numbers: np.ndarray) -> tuple[Any, ...]:
+    """Return what a function makes of numbers, as JAX traces it now: another one where what it reads has changed."""
 
     def leaves(x: Array) -> Array:
-        return jnp.concatenate([jnp.ravel(jnp.asarray(each)) for each in leaves_of(system_of(by_name(shapes, x)))])
+        system = system_of(by_name(shapes, x))
+        own = system.parameters.values() if isinstance(system, AbstractCoordinateSystem) else jax.tree.leaves(system)
+        return jnp.concatenate([jnp.ravel(jnp.asarray(each)) for each in own])
 
-    return TracedFunction(leaves, (jax.ShapeDtypeStruct(numbers.shape, float),))
+    structure = jax.tree.structure(system_of(by_name(shapes, numbers)))
+    return structure, TracedFunction(leaves, (jax.ShapeDtypeStruct(numbers.shape, float),))
 
 
-def coordinate_model(system_of: Callable[..., Any], shapes: Shapes, numbers: np.ndarray) -> CoordinateModel:
-    """Return the model of the system that a function makes; refused if it does not vary parameters alone."""
-    system, again = (system_of(by_name(shapes, numbers)) for _ in range(2))
+def coordinate_model(system: Any, again: Any, maker: Any) -> CoordinateModel:
+    """Return the model of a system that a function made twice; refused if it does not vary parameters alone."""
     if not (system.parameters and system.family == again.family):
         remedy = "Make the system once, with parameters=..., and return system.with_parameters(**p)."
         raise error("fit(system_of=...)", "vary the parameters of one system", type(system).__name__, remedy)
-    maker = _numbers_of(system_of, shapes, numbers, lambda system: system.parameters.values())
     return CoordinateModel(system, (CoordinateReadings if system.coordinates else PoseReadings)(system), maker)

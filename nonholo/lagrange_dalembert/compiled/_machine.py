@@ -16,14 +16,13 @@ from pathlib import Path
 from typing import Any
 
 import jax
+import jax.numpy as jnp
 import llvmlite
-import numpy as np
 from llvmlite import ir
 
 from nonholo.base.compiled.emission import load_object, object_of, this_processor
 from nonholo.base.compiled.library import cache_folder, digest_of, digest_of_kernels
-from nonholo.base.numerics import double_precision
-from nonholo.base.traced import digest_of_program
+from nonholo.base.traced import TracedFunction
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._functions import compiling
@@ -118,21 +117,20 @@ def _digest(family: Any) -> str | None:
 
     def moves(x: Array, v: Array, h: Array) -> Any:
         places, step = family.places, family.places.step(v, h)
-        row = () if family.table is None else family.table.row(x[-1] / h)
-        slopes = places.momenta(x, step, h, x, step), places.force(v, v, x, x)
-        return row, places.rate(x, v), equations.ahead(family, x, v, h), slopes
+        row = jnp.zeros(0) if family.table is None else family.table.row(x[-1] / h)
+        slopes = *places.momenta(x, step, h, x, step), places.force(v, v, x, x)
+        return jnp.concatenate([*map(jnp.ravel, (row, places.rate(x, v), equations.ahead(family, x, v, h), *slopes))])
 
     place, velocity = family.shapes
     place = (place[0] + 1,) if family.is_driven else place  # with the time
-    with double_precision():
-        program = jax.make_jaxpr(moves)(*(jax.ShapeDtypeStruct(shape, float) for shape in (place, velocity, ())))
+    shapes = tuple(jax.ShapeDtypeStruct(shape, float) for shape in (place, velocity, ()))
     functions = {name: getattr(family, name) for name in (*family.functions, "applied")} | dict(family.prescribed)
     digests = {name: getattr(each, "digest", None) for name, each in functions.items() if each is not None}
-    digests["moves"] = digest_of_program(program)
+    digests["moves"] = TracedFunction(moves, shapes).digest
     if None in digests.values():
         return None
-    numbers = {name: np.shape(number) for name, number in family.parameters.items()}
-    sort = type(family).__name__, family.rule, family.is_driven, family.has_parts, place, velocity, numbers
+    numbers = place, velocity, family.parameters.structure
+    sort = type(family).__name__, family.rule, family.is_driven, family.has_parts, numbers
     texts = digest_of("lagrange_dalembert", "groups"), digest_of_kernels()
     about = sort, digests, texts, jax.__version__, llvmlite.__version__, this_processor()
     return hashlib.sha256(repr(about).encode()).hexdigest()
