@@ -1,20 +1,25 @@
-"""Runs as JAX functions: from node to node, with checkpoints, values that stop being there, and implicit derivatives.
+"""Functions as JAX traces them; runs as JAX functions, with checkpoints, lost values and implicit derivatives.
 
 A node is what is known of a state and of the step from it, as a named tuple of the caller's. It has `after`, what the
 next step begins with, `y`, by which its root is guessed, the outcome `code`, and `cause`, a number that what made a
 step fail has moved. A node stays at the last good one.
 """
 
+import copy
+import functools
+import hashlib
 import math
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple, Self, cast
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jax.ad_checkpoint import checkpoint_name
 from jax.experimental import io_callback
+from jax.extend.core import jaxpr_as_fun
 
+from nonholo.base.checks import is_traced
 from nonholo.base.progress import number_is_over
 from nonholo.base.types import Array, Float
 
@@ -23,6 +28,84 @@ _MANY = 2048  # steps that take much longer than the question whether they are w
 _SHORT = 64  # steps between saved states from which on reverse mode keeps checkpoints alone
 FEW = 32  # states, each of which takes long
 _ROOT = "root of a step"  # what a checkpoint keeps, so that no root is searched for twice
+
+
+_OPAQUE = "custom_jvp_call", "custom_vjp_call", "stop_gradient", " at 0x"
+"""Calls whose derivatives are not those of what they compute, and objects of this process."""
+
+
+class TracedFunction:
+    """A function with the numbers that it reads when this is made; equal are those of the same program.
+
+    JAX traces it once. Arrays of other shapes, or in 32 bits, go to the function itself.
+
+    Attributes:
+        function: The function itself, asked for its present numbers.
+        program: The function as JAX traces it, with copies of the arrays that it captures.
+        constants: These arrays.
+        shape: That of its value.
+        is_of_one_step: Whether it was made for one time step.
+    """
+
+    def __init__(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
+        functools.update_wrapper(cast(Any, self), function)
+        self.function, self.arguments = function, arguments
+        with jax.enable_x64(True):  # of a function of its own: JAX remembers those that it has traced
+            self.program = jax.make_jaxpr(jax.jit(lambda *x: _array(function(*x))))(*arguments)
+        self.shape, self.is_of_one_step = self.program.out_avals[0].shape, getattr(function, "is_of_one_step", False)
+        for each in _programs_in(self.program):
+            each.consts[:] = map(copy.deepcopy, each.consts)
+        self.constants = [x for each in _programs_in(self.program) for x in each.consts]
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Return the value."""
+        leaves = jax.tree.leaves(arguments)
+        fits = [np.shape(x) for x in leaves] == [x.shape for x in self.program.in_avals]
+        if not fits or jnp.result_type(float) != np.float64 or any(map(jnp.iscomplexobj, leaves)):
+            return self.function(*arguments)
+        leaves = (jnp.asarray(x, float) for x in leaves)
+        return jaxpr_as_fun(self.program)(*leaves)[0]
+
+    def __repr__(self) -> str:
+        return repr(self.function)
+
+    def __eq__(self, other: object) -> bool:
+        return self is other or (self.digest is not None and self.digest == getattr(other, "digest", None))
+
+    def __hash__(self) -> int:
+        return id(self) if self.digest is None else hash(self.digest)
+
+    def __reduce__(self) -> Any:
+        return TracedFunction, (self.function, self.arguments)
+
+    def __deepcopy__(self, memo: Any) -> Self:
+        return self
+
+    @functools.cached_property
+    def digest(self) -> str | None:
+        """A digest of the program and its numbers; None of one that does not show all that it does."""
+        text = str(self.program)
+        if any(name in text for name in _OPAQUE) or any(map(is_traced, self.constants)):
+            return None
+        arrays = ((np.shape(x), str(np.asarray(x).dtype), np.asarray(x).tobytes()) for x in self.constants)
+        return hashlib.sha256(repr((self.is_of_one_step, text, *arrays)).encode()).hexdigest()
+
+
+def _programs_in(program: Any) -> Iterator[Any]:
+    """Yield the programs with constants: this one, and those that it calls."""
+    if hasattr(program, "consts"):
+        yield program
+    for step in getattr(program, "jaxpr", program).eqns:
+        for inner in jax.tree.leaves(list(step.params.values())):
+            if hasattr(inner, "eqns"):
+                yield from _programs_in(inner)
+
+
+def _array(value: Any) -> Any:
+    """Return a value as an array; lists are refused, because the functions are called again without this help."""
+    if isinstance(value, list | tuple):
+        raise TypeError(f"it returned a {type(value).__name__}, jnp.array makes an array of it")
+    return jnp.asarray(value)
 
 
 class NodeState(NamedTuple):

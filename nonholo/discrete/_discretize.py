@@ -103,9 +103,10 @@ def _difference(system: AbstractSystem, difference: Difference | None) -> Differ
 
 
 def _scalar(where: str, system: AbstractSystem, difference: Callable[[Array], Array]) -> Callable[[Array], Array]:
-    """Refuse a discrete Lagrangian that is not a finite number with finite derivatives at the identity."""
+    """Return a traced discrete Lagrangian, which is finite at the identity, and so are its derivatives."""
     of_jax = definition(where)
     try:
+        difference = of_jax.trace(difference, system.group)
         value, slope = of_jax.value_and_slope(difference, system.group)
     except Exception as failure:
         got = f"{type(failure).__name__}: {f'{failure}'.splitlines()[0]}"

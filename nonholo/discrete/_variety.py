@@ -157,7 +157,7 @@ def checked_constraint(where: str, system: AbstractSystem, constraint: object) -
     s = len(system.annihilator)
     if len(functions) != s:
         raise error(where, f"be {s} functions, one per forbidden direction", f"{len(functions)}", "Pass as many.")
-    values, derivative = _at_identity(where, functions, system.group)
+    functions, values, derivative = _at_identity(where, functions, system.group)
     if np.abs(values).max(initial=0.0) > _ROUNDING:
         raise error(where, "vanish at the identity", f"values {values}", "Subtract them.")
     along = np.abs(derivative @ system.constraint_subspace.T).max(initial=0.0)
@@ -169,13 +169,14 @@ def checked_constraint(where: str, system: AbstractSystem, constraint: object) -
     return functions
 
 
-def _at_identity(where: str, functions: Any, group: AbstractMatrixGroup) -> tuple[np.ndarray, np.ndarray]:
-    """Return the values of functions at the identity and their derivatives along the group."""
-    value_and_slope = definition(where).value_and_slope
+def _at_identity(where: str, functions: Any, group: AbstractMatrixGroup) -> tuple[Any, np.ndarray, np.ndarray]:
+    """Return traced functions, their values at the identity and their derivatives along the group."""
+    of_jax, own = definition(where), []
     values, slopes = np.zeros(len(functions)), np.zeros((len(functions), group.dim))
     for j, function in enumerate(functions):
         try:
-            values[j], slopes[j] = value_and_slope(function, group)
+            own.append(of_jax.trace(function, group))
+            values[j], slopes[j] = of_jax.value_and_slope(own[j], group)
         except Exception as failure:
             got = f"{type(failure).__name__}: {f'{failure}'.splitlines()[0]}"
             remedy = "Write each f_j(W) with jax.numpy, for one matrix, returning one number."
@@ -183,7 +184,7 @@ def _at_identity(where: str, functions: Any, group: AbstractMatrixGroup) -> tupl
     if not (np.all(np.isfinite(values)) and np.all(np.isfinite(slopes))):
         got = f"values {values}, derivatives {slopes.tolist()}"
         raise error(where, "be differentiable at the identity", got, "Avoid 0/0 and square roots of zero there.")
-    return values, slopes
+    return tuple(own), values, slopes
 
 
 def free_rows(group: AbstractMatrixGroup) -> int:

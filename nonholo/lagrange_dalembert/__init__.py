@@ -8,7 +8,7 @@ with needs("jax", "nonholo.lagrange_dalembert"):
     from nonholo.lagrange_dalembert import _tangents as tangents
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization, GroupDiscretization, checked_state
     from nonholo.lagrange_dalembert._flow import flights, flow, vector_field
-    from nonholo.lagrange_dalembert._functions import check_forms, check_value, in_double, place, traced_shape
+    from nonholo.lagrange_dalembert._functions import checked_rows, checked_value, in_double, place, trace
     from nonholo.lagrange_dalembert._group_system import GroupLagrangeDAlembert, mass_tensor_lagrangian
     from nonholo.lagrange_dalembert._orbit import (
         AbstractCoordinateOrbit,

@@ -20,16 +20,10 @@ from nonholo.base.checks import error, is_traced, scale
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
+from nonholo.lagrange_dalembert import _orbit as orbits
 from nonholo.lagrange_dalembert import compiled
 from nonholo.lagrange_dalembert._functions import ROWS, configurations, in_blocks, in_double, places, room
 from nonholo.lagrange_dalembert._newton import orientation, solve
-from nonholo.lagrange_dalembert._orbit import (
-    ORBITS,
-    AbstractCoordinateOrbit,
-    CoordinateMotion,
-    CoordinateOrbit,
-    GroupOrbit,
-)
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
 from nonholo.orbit import AbstractStepper, First, Rows, State
 from nonholo.systems import AbstractCoordinateDiscretization, OrbitT, Start, one_start
@@ -41,7 +35,7 @@ Motion = tuple[Array, Array, Array]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretization[OrbitT]):
+class AbstractLagrangeDAlembertMap(orbits.CoordinateMotion, AbstractCoordinateDiscretization[OrbitT]):
     r"""A discretized system, which checks the start of a run.
 
     $$ D_1 L_d(q_k, q_{k+1}) + D_2 L_d(q_{k-1}, q_k) = -\sum_j \lambda_j A^j(q_k), \qquad F(q_k, q_{k+1}) = 0, $$
@@ -111,7 +105,7 @@ class AbstractLagrangeDAlembertMap(CoordinateMotion, AbstractCoordinateDiscretiz
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class CoordinateDiscretization(AbstractLagrangeDAlembertMap[CoordinateOrbit]):
+class CoordinateDiscretization(AbstractLagrangeDAlembertMap[orbits.CoordinateOrbit]):
     """A discretized system in coordinates, made by `nonholo.discretize`.
 
     Attributes:
@@ -147,7 +141,7 @@ class CoordinateDiscretization(AbstractLagrangeDAlembertMap[CoordinateOrbit]):
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class GroupDiscretization(AbstractLagrangeDAlembertMap[GroupOrbit]):
+class GroupDiscretization(AbstractLagrangeDAlembertMap[orbits.GroupOrbit]):
     """A discretized `GroupLagrangeDAlembert`, made by `nonholo.discretize`.
 
     Attributes:
@@ -183,7 +177,7 @@ def _fixed_time_step(value: Any) -> float:
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class CoordinateStepper(AbstractStepper[AbstractCoordinateOrbit]):
+class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
     """The steps of a discretized system in coordinates or on a group.
 
     A row is a place (with the time, of a driven system), the velocity of the step from there and its impulse. The
@@ -237,7 +231,7 @@ class CoordinateStepper(AbstractStepper[AbstractCoordinateOrbit]):
         state[:] = self._state(motion, [sign])
         return count, int(code)
 
-    def orbit(self, rows: Rows, step: int, every: int, outcome: Outcome) -> AbstractCoordinateOrbit:
+    def orbit(self, rows: Rows, step: int, every: int, outcome: Outcome) -> orbits.AbstractCoordinateOrbit:
         """Return rows as an orbit."""
         q, v, impulses = rows
         return self.states(self._places(q), v, impulses, step, every, outcome)
@@ -250,7 +244,7 @@ class CoordinateStepper(AbstractStepper[AbstractCoordinateOrbit]):
         displacement, momentum, energy, residual = _decoded(system, h, q, v)
         number = step + every * np.arange(len(q))
         arrays = h * number, configurations(system, q), displacement, v, momentum, impulses, energy, residual
-        return ORBITS[system.orbits](*arrays, outcome, system, float(h), every, step=number)
+        return orbits.ORBITS[system.orbits](*arrays, outcome, system, float(h), every, step=number)
 
     def _places(self, rows: np.ndarray) -> np.ndarray:
         """Return places from flat ones."""

@@ -10,6 +10,7 @@ import difflib
 import functools
 import importlib
 import inspect
+import operator
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, ClassVar, Self
 
@@ -20,7 +21,7 @@ import numpy as np
 from nonholo.base.checks import array, checked_name, error, instance, is_traced, number, shape_of, shown
 from nonholo.base.numerics import double_precision
 from nonholo.base.progress import compiling
-from nonholo.base.traced import call_in_blocks
+from nonholo.base.traced import TracedFunction, call_in_blocks
 from nonholo.base.types import Array, Float, Int
 from nonholo.systems import AbstractCoordinateSystem, DiscretizationT, OrbitT
 
@@ -29,54 +30,35 @@ ROWS = 1024
 _END = 120  # letters of either end of a long message
 
 
-_program_of = functools.lru_cache(maxsize=256)(jax.jit)
-
-
-def traced_once(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function that JAX traces once for arguments of a kind, however often it is differentiated.
-
-    One without a hash, which cannot be found again, stays as it is.
-    """
-    return _program_of(function) if getattr(function, "__hash__", None) else function
-
-
-def traced_shape(where: str, function: Any, arguments: tuple[Any, ...], of: str) -> tuple[int, ...]:
-    """Return the shape of a function's value; `of` says in words what it is called with."""
+def trace(where: str, function: Any, of: str, arguments: tuple[Any, ...]) -> TracedFunction:
+    """Return a function as JAX traces it now; `of` says in words what it is called with."""
+    if isinstance(function, TracedFunction) and function.arguments == arguments:
+        return function
     if not callable(function):
         raise error(where, "be a function", shown(function), "Pass a function of jax.numpy arrays.")
-    if arguments and isinstance(arguments[-1], dict):
-        _check_parameters(where, function, len(arguments))
-    program = _trace(where, lambda *x: _array(traced_once(function)(*x)), arguments, of)
-    if any(getattr(constant, "dtype", None) == jnp.float32 for constant in constants_in(program)):
+    _check_parameters(where, function, arguments)
+    result = _attempt(where, of, lambda: TracedFunction(function, arguments))
+    if any(getattr(constant, "dtype", None) == jnp.float32 for constant in result.constants):
         remedy = "Keep parameters as Python numbers or NumPy arrays, not as jax.numpy arrays made outside."
         raise error(where, "use 64-bit numbers", "a captured 32-bit array", remedy)
-    shape, kind = program.out_avals[0].shape, program.out_avals[0].dtype.kind
-    if kind == "c" or (kind != "f" and shape == ()):
+    kind = result.program.out_avals[0].dtype.kind
+    if kind in ("c" if result.shape else "biuc"):
         got = "complex numbers" if kind == "c" else "an integer"
         raise error(where, "return real numbers that it computes from its arguments", got, "Return a smooth formula.")
-    return shape
+    return result
 
 
-def constants_in(program: Any) -> Iterator[Any]:
-    """Yield the arrays within a program and those that it calls."""
-    yield from getattr(program, "consts", ())
-    for step in getattr(program, "jaxpr", program).eqns:
-        for inner in jax.tree.leaves(list(step.params.values())):
-            if hasattr(inner, "eqns"):
-                yield from constants_in(inner)
-
-
-def _check_parameters(where: str, function: Callable[..., Any], count: int) -> None:
+def _check_parameters(where: str, function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
     """Refuse a function that does not take the parameters of its system, last."""
-    if not _binds(function, count):
+    if isinstance(arguments[-1], dict) and not _binds(function, count := len(arguments)):
         got, remedy = f"{inspect.signature(function)}", f"Let it take {count} arguments, the last a dict of parameters."
         raise error(where, "take the parameters of the system as its last argument", got, remedy)
 
 
-def _trace(where: str, function: Callable[..., Any], arguments: tuple[Any, ...], of: str) -> Any:
-    """Return the program of a function, refused where JAX cannot trace it."""
+def _attempt(where: str, of: str, trace: Callable[[], Any]) -> Any:
+    """Return what JAX traces, refused where it cannot."""
     try:
-        return jax.make_jaxpr(function)(*arguments)
+        return trace()
     except Exception as failure:
         words = " ".join(str(failure).split()).rstrip(".")
         message = words if len(words) <= 2 * _END else f"{words[:_END]} ... {words[-_END:]}"
@@ -85,53 +67,41 @@ def _trace(where: str, function: Callable[..., Any], arguments: tuple[Any, ...],
         raise error(where, f"be traceable by JAX on {of}", got, remedy) from failure
 
 
-def check_value(
-    where: str, function: Any, shape: tuple[int, ...], arguments: tuple[Any, ...], of: str, arrays: str
-) -> None:
-    """Refuse a function whose value has another shape, or that is to be differentiated, as a scalar is, and cannot be.
+def checked_value(
+    where: str, function: Any, of: str, arguments: tuple[Any, ...], shape: tuple[int, ...], arrays: str
+) -> TracedFunction:
+    """Return a traced function; refuse one of another shape, or a scalar that is to be differentiated and cannot be.
 
-    `called` describes the arrays that it is called with.
+    `arrays` describes the arrays that it is called with.
     """
-    result_shape = traced_shape(where, function, arguments, of)
-    if result_shape != shape:
+    result = trace(where, function, of, arguments)
+    if result.shape != shape:
         demand = "a scalar" if shape == () else f"an array of shape {shape}"
-        raise error(where, f"return {demand}", f"shape {result_shape}", f"It is called with arrays of {arrays}.")
+        raise error(where, f"return {demand}", f"shape {result.shape}", f"It is called with arrays of {arrays}.")
     if shape == ():
         numbers = tuple(i for i, each in enumerate(arguments) if hasattr(each, "shape"))
-        _trace(where, jax.grad(traced_once(function), numbers), arguments, of)
+        with double_precision():
+            _attempt(where, of, lambda: jax.make_jaxpr(jax.grad(result, numbers))(*arguments))
+    return result
 
 
-def check_forms(where: str, forms: Any, n: int, arguments: tuple[Any, ...], of: str, remedy: str) -> None:
-    """Refuse constraint forms that are not s rows of n numbers."""
-    result_shape = traced_shape(where, forms, arguments, of)
-    if len(result_shape) != 2 or result_shape[1] != n or not 0 < result_shape[0] < n:
-        raise error(where, f"return an array of shape (s, {n}) with 0 < s < {n}", f"shape {result_shape}", remedy)
+def checked_rows(
+    where: str, function: Any, of: str, arguments: tuple[Any, ...], most: int, columns: tuple[int, ...], remedy: str
+) -> TracedFunction:
+    """Return a traced function of up to `most` rows of columns, of numbers without columns; refuse another one."""
+    result = trace(where, function, of, arguments)
+    if len(result.shape) != 1 + len(columns) or result.shape[1:] != columns or not 0 < result.shape[0] <= most:
+        demand = f"(s, {most + 1}) with 0 < s < {most + 1}" if columns else f"(m,) with 0 < m <= {most}"
+        raise error(where, f"return an array of shape {demand}", f"shape {result.shape}", remedy)
+    return result
 
 
-def check_rows_of_places(where: str, function: Any, n: int, arguments: tuple[Any, ...]) -> None:
-    """Refuse holonomic constraints that are not m numbers of n coordinates."""
-    result_shape = traced_shape(where, function, arguments, f"{n} coordinates")
-    if len(result_shape) != 1 or not 0 < result_shape[0] <= n:
-        remedy = "Return one number per constraint, jnp.array([...]); pass None for no constraint."
-        raise error(where, f"return an array of shape (m,) with 0 < m <= {n}", f"shape {result_shape}", remedy)
+def count_of(function: Any) -> int:
+    """Return the number of rows of what a traced function returns, none without one."""
+    return 0 if function is None else function.shape[0]
 
 
-def count_of(forms: Any, *shapes: tuple[int, ...]) -> int:
-    """Return the number s of constraint forms, of arguments of given shapes."""
-    if forms is None:
-        return 0
-    with double_precision():
-        return jax.eval_shape(forms, *(jax.ShapeDtypeStruct(shape, float) for shape in shapes)).shape[0]
-
-
-def _array(value: Any) -> Any:
-    """Return a value as an array; lists are refused, because the functions are called again without this help."""
-    if isinstance(value, list | tuple):
-        raise TypeError(f"it returned a {type(value).__name__}, jnp.array makes an array of it")
-    return jnp.asarray(value)
-
-
-def takes_time(function: Any, others: int) -> bool:
+def takes_time(function: Any, others: float) -> bool:
     """Return whether a function must be called with one argument more than the others."""
     try:
         parameters = inspect.signature(function).parameters.values()
@@ -287,27 +257,22 @@ def _valid_number(where: str, key: str, value: Any, shape: tuple[int, ...] | Non
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Bound:
-    """A function with its last argument put in: parameters by name, where there are any.
-
-    JAX traces the function once for arguments of a kind, and differentiates what it has traced.
-    """
+    """A function with its last argument put in: parameters by name, where there are any."""
 
     function: Callable[..., Any]
     parameters: Mapping[str, Any]
 
     def __call__(self, *arguments: Any) -> Any:
         """Return the value."""
-        return traced_once(self.function)(*arguments, *([self.parameters] if self.parameters else []))
+        return self.function(*arguments, *([self.parameters] if self.parameters else []))
 
     @property
     def __signature__(self) -> inspect.Signature:
         signature = inspect.signature(self.function)
         return signature.replace(parameters=[*signature.parameters.values()][: -1 if self.parameters else None])
 
-    @property
-    def is_of_one_step(self) -> bool:
-        """Whether it was made for one time step."""
-        return getattr(self.function, "is_of_one_step", False)
+    shape = property(operator.attrgetter("function.shape"))
+    is_of_one_step = property(operator.attrgetter("function.is_of_one_step"))
 
 
 class AbstractParametricSystem(AbstractCoordinateSystem[DiscretizationT, OrbitT]):
@@ -315,12 +280,28 @@ class AbstractParametricSystem(AbstractCoordinateSystem[DiscretizationT, OrbitT]
 
     functions: ClassVar[tuple[str, ...]]
     """The fields that are such functions."""
+    of_time: ClassVar[dict[str, int]] = {}
+    """How many arguments those have that may be called with the time after them."""
     parameters: Any
 
     @property
     def _shapes_given(self) -> tuple[dict[str, jax.ShapeDtypeStruct], ...]:
         """The last argument of all functions, the shapes of the parameters, if there are any."""
         return (self.parameters.structure,) if self.parameters else ()
+
+    def _time(self, name: str) -> tuple[Any, ...]:
+        """Return the shape of the time if a function is called with it."""
+        count = self.of_time.get(name, np.inf) + len(self._shapes_given)
+        return (jax.ShapeDtypeStruct((), float),) if takes_time(getattr(self, name), count) else ()
+
+    def _trace(self, name: str, of: str, arguments: tuple[Any, ...], check: Any, *demands: Any) -> None:
+        """Put a function as JAX traces it now in its own place, where there is one; the first of all is needed."""
+        if (function := getattr(self, name)) is not None or name == self.functions[0]:
+            arguments, where = (
+                (*arguments, *self._time(name), *self._shapes_given),
+                f"{type(self).__name__}({name}=...)",
+            )
+            object.__setattr__(self, name, check(where, function, of, arguments, *demands))
 
     def with_parameters(self, **numbers: Any) -> Self:
         r"""Return the same system with other numbers of some of its parameters; nothing is compiled again.
@@ -387,20 +368,9 @@ def _plain(system: Any) -> Any:
     return plain
 
 
-@dataclasses.dataclass(frozen=True)
-class Rows:
-    """Some rows of what a function returns."""
-
-    function: Callable[..., Any]
-    rows: tuple[int, ...]
-
-    def __call__(self, *arguments: Any) -> Any:
-        """Return them."""
-        return self.function(*arguments)[np.array(self.rows, dtype=int)]
-
-    @property
-    def __signature__(self) -> inspect.Signature:
-        return inspect.signature(self.function)
+def rows_of(function: Any, rows: Int[np.ndarray, "k"]) -> Any:
+    """Return a function with some rows of what another one returns."""
+    return functools.wraps(function)(lambda *arguments: function(*arguments)[rows])
 
 
 SYSTEM = "a system in coordinates"

@@ -3,7 +3,7 @@
 import dataclasses
 import functools
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 import jax
 import jax.numpy as jnp
@@ -13,15 +13,7 @@ from nonholo.base.checks import error, instance, shown, text
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.lagrange_dalembert._functions import (
-    AbstractParametricSystem,
-    Parameters,
-    check_forms,
-    check_value,
-    count_of,
-    room,
-    with_parameters,
-)
+from nonholo.lagrange_dalembert import _functions as tracing
 from nonholo.lagrange_dalembert._places import Poses
 from nonholo.systems import checked_group, group_mass_tensor, inertia_form
 
@@ -31,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @dataclasses.dataclass(frozen=True)
-class GroupLagrangeDAlembert(AbstractParametricSystem["GroupDiscretization", "GroupOrbit"]):
+class GroupLagrangeDAlembert(tracing.AbstractParametricSystem["GroupDiscretization", "GroupOrbit"]):
     r"""A left-invariant Lagrangian on a matrix group with velocity constraints that may depend on the configuration.
 
     $$ \dot p = \mathrm{ad}^*_\omega p + \sum_j\lambda_j a^j(g), \quad p = \frac{\partial l}{\partial\omega}, \qquad
@@ -94,7 +86,6 @@ class GroupLagrangeDAlembert(AbstractParametricSystem["GroupDiscretization", "Gr
         *("discrete_lagrangian", "constraint_forms", "discrete_constraints"),
         *("lagrangian", "potential"),
     )
-    holonomic: ClassVar[None] = None
     is_driven: ClassVar[bool] = False
     coordinates: ClassVar[tuple[str, ...]] = ()
     orbits: ClassVar[str] = "GroupOrbit"
@@ -102,41 +93,30 @@ class GroupLagrangeDAlembert(AbstractParametricSystem["GroupDiscretization", "Gr
     rule: ClassVar[str] = "midpoint"
     has_limit: ClassVar[bool] = True
     prescribed: ClassVar[tuple[()]] = ()
-    force: ClassVar[None] = None
-    slip: ClassVar[None] = None
-    applied: ClassVar[None] = None
-    table: ClassVar[None] = None
-    constraint_velocities: ClassVar[None] = None
+    holonomic = constraint_velocities = force = applied = table = slip = cast(Any, None)
 
     def __post_init__(self) -> None:
         remedy = "Pass nonholo.SO(n), SE(n), MatrixGroup or a product."
-        instance(_argument("group"), self.group, AbstractMatrixGroup, "be a matrix group", remedy)
-        text(_argument("name"), self.name)
-        object.__setattr__(self, "parameters", Parameters(self.parameters, type(self).__name__))
-        with double_precision():
-            g = jax.ShapeDtypeStruct((self.group.size, self.group.size), float)
-            w, h = jax.ShapeDtypeStruct((self.group.dim,), float), jax.ShapeDtypeStruct((), float)
-            self._check("discrete_lagrangian", (), g, h)
-            if self.constraint_forms is not None:
-                where = _argument("constraint_forms")
-                remedy = "Stack one row per constraint, in body coordinates; pass None for no constraint."
-                arguments = (g, *self._shapes_given)
-                check_forms(where, self.constraint_forms, self.group.dim, arguments, repr(self.group), remedy)
-            if self.discrete_constraints is not None:
-                self._check("discrete_constraints", (self.constraints,), g, g, h)
-            if self.lagrangian is not None:
-                self._check("lagrangian", (), w)
-            if self.potential is not None:
-                self._check("potential", (), g)
+        instance("GroupLagrangeDAlembert(group=...)", self.group, AbstractMatrixGroup, "be a matrix group", remedy)
+        text("GroupLagrangeDAlembert(name=...)", self.name)
+        object.__setattr__(self, "parameters", tracing.Parameters(self.parameters, type(self).__name__))
+        g = jax.ShapeDtypeStruct((self.group.size, self.group.size), float)
+        n, h = self.group.dim, jax.ShapeDtypeStruct((), float)
+        self._trace_at("discrete_lagrangian", (), g, h)
+        stack = "Stack one row per constraint, in body coordinates; pass None for no constraint."
+        self._trace("constraint_forms", repr(self.group), (g,), tracing.checked_rows, n - 1, (n,), stack)
+        self._trace_at("discrete_constraints", (self.constraints,), g, g, h)
+        self._trace_at("lagrangian", (), jax.ShapeDtypeStruct((n,), float))
+        self._trace_at("potential", (), g)
 
-    def _check(self, name: str, shape: tuple[int, ...], *arguments: Any) -> None:
-        arrays, arguments = f"shapes {[x.shape for x in arguments]}", (*arguments, *self._shapes_given)
-        check_value(_argument(name), getattr(self, name), shape, arguments, repr(self.group), arrays)
+    def _trace_at(self, name: str, shape: tuple[int, ...], *arguments: Any) -> None:
+        arrays = f"shapes {[x.shape for x in arguments]}"
+        self._trace(name, repr(self.group), arguments, tracing.checked_value, shape, arrays)
 
     @property
     def constraints(self) -> int:
         """The number s of constraints."""
-        return count_of(self.plain.constraint_forms, self.shapes[0])
+        return tracing.count_of(self.constraint_forms)
 
     velocity_constraints = constraints
 
@@ -187,7 +167,7 @@ class GroupLagrangeDAlembert(AbstractParametricSystem["GroupDiscretization", "Gr
             got = shown(self if force is None else force)
             remedy = "Pass one potential; write a system with forces as an LLSystem."
             raise error("Forced(system=...)", "have at most a potential, as a GroupLagrangeDAlembert", got, remedy)
-        potential = with_parameters(potential, 1) if self.parameters else potential
+        potential = tracing.with_parameters(potential, 1) if self.parameters else potential
         return dataclasses.replace(self, potential=potential) if potential is not None else self
 
     @property
@@ -197,7 +177,7 @@ class GroupLagrangeDAlembert(AbstractParametricSystem["GroupDiscretization", "Gr
 
     def discrete_map(self, time_step: Any) -> "GroupDiscretization":
         """Return the discretized system, see `nonholo.discretize`."""
-        return room("_discretization").GroupDiscretization(self, time_step)
+        return tracing.room("_discretization").GroupDiscretization(self, time_step)
 
 
 def _inertia(system: GroupLagrangeDAlembert) -> Array:
@@ -213,10 +193,6 @@ def _inertia(system: GroupLagrangeDAlembert) -> Array:
 def _numbers_of_inertia(system: GroupLagrangeDAlembert) -> Any:
     with jax.ensure_compile_time_eval(), double_precision():
         return np.asarray(jax.jit(lambda: _inertia(system))())
-
-
-def _argument(argument: str) -> str:
-    return f"GroupLagrangeDAlembert({argument}=...)"
 
 
 def mass_tensor_lagrangian(

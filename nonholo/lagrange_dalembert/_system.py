@@ -3,31 +3,15 @@
 import dataclasses
 import functools
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import jax
 import numpy as np
 
 from nonholo.base.calls import call
 from nonholo.base.checks import array, choice, count, error, names, shown, text, within_memory
-from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert._functions import (
-    AbstractParametricSystem,
-    Bound,
-    ForceTable,
-    Parameters,
-    Resistance,
-    Rows,
-    check_forms,
-    check_rows_of_places,
-    check_value,
-    count_of,
-    room,
-    takes_time,
-    with_parameters,
-    with_time_step,
-)
+from nonholo.lagrange_dalembert import _functions as tracing
 from nonholo.lagrange_dalembert._places import Coordinates
 from nonholo.systems import force_of, parts_of, slips_of, without_slips
 
@@ -36,13 +20,11 @@ if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._orbit import CoordinateOrbit  # noqa: F401  (named by the base class)
 
 Parts = tuple[Float[np.ndarray, "P 2"], ...]
-_OTHERS = {"lagrangian": 2, "constraint_forms": 1, "holonomic": 1}
-"""How many arguments the functions have that may be called with the time after them."""
 _REMEDY = "Pass the corners of each part in body axes: [[(-0.1, -0.1), (0.2, 0.0), (-0.1, 0.1)], ...]."
 
 
 @dataclasses.dataclass(frozen=True)
-class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "CoordinateOrbit"]):
+class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretization", "CoordinateOrbit"]):
     r"""A mechanical system on $\mathbb{R}^n$ with linear velocity constraints, and its discrete principle.
 
     $$ \frac{d}{dt}\frac{\partial L}{\partial v} - \frac{\partial L}{\partial q} = \sum_j \lambda_j A^j(q), \qquad
@@ -50,7 +32,8 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
 
     where $P_k = -D_1 L_d(q_k, q_{k+1})$ and $P^+_k = D_2 L_d(q_k, q_{k+1})$. With v = (q' - q)/h the rule "midpoint" is
     $L_d = h L((q + q')/2, v)$, $F = A((q + q')/2) v$; "trapezoidal" takes the means of L and A over both ends.
-    Nothing needs to be invariant under a group.
+    Nothing needs to be invariant under a group. A system keeps the numbers that its functions read when it is made, of
+    globals and arrays; a function under `jax.jit` those of its first call, a rule of JAX.
 
     A *driven* system has constraints $A(q, t)\,v = b(q, t)$, prescribed coordinates, a Lagrangian of the time or a
     force f(t, q, v), or it has holonomic constraints of the time: then
@@ -142,6 +125,7 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
         *("lagrangian", "constraint_forms", "holonomic"),
         *("discrete_lagrangian", "discrete_constraints", "constraint_velocities"),
     )
+    of_time: ClassVar[dict[str, int]] = {"lagrangian": 2, "constraint_forms": 1, "holonomic": 1}
     orbits: ClassVar[str] = "CoordinateOrbit"
     in_stores: ClassVar[tuple[str, ...]] = ("constraints", "is_driven", "orbits", "shapes")
     energy_argument: ClassVar[str] = "lagrangian"
@@ -153,35 +137,33 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
         dimension = count(_argument("dimension"), self.dimension, "Pass the number of coordinates.")
         within_memory(_argument("dimension"), 8.0 * dimension**2, "Pass the number of coordinates.")  # the mass matrix
         object.__setattr__(self, "dimension", dimension)
-        object.__setattr__(self, "parameters", Parameters(self.parameters))
+        object.__setattr__(self, "parameters", tracing.Parameters(self.parameters))
         object.__setattr__(self, "coordinates", _names(self.coordinates, dimension))
         text(_argument("name"), self.name)
         _check_heading(_argument("heading"), self.heading, self.coordinates)
-        object.__setattr__(self, "outline", _checked_outline(_argument("outline"), self.outline))
+        if not callable(self.outline):
+            object.__setattr__(self, "outline", _as_parts(_argument("outline"), self.outline))
         choice(_argument("rule"), self.rule, ("midpoint", "trapezoidal"))
         for name in ("discrete_lagrangian", "discrete_constraints"):
-            object.__setattr__(self, name, with_time_step(getattr(self, name), len(self._shapes_given)))
+            object.__setattr__(self, name, tracing.with_time_step(getattr(self, name), len(self._shapes_given)))
         object.__setattr__(self, "prescribed", _motions(self.prescribed, dimension, self._shapes_given))
         object.__setattr__(self, "force", _force(self.force, dimension))
-        self._check_functions()
+        self._trace_functions()
 
-    def _check_functions(self) -> None:
-        n = self.dimension
-        q, time, last = jax.ShapeDtypeStruct((n,), float), jax.ShapeDtypeStruct((), float), self._shapes_given
-        with double_precision():
-            self._check("lagrangian", (), q, q, *self._time("lagrangian"))
-            if self.constraint_forms is not None:
-                arguments = (q, *self._time("constraint_forms"), *last)
-                remedy = "Stack one row per constraint; pass None for no constraint."
-                where = _argument("constraint_forms")
-                check_forms(where, self.constraint_forms, n, arguments, f"{n} coordinates", remedy)
-            if self.holonomic is not None:
-                check_rows_of_places(_argument("holonomic"), self.holonomic, n, (q, *self._time("holonomic"), *last))
-            self._check("discrete_lagrangian", (), q, q, time)
-            self._check("discrete_constraints", (self.velocity_constraints,), q, q, time)
-            self._check("constraint_velocities", (self.velocity_constraints,), q, time)
-            if self.applied is not None:
-                check_value(_argument("force"), self.applied, (n,), (time, q, q, *last), *2 * (f"{n} coordinates",))
+    def _trace_functions(self) -> None:
+        n, of, last = self.dimension, f"{self.dimension} coordinates", self._shapes_given
+        q, time = jax.ShapeDtypeStruct((n,), float), jax.ShapeDtypeStruct((), float)
+        self._trace("lagrangian", of, (q, q), tracing.checked_value, (), of)
+        stack = "Stack one row per constraint; pass None for no constraint."
+        self._trace("constraint_forms", of, (q,), tracing.checked_rows, n - 1, (n,), stack)
+        stack = "Return one number per constraint, jnp.array([...]); pass None for no constraint."
+        self._trace("holonomic", of, (q,), tracing.checked_rows, n, (), stack)
+        self._trace("discrete_lagrangian", of, (q, q, time), tracing.checked_value, (), of)
+        self._trace("discrete_constraints", of, (q, q, time), tracing.checked_value, (self.velocity_constraints,), of)
+        self._trace("constraint_velocities", of, (q, time), tracing.checked_value, (self.velocity_constraints,), of)
+        if self.applied is not None:
+            force = tracing.checked_value(_argument("force"), self.applied, of, (time, q, q, *last), (n,), of)
+            object.__setattr__(self, "force", force_of(parts_of(self.force) | {"function": force}))
         self._check_slip(self.velocity_constraints)
         if (self.is_driven or self.slip) and (self.discrete_lagrangian or self.discrete_constraints):
             remedy = 'Use rule="midpoint" or "trapezoidal".'
@@ -196,20 +178,11 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
             got, remedy = f"{[row.tolist() for row in rows]}", "Pass rows=[[0.0, 1.0]] for the second of two forms."
             raise error(_argument("force"), demand, got, remedy)
 
-    def _time(self, name: str) -> tuple[Any, ...]:
-        count = _OTHERS[name] + len(self._shapes_given)
-        return (jax.ShapeDtypeStruct((), float),) if takes_time(getattr(self, name), count) else ()
-
-    def _check(self, name: str, shape: tuple[int, ...], *arguments: Any) -> None:
-        function, of = getattr(self, name), f"{self.dimension} coordinates"
-        if function is not None or name == "lagrangian":
-            check_value(_argument(name), function, shape, (*arguments, *self._shapes_given), of, of)
-
     @functools.cached_property
     def is_driven(self) -> bool:
         """Whether a force acts, or anything depends on time or moves by itself."""
         acts = self.holding.force is not None or self.constraint_velocities is not None or bool(self.prescribed)
-        return acts or any(map(self.takes_time, _OTHERS))
+        return acts or any(map(self.takes_time, self.of_time))
 
     def bound(self, *numbers: Any) -> Self:
         """Return the system without parameters whose functions have these numbers within."""
@@ -220,8 +193,8 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
 
     def _bound_fields(self, p: Mapping[str, Any]) -> dict[str, Any]:
         parts = parts_of(self.force)
-        parts |= {"function": Bound(parts["function"], p)} if "function" in parts else {}
-        motions = tuple((index, Bound(motion, p)) for index, motion in self.prescribed)
+        parts |= {"function": tracing.Bound(parts["function"], p)} if "function" in parts else {}
+        motions = tuple((index, tracing.Bound(motion, p)) for index, motion in self.prescribed)
         return super()._bound_fields(p) | {"force": force_of(parts), "prescribed": motions}
 
     @property
@@ -239,7 +212,7 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
         return bool(self._time(function))
 
     @property
-    def table(self) -> ForceTable | None:
+    def table(self) -> tracing.ForceTable | None:
         """The forces of the steps, where they are given one by one."""
         return parts_of(self.force).get("table")
 
@@ -264,23 +237,20 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
         """The system without the form that may yield; itself if none may."""
         if self.slip is None:
             return self
-        rows = tuple(map(int, np.flatnonzero(~self.slip.rows.any(axis=0))))
-        velocities = self.constraint_velocities and Rows(self.constraint_velocities, rows)
-        forms = Rows(cast(Any, self.constraint_forms), rows) if rows else None
+        rows = np.flatnonzero(~self.slip.rows.any(axis=0))
+        velocities = self.constraint_velocities and tracing.rows_of(self.constraint_velocities, rows)
+        forms = tracing.rows_of(self.constraint_forms, rows) if len(rows) else None
         return dataclasses.replace(self.holding, constraint_forms=forms, constraint_velocities=velocities)
 
     @functools.cached_property
     def constraints(self) -> int:
         """The number s of constraints, the holonomic ones and those of prescribed coordinates with them."""
-        return self.velocity_constraints + self._rows_of("holonomic") + len(self.prescribed)
+        return self.velocity_constraints + tracing.count_of(self.holonomic) + len(self.prescribed)
 
     @functools.cached_property
     def velocity_constraints(self) -> int:
         """The number of constraint forms."""
-        return self._rows_of("constraint_forms")
-
-    def _rows_of(self, name: str) -> int:
-        return count_of(getattr(self.holding.plain, name), (self.dimension,), *(() for _ in self._time(name)))
+        return tracing.count_of(self.constraint_forms)
 
     @property
     def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
@@ -303,14 +273,13 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
         if self.force is not None:
             raise error("Forced(system=...)", "have no force yet", repr(self), "Pass all forces at once.")
         if self.parameters:
-            potential, parts = with_parameters(potential, 1), parts_of(force)
-            parts |= {"function": with_parameters(parts["function"], 3)} if "function" in parts else {}
+            potential, parts = tracing.with_parameters(potential, 1), parts_of(force)
+            parts |= {"function": tracing.with_parameters(parts["function"], 3)} if "function" in parts else {}
             force = force_of(parts)
         if potential is not None:
             q = jax.ShapeDtypeStruct((self.dimension,), float)
-            with double_precision():
-                of = f"{self.dimension} coordinates"
-                check_value("Forced(potential=...)", potential, (), (q, *self._shapes_given), of, of)
+            of = f"{self.dimension} coordinates"
+            potential = tracing.checked_value("Forced(potential=...)", potential, of, (q, *self._shapes_given), (), of)
         lagrangian = _with_potential(self.lagrangian, potential, last=bool(self.parameters))
         return dataclasses.replace(self, lagrangian=lagrangian, force=force)
 
@@ -337,11 +306,11 @@ class LagrangeDAlembert(AbstractParametricSystem["CoordinateDiscretization", "Co
             >>> round(free.regularity((0, 0), (1, 2), time_step=0.5), 12)
             1.0
         """
-        return room("_start").regularity(self, q, q_next, time_step)
+        return tracing.room("_start").regularity(self, q, q_next, time_step)
 
     def discrete_map(self, time_step: Any) -> "CoordinateDiscretization":
         """Return the discretized system, see `nonholo.discretize`."""
-        return room("_discretization").CoordinateDiscretization(self, time_step)
+        return tracing.room("_discretization").CoordinateDiscretization(self, time_step)
 
 
 def _with_potential(lagrangian: Callable[..., Array], potential: Any, *, last: bool) -> Callable[..., Array]:
@@ -359,13 +328,12 @@ def _with_potential(lagrangian: Callable[..., Array], potential: Any, *, last: b
 def _motions(motions: Any, dimension: int, last: tuple[Any, ...]) -> tuple[tuple[int, Callable[[Array], Array]], ...]:
     """Return prescribed motions as pairs of index and function, in the order of the coordinates."""
     where = _argument("prescribed")
-    pairs = sorted(dict(motions).items(), key=lambda pair: pair[0])
-    for index, motion in pairs:
+    time, motion_of = jax.ShapeDtypeStruct((), float), {}
+    for index, motion in sorted(dict(motions).items(), key=lambda pair: pair[0]):
         if not isinstance(index, int) or not 0 <= index < dimension:
             raise error(where, f"have indices from 0 to {dimension - 1}", shown(index), "Name coordinates by index.")
-        with double_precision():
-            check_value(where, motion, (), (jax.ShapeDtypeStruct((), float), *last), "the time", "the time")
-    return tuple(pairs)
+        motion_of[index] = tracing.checked_value(where, motion, "the time", (time, *last), (), "the time")
+    return tuple(motion_of.items())
 
 
 def _force(value: Any, dimension: int) -> Any:
@@ -373,10 +341,10 @@ def _force(value: Any, dimension: int) -> Any:
     parts = parts_of(value)
     if (friction := parts.pop("friction", None)) is not None:
         friction.check(dimension)
-        parts["function"] = Resistance(parts.get("function"), friction.matrix)
-    if "table" in parts and not isinstance(parts["table"], ForceTable):
+        parts["function"] = tracing.Resistance(parts.get("function"), friction.matrix)
+    if "table" in parts and not isinstance(parts["table"], tracing.ForceTable):
         remedy = "Pass a function of time, configuration and velocity, Friction, or one force a step."
-        parts["table"] = ForceTable(array(_argument("force"), parts["table"], (None, dimension), remedy))
+        parts["table"] = tracing.ForceTable(array(_argument("force"), parts["table"], (None, dimension), remedy))
     return force_of(parts)
 
 
@@ -396,11 +364,6 @@ def _check_heading(where: str, heading: Any, coordinates: tuple[str, ...]) -> No
     if heading is not None and not {"x", "y", heading} <= set(coordinates) - ({heading} & {"x", "y"}):
         remedy = 'Name the coordinates: coordinates=("x", "y", "theta"), heading="theta".'
         raise error(where, f"be a coordinate beside x and y of {', '.join(coordinates)}", shown(heading), remedy)
-
-
-def _checked_outline(where: str, outline: Any) -> Any:
-    """Return an outline: a function as it is, parts as arrays."""
-    return outline if callable(outline) else _as_parts(where, outline)
 
 
 def _as_parts(where: str, value: Any) -> Parts:

@@ -16,7 +16,7 @@ from nonholo.base.traced import NodeState
 from nonholo.base.types import Array
 from nonholo.discrete import Discretization, ScalarRoute, as_discretization
 from nonholo.discrete.definition import in_double, roll_out, traceable
-from nonholo.lagrange_dalembert import check_value, rolled_in_coordinates
+from nonholo.lagrange_dalembert import checked_value, rolled_in_coordinates
 from nonholo.simulation._options import check_forces, refuse_many_matrices
 from nonholo.systems import AbstractCoordinateDiscretization, Start, refuse_in_coordinates, refuse_wide
 
@@ -165,10 +165,10 @@ def with_traced_potential(owner: str, discrete: Any) -> Any:
         return discrete
     function = getattr(forced.own_potential, "py_func", forced.own_potential)
     pose, of = jax.ShapeDtypeStruct(forced.group.identity.shape, float), f"poses of {forced.group}"
+    own = checked_value(f"{owner}(discrete=...)", function, of, (pose,), (), of)
     with double_precision():
-        check_value(f"{owner}(discrete=...)", function, (), (pose,), of, of)
         apart, weights = jax.closure_convert(function, pose)
-    own = _Potential(apart if weights else function, tuple(weights), forced.inertia_operator)
+    own = _Potential(apart if weights else own, tuple(weights), forced.inertia_operator)
     terms = tuple(own if callable(each) else each for each in forced.terms)
     return dataclasses.replace(discrete, system=dataclasses.replace(forced, potential=terms))
 
@@ -203,10 +203,12 @@ def _checked_controls(controls: Any, steps: int, size: tuple[int], shape: tuple[
         return array("rollout(controls=...)", controls, (steps, *size), "Pass a force for each step.")
     where, of = "rollout(policy=...)", "a time and a state"
     point = jax.ShapeDtypeStruct((), float), NodeState(*(jax.ShapeDtypeStruct(x, float) for x in (shape, size)))
+    own = checked_value(where, controls, of, point, size, of)
     with double_precision():
-        check_value(where, controls, size, point, of, of)
         apart, weights = jax.closure_convert(lambda *at: controls(*at), *point)  # a pytree has no hash
-    return jax.tree_util.Partial(_policy_of, apart, weights) if weights else controls
+    if weights:
+        return jax.tree_util.Partial(_policy_of, apart, weights)
+    return own if jax.tree_util.all_leaves([controls]) else controls  # numbers of a pytree are arguments
 
 
 def _policy_of(apart: Callable[..., Array], weights: list[Array], time: Array, state: NodeState) -> Array:

@@ -305,12 +305,12 @@ def _names(shapes: Any) -> list[str]:
 def _model(system_of: Callable[..., Any], numbers: np.ndarray, shapes: Any) -> Any:
     """Return the motions of the system of the guess."""
     with needs("jax", "fit"):
-        from nonholo.analysis.inverse._models import GroupModel, coordinate_model
+        from nonholo.analysis.inverse._models import GroupModel, coordinate_model, maker_of
 
     system = system_of(by_name(shapes, numbers))
     if isinstance(system, AbstractCoordinateSystem):
-        return coordinate_model(system, system_of(by_name(shapes, numbers)))
+        return coordinate_model(system, system_of(by_name(shapes, numbers)), maker_of(system_of, shapes, numbers))
     if not isinstance(system, AbstractSystem) or system.is_spatial:
         remedy = "Return a SuslovTop, a sleigh, an LLSystem or a LagrangeDAlembert."
         raise error("fit(system_of=...)", "return a system with a left-invariant constraint", shown(system), remedy)
-    return GroupModel(system)
+    return GroupModel(system, maker_of(system_of, shapes, numbers))

@@ -11,6 +11,7 @@ import numpy as np
 from nonholo.analysis.inverse._likelihood import Shapes, by_name
 from nonholo.analysis.inverse._measurements import WHERE, Names, at_nodes, ends_of, first, measured_rows, names_of
 from nonholo.base.checks import error
+from nonholo.base.traced import TracedFunction
 from nonholo.base.types import Array
 from nonholo.discrete import discretize
 from nonholo.discrete.definition import in_double
@@ -20,6 +21,7 @@ from nonholo.lagrange_dalembert import in_double as of_system
 from nonholo.orbit import Orbit
 from nonholo.simulation import simulate
 from nonholo.simulation.traced import rollout
+from nonholo.systems import AbstractCoordinateSystem
 
 _COPIES = 8  # of matrices at a node, and their derivatives
 
@@ -29,9 +31,11 @@ class GroupModel(NamedTuple):
 
     Attributes:
         system: The body of the guess.
+        maker: What makes the body, as JAX traces it.
     """
 
     system: Any
+    maker: Any
 
     @property
     def names(self) -> Names:
@@ -51,7 +55,7 @@ class GroupModel(NamedTuple):
         self, system_of: Callable[..., Any], shapes: Shapes, time_step: float, numbers: Array, starts: Array, *data: Any
     ) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
         """Return by kind residuals (T, K, c), measured minus computed, with derivatives by numbers and by starts."""
-        return in_double(_compile_on_group(system_of, shapes), time_step, numbers, starts, *data)
+        return in_double(_compile_on_group(self.maker, system_of, shapes), time_step, numbers, starts, *data)
 
     def orbit(self, system: Any, h: float, start: np.ndarray, pose: np.ndarray, steps: int) -> Orbit:
         """Return the motion of a trial."""
@@ -66,7 +70,7 @@ def _first_pose(system: Any, start: Array, pose: Array) -> Array:
 
 
 @functools.lru_cache(maxsize=8)
-def _compile_on_group(system_of: Callable[..., Any], shapes: Shapes) -> Callable[..., Any]:
+def _compile_on_group(_maker: Any, system_of: Callable[..., Any], shapes: Shapes) -> Callable[..., Any]:
     def one(time_step: Array, numbers: Array, start: Array, g: Array, kinds: dict[str, Array]) -> tuple[Any, Any]:
         system = system_of(by_name(shapes, numbers))
         begin = {"restricted_velocity": start[: system.rank], "configuration": _first_pose(system, start, g)}
@@ -208,10 +212,12 @@ class CoordinateModel(NamedTuple):
     Attributes:
         system: The system of the guess.
         readings: Its measurements.
+        maker: What makes the system, as JAX traces it.
     """
 
     system: Any
     readings: Any
+    maker: Any
 
     @property
     def names(self) -> Names:
@@ -309,9 +315,21 @@ def _compile_in_coordinates(
     return _with_slopes(one, (0, 1))
 
 
-def coordinate_model(system: Any, again: Any) -> CoordinateModel:
+def maker_of(system_of: Callable[..., Any], shapes: Shapes, numbers: np.ndarray) -> tuple[Any, ...]:
+    """Return what a function makes of numbers, as JAX traces it now: another one where what it reads has changed."""
+
+    def leaves(x: Array) -> Array:
+        system = system_of(by_name(shapes, x))
+        own = system.parameters.values() if isinstance(system, AbstractCoordinateSystem) else jax.tree.leaves(system)
+        return jnp.concatenate([jnp.ravel(jnp.asarray(each)) for each in own])
+
+    structure = jax.tree.structure(system_of(by_name(shapes, numbers)))
+    return structure, TracedFunction(leaves, (jax.ShapeDtypeStruct(numbers.shape, float),))
+
+
+def coordinate_model(system: Any, again: Any, maker: Any) -> CoordinateModel:
     """Return the model of a system that a function made twice; refused if it does not vary parameters alone."""
     if not (system.parameters and system.family == again.family):
         remedy = "Make the system once, with parameters=..., and return system.with_parameters(**p)."
         raise error("fit(system_of=...)", "vary the parameters of one system", type(system).__name__, remedy)
-    return CoordinateModel(system, (CoordinateReadings if system.coordinates else PoseReadings)(system))
+    return CoordinateModel(system, (CoordinateReadings if system.coordinates else PoseReadings)(system), maker)

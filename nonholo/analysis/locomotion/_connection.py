@@ -337,7 +337,8 @@ class ShapedBody:
         if self.lagrangian is None and self.constraint_forms is None:
             remedy = "Pass lagrangian=, constraint_forms= or both."
             raise error("ShapedBody(...)", "have a Lagrangian or constraints", "neither", remedy)
-        door("ShapedBody").check_functions(self)
+        for name, function in door("ShapedBody").traced_functions(self):
+            object.__setattr__(self, name, function)
 
     def __repr__(self) -> str:
         return f"<ShapedBody {self.name!r} on {self.group}: shape {', '.join(self.shape_coordinates)}>"

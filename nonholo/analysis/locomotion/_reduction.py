@@ -22,7 +22,7 @@ from scipy.linalg import qr
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
-from nonholo.lagrange_dalembert import check_forms, check_value, equations
+from nonholo.lagrange_dalembert import checked_rows, checked_value, equations
 
 _HERE = np.zeros(3)  # the identity, where it is asked for
 _TERMS = 8  # as many as the longest brackets need
@@ -147,22 +147,25 @@ def moving_shape(gait: Callable[[Array], Array], time: Array) -> tuple[Array, Ar
 
 def check_gait(gait: Any, m: int) -> None:
     """Refuse a gait that is no function time -> shape."""
-    with double_precision():
-        check_value("geometric_phase(gait=...)", gait, (m,), (jax.ShapeDtypeStruct((), float),), "the time", "the time")
+    time = (jax.ShapeDtypeStruct((), float),)
+    checked_value("geometric_phase(gait=...)", gait, "the time", time, (m,), "the time")
 
 
-def check_functions(body: Any) -> None:
-    """Refuse functions of a `ShapedBody` with values of other shapes."""
+def traced_functions(body: Any) -> Iterator[tuple[str, Any]]:
+    """Yield the functions of a `ShapedBody` by name; refuse those with values of other shapes."""
     m, dim = len(body.shape_coordinates), body.group.dim
     s, xi = jax.ShapeDtypeStruct((m,), float), jax.ShapeDtypeStruct((dim,), float)
     what, called_with = "the shape", f"{m} shape variables"
-    with double_precision():
-        if body.constraint_forms is not None:
-            remedy = f"Return rows over {dim} components of the body velocity, then {m} of the shape."
-            check_forms("ShapedBody(constraint_forms=...)", body.constraint_forms, dim + m, (s,), what, remedy)
-        if body.lagrangian is not None:
-            of = f"{what} and both velocities"
-            check_value("ShapedBody(lagrangian=...)", body.lagrangian, (), (s, xi, s), of, f"{called_with}, {dim}, {m}")
+    if body.constraint_forms is not None:
+        where = "ShapedBody(constraint_forms=...)"
+        remedy = f"Return rows over {dim} components of the body velocity, then {m} of the shape."
+        yield (
+            "constraint_forms",
+            checked_rows(where, body.constraint_forms, what, (s,), dim + m - 1, (dim + m,), remedy),
+        )
+    if body.lagrangian is not None:
+        where, of, arrays = "ShapedBody(lagrangian=...)", f"{what} and both velocities", f"{called_with}, {dim}, {m}"
+        yield "lagrangian", checked_value(where, body.lagrangian, of, (s, xi, s), (), arrays)
 
 
 Polynomial = dict[tuple[int, ...], Array]

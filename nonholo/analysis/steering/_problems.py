@@ -5,6 +5,7 @@ step has besides, a chart of the displacement or a velocity with multipliers; f 
 """
 
 import dataclasses
+import operator
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
@@ -84,24 +85,22 @@ class MovingOutline:
     """Points in axes of the body that depend on the configuration.
 
     Attributes:
-        function: Of a configuration.
-        shape: Of what it returns.
+        function: Of a configuration, as JAX traces it.
     """
 
-    function: Callable[[Array], Array]
-    shape: tuple[int, ...]
+    function: Any
+    shape = property(operator.attrgetter("function.shape"))
 
     @classmethod
     def of(cls, system: LagrangeDAlembert, function: Callable[[Array], Array]) -> "MovingOutline":
         """Return the checked outline of a system."""
         where, of = "steer(outline=...)", f"{system.dimension} coordinates"
-        with double_precision():
-            q = jax.ShapeDtypeStruct((system.dimension,), float)
-            shape = lagrange_dalembert.traced_shape(where, function, (q,), of)
-        if len(shape) != 2 or shape[1] != 2 or not shape[0]:
+        q = jax.ShapeDtypeStruct((system.dimension,), float)
+        outline = cls(lagrange_dalembert.trace(where, function, of, (q,)))
+        if len(outline.shape) != 2 or outline.shape[1] != 2 or not outline.shape[0]:
             remedy = "Return points in axes of the body, x ahead."
-            raise error(where, "return an array of shape (points, 2)", f"shape {shape}", remedy)
-        return cls(function, shape)
+            raise error(where, "return an array of shape (points, 2)", f"shape {outline.shape}", remedy)
+        return outline
 
     def __len__(self) -> int:
         return self.shape[0]

@@ -14,6 +14,7 @@ from nonholo.discrete.definition._step import (
     next_charts_by_definition,
     principal_of,
     sample_displacements,
+    trace,
     traceable,
     value_and_slope,
 )

@@ -17,6 +17,7 @@ import numpy as np
 
 from nonholo import kernels
 from nonholo.base.results import Outcome, OutcomeError
+from nonholo.base.traced import TracedFunction
 from nonholo.base.types import Array, Float
 from nonholo.discrete._scheme import Scheme, legendre
 from nonholo.discrete.definition._precision import compile_double, in_double
@@ -111,6 +112,11 @@ def push(discrete: Scheme, y: Array, g: Array) -> tuple[Array, Array]:
 
 
 _next_charts = equinox.filter_jit(jax.vmap(_next_chart, in_axes=(None, 0, 0)))
+
+
+def trace(function: Callable[[Array], Array], group: AbstractMatrixGroup) -> TracedFunction:
+    """Return a function of a matrix of a group with the numbers that it reads now."""
+    return TracedFunction(function, (jax.ShapeDtypeStruct(group.identity.shape, float),))
 
 
 @compile_double

@@ -16,22 +16,20 @@ from pathlib import Path
 from typing import Any
 
 import jax
+import jax.numpy as jnp
 import llvmlite
-import numpy as np
 from llvmlite import ir
 
 from nonholo.base.compiled.emission import load_object, object_of, this_processor
 from nonholo.base.compiled.library import cache_folder, digest_of, digest_of_kernels
-from nonholo.base.numerics import double_precision
 from nonholo.base.progress import compiling
+from nonholo.base.traced import TracedFunction
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import _equations as equations
-from nonholo.lagrange_dalembert._functions import SYSTEM, constants_in
+from nonholo.lagrange_dalembert._functions import SYSTEM
 from nonholo.lagrange_dalembert.compiled._scalars import DOUBLE, OPERATIONS, TRUTH, Scalar, operations_between
 
 _MOST = 256  # files
-_OPAQUE = "custom_jvp_call", "custom_vjp_call", "stop_gradient"
-"""Calls whose derivatives are not those of what they compute."""
 
 
 def write_function(module: ir.Module, name: str, inputs: list[Scalar], results: list[Scalar]) -> None:
@@ -118,27 +116,22 @@ def _file(family: Any, what: tuple[Any, ...]) -> Path | None:
 def _digest(family: Any) -> str | None:
     """Return a digest of all that formulas of a family depend on; None where that cannot be seen."""
 
-    def parts(x: Array, v: Array, h: Array, *numbers: Array) -> Any:
-        system = family.bound(*numbers)
-        places, step = system.places, system.places.step(v, h)
-        moves = places.rate(x, v), places.momenta(x, step, h, x, step), places.force(v, v, x, x)
-        own = equations.lagrangian(system, x, v), equations.discrete_lagrangian(system, x, step, h)
-        constraints = equations.constraint(system, x, v), equations.discrete_constraints(system, x, v, h)
-        forces = equations.impulses(system, x, v, h) if system.force is not None else ()
-        return moves, own, constraints, forces, equations.forms(system, x), equations.ahead(system, x, v, h)
+    def moves(x: Array, v: Array, h: Array) -> Any:
+        places, step = family.places, family.places.step(v, h)
+        row = jnp.zeros(0) if family.table is None else family.table.row(x[-1] / h)
+        slopes = *places.momenta(x, step, h, x, step), places.force(v, v, x, x)
+        return jnp.concatenate([*map(jnp.ravel, (row, places.rate(x, v), equations.ahead(family, x, v, h), *slopes))])
 
     place, velocity = family.shapes
     place = (place[0] + 1,) if family.is_driven else place  # with the time
-    shapes = [place, velocity, (), *map(np.shape, family.parameters.values())]
-    with double_precision():
-        program = jax.make_jaxpr(parts)(*(jax.ShapeDtypeStruct(shape, float) for shape in shapes))
-    text = str(program)
-    if any(name in text for name in _OPAQUE):
+    shapes = tuple(jax.ShapeDtypeStruct(shape, float) for shape in (place, velocity, ()))
+    functions = {name: getattr(family, name) for name in (*family.functions, "applied")} | dict(family.prescribed)
+    digests = {name: getattr(each, "digest", None) for name, each in functions.items() if each is not None}
+    digests["moves"] = TracedFunction(moves, shapes).digest
+    if None in digests.values():
         return None
-    sort = type(family).__name__, family.rule, family.is_driven, family.constraints, family.velocity_constraints
+    numbers = place, velocity, family.parameters.structure
+    sort = type(family).__name__, family.rule, family.is_driven, family.has_parts, numbers
     texts = digest_of("lagrange_dalembert", "groups"), digest_of_kernels()
-    about = sort, family.has_parts, texts, jax.__version__, llvmlite.__version__, this_processor(), text
-    digest = hashlib.sha256(repr(about).encode())
-    for array in constants_in(program):
-        digest.update(f"{np.shape(array)} {np.asarray(array).dtype}".encode() + np.asarray(array).tobytes())
-    return digest.hexdigest()
+    about = sort, digests, texts, jax.__version__, llvmlite.__version__, this_processor()
+    return hashlib.sha256(repr(about).encode()).hexdigest()
