@@ -349,7 +349,8 @@ def critical_values(
     neighboring values are not seen: take more samples.
 
     Args:
-        linearization: Maps a value to what `nonholo.linearize` returns there, with as many states everywhere.
+        linearization: Maps a value to what `nonholo.linearize` returns there. Where it has fewer states, as at rest,
+            those that are missing count as ignorable.
         interval: The least and the largest value.
         samples: How many values are looked at first.
 
@@ -371,9 +372,11 @@ def critical_values(
     if not low < high:
         raise error(where, "rise", shown(interval), remedy)
     places = np.linspace(low, high, 1 + count("critical_values(samples=...)", samples, "Pass a positive number."))
-    rows, shifts = zip(*(_rates(linearization, value) for value in places), strict=True)
+    pairs = [_rates(linearization, value) for value in places]
+    size = max(len(values) for values, _ in pairs)
+    rows, shifts = ([_with_zeros(row, size) for row in part] for part in zip(*pairs, strict=True))
     sizes = np.abs(np.real(rows))
-    noise = sizes[sizes <= shifts].max(initial=0.0)
+    noise = sizes[sizes <= np.array(shifts)].max(initial=0.0)
     least = max(noise, _NEUTRAL * np.abs(rows).max(initial=0.0))
     changes = np.flatnonzero(np.diff([_growing(row, least) for row in rows]))
     return np.array([_change_between(linearization, least, places[i : i + 2], rows[i : i + 2]) for i in changes])
@@ -382,16 +385,23 @@ def critical_values(
 def _rates(linearization: Callable[[float], Linearization], value: float) -> tuple[np.ndarray, np.ndarray]:
     r"""Return the eigenvalues at a value, of maps their logarithms, and the distance by which rounding moves each.
 
-    With unit eigenvectors x, y of both sides it is $\epsilon\|A\|/|y^*x|$, which has no bound for double ones.
+    With unit eigenvectors x, y of both sides it is $\epsilon\|A\|/|y^*x|$, which has no bound for multiple ones; those
+    of d numbers move by $2\epsilon^{1/d}\|A\|$ at most [elsner-1985].
     """
     result: Any = linearization(float(value))
     remedy = "Return nh.linearize(...) of the value."
     instance("critical_values(linearization=...)", result, Linearization, "return a Linearization", remedy)
     values, left, right = cast(Any, scipy.linalg.eig(result.matrix, left=True))
+    size, most = np.linalg.norm(result.matrix), 2 * _SHIFT ** (1 / max(1, len(values)))
     with np.errstate(divide="ignore"):
-        shift = _SHIFT * np.linalg.norm(result.matrix) / np.abs((left.conj() * right).sum(axis=0))
+        shift = size * np.minimum(_SHIFT / np.abs((left.conj() * right).sum(axis=0)), most)
     h = result.time_step
     return (values, shift) if h is None else (np.log(values) / h, shift / np.abs(values) / h)
+
+
+def _with_zeros(row: np.ndarray, size: int) -> np.ndarray:
+    """Return numbers with zeros after them: rates of ignorable coordinates."""
+    return np.append(row, np.zeros(max(0, size - len(row))))
 
 
 def _growing(rates: np.ndarray, least: float) -> int:
@@ -407,6 +417,7 @@ def _change_between(linearization: Any, least: float, ends: np.ndarray, rows: Se
     few, many = min(_growing(row, least) for row in rows), _growing(rows[0], least)
 
     def growth(rates: np.ndarray) -> np.ndarray:
+        rates = _with_zeros(rates, len(rows[0]))
         rest = rates[np.argsort(np.abs(rates), kind="stable")[neutral:]]
         return np.sort(np.real(rest))[::-1]
 

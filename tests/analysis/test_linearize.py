@@ -10,7 +10,7 @@ import pytest
 from comparisons import derivatives
 
 import nonholo as nh
-from nonholo.analysis._linearize import Local, reduced
+from nonholo.analysis._linearize import Linearization, Local, reduced
 from nonholo.base.types import Array
 
 M, R, AXIS, DIAMETER, G = 1.3, 0.4, 0.12, 0.07, 9.81  # of a disk
@@ -313,6 +313,17 @@ def test_critical_values_of_a_disk_and_a_bead() -> None:
         nh.critical_values(lambda spin: spin, (0.0, 1.0))
     with pytest.raises(ValueError, match="must rise"):
         nh.critical_values(lambda spin: spin, (1.0, 1.0))
+
+
+def test_a_multiple_eigenvalue_that_changes_its_sign_is_seen() -> None:
+    """One of a Jordan block, whose condition number is infinite; where it is zero the states may be ignorable."""
+    block, names = np.eye(3) - np.eye(3, k=1), ("a", "b", "c")
+
+    def at(speed: float) -> Linearization:
+        return Linearization(speed * block if speed else np.zeros((0, 0)), names if speed else (), (), None)
+
+    for samples, error in ((12, 1e-12), (34, 1e-6)):  # then one is at zero, and what is neutral hides it
+        assert nh.critical_values(at, (-1.3, 2.1), samples=samples) == pytest.approx([0.0], abs=error)
 
 
 def test_eigenvalues_that_are_zero_twice_never_grow() -> None:
