@@ -111,27 +111,19 @@ def rollout(
         ...     print(distance(2.0).round(4), jax.grad(distance)(2.0).round(4))
         -0.0015 -0.0323
     """
-    starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
-    options = {"configuration": configuration, "controls": controls, "policy": policy, "save_every": save_every}
-    return roll("rollout", discrete, steps=steps, **options, **starts)
+    start = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
+    how = {"controls": controls, "policy": policy, "every": save_every}
+    return roll("rollout", discrete, steps, configuration=configuration, **start, **how)
 
 
 def roll(
-    owner: str,
-    discrete: Any,
-    *,
-    steps: int,
-    configuration: Any = None,
-    controls: Any = None,
-    policy: Any = None,
-    save_every: int = 1,
-    **starts: Any,
+    owner: str, discrete: Any, steps: int, *, controls: Any = None, policy: Any = None, every: int = 1, **start: Any
 ) -> Any:
     """Return the states of `rollout` for a function that errors name."""
-    numbers = {"steps": steps, "save_every": save_every}
+    numbers = {"steps": steps, "save_every": every}
     sizes = tuple(count(f"{owner}({name}=...)", x, "Pass a number of steps.") for name, x in numbers.items())
     if isinstance(discrete, AbstractCoordinateDiscretization):
-        refuse_in_coordinates(owner, restricted_velocity=(starts.pop("restricted_velocity", None), None))
+        refuse_in_coordinates(owner, restricted_velocity=(start.pop("restricted_velocity", None), None))
         run, arguments = _roll_in_coordinates, _in_coordinates
     else:
         as_discretization(f"{owner}(discrete=...)", discrete, compositions=True, forced=True)
@@ -143,7 +135,7 @@ def roll(
                 f"{owner}(policy=...)", "be left out beside controls", "both", "Add the controls in the policy."
             )
     drive = controls if policy is None else policy
-    own = arguments(discrete, Start.of(owner, configuration, **starts), sizes, drive)
+    own = arguments(discrete, Start.of(owner, **start), sizes, drive)
     return _call(run, *own, many=sizes[0] >= _MANY)
 
 
