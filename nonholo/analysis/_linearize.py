@@ -97,19 +97,32 @@ def _without(local: Local, dependent: list[int]) -> Reduced:
     independent = np.setdiff1d(np.arange(len(local.state)), dependent)
     dependence = -np.linalg.solve(local.rows[:, :, dependent], local.rows[:, :, independent])
     slope = local.slope[:, independent][:, :, independent] + local.slope[:, independent][:, :, dependent] @ dependence
-    change, count = local.change[:, independent], len(local.times)
-    matters = _influences(_depends(slope), int((independent < local.places).sum()))
+    change, count, sizes = local.change[:, independent], len(local.times), _sizes(local)
+    ratios = sizes / sizes[:, None]
+    depends = _depends(slope * ratios[independent][:, independent])
+    matters = _influences(depends, int((independent < local.places).sum()))
     states = independent[matters]
     matrix, defects = slope[:count, matters][:, :, matters], change[:count, matters]
-    largest, z = np.abs(local.slope[0]).max(), 1 + np.abs(local.state[states])
-    bound = _STEADY * np.abs(matrix[0]) @ z + _UNSEEN * largest * z.max(initial=0.0)
-    same = np.abs(matrix - matrix[0]).max(initial=0.0) <= _STEADY * largest
+    largest, z = np.abs(local.slope[0] * ratios).max(), 1 + np.abs(local.state[states])
+    bound = _STEADY * np.abs(matrix[0]) @ z + _UNSEEN * largest * (z / sizes[states]).max(initial=0.0) * sizes[states]
+    same = np.abs((matrix - matrix[0]) * ratios[states][:, states]).max(initial=0.0) <= _STEADY * largest
     is_steady = bool(same and np.all(np.abs(defects) <= bound))
     worst = defects[np.argmax(np.abs(defects).max(axis=1, initial=0.0))]
     free = independent[independent < local.places]
     directions = np.eye(len(local.state))[:, independent]
     directions[dependent] = dependence[0]
     return Reduced(states, matrix[0], worst, directions[:, matters], is_steady, np.setdiff1d(free, states))
+
+
+def _sizes(local: Local) -> Float[np.ndarray, "m"]:
+    """Return units of all numbers of a state: velocities of one energy, and how far they go in the shortest time."""
+    sizes = np.append(np.resize(local.units, local.places), local.units)
+    finite, n = local.slope[np.isfinite(local.slope).all(axis=(1, 2))], local.places
+    largest = np.abs(finite * (sizes / sizes[:, None])).max(axis=0, initial=0.0)
+    moves, pulls, drags = (x.max(initial=0.0) for x in (largest[:n, n:], largest[n:, :n], largest[n:, n:]))
+    rate = max(np.sqrt(pulls * moves), drags)
+    sizes[:n] *= moves / rate if rate * moves > 0 else 1.0
+    return sizes
 
 
 def _depends(slope: Float[np.ndarray, "K d d"]) -> Bool[np.ndarray, "d d"]:

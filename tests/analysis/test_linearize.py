@@ -345,21 +345,37 @@ def test_the_nearest_of_a_family_of_steady_motions_is_found() -> None:
     assert np.linalg.norm(steady.body_velocity[:2]) == pytest.approx(0.6, abs=0.02)
 
 
-def test_the_independent_velocities_do_not_depend_on_units() -> None:
-    """Equations of a blade, in meters and in kilometers, leave the same states and have the same matrix."""
+def test_what_depends_on_what_does_not_depend_on_units() -> None:
+    """Equations of a blade, with lengths and times as other numbers, which may be large."""
     rng, results = np.random.default_rng(0), []
     slope = rng.normal(size=(4, 6, 6))
-    for length in (1.0, 1e3):
-        units = np.array([length, length, 1.0])
-        both = np.tile(units, 2)
+    for length, time in ((1.0, 1.0), (1e3, 1.0), (1.0, 3.0), (1e3, 1e8)):
+        places = np.array([length, length, 1.0])
+        units, both = places / time, np.append(places, places / time)
         rows = np.tile(np.append(np.zeros(3), 1 / units), (4, 1, 1))
         state, still = np.zeros(6), np.zeros((4, 6))
         names = tuple("xyzuvw")
-        local = Local(names, 3, state, still, slope * both[:, None] / both, rows, np.zeros(1), units, None)
-        found = reduced(local)
-        results.append((found.states, found.matrix / both[found.states][:, None] * both[found.states]))
-    np.testing.assert_array_equal(results[0][0], results[1][0])
-    np.testing.assert_allclose(results[0][1], results[1][1], 1e-12)
+        scaled = slope * both[:, None] / both / time
+        found = reduced(Local(names, 3, state, still, scaled, rows, np.zeros(1), units, None))
+        results.append((found.states, found.matrix / both[found.states][:, None] * both[found.states] * time))
+    for states, matrix in results[1:]:
+        np.testing.assert_array_equal(states, results[0][0])
+        np.testing.assert_allclose(matrix, results[0][1], 1e-12)
+
+
+@pytest.mark.profile("routes", instead="test_what_depends_on_what_does_not_depend_on_units")
+def test_trailers_in_other_units_have_the_same_linear_equations() -> None:
+    """In kilometers and minutes the last trailer is among the states, which was unseen beside 1 of 1e11."""
+    results = []
+    for length, mass, time in ((1.0, 1.0, 1.0), (1e3, 1e-3, 60.0), (1e-3, 1e3, 1 / 60)):
+        inertias = {"inertia": 0.2 * mass * length**2, "trailer_inertia": 0.1 * mass * length**2}
+        how = {"hitches": length * np.array([1.0, 0.8, 1.1]), "speed": 0.6 * length / time, "turning": 0.0}
+        ready = nh.examples.trailers(mass=mass, trailer_mass=mass / 2, **inertias, **how)
+        found = nh.linearize(ready.system, configuration=ready.configuration, body_velocity=ready.body_velocity)
+        results.append((found.names, found.eigenvalues * time))
+    for names, rates in results[1:]:
+        assert names == results[0][0]
+        np.testing.assert_allclose(rates, results[0][1], 0, 1e-12)
 
 
 def in_units(system: Any, length: float, mass: float, time: float) -> tuple[Any, np.ndarray]:
@@ -376,7 +392,7 @@ def in_units(system: Any, length: float, mass: float, time: float) -> tuple[Any,
     return nh.LagrangeDAlembert(lagrangian, forms, dimension=len(names), coordinates=names), factors
 
 
-@pytest.mark.profile("long", instead="test_the_independent_velocities_do_not_depend_on_units")
+@pytest.mark.profile("long", instead="test_what_depends_on_what_does_not_depend_on_units")
 @pytest.mark.parametrize("unit", range(3))
 @pytest.mark.parametrize("factor", [1e-3, 1e3])
 def test_a_board_in_other_units_has_the_same_linear_equations(unit: int, factor: float) -> None:
