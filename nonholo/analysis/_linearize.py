@@ -97,19 +97,32 @@ def _without(local: Local, dependent: list[int]) -> Reduced:
     independent = np.setdiff1d(np.arange(len(local.state)), dependent)
     dependence = -np.linalg.solve(local.rows[:, :, dependent], local.rows[:, :, independent])
     slope = local.slope[:, independent][:, :, independent] + local.slope[:, independent][:, :, dependent] @ dependence
-    change, count = local.change[:, independent], len(local.times)
-    matters = _influences(_depends(slope), int((independent < local.places).sum()))
+    change, count, sizes = local.change[:, independent], len(local.times), _sizes(local)
+    ratios = sizes / sizes[:, None]
+    depends = _depends(slope * ratios[independent][:, independent])
+    matters = _influences(depends, int((independent < local.places).sum()))
     states = independent[matters]
     matrix, defects = slope[:count, matters][:, :, matters], change[:count, matters]
-    largest, z = np.abs(local.slope[0]).max(), 1 + np.abs(local.state[states])
-    bound = _STEADY * np.abs(matrix[0]) @ z + _UNSEEN * largest * z.max(initial=0.0)
-    same = np.abs(matrix - matrix[0]).max(initial=0.0) <= _STEADY * largest
+    largest, z = np.abs(local.slope[0] * ratios).max(), 1 + np.abs(local.state[states])
+    bound = _STEADY * np.abs(matrix[0]) @ z + _UNSEEN * largest * (z / sizes[states]).max(initial=0.0) * sizes[states]
+    same = np.abs((matrix - matrix[0]) * ratios[states][:, states]).max(initial=0.0) <= _STEADY * largest
     is_steady = bool(same and np.all(np.abs(defects) <= bound))
     worst = defects[np.argmax(np.abs(defects).max(axis=1, initial=0.0))]
     free = independent[independent < local.places]
     directions = np.eye(len(local.state))[:, independent]
     directions[dependent] = dependence[0]
     return Reduced(states, matrix[0], worst, directions[:, matters], is_steady, np.setdiff1d(free, states))
+
+
+def _sizes(local: Local) -> Float[np.ndarray, "m"]:
+    """Return units of all numbers of a state: velocities of one energy, and how far they go in the shortest time."""
+    sizes = np.append(np.resize(local.units, local.places), local.units)
+    finite, n = local.slope[np.isfinite(local.slope).all(axis=(1, 2))], local.places
+    largest = np.abs(finite * (sizes / sizes[:, None])).max(axis=0, initial=0.0)
+    moves, pulls, drags = (x.max(initial=0.0) for x in (largest[:n, n:], largest[n:, :n], largest[n:, n:]))
+    rate = max(np.sqrt(pulls * moves), drags)
+    sizes[:n] *= moves / rate if rate * moves > 0 else 1.0
+    return sizes
 
 
 def _depends(slope: Float[np.ndarray, "K d d"]) -> Bool[np.ndarray, "d d"]:
@@ -349,7 +362,8 @@ def critical_values(
     neighboring values are not seen: take more samples.
 
     Args:
-        linearization: Maps a value to what `nonholo.linearize` returns there, with as many states everywhere.
+        linearization: Maps a value to what `nonholo.linearize` returns there. Where it has fewer states, as at rest,
+            those that are missing count as ignorable.
         interval: The least and the largest value.
         samples: How many values are looked at first.
 
@@ -371,9 +385,11 @@ def critical_values(
     if not low < high:
         raise error(where, "rise", shown(interval), remedy)
     places = np.linspace(low, high, 1 + count("critical_values(samples=...)", samples, "Pass a positive number."))
-    rows, shifts = zip(*(_rates(linearization, value) for value in places), strict=True)
+    pairs = [_rates(linearization, value) for value in places]
+    size = max(len(values) for values, _ in pairs)
+    rows, shifts = ([_with_zeros(row, size) for row in part] for part in zip(*pairs, strict=True))
     sizes = np.abs(np.real(rows))
-    noise = sizes[sizes <= shifts].max(initial=0.0)
+    noise = sizes[sizes <= np.array(shifts)].max(initial=0.0)
     least = max(noise, _NEUTRAL * np.abs(rows).max(initial=0.0))
     changes = np.flatnonzero(np.diff([_growing(row, least) for row in rows]))
     return np.array([_change_between(linearization, least, places[i : i + 2], rows[i : i + 2]) for i in changes])
@@ -382,16 +398,23 @@ def critical_values(
 def _rates(linearization: Callable[[float], Linearization], value: float) -> tuple[np.ndarray, np.ndarray]:
     r"""Return the eigenvalues at a value, of maps their logarithms, and the distance by which rounding moves each.
 
-    With unit eigenvectors x, y of both sides it is $\epsilon\|A\|/|y^*x|$, which has no bound for double ones.
+    With unit eigenvectors x, y of both sides it is $\epsilon\|A\|/|y^*x|$, which has no bound for multiple ones; those
+    of d numbers move by $2\epsilon^{1/d}\|A\|$ at most [elsner-1985].
     """
     result: Any = linearization(float(value))
     remedy = "Return nh.linearize(...) of the value."
     instance("critical_values(linearization=...)", result, Linearization, "return a Linearization", remedy)
     values, left, right = cast(Any, scipy.linalg.eig(result.matrix, left=True))
+    size, most = np.linalg.norm(result.matrix), 2 * _SHIFT ** (1 / max(1, len(values)))
     with np.errstate(divide="ignore"):
-        shift = _SHIFT * np.linalg.norm(result.matrix) / np.abs((left.conj() * right).sum(axis=0))
+        shift = size * np.minimum(_SHIFT / np.abs((left.conj() * right).sum(axis=0)), most)
     h = result.time_step
     return (values, shift) if h is None else (np.log(values) / h, shift / np.abs(values) / h)
+
+
+def _with_zeros(row: np.ndarray, size: int) -> np.ndarray:
+    """Return numbers with zeros after them: rates of ignorable coordinates."""
+    return np.append(row, np.zeros(max(0, size - len(row))))
 
 
 def _growing(rates: np.ndarray, least: float) -> int:
@@ -407,6 +430,7 @@ def _change_between(linearization: Any, least: float, ends: np.ndarray, rows: Se
     few, many = min(_growing(row, least) for row in rows), _growing(rows[0], least)
 
     def growth(rates: np.ndarray) -> np.ndarray:
+        rates = _with_zeros(rates, len(rows[0]))
         rest = rates[np.argsort(np.abs(rates), kind="stable")[neutral:]]
         return np.sort(np.real(rest))[::-1]
 

@@ -136,9 +136,9 @@ def step_residual(
     system: LagrangeDAlembert, state: tuple[Array, Array], z: Array, after: tuple[Array, Array], force: Array, h: Array
 ) -> Array:
     """Return what vanishes if z is the step between two states, places with momenta, under a constant force."""
-    (x, p), (end, following), kick = state, after, h / 2 * force
-    place, arriving = arrival(system, x, z[: system.dimension], h)
-    return jnp.concatenate([step_balance(system, (x, p + kick), z, h), arriving + kick - following, place - end])
+    (x, p), (end, following), kick, v = state, after, h / 2 * force, z[: system.dimension]
+    gaps = momenta(system, x, v, h)[1] + kick - following, (system.places.ahead(x, v, h) - end).ravel()
+    return jnp.concatenate([step_balance(system, (x, p + kick), z, h), *gaps])
 
 
 def impulses(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[Array, Array]:

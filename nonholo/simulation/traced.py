@@ -111,21 +111,31 @@ def rollout(
         ...     print(distance(2.0).round(4), jax.grad(distance)(2.0).round(4))
         -0.0015 -0.0323
     """
-    numbers = {"steps": steps, "save_every": save_every}
-    sizes = tuple(count(f"rollout({name}=...)", x, "Pass a number of steps.") for name, x in numbers.items())
-    starts = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
+    start = {"body_velocity": body_velocity, "restricted_velocity": restricted_velocity, "momentum": momentum}
+    how = {"controls": controls, "policy": policy, "every": save_every}
+    return roll("rollout", discrete, steps, configuration=configuration, **start, **how)
+
+
+def roll(
+    owner: str, discrete: Any, steps: int, *, controls: Any = None, policy: Any = None, every: int = 1, **start: Any
+) -> Any:
+    """Return the states of `rollout` for a function that errors name."""
+    numbers = {"steps": steps, "save_every": every}
+    sizes = tuple(count(f"{owner}({name}=...)", x, "Pass a number of steps.") for name, x in numbers.items())
     if isinstance(discrete, AbstractCoordinateDiscretization):
-        refuse_in_coordinates("rollout", restricted_velocity=(starts.pop("restricted_velocity"), None))
+        refuse_in_coordinates(owner, restricted_velocity=(start.pop("restricted_velocity", None), None))
         run, arguments = _roll_in_coordinates, _in_coordinates
     else:
-        as_discretization("rollout(discrete=...)", discrete, compositions=True, forced=True)
+        as_discretization(f"{owner}(discrete=...)", discrete, compositions=True, forced=True)
         run, arguments = _roll_out, _on_group
     if policy is not None:
-        function("rollout(policy=...)", policy)
+        function(f"{owner}(policy=...)", policy)
         if controls is not None:
-            raise error("rollout(policy=...)", "be left out beside controls", "both", "Add the controls in the policy.")
+            raise error(
+                f"{owner}(policy=...)", "be left out beside controls", "both", "Add the controls in the policy."
+            )
     drive = controls if policy is None else policy
-    own = arguments(discrete, Start.of("rollout", configuration, **starts), sizes, drive)
+    own = arguments(discrete, Start.of(owner, **start), sizes, drive)
     return _call(run, *own, many=sizes[0] >= _MANY)
 
 
@@ -175,17 +185,17 @@ def with_traced_potential(owner: str, discrete: Any) -> Any:
 
 def _on_group(discrete: Any, start: Start, sizes: tuple[int, ...], controls: Any) -> tuple[Any, ...]:
     """Return the arguments of a rollout on a group; of traced starts the shapes are checked."""
-    refuse_wide("rollout(discrete=...)", discrete.system)
-    discrete = with_traced_potential("rollout", discrete)
-    refuse_many_matrices("rollout(steps=...)", discrete, 1 + sizes[0] // sizes[1], "Raise save_every.")
+    refuse_wide(f"{start.owner}(discrete=...)", discrete.system)
+    discrete = with_traced_potential(start.owner, discrete)
+    refuse_many_matrices(f"{start.owner}(steps=...)", discrete, 1 + sizes[0] // sizes[1], "Raise save_every.")
     value, g = _checked_start(discrete, start)
     if controls is not None:
         group = discrete.system.group
-        controls = _checked_controls(controls, sizes[0], (group.dim,), group.identity.shape)
+        controls = _checked_controls(start.owner, controls, sizes[0], (group.dim,), group.identity.shape)
         if discrete.order > 2:
             got = f"order {discrete.order}"
-            raise error("rollout(controls=...)", "have a step of order 2", got, "Use discretize(..., order=2).")
-    check_forces("rollout", discrete, sizes[0], in_jax=True)
+            raise error(f"{start.owner}(controls=...)", "have a step of order 2", got, "Use discretize(..., order=2).")
+    check_forces(start.owner, discrete, sizes[0], in_jax=True)
     free, scalar, forced = definition_of(discrete)
     return free, scalar, (start.name, value, g), controls, sizes, forced
 
@@ -197,11 +207,11 @@ def definition_of(discrete: Any) -> tuple[Any, Any, Any]:
     return free, jax.tree.map(traceable, route.step) if isinstance(route, ScalarRoute) else None, discrete.forces
 
 
-def _checked_controls(controls: Any, steps: int, size: tuple[int], shape: tuple[int, ...]) -> Any:
+def _checked_controls(owner: str, controls: Any, steps: int, size: tuple[int], shape: tuple[int, ...]) -> Any:
     """Return controls as an array, or a policy with all traced numbers among its leaves."""
     if not callable(controls):
-        return array("rollout(controls=...)", controls, (steps, *size), "Pass a force for each step.")
-    where, of = "rollout(policy=...)", "a time and a state"
+        return array(f"{owner}(controls=...)", controls, (steps, *size), "Pass a force for each step.")
+    where, of = f"{owner}(policy=...)", "a time and a state"
     point = jax.ShapeDtypeStruct((), float), NodeState(*(jax.ShapeDtypeStruct(x, float) for x in (shape, size)))
     own = checked_value(where, controls, of, point, size, of)
     with double_precision():
@@ -235,9 +245,9 @@ def _in_coordinates(discrete: Any, start: Start, sizes: tuple[int, ...], control
         with jax.ensure_compile_time_eval():  # what is known is checked where jax.jit traces the call, too
             discrete.first(start, with_poses=True)
     value = array(start.where, start.value, (system.dimension,))
-    q = system.places.configuration("rollout(configuration=...)", start.configuration)
+    q = system.places.configuration(f"{start.owner}(configuration=...)", start.configuration)
     if controls is not None:
-        controls = _checked_controls(controls, sizes[0], (system.dimension,), system.shapes[0])
+        controls = _checked_controls(start.owner, controls, sizes[0], (system.dimension,), system.shapes[0])
     numbers, h = jax.tree.map(traceable, numbers), np.float64(discrete.time_step)
     return system.family, start.name, sizes, numbers, h, (q, value), controls
 
@@ -250,7 +260,9 @@ def _checked_start(discrete: Discretization, start: Start) -> tuple[Array, Array
         start.momentum(system, g)
         return array(start.where, start.value, shape_of(start.value)), g
     pose = group.identity if start.configuration is None else start.configuration
-    g = array("rollout(configuration=...)", pose, group.identity.shape, f"Pass an element of {group} as a matrix.")
+    g = array(
+        f"{start.owner}(configuration=...)", pose, group.identity.shape, f"Pass an element of {group} as a matrix."
+    )
     is_along = start.name == "momentum" and shape_of(start.value) == (system.rank,)
     along = is_along or start.name == "restricted_velocity"
     return array(start.where, start.value, (system.rank if along else group.dim,)), g

@@ -91,6 +91,8 @@ def test_motors_lead_a_board_back_to_a_steered_path() -> None:
     forces = motors * 0.1 * np.cos(0.3 * np.arange(60))[:, None]
     hold = nh.tracking_feedback(discrete, start, forces, final_weight=100.0, bounds=(-motors, motors))
     beside = ready.configuration + np.array([0.05, -0.05, 0.0, 0.1, 0.0])
+    with pytest.raises(ValueError, match=r"`Feedback.simulate\(body_velocity=...\)` must satisfy the constraint"):
+        hold.simulate(body_velocity=np.ones(5))
     motion = hold.simulate(configuration=beside)
     alone = nh.rollout(discrete, **{**start, "configuration": beside}, controls=forces, steps=60)
     left = np.abs(alone.configuration[-1] - hold.reference.configuration[-1]).max()
@@ -112,7 +114,7 @@ test_bad_arguments_are_refused = refusals(
     ({"start": {"restricted_velocity": (0.0, 1.0)}}, "name only configuration and body_velocity"),
     ({"controls": np.zeros((4, 2))}, "have shape"),
     ({"state_weight": np.ones(4)}, "have shape"),
-    ({"start": {}}, "be given for a system in coordinates"),
+    ({"start": {}}, r"`tracking_feedback\(configuration=...\)` must be given for a system in coordinates"),
     ask=lambda change: (
         change()
         if callable(change)

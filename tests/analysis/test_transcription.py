@@ -38,7 +38,9 @@ def _program(discrete: Any, steps: int) -> Program:
 def _snakeboard() -> Program:
     rng = np.random.default_rng(3)
     system = nh.examples.snakeboard().system.plain
-    nodes = CoordinateNodes(system, np.float64(0.1), rng.normal(size=(1, 2)), rng.normal(size=(3, 5)), np.zeros(5))
+    nodes = CoordinateNodes(
+        system, np.float64(0.1), rng.normal(size=(1, 2)), rng.normal(size=(3, 5)), np.zeros(5), None
+    )
     bounds = StateBounds(rng.normal(size=(2, 10)), np.zeros(2), np.ones(2))
     steps = Steps(nodes, rng.normal(size=(1, 2)), np.array([0.2]), nodes.time_step, bounds)
     return Program(steps, rng.normal(size=10), np.zeros((3, 5)))
@@ -373,7 +375,7 @@ def test_wheels_are_kept_from_turning_over() -> None:
 
 def test_a_leap_over_a_disc_is_missed() -> None:
     """States on both sides of a disc are clear of it, but not the line between them; a cut of its edge is let pass."""
-    way = Way.of(2, 2, ([(0.0, 0.0)], 0.5), None, None, None)
+    way = Way.of(SLEIGH.system, 2, ([(0.0, 0.0)], 0.5), None, None, None)
     leap, edge = (np.array([[-1.0, y], [1.0, y]]) for y in (0.1, 0.4))
     np.testing.assert_allclose([way.gap(each[:, None], each) for each in (leap, edge)], [0.4, 0.0], rtol=1e-15)
     inside = np.array([[0.0, 0.2], [1.0, 0.2]])
@@ -387,6 +389,23 @@ def test_a_path_is_resampled_evenly() -> None:
 
 
 BOARD = {"start": {"configuration": np.zeros(5)}, "goal": {"configuration": {"x": 1.0}}}
+
+
+@pytest.mark.profile("routes", instead="test_bad_arguments_are_refused")
+def test_a_ball_rolls_aside_and_rests_as_it_was() -> None:
+    """A goal of all six numbers of a pose, on its plane, around a place that it keeps clear of."""
+    pytest.importorskip("casadi")
+    discrete, aside = nh.discretize(nh.examples.chaplygin_ball().system, 0.2), np.eye(4)
+    aside[:2, 3] = 0.5, 0.3
+    goal, bounds = {"configuration": aside, "body_velocity": np.zeros(6)}, {"y": (-0.05, np.inf)}
+    found = nh.steer(discrete, {}, goal, steps=12, obstacles=([(0.25, 0.1, 0.0)], 0.1), state_bounds=bounds)
+    assert found.outcome == "converged"
+    orbit = nh.rollout(discrete, body_velocity=np.zeros(6), controls=found.controls, steps=12)
+    np.testing.assert_allclose(orbit.configuration[-1], aside, rtol=0, atol=1e-8)
+    place = orbit.configuration[:, :3, 3]
+    assert np.linalg.norm(place - [0.25, 0.1, 0.0], axis=1).min() > 0.1 - 1e-8
+    assert place[:, 1].min() > -0.05 - 1e-8
+    assert np.abs(place[:, 2]).max() < 1e-9
 
 
 @pytest.mark.parametrize(
@@ -426,7 +445,9 @@ BOARD = {"start": {"configuration": np.zeros(5)}, "goal": {"configuration": {"x"
         ({"discrete": "board", "goal": {"configuration": {"z": 1.0}}}, "coordinates of the system"),
         ({"discrete": "board", "state_bounds": {"phi": (0.1, 1.0)}}, "Got phi outside by 0.1"),
         ({"discrete": "board", "state_bounds": {"x": (-1.0, 0.9)}}, "Got x outside by 0.1"),
-        ({"discrete": "ball"}, "that poses do not change"),
+        ({"discrete": "ball", "start": {}, "goal": {}}, "coordinates or a velocity"),
+        ({"discrete": "ball", "start": {}, "goal": {"configuration": np.eye(3)}}, "shape"),
+        ({"discrete": "ball", "start": {}, "outline": len}, "points of a body on a group"),
         ({"discrete": "driven"}, "have no force yet"),
     ],
 )

@@ -1,5 +1,6 @@
 """What is asked of systems and orbits: equations, steady motions, tangent maps, runs in JAX, fits, controls."""
 
+import dataclasses
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,7 @@ from matrix.ready import BODIES, STEADY, TELLING
 from scipy.linalg import expm
 
 import nonholo as nh
-from nonholo.lagrange_dalembert import checked_state
+from nonholo.lagrange_dalembert import checked_state, tangents
 
 _SIZE = {"rattleback": 3e-5}  # of differences of order 4, along curves of admissible starts; its shape is in cm
 _WEIGHTS = {1: 2 / 3, 2: -1 / 12}
@@ -206,13 +207,18 @@ def fit(c: Case, folder: Path) -> None:
         np.testing.assert_allclose(found.parameters[name], truth[name], 1e-6, err_msg=name)
 
 
+def controlled(c: Case) -> dict[str, Any]:
+    """Return the start as what finds controls takes it, of bodies with their velocity along the constraint."""
+    if c.in_coordinates:
+        return c.start
+    velocity = c.system.restricted_velocity(c.orbit.restricted_momentum[0])
+    return {"configuration": c.start.get("configuration", c.system.group.identity), "restricted_velocity": velocity}
+
+
 @ability
 def tracking_feedback(c: Case, _: Path) -> None:
     """A motion that begins beside the reference ends nearer to it under the feedback than without."""
-    start, n = c.start, c.orbit.body_velocity.shape[1]
-    if not c.in_coordinates:
-        velocity = c.system.restricted_velocity(c.orbit.restricted_momentum[0])
-        start = {"configuration": start["configuration"], "restricted_velocity": velocity}
+    start, n = controlled(c), c.orbit.body_velocity.shape[1]
     hold = nh.tracking_feedback(
         c.discrete, start, np.zeros((40, n)), final_weight=1e6 if c.name == "rattleback" else 100.0
     )
@@ -223,3 +229,80 @@ def tracking_feedback(c: Case, _: Path) -> None:
     motion, alone = hold.simulate(**beside), nh.simulate(c.discrete, steps=40, **{**start, **beside})
     gaps = [np.abs(x.configuration[-1] - hold.reference.configuration[-1]).max() for x in (motion.orbit, alone)]
     assert gaps[0] < 0.5 * gaps[1]
+
+
+@ability
+def tangent_maps_of_flows(c: Case, _: Path) -> None:
+    """Their product stretches changes of the start as differences of flows do, at the rates that exponents sum up."""
+    orbit, wanted = stretches(c, flowing(c.system, c.h, 2 * c.h))
+    product, sums = orbit.tangent[1] @ orbit.tangent[0], nh.lyapunov_exponents(orbit).sum() * orbit.time[-1]
+    np.testing.assert_allclose(np.linalg.svd(product, compute_uv=False), wanted, 1e-6, 1e-8)
+    np.testing.assert_allclose(sums, np.log(wanted).sum(), 0, 1e-6)
+
+
+@ability
+def critical_values(c: Case, _: Path) -> None:
+    """Beside one, other numbers of small changes of runs grow; where there is none, as many at both ends."""
+    ready, interval = steady(c), np.array([-1.3, 2.1])
+
+    def start(speed: float) -> dict[str, Any]:
+        speed = 1.0 if getattr(c.system, "is_driven", False) else speed
+        return {"configuration": ready.configuration, "body_velocity": speed * ready.body_velocity}
+
+    def linear(speed: float) -> Any:
+        return nh.linearize(ready.system, **start(speed))
+
+    def growing(speed: float) -> int:
+        found = linear(speed)
+        _, (before, after) = changes(c, flowing(ready.system, c.h), start(speed), len(found.names))
+        rows = chosen(c, found)
+        return int((np.abs(np.linalg.eigvals(np.linalg.solve(before[rows].T, after[rows].T))) > 1 + 1e-5).sum())
+
+    found = nh.critical_values(linear, interval, samples=12)
+    counts = [growing(speed) for speed in (found[:, None] + [-0.05, 0.05] if len(found) else interval).ravel()]
+    assert len(found) == 0 or np.diff(np.reshape(counts, (-1, 2))).all()
+    assert len(found) > 0 or counts[0] == counts[1]
+
+
+def _pull(time: Any, place: Any, velocity: Any) -> Any:
+    """Return forces of a time, a place and a velocity."""
+    xp = velocity.__array_namespace__()
+    return 0.1 * xp.cos(time + place.ravel()[-2] + xp.arange(len(velocity))) - 0.05 * velocity
+
+
+def under(c: Case, controls: np.ndarray) -> Any:
+    """Return a run under forces, one a step; systems by discrete functions have them in rollouts alone."""
+    if any(getattr(c.system, name, None) for name in ("discrete_lagrangian", "discrete_constraints")):
+        return nh.rollout(c.discrete, steps=len(controls), controls=controls, **c.start)
+    forced = dataclasses.replace(c.system, force=controls) if not c.in_coordinates else c.system.forced(None, controls)
+    return c.simulated(nh.discretize(forced, c.h), len(controls))
+
+
+@ability
+def policy(c: Case, _: Path) -> None:
+    """Its forces are those of the states, and a run under a table of them is the motion."""
+    states = nh.rollout(
+        c.discrete, steps=5, **c.start, policy=lambda time, at: _pull(time, at.configuration, at.body_velocity)
+    )
+    assert states.outcome == 0
+    if c.in_coordinates:
+        v = tangents.node_velocities(c.system, states.time, states.configuration, states.momentum)
+    else:
+        v = c.system.restricted_velocity(states.restricted_momentum) @ np.asarray(c.system.constraint_subspace)
+    wanted = [_pull(*node) for node in zip(states.time, states.configuration, v, strict=True)]
+    np.testing.assert_allclose(states.controls[:-1], wanted[:-1], 1e-10, 1e-12)
+    q = under(c, states.controls[:-1]).configuration
+    np.testing.assert_allclose(states.configuration, q, 0, 1e-11 * np.abs(q).max())
+
+
+@ability
+def steer(c: Case, _: Path) -> None:
+    """A run under its forces ends at the goal, one that other forces reach with more effort."""
+    steps, n = 12, c.orbit.body_velocity.shape[1]
+    known = 0.1 * np.cos(np.arange(steps)[:, None] + np.arange(n))
+    goal = nh.rollout(c.discrete, steps=steps, controls=known, **controlled(c)).configuration[-1]
+    found = nh.steer(c.discrete, controlled(c), {"configuration": goal}, steps=steps)
+    assert found.converged
+    q = under(c, found.controls).configuration[-1]
+    np.testing.assert_allclose(q, goal, 0, 1e-8 * np.abs(goal).max())
+    assert found.cost <= c.h * (known**2).sum() / 2

@@ -81,7 +81,7 @@ RULES: tuple[Rule, ...] = (
     ),
     Rule("scenario file", "function", "A file holds numbers, not the functions of a user.", "cannot be run"),
     Rule(
-        "linearize*|equilibria",
+        "linearize*|equilibria|critical values",
         "driven",
         "What a prescribed motion drives has no steady motion: its equations contain the time.",
         "steady motion",

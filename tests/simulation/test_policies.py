@@ -21,6 +21,7 @@ GROUPS = {
     "closed form": SLEIGH,
     "matrices": nh.LLSystem(nh.SE(3), np.eye(4) + 0.1, constraint_subspace=ROWS),
     "in space": nh.VeselovaTop(np.diag([1.0, 2.0, 1.5]) + 0.1),
+    "top": nh.Forced(nh.SuslovTop(np.eye(3) + 0.1), force=(RUB, TABLE)),
     "kicks": nh.Forced(SLEIGH, HEAVY, (RUB, TABLE), "variational"),
     "balanced": nh.Forced(SLEIGH, HEAVY, (RUB, TABLE)),
 }

@@ -4,12 +4,14 @@ import functools
 from collections.abc import Callable
 from typing import Any
 
+import jax
 import numpy as np
 import pytest
 from bodies import elsewhere, tensor
 
 import nonholo as nh
 from nonholo.systems import NormalForm
+from nonholo.systems._base import replace_numbers
 
 RNG = np.random.default_rng(16)
 _tensor = functools.partial(tensor, rng=RNG)
@@ -91,3 +93,13 @@ NEITHER = {
 def test_other_systems_have_none(make: Callable[[], Any]) -> None:
     """What is neither a top nor a sleigh has no form, nor has a system without a mass tensor."""
     assert make().normal_form is None
+
+
+def test_nothing_that_is_traced_is_kept() -> None:
+    """A body that is first asked within an inner transformation answers outside of it, too."""
+
+    def traced(tensor: Any) -> Any:
+        top = replace_numbers(nh.SuslovTop(np.eye(3)), mass_tensor=tensor)
+        return jax.jit(lambda x: x * top.inertia_along)(1.0) + top.inertia_along
+
+    np.testing.assert_array_equal(jax.jit(traced)(np.diag([1.0, 2.0, 4.0])), 2 * np.diag([5.0, 6.0]))

@@ -1,5 +1,6 @@
 """Arguments of `steer`, checked: ends, limits and guesses; bounds of states; obstacles and places on the way."""
 
+import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple, Self, cast
 
@@ -180,12 +181,17 @@ def _limit(where: str, value: Any, count: int) -> np.ndarray:
 
 def body_numbers(system: System) -> dict[str, np.ndarray]:
     """Return rows by name for the entries of a pose, then momenta along the constraint."""
-    group, N = system.group, system.group.size
-    unit = np.eye(N * N + system.rank)
-    entries, momenta = unit[: N * N].reshape(N, N, -1), unit[N * N :]
-    names = {"restricted_velocity": np.linalg.inv(system.constrained_inertia) @ momenta}
+    size = system.group.size**2
+    unit = np.eye(size + system.rank)
+    velocity = np.linalg.inv(system.constrained_inertia) @ unit[size:]
+    return {"restricted_velocity": velocity} | _pose_numbers(system.group, unit[:size])
+
+
+def _pose_numbers(group: Any, rows: Float[np.ndarray, "NN x"]) -> dict[str, np.ndarray]:
+    """Return rows by name from those for the entries of a pose."""
+    entries, names = rows.reshape(group.size, group.size, -1), {}
     if group.is_affine:
-        names |= {name: entries[i, -1:] for i, name in zip(range(N - 1), "xyz", strict=False)}
+        names = {name: entries[i, -1:] for i, name in zip(range(group.size - 1), "xyz", strict=False)}
     return names | ({"theta": entries[:1, 0] + 1j * entries[1:2, 0]} if group == SE(2) else {})
 
 
@@ -204,9 +210,26 @@ def body_states(poses: Float[np.ndarray, "... N N"], momenta: Float[np.ndarray, 
 
 
 def coordinate_numbers(system: Any) -> dict[str, np.ndarray]:
-    """Return rows by name for velocities, then coordinates."""
-    unit, n = np.eye(2 * system.dimension), system.dimension
+    """Return rows by name for velocities, then coordinates or the entries of a pose."""
+    n = system.dimension
+    unit = np.eye(n + math.prod(system.shapes[0]))
+    if not system.coordinates:
+        return {"body_velocity": unit[:n]} | _pose_numbers(system.group, unit[n:])
     return {"body_velocity": unit[:n]} | {name: unit[n + i, None] for i, name in enumerate(system.coordinates)}
+
+
+def size_of_positions(system: Any) -> int | None:
+    """Return how many numbers a position has; None where bodies have none."""
+    if getattr(system, "coordinates", ()):
+        return 2 if {"x", "y"} <= set(system.coordinates) else None
+    return system.group.size - 1 if system.group.is_affine else None
+
+
+def numbers_of_position(system: Any) -> list[int]:
+    """Return which numbers of a configuration are its position."""
+    if system.coordinates:
+        return list(map(system.coordinates.index, "xy")) if size_of_positions(system) else []
+    return list(range(system.group.size - 1, system.group.size**2 - 1, system.group.size))
 
 
 class Way(NamedTuple):
@@ -229,8 +252,9 @@ class Way(NamedTuple):
     bounds: Any = None
 
     @classmethod
-    def of(cls, n: int | None, steps: int, obstacles: Any, outline: Any, via: Any, guess: Any) -> "Way":
-        """Return checked arguments of `steer`, for positions of n numbers; None where bodies have none."""
+    def of(cls, system: Any, steps: int, obstacles: Any, outline: Any, via: Any, guess: Any) -> "Way":
+        """Return checked arguments of `steer` for a system."""
+        n = size_of_positions(system)
         hint = _checked_guess(guess, steps, n)
         if n is None:
             if not (obstacles is None and outline is None and via is None):
@@ -243,7 +267,7 @@ class Way(NamedTuple):
         radii = array(where, radii, () if shape_of(radii) == () else (len(centers),), remedy)
         if not (radii > 0).all():
             raise error(where, "have positive radii", shown(radii), remedy)
-        outline = outline if callable(outline) else _body_points_of(n, outline)
+        outline = _checked_outline(system, n, outline)
         return cls(centers, np.broadcast_to(radii, len(centers)), outline, _places(n, steps, via), hint)
 
     def positions(self, ends: Mapping[int, Float[np.ndarray, "n"]], steps: int) -> Float[np.ndarray, "K n"]:
@@ -272,9 +296,14 @@ class Way(NamedTuple):
             raise error(f"steer({name}=...)", "be clear of obstacles", got, "Move it, or make the obstacle smaller.")
 
 
-def _body_points_of(n: int, outline: Any) -> Float[np.ndarray, "points n"]:
-    """Return checked points of the body, by default its origin."""
+def _checked_outline(system: Any, n: int, outline: Any) -> Any:
+    """Return checked points of the body, by default its origin; in coordinates also a function of them."""
     where, origin = "steer(outline=...)", np.zeros((1, n))
+    if callable(outline):
+        if getattr(system, "coordinates", ()):
+            return outline
+        remedy = "Bodies on groups have no shape: pass points."
+        raise error(where, "be points of a body on a group", "a function", remedy)
     points = array(where, origin if outline is None else outline, (None, n), "Pass points of the body.")
     if not len(points):
         raise error(where, "have a point", "none", "Leave it out for the origin of the body frame.")
@@ -317,11 +346,13 @@ def body_points(g: Float[Array, "... N N"], outline: Float[Array, "points n"]) -
     return g[..., None, :n, -1] + outline @ g[..., :n, :n].swapaxes(-1, -2)
 
 
-def planar_points(system: Any, q: Float[Array, "... n"], outline: Any) -> Float[Array, "... points 2"]:
-    """Return where points of a body with coordinates x and y are, turned by the heading where it has one.
+def points_at(system: Any, q: Float[Array, "..."], outline: Any) -> Float[Array, "... points n"]:
+    """Return where points of a body are at poses, or with coordinates x and y, turned by the heading if it has one.
 
     The points are given, or a function of the configuration.
     """
+    if not system.coordinates:
+        return body_points(q, outline)
     names, xp = system.coordinates, q.__array_namespace__()
     x, y = (q[..., names.index(name)] for name in ("x", "y"))
     turn = xp.zeros_like(x) if system.heading is None else q[..., names.index(system.heading)]

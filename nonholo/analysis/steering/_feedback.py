@@ -107,7 +107,7 @@ class Feedback(Keeper):
         push = table("disturbance", disturbance, np.zeros_like(self.controls))
         misread = table("misreading", misreading, np.zeros_like(self.gains[:, 0]))
         tables = self.controls @ track.rows.T, self.gains, misread, push
-        return Tracking(*closed_loop(track, nodes, {"configuration": g, track.start: w}, tables, self.limits))
+        return Tracking(*closed_loop(where, track, nodes, {"configuration": g, track.start: w}, tables, self.limits))
 
 
 def tracking_feedback(
@@ -184,7 +184,7 @@ def tracking_feedback(
     where = "tracking_feedback"
     with needs("jax", where):
         from nonholo.analysis.steering._tracks import track_of
-        from nonholo.simulation.traced import rollout
+        from nonholo.simulation.traced import roll
     track = track_of(where, discrete, start)
     k, dim = track.rows.shape
     Q, F = (
@@ -196,7 +196,7 @@ def tracking_feedback(
     table = array(f"{where}(controls=...)", controls, (None, dim), "Pass a body covector for each step.")
     limits = checked_limits(f"{where}(bounds=...)", bounds, k)
     track.check(where, len(table))
-    reference = rollout(discrete, **{track.start: np.zeros(k), **start}, controls=table, steps=len(table))
+    reference = roll(where, discrete, **{track.start: np.zeros(k), **start}, controls=table, steps=len(table))
     if reference.outcome != 0:
         raise error(f"{where}(controls=...)", "give a motion to the end", "one that ends early", "Take shorter steps.")
     A, B = interruptibly(lambda: track.linearize(track.nodes(reference), table))

@@ -5,6 +5,7 @@ step has besides, a chart of the displacement or a velocity with multipliers; f 
 """
 
 import dataclasses
+import math
 import operator
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
@@ -24,8 +25,9 @@ from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, discretize
 from nonholo.discrete.definition import Rollout, free_rows, step_residual
 from nonholo.groups import SE
-from nonholo.lagrange_dalembert import CoordinateDiscretization, LagrangeDAlembert, equations, in_double, place
+from nonholo.lagrange_dalembert import LagrangeDAlembert, equations, in_double, place
 from nonholo.simulation import simulate
+from nonholo.simulation.traced import rollout
 from nonholo.systems import Forced
 
 
@@ -115,27 +117,29 @@ class MovingOutline:
 
 
 class CoordinateNodes(NamedTuple):
-    """Steps in coordinates.
+    """Steps in coordinates, or of a system by functions on a group.
 
     Attributes:
         system: The system.
         time_step: h.
-        outline: Points in axes of the body that keep clear of obstacles, (points, 2), or a `MovingOutline`.
+        outline: Points in axes of the body that keep clear of obstacles, (points, n), or a `MovingOutline`.
         directions: Rows span the admissible velocities near the goal; none where its velocity is free.
         velocity: The last velocity.
+        pose: The last pose, None where free and in coordinates.
     """
 
-    system: LagrangeDAlembert
+    system: Any
     time_step: Array
     outline: Any
     directions: Array
     velocity: Array
+    pose: Array | None
 
     @property
     def sizes(self) -> tuple[int, int, int]:
         """How many numbers a state, an inner part and the forces of a step have."""
         n = self.system.dimension
-        return 2 * n + self.system.is_driven, n + self.system.constraints, n
+        return math.prod(self.system.shapes[0]) + self.system.is_driven + n, n + self.system.constraints, n
 
     def residual(self, x: Array, z: Array, f: Array, after: Array, row: Array) -> Array:
         """Return the equations of a step; there is no table of forces."""
@@ -143,148 +147,171 @@ class CoordinateNodes(NamedTuple):
         return equations.step_residual(self.system, self.state(x), z, self.state(after), f, self.time_step)
 
     def goal_gap(self, x: Array) -> Array:
-        """Return by how much the last momentum is missed along the constraint."""
-        if not len(self.directions):
-            return jnp.zeros(0)
+        """Return by how much the last pose is missed, and the last momentum along the constraint."""
         place, p = self.state(x)
+        off_pose = jnp.zeros(0) if self.pose is None else self.system.places.departure(self.pose, place)
+        if not len(self.directions):
+            return off_pose
         rows, off = equations.forms(self.system, place), p - equations.momentum(self.system, place, self.velocity)
-        return self.directions @ (off - rows.T @ jnp.linalg.solve(rows @ rows.T, rows @ off))
+        along = self.directions @ (off - rows.T @ jnp.linalg.solve(rows @ rows.T, rows @ off))
+        return jnp.append(off_pose, along)
 
     def places(self, x: Array) -> Array:
-        """Return where the points of the outline are, (points, 2)."""
-        return _arguments.planar_points(self.system, x, self.outline)
+        """Return where the points of the outline are, (points, n)."""
+        return _arguments.points_at(self.system, self.state(x)[0], self.outline)
 
     def numbers(self, z: Array, x: Array) -> Array:
-        """Return what bounds of states are about: velocities of the step, coordinates."""
-        return jnp.append(z[: self.system.dimension], x[: self.system.dimension])
+        """Return what bounds of states are about: velocities of the step, coordinates or entries of the pose."""
+        return jnp.append(z[: self.system.dimension], x[: math.prod(self.system.shapes[0])])
 
     def state(self, x: Array) -> tuple[Array, Array]:
         """Return place and momentum."""
-        return x[: -self.system.dimension], x[-self.system.dimension :]
+        n = self.system.dimension
+        return x[:-n].reshape(-1, *self.system.shapes[0][1:]), x[-n:]
 
 
 class Goal(NamedTuple):
-    """The goal: coordinates by index, and a velocity where one is named."""
+    """The goal: coordinates by index or a pose, and a velocity where one is named."""
 
     coordinates: dict[int, float]
+    pose: Float[np.ndarray, "N N"] | None
     velocity: Float[np.ndarray, "n"] | None
 
-    def numbers(self, n: int) -> Float[np.ndarray, "2n"]:
-        """Return velocities and coordinates, NaN where they are free."""
-        both = np.full((2, n), np.nan)
-        both[1, list(self.coordinates)] = list(self.coordinates.values())
-        if self.velocity is not None:
-            both[0] = self.velocity
-        return both.ravel()
+    def numbers(self, system: Any) -> Float[np.ndarray, "x"]:
+        """Return velocities, and coordinates or entries of the pose, NaN where they are free."""
+        v, place = (np.full(shape, np.nan).ravel() for shape in system.shapes[::-1])
+        place[list(self.coordinates)] = list(self.coordinates.values())
+        ends = v if self.velocity is None else self.velocity, place if self.pose is None else self.pose.ravel()
+        return np.concatenate(ends)
+
+    def end(self, system: Any, x: np.ndarray, time: float) -> np.ndarray:
+        """Return a place that meets it, else that of the start."""
+        if not system.coordinates:
+            return x if self.pose is None else self.pose
+        last = place(system, x[: system.dimension].copy(), time)
+        last[list(self.coordinates)] = list(self.coordinates.values())
+        return last
 
 
-def checked_start(discrete: CoordinateDiscretization, start: Any) -> tuple[np.ndarray, np.ndarray]:
+def checked_start(discrete: Any, start: Any) -> tuple[np.ndarray, np.ndarray]:
     """Return place and velocity of the start."""
     _arguments.check_names("steer(start=...)", start, "body_velocity")
-    discrete.system.forced(None, np.zeros((1, discrete.system.dimension)))  # refuses a system that has forces
+    if discrete.system.force is not None:
+        discrete.system.forced(None, np.zeros((1, discrete.system.dimension)))  # refuses a system that has forces
     motion = {"body_velocity": start.get("body_velocity", np.zeros(discrete.system.dimension))}
     return lagrange_dalembert.checked_state(discrete.system, start.get("configuration"), motion, 0.0, "steer")
 
 
-def checked_goal(discrete: CoordinateDiscretization, goal: Any, is_free: bool) -> Goal:
+def checked_goal(discrete: Any, goal: Any, is_free: bool) -> Goal:
     """Return the goal; its configuration may name some coordinates alone, a free one nothing."""
     where, system = "steer(goal=...)", discrete.system
     _arguments.check_names(where, goal, "body_velocity")
+    q, v = goal.get("configuration"), goal.get("body_velocity")
+    if q is None and v is None and not is_free:
+        raise error(where, "name coordinates or a velocity", "neither", "Pass configuration=.")
+    v = None if v is None else array(where, v, (system.dimension,), "Pass a rate for each coordinate.")
+    if not system.coordinates:
+        return Goal({}, None if q is None else system.places.configuration(where, q), v)
+    return Goal(_checked_coordinates(where, system, {} if q is None else q), None, v)
+
+
+def _checked_coordinates(where: str, system: Any, q: Any) -> dict[int, float]:
+    """Return coordinates by index, of all or of some of them by name."""
     remedy = f"Pass {system.dimension} numbers, or some of them by name: {', '.join(system.coordinates)}."
-    q, v = goal.get("configuration", {}), goal.get("body_velocity")
     if not isinstance(q, Mapping):
         q = dict(zip(system.coordinates, array(where, q, (system.dimension,), remedy), strict=True))
     if not set(q) <= set(system.coordinates):
         raise error(where, "name coordinates of the system", shown(sorted(map(str, q))), remedy)
-    if not q and v is None and not is_free:
-        raise error(where, "name coordinates or a velocity", "neither", remedy)
     numbers = array(where, list(q.values()), (len(q),), remedy)
-    v = None if v is None else array(where, v, (system.dimension,), "Pass a rate for each coordinate.")
-    return Goal(dict(zip(map(system.coordinates.index, q), numbers.tolist(), strict=True)), v)
+    return dict(zip(map(system.coordinates.index, q), numbers.tolist(), strict=True))
 
 
 def driven_in_coordinates(
-    discrete: CoordinateDiscretization, start: tuple[np.ndarray, np.ndarray], forces: Float[np.ndarray, "steps n"]
-) -> lagrange_dalembert.CoordinateOrbit:
-    """Return the orbit under forces, as far as it goes."""
-    (v, q), table = start, discretize(discrete.system.forced(None, forces), discrete.time_step)
+    discrete: Any, start: tuple[np.ndarray, np.ndarray], forces: Float[np.ndarray, "steps n"]
+) -> Any:
+    """Return the orbit under forces, as far as it goes; the rollout where discrete functions leave no table a way."""
+    (v, q), system = start, discrete.system
+    if system.discrete_lagrangian or system.discrete_constraints:
+        return rollout(discrete, configuration=q, body_velocity=v, steps=len(forces), controls=forces)
+    table = discretize(system.forced(None, forces), discrete.time_step)
     return simulate(table, configuration=q, body_velocity=v, steps=len(forces), throw=False)
 
 
 def coordinate_problem(
-    discrete: CoordinateDiscretization, ends: tuple[tuple[np.ndarray, np.ndarray], Goal], limits: Limits, way: Way
+    discrete: Any, ends: tuple[tuple[np.ndarray, np.ndarray], Goal], limits: Limits, way: Way
 ) -> Problem:
-    """Return the problem of a system in coordinates, from place and velocity at the start and a goal."""
+    """Return the problem of a system in coordinates or on a group, from place and velocity at the start and a goal."""
     ((x, v), goal), system, n = ends, discrete.system, discrete.system.dimension
-    steps = len(limits[0]) // n
-    last = place(system, x[:n].copy(), steps * discrete.time_step)
-    last[list(goal.coordinates)] = list(goal.coordinates.values())
-    nodes = _nodes(discrete, way, last, goal.velocity)
+    steps, size = len(limits[0]) // n, system.shapes[0][0]
+    last = goal.end(system, x, steps * discrete.time_step)
+    nodes = _nodes(discrete, way, last, goal)
     first = np.append(x, lagrange_dalembert.momentum(system, x, v))
     program = Program(Steps(nodes, way.centers, way.radii, nodes.time_step, way.bounds), first, np.zeros((steps, n)))
-    pins: dict[int, dict[int, Any]] = {
-        step: dict(zip(map(system.coordinates.index, "xy"), place, strict=True)) for step, place in way.via.items()
-    }
+    q, at = x[:size], _arguments.numbers_of_position(system)
+    pins: dict[int, dict[int, Any]] = {step: dict(zip(at, place, strict=True)) for step, place in way.via.items()}
     pins[steps] = pins.get(steps, {}) | goal.coordinates
     if way.outline.shape[-1]:
-        way.check("start", _arguments.planar_points(system, x[:n], way.outline))
-    path, forces = _coordinate_guess(system, (x[:n], last[:n]), way, steps)
+        way.check("start", _arguments.points_at(system, q, way.outline))
+    path, forces = _coordinate_guess(system, (q, last[:size]), way, steps)
 
     def first_guess(rng: np.random.Generator, spread: float) -> np.ndarray:
         spread *= way.guess.trust
         bow = np.sin(np.linspace(0, np.pi, steps + 1))[:, None]
-        bent = path + spread * bow * rng.normal(size=n)
+        bent = system.places.beside(path, spread * bow * rng.normal(size=n))
         return _coordinate_unknowns(nodes, bent, forces + spread * rng.normal(size=(steps, n)))
 
     def gap_of(forces: np.ndarray) -> float:
-        return _coordinate_gap(program, goal, way, driven_in_coordinates(discrete, (v, x[:n]), forces))
+        return _coordinate_gap(program, goal, way, driven_in_coordinates(discrete, (v, q), forces))
 
     return Problem(program, bounds_of(program, limits, pins), first_guess, gap_of)
 
 
-def _nodes(discrete: CoordinateDiscretization, way: Way, last: np.ndarray, velocity: np.ndarray | None) -> Any:
+def _nodes(discrete: Any, way: Way, last: np.ndarray, goal: Goal) -> CoordinateNodes:
     """Return the unknowns of steps to a place, where the system is to have a velocity or none."""
-    system, h = discrete.system.plain, np.float64(discrete.time_step)
-    if velocity is None:
-        return CoordinateNodes(system, h, way.outline, np.zeros((0, system.dimension)), np.zeros(system.dimension))
+    system, h, n = discrete.system.plain, np.float64(discrete.time_step), discrete.system.dimension
+    if goal.velocity is None:
+        return CoordinateNodes(system, h, way.outline, np.zeros((0, n)), np.zeros(n), goal.pose)
     directions = np.linalg.svd(in_double(equations.forms, system, last))[2][system.constraints :]
-    return CoordinateNodes(system, h, way.outline, directions, velocity)
+    return CoordinateNodes(system, h, way.outline, directions, goal.velocity, goal.pose)
 
 
-def _coordinate_gap(program: Program, goal: Goal, way: Way, orbit: lagrange_dalembert.CoordinateOrbit) -> float:
+def _coordinate_gap(program: Program, goal: Goal, way: Way, orbit: Any) -> float:
     """Return by what an orbit misses its goal, obstacles and places; infinity where it ends before."""
     q, system = orbit.configuration, program.steps.nodes.system
-    if len(orbit) <= len(program.rows):
+    if len(q) <= len(program.rows) or not np.isfinite(q[-1]).all():
         return np.inf
     off = [abs(q[-1, i] - number) for i, number in goal.coordinates.items()]
     off += np.abs(program.goal_gap(np.append(place(system, q[-1], orbit.time[-1]), orbit.momentum[-1]))).tolist()
-    off.append(way.bounds.outside(np.concatenate([orbit.body_velocity[:-1], q[1:]], axis=1)))
+    flat = q.reshape(len(q), -1)
+    off.append(way.bounds.outside(np.concatenate([orbit.body_velocity[:-1], flat[1:]], axis=1)))
     if way.outline.shape[-1]:
-        at = _arguments.planar_points(system, q, np.zeros((1, 2)))[:, 0]
-        off.append(way.gap(_arguments.planar_points(system, q, way.outline), at))
+        at = flat[:, _arguments.numbers_of_position(system)]
+        off.append(way.gap(_arguments.points_at(system, q, way.outline), at))
     return float(max(off, default=0.0))
 
 
 def _coordinate_guess(
-    system: LagrangeDAlembert, ends: tuple[np.ndarray, np.ndarray], way: Way, steps: int
-) -> tuple[Float[np.ndarray, "K n"], Float[np.ndarray, "steps n"]]:
+    system: Any, ends: tuple[np.ndarray, np.ndarray], way: Way, steps: int
+) -> tuple[Float[np.ndarray, "K ..."], Float[np.ndarray, "steps n"]]:
     """Return configurations and forces of a guess: by default evenly from the start to the goal, through places."""
     if way.guess.configuration is not None and way.guess.controls is not None:
         return way.guess.configuration, way.guess.controls
-    q = _arguments.evenly({0: ends[0], steps: ends[1]}, steps)
+    begin, end = ends
+    q = system.places.beside(begin, np.linspace(0, 1, steps + 1)[:, None] * system.places.departure(begin, end))
     if way.outline.shape[-1]:
-        at = [system.coordinates.index(name) for name in "xy"]
-        q[:, at] = way.positions({0: ends[0][at], steps: ends[1][at]}, steps)
-    return q, np.zeros((steps, len(q[0])))
+        flat, at = q.reshape(steps + 1, -1), _arguments.numbers_of_position(system)
+        flat[:, at] = way.positions({0: begin.ravel()[at], steps: end.ravel()[at]}, steps)
+    return q, np.zeros((steps, system.dimension))
 
 
 def _coordinate_unknowns(nodes: CoordinateNodes, q: np.ndarray, forces: np.ndarray) -> np.ndarray:
     """Return unknowns whose velocities are those of a path; impulses of constraint are zero."""
     system, steps, h = nodes.system, len(forces), float(nodes.time_step)
-    times, v = h * np.arange(steps + 1), np.diff(q, axis=0) / h
+    times, v = h * np.arange(steps + 1), system.places.departure(q[:-1], q[1:]) / h
     places = np.array([place(system, each, time) for each, time in zip(q, times, strict=True)])
     momenta = np.array([lagrange_dalembert.momentum(system, *each) for each in zip(places[:-1], v, strict=True)])
-    return np.concatenate([v, np.zeros((steps, system.constraints)), forces, places[1:], momenta], axis=1).ravel()
+    impulses, after = np.zeros((steps, system.constraints)), places[1:].reshape(steps, -1)
+    return np.concatenate([v, impulses, forces, after, momenta], axis=1).ravel()
 
 
 def group_problem(discrete: Discretization, ends: tuple[Any, ...], limits: Limits, way: Way) -> Problem:

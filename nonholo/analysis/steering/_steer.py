@@ -8,7 +8,7 @@ import numpy as np
 
 from nonholo.analysis.steering import _arguments
 from nonholo.analysis.steering._arguments import BLOCK, Ends, Limits, StateBounds, Way
-from nonholo.base.checks import choice, count, error, flag, needs, refuse_given, within_memory
+from nonholo.base.checks import choice, count, flag, needs, refuse_given, within_memory
 from nonholo.base.memo import Keeper
 from nonholo.base.progress import interruptibly, progress_bar
 from nonholo.base.results import result
@@ -101,10 +101,11 @@ def steer(
     Starts and goals may have a leading axis of members. One without it holds for all members.
 
     A system in coordinates (`LagrangeDAlembert`) is steered by "ipopt", one member, with a force on each coordinate:
-    `bounds` select those with motors.
+    `bounds` select those with motors. So is a `GroupLagrangeDAlembert`, by body covectors.
 
     Args:
-        discrete: The discretized system, of order 2, with a left-invariant constraint; or one in coordinates.
+        discrete: The discretized system, of order 2, with a left-invariant constraint; or one in coordinates, or by
+            functions on a group. JAX must trace a potential that is a function.
         start: `configuration` and `restricted_velocity`; by default the identity, at rest. In coordinates
             `configuration` and `body_velocity`.
         goal: The same; components that it does not name are free. In coordinates a configuration may name some of them
@@ -152,20 +153,19 @@ def steer(
     steps = count("steer(steps=...)", steps, "Pass the number of steps.")
     choice("steer(cost=...)", cost, ("effort",))
     flag("steer(progress=...)", progress)
-    n = _size_of_positions(discrete)
-    way = Way.of(n, steps, obstacles, outline, via, guess)
+    way = Way.of(discrete.system, steps, obstacles, outline, via, guess)
     extras = {"obstacles": obstacles, "outline": outline, "via": via, "state_bounds": state_bounds, "guess": guess}
     method = _method(discrete, method, extras)
     if not is_on_group:
         return _steered_in_coordinates(discrete, (start, goal), (bounds, state_bounds), way, steps)
-    _check(discrete, steps, way)
+    subject = _in_jax(discrete, steps)
     ends, is_one = _arguments.checked_ends(discrete.system, start, goal, bool(way.via))
     _refuse_too_many(discrete, steps, method, min(len(ends[0]), BLOCK))
     way = way._replace(bounds=_arguments.bounds_of_body(state_bounds, discrete.system, ends))
     limits = _arguments.limits_of_steps(bounds, steps, discrete.system.rank)
     with progress_bar("members", progress) as report:
         by = functools.partial(_by_ipopt, way=way, report=report) if method == "ipopt" else _by_shooting
-        forces, gap, outcome = interruptibly(lambda: by(discrete, ends, limits))
+        forces, gap, outcome = interruptibly(lambda: by(subject, ends, limits))
     controls = forces @ np.linalg.pinv(discrete.system.constraint_subspace).T
     effort = float(discrete.time_step) * (forces**2).sum(axis=(-2, -1)) / 2
     results = *ends[:2], controls, effort, gap, outcome
@@ -186,14 +186,15 @@ def _method(discrete: Any, method: Any, extras: dict[str, Any]) -> str:
     return method or ("shooting" if all(each is None for each in extras.values()) else "ipopt")
 
 
-def _check(discrete: Discretization, steps: int, way: Way) -> None:
-    """Refuse what `rollout` refuses, constraints that are fixed in space, and an outline that is a function."""
-    if callable(way.outline):
-        remedy = "Bodies on groups have no shape: pass points."
-        raise error("steer(outline=...)", "be points of a body on a group", "a function", remedy)
+def _in_jax(discrete: Discretization, steps: int) -> Discretization:
+    """Return a discretization that JAX sees into, none with a constraint fixed in space or what `rollout` refuses."""
+    with needs("jax", "steer"):
+        from nonholo.simulation.traced import with_traced_potential
     refuse_fixed_in_space("steer(discrete=...)", discrete.system, "Steer it by `nh.rollout`.")
     refuse_wide("steer(discrete=...)", discrete.system)
-    check_forces("steer", discrete, steps, in_jax=True)
+    subject = with_traced_potential("steer", discrete)
+    check_forces("steer", subject, steps, in_jax=True)
+    return subject
 
 
 def _refuse_too_many(discrete: Discretization, steps: int, method: str, members: int) -> None:
@@ -203,16 +204,6 @@ def _refuse_too_many(discrete: Discretization, steps: int, method: str, members:
         return refuse_many_matrices(where, discrete, members * steps, remedy, derivatives=system.rank)
     window = 2 * system.group.size**2 + 4 * system.rank
     return within_memory(where, _PER_ENTRY * steps * window**2, remedy)
-
-
-def _size_of_positions(discrete: Any) -> int | None:
-    """Return how many numbers a position has; None where bodies have none."""
-    if in_coordinates(discrete):
-        if discrete.system.orbits != "CoordinateOrbit":
-            remedy = "Steer an LLSystem, or a LagrangeDAlembert."
-            raise error("steer(discrete=...)", "have a constraint that poses do not change", "one of a pose", remedy)
-        return 2 if {"x", "y"} <= set(discrete.system.coordinates) else None
-    return discrete.system.group.size - 1 if discrete.system.group.is_affine else None
 
 
 def _by_shooting(discrete: Discretization, ends: Ends, limits: Limits) -> tuple[Any, ...]:
@@ -249,14 +240,15 @@ def _steered_in_coordinates(
         from nonholo.analysis.steering._problems import MovingOutline, checked_goal, checked_start, coordinate_problem
         from nonholo.analysis.steering._transcription import transcribe
     n, (x, v) = discrete.system.dimension, checked_start(discrete, ends[0])
+    q = x[: discrete.system.shapes[0][0]]
     if callable(way.outline):
         way = way._replace(outline=MovingOutline.of(discrete.system, way.outline))
     within_memory("steer(steps=...)", _PER_ENTRY * steps * (7.0 * n) ** 2, "Pass fewer steps.")
     limits = _arguments.limits_of_steps(bounds[0], steps, n)
     goal = checked_goal(discrete, ends[1], is_free=bool(way.via))
-    both = {"start": np.append(v, x[:n]), "goal": goal.numbers(n)}
+    both = {"start": np.append(v, q), "goal": goal.numbers(discrete.system)}
     way = way._replace(bounds=StateBounds.of(bounds[1], _arguments.coordinate_numbers(discrete.system), both))
     problem = coordinate_problem(discrete, ((x, v), goal), limits, way)
     forces, gap, outcome = interruptibly(lambda: transcribe(problem))
     effort = float(discrete.time_step) * (forces**2).sum() / 2
-    return Steering(discrete, (v, x[:n]), forces, *map(np.asarray, (effort, gap, outcome)))
+    return Steering(discrete, (v, q), forces, *map(np.asarray, (effort, gap, outcome)))

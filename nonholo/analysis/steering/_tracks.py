@@ -14,7 +14,7 @@ from nonholo.discrete import Discretization, as_discretization
 from nonholo.discrete.definition import compile_double
 from nonholo.lagrange_dalembert import places, tangents
 from nonholo.simulation import refuse_many_matrices
-from nonholo.simulation.traced import rollout
+from nonholo.simulation.traced import roll
 from nonholo.systems import AbstractCoordinateDiscretization, refuse_fixed_in_space
 
 Nodes = tuple[np.ndarray, np.ndarray]
@@ -102,13 +102,13 @@ def _errors(places: Any, ways: Array, nodes: Nodes, states: Nodes) -> Array:
 
 
 def closed_loop(
-    track: Any, nodes: Nodes, start: dict[str, Any], tables: tuple[np.ndarray, ...], limits: tuple[np.ndarray, ...]
+    owner: str, track: Any, nodes: Nodes, start: dict[str, Any], tables: tuple[np.ndarray, ...], limits: Any
 ) -> tuple[Any, np.ndarray, np.ndarray]:
     """Return the motion from a start, the controls, and the errors; tables are forces, gains, misreadings, pushes."""
     force, gain, misread, _ = tables
     ways, h = np.linalg.pinv(track.rows), np.float64(track.discrete.time_step)
     policy = jax.tree_util.Partial(_answer, track.places, ways, h, nodes, tables, limits)
-    orbit = rollout(track.discrete, **start, policy=policy, steps=len(force))
+    orbit = roll(owner, track.discrete, **start, policy=policy, steps=len(force))
     errors = _errors(track.places, ways, nodes, track.nodes(orbit))
     change = (gain @ (errors[:-1] + misread)[..., None])[..., 0]
     return orbit, np.clip(force - change, *limits) @ ways.T, errors

@@ -1,7 +1,6 @@
 """The Chaplygin sleigh: a body on a blade that cannot slip sideways, in the plane and in n dimensions."""
 
 import dataclasses
-import functools
 from typing import Any, ClassVar
 
 import numpy as np
@@ -87,13 +86,13 @@ class ChaplyginSleigh(AbstractLLSystem):
         rows = ((one, zero, zero), (zero, one, self.b), (zero, zero, one))
         return xp.stack([xp.stack(row, axis=-1) for row in rows], axis=-2)
 
-    @functools.cached_property
+    @system_memo
     def canonical(self) -> "ChaplyginSleigh":
         """The same sleigh with b = 0: the offset across the blade does not enter the reduced motion."""
         is_canonical = not is_traced(self.b) and not np.any(self.b)
         return self if is_canonical else replace_numbers(self, b=np.zeros(np.shape(self.b))[()])
 
-    @functools.cached_property
+    @system_memo
     def normal_form(self) -> NormalForm:
         r"""J, m and a; the plane $e_1\wedge e_2$ turns against $\omega$."""
         xp = (self.inertia * self.mass * self.a).__array_namespace__()
@@ -206,7 +205,7 @@ class MultidimensionalSleigh(AbstractLLSystem):
         r"""Rows $e_1\wedge e_j$, j = 2..n, then the velocity along body axis 1."""
         return sleigh_rows(self.group)
 
-    @functools.cached_property
+    @system_memo
     def normal_form(self) -> NormalForm:
         """The numbers of the equations of motion, c with the other sign."""
         return sleigh_form(self.mass, self.center_of_mass, self.mass_tensor)
@@ -281,7 +280,7 @@ class ArrowheadSleigh(AbstractLLSystem):
         r"""Rows $e_1\wedge e_j$, then the velocity along body axis 1."""
         return self.dense.constraint_subspace
 
-    @functools.cached_property
+    @system_memo
     def normal_form(self) -> NormalForm:
         """The numbers of the equations of motion, c with the other sign."""
         d, a = self.diagonal, self.center_of_mass

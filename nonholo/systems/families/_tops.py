@@ -1,7 +1,6 @@
 """The free rigid body, and the Suslov top, which only turns in planes through an axis fixed in it, in any dimension."""
 
 import dataclasses
-import functools
 from typing import Any, ClassVar
 
 import numpy as np
@@ -226,7 +225,7 @@ class SuslovTop(AbstractLLSystem):
         """The vector c of the mass tensor in the canonical frame; zero for a balanced top."""
         return self.normal_form.coupling
 
-    @functools.cached_property
+    @system_memo
     def normal_form(self) -> NormalForm:
         """B and c."""
         return top_form(self.canonical.mass_tensor)
@@ -310,7 +309,7 @@ class ArrowheadTop(AbstractLLSystem):
         r"""Rows $e_i\wedge e_n$."""
         return self.dense.constraint_subspace
 
-    @functools.cached_property
+    @system_memo
     def normal_form(self) -> NormalForm:
         """The diagonal of B, and c."""
         return NormalForm(self.diagonal[:-1], self.diagonal[-1], self.coupling)
