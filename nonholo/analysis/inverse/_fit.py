@@ -309,7 +309,8 @@ def _model(system_of: Callable[..., Any], numbers: np.ndarray, shapes: Any) -> A
 
     system = system_of(by_name(shapes, numbers))
     if isinstance(system, AbstractCoordinateSystem):
-        return coordinate_model(system, system_of(by_name(shapes, numbers)), maker_of(system_of, shapes, numbers))
+        model = coordinate_model(system, system_of(by_name(shapes, numbers)))
+        return model._replace(maker=maker_of(system_of, shapes, numbers))
     if not isinstance(system, AbstractSystem) or system.is_spatial:
         remedy = "Return a SuslovTop, a sleigh, an LLSystem or a LagrangeDAlembert."
         raise error("fit(system_of=...)", "return a system with a left-invariant constraint", shown(system), remedy)

@@ -217,7 +217,7 @@ class CoordinateModel(NamedTuple):
 
     system: Any
     readings: Any
-    maker: Any
+    maker: Any = None
 
     @property
     def names(self) -> Names:
@@ -327,9 +327,9 @@ def maker_of(system_of: Callable[..., Any], shapes: Shapes, numbers: np.ndarray)
     return structure, TracedFunction(leaves, (jax.ShapeDtypeStruct(numbers.shape, float),))
 
 
-def coordinate_model(system: Any, again: Any, maker: Any) -> CoordinateModel:
+def coordinate_model(system: Any, again: Any) -> CoordinateModel:
     """Return the model of a system that a function made twice; refused if it does not vary parameters alone."""
     if not (system.parameters and system.family == again.family):
         remedy = "Make the system once, with parameters=..., and return system.with_parameters(**p)."
         raise error("fit(system_of=...)", "vary the parameters of one system", type(system).__name__, remedy)
-    return CoordinateModel(system, (CoordinateReadings if system.coordinates else PoseReadings)(system), maker)
+    return CoordinateModel(system, (CoordinateReadings if system.coordinates else PoseReadings)(system))

@@ -130,8 +130,7 @@ def _digest(family: Any) -> str | None:
     digests["moves"] = TracedFunction(moves, shapes).digest
     if None in digests.values():
         return None
-    numbers = place, velocity, family.parameters.structure
-    sort = type(family).__name__, family.rule, family.is_driven, family.has_parts, numbers
+    sort = type(family).__name__, family.rule, family.is_driven, family.has_parts, place, velocity
     texts = digest_of("lagrange_dalembert", "groups"), digest_of_kernels()
-    about = sort, digests, texts, jax.__version__, llvmlite.__version__, this_processor()
+    about = sort, family.parameters.structure, digests, texts, jax.__version__, llvmlite.__version__, this_processor()
     return hashlib.sha256(repr(about).encode()).hexdigest()
