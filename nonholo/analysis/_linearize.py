@@ -115,7 +115,7 @@ def _without(local: Local, dependent: list[int]) -> Reduced:
 
 
 def _sizes(local: Local) -> Float[np.ndarray, "m"]:
-    """Return units of all numbers of a state: velocities of one energy, and how far they go in the shortest time."""
+    """Return units of all numbers of a state: velocities of one energy, and their paths in the shortest time."""
     sizes = np.append(np.resize(local.units, local.places), local.units)
     finite, n = local.slope[np.isfinite(local.slope).all(axis=(1, 2))], local.places
     largest = np.abs(finite * (sizes / sizes[:, None])).max(axis=0, initial=0.0)
