@@ -258,7 +258,7 @@ def _advance(stepper: Stepper, state: State, steps: int, each: int, room: Rows) 
     """
     before = state.copy()
     good, code = stepper.advance(state, steps, each, room)
-    last = stepper.sound(part_of(room, 0, 1 + good // each)) - 1
+    last = stepper.sound(room, 1 + good // each) - 1
     has_left = last < good // each
     if has_left:
         good, code = max(last, 0) * each, Outcome.nonfinite

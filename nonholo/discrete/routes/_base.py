@@ -55,13 +55,13 @@ class AbstractBodyStepper(AbstractStepper[Orbit]):
         """Return poses as compact canonical ones, which they are by default."""
         return poses
 
-    def sound(self, rows: Rows) -> int:
-        """Return how many rows come before the first whose pose has left a group of a form, by rounding that grew."""
+    def sound(self, rows: Rows, count: int) -> int:
+        """Return how many of the first rows precede one whose pose has left a group of a form, by rounding that grew."""
         group = self.motion.system.group
         if group.form is None or not rows[2].size:
-            return len(rows[2])
-        has_left = ~(group.residual(group.matrix_from_pose(self.decode_poses(rows[2]))) <= _LEFT)
-        return int(has_left.argmax()) if has_left.any() else len(has_left)
+            return count
+        has_left = ~(group.residual(group.matrix_from_pose(self.decode_poses(rows[2][:count]))) <= _LEFT)
+        return int(has_left.argmax()) if has_left.any() else count
 
     def settle(self, rows: Rows) -> Outcome:
         """Bring momenta and charts to canonical ones, in place; return whether all that is saved is finite."""
