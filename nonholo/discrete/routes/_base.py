@@ -56,7 +56,7 @@ class AbstractBodyStepper(AbstractStepper[Orbit]):
         return poses
 
     def sound(self, rows: Rows, count: int) -> int:
-        """Return how many of the first rows precede one whose pose has left a group of a form, by rounding that grew."""
+        """Return how many of the first rows precede one whose pose has left a group of a form, by rounding."""
         group = self.motion.system.group
         if group.form is None or not rows[2].size:
             return count
