@@ -92,8 +92,8 @@ _MESSAGES = {
         "Pass its components along the constraint subspace instead, or a momentum made by discrete_legendre."
     ),
     Outcome.nonfinite: (
-        "A number overflowed or became undefined, or a force or potential returned one that is. "
-        "Try a smaller time_step or other units."
+        "A number overflowed or became undefined, or a force or potential returned one that is; or a pose left its "
+        "group, as those that grow do by rounding. Try a smaller time_step, a shorter run or other units."
     ),
     Outcome.no_half_impulse: (
         "The implicit equation for the half impulse of the force has no solution: the force at the velocity in the "

@@ -119,6 +119,11 @@ class AbstractStepper(abc.ABC, Generic[OrbitT]):
         cut into calls.
         """
 
+    def sound(self, rows: Rows, count: int) -> int:
+        """Return how many of the first rows, as `advance` writes them, precede one whose pose has left its group."""
+        del rows
+        return count
+
     def settle(self, rows: Rows) -> Outcome:
         """Bring rows to the numbers of an orbit, in place, as far as they fit; return what is known of them then."""
         del rows

@@ -252,12 +252,20 @@ def _through(stepper: Stepper, watch: Watch, state: State, place: tuple[int, int
 
 
 def _advance(stepper: Stepper, state: State, steps: int, each: int, room: Rows) -> tuple[State, int, int]:
-    """Return the state after the last good step, how many steps were good, and the outcome."""
-    before = state.copy() if each > 1 else state
+    """Return the state after the last good step, how many steps were good, and the outcome.
+
+    No good step leads to a row whose pose has left its group.
+    """
+    before = state.copy()
     good, code = stepper.advance(state, steps, each, room)
-    if good % each:  # no row stands there
+    last = stepper.sound(room, 1 + good // each) - 1
+    has_left = last < good // each
+    if has_left:
+        good, code = max(last, 0) * each, Outcome.nonfinite
+    if good % each or has_left:  # no row stands there
         state = before
-        stepper.advance(state, good, good, empty_rows(stepper, 2))
+        if good:
+            stepper.advance(state, good, good, empty_rows(stepper, 2))
     return state, good, code
 
 

@@ -1,6 +1,6 @@
 """The scheme "energy": the equations of Theorems 18.1 and 18.2 hold on orbits of every kind, whatever computed them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -226,17 +226,30 @@ def test_a_sleigh_of_order_4_ends_at_a_fold_where_it_falls_too_fast(turned: floa
     assert 0.998 < run.body_velocity[-1, 1] / fastest < 1
 
 
-def test_a_pull_that_rounding_blurs_is_no_fold() -> None:
-    """Far out on SO(2, 1) terms of the pull are large and cancel: the run continues, with their rounding in T + U."""
+def _escaping(step: float, start: Sequence[float], steps: int) -> nh.Orbit:
+    """A body of SO(2, 1) whose pose grows, and comes back."""
     form = np.diag([1.0, 1.0, -1.0])
     group = nh.MatrixGroup(form @ nh.SO(3).basis, form=form)
     body = nh.LLSystem(group, np.diag([4.0, 6.0, 9.0]) @ form, [[0.3, 0.8, 0.3], [-1.3, 0.9, 0.4]])
-    discrete = nh.discretize(nh.Forced(body, nh.Linear(0.2 * np.eye(3))), 0.5)
-    run = nh.simulate(discrete, restricted_velocity=(0.4, -0.3), steps=400, throw=False)
+    discrete = nh.discretize(nh.Forced(body, nh.Linear(0.2 * np.eye(3))), step)
+    return nh.simulate(discrete, restricted_velocity=start, steps=steps, throw=False)
+
+
+def test_a_pull_that_rounding_blurs_is_no_fold() -> None:
+    """Far out on SO(2, 1) terms of the pull are large and cancel: the run continues, with their rounding in T + U."""
+    run = _escaping(0.5, (0.4, -0.3), 240)
     assert run.outcome == nh.Outcome.successful
     far = np.abs(run.configuration).max()
     assert far > 1e4
     assert np.abs(run.energy - run.energy[0]).max() < 1e-15 * far
+
+
+def test_a_run_ends_where_its_pose_has_left_the_group() -> None:
+    """What rounding has taken from a pose far out is missing when it comes back: matrices of no group are no poses."""
+    run = _escaping(0.5, (0.4, -0.3), 400)
+    assert run.outcome == nh.Outcome.nonfinite
+    assert 240 < len(run) < 300
+    assert run.system.group.residual(run.configuration).max() <= 1e-9
 
 
 def test_a_reversed_motion_comes_back() -> None:
