@@ -48,7 +48,8 @@ class TracedFunction:
     """
 
     def __init__(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
-        functools.update_wrapper(cast(Any, self), function)
+        functools.update_wrapper(cast(Any, self), function)  # with its attributes, such as `friction`
+        self.__dict__.pop("digest", None)  # of a traced one that it wraps
         self.function, self.arguments = function, arguments
         with jax.enable_x64(True):  # of a function of its own: JAX remembers those that it has traced
             self.program = jax.make_jaxpr(jax.jit(lambda *x: _array(function(*x))))(*arguments)

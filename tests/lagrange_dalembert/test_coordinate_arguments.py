@@ -9,7 +9,7 @@ import pytest
 from refusals import refusals
 
 import nonholo as nh
-from nonholo.lagrange_dalembert import _functions
+from nonholo.base import progress
 
 
 def lagrangian(q, v):  # noqa: ANN001, ANN201, ARG001
@@ -168,7 +168,7 @@ test_bad_input_is_refused = refusals(
 
 def test_long_compiling_is_said_once(capsys, monkeypatch) -> None:  # noqa: ANN001
     """A line on standard error at the first call, none at the second."""
-    monkeypatch.setattr(_functions, "_PATIENCE", 0.0)
+    monkeypatch.setattr(progress, "_PATIENCE", 0.0)
     system = nh.LagrangeDAlembert(lambda q, v: (v @ v - q @ q) / 2, None, dimension=1)
     system.regularity([0.0], [1.0])
     assert capsys.readouterr().err.startswith("compiling a system in coordinates, once")

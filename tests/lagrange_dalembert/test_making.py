@@ -108,6 +108,17 @@ def test_systems_are_equal_where_their_numbers_are(place: str) -> None:
     assert hash(first) == hash(same)
 
 
+def test_a_potential_makes_another_system() -> None:
+    """What is asked of the free system first is not taken for the system under a potential."""
+    free = nh.LagrangeDAlembert(lambda _, v: v @ v / 2, None, dimension=2)
+    bound, tangents = nh.Forced(free, potential=lambda q: q @ q / 2), []
+    for system in (free, bound):
+        assert system.lagrangian.digest is not None
+        tangents.append(nh.simulate(nh.discretize(system, 0.1), **START, steps=1).tangent[0])
+    assert bound != free
+    assert np.abs(tangents[1] - tangents[0]).max() > 0.05
+
+
 def test_a_field_is_the_function_of_its_making() -> None:
     """In 64 bits a field of a system, and a copy of it, gives the value that its function had; of more rows it asks."""
     system, at = nh.LagrangeDAlembert(KINDS["array"], None, dimension=2), (np.zeros(2), np.array([1.0, 2.0]))

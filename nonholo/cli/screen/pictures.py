@@ -155,9 +155,11 @@ def warn_of_older(store: Path, paths: dict[str, str | None]) -> None:
 
 def _flow(orbit: Any) -> Any:
     """Return the continuous motion from the same start where a closed form makes it cheap."""
-    form = getattr(orbit.system, "normal_form", None)  # which systems in coordinates do not have
+    if not orbit.is_compact:
+        return None
+    form = orbit.system.normal_form
     is_exact = form is not None and form.is_sleigh and form.is_planar
-    if not is_exact or orbit.cayley is None or orbit.canonical_pose is None:
+    if orbit.cayley is None or orbit.canonical_pose is None or not is_exact:
         return None
     times = orbit.time[:: max(1, len(orbit) // _MOST_TIMES)]
     start = {"momentum": orbit.restricted_momentum[0], "configuration": orbit.configuration[0]}

@@ -233,13 +233,13 @@ def _matrix_step(discrete: Scheme, impulse: _Impulse | None) -> _Step:
         del guess  # there is no certificate
         kick = 0.0 if impulse is None else _step.restricted(discrete, impulse(r, g, row), g)
         y, code = _step.principal_of(discrete, None, r + kick, g)
-        _, following, after = _taken(discrete, (impulse, None), (r, g, row), y)
+        _, following, after = _arrival(discrete, (impulse, None), (r, g, row), y)
         return _Node(r, g, y, (following, after), code, jnp.sum(y))
 
     return step
 
 
-def _taken(part: Any, forces: _Forces, state: _State, y: Array) -> tuple[Array, Array, Array]:
+def _arrival(part: Any, forces: _Forces, state: _State, y: Array) -> tuple[Array, Array, Array]:
     """Return what vanishes at the chart of the step of order 2 from a state, and momenta and pose after it."""
     (impulse, balance), (r, g, row), push = forces, state, 0.0
     if balance is not None:
@@ -291,7 +291,7 @@ def _balanced_stage(forced: Forced, part: Any, scalar: ScalarStep | None, state:
 
     def residual(problem: Any, y: Array) -> Array:
         part, forced, state = problem
-        return _taken(part, (None, forced), state, y)[0]
+        return _arrival(part, (None, forced), state, y)[0]
 
     def better(carry: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
         y, _, count = carry
@@ -307,7 +307,7 @@ def _balanced_stage(forced: Forced, part: Any, scalar: ScalarStep | None, state:
     for _ in range(2):
         y = y - jnp.linalg.solve(slope, residual(problem, y))
     code = jnp.where((code == 0) & ~(last <= _CLOSE), int(Outcome.not_converged), code)
-    return y, code, *_taken(part, (None, forced), state, y)[1:]
+    return y, code, *_arrival(part, (None, forced), state, y)[1:]
 
 
 def _move(discrete: Scheme, r: Array, y: Array, g: Array) -> tuple[Array, Array]:
@@ -370,7 +370,7 @@ def step_slopes(
     impulse, _ = impulse_of(discrete, forced, None, 0)
     balance, row = forced if is_balanced(discrete, forced) else None, jnp.zeros(discrete.system.group.dim)
 
-    def composed(r: Array, g: Array, _: Array) -> Array:
+    def of_parts(r: Array, g: Array, _: Array) -> Array:
         def stage(carry: tuple[Array, ...], weight: Array) -> tuple[tuple[Array, ...], None]:
             slope, r, g = carry
             part, own = discrete.part(weight), scalar and scalar._replace(scale=weight * scalar.scale)
@@ -380,24 +380,24 @@ def step_slopes(
         begin = jnp.eye(len(row) + len(r)), r, g
         return jax.lax.scan(stage, begin, jnp.asarray(weights(discrete.order)))[0][0]
 
-    def single(r: Array, g: Array, y: Array) -> Array:
+    def of_one(r: Array, g: Array, y: Array) -> Array:
         return _slope_of(discrete, (impulse, balance), (r, g, row), y)
 
-    return jax.vmap(single if discrete.order == 2 else composed)(*states)
+    return jax.vmap(of_one if discrete.order == 2 else of_parts)(*states)
 
 
 def _slope_of(part: Any, forces: _Forces, state: _State, y: Array) -> Float[Array, "m m"]:
     """Return the derivative of the state after a step of order 2 by that before it, of the implicit function."""
     (r, g, row), group = state, part.system.group
 
-    def taken(z: Array, y: Array) -> tuple[Array, Array, Array]:
-        return _taken(part, forces, (r + z[group.dim :], g @ group.exp(z[: group.dim]), row), y)
+    def arrival(z: Array, y: Array) -> tuple[Array, Array, Array]:
+        return _arrival(part, forces, (r + z[group.dim :], g @ group.exp(z[: group.dim]), row), y)
 
     still = jnp.zeros(group.dim + len(r))
-    _, _, end = taken(still, y)
+    _, _, end = arrival(still, y)
 
     def there(z: Array, y: Array) -> tuple[Array, Array]:
-        gap, ahead, after = taken(z, y)
+        gap, ahead, after = arrival(z, y)
         return gap, jnp.append(group.log(group.inverse(end) @ after), ahead)
 
     (gap, across), (along, through) = jax.jacfwd(there, (0, 1))(still, y)

@@ -20,10 +20,10 @@ import jax.numpy as jnp
 import llvmlite
 from llvmlite import ir
 
+from nonholo.base import traced
 from nonholo.base.compiled.emission import load_object, object_of, this_processor
 from nonholo.base.compiled.library import cache_folder, digest_of, digest_of_kernels
 from nonholo.base.progress import compiling
-from nonholo.base.traced import TracedFunction
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._functions import SYSTEM
@@ -127,10 +127,10 @@ def _digest(family: Any) -> str | None:
     shapes = tuple(jax.ShapeDtypeStruct(shape, float) for shape in (place, velocity, ()))
     functions = {name: getattr(family, name) for name in (*family.functions, "applied")} | dict(family.prescribed)
     digests = {name: getattr(each, "digest", None) for name, each in functions.items() if each is not None}
-    digests["moves"] = TracedFunction(moves, shapes).digest
+    digests["moves"] = traced.TracedFunction(moves, shapes).digest
     if None in digests.values():
         return None
     sort = type(family).__name__, family.rule, family.is_driven, family.has_parts, place, velocity
-    texts = digest_of("lagrange_dalembert", "groups"), digest_of_kernels()
+    texts = digest_of("lagrange_dalembert", "groups"), digest_of_kernels(), Path(str(traced.__file__)).read_bytes()
     about = sort, family.parameters.structure, digests, texts, jax.__version__, llvmlite.__version__, this_processor()
     return hashlib.sha256(repr(about).encode()).hexdigest()
