@@ -54,6 +54,7 @@ class SpecialEuclidean2(AbstractMotions, AbstractRodriguesGroup):
         ]
     )
     coordinates: ClassVar[Coordinates] = coordinates_of(basis)
+    unit_size: ClassVar[int] = 2
     curvature: ClassVar[float] = 0.0
 
     def _squared_angle(self, x: Float[Array, "... 3"]) -> Float[Array, "..."]:
@@ -93,10 +94,6 @@ class SpecialEuclidean2(AbstractMotions, AbstractRodriguesGroup):
         g = self._matrix(g)
         xp = g.__array_namespace__()
         return xp.stack([g[..., 0, 0], g[..., 1, 0], g[..., 0, 2], g[..., 1, 2]], axis=-1)
-
-    def normalize_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
-        """Return the pose with cos^2 + sin^2 = 1."""
-        return numerics.of_length_one(self._pose(pose), 2)
 
     def pose_product(self, pose: Float[Array, "... 4"], other: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
         """Return (cos, sin, x, y) of the product: headings add, and the first one turns the second position."""

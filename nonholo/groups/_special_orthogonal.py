@@ -11,7 +11,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo.base.checks import dimension, within_memory
+from nonholo.base.checks import dimension, error, is_traced, within_memory
 from nonholo.base.numerics import cayley_increment, cotangent_deficit, identity_like, of_length_one, sinc, versine
 from nonholo.base.types import Array, Float
 from nonholo.groups import _rotations
@@ -57,7 +57,22 @@ class AbstractRodriguesGroup(AbstractMatrixGroup):
     dim: ClassVar[int] = 3
     size: ClassVar[int] = 3
     pose_size: ClassVar[int] = 4
+    unit_size: ClassVar[int]
+    """Numbers at the beginning of a compact pose whose squares have the sum one."""
     is_rigid: ClassVar[bool] = True
+
+    def normalize_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
+        """Return the pose whose quaternion, or cosine and sine, has length one."""
+        return of_length_one(self._directed(pose), self.unit_size)
+
+    def _directed(self, pose: Array) -> Array:
+        """Return a checked pose, whose quaternion, or cosine and sine, can be divided by its length."""
+        pose = self._pose(pose)
+        unit = None if pose.ndim > 1 or is_traced(pose) else pose[: self.unit_size]
+        if unit is not None and not unit @ unit > 0:
+            must = f"begin with {len(unit)} numbers whose squares have a positive sum"
+            raise error(f"{self!r} (pose)", must, str(unit), "Use `pose_from_matrix` to turn a matrix into a pose.")
+        return pose
 
     @abc.abstractmethod
     def _squared_angle(self, x: Float[Array, "... 3"]) -> Float[Array, "..."]:
@@ -129,6 +144,7 @@ class SpecialOrthogonal3(AbstractRotations, AbstractRodriguesGroup):
 
     coordinates: ClassVar[Coordinates] = SeparatedCoordinates(3, *_rotations.planes(3))
     basis: ClassVar[np.ndarray] = np.ascontiguousarray(coordinates.matrix(np.eye(3)))
+    unit_size: ClassVar[int] = 4
     curvature: ClassVar[float] = 1.0
 
     def _squared_angle(self, x: Float[Array, "... 3"]) -> Float[Array, "..."]:
@@ -156,19 +172,15 @@ class SpecialOrthogonal3(AbstractRotations, AbstractRodriguesGroup):
 
     def matrix_from_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 3 3"]:
         """Return the rotation matrix of a quaternion, scalar first."""
-        return matrix_from_quaternion(self._pose(pose))
+        return matrix_from_quaternion(self._directed(pose))
 
     def pose_from_matrix(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 4"]:
         """Return the unit quaternion, scalar first and non-negative."""
         return quaternion_from_matrix(self._matrix(g))
 
-    def normalize_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
-        """Return the unit quaternion."""
-        return of_length_one(self._pose(pose), 4)
-
     def pose_product(self, pose: Float[Array, "... 4"], other: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
         """Return Hamilton's product of two quaternions as a unit quaternion, its scalar non-negative."""
-        return quaternion_product(self._pose(pose), self._pose(other))
+        return quaternion_product(self._directed(pose), self._directed(other))
 
     def pose_rate(self, pose: Float[Array, "... 4"], x: Float[Array, "... 3"]) -> Float[Array, "... 4"]:
         """Return half the Hamilton product of the quaternion with the angular velocity."""

@@ -17,7 +17,7 @@ from nonholo.base.results import Outcome
 from nonholo.io.places import FORMAT, SCHEMAS, SWEEP_FORMAT, WHERE, check_assertions
 from nonholo.io.provenance import attributes_of_text, problems_in
 
-_MOST, _MOST_CHUNKS = 2**53, 2**26
+_MOST, _MOST_CHUNKS, _HIGHEST = 2**53, 2**26, 9
 TAKEN = frozenset({"run"})
 """Names in a store that no array has."""
 
@@ -169,12 +169,19 @@ def check_array(where: str, name: str, array: zarr.Array) -> None:
     """Refuse an array that is not cut as ours are, with chunks too large for memory, or with bytes in another order."""
     remedy, (sizes, chunks) = f"The array {name} is damaged or was edited.", (array.shape, array.chunks)
     is_ours = (len(sizes) == 2 and sizes[1] >= 2) if name.startswith("run/") else len(sizes) > 0
-    if not is_ours or min(chunks) < 1 or math.prod(array.cdata_shape) > _MOST_CHUNKS:
+    if not is_ours or min(chunks) < 1 or math.prod(map(_quotient, sizes, chunks)) > _MOST_CHUNKS:
         raise error(where, f"hold the array {name} in chunks", f"shape {sizes} in chunks of {chunks}", remedy)
     within_memory(where, 8.0 * min(math.prod(array.chunks), _MOST), remedy)
-    orders = {getattr(codec, "endian", None) for codec in array.metadata.codecs}  # type: ignore[union-attr]
+    codecs: Any = array.metadata.codecs  # type: ignore[union-attr]
+    if (level := max(getattr(codec, "clevel", 0) for codec in codecs)) > _HIGHEST:
+        raise error(where, f"compress the array {name} by a level of at most {_HIGHEST}", str(level), remedy)
+    orders = {getattr(codec, "endian", None) for codec in codecs}
     if {getattr(order, "value", order) for order in orders} - {None, "little"}:  # an enumeration before zarr 3.4
         raise error(where, f"hold the array {name} in the order of bytes that is written", "another one", remedy)
+
+
+def _quotient(size: int, chunk: int) -> int:
+    return -(-size // chunk)
 
 
 _KINDS = {FORMAT: "an orbit", SWEEP_FORMAT: "a sweep", "nonholo.ensemble": "an ensemble"}

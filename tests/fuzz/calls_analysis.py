@@ -12,7 +12,7 @@ _RUN = nh.simulate(SLEIGH, body_velocity=(1.0, 0.3, 0.0), steps=8)
 _RECORD = {"t": _RUN.time, "x": _RUN.position[:, 0], "y": _RUN.position[:, 1], "theta": _RUN.heading}
 
 
-_HEAVY = nh.Forced(SLEIGH.system, nh.Gravity([0.0, -1.0], [0.5, 0.1]))
+_HEAVY = nh.Forced(SLEIGH.system, nh.Gravity([0.0, -1.0], [0.0, 0.1]))
 
 
 def _slide(numbers: dict) -> nh.ChaplyginSleigh:
@@ -106,7 +106,7 @@ def _of_results() -> list[Call]:
         call("Deltoid.resting", region.resting, points=count(20)),
         call("InvariantMeasure.density", measure.density, momentum=array(restricted.value, "stack"), infinite=True),
         call("InvariantMeasure.jacobian", jacobian, displacement=W, infinite=True),
-        call("LyapunovFunction", by_position(nh.lyapunov_function(system)), momentum=array(restricted.value, "any")),
+        call("LyapunovFunction", by_position(nh.lyapunov_function(system)), momentum=array(restricted.value, "stack")),
     ]
 
 

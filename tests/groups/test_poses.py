@@ -50,3 +50,14 @@ def test_layouts_of_poses() -> None:
     x = np.array([0.3, 1.0, 2.0, 7.0, 8.0])
     parts = [SE(2).pose_from_matrix(SE(2).exp(x[:3])), Translations(2).pose_from_matrix(Translations(2).exp(x[3:]))]
     assert np.array_equal(WHEELED.pose_from_matrix(WHEELED.exp(x)), np.concatenate(parts))
+
+
+@pytest.mark.parametrize("size", [0.0, 5e-324])
+@pytest.mark.parametrize("group", [SO(3), SE(2)], ids=repr)
+def test_a_pose_without_a_direction_is_refused(group: AbstractMatrixGroup, size: float) -> None:
+    """No quaternion and no heading has the length 0, also by underflow; in a stack it marks what has no value."""
+    pose = np.full(4, size)
+    for method in (group.normalize_pose, group.matrix_from_pose, lambda p: group.pose_product(p, p)):
+        with pytest.raises(ValueError, match="squares have a positive sum"):
+            method(pose)
+    assert not np.isfinite(group.normalize_pose(pose[None])[0, 0])

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import zarr
 from damage import swap
 from stopping import stopped_at
 from typer.testing import CliRunner
@@ -18,6 +19,7 @@ import nonholo as nh
 from nonholo.cli._app import app
 from nonholo.io import store_to_csv
 from nonholo.io.blocks import edit_attributes
+from nonholo.io.metadata import check_array
 from nonholo.io.orbits import open_stream
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.1, 0.7, 0.3, 0.1), 0.1)
@@ -117,6 +119,19 @@ def test_what_is_written_has_a_checksum(tmp_path: Path) -> None:
         for opened in (nh.load_orbit, nh.resume):
             with pytest.raises(ValueError, match="checksum differs"):
                 opened(tmp_path / "run.zarr")
+
+
+@pytest.mark.parametrize(("key", "value"), [("shape", 10**400), ("clevel", 22)], ids=["shape", "level"])
+def test_numbers_of_an_array_that_zarr_takes_are_refused(key: str, value: int, tmp_path: Path) -> None:
+    """A shape beyond all floats, and a level that the compressor does not have."""
+    _run(tmp_path / "run.zarr")
+    file = tmp_path / "run.zarr" / "time" / "zarr.json"
+    document = json.loads(file.read_text())
+    (compressor,) = (codec["configuration"] for codec in document["codecs"] if codec["name"] == "blosc")
+    (compressor if key == "clevel" else document).update({key: value if key == "clevel" else [value]})
+    file.write_text(json.dumps(document))
+    with pytest.raises(ValueError, match="The array time is damaged or was edited"):
+        check_array("a store", "time", zarr.open_array(file.parent, mode="r"))
 
 
 def test_texts_do_not_reach_a_terminal_raw(tmp_path: Path) -> None:

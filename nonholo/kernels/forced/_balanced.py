@@ -463,12 +463,18 @@ def is_folded(room: Scratch) -> bool:
 
 
 @borrowing
-def why_lost(f: Balanced, room: Scratch, code: int, reach: float) -> int:
-    """Return the outcome of a path that is lost after a part of the step: 1 at a fold, of the step or the free root.
+def why_lost(f: Balanced, room: Scratch, code: int, reach: float, size: float) -> int:
+    """Return the outcome of a path that is lost after a part of the step: 1 at a fold.
 
-    Half impulses that are smooth functions of the displacement change without bound nowhere else.
+    Half impulses that are smooth functions of the displacement change without bound nowhere else. Where rounding blurs
+    them slopes are noise, and at the beginning of a path there is no fold: nothing is known then.
     """
-    return 1 if code == 7 and (reach == 0.0 or not f.has[0] or is_folded(room)) else code
+    if code != 7:
+        return code
+    is_known = reach > 0.0 and not room.noise[0] > _SETTLED * size
+    if is_known and (not f.has[0] or is_folded(room)):
+        return 1
+    return 7 if f.has[0] else 3
 
 
 @scalar
@@ -497,7 +503,7 @@ def solve(
             assign(s, at)
             assign(root, guess)
         if size < _SMALLEST:
-            return why_lost(f, room, code, reach)
+            return why_lost(f, room, code, reach, largest(m, s))
     return 3
 
 
