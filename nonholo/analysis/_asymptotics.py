@@ -20,7 +20,7 @@ from nonholo.base.types import Float
 from nonholo.discrete import Discretization, as_discretization
 from nonholo.orbit import Orbit
 from nonholo.simulation import flow, simulate
-from nonholo.systems import AbstractLLSystem, AbstractSystem, NormalForm, one_start, refuse_forces
+from nonholo.systems import AbstractLLSystem, NormalForm, one_start, refuse_forces
 
 _ROUNDING = 8 * np.finfo(np.float64).eps
 _SETTLED = 34.0  # natural logarithm of the factor by which the distance from the equilibria has fallen: 6e14
@@ -176,7 +176,7 @@ def asymptotics(subject: AbstractLLSystem | Orbit) -> Asymptotics:
     refuse_forces("asymptotics(subject=...)", system)
     if isinstance(subject, Orbit) and subject.has_impacts.any():
         raise error("asymptotics(subject=...)", "be an orbit without impacts", "some", "Ask it of the system.")
-    form = system.normal_form if isinstance(system, AbstractSystem) else None
+    form = getattr(system, "normal_form", None)
     if form is None:
         remedy = "Pass a SuslovTop, a sleigh, or an orbit of one."
         raise error("asymptotics(subject=...)", "be a top or a sleigh, or its orbit", type(subject).__name__, remedy)

@@ -216,10 +216,10 @@ def beside_state(owner: str, subject: Any, configuration: Any, velocity: Any) ->
 
 def _coordinates_beside(motion: Any, x: Array, v: Array, xi: Array, w: Array) -> tuple[np.ndarray, np.ndarray]:
     places, velocities = tangents.beside(motion, x, v, xi[None], w[None])
-    return places[0][: len(v)] if motion.system.is_driven else places[0], velocities[0]
+    return places[0][: motion.system.shapes[0][0]], velocities[0]
 
 
 def _names_of_coordinates(system: Any, size: int) -> tuple[str, ...]:
     if not system.coordinates:
         return *(f"xi{i}" for i in range(1, 1 + size)), *(f"v{i}" for i in range(1, 1 + size))
-    return *system.coordinates, *("time",) * system.is_driven, *(f"{name}'" for name in system.coordinates)
+    return *system.coordinates, *("time",) * (size - system.dimension), *(f"{name}'" for name in system.coordinates)

@@ -227,7 +227,8 @@ def _directions(orbit: AbstractOrbit) -> np.ndarray:
     """Return the rows along which momenta are measured; of very large bodies, and in coordinates, their number."""
     system = orbit.system
     count = orbit.restricted_momentum.shape[1]
-    return np.array([count]) if getattr(system, "is_wide", True) else system.constraint_subspace
+    has_rows = not system.is_wide and hasattr(system, "constraint_subspace")
+    return system.constraint_subspace if has_rows else np.array([count])
 
 
 def _common_rows(orbit: AbstractOrbit, flow: AbstractOrbit) -> tuple[Rows, Rows]:

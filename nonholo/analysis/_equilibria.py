@@ -17,7 +17,7 @@ from nonholo.base.results import result
 from nonholo.base.types import Array, Float, Inexact
 from nonholo.discrete import Discretization, momentum_slope, weights
 from nonholo.orbit import Orbit
-from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, NormalForm, refuse_forces
+from nonholo.systems import AbstractLLSystem, Equilibria, NormalForm, refuse_fixed_in_space, refuse_forces
 
 
 @result
@@ -153,7 +153,7 @@ def highest_energy(discrete: Discretization) -> float | None:
 
 def _highest_energy(body: AbstractLLSystem, steps: Float[np.ndarray, "S"]) -> float | None:
     velocity, form = body.equilibria().attracting, body.normal_form
-    if velocity is None or form is None or (form.is_sleigh and form.arm != 0):
+    if velocity is None or form is None or form.arm != 0:
         return None
     turn = np.abs(steps).max() * float(body.group.angle(velocity))
     return float(body.constrained_energy(velocity @ np.asarray(body.inertia_operator)) / turn**2)
@@ -169,8 +169,7 @@ def _body_and_steps(where: str, value: Any) -> tuple[AbstractLLSystem, Float[np.
     remedy = "Pass a left-invariant system, a discretization of a top or a sleigh, or configuration= to look near."
     body = value.system if isinstance(value, Discretization) else value
     refuse_forces(where, body)
-    if not isinstance(body, AbstractSystem) or body.is_spatial:
-        raise error(where, "have a left-invariant constraint", type(body).__name__, remedy)
+    refuse_fixed_in_space(where, body, remedy)
     left = cast(AbstractLLSystem, body)
     if not isinstance(value, Discretization):
         return left, None
@@ -182,10 +181,9 @@ def _rates(body: AbstractLLSystem, w: Float[np.ndarray, "k"]) -> Float[np.ndarra
     """Return the transverse rates at the equilibrium with this velocity in the rows of the constraint subspace."""
     form = cast("NormalForm", body.normal_form)
     w = np.linalg.solve(body.form_map.T, w)
-    if not form.is_sleigh or form.arm == 0:
+    if form.arm == 0:  # as of tops
         return _turning(form.stiffness_matrix, form.coupling, w[: len(form.coupling)])
-    turning = np.sort(form.turning) if form.is_diagonal else np.linalg.eigvalsh(form.turning)
-    return -form.mass * form.arm * w[-1] / turning
+    return -form.mass * form.arm * w[-1] / form.moments
 
 
 def _turning(B: Float[np.ndarray, "k k"], c: Float[np.ndarray, "k"], w: Float[np.ndarray, "k"]) -> np.ndarray:
@@ -250,9 +248,8 @@ def lyapunov_function(system: AbstractLLSystem) -> LyapunovFunction:
         True
     """
     refuse_forces("lyapunov_function(system=...)", system)
-    if not isinstance(system, AbstractSystem) or system.is_spatial:
-        remedy = "Pass a SuslovTop, a sleigh, or another left-invariant system."
-        raise error("lyapunov_function(system=...)", "have a left-invariant constraint", type(system).__name__, remedy)
+    remedy = "Pass a SuslovTop, a sleigh, or another left-invariant system."
+    refuse_fixed_in_space("lyapunov_function(system=...)", system, remedy)
     family = system.equilibria()
     if system.normal_form is None and len(family.subspace) < system.rank:
         remedy = "Of other systems no such function of the discrete map is known."
@@ -389,7 +386,7 @@ def invariant_measure(motion: AbstractLLSystem | Discretization, energy: Array =
     """
     system = motion.system if isinstance(motion, Discretization) else motion
     refuse_forces("invariant_measure(motion=...)", system)
-    if not isinstance(system, AbstractSystem) or system.normal_form is None:
+    if getattr(system, "normal_form", None) is None:
         remedy = "Pass a SuslovTop, a sleigh, or a discretization of one."
         raise error("invariant_measure(motion=...)", "be a top or a sleigh", type(motion).__name__, remedy)
     spectrum = equilibria(motion, energy)

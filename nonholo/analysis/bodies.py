@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nonholo.analysis.planar import planar_variety
+from nonholo.analysis.planar import blade_axes
 from nonholo.base.types import Float
 from nonholo.groups import SE
 from nonholo.systems import System
@@ -15,19 +15,13 @@ _IN_SPHERE = 0.72  # from the center of that box to its corners, in radii of the
 _NORMALS = np.concatenate([np.eye(3), -np.eye(3)])
 
 
-def blade_axes(system: System) -> Float[np.ndarray, "3 3"] | None:
-    """Return the axes of the blade of a sleigh in the plane, at its contact point; None for other systems."""
-    variety = planar_variety(system.inside)
-    return None if variety is None else variety.blade
-
-
 def plate(system: System) -> list[Float[np.ndarray, "P 2"]]:
     r"""Return the uniform ellipse with the mass and moment of inertia of a body, its center, and its blade.
 
     Points are in the axes of the blade, if there is one, else of the body. The ellipse with half axes $p$, $q$ has
     $J = m(p^2 + q^2)/4$.
     """
-    inertia, frame = np.asarray(system.inertia_operator), blade_axes(system)
+    inertia, frame = np.asarray(system.inertia_operator), blade_axes(system.inside)
     mass = float(np.trace(inertia[1:, 1:])) / 2
     center = np.array([inertia[0, 2], -inertia[0, 1]]) / mass
     moment = max(float(inertia[0, 0] - mass * center @ center), 0.0)

@@ -21,6 +21,7 @@ from nonholo.discrete.branching import (
     checked_rule,
     displacements_over,
     fold_distance,
+    frame_of,
     has_frame,
     inverse_discrete_legendre,
     landscape,

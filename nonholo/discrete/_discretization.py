@@ -207,9 +207,13 @@ class Discretization(Scheme, AbstractMotion):
         h, rows = float(self.time_step), forced.rows(states.step)
         return forced.mean_force(states.configuration, W, h, rows, states.time)
 
+    def has_exact_work(self, states: Orbit) -> bool:
+        """Return whether the energy less the work is constant to rounding: every step is of order 2, and balanced."""
+        return self.order == 2 and self.is_balanced and states.has_every_step
+
     def work(self, states: Orbit, forced: Forced) -> Float[np.ndarray, "K"]:
         """Return the work of a force along states since the first: exact of balanced steps of order 2."""
-        if self.order > 2 or not (self.is_balanced and states.has_every_step):
+        if not self.has_exact_work(states):
             return super().work(states, forced)
         before = states.chosen(slice(None, -1))
         group, W = self.system.group, self.displaced(before.canonical_chart)

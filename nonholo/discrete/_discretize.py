@@ -10,19 +10,12 @@ from nonholo.base.types import Array
 from nonholo.discrete._discretization import Discretization, as_discretization
 from nonholo.discrete._scheme import Difference, checked_order
 from nonholo.discrete._variety import Constraint, checked_constraint, definition
-from nonholo.systems import (
-    AbstractCoordinateSystem,
-    AbstractSystem,
-    DiscretizationT,
-    System,
-    as_system,
-    refuse_in_coordinates,
-)
+from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, DiscretizationT, as_system, refuse_in_coordinates
 
 
 @overload
 def discretize(
-    system: System,
+    system: AbstractSystem,
     time_step: Array,
     difference: Difference | None = None,
     constraint: Constraint | Callable[[Array], Array] | None = None,
@@ -31,7 +24,7 @@ def discretize(
 @overload
 def discretize(system: AbstractCoordinateSystem[DiscretizationT, Any], time_step: Array) -> DiscretizationT: ...
 def discretize(
-    system: System | AbstractCoordinateSystem,
+    system: AbstractSystem | AbstractCoordinateSystem,
     time_step: Array,
     difference: Difference | None = None,
     constraint: Constraint | Callable[[Array], Array] | None = None,

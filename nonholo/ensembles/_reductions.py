@@ -7,11 +7,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from nonholo.analysis import turn_of_flow
+from nonholo.analysis.planar import blade_axes
 from nonholo.base.checks import error, shown
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
 from nonholo.base.types import Float
-from nonholo.discrete import displacements_over, has_frame, step_jacobians
+from nonholo.discrete import displacements_over, frame_of, refuse_composition, step_jacobians
 from nonholo.groups import components_of
 from nonholo.io.datasets import compact_names
 from nonholo.simulation import Ensemble, ScalarMembers, in_lanes, tangents
@@ -65,8 +66,7 @@ def _energy_drift(batch: Ensemble) -> Reduced:
 
 
 def _is_plane_sleigh(system: AbstractSystem) -> bool:
-    form = system.normal_form
-    return form is not None and form.is_sleigh and form.is_planar
+    return blade_axes(system) is not None
 
 
 def _limit_angle(batch: Ensemble) -> Reduced:
@@ -115,15 +115,14 @@ def _axis_angle(batch: Ensemble) -> Float[np.ndarray, "M"]:
 def _branch_counts(batch: Ensemble) -> Reduced:
     each = [(batch.members.of(member), r) for member, r in enumerate(batch.first_momentum)]
     values = [displacements_over(discrete, discrete.system.from_canonical(r)) for discrete, r in each]
-    counts = np.array([int(own.multiplicity[own.is_real].sum()) for own in values])
+    counts = np.array([own.real_count for own in values])
     return {"real_branches": ((), counts, _labels("real values of the map over the first momentum", "1"))}
 
 
 def _lyapunov(batch: Ensemble) -> Reduced:
     discrete = batch.members.discrete
-    if discrete.order != 2 or not has_frame(discrete):
-        requirement = "have a top or a sleigh with difference 'matrix' and order 2"
-        raise error("reduction 'lyapunov'", requirement, shown(discrete), "Write your own reduction.")
+    refuse_composition(where := "reduction 'lyapunov'", discrete, "Write your own reduction.")
+    frame_of(where, discrete)
     product, growth = _products(_jacobians(batch))
     growth += np.log(np.linalg.norm(product, ord=2, axis=(1, 2)))
     elapsed = batch.steps_done * batch.members.time_step

@@ -148,7 +148,7 @@ def _of_handle(name: str, title: str, body: Any, amplitude: float | None, place:
     heading = -body[4] * turning / (body[3] + body[4])
     q, v = np.append(place, 0.0), np.array([speed * np.cos(place[2]), speed * np.sin(place[2]), heading, turning])
     system = with_numbers(functools.partial(_handle_system, title, amplitude is None), *body, amplitude or 0.0)
-    conserved = {} if system.is_driven else {"energy": energy_of(cast(Any, system).plain.lagrangian)}
+    conserved = {"energy": energy_of(cast(Any, system).plain.lagrangian)} if amplitude is None else {}
     return Example(name, system, q, v, conserved)
 
 

@@ -22,7 +22,8 @@ import jinja2
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from nonholo.analysis.bodies import blade_axes, box_in_space, box_in_sphere, plate
+from nonholo.analysis.bodies import box_in_space, box_in_sphere, plate
+from nonholo.analysis.planar import blade_axes
 from nonholo.base.checks import MissingExtraError, checked_path, error, flags, needs, number, printable, shown
 from nonholo.base.compiled import library
 from nonholo.base.memo import Keeper
@@ -306,7 +307,7 @@ def force_numbers(forced: Forced) -> dict[str, float] | None:
 
     A page computes constant weights, and friction whose matrix is diagonal, in the user's own axes.
     """
-    friction, n = forced.friction, forced.group.size - forced.group.is_affine
+    friction, n = forced.friction, forced.group.point_size
     gravity = forced.gravity or Gravity(np.zeros(n), np.zeros(n))
     coefficients = np.zeros(2) if friction is None else friction.coefficients
     if coefficients.ndim > 1 or not _is_plain(forced):
@@ -414,15 +415,13 @@ def _frames(orbit: AbstractOrbit) -> Float[np.ndarray, "K 12"]:
 
 def _set_poses(frames: Float[np.ndarray, "K 4 3"], orbit: AbstractOrbit) -> None:
     g, group = orbit.configuration, orbit.space
-    if group == SE(2) and isinstance(orbit, Orbit) and (blade := blade_axes(orbit.system)) is not None:
+    if group == SE(2) and isinstance(orbit, Orbit) and (blade := blade_axes(orbit.system.inside)) is not None:
         g = g @ blade
-    turns = g[:, :-1, :-1] if group.is_affine else g
-    n = turns.shape[1]
-    axes = turns.transpose(0, 2, 1)[:, [0, 1, n - 1] if n > 2 else list(range(n)), :3]
+    n = group.point_size
+    axes = g[:, :n, :n].transpose(0, 2, 1)[:, [0, 1, n - 1] if n > 2 else list(range(n)), :3]
     frames[:, 1 : 1 + axes.shape[1], : axes.shape[2]] = axes
-    if group.is_affine:
-        places = g[:, :-1, -1][:, :3]
-        frames[:, 0, : places.shape[1]] = places
+    places = g[:, :n, n:].transpose(0, 2, 1)[..., :3]  # none where matrices do not move a point of their own
+    frames[:, : places.shape[1], : places.shape[2]] = places
     if n == 2:
         frames[:, 3, 2] = 1.0
 

@@ -218,6 +218,11 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
         return self.is_rigid and not np.any(self.basis[:, -1])
 
     @property
+    def point_size(self) -> int:
+        """The number of coordinates of the points that matrices move."""
+        return self.size - self.is_affine
+
+    @property
     def identity(self) -> Float[np.ndarray, "N N"]:
         """The identity matrix."""
         if self.size > _WIDE:

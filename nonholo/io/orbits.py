@@ -20,8 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import zarr
 
-from nonholo.base import checks
-from nonholo.base.checks import error
+from nonholo.base.checks import checked_path, error, flags
 from nonholo.base.progress import go_on
 from nonholo.base.results import Outcome
 from nonholo.io import blocks
@@ -230,8 +229,8 @@ def save_orbit(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fals
     if orbit.is_discrete and orbit.has_impacts.any():
         got, remedy = "one with impacts, which its events tell", "Run with store=..., which keeps them, or save a part."
         raise error("save_orbit(orbit=...)", "be an orbit whose events are not needed", got, remedy)
-    checks.flags("save_orbit", overwrite=overwrite)
-    path = checks.checked_path("save_orbit(path=...)", path)
+    flags("save_orbit", overwrite=overwrite)
+    path = checked_path("save_orbit(path=...)", path)
     target = path.resolve()
     check_target(target, overwrite=overwrite)
     with new_beside(path) as part:
@@ -282,7 +281,7 @@ def load_orbit(path: str | Path, *, discrete: Any = None) -> Any:
     Example:
         >>> orbit = load_orbit("orbit.zarr")  # doctest: +SKIP
     """
-    return load_states(checks.checked_path(WHERE, path), discrete)
+    return load_states(checked_path(WHERE, path), discrete)
 
 
 def load_states(root: Path, discrete: Any, *, last: bool = False) -> Any:

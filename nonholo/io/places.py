@@ -18,8 +18,7 @@ from typing import TextIO
 
 from filelock import FileLock, Timeout
 
-from nonholo.base import checks
-from nonholo.base.checks import error, printable
+from nonholo.base.checks import checked_path, error, printable
 
 FORMAT, SWEEP_FORMAT = "nonholo.orbit", "nonholo.sweep"
 SCHEMAS = {FORMAT: 5, SWEEP_FORMAT: 4}
@@ -184,7 +183,7 @@ def check_file(target: str | Path | TextIO, *, overwrite: bool, where: str = "to
     """Refuse, in the name of `where`, a path that exists, unless it is a file that may be replaced."""
     if hasattr(target, "writelines"):
         return
-    path = checks.checked_path(where, target)
+    path = checked_path(where, target)
     if path.exists() and not (overwrite and path.is_file()):
         how = "Choose another path"
         remedy = f"It is not a file. {how}." if overwrite else f"{how}, or pass overwrite=True (--overwrite)."

@@ -87,10 +87,10 @@ class Impact:
     def check(self, where: str, states: AbstractOrbit) -> None:
         """Refuse a vector that is none of the space of a motion, and differences for a body without matrices."""
         group, system = states.group, states.system
-        if self.normal is None and states.is_compact and system.is_wide:
+        if self.normal is None and system.is_wide:
             raise error(where, "have a normal", f"none for {type(system).__name__}", "Pass a function.")
         if self.has_plane:
-            size = states.body_velocity.shape[1] if group is None else group.size - group.is_affine
+            size = states.body_velocity.shape[1] if group is None else group.point_size
             if len(self.point) != size or (group is None and self.point.any()):
                 got = f"{len(self.point)} numbers and the point {self.point.tolist()} for {states.space}"
                 remedy = "Pass a vector of the space of points; in coordinates one number for each, and no point."
@@ -127,7 +127,7 @@ class Impact:
 
     def _check_direction(self, where: str, gap: Any, states: AbstractOrbit) -> None:
         """Refuse a normal that points where the gap falls; a motion along the wall may only graze it."""
-        if self.normal is None or (states.is_compact and states.system.is_wide):
+        if self.normal is None or states.system.is_wide:
             return
         if self.covector(gap, states) @ Impact().covector(gap, states) < 0:
             got, remedy = f"its opposite at time {states.time[0]:.17g}", "Pass the other direction."

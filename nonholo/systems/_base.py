@@ -465,8 +465,8 @@ def refuse_forces(where: str, system: Any) -> None:
 
 
 def refuse_fixed_in_space(where: str, system: Any, remedy: str, got: str = "") -> None:
-    """Refuse a system whose constraint is fixed in space, where steps or momenta depend on the pose."""
-    if system.is_spatial:
+    """Refuse what is no system, or one whose constraint is fixed in space: steps or momenta depend on the pose."""
+    if getattr(system, "is_spatial", True):
         raise error(where, "have a left-invariant constraint", got or type(system).__name__, remedy)
 
 

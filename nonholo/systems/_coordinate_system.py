@@ -65,6 +65,8 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
     """
 
     leaves: ClassVar[tuple[str, ...]] = ()
+    is_wide: ClassVar[bool] = False
+    normal_form: ClassVar[None] = None
     has_functions: ClassVar[bool] = True
     """Whether it has its Lagrangian: one from a store need not."""
 

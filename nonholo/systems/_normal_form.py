@@ -109,6 +109,11 @@ class NormalForm(Keeper):
         more = self.mass * self.arm**2
         return self.stiffness + (more if self.is_diagonal else more * np.eye(len(self.coupling)))
 
+    @property
+    def moments(self) -> Float[np.ndarray, "k"]:
+        """The eigenvalues of `turning`, ascending."""
+        return np.sort(self.turning) if self.is_diagonal else np.linalg.eigvalsh(self.turning)
+
     @functools.cached_property
     def principal(self) -> tuple[Float[np.ndarray, "k"], Float[np.ndarray, "k k"] | None]:
         """The diagonal of B in its principal axes, and these as columns; None where they are those of the form."""

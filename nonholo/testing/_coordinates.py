@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from nonholo.analysis import invariants
 from nonholo.base.types import Float
 from nonholo.simulation import flow, simulate
 from nonholo.testing import _report as report
@@ -243,7 +244,7 @@ def _ends(s: CoordinateSamples, k: int) -> tuple[np.ndarray, np.ndarray]:
 
 @measures(MAP, "reversal", "a motion that nothing drives goes back the way it came", 1e-9)
 def _reversal(s: CoordinateSamples) -> float:
-    need(not s.system.is_driven, "forces, or what drives it, act")
+    need(invariants(s.orbit).work is None, "forces, or what drives it, act")
     need(s.system.discrete_constraints is None, "custom discrete constraints")
     q = s.orbit.configuration
     there, back = ([s.action(*ends, 0.0) for ends in itertools.pairwise(x)] for x in (q, q[::-1]))

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.analysis.bodies import blade_axes, plate
+from nonholo.analysis.bodies import plate
+from nonholo.analysis.planar import blade_axes
 from nonholo.base.types import Array
 from nonholo.examples import Example
 
@@ -58,7 +59,7 @@ def in_coordinates(name: str, q: Array, v: Array) -> Callable[[float], list[tupl
 def on_group(name: str, g: Array, v: Array) -> Callable[[float], list[tuple[Array, Array]]]:
     """Return the parts at poses along a body velocity."""
     system = ready(name).system.system
-    parts, axes = plate(system), blade_axes(system)
+    parts, axes = plate(system), blade_axes(system.inside)
 
     def at(s: float) -> list[tuple[Array, Array]]:
         pose = g @ system.group.exp(s * v) @ axes

@@ -13,7 +13,8 @@ import pytest
 from typer.testing import CliRunner
 
 import nonholo as nh
-from nonholo.analysis.bodies import blade_axes, plate
+from nonholo.analysis.bodies import plate
+from nonholo.analysis.planar import blade_axes
 from nonholo.cli._app import app
 from nonholo.explorer import explore
 from nonholo.explorer._explore import simulate_state
@@ -258,7 +259,7 @@ def test_drawings(orbit: Callable[[], Any], drawing: Any) -> None:
         np.testing.assert_array_equal(places, motion.configuration)
     else:
         expected = [np.concatenate(plate(system))] * 4
-        np.testing.assert_array_equal(frames[:, 0, :2], (motion.configuration @ blade_axes(system))[:, :2, 2])
+        np.testing.assert_array_equal(frames[:, 0, :2], (motion.configuration @ blade_axes(system.inside))[:, :2, 2])
     np.testing.assert_allclose(np.broadcast_to(corners, (4, *corners.shape[1:])), expected, rtol=1e-6, atol=1e-6)
 
 

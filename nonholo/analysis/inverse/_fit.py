@@ -16,7 +16,7 @@ from nonholo.base.checks import array, choice, error, function, instance, needs,
 from nonholo.base.results import result
 from nonholo.base.types import Array, Float
 from nonholo.orbit import Orbit
-from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, System
+from nonholo.systems import AbstractCoordinateSystem, System, refuse_fixed_in_space
 
 _FLAT = 1e-10  # least singular value of scaled derivatives, relative to the largest
 _LEAST_FREE = 0.1  # numbers of a kind that tell its noise
@@ -311,7 +311,6 @@ def _model(system_of: Callable[..., Any], numbers: np.ndarray, shapes: Any) -> A
     if isinstance(system, AbstractCoordinateSystem):
         model = coordinate_model(system, system_of(by_name(shapes, numbers)))
         return model._replace(maker=maker_of(system_of, shapes, numbers))
-    if not isinstance(system, AbstractSystem) or system.is_spatial:
-        remedy = "Return a SuslovTop, a sleigh, an LLSystem or a LagrangeDAlembert."
-        raise error("fit(system_of=...)", "return a system with a left-invariant constraint", shown(system), remedy)
+    remedy = "Return a SuslovTop, a sleigh, an LLSystem or a LagrangeDAlembert."
+    refuse_fixed_in_space("fit(system_of=...)", system, remedy, shown(system))
     return GroupModel(system, maker_of(system_of, shapes, numbers))

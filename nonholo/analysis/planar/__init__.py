@@ -31,6 +31,12 @@ def planar_variety(system: AbstractSystem) -> PlanarVariety | None:
     return kind(form, np.asarray(system.form_frame), np.asarray(system.form_map))
 
 
+def blade_axes(system: AbstractSystem) -> Float[np.ndarray, "3 3"] | None:
+    """Return the axes of the blade of a sleigh in the plane, at its contact point; None for other systems."""
+    variety = planar_variety(system)
+    return None if variety is None else variety.blade
+
+
 def planar_map(where: str, value: Any) -> tuple[Discretization, PlanarVariety]:
     """Return the discretization of a planar body that conserves energy, with its displacements, or refuse it."""
     discrete = as_discretization(where, value)

@@ -8,7 +8,7 @@ import numpy as np
 
 from nonholo.analysis.steering import _arguments
 from nonholo.analysis.steering._arguments import BLOCK, Ends, Limits, StateBounds, Way
-from nonholo.base.checks import choice, count, flag, needs, refuse_given, within_memory
+from nonholo.base.checks import choice, count, flags, needs, refuse_given, within_memory
 from nonholo.base.memo import Keeper
 from nonholo.base.progress import interruptibly, progress_bar
 from nonholo.base.results import result
@@ -152,7 +152,7 @@ def steer(
     discrete = as_discretization("steer(discrete=...)", discrete, forced=True) if is_on_group else discrete
     steps = count("steer(steps=...)", steps, "Pass the number of steps.")
     choice("steer(cost=...)", cost, ("effort",))
-    flag("steer(progress=...)", progress)
+    flags("steer", progress=progress)
     way = Way.of(discrete.system, steps, obstacles, outline, via, guess)
     extras = {"obstacles": obstacles, "outline": outline, "via": via, "state_bounds": state_bounds, "guess": guess}
     method = _method(discrete, method, extras)

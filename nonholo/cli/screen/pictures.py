@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import nonholo
+from nonholo.analysis.planar import blade_axes
 from nonholo.base.progress import progress_bar
 from nonholo.cli.scenario.files import parse_toml, table_in
 from nonholo.cli.scenario.sweeps import library_name
@@ -155,11 +156,7 @@ def warn_of_older(store: Path, paths: dict[str, str | None]) -> None:
 
 def _flow(orbit: Any) -> Any:
     """Return the continuous motion from the same start where a closed form makes it cheap."""
-    if not orbit.is_compact:
-        return None
-    form = orbit.system.normal_form
-    is_exact = form is not None and form.is_sleigh and form.is_planar
-    if orbit.cayley is None or orbit.canonical_pose is None or not is_exact:
+    if blade_axes(orbit.system) is None or orbit.cayley is None or orbit.canonical_pose is None:
         return None
     times = orbit.time[:: max(1, len(orbit) // _MOST_TIMES)]
     start = {"momentum": orbit.restricted_momentum[0], "configuration": orbit.configuration[0]}

@@ -138,6 +138,11 @@ class Branches:
     def __len__(self) -> int:
         return len(self.is_real)
 
+    @property
+    def real_count(self) -> int:
+        """The number of real displacements, those at a fold twice."""
+        return int(self.multiplicity[self.is_real].sum())
+
     def __repr__(self) -> str:
         real = np.count_nonzero(self.is_real)
         principal = "none is principal" if self.principal is None else f"number {self.principal} is principal"

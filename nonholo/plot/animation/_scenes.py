@@ -12,7 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgb, to_rgba
 
-from nonholo.analysis.bodies import Box, blade_axes, box_in_space, box_in_sphere, plate
+from nonholo.analysis.bodies import Box, box_in_space, box_in_sphere, plate
+from nonholo.analysis.planar import blade_axes
 from nonholo.base.types import Float, Int
 from nonholo.groups import SE
 from nonholo.orbit import AbstractOrbit, Orbit
@@ -171,7 +172,7 @@ def draw_path_in_plane(track: Track, axes: Axes, orbit: AbstractOrbit, parts: li
 
 def _axes(system: System) -> Float[np.ndarray, "3 3"]:
     """Return the axes in the body that are drawn: those of its blade, if it has one."""
-    axes = blade_axes(system)
+    axes = blade_axes(system.inside)
     return np.eye(3) if axes is None else axes
 
 

@@ -231,7 +231,7 @@ def _expectation(orbit: AbstractOrbit, has_work: bool) -> str:
     if orbit.is_measured:
         return "of given poses"
     motion = orbit.motion
-    exact = isinstance(motion, Discretization) and motion.is_balanced and motion.order == 2 and orbit.has_every_step
+    exact = isinstance(motion, Discretization) and motion.has_exact_work(cast(Orbit, orbit))
     if not has_work or exact:
         return _EXPECTED[exact or orbit.conserves_energy]
     return "of order 2 in the time between states"

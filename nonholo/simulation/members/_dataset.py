@@ -22,15 +22,15 @@ def ensemble_to_dataset(ensemble: Ensemble, none: Any) -> xarray.Dataset:
         ensemble: The ensemble to label.
         none: No state of the shared motion, as an orbit.
     """
-    variables = _of_bodies(ensemble) if none.is_compact else _in_coordinates(ensemble, none)
+    variables = _in_coordinates(ensemble, none) if ensemble.members.in_coordinates else _of_bodies(ensemble)
     variables["time"] = _EACH, ensemble.time, {"long_name": "time", "units": "time unit"}
     variables["outcome"] = "member", ensemble.outcome, {"long_name": "how the member ended, a nonholo.Outcome"}
     variables["steps_done"] = "member", ensemble.steps_done, {"long_name": "good steps"}
     for name, values in ensemble.parameters.items():
         axes = _AXES[: values.ndim - 1] if values.ndim != 2 else (f"{name}_component",)
         variables[name] = ("member", *axes), values, {"long_name": "parameter of the member"}
-    coordinates = {} if none.is_compact else none.to_dataset().coords
-    labels: dict[str, Any] = {str(x): rows for x, rows in coordinates.items() if x not in ("step", "time")}
+    coordinates = none.to_dataset().coords.items() if none.coordinates else ()
+    labels: dict[str, Any] = {str(x): rows for x, rows in coordinates if x not in ("step", "time")}
     if ensemble.save_every is not None:
         labels["step"] = ensemble.save_every * np.arange(ensemble.time.shape[1])
     common = io.provenance.attributes(none)

@@ -12,7 +12,7 @@ from nonholo.base.checks import array, error, is_traced, number, shape_of, shown
 from nonholo.base.memo import system_memo
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
-from nonholo.systems._base import AbstractLLSystem, AbstractSystem
+from nonholo.systems._base import AbstractLLSystem, AbstractSystem, refuse_fixed_in_space
 from nonholo.systems._subspace import independent_rows
 
 _ROUNDING = 1e-13  # relative, of an eigenvalue
@@ -142,9 +142,7 @@ class Slip:
 def remaining_rows(system: Any, slips: Sequence[Slip]) -> tuple[Float[np.ndarray, "s dim"], Float[np.ndarray, "j dim"]]:
     """Return the rows of all contacts, checked, and the rows of the annihilator that never yield."""
     where, remedy = "Forced(force=Slip(...))", "Pass rows of the system's annihilator."
-    if system.is_spatial:
-        remedy = "Leave the slip out: rows that yield are fixed in the body."
-        raise error(where, "have a constraint fixed in the body", "one fixed in space", remedy)
+    refuse_fixed_in_space(where, system, "Leave the slip out: rows that yield are fixed in the body.")
     for each in slips:
         if each.rows.shape[1] != system.group.dim:
             got = f"rows of {each.rows.shape[1]} numbers"

@@ -106,9 +106,8 @@ def homogeneous(group: AbstractMatrixGroup, vector: Array, last: float) -> Array
 
 def check_point(where: str, group: AbstractMatrixGroup, point: Array) -> None:
     """Refuse a group whose matrices move points of another dimension."""
-    n = group.size - group.is_affine
-    if point.shape != (n,):
-        remedy = f"Pass points and forces with {n} numbers each, or a function of the configuration."
+    if point.shape != (group.point_size,):
+        remedy = f"Pass points and forces with {group.point_size} numbers each, or a function of the configuration."
         raise error(where, f"have points of {group}", f"{len(point)} numbers", remedy)
 
 
