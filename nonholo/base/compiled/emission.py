@@ -28,14 +28,14 @@ def compile_text(text: str, name: str) -> int:
     return load_object(object_of(text), name)[0]
 
 
-def object_of(text: str, *, is_long: bool = False) -> bytes:
-    """Return the object of LLVM text for this processor.
+def object_of(text: str, *, search: int = 2, passes: int = 1) -> bytes:
+    """Return the object of LLVM text for this processor, by levels of the search for better instructions and of passes.
 
-    Nothing in it is reordered or fused: as with numba, arithmetic is strict. For long code there is less search for
-    better instructions, which takes seconds and gains nothing.
+    Nothing in it is reordered or fused: as with numba, arithmetic is strict. Passes of level 0 only copy functions into
+    their callers where the text demands it.
     """
-    machine, code = _this_machine(**{"opt": 1} if is_long else {}), llvm.parse_assembly(text)
-    _optimize(code, machine, 1)
+    machine, code = _this_machine(opt=search), llvm.parse_assembly(text)
+    _optimize(code, machine, passes)
     return machine.emit_object(code)
 
 

@@ -23,8 +23,10 @@ from nonholo.lagrange_dalembert.compiled._scalars import (
     OPERATIONS,
     Formulas,
     Scalar,
+    Text,
     UntranslatableError,
     operations_between,
+    reference,
 )
 
 LINEAR = {"add", "sub", "neg"}
@@ -279,7 +281,8 @@ class Expansion:
     def _write_value(self, x: Scalar, target: Any, *rest: Any) -> None:
         """Write the coefficient of order 0: the value."""
         values = [y if y.type == DOUBLE else self._of(y, self.first) for y in rest[: len(x.arguments)]]
-        self.builder.store(OPERATIONS[x.operation].emit(self.builder, *values), self.builder.gep(self.first, [target]))
+        text = OPERATIONS[x.operation].emit(self.builder.module, *map(reference, values))
+        self.builder.store(Text(self.builder, DOUBLE, text), self.builder.gep(self.first, [target]))
 
     def _write_states(self) -> None:
         """Write the coefficients of order k of the state."""

@@ -126,7 +126,7 @@ def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
 
 
 @functools.lru_cache(maxsize=64)  # a sweep makes a system for each member
-def values(function: Callable[..., Any], family: Any, *shapes: tuple[int, ...]) -> Values | None:
+def values(function: Callable[..., Any], family: Any, *shapes: tuple[int, ...], search: int = 1) -> Values | None:
     """Return the compiled function(system, ...) of parameters and arrays with these shapes; None if JAX must do it."""
     count = len(family.parameters)
 
@@ -139,7 +139,7 @@ def values(function: Callable[..., Any], family: Any, *shapes: tuple[int, ...]) 
         return whole.shapes
 
     try:
-        code, results = code_of(family, (function.__module__, function.__qualname__, shapes), write)
+        code, results = code_of(family, (function.__module__, function.__qualname__, shapes), write, search)
     except UntranslatableError:
         return None
     return Values(FUNCTION(code["values"]), list(map(tuple, results)))
@@ -232,7 +232,7 @@ def decoded(function: Callable[..., Any], system: Any, h: Any, q: np.ndarray, v:
 def value(function: Callable[..., Any], system: Any, *arguments: Any) -> list[Any] | None:
     """Return function(system, ...), some arrays, of arrays; None where there are no formulas, or doubts."""
     columns = [np.asarray(x, dtype=float)[None] for x in (*system.parameters.values(), *arguments)]
-    code = values(function, system.family, *(column.shape[1:] for column in columns))
+    code = values(function, system.family, *(column.shape[1:] for column in columns), search=0)
     results = code and evaluate(code, 1, *columns)
     return results and [each[0] for each in results]
 

@@ -16,35 +16,58 @@ class Operation(NamedTuple):
 
     Attributes:
         evaluate: The function of constants.
-        emit: Maps a builder of LLVM code and arguments to the result.
+        emit: Maps a module of LLVM code and arguments, each with its type, to an instruction.
         is_total: Whether finite arguments have a finite result, overflow apart.
     """
 
     evaluate: Callable[..., Any]
-    emit: Callable[..., Any]
+    emit: Callable[..., str]
     is_total: bool = True
 
 
-def _instruction(name: str) -> Callable[..., Any]:
-    return lambda builder, *arguments: getattr(builder, name)(*arguments)
+class Text(ir.Instruction):
+    """Lines of LLVM code at the end of a builder's block, whose text costs a fraction of objects for each.
+
+    Unless the type is void they have the value of the last one.
+    """
+
+    def __init__(self, builder: Any, kind: ir.Type, text: str) -> None:
+        super().__init__(builder.block, kind, "text", ())
+        self.text = text
+        builder.block.instructions.append(self)
+        builder.position_at_end(builder.block)
+
+    def descr(self, buf: list[str]) -> None:
+        """Write the lines."""
+        buf.append(self.text)
 
 
-def _function(name: str) -> Callable[..., Any]:
+def reference(value: Any) -> str:
+    """Return how an instruction refers to a value."""
+    return f"{value.type} {value.get_reference()}"
+
+
+def _instruction(name: str, end: str = "") -> Callable[..., str]:
+    return lambda _, first, *others: ", ".join([f"{name} {first}", *(x.split()[1] for x in others)]) + end
+
+
+def _function(name: str) -> Callable[..., str]:
     """Call a function of the C library, or what LLVM knows as an instruction."""
 
-    def emit(builder: ir.IRBuilder, *arguments: Any) -> Any:
-        kind = ir.FunctionType(DOUBLE, [DOUBLE] * len(arguments))
-        return builder.call(builder.module.globals.get(name) or ir.Function(builder.module, kind, name), arguments)
+    def emit(module: ir.Module, *arguments: str) -> str:
+        if name not in module.globals:
+            ir.Function(module, ir.FunctionType(DOUBLE, [DOUBLE] * len(arguments)), name)
+        return f"call double @{name}({', '.join(arguments)})"
 
     return emit
 
 
-def _comparison(sign: str) -> Callable[..., Any]:
-    name = "fcmp_unordered" if sign == "!=" else "fcmp_ordered"
-    return lambda builder, a, b: getattr(builder, "icmp_unsigned" if a.type == TRUTH else name)(sign, a, b)
+def _comparison(name: str) -> Callable[..., str]:
+    of_truths, of_doubles = f"icmp {name}", f"fcmp {'u' if name == 'ne' else 'o'}{name}"
+    return lambda _, a, b: f"{of_truths if a.startswith(str(TRUTH)) else of_doubles} {a}, {b.split()[1]}"
 
 
-_COMPARISONS = {"lt": "<", "le": "<=", "gt": ">", "ge": ">=", "eq": "==", "ne": "!="}
+_COMPARISONS = "lt", "le", "gt", "ge", "eq", "ne"
 LOGIC = {"and", "or", "not"}
 TRUTHS = LOGIC.union(_COMPARISONS)
 
@@ -71,14 +94,14 @@ OPERATIONS: dict[str, Operation] = {
     "abs": Operation(abs, _function("llvm.fabs.f64")),
     "max": Operation(np.maximum, _function("llvm.maximum.f64")),
     "min": Operation(np.minimum, _function("llvm.minimum.f64")),
-    "not": Operation(operator.not_, _instruction("not_")),
-    "float": Operation(float, lambda builder, truth: builder.uitofp(truth, DOUBLE)),
+    "not": Operation(operator.not_, _instruction("xor", ", true")),
+    "float": Operation(float, _instruction("uitofp", " to double")),
     "select": Operation(
-        lambda which, no, yes: yes if which else no, lambda builder, which, no, yes: builder.select(which, yes, no)
+        lambda which, no, yes: yes if which else no, lambda _, which, no, yes: f"select {which}, {yes}, {no}"
     ),
-    **{name: Operation(getattr(operator, name), _comparison(sign)) for name, sign in _COMPARISONS.items()},
-    "and": Operation(operator.and_, _instruction("and_")),
-    "or": Operation(operator.or_, _instruction("or_")),
+    **{name: Operation(getattr(operator, name), _comparison(name)) for name in _COMPARISONS},
+    "and": Operation(operator.and_, _instruction("and")),
+    "or": Operation(operator.or_, _instruction("or")),
     **_functions(_TOTAL, True),
     **_functions(_PARTIAL, False),
 }
@@ -114,6 +137,11 @@ class Scalar:
         self.is_total = own is None or (own.is_total and all(each.is_total for each in arguments))
         chooses_truth = operation == "select" and arguments[1].is_truth
         self.is_truth = chooses_truth or operation in TRUTHS or value is True or value is False
+
+    @property
+    def kind(self) -> ir.Type:
+        """The type in LLVM."""
+        return TRUTH if self.is_truth else DOUBLE
 
 
 class Formulas:
