@@ -129,7 +129,7 @@ class AbstractOrbit(Keeper, abc.ABC):
 
     @classmethod
     def of_run(cls: type[SelfT], steps: range, **fields: Any) -> SelfT:
-        """Return the orbit after these steps of a run, whose outcome is known: nothing is looked at again."""
+        """Return the orbit with these numbers of steps, whose outcome is known: nothing is looked at again."""
         orbit = object.__new__(cls)
         vars(orbit).update(fields, steps=steps)
         return orbit

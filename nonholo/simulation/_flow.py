@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, TypeAlias, overload
 
 import numpy as np
 
-from nonholo.base.checks import error, flags, flow_times, flow_tolerances, within_memory
+from nonholo.base.checks import LARGEST, are_moderate, error, flags, flow_times, flow_tolerances, within_memory
 from nonholo.base.progress import telling
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.continuous import ContinuousFlow, Problem, Solver, solver_of
@@ -134,9 +134,8 @@ def flow(
     flags("flow", project=project, reconstruct=reconstruct, progress=progress)
     starts = {"body_velocity": body_velocity, "momentum": momentum}
     if isinstance(system, AbstractCoordinateSystem):
-        others = {"restricted_velocity": restricted_velocity, "method": method}
-        no_pose = {"reconstruct": (reconstruct, True)}
-        refuse_in_coordinates("flow", **{name: (value, None) for name, value in others.items()}, **no_pose)
+        others = {"restricted_velocity": (restricted_velocity, None), "method": (method, None)}
+        refuse_in_coordinates("flow", **others, reconstruct=(reconstruct, True))
         errors = {"rtol": rtol, "atol": atol, "project": project}
         with telling("time", progress):
             return _flow_in_coordinates(system, events, configuration=configuration, times=times, **starts, **errors)
@@ -199,9 +198,8 @@ def _first_state(task: _Task, start: Start, with_poses: bool) -> FirstState:
 def flow_from(system: System, first: First, time: np.ndarray, rtol: float, *, reconstruct: bool) -> Orbit:
     """Return the flow from a checked start, with a pose where one is solved for, by the method that is the default."""
     solver, with_poses = solver_of(system, None, float(time[0]), reconstruct=reconstruct)
-    reduced, pose = first.numbers
     task = _Task(system, time, (rtol, 1.0), reconstruct)
-    return _solve_flow(task, solver, (reduced, pose if with_poses else None), None)
+    return _solve_flow(task, solver, (first.numbers[0], first.numbers[1] if with_poses else None), None)
 
 
 def _solve_flow(task: _Task, solver: Solver, first: FirstState, events: dict[str, Event] | None) -> Orbit:
@@ -213,9 +211,11 @@ def _solve_flow(task: _Task, solver: Solver, first: FirstState, events: dict[str
     states = solution.states
     if not reconstruct:  # nor is the memory kept, of which the momenta are a part
         states = states._replace(momenta=states.momenta.copy(), poses=None, turned=None)
-    outcome, count = solution.outcome, len(states.momenta)
+    count, is_finite = len(states.momenta), are_moderate(((states.momenta, LARGEST), (states.poses, np.inf)))
+    outcome = solution.outcome or (Outcome.successful if is_finite else Outcome.nonfinite)
     motion = ContinuousFlow(task.system, (time[0], time[count - 1]), solution.at)
-    orbit = Orbit(motion, time[:count], states.momenta, None, states.poses, outcome, turned=states.turned)
+    rows = {"reduced_momentum": states.momenta, "cayley": None, "canonical_pose": states.poses, "turned": states.turned}
+    orbit = Orbit.of_run(range(count), motion=motion, time=time[:count], **rows, outcome=outcome)
     if events is not None:
         orbit = flow_with_events(events, orbit, time[0] + solution.steps())
     return _successful(task, orbit, solution.fault)

@@ -55,10 +55,10 @@ def checked_run(
     """Return a run with checked options, for any start."""
     flags(owner, reconstruct=reconstruct, throw=throw, progress=progress)
     count, every = step_counts(owner, steps, save_every)
-    if isinstance(discrete, AbstractCoordinateDiscretization):
+    stepper = stepper_of(discrete, branch, backend, with_poses=reconstruct, owner=owner)
+    if not isinstance(discrete, Discretization):
         others = {"branch": (branch, "principal"), "reconstruct": (reconstruct, True), "backend": (backend, "auto")}
         refuse_in_coordinates(owner, **others)
-    stepper = stepper_of(discrete, branch, backend, with_poses=reconstruct, owner=owner)
     if discrete.forces is not None:
         check_forces(owner, discrete, count)
     return Run(stepper, count, every, None if events is None else watch_for(owner, stepper, events), throw, progress)
@@ -68,7 +68,7 @@ def stepper_of(
     discrete: Any, branch: BranchRule, backend: str, *, with_poses: bool, owner: str = "simulate"
 ) -> AbstractStepper[Any]:
     """Return what takes the steps of a run: the one place that asks for rule, backend and extra."""
-    if isinstance(discrete, AbstractCoordinateDiscretization):
+    if not isinstance(discrete, Discretization) and isinstance(discrete, AbstractCoordinateDiscretization):
         return discrete.stepper(with_poses=True)
     as_discretization(f"{owner}(discrete=...)", discrete, compositions=True, forced=True)
     if isinstance(branch, str) and isinstance(backend, str) and (branch, backend) == ("principal", "auto"):

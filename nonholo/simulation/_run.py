@@ -198,7 +198,7 @@ def blocks(
 def compute_block(stepper: Stepper, plan: Plan, number: int, start: Reached, report: Report) -> tuple[Any, Reached]:
     """Take the steps of a block: the only loop over steps."""
     table, watch = _Table(stepper, plan, number, fine=start.watch is not None), start.watch
-    state, step, code, pace = start.state.copy(), table.begin, 0, stepper.pace
+    state, step, code, pace = start.state, table.begin, 0, stepper.pace
     if watch is not None:  # a block without steps has a log too
         watch, _ = search(dataclasses.replace(watch, parts=()), orbit_at(stepper, state, step))
     over = watch is not None and watch.stopped_by is not None
@@ -238,7 +238,7 @@ def _watch_steps(stepper: Stepper, watch: Watch, state: State, stretch: tuple[in
 
 def _through(stepper: Stepper, watch: Watch, state: State, place: tuple[int, int], room: Rows) -> Searched:
     """Take the step from a node at a wall, or the part that is left of the step with the impact that was seen last."""
-    step, good = place
+    state, (step, good) = state.copy(), place
     if watch.reset_by is None:
         there, share = orbit_at(stepper, state, step), 0.0
     else:
@@ -256,17 +256,17 @@ def _advance(stepper: Stepper, state: State, steps: int, each: int, room: Rows) 
 
     No good step leads to a row whose pose has left its group.
     """
-    before = state.copy()
-    good, code = stepper.advance(state, steps, each, room)
+    after = state.copy()
+    good, code = stepper.advance(after, steps, each, room)
     last = stepper.sound(room, 1 + good // each) - 1
     has_left = last < good // each
     if has_left:
         good, code = max(last, 0) * each, Outcome.nonfinite
     if good % each or has_left:  # no row stands there
-        state = before
+        after = state.copy()
         if good:
-            stepper.advance(state, good, good, empty_rows(stepper, 2))
-    return state, good, code
+            stepper.advance(after, good, good, empty_rows(stepper, 2))
+    return after, good, code
 
 
 def _orbit_of(stepper: Stepper, table: _Table, plan: Plan, standing: Reached) -> Any:
