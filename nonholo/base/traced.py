@@ -26,6 +26,7 @@ from nonholo.base.types import Array, Float
 _HUGE = 1e300
 _MANY = 2048  # steps that take much longer than the question whether they are wanted
 _SHORT = 64  # steps between saved states from which on reverse mode keeps checkpoints alone
+_FEWEST, _MOST = 64, 10_000  # rows of a program that serves others, too: more take longer than to compile
 FEW = 32  # states, each of which takes long
 _ROOT = "root of a step"  # what a checkpoint keeps, so that no root is searched for twice
 
@@ -170,6 +171,17 @@ def call_in_blocks(function: Callable[..., Any], size: int, *columns: np.ndarray
     rows = [np.concatenate([x, np.broadcast_to(x[-1] if count else 0.0, (missing, *x.shape[1:]))]) for x in columns]
     parts = [function(*(x[i : i + size] for x in rows)) for i in range(0, len(rows[0]), size)]
     return [np.concatenate(column)[:count] for column in zip(*parts, strict=True)]
+
+
+def rows_above(count: int) -> int:
+    """Return a number of rows, from a count to a quarter more or 64, so that few programs are compiled; of many itself.
+
+    Example:
+        >>> [rows_above(count) for count in (1, 64, 65, 1000, 10_001)]
+        [64, 64, 128, 1024, 10001]
+    """
+    unit = max(_FEWEST, (1 << count.bit_length()) // 8) if count <= _MOST else 1
+    return -(-count // unit) * unit
 
 
 def rows_of(controls: Any, steps: int, size: int) -> Array | None:

@@ -48,21 +48,20 @@ class _Node(NamedTuple):
 
 
 def roll(
-    family: Any,
-    name: str,
     sizes: tuple[int, int],
+    controls: Any,
+    start: tuple[str, Array, Array],
+    family: Any,
     numbers: tuple[Array, ...],
     h: Array,
-    start: tuple[Array, Array],
-    controls: Any,
     work: Array | None = None,
 ) -> CoordinateRollout:
-    """Return the orbit from a start, which has a name, coordinates and a value; `sizes` are `steps` and `save_every`.
+    """Return the orbit from a start, which has a name, coordinates and a value, with the outcome up to each state.
 
     Controls are a row for each step, or a policy. `work` is the number by which many steps ask whether they are still
     wanted; None where they are differentiated.
     """
-    system, (q, value), (steps, every) = family.bound(*numbers), start, sizes
+    system, (name, q, value), (steps, every) = family.bound(*numbers), start, sizes
     n = family.dimension
     x, value = jnp.append(q, 0.0) if family.is_driven else jnp.asarray(q), jnp.asarray(value)
     p = equations.momentum(system, x, value) if name == "body_velocity" else value
@@ -89,7 +88,7 @@ def roll(
     states = jax.vmap(decoded)(nodes.x, nodes.y[0], nodes.control)
     acting = jnp.zeros_like(states[0]) if rows is None else nodes.control
     good = (marked_rows(each, nodes.cause, nodes.code == 0) for each in (*states, acting))
-    return CoordinateRollout(h * every * jnp.arange(1 + steps // every), *good, outcome=nodes.code[-1])
+    return CoordinateRollout(h * every * jnp.arange(1 + steps // every), *good, outcome=nodes.code)
 
 
 def _state_at(system: Any, x: Array, p: Array) -> NodeState:

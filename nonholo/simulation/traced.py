@@ -12,7 +12,7 @@ import numpy as np
 from nonholo.base.checks import array, count, error, function, is_traced, shape_of
 from nonholo.base.numerics import double_precision
 from nonholo.base.progress import interruptibly, number_of_work
-from nonholo.base.traced import NodeState
+from nonholo.base.traced import NodeState, rows_above
 from nonholo.base.types import Array
 from nonholo.discrete import Discretization, ScalarRoute, as_discretization
 from nonholo.discrete.definition import in_double, roll_out, traceable
@@ -60,10 +60,11 @@ def rollout(
     outcome reports it; states from there on are NaN and have the derivative NaN, states before keep theirs.
 
     Eager calls run in 64 bits and return NumPy arrays; traced calls must be 64-bit, or stand inside `allow_float32`.
-    The first call compiles, for each number of steps and each kind of system; `jax.jit` around a function of the
-    numbers keeps that to one time. Reverse mode keeps the states between two saved ones only at checkpoints: with
-    `save_every=steps` a gradient over millions of steps needs the memory of some thousand, and the work of two runs
-    more.
+    The first call compiles, for each kind of system: an eager one without a policy that saves every step for all
+    numbers of steps up to 63, or a quarter apart; any other for each number of steps, and `jax.jit` around a function
+    of the numbers keeps that to one time. Reverse mode keeps the states between two saved ones only at checkpoints:
+    with `save_every=steps` a gradient over millions of steps needs the memory of some thousand, and the work of two
+    runs more.
 
     Args:
         discrete: The discretized system; its numbers may be traced.
@@ -135,8 +136,7 @@ def roll(
                 f"{owner}(policy=...)", "be left out beside controls", "both", "Add the controls in the policy."
             )
     drive = controls if policy is None else policy
-    own = arguments(discrete, Start.of(owner, **start), sizes, drive)
-    return _call(run, *own, many=sizes[0] >= _MANY)
+    return _call(run, sizes, *arguments(discrete, Start.of(owner, **start), sizes, drive))
 
 
 class _Potential(equinox.Module):
@@ -197,7 +197,7 @@ def _on_group(discrete: Any, start: Start, sizes: tuple[int, ...], controls: Any
             raise error(f"{start.owner}(controls=...)", "have a step of order 2", got, "Use discretize(..., order=2).")
     check_forces(start.owner, discrete, sizes[0], in_jax=True)
     free, scalar, forced = definition_of(discrete)
-    return free, scalar, (start.name, value, g), controls, sizes, forced
+    return controls, (start.name, value, g), free, scalar, forced
 
 
 def definition_of(discrete: Any) -> tuple[Any, Any, Any]:
@@ -226,16 +226,24 @@ def _policy_of(apart: Callable[..., Array], weights: list[Array], time: Array, s
     return apart(time, state, *weights)
 
 
-def _call(run: Callable[..., Any], *arguments: Any, many: bool) -> Any:
-    """Return the states; many steps that are not traced end where nobody wants them any more."""
-    if not many or any(map(is_traced, jax.tree.leaves(arguments))):
-        return in_double(run, *arguments)
+def _call(run: Callable[..., Any], sizes: tuple[int, ...], controls: Any, *arguments: Any) -> Any:
+    """Return the states; many steps that are not traced end where nobody wants them any more.
+
+    Few numbers of steps are compiled: others, without a policy, which is not asked after the last step, run on.
+    """
+    (steps, every), rows = sizes, 1 + sizes[0] // sizes[1]
+    is_open = any(map(is_traced, jax.tree.leaves((controls, arguments))))
+    if every == 1 and not is_open and not callable(controls):
+        sizes = rows_above(rows) - 1, 1
+        controls = controls if controls is None else np.pad(controls, ((0, sizes[0] - steps), (0, 0)))
 
     def asking() -> Any:
         with number_of_work() as number:
-            return jax.block_until_ready(in_double(run, *arguments, np.asarray(number)))
+            return jax.block_until_ready(in_double(run, sizes, controls, *arguments, np.asarray(number)))
 
-    return interruptibly(asking)
+    is_short = steps < _MANY or is_open
+    states = in_double(run, sizes, controls, *arguments) if is_short else interruptibly(asking)
+    return type(states)(*(x[:rows] for x in states[:-1]), outcome=states.outcome[rows - 1, ...])
 
 
 def _in_coordinates(discrete: Any, start: Start, sizes: tuple[int, ...], controls: Any) -> tuple[Any, ...]:
@@ -249,7 +257,7 @@ def _in_coordinates(discrete: Any, start: Start, sizes: tuple[int, ...], control
     if controls is not None:
         controls = _checked_controls(start.owner, controls, sizes[0], (system.dimension,), system.shapes[0])
     numbers, h = jax.tree.map(traceable, numbers), np.float64(discrete.time_step)
-    return system.family, start.name, sizes, numbers, h, (q, value), controls
+    return controls, (start.name, q, value), system.family, numbers, h
 
 
 def _checked_start(discrete: Discretization, start: Start) -> tuple[Array, Array]:

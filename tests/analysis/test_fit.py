@@ -121,13 +121,21 @@ def test_top_is_found_from_its_gyroscope() -> None:
     assert (np.abs(errors) < 3).all()
 
 
-def test_exact_record_is_fitted_exactly() -> None:
-    """Without noise the body, the start and the orbit are recovered to rounding, from other numbers far away."""
+def test_exact_record_is_fitted_exactly(caplog: pytest.LogCaptureFixture) -> None:
+    """Without noise the body, the start and the orbit are recovered to rounding, from other numbers far away.
+
+    A record of another length has the same program.
+    """
     orbit = nh.simulate(SLEIGH, restricted_velocity=(1.0, 0.5), configuration=nh.SE(2).exp([0.7, 1.0, 2.0]), steps=60)
     record = {"t": orbit.time, "x": orbit.position[:, 0], "y": orbit.position[:, 1], "theta": orbit.heading}
     found = nh.fit(_sleigh, record, {"inertia": 2.0, "a": 0.9})
     np.testing.assert_allclose([*found.parameters.values()], [0.7, 0.4], rtol=1e-10)
     np.testing.assert_allclose(found.orbit.configuration, orbit.configuration, atol=1e-10)
+    with jax.log_compiles(), caplog.at_level("WARNING"):
+        shorter = nh.fit(_sleigh, {name: column[:50] for name, column in record.items()}, GUESS)
+    assert "by_kind" not in caplog.text
+    assert shorter.residuals[0]["turn"].shape == (50, 1)
+    np.testing.assert_allclose([*shorter.parameters.values()], [0.7, 0.4], rtol=1e-10)
 
 
 def _mixed_record(seed: int, every: dict[str, int], noise: dict[str, float]) -> dict[str, np.ndarray]:

@@ -125,8 +125,8 @@ SYSTEMS = [
 
 @pytest.mark.profile("routes", keep=["top"])
 @pytest.mark.parametrize(("system", "options"), SYSTEMS)
-def test_values_are_those_of_simulate(system: AbstractSystem, options: dict) -> None:
-    """Eager rollouts are NumPy arrays that agree with the compiled orbit to rounding, state by state."""
+def test_values_are_those_of_simulate(system: AbstractSystem, options: dict, caplog: pytest.LogCaptureFixture) -> None:
+    """Eager rollouts are NumPy arrays that agree with the compiled orbit to rounding, state by state, at any length."""
     discrete = nh.discretize(system, 0.1, **options)
     velocity = np.linspace(0.4, 0.6, system.rank)
     start = {
@@ -134,6 +134,10 @@ def test_values_are_those_of_simulate(system: AbstractSystem, options: dict) -> 
         "configuration": system.group.exp(np.linspace(0.1, 0.5, system.group.dim)),
     }
     found = nh.rollout(discrete, **start, steps=50)
+    with jax.log_compiles(), caplog.at_level("WARNING"):
+        shorter = nh.rollout(discrete, **start, steps=30)
+    assert "roll_out" not in caplog.text  # a program serves all up to 63 steps
+    assert all(map(np.array_equal, shorter[:-2], (x[:31] for x in found[:-2])))
     assert all(type(x) is np.ndarray and x.dtype == np.float64 for x in found[:-1])
     assert found.outcome == 0
     _assert_same(found, nh.simulate(discrete, **start, steps=50), 1e-13)
@@ -236,6 +240,17 @@ def test_second_derivatives() -> None:
 
 
 PUSHED = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.2), 1.0)
+
+
+@pytest.mark.profile("routes", instead="test_values_are_those_of_simulate")
+def test_what_fails_after_the_last_step_is_no_outcome() -> None:
+    """A table that pushes beyond the fold from node 2 on ends an orbit of three steps, not one of a single step."""
+    table = np.array([[0.0, -0.2, 0.0], [0.0, 0.0, 0.0], [10.0, 0.0, 0.0]])
+    pushed = nh.discretize(nh.Forced(PUSHED.system, force=table), 1.0)
+    one, three = (nh.rollout(pushed, restricted_velocity=(0.2, -0.1), steps=steps) for steps in (1, 3))
+    assert one.outcome == 0
+    assert three.outcome != 0
+    assert np.array_equal(one.momentum, three.momentum[:2])
 
 
 @pytest.mark.profile("routes", instead="test_derivatives_agree_with_40_digits")

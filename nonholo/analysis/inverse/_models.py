@@ -11,7 +11,7 @@ import numpy as np
 from nonholo.analysis.inverse._likelihood import Shapes, by_name
 from nonholo.analysis.inverse._measurements import WHERE, Names, at_nodes, ends_of, first, measured_rows, names_of
 from nonholo.base.checks import error
-from nonholo.base.traced import TracedFunction
+from nonholo.base.traced import TracedFunction, rows_above
 from nonholo.base.types import Array
 from nonholo.discrete import discretize
 from nonholo.discrete.definition import in_double
@@ -55,7 +55,8 @@ class GroupModel(NamedTuple):
         self, system_of: Callable[..., Any], shapes: Shapes, time_step: float, numbers: Array, starts: Array, *data: Any
     ) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
         """Return by kind residuals (T, K, c), measured minus computed, with derivatives by numbers and by starts."""
-        return in_double(_compile_on_group(self.maker, system_of, shapes), time_step, numbers, starts, *data)
+        run = _compile_on_group(self.maker, system_of, shapes)
+        return _in_few_lengths(run, self.system, time_step, numbers, starts, *data)
 
     def orbit(self, system: Any, h: float, start: np.ndarray, pose: np.ndarray, steps: int) -> Orbit:
         """Return the motion of a trial."""
@@ -92,6 +93,19 @@ def _with_slopes(one: Callable[..., Any], argnums: tuple[int, int]) -> Callable[
         return {kind: (rows[kind], *slopes[kind]) for kind in rows}  # JAX sorts a dictionary: only names are kept
 
     return jax.jit(by_kind)
+
+
+def _in_few_lengths(run: Callable[..., Any], system: Any, *arguments: Any) -> Any:
+    """Return what compiled rows are, of trials that run on through nodes at which nothing is measured.
+
+    So few numbers of steps are compiled. A table of forces, which may end with the record, has its own number.
+    """
+    *others, kinds = arguments
+    nodes = next(iter(kinds.values())).shape[1]
+    room = nodes if getattr(system, "table", None) is not None else rows_above(nodes)
+    more = (0, 0), (0, room - nodes), (0, 0)
+    parts = in_double(run, *others, {k: np.pad(x, more, constant_values=np.nan) for k, x in kinds.items()})
+    return {kind: tuple(x[:, :nodes] for x in part) for kind, part in parts.items()}
 
 
 def _gap(group: Any, kind: str, values: Array, orbit: Any, velocity: Array) -> Array:
@@ -256,7 +270,8 @@ class CoordinateModel(NamedTuple):
         self, system_of: Callable[..., Any], shapes: Shapes, time_step: float, numbers: Array, starts: Array, *data: Any
     ) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
         """Return by kind residuals (T, K, c), measured minus computed, with derivatives by numbers and by starts."""
-        return in_double(_compile_in_coordinates(self, system_of, shapes, time_step), numbers, starts, *data)
+        run = _compile_in_coordinates(self, system_of, shapes, time_step)
+        return _in_few_lengths(run, self.system, numbers, starts, *data)
 
     def orbit(self, system: Any, h: float, start: np.ndarray, pose: np.ndarray, steps: int) -> Any:
         """Return the motion of a trial."""

@@ -81,15 +81,15 @@ _Forces = tuple[_Impulse | None, Forced | None]
 
 
 def roll_out(
+    sizes: tuple[int, int],
+    controls: Any,
+    start: tuple[str, Array, Array],
     discrete: Scheme,
     scalar: ScalarStep | None,
-    start: tuple[str, Array, Array],
-    controls: Any,
-    sizes: tuple[int, int],
     forced: Forced | None,
     work: Array | None = None,
 ) -> Rollout:
-    """Return the orbit from a start, which has a name, a value and a pose; `sizes` are `steps` and `save_every`.
+    """Return the orbit from a start, which has a name, a value and a pose, with the outcome up to each state.
 
     The discretization is that of the free system, `forced` the system with its forces. Controls are a row for each
     step, or a policy. `work` is the number by which
@@ -355,7 +355,7 @@ def _decode(
 
     acting = jnp.zeros_like(P) if nodes.control is None else nodes.control
     rows = (marked_rows(each, nodes.cause, code == 0) for each in (r, P, W, g, energy, acting))
-    return Rollout(time, *rows, outcome=code[-1])
+    return Rollout(time, *rows, outcome=code)
 
 
 @compile_double
