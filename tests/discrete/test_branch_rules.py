@@ -4,7 +4,8 @@ import jax
 import numpy as np
 import pytest
 from bodies import GENERAL
-from continuation import FAMILIES, Problems, fold_factors, followed, newton, random_problems
+from fuzz.following import SHARP, distance, followed, newton
+from fuzz.steps import equations_of
 from refusals import refusals
 
 import nonholo as nh
@@ -24,53 +25,27 @@ FOUR_REAL = 2 * FOUR.system.constrained_inertia @ np.array([-0.25, -0.375]) / (1
 MOTION = nh.discretize(nh.MultidimensionalSleigh(1.3, [0.3, 0.2, -0.1], np.diag([0.5, 0.7, 0.4]) + 0.1), 0.3)
 
 
-def _run(system: nh.SuslovTop, r: np.ndarray) -> nh.Orbit:
-    return nh.simulate(nh.discretize(system, 1.0), momentum=r, steps=1, throw=False)
+KINDS = {"top": TOP, "four": FOUR, "sleigh": SLEIGH, "motion": MOTION}
 
 
-@pytest.mark.profile("problems", keep=["top 3", "sleigh"])
-@pytest.mark.parametrize("family", FAMILIES)
-def test_the_principal_value_is_that_of_a_continuation(family: str) -> None:
-    """Steps of up to 40 degrees take the root that 100 equal steps from momentum zero reach, before and after."""
-    problems = random_problems(family, 60, np.random.default_rng(1))
-    y, sure = followed(problems)
-    ahead = problems.following(y)
-    y_ahead, sure_ahead = followed(ahead)
-    references = np.stack([problems.displacement(y), ahead.displacement(y_ahead)], axis=1)
-    exists = sure & sure_ahead
-    assert exists.mean() > 0.9
-    for system, r, W in zip(
-        np.array(problems.systems)[exists], problems.restricted[exists], references[exists], strict=True
-    ):
-        found = _run(system, r).displacement
-        assert np.abs(found - W).max() < 1e-12 * np.abs(W).max()
-
-
-@pytest.mark.profile("routes", keep=["top 3"])
-@pytest.mark.parametrize("family", ["top 3", "motion 3"])
-def test_the_traced_step_takes_the_same_value(family: str) -> None:
-    """`step`, in closed form (top) and by definition (motion), agrees with the continuation too."""
-    problems = random_problems(family, 30, np.random.default_rng(2))
-    ahead = problems.following(followed(problems)[0])
-    y, sure = followed(ahead)
-    assert sure.all()
-    for system, r, W in zip(problems.systems, problems.restricted, ahead.displacement(y), strict=True):
-        after = nh.step(nh.discretize(system, 1.0), r)
-        assert np.abs(after.displacement - W).max() < 1e-12 * np.abs(W).max()
-
-
-@pytest.mark.profile("problems", keep=["sleigh"])
-@pytest.mark.parametrize("family", FAMILIES)
-def test_beyond_the_fold_steps_are_refused(family: str) -> None:
-    """Where the ray of the momentum has passed its fold, by a millionth or more, no step succeeds."""
-    rng = np.random.default_rng(3)
-    problems = random_problems(family, 60, rng)
-    factors = fold_factors(problems)
-    met = np.isfinite(factors)
-    assert met.sum() > 15
-    past = problems.only(met).times(factors[met] * (1 + 10 ** rng.uniform(-6, 0.3, met.sum())))
-    outcomes = {_run(system, r).outcome for system, r in zip(past.systems, past.restricted, strict=True)}
-    assert outcomes <= {Outcome.no_real_branch, Outcome.branch_unverified}
+@pytest.mark.profile("routes", keep=["top", "sleigh"])
+@pytest.mark.parametrize("discrete", KINDS.values(), ids=KINDS)
+def test_the_principal_value_is_that_of_a_continuation(discrete: nh.Discretization) -> None:
+    """Compiled and traced steps take the root that momentum zero leads to; a millionth or more beyond its fold none."""
+    (equations, size), rng = equations_of(discrete.system), np.random.default_rng(1)
+    r, unit = 2 * rng.normal(size=(60, discrete.system.rank)), size / discrete.time_step
+    path = followed(equations, r)
+    ahead = followed(equations, equations.momentum(path.roots, "right"))
+    reached = path.whole & ahead.whole & (np.minimum(path.slopes, ahead.slopes) > 0.1)
+    assert min(reached.sum(), path.folded.sum()) > 9
+    for momentum, *roots in zip(unit * r[reached], path.roots[reached], ahead.roots[reached], strict=True):
+        compiled, traced = nh.simulate(discrete, momentum=momentum, steps=1), nh.step(discrete, momentum)
+        missed = distance(np.stack([*compiled.displacement, traced.displacement]), np.stack([*roots, roots[1]]))
+        assert missed.max() < 1e-12
+    beyond = path.s * (1 + 10 ** rng.uniform(-6, 0.3, len(r)))
+    for momentum in unit * (beyond[:, None] * r)[path.folded]:
+        outcome = nh.simulate(discrete, momentum=momentum, steps=1, throw=False).outcome
+        assert outcome in (Outcome.no_real_branch, Outcome.branch_unverified)
 
 
 def test_following_from_rest_leads_to_the_principal_value() -> None:
@@ -111,20 +86,14 @@ def test_a_rule_bears_its_name(name: str) -> None:
 
 def test_nearest_follows_any_real_value() -> None:
     """From each real displacement the step ends where 200 steps of another continuation end."""
+    equations, _ = equations_of(TOP.system)
     for W in _real(nh.displacements_over(TOP, [0.2, 0.3])):
-        y = W[:2, 2] / (1 + W[2, 2])  # z_0 z / z_0^2
-        body = [np.array([x]) for x in (TOP.system.constrained_inertia, TOP.system.coupling)]
-        rows = (
-            TOP.system.restrict(nh.discrete_legendre(TOP, W)),
-            TOP.system.restrict(nh.discrete_legendre(TOP, W, "right")),
-        )
-        before, after = (0.15 * r for r in rows)
+        before, after, root = equations.momentum(W), equations.momentum(W, "right"), W[None]
         for t in np.linspace(0, 1, 201)[1:]:
-            problem = Problems([TOP.system], *body, (before + t * (after - before))[None])
-            y, converged, _ = newton(problem, np.reshape(y, (1, 2)))
-            assert converged.all()
+            root, last = newton(equations, root, (before + t * (after - before))[None])
+            assert last < SHARP
         step = nh.step(TOP, nh.discrete_legendre(TOP, W), branch="nearest")
-        assert np.abs(step.displacement - problem.displacement(y)[0]).max() < 1e-12
+        assert np.abs(step.displacement - root[0]).max() < 1e-12
 
 
 def _real(found: Branches) -> np.ndarray:
