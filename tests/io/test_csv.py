@@ -22,7 +22,8 @@ from nonholo.io.places import write_lock
 EPS = np.finfo(float).eps
 SPINNING = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0, 0.3), 0.1)  # turns forever
 FORWARDS = nh.discretize(nh.MultidimensionalSleigh(1.5, [0.3, 0.1, 0.2], np.diag([0.5, 0.7, 0.9])), 0.1)
-SPIN = {"restricted_velocity": (3.0, 0.5)}
+TOP = nh.SuslovTop(np.diag([1.0, 2.0, 3.0]))
+SPIN: dict[str, Any] = {"restricted_velocity": (3.0, 0.5)}
 HEISENBERG = nh.MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
 
 
@@ -52,8 +53,8 @@ def store(tmp_path: Path) -> Path:
 
 def test_signs_of_quaternions_are_continuous(tmp_path: Path) -> None:
     """A body that turns beyond half a circle gets a negative scalar part, not a jump."""
-    top = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.1)
-    q = _read(_written(nh.simulate(top, restricted_velocity=(0.9, 0.4), steps=200), tmp_path))[1][:, 1:]
+    orbit = nh.simulate(nh.discretize(TOP, 0.1), restricted_velocity=(0.9, 0.4), steps=200)
+    q = _read(_written(orbit, tmp_path))[1][:, 1:]
     assert q[0, 0] == 1
     assert q[:, 0].min() < -0.9
     assert np.linalg.norm(np.diff(q, axis=0), axis=1).max() < 0.1
@@ -110,25 +111,20 @@ def test_entries_from_ten_rows_on_are_told_apart(tmp_path: Path) -> None:
     assert len(set(names)) == rows.shape[1] == 122
 
 
-def test_store_in_chunks_gives_the_text_of_the_orbit(store: Path, tmp_path: Path) -> None:
-    """Headings continue over the borders of chunks: the same bytes, however the motion is cut."""
-    assert _of_store(store) == _written(nh.simulate(SPINNING, steps=100, **SPIN), tmp_path)
-
-
-def test_quaternions_go_on_over_chunks(tmp_path: Path) -> None:
-    """Signs continue over the borders of chunks too, here of one state each."""
-    top = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.5)
-    start = {"restricted_velocity": (0.9, 0.4), "steps": 40}
-    nh.simulate(top, store=tmp_path / "run.zarr", checkpoint_every=1, **start)
-    assert _of_store(tmp_path / "run.zarr") == _written(nh.simulate(top, **start), tmp_path)
-
-
-def test_headings_near_half_a_turn_go_on_over_chunks(tmp_path: Path) -> None:
-    """Where saved states are nearly half a turn apart the shorter turn is taken inside and between chunks alike."""
-    start = {"restricted_velocity": (3.0, 0.5), "steps": 100, "save_every": 10}
-    nh.simulate(SPINNING, store=tmp_path / "run.zarr", checkpoint_every=10, **start)
-    orbit = nh.simulate(SPINNING, **start)
-    assert 2.9 < abs(orbit.heading[1] - orbit.heading[0]) < np.pi
+@pytest.mark.parametrize(
+    ("discrete", "how"),
+    [
+        (SPINNING, {**SPIN, "steps": 100, "checkpoint_every": 8}),
+        (SPINNING, {**SPIN, "steps": 100, "save_every": 10, "checkpoint_every": 10}),
+        (nh.discretize(TOP, 0.5), {"restricted_velocity": (0.9, 0.4), "steps": 40, "checkpoint_every": 1}),
+    ],
+    ids=["headings", "nearly half a turn", "quaternions"],
+)
+def test_store_in_chunks_gives_the_text_of_the_orbit(discrete: Any, how: dict[str, Any], tmp_path: Path) -> None:
+    """Headings and signs continue over the borders of chunks; of nearly half a turn the shorter one is taken."""
+    nh.simulate(discrete, store=tmp_path / "run.zarr", **how)
+    orbit = nh.simulate(discrete, **{name: value for name, value in how.items() if name != "checkpoint_every"})
+    assert "save_every" not in how or 2.9 < abs(orbit.heading[1] - orbit.heading[0]) < np.pi
     assert _of_store(tmp_path / "run.zarr") == _written(orbit, tmp_path)
 
 
