@@ -207,7 +207,7 @@ def beside_state(owner: str, subject: Any, configuration: Any, velocity: Any) ->
     places, velocities = tangents.beside(motion, x, v, xi, (np.abs(v).max() or 1.0) * w)
     velocities = np.concatenate([np.tile(v, (1 + len(later), 1)), velocities])
     slopes = tangents.slopes(motion, np.concatenate([x[None], later, places]), velocities)
-    names, state = _names_of_coordinates(motion.system, size), np.append(np.zeros(size), v)
+    names, state = _names_of_coordinates(motion.system), np.append(np.zeros(size), v)
     frame = None if motion.system.coordinates else _frame(slopes[1][0], size)
     times = np.append(0.0, tangents.LATER)
     local = Local(names, size, state, *slopes, times, tangents.units(motion.system, x, v), frame)
@@ -216,10 +216,11 @@ def beside_state(owner: str, subject: Any, configuration: Any, velocity: Any) ->
 
 def _coordinates_beside(motion: Any, x: Array, v: Array, xi: Array, w: Array) -> tuple[np.ndarray, np.ndarray]:
     places, velocities = tangents.beside(motion, x, v, xi[None], w[None])
-    return places[0][: motion.system.shapes[0][0]], velocities[0]
+    return places[0][:-1] if motion.system.is_driven else places[0], velocities[0]
 
 
-def _names_of_coordinates(system: Any, size: int) -> tuple[str, ...]:
+def _names_of_coordinates(system: Any) -> tuple[str, ...]:
+    numbers, time = range(1, 1 + system.dimension), ("time",) * system.is_driven
     if not system.coordinates:
-        return *(f"xi{i}" for i in range(1, 1 + size)), *(f"v{i}" for i in range(1, 1 + size))
-    return *system.coordinates, *("time",) * (size - system.dimension), *(f"{name}'" for name in system.coordinates)
+        return *(f"xi{i}" for i in numbers), *time, *(f"v{i}" for i in numbers)
+    return *system.coordinates, *time, *(f"{name}'" for name in system.coordinates)

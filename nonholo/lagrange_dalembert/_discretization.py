@@ -199,8 +199,9 @@ class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
     @functools.cached_property
     def columns(self) -> dict[str, int]:  # type: ignore[override]
         """The names and sizes of what a row holds."""
-        (place, rate), system = map(math.prod, self.motion.system.shapes), self.motion.system
-        return {"place": place + system.is_driven, "body_velocity": rate, "multipliers": system.constraints}
+        system = self.motion.system
+        place, rate = map(math.prod, (system.place_shape, system.shapes[1]))
+        return {"place": place, "body_velocity": rate, "multipliers": system.constraints}
 
     @property
     def part_refused(self) -> str | None:
@@ -248,8 +249,7 @@ class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
 
     def _places(self, rows: np.ndarray) -> np.ndarray:
         """Return places from flat ones."""
-        system = self.motion.system
-        return rows if system.is_driven else rows.reshape(-1, *system.shapes[0])
+        return rows.reshape(-1, *self.motion.system.place_shape)
 
     def _state(self, motion: Motion, sign: Any) -> State:
         q, v, before = motion

@@ -19,9 +19,14 @@ _CORRECTIONS = 8  # of a velocity that belongs to a momentum: Newton's, one wher
 
 def _value_at(function: Any, system: LagrangeDAlembert, x: Array, *velocity: Array) -> Array:
     """Return the value of a user's function at a place, with the time if it takes it."""
-    time = (x[-1],) if takes_time(function, 1 + len(velocity)) else ()
+    time = (time_of(x),) if takes_time(function, 1 + len(velocity)) else ()
     q = x[:-1] if system.is_driven else x
     return jnp.asarray(function(q, *velocity, *time), dtype=x.dtype)
+
+
+def time_of(x: Array) -> Array:
+    """Return the time of a place of a driven system."""
+    return x[(-1, *(0 for _ in x.shape[1:]))]
 
 
 def lagrangian(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
@@ -143,7 +148,7 @@ def step_residual(
 
 def impulses(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[Array, Array]:
     """Return half the impulse of a step at each of its ends: of a table, half its row at both."""
-    row = 0.0 if system.table is None else system.table.row(x[-1] / h)
+    row = 0.0 if system.table is None else system.table.row(time_of(x) / h)
     if system.applied is None:
         return h / 2 * row, h / 2 * row
     end = system.places.ahead(x, v, h)
@@ -153,7 +158,7 @@ def impulses(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> tuple[A
 def applied(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
     """Return the force f(t, q, v); zero without a function, for a table belongs to steps."""
     function = system.applied
-    return jnp.zeros_like(v) if function is None else jnp.asarray(function(x[-1], x[:-1], v), dtype=x.dtype)
+    return jnp.zeros_like(v) if function is None else jnp.asarray(function(time_of(x), x[:-1], v), dtype=x.dtype)
 
 
 def slopes(system: LagrangeDAlembert, x: Array, v: Array) -> tuple[Array, Array]:

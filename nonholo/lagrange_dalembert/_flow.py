@@ -21,7 +21,7 @@ from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import compiled
 from nonholo.lagrange_dalembert._discretization import checked_state
 from nonholo.lagrange_dalembert._equations import solve_bordered
-from nonholo.lagrange_dalembert._functions import configurations, in_blocks, in_double, places, room
+from nonholo.lagrange_dalembert._functions import configurations, in_blocks, in_double, place, places, room
 from nonholo.lagrange_dalembert._orbit import ORBITS
 from nonholo.orbit import times_within
 
@@ -109,7 +109,7 @@ def _derivative(system: Any, time: Array, state: Float[Array, "... size"]) -> Fl
 
     def one(row: Array) -> Array:
         q, v = jnp.split(row, [int(np.prod(pose))])
-        x = jnp.append(q, time) if system.is_driven else q.reshape(pose)
+        x = place(system, q.reshape(pose), time)
         place_rate = jnp.ravel(system.places.rate(x, v))[: len(q)]
         return jnp.concatenate([place_rate, acceleration(system, x, v)[0]])
 
@@ -302,7 +302,7 @@ def _power(system: Any, x: Array, p: Array, row: Array) -> tuple[Array, Array]:
         v = equations.inverse_legendre(system, x, p)
         force = row + equations.applied(system, x, v)
         rates = equations.forms(system, x) @ v - equations.constraint(system, x, v)
-        time_slope = jax.grad(equations.lagrangian, argnums=1)(system, x, v)[-1]
+        time_slope = jnp.sum(jax.grad(equations.lagrangian, argnums=1)(system, x, v)[-1])
         return force @ v + acceleration(system, x, v, row)[1] @ rates - time_slope, v
 
     return jax.vmap(one)(x, p, jnp.asarray(row))

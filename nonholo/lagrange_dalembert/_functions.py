@@ -23,7 +23,7 @@ from nonholo.base.numerics import double_precision
 from nonholo.base.progress import compiling
 from nonholo.base.traced import TracedFunction, call_in_blocks
 from nonholo.base.types import Array, Float, Int
-from nonholo.systems import AbstractCoordinateSystem, DiscretizationT, OrbitT
+from nonholo.systems import AbstractCoordinateSystem, DiscretizationT, OrbitT, force_of, parts_of
 
 ROWS = 1024
 """Saved states of one call of JAX: one size of table, one compilation."""
@@ -283,6 +283,52 @@ class AbstractParametricSystem(AbstractCoordinateSystem[DiscretizationT, OrbitT]
     of_time: ClassVar[dict[str, int]] = {}
     """How many arguments those have that may be called with the time after them."""
     parameters: Any
+    force: Any
+
+    @property
+    def table(self) -> ForceTable | None:
+        """The forces of the steps, where they are given one by one."""
+        return parts_of(self.force).get("table")
+
+    @property
+    def applied(self) -> Callable[[Array, Array, Array], Array] | None:
+        """The force as a function, where there is one."""
+        return parts_of(self.force).get("function")
+
+    @property
+    def has_parts(self: Any) -> bool:
+        """Whether parts of a step are defined: functions and tables that were made for one time step have none."""
+        functions = (self.discrete_lagrangian, self.discrete_constraints, self.table)
+        return not any(getattr(each, "is_of_one_step", False) for each in functions)
+
+    @property
+    def place_shape(self: Any) -> tuple[int, ...]:
+        """Shape of a place: a configuration, of a driven system with the time in one more row."""
+        first, *others = self.shapes[0]
+        return first + self.is_driven, *others
+
+    def _check_force(self: Any, of: str, *shapes: Any) -> None:
+        """Put the force in its place: a function as JAX traces it, with that of `Friction`; a table; others."""
+        where, parts, n = f"{type(self).__name__}(force=...)", parts_of(self.force), self.dimension
+        if (friction := parts.pop("friction", None)) is not None:
+            friction.check(n)
+            parts["function"] = Resistance(parts.get("function"), friction.matrix)
+        if "table" in parts and not isinstance(parts["table"], ForceTable):
+            remedy = "Pass a function of time, configuration and velocity, Friction, or one force a step."
+            parts["table"] = ForceTable(array(where, parts["table"], (None, n), remedy))
+        if "function" in parts:
+            arguments = (jax.ShapeDtypeStruct((), float), *shapes, *self._shapes_given)
+            parts["function"] = checked_value(where, parts["function"], of, arguments, (n,), of)
+        object.__setattr__(self, "force", force_of(parts))
+
+    def _with_force(self, force: Any) -> Any:
+        """Return the force with another one, which may take parameters or do without; refuse it beside one."""
+        if force is not None and self.force is not None:
+            raise error("Forced(system=...)", "have no force yet", repr(self), "Pass all forces at once.")
+        parts = parts_of(force)
+        if self.parameters and "function" in parts:
+            parts["function"] = with_parameters(parts["function"], 3)
+        return self.force if force is None else force_of(parts)
 
     @property
     def _shapes_given(self) -> tuple[dict[str, jax.ShapeDtypeStruct], ...]:
@@ -341,8 +387,9 @@ class AbstractParametricSystem(AbstractCoordinateSystem[DiscretizationT, OrbitT]
 
     def _bound_fields(self, p: Mapping[str, Any]) -> dict[str, Any]:
         """Return the fields that are functions, with parameters within."""
-        own = {name: getattr(self, name) for name in self.functions}
-        return {name: each and Bound(each, p) for name, each in own.items()}
+        own, parts = {name: getattr(self, name) for name in self.functions}, parts_of(self.force)
+        parts |= {"function": Bound(parts["function"], p)} if "function" in parts else {}
+        return {name: each and Bound(each, p) for name, each in own.items()} | {"force": force_of(parts)}
 
     @functools.cached_property
     def plain(self) -> Self:
@@ -396,13 +443,17 @@ def configurations(system: Any, places: Any) -> Any:
 
 
 def places(system: Any, configurations: Any, time: Any) -> Any:
-    """Return the places of configurations at these times."""
-    return np.column_stack([configurations, time]) if system.is_driven else configurations
+    """Return the places of configurations at these times, with one more row of a driven system."""
+    if not system.is_driven:
+        return configurations
+    xp, (count, _, *row) = configurations.__array_namespace__(), configurations.shape
+    times = xp.reshape(xp.asarray(time, dtype=float), (-1, 1, *(1 for _ in row)))
+    return xp.concatenate([configurations, xp.broadcast_to(times, (count, 1, *row))], axis=1)
 
 
 def place(system: Any, q: Any, time: Any) -> Any:
     """Return where a system is: its configuration, of a driven one with the time."""
-    return np.append(q, time) if system.is_driven else q
+    return places(system, q[None], time)[0]
 
 
 def in_double(function: Callable[..., Any], system: Any, *arguments: Any) -> Any:

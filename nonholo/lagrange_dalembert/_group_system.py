@@ -9,13 +9,13 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import error, instance, shown, text
+from nonholo.base.checks import error, instance, text
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert import _functions as tracing
 from nonholo.lagrange_dalembert._places import Poses
-from nonholo.systems import checked_group, group_mass_tensor, inertia_form
+from nonholo.systems import checked_group, group_mass_tensor, inertia_form, parts_of, slips_of, terms_of
 
 if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._discretization import GroupDiscretization
@@ -52,7 +52,10 @@ class GroupLagrangeDAlembert(tracing.AbstractParametricSystem["GroupDiscretizati
         lagrangian: `lagrangian(body_velocity)` -> scalar, the limit of $l_d(e^{h\omega})/h$; only needed for `flow`
             and for starts from a velocity or a momentum, and only if it is not a quadratic form.
         potential: `potential(g)` -> scalar, U; steps take it at both ends, $l_d(W) - \tfrac h2(U(g) + U(gW))$.
-            `nonholo.Forced(system, potential)` adds it.
+            `nonholo.Forced(system, potential, force)` adds it, or `Gravity`, `Linear`, `Spring`, or a tuple of them.
+        force: `force(time, g, body_velocity)` -> (dim,), a body covector; or `nonholo.Friction`; or an array (steps,
+            dim), whose row k acts over step k; or a tuple with at most one of each. Half the impulse of a step acts at
+            each of its ends, as in coordinates.
         parameters: Numbers or arrays by name, p, which all functions take last, `constraint_forms(g, p)`: see
             `LagrangeDAlembert` and `with_parameters`.
         name: The name of the system in pictures.
@@ -80,20 +83,20 @@ class GroupLagrangeDAlembert(tracing.AbstractParametricSystem["GroupDiscretizati
     discrete_constraints: Callable[..., Array] | None = dataclasses.field(default=None, repr=False)
     lagrangian: Callable[..., Array] | None = dataclasses.field(default=None, kw_only=True, repr=False)
     potential: Callable[..., Array] | None = dataclasses.field(default=None, kw_only=True, repr=False)
+    force: Any = dataclasses.field(default=None, kw_only=True)
     parameters: Any = dataclasses.field(default_factory=dict, kw_only=True)
     name: str = dataclasses.field(default="Constraints that depend on the pose", kw_only=True)
     functions: ClassVar[tuple[str, ...]] = (
         *("discrete_lagrangian", "constraint_forms", "discrete_constraints"),
         *("lagrangian", "potential"),
     )
-    is_driven: ClassVar[bool] = False
     coordinates: ClassVar[tuple[str, ...]] = ()
     orbits: ClassVar[str] = "GroupOrbit"
     in_stores: ClassVar[tuple[str, ...]] = ("constraints", "coordinates", "is_driven", "orbits", "shapes")
     rule: ClassVar[str] = "midpoint"
     has_limit: ClassVar[bool] = True
     prescribed: ClassVar[tuple[()]] = ()
-    holonomic = constraint_velocities = force = applied = table = slip = cast(Any, None)
+    holonomic = constraint_velocities = slip = cast(Any, None)
 
     def __post_init__(self) -> None:
         remedy = "Pass nonholo.SO(n), SE(n), MatrixGroup or a product."
@@ -108,6 +111,15 @@ class GroupLagrangeDAlembert(tracing.AbstractParametricSystem["GroupDiscretizati
         self._trace_at("discrete_constraints", (self.constraints,), g, g, h)
         self._trace_at("lagrangian", (), jax.ShapeDtypeStruct((n,), float))
         self._trace_at("potential", (), g)
+        self._check_force(repr(self.group), g, jax.ShapeDtypeStruct((n,), float))
+        if slips_of(parts_of(self.force)):
+            remedy = "Write the system in coordinates or, where its forms are fixed in the body, as an LLSystem."
+            raise error("GroupLagrangeDAlembert(force=...)", "have forms that never yield", "a Slip", remedy)
+
+    @property
+    def is_driven(self) -> bool:
+        """Whether a force acts."""
+        return self.force is not None
 
     def _trace_at(self, name: str, shape: tuple[int, ...], *arguments: Any) -> None:
         arrays = f"shapes {[x.shape for x in arguments]}"
@@ -128,7 +140,7 @@ class GroupLagrangeDAlembert(tracing.AbstractParametricSystem["GroupDiscretizati
     @property
     def places(self) -> Poses:
         """Where it moves."""
-        return Poses(self.group)
+        return Poses(self.group, self.is_driven)
 
     @property
     def energy_argument(self) -> str:
@@ -162,13 +174,15 @@ class GroupLagrangeDAlembert(tracing.AbstractParametricSystem["GroupDiscretizati
         return self.discrete_lagrangian(W, time_step) - time_step / 2 * (self.potential(g) + self.potential(g @ W))
 
     def forced(self, potential: Any, force: Any) -> "GroupLagrangeDAlembert":
-        """Return the system with a potential U(g); `nonholo.Forced` calls it. Other forces have no way in yet."""
-        if force is not None or (potential is not None and self.potential is not None):
-            got = shown(self if force is None else force)
-            remedy = "Pass one potential; write a system with forces as an LLSystem."
-            raise error("Forced(system=...)", "have at most a potential, as a GroupLagrangeDAlembert", got, remedy)
-        potential = tracing.with_parameters(potential, 1) if self.parameters else potential
-        return dataclasses.replace(self, potential=potential) if potential is not None else self
+        """Return the system with potentials and a force besides; `nonholo.Forced` calls it."""
+        potentials = [] if self.potential is None else [self.potential]
+        for each in terms_of(potential):
+            if not callable(each):
+                each.check(self.group)
+            function = each if callable(each) else functools.partial(each.energy, self.group)
+            potentials.append(tracing.with_parameters(function, 1) if self.parameters else function)
+        total = functools.reduce(_sum, potentials) if potentials else None
+        return dataclasses.replace(self, potential=total, force=self._with_force(force))
 
     @property
     def shapes(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
@@ -178,6 +192,10 @@ class GroupLagrangeDAlembert(tracing.AbstractParametricSystem["GroupDiscretizati
     def discrete_map(self, time_step: Any) -> "GroupDiscretization":
         """Return the discretized system, see `nonholo.discretize`."""
         return tracing.room("_discretization").GroupDiscretization(self, time_step)
+
+
+def _sum(first: Callable[..., Array], second: Callable[..., Array]) -> Callable[..., Array]:
+    return lambda *arguments: first(*arguments) + second(*arguments)
 
 
 def _inertia(system: GroupLagrangeDAlembert) -> Array:

@@ -2,7 +2,7 @@ r"""Where motions take place: $\mathbb{R}^n$, whose places are vectors, and grou
 
 $\mathbb{R}^n$ is the group of translations: a step adds h v, where one on a group multiplies by $W = e^{hv}$. All other
 equations are the same. A place x is the configuration q, of a driven system (q, t): time is one more coordinate,
-whose rate is one.
+whose rate is one; on a group one more row of the matrix, in all of its entries.
 """
 
 from typing import Any, NamedTuple
@@ -40,7 +40,8 @@ class Coordinates(NamedTuple):
 
     def ends(self, x: Array, v: Array, h: Any) -> Pair:
         """Return what discrete functions take: q and q'."""
-        return x, x + h * v
+        q = x[: self.dimension]
+        return q, q + h * v
 
     def step_of(self, displacement: Array, h: Any) -> Array:
         """Return what stands for a displacement."""
@@ -100,10 +101,22 @@ class Poses(NamedTuple):
 
     Attributes:
         group: The group.
+        is_driven: Whether places have the time.
     """
 
     group: AbstractMatrixGroup
+    is_driven: bool = False
     at_rest = "at W = I"
+
+    def pose(self, x: Array) -> Array:
+        """Return the pose of a place."""
+        return x[..., : self.group.size, :] if self.is_driven else x
+
+    def _join(self, x: Array, g: Array, times: Any) -> Array:
+        """Return the place with another pose, and times added to its own."""
+        if not self.is_driven:
+            return g
+        return g.__array_namespace__().concatenate([g, x[..., self.group.size :, :] + times], axis=-2)
 
     def step(self, v: Array, h: Any) -> Array:
         """Return the displacement W."""
@@ -113,7 +126,7 @@ class Poses(NamedTuple):
 
     def ends(self, g: Array, W: Array, _h: Any) -> Pair:
         """Return what discrete functions take: g and W."""
-        return g, W
+        return self.pose(g), W
 
     def step_of(self, W: Array, _h: Any) -> Array:
         """Return what stands for a displacement: itself."""
@@ -125,40 +138,44 @@ class Poses(NamedTuple):
         With D the matrix of derivatives of l_d they are $\mathrm{tr}\,D^TE_iW$ and $\mathrm{tr}\,D^TWE_i$.
         """
         covector = self.group.coordinates.dual_vector
-        return covector(D @ W.T) - covector(g.T @ along_g), covector(W.T @ D)
+        return covector(D @ W.T) - covector(self.pose(g).T @ self.pose(along_g)), covector(W.T @ D)
 
     def force(self, w: Array, p: Array, g: Array, along_g: Array) -> Array:
         r"""Return $\mathrm{ad}^*_\omega p$, what turns the momentum of a free body, and the force of this slope."""
-        return self.group.coad(w, p) + self.group.coordinates.dual_vector(g.T @ along_g)
+        return self.group.coad(w, p) + self.group.coordinates.dual_vector(self.pose(g).T @ self.pose(along_g))
 
     def ahead(self, g: Array, v: Array, h: Any) -> Array:
         """Return the pose after a step."""
-        return g @ self.step(v, h)
+        return self._join(g, self.pose(g) @ self.step(v, h), h)
 
     def normalize(self, g: Array) -> Array:
         """Return the element of the group next to a matrix in which rounding errors have gathered."""
         group = self.group
-        return group.matrix_from_pose(group.normalize_pose(group.pose_from_matrix(g)))
+        return self._join(g, group.matrix_from_pose(group.normalize_pose(group.pose_from_matrix(self.pose(g)))), 0.0)
 
     def rate(self, g: Array, w: Array) -> Array:
         """Return the rate of change of a pose."""
-        return g @ self.group.hat(w)
+        return self._join(jnp.zeros_like(g), self.pose(g) @ self.group.hat(w), 1.0)
 
     def beside(self, g: Array, xi: Array) -> Array:
         r"""Return the pose $g e^\xi$."""
-        return g @ self.group.exp(xi)
+        n = self.group.dim
+        return self._join(g, self.pose(g) @ self.group.exp(xi[..., :n]), xi[..., n:, None])
 
     def frame(self, g: Array, v: Array, time: Any) -> Array:
         """Return from where poses are seen after a time: from a body that moves steadily."""
-        return self.ahead(g, v, time)
+        return self._join(g, self.pose(g) @ self.step(v, time), 0.0)
 
     def departure(self, g: Array, after: Array) -> Array:
         r"""Return the $\xi$ of a pose $g e^\xi$."""
-        return self.group.log(self.group.inverse(g) @ after)
+        later = (after - g)[..., self.group.size :, 0]
+        xi = self.group.log(self.group.inverse(self.pose(g)) @ self.pose(after))
+        return xi.__array_namespace__().concatenate([xi, later], axis=-1) if self.is_driven else xi
 
     def departure_rate(self, v: Array, xi: Array, w: Array) -> Array:
         r"""Return the rate of a small $\xi$ between poses that move with the body velocities v and w."""
-        return w - v + self.group.bracket(xi, v)
+        rate = w - v + self.group.bracket(xi[: len(v)], v)
+        return jnp.append(rate, 1.0) if self.is_driven else rate
 
     def configuration(self, where: str, value: Any) -> np.ndarray:
         """Return the checked configuration of a start, the identity by default."""

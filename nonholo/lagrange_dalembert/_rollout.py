@@ -10,6 +10,7 @@ import numpy as np
 from nonholo.base.traced import NodeState, implicit, marked_rows, rows_of, run_nodes, with_policy
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
+from nonholo.lagrange_dalembert._functions import place
 from nonholo.lagrange_dalembert._newton import orientation, solve
 
 
@@ -63,7 +64,7 @@ def roll(
     """
     system, (name, q, value), (steps, every) = family.bound(*numbers), start, sizes
     n = family.dimension
-    x, value = jnp.append(q, 0.0) if family.is_driven else jnp.asarray(q), jnp.asarray(value)
+    x, value = place(family, jnp.asarray(q), 0.0), jnp.asarray(value)
     p = equations.momentum(system, x, value) if name == "body_velocity" else value
     still, x_still, value_still = jax.lax.stop_gradient((numbers, x, value))
     search_system = family.bound(*still)

@@ -1,12 +1,12 @@
-r"""Steps of a constraint form that may yield: at each step that of all forms, or one without it, under friction.
+r"""Steps of constraint forms that may yield: at each step that of all forms, or one without them, under friction.
 
-With B the form and the momentum p of a node, $\pi$ its part along B, the step of all forms needs the impulses
-$\kappa - \pi$ at its beginning and $\nu$ at its end: $\kappa$ and $-\nu$ are the parts of $P$ and $P^+$. The form holds
-if $|\kappa - \pi + \nu| \le h\mu + \tfrac h2c|v|$ with the grip $\mu$. Otherwise it slides,
+With B the forms and the momentum p of a node, $\pi$ its parts along B, the step of all forms needs the impulses
+$\kappa - \pi$ at its beginning and $\nu$ at its end: $\kappa$ and $-\nu$ are the parts of $P$ and $P^+$. The forms hold
+if $|\kappa - \pi + \nu| \le h\mu + \tfrac h2c|v|$ with the grip $\mu$. Otherwise they slide,
 
-$$ P = p + \tfrac12B(q)j + \dots, \qquad p' = P^+ + \tfrac12B(q')j, \qquad -j\in h\mu\,\partial|u| + hc\,u, $$
+$$ P = p + \tfrac12B(q)^Tj + \dots, \qquad p' = P^+ + \tfrac12B(q')^Tj, \qquad -j\in h\mu\,\partial|u| + hc\,u, $$
 
-at the slip velocity u of the step, which its discrete constraint misses.
+at the slip velocity u of the step, which their discrete constraint misses.
 
 Reference: docs/theory/lagrange-dalembert.md, Proposition 15.3.
 """
@@ -26,20 +26,20 @@ from nonholo.lagrange_dalembert._discretization import CoordinateStepper
 from nonholo.lagrange_dalembert._flow import bordered_solution
 from nonholo.lagrange_dalembert._functions import in_blocks, in_double
 from nonholo.orbit import AbstractStepper, First, Rows, State
-from nonholo.systems import friction
+from nonholo.systems import friction, update_slope
 
-_MOST, _ROUNDING = 40, 1e-14  # corrections of an impulse; relative
+_MOST, _ROUNDING, _SEEN = 40, 1e-14, 1e-14  # corrections of an impulse; relative; of what changes a slope
 
-Beginning = tuple[int, np.ndarray, float, State | None]
+Beginning = tuple[int, np.ndarray, np.ndarray, State | None]
 """The outcome, the velocity of a step, the impulse j of its friction; the state of a run if it holds."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class SlipStepper(AbstractStepper[Any]):
-    """The steps of a form that may yield.
+    """The steps of forms that may yield.
 
-    A row has the momentum of its node, without the half impulse of the form. The impulse of friction, whether the form
-    holds, and the state of the run that holds are the stepper's own numbers.
+    A row has the momentum of its node, without the half impulse of the forms. The impulse of friction, whether they
+    hold, and the state of the run that holds are the stepper's own numbers.
 
     Attributes:
         motion: The discretization.
@@ -47,7 +47,7 @@ class SlipStepper(AbstractStepper[Any]):
 
     motion: Any
     lead: ClassVar[int] = 0
-    part_refused = "a form that may yield"  # type: ignore[assignment]
+    part_refused = "forms that may yield"  # type: ignore[assignment]
     in_threads = False
     branch = "nearest"
 
@@ -64,8 +64,8 @@ class SlipStepper(AbstractStepper[Any]):
         return {"place": place, "body_velocity": rate, "momentum": rate, "multipliers": impulse}
 
     def _ask(self, function: Any, *arguments: Any) -> Any:
-        own, system = self.motion.system.slip.rows[0], self.steppers[0].motion.system
-        return in_double(function, system, *arguments, np.pad(own, (0, system.constraints - len(own))))
+        own, system = self.motion.system.slip.rows, self.steppers[0].motion.system
+        return in_double(function, system, *arguments, np.pad(own, ((0, 0), (0, system.constraints - own.shape[1]))))
 
     def begin(self, x: np.ndarray, p: np.ndarray, near: np.ndarray, hold: State | None = None) -> Beginning:
         """Begin a step from a node, that which holds if it is known."""
@@ -73,23 +73,24 @@ class SlipStepper(AbstractStepper[Any]):
         if hold is None:
             hold, outcome = self.steppers[0].start(First((p, x, near)))
         v = hold[len(x) :][: len(near)]
+        still = np.zeros(len(slip.rows))
         if outcome != Outcome.successful:
-            return outcome, v, 0.0, hold
-        (pi, inertia), (_, _, first, last, form, *_) = self._ask(_node, x, p), self._ask(_ends, h, x, v)
-        if abs(first - pi + last) <= h * (slip.grip + slip.viscous / 2 * abs(pi / inertia)):
-            return 0, v, 0.0, hold
-        impulse, slope, most, viscous = 2 * (first - pi), 2 * inertia, h * slip.grip, h * slip.viscous
-        u = 0.0
-        for _ in range(_MOST):  # corrections of the impulse j(u), whose slope is that of the last two
-            goal = friction(np.array([[slope]]), np.array([slope * u - impulse]), [(slice(1), most, viscous)])[1][0]
-            if abs(goal - impulse) <= _ROUNDING * (abs(goal) + slope * np.linalg.norm(form) * np.linalg.norm(v)):
+            return outcome, v, still, hold
+        (pi, inertia), (_, _, first, last, forms, *_) = self._ask(_node, x, p), self._ask(_ends, h, x, v)
+        size = np.linalg.norm
+        if size(first - pi + last) <= h * (slip.grip + slip.viscous / 2 * size(np.linalg.solve(inertia, pi))):
+            return 0, v, still, hold
+        impulse, slope, u, law = 2 * (first - pi), 2 * inertia, still, (slice(None), h * slip.grip, h * slip.viscous)
+        for _ in range(_MOST):  # corrections of the impulse j(u), whose slope is that of the last ones
+            goal = friction(slope, slope @ u - impulse, [law])[1]
+            if size(goal - impulse) <= _ROUNDING * (size(goal) + size(slope) * size(forms) * size(v)):
                 return 0, v, goal, None
-            start, outcome = self.steppers[1].start(First((p + goal / 2 * form, x, near)))
+            start, outcome = self.steppers[1].start(First((p + goal / 2 @ forms, x, near)))
             v = start[len(x) :][: len(near)]
             if outcome != Outcome.successful:
                 return outcome, v, goal, None
             after = self._ask(_ends, h, x, v)[5]
-            slope = (goal - impulse) / (after - u) if (goal - impulse) * (after - u) > 0 else slope
+            slope = update_slope(slope, after - u, goal - impulse, float(_SEEN * size(goal)))
             impulse, u = goal, after
         return Outcome.not_converged, v, impulse, None
 
@@ -112,9 +113,9 @@ class SlipStepper(AbstractStepper[Any]):
 
     def _after(self, state: State) -> tuple[State, int]:
         """Return the state after a step and the outcome; write the impulses of the step into the state before it."""
-        x, v, _, impulses, (j,), (holds,), hold = self._parts(state)
-        _, arriving, _, last, _, _, form, x, forms = self._ask(_ends, np.float64(self.motion.time_step), x, v)
-        p, run, code = arriving + (last if holds else j / 2) * form, None, 0
+        x, v, _, impulses, j, (holds,), hold = self._parts(state)
+        _, arriving, _, last, _, _, own, x, forms = self._ask(_ends, np.float64(self.motion.time_step), x, v)
+        p, run, code = arriving + (last if holds else j / 2) @ own, None, 0
         if holds:
             run, nowhere = hold.copy(), tuple(np.empty((2, n)) for n in self.steppers[0].columns.values())
             code, x = self.steppers[0].advance(run, 1, 1, nowhere)[1], run[: len(x)]
@@ -125,11 +126,11 @@ class SlipStepper(AbstractStepper[Any]):
 
     def _state(self, x: np.ndarray, p: np.ndarray, beginning: Beginning) -> State:
         _, v, j, hold = beginning
-        own = [j, hold is not None], np.zeros(self.steppers[0].width + len(p) + 1) if hold is None else hold
+        own = j, [hold is not None], np.zeros(self.steppers[0].width + len(p) + 1) if hold is None else hold
         return np.concatenate([x, v, p, np.zeros(self.columns["multipliers"]), *own])
 
     def _parts(self, state: np.ndarray) -> list[np.ndarray]:
-        return np.split(state, np.cumsum([*self.columns.values(), 1, 1]))
+        return np.split(state, np.cumsum([*self.columns.values(), len(self.motion.system.slip.rows), 1]))
 
     def orbit(self, rows: Rows, step: int, every: int, outcome: Outcome) -> Any:
         """Return rows as an orbit."""
@@ -138,20 +139,21 @@ class SlipStepper(AbstractStepper[Any]):
         return dataclasses.replace(orbit, system=system, momentum=p, energy=in_blocks(_energies, system.free, q, p)[0])
 
 
-def _node(system: Any, x: Array, p: Array, row: Array) -> tuple[Array, Array]:
-    """Return the momentum of a slip in a momentum, and that of a unit slip."""
-    w, A, dual = equations.inverse_legendre(system, x, p), equations.forms(system, x), row / (row @ row)
+def _node(system: Any, x: Array, p: Array, rows: Array) -> tuple[Array, Array]:
+    """Return the momenta of slips in a momentum, and the matrix of those of unit slips."""
+    w, A, dual = equations.inverse_legendre(system, x, p), equations.forms(system, x), jnp.linalg.pinv(rows).T
     across = jnp.linalg.pinv(A).T @ (p - equations.momentum(system, x, w))
-    return dual @ across, dual @ bordered_solution(system, x, w, jnp.zeros_like(p), dual)[1]
+    units = jax.vmap(lambda off: bordered_solution(system, x, w, jnp.zeros_like(p), off)[1])(dual)
+    return dual @ across, dual @ units.T
 
 
-def _ends(system: Any, h: Array, x: Array, v: Array, row: Array) -> tuple[Array, ...]:
-    """Return P, $P^+$, the impulses of a step that holds, the form and the slip; form, place and forms at its end."""
+def _ends(system: Any, h: Array, x: Array, v: Array, rows: Array) -> tuple[Array, ...]:
+    """Return P, $P^+$, the impulses of a step that holds, own forms and slips; own forms, place and all at its end."""
     (leaving, arriving), end = equations.momenta(system, x, v, h), equations.ahead(system, x, v, h)
-    first, last = _node(system, x, leaving, row)[0], -_node(system, end, arriving, row)[0]
-    form, forms = row @ equations.forms(system, x), equations.forms(system, end)
-    slip = row @ equations.discrete_constraints(system, x, v, h)
-    return leaving, arriving, first, last, form, slip, row @ forms, end, forms
+    first, last = _node(system, x, leaving, rows)[0], -_node(system, end, arriving, rows)[0]
+    own, forms = rows @ equations.forms(system, x), equations.forms(system, end)
+    slips = rows @ equations.discrete_constraints(system, x, v, h)
+    return leaving, arriving, first, last, own, slips, rows @ forms, end, forms
 
 
 def _energies(system: Any, x: Array, p: Array) -> tuple[Array]:

@@ -64,8 +64,8 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
         prescribed: Motions s(time) of coordinates, by index: joints that are driven. Discrete motions follow them
             exactly; their multipliers, the last ones, are the driving forces.
         force: `force(time, q, v)` -> (n,); or `nonholo.Friction`; or an array (steps, n), whose row k acts over step k;
-            or `nonholo.Slip` of the form that may yield, `rows=[[0.0, 1.0]]` for the second of two; or a tuple with at
-            most one of each.
+            or `nonholo.Slip` of the forms that may yield, `rows=[[0.0, 1.0]]` for the second of two, one row for each;
+            or a tuple with at most one of each.
             `nonholo.Forced(system, potential, force)` adds one.
         parameters: Numbers or arrays by name, p. Where there are any, every function takes them as its last argument, a
             dictionary with these names: `lagrangian(q, v, p)` or `(q, v, time, p)`, `constraint_forms(q, p)` or
@@ -81,7 +81,7 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
 
     Raises:
         ValueError: A function that JAX cannot trace, that does not take the parameters there are, or whose result is
-            not real or has the wrong shape; an unknown rule; a driven system with its own discrete functions; names
+            not real or has the wrong shape; an unknown rule; own discrete functions where L or A has the time; names
             that are not n different words; a heading that is not among them, an outline that is no drawing.
 
     Example:
@@ -147,11 +147,10 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
         for name in ("discrete_lagrangian", "discrete_constraints"):
             object.__setattr__(self, name, tracing.with_time_step(getattr(self, name), len(self._shapes_given)))
         object.__setattr__(self, "prescribed", _motions(self.prescribed, dimension, self._shapes_given))
-        object.__setattr__(self, "force", _force(self.force, dimension))
         self._trace_functions()
 
     def _trace_functions(self) -> None:
-        n, of, last = self.dimension, f"{self.dimension} coordinates", self._shapes_given
+        n, of = self.dimension, f"{self.dimension} coordinates"
         q, time = jax.ShapeDtypeStruct((n,), float), jax.ShapeDtypeStruct((), float)
         self._trace("lagrangian", of, (q, q), tracing.checked_value, (), of)
         stack = "Stack one row per constraint; pass None for no constraint."
@@ -161,21 +160,20 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
         self._trace("discrete_lagrangian", of, (q, q, time), tracing.checked_value, (), of)
         self._trace("discrete_constraints", of, (q, q, time), tracing.checked_value, (self.velocity_constraints,), of)
         self._trace("constraint_velocities", of, (q, time), tracing.checked_value, (self.velocity_constraints,), of)
-        if self.applied is not None:
-            force = tracing.checked_value(_argument("force"), self.applied, of, (time, q, q, *last), (n,), of)
-            object.__setattr__(self, "force", force_of(parts_of(self.force) | {"function": force}))
+        self._check_force(of, q, q)
         self._check_slip(self.velocity_constraints)
-        if (self.is_driven or self.slip) and (self.discrete_lagrangian or self.discrete_constraints):
+        moves = self.constraint_velocities is not None or any(map(self.takes_time, self.of_time))
+        if (moves or self.slip) and (self.discrete_lagrangian or self.discrete_constraints):
             remedy = 'Use rule="midpoint" or "trapezoidal".'
-            where, demand = _argument("discrete_lagrangian"), "be left out of a driven system, or one with a Slip"
+            where, demand = _argument("discrete_lagrangian"), "be left out where L or A has the time, or of a Slip"
             raise error(where, demand, "discrete functions", remedy)
 
     def _check_slip(self, forms: int) -> None:
-        """Refuse a slip that is not of one of the forms."""
+        """Refuse slips of several contacts, and of rows that mix forms that yield with others."""
         rows = [each.rows for each in slips_of(parts_of(self.force))]
-        if len(rows) > 1 or any(row.shape != (1, forms) or np.count_nonzero(row) > 1 for row in rows):
-            demand = f"have at most one Slip, with one row of {forms} numbers, one of them not zero"
-            got, remedy = f"{[row.tolist() for row in rows]}", "Pass rows=[[0.0, 1.0]] for the second of two forms."
+        if len(rows) > 1 or any(each.shape[1] != forms or each.any(axis=0).sum() != len(each) for each in rows):
+            demand = f"have at most one Slip, with rows of {forms} numbers, one for each form that may yield"
+            got, remedy = f"{[each.tolist() for each in rows]}", "Pass rows=[[0.0, 1.0]] for the second of two forms."
             raise error(_argument("force"), demand, got, remedy)
 
     @functools.cached_property
@@ -192,10 +190,8 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
         return super().bound(*numbers)
 
     def _bound_fields(self, p: Mapping[str, Any]) -> dict[str, Any]:
-        parts = parts_of(self.force)
-        parts |= {"function": tracing.Bound(parts["function"], p)} if "function" in parts else {}
         motions = tuple((index, tracing.Bound(motion, p)) for index, motion in self.prescribed)
-        return super()._bound_fields(p) | {"force": force_of(parts), "prescribed": motions}
+        return super()._bound_fields(p) | {"prescribed": motions}
 
     @property
     def places(self) -> Coordinates:
@@ -212,29 +208,19 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
         return bool(self._time(function))
 
     @property
-    def table(self) -> tracing.ForceTable | None:
-        """The forces of the steps, where they are given one by one."""
-        return parts_of(self.force).get("table")
-
-    @property
-    def applied(self) -> Callable[[Array, Array, Array], Array] | None:
-        """The force as a function, where there is one."""
-        return parts_of(self.force).get("function")
-
-    @property
     def slip(self) -> Any:
-        """The form that may yield, where there is one."""
+        """The contact whose forms may yield, where there is one."""
         return parts_of(self.force).get("slip")
 
     @functools.cached_property
     def holding(self) -> Self:
-        """The system while the form that may yield holds; itself if none may."""
+        """The system while the forms that may yield hold; itself if none may."""
         others = without_slips(parts_of(self.force))
         return dataclasses.replace(self, force=force_of(others)) if slips_of(parts_of(self.force)) else self
 
     @functools.cached_property
     def free(self) -> Self:
-        """The system without the form that may yield; itself if none may."""
+        """The system without the forms that may yield; itself if none may."""
         if self.slip is None:
             return self
         rows = np.flatnonzero(~self.slip.rows.any(axis=0))
@@ -257,12 +243,6 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
         """Shapes of a configuration and of a velocity."""
         return (self.dimension,), (self.dimension,)
 
-    @property
-    def has_parts(self) -> bool:
-        """Whether parts of a step are defined: functions and tables that were made for one time step have none."""
-        functions = (self.discrete_lagrangian, self.discrete_constraints, self.table)
-        return not any(getattr(each, "is_of_one_step", False) for each in functions)
-
     def forced(self, potential: Any, force: Any) -> "LagrangeDAlembert":
         """Return the system with a potential U(q) and a force; itself with neither. `nonholo.Forced` calls it.
 
@@ -270,12 +250,8 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
         """
         if potential is None and force is None:
             return self
-        if self.force is not None:
-            raise error("Forced(system=...)", "have no force yet", repr(self), "Pass all forces at once.")
-        if self.parameters:
-            potential, parts = tracing.with_parameters(potential, 1), parts_of(force)
-            parts |= {"function": tracing.with_parameters(parts["function"], 3)} if "function" in parts else {}
-            force = force_of(parts)
+        force = self._with_force(force)
+        potential = tracing.with_parameters(potential, 1) if self.parameters else potential
         if potential is not None:
             q = jax.ShapeDtypeStruct((self.dimension,), float)
             of = f"{self.dimension} coordinates"
@@ -334,18 +310,6 @@ def _motions(motions: Any, dimension: int, last: tuple[Any, ...]) -> tuple[tuple
             raise error(where, f"have indices from 0 to {dimension - 1}", shown(index), "Name coordinates by index.")
         motion_of[index] = tracing.checked_value(where, motion, "the time", (time, *last), (), "the time")
     return tuple(motion_of.items())
-
-
-def _force(value: Any, dimension: int) -> Any:
-    """Return a force as a function, with that of `Friction`, a table, both, or None."""
-    parts = parts_of(value)
-    if (friction := parts.pop("friction", None)) is not None:
-        friction.check(dimension)
-        parts["function"] = tracing.Resistance(parts.get("function"), friction.matrix)
-    if "table" in parts and not isinstance(parts["table"], tracing.ForceTable):
-        remedy = "Pass a function of time, configuration and velocity, Friction, or one force a step."
-        parts["table"] = tracing.ForceTable(array(_argument("force"), parts["table"], (None, dimension), remedy))
-    return force_of(parts)
 
 
 def _argument(argument: str) -> str:

@@ -66,6 +66,8 @@ from nonholo.systems.forces import (
     friction,
     parts_of,
     slips_of,
+    terms_of,
+    update_slope,
     without_slips,
 )
 

@@ -6,6 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 import scipy.linalg
+from comparisons import assert_near
 from refusals import refusals
 from scipy.integrate import solve_ivp
 
@@ -224,6 +225,19 @@ def test_a_table_acts_row_by_row() -> None:
     assert np.ptp(table.energy[40:]) <= 1e-13 < np.ptp(table.energy[:40])
 
 
+def test_forces_act_beside_own_discrete_functions() -> None:
+    """The midpoint rule written as functions of both ends has the driven motion of the rule itself."""
+
+    def action(q, p, h):  # noqa: ANN001, ANN202
+        return h * _skate().lagrangian((q + p) / 2, (p - q) / h)
+
+    own = {"discrete_lagrangian": action, "discrete_constraints": lambda q, p, h: _blade((q + p) / 2) @ (p - q) / h}
+    forces = nh.Friction([0.1, 0.2, 0.3]), np.random.default_rng(0).normal(size=(20, 3))
+    start = {"configuration": (0.0, 0.0, 0.0), "body_velocity": (1.0, 0.0, 0.5), "steps": 20}
+    both = (nh.simulate(nh.discretize(_skate(force=forces, **each), 0.1), **start) for each in ({}, own))
+    assert_near(*both, 1e-13, "configuration", "momentum", "multipliers", "energy")
+
+
 _RACER, _RUB = nh.examples.roller_racer(), nh.Friction([0.1, 0.1, 0.1])
 _RACING = nh.discretize(_RACER.system, 0.1)
 
@@ -237,11 +251,11 @@ test_what_a_driven_system_refuses = refusals(
     (lambda: _raced((0.0, 0.0, 0.0, 0.1), _RACER.body_velocity), "agree with prescribed motions"),
     (lambda: _raced(_RACER.configuration, (0.0, 0.0, 0.0, 0.0)), "nearest admissible"),
     (
-        lambda: _skate(force=np.zeros((2, 3)), discrete_lagrangian=lambda q, p, h: (p - q) @ (p - q) / h),
-        "be left out of a driven system",
+        lambda: _skate(constraint_velocities=lambda _q, t: t[None], discrete_constraints=lambda q, p: (p - q)[:1]),
+        "be left out where L or A has the time",
     ),
     (lambda: _skate(prescribed={3: jnp.sin}), "indices from 0 to 2"),
     (lambda: _skate(force=np.zeros((4, 2))), "force"),
     (lambda: nh.Forced(nh.Forced(_skate(), None, _RUB), None, _RUB), "have no force yet"),
-    (lambda: nh.Forced(nh.examples.chaplygin_ball().system, None, _RUB), "have at most a potential"),
+    (lambda: nh.Forced(nh.examples.chaplygin_ball().system, None, nh.Slip([[1.0, 0.0]], 1.0)), "never yield"),
 )

@@ -248,6 +248,53 @@ def test_a_blade_in_a_potential_keeps_its_energy_and_converges() -> None:
     assert np.abs(np.log2(np.divide(errors[:-1], errors[1:])) - 2).max() <= 0.15
 
 
+RUB = nh.Friction([0.1, 0.3, 0.2])
+
+
+def motor(time, g, w, xp=jnp):  # noqa: ANN001, ANN201
+    """Return a force of time, pose and velocity."""
+    return xp.stack([xp.sin(time) * g[0, 0], -0.2 * w[1] ** 3, 0.3 * xp.cos(2 * time)])
+
+
+@pytest.mark.profile("routes", keep=["function"])
+@pytest.mark.parametrize("kind", ["function", "table"])
+def test_a_force_on_a_free_body_is_that_of_the_forced_map(kind: str) -> None:
+    """Half the impulse of a step at each of its ends, as in kicks: a table, and one row as a function."""
+    rows = np.random.default_rng(4).normal(size=(8 if kind == "table" else 1, 3)) * np.ones((8, 1))
+    kicked = nh.Forced(nh.LLSystem(PLANE, BODY.homogeneous_mass_tensor, np.eye(3)), None, rows, "variational")
+    force = rows if kind == "table" else lambda _t, _g, _w: jnp.asarray(rows[0])
+    ours, start = GroupLagrangeDAlembert(PLANE, ACTION, None, force=force), {**START, "body_velocity": (0.3, 0.5, -0.2)}
+    both = (nh.simulate(nh.discretize(each, 0.1), **start, steps=7) for each in (ours, kicked))
+    assert_near(*both, 1e-13, "configuration", "momentum", "energy")
+
+
+@pytest.mark.profile("routes", instead="test_a_force_on_a_free_body_is_that_of_the_forced_map")
+def test_forces_are_those_of_the_body_with_the_same_constraint() -> None:
+    """Flows under a weight, a spring, U, friction and f are those of `nh.Forced` of a sleigh; the map has order two."""
+    sleigh = CASES["sleigh"][0]
+    terms = nh.Gravity([0.0, -0.5], [0.2, 0.1]), nh.Spring([0.1, 0.2], [1.0, 1.0], 0.7, 0.3), height
+    ours = nh.Forced(rewritten(sleigh), terms, (RUB, motor))
+    known = nh.Forced(sleigh, terms, (RUB, functools.partial(motor, xp=np)))
+    start = {**START, "body_velocity": (0.5, 1.0, 0.0)}
+    flow, other = (nh.flow(each, **start, times=np.linspace(0.0, 1.0, 51)) for each in (ours, known))
+    assert_near(flow, other, 1e-9, "configuration", "momentum")
+    assert np.abs(flow.energy - flow.energy[0] - flow.work).max() <= 1e-3 * np.abs(flow.work).max()  # trapezoidal
+    gaps = [
+        nh.simulate(nh.discretize(ours, 1 / n), **start, steps=n).configuration[-1] - flow.configuration[-1]
+        for n in (20, 40)
+    ]
+    assert abs(np.log2(np.abs(gaps[0]).max() / np.abs(gaps[1]).max()) - 2) <= 0.15
+
+
+@pytest.mark.profile("routes", instead="test_a_force_on_a_free_body_is_that_of_the_forced_map")
+def test_a_table_on_a_group_acts_as_controls_do() -> None:
+    """Half a row at each end of its step, beside other forces: states and energies are those of `nh.rollout`."""
+    pushes, start = np.random.default_rng(4).normal(size=(12, 3)), {**START, "body_velocity": admissible(0.9, 1.0)}
+    rolled = nh.rollout(nh.discretize(nh.Forced(MIXED, height, RUB), 0.1), **start, controls=pushes, steps=12)
+    orbit = nh.simulate(nh.discretize(nh.Forced(MIXED, height, (RUB, pushes)), 0.1), **start, steps=12)
+    assert_near(orbit, rolled, 1e-12, "configuration", "momentum", "energy")
+
+
 @pytest.mark.profile("routes", instead="test_the_equations_hold_with_their_sign")
 def test_chaplygins_ball_keeps_its_momentum_about_the_contact() -> None:
     """On SO(3) x R^2: with the midpoint rule R I R^T Om + m x e3 x x' in space is constant to rounding."""
@@ -334,7 +381,6 @@ def branching(W, h):  # noqa: ANN001, ANN201
 
 
 # Each error names the argument and the requirement.
-# Each error names the argument and the requirement; a potential comes once, forces not at all.
 test_bad_definitions_are_refused = refusals(
     (lambda: GroupLagrangeDAlembert("SE(2)", ACTION, blade), "matrix group"),
     (lambda: GroupLagrangeDAlembert(PLANE, lambda W, h: W[0] / h, blade), "discrete_lagrangian.* scalar"),
@@ -349,8 +395,11 @@ test_bad_definitions_are_refused = refusals(
     (lambda: mass_tensor_lagrangian("SE(2)", np.eye(3)), r"\(group=\.\.\.\)` must be a matrix group"),
     (lambda: mass_tensor_lagrangian(PLANE, np.eye(2)), r"\(mass_tensor=\.\.\.\)` must have shape \(3, 3\)"),
     (lambda: mass_tensor_lagrangian(nh.Translations(2), np.eye(3)), "SO"),
-    (lambda: nh.Forced(MIXED, force=lambda _t, _g, w: w), "at most a potential"),
-    (lambda: nh.Forced(nh.Forced(MIXED, height), height), "at most a potential"),
+    (lambda: nh.Forced(MIXED, force=lambda _t, _g, w: w[:2]), r"force=\.\.\..* shape \(3,\)"),
+    (lambda: nh.Forced(MIXED, force=np.zeros((4, 2))), "have shape .*3"),
+    (lambda: nh.Forced(nh.Forced(MIXED, None, RUB), None, RUB), "have no force yet"),
+    (lambda: nh.Forced(MIXED, nh.Gravity(np.ones(3), np.ones(3))), "have points of SE"),
+    (lambda: nh.Forced(MIXED, 3.0), "be a potential"),
     (lambda: nh.Forced(MIXED, lambda g: g[0]), r"potential=\.\.\..* scalar"),
     (lambda: GroupLagrangeDAlembert(PLANE, ACTION, blade, parameters={"a": 1.0}), "take the parameters of the system"),
     (lambda: GroupLagrangeDAlembert(PLANE, ACTION, blade, parameters=3), "be a mapping of names"),

@@ -32,13 +32,15 @@ def _body(slip: nh.Slip, **numbers: Any) -> nh.LagrangeDAlembert:
     return nh.LagrangeDAlembert(_lagrangian, _forms, dimension=3, parameters=_NUMBERS | numbers, force=slip)
 
 
-def _random(rng: np.random.Generator, bend: float) -> tuple[nh.LagrangeDAlembert, float, np.ndarray]:
-    """Return a body with any grip, a time step, and a velocity that the first form allows."""
+def _random(rng: np.random.Generator, bend: float, several: int) -> tuple[nh.LagrangeDAlembert, float, np.ndarray]:
+    """Return a body with any grip, a time step, and a velocity that the first form allows, unless it may yield too."""
     grip, viscous = 10.0 ** rng.uniform(-3, 1, 2) * rng.integers(0, 2, 2)
     root, weight, holds, yields, velocity = rng.normal(size=(3, 3)), *rng.normal(size=(4, 3))
-    slip = nh.Slip([[0.0, rng.uniform(0.5, 2)]], grip, viscous)
+    rows = np.eye(2) + 0.5 * rng.uniform(-1, 1, (2, 2)) if several else [[0.0, rng.uniform(0.5, 2)]]
+    slip = nh.Slip(rows, grip, viscous)
     body = _body(slip, mass=root @ root.T + 0.1 * np.eye(3), weight=weight, holds=holds, yields=yields, bend=bend)
-    return body, 10.0 ** rng.uniform(-2, 0), velocity - holds * (holds @ velocity) / (holds @ holds)
+    across = 0 * holds if several else holds * (holds @ velocity) / (holds @ holds)
+    return body, 10.0 ** rng.uniform(-2, 0), velocity - across
 
 
 def test_a_block_slides_to_rest() -> None:
@@ -61,8 +63,8 @@ def test_a_block_slides_to_rest() -> None:
 @pytest.mark.profile("problems", keep=["0", "1", "2", "3"])
 @pytest.mark.parametrize("seed", range(200))
 def test_no_slip_adds_energy(seed: int) -> None:
-    """Under constant masses, forms and weights the energy never grows: any grip, coefficient and step."""
-    body, h, velocity = _random(np.random.default_rng(seed), 0.0)
+    """Under constant masses, forms and weights the energy never grows: one form or two, any grip and step."""
+    body, h, velocity = _random(np.random.default_rng(seed), 0.0, seed % 2)
     orbit = simulate(nh.discretize(body, h), configuration=np.zeros(3), body_velocity=velocity, steps=6)
     potential = orbit.configuration @ body.parameters["weight"]
     assert np.diff(orbit.energy).max() < 1e-13 * (abs(potential).max() + abs(orbit.energy).max())
@@ -71,29 +73,33 @@ def test_no_slip_adds_energy(seed: int) -> None:
 @pytest.mark.profile("problems", keep=["0", "1"])
 @pytest.mark.parametrize("seed", range(40))
 def test_every_step_satisfies_its_equations(seed: int) -> None:
-    """From the definition: the form holds within its grip, or friction opposes the slip, in halves at both ends."""
-    body, h, velocity = _random(np.random.default_rng(seed), 0.5)
+    """From the definition: forms hold within their grip, or friction opposes the slip, in halves at both ends."""
+    body, h, velocity = _random(np.random.default_rng(seed), 0.5, seed % 2)
     slip, p, steps, h = body.force, body.parameters, 8, h / 4
     orbit = simulate(nh.discretize(body, h), configuration=np.zeros(3), body_velocity=velocity, steps=steps)
-    mass, weight = p["mass"], p["weight"]
+    mass, weight, others = p["mass"], p["weight"], np.eye(2)[: 2 - len(slip.rows)]
+    s = len(others)  # forms that never yield
     for k in range(steps):
         q, end = orbit.configuration[k : k + 2]
         v = (end - q) / h
         leaving, arriving = mass @ v - h / 2 * weight, mass @ v + h / 2 * weight
         with jax.enable_x64(True):
-            A, after, middle = (np.array(_forms(x, p)) * [[1], [slip.rows[0, 1]]] for x in (q, end, (q + end) / 2))
-        (_, a), off = np.linalg.lstsq(A.T, leaving - orbit.momentum[k])[:2]
-        _, b = np.linalg.lstsq(after.T, orbit.momentum[k + 1] - arriving)[0]
-        u, size = middle[1] @ v, np.abs(orbit.momentum).max() + h * (1 + slip.grip)
+            A, after, middle = (
+                np.concatenate([others, slip.rows]) @ np.array(_forms(x, p)) for x in (q, end, (q + end) / 2)
+            )
+        a, off = np.linalg.lstsq(A.T, leaving - orbit.momentum[k])[:2]
+        a, b = a[s:], np.linalg.lstsq(after.T, orbit.momentum[k + 1] - arriving)[0][s:]
+        u, size = middle[s:] @ v, np.abs(orbit.momentum).max() + h * (1 + slip.grip)
         scale = 1e-11 * size * np.linalg.cond(mass)
         assert np.sqrt(off.sum()) < scale
-        assert abs(middle[0] @ v) < scale
-        inverse = np.linalg.inv(np.block([[mass, A[:1].T], [A[:1], np.zeros((1, 1))]]))[:3, :3]
-        speed = abs(A[1] @ inverse @ orbit.momentum[k])
-        if abs(u) < scale:
-            assert abs(a + b) <= h * slip.grip + h / 2 * slip.viscous * speed + scale
+        assert np.linalg.norm(middle[:s] @ v) < scale
+        inverse = np.linalg.inv(np.block([[mass, A[:s].T], [A[:s], np.zeros((s, s))]]))[:3, :3]
+        speed = np.linalg.norm(A[s:] @ inverse @ orbit.momentum[k])
+        if np.linalg.norm(u) < scale:
+            assert np.linalg.norm(a + b) <= h * slip.grip + h / 2 * slip.viscous * speed + scale
         else:
-            np.testing.assert_allclose([a, b], -h / 2 * (slip.grip * np.sign(u) + slip.viscous * u), atol=10 * scale)
+            friction = -h / 2 * (slip.grip * u / np.linalg.norm(u) + slip.viscous * u)
+            np.testing.assert_allclose([a, b], [friction] * 2, atol=10 * scale)
 
 
 SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.2)
@@ -191,12 +197,11 @@ def test_belts_loops_and_other_forces() -> None:
 _YIELDS: Any = nh.discretize(_body(nh.Slip([[0.0, 1.0]], 0.7)), 0.1)
 _AT: dict[str, Any] = {"configuration": np.zeros(3), "body_velocity": (1.0, 0.5, 0.0)}
 test_what_has_no_slip_is_refused = refusals(
-    (lambda: _body(nh.Slip(np.eye(2), 0.7)), "at most one Slip, with one row of 2 numbers"),
-    (lambda: _body(nh.Slip([[1.0, 1.0]], 0.7)), "at most one Slip, with one row of 2 numbers"),
-    (lambda: _body((nh.Slip([[1.0, 0.0]], 0.7), nh.Slip([[0.0, 1.0]], 0.7))), "at most one Slip, with one row"),
-    (lambda: _body(nh.Slip([[1.0, 0.0, 0.0]], 0.7)), "at most one Slip, with one row of 2 numbers"),
+    (lambda: _body(nh.Slip([[1.0, 1.0]], 0.7)), "at most one Slip, with rows of 2 numbers, one for each form"),
+    (lambda: _body((nh.Slip([[1.0, 0.0]], 0.7), nh.Slip([[0.0, 1.0]], 0.7))), "at most one Slip, with rows"),
+    (lambda: _body(nh.Slip([[1.0, 0.0, 0.0]], 0.7)), "at most one Slip, with rows of 2 numbers"),
     (lambda: simulate(_YIELDS, configuration=np.zeros(3), displacement=np.zeros(3), steps=1), "never yield"),
-    (lambda: simulate(_YIELDS, **_AT, steps=2, events=[lambda states: states.time]), "a form that may yield"),
+    (lambda: simulate(_YIELDS, **_AT, steps=2, events=[lambda states: states.time]), "forms that may yield"),
     (lambda: simulate(_YIELDS, **_AT, steps=2).work, "never yield"),
     (lambda: simulate(_YIELDS, **_AT, steps=2).tangent, "never yield"),
     (lambda: nh.flow(_YIELDS.system, **_AT, times=(0, 1)), "never yield"),

@@ -444,3 +444,15 @@ def test_rows_are_turned_as_the_group_multiplies(product: Any, group: nh.MatrixG
     for poses, turns in ((one, other), (other, one), (one, one[::-1]), (one, back), (-one, one), (one * np.nan, one)):
         found = [product(*pair) for pair in zip(poses.tolist(), turns.tolist(), strict=True)]
         assert np.array_equal(found, group.pose_product(poses, turns), equal_nan=True)
+
+
+def test_tables_of_members_and_branches() -> None:
+    """Below each other by member and time, none of a member that cannot start; a row for each value of the map."""
+    sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+    batch = nh.ensemble(sleigh, restricted_velocity=[[1, 0], [9, -9], [0, 1]], steps=4, save_every=2)
+    table = batch.to_pandas()
+    assert list(table.index.names) == ["member", "time"]
+    assert sorted(set(table.index.get_level_values(0))) == [0, 2]
+    assert table.loc[2].equals(batch.orbit(2).to_pandas())
+    found = nh.branches(sleigh, momentum=(1.0, 0.5))
+    assert np.array_equal(found.to_pandas().filter(like="momentum"), found.momentum)

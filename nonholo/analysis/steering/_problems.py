@@ -139,7 +139,7 @@ class CoordinateNodes(NamedTuple):
     def sizes(self) -> tuple[int, int, int]:
         """How many numbers a state, an inner part and the forces of a step have."""
         n = self.system.dimension
-        return math.prod(self.system.shapes[0]) + self.system.is_driven + n, n + self.system.constraints, n
+        return math.prod(self.system.place_shape) + n, n + self.system.constraints, n
 
     def residual(self, x: Array, z: Array, f: Array, after: Array, row: Array) -> Array:
         """Return the equations of a step; there is no table of forces."""
@@ -229,12 +229,16 @@ def _checked_coordinates(where: str, system: Any, q: Any) -> dict[int, float]:
 def driven_in_coordinates(
     discrete: Any, start: tuple[np.ndarray, np.ndarray], forces: Float[np.ndarray, "steps n"]
 ) -> Any:
-    """Return the orbit under forces, as far as it goes; the rollout where discrete functions leave no table a way."""
-    (v, q), system = start, discrete.system
-    if system.discrete_lagrangian or system.discrete_constraints:
-        return rollout(discrete, configuration=q, body_velocity=v, steps=len(forces), controls=forces)
-    table = discretize(system.forced(None, forces), discrete.time_step)
+    """Return the orbit under forces, as far as it goes."""
+    v, q = start
+    table = discretize(discrete.system.forced(None, forces), discrete.time_step)
     return simulate(table, configuration=q, body_velocity=v, steps=len(forces), throw=False)
+
+
+def _roll(discrete: Any, start: tuple[np.ndarray, np.ndarray], forces: Float[np.ndarray, "steps n"]) -> Any:
+    """Return the rollout under forces: compiled once for all of them."""
+    v, q = start
+    return rollout(discrete, configuration=q, body_velocity=v, steps=len(forces), controls=forces)
 
 
 def coordinate_problem(
@@ -261,7 +265,8 @@ def coordinate_problem(
         return _coordinate_unknowns(nodes, bent, forces + spread * rng.normal(size=(steps, n)))
 
     def gap_of(forces: np.ndarray) -> float:
-        return _coordinate_gap(program, goal, way, driven_in_coordinates(discrete, (v, q), forces))
+        by = _roll if system.discrete_lagrangian or system.discrete_constraints else driven_in_coordinates
+        return _coordinate_gap(program, goal, way, by(discrete, (v, q), forces))
 
     return Problem(program, bounds_of(program, limits, pins), first_guess, gap_of)
 

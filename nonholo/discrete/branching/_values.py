@@ -160,6 +160,13 @@ class Branches:
             rows.append((number, is_real, self.multiplicity[k], f"{self.fold_distance[k]:.3g}", text))
         return table(repr(self), rows, head)
 
+    def to_pandas(self) -> Any:
+        """Return a `pandas.DataFrame` with a row for each value, its complex momentum by component."""
+        import pandas
+
+        columns = {name: getattr(self, name) for name in ("is_real", "multiplicity", "fold_distance", "region")}
+        return pandas.DataFrame(columns | {f"momentum_{i}": row for i, row in enumerate(np.transpose(self.momentum))})
+
 
 def values_over(discrete: Discretization, frame: AnyFrame, r: Inexact[np.ndarray, "k"]) -> Branches:
     """Return all values over a restricted momentum in the user's frame."""

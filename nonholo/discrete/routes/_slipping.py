@@ -22,7 +22,7 @@ from nonholo.discrete._variety import Variety, variety_of
 from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledRoute, Compact, poses_of
 from nonholo.discrete.routes._forced import AbstractForcedRoute, BalancedRoute
 from nonholo.orbit import First, Orbit, Rows, State, configurations, keep_row, write_first
-from nonholo.systems import Contacts, Forced, Widened, friction
+from nonholo.systems import Contacts, Forced, Widened, friction, update_slope
 
 _MOST = 40  # corrections of a direction
 _ROUNDING, _SETTLED = 1e-15, 1e-12  # relative, of an impulse; where it does not fall any more
@@ -246,13 +246,6 @@ class SlipRoute(AbstractForcedRoute):
         start = np.append(r[:k], self.contacts.stop(r[k:], whole.rests)), pose
         beginning = self.slide(start, (*when, fraction), whole.rests, fraction * whole.impulse)
         return beginning.after if beginning.code == 0 else (nothing, np.full_like(pose, np.nan))
-
-
-def update_slope(slope: np.ndarray, way: np.ndarray, change: np.ndarray, least: float) -> np.ndarray:
-    """Return a slope with a change of the impulse along a way, by Broyden; changes by rounding are ignored."""
-    if np.linalg.norm(change) < least or not way @ change > 0:
-        return slope
-    return slope + np.outer(change - slope @ way, way) / (way @ way)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

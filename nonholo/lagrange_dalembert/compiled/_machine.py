@@ -119,12 +119,11 @@ def _digest(family: Any) -> str | None:
 
     def moves(x: Array, v: Array, h: Array) -> Any:
         places, step = family.places, family.places.step(v, h)
-        row = jnp.zeros(0) if family.table is None else family.table.row(x[-1] / h)
+        row = jnp.zeros(0) if family.table is None else family.table.row(equations.time_of(x) / h)
         slopes = *places.momenta(x, step, h, x, step), places.force(v, v, x, x)
         return jnp.concatenate([*map(jnp.ravel, (row, places.rate(x, v), equations.ahead(family, x, v, h), *slopes))])
 
-    place, velocity = family.shapes
-    place = (place[0] + 1,) if family.is_driven else place  # with the time
+    place, velocity = family.place_shape, family.shapes[1]
     shapes = tuple(jax.ShapeDtypeStruct(shape, float) for shape in (place, velocity, ()))
     functions = {name: getattr(family, name) for name in (*family.functions, "applied")} | dict(family.prescribed)
     digests = {name: getattr(each, "digest", None) for name, each in functions.items() if each is not None}

@@ -257,4 +257,4 @@ def _blocks(table: np.ndarray, shapes: list[tuple[int, ...]]) -> list[np.ndarray
 def _nodes(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray] | None:
     """Return the velocities that belong to the momenta at the nodes; None where they are not trusted."""
     body, velocities = _body(system, h, q[0], v[0], at_node=True), np.empty_like(v)
-    return (velocities,) if body and each_root(body, q, v, velocities) else None
+    return (velocities,) if body and each_root(body, q.reshape(len(q), -1), v, velocities) else None

@@ -293,6 +293,12 @@ class Ensemble:
         none = self._states(self.members.discrete, np.zeros_like(self._good), save_every=every)
         return importlib.import_module("nonholo.simulation.members._dataset").ensemble_to_dataset(self, none)
 
+    def to_pandas(self) -> Any:
+        """Return the tables of the orbits, one below the other, as a `pandas.DataFrame` by member and time."""
+        import pandas
+
+        return pandas.concat([orbit.to_pandas() for orbit in self.orbits], keys=range(len(self)), names=["member"])
+
     def _decode(self, name: str) -> np.ndarray:
         """Return a quantity of orbits, NaN after a member's end; at once where it is the same function for all."""
         if name in self.columns:

@@ -1,6 +1,15 @@
 """Forces and potentials: what acts on a system beside its constraint, and the system with it."""
 
-from nonholo.systems.forces._contacts import Contacts, Mode, friction
+from nonholo.systems.forces._contacts import Contacts, Mode, friction, update_slope
 from nonholo.systems.forces._forced import Forced, central_differences
-from nonholo.systems.forces._friction import Friction, Slip, Widened, force_of, parts_of, slips_of, without_slips
+from nonholo.systems.forces._friction import (
+    Friction,
+    Slip,
+    Widened,
+    force_of,
+    parts_of,
+    slips_of,
+    terms_of,
+    without_slips,
+)
 from nonholo.systems.forces._potentials import Gravity, Linear, Spring

@@ -121,6 +121,13 @@ def friction(slope: SlipMap, free: Slips, laws: list[Law]) -> tuple[Slips, Slips
     return x, np.full_like(j, np.nan)
 
 
+def update_slope(slope: SlipMap, way: Slips, change: Slips, least: float) -> SlipMap:
+    """Return a slope with a change of the impulse along a way, by Broyden; changes by rounding are ignored."""
+    if np.linalg.norm(change) < least or not way @ change > 0:
+        return slope
+    return slope + np.outer(change - slope @ way, way) / (way @ way)
+
+
 def _correct(slope: np.ndarray, free: np.ndarray, laws: list[Law], x: np.ndarray) -> np.ndarray:
     """Return slips after a correction by Newton's method of those that are not zero."""
     matrix, gap = slope.copy(), free - slope @ x
