@@ -21,7 +21,6 @@ HOMES = {
     "accelerations": "",  # of the tests
     "advance": "nonholo.lagrange_dalembert.compiled",
     "best": "nonholo.analysis.steering._shooting",
-    "continuation": "",  # of the tests
     "correction": "nonholo.kernels._scalar",
     "Expansion": "nonholo.lagrange_dalembert.compiled._expansion",
     "enclosures": "nonholo.discrete.certificate._certificate",

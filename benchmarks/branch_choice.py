@@ -13,13 +13,10 @@ from collections.abc import Callable
 
 import numpy as np
 from _command import options, small
-from _inside import continuation
+from _continuation import FAMILIES, Problems, fold_factors, followed, random_problems
 
 import nonholo as nh
 
-FAMILIES, Problems = list(continuation.FAMILIES)[: small(None, 1)], continuation.Problems
-fold_factors, followed = continuation.fold_factors, continuation.followed
-random_problems = continuation.random_problems
 SAME = 1e-8  # relative distance of displacements
 Step = Callable[[nh.Discretization, np.ndarray], tuple[nh.Outcome, np.ndarray]]
 
@@ -83,7 +80,7 @@ def folded(family: str, count: int, rng: np.random.Generator) -> list[Problems]:
 def main(count: int) -> None:
     """Print the counts."""
     for name, step in (("step", by_step), ("simulate", by_run)):
-        for family in FAMILIES:
+        for family in FAMILIES[: small(None, 1)]:
             rng, begun = np.random.default_rng(0), time.perf_counter()
             inside = within(random_problems(family, count, rng), step)
             outside = sum((beyond(part, rng, step) for part in folded(family, count, rng)), Counter())

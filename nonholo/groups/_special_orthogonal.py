@@ -63,9 +63,9 @@ class AbstractRodriguesGroup(AbstractMatrixGroup):
 
     def normalize_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
         """Return the pose whose quaternion, or cosine and sine, has length one."""
-        return of_length_one(self._directed(pose), self.unit_size)
+        return of_length_one(self._with_direction(pose), self.unit_size)
 
-    def _directed(self, pose: Array) -> Array:
+    def _with_direction(self, pose: Array) -> Array:
         """Return a checked pose, whose quaternion, or cosine and sine, can be divided by its length."""
         pose = self._pose(pose)
         unit = None if pose.ndim > 1 or is_traced(pose) else pose[: self.unit_size]
@@ -172,7 +172,7 @@ class SpecialOrthogonal3(AbstractRotations, AbstractRodriguesGroup):
 
     def matrix_from_pose(self, pose: Float[Array, "... 4"]) -> Float[Array, "... 3 3"]:
         """Return the rotation matrix of a quaternion, scalar first."""
-        return matrix_from_quaternion(self._directed(pose))
+        return matrix_from_quaternion(self._with_direction(pose))
 
     def pose_from_matrix(self, g: Float[Array, "... 3 3"]) -> Float[Array, "... 4"]:
         """Return the unit quaternion, scalar first and non-negative."""
@@ -180,7 +180,7 @@ class SpecialOrthogonal3(AbstractRotations, AbstractRodriguesGroup):
 
     def pose_product(self, pose: Float[Array, "... 4"], other: Float[Array, "... 4"]) -> Float[Array, "... 4"]:
         """Return Hamilton's product of two quaternions as a unit quaternion, its scalar non-negative."""
-        return quaternion_product(self._directed(pose), self._directed(other))
+        return quaternion_product(self._with_direction(pose), self._with_direction(other))
 
     def pose_rate(self, pose: Float[Array, "... 4"], x: Float[Array, "... 3"]) -> Float[Array, "... 4"]:
         """Return half the Hamilton product of the quaternion with the angular velocity."""

@@ -333,7 +333,7 @@ test_what_has_no_slip_is_refused = refusals(
     (lambda: nh.Forced(BODY, force=nh.Slip([BODY.annihilator[1] + BODY.annihilator[2]], 1.0)), "span the same as rows"),
     (lambda: nh.Forced(nh.RigidBody(np.eye(3)), force=nh.Slip(AXIS, 1.0)), "a constraint that can yield"),
     (lambda: nh.Forced(nh.VeselovaTop(np.eye(3)), force=nh.Slip(AXIS, 1.0)), "fixed in the body"),
-    (lambda: nh.Forced(nh.examples.knife_edge_on_incline().system, force=nh.Slip(AXIS, 1.0)), "one row of 1"),
+    (lambda: nh.Forced(nh.examples.knife_edge_on_incline().system, force=nh.Slip(AXIS, 1.0)), "rows of 1 numbers"),
     (lambda: nh.Forced(SLEIGH, force=(nh.Slip(BLADE, 1.0), nh.Slip(BLADE, 1.0))), "independent rows"),
     (lambda: nh.Slip(BLADE, -1.0), "never add energy"),
     (lambda: nh.Slip(BLADE, 1.0, -1.0), "never add energy"),
