@@ -83,7 +83,7 @@ class SlipStepper(AbstractStepper[Any]):
         impulse, slope, u, law = 2 * (first - pi), 2 * inertia, still, (slice(None), h * slip.grip, h * slip.viscous)
         for _ in range(_MOST):  # corrections of the impulse j(u), whose slope is that of the last ones
             goal = friction(slope, slope @ u - impulse, [law])[1]
-            if size(goal - impulse) <= _ROUNDING * (size(goal) + size(slope) * size(forms) * size(v)):
+            if size(goal - impulse) <= _ROUNDING * (size(goal) + size(slope) * size(np.abs(forms) @ np.abs(v))):
                 return 0, v, goal, None
             start, outcome = self.steppers[1].start(First((p + goal / 2 @ forms, x, near)))
             v = start[len(x) :][: len(near)]

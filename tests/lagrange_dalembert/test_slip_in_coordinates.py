@@ -60,6 +60,27 @@ def test_a_block_slides_to_rest() -> None:
     np.testing.assert_allclose(orbit.configuration[:, 1], t / 2, atol=1e-14)
 
 
+def _board(length: float) -> Any:
+    """Return the places of a board with a blade and a wheel that slide, in lengths."""
+
+    def forms(q, p):  # noqa: ANN001, ANN202
+        x, y = jnp.cos(q[2]), jnp.sin(q[2])
+        return jnp.array([[-y, x, 0.0], [x, y, -0.3 * p["length"]]])
+
+    def energy(_q, v, p):  # noqa: ANN001, ANN202
+        return (v[0] ** 2 + v[1] ** 2 + 0.3 * (p["length"] * v[2]) ** 2) / 2
+
+    slip, numbers, of_one = nh.Slip(np.eye(2), 0.3 * length, 0.1), {"length": length}, np.array([length, length, 1.0])
+    board = nh.LagrangeDAlembert(energy, forms, dimension=3, force=slip, parameters=numbers)
+    start = {"configuration": (0.3, 0.2, 0.1) * of_one, "body_velocity": (1.0, 0.4, 0.7) * of_one}
+    return simulate(nh.discretize(board, 0.05), **start, steps=20).configuration / of_one
+
+
+def test_slips_have_no_units() -> None:
+    """Of forms with lengths and angles: metres and micrometres have the same motion."""
+    np.testing.assert_allclose(_board(1e-6), _board(1.0), rtol=0, atol=1e-13)
+
+
 @pytest.mark.profile("problems", keep=["0", "1", "2", "3"])
 @pytest.mark.parametrize("seed", range(200))
 def test_no_slip_adds_energy(seed: int) -> None:
