@@ -304,12 +304,16 @@ def _with_potential(lagrangian: Callable[..., Array], potential: Any, *, last: b
 def _motions(motions: Any, dimension: int, last: tuple[Any, ...]) -> tuple[tuple[int, Callable[[Array], Array]], ...]:
     """Return prescribed motions as pairs of index and function, in the order of the coordinates."""
     where = _argument("prescribed")
+    try:
+        of_index = dict(motions)
+    except (TypeError, ValueError):
+        raise error(where, "be functions by index", shown(motions), "Pass {2: lambda time: jnp.sin(time)}.") from None
     time, motion_of = jax.ShapeDtypeStruct((), float), {}
-    for index, motion in sorted(dict(motions).items(), key=lambda pair: pair[0]):
+    for index, motion in of_index.items():
         if not isinstance(index, int) or not 0 <= index < dimension:
             raise error(where, f"have indices from 0 to {dimension - 1}", shown(index), "Name coordinates by index.")
         motion_of[index] = tracing.checked_value(where, motion, "the time", (time, *last), (), "the time")
-    return tuple(motion_of.items())
+    return tuple(sorted(motion_of.items()))
 
 
 def _argument(argument: str) -> str:

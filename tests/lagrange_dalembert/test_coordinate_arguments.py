@@ -130,6 +130,11 @@ test_bad_systems_are_refused = refusals(
         r"discrete_lagrangian=...\)` must be traceable by .*while_loop",
     ),
     (lambda: system_of(constraint_forms=None, prescribed={2: halved}), r"prescribed=...\)` must be .*while_loop"),
+    (lambda: system_of(constraint_forms=None, prescribed=[1, 2, 3]), r"prescribed=...\)` must be functions by index"),
+    (
+        lambda: system_of(constraint_forms=None, prescribed={"x": halved, 2: halved}),
+        r"prescribed=...\)` must have indices",
+    ),
     (lambda: nh.Forced(SYSTEM, lambda q: halved(q @ q)), r"potential=...\)` must be traceable by JAX .*while_loop"),
     (
         lambda: started(system_of(constraint_forms=lambda q: jnp.array([[1.0, 0, 0], [1.0, q[0], 0]])), (0, 1, 1)),
