@@ -77,7 +77,7 @@ def _board(length: float) -> Any:
 
 
 def test_slips_have_no_units() -> None:
-    """Of forms with lengths and angles: metres and micrometres have the same motion."""
+    """Of forms with lengths and angles: meters and micrometers have the same motion."""
     np.testing.assert_allclose(_board(1e-6), _board(1.0), rtol=0, atol=1e-13)
 
 
