@@ -1,5 +1,10 @@
 """The kernels of the page are those of the library: the same steps, refusals and numbers to the last bit."""
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 from explorer.webassembly import Module
@@ -177,6 +182,17 @@ def test_asks_for_no_function(kind: str) -> None:
     module = wasmtime.Module(wasmtime.Engine(), kernel(kind))
     assert {item.name for item in module.imports} <= {"__linear_memory", "__stack_pointer"}
     assert [item.name for item in module.exports] == ["run"]
+
+
+@pytest.mark.profile("routes", instead="test_asks_for_no_function")
+@pytest.mark.parametrize("processor", ["generic", "znver1", "skylake-avx512"])
+def test_compiles_on_every_processor(processor: str, tmp_path: Path) -> None:
+    """What numba merges for the processor that compiles, stores of exceptions among it, asks for no linker."""
+    about = {"NUMBA_CPU_NAME": processor, "NUMBA_CPU_FEATURES": "", "NUMBA_CACHE_DIR": str(tmp_path)}
+    environment = os.environ | about | {"NONHOLO_KERNELS": "numba"}
+    program = "import sys; from nonholo.base.compiled import wasm; sys.stdout.buffer.write(wasm.module('top4'))"
+    content = subprocess.check_output([sys.executable, "-c", program], env=environment)  # noqa: S603
+    assert [item.name for item in wasmtime.Module(wasmtime.Engine(), content).exports] == ["run"]
 
 
 def test_refuses_what_needs_a_linker() -> None:
