@@ -192,7 +192,7 @@ def conserved_momenta(system: AbstractSystem) -> ConservedMomenta:
         (0, 3)
     """
     remedy = "Pass a SuslovTop, an LLSystem, ..."
-    instance("conserved_momenta(system=...)", system, AbstractSystem, "be a system", remedy)
+    instance("conserved_momenta(system=...)", system, AbstractSystem, "be a system on a group", remedy)
     refuse_forces("conserved_momenta(system=...)", system)
     return _right(system) if system.is_spatial else _left(system)
 

@@ -9,7 +9,7 @@ import numpy as np
 import scipy.linalg
 from scipy.optimize import bisect, brentq
 
-from nonholo.base.checks import array, count, error, instance, needs, shown
+from nonholo.base.checks import array, count, error, function, instance, needs, shown
 from nonholo.base.memo import Keeper
 from nonholo.base.results import result
 from nonholo.base.types import Bool, Float, Inexact, Int
@@ -380,6 +380,7 @@ def critical_values(
         >>> bool(np.allclose(found, 2 * np.sqrt(1.2 * 9.81 * 0.3), rtol=1e-9))
         True
     """
+    function("critical_values(linearization=...)", linearization)
     where, remedy = "critical_values(interval=...)", "Pass the least and the largest value."
     low, high = array(where, interval, (2,), remedy)
     if not low < high:

@@ -289,10 +289,11 @@ def step_counts(owner: str, steps: Any, save_every: Any) -> tuple[int, int]:
 
 
 def choice(where: str, value: Any, choices: tuple[Any, ...], remedy: str = "Choose one of them.") -> Any:
-    """Return `value` if it is one of the allowed ones."""
+    """Return the one of the allowed values that `value` is; integers may be those of NumPy."""
     for each in choices:
-        if isinstance(value, type(each)) and (value is each or value == each):
-            return value
+        is_alike = is_integer(value) if isinstance(each, int) else isinstance(value, type(each))
+        if is_alike and (value is each or value == each):
+            return each
     raise error(where, "be one of " + ", ".join(map(repr, choices)), shown(value), remedy)
 
 

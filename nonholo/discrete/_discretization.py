@@ -22,7 +22,7 @@ _TOLERANCE = 1e-9  # relative, for matrices and momenta that a user computed in 
 
 
 @pytree
-@dataclasses.dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Discretization(Scheme, AbstractMotion):
     """A discretized system, made by `discretize`.
 
@@ -35,7 +35,7 @@ class Discretization(Scheme, AbstractMotion):
 
     Example:
         >>> discretize(ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
-        Discretization(system=ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5, b=0.0), time_step=np.float64(0.1),
+        Discretization(system=ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5, b=0.0), time_step=0.1,
             difference='matrix', constraint='skew', order=2)
     """
 
@@ -43,6 +43,10 @@ class Discretization(Scheme, AbstractMotion):
     """The route of a store that was begun by another one than the best; see `make_route`."""
     starts: ClassVar[tuple[str, ...]] = ("body_velocity", "displacement", "momentum", "restricted_velocity")
     structure: ClassVar[tuple[str, ...]] = (*Scheme.structure, "wanted_route")
+
+    def __repr__(self) -> str:
+        way = f"difference={self.difference!r}, constraint={self.constraint!r}, order={self.order}"
+        return f"Discretization(system={self.system!r}, time_step={self.time_step}, {way})"
 
     @functools.cached_property
     def route(self) -> AbstractRoute:
@@ -60,7 +64,7 @@ class Discretization(Scheme, AbstractMotion):
 
     def stepper(self, *, with_poses: bool) -> AbstractBodyStepper:
         """Return what takes the steps of the principal branch, and saves poses or not."""
-        return self._steppers[with_poses]
+        return self._steppers[bool(with_poses)]
 
     def first(self, start: Start, *, with_poses: bool) -> First:
         """Return the checked start of a run whose rows have poses or not: one may be large."""

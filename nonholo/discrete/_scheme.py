@@ -128,7 +128,7 @@ def weights(order: int) -> Float[np.ndarray, "S"]:
 def checked_order(order: Any, difference: object, constraint: object) -> int:
     """Refuse an order that is not offered, or not for this difference and constraint."""
     where = "discretize(order=...)"
-    choice(where, order, (2, *WEIGHTS))
+    order = choice(where, order, (2, *WEIGHTS))
     if order == 2:
         return order
     if callable(difference):

@@ -76,7 +76,7 @@ class FamilyTask:
             "steps": count(_where("steps"), self.steps, "Pass the number of steps."),
             "parameters": dict(parameters),
             "reductions": _names.checked_reductions(_where("reductions"), self.reductions, (_FINAL,), remedy),
-            "save_every": every and count(_where("save_every"), every, "Pass the steps between states, or None."),
+            "save_every": None if every is None else count(_where("save_every"), every, "Pass steps, or None."),
         }
         vars(self).update(fields)
         arguments = inspect.signature(self.family).parameters

@@ -109,7 +109,7 @@ class Grid(AbstractDesign):
 
     def values(self, first: int, count: int) -> Values:
         """Return the values of some members in order, by name."""
-        first, count = _some("Grid", first, count)
+        first, count = _some(self, first, count)
         places = np.unravel_index(np.arange(first, first + count), tuple(self.sizes.values()))
         return {name: values[at] for (name, values), at in zip(self.axes.items(), places, strict=True)}
 
@@ -155,7 +155,7 @@ class RandomDesign(AbstractDesign):
 
     def values(self, first: int, count: int) -> Values:
         """Return the values of some members in order, by name."""
-        first, count = _some("RandomDesign", first, count)
+        first, count = _some(self, first, count)
         return {
             name: value.draw(uniform_numbers(self.seed, f"design {name}", first, count, value.width))
             for name, value in self.distributions.items()
@@ -167,10 +167,15 @@ class RandomDesign(AbstractDesign):
         return {"kind": "RandomDesign", "seed": self.seed, "members": self.members, "distributions": each}
 
 
-def _some(owner: str, first: Any, count: Any) -> tuple[int, int]:
+def _some(design: AbstractDesign, first: Any, count: Any) -> tuple[int, int]:
     """Return which members are meant."""
-    first = natural(f"{owner}.values(first=...)", first, "Pass the number of the first member, from 0.")
-    return first, natural(f"{owner}.values(count=...)", count, "Pass how many members.")
+    where = f"{type(design).__name__}.values"
+    first = natural(f"{where}(first=...)", first, "Pass the number of the first member, from 0.")
+    count = natural(f"{where}(count=...)", count, "Pass how many members.")
+    if first + count > design.members:
+        got = f"{first} + {count} of {design.members}"
+        raise error(f"{where}(count=...)", "not lead beyond the last member", got, "Ask for fewer.")
+    return first, count
 
 
 Design: TypeAlias = Grid | RandomDesign

@@ -175,7 +175,9 @@ class Event:
     def __post_init__(self) -> None:
         if not callable(self.function):
             raise error("Event(function=...)", "be a function of an orbit", shown(self.function), "Pass a function.")
-        choice("Event(direction=...)", self.direction, (-1, 0, 1), "1 is from below, -1 from above, 0 both.")
+        remedy = "1 is from below, -1 from above, 0 both."
+        direction = choice("Event(direction=...)", self.direction, (-1, 0, 1), remedy)
+        object.__setattr__(self, "direction", direction)
         if self.name is not None:
             checked_name("Event(name=...)", self.name)
         if not isinstance(self.stop, bool):

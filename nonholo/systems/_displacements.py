@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from nonholo.base.checks import error, positive, shape_of, trailing
+from nonholo.base.checks import positive, shape_of, trailing
 from nonholo.base.types import Array, Bool, Float
 
 
@@ -60,17 +60,15 @@ def in_exp_d(displacement: Float[np.ndarray, "... n n"], tolerance: float = 1e-9
         tolerance: Largest entry of a defect that is forgiven.
 
     Raises:
-        ValueError: Not a square matrix, or a stack of such.
+        ValueError: Not a square matrix, or a stack of such; one matrix that is not finite.
 
     Example:
         >>> in_exp_d(nh.SO(3).exp([0.3, -0.2, 0.0])), in_exp_d(np.diag([-1.0, -1.0, 1.0]))
         (np.True_, np.False_)
     """
     where = "in_exp_d(displacement=...)"
-    W = trailing(where, displacement, (), "Pass W of SO(n).", real=True)
-    n = W.shape[-1] if W.ndim >= 2 else 0
-    if n < 2 or W.shape[-2] != n:
-        raise error(where, "be a square matrix", f"shape {W.shape}", "Pass W of SO(n).")
+    n = max((2, *shape_of(displacement)[-1:]))
+    W = trailing(where, displacement, (n, n), "Pass W of SO(n).", real=True)
     tolerance = positive("in_exp_d(tolerance=...)", tolerance, "Pass a positive error.")
     reflection = np.append(np.ones(n - 1), -1.0)[:, None] * W
     transpose = np.swapaxes(reflection, -1, -2)

@@ -119,6 +119,7 @@ def test_flow_keeps_what_is_listed_and_nothing_else() -> None:
 
 
 def test_only_systems_have_momenta() -> None:
-    """Anything else is refused."""
-    with pytest.raises(ValueError, match=r"conserved_momenta\(system=\.\.\.\)` must be a system. Got 3"):
-        conserved_momenta(3)
+    """Anything else is refused, systems in coordinates in these words."""
+    for other in (3, nh.examples.particle().system):
+        with pytest.raises(ValueError, match=r"conserved_momenta\(system=\.\.\.\)` must be a system on a group. Got"):
+            conserved_momenta(other)

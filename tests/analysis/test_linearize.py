@@ -8,6 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from comparisons import derivatives
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.analysis._linearize import Linearization, Local, reduced
@@ -309,10 +310,14 @@ def test_critical_values_of_a_disk_and_a_bead() -> None:
             samples=3,
         )
         assert np.abs(found - 1.0).max() < error
-    with pytest.raises(ValueError, match="return a Linearization"):
-        nh.critical_values(lambda spin: spin, (0.0, 1.0))
-    with pytest.raises(ValueError, match="must rise"):
-        nh.critical_values(lambda spin: spin, (1.0, 1.0))
+
+
+# Neither needs a system.
+test_bad_arguments_of_critical_values_are_refused = refusals(
+    (lambda: nh.critical_values("abc", (0.0, 1.0)), r"critical_values\(linearization=...\)` must be a function"),
+    (lambda: nh.critical_values(lambda spin: spin, (0.0, 1.0)), "return a Linearization"),
+    (lambda: nh.critical_values(lambda spin: spin, (1.0, 1.0)), "must rise"),
+)
 
 
 def test_a_multiple_eigenvalue_that_changes_its_sign_is_seen() -> None:

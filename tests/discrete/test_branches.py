@@ -331,6 +331,12 @@ def test_no_principal_branch_beyond_the_fold() -> None:
         nh.branches(_top(np.diag([1.0, 1.5]), [0.3, -0.2]), momentum=[6.0, 5.0])
 
 
+def test_values_all_too_far_away_are_none() -> None:
+    """Displacements of a sleigh in space beyond 1e5 count as infinite: of a momentum of 1e20 no value is left."""
+    found = nh.displacements_over(_DEFINED["sleigh on SE(3)"][0], [3e19, 2e19, -4e19])
+    assert (len(found.is_real), found.principal) == (0, None)
+
+
 @pytest.mark.parametrize(("discrete", "r"), _DEFINED.values(), ids=_DEFINED)
 def test_inverse_legendre(discrete: Discretization, r: list[float]) -> None:
     """The displacement of a momentum is recovered, on every branch; a momentum off the locus is refused."""

@@ -215,6 +215,8 @@ test_bad_designs_are_refused = refusals(
     (lambda: nh.Grid({"outcome": [1.0]}), "taken: member, outcome, run, t, time"),
     (lambda: nh.Grid({"a": [[1.0, 2.0]], "a_number": [1.0]}), "other names than its vectors"),
     (lambda: nh.Grid({"a": [1.0]}, rng=-1), "be a natural number|be at most"),
+    (lambda: nh.Grid({"a": [1.0, 2.0]}).values(1, 2), r"`Grid.values\(count=...\)` must not lead beyond"),
+    (lambda: nh.RandomDesign(5, {"a": nh.Normal()}).values(0, 6), "must not lead beyond the last member"),
     (lambda: nh.RandomDesign(0, {"a": nh.Normal()}), "must be a positive integer"),
     (lambda: nh.RandomDesign(5, {"a": 1.0}), "be a distribution. Got 1.0. Pass nh.Uniform"),
     (lambda: nh.RandomDesign(5, {}), "must be a mapping"),

@@ -109,6 +109,7 @@ test_bad_tasks_are_refused = refusals(
     (lambda: nh.FamilyTask(sleigh, 0.1, 3, parameters=[1.0]), "be a mapping of names"),
     (lambda: nh.FamilyTask(sleigh, 0.1, 3, reductions="lyapunov"), "functions of an ensemble"),
     (lambda: nh.FamilyTask(sleigh, 0.1, 3, save_every=1.5), r"FamilyTask\(save_every=...\)"),
+    (lambda: nh.FamilyTask(sleigh, 0.1, 3, save_every=0), r"FamilyTask\(save_every=...\)"),
     kind=(ValueError, TypeError),
 )
 

@@ -92,7 +92,7 @@ def test_refuses_what_it_cannot_draw(sleigh_orbit: nh.Orbit) -> None:
     """An orbit of another system, an orbit in the place of the system, and energies below zero are refused in words."""
     with pytest.raises(ValueError, match=r"`phase_portrait\(orbit=...\)` must be an orbit of the system"):
         nh.plot.phase_portrait(SYSTEMS["top"], sleigh_orbit)
-    with pytest.raises(ValueError, match=r"must be a system. .* Pass `orbit.system` first"):
+    with pytest.raises(ValueError, match=r"must be a system on a group. .* Pass `orbit.system` first"):
         nh.plot.phase_portrait(sleigh_orbit)
     with pytest.raises(ValueError, match=r"`phase_portrait\(energies=...\)` must be positive. Got -1"):
         nh.plot.phase_portrait(SYSTEMS["top"], energies=[1.0, -1.0])

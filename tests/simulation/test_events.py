@@ -243,6 +243,7 @@ test_what_cannot_be_watched_is_refused = refusals(
     (lambda: nh.simulate(ROUND, **_CIRCLE, **_WITHOUT, events=[east]), "reconstruct=True"),
     (lambda: nh.simulate(TOP, **_ALONG, events=[nh.cusp]), "watch a sleigh"),
     (lambda: nh.Event(east, direction=2), "Event"),
+    (lambda: nh.Event(east, direction=True), r"Event\(direction=...\)` must be one of"),
     (lambda: nh.Event(east, stop=-1), "Event"),
     (lambda: nh.Event(east, stop=0.5), "Event"),
     (lambda: nh.crossings(nh.simulate(ROUND, **_CIRCLE)[::2], east), _THINNED),

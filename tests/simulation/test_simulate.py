@@ -193,6 +193,18 @@ def test_an_index_of_an_orbit_is_refused() -> None:
         nh.simulate(SLEIGH, body_velocity=(1, 0, 0), steps=3)[0]
 
 
+def test_numbers_and_truth_values_of_numpy_are_taken() -> None:
+    """Integers and truth values of NumPy are those of Python: an order, a direction, a choice of poses."""
+    sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.5)
+    plain, other = (nh.discretize(sleigh, 0.1, order=order) for order in (4, np.int64(4)))
+    assert repr(plain) == repr(other)
+    assert "time_step=0.1, " in repr(plain)
+    run = {"restricted_velocity": (0.4, 1.0), "steps": 3}
+    poses = (nh.simulate(plain, **run, reconstruct=kind(True)).configuration for kind in (bool, np.bool_))
+    np.testing.assert_array_equal(*poses)
+    assert nh.Event(len, direction=np.int64(-1)) == nh.Event(len, direction=-1)
+
+
 def test_denormal_motion_is_measured() -> None:
     """A motion whose squared speed underflows still has defects, and no warning."""
     found = nh.invariants(nh.simulate(SLEIGH, body_velocity=(1e-200, 1e-200, 0), steps=3))

@@ -68,7 +68,8 @@ def test_spurious_sheet_in_five_dimensions() -> None:
 
 _STACK, _EYE, _SHAPE = np.stack([np.eye(3)] * 2), np.eye(3), r"configuration(_next)?=\.\.\.\)` must end in shape"
 test_what_are_no_two_real_matrices_of_one_size_is_refused = refusals(
-    (lambda: in_exp_d(np.ones(3)), r"in_exp_d\(displacement=\.\.\.\)` must be a square matrix. Got shape \(3,\)"),
+    (lambda: in_exp_d(np.ones(3)), r"in_exp_d\(displacement=\.\.\.\)` must end in shape \(3, 3\). Got shape \(3,\)"),
+    (lambda: in_exp_d(np.full((3, 3), np.nan)), r"in_exp_d\(displacement=\.\.\.\)` must be finite"),
     (lambda: trace_constraints(_EYE, np.eye(4)), _SHAPE),
     (lambda: trace_constraints(np.ones((3, 4)), _EYE), _SHAPE),
     (lambda: trace_constraints(1.0, 2.0), _SHAPE),

@@ -243,7 +243,7 @@ def principal_increment(discrete: Discretization, canonical: Float[np.ndarray, "
 
 def _index_of(discrete: Discretization, code: int, increment: Array, W: np.ndarray, is_real: np.ndarray) -> int | None:
     """Return the index of the verified principal root, canonical and minus the identity, among displacements."""
-    if code != 0:
+    if code != 0 or not len(is_real):  # all values are too far away
         return None
     frame = discrete.system.frame
     principal = frame @ increment @ discrete.system.group.inverse(frame)

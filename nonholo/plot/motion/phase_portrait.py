@@ -152,7 +152,7 @@ def _check(system: AbstractLLSystem, orbit: Orbit | None) -> Orbit | None:
     """Return the orbit as it is drawn."""
     where = "phase_portrait(system=...)"
     refuse_forces(where, system)
-    instance(where, system, AbstractSystem, "be a system", "Pass `orbit.system` first, then the orbit.")
+    instance(where, system, AbstractSystem, "be a system on a group", "Pass `orbit.system` first, then the orbit.")
     parts.check_directions(where, system, system, (2, "two"), "Plot `orbit.restricted_momentum`.")
     smooth = None if orbit is None else parts.drawable("phase_portrait(orbit=...)", orbit)
     if smooth is not None and not parts.is_same_body(smooth.system, system):
