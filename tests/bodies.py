@@ -67,9 +67,7 @@ def _others() -> dict[str, AbstractSystem]:
             constraint_subspace=rng.normal(size=(4, 8)),
             inertia_operator=np.diag(np.arange(1.0, 9.0)),
         ),
-        "right-invariant on SE(2)": nh.LRSystem(
-            nh.SE(2), mass_tensor(nh.SE(2), rng), [[1.0, 0.2, 0.0], [0.0, 1.0, 0.3]]
-        ),
+        "right-invariant on SE(2)": nh.LRSystem(nh.SE(2), mass_tensor(nh.SE(2), rng), [[1, 0.2, 0], [0, 1, 0.3]]),
         "nothing moves": nh.LLSystem(
             nh.SO(3), constraint_subspace=np.empty((0, 3)), inertia_operator=np.diag([1.0, 2.0, 2.5])
         ),

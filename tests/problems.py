@@ -31,13 +31,9 @@ _INERTIA = [[3.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.5]]
 PROBLEMS = [
     _problem("top", nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), (0.9, -0.4), "unbalanced"),
     _problem("tilted top", nh.SuslovTop.from_inertia(_INERTIA, _AXIS), (0.5, 0.6), "unbalanced"),
-    _problem(
-        "c eigenvector", nh.SuslovTop([[1.0, 0.0, 0.4], [0.0, 1.5, 0.0], [0.4, 0.0, 0.8]]), (0.3, 0.7), "unbalanced"
-    ),
+    _problem("c eigenvector", nh.SuslovTop([[1, 0, 0.4], [0, 1.5, 0], [0.4, 0, 0.8]]), (0.3, 0.7), "unbalanced"),
     _problem("balanced top", nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), (0.5, -0.2), "balanced"),
-    _problem(
-        "flat top", nh.SuslovTop([[1.0, 0.2, 0.0], [0.2, 2.0, 0.0], [0.0, 0.0, 0.0]]), (0.5, -0.2), "balanced", "flat"
-    ),
+    _problem("flat top", nh.SuslovTop([[1, 0.2, 0], [0.2, 2, 0], [0, 0, 0]]), (0.5, -0.2), "balanced", "flat"),
     _problem(
         "rod", nh.SuslovTop(np.outer(_ROD, _ROD) + np.diag([0.01, 0.02, 0.0])), (0.1, 0.3), "unbalanced", "irregular"
     ),

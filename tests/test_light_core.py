@@ -1,11 +1,15 @@
-"""The core without any extra: what works, what names its extra, and what a run loads."""
+"""The core without any extra: what works, what names its extra, what a run loads; how short a warm call is."""
 
+import itertools
 import json
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from types import FrameType
 from typing import Any
 
+import jax.numpy as jnp
 import pytest
 from matrix.alone import ALONE
 
@@ -51,22 +55,11 @@ def test_calls_that_need_an_extra(which: str, asked: dict[str, str]) -> None:
 
 
 COMMANDS = [
-    "simulate sleigh",
-    "simulate suslov",
-    "simulate veselova",
-    "simulate left_invariant",
-    "info sleigh.zarr",
-    "plot sleigh.zarr -o picture.png",
-    "export sleigh.zarr -o poses.csv",
-    "explore sleigh.zarr -o page.html --no-browser",
-    "extend sleigh.zarr --steps 60",
-    "resume sleigh.zarr",
-    "sweep SWEEP --members 20",
-    "dataset sleigh -o sleighs --orbits 5 --steps 5",
-    "new sleigh",
-    "systems",
-    "cite",
-]
+    "simulate sleigh", "simulate suslov", "simulate veselova", "simulate left_invariant", "info sleigh.zarr",
+    "plot sleigh.zarr -o picture.png", "export sleigh.zarr -o poses.csv",
+    "explore sleigh.zarr -o page.html --no-browser", "extend sleigh.zarr --steps 60", "resume sleigh.zarr",
+    "sweep SWEEP --members 20", "dataset sleigh -o sleighs --orbits 5 --steps 5", "new sleigh", "systems", "cite",
+]  # fmt: skip
 
 
 @pytest.mark.profile("faults", instead="test_commands_that_need_an_extra")
@@ -125,3 +118,53 @@ def test_every_name_of_the_store_room_has_a_home() -> None:
     assert all(getattr(nh.io, name) is not None for name in nh.io.__all__)
     with pytest.raises(AttributeError, match=r"No nonholo.io attribute storre"):
         _ = nh.io.storre
+
+
+_FILES, _CHANGES, _IN_COORDINATES, _SHARED = 16, 28, 17, 10
+"""The first three may only fall."""
+_LIBRARY = Path(nh.__file__).parent
+
+
+def _entered(call: Callable[[], Any]) -> list[Path]:
+    """Return the files of the library that a warm call enters, in order."""
+    call()
+    entered: list[Path] = []
+
+    def look(frame: FrameType, event: str, _: Any) -> None:
+        file = Path(frame.f_code.co_filename)
+        if event == "call" and file.is_relative_to(_LIBRARY):
+            entered.append(file.relative_to(_LIBRARY))
+
+    before = sys.getprofile()
+    sys.setprofile(look)
+    try:
+        call()
+    finally:
+        sys.setprofile(before)
+    return entered
+
+
+def _of_a_sleigh() -> list[Path]:
+    discrete = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+    return _entered(lambda: nh.simulate(discrete, restricted_velocity=(0.3, 0.4), steps=10))
+
+
+def _forms(q: Any) -> Any:
+    return jnp.array([[-jnp.sin(q[2]), jnp.cos(q[2]), 0.0]])
+
+
+def test_a_call_for_a_body_is_short() -> None:
+    """A room is the first folder of the library; every return to one counts."""
+    entered = _of_a_sleigh()
+    changes = sum(a.parts[0] != b.parts[0] for a, b in itertools.pairwise(entered))
+    assert len(set(entered)) <= _FILES
+    assert changes <= _CHANGES
+
+
+def test_a_call_in_coordinates_shares_its_files() -> None:
+    """The same run in coordinates is the same call, with other equations."""
+    discrete = nh.discretize(nh.LagrangeDAlembert(lambda _, v: v @ v / 2, _forms, dimension=3), 0.1)
+    velocity: dict[str, Any] = {"configuration": (0.0, 0.0, 0.0), "body_velocity": (1.0, 0.0, 0.3)}
+    entered = set(_entered(lambda: nh.simulate(discrete, steps=10, **velocity)))
+    assert len(entered) <= _IN_COORDINATES
+    assert len(entered & set(_of_a_sleigh())) >= _SHARED

@@ -69,10 +69,7 @@ TOO_MUCH: dict[str, tuple[Callable[[], Any], str]] = {
     "simulate": (lambda: nh.simulate(TOP, steps=10**12, **START), "fit into memory. Got about 72 TB of"),
     "simulate, steps": (lambda: nh.simulate(TOP, steps=10**30, **START), "be at most 9007199254740992"),
     "simulate, disk": (lambda: nh.simulate(TOP, steps=10**15, store="a.zarr", **START), "fit on the disk. Got about"),
-    "simulate, poses": (
-        lambda: nh.simulate(WIDE, steps=10**7, restricted_velocity=np.full(99, 0.01)),
-        "(reconstruct=...)",
-    ),
+    "simulate, poses": (lambda: nh.simulate(WIDE, steps=10**7, restricted_velocity=_many(99)), "(reconstruct=...)"),
     "simulate, checkpoint": (
         lambda: nh.simulate(TOP, steps=10**6, store="a.zarr", checkpoint_every=10**14, **START),
         "checkpoint_every=...)",
@@ -95,9 +92,7 @@ TOO_MUCH: dict[str, tuple[Callable[[], Any], str]] = {
         "(steps=...)",
     ),
     "ensemble, reduced poses": (
-        lambda: nh.ensemble(
-            WIDE, steps=10**9, save_every=1, restricted_velocity=np.full((2, 99), 0.01), reduce=lambda _: {}
-        ),
+        lambda: nh.ensemble(WIDE, steps=10**9, save_every=1, restricted_velocity=_many(2, 99), reduce=lambda _: {}),
         "(reconstruct=...)",
     ),
     "ensemble, flows": (

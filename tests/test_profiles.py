@@ -87,7 +87,7 @@ def _complete(request: pytest.FixtureRequest) -> bool:
         (["benchmarks/gpu.py", "scenarios/sleigh.toml"], {"benchmarks"}),
         (["docs/house.md", "README.md", "benchmarks/gpu.py"], {"site", "benchmarks"}),
         (["nonholo/cli/commands/stores.py"], {"faults"}),
-        (["tests/plot/test_section.py", "docs/paper.md"], {"paper", "site", "browser"}),
+        (["tests/plot/test_loci.py", "docs/paper.md"], {"paper", "site", "browser"}),
         (["nonholo/kernels/_sleigh.py"], {"routes", "faults", "problems", "shapes", "bounds", "browser", "benchmarks"}),
         (["nonholo/base/checks.py"], {"routes", "problems", "shapes", "bounds", "site"}),
         (["pyproject.toml"], set(PROFILES) - {"fuzz", "long", "mutants"}),

@@ -86,8 +86,7 @@ def test_planar_geometry(body: Any, same: Any, axes: np.ndarray) -> None:
     back = body.group.inverse(axes)
     curve, other = nh.invariant_curve(one, 0.3, 40), nh.invariant_curve(two, 0.3, 40)
     assert len(curve.components) == len(other.components)
-    level = same.constrained_energy(same.restrict(other.momentum[0]))
-    assert np.allclose(level, 0.3, rtol=1e-11)
+    assert np.allclose(same.constrained_energy(same.restrict(other.momentum[0])), 0.3, rtol=1e-11)
     p = nh.momentum_locus(one, 8).momentum
     size = np.abs(nh.momentum_locus(one, 8).implicit(2 * p)).max()
     assert np.abs(nh.momentum_locus(two, 8).implicit(p @ body.group.adjoint(back))).max() < 1e-11 * size

@@ -19,6 +19,7 @@ SLEIGH = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=0.7, a=0.4), 0.05)
 TENSOR = np.array([[1.2, 0.1, 0.3], [0.1, 1.0, -0.2], [0.3, -0.2, 0.9]])
 GUESS = {"inertia": 1.0, "a": 0.3}
 TOP = nh.discretize(nh.SuslovTop(TENSOR), 0.05)
+RUBBED = {"inertia": 0.7, "a": 0.4, "root": np.array([0.7, 0.6])}
 
 
 def _sleigh(p: dict) -> nh.ChaplyginSleigh:
@@ -65,47 +66,24 @@ def _errors(found: Fit, truth: list[float]) -> np.ndarray:
 @pytest.mark.profile("problems", instead="test_exact_record_is_fitted_exactly")
 def test_sleigh_is_found_within_its_errors() -> None:
     """Of 100 noisy records with gaps at least 95 are fitted within 3 sigma, and 95 % intervals hold the truth."""
-    errors = np.array(
-        [_errors(nh.fit(_sleigh, _sleigh_record(s), {"inertia": 1.0, "a": 0.3}), [0.7, 0.4]) for s in range(100)]
-    )
+    errors = np.array([_errors(nh.fit(_sleigh, _sleigh_record(s), GUESS), [0.7, 0.4]) for s in range(100)])
     assert (np.abs(errors) < 3).all(axis=1).sum() >= 95
     assert 0.89 <= (np.abs(errors) < 1.98).mean() <= 0.99  # two-sided, binomial: 3.5 sigma for 200
 
 
+FAR = {"inertia": 1e6, "a": -50.0}
+BODIES: dict[str, tuple[Callable, Callable, dict, dict, float]] = {
+    "top": (_top, _top_record, {"c": np.array([0.3, -0.2]), "b": 1.0}, {"c": np.array([0.2, -0.1]), "b": 1.1}, 1.0),
+    "driven": (_driven, _sleigh_record, {"mass": 1.0, "inertia": 0.7, "a": 0.4}, {"mass": 1.3, **GUESS}, 1.0),
+    "friction": (_rubbed, _sleigh_record, RUBBED, {**GUESS, "root": np.array([0.5, 0.5])}, 0.1),
+}
+
+
 @pytest.mark.profile("routes", instead="test_exact_record_is_fitted_exactly")
-@pytest.mark.parametrize(
-    ("system_of", "record", "truth", "guess", "noise"),
-    [
-        pytest.param(
-            _top,
-            _top_record,
-            {"c": np.array([0.3, -0.2]), "b": 1.0},
-            {"c": np.array([0.2, -0.1]), "b": 1.1},
-            1.0,
-            id="top",
-        ),
-        pytest.param(
-            _driven,
-            _sleigh_record,
-            {"mass": 1.0, "inertia": 0.7, "a": 0.4},
-            {"mass": 1.3, "inertia": 1.0, "a": 0.3},
-            1.0,
-            id="driven",
-        ),
-        pytest.param(
-            _rubbed,
-            _sleigh_record,
-            {"inertia": 0.7, "a": 0.4, "root": np.array([0.7, 0.6])},
-            {"inertia": 1.0, "a": 0.3, "root": np.array([0.5, 0.5])},
-            0.1,
-            id="friction",
-        ),
-    ],
-)
-def test_bodies_are_found_within_their_errors(
-    system_of: Callable, record: Callable, truth: dict, guess: dict, noise: float
-) -> None:
+@pytest.mark.parametrize("name", BODIES)
+def test_bodies_are_found_within_their_errors(name: str) -> None:
     """Rates tell a top, known pushes the mass too, slowing down the friction: 95 of 100 in 3 sigma, intervals hold."""
+    system_of, record, truth, guess, noise = BODIES[name]
     discrete = nh.discretize(system_of(truth), 0.05)
     values = [float(x) for part in truth.values() for x in np.ravel(part)]
     records = (record(seed, discrete, noise) for seed in range(100))
@@ -213,8 +191,7 @@ def test_robust_loss_bears_outliers() -> None:
     assert hits >= 13
     interval = found.profile("a").interval
     np.testing.assert_allclose(interval, found.intervals["a"], atol=0.2 * np.diff(interval)[0])
-    plain = nh.fit(_sleigh, record, GUESS)
-    assert plain.covariance[0, 0] > 100 * found.covariance[0, 0]
+    assert nh.fit(_sleigh, record, GUESS).covariance[0, 0] > 100 * found.covariance[0, 0]
 
 
 @pytest.mark.profile("routes", cases=["good", "outlier", "more than the noise"])
@@ -222,10 +199,10 @@ def test_robust_loss_bears_outliers() -> None:
     ("change", "options", "outcome"),
     [
         pytest.param(lambda r: r, {}, "converged", id="good"),
-        pytest.param(lambda r: r, {"guess": {"inertia": 1e6, "a": -50.0}}, "lost", id="far"),
+        pytest.param(lambda r: r, {"guess": FAR}, "lost", id="far"),
         pytest.param(
             lambda r: r,
-            {"guess": {"inertia": 1e6, "a": -50.0}, "bounds": {"inertia": (0, np.inf)}},
+            {"guess": FAR, "bounds": {"inertia": (0, np.inf)}},
             "converged",
             id="far, by logarithm",
         ),
@@ -271,11 +248,10 @@ def test_trials_share_the_body_and_tables_may_have_any_form(tmp_path: Path) -> N
     table = pandas.DataFrame(two)
     one_path = tmp_path / "one.csv"
     pandas.DataFrame(one).to_csv(one_path, index=False)
-    guess = {"inertia": 1.0, "a": 0.3}
-    both, alone = nh.fit(_sleigh, [one_path, table], guess), nh.fit(_sleigh, one, guess)
+    both, alone = nh.fit(_sleigh, [one_path, table], GUESS), nh.fit(_sleigh, one, GUESS)
     assert len(both.orbit) == len(both.residuals) == 2
     assert (both.covariance.diagonal() < 0.7 * alone.covariance.diagonal()).all()
-    np.testing.assert_allclose([*nh.fit(_sleigh, one_path, guess).parameters.values()], [*alone.parameters.values()])
+    np.testing.assert_allclose([*nh.fit(_sleigh, one_path, GUESS).parameters.values()], [*alone.parameters.values()])
 
 
 def test_residuals_and_profiles_are_drawn() -> None:
@@ -306,10 +282,9 @@ def test_profiles_hold_more_often_than_the_covariance() -> None:
 
     Intervals of the covariance hold it less often. Sides without bound come with their reason.
     """
-    truth, guess = {"inertia": 0.7, "a": 0.4, "root": np.array([0.7, 0.6])}, {"inertia": 1.0, "a": 0.3}
-    discrete, rows = nh.discretize(_rubbed(truth), 0.05), []
+    discrete, rows = nh.discretize(_rubbed(RUBBED), 0.05), []
     for seed in range(100):
-        found = nh.fit(_rubbed, _sleigh_record(seed, discrete), {**guess, "root": np.array([0.5, 0.5])})
+        found = nh.fit(_rubbed, _sleigh_record(seed, discrete), BODIES["friction"][3])
         profile, (low, high) = found.profile("inertia"), found.intervals["inertia"]
         assert np.isinf(profile.interval[1]) == (profile.ends[1] == "unbounded")
         rows.append((profile.interval[0] <= 0.7 <= profile.interval[1], low <= 0.7 <= high))
@@ -392,9 +367,7 @@ test_bad_arguments_are_refused = refusals(
     ({"bounds": {"a": (0.5, 1)}}, "have the guess between them. Got a = .0.3. of .0.5, 1."),
     ({"bounds": {"a": 3}}, "be a pair"),
     ({"loss": "huber"}, "be one of 'linear', 'soft_l1'"),
-    ask=lambda change: nh.fit(
-        **{"system_of": _sleigh, "measurements": _sleigh_record(0), "guess": {"inertia": 1.0, "a": 0.3}} | change
-    ),
+    ask=lambda change: nh.fit(**{"system_of": _sleigh, "measurements": _sleigh_record(0), "guess": GUESS} | change),
 )
 
 

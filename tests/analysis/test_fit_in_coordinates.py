@@ -41,9 +41,7 @@ def recorded(seed: int, *names: str, noise: float = NOISE) -> dict[str, np.ndarr
     """Return a noisy record of some coordinates."""
     c, s = np.cos(0.3), np.sin(0.3)
     velocity = (0.8 * c, 0.8 * s, 1.0, 8.0)
-    orbit = nh.simulate(
-        nh.discretize(ROBOT, H), configuration=(0.5, -0.2, 0.3, 0.0), body_velocity=velocity, steps=STEPS
-    )
+    orbit = nh.simulate(nh.discretize(ROBOT, H), configuration=(0.5, -0.2, 0.3, 0), body_velocity=velocity, steps=STEPS)
     rows = orbit.configuration + np.random.default_rng(seed).normal(scale=noise, size=orbit.configuration.shape)
     return {"t": orbit.time} | {name: rows[:, ROBOT.coordinates.index(name)] for name in names}
 

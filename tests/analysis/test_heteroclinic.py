@@ -1,11 +1,12 @@
-"""Orbits traced both ways: they are orbits, and run from the repelling to the attracting equilibrium."""
+"""Orbits traced both ways between equilibria, and invariant curves: energy, components, orbits that run on them."""
 
 import numpy as np
 import pytest
-from bodies import ATTRACTING
+from bodies import ATTRACTING, mass_tensor
+from refusals import refusals
 
 import nonholo as nh
-from nonholo.discrete import Discretization
+from nonholo.analysis.planar import planar_variety
 
 SYSTEMS = {name: body for name, body in ATTRACTING.items() if name not in ("sleigh 4", "turning sleigh 4")}
 TOP = SYSTEMS["top 3"]
@@ -85,25 +86,21 @@ def test_limits_in_space_and_turn() -> None:
     assert found.limits.heading_turn == pytest.approx(np.ptp(found.orbit.heading), rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("discrete", "options", "text"),
-    [
-        (nh.discretize(TOP, STEP), {}, "be given exactly one of energy, momentum, displacement. Got none"),
-        (nh.discretize(TOP, STEP), {"energy": 1.0, "momentum": [1.0, 0.0]}, "Got energy and momentum"),
-        (nh.discretize(TOP, STEP), {"energy": -1.0}, "positive"),
-        (nh.discretize(TOP, STEP), {"energy": 1.0, "side": 0}, "be one of 1, -1"),
-        (nh.discretize(TOP, STEP), {"displacement": np.eye(3)}, "start off the equilibria"),
-        (nh.discretize(SYSTEMS["top 4"], STEP), {"energy": 1.0}, "Got 3 admissible directions"),
-        (nh.discretize(nh.SuslovTop(np.eye(3)), STEP), {"energy": 1.0}, "have attracting equilibria"),
-        (nh.discretize(TOP, STEP, difference="logarithmic"), {"energy": 1.0}, "whose map keeps energy"),
-        (nh.discretize(nh.RigidBody(np.eye(3)), STEP), {"energy": 1.0}, "be a top or a sleigh"),
-        (nh.discretize(TOP, 1e-6), {"energy": 1.0}, "`heteroclinic(...)` must settle within 1000000 steps"),
-    ],
+_TOP, _ENERGY = nh.discretize(TOP, STEP), {"energy": 1.0}
+# Each refusal names what is missing.
+test_what_cannot_be_traced_is_refused = refusals(
+    (_TOP, {}, "be given exactly one of energy, momentum, displacement. Got none"),
+    (_TOP, {"energy": 1.0, "momentum": [1.0, 0.0]}, "Got energy and momentum"),
+    (_TOP, {"energy": -1.0}, "positive"),
+    (_TOP, {"energy": 1.0, "side": 0}, "be one of 1, -1"),
+    (_TOP, {"displacement": np.eye(3)}, "start off the equilibria"),
+    (nh.discretize(SYSTEMS["top 4"], STEP), _ENERGY, "Got 3 admissible directions"),
+    (nh.discretize(nh.SuslovTop(np.eye(3)), STEP), _ENERGY, "have attracting equilibria"),
+    (nh.discretize(TOP, STEP, difference="logarithmic"), _ENERGY, "whose map keeps energy"),
+    (nh.discretize(nh.RigidBody(np.eye(3)), STEP), _ENERGY, "be a top or a sleigh"),
+    (nh.discretize(TOP, 1e-6), _ENERGY, r"`heteroclinic\(\.\.\.\)` must settle within 1000000 steps"),
+    ask=lambda discrete, options: nh.heteroclinic(discrete, **options),
 )
-def test_what_cannot_be_traced_is_refused(discrete: Discretization, options: dict, text: str) -> None:
-    """Each refusal names what is missing."""
-    with pytest.raises(ValueError, match=text.replace("(", r"\(").replace(")", r"\)").replace(".", r"\.")):
-        nh.heteroclinic(discrete, **options)
 
 
 def test_a_branch_that_ends_is_refused() -> None:
@@ -111,3 +108,110 @@ def test_a_branch_that_ends_is_refused() -> None:
     discrete = nh.discretize(TOP, 1.0)
     with pytest.raises(nh.OutcomeError):
         nh.heteroclinic(discrete, energy=1.05 * nh.critical_energies(discrete).saddle)
+
+
+HALF = nh.discretize(nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]), 0.5)
+TILTED = nh.discretize(nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 1.5]), axis=np.array([2.0, 1.0, 2.0]) / 3), 0.3)
+BALANCED = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.5)
+ROD = nh.discretize(nh.SuslovTop([[1.0, 0.1, 0.9], [0.1, 0.3, 0.2], [0.9, 0.2, 1.1]]), 0.5)  # D < 2 |c|^2
+SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3), 0.5)
+HEAVY = nh.discretize(nh.ChaplyginSleigh(6.0, 1.0, -0.5, 0.3), 0.5)  # m a^2 > J: no saddle
+EVEN = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0, 0.3), 0.5)
+
+CASES = [(HALF, e) for e in (0.3, 2.0, 4.4)]
+CASES += [(TILTED, 2.0), (BALANCED, 2.0), (BALANCED, 9.0), (ROD, 0.5), (ROD, 4.0)]
+CASES += [(SLEIGH, e) for e in (0.5, 2.1, 6.0)]
+CASES += [(HEAVY, 2.0), (HEAVY, 20.0), (EVEN, 0.5), (EVEN, 3.0)]
+
+# number of components below and above each critical energy; the last entry is above the largest
+COUNTS = [(HALF, [0.5, 2.0, 4.4, 5.2], [2, 2, 2, 0]), (SLEIGH, [1.9, 2.1, 3.3], [1, 2, 1]), (HEAVY, [11, 13], [1, 1])]
+
+
+@pytest.mark.parametrize(("discrete", "energy"), CASES)
+def test_every_point_has_the_energy(discrete: nh.Discretization, energy: float) -> None:
+    """Momenta of all points have the energy, by the definition; far out on the balanced sleigh rounding is larger."""
+    curve = nh.invariant_curve(discrete, energy)
+    assert curve.components
+    for p in curve.momentum:
+        assert np.allclose(discrete.system.constrained_energy(discrete.system.restrict(p)), energy, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("discrete", "energy"), CASES)
+def test_momenta_lie_on_the_locus(discrete: nh.Discretization, energy: float) -> None:
+    """The curve is part of the surface: the polynomial vanishes, to rounding, which grows with the degree three."""
+    implicit = nh.momentum_locus(discrete, 3).implicit
+    for p in nh.invariant_curve(discrete, energy).momentum:
+        assert np.abs(implicit(p)).max() <= 1e-12 * max(1.0, np.abs(0.5 * p).max() ** 3)
+
+
+@pytest.mark.parametrize(("discrete", "energies", "counts"), COUNTS)
+def test_number_of_components(discrete: nh.Discretization, energies: list[float], counts: list[int]) -> None:
+    """Inner and outer curve of a top, two about its maxima, none above; the sleigh has a second one between saddles."""
+    assert [len(nh.invariant_curve(discrete, energy).components) for energy in energies] == counts
+
+
+@pytest.mark.profile("problems", keep=["[0-4]"])
+@pytest.mark.parametrize("seed", range(12))
+def test_curves_of_random_bodies(seed: int) -> None:
+    """Whatever the arcs that make them up: closed, without jumps, and every change of sign on a grid is near them."""
+    rng = np.random.default_rng(seed)
+    discrete = nh.discretize(nh.SuslovTop(mass_tensor(nh.SO(3), rng)), 1.0)
+    locus = nh.momentum_locus(discrete, 60)
+    energies = discrete.system.constrained_energy(discrete.system.restrict(locus.momentum))
+    energy = rng.uniform(0.02, 0.98) * energies.max()
+    curves = nh.invariant_curve(discrete, energy, 1000).displacement
+    for W in curves:
+        assert np.array_equal(W[0], W[-1])
+        assert np.abs(np.diff(W, axis=0)).max() < 0.2  # entries are between -1 and 1
+    near = np.concatenate([W.reshape(-1, 9) for W in curves])
+    grid = locus.displacement[:-1][(energies[:-1] - energy) * (energies[1:] - energy) < 0].reshape(-1, 9)
+    assert max(np.linalg.norm(near - W, axis=1).min() for W in grid) < 0.15  # steps of the grid are 0.075
+
+
+@pytest.mark.parametrize("fraction", [0.5, 1.0, 1.5])
+def test_sleigh_levels_at_their_critical_energies(fraction: float) -> None:
+    """Just below and above h^2 E = 2M a second oval appears; just above I^2/(2J) both have become one curve."""
+    sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.5 * fraction)
+    M, whole = 0.25 * fraction**2, 1.0 + 0.25 * fraction**2
+    found = [
+        len(nh.invariant_curve(nh.discretize(sleigh, 0.5), 4 * level * side).components)
+        for level in (2 * M, whole**2 / 2)
+        for side in (1 - 1e-9, 1 + 1e-9)
+    ]
+    assert found == [1, 2, 2, 1]
+
+
+@pytest.mark.parametrize("discrete", [HALF, TILTED, BALANCED, SLEIGH, HEAVY, EVEN])
+def test_orbits_run_on_their_curve(discrete: nh.Discretization) -> None:
+    """Every displacement of an orbit is one of the two points of its curve over its direction, to 1e-10."""
+    orbit = nh.simulate(discrete, restricted_velocity=(0.5, -0.9), steps=80)
+    curve = nh.invariant_curve(discrete, orbit.energy[0])
+    for point in planar_variety(discrete.system).points(orbit.displacement):
+        if isinstance(discrete.system, nh.SuslovTop):
+            upper = point * (1.0 if point[0] >= 0 else -1.0)
+            found = curve.over(np.arctan2(upper[2], upper[1]))
+            assert np.abs(found - upper).max(axis=1).min() < 1e-10
+        else:
+            assert np.abs(curve.over(point[0]) - point).max(axis=1).min() < 1e-10
+
+
+def test_all_branches_stay_on_the_curve() -> None:
+    """The rational body with four real branches: the points over all of them have one energy and are on one level."""
+    top = nh.discretize(nh.SuslovTop([[1.25, 0.0, -0.5], [0.0, 1.0, -0.75], [-0.5, -0.75, 1.25]]), 1.0)
+    charts = np.array([[-1 / 4, -3 / 8], [-16 / 13, -24 / 13], [-3.81310876, -0.50880833], [7.60258244, -8.96487588]])
+    energies = top.system.constrained_energy(top.system.restrict(_momentum(top, charts)))
+    assert np.allclose(energies, energies[0], rtol=1e-8)  # the digits of the charts
+    curve = nh.invariant_curve(top, energies[0])
+    for y in charts:
+        z = np.array([1.0, *y]) / np.sqrt(1 + y @ y)
+        assert np.abs(curve.over(np.arctan2(y[1], y[0])) - z).max(axis=1).min() < 1e-7
+
+
+def _momentum(discrete: nh.Discretization, charts: np.ndarray) -> np.ndarray:
+    return nh.discrete_legendre(discrete, discrete.displaced(charts))
+
+
+def test_refuses_an_energy_that_is_not_positive() -> None:
+    """Energy zero is a point and not a curve: refused in words."""
+    with pytest.raises(ValueError, match=r"`invariant_curve\(energy=...\)` must be positive"):
+        nh.invariant_curve(HALF, 0.0)

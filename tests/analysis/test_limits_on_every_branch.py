@@ -5,8 +5,11 @@ The batches solve the equations of docs/theory/branches.md in principal axes, wi
 
 import dataclasses
 
+import mpmath
 import numpy as np
 import pytest
+from bodies import mass_tensor
+from refusals import refusals
 
 import nonholo as nh
 
@@ -115,8 +118,7 @@ class Batch:
 def _random_rule(batch: Batch, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """Return a random real value of each body, and which have one."""
     y, real = batch.values()
-    chosen = np.argmax(real * rng.random(real.shape), axis=1)
-    return y[np.arange(len(y)), chosen], real.any(axis=1)
+    return y[np.arange(len(y)), np.argmax(real * rng.random(real.shape), axis=1)], real.any(axis=1)
 
 
 def _line(batch: Batch) -> np.ndarray:
@@ -255,3 +257,125 @@ def test_a_map_that_does_not_keep_energy_is_refused_at_any_energy() -> None:
     orbit = nh.simulate(nh.discretize(top, 0.2), restricted_velocity=(1.0, -0.5), steps=1)
     with pytest.raises(ValueError, match="conserve the energy"):
         nh.asymptotics(dataclasses.replace(orbit, motion=logarithmic))
+
+
+TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
+TILTED = nh.SuslovTop.from_inertia([[3.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.5]], (2 / 3, -1 / 3, 2 / 3))
+SLEIGH = nh.ChaplyginSleigh(0.9, 0.4, 0.7, 0.35)
+
+
+@pytest.mark.parametrize("parameters", [(0.9, 0.4, 0.7, 0.35), (1.5, 0.6, -0.5, 0.2), (1.0, 0.75, 0.5, 0.1)])
+def test_heading_turn_to_twelve_digits(parameters: tuple) -> None:
+    """The turn is the integral of dtheta = du/(a omega(u)) over the level, taken to 30 digits."""
+    with mpmath.workdps(30):
+        m, J, a, _ = (mpmath.mpf(x) for x in parameters)
+        E, inertia = mpmath.mpf(2), J + m * a * a
+        edge = mpmath.sqrt(2 * E / m)
+
+        def turned(x: mpmath.mpf) -> mpmath.mpf:
+            return edge * mpmath.cos(x) / (abs(a) * mpmath.sqrt((2 * E - m * (edge * mpmath.sin(x)) ** 2) / inertia))
+
+        expected = mpmath.quad(
+            turned, [-mpmath.pi / 2 + mpmath.mpf(10) ** -13, 0, mpmath.pi / 2 - mpmath.mpf(10) ** -13]
+        )
+    assert abs(nh.asymptotics(nh.ChaplyginSleigh(*parameters)).heading_turn / float(expected) - 1) <= 1e-12
+
+
+@pytest.mark.parametrize("omega", [0.8, -0.8])
+def test_turns_of_a_flow(omega: float) -> None:
+    """The heading of a long flow turns as said, and its direction of motion by half a turn less, modulo full ones."""
+    orbit = nh.flow(SLEIGH, restricted_velocity=(omega, 0.3), times=[0.0, 1.0], method="closed_form")
+    found = nh.asymptotics(orbit)
+    start = {"restricted_velocity": (omega, 0.3), "method": "closed_form"}
+    ends = [nh.flow(SLEIGH, times=[0.0, t, 1.01 * t], **start) for t in (-1e3, 1e3)]
+    assert ends[1].heading[-1] - ends[0].heading[-1] == pytest.approx(found.heading_turn, rel=1e-13)
+    directions = [np.array([1, 1j]) @ np.diff(end.position[1:], axis=0)[0] for end in ends]
+    turned = np.angle(-directions[1] / directions[0])  # the early one is taken against time
+    assert np.angle(np.exp(1j * (found.motion_turn - turned))) == pytest.approx(0.0, abs=1e-12)
+    for end, limit in zip(ends, (found.velocity_before, found.velocity_after), strict=True):
+        assert np.abs(end.body_velocity[-1] - limit).max() <= 1e-14
+
+
+def test_turn_of_the_map_is_second_order() -> None:
+    """The turn of discrete orbits tends to that of the flow with h^2; the limits of the velocity are the same."""
+    exact, errors = nh.asymptotics(SLEIGH).heading_turn, []
+    for h in (0.2, 0.1, 0.05):
+        orbit = nh.simulate(nh.discretize(SLEIGH, h), restricted_velocity=(0.8, 0.1), steps=5)
+        found = nh.asymptotics(orbit)
+        assert found.persists
+        errors.append(found.heading_turn - exact)
+        speed = np.sqrt(2 * orbit.energy[0] / SLEIGH.mass)
+        assert np.abs(found.velocity_after - [0.0, speed, 0.0]).max() <= 1e-14
+    assert np.abs(np.log2(np.divide(errors[:-1], errors[1:])) - 2).max() <= 0.1
+
+
+@pytest.mark.parametrize("top", [TOP, TILTED], ids=["e3", "tilted"])
+@pytest.mark.parametrize("kind", ["flow", "map"])
+def test_axes_of_a_top(top: nh.SuslovTop, kind: str) -> None:
+    """Axes in body and space are those that long runs end on, and do not depend on the state one starts from."""
+    start, discrete = {"restricted_velocity": (0.6, 0.7)}, nh.discretize(top, 0.2)
+    if kind == "flow":
+        orbit = nh.flow(top, times=[0.0, 2.0], rtol=1e-12, atol=1e-13, **start)
+        later = nh.flow(top, times=[0.0, 100.0], rtol=1e-12, atol=1e-13, **start)
+        tail = nh.flow(top, momentum=orbit.restricted_momentum[1], configuration=orbit.configuration[1], times=[0, 1])
+    else:
+        orbit = nh.simulate(discrete, steps=10, **start)
+        later = nh.simulate(discrete, steps=1000, **start)
+        tail = orbit[3:]
+    found, same = nh.asymptotics(orbit), nh.asymptotics(tail)
+    assert np.abs(found.axis_after + found.axis_before).max() <= 1e-15
+    assert np.abs(found.axis_after - nh.asymptotics(top).axis_after).max() <= 1e-14
+    assert np.abs(later.body_velocity[-1] - found.velocity_after).max() <= 1e-8
+    spatial = later.configuration[-1] @ later.body_velocity[-1]
+    assert np.abs(spatial / np.linalg.norm(spatial) - found.spatial_axis_after).max() <= 1e-7
+    for name in ("spatial_axis_before", "spatial_axis_after"):
+        assert np.abs(getattr(found, name) - getattr(same, name)).max() <= 1e-8
+
+
+def test_turn_of_an_orbit_without_poses() -> None:
+    """The turn does not depend on where one starts, and needs no poses; its sign is that of omega."""
+    discrete = nh.discretize(SLEIGH, 0.1)
+    for omega in (0.8, -0.8):
+        posed, bare = (
+            nh.simulate(discrete, restricted_velocity=(omega, 0.1), steps=7, reconstruct=kept) for kept in (True, False)
+        )
+        turn = nh.asymptotics(posed).heading_turn
+        assert nh.asymptotics(bare).heading_turn == turn
+        assert nh.asymptotics(posed[4:]).heading_turn == pytest.approx(turn, rel=1e-12)
+        assert np.sign(turn) == np.sign(omega)
+
+
+@pytest.mark.profile("routes", keep=["turning sleigh 3"])
+@pytest.mark.parametrize("name", ["top 5", "sleigh 3", "turning sleigh 3"])
+def test_limits_in_higher_dimensions(name: str) -> None:
+    """The velocity limits are reached by long discrete orbits; for a_1 = 0 the advance u is kept."""
+    center = [0.0 if name.startswith("turning") else 0.3, 0.2, -0.1]
+    sleigh = nh.MultidimensionalSleigh(1.3, center, np.diag([0.5, 0.7, 0.4]) + 0.1)
+    system = nh.SuslovTop(mass_tensor(nh.SO(5), np.random.default_rng(0))) if name == "top 5" else sleigh
+    start = 0.4 * np.array([1.0, -0.7, 0.5, 0.8])[: len(system.constraint_subspace)]
+    orbit = nh.simulate(nh.discretize(system, 0.2), restricted_velocity=start, steps=20_000, save_every=20_000)
+    found = nh.asymptotics(orbit)
+    assert found.persists == (name == "top 5")  # Theorem 9.5: below the first fold
+    assert np.abs(orbit.body_velocity[-1] - found.velocity_after).max() <= 1e-8
+    assert system.constrained_energy(found.velocity_before @ system.inertia_operator) == pytest.approx(orbit.energy[0])
+
+
+def test_motions_that_stay() -> None:
+    """From an equilibrium nothing changes; a balanced sleigh turns forever, and a balanced top keeps its axis."""
+    straight = nh.asymptotics(nh.simulate(nh.discretize(SLEIGH, 0.1), restricted_velocity=(0.0, -1.0), steps=3))
+    assert straight.heading_turn == 0
+    assert np.array_equal(straight.velocity_before, straight.velocity_after)
+    circling = nh.asymptotics(nh.flow(nh.ChaplyginSleigh(1.0, 1.0, 0.0), restricted_velocity=(1.0, 1.0), times=[0, 1]))
+    assert circling.heading_turn is None
+    assert nh.asymptotics(nh.ChaplyginSleigh(1.0, 1.0, 0.0)).heading_turn is None
+    top = nh.SuslovTop(np.diag([1.0, 2.0, 3.0]))
+    kept = nh.asymptotics(nh.simulate(nh.discretize(top, 0.1), restricted_velocity=(0.3, 0.4), steps=3))
+    assert np.array_equal(kept.spatial_axis_before, kept.spatial_axis_after)
+
+
+# Other systems, and orbits that settle too slowly.
+test_refusals = refusals(
+    (lambda: nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), "top or a sleigh"),
+    (lambda: nh.simulate(nh.discretize(SLEIGH, 1e-6), restricted_velocity=(0.5, 0.5), steps=2), "within 1000000 steps"),
+    ask=lambda make: nh.asymptotics(make()),
+)

@@ -260,11 +260,7 @@ REFUSED = {
         {"configuration": nh.SO(3).exp([0.3, 0.0, 0.0])},
         "steady motion",
     ),
-    "a force of time": (
-        nh.Forced(TOP, force=lambda t, *_: np.array([np.sin(t), 0.0, 0.0])),
-        {},
-        "must be that of a steady motion",
-    ),
+    "a force of time": (nh.Forced(TOP, force=lambda t, *_: np.array([np.sin(t), 0, 0])), {}, "that of a steady motion"),
     "a force of time, by steps": (
         nh.discretize(nh.Forced(TOP, force=lambda t, *_: np.array([0.0, float(t > 0.1), 0.0])), 0.05),
         {},
@@ -273,11 +269,7 @@ REFUSED = {
     "a velocity that slips": (DISK, rolling(0.0, 0.0, 1.0) | {"body_velocity": np.ones(5)}, "satisfy the constraint"),
     "no place": (DISK, {}, r"`linearize\(configuration=...\)` must be given"),
     "a table": (nh.Forced(TOP, force=np.zeros((3, 3))), {}, "must have forces that stay"),
-    "a table in coordinates": (
-        DISK.forced(None, np.zeros((3, 5))),
-        rolling(0.0, 0.0, 1.0),
-        "must have forces at times",
-    ),
+    "table in coordinates": (DISK.forced(None, np.zeros((3, 5))), rolling(0.0, 0.0, 1.0), "must have forces at times"),
     "a wide top": (nh.SuslovTop.arrowhead(np.linspace(1, 2, 3000), np.full(2999, 0.01)), {}, "must have matrices"),
     "an orbit": (nh.examples.particle(), {}, "must be a system or its map"),
 }

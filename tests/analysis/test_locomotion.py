@@ -247,10 +247,7 @@ test_others_are_refused = refusals(
     (lambda: nh.local_connection(with_forms(lambda _, time: jnp.eye(1, 4) * time)), "not depend on time"),
     (lambda: nh.local_connection(dataclasses.replace(FREE, holonomic=lambda q: q[:1])), "same at every pose"),
     (lambda: nh.local_connection(dataclasses.replace(FREE, holonomic=lambda q: q[3:])), "bind the body"),
-    (
-        lambda: nh.accessibility(dataclasses.replace(FREE, holonomic=lambda q: q[:1] - 1), np.zeros(4)),
-        "satisfy the",
-    ),
+    (lambda: nh.accessibility(dataclasses.replace(FREE, holonomic=lambda q: q[:1] - 1), np.zeros(4)), "satisfy the"),
     (lambda: nh.local_connection(with_forms(lambda q: jnp.array([[q[0], 1.0, 0.0, 0.0]]))), "same at every pose"),
     (lambda: nh.local_connection(with_forms(lambda q: jnp.array([[0.0, 0.0, 0.0, 1 + q[3]]]))), "bind the body"),
     (lambda: nh.geometric_phase(car(), lambda t: jnp.array([t, 0.0])), "be closed"),

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from bodies import mass_tensor
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.analysis.planar import momenta_at, planar_variety
@@ -146,13 +147,13 @@ def test_points_and_displacements_are_inverse(discrete: nh.Discretization) -> No
     assert np.allclose(variety.displacement(variety.points(W)), W, atol=1e-14)
 
 
-def test_refuses_what_has_no_closed_form() -> None:
-    """Another system, another difference and a mesh of one row are refused in words."""
-    with pytest.raises(
-        ValueError, match=r"`momentum_locus\(discrete=...\)` must be of a top with n = 3 or of a sleigh"
-    ):
-        nh.momentum_locus(nh.discretize(nh.RigidBody(np.diag([1.0, 2.0, 3.0])), 0.1))
-    with pytest.raises(ValueError, match=r"must keep energy. Got difference='logarithmic'"):
-        nh.momentum_locus(nh.discretize(TOPS["generic"], 0.1, "logarithmic"))
-    with pytest.raises(ValueError, match=r"`momentum_locus\(resolution=...\)` must be at least 2"):
-        nh.momentum_locus(SYSTEMS["generic"], 1)
+# Another system, another difference and a mesh of one row.
+test_refuses_what_has_no_closed_form = refusals(
+    (
+        (nh.discretize(nh.RigidBody(np.diag([1.0, 2.0, 3.0])), 0.1),),
+        r"`momentum_locus\(discrete=...\)` must be of a top with n = 3 or of a sleigh",
+    ),
+    ((nh.discretize(TOPS["generic"], 0.1, "logarithmic"),), r"must keep energy. Got difference='logarithmic'"),
+    ((SYSTEMS["generic"], 1), r"`momentum_locus\(resolution=...\)` must be at least 2"),
+    ask=lambda given: nh.momentum_locus(*given),
+)

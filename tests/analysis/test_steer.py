@@ -92,7 +92,5 @@ test_bad_arguments_are_refused = refusals(
     ({"discrete": SLEIGH.system}, "discretized system"),
     ({"discrete": nh.discretize(nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), 0.1)}, "left-invariant"),
     ({"discrete": nh.discretize(SLEIGH.system, 0.1, order=4)}, "order 2"),
-    ask=lambda change: nh.steer(
-        **{"discrete": SLEIGH, "start": {}, "goal": {"configuration": ASIDE}, "steps": 4} | change
-    ),
+    ask=lambda x: nh.steer(**{"discrete": SLEIGH, "start": {}, "goal": {"configuration": ASIDE}, "steps": 4} | x),
 )

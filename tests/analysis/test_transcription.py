@@ -12,7 +12,6 @@ from nonholo.analysis.steering import Steering
 from nonholo.analysis.steering._arguments import StateBounds, Way, body_numbers, body_states, resample
 from nonholo.analysis.steering._problems import CoordinateNodes, GroupNodes
 from nonholo.analysis.steering._transcription import Program, Steps
-from nonholo.systems import Forced
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.2), 0.25)
 ASIDE = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]])
@@ -53,7 +52,7 @@ SPACE = nh.LLSystem.from_inertia(
     nh.SE(3),
     constraint_subspace=np.eye(6)[[1, 2, 3]] + 0.1 * np.eye(6)[[4, 5, 0]],
 )
-FORCED = Forced(SLEIGH.system, nh.Gravity([0.0, -1.0], [0.2, 0.0]), nh.Friction([0.1, 0.3, 0.0]))
+FORCED = nh.Forced(SLEIGH.system, nh.Gravity([0.0, -1.0], [0.2, 0.0]), nh.Friction([0.1, 0.3, 0.0]))
 PROGRAMS = {
     "sleigh": lambda: _program(SLEIGH, STEPS),
     "top": lambda: _program(nh.discretize(nh.SuslovTop(np.diag([1.0, 1.2, 0.8]) + 0.1), 0.1), 3),
@@ -140,8 +139,7 @@ def test_a_disc_is_kept_clear_of() -> None:
     orbit = nh.simulate(driven, restricted_velocity=(0.0, 0.0), steps=STEPS)
     np.testing.assert_allclose(orbit.configuration[-1], ASIDE, rtol=0, atol=1e-8)
     np.testing.assert_allclose(orbit.restricted_momentum[-1], 0.0, rtol=0, atol=1e-8)
-    apart = np.linalg.norm(orbit.position - DISC[0], axis=1)
-    assert -1e-8 < apart.min() - DISC[1] < 1e-6
+    assert -1e-8 < np.linalg.norm(orbit.position - DISC[0], axis=1).min() - DISC[1] < 1e-6
     np.testing.assert_allclose(found.cost, 0.125 * (found.controls**2).sum(), rtol=1e-12)
 
 
@@ -326,9 +324,7 @@ def _beyond(values: np.ndarray, low: float, high: float) -> np.ndarray:
 
 
 @pytest.mark.profile("routes", instead="test_bounds_of_states_are_linear_in_their_numbers")
-@pytest.mark.parametrize(
-    "given", [{"theta": (-0.5, 0.6)}, {"restricted_velocity": (-0.9, (1.0, 0.7)), "x": (-0.2, 2.0)}]
-)
+@pytest.mark.parametrize("given", [{"theta": (-0.5, 0.6)}, {"restricted_velocity": (-0.9, (1.0, 0.7)), "x": (-0.2, 2)}])
 def test_bounds_of_states_are_kept_and_used_up(given: dict) -> None:
     """Run again by the compiled map, states of a parking stay within bounds that it broke without, and touch them."""
     pytest.importorskip("casadi")
@@ -436,8 +432,8 @@ def test_a_ball_rolls_aside_and_rests_as_it_was() -> None:
         ({"progress": 1}, "True or False"),
         ({"discrete": nh.discretize(nh.SuslovTop(np.eye(3)), 0.1), "obstacles": DISC}, "have a position"),
         ({"discrete": nh.discretize(nh.SuslovTop(np.eye(3)), 0.1), "guess": [(0, 0), (1, 1)]}, "without a position"),
-        ({"discrete": nh.discretize(Forced(SLEIGH.system, force=lambda *_: np.zeros(3)), 0.1)}, "that are numbers"),
-        ({"discrete": nh.discretize(Forced(SLEIGH.system, force=np.zeros((2, 3))), 0.1)}, "one for each row"),
+        ({"discrete": nh.discretize(nh.Forced(SLEIGH.system, force=lambda *_: np.zeros(3)), 0.1)}, "that are numbers"),
+        ({"discrete": nh.discretize(nh.Forced(SLEIGH.system, force=np.zeros((2, 3))), 0.1)}, "one for each row"),
         ({"discrete": "board", "method": "shooting"}, "be one of None, 'ipopt'"),
         ({"discrete": "board", "start": {}}, "be given for a system in coordinates"),
         ({"discrete": "board", "start": {"pose": 1}}, "name only"),

@@ -1,4 +1,4 @@
-"""The commands: what they keep, print and return."""
+"""The commands: what they keep, print, return and refuse, and how they write numbers."""
 
 import json
 import subprocess
@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from commands import Command, Figures, assert_ends
+from commands import Command, Figures, assert_ends, words_of
 from matplotlib.figure import Figure
 
 import nonholo as nh
 from nonholo.cli.commands import runs
 from nonholo.cli.scenario.files import load_scenario
+from nonholo.cli.screen.report import duration
 from nonholo.simulation import _run
 
 
@@ -163,8 +164,7 @@ def test_info_and_plot_of_a_flow(nonholo: Command) -> None:
     """Stores of continuous orbits are shown and drawn like others."""
     sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.5)
     nh.save_orbit(nh.flow(sleigh, body_velocity=(0.1, -1, 0), times=np.linspace(0, 9, 40)), "flow.zarr")
-    shown = assert_ends(nonholo("info", "flow.zarr"), 0)
-    assert "kind ContinuousFlow" in shown.stdout
+    assert "kind ContinuousFlow" in assert_ends(nonholo("info", "flow.zarr"), 0).stdout
     assert nonholo("plot", "flow.zarr").exit_code == 0
 
 
@@ -227,3 +227,57 @@ def test_more_states_than_memory(steps: int, nonholo: Command) -> None:
     words = "save_every" if steps < 10**18 else "less than or equal"
     result = assert_ends(nonholo("simulate", "sleigh", "--no-plot", "--steps", steps), 2, words)
     assert result.exception is None or isinstance(result.exception, SystemExit)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "written"),
+    [(83.0, "83 s"), (1.0, "1 s"), (0.25, "250 ms"), (1.5e-3, "1.5 ms"), (7e-6, "7 us"), (4.2e-8, "42 ns")],
+)
+def test_durations_have_a_unit_that_suits_them(seconds: float, written: str) -> None:
+    """A duration is written in the largest unit that it fills, to three digits."""
+    assert duration(seconds) == written
+
+
+SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+
+
+@pytest.mark.parametrize(
+    ("kind", "told"),
+    [
+        ("top", "there is no kind 'top'. Did you mean suslov or veselova?"),
+        ("slei", "Did you mean sleigh?"),
+        ("rigid", "Did you mean rigid_body"),
+        ("zebra", "Known: suslov, sleigh, multidimensional_sleigh,"),
+    ],
+)
+def test_unknown_templates_name_the_nearest(kind: str, told: str, nonholo: Command) -> None:
+    """A kind that is none is refused in our own words, with the nearest ones."""
+    assert "Value error" not in words_of(assert_ends(nonholo("new", kind), 2, told))
+
+
+@pytest.mark.profile("faults", keep=["png"])
+@pytest.mark.parametrize("suffix", ["png", "gif"])
+def test_pictures_at_a_path_of_ones_own_are_kept(suffix: str, nonholo: Command) -> None:
+    """`plot -o` refuses what is there unless told to replace it; the picture beside the store is drawn anew."""
+    nh.simulate(SLEIGH, body_velocity=(0.3, -1.0, 0.0), steps=20, store="a.zarr")
+    mine = Path(f"mine.{suffix}")
+    mine.write_text("mine")
+    command = ["plot", "a.zarr", "-o", mine] + (["--gif"] if suffix == "gif" else [])
+    assert_ends(nonholo(*command), 2, f"must be new. Got '{mine}', which exists.", "--overwrite")
+    assert mine.read_text() == "mine"
+    assert nonholo(*command, "--overwrite").exit_code == 0
+    assert mine.read_bytes() != b"mine"
+    again = [argument for argument in command if argument not in ("-o", mine)]
+    assert [nonholo(*again).exit_code for _ in range(2)] == [0, 0]
+
+
+@pytest.mark.parametrize("command", ["simulate", "sweep"])
+def test_a_store_is_no_netcdf_file(command: str, nonholo: Command) -> None:
+    """A store under the suffix of another format is refused before anything is run."""
+    scenario = "sleigh"
+    if command == "sweep":
+        scenario = "my.toml"
+        Path(scenario).write_text(nonholo("new", "sweep").stdout)
+    ended = nonholo(command, scenario, "-o", "mine.nc")
+    assert_ends(ended, 2, "must be the path of a Zarr store, usually *.zarr. Got 'mine.nc'")
+    assert not Path("mine.nc").exists()

@@ -37,8 +37,7 @@ def test_every_example(name: str, nonholo: Command) -> None:
     orbit = getattr(nh.examples, name)().simulate(steps=6)
     told = json_of(nonholo("simulate", name, "--steps", 6, "-o", "a.zarr", "--json"))
     assert told["outcome"] == "successful"
-    stored = nh.load_orbit("a.zarr")
-    np.testing.assert_array_equal(stored.configuration, orbit.configuration)
+    np.testing.assert_array_equal(nh.load_orbit("a.zarr").configuration, orbit.configuration)
     assert Path("a.png").stat().st_size > 5_000
     assert "successful" in output_of(nonholo("info", "a.zarr"))
     assert "a-overview.png" in output_of(nonholo("plot", "a.zarr", "--kind", "all", "--dpi", 30))
@@ -48,8 +47,7 @@ def test_every_example(name: str, nonholo: Command) -> None:
     design = f'[design]\nkind = "grid"\n[design.values]\n"{path}" = {values}'
     Path("many.toml").write_text(f'[body]\nkind = "{name}"\n[run]\nsteps = 6\n{design}')
     output_of(nonholo("sweep", "many.toml", "-o", "s.zarr", "-q"))
-    swept = nh.load_sweep("s.zarr")
-    assert (swept["steps_done"].values == 6).all()
+    assert (nh.load_sweep("s.zarr")["steps_done"].values == 6).all()
 
 
 def test_another_speed_keeps_the_pose_of_the_example() -> None:

@@ -1,6 +1,9 @@
-"""`resume`, `extend`, and what `info` says of a run that is not finished."""
+"""`resume`, `extend`, `export`, and what `info` says of a run that is not finished."""
 
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -38,8 +41,7 @@ def test_resume_finishes_a_run(stopped: Path, nonholo: Command) -> None:
     told = json.loads(nonholo("resume", stopped, "--json").stdout)
     assert told["steps"] == 500
     assert told["outcome"] == "successful"
-    whole = nh.simulate(SLEIGH, steps=500, **START)
-    assert np.array_equal(nh.load_orbit(stopped).pose, whole.pose)
+    assert np.array_equal(nh.load_orbit(stopped).pose, nh.simulate(SLEIGH, steps=500, **START).pose)
     assert "unfinished" not in json.loads(nonholo("info", stopped, "--json").stdout)
 
 
@@ -157,3 +159,49 @@ def test_figures_of_the_last_block_say_so(nonholo: Command, monkeypatch: pytest.
     assert "100 of 100" in shown.stdout
     assert "the last 5 states; the store has all" in shown.stdout
     assert json.loads(nonholo(*command, "--json").stdout)["steps"] == 100
+
+
+@pytest.fixture
+def store() -> Path:
+    """A finished run of 51 states."""
+    nh.simulate(SLEIGH, steps=50, store="run.zarr", checkpoint_every=20, **START)
+    return Path("run.zarr")
+
+
+def test_standard_output_is_the_file(store: Path, nonholo: Command) -> None:
+    """Without -o the rows go to standard output and nothing else does; with it the path does."""
+    shown = assert_ends(nonholo("export", store), 0)
+    assert shown.stderr == ""
+    assert nonholo("export", store, "-o", "poses.csv").stdout == "poses.csv\n"
+    nh.load_orbit(store).to_csv("orbit.csv")
+    assert shown.stdout == Path("poses.csv").read_text() == Path("orbit.csv").read_text()
+
+
+def test_unfinished_run_is_told_on_standard_error(nonholo: Command) -> None:
+    """The finished blocks of a stopped run are exported, and standard error says how far they go."""
+    with stopped_at(2):
+        nh.simulate(SLEIGH, steps=50, store="run.zarr", checkpoint_every=20, **START)
+    result = nonholo("export", "run.zarr")
+    result = assert_ends(result, 0, "Warning: The run in 'run.zarr' is not finished: its poses go up to step 39 of 50")
+    assert len(result.stdout.splitlines()) == 41
+
+
+@pytest.mark.parametrize("arguments", [("nothing.zarr",), ("run.zarr", "--every", 0)], ids=["no store", "every 0"])
+@pytest.mark.usefixtures("store")
+def test_wrong_usage_is_refused(arguments: tuple[object, ...], nonholo: Command) -> None:
+    """What can be seen to be wrong before any work has exit code 2."""
+    assert assert_ends(nonholo("export", *arguments), 2).stdout == ""
+
+
+@pytest.mark.profile("faults", instead="test_standard_output_is_the_file")
+def test_reader_that_stops_is_no_error() -> None:
+    """A pipe that is closed after the first rows, as `head` does, ends the command without a word."""
+    nh.simulate(SLEIGH, steps=20_000, store="run.zarr", **START)  # a megabyte of text, more than a pipe holds
+    read, write = os.pipe()
+    command = [sys.executable, "-c", "from nonholo.cli._app import main; main()", "export", "run.zarr"]
+    with subprocess.Popen(command, stdout=write, stderr=subprocess.PIPE, text=True) as process:  # noqa: S603
+        os.close(write)
+        with os.fdopen(read) as rows:
+            assert rows.readline() == "t,x,y,theta\n"
+        assert process.communicate()[1] == ""
+    assert process.returncode == 0

@@ -1,17 +1,21 @@
-"""Scenarios: everything wrong is reported at once, with where it was said; settings pass the same checks."""
+"""Scenarios: read within bounds; everything wrong is reported at once; ready ones have the motion of their title."""
 
 import functools
+import os
+import time
 import tomllib
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
-from commands import problems_of
+from commands import Command, Figures, assert_ends, problems_of
 from hypothesis import given
 from hypothesis import strategies as st
 
+import nonholo as nh
 from nonholo.cli.scenario.bodies import SHORT
-from nonholo.cli.scenario.files import effective_text, load_scenario, parse_setting
+from nonholo.cli.scenario.files import effective_text, load_scenario, parse_setting, parse_toml
 from nonholo.cli.scenario.sections import ScenarioError
 
 _GOOD = """
@@ -116,5 +120,128 @@ def test_effective_text_repeats_the_scenario(mass: float, a: float, steps: int, 
     settings: list[Any] = [parse_setting(f"body.mass={mass!r}"), parse_setting(f"body.a={a!r}")]
     scenario = load_scenario(str(path), [*settings, parse_setting(f"run.steps={steps}")]).scenario
     scenario = scenario.model_copy(update={"title": title})
-    again = type(scenario).model_validate(tomllib.loads(effective_text(scenario)))
-    assert again == scenario
+    assert type(scenario).model_validate(tomllib.loads(effective_text(scenario))) == scenario
+
+
+BOMBS = {
+    "deep arrays": ("a = " + "[" * 200_000, "nested deeper than 32"),
+    "arrays": ("a = " + "[" * 40 + "]" * 40, "nested deeper than 32"),
+    "tables": ("[" + ".".join("a" * 50) + "]", "nested deeper than 32"),
+    "integer": ("a = " + "9" * 1_000_000, "Exceeds the limit"),
+    "size": ("# " + "x" * (1 << 22), "it has more than 4.19 MB"),
+    "bytes": ("a = 1\ud800", "cannot be read as a text file"),
+}
+
+
+@pytest.mark.parametrize("command", ["simulate", "sweep"])
+@pytest.mark.parametrize("name", BOMBS)
+def test_bombs_are_refused(name: str, command: str, nonholo: Command) -> None:
+    """What would fill memory or stack is reported as a problem of the scenario."""
+    text, told = BOMBS[name]
+    Path("bomb.toml").write_bytes(text.encode(errors="surrogatepass"))
+    assert_ends(nonholo(command, "bomb.toml"), 2, told)
+
+
+@pytest.mark.parametrize("name", ["/dev/zero", "pipe", ".", "x" * 5000])
+def test_files_that_do_not_end_are_refused(name: str, nonholo: Command) -> None:
+    """Devices, pipes and folders are refused at once, a name that is too long as well."""
+    os.mkfifo("pipe")
+    begun = time.monotonic()
+    assert_ends(nonholo("simulate", name), 2, "too long" if len(name) > 99 else "a folder, a device or a pipe")
+    assert time.monotonic() - begun < 5
+
+
+def test_a_setting_may_be_a_bomb(nonholo: Command) -> None:
+    """A value of the command line is no better than a file."""
+    assert nonholo("simulate", "sleigh", "--set", "run.steps=" + "9" * 10_000).exit_code == 2
+
+
+@pytest.mark.parametrize("count", ["1000000000000000", "10000000000"])
+def test_grids_that_fill_the_memory_are_refused(count: str, nonholo: Command) -> None:
+    """A range is not made before it is known to fit, and nothing is left."""
+    text = '[body]\nkind = "sleigh"\nmass = 1.0\ninertia = 1.0\na = 0.5\n[start]\nrestricted_velocity = [0.3, -1.0]\n'
+    text += '[run]\ntime_step = 0.1\nsteps = 20\n[design]\nkind = "grid"\n[design.values]\n'
+    Path("grid.toml").write_text(text + f'"body.a" = {{from = 0.1, to = 1.0, count = {count}}}\n')
+    assert_ends(nonholo("sweep", "grid.toml", "-o", "a.zarr"), 2, "fit into memory")
+    assert not Path("a.zarr").exists()
+
+
+def test_what_is_nested_a_little_is_read() -> None:
+    """The limit is far from what scenarios need."""
+    assert parse_toml("a = " + "[" * 20 + "]" * 20)
+
+
+_FOLDER = Path(__file__).parents[2] / "scenarios"
+_FILES = sorted(path for path in _FOLDER.glob("*.toml") if not path.stem.endswith("_sweep"))
+
+
+@pytest.mark.profile("routes", keep=["suslov*", "*sleigh", "long_run", "tilted_axis", "four_steps"])
+@pytest.mark.parametrize("path", _FILES, ids=lambda path: path.stem)
+def test_example_runs(path: Path, figures: Figures) -> None:
+    """Each example succeeds, with energy kept to rounding where the discretization promises it; not under forces."""
+    told = figures(path, *(["--steps", 20] if path.stem == "logarithmic_difference" else []))
+    assert told["outcome"] == "successful"
+    assert told["energy_drift"] < {"logarithmic_difference": 1e-3, "hanging_top": 1e-3, "twisted_sleigh": 1e-2}.get(
+        path.stem, 1e-12
+    )
+    assert told["constraint_residual"] < 1e-14
+
+
+def test_balanced_sleigh_moves_on_a_circle(figures: Figures) -> None:
+    """The balanced sleigh keeps one distance from one point."""
+    position = nh.load_orbit(figures(_FOLDER / "balanced_sleigh.toml")["store"]).position
+    x, y = position.T
+    center = np.linalg.lstsq(np.column_stack([2 * x, 2 * y, np.ones_like(x)]), x**2 + y**2, rcond=None)[0][:2]
+    assert np.ptp(np.linalg.norm(position - center, axis=1)) < 1e-12
+
+
+def test_hanging_top_comes_to_rest(figures: Figures) -> None:
+    """Its center of mass ends below the fixed point, and what it falls short of the lowest energy is small."""
+    orbit = nh.load_orbit(figures(_FOLDER / "hanging_top.toml")["store"])
+    assert orbit.configuration[-1, 2, 2] > 0.999
+    assert 0 < orbit.energy[-1] + 9.81 * 0.3 < 1e-3 * (orbit.energy[0] - orbit.energy[-1])
+
+
+def test_twisting_drives_a_sleigh(figures: Figures) -> None:
+    """From rest it gets under way, always forwards, while it swings about; its energy is the work done on it."""
+    orbit = nh.load_orbit(figures(_FOLDER / "twisted_sleigh.toml")["store"])
+    turning, speed, _ = orbit.body_velocity.T
+    assert (speed[0], speed[1:].min() > 0, speed[300:].min() > 0.8) == (0, True, True)
+    assert np.count_nonzero(np.diff(np.sign(turning))) >= 10
+    assert orbit.energy[-1] == pytest.approx(orbit.work[-1], rel=5e-3)
+
+
+def _swept(nonholo: Command, name: str, members: int) -> Any:
+    assert_ends(nonholo("sweep", _FOLDER / f"{name}.toml", "--members", members, "-o", "s.zarr", "-q"), 0)
+    assert Path("s.png").exists()
+    return nh.load_sweep("s.zarr").load()
+
+
+@pytest.mark.profile("routes", instead="test_deviation_of_one_orbit")
+def test_turning_sweep_shows_the_closed_form(nonholo: Command) -> None:
+    """The lowest row deviates by h^2 J / (24 (1 + J)^2); below the bound no member is lost, most are above."""
+    found = _swept(nonholo, "sleigh_turning_sweep", 400)
+    J, h = found["inertia"].values, found["time_step"].values
+    row = found["turning_deviation"].values[:, 0] / (h[0] ** 2 * J / (24 * (1 + J) ** 2))
+    assert np.abs(row - 1).max() < 0.01  # 0.3 h^2, with h = 0.1
+    sleighs = [nh.discretize(nh.ChaplyginSleigh(1.0, inertia, 1.0), 1.0) for inertia in J]
+    bound = np.sqrt([2 * nh.single_valued_region(sleigh).principal_energy for sleigh in sleighs])
+    lost = found["outcome"].values != 0
+    below = h < bound[:, None]
+    assert not lost[below].any()
+    assert lost[~below].mean() > 0.5
+
+
+@pytest.mark.profile("problems", instead="test_deviation_of_one_orbit")
+def test_random_tops_keep_their_branch_below_the_saddle(nonholo: Command) -> None:
+    """No top whose energy is below its saddle loses its branch; of those above twice that, none keeps it."""
+    found = _swept(nonholo, "random_tops_sweep", 100)
+    tops = [nh.discretize(nh.SuslovTop(J), 1.0) for J in found["mass_tensor"].values]
+    momenta = np.stack([found["momentum_0"], found["momentum_1"]], axis=1)
+    saddles = [nh.critical_energies(top).saddle for top in tops]
+    energies = [float(top.system.constrained_energy(p)) for top, p in zip(tops, momenta, strict=True)]
+    part, kept = np.array(energies) / np.array(saddles, dtype=float), found["outcome"].values == 0
+    assert kept[part < 1].all()
+    assert not kept[part > 2].any()
+    assert 10 < (part < 1).sum() < 90
+    assert np.nanmax(found["energy_drift"]) < 2e-15

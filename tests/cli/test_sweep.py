@@ -308,8 +308,7 @@ def test_failed_members_are_told(nonholo: Command) -> None:
     """Members for which the task raises do not stop the rest; `info` repeats their first messages."""
     text = GRID.replace('"body.a" = [0.3, 0.5]', '"body.mass" = [1.0, -1.0]')
     store = json_of(nonholo("sweep", _written(text), "--json", "--no-plot"))["store"]
-    told = json_of(nonholo("info", store, "--json"))
-    assert told["outcomes"] == {"successful": 4, "raised": 4}
+    assert json_of(nonholo("info", store, "--json"))["outcomes"] == {"successful": 4, "raised": 4}
     shown = nonholo("info", store).stdout
     assert "member 4 raised ValueError" in shown
     assert "must be positive" in shown

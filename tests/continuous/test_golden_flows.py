@@ -1,10 +1,17 @@
-"""Closed forms and numerical flow against Taylor series of the matrix equations in 60 digits (tests/golden)."""
+"""Flows against Taylor series in 60 digits (tests/golden) and diffrax; times, directions, starts, refusals."""
 
+from typing import Any
+
+import jax
 import numpy as np
 import pytest
+from comparisons import assert_same
+from problems import EVERY as SYSTEMS
 from references import golden, golden_system, numbers
+from refusals import refusals
 
 import nonholo as nh
+from nonholo.systems import AbstractLLSystem, AbstractSystem
 
 CASES = golden("flows.json")
 SLEIGHS = [case for case in CASES if case["system"] == "sleigh"]
@@ -52,3 +59,139 @@ def test_numerical_flow(case: dict) -> None:
     if case in SLEIGHS:
         assert _miss(orbit.heading, case["heading"]) <= 1e-11
         assert np.abs(np.cos(orbit.heading) - orbit.configuration[:, 0, 0]).max() <= 1e-14
+
+
+HYPERBOLIC = nh.MatrixGroup([[[0.0, 1.0], [1.0, 0.0]]], form=[[1.0, 0.0], [0.0, -1.0]])
+
+
+def _start(system: AbstractSystem) -> dict:
+    rng = np.random.default_rng(3)
+    return {"restricted_velocity": rng.normal(size=system.rank), "configuration": system.group.random(rng)}
+
+
+@pytest.mark.profile("routes", keep=["rod"])
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_diffrax_arrives_at_the_same_states(name: str) -> None:
+    """Both integrators follow the same motion to 1e-8, a hundred of the errors of their steps, there and back."""
+    system, start = SYSTEMS[name], _start(SYSTEMS[name])
+    for times in (np.linspace(0.0, 6.0, 8), np.linspace(1.0, -2.0, 4)):
+        compiled, other = (nh.flow(system, **start, times=times, method=method) for method in (None, "diffrax"))
+        for value in ("momentum", "configuration", "body_velocity", "multipliers"):
+            found, expected = getattr(compiled, value), getattr(other, value)
+            assert np.abs(found - expected).max(initial=0.0) <= 1e-8 * max(1.0, np.abs(expected).max(initial=0.0))
+        if system.group == nh.SE(2):
+            assert np.abs(compiled.heading - other.heading).max() <= 1e-8 * max(1.0, np.abs(other.heading).max())
+
+
+@pytest.mark.profile("routes", keep=["None"])
+@pytest.mark.parametrize("method", [None, "diffrax"])
+def test_a_motion_that_overflows_keeps_its_good_states(method: str | None) -> None:
+    """A pose on SO(1, 1) grows like e^t: beyond the largest number the solve ends, and earlier states are good."""
+    boost = nh.LLSystem(HYPERBOLIC, constraint_subspace=[[1.0]], inertia_operator=[[1.0]])
+    with pytest.raises(nh.OutcomeError, match="from time 700 to 800") as caught:
+        nh.flow(boost, body_velocity=[1.0], times=(0.0, 300.0, 700.0, 800.0, 900.0), method=method)
+    orbit = caught.value.orbit
+    assert orbit.outcome == nh.Outcome.not_converged
+    assert orbit.time.tolist() == [0.0, 300.0, 700.0]
+    assert np.abs(np.log(2 * orbit.configuration[1:, 0, 0]) - orbit.time[1:]).max() <= 1e-6
+
+
+SLEIGH = nh.ChaplyginSleigh(1.0, 1.0, 0.5, 0.3)
+TOP = nh.SuslovTop.from_inertia([[3.0, 0.1, 0.2], [0.1, 2.0, 0.3], [0.2, 0.3, 2.5]], (2 / 3, -1 / 3, 2 / 3))
+BOTH = pytest.mark.parametrize("system", [SLEIGH, TOP], ids=["sleigh", "top"])
+METHODS = pytest.mark.parametrize("method", [None, "closed_form"])
+START = {"restricted_velocity": (0.8, -0.5)}
+
+
+@BOTH
+@METHODS
+def test_backward_in_time(system: AbstractLLSystem, method: str | None) -> None:
+    """Forward over 3 and back by decreasing times returns to the start, to 1e-8 at the default tolerances."""
+    there = nh.flow(system, **START, times=(0.0, 1.5, 3.0), method=method)
+    end = {"momentum": there.restricted_momentum[-1], "configuration": there.configuration[-1]}
+    back = nh.flow(system, **end, times=(3.0, 1.5, 0.0), method=method)
+    assert np.abs(back.configuration[::-1] - there.configuration).max() <= 1e-8
+    assert np.abs(back.momentum[::-1] - there.momentum).max() <= 1e-8
+    assert back.time.tolist() == [3.0, 1.5, 0.0]
+
+
+@BOTH
+@METHODS
+def test_only_elapsed_time_matters(system: AbstractLLSystem, method: str | None) -> None:
+    """The start is at the first time: a shift of all times, by a power of two, changes nothing at all."""
+    first, second = (nh.flow(system, **START, times=t + np.array([0.0, 1.0, 2.5]), method=method) for t in (0.0, 64.0))
+    assert_same(first, second, "configuration", "momentum")
+
+
+@BOTH
+@METHODS
+def test_single_time(system: AbstractLLSystem, method: str | None) -> None:
+    """One time gives the start alone."""
+    orbit = nh.flow(system, **START, times=[2.0], method=method)
+    assert len(orbit) == 1
+    assert np.abs(orbit.configuration[0] - np.eye(3)).max() <= 1e-15
+    assert orbit.multipliers.shape == (1, 1)
+
+
+@BOTH
+def test_equal_starts_are_equal(system: AbstractLLSystem) -> None:
+    """A velocity, its restriction, its momentum and the restricted momentum start the same motion."""
+    orbit = nh.flow(system, **START, times=(0.0, 2.0))
+    for start in ("body_velocity", "momentum"):
+        same = nh.flow(system, **{start: getattr(orbit, start)[0]}, times=(0.0, 2.0))
+        assert np.abs(same.configuration[-1] - orbit.configuration[-1]).max() <= 1e-10
+    same = nh.flow(system, momentum=orbit.restricted_momentum[0], times=(0.0, 2.0))
+    assert np.abs(same.configuration[-1] - orbit.configuration[-1]).max() <= 1e-10
+
+
+def test_precision_is_local() -> None:
+    """The flow works in 64 bits and leaves JAX's global precision alone."""
+    before = jax.config.read("jax_enable_x64")
+    assert nh.flow(SLEIGH, **START, times=(0.0, 1.0)).configuration.dtype == np.float64
+    assert jax.config.read("jax_enable_x64") == before
+    assert jax.numpy.zeros(1).dtype == (np.float64 if before else np.float32)
+
+
+def test_impossible_tolerance_is_an_outcome() -> None:
+    """A solve that cannot meet the tolerances raises with the good states, here the start alone."""
+    with pytest.raises(nh.OutcomeError, match=r"from time 0 to 1 \(rtol 1e-14, atol 1e-300\)") as caught:
+        nh.flow(TOP, restricted_velocity=(1e140, 2e140), times=(0.0, 1.0), rtol=1e-14, atol=1e-300)
+    assert caught.value.outcome == nh.Outcome.not_converged
+    assert len(caught.value.orbit) == 1
+
+
+# A bad argument is refused by name, with the requirement and what was got.
+test_refusals = refusals(
+    ({"times": []}, r"`flow\(times=...\)` must hold at least one time"),
+    ({"times": 1.0}, r"`flow\(times=...\)` must have shape \(any,\)"),
+    ({"times": (0.0, 1.0, 1.0)}, r"strictly increasing or strictly decreasing. Got 1.0 after 1.0"),
+    ({"times": (0.0, 2.0, 1.0)}, r"Got 1.0 after 2.0. Sort the times"),
+    ({"times": (0.0, 1.0, 0.0)}, r"Got 0.0 after 1.0"),
+    ({"restricted_velocity": None, "momentum": (1, 0, 9.0)}, r"`flow\(momentum=...\)` must belong to an admissible"),
+    ({"times": (0.0, np.inf)}, r"`flow\(times=...\)` must be finite"),
+    ({"rtol": 1e-15}, r"`flow\(rtol=...\)` must be at least 1e-14. Got 1e-15"),
+    ({"atol": 0.0}, r"`flow\(atol=...\)` must be positive"),
+    ({"method": "euler"}, r"`flow\(method=...\)` must be one of None, 'closed_form', 'diffrax'. Got 'euler'"),
+    ({"momentum": (1.0, 0.0)}, r"`flow\(...\)` must be given exactly one of .* Got restricted_velocity and momentum"),
+    ({"restricted_velocity": None}, r"must be given exactly one of .* Got none"),
+    ({"restricted_velocity": (1.0,)}, r"`flow\(restricted_velocity=...\)` must have shape \(2,\)"),
+    ({"restricted_velocity": None, "body_velocity": (1, 0, 1)}, r"`flow\(body_velocity=...\)` must satisfy"),
+    ({"configuration": 2 * np.eye(3)}, r"`flow\(configuration=...\)` must lie in SE\(2\)"),
+    ask=lambda options: nh.flow(SLEIGH, **({"times": (0.0, 1.0)} | START | options)),
+)
+
+
+_NO_CLOSED_FORM = {"restricted_velocity": np.ones(3), "times": (0.0, 1.0), "method": "closed_form"}
+_TIMES: dict[str, Any] = {"times": (0.0, 1.0), **START}
+# What is not a system is refused by both entry points; a system without a closed form with the advice to integrate.
+test_what_has_no_such_flow_is_refused = refusals(
+    (lambda: nh.flow(SLEIGH.group, **_TIMES), r"`flow\(system=...\)` must be a system"),
+    (lambda: nh.vector_field("sleigh"), r"`vector_field\(system=...\)` must be a system"),
+    (lambda: nh.discretize(nh.examples.sleigh_in_a_well(), 0.1), "of a ready example its `.system`"),  # type: ignore[arg-type]
+    (lambda: nh.flow(nh.examples.sleigh_in_a_well(), **_TIMES), "of a ready example its `.system`"),  # type: ignore[arg-type]
+    (
+        lambda: nh.flow(nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0])), **_NO_CLOSED_FORM),
+        "must have a closed-form solution. Got SuslovTop. Leave method out",
+    ),
+    (lambda: nh.flow(SLEIGH, **_TIMES).displacement, "continuous flow"),
+)

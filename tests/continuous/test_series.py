@@ -39,9 +39,7 @@ def _rate(f: Quadratic, x: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("compact", [True, False])
 @pytest.mark.parametrize("name", SYSTEMS)
-def test_the_quadratic_equations_are_the_vector_field(
-    name: str, compact: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_quadratic_equations_are_the_vector_field(name: str, compact: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """At random momenta and poses, compact or matrices; the tensor in space moves with the pose."""
     monkeypatch.setattr(_series, "_COMPACT", 1000 if compact else 0)
     system = SYSTEMS[name].canonical
@@ -107,9 +105,7 @@ def test_states_do_not_depend_on_the_other_times(system: AbstractSystem) -> None
 
 def test_kept_room_leaves_no_trace() -> None:
     """A flow has the same bits after another one of as many components, in its thread and in a new one."""
-    flows = [
-        functools.partial(nh.flow, TOP, restricted_velocity=w, times=(0.0, 9.0)) for w in ((0.8, -0.5), (90.0, 7.0))
-    ]
+    flows = [functools.partial(nh.flow, TOP, restricted_velocity=w, times=(0.0, 9.0)) for w in ((0.8, -0.5), (90, 7))]
     found = [flow().canonical_pose for flow in (*flows, flows[0])]
     with ThreadPoolExecutor(1) as pool:
         found.append(pool.submit(flows[0]).result().canonical_pose)
@@ -201,8 +197,7 @@ def test_nothing_gathers_over_a_long_time(name: str) -> None:
 def test_roots_from_bits(degree: int) -> None:
     """To two digits of any positive number, also of one that is not normal; of none and of too much what is safe."""
     for x in (5e-324, 1e-310, 2.2e-308, 1e-300, 3e-17, 0.5, 1.0 - 2**-53, 1.0, 1.9999, 2.0, 7e5, 1.7e308):
-        exact = float(mpmath.root(mpmath.mpf(x), degree))
-        assert abs(_steps.root(x, degree) / exact - 1) <= 0.01
+        assert abs(_steps.root(x, degree) / float(mpmath.root(mpmath.mpf(x), degree)) - 1) <= 0.01
     assert 0 < _steps.root(0.0, degree) <= _steps.root(5e-324, degree)
     assert _steps.root(np.inf, degree) == np.inf
 

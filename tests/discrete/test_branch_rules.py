@@ -9,7 +9,6 @@ from fuzz.steps import equations_of
 from refusals import refusals
 
 import nonholo as nh
-from nonholo import Outcome
 from nonholo.discrete import Branches
 from nonholo.discrete.branching._equations import follow as followed_on_sphere
 from nonholo.discrete.branching._equations import frame_of
@@ -45,7 +44,7 @@ def test_the_principal_value_is_that_of_a_continuation(discrete: nh.Discretizati
     beyond = path.s * (1 + 10 ** rng.uniform(-6, 0.3, len(r)))
     for momentum in unit * (beyond[:, None] * r)[path.folded]:
         outcome = nh.simulate(discrete, momentum=momentum, steps=1, throw=False).outcome
-        assert outcome in (Outcome.no_real_branch, Outcome.branch_unverified)
+        assert outcome in (nh.Outcome.no_real_branch, nh.Outcome.branch_unverified)
 
 
 def test_following_from_rest_leads_to_the_principal_value() -> None:
@@ -55,7 +54,7 @@ def test_following_from_rest_leads_to_the_principal_value() -> None:
         r = 1.5 * rng.normal(size=2)
         code, x = followed_on_sphere(frame.equations(0 * r), frame.equations(r), np.array([1.0, 0.0, 0.0]))
         found = nh.displacements_over(ROD, r)
-        assert (found.principal is None) == (code == Outcome.no_real_branch)
+        assert (found.principal is None) == (code == nh.Outcome.no_real_branch)
         if found.principal is not None:
             W = frame.increment(x) + np.eye(3)
             assert np.abs(W - found.displacement[found.principal]).max() < 1e-12
@@ -130,7 +129,7 @@ def test_of_three_outer_values_the_nearest_is_taken() -> None:
     outer, nearest = (nh.step(FOUR, nh.discrete_legendre(FOUR, W), branch=rule) for rule in ("outer", "nearest"))
     np.testing.assert_allclose(outer.displacement, nearest.displacement, rtol=0, atol=1e-12)
     inner = nh.step(FOUR, FOUR_REAL, branch="outer")  # from the inner value the path leads to none of the three
-    assert inner.outcome == Outcome.branch_unverified
+    assert inner.outcome == nh.Outcome.branch_unverified
 
 
 def test_a_function_gets_the_values_and_the_present() -> None:
@@ -151,14 +150,13 @@ def test_a_function_gets_the_values_and_the_present() -> None:
 def test_a_function_without_a_choice_ends_the_run() -> None:
     """None means that there is no real branch by this rule; the fields are then NaN."""
     after = nh.step(TOP, [0.2, 0.3], branch=lambda *_: None)
-    assert after.outcome == Outcome.no_real_branch
+    assert after.outcome == nh.Outcome.no_real_branch
     assert np.isnan([*after.momentum, *after.displacement.ravel(), *after.multipliers]).all()
 
 
 def test_values_that_tie_are_unverified() -> None:
     """A round balanced top has J_11 = J_22: both values have the same momentum, and no norm tells them apart."""
-    after = nh.step(ROUND, [0.3, 0.4], branch="largest")
-    assert after.outcome == Outcome.branch_unverified
+    assert nh.step(ROUND, [0.3, 0.4], branch="largest").outcome == nh.Outcome.branch_unverified
 
 
 @pytest.mark.parametrize("angle", [1.0, 2.5, -0.7])
@@ -174,21 +172,21 @@ def test_a_double_value_is_unverified(angle: float) -> None:
 
     after = nh.step(SLEIGH, nh.discrete_legendre(SLEIGH, nh.SE(2).inverse(back)), branch=double)
     assert counts == [2]
-    assert after.outcome == Outcome.branch_unverified
+    assert after.outcome == nh.Outcome.branch_unverified
 
 
 def test_a_start_on_a_fold_is_unverified() -> None:
     """The balanced sleigh folds at a quarter turn: its root is double there and cannot be followed."""
     W = nh.SE(2).exp(np.array([np.pi / 2, 0.3, 0.0]))
     orbit = nh.simulate(BALANCED, displacement=W, steps=1, branch="nearest", throw=False)
-    assert (len(orbit), orbit.outcome) == (1, Outcome.branch_unverified)
+    assert (len(orbit), orbit.outcome) == (1, nh.Outcome.branch_unverified)
 
 
 def test_a_value_that_folds_on_the_way_is_not_replaced() -> None:
     """The second value of this sleigh merges and vanishes on the way, though the map has another real value."""
     W = _real(nh.displacements_over(SLEIGH, [0.473, -1.307]))[1]
     orbit = nh.simulate(SLEIGH, displacement=W, steps=3, branch="nearest", throw=False)
-    assert (len(orbit), orbit.outcome) == (1, Outcome.no_real_branch)
+    assert (len(orbit), orbit.outcome) == (1, nh.Outcome.no_real_branch)
     assert nh.branches(SLEIGH, displacement=W).is_real.any()
 
 

@@ -92,10 +92,7 @@ def test_against_fifty_digits(case: dict, certify: bool) -> None:
 
 _DEFINED = {
     "top": (_top([[1.0, 0.2], [0.2, 1.5]], [0.3, -0.2], 0.5), [0.4, 0.7]),
-    "top, other axis": (
-        nh.discretize(nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 2.5]) + 0.2, (0.6, 0, 0.8)), 0.5),
-        [1, 2],
-    ),
+    "tilted top": (nh.discretize(nh.SuslovTop.from_inertia(np.diag([3, 2, 2.5]) + 0.2, (0.6, 0, 0.8)), 0.5), [1, 2]),
     "top on SO(5)": (_top(np.diag([1.0, 1.2, 2.0, 2.5]), [0.3, -0.2, 0.1, 0.4]), [0.4, 0.7, -0.3, 1.0]),
     "sleigh with b": (_sleigh(-0.4, 0.3), [0.8, -0.3]),
     "sleigh on SE(3)": (_motion([0.3, 0.2, -0.1], np.diag([0.5, 0.7, 0.4]) + 0.1), [0.3, -0.4, 0.6]),
@@ -187,12 +184,7 @@ _MULTIPLE = {
         [True, True, False, False],
     ),
     "a cusp of the deltoid": (_sleigh(0.5), _at(0.0, -2.0), [3], [True]),
-    "the fold of a balanced top": (
-        nh.discretize(nh.SuslovTop(np.diag([0.75, 0.75, 0.25])), 1.0),
-        [1.0, 0.0],
-        [2],
-        [True],
-    ),
+    "fold of a balanced top": (nh.discretize(nh.SuslovTop(np.diag([0.75, 0.75, 0.25])), 1.0), [1.0, 0.0], [2], [True]),
 }
 
 

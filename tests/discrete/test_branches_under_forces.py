@@ -23,14 +23,9 @@ SYSTEMS: dict[str, AbstractSystem] = {
     "top on SO(4)": nh.SuslovTop(np.diag([1.0, 2.0, 1.5, 0.7]) + 0.1),
 }
 COUNTS = {  # without forces or with friction or a table, and with a potential
-    "top": (4, 7),
-    "tilted top": (4, 7),
-    "balanced top": (2, 5),
-    "sleigh": (3, 4),
-    "sleigh at its center": (2, 3),
-    "sleigh on SE(3)": (5, 8),
-    "top on SO(4)": (6, 11),
-}
+    "top": (4, 7), "tilted top": (4, 7), "balanced top": (2, 5), "sleigh": (3, 4), "sleigh at its center": (2, 3),
+    "sleigh on SE(3)": (5, 8), "top on SO(4)": (6, 11),
+}  # fmt: skip
 MORE = {"sleigh on SE(3)": 1, "top on SO(4)": 2}
 """More values that these have under other linear potentials than under weights at one point."""
 

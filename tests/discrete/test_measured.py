@@ -151,17 +151,13 @@ test_what_poses_cannot_tell_is_refused = refusals(
 
 def _turning(angle: float) -> nh.Orbit:
     """Return the orbit of poses that are turned by an angle a row."""
-    return nh.Orbit.from_poses(
-        SLEIGH, 0.1 * np.arange(5), nh.SE(2).exp(np.outer(angle * np.arange(5), [1.0, 0.0, 0.0]))
-    )
+    return nh.Orbit.from_poses(SLEIGH, 0.1 * np.arange(5), nh.SE(2).exp(np.outer(angle * np.arange(5), [1, 0, 0])))
 
 
 @pytest.mark.parametrize("degrees", [92.0, 180.0, 230.0])
 def test_turns_beyond_a_quarter_are_warned_of(degrees: float) -> None:
     """Beyond half a turn the velocity is another one, and nothing in the poses tells."""
-    with pytest.warns(
-        nh.AliasingWarning, match=r"from row 0 to row 1. Velocities are those of the shorter turn"
-    ) as seen:
+    with pytest.warns(nh.AliasingWarning, match=r"row 0 to row 1. Velocities are those of the shorter turn") as seen:
         _turning(np.radians(degrees))
     assert seen[0].filename == __file__
 

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.discrete import Discretization
 
 _REGULAR = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 _AXIS = nh.SuslovTop.from_inertia(np.diag([3.0, 2.0, 2.5]) + 0.2, (0.6, 0, 0.8))
@@ -12,13 +11,13 @@ _BALANCED = nh.SuslovTop(np.diag([1.0, 1.5, 0.5]))
 _TOPS = {"canonical": _REGULAR, "another axis": _AXIS, "balanced": _BALANCED}
 
 
-def _direction(discrete: Discretization) -> np.ndarray:
+def _direction(discrete: nh.Discretization) -> np.ndarray:
     """Return the momentum that has energy one in a direction that is not special."""
     r = np.array([0.6, -0.4])
     return r / np.sqrt(discrete.system.constrained_energy(r))
 
 
-def _beyond_ridge(discrete: Discretization, W: np.ndarray) -> bool:
+def _beyond_ridge(discrete: nh.Discretization, W: np.ndarray) -> bool:
     r"""Tell whether $\varrho > 1/(2\kappa)$ from the half-turn vector of a displacement."""
     top, frame = discrete.system.canonical, discrete.system.frame
     square = (np.eye(2) - (frame.T @ W @ frame)[:2, :2]) / 2  # z z^T

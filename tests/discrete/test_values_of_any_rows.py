@@ -17,13 +17,9 @@ from nonholo.discrete.branching import _sections
 
 H = 0.3
 COUNTS = {  # of values over a general momentum
-    ("SO(2,1)", 1): 2,
-    ("SO(2,1) oblique", 2): 4,
-    ("SE(2)", 3): 2,
-    ("SO(3)", 3): 4,
-    ("SO(4)", 1): 4,
+    ("SO(2,1)", 1): 2, ("SO(2,1) oblique", 2): 4, ("SE(2)", 3): 2, ("SO(3)", 3): 4, ("SO(4)", 1): 4,
     ("SO(4)", 2): 8,
-}
+}  # fmt: skip
 
 
 def _body(name: str, k: int, seed: int = 0) -> nh.Discretization:

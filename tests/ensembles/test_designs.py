@@ -198,8 +198,7 @@ def test_every_member_is_in_one_block(sizes: tuple[int, ...], block: int) -> Non
 @pytest.mark.parametrize("block", [1, 100, 4096])
 def test_blocks_are_not_small(block: int) -> None:
     """Where trailing dimensions are short, a block takes several of them: at least half of what it may."""
-    layout = layout_of((1000, 50, 3, 2), block)
-    assert layout.piece(0).count > block / 2
+    assert layout_of((1000, 50, 3, 2), block).piece(0).count > block / 2
 
 
 # What is no design, no distribution or no name is refused with the reason.

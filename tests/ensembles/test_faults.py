@@ -1,4 +1,4 @@
-"""Sweeps that are killed, interrupted, or run into a full disk: what is there at the end is the undisturbed sweep."""
+"""Sweeps that are killed, interrupted, out of space or damaged: what is lost is named, the end is that of a whole."""
 
 import errno
 import json
@@ -6,10 +6,13 @@ import os
 import signal
 import subprocess
 import sys
+import zlib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
+from damage import DAMAGE, damage, swap
 from ensembles import faults
 from ensembles.small import python, resumed, same, swept
 from stopping import stopped_at, stopped_in
@@ -163,3 +166,168 @@ def test_stale_lock_is_recognized(tmp_path: Path) -> None:
     assert standing_of(path).owner is None
     assert same(resumed(path), swept(tmp_path / "whole.zarr"))
     assert not any(stray.exists() for stray in strays)
+
+
+ARRAYS = {"total": "c/1/0", "noise": "c/1/0/0", "outcome": "c/1/0"}
+
+
+@pytest.mark.profile("faults", keep=["cut-outcome", "flipped-noise", "missing-total", "empty-total"])
+@pytest.mark.parametrize("array", ARRAYS)
+@pytest.mark.parametrize("how", DAMAGE)
+def test_damaged_chunk_is_named_and_computed_again(array: str, how: str, tmp_path: Path) -> None:
+    """A missing, changed or cut chunk is never read: it is named, refused by `load_sweep`, and computed again."""
+    path = tmp_path / "run.zarr"
+    whole = swept(path)
+    damage(path / array / ARRAYS[array], how)
+    named = f"chunk {ARRAYS[array]} of the array {array}"
+    with pytest.raises(ValueError, match=named):
+        nh.load_sweep(path)
+    with pytest.warns(RuntimeWarning, match=f"{named}. Block 1 is computed again"):
+        assert same(resumed(path), whole)
+    assert same(nh.load_sweep(path), whole)
+    assert same(resumed(path), whole), "a sound store is opened in silence"
+
+
+@pytest.mark.parametrize("name", ["x", "restricted_velocity"])
+def test_damaged_draws_are_computed_again(name: str, tmp_path: Path) -> None:
+    """What a random design drew is kept beside the results, and is as safe; also in a last chunk that is not full."""
+    path, design = tmp_path / "run.zarr", nh.RandomDesign(5, {name: nh.Uniform(0.0, 1.0)}, rng=2)
+    task: Callable[[nh.MemberBlock], Any] = lambda block: block[name] ** 2  # noqa: E731
+    whole = nh.sweep(task, design, path, block=2).load()
+    damage(path / name / "c" / "2", "flipped")
+    with pytest.warns(RuntimeWarning, match=f"chunk c/2 of the array {name}"):
+        assert same(nh.resume(path, task=task).load(), whole)
+
+
+@pytest.mark.profile("faults", keep=["edited", "flipped"])
+@pytest.mark.parametrize("how", ["flipped", "cut", "empty", "edited"])
+def test_damaged_mark_is_named_and_its_block_computed_again(how: str, tmp_path: Path) -> None:
+    """A block whose mark cannot be trusted is computed again."""
+    path = tmp_path / "run.zarr"
+    whole = swept(path)
+    mark = path / "run" / "blocks" / "2.json"
+    if how == "edited":
+        mark.write_text(mark.read_text().replace('"writer": "', '"writer": "another '))
+    else:
+        damage(mark, how)
+    assert standing_of(path).done == 4
+    with pytest.warns(RuntimeWarning, match=r"the mark 2\.json is damaged. Block 2 is computed again"):
+        assert same(resumed(path), whole)
+    assert standing_of(path).done == 6
+
+
+def test_lost_mark_is_a_block_to_do(tmp_path: Path) -> None:
+    """A block without a mark is one that was not finished, and is done in silence."""
+    path = tmp_path / "run.zarr"
+    whole = swept(path)
+    damage(path / "run" / "blocks" / "0.json", "missing")
+    damage(path / "total" / "c" / "0" / "0", "cut")
+    assert same(resumed(path), whole)
+
+
+@pytest.mark.profile("faults", keep=["x-flipped", "start-missing"])
+@pytest.mark.parametrize("how", DAMAGE)
+@pytest.mark.parametrize("axis", ["x", "start"])
+def test_lost_axis_is_refused(axis: str, how: str, tmp_path: Path) -> None:
+    """Where the values along an axis are gone, nothing is invented."""
+    path = tmp_path / "run.zarr"
+    swept(path)
+    damage(path / axis / ("c/0" if axis == "x" else "c/0/0"), how)
+    with pytest.raises(ValueError, match=f"hold the axis {axis}.*Run the sweep again"):
+        resumed(path)
+
+
+@pytest.mark.profile("faults", keep=["*-cut"])
+@pytest.mark.parametrize("how", ["missing", "cut", "empty"])
+@pytest.mark.parametrize(
+    ("place", "match"), [("", "zarr.json"), ("noise", "hold the array noise"), ("x", "hold the array x")]
+)
+def test_lost_metadata_are_refused(place: str, match: str, how: str, tmp_path: Path) -> None:
+    """Where metadata are gone, what they are of is named."""
+    path = tmp_path / "run.zarr"
+    swept(path)
+    damage(path / place / "zarr.json", how)
+    with pytest.raises(ValueError, match=match):
+        resumed(path)
+    with pytest.raises(ValueError, match=match if place else "must be a store of a sweep"):
+        swept(path, resume=True)
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [("noise/c/2/0/0", "noise/c/1/0/0"), ("total/c/0/0", "total/c/2/0"), ("run/blocks/0.json", "run/blocks/1.json")],
+)
+def test_a_block_in_the_place_of_another_is_computed_again(one: str, other: str, tmp_path: Path) -> None:
+    """A checksum does not know where its chunk lies: the mark of the block does."""
+    path = tmp_path / "run.zarr"
+    whole = swept(path)
+    swap(path, one, other)
+    with pytest.raises(ValueError, match="of another place in block"):
+        nh.load_sweep(path)
+    with pytest.warns(RuntimeWarning, match="of another place in block"):
+        assert same(resumed(path), whole)
+    assert same(nh.load_sweep(path), whole)
+
+
+def test_metadata_of_another_array_are_refused(tmp_path: Path) -> None:
+    """An array is the one that the description tells: dimensions, type and what is said of it."""
+    path = tmp_path / "run.zarr"
+    swept(path)
+    swap(path, "total/zarr.json", "outcome/zarr.json")
+    for opened in (nh.load_sweep, resumed):
+        with pytest.raises(ValueError, match=r"hold the array \w+ of its description"):
+            opened(path)
+    swap(path, "total/zarr.json", "outcome/zarr.json")
+    for name in ("outcome", "x"):
+        for told in ("a text", {"scale_factor": 2.0}):
+            file = path / name / "zarr.json"
+            sound = file.read_text()
+            file.write_text(json.dumps(json.loads(sound) | {"attributes": told}))
+            with pytest.raises(ValueError, match=f"hold the (array|axis) {name}"):
+                nh.load_sweep(path)
+            file.write_text(sound)
+
+
+@pytest.mark.parametrize("name", ["total", "start", "run"])
+def test_consolidated_metadata_are_not_believed(name: str, tmp_path: Path) -> None:
+    """They repeat what each array says of itself, which is what is read."""
+    path = tmp_path / "run.zarr"
+    whole = swept(path)
+    document = json.loads((path / "zarr.json").read_text())
+    document["consolidated_metadata"]["metadata"][name] = {"shape": None}
+    (path / "zarr.json").write_text(json.dumps(document))
+    assert same(nh.load_sweep(path), whole)
+    (path / "run" / "zarr.json").write_text("{")
+    with pytest.raises(ValueError, match="hold sound metadata"):
+        nh.load_sweep(path)
+
+
+def test_an_axis_of_other_values_is_refused(tmp_path: Path) -> None:
+    """The description holds the hash of what lies along an axis."""
+    path, other = tmp_path / "run.zarr", tmp_path / "other.zarr"
+    nh.sweep(lambda block: block["x"], nh.Grid({"x": [1.0, 2.0]}), path)
+    nh.sweep(lambda block: block["x"], nh.Grid({"x": [1.0, 3.0]}), other)
+    (path / "x" / "c" / "0").write_bytes((other / "x" / "c" / "0").read_bytes())
+    with pytest.raises(ValueError, match="hold the axis x of its design"):
+        nh.load_sweep(path)
+
+
+def test_a_mark_is_data(tmp_path: Path) -> None:
+    """A mark of other entries is damaged, whatever its checksum says; what a task said cannot control a terminal."""
+    path = tmp_path / "run.zarr"
+    swept(path)
+    written = (path / "run" / "blocks" / "0.json").read_text().partition(" ")[2]
+    others = json.dumps(json.loads(written) | {"about": {"members": 1}})
+    for text in (others, '{"members": 1}', "[" * 100_000, "7"):
+        (path / "run" / "blocks" / "0.json").write_text(f"{zlib.crc32(text.encode()):08x} {text}")
+        assert standing_of(path).done == 4
+        with pytest.raises(ValueError, match=r"mark 0\.json is damaged"):
+            nh.load_sweep(path)
+
+    def failing(block: nh.MemberBlock) -> Any:
+        if 1.5 in block["x"]:
+            raise RuntimeError("a\x1b]0;gone\x07b")
+        return block["x"]
+
+    nh.sweep(failing, nh.Grid({"x": [1.0, 1.5]}), tmp_path / "raised.zarr")
+    assert standing_of(tmp_path / "raised.zarr").messages == [(1, "RuntimeError: a?]0;gone?b")]

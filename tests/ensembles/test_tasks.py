@@ -119,8 +119,7 @@ def test_systems_that_data_cannot_hold_are_refused() -> None:
 )
 def test_blocks_are_pieces_of_work(steps: int, every: int | None, members: int) -> None:
     """Blocks are whole ones of the kernel, at most 2^16 members, 2^22 numbers in states and 2^28 steps."""
-    task = _task(restricted_velocity=(1.0, 0.2), steps=steps, save_every=every)
-    assert task.block == members
+    assert _task(restricted_velocity=(1.0, 0.2), steps=steps, save_every=every).block == members
 
 
 def test_blocks_of_systems_that_run_one_by_one() -> None:

@@ -19,12 +19,7 @@ from nonholo.examples import Example
 from nonholo.io import store_to_csv
 from nonholo.io.blocks import edit_attributes
 from nonholo.io.provenance import described_system, recorded_system
-from nonholo.lagrange_dalembert import (
-    AbstractCoordinateOrbit,
-    GroupLagrangeDAlembert,
-    LagrangeDAlembert,
-    mass_tensor_lagrangian,
-)
+from nonholo.lagrange_dalembert import AbstractCoordinateOrbit
 
 
 @functools.cache
@@ -97,10 +92,12 @@ def test_the_store_of_a_custom_lagrangian_opens_as_data(tmp_path: Path) -> None:
 
 
 @functools.cache
-def turning() -> GroupLagrangeDAlembert:
+def turning() -> nh.GroupLagrangeDAlembert:
     """Return a custom system on SE(2): a sleigh whose blade turns in the body as it moves along x."""
-    action = mass_tensor_lagrangian(nh.SE(2), nh.ChaplyginSleigh(1.0, 0.5, a=0.3).homogeneous_mass_tensor)
-    return GroupLagrangeDAlembert(nh.SE(2), action, lambda g: jnp.array([[0.0, -jnp.sin(g[0, 2]), jnp.cos(g[0, 2])]]))
+    action = nh.mass_tensor_lagrangian(nh.SE(2), nh.ChaplyginSleigh(1.0, 0.5, a=0.3).homogeneous_mass_tensor)
+    return nh.GroupLagrangeDAlembert(
+        nh.SE(2), action, lambda g: jnp.array([[0.0, -jnp.sin(g[0, 2]), jnp.cos(g[0, 2])]])
+    )
 
 
 def test_custom_systems_are_described_by_data() -> None:
@@ -136,7 +133,7 @@ def test_other_functions_are_refused(every: int, block: int, tmp_path: Path) -> 
     """The last saved step must come out with its bits: a mass that is larger by 1e-13, or another form, does not."""
 
     def mine(mass: float = 1.0, slope: float = 1.0) -> Any:
-        system = LagrangeDAlembert(
+        system = nh.LagrangeDAlembert(
             lambda _, v: mass * (v @ v) / 2, lambda q: jnp.array([[-slope * q[1], 0.0, 1.0]]), dimension=3
         )
         return nh.discretize(system, 0.1)

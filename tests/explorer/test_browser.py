@@ -12,7 +12,6 @@ from PIL import Image
 
 import nonholo as nh
 from nonholo import kernels
-from nonholo.explorer import explore
 
 pytestmark = pytest.mark.profile("browser", instead="test_data_of_a_page")
 TENSOR = [[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]
@@ -22,9 +21,7 @@ FORCES = {"top": (nh.Gravity([0.2, 0.1, -0.7], [0.1, -0.2, 0.4]), nh.Friction([0
 FORCES["sleigh"] = (nh.Gravity([0.3, -0.2], [0.5, 0.1]), nh.Friction([0.2, 0.1, 0.4]))
 FORCED = {f"forced_{name}": nh.Forced(BODIES[name], *FORCES[name]) for name in BODIES}
 TABLE = np.random.default_rng(1).normal(size=(350, 3)).round(3) / 4
-DRIVEN = {
-    f"driven_{name}": nh.Forced(BODIES[name], weight, (friction, TABLE)) for name, (weight, friction) in FORCES.items()
-}
+DRIVEN = {f"driven_{name}": nh.Forced(BODIES[name], w, (f, TABLE)) for name, (w, f) in FORCES.items()}
 
 
 FOUR = {"J11": 1.4, "J22": 1.0, "J33": 0.7, "J44": 0.9, "J14": 0.5, "J24": -0.3, "J34": 0.2}
@@ -92,8 +89,7 @@ def test_opens_quietly(visit: Callable, files: dict, name: str, size: tuple[int,
 def test_requests_are_counted(visit: Callable, files: dict) -> None:
     """The counter of requests counts, and the policy of the page refuses what is asked for."""
     page = visit(files["top"])
-    refused = page.page.evaluate("fetch('https://example.org/').then(() => false, () => true)")
-    assert refused
+    assert page.page.evaluate("fetch('https://example.org/').then(() => false, () => true)")
     assert any("Content Security Policy" in text for text in page.errors)
     page.page.route("**/*", lambda route: route.fulfill(body=""))
     page.page.goto("https://example.org/")
@@ -242,9 +238,7 @@ def test_outlines_are_drawn(visit: Callable, files: dict) -> None:
     """A snakeboard is a blue board with black wheels on a floor, and its coordinates are read beside it."""
     page = visit(files["outline"])
     page.settle()
-    picture = np.asarray(Image.open(io.BytesIO(page.page.locator("#body-canvas").screenshot())).convert("RGB")).astype(
-        int
-    )
+    picture = np.asarray(Image.open(io.BytesIO(page.page.locator("#body-canvas").screenshot())).convert("RGB"), int)
     red, blue, most = picture[..., 0], picture[..., 2], picture.max(axis=-1)
     assert min(np.sum(blue - red > 60), np.sum(most < 60)) > 100
     assert {"theta", "psi", "energy"} <= set(page.page.locator("#now dt").all_inner_texts())
@@ -537,7 +531,7 @@ def test_what_a_title_cannot_do(visit: Callable, tmp_path: Path) -> None:
 
 def test_in_a_notebook(visit: Callable, tmp_path: Path) -> None:
     """The frame that a notebook shows runs, though it may not touch the notebook."""
-    text = explore(BODIES["top"])._repr_html_()
+    text = nh.explore(BODIES["top"])._repr_html_()
     (tmp_path / "notebook.html").write_text(f"<!doctype html><p id=status>notebook</p>{text}")
     page = visit(tmp_path / "notebook.html")
     frame = page.page.frame_locator("iframe").locator("#status")

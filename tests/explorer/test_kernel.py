@@ -88,10 +88,7 @@ def _flat(body: kernels.AnyBody) -> tuple:
     return (*body.b, *body.c, body.least) if isinstance(body, kernels.SecularBody) else tuple(body)
 
 
-_ROWS = {
-    "forced_top": np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]),
-    "forced_sleigh": np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]),
-}
+_ROWS = {"forced_top": np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]), "forced_sleigh": np.eye(3)[:2]}
 
 
 def _forced(kind: str, rng: np.random.Generator, forces: str) -> tuple[kernels.ForcedBody, list[float], np.ndarray]:

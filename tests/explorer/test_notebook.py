@@ -174,8 +174,7 @@ def laboratory(tmp_path: Path) -> Iterator[tuple[str, Path]]:
     environment = {**os.environ, **home}
     with log.open("w") as out, subprocess.Popen(command, stderr=out, stdout=out, env=environment) as server:  # noqa: S603
         try:
-            address = _address(log, server)
-            yield address, tmp_path / "work"
+            yield _address(log, server), tmp_path / "work"
         finally:
             server.terminate()
 

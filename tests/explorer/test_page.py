@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from refusals import refusals
 from typer.testing import CliRunner
 
 import nonholo as nh
 from nonholo.analysis.bodies import plate
 from nonholo.analysis.planar import blade_axes
 from nonholo.cli._app import app
-from nonholo.explorer import explore
 from nonholo.explorer._explore import simulate_state
 from nonholo.lagrange_dalembert import CoordinateOrbit
 
@@ -38,7 +38,7 @@ def _run(body: Any, velocity: tuple[float, ...]) -> nh.Orbit:
 def test_data_of_a_page() -> None:
     """The state of a page is the first state of the orbit, in the canonical frame."""
     orbit = nh.simulate(nh.discretize(SLEIGH, 0.1), body_velocity=(0.3, -1.0, 0.0), steps=20, save_every=5)
-    state = _data(explore(orbit).text)["state"]
+    state = _data(nh.explore(orbit).text)["state"]
     assert state["parameters"] == {"mass": 1.0, "inertia": 1.0, "a": 0.5}
     assert state["momentum"] == orbit.reduced_momentum[0].tolist()
     assert state["pose"] == orbit.canonical_pose[0].tolist()
@@ -48,12 +48,12 @@ def test_data_of_a_page() -> None:
 def test_data_of_a_top() -> None:
     """A top in other axes is shown in those of its canonical frame, and the page says so."""
     turned = nh.SuslovTop(TOP.mass_tensor, axis=(1.0, 0.0, 0.0))
-    page = explore(turned)
+    page = nh.explore(turned)
     p = _data(page.text)["state"]["parameters"]
     rows = [[p["J11"], p["J12"], p["J13"]], [p["J12"], p["J22"], p["J23"]], [p["J13"], p["J23"], p["J33"]]]
     np.testing.assert_array_equal(rows, turned.canonical.mass_tensor)
     assert "canonical body frame" in page.text
-    assert "canonical body frame" not in explore(TOP).text
+    assert "canonical body frame" not in nh.explore(TOP).text
 
 
 def test_data_in_four_dimensions() -> None:
@@ -62,16 +62,16 @@ def test_data_in_four_dimensions() -> None:
     J[3, :3] = J[:3, 3] = 0.3, -0.2, 0.1
     start = {"momentum": (0.4, -0.5, 0.3), "configuration": nh.SO(4).exp(np.linspace(-0.5, 0.7, 6)), "steps": 60}
     for body in (nh.SuslovTop(J), nh.SuslovTop.arrowhead(np.diagonal(J), J[3, :3])):
-        page, orbit = explore(body), nh.simulate(nh.discretize(body, 0.1), **start)
+        page, orbit = nh.explore(body), nh.simulate(nh.discretize(body, 0.1), **start)
         assert _data(page.text)["state"]["kind"] == "top4"
         assert _data(page.text)["kernels"].keys() == {"top4", "flow4"}
         assert "principal axes" not in page.text.partition("<script")[0]
-        page = explore(orbit)
+        page = nh.explore(orbit)
         assert _data(page.text)["state"]["pose"] == orbit.canonical_pose[0].tolist()
         for name in ("reduced_momentum", "cayley"):
             np.testing.assert_array_equal(getattr(page.orbit(), name), getattr(orbit, name))
     turned = nh.simulate(nh.discretize(nh.SuslovTop(J + 0.2), 0.1), **start)
-    page = explore(turned)
+    page = nh.explore(turned)
     assert "principal axes" in page.text.partition("<script")[0]
     np.testing.assert_allclose(page.orbit().energy, turned.energy, rtol=1e-14)
     np.testing.assert_allclose(page.orbit().configuration[:, :, 3], turned.configuration[:, :, 3], atol=1e-13)
@@ -82,13 +82,13 @@ def test_data_under_forces() -> None:
     body = nh.ChaplyginSleigh(1.0, 1.0, 0.5)
     forced = nh.Forced(body, nh.Gravity([0.3, -0.2], [0.5, 0.1]), nh.Friction([0.2, 0.1, 0.4]))
     orbit = nh.simulate(nh.discretize(forced, 0.1), body_velocity=(0.3, -1.0, 0.0), steps=20)
-    page = explore(orbit)
+    page = nh.explore(orbit)
     state = _data(page.text)["state"]
     about = {"F1": 0.3, "F2": -0.2, "x1": 0.5, "x2": 0.1, "c1": 0.2, "c2": 0.1}
     assert (state["kind"], state["parameters"]) == ("forced_sleigh", {"mass": 1.0, "inertia": 1.0, "a": 0.5, **about})
     assert state["momentum"] == orbit.reduced_momentum[0].tolist()
     np.testing.assert_array_equal(page.orbit().reduced_momentum, orbit.reduced_momentum)
-    top = explore(nh.Forced(TOP, nh.Gravity([0.0, 0.0, -2.0], [0.1, 0.0, 0.3])))
+    top = nh.explore(nh.Forced(TOP, nh.Gravity([0.0, 0.0, -2.0], [0.1, 0.0, 0.3])))
     assert "Suslov top, under forces" in top.text
     assert top.orbit().system.gravity.point.tolist() == [0.1, 0.0, 0.3]
 
@@ -99,7 +99,7 @@ def test_data_of_a_table() -> None:
     discrete = nh.discretize(nh.Forced(TOP, force=(nh.Friction([0.1, 0.2, 0.0]), rows)), 0.1)
     orbit = nh.simulate(discrete, body_velocity=(0.3, -1.0, 0.0), steps=30)
     for sent, first in ((orbit, 0), (orbit.chosen(np.arange(10, 31)), 10)):
-        page = explore(sent)
+        page = nh.explore(sent)
         data = _data(page.text)
         assert data["state"]["table"] == data["table"]["name"]
         assert data["state"]["parameters"]["s"] == 1.0
@@ -112,7 +112,7 @@ def test_data_of_a_table() -> None:
     longer = simulate_state("Page.orbit()", {**data["state"], "steps": 60}, data["table"])
     assert (np.diff(longer.energy[31:]) < 0).all()  # friction alone, after the last row
     assert np.diff(longer.energy[:31]).max() > 0
-    assert (explore(discrete).orbit().time[-1], explore(TOP).table) == (4.0, None)
+    assert (nh.explore(discrete).orbit().time[-1], nh.explore(TOP).table) == (4.0, None)
 
 
 @pytest.mark.parametrize(
@@ -128,7 +128,7 @@ def test_data_of_a_table() -> None:
 def test_forces_without_sliders(body: Any, force: Any) -> None:
     """Forces of other kinds, or in other axes than those of the page, are replayed."""
     orbit = nh.simulate(nh.discretize(nh.Forced(body, force=force), 0.1), restricted_velocity=(0.3, 0.2), steps=9)
-    text = explore(orbit).text
+    text = nh.explore(orbit).text
     assert _data(text)["kind"] == "replay"
     assert "A replay of numbers from Python" in text
 
@@ -137,7 +137,7 @@ def test_what_a_page_replays_where_its_kernel_may_not_run() -> None:
     """A live page carries some states of its motion, the first and the last among them, with the bits of Python."""
     orbit = nh.simulate(nh.discretize(TOP, 0.1), body_velocity=(0.3, -1.0, 0.0), steps=500)
     for live, steps in ((orbit, 500), (TOP, 400)):
-        page = explore(live)
+        page = nh.explore(live)
         recorded = _data(page.text)["recorded"]
         time, frames = (np.frombuffer(base64.b64decode(recorded[name])) for name in ("time", "frames"))
         assert len(time) == len(frames) / 12 == 100
@@ -150,7 +150,7 @@ def test_what_a_page_replays_where_its_kernel_may_not_run() -> None:
 def test_size_and_policy() -> None:
     """A page without data is small, in ASCII, fetches nothing, and names the only script and style that may run."""
     for body in (nh.SuslovTop.arrowhead(np.ones(4), np.ones(3) / 4), TOP):
-        text = explore(body).text
+        text = nh.explore(body).text
         assert len(text) - len(json.dumps(_data(text)["recorded"])) <= LARGEST
     assert text.isascii()
     assert "three.js authors\n\nPermission is hereby granted" in text
@@ -184,7 +184,7 @@ def test_size_and_policy() -> None:
 def test_replays(orbit: Any) -> None:
     """What has no kernel in the page comes with its numbers: times, energies, places, and axes of the poses."""
     motion = orbit()
-    text = explore(motion).text
+    text = nh.explore(motion).text
     data = _data(text)
     assert (data["kind"], data["kernels"]) == ("replay", {})
     assert "A replay of numbers from Python" in text
@@ -212,7 +212,7 @@ def test_replays_in_coordinates(monkeypatch: pytest.MonkeyPatch) -> None:
     """Place, and axes along the heading; the momenta are those along the coordinates; energy less work under forces."""
     orbit = _in_coordinates(("a", "y", "x"), "a")
     monkeypatch.setattr(CoordinateOrbit, "restricted_momentum", orbit.momentum)
-    data = _data(explore(orbit).text)
+    data = _data(nh.explore(orbit).text)
     replay = {name: np.frombuffer(base64.b64decode(data["replay"][name])) for name in ("energy", "frames", "momentum")}
     frames, a = replay["frames"].reshape(-1, 4, 3), orbit.configuration[:, 0]
     np.testing.assert_array_equal(frames[:, 0], orbit.configuration[:, [2, 1]] @ np.eye(2, 3))
@@ -221,7 +221,7 @@ def test_replays_in_coordinates(monkeypatch: pytest.MonkeyPatch) -> None:
     np.testing.assert_array_equal(replay["energy"], orbit.energy)
     assert data["momenta"] == ["p(a)", "p(y)"]
     monkeypatch.setattr(CoordinateOrbit, "work", orbit.time**2)
-    text = explore(orbit.chosen(slice(None))).text  # which remembers nothing
+    text = nh.explore(orbit.chosen(slice(None))).text  # which remembers nothing
     shown = np.frombuffer(base64.b64decode(_data(text)["replay"]["energy"]))
     np.testing.assert_allclose(shown / shown[0] - 1, (orbit.time - orbit.time**2) / 2, atol=1e-15)
     assert "less the work of forces" in text
@@ -243,7 +243,7 @@ def test_replays_in_coordinates(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_drawings(orbit: Callable[[], Any], drawing: Any) -> None:
     """A replay has the corners of outlines, of sleighs in the axes of the blade, or a box, a ball, or nothing."""
     motion = orbit()
-    replay = _data(explore(motion).text)["replay"]
+    replay = _data(nh.explore(motion).text)["replay"]
     drawn = replay["drawing"]
     if not isinstance(drawing, list):
         assert list(drawn) == ([] if drawing is None else [drawing])
@@ -267,7 +267,7 @@ def test_drawings(orbit: Callable[[], Any], drawing: Any) -> None:
 def test_replays_without_a_place(names: tuple[str, ...]) -> None:
     """Where x and y are no coordinates the first two are the place, and one beside its rate."""
     orbit = _in_coordinates(names)
-    replay = _data(explore(orbit).text)["replay"]
+    replay = _data(nh.explore(orbit).text)["replay"]
     frames = np.frombuffer(base64.b64decode(replay["frames"])).reshape(-1, 4, 3)
     np.testing.assert_array_equal(frames[:, 0, :2], np.hstack([orbit.configuration, orbit.body_velocity])[:, :2])
     assert replay["drawing"] == {"ball": True}
@@ -276,38 +276,33 @@ def test_replays_without_a_place(names: tuple[str, ...]) -> None:
 def test_long_orbits_are_thinned() -> None:
     """A replay of many states has some of them, the first and the last too, and says how many."""
     orbit = nh.simulate(nh.discretize(TOP, 0.1, order=4), restricted_velocity=(1.0, 0.5), steps=10_000)
-    text = explore(orbit).text
+    text = nh.explore(orbit).text
     time = np.frombuffer(base64.b64decode(_data(text)["replay"]["time"]))
     assert (len(time), time[0], time[-1]) == (4000, 0.0, orbit.time[-1])
     assert "4,000 of 10,001 saved states" in text
 
 
-@pytest.mark.parametrize(
-    ("value", "message"),
-    [
-        (3.0, "explore"),
-        (nh.discretize(nh.RigidBody(np.eye(3)), 0.1), "be a top with n = 3"),
-        (nh.SuslovTop(np.eye(5)), "be a top with n = 3 or 4"),
-        (nh.Forced(nh.SuslovTop(np.eye(4)), force=nh.Friction(np.ones(6))), "be a top with n = 3 or 4"),
-        (
-            nh.simulate(nh.discretize(TOP, 0.1), restricted_velocity=(1.0, 0.5), steps=2, reconstruct=False),
-            "have poses",
-        ),
-        (nh.simulate(nh.discretize(TOP, 2.0), momentum=(3.0, 3.0), steps=2, throw=False), "have poses"),
-    ],
-    ids=["number", "free body", "wide top", "wide top under forces", "no poses", "no state"],
+# What cannot be shown is refused with a remedy.
+test_refusals = refusals(
+    (lambda: 3.0, "explore"),
+    (lambda: nh.discretize(nh.RigidBody(np.eye(3)), 0.1), "be a top with n = 3"),
+    (lambda: nh.SuslovTop(np.eye(5)), "be a top with n = 3 or 4"),
+    (lambda: nh.Forced(nh.SuslovTop(np.eye(4)), force=nh.Friction(np.ones(6))), "be a top with n = 3 or 4"),
+    (
+        lambda: nh.simulate(nh.discretize(TOP, 0.1), restricted_velocity=(1.0, 0.5), steps=2, reconstruct=False),
+        "have poses",
+    ),
+    (lambda: nh.simulate(nh.discretize(TOP, 2.0), momentum=(3.0, 3.0), steps=2, throw=False), "have poses"),
+    ask=lambda make: nh.explore(make()),
+    kind=(TypeError, ValueError),
 )
-def test_refusals(value: Any, message: str) -> None:
-    """What cannot be shown is refused with a remedy."""
-    with pytest.raises((TypeError, ValueError), match=message):
-        explore(value)
 
 
 def test_writing(tmp_path: Path) -> None:
     """A page is a new file, unless it may replace one."""
     orbit, path = nh.simulate(nh.discretize(TOP, 0.1), restricted_velocity=(1.0, 0.5), steps=2), tmp_path / "page.html"
     orbit.to_html(path)
-    assert path.read_text("ascii") == explore(orbit).text
+    assert path.read_text("ascii") == nh.explore(orbit).text
     with pytest.raises(FileExistsError, match="to_html"):
         orbit.to_html(path)
     orbit.to_html(path, overwrite=True)

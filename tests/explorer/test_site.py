@@ -1,6 +1,8 @@
 """The whole site, built, served and visited: its links lead somewhere, and it asks for nothing from elsewhere."""
 
 import functools
+import json
+import shutil
 import subprocess
 import sys
 import threading
@@ -12,6 +14,8 @@ from urllib.parse import unquote, urlsplit
 
 import pytest
 from links import Links
+
+from nonholo import explorer
 
 DOCS = Path(__file__).parents[2] / "docs"
 
@@ -75,3 +79,29 @@ def test_nothing_is_asked_of_elsewhere(site: Path, address: str, browser: Any) -
     page.close()
     assert address + "live/sleigh.html" in asked
     assert {url for url in asked if not url.startswith((address, "data:", "blob:", "about:"))} == set()
+
+
+VIEW = Path(explorer.__file__).with_name("view")
+
+
+@pytest.mark.profile("browser", instead="test_versions_are_exact")
+def test_bundle_is_that_of_its_sources(tmp_path: Path) -> None:
+    """Packages of the named versions make the bundle again, byte for byte, and three.js its licence."""
+    npm = shutil.which("npm")
+    if npm is None:
+        pytest.skip("there is no npm")
+    shutil.copytree(VIEW, folder := tmp_path / "view")
+    (folder / "view.js").unlink()
+    for command in (["install", "--no-audit", "--no-fund", "--no-package-lock"], ["run", "bundle"]):
+        subprocess.run([npm, *command], cwd=folder, check=True, capture_output=True)  # noqa: S603
+    assert (folder / "view.js").read_bytes() == (VIEW / "view.js").read_bytes()
+    assert (folder / "node_modules/three/LICENSE").read_bytes() == (VIEW / "three-LICENSE.txt").read_bytes()
+
+
+def test_versions_are_exact() -> None:
+    """What the bundle is made of is named by exact versions, and no addresses are kept."""
+    package = json.loads((VIEW / "package.json").read_text())
+    for version in (package["dependencies"] | package["devDependencies"]).values():
+        assert version.replace(".", "").isdigit()
+    assert not (VIEW / "package-lock.json").exists()
+    assert (VIEW / "view.js").stat().st_size < 665_000

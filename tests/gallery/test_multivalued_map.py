@@ -12,15 +12,10 @@ import nonholo as nh
 
 GALLERY = Path(__file__).parents[2] / "docs" / "gallery"
 PANELS = {  # of each picture, with the inset of the last one
-    "multivalued_map_1_values": 3,
-    "multivalued_map_2_folds": 3,
-    "loci": 6,
-    "multivalued_map_3_levels": 2,
-    "multivalued_map_4_portraits": 3,
-    "multivalued_map_5_rules": 3,
-    "multivalued_map_6_tree": 4,
+    "multivalued_map_1_values": 3, "multivalued_map_2_folds": 3, "loci": 6, "multivalued_map_3_levels": 2,
+    "multivalued_map_4_portraits": 3, "multivalued_map_5_rules": 3, "multivalued_map_6_tree": 4,
     "multivalued_map_7_limits": 3,
-}
+}  # fmt: skip
 
 
 def script(name: str) -> ModuleType:

@@ -2,50 +2,36 @@
 
 import re
 from pathlib import Path
+from types import ModuleType
 
+import numpy as np
 import pytest
+import xarray
+from matplotlib.figure import Figure
+from scripts import script
+
+import nonholo as nh
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGES = (
-    "index.md",
-    "theory/euler-poincare-suslov.md",
-    "theory/discrete-equations.md",
-    "theory/energy-theorem.md",
-    "theory/groups-and-systems.md",
-    "theory/right-invariant.md",
-    "how-to/choose-a-branch-rule.md",
-    "how-to/choose-a-discretisation.md",
-    "how-to/compare-motions.md",
-    "how-to/differentiate-and-fit.md",
-    "how-to/drive-a-robot.md",
-    "how-to/events-and-sections.md",
-    "how-to/explore.md",
-    "how-to/export-poses.md",
-    "how-to/gaits.md",
-    "how-to/linearize.md",
-    "how-to/make-a-dataset.md",
-    "how-to/run-a-sweep.md",
-    "how-to/run-an-ensemble.md",
-    "how-to/run-for-days.md",
-    "how-to/steer.md",
-    "how-to/style-a-picture.md",
+    "index.md", "theory/euler-poincare-suslov.md", "theory/discrete-equations.md", "theory/energy-theorem.md",
+    "theory/groups-and-systems.md", "theory/right-invariant.md", "how-to/choose-a-branch-rule.md",
+    "how-to/choose-a-discretisation.md", "how-to/compare-motions.md", "how-to/differentiate-and-fit.md",
+    "how-to/drive-a-robot.md", "how-to/events-and-sections.md", "how-to/explore.md", "how-to/export-poses.md",
+    "how-to/gaits.md", "how-to/linearize.md", "how-to/make-a-dataset.md", "how-to/run-a-sweep.md",
+    "how-to/run-an-ensemble.md", "how-to/run-for-days.md", "how-to/steer.md", "how-to/style-a-picture.md",
     "how-to/why-a-run-stopped.md",
-)
+)  # fmt: skip
 ELSEWHERE = {  # pages whose blocks run with what stands around them, and where
     "how-to/beyond-one-machine.md": "ensembles/test_cluster.py",
     "how-to/define-your-own-system.md": "testing/test_how_to.py",
 }
 NOTEBOOKS = {"how-to/steer.md", "how-to/differentiate-and-fit.md", "how-to/gaits.md"}
 LONG = {
-    "how-to/events-and-sections.md",
-    "how-to/style-a-picture.md",
-    "how-to/run-a-sweep.md",
-    "how-to/choose-a-discretisation.md",
-    "how-to/drive-a-robot.md",
-    "how-to/linearize.md",
-    "how-to/make-a-dataset.md",
-    "how-to/run-for-days.md",
-}
+    "how-to/events-and-sections.md", "how-to/style-a-picture.md", "how-to/run-a-sweep.md",
+    "how-to/choose-a-discretisation.md", "how-to/drive-a-robot.md", "how-to/linearize.md",
+    "how-to/make-a-dataset.md", "how-to/run-for-days.md",
+}  # fmt: skip
 
 
 def _profile(page: str) -> list[pytest.MarkDecorator]:
@@ -80,3 +66,75 @@ def test_tests_that_the_theory_names_exist() -> None:
     named = {name: re.findall(r"(?:tests|benchmarks)/[\w/]+\.py", text) for name, text in pages.items()}
     assert [name for name, files in named.items() if not files] == []
     assert [file for files in named.values() for file in files if not (DOCS.parent / file).exists()] == []
+
+
+GALLERY = script("docs/make_gallery.py")
+CARDS = [name for names in GALLERY.SECTIONS.values() for name in names]
+QUICK = ["sleigh_cusp", "gathering", "tumbling_body"]
+
+
+@pytest.mark.profile("paper", keep=QUICK)
+@pytest.mark.parametrize("name", CARDS)
+def test_numbers_are_those_of_theory(name: str) -> None:
+    """What a card measures is within its tolerance of what is known."""
+    found = GALLERY.load(name).numbers()
+    assert found
+    assert {what: value for what, (value, known, allowed) in found.items() if not abs(value - known) <= allowed} == {}
+
+
+@pytest.mark.profile("paper", keep=QUICK)
+@pytest.mark.parametrize("name", CARDS)
+def test_it_is_drawn(name: str) -> None:
+    """A card is a figure with something in each of its axes."""
+    figure = GALLERY.load(name).draw()
+    assert isinstance(figure, Figure)
+    assert all(axes.has_data() for axes in figure.axes)
+    figure.canvas.draw()
+
+
+def test_the_page_is_up_to_date() -> None:
+    """The page in the repository is the one that the script writes, and every picture on it is there."""
+    assert GALLERY.PAGE.read_text("utf-8") == GALLERY.page()
+    assert [name for name in (*CARDS, *GALLERY.STUDIES) if not (GALLERY.PICTURES / f"{name}.png").exists()] == []
+
+
+def test_every_ready_system_and_script_has_its_place() -> None:
+    """No ready system, and no script, is left out; there are 25 or more."""
+    scripts = {path.stem for path in GALLERY.PAGE.parent.glob("[a-z]*.py")} - {"theory_pictures"}
+    assert scripts == {*CARDS, *GALLERY.STUDIES}
+    assert {*nh.examples.__all__} - {"Example"} <= set(CARDS)
+    assert len(scripts) >= 25
+
+
+@pytest.fixture(scope="module", name="script")
+def gallery_script() -> ModuleType:
+    """Return the script as a module."""
+    return script("docs/gallery/sleigh_turning.py")
+
+
+@pytest.fixture(scope="module")
+def found(script: ModuleType) -> xarray.Dataset:
+    """The sweep on a coarse grid."""
+    return script.swept(16)
+
+
+def test_members_are_lost_above_the_curve_only(script: ModuleType, found: xarray.Dataset) -> None:
+    """None below, most above."""
+    below, above = script.lost(found)
+    assert below == 0
+    assert above > 0.8
+
+
+def test_the_curve_has_no_kink(script: ModuleType) -> None:
+    """Both closed forms agree where they meet, J = 2 m a^2, to first order."""
+    bounds = script.bound(2 + np.array([-1e-4, 0.0, 1e-4]))
+    assert abs(bounds[1] - np.sqrt(4.5)) < 1e-14
+    assert abs(np.diff(bounds, 2)[0]) < 1e-8
+
+
+def test_the_picture(script: ModuleType, found: xarray.Dataset, tmp_path: Path) -> None:
+    """A map with the curve, and rows with the leading term."""
+    figure = script.draw(found)
+    assert [len(axes.get_lines()) for axes in figure.axes[:2]] == [1, 4]
+    figure.savefig(tmp_path / "picture.png")
+    assert (tmp_path / "picture.png").stat().st_size > 10_000

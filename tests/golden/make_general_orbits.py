@@ -367,17 +367,11 @@ def make_case(case: Case) -> dict[str, Any]:
         found["spatial_displacement"] = [g @ w @ inverse_of(g) for g, w in pairs]
     del found["logarithm"]
     entry = {
-        "system": case.system,
-        "name": case.name,
-        "group": case.group,
-        "parameters": case.parameters,
-        "constraint_subspace": case.subspace,
-        "annihilator": case.annihilator,
-        "constraint": case.constraint,
-        "time_step": case.time_step,
-        "restricted_velocity": case.restricted_velocity,
+        "system": case.system, "name": case.name, "group": case.group, "parameters": case.parameters,
+        "constraint_subspace": case.subspace, "annihilator": case.annihilator, "constraint": case.constraint,
+        "time_step": case.time_step, "restricted_velocity": case.restricted_velocity,
         "configuration": case.configuration,
-    }
+    }  # fmt: skip
     return entry | {key: decimals(np.array(value).tolist()) for key, value in found.items()}
 
 

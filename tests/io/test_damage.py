@@ -1,4 +1,4 @@
-"""Chunks that are sound but lie in the place of another, damaged records, texts that would control a terminal."""
+"""Chunks in the place of others, damaged records, columns of another version, texts that would control a terminal."""
 
 import json
 import os
@@ -17,7 +17,7 @@ from typer.testing import CliRunner
 
 import nonholo as nh
 from nonholo.cli._app import app
-from nonholo.io import store_to_csv
+from nonholo.io import orbits, store_to_csv
 from nonholo.io.blocks import edit_attributes
 from nonholo.io.metadata import check_array
 from nonholo.io.orbits import open_stream
@@ -201,3 +201,30 @@ def test_a_scenario_that_no_file_can_hold_is_refused(tmp_path: Path) -> None:
     """A lone surrogate has no UTF-8."""
     with pytest.raises(ValueError, match="text that files can hold"):
         _run(tmp_path / "run.zarr", scenario="\udcff")
+
+
+SHORT_RUN: dict[str, Any] = {"body_velocity": (0.3, -1.0, 0.0), "steps": 60}
+CHOSEN = orbits.stored_variables
+
+
+def _without_energy(*args: Any) -> Any:
+    return {name: variable for name, variable in CHOSEN(*args).items() if name != "energy"}
+
+
+@pytest.mark.profile("faults", keep=["given"])
+@pytest.mark.parametrize("given", [False, True], ids=["restored", "given"])
+def test_a_later_column_breaks_no_unfinished_run(given: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Begun without a column that is written now, a run is resumed, repaired and extended to the bits of one run."""
+    path = tmp_path / "run.zarr"
+    monkeypatch.setattr(orbits, "stored_variables", _without_energy)
+    with stopped_at(3):
+        nh.simulate(SLEIGH, **SHORT_RUN, checkpoint_every=10, store=path)
+    monkeypatch.undo()
+    (path / "x" / "c" / "1").unlink()
+    with pytest.warns(RuntimeWarning, match="chunk c/1 of the array x. Block 1 is computed again"):
+        found = nh.resume(path, discrete=SLEIGH if given else None)
+    assert found.to_dataset().identical(nh.simulate(SLEIGH, **SHORT_RUN).to_dataset())
+    longer = nh.extend(path, 25)
+    assert longer.to_dataset().identical(nh.simulate(SLEIGH, **SHORT_RUN | {"steps": 85}).to_dataset())
+    assert "energy" not in json.loads(json.loads((path / "zarr.json").read_text())["attributes"]["arrays"])
+    assert not (path / "energy").exists()

@@ -31,9 +31,7 @@ def _tensor(n: int) -> np.ndarray:
 MADE_UP: dict[str, Callable[[], Any]] = {
     "inertia operator": lambda: nh.LLSystem(nh.SO(3), annihilator=[[0.0, 0, 1]], inertia_operator=_tensor(3)),
     "user group": lambda: EVERY["Heisenberg"],
-    "product of groups": lambda: nh.LLSystem(
-        _PRODUCT, constraint_subspace=np.eye(11)[::2], inertia_operator=_tensor(11)
-    ),
+    "product": lambda: nh.LLSystem(_PRODUCT, constraint_subspace=np.eye(11)[::2], inertia_operator=_tensor(11)),
     "logarithmic top of SO(4)": lambda: nh.discretize(nh.SuslovTop(_tensor(4)), 0.1, "logarithmic", "exponential"),
 }
 MOTIONS: dict[str, Callable[[], Any]] = {  # systems, or discretizations that are not the usual ones
@@ -122,8 +120,7 @@ def test_groups_come_back(group: AbstractMatrixGroup) -> None:
 
 def test_charts_have_their_own_dimension(tmp_path: Path) -> None:
     """Where the chart has more coordinates than the subspace the store is still labeled without contradiction."""
-    orbit = _run(EVERY["any d on SE(3)"])
-    nh.save_orbit(orbit, tmp_path / "o.zarr")
+    nh.save_orbit(_run(EVERY["any d on SE(3)"]), tmp_path / "o.zarr")
     with xarray.open_zarr(tmp_path / "o.zarr", group="canonical", chunks=None) as compact:
         sizes = compact.sizes
     assert (sizes["component"], sizes["chart"], sizes["pose_component"]) == (4, 6, 12)

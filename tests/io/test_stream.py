@@ -3,9 +3,11 @@
 import contextlib
 import errno
 import fcntl
+import inspect
 import itertools
 import json
 import os
+import shutil
 import socket
 import subprocess
 import sys
@@ -14,7 +16,8 @@ from pathlib import Path
 
 import pytest
 
-from nonholo.io.places import owner_of, write_lock
+import nonholo as nh
+from nonholo.io import places
 from nonholo.orbit import Plan
 
 
@@ -50,23 +53,26 @@ def test_lock_names_its_owner_and_goes(store: Path) -> None:
     owners = []
 
     def fail_inside() -> None:
-        with write_lock(store):
-            owners.append(owner_of(store))
+        with places.write_lock(store):
+            owners.append(places.owner_of(store))
             raise KeyError
 
     with pytest.raises(KeyError):
         fail_inside()
     assert f"process {os.getpid()} on {socket.gethostname()} since 20" in str(owners[0])
-    assert owner_of(store) is None
+    assert places.owner_of(store) is None
     assert list((store / "run").iterdir()) == []
 
 
 def test_held_lock_is_refused(store: Path) -> None:
     """A second owner is refused, the first one is named, and its lock stays."""
-    with write_lock(store):
-        with pytest.raises(BlockingIOError, match=f"being written by process {os.getpid()} on"), write_lock(store):
+    with places.write_lock(store):
+        with (
+            pytest.raises(BlockingIOError, match=f"being written by process {os.getpid()} on"),
+            places.write_lock(store),
+        ):
             pass
-        assert owner_of(store) is not None
+        assert places.owner_of(store) is not None
 
 
 @pytest.mark.parametrize("left", ["", "{", "[]", '{"pid": "x", "host": 3}', "[" * 100_000, '{"pid": 1e400}'])
@@ -74,32 +80,32 @@ def test_what_is_left_does_not_lock(left: str, store: Path) -> None:
     """Files of a lock whose process has ended do not count, whatever they say, and are gone afterwards."""
     (store / "run" / "lock.json").write_text(left)
     (store / "run" / "lock").touch()
-    assert owner_of(store) is None
-    with write_lock(store):
-        assert str(os.getpid()) in str(owner_of(store))
+    assert places.owner_of(store) is None
+    with places.write_lock(store):
+        assert str(os.getpid()) in str(places.owner_of(store))
     assert list((store / "run").iterdir()) == []
 
 
 @pytest.mark.parametrize("told", [b"", b"{", b"[]", b"\xff\xfe", b"[" * 100_000, b'{"host": {}}'])
 def test_held_lock_needs_no_name(told: bytes, store: Path) -> None:
     """A lock is held also if what tells its owner cannot be read, and a terminal is not controlled by it."""
-    with write_lock(store):
+    with places.write_lock(store):
         (store / "run" / "lock.json").write_bytes(told)
-        with pytest.raises(BlockingIOError, match="an unknown process"), write_lock(store):
+        with pytest.raises(BlockingIOError, match="an unknown process"), places.write_lock(store):
             pass
         (store / "run" / "lock.json").write_text(json.dumps({"pid": "\x1b]0;x\x07", "host": "h", "since": 1}))
-        assert owner_of(store) == "process ?]0;x? on h since 1"
+        assert places.owner_of(store) == "process ?]0;x? on h since 1"
 
 
 def test_lock_ends_with_its_process(store: Path) -> None:
     """A lock holds as long as its process, and not longer, though that is killed."""
     with _holder(store) as holder:
-        assert f"process {holder.pid} on {socket.gethostname()}" in str(owner_of(store))
-        with pytest.raises(BlockingIOError), write_lock(store):
+        assert f"process {holder.pid} on {socket.gethostname()}" in str(places.owner_of(store))
+        with pytest.raises(BlockingIOError), places.write_lock(store):
             pass
     assert (store / "run" / "lock").exists()
-    assert owner_of(store) is None
-    with write_lock(store):
+    assert places.owner_of(store) is None
+    with places.write_lock(store):
         pass
 
 
@@ -122,7 +128,7 @@ def test_file_systems_without_locks_are_named(store: Path, monkeypatch: pytest.M
 
     monkeypatch.setattr(fcntl, "flock", missing)
     with pytest.raises(OSError, match=r"cannot be locked.*Function not implemented.*write it elsewhere.*run\.zarr"):
-        _ = write_lock(store).__enter__()
+        _ = places.write_lock(store).__enter__()
 
 
 def test_one_of_many_takes_a_lock(store: Path) -> None:
@@ -167,3 +173,136 @@ def test_blocks_cover_every_step_and_state_once(steps: int, rows: int, every: in
     saved[0] += 1  # the start
     assert sum(saved) == 1 + steps // every
     assert all(number == rows for number in saved[:-1])
+
+
+MAKER = """
+import sys
+from pathlib import Path
+from nonholo.io.places import check_assertions
+from nonholo.io.places import check_target, complete_file, new_beside, remove_store
+with new_beside(Path(sys.argv[1])) as part:
+    part.mkdir()
+    print("making", flush=True)
+    sys.stdin.read()
+"""
+
+
+def hidden(folder: Path) -> list[str]:
+    """Return the names of hidden files in a folder."""
+    return [path.name for path in folder.iterdir() if path.name.startswith(".")]
+
+
+@pytest.mark.profile("faults", keep=["odd*"])
+@pytest.mark.parametrize("name", ["run.zarr", "odd [1]*.zarr"])
+def test_the_next_maker_removes_what_a_killed_one_left(name: str, tmp_path: Path) -> None:
+    """Only of the same path, and only if its maker is dead."""
+    orbit = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), restricted_velocity=(0.3, 0.2), steps=3)
+    path = tmp_path / name
+    command = [sys.executable, "-c", MAKER, str(path)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as maker:  # noqa: S603
+        assert maker.stdout is not None
+        maker.stdout.readline()
+        remains = hidden(tmp_path)
+        nh.save_orbit(orbit, path)
+        assert sorted(hidden(tmp_path)) == sorted(remains) != []
+        maker.kill()
+    nh.save_orbit(orbit, tmp_path / "other.zarr")
+    assert sorted(hidden(tmp_path)) == sorted(remains)
+    nh.save_orbit(orbit, path, overwrite=True)
+    assert hidden(tmp_path) == []
+    assert len(nh.load_orbit(path)) == len(orbit)
+
+
+def test_nothing_is_left_of_what_fails(tmp_path: Path) -> None:
+    """Neither the partial file nor its lock."""
+    complaint = "Nothing at this path was changed"
+    with pytest.raises(OSError, match=complaint), places.new_beside(tmp_path / "run.zarr") as part:  # noqa: PT012
+        part.write_text("half")
+        raise OSError(28, "No space left on device")
+    assert hidden(tmp_path) == []
+
+
+def _orbit() -> nh.Orbit:
+    return nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1), restricted_velocity=(0.3, 0.2), steps=3)
+
+
+@pytest.mark.parametrize("is_replaced", [False, True])
+def test_store_that_was_being_replaced(is_replaced: bool, tmp_path: Path) -> None:
+    """Whoever is killed between the two renames has the older store put back; after both it is gone for good."""
+    path = tmp_path / "run.zarr"
+    nh.save_orbit(_orbit(), path)
+    (shutil.copytree if is_replaced else shutil.move)(path, tmp_path / ".run.zarr.0123.old")
+    (tmp_path / ".run.zarr.0123.lock").touch()
+    places.check_target(path, overwrite=True)
+    assert len(nh.load_orbit(path)) == 4
+    nh.save_orbit(_orbit(), path, overwrite=True)
+    assert hidden(tmp_path) == []
+
+
+def test_store_is_removed_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A kill while its files are removed leaves nothing at the path: half a store would be no store to replace."""
+
+    def stopped(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    path = tmp_path / "run.zarr"
+    nh.save_orbit(_orbit(), path)
+    monkeypatch.setattr(shutil, "rmtree", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        places.remove_store(path)
+    assert not path.exists()
+    assert hidden(tmp_path) != []
+
+
+def test_picture_of_a_killed_one(tmp_path: Path) -> None:
+    """What was drawn half is removed by whoever draws there next, and the file has the suffix that was asked for."""
+    path, part = tmp_path / "run.png", tmp_path / ".run.png.0123.partial"
+    part.mkdir()
+    (part / "run.png").write_text("half")
+    part.with_suffix(".lock").touch()
+    with places.complete_file(path) as drawn:
+        assert Path(drawn).suffix == ".png"
+        Path(drawn).write_text("whole")
+    assert path.read_text() == "whole"
+    assert hidden(tmp_path) == []
+
+
+OPTIMIZED = """
+import sys
+import nonholo as nh
+from nonholo.io.places import check_target
+doors = (
+    lambda: nh.load_orbit(sys.argv[1]),
+    lambda: nh.resume(sys.argv[1]),
+    lambda: check_target("new.zarr"),
+    lambda: nh.sweep(print, nh.Grid({"x": [1.0]}), "new.zarr"),
+)
+for door in doors:
+    try:
+        door()
+    except ValueError as refusal:
+        print(refusal)
+"""
+WORDS = "must be run by Python with assertions. Got python -O or PYTHONOPTIMIZE"
+
+
+@pytest.mark.profile("faults", instead="test_refusal_without_assertions")
+def test_python_without_assertions(tmp_path: Path) -> None:
+    """Under `python -O`, where zarr does not work, every door of stores says so before any work."""
+    nh.save_orbit(_orbit(), tmp_path / "run.zarr")
+    command = [sys.executable, "-O", "-c", OPTIMIZED, str(tmp_path / "run.zarr")]
+    told = subprocess.run(command, capture_output=True, text=True, check=True, cwd=tmp_path)  # noqa: S603
+    assert told.stdout.count(WORDS) == 4
+    assert [path.name for path in tmp_path.iterdir()] == ["run.zarr"]
+
+
+def test_refusal_without_assertions() -> None:
+    """The check of every door, as Python compiles it with -O, refuses; as it is here, it does not."""
+    source, names = (
+        inspect.getsource(places.check_assertions),
+        dict(vars(sys.modules[places.check_assertions.__module__])),
+    )
+    exec(compile(source, "optimized", "exec", optimize=1), names)  # noqa: S102
+    with pytest.raises(ValueError, match=WORDS):
+        names["check_assertions"]("save_orbit(path=...)")
+    places.check_assertions("save_orbit(path=...)")

@@ -2,16 +2,21 @@
 
 import ast
 import json
+import math
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import nonholo
-from nonholo.kernels import _scalar
+import nonholo as nh
+from nonholo.kernels import _driver, _scalar
+from nonholo.kernels.secular import run as secular_run
 
 LIVE, REPLAY = (Path(__file__).parent / name for name in ("live.py", "replay.py"))
 ROUNDED_BY_IEEE = {
@@ -117,3 +122,70 @@ def test_compiled_functions_round_as_ieee_says() -> None:
     assert _scalar.COMPILED == {"error_model": "numpy"}
     loose = {place: [ast.unparse(n) for n in ast.walk(f) if _inexact(n)] for place, f in functions.items()}
     assert {place: pieces for place, pieces in loose.items() if pieces} == {}
+
+
+@pytest.mark.profile("routes", keep=["interpreted"])
+@pytest.mark.parametrize("disabled", ["1", "0"], ids=["interpreted", "compiled"])
+def test_a_family_is_added_by_its_kernel_and_one_entry(disabled: str, tmp_path: Path) -> None:
+    """Runs, compositions, ensembles, also of members with masses of their own, and stores are those of the general top.
+
+    A kernel of its own is run by all of them. Each of its numbers is that of the library to rounding.
+    """
+    variables = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "NUMBA_DISABLE_JIT": disabled}
+    command = [sys.executable, str(Path(__file__).with_name("free_top.py"))]
+    done = subprocess.run(command, env=variables, stdout=subprocess.PIPE, check=True)  # noqa: S603
+    printed = json.loads(done.stdout)
+    given, added = printed["given"], printed["added"]
+    assert (given["body"], added["body"]) == ("SuslovBody", "FreeTopBody")
+    assert added["is_scalar"]
+    assert added["outcomes"] == given["outcomes"] == [0, 0, 1]
+    assert added["reversal_defect"] < 1e-14
+    for name in ("pose", "composed", "stored", "own"):
+        assert np.allclose(added[name], given[name], rtol=0, atol=1e-14), name
+    assert np.allclose(added["members"], given["members"], rtol=0, atol=1e-14, equal_nan=True)
+    assert added["pose"] == added["stored"]
+    assert added["own"][0] == added["members"][0] == added["pose"][-1]
+
+
+SLEIGH = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+EIGENVECTOR = nh.discretize(nh.SuslovTop([[1.0, 0.0, 0.4], [0.0, 1.5, 0.0], [0.4, 0.0, 0.8]]), 0.1)
+
+
+@pytest.mark.parametrize(("discrete", "across"), [(SLEIGH, 0), (EIGENVECTOR, 1)], ids=["sleigh", "top"])
+def test_the_transverse_momentum_decays_to_zero_without_denormals(discrete: nh.Discretization, across: int) -> None:
+    """The transverse momentum falls geometrically to 1e-150 of the other and is zero from then on, never denormal."""
+    orbit = nh.simulate(discrete, restricted_velocity=(0.3, -0.9), steps=40_000)
+    size = np.abs(orbit.reduced_momentum[:, across]) / np.abs(orbit.reduced_momentum[:, 1 - across])
+    late = np.nonzero(size < 1e-100)[0][0]
+    end = np.nonzero(size == 0)[0][0]
+    rates = size[late + 1 : end] / size[late : end - 1]
+    assert np.abs(rates / rates[0] - 1).max() < 1e-12
+    assert size[end - 1] * rates[0] < 1e-150 <= size[end - 1]
+    assert not size[end:].any()
+
+
+@pytest.mark.parametrize("discrete", [SLEIGH, EIGENVECTOR], ids=["sleigh", "top"])
+def test_a_repelling_equilibrium_is_left_from_however_near(discrete: nh.Discretization) -> None:
+    """A transverse momentum of 1e-200 beside a repelling equilibrium grows until the motion is over."""
+    attracting = discrete.system.canonical.restrict(
+        discrete.system.canonical.inertia_operator @ discrete.system.canonical.equilibria().attracting
+    )
+    start = -attracting / np.linalg.norm(attracting)
+    start[np.argmin(np.abs(start))] = 1e-200
+    orbit = nh.simulate(discrete, momentum=np.linalg.solve(discrete.system.frame_map, start), steps=60_000)
+    assert orbit.reduced_momentum[-1] @ attracting > 0
+    assert nh.invariants(orbit).energy_drift <= 1e-13
+
+
+Sum = Callable[[float, float, float, float], tuple[float, float]]
+
+
+@pytest.mark.parametrize("add", [_driver.kahan_sum, secular_run._kahan_sum], ids=["two momenta", "many momenta"])
+def test_rounding_does_not_gather(add: Sum) -> None:
+    """After a hundred thousand terms a compensated sum is off by one rounding at most."""
+    terms = np.random.default_rng(0).uniform(0.0, 0.1, 100_000).tolist()
+    total, lost = 1.0, 0.0
+    for term in terms:
+        total, lost = add(total, lost, term, 0.0)
+    exact = math.fsum([1.0, *terms])
+    assert abs(total - exact) <= math.ulp(exact)

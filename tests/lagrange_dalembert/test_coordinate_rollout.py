@@ -12,8 +12,6 @@ from comparisons import assert_near
 from refusals import refusals
 
 import nonholo as nh
-from nonholo.base.results import Outcome
-from nonholo.lagrange_dalembert import LagrangeDAlembert
 
 H, STEPS = 0.1, 6
 NUMBERS = {"mass": 1.3, "arm": 0.2, "pull": np.array([0.3, -0.2, 0.1])}
@@ -38,8 +36,8 @@ def pushed(time, q, v, p):  # noqa: ANN001, ANN201
     return p["pull"] * jnp.cos(time + q[1]) - 0.1 * p["mass"] * v
 
 
-SYSTEM = LagrangeDAlembert(sleigh, blade, dimension=3, parameters=NUMBERS)
-FORCED = LagrangeDAlembert(sleigh, blade, dimension=3, parameters=NUMBERS, force=pushed)
+SYSTEM = nh.LagrangeDAlembert(sleigh, blade, dimension=3, parameters=NUMBERS)
+FORCED = nh.LagrangeDAlembert(sleigh, blade, dimension=3, parameters=NUMBERS, force=pushed)
 
 
 def end(numbers: dict[str, Any], q: Any, v: Any, controls: Any) -> Any:
@@ -97,18 +95,12 @@ def test_derivatives_have_nine_digits_of_fifty() -> None:
     with mpmath.workdps(50):
         exact = functools.partial(jax.tree.map, lambda x: np.vectorize(mpmath.mpf, otypes=[object])(x))
         point = exact((given, Q, V, CONTROLS))
-        values = np.array(exactly(*point), float)
-        assert np.abs(ours - values).max() <= 1e-14
+        assert np.abs(ours - np.array(exactly(*point), float)).max() <= 1e-14
         step = mpmath.mpf(10) ** -18
         paths = [
-            (0, "mass", ()),
-            (0, "arm", ()),
-            (0, "pull", 1),
-            (1, None, 2),
-            (2, None, 0),
-            (3, None, (2, 1)),
+            (0, "mass", ()), (0, "arm", ()), (0, "pull", 1), (1, None, 2), (2, None, 0), (3, None, (2, 1)),
             (3, None, (5, 0)),
-        ]
+        ]  # fmt: skip
         for which, name, index in paths:
             ends = []
             for sign in (1, -1):
@@ -130,12 +122,12 @@ def test_derivatives_have_nine_digits_of_fifty() -> None:
 
 @pytest.mark.profile("routes", keep=["forced"])
 @pytest.mark.parametrize("system", [SYSTEM, FORCED], ids=["free", "forced"])
-def test_values_are_those_of_simulate(system: LagrangeDAlembert) -> None:
+def test_values_are_those_of_simulate(system: nh.LagrangeDAlembert) -> None:
     """All that a rollout tells is what an orbit tells, to rounding; a table of controls acts as that of a force."""
     discrete, start = nh.discretize(system, H), {"configuration": Q, "momentum": V, "steps": 30}
     states, orbit = nh.rollout(discrete, **start), nh.simulate(discrete, **start)
     assert_near(states, orbit, 1e-13, *ROWS)
-    assert states.outcome == Outcome.successful
+    assert states.outcome == nh.Outcome.successful
     if system is SYSTEM:
         controls = np.random.default_rng(1).normal(size=(30, 3))
         driven = nh.rollout(discrete, **start, controls=controls, save_every=3)
@@ -177,11 +169,11 @@ def test_beyond_a_fold_there_is_nothing() -> None:
 
     lagrangian = lambda q, v, p: v @ v / 2 + p["slope"] * q[0]  # noqa: E731
     given = {"dimension": 1, "discrete_lagrangian": folded, "parameters": {"slope": 0.15}}
-    system = LagrangeDAlembert(lagrangian, None, **given)
+    system = nh.LagrangeDAlembert(lagrangian, None, **given)
     start = {"configuration": np.zeros(1), "momentum": np.array([0.6]), "steps": 12}
     orbit = nh.simulate(nh.discretize(system, 1.0), **start, throw=False)
     states = nh.rollout(nh.discretize(system, 1.0), **start)
-    assert states.outcome == orbit.outcome == Outcome.no_real_branch
+    assert states.outcome == orbit.outcome == nh.Outcome.no_real_branch
     good = len(orbit)
     assert 0 < good < 12
     assert np.abs(states.configuration[:good] - orbit.configuration).max() <= 1e-12

@@ -199,9 +199,7 @@ def test_flows_stay_on_the_surface() -> None:
     kinked = nh.LagrangeDAlembert(fall, None, holonomic=lambda q: jnp.array([jnp.abs(q @ q) - 1.0]), dimension=2)
     other = nh.flow(kinked, **run, times=np.linspace(0.0, 10.0, 11))
     assert left(kinked, other) <= 1e-15
-    assert (
-        np.abs(other.configuration[-1] - nh.flow(pendulum(), **run, times=[0.0, 10.0]).configuration[-1]).max() < 1e-7
-    )
+    assert np.abs(other.configuration[-1] - nh.flow(pendulum(), **run, times=[0, 10.0]).configuration[-1]).max() < 1e-7
 
 
 @pytest.mark.profile("routes", instead="test_moving_constraints_and_a_lagrangian_of_time")

@@ -13,15 +13,14 @@ import xarray
 from scipy.optimize import brentq
 
 import nonholo as nh
-from nonholo.lagrange_dalembert import GroupLagrangeDAlembert, LagrangeDAlembert, mass_tensor_lagrangian
 
 MASSES = np.array([2.0, 0.7])
-PARTICLE = LagrangeDAlembert(lambda _, v: jnp.asarray(MASSES) @ v**2 / 2, None, dimension=2)
+PARTICLE = nh.LagrangeDAlembert(lambda _, v: jnp.asarray(MASSES) @ v**2 / 2, None, dimension=2)
 flow: Any = nh.flow
 simulate: Any = nh.simulate
 TENSOR = np.diag([0.5, 0.4, 1.0])
 SPEED = np.array([0.73, 0.31])
-FALL = LagrangeDAlembert(lambda q, v: v @ v / 2 - q[1], None, dimension=2)
+FALL = nh.LagrangeDAlembert(lambda q, v: v @ v / 2 - q[1], None, dimension=2)
 FLOOR = nh.Event(lambda states: states.configuration[:, 1], name="floor", reset=nh.Impact(restitution=0.8))
 DISK = nh.examples.rolling_disk()
 ROLLING = {"configuration": DISK.configuration, "body_velocity": DISK.body_velocity}
@@ -52,18 +51,16 @@ def curved(q, v):  # noqa: ANN001, ANN201
 
 
 SYSTEMS: dict[str, Any] = {
-    "contact": LagrangeDAlembert(curved, lambda q: jnp.array([[-q[1], 0.0, 1.0]]), dimension=3),
-    "driven": LagrangeDAlembert(
+    "contact": nh.LagrangeDAlembert(curved, lambda q: jnp.array([[-q[1], 0.0, 1.0]]), dimension=3),
+    "driven": nh.LagrangeDAlembert(
         curved,
         lambda q: jnp.array([[-q[1], 0.0, 1.0]]),
         dimension=3,
         constraint_velocities=lambda q, t: jnp.array([jnp.cos(t) + q[0]]),
     ),
-    "on a sphere": LagrangeDAlembert(curved, None, dimension=3, holonomic=lambda q: jnp.array([q @ q - 1.5])),
-    "on a group": GroupLagrangeDAlembert(
-        nh.SE(2),
-        mass_tensor_lagrangian(nh.SE(2), TENSOR),
-        lambda g: jnp.array([[0.3 * g[0, 2], 0.2, 1.0]]),
+    "on a sphere": nh.LagrangeDAlembert(curved, None, dimension=3, holonomic=lambda q: jnp.array([q @ q - 1.5])),
+    "on a group": nh.GroupLagrangeDAlembert(
+        nh.SE(2), nh.mass_tensor_lagrangian(nh.SE(2), TENSOR), lambda g: jnp.array([[0.3 * g[0, 2], 0.2, 1.0]])
     ),
 }
 
@@ -231,7 +228,7 @@ def test_thinned_iterated_and_stored_runs_have_the_same_bits(tmp_path: pathlib.P
     assert np.array_equal(thin.events["wall"].after.momentum, orbit.events["wall"].after.momentum)
 
 
-QUARTIC = LagrangeDAlembert(lambda _, v: v @ v / 2 + jnp.sum(v**4), None, dimension=2)
+QUARTIC = nh.LagrangeDAlembert(lambda _, v: v @ v / 2 + jnp.sum(v**4), None, dimension=2)
 POINT = {"configuration": np.zeros(2), "body_velocity": SPEED}
 REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
     "masses": (lambda: bounced(QUARTIC), "Lagrangian quadratic in velocities"),

@@ -12,8 +12,6 @@ import numpy as np
 import pytest
 
 import nonholo as nh
-from nonholo.analysis.locomotion import ShapedBody
-from nonholo.lagrange_dalembert import GroupLagrangeDAlembert
 
 START: dict[str, Any] = {"configuration": (1.0, 0.0), "body_velocity": (0.0, 0.5)}
 READ, ROW, mass = {"mass": 1.0}, np.ones(1), 1.0
@@ -89,8 +87,8 @@ PLACES: dict[str, Callable[[], Any]] = {
     "force": functools.partial(_system, "force", lambda _t, _q, v: -mass * v),
     "joint": lambda: _system("prescribed", {1: MOTION}),
     "potential": lambda: nh.Forced(cast(Any, FREE), _pull),
-    "action on a group": lambda: GroupLagrangeDAlembert(nh.SE(2), _action, None),
-    "forms on a group": lambda: GroupLagrangeDAlembert(nh.SE(2), _action, _blade),
+    "action on a group": lambda: nh.GroupLagrangeDAlembert(nh.SE(2), _action, None),
+    "forms on a group": lambda: nh.GroupLagrangeDAlembert(nh.SE(2), _action, _blade),
 }
 MOTION = lambda time: mass * time**2  # noqa: E731
 
@@ -161,7 +159,7 @@ QUESTIONS: dict[str, Callable[[], Any]] = {
     "difference": lambda: _run(difference=_kinetic),
     "constraint": lambda: _run(constraint=_bent),
     "fit": lambda: nh.fit(_sleigh, _record(), {"inertia": 1.0}).parameters["inertia"],
-    "shape": lambda: nh.local_connection(ShapedBody(nh.SO(3), ("a", "b"), _shaped)).matrix((0.0, 0.0)),
+    "shape": lambda: nh.local_connection(nh.ShapedBody(nh.SO(3), ("a", "b"), _shaped)).matrix((0.0, 0.0)),
 }
 
 

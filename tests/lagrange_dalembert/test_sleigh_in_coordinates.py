@@ -50,11 +50,7 @@ def sleigh(bend: float) -> LagrangeDAlembert:
         return jnp.array([-jnp.sin(angle) * (q_next[1] - q[1]) + jnp.cos(angle) * (q_next[2] - q[2])])
 
     return LagrangeDAlembert(
-        lagrangian,
-        forms,
-        dimension=3,
-        discrete_lagrangian=discrete_lagrangian,
-        discrete_constraints=constraint,
+        lagrangian, forms, dimension=3, discrete_lagrangian=discrete_lagrangian, discrete_constraints=constraint
     )
 
 

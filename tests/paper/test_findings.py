@@ -1,8 +1,53 @@
-"""Every finding of the paper holds."""
+"""Findings hold, bring what they have to, and can fail: with one sign or factor changed, one of them turns red."""
+
+import math
+import random
+from types import ModuleType
 
 import pytest
+from paper.mutations import Mutant, all_mutants, functions, modules, survives, unchanged, users
 
+from nonholo_paper._finding import Finding, Measured, finding
 from nonholo_paper._registry import Entry, entries
+from nonholo_paper._verdict import Verdict
+
+SAMPLE = 40  # of all mutants; `python tests/paper/mutations.py` tries every one
+
+
+def sample() -> list[Mutant]:
+    """Return a part of the mutants, the same in every run."""
+    known = all_mutants()
+    return random.Random(5).sample(known, min(SAMPLE, len(known)))  # noqa: S311 (a choice of tests)
+
+
+@pytest.mark.profile("paper", keep=["energy_theorem*", "suslov_euler_angles*"])
+@pytest.mark.parametrize("mutant", sample(), ids=str)
+def test_a_changed_formula_turns_a_finding_red(mutant: Mutant) -> None:
+    """Some finding notices the change."""
+    assert not survives(mutant, users(mutant.module, mutant.function))
+
+
+@pytest.mark.parametrize("module", modules(), ids=lambda module: module.__name__.rpartition(".")[2])
+def test_every_formula_is_used(module: ModuleType) -> None:
+    """Every function of a module of formulas is reached by a finding."""
+    assert functions(module)
+    assert not [name for name in functions(module) if not users(module, name)]
+
+
+@pytest.mark.profile("paper", keep=["suslov_displacements*", "symmetric_pairs*"])
+@pytest.mark.parametrize("mutant", sample()[:10], ids=lambda mutant: mutant.place)
+def test_an_unchanged_formula_survives(mutant: Mutant) -> None:
+    """Findings notice the change, not that a formula was replaced."""
+    assert survives(unchanged(mutant.module, mutant.function), users(mutant.module, mutant.function))
+
+
+def test_formulas_are_restored() -> None:
+    """After a mutant the formula is again the one of its file."""
+    mutant = sample()[0]
+    before = dict(vars(mutant.module))
+    survives(mutant, [])
+    assert vars(mutant.module) == before
+
 
 SLOW = {"S6", "bi-asymptotic", "suslov-space-axes", "top-solvability", "C35"}
 QUICK = [entry for entry in reversed(entries()) if entry.figure is None and entry.finding.label not in SLOW]
@@ -25,3 +70,66 @@ def test_finding_holds(entry: Entry) -> None:
     """The right statement holds to its tolerance, and what is printed wrong fails."""
     measured = entry.finding.measure()
     assert entry.finding.holds(measured), measured
+
+
+ERRATA = [verdict for verdict in Verdict if verdict.is_erratum]
+ADDED = [Verdict.SETTLED, Verdict.REMARK]
+
+
+def _finding(verdict: Verdict, claim: str = "\u201cclaim\u201d", **changed: object) -> Finding:
+    given = {
+        "corrected": None if verdict is Verdict.AS_PRINTED else "right",
+        "errata": ("S1",) if verdict.is_erratum else (),
+        **changed,
+    }
+    build = finding("label", "remark", "Section 1", claim, verdict=verdict, tolerance=1e-9, **given)
+    return build(lambda: Measured(0.0))
+
+
+def test_verdicts() -> None:
+    """Four words say that something is to be corrected; each word has a meaning of its own."""
+    names = {"MISPRINT", "HYPOTHESIS", "EXCEPTIONS", "FALSE", "CONTRADICTED"}
+    assert {verdict.name for verdict in ERRATA} == names
+    assert len({verdict.meaning for verdict in Verdict}) == len(Verdict)
+
+
+@pytest.mark.parametrize(("defect", "holds"), [(0.0, True), (1e-9, True), (2e-9, False), (math.nan, False)])
+@pytest.mark.parametrize("verdict", Verdict)
+def test_right_statement_is_met_to_the_tolerance(verdict: Verdict, defect: float, holds: bool) -> None:
+    """A finding whose right statement is off by more than the tolerance, or by an undefined defect, does not hold."""
+    assert _finding(verdict).holds(Measured(defect, printed=1.0)) is holds
+
+
+@pytest.mark.parametrize(("printed", "holds"), [(1e-8, False), (9e-7, False), (2e-6, True), (math.nan, False)])
+@pytest.mark.parametrize("verdict", Verdict)
+def test_what_is_denied_fails_clearly(verdict: Verdict, printed: float, holds: bool) -> None:
+    """What is denied has to be off by more than a thousand tolerances, whatever the verdict."""
+    assert _finding(verdict).holds(Measured(0.0, printed)) is holds
+
+
+@pytest.mark.parametrize("verdict", Verdict)
+def test_an_erratum_shows_that_the_printed_statement_fails(verdict: Verdict) -> None:
+    """Without a defect of the printed statement an erratum does not hold; the others deny nothing."""
+    assert _finding(verdict).holds(Measured(0.0)) is not verdict.is_erratum
+
+
+@pytest.mark.parametrize("verdict", Verdict)
+def test_correction_comes_with_what_is_not_right(verdict: Verdict) -> None:
+    """A correction of what is right, and anything else without one, are refused."""
+    wrong = "right" if verdict is Verdict.AS_PRINTED else None
+    with pytest.raises(ValueError, match=r"'label' must have `corrected` exactly where"):
+        _finding(verdict, corrected=wrong)
+
+
+@pytest.mark.parametrize("verdict", Verdict)
+def test_row_comes_with_what_is_to_be_corrected(verdict: Verdict) -> None:
+    """An erratum without a row, and a row of anything else, are refused."""
+    with pytest.raises(ValueError, match=r"'label' must have a row of the errata exactly where"):
+        _finding(verdict, errata=() if verdict.is_erratum else ("S1",))
+
+
+@pytest.mark.parametrize("verdict", [*ERRATA, *ADDED])
+def test_what_is_not_right_as_printed_is_quoted(verdict: Verdict) -> None:
+    """A claim in other words than the paper's is refused where something is said against it or added."""
+    with pytest.raises(ValueError, match="'label' must quote the paper"):
+        _finding(verdict, claim="claim")

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from links import Links
 from matplotlib.figure import Figure as MatplotlibFigure
+from scripts import script
 
 from nonholo_paper._checklist import sections
 from nonholo_paper._finding import Measured, finding
@@ -102,15 +103,9 @@ def test_page_says_what_was_found() -> None:
     """Claim, verdict, correction, numbers and failure stand on the page."""
     text = page(results("plus", "minus", "raises"), "Only a part.")
     for words in (
-        "1 of 3 fail",
-        "correction holds",
-        "It is wrong.",
-        "Right:</strong> right",
-        Verdict.FALSE.meaning,
-        "1.0e-16",
-        "1.0e-12",
-        "inf",
-    ):
+        "1 of 3 fail", "correction holds", "It is wrong.", "Right:</strong> right", Verdict.FALSE.meaning,
+        "1.0e-16", "1.0e-12", "inf",
+    ):  # fmt: skip
         assert words in text, words
     for words in ("Only a part.", "a &lt; b", "no &lt;number&gt;", "S1", "one sum", "A line, <math"):
         assert words in text, words
@@ -120,8 +115,7 @@ def test_page_has_no_script_and_no_network() -> None:
     """Nothing is loaded, and no script runs."""
     text = page(results("plus", "minus"))
     assert "<script" not in text
-    links = re.findall(r"https?://[^\s\"'<]+", text)
-    assert set(links) <= {"http://www.w3.org/1998/Math/MathML"}
+    assert set(re.findall(r"https?://[^\s\"'<]+", text)) <= {"http://www.w3.org/1998/Math/MathML"}
 
 
 def test_letters_of_a_style_are_characters() -> None:
@@ -195,3 +189,33 @@ def test_a_file_as_folder_is_refused(tmp_path: Path) -> None:
     (tmp_path / "paper").write_text("")
     with pytest.raises(NotADirectoryError, match="Choose another one with -o"):
         check_folder(tmp_path / "paper")
+
+
+DOCS = Path(__file__).parents[2] / "docs"
+
+
+@pytest.mark.parametrize("name", ["paper.md", "errata.md"])
+def test_page_is_up_to_date(name: str) -> None:
+    """The page in the repository is the one that the script writes: `python docs/make_paper_pages.py`."""
+    assert (DOCS / name).read_text("utf-8") == script("docs/make_paper_pages.py").page(name)
+
+
+def test_every_row_of_the_errata_is_on_its_page() -> None:
+    """The errata page has one row for each number, with as many cells as the heading."""
+    rows = re.findall(r"^\| ([SC]\d+) \|(.*)\|$", (DOCS / "errata.md").read_text("utf-8"), re.MULTILINE)
+    assert sorted(number for number, _ in rows) == sorted(number for part in sections() for number in part.errata)
+    for number, cells in rows:
+        assert len(re.findall(r"(?<!\\)\|", cells)) == 4, number
+
+
+def test_every_finding_is_on_the_page_of_the_paper() -> None:
+    """The page of the paper has one row for each finding, with as many cells as the heading."""
+    rows = re.findall(r"^\| (?!place)([^*|].*)\|$", (DOCS / "paper.md").read_text("utf-8"), re.MULTILINE)
+    assert len(rows) == len(entries())
+    for cells in rows:
+        assert len(re.findall(r"(?<!\\)\|", cells)) == 4, cells
+
+
+def test_bars_stay_within_their_cell() -> None:
+    """Absolute values and norms in formulas, and bars in words, do not end a cell of a table."""
+    assert script("docs/make_paper_pages.py")._cell("a | b $|x| \\| y$\nc") == r"a \| b $\vert x\vert  \Vert  y$ c"

@@ -126,8 +126,7 @@ def test_every_kind_of_body_moves(name: str, tmp_path: Path) -> None:
             movie.seek(number)
             frames.append(np.asarray(movie.convert("RGB"), dtype=int))
     assert np.mean(np.abs(frames[0] - frames[1]).max(axis=-1) > 60) > 0.003
-    orange = np.array([0xE6, 0x9F, 0x00])
-    assert np.sum(np.abs(frames[1] - orange).max(axis=-1) < 40) > 20
+    assert np.sum(np.abs(frames[1] - np.array([0xE6, 0x9F, 0x00])).max(axis=-1) < 40) > 20
 
 
 def test_a_flow_is_beside_at_equal_times(sleigh_orbit: nh.Orbit) -> None:
@@ -173,13 +172,9 @@ def test_films_of_ffmpeg(kind: str, suffix: str, codec: str, tmp_path: Path, req
     command = ["ffprobe", "-v", "error", "-count_frames", "-show_entries", asked, "-of", "json", str(path)]
     (stream,) = json.loads(subprocess.run(command, check=True, capture_output=True).stdout)["streams"]  # noqa: S603
     assert stream == {
-        "codec_name": codec,
-        "width": 640,
-        "height": 360,
-        "pix_fmt": "yuv420p",
-        "r_frame_rate": "20/1",
+        "codec_name": codec, "width": 640, "height": 360, "pix_fmt": "yuv420p", "r_frame_rate": "20/1",
         "nb_read_frames": "9",
-    }
+    }  # fmt: skip
     raw = ["ffmpeg", "-v", "error", "-i", str(path), "-f", "rawvideo", "-pix_fmt", "gray", "-"]
     pixels = np.frombuffer(subprocess.run(raw, check=True, capture_output=True).stdout, np.uint8)  # noqa: S603
     frames = pixels.reshape(9, 360, 640).astype(int)

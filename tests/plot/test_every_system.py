@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from plot.runs import body_tensor, made_up, run_of, sleigh_run, top_run
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.plot.motion.coordinates import momentum_track
@@ -65,10 +66,7 @@ CASES: dict[str, tuple[Any, list[str]]] = {  # a system, which runs, or what mak
     "dart": (_left(nh.SE(3), np.eye(6)[:4]), [_POINT, _MOMENTUM, _VELOCITY, _ENERGY]),
     "Veselova": (nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])), [_AXIS, _VELOCITY, _SPATIAL, _ENERGY]),
     "Veselova of SO(4)": (nh.VeselovaTop(np.diag([1.0, 2.0, 3.0, 4.0])), [_VELOCITY, _SPATIAL, _ENERGY]),
-    "plate": (
-        nh.LRSystem(nh.SE(2), body_tensor(2), [[1.0, 0, 0], [0, 1.0, 0]]),
-        [_POINT, _VELOCITY, _SPATIAL, _ENERGY],
-    ),
+    "plate": (nh.LRSystem(nh.SE(2), body_tensor(2), np.eye(3)[:2]), [_POINT, _VELOCITY, _SPATIAL, _ENERGY]),
     "plate that cannot move": (
         lambda: run_of(nh.LRSystem(nh.SE(2), body_tensor(2), np.empty((0, 3))), reconstruct=False),
         [_SPATIAL],
@@ -132,12 +130,6 @@ def test_the_energy_panel_says_what_to_expect(name: str, words: str) -> None:
     assert (np.ptp(orbit.energy) < 1e-14) == words.startswith("exact")
 
 
-def test_energy_without_poses_is_refused() -> None:
-    """The energy of a right-invariant system needs poses, and the refusal says how to get them."""
-    with pytest.raises(ValueError, match=r"`energy_error\(orbit=...\)` must have poses. .* reconstruct=True"):
-        nh.plot.energy_error(_orbit("Veselova without poses"))
-
-
 def test_momentum_sphere_is_the_energy_level() -> None:
     """Points have the length of their energy, and their directions turned back are the momenta."""
     orbit = run_of(nh.RigidBody(np.diag([1.0, 3.0, 2.0])), steps=30)
@@ -156,14 +148,6 @@ def test_momentum_sphere_ends_at_the_stable_equilibrium() -> None:
     assert np.allclose(drawn.unstable.get_offsets(), -drawn.stable.get_offsets())
 
 
-def test_momentum_sphere_refuses_other_dimensions() -> None:
-    """Two directions and right-invariant constraints are refused, with what to draw instead."""
-    with pytest.raises(ValueError, match=r"three-dimensional constraint subspace. Got dimension 2. Use `phase_portr"):
-        nh.plot.momentum_sphere(_orbit("two"))
-    with pytest.raises(ValueError, match=r"must have a left-invariant constraint. .* draw `overview`"):
-        nh.plot.momentum_sphere(_orbit("Veselova of SO(4)"))
-
-
 def test_point_track_shows_the_positions() -> None:
     """The track is the path of the reference point; of SE(4) the three largest coordinates are shown."""
     plane = _orbit("plate")
@@ -175,15 +159,20 @@ def test_point_track_shows_the_positions() -> None:
     assert np.array_equal(drawn.points, four.position[:, drawn.coordinates])
 
 
-def test_point_track_refusals(top_orbit: nh.Orbit) -> None:
-    """Rotations, missing poses and flat axes for motions of space are refused in words."""
-    with pytest.raises(ValueError, match=r"must be an orbit on SE\(n\). Got SO\(3\). Use `body_axis_track`"):
-        nh.plot.point_track(top_orbit)
-    with pytest.raises(ValueError, match="must have poses"):
-        nh.plot.point_track(_orbit("no poses"))
-    flat = nh.plot.energy_error(top_orbit).axes
-    with pytest.raises(ValueError, match=r"must be axes of dimension 3. .* projection=\"3d\""):
-        nh.plot.point_track(_orbit("dart"), axes=flat)
+def _flat_track(orbit: nh.Orbit) -> object:
+    return nh.plot.point_track(orbit, axes=nh.plot.energy_error(orbit).axes)
+
+
+# What a picture cannot show is refused in words, with what to do or to draw instead.
+test_refusals = refusals(
+    (nh.plot.energy_error, "Veselova without poses", r"`energy_error\(orbit=...\)` must have poses.* reconstruct=True"),
+    (nh.plot.momentum_sphere, "two", r"three-dimensional constraint subspace. Got dimension 2. Use `phase_portr"),
+    (nh.plot.momentum_sphere, "Veselova of SO(4)", r"must have a left-invariant constraint. .* draw `overview`"),
+    (nh.plot.point_track, "top", r"must be an orbit on SE\(n\). Got SO\(3\). Use `body_axis_track`"),
+    (nh.plot.point_track, "no poses", "must have poses"),
+    (_flat_track, "dart", r"must be axes of dimension 3. .* projection=\"3d\""),
+    ask=lambda draw, name: draw(_orbit(name)),
+)
 
 
 def test_axis_of_the_constraint_is_marked() -> None:

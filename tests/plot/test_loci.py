@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
+from refusals import refusals
 
 import nonholo as nh
 from nonholo.analysis import deltoid
@@ -127,13 +128,46 @@ def test_branch_counts_draw_the_deltoid() -> None:
     assert np.allclose(np.sort(picture.orbit.get_offsets(), axis=0), np.sort(orbit.reduced_momentum, axis=0))
 
 
-def test_refuses_what_does_not_belong() -> None:
-    """Orbits of another system, no locus, a zero normal and energies below zero are refused in words."""
-    with pytest.raises(ValueError, match=r"`plot.branch_counts\(orbit=...\)` must be an orbit of the same discretized"):
-        nh.plot.branch_counts(SLEIGH, run(TOP))
-    with pytest.raises(ValueError, match=r"`plot.momentum_locus\(locus=...\)` must be a locus"):
-        nh.plot.momentum_locus(TOP)
-    with pytest.raises(ValueError, match=r"`plot.locus_section\(normal=...\)` must not be zero"):
-        nh.plot.locus_section(nh.momentum_locus(TOP, 8), normal=(0, 0, 0))
-    with pytest.raises(ValueError, match=r"`plot.invariant_curves\(energies=...\)` must be positive"):
-        nh.plot.invariant_curves(TOP, energies=[-1.0])
+# Orbits of another system, no locus, a zero normal and energies below zero.
+test_refuses_what_does_not_belong = refusals(
+    (lambda: nh.plot.branch_counts(SLEIGH, run(TOP)), r"`plot.branch_counts\(orbit=...\)` must be an orbit of"),
+    (lambda: nh.plot.momentum_locus(TOP), r"`plot.momentum_locus\(locus=...\)` must be a locus"),
+    (
+        lambda: nh.plot.locus_section(nh.momentum_locus(TOP, 8), normal=(0, 0, 0)),
+        r"`plot.locus_section\(normal=...\)` must not be zero",
+    ),
+    (lambda: nh.plot.invariant_curves(TOP, energies=[-1.0]), r"`plot.invariant_curves\(energies=...\)` must be posit"),
+)
+
+
+ROUND = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1)
+
+
+def _crossings(steps: int) -> nh.Crossings:
+    event = nh.Event(lambda orbit: np.sin(orbit.heading), name="east")
+    return nh.simulate(ROUND, body_velocity=(4.0, 1.0, 0.0), steps=steps, events=[event]).events["east"]
+
+
+def test_dots_are_the_quantities_at_the_crossings() -> None:
+    """Each dot is a crossing, with the two quantities as its place and the time as its color."""
+    found = _crossings(100)
+    drawn = nh.plot.section(found, lambda states: states.position[:, 0], lambda states: states.heading)
+    assert np.array_equal(drawn.points, np.stack([found.states.position[:, 0], found.states.heading], axis=1))
+    assert np.array_equal(drawn.dots.get_offsets(), drawn.points)
+    assert np.array_equal(drawn.dots.get_array(), found.time)
+
+
+def test_axes_bear_the_names_of_their_quantities() -> None:
+    """The first label is that of the abscissa, the second that of the ordinate."""
+    drawn = nh.plot.section(
+        _crossings(20), lambda states: states.position[:, 0], lambda states: states.heading, labels=("x", "heading")
+    )
+    assert (drawn.axes.get_xlabel(), drawn.axes.get_ylabel()) == ("x", "heading")
+
+
+# A section needs a crossing; a quantity one number for each, and the error names which one has not.
+test_refused_sections = refusals(
+    (3, lambda states: states.time, "hold crossings"),
+    (20, lambda states: states.position, r"section\(up=.*shape"),
+    ask=lambda steps, up: nh.plot.section(_crossings(steps), lambda states: states.time, up),
+)

@@ -14,10 +14,7 @@ SYSTEMS = {
     "sleigh": nh.ChaplyginSleigh(mass=2.0, inertia=1.0, a=0.5, b=0.3),
     "backward sleigh": nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=-0.5, b=0.3),
 }
-BALANCED = {
-    "top": nh.SuslovTop(np.diag([1.4, 1.0, 0.9])),
-    "sleigh": nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.0, b=0.2),
-}
+BALANCED = {"top": nh.SuslovTop(np.diag([1.4, 1.0, 0.9])), "sleigh": nh.ChaplyginSleigh(1.0, 1.0, 0.0, 0.2)}
 
 
 @pytest.mark.parametrize("system", SYSTEMS.values(), ids=SYSTEMS)

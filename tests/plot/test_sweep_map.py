@@ -214,8 +214,7 @@ def test_axis_of_vectors_is_numbered(tmp_path: Path) -> None:
     """Vectors along an axis of a grid have no place on it but their number."""
     design = nh.Grid({"v": [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]})
     found = nh.sweep(lambda block: {"value": block["v"].sum(axis=1)}, design, tmp_path / "s.zarr")
-    line = nh.plot.sweep_map(found, "value").drawn
-    assert line.get_xydata().tolist() == [[0, 1], [1, 1], [2, 2]]
+    assert nh.plot.sweep_map(found, "value").drawn.get_xydata().tolist() == [[0, 1], [1, 1], [2, 2]]
 
 
 def test_other_objects_are_refused() -> None:

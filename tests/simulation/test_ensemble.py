@@ -117,9 +117,7 @@ def test_little_work_starts_no_threads(name: str, monkeypatch: pytest.MonkeyPatc
     system, w = GENERAL.get(name, (TOP, np.ones(2)))
     run: dict[str, Any] = {"restricted_velocity": 0.1 * w * np.ones((10, 1))}
     motion: Any = system if name == "flow" else nh.discretize(system, 0.1)
-    little, much = (
-        ({"times": (0.0, 1.0)}, {"times": (0.0, 1e3)}) if name == "flow" else ({"steps": 10}, {"steps": 10**5})
-    )
+    little, much = ({"times": (0, 1)}, {"times": (0, 1e3)}) if name == "flow" else ({"steps": 10}, {"steps": 10**5})
     run |= {"branch": "nearest"} if name == "rule" else {}
 
     def refused(*_: Any) -> None:
@@ -226,11 +224,7 @@ DRIVEN: dict[str, tuple[Any, dict[str, Any], dict[str, Any]]] = {
         {"potential": nh.Gravity(force=[0.0, 0.0, -9.81], point=[0.0, 0.0, 0.3])},
         {"mass_tensor": J * np.array([1.0, 1.2, 0.9])[:, None, None]},
     ),
-    "sleighs that rub": (
-        SLEIGH,
-        {"force": nh.Friction(0.1 * np.eye(3))},
-        {"a": [0.2, 0.5, -0.3], "mass": [1.0, 2.0, 3.0]},
-    ),
+    "sleighs that rub": (SLEIGH, {"force": nh.Friction(0.1 * np.eye(3))}, {"a": [0.2, 0.5, -0.3], "mass": [1, 2, 3]}),
     "sleighs that are pushed": (
         SLEIGH,
         {"force": lambda t, g, w: np.array([np.cos(t), g[0, 0], -w[1]])},
@@ -262,9 +256,7 @@ def test_bodies_on_which_forces_act_have_parameters(name: str) -> None:
 def test_flows_under_forces_have_parameters() -> None:
     """Each member is the flow of its own body."""
     _, forces, parameters = DRIVEN["sleighs that rub"]
-    batch = nh.ensemble(
-        nh.Forced(SLEIGH, **forces), body_velocity=(1.0, 0.5, 0.0), parameters=parameters, times=(0.0, 1.0)
-    )
+    batch = nh.ensemble(nh.Forced(SLEIGH, **forces), body_velocity=(1.0, 0.5, 0.0), parameters=parameters, times=(0, 1))
     for member, (a, mass) in enumerate(zip(*parameters.values(), strict=True)):
         body = dataclasses.replace(SLEIGH, a=a, mass=mass)
         alone = nh.flow(nh.Forced(body, **forces), body_velocity=(1.0, 0.5, 0.0), times=(0.0, 1.0))
@@ -370,10 +362,7 @@ ONE = {"restricted_velocity": (0.3, 1.0)}
 test_bad_arguments_are_refused = refusals(
     ({"restricted_velocity": [[1, 0]], "configuration": [np.ones((3, 3))]}, "lie in SE.*This is member 0"),
     ({"restricted_velocity": np.ones((2, 2)), "configuration": np.eye(3)[None]}, "1 of configuration"),
-    (
-        {"displacement": [np.eye(3), nh.SE(2).exp(np.array([0.0, 0.0, 1.0]))]},
-        "lie on the displacement variety.*This is member 1",
-    ),
+    ({"displacement": [np.eye(3), nh.SE(2).exp([0, 0, 1.0])]}, "lie on the displacement variety.*This is member 1"),
     ({}, "exactly one of"),
     ({**ONE, "momentum": [[1, 0]]}, "restricted_velocity and momentum"),
     (ONE, "`simulate` runs a single one"),

@@ -19,9 +19,7 @@ SYSTEMS: dict[str, AbstractSystem] = {
     "top on SO(7), matrices": nh.SuslovTop(mass_tensor(nh.SO(7), RNG)),
     "general on SE(3)": nh.LLSystem(nh.SE(3), mass_tensor(nh.SE(3), RNG), RNG.normal(size=(3, 6))),
     "right-invariant": nh.VeselovaTop(np.diag([1.0, 2.0, 3.0])),
-    "right-invariant in the plane": nh.LRSystem(
-        nh.SE(2), mass_tensor(nh.SE(2), RNG), [[1.0, 0.2, 0.0], [0.0, 1.0, 0.3]]
-    ),
+    "right-invariant in the plane": nh.LRSystem(nh.SE(2), mass_tensor(nh.SE(2), RNG), [[1, 0.2, 0], [0, 1, 0.3]]),
 }
 
 
@@ -123,7 +121,5 @@ test_refused_arguments = refusals(
     ({"restricted_velocity": np.ones((10**6, 2)), "times": np.arange(1e6)}, r"ensemble\(times=...\)"),
     ({"discrete": nh.discretize(SLEIGH, 0.1)}, r"ensemble\(times=...\)` must be left out for a discretization"),
     ({"discrete": nh.discretize(SLEIGH, 0.1), "times": None}, r"ensemble\(steps=...\)"),
-    ask=lambda given: nh.ensemble(
-        **{"discrete": SLEIGH, "restricted_velocity": np.ones((2, 2)), "times": (0.0, 1.0)} | given
-    ),
+    ask=lambda x: nh.ensemble(**{"discrete": SLEIGH, "restricted_velocity": np.ones((2, 2)), "times": (0.0, 1.0)} | x),
 )

@@ -51,11 +51,8 @@ def test_a_stored_function_is_not_run(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="force is a callable"):
         nh.resume(tmp_path / "sweep.zarr")
     nh.save_orbit(nh.simulate(nh.discretize(FORCED["table"], 0.05), **START, steps=3), tmp_path / "table.zarr")
-    described = json.loads(zarr.open_group(tmp_path / "table.zarr", mode="r").attrs["parameters"])  # type: ignore[arg-type]
-    assert described["system"] == {
-        "kind": "ChaplyginSleigh",
-        "parameters": {"mass": 1, "inertia": 1, "a": 0.5, "b": 0.3},
-    }
+    told = json.loads(zarr.open_group(tmp_path / "table.zarr", mode="r").attrs["parameters"])  # type: ignore[arg-type]
+    assert told["system"] == {"kind": "ChaplyginSleigh", "parameters": {"mass": 1, "inertia": 1, "a": 0.5, "b": 0.3}}
 
 
 SLOPE = nh.Gravity(force=[0.4, -1.0], point=[0.5, 0.3])

@@ -143,9 +143,7 @@ test_flows_of_members_that_cannot_be_solved_are_refused = refusals(
     ({"parameters": {"time_step": [0.1]}}, "must name fields of the system"),
     ({"rtol": -1.0}, "rtol"),
     ({"configuration": [[1.0], [np.nan]]}, "finite"),
-    ask=lambda given: nh.ensemble(
-        SPRING, **{"times": [0.0, 1.0], "configuration": [[1.0]], "body_velocity": [0.0]} | given
-    ),
+    ask=lambda x: nh.ensemble(SPRING, **{"times": [0.0, 1.0], "configuration": [[1.0]], "body_velocity": [0.0]} | x),
 )
 
 
@@ -174,13 +172,11 @@ def test_a_start_off_the_constraint_is_refused_with_its_member() -> None:
         nh.ensemble(nh.discretize(skate, 0.1), configuration=(0.0, 0.0), body_velocity=rows, steps=10**9 // 2)
 
 
-@pytest.mark.parametrize(
-    "given",
-    [{"discrete_lagrangian": lambda q, p: (p - q) @ (p - q) / 0.2}, {"force": np.zeros((9, 2))}],
-    ids=["made for one step", "table"],
+# What was made for one time step knows no others.
+test_systems_without_parts_of_steps_have_no_events = refusals(
+    ({"discrete_lagrangian": lambda q, p: (p - q) @ (p - q) / 0.2}, "must have parts of a step"),
+    ({"force": np.zeros((9, 2))}, "must have parts of a step"),
+    ask=lambda given: nh.simulate(
+        nh.discretize(LagrangeDAlembert(kinetic, None, dimension=2, **given), 0.1), **THROWN, steps=5, events=[height]
+    ),
 )
-def test_systems_without_parts_of_steps_have_no_events(given: dict) -> None:
-    """What was made for one time step knows no others."""
-    system = LagrangeDAlembert(kinetic, None, dimension=2, **given)
-    with pytest.raises(ValueError, match="must have parts of a step"):
-        nh.simulate(nh.discretize(system, 0.1), **THROWN, steps=5, events=[height])

@@ -21,11 +21,7 @@ FIELDS = ("time", "restricted_momentum", "momentum", "displacement", "configurat
 HEAVY, RUB = nh.Gravity([0.2, -0.3, -1.0], [0.1, 0.2, 0.3]), nh.Friction(np.eye(3) / 5 + 0.1)
 TABLE = np.outer(np.sin(np.arange(50.0)), [0.4, -0.3, 0.2])
 CASES = {case["name"]: case for case in golden("derivatives.json")}
-MIXED = [
-    [1.0, 0.0, 1.0, 0.75, -0.5, 0.75],
-    [0.0, 1.0, 0.0, 0.5, 0.25, -1.0],
-    [1.0, 1.0, 0.0, 1.0, 0.5, -0.75],
-]
+MIXED = [[1.0, 0.0, 1.0, 0.75, -0.5, 0.75], [0.0, 1.0, 0.0, 0.5, 0.25, -1.0], [1.0, 1.0, 0.0, 1.0, 0.5, -0.75]]
 
 
 def _symmetric(triangle: jax.Array, size: int) -> jax.Array:

@@ -86,9 +86,7 @@ def test_a_run_keeps_its_good_steps() -> None:
     assert orbit.outcome == nh.Outcome.no_real_branch
     assert 1 < len(orbit) < 500
     assert np.isfinite(orbit.displacement).all()
-    with pytest.raises(
-        nh.OutcomeError, match=rf"Step {len(orbit)} of 500.*no_real_branch.*smaller time_step"
-    ) as caught:
+    with pytest.raises(nh.OutcomeError, match=rf"Step {len(orbit)} of 500.*no_real_branch.*smaller") as caught:
         nh.simulate(discrete, **start)
     assert np.array_equal(caught.value.orbit.momentum, orbit.momentum)
     assert caught.value.outcome == nh.Outcome.no_real_branch

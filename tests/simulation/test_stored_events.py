@@ -82,9 +82,7 @@ def same(one: nh.Orbit, other: nh.Orbit) -> bool:
 def begun(path: Path | None, events: list[Any], steps: int = 600, **options: Any) -> nh.Orbit:
     """Run the uniform circle, into a store of blocks of 35 steps if there is a path."""
     stored = {} if path is None else {"store": path, "checkpoint_every": 35}
-    return nh.simulate(
-        ROUND, body_velocity=(4.0, 1.0, 0.0), steps=steps, save_every=7, events=events, **stored, **options
-    )
+    return nh.simulate(ROUND, body_velocity=(4, 1, 0), steps=steps, save_every=7, events=events, **stored, **options)
 
 
 def cut(path: Path, monkeypatch: pytest.MonkeyPatch, block: int, late: bool, run: Callable[[], object]) -> None:
@@ -202,9 +200,7 @@ def test_many_crossings_fill_several_chunks(tmp_path: Path, monkeypatch: pytest.
 
 
 @pytest.mark.profile("faults", instead="test_many_crossings_fill_several_chunks")
-def test_large_orbit_comes_with_the_crossings_of_its_last_block(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_large_orbit_has_the_crossings_of_its_last_block(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where only the last block of states is returned, its crossings are; the store holds all."""
     monkeypatch.setattr("nonholo.simulation._stored._LOADED", 100)
     tail, whole = begun(tmp_path / "run.zarr", [TURNS]), begun(None, [TURNS])

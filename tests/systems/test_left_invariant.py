@@ -8,7 +8,6 @@ import pytest
 from refusals import refusals
 
 import nonholo as nh
-from nonholo.groups import MatrixGroup
 from nonholo.systems import (
     SYSTEMS,
     AbstractLLSystem,
@@ -22,7 +21,7 @@ from nonholo.systems import (
     reference_point_subspace,
 )
 
-_HEISENBERG = MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
+_HEISENBERG = nh.MatrixGroup([np.eye(3, k=1) * [0, 1, 0], np.eye(3, k=1) * [0, 0, 1], np.eye(3, k=2)])
 
 
 def _points(n: int, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
@@ -220,10 +219,7 @@ test_bad_input_is_refused = refusals(
     (lambda: SuslovTop(np.eye(4), axis=(0, 0, 1)), r"axis=\.\.\.\)` must be left out for n > 3. Got an axis for n = 4"),
     (lambda: SuslovTop(np.eye(4)[:3]), r"shape \(n, n\) with n >= 3. Got shape \(3, 4\)"),
     (lambda: SuslovTop(np.diag([-9.0, 1, 1, 1])), "along the constraint positive definite. Got an eigenvalue -8"),
-    (
-        lambda: LLSystem(nh.SO(3)),
-        r"LLSystem\(mass_tensor=\.\.\.\)` must be given, or else inertia_operator=. Got neither",
-    ),
+    (lambda: LLSystem(nh.SO(3)), r"LLSystem\(mass_tensor=.*must be given, or else inertia_operator=. Got neither"),
     (lambda: LLSystem(nh.SO(3), np.eye(3), np.eye(3), inertia_operator=np.eye(3)), "Got both"),
     (lambda: LLSystem(nh.SO(3), np.eye(3)), "be given, or annihilator=. Got neither"),
     (lambda: LLSystem(nh.SO(3), np.eye(4), np.eye(3)), r"shape \(3, 3\). Got shape \(4, 4\). On SO\(3\)"),
@@ -270,10 +266,7 @@ test_bad_input_is_refused = refusals(
 
 def test_an_inertia_that_overflows_is_refused() -> None:
     """Finite entries whose sums are not finite are no inertia, and LAPACK is not asked."""
-    with (
-        np.errstate(over="ignore", invalid="ignore"),
-        pytest.raises(ValueError, match=r"finite\. Got an overflow"),
-    ):
+    with np.errstate(over="ignore", invalid="ignore"), pytest.raises(ValueError, match=r"finite\. Got an overflow"):
         MultidimensionalSleigh(1e150, [1e150, 0.0, 0.0], np.eye(3))
 
 

@@ -1,0 +1,223 @@
+"""Functions of matrices, linear systems, real roots: against SciPy, series and mpmath, alone and in company."""
+
+from typing import Any, cast
+
+import mpmath
+import numpy as np
+import pytest
+import scipy.linalg
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nonholo.base.numerics import (
+    factors_of,
+    half_cotangent,
+    of_length_one,
+    real_cubic_roots,
+    sinc,
+    solve_by_factors,
+    versine,
+)
+from nonholo.base.numerics._functions import (
+    block_diagonal,
+    cotangent_deficit,
+    exponential_increment,
+    integrated_exponential,
+    of_skew,
+    principal_logarithm,
+)
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-6, 0.1, 0.999999, 1.000001, 2.0, np.pi, 6.0])
+def test_cotangent_deficit(angle: float) -> None:
+    """(1 - (t/2) cot(t/2)) / t^2 in double precision against forty digits."""
+    with mpmath.workdps(40):
+        t = mpmath.mpf(angle)
+        exact = float((1 - t / 2 * mpmath.cot(t / 2)) / t**2) if angle else 1 / 12
+    assert abs(float(cotangent_deficit(np.float64(angle**2))) / exact - 1) < 4e-15
+
+
+@pytest.mark.parametrize("size", [1e-8, 0.4, 0.6, 3.0, 20.0])
+def test_integrated_exponential(size: float) -> None:
+    """phi_1(X) is the upper right block of an augmented exponential, here to forty digits."""
+    X = size * np.random.default_rng(0).normal(size=(3, 4, 4)) / 4
+    augmented = np.block([[X, np.broadcast_to(np.eye(4), X.shape)], [np.zeros((3, 4, 8))]])
+    with mpmath.workdps(40):
+        tables = [mpmath.expm(mpmath.matrix(A.tolist()), method="taylor").tolist() for A in augmented]
+    exact = np.array(tables, dtype=float)[:, :4, 4:]
+    assert np.abs(integrated_exponential(X) - exact).max() <= 4e-15 * np.abs(exact).max()
+
+
+def test_exponentials_of_one_stack_do_not_disturb_each_other() -> None:
+    """A matrix of norm 30 makes all be halved together; the small one keeps its relative accuracy."""
+    small = 1e-10 * np.array([[0.0, 1.0], [2.0, 0.5]])
+    found = exponential_increment(np.stack([small, 30 * np.eye(2)]))
+    assert np.abs(found[0] - (small + small @ small / 2)).max() < 1e-24
+    assert np.abs(found[1] / np.expm1(30.0) - np.eye(2)).max() < 1e-14
+
+
+@pytest.mark.parametrize("halvings", [1, 2, 3])
+def test_principal_logarithm_of_a_general_matrix(halvings: int) -> None:
+    """The logarithm of matrices without structure, with real and complex eigenvalues."""
+    X = np.random.default_rng(1).normal(size=(20, 5, 5)) / 2
+    assert np.abs(principal_logarithm(scipy.linalg.expm(X), halvings) - X).max() < 1e-12
+
+
+def test_function_of_skew_matrices() -> None:
+    """Exp through eigenvectors is Pade's, with angles that coincide and a zero matrix."""
+    X = np.zeros((2, 4, 4))
+    X[0, 0, 1], X[0, 2, 3] = 1.5, 1.5
+    X = X - np.swapaxes(X, 1, 2)
+    assert np.abs(of_skew(X, lambda angle: np.exp(1j * angle)) - scipy.linalg.expm(X)).max() < 1e-15 * 4
+
+
+def test_block_diagonal_broadcasts() -> None:
+    """Stacks of blocks become stacks of matrices."""
+    a, b = np.ones((3, 1, 1)), np.full((3, 2, 2), 2.0)
+    assert np.array_equal(block_diagonal([a, b])[1], scipy.linalg.block_diag(a[1], b[1]))
+
+
+def test_energies_of_uneven_bodies_have_all_their_digits() -> None:
+    """Inertias over sixteen decades: the energy of substitution errs by rounding, that of an inverse by more."""
+    rng, errors = np.random.default_rng(0), np.zeros((2, 40))
+    for error in errors.T:
+        k = int(rng.integers(2, 6))
+        A, scales = rng.normal(size=(k, k)), np.diag(10.0 ** rng.uniform(-4, 4, k))
+        inertia = scales @ (A @ A.T + 0.1 * np.eye(k)) @ scales
+        inertia, p = (inertia + inertia.T) / 2, scales @ rng.normal(size=k)
+        with mpmath.workdps(60):
+            x = mpmath.lu_solve(mpmath.matrix(inertia.tolist()), mpmath.matrix(p.tolist()))
+            energy = mpmath.fdot(x, mpmath.matrix(p.tolist()))
+            both = p @ solve_by_factors(cast(Any, factors_of(inertia)), p[None])[0], p @ np.linalg.inv(inertia) @ p
+            error[:] = [float(abs(mpmath.mpf(float(value)) - energy) / energy) for value in both]
+    assert errors[0].max() < 1e-14  # a few dozen roundings
+    assert errors[1].max() > 1e-14
+
+
+def test_solutions_of_a_row_are_those_of_many() -> None:
+    """One matrix for all rows, or one for each: the same bits as alone."""
+    rng = np.random.default_rng(1)
+    A, rows = rng.normal(size=(5, 5)), rng.normal(size=(30, 5))
+    A = A @ A.T + np.eye(5)
+    of_one = cast(Any, factors_of(A))
+    alone = np.concatenate([solve_by_factors(of_one, row[None]) for row in rows])
+    assert np.array_equal(solve_by_factors(of_one, rows), alone)
+    assert np.array_equal(solve_by_factors(cast(Any, factors_of(np.tile(A, (30, 1, 1)))), rows), alone)
+    assert np.abs(A @ alone[..., None] - rows[..., None]).max() < 1e-13
+
+
+def _formula(x: np.ndarray, count: int) -> np.ndarray:
+    squares = x[..., :1] * x[..., :1]
+    for m in range(1, count):
+        squares = squares + x[..., m : m + 1] * x[..., m : m + 1]
+    return np.concatenate([x[..., :count] / np.sqrt(squares), x[..., count:]], axis=-1)
+
+
+@pytest.mark.parametrize(("shape", "count"), [((4,), 4), ((500, 4), 4), ((3, 7, 4), 2), ((0, 4), 2), ((60, 9), 4)])
+def test_rows_have_the_bits_of_the_formula(shape: tuple[int, ...], count: int) -> None:
+    """In any shape and order in memory, for one row and for many, with zeros of both signs and uneven sizes."""
+    rng = np.random.default_rng(7)
+    x = rng.normal(size=shape) * 10.0 ** rng.integers(-120, 120, shape)
+    x[..., 1:2] *= -0.0
+    wide = np.repeat(x, 2, axis=-1)[..., ::2]
+    before = x.copy()
+    for one in (x, wide, np.asfortranarray(x)):
+        found = of_length_one(one, count)
+        assert np.array_equal(found.view(np.int64), _formula(x, count).view(np.int64))
+    assert np.array_equal(x, before)
+    assert not np.shares_memory(of_length_one(x, count), x)
+
+
+def test_other_numbers_go_by_the_formula() -> None:
+    """Single precision stays what it is; what has no length is NaN, and infinite numbers give none."""
+    assert of_length_one(np.array([3.0, 4.0], dtype=np.float32), 2).dtype == np.float32
+    with np.errstate(invalid="ignore"):  # of plain Python
+        bad = of_length_one(np.array([[0.0, 0.0, 1.0], [np.inf, 1.0, 2.0], [np.nan, 1.0, 3.0]]), 2)
+    assert np.array_equal(np.isnan(bad), [[True, True, False], [True, False, False], [True, True, False]])
+
+
+coefficient = st.floats(-5, 5)
+
+
+@given(st.floats(0.1, 5), coefficient, coefficient, coefficient)
+def test_roots_annihilate_the_cubic(a: float, b: float, c: float, d: float) -> None:
+    """Each root has a normwise backward error of rounding, and the number of real ones is that of the discriminant."""
+    count, *roots = real_cubic_roots(a, b, c, d)
+    for root in roots:
+        size = (abs(a) + abs(b) + abs(c) + abs(d)) * max(1.0, abs(root)) ** 3
+        assert abs(((a * root + b) * root + c) * root + d) <= 1e-14 * size
+    with mpmath.workdps(50):
+        exact = mpmath.mpf
+        disc = exact(b) ** 2 * exact(c) ** 2 - 4 * exact(a) * exact(c) ** 3 - 4 * exact(b) ** 3 * exact(d)
+        disc += 18 * exact(a) * exact(b) * exact(c) * exact(d) - 27 * exact(a) ** 2 * exact(d) ** 2
+    if abs(disc) > 1e-9:
+        assert count == (3 if disc > 0 else 1)
+
+
+def _drawn(kind: str, rng: np.random.Generator) -> tuple[float, ...]:
+    """Draw coefficients of a cubic that is hard in some way."""
+    sign, small = rng.choice([-1.0, 1.0]), 10.0 ** rng.uniform(-30, -5)
+    s, t = rng.choice(np.arange(-50.0, 50.0), 2, replace=False)
+    roots = {
+        "double root": (s, s, t),
+        "triple root": (s, s, s),
+        "nearly double root": (s, s * (1 + 10.0 ** rng.uniform(-12, -4)), t),
+        "roots of different size": rng.normal(size=3) * 10.0 ** rng.uniform(-12, 12, 3),
+        "simple integers": rng.choice(np.arange(-50.0, 50.0), 3, replace=False),
+    }
+    if kind in roots:
+        x, y, z = roots[kind]
+        return 1.0, -(x + y + z), x * y + y * z + z * x, -x * y * z
+    return {
+        "tiny leading coefficient": (sign * small, *rng.normal(size=3)),
+        "coefficients of different size": tuple(rng.normal(size=4) * 10.0 ** rng.uniform(-8, 8, 4)),
+        "a root at zero": (*rng.normal(size=3), 0.0),
+        "sleigh of little push": (small, -s * small, 2.0, -s * small),
+    }[kind]
+
+
+KINDS = ["double root", "triple root", "nearly double root", "roots of different size", "simple integers"]
+KINDS += ["tiny leading coefficient", "coefficients of different size", "a root at zero", "sleigh of little push"]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_hard_cubics(kind: str) -> None:
+    """All real roots; each has a backward error of rounding, and a simple one lies as near to a true one as that lets.
+
+    Horner's rule rounds each of the four terms three times at most, and Newton's method ends where that hides the rest.
+    """
+    rng, eps = np.random.default_rng(1), 2.0**-52
+    for _ in range(200):
+        coefficients = tuple(map(float, _drawn(kind, rng)))
+        count, *found = real_cubic_roots(*coefficients)
+        with mpmath.workdps(60):
+            a, b, c, d = map(mpmath.mpf, coefficients)
+            roots = list(map(mpmath.mpf, found))
+            sizes = [mpmath.fsum(map(abs, (a * t**3, b * t**2, c * t, d))) for t in roots]
+
+            def value(t: mpmath.mpf) -> mpmath.mpf:
+                return ((a * t + b) * t + c) * t + d  # noqa: B023
+
+            assert all(abs(value(t)) <= 2 * eps * size for t, size in zip(roots, sizes, strict=True)), coefficients
+            terms = b**2 * c**2, -4 * a * c**3, -4 * b**3 * d, 18 * a * b * c * d, -27 * a**2 * d**2
+            discriminant = mpmath.fsum(terms)
+            if abs(discriminant) <= 100 * eps * mpmath.fsum(map(abs, terms)):
+                continue  # roots that rounding of the coefficients makes double or complex
+            assert count == len(set(found)) == (3 if discriminant > 0 else 1), coefficients
+            for t, size in zip(roots, sizes, strict=True):
+                bound = 4 * eps * size / abs(3 * a * t**2 + 2 * b * t + c)
+                assert mpmath.sign(value(t - bound)) * mpmath.sign(value(t + bound)) <= 0, coefficients
+
+
+@pytest.mark.parametrize("squared", [0.0, 1e-300, 1e-12, 9.9e-4, 1.01e-3, 1.0, 9.8, np.pi**2])
+def test_even_functions_to_rounding(squared: float) -> None:
+    """sinc, versine and half cotangent are accurate on both sides of their switch to series."""
+    with mpmath.workdps(40):
+        t = mpmath.sqrt(mpmath.mpf(squared))
+        exact = (
+            (1, mpmath.mpf(1) / 2, 1)
+            if t == 0
+            else (mpmath.sin(t) / t, 2 * (mpmath.sin(t / 2) / t) ** 2, t / 2 * mpmath.cot(t / 2))
+        )
+    for function, value in zip((sinc, versine, half_cotangent), exact, strict=True):
+        assert abs(float(function(np.float64(squared))) - float(value)) < 4e-16
