@@ -355,13 +355,14 @@ class AbstractParametricSystem(AbstractCoordinateSystem[DiscretizationT, OrbitT]
         object.__setattr__(self, "force", force_of(parts))
 
     def _with_force(self, force: Any) -> Any:
-        """Return the force with another one, which may take parameters or do without; refuse it beside one."""
-        if force is not None and self.force is not None:
-            raise error("Forced(system=...)", "have no force yet", repr(self), "Pass all forces at once.")
-        parts = parts_of(force)
+        """Return the force with another one, which may take parameters or do without; beside one a table alone."""
+        own, parts = parts_of(self.force), parts_of(force)
+        if own and parts and (parts.keys() != {"table"} or "table" in own):
+            remedy = "Pass all forces at once; a table alone may come later."
+            raise error("Forced(system=...)", "have no force yet", repr(self), remedy)
         if self.parameters and "function" in parts:
             parts["function"] = with_parameters(parts["function"], 3)
-        return self.force if force is None else force_of(parts)
+        return force_of(own | parts)
 
     @property
     def _shapes_given(self) -> tuple[dict[str, jax.ShapeDtypeStruct], ...]:
