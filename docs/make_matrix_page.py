@@ -69,7 +69,7 @@ mathematics, and marked by an exclamation mark. A number in a table says why, be
 
 ## Ready systems
 
-Those of `nh.examples`: {names2}.
+Those of `nh.examples`, and one on a group that a force of the time drives: {names2}.
 
 | ability, and what its value is compared with |{head2}|
 |---|{line2}

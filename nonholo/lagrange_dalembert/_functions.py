@@ -21,7 +21,7 @@ import numpy as np
 from nonholo.base.checks import array, checked_name, error, instance, is_traced, number, shape_of, shown
 from nonholo.base.numerics import double_precision
 from nonholo.base.progress import compiling
-from nonholo.base.traced import TracedFunction, call_in_blocks
+from nonholo.base.traced import TracedFunction, call_in_blocks, rows_above
 from nonholo.base.types import Array, Float, Int
 from nonholo.systems import AbstractCoordinateSystem, DiscretizationT, OrbitT, force_of, parts_of
 
@@ -123,25 +123,58 @@ class Resistance:
         return (0 if self.function is None else self.function(time, q, v, *p)) - self.friction @ v
 
 
+def _row_of_table(rows: Array, step: Array) -> Array:
+    return rows[jnp.clip(jnp.rint(step).astype(int), -1, len(rows) - 1)]
+
+
+LOOK_UP = "row of a table"  # no name of a function of the user's
+_row_of_table.__name__ = LOOK_UP
+_look_up = jax.jit(_row_of_table)
+
+
 @dataclasses.dataclass(frozen=True, eq=False)
 class ForceTable:
-    """Forces of the steps, one row a step; after the last one nothing acts."""
+    """Forces of the steps, one row a step; after the last one nothing acts.
 
-    rows: Float[np.ndarray, "steps n"]
+    Attributes:
+        rows: The forces with rows of zeros after them, so that few programs serve tables of all lengths.
+    """
+
+    rows: Float[np.ndarray, "rows n"]
     is_of_one_step: ClassVar[bool] = True
+
+    @classmethod
+    def of(cls, forces: Float[np.ndarray, "steps n"]) -> Self:
+        """Return the table of forces."""
+        return cls(np.pad(forces, ((0, max(ROWS, rows_above(len(forces) + 1)) - len(forces)), (0, 0))))
 
     def row(self, step: Array) -> Array:
         """Return the force of a step, whose number may carry rounding errors."""
-        return jnp.asarray(self._rows_and_zero)[jnp.clip(jnp.rint(step).astype(int), -1, len(self.rows))]
+        return _look_up(jnp.asarray(self.rows), step)
 
     def acting(self, steps: Int[np.ndarray, "K"]) -> Float[np.ndarray, "K n"]:
         """Return the forces of steps with these numbers."""
-        return self._rows_and_zero[np.clip(steps, -1, len(self.rows))]
+        return self.rows[np.clip(steps, -1, len(self.rows) - 1)]
 
     @property
-    def _rows_and_zero(self) -> Float[np.ndarray, "rows n"]:
-        """The rows with one of zeros, which is the first after them and the last one."""
-        return np.concatenate([self.rows, np.zeros((1, self.rows.shape[1]))])
+    def nothing(self) -> Self:
+        """The table of no forces, which stands for all."""
+        return type(self)(np.zeros((1, self.rows.shape[1])))
+
+    @property
+    def address(self) -> Float[np.ndarray, "1 n"]:
+        """Where formulas find the number of rows and the rows: each number is the place in memory, below 2^53."""
+        return np.full((1, self.rows.shape[1]), float(self._memory.ctypes.data))
+
+    @functools.cached_property
+    def _memory(self) -> Float[np.ndarray, "size"]:
+        return np.append(float(len(self.rows)), self.rows)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ForceTable) and np.array_equal(self.rows, other.rows)
+
+    def __hash__(self) -> int:
+        return hash(self.rows.shape)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -315,20 +348,21 @@ class AbstractParametricSystem(AbstractCoordinateSystem[DiscretizationT, OrbitT]
             parts["function"] = Resistance(parts.get("function"), friction.matrix)
         if "table" in parts and not isinstance(parts["table"], ForceTable):
             remedy = "Pass a function of time, configuration and velocity, Friction, or one force a step."
-            parts["table"] = ForceTable(array(where, parts["table"], (None, n), remedy))
+            parts["table"] = ForceTable.of(array(where, parts["table"], (None, n), remedy))
         if "function" in parts:
             arguments = (jax.ShapeDtypeStruct((), float), *shapes, *self._shapes_given)
             parts["function"] = checked_value(where, parts["function"], of, arguments, (n,), of)
         object.__setattr__(self, "force", force_of(parts))
 
     def _with_force(self, force: Any) -> Any:
-        """Return the force with another one, which may take parameters or do without; refuse it beside one."""
-        if force is not None and self.force is not None:
-            raise error("Forced(system=...)", "have no force yet", repr(self), "Pass all forces at once.")
-        parts = parts_of(force)
+        """Return the force with another one, which may take parameters or do without; beside one a table alone."""
+        own, parts = parts_of(self.force), parts_of(force)
+        if own and parts and (parts.keys() != {"table"} or "table" in own):
+            remedy = "Pass all forces at once; a table alone may come later."
+            raise error("Forced(system=...)", "have no force yet", repr(self), remedy)
         if self.parameters and "function" in parts:
             parts["function"] = with_parameters(parts["function"], 3)
-        return self.force if force is None else force_of(parts)
+        return force_of(own | parts)
 
     @property
     def _shapes_given(self) -> tuple[dict[str, jax.ShapeDtypeStruct], ...]:
@@ -371,6 +405,16 @@ class AbstractParametricSystem(AbstractCoordinateSystem[DiscretizationT, OrbitT]
         """
         return _of_numbers(self, self.parameters.replace("with_parameters(...)", numbers), family=self.family)
 
+    @property
+    def numbers(self) -> tuple[Any, ...]:
+        """The numbers that its functions take: parameters, then the rows of a table where it has one."""
+        return *self.parameters.values(), *(() if self.table is None else (self.table.rows,))
+
+    @property
+    def numbers_of_formulas(self) -> tuple[Any, ...]:
+        """The same for formulas, which look up rows of a table at its address."""
+        return *self.parameters.values(), *(() if self.table is None else (self.table.address,))
+
     @functools.cached_property
     def family(self) -> Self:
         """The system with zeros as parameters, which stands for all their numbers."""
@@ -380,15 +424,25 @@ class AbstractParametricSystem(AbstractCoordinateSystem[DiscretizationT, OrbitT]
         vars(family)["family"] = family
         return family
 
-    def bound(self, *numbers: Any) -> Self:
-        """Return the system without parameters whose functions have these numbers within."""
-        p = dict(zip(self.parameters, numbers, strict=True))
-        return self._with_fields(parameters=Parameters({}), **self._bound_fields(p))
+    @functools.cached_property
+    def form(self) -> Self:
+        """The family without rows of a table, which stands for all `numbers`: what programs are made of."""
+        if self.table is None:
+            return self.family
+        form = self.family._with_fields(force=force_of(parts_of(self.force) | {"table": self.table.nothing}))
+        vars(form).update(family=form, form=form)
+        return form
 
-    def _bound_fields(self, p: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the fields that are functions, with parameters within."""
+    def bound(self, *numbers: Any) -> Self:
+        """Return the system without parameters whose functions have these numbers within, and a table these rows."""
+        p = dict(zip(self.parameters, numbers, strict=False))
+        return self._with_fields(parameters=Parameters({}), **self._bound_fields(p, *numbers[len(p) :]))
+
+    def _bound_fields(self, p: Mapping[str, Any], *rows: Any) -> dict[str, Any]:
+        """Return the fields that are functions, with parameters within, and the force with rows of its table."""
         own, parts = {name: getattr(self, name) for name in self.functions}, parts_of(self.force)
         parts |= {"function": Bound(parts["function"], p)} if "function" in parts else {}
+        parts |= {"table": ForceTable(*rows)} if rows else {}
         return {name: each and Bound(each, p) for name, each in own.items()} | {"force": force_of(parts)}
 
     @functools.cached_property
@@ -458,7 +512,7 @@ def place(system: Any, q: Any, time: Any) -> Any:
 
 def in_double(function: Callable[..., Any], system: Any, *arguments: Any) -> Any:
     """Call a JAX function of a system, compiled once for all of its numbers, in 64 bits; return NumPy arrays."""
-    family, numbers = system.family, tuple(system.parameters.values())
+    family, numbers = system.form, system.numbers
     with double_precision(), contextlib.nullcontext() if (function, family) in _calls else compiling(SYSTEM, family):
         result = jax.tree.map(np.asarray, _compile(function)(family, numbers, *arguments))
     _calls.add((function, family))

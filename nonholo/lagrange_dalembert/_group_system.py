@@ -154,7 +154,8 @@ class GroupLagrangeDAlembert(tracing.AbstractParametricSystem["GroupDiscretizati
 
     def bound(self, *numbers: Any) -> Any:
         """Return the system as the equations see it, with numbers of its parameters within."""
-        return super().bound(*numbers)._in_full(_inertia) if self.parameters else self.plain
+        inertia = _inertia if self.parameters else lambda _: _numbers_of_inertia(self)
+        return super().bound(*numbers)._in_full(inertia) if numbers else self.plain
 
     def _in_full(self, inertia: Callable[..., Array]) -> Any:
         lagrangian = functools.partial(self._lagrangian, inertia)

@@ -18,7 +18,7 @@ from nonholo.base.types import Array, Float, Int
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._functions import in_double, places, room
-from nonholo.orbit import AbstractOrbit, First
+from nonholo.orbit import AbstractMotion, AbstractOrbit, First
 from nonholo.systems import AbstractCoordinateSystem, Start
 
 Labels = dict[str, tuple[tuple[str, ...], str]]
@@ -401,6 +401,9 @@ class CoordinateFlow(CoordinateMotion):
         """Return the orbit from a checked start, with the default error of its method where `rtol` is 0."""
         del reconstruct
         return room("_flow").solve(self.system, first.numbers[1:], times, rtol or None)
+
+
+AbstractMotion.register(CoordinateFlow)  # stores take both
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

@@ -189,9 +189,9 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
             raise error(_argument("force"), "have forms that never yield", "a Slip", remedy)
         return super().bound(*numbers)
 
-    def _bound_fields(self, p: Mapping[str, Any]) -> dict[str, Any]:
+    def _bound_fields(self, p: Mapping[str, Any], *rows: Any) -> dict[str, Any]:
         motions = tuple((index, tracing.Bound(motion, p)) for index, motion in self.prescribed)
-        return super()._bound_fields(p) | {"prescribed": motions}
+        return super()._bound_fields(p, *rows) | {"prescribed": motions}
 
     @property
     def places(self) -> Coordinates:

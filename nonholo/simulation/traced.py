@@ -248,7 +248,7 @@ def _call(run: Callable[..., Any], sizes: tuple[int, ...], controls: Any, *argum
 
 def _in_coordinates(discrete: Any, start: Start, sizes: tuple[int, ...], controls: Any) -> tuple[Any, ...]:
     """Return the arguments of a rollout in coordinates; of traced starts the shapes are checked."""
-    system, numbers = discrete.system, tuple(discrete.system.parameters.values())
+    system, numbers = discrete.system, discrete.system.numbers
     if not any(map(is_traced, (start.value, start.configuration, *numbers))):
         with jax.ensure_compile_time_eval():  # what is known is checked where jax.jit traces the call, too
             discrete.first(start, with_poses=True)
@@ -257,7 +257,7 @@ def _in_coordinates(discrete: Any, start: Start, sizes: tuple[int, ...], control
     if controls is not None:
         controls = _checked_controls(start.owner, controls, sizes[0], (system.dimension,), system.shapes[0])
     numbers, h = jax.tree.map(traceable, numbers), np.float64(discrete.time_step)
-    return controls, (start.name, q, value), system.family, numbers, h
+    return controls, (start.name, q, value), system.form, numbers, h
 
 
 def _checked_start(discrete: Discretization, start: Start) -> tuple[Array, Array]:

@@ -1,6 +1,7 @@
 """Compiled formulas: each primitive, the doubts, and runs, all against JAX."""
 
 import functools
+import pickle
 from collections.abc import Callable
 from typing import Any
 
@@ -14,6 +15,7 @@ from jax import lax
 import nonholo as nh
 from nonholo.base.numerics import double_precision
 from nonholo.lagrange_dalembert import LagrangeDAlembert
+from nonholo.lagrange_dalembert._functions import ForceTable
 from nonholo.lagrange_dalembert.compiled import _run
 from nonholo.lagrange_dalembert.compiled._scalars import LOGIC, OPERATIONS, Formulas, Scalar, UntranslatableError
 
@@ -111,7 +113,7 @@ def test_constants_have_the_values_of_the_code() -> None:
     """Each operation gives to constants what its instruction gives to numbers, to an ulp or two; quick code alike."""
     f, points = Formulas(), (0.3, 0.7, 0.2)
     binary = {"add", "sub", "mul", "div", "rem", "pow", "max", "min", "atan2", "lt", "le", "gt", "ge", "eq", "ne"}
-    names = sorted(set(OPERATIONS) - LOGIC - {"float", "select", "acosh"})
+    names = sorted(set(OPERATIONS) - LOGIC - {"float", "select", "acosh", "look"})
     inputs, constants = [Scalar("input") for _ in points], [f.constant(point) for point in points]
 
     def every(numbers: list[Scalar]) -> list[Scalar]:
@@ -131,6 +133,39 @@ def test_constants_have_the_values_of_the_code() -> None:
     assert None not in folded
     assert np.array_equal(values, quick)
     assert np.abs(np.array(folded) - values).max() <= 2 * EPS
+
+
+@pytest.mark.parametrize("search", [0, 1])
+def test_rows_of_tables_are_looked_up(search: int) -> None:
+    """Formulas and JAX find the row of the nearest step, and zeros outside; so they do in a copy of a table."""
+    table = pickle.loads(pickle.dumps(ForceTable.of(1.0 + np.arange(6.0).reshape(3, 2))))  # noqa: S301
+    f, inputs, steps = Formulas(), [Scalar("input"), Scalar("input")], np.array([0.0, 1 - 1e-9, 2.0, 3.0, -1.0, 1e9])
+    results = [f("look", *inputs, f.constant(float(column)), f.constant(2.0)) for column in range(2)]
+    look, found = function_of(inputs, results, search), np.empty((len(steps) + 1, 2))
+    for step, row in zip([*steps, np.nan], found, strict=True):
+        look(np.array([table.address[0, 0], step]).ctypes, row.ctypes)
+    np.testing.assert_array_equal(found, [[1, 2], [3, 4], [5, 6], *np.zeros((4, 2))])
+    np.testing.assert_array_equal(table.acting(np.rint(steps).astype(int)), found[:-1])
+    with jax.enable_x64(True):
+        np.testing.assert_array_equal([table.row(jnp.asarray(step)) for step in steps], found[:-1])
+
+
+def test_tables_are_data_of_one_program() -> None:
+    """A free particle moves by sums of rows, of tables of any length, by the program of the first; families differ."""
+    rng, h, start, first = np.random.default_rng(0), 0.1, np.array([0.3, -0.2]), None
+    for count in (0, 7, 1500):
+        rows = rng.normal(size=(count, 2))
+        system = nh.LagrangeDAlembert(lambda q, v: (v @ v + 0 * q @ q) / 2, None, dimension=2, force=rows)
+        orbit = nh.simulate(nh.discretize(system, h), configuration=(0, 0), body_velocity=start, steps=count + 3)
+        u = np.pad(rows, ((0, 4), (0, 0)))
+        v = start + h * (np.cumsum(u, axis=0) - u / 2)
+        np.testing.assert_allclose(orbit.body_velocity, v, 0, 1e-12)
+        np.testing.assert_allclose(orbit.configuration[1:], h * np.cumsum(v, axis=0)[:-1], 0, 1e-11)
+        first = first or system
+        code = (_run.programs(each.form, (3,), 2) for each in (first, system))
+        assert next(code) is next(code) is not None
+        assert first.form == system.form
+        assert (first.family == system.family) is (first is system)
 
 
 def test_zeros_are_doubted_where_a_factor_may_not_be_finite() -> None:

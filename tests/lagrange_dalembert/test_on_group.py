@@ -331,6 +331,12 @@ OF_NUMBERS = GroupLagrangeDAlembert(
 PUSHES = np.random.default_rng(4).normal(size=(6, 3))
 
 
+def test_a_table_may_come_beside_a_force() -> None:
+    """Controls of a system with a force of its own act as those given with it."""
+    assert nh.Forced(nh.Forced(MIXED, None, motor), None, PUSHES) == nh.Forced(MIXED, None, (motor, PUSHES))
+    assert nh.Forced(MIXED, None, (motor, PUSHES)) != nh.Forced(MIXED, None, (motor, 2 * PUSHES))
+
+
 def end_of(system, pose, velocity, pushes):  # noqa: ANN001, ANN201
     """Return where a rollout ends."""
     start = {"configuration": pose, "body_velocity": velocity}

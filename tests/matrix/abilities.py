@@ -35,9 +35,7 @@ class Case:
         self.system = self.discrete.system
         self.run = {} if self.kind.branch == "principal" else {"branch": self.kind.branch}
         self.known = {"discrete": self.discrete} if "function" in self.kind.traits else {}
-        self.ready = (
-            getattr(nh.examples, name.replace(" ", "_").lower()) if "ready system" in self.kind.traits else None
-        )
+        self.ready = self.kind.made()
         self.is_wide = "wide" in self.kind.traits
         self.in_coordinates = "coordinates" in self.kind.traits
         if self.ready is None:
@@ -98,7 +96,7 @@ class Case:
     def rows(self) -> dict[str, Any]:
         """Starts of members: of different velocities, or from other places, where velocities are prescribed."""
         name = "body_velocity" if self.ready else "restricted_velocity"
-        if getattr(self.system, "is_driven", False):
+        if getattr(self.system, "prescribed", ()):
             q = self.start["configuration"]
             return self.start | {"configuration": q + np.outer(_MEMBERS - 1, np.eye(len(q))[0])}
         return self.start | {name: np.outer(_MEMBERS, self.start[name])}
@@ -357,7 +355,7 @@ def flow_ensemble(c: Case, _: Path) -> None:
 def flow_store(c: Case, folder: Path) -> None:
     """A saved flow comes back with its bits."""
     nh.save_orbit(c.flow, folder / "a.zarr")
-    known = {"discrete": c.flow.motion} if c.known and c.system.forces is not None else {}
+    known = {"discrete": c.flow.motion} if c.known and getattr(c.system, "forces", c.system) else {}
     loaded = nh.load_orbit(folder / "a.zarr", **known)
     assert_same(loaded, c.flow)
     np.testing.assert_array_equal(loaded.energy, c.flow.energy)

@@ -2,6 +2,7 @@
 
 import dataclasses
 import functools
+import types
 from collections.abc import Callable
 from typing import Any
 
@@ -66,6 +67,7 @@ class Kind:
             "function" (of the user's), "opaque" (a function that JAX does not see into), "wide" (hundreds of
             dimensions), "driven" (by prescribed motions).
         time_step: That of its runs.
+        made: Returns the function of numbers by name that makes the system with a start; None where there is none.
     """
 
     about: str
@@ -79,6 +81,7 @@ class Kind:
     branch: str = "principal"
     traits: frozenset[str] = frozenset()
     time_step: float = H
+    made: Callable[[], Callable[..., Any] | None] = lambda: None
 
     def discrete(self, time_step: float, value: int = 0) -> Any:
         """Return the discretized system."""
@@ -114,6 +117,40 @@ def ready(
         {"kind": name, parameter: values[0]},
         traits=frozenset({"ready system", *traits}),
         time_step=time_step,
+        made=lambda: getattr(nh.examples, name),
+    )
+
+
+def _action(W: Any, time_step: Any, p: Any) -> Any:
+    xp, m, arm = W.__array_namespace__(), p["mass"], 0.3
+    X = W - xp.eye(3)
+    turns, moves = X[:2, 0] @ X[:2, 0], X[:2, 2] @ X[:2, 2] + 2 * arm * X[:2, 2] @ X[:2, 0]
+    return ((0.4 + m * arm**2) * turns + m * moves) / (2 * time_step)
+
+
+def _blade(g: Any, _: Any) -> Any:
+    xp = g.__array_namespace__()
+    angle = 0.6 * xp.sin(g[0, 2]) + 0.3 * g[1, 2]
+    return xp.stack([0.0 * angle, -xp.sin(angle), xp.cos(angle)])[None]
+
+
+def _motor(time: Any, g: Any, w: Any, p: Any) -> Any:
+    xp = w.__array_namespace__()
+    return xp.stack([p["torque"] * xp.cos(2 * time) - 0.1 * w[0], 0.2 * g[0, 0], -0.1 * w[2]])
+
+
+@functools.cache
+def _motored_body() -> Any:
+    """Return a body in the plane whose blade turns in it with the place, driven by a motor of the time."""
+    numbers, name = {"mass": 1.0, "torque": 0.5}, "Motored body"
+    return nh.GroupLagrangeDAlembert(nh.SE(2), _action, _blade, force=_motor, parameters=numbers, name=name)
+
+
+def motored_body(*, mass: float = 1.0, torque: float = 0.5) -> Any:
+    """Return it with its start."""
+    system = _motored_body().with_parameters(mass=mass, torque=torque)
+    return types.SimpleNamespace(
+        system=system, configuration=np.eye(3), body_velocity=np.array([0.7, 0.9, 0.0]), name="motored_body"
     )
 
 
@@ -194,5 +231,13 @@ KINDS: dict[str, Kind] = {
     "snakeboard": ready("snakeboard", "coordinates"),
     "driven sleigh": ready("driven_sleigh", "coordinates", "driven"),
     "Chaplygin ball": ready("chaplygin_ball", "coordinates"),
+    "driven on a group": Kind(
+        "`nh.GroupLagrangeDAlembert(..., force=)`",
+        lambda value: motored_body(mass=value).system,
+        "mass",
+        (1.0, 1.5),
+        traits=frozenset({"coordinates", "driven", "function"}),
+        made=lambda: motored_body,
+    ),
     "sleigh in a well": ready("sleigh_in_a_well", "opaque", parameter="inertia", values=(0.5, 0.7)),
 }

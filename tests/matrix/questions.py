@@ -223,7 +223,7 @@ def tracking_feedback(c: Case, _: Path) -> None:
         c.discrete, start, np.zeros((40, n)), final_weight=1e6 if c.name == "rattleback" else 100.0
     )
     beside = {name: 1.02 * value for name, value in start.items() if "velocity" in name}
-    if getattr(c.system, "is_driven", False):
+    if getattr(c.system, "prescribed", ()):
         velocity, q = {"body_velocity": start["body_velocity"]}, c.rows["configuration"][0]
         beside = {"configuration": q, "body_velocity": checked_state(c.system, q, velocity, 0.0, project=True)[1]}
     motion, alone = hold.simulate(**beside), nh.simulate(c.discrete, steps=40, **{**start, **beside})
@@ -246,7 +246,7 @@ def critical_values(c: Case, _: Path) -> None:
     ready, interval = steady(c), np.array([-1.3, 2.1])
 
     def start(speed: float) -> dict[str, Any]:
-        speed = 1.0 if getattr(c.system, "is_driven", False) else speed
+        speed = 1.0 if "driven" in c.kind.traits else speed
         return {"configuration": ready.configuration, "body_velocity": speed * ready.body_velocity}
 
     def linear(speed: float) -> Any:

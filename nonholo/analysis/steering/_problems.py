@@ -149,7 +149,9 @@ class CoordinateNodes(NamedTuple):
     def goal_gap(self, x: Array) -> Array:
         """Return by how much the last pose is missed, and the last momentum along the constraint."""
         place, p = self.state(x)
-        off_pose = jnp.zeros(0) if self.pose is None else self.system.places.departure(self.pose, place)
+        off_pose = (
+            jnp.zeros(0) if self.pose is None else self.system.places.departure(self.pose, place[: len(self.pose)])
+        )
         if not len(self.directions):
             return off_pose
         rows, off = equations.forms(self.system, place), p - equations.momentum(self.system, place, self.velocity)
@@ -187,7 +189,7 @@ class Goal(NamedTuple):
     def end(self, system: Any, x: np.ndarray, time: float) -> np.ndarray:
         """Return a place that meets it, else that of the start."""
         if not system.coordinates:
-            return x if self.pose is None else self.pose
+            return x if self.pose is None else place(system, self.pose, time)
         last = place(system, x[: system.dimension].copy(), time)
         last[list(self.coordinates)] = list(self.coordinates.values())
         return last

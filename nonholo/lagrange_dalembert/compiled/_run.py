@@ -106,7 +106,7 @@ def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
         return matrix, residual, units.velocity, units.forms, size, doubt
 
     def write(module: ir.Module) -> int:
-        own = [np.shape(number) for number in family.parameters.values()]
+        own = list(map(np.shape, family.numbers_of_formulas))
         first = program(arrive, place, (n,), (), *own)
         whole = program(correct, place, (n,), (), (n,), (), *own, (n,), (s,), varying=2)
         *results, doubt = whole.results
@@ -128,7 +128,7 @@ def programs(family: Any, place: tuple[int, ...], n: int, *, at_node: bool = Fal
 @functools.lru_cache(maxsize=64)  # a sweep makes a system for each member
 def values(function: Callable[..., Any], family: Any, *shapes: tuple[int, ...], search: int = 1) -> Values | None:
     """Return the compiled function(system, ...) of parameters and arrays with these shapes; None if JAX must do it."""
-    count = len(family.parameters)
+    count = len(family.numbers)
 
     def of_numbers(*arguments: Array) -> Any:
         return function(family.bound(*arguments[:count]), *arguments[count:])
@@ -153,10 +153,10 @@ def _border(results: list[Scalar]) -> list[Scalar]:
 
 def _body(system: Any, h: Any, q: Any, v: Any, *, at_node: bool = False) -> CoordinateBody | None:
     """Return a system at a time step, with room for its numbers; None if JAX must solve its equations."""
-    code, place, n = programs(system.family, np.shape(q), len(v), at_node=at_node), np.size(q), len(v)
+    code, place, n = programs(system.form, np.shape(q), len(v), at_node=at_node), np.size(q), len(v)
     if code is None:
         return None
-    size, constants = n + system.constraints, [np.ravel(x) for x in (float(h), *system.parameters.values())]
+    size, constants = n + system.constraints, [np.ravel(x) for x in (float(h), *system.numbers_of_formulas)]
     departure, arrival = (np.concatenate([np.zeros(room), *constants]) for room in (place + n, place + 2 * n + 1))
     inputs, equations = np.zeros(code.border + size), np.zeros(size * size + 2 * size + 2)
     matrix, residual, units, _ = np.split(equations, np.cumsum([size * size, size, size]))
@@ -224,15 +224,15 @@ def decoded(function: Callable[..., Any], system: Any, h: Any, q: np.ndarray, v:
     nodes = _nodes(system, h, q, v) if system.is_driven and len(q) else ()
     if nodes is None:
         return None
-    columns = [*(np.asarray(x)[None] for x in (*system.parameters.values(), float(h))), q, v, *nodes]
-    code = values(function, system.family, *(column.shape[1:] for column in columns))
+    columns = [*(np.asarray(x)[None] for x in (*system.numbers_of_formulas, float(h))), q, v, *nodes]
+    code = values(function, system.form, *(column.shape[1:] for column in columns))
     return code and evaluate(code, len(q), *columns)
 
 
 def value(function: Callable[..., Any], system: Any, *arguments: Any) -> list[Any] | None:
     """Return function(system, ...), some arrays, of arrays; None where there are no formulas, or doubts."""
-    columns = [np.asarray(x, dtype=float)[None] for x in (*system.parameters.values(), *arguments)]
-    code = values(function, system.family, *(column.shape[1:] for column in columns), search=0)
+    columns = [np.asarray(x, dtype=float)[None] for x in (*system.numbers_of_formulas, *arguments)]
+    code = values(function, system.form, *(column.shape[1:] for column in columns), search=0)
     results = code and evaluate(code, 1, *columns)
     return results and [each[0] for each in results]
 

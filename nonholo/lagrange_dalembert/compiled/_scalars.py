@@ -67,6 +67,22 @@ def _comparison(name: str) -> Callable[..., str]:
     return lambda _, a, b: f"{of_truths if a.startswith(str(TRUTH)) else of_doubles} {a}, {b.split()[1]}"
 
 
+def _look_up(module: ir.Module, *arguments: str) -> str:
+    """Call a function that is made once: of an address, a step, a column and the length of rows.
+
+    At the address stand the number of rows and the rows, the last one zero, which steps outside have.
+    """
+    if "look" not in module.globals:
+        function, word = ir.Function(module, ir.FunctionType(DOUBLE, [DOUBLE] * 4), "look"), ir.IntType(64)
+        b, (address, step, column, length) = ir.IRBuilder(function.append_basic_block()), function.args
+        table, zero = b.inttoptr(b.fptosi(address, word), DOUBLE.as_pointer()), DOUBLE(0.0)
+        number = b.call(module.declare_intrinsic("llvm.rint", [DOUBLE]), [step])
+        inside = b.and_(b.fcmp_ordered(">=", number, zero), b.fcmp_ordered("<", number, b.load(table)))
+        at = b.fadd(b.fadd(b.fmul(b.select(inside, number, zero), length), column), DOUBLE(1.0))
+        b.ret(b.select(inside, b.load(b.gep(table, [b.fptosi(at, word)])), zero))
+    return f"call double @look({', '.join(arguments)})"
+
+
 _COMPARISONS = "lt", "le", "gt", "ge", "eq", "ne"
 LOGIC = {"and", "or", "not"}
 TRUTHS = LOGIC.union(_COMPARISONS)
@@ -102,6 +118,7 @@ OPERATIONS: dict[str, Operation] = {
     **{name: Operation(getattr(operator, name), _comparison(name)) for name in _COMPARISONS},
     "and": Operation(operator.and_, _instruction("and")),
     "or": Operation(operator.or_, _instruction("or")),
+    "look": Operation(operator.getitem, _look_up),
     **_functions(_TOTAL, True),
     **_functions(_PARTIAL, False),
 }

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from jax.lax import GatherScatterMode, RoundingMethod
 
+from nonholo.lagrange_dalembert._functions import LOOK_UP
 from nonholo.lagrange_dalembert.compiled._scalars import LOGIC, OPERATIONS, TRUTHS, Formulas, UntranslatableError
 
 _CALLS = {"jit", "pjit", "closed_call", "remat", "checkpoint", "custom_jvp_call", "custom_vjp_call"}
@@ -44,8 +45,7 @@ def translate(f: Formulas, program: Any, arguments: list[np.ndarray]) -> list[np
 def _applied(f: Formulas, step: Any, arguments: list[np.ndarray]) -> list[np.ndarray]:
     name, parameters = step.primitive.name, step.params
     if name in _CALLS:
-        inner = next(parameters[key] for key in ("jaxpr", "call_jaxpr", "fun_jaxpr") if key in parameters)
-        return translate(f, inner, arguments)
+        return _results_of_call(f, arguments, **parameters)
     if name == "cond":
         return translate(f, parameters["branches"][constants_of(arguments[0]).item()], arguments[1:])
     if name not in _TABLE or (name in OPERATIONS and name not in _KINDS.get(step.invars[0].aval.dtype.kind, ())):
@@ -53,6 +53,21 @@ def _applied(f: Formulas, step: Any, arguments: list[np.ndarray]) -> list[np.nda
     kind = {"old": step.invars[0].aval.dtype.kind} if name == "convert_element_type" else {}
     result = _TABLE[name](f, *arguments, **parameters, **kind)
     return [np.asarray(each, dtype=object) for each in (result if step.primitive.multiple_results else [result])]
+
+
+def _results_of_call(f: Formulas, arguments: list[np.ndarray], name: str = "", **parameters: Any) -> list[np.ndarray]:
+    """Return the results of a program that is called; rows of tables are looked up where these stand."""
+    if name == LOOK_UP:
+        return [_look_up(f, *arguments)]
+    inner = next(parameters[key] for key in ("jaxpr", "call_jaxpr", "fun_jaxpr") if key in parameters)
+    return translate(f, inner, arguments)
+
+
+def _look_up(f: Formulas, table: np.ndarray, step: np.ndarray) -> np.ndarray:
+    """Return the row of a step of a table, whose first number is its address."""
+    place, length = (table.item(0), step.item()), table.shape[1]
+    columns = (f.constant(float(column)) for column in range(length))
+    return array_of([f("look", *place, column, f.constant(float(length))) for column in columns], (length,))
 
 
 def _constants(f: Formulas, value: Any) -> np.ndarray:
