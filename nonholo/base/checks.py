@@ -83,7 +83,7 @@ def array(where: str, value: Any, shape: tuple[int | None, ...], remedy: str = "
     if raw.shape != shape and not _fits(raw.shape, shape):
         raise error(where, f"have shape {_shape_text(shape)}", f"shape {raw.shape}", remedy)
     try:
-        result = np.array(raw if raw.dtype.char == "d" else _as_floats(raw), dtype=np.float64)
+        result = (raw if raw.dtype.char == "d" else _as_floats(raw)).astype(np.float64)
         if not is_moderate(result):
             _refuse_large(where, result, remedy)
     except MemoryError:

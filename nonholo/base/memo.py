@@ -56,8 +56,8 @@ else:
             if owner is None:
                 return self
             own, name = owner.__dict__, self.func.__qualname__  # has a dot, which no name of a field has
-            if name in own:
-                return own[name].copy()
+            if (value := own.get(name)) is not None:
+                return value.copy()
             value = self.func(owner)
             is_array = isinstance(value, np.ndarray)
             if (is_array and value.nbytes > _SMALL) or any(is_traced(getattr(owner, leaf)) for leaf in owner.leaves):

@@ -184,6 +184,11 @@ def power_of_two(velocities: np.ndarray) -> float:
     return math.ldexp(1.0, math.frexp(np.maximum.reduce(np.abs(velocities), None, initial=0.0))[1])
 
 
+def powers_of_two(velocities: Float[np.ndarray, "M j"]) -> Float[np.ndarray, "M"]:
+    """Return `power_of_two` of each row."""
+    return np.ldexp(1.0, np.frexp(np.abs(velocities).max(axis=1, initial=0.0))[1])
+
+
 def solve(
     group: AbstractMatrixGroup,
     f: Quadratic,

@@ -137,7 +137,7 @@ def _of_momentum(start: Start, system: System, g: np.ndarray | None) -> np.ndarr
 def _of_velocity(start: Start, system: System, g: np.ndarray | None) -> np.ndarray:
     velocity = array(start.where, start.value, (system.group.dim,), "Use `vee` to turn a matrix into coordinates.")
     momentum = system.inertia_operator.dot(velocity)  # the bits of @ in half of its time
-    along = system.restrict_at(momentum, g)
+    along = system.restrict_at(momentum, g) if system.is_spatial else applied(system.constraint_subspace, momentum)
     if start.project:
         return of_finite_energy(start.owner, system, g, along)
     _check_admissible(start.where, system, g, velocity)

@@ -103,6 +103,14 @@ def test_states_do_not_depend_on_the_other_times(system: AbstractSystem) -> None
         assert np.array_equal(getattr(alone, value), getattr(among, value)[[0, 20 * 256, 50 * 256]])
 
 
+def test_units_of_many_motions_are_those_of_each() -> None:
+    """The power of two above a row is that of the row alone: at powers, beside them, of tiny numbers, and of none."""
+    rows = np.random.default_rng(0).normal(size=(200, 3)) * 10.0 ** np.linspace(-320, 150, 200)[:, None]
+    rows = np.vstack([rows, np.zeros(3), [0, -4, 1], [np.nextafter(4, 0), 0, 3.9], [np.nextafter(4, 5), 0, 0]])
+    assert _series.powers_of_two(rows).tolist() == [_series.power_of_two(row) for row in rows]
+    assert _series.powers_of_two(rows[-3:]).tolist() == [8.0, 4.0, 8.0]
+
+
 def test_kept_room_leaves_no_trace() -> None:
     """A flow has the same bits after another one of as many components, in its thread and in a new one."""
     flows = [functools.partial(nh.flow, TOP, restricted_velocity=w, times=(0.0, 9.0)) for w in ((0.8, -0.5), (90, 7))]
