@@ -323,9 +323,10 @@ class AbstractParametricSystem(AbstractCoordinateSystem[DiscretizationT, OrbitT]
         if not contacts:
             return self.holding
         rows = np.flatnonzero(~np.concatenate([each.rows for each in contacts]).any(axis=0))
-        fields = {name: getattr(self, name) for name in ("constraint_forms", "constraint_velocities")}
-        others = {name: rows_of(each, rows) if len(rows) else None for name, each in fields.items() if each}
-        return dataclasses.replace(self.holding, **others)
+        forms = rows_of(self.constraint_forms, rows) if len(rows) else None
+        moves = self.constraint_velocities
+        velocities = {"constraint_velocities": rows_of(moves, rows)} if moves else {}  # of no rows: time stays
+        return dataclasses.replace(self.holding, constraint_forms=forms, **velocities)
 
     def _check_slips(self: Any, *others: Any) -> None:
         """Refuse slips beside own discrete functions, of rows that mix forms, and of one form for two contacts."""
