@@ -68,7 +68,7 @@ class AbstractLagrangeDAlembertMap(orbits.CoordinateMotion, AbstractCoordinateDi
         checks.consistent(system, q, h)
         if start.name == "momentum":
             return First(checks.of_momentum(*subject, q, start.value))
-        if start.name == "displacement" and self.system.slip is not None:
+        if start.name == "displacement" and self.system.slips:
             got, remedy = "a Slip, which decides over it", "Pass body_velocity= or momentum=."
             raise error(f"{start.owner}(displacement=...)", "be of forms that never yield", got, remedy)
         if start.name == "displacement":
@@ -79,7 +79,7 @@ class AbstractLagrangeDAlembertMap(orbits.CoordinateMotion, AbstractCoordinateDi
 
     @functools.cached_property
     def _stepper(self) -> AbstractStepper[OrbitT]:
-        kind = CoordinateStepper if self.system.slip is None else room("_slipping").SlipStepper
+        kind = room("_slipping").SlipStepper if self.system.slips else CoordinateStepper
         return cast(Any, kind(self))
 
     def stepper(self, *, with_poses: bool) -> AbstractStepper[OrbitT]:

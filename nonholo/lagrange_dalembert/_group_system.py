@@ -9,13 +9,13 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import error, instance, text
+from nonholo.base.checks import instance, text
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert import _functions as tracing
 from nonholo.lagrange_dalembert._places import Poses
-from nonholo.systems import checked_group, group_mass_tensor, inertia_form, parts_of, slips_of, terms_of
+from nonholo.systems import checked_group, group_mass_tensor, inertia_form, terms_of
 
 if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._discretization import GroupDiscretization
@@ -55,7 +55,7 @@ class GroupLagrangeDAlembert(tracing.AbstractParametricSystem["GroupDiscretizati
             `nonholo.Forced(system, potential, force)` adds it, or `Gravity`, `Linear`, `Spring`, or a tuple of them.
         force: `force(time, g, body_velocity)` -> (dim,), a body covector; or `nonholo.Friction`; or an array (steps,
             dim), whose row k acts over step k; or a tuple with at most one of each. Half the impulse of a step acts at
-            each of its ends, as in coordinates.
+            each of its ends, as in coordinates. And `nonholo.Slip` of forms that may yield, as there.
         parameters: Numbers or arrays by name, p, which all functions take last, `constraint_forms(g, p)`: see
             `LagrangeDAlembert` and `with_parameters`.
         name: The name of the system in pictures.
@@ -96,7 +96,7 @@ class GroupLagrangeDAlembert(tracing.AbstractParametricSystem["GroupDiscretizati
     rule: ClassVar[str] = "midpoint"
     has_limit: ClassVar[bool] = True
     prescribed: ClassVar[tuple[()]] = ()
-    holonomic = constraint_velocities = slip = cast(Any, None)
+    holonomic = constraint_velocities = cast(Any, None)
 
     def __post_init__(self) -> None:
         remedy = "Pass nonholo.SO(n), SE(n), MatrixGroup or a product."
@@ -112,14 +112,12 @@ class GroupLagrangeDAlembert(tracing.AbstractParametricSystem["GroupDiscretizati
         self._trace_at("lagrangian", (), jax.ShapeDtypeStruct((n,), float))
         self._trace_at("potential", (), g)
         self._check_force(repr(self.group), g, jax.ShapeDtypeStruct((n,), float))
-        if slips_of(parts_of(self.force)):
-            remedy = "Write the system in coordinates or, where its forms are fixed in the body, as an LLSystem."
-            raise error("GroupLagrangeDAlembert(force=...)", "have forms that never yield", "a Slip", remedy)
+        self._check_slips(self.discrete_constraints)
 
     @property
     def is_driven(self) -> bool:
         """Whether a force acts."""
-        return self.force is not None
+        return self.holding.force is not None
 
     def _trace_at(self, name: str, shape: tuple[int, ...], *arguments: Any) -> None:
         arrays = f"shapes {[x.shape for x in arguments]}"
@@ -154,6 +152,7 @@ class GroupLagrangeDAlembert(tracing.AbstractParametricSystem["GroupDiscretizati
 
     def bound(self, *numbers: Any) -> Any:
         """Return the system as the equations see it, with numbers of its parameters within."""
+        self._refuse_slips()
         inertia = _inertia if self.parameters else lambda _: _numbers_of_inertia(self)
         return super().bound(*numbers)._in_full(inertia) if numbers else self.plain
 

@@ -152,7 +152,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     def _works(self) -> Float[np.ndarray, "K 2"]:
         if not self.system.has_functions:
             return np.full((len(self), 2), np.nan if self.system.is_driven else 0.0)
-        return room("_flow").works(self) if self.system.is_driven or self.system.slip else np.zeros((len(self), 2))
+        return room("_flow").works(self) if self.system.is_driven or self.system.slips else np.zeros((len(self), 2))
 
     @property
     def lacks_forces(self) -> bool:

@@ -1,10 +1,12 @@
-r"""Steps of constraint forms that may yield: at each step that of all forms, or one without them, under friction.
+r"""Steps of constraint forms that may yield: at each step that of all forms, or one without some, under friction.
 
-With B the forms and the momentum p of a node, $\pi$ its parts along B, the step of all forms needs the impulses
-$\kappa - \pi$ at its beginning and $\nu$ at its end: $\kappa$ and $-\nu$ are the parts of $P$ and $P^+$. The forms hold
-if $|\kappa - \pi + \nu| \le h\mu + \tfrac h2c|v|$ with the grip $\mu$. Otherwise they slide,
+With B the forms of all contacts and the momentum p of a node, $\pi$ its parts along B, the step of all forms needs the
+impulses $\kappa - \pi$ at its beginning and $\nu$ at its end: $\kappa$ and $-\nu$ are the parts of $P$ and $P^+$. A
+contact i holds if $|\kappa_i - \pi_i + \nu_i| \le h\mu_i + \tfrac h2c_i|v_i|$ with the grip $\mu_i$. Otherwise some
+slide, while the forms of the others stay in the step, by impulses that do not exceed this either:
 
-$$ P = p + \tfrac12B(q)^Tj + \dots, \qquad p' = P^+ + \tfrac12B(q')^Tj, \qquad -j\in h\mu\,\partial|u| + hc\,u, $$
+$$ P = p + \tfrac12B(q)^Tj + \dots, \qquad p' = P^+ + \tfrac12B(q')^Tj, \qquad
+   -j_i\in h\mu_i\,\partial|u_i| + hc_i\,u_i, $$
 
 at the slip velocity u of the step, which their discrete constraint misses.
 
@@ -20,26 +22,28 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.results import OUTCOMES, Outcome
-from nonholo.base.types import Array
+from nonholo.base.types import Array, Bool
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._discretization import CoordinateStepper
 from nonholo.lagrange_dalembert._flow import bordered_solution
 from nonholo.lagrange_dalembert._functions import in_blocks, in_double
 from nonholo.orbit import AbstractStepper, First, Rows, State
-from nonholo.systems import friction, update_slope
+from nonholo.systems import Contacts, friction, update_slope
 
 _MOST, _ROUNDING, _SEEN = 40, 1e-14, 1e-14  # corrections of an impulse; relative; of what changes a slope
 
-Beginning = tuple[int, np.ndarray, np.ndarray, State | None]
-"""The outcome, the velocity of a step, the impulse j of its friction; the state of a run if it holds."""
+Beginning = tuple[int, np.ndarray, np.ndarray, Any, State | None]
+"""The outcome, velocity and impulse j of the friction of a step, which contacts hold; if all, the state of a run."""
+Held = Bool[np.ndarray, "m"]
+"""Which contacts hold."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class SlipStepper(AbstractStepper[Any]):
     """The steps of forms that may yield.
 
-    A row has the momentum of its node, without the half impulse of the forms. The impulse of friction, whether they
-    hold, and the state of the run that holds are the stepper's own numbers.
+    A row has the momentum of its node, without the half impulse of the forms. The impulse of friction, which contacts
+    hold, and the state of the run in which all do are the stepper's own numbers.
 
     Attributes:
         motion: The discretization.
@@ -52,47 +56,108 @@ class SlipStepper(AbstractStepper[Any]):
     branch = "nearest"
 
     @functools.cached_property
-    def steppers(self) -> tuple[CoordinateStepper, CoordinateStepper]:
-        """The steppers of all forms, and of the others."""
-        system, h = self.motion.system, self.motion.time_step
-        return CoordinateStepper(system.holding.discrete_map(h)), CoordinateStepper(system.free.discrete_map(h))
+    def stepper_of(self) -> Any:
+        """The function from which contacts hold to the stepper of their forms and of those that never yield."""
+
+        @functools.cache
+        def stepper_of(*holds: bool) -> CoordinateStepper:
+            yields = [one for one, stays in zip(self.slips, holds, strict=True) if not stays]
+            return CoordinateStepper(self.motion.system.without(yields).discrete_map(self.motion.time_step))
+
+        return stepper_of
+
+    @property
+    def slips(self) -> Any:
+        """The contacts."""
+        return self.motion.system.slips
+
+    @functools.cached_property
+    def rows(self) -> np.ndarray:
+        """Their rows, of all forms."""
+        return np.concatenate([one.rows for one in self.slips])
+
+    @functools.cached_property
+    def whole(self) -> CoordinateStepper:
+        """The stepper of all forms."""
+        return self.stepper_of(*[True] * len(self.slips))
 
     @functools.cached_property
     def columns(self) -> dict[str, int]:  # type: ignore[override]
         """The names and sizes of what a row holds."""
-        place, rate, impulse = self.steppers[0].columns.values()
+        place, rate, impulse = self.whole.columns.values()
         return {"place": place, "body_velocity": rate, "momentum": rate, "multipliers": impulse}
 
-    def _ask(self, function: Any, *arguments: Any) -> Any:
-        own, system = self.motion.system.slip.rows, self.steppers[0].motion.system
-        return in_double(function, system, *arguments, np.pad(own, ((0, 0), (0, system.constraints - own.shape[1]))))
+    def _ask(self, function: Any, *arguments: Any, holds: Any = None) -> Any:
+        """Call a function of the system in which these contacts hold, or all, with their rows."""
+        system, rows = self.whole.motion.system, self.rows
+        if holds is not None:
+            system = self.stepper_of(*holds).motion.system
+            stays = Contacts(np.empty(0), self.slips).places(holds)
+            rows = rows[stays][:, ~rows[~stays].any(axis=0)]
+        return in_double(function, system, *arguments, np.pad(rows, ((0, 0), (0, system.constraints - rows.shape[1]))))
 
     def begin(self, x: np.ndarray, p: np.ndarray, near: np.ndarray, hold: State | None = None) -> Beginning:
         """Begin a step from a node, that which holds if it is known."""
-        slip, h, outcome = self.motion.system.slip, np.float64(self.motion.time_step), Outcome.successful
+        h, outcome, holds = np.float64(self.motion.time_step), Outcome.successful, np.ones(len(self.slips), bool)
         if hold is None:
-            hold, outcome = self.steppers[0].start(First((p, x, near)))
-        v = hold[len(x) :][: len(near)]
-        still = np.zeros(len(slip.rows))
+            hold, outcome = self.whole.start(First((p, x, near)))
+        v = hold[x.size :][: len(near)]
+        still = np.zeros(len(self.rows))
         if outcome != Outcome.successful:
-            return outcome, v, still, hold
+            return outcome, v, still, holds, hold
         (pi, inertia), (_, _, first, last, forms, *_) = self._ask(_node, x, p), self._ask(_ends, h, x, v)
-        size = np.linalg.norm
-        if size(first - pi + last) <= h * (slip.grip + slip.viscous / 2 * size(np.linalg.solve(inertia, pi))):
-            return 0, v, still, hold
-        impulse, slope, u, law = 2 * (first - pi), 2 * inertia, still, (slice(None), h * slip.grip, h * slip.viscous)
+        contacts, impulses = Contacts(inertia, self.slips), first - pi + last
+        moving = contacts.sizes(np.linalg.solve(inertia, pi)[None])[0]
+        most = np.array([h * (one.grip + one.viscous / 2 * size) for one, size in zip(self.slips, moving, strict=True)])
+        yields = contacts.sizes(impulses[None])[0] > most
+        if not yields.any():
+            return 0, v, still, holds, hold
+        laws = [(at, size, h / 2 * one.viscous) for size, (at, one) in zip(most, contacts.each, strict=True)]
+        yields = contacts.sizes(friction(inertia, -impulses, laws)[0][None])[0] > 0
+        while yields.any():  # once more where others then bear too much
+            holds = holds & ~yields
+            beginning = self._slide((x, p, near, v), holds, contacts, (first - pi, forms))
+            if beginning[0] != 0:
+                return beginning
+            yields = holds & (contacts.sizes(self._reactions(x, p, beginning)[None])[0] > most)
+        return beginning
+
+    def _slide(self, node: Any, holds: Held, contacts: Contacts, along: tuple[np.ndarray, np.ndarray]) -> Beginning:
+        """Begin a step in which some contacts slide, from impulses at its beginning that would hold them, and forms."""
+        (x, p, near, v), (first, forms) = node, along
+        h, size = np.float64(self.motion.time_step), np.linalg.norm
+        slides = ~contacts.places(holds)
+        moving = [one for one, stays in zip(self.slips, holds, strict=True) if not stays]
+        slope, u = 2 * contacts.inertia[np.ix_(slides, slides)], np.zeros(int(slides.sum()))
+        impulse, j = 2 * first[slides], np.zeros(len(slides))
+        laws = [(at, h * one.grip, h * one.viscous) for at, one in Contacts(slope, tuple(moving)).each]
         for _ in range(_MOST):  # corrections of the impulse j(u), whose slope is that of the last ones
-            goal = friction(slope, slope @ u - impulse, [law])[1]
+            goal = friction(slope, slope @ u - impulse, laws)[1]
             if size(goal - impulse) <= _ROUNDING * (size(goal) + size(slope) * size(np.abs(forms) @ np.abs(v))):
-                return 0, v, goal, None
-            start, outcome = self.steppers[1].start(First((p + goal / 2 @ forms, x, near)))
-            v = start[len(x) :][: len(near)]
+                j[slides] = goal
+                return 0, v, j, holds, None
+            start, outcome = self.stepper_of(*holds).start(First((p + goal / 2 @ forms[slides], x, near)))
+            v = start[x.size :][: len(near)]
             if outcome != Outcome.successful:
-                return outcome, v, goal, None
-            after = self._ask(_ends, h, x, v)[5]
+                return outcome, v, j, holds, None
+            after = self._ask(_ends, h, x, v)[5][slides]
             slope = update_slope(slope, after - u, goal - impulse, float(_SEEN * size(goal)))
             impulse, u = goal, after
-        return Outcome.not_converged, v, impulse, None
+        return Outcome.not_converged, v, j, holds, None
+
+    def _reactions(self, x: np.ndarray, p: np.ndarray, beginning: Beginning) -> np.ndarray:
+        """Return the impulses by which contacts hold in a step in which others slide."""
+        _, v, j, holds, _ = beginning
+        leaving, arriving, _, _, own, _, ends, end, _ = self._ask(_ends, np.float64(self.motion.time_step), x, v)
+        before = self._across(holds, x, leaving) - self._across(holds, x, p + j / 2 @ own)
+        return before - self._across(holds, end, arriving + j / 2 @ ends)
+
+    def _across(self, holds: Held, x: np.ndarray, p: np.ndarray) -> np.ndarray:
+        """Return the parts of a momentum along the forms of contacts that hold while others slide."""
+        parts = np.zeros(len(self.rows))
+        if holds.any():
+            parts[Contacts(np.empty(0), self.slips).places(holds)] = self._ask(_node, x, p, holds=holds)[0]
+        return parts
 
     def start(self, first: First) -> tuple[State, Outcome]:
         """Return the state at the first root."""
@@ -113,30 +178,36 @@ class SlipStepper(AbstractStepper[Any]):
 
     def _after(self, state: State) -> tuple[State, int]:
         """Return the state after a step and the outcome; write the impulses of the step into the state before it."""
-        x, v, _, impulses, j, (holds,), hold = self._parts(state)
-        _, arriving, _, last, _, _, own, x, forms = self._ask(_ends, np.float64(self.motion.time_step), x, v)
-        p, run, code = arriving + (last if holds else j / 2) @ own, None, 0
-        if holds:
-            run, nowhere = hold.copy(), tuple(np.empty((2, n)) for n in self.steppers[0].columns.values())
-            code, x = self.steppers[0].advance(run, 1, 1, nowhere)[1], run[: len(x)]
-        beginning = self.begin(x, p, v, run) if code == 0 else (code, v, j, None)
-        leaving = self._ask(_ends, np.float64(self.motion.time_step), x, beginning[1])[0]
+        x, v, _, impulses, j, holds, hold = self._parts(state)
+        x, holds, h = x.reshape(self.motion.system.place_shape), holds.astype(bool), np.float64(self.motion.time_step)
+        _, arriving, _, last, _, _, own, end, forms = self._ask(_ends, h, x, v)
+        p, run, code = arriving + (last if holds.all() else j / 2) @ own, None, 0
+        if holds.all():
+            run, nowhere = hold.copy(), tuple(np.empty((2, n)) for n in self.whole.columns.values())
+            code, end = self.whole.advance(run, 1, 1, nowhere)[1], run[: x.size].reshape(x.shape)
+        else:
+            p = p - self._across(holds, end, p) @ own
+        beginning = self.begin(end, p, v, run) if code == 0 else (code, v, j, holds, None)
+        leaving = self._ask(_ends, h, end, beginning[1])[0]
         impulses[:] = np.linalg.lstsq(forms.T, leaving - arriving)[0]
-        return self._state(x, p, beginning), int(beginning[0])
+        return self._state(end, p, beginning), int(beginning[0])
 
     def _state(self, x: np.ndarray, p: np.ndarray, beginning: Beginning) -> State:
-        _, v, j, hold = beginning
-        own = j, [hold is not None], np.zeros(self.steppers[0].width + len(p) + 1) if hold is None else hold
-        return np.concatenate([x, v, p, np.zeros(self.columns["multipliers"]), *own])
+        _, v, j, holds, hold = beginning
+        own = j, holds, np.zeros(self.whole.width + len(p) + 1) if hold is None else hold
+        return np.concatenate([x.ravel(), v, p, np.zeros(self.columns["multipliers"]), *own])
 
     def _parts(self, state: np.ndarray) -> list[np.ndarray]:
-        return np.split(state, np.cumsum([*self.columns.values(), len(self.motion.system.slip.rows), 1]))
+        return np.split(state, np.cumsum([*self.columns.values(), len(self.rows), len(self.slips)]))
 
     def orbit(self, rows: Rows, step: int, every: int, outcome: Outcome) -> Any:
         """Return rows as an orbit."""
         (q, v, p, impulses), system = rows, self.motion.system
-        orbit = self.steppers[1].states(q, v, impulses, step, every, outcome)
-        return dataclasses.replace(orbit, system=system, momentum=p, energy=in_blocks(_energies, system.free, q, p)[0])
+        orbit = self.stepper_of(*[False] * len(self.slips)).orbit((q, v, impulses), step, every, outcome)
+        places = q.reshape(-1, *system.place_shape)
+        return dataclasses.replace(
+            orbit, system=system, momentum=p, energy=in_blocks(_energies, system.free, places, p)[0]
+        )
 
 
 def _node(system: Any, x: Array, p: Array, rows: Array) -> tuple[Array, Array]:

@@ -3,7 +3,7 @@
 import dataclasses
 import functools
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import jax
 import numpy as np
@@ -13,7 +13,6 @@ from nonholo.base.checks import array, choice, count, error, names, shown, text,
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _functions as tracing
 from nonholo.lagrange_dalembert._places import Coordinates
-from nonholo.systems import force_of, parts_of, slips_of, without_slips
 
 if TYPE_CHECKING:
     from nonholo.lagrange_dalembert._discretization import CoordinateDiscretization
@@ -64,8 +63,8 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
         prescribed: Motions s(time) of coordinates, by index: joints that are driven. Discrete motions follow them
             exactly; their multipliers, the last ones, are the driving forces.
         force: `force(time, q, v)` -> (n,); or `nonholo.Friction`; or an array (steps, n), whose row k acts over step k;
-            or `nonholo.Slip` of the forms that may yield, `rows=[[0.0, 1.0]]` for the second of two, one row for each;
-            or a tuple with at most one of each.
+            or a tuple with at most one of each; and `nonholo.Slip` of forms that may yield, `rows=[[0.0, 1.0]]` for the
+            second of two, one row for each form, one `Slip` for each contact.
             `nonholo.Forced(system, potential, force)` adds one.
         parameters: Numbers or arrays by name, p. Where there are any, every function takes them as its last argument, a
             dictionary with these names: `lagrangian(q, v, p)` or `(q, v, time, p)`, `constraint_forms(q, p)` or
@@ -161,33 +160,18 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
         self._trace("discrete_constraints", of, (q, q, time), tracing.checked_value, (self.velocity_constraints,), of)
         self._trace("constraint_velocities", of, (q, time), tracing.checked_value, (self.velocity_constraints,), of)
         self._check_force(of, q, q)
-        self._check_slip(self.velocity_constraints)
+        self._check_slips(self.discrete_lagrangian, self.discrete_constraints)
         moves = self.constraint_velocities is not None or any(map(self.takes_time, self.of_time))
-        if (moves or self.slip) and (self.discrete_lagrangian or self.discrete_constraints):
+        if moves and (self.discrete_lagrangian or self.discrete_constraints):
             remedy = 'Use rule="midpoint" or "trapezoidal".'
-            where, demand = _argument("discrete_lagrangian"), "be left out where L or A has the time, or of a Slip"
+            where, demand = _argument("discrete_lagrangian"), "be left out where L or A has the time"
             raise error(where, demand, "discrete functions", remedy)
-
-    def _check_slip(self, forms: int) -> None:
-        """Refuse slips of several contacts, and of rows that mix forms that yield with others."""
-        rows = [each.rows for each in slips_of(parts_of(self.force))]
-        if len(rows) > 1 or any(each.shape[1] != forms or each.any(axis=0).sum() != len(each) for each in rows):
-            demand = f"have at most one Slip, with rows of {forms} numbers, one for each form that may yield"
-            got, remedy = f"{[each.tolist() for each in rows]}", "Pass rows=[[0.0, 1.0]] for the second of two forms."
-            raise error(_argument("force"), demand, got, remedy)
 
     @functools.cached_property
     def is_driven(self) -> bool:
         """Whether a force acts, or anything depends on time or moves by itself."""
         acts = self.holding.force is not None or self.constraint_velocities is not None or bool(self.prescribed)
         return acts or any(map(self.takes_time, self.of_time))
-
-    def bound(self, *numbers: Any) -> Self:
-        """Return the system without parameters whose functions have these numbers within."""
-        if self.slip is not None:
-            remedy = "Run it by `simulate` or `iterate` of what `discretize` returned, or leave the slip out."
-            raise error(_argument("force"), "have forms that never yield", "a Slip", remedy)
-        return super().bound(*numbers)
 
     def _bound_fields(self, p: Mapping[str, Any], *rows: Any) -> dict[str, Any]:
         motions = tuple((index, tracing.Bound(motion, p)) for index, motion in self.prescribed)
@@ -206,27 +190,6 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
     def takes_time(self, function: str) -> bool:
         """Return whether the Lagrangian, the constraint forms or the holonomic constraints are called with the time."""
         return bool(self._time(function))
-
-    @property
-    def slip(self) -> Any:
-        """The contact whose forms may yield, where there is one."""
-        return parts_of(self.force).get("slip")
-
-    @functools.cached_property
-    def holding(self) -> Self:
-        """The system while the forms that may yield hold; itself if none may."""
-        others = without_slips(parts_of(self.force))
-        return dataclasses.replace(self, force=force_of(others)) if slips_of(parts_of(self.force)) else self
-
-    @functools.cached_property
-    def free(self) -> Self:
-        """The system without the forms that may yield; itself if none may."""
-        if self.slip is None:
-            return self
-        rows = np.flatnonzero(~self.slip.rows.any(axis=0))
-        velocities = self.constraint_velocities and tracing.rows_of(self.constraint_velocities, rows)
-        forms = tracing.rows_of(self.constraint_forms, rows) if len(rows) else None
-        return dataclasses.replace(self.holding, constraint_forms=forms, constraint_velocities=velocities)
 
     @functools.cached_property
     def constraints(self) -> int:

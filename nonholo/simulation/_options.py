@@ -83,7 +83,7 @@ def _other_stepper(
     if not rule.is_principal:
         refuse_composition(f"{owner}(branch=...)", discrete, "Leave branch out: each substep takes the principal root.")
     choice(where := f"{owner}(backend=...)", backend, ("auto", "numba", "jax"))
-    if not rule.is_principal or backend == "jax":
+    if not rule.is_principal or (backend == "jax" and discrete.is_balanced):
         check_forces(owner, discrete, 0, free=f"branch {rule.name!r} and backend {backend!r}")
     if rule.is_principal:
         return _principal(where, discrete, backend, with_poses=with_poses)

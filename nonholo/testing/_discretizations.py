@@ -108,6 +108,7 @@ class OrbitSamples:
     def _path(self, count: int, norm: float, divides: bool) -> Orbit:
         if self.forced is None or not divides:
             return simulate(self.discrete, steps=count, **self.start(norm / count))
+        need(not callable(self.discrete.difference), "a discrete Lagrangian of one time step under forces")
         forced = self.forced
         if forced.table is not None:
             rows = np.repeat(forced.rows(np.arange(report.COUNTS[0])), count // report.COUNTS[0], axis=0)

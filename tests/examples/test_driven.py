@@ -257,5 +257,5 @@ test_what_a_driven_system_refuses = refusals(
     (lambda: _skate(prescribed={3: jnp.sin}), "indices from 0 to 2"),
     (lambda: _skate(force=np.zeros((4, 2))), "force"),
     (lambda: nh.Forced(nh.Forced(_skate(), None, _RUB), None, _RUB), "have no force yet"),
-    (lambda: nh.Forced(nh.examples.chaplygin_ball().system, None, nh.Slip([[1.0, 0.0]], 1.0)), "never yield"),
+    (lambda: nh.Forced(nh.examples.chaplygin_ball().system, None, nh.Slip([[1.0, 0.0]], 1.0)), "rows of 3 numbers"),
 )

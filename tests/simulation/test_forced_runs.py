@@ -96,7 +96,7 @@ _REFUSED: list[Callable[[], Any]] = [
     lambda: nh.Forced(TOP, nh.Spring([0.1, 0.2], [0.0, 0.0], 1.0)),
     lambda: nh.Forced(TOP, (lambda g: g[0, 0], lambda g: g[1, 1])),
     lambda: nh.Forced(nh.examples.particle().system, lambda q: q[0], scheme="energy"),
-    lambda: nh.discretize(_FORCED, 0.1, difference="logarithmic"),
+    lambda: nh.discretize(_FORCED, 0.1, difference="logarithmic", order=4),
     lambda: nh.flow(_FORCED, restricted_velocity=[0.5, -0.3], times=(0.0, 1.0), method="closed_form"),
     lambda: nh.flow(nh.Forced(TOP, force=np.ones((3, 3))), restricted_velocity=[0.5, -0.3], times=(0.0, 1.0)),
     lambda: nh.Forced(_FORCED),

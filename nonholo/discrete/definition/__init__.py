@@ -18,4 +18,4 @@ from nonholo.discrete.definition._step import (
     traceable,
     value_and_slope,
 )
-from nonholo.discrete.definition._stepper import DefinitionStepper, parts_by_definition, whole_steps_by_definition
+from nonholo.discrete.definition._stepper import DefinitionStepper, leap, whole_steps_by_definition

@@ -16,7 +16,7 @@ from nonholo.discrete._scheme import Scheme, weights
 from nonholo.discrete.definition import _step
 from nonholo.discrete.definition._precision import in_double
 from nonholo.discrete.routes import AbstractBodyStepper, Compact
-from nonholo.orbit import First, Orbit, Rows, State, keep_row, write_first
+from nonholo.orbit import First, Rows, State, keep_row, write_first
 
 
 def _substep(discrete: Scheme, weight: Array, r: Array, g: Array) -> tuple[Array, Array, Array, Array]:
@@ -171,22 +171,12 @@ _root = equinox.filter_jit(_step.principal_displacement)
 _push = equinox.filter_jit(_step.push)
 
 
-def parts_by_definition(discrete: Scheme, states: Orbit, poses: np.ndarray, fractions: np.ndarray) -> Compact:
-    """Return canonical momenta, charts and poses after fractions of the steps from states; NaN where none starts."""
-    group, frame, C = discrete.system.group, discrete.system.frame, discrete.system.frame_map
-    g = group.matrix_from_pose(poses) @ group.inverse(frame)
-    r = applied(discrete.system.inverse_frame_map, states.reduced_momentum)
-    rows = [_partial_step(discrete, *row) for row in zip(fractions, r, g, strict=True)]
-    momenta, charts, ends = (np.array(column) for column in zip(*rows, strict=True))
-    return applied(C, momenta), charts, group.pose_from_matrix(ends @ frame)
-
-
-def _partial_step(discrete: Scheme, fraction: float, r: np.ndarray, g: np.ndarray) -> Compact:
-    """Return momentum, chart and pose after a fraction of a step from a momentum and a pose, in the user's frame."""
-    one, parts = discrete.part(1.0), weights(discrete.order)
-    for part in fraction * parts:
-        y, code = in_double(_root, one, part * r, g)
+def leap(discrete: Scheme, m: np.ndarray, pose: np.ndarray, parts: np.ndarray) -> Any:
+    """Return the outcome, the chart of the first part of a step, and canonical momenta and pose after all parts."""
+    one, system, frame, code, charts = discrete.part(1.0), discrete.system, discrete.system.frame, 0, []
+    r, g = applied(system.inverse_frame_map, m), pose.reshape(frame.shape) @ system.group.inverse(frame)
+    for part in parts:
+        y, outcome = in_double(_root, one, part * r, g)
         r, g = in_double(_push, one, y, g)
-        r, g = (np.where(code == 0, x, np.nan) for x in (r / part, g))
-    y, code = in_double(_root, one, parts[0] * r, g)
-    return r, np.where(code == 0, y, np.nan), g
+        r, code, charts = r / part, code or int(outcome), [*charts, y]
+    return code, charts[0], applied(system.frame_map, r), (g @ frame).ravel()

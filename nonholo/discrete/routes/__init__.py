@@ -8,7 +8,7 @@
 | `DefinitionRoute` | everything, by derivatives of the discrete Lagrangian in JAX |
 | `ComposedRoute` | compositions of one of the first three |
 | `ForcedRoute` | one of the first three, with half an impulse at each end of its steps, compiled or in plain Python |
-| `FunctionRoute` | the definition of the impulses, for constraints fixed in space |
+| `FunctionRoute` | the definition of the impulses, for constraints fixed in space and around `DefinitionRoute` |
 """
 
 from nonholo.discrete.routes._base import (

@@ -269,6 +269,28 @@ class AbstractCompiledRoute(AbstractRoute):
         """Take up to `steps` steps into rows of the kernel; return how many were good and the outcome."""
         return self.runs.advance(self.body, state, steps, every, rows)
 
+    @functools.cached_property
+    def _no_kick(self) -> kernels.ForcedBody:
+        """The body with no half impulse, whose state is one step ahead of its rows."""
+        n = self.sizes[0]
+        nothing = kernels.Kick(np.zeros((0, 0)), np.zeros(0), np.zeros((n, 0)), np.zeros((1, n)))
+        return kernels.ForcedBody(self.body, nothing)
+
+    def set_out(self, momenta: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray, np.ndarray]:
+        """Return the outcome of the first root, its chart, and a state one step ahead, where momenta may be pushed.
+
+        In front it has momenta, their compensation and the pose.
+        """
+        body = self._no_kick
+        code, state = kernels.runs_of(body).start(body, momenta, pose)
+        return code, kernels.runs_of(body).chart_of(body, state), state
+
+    def follow(self, state: np.ndarray) -> tuple[int, np.ndarray]:
+        """Take the step from a state that is one ahead, in place; return the outcome and the chart of the step."""
+        room, body = tuple(np.empty((1, size)) for size in self.sizes), self._no_kick
+        _, code = kernels.runs_of(body).advance(body, state, 1, 1, room)
+        return code, room[1][0]
+
     def step_each(self, states: Any, guesses: np.ndarray, *, principal_only: bool) -> Compact:
         """Take one step from each of the kernel's momenta, charts and poses; return momenta, charts and outcomes."""
         return kernels.step_each(self.single.body, states, guesses, principal_only)

@@ -8,9 +8,9 @@ import numpy as np
 
 from nonholo.base.types import Float
 from nonholo.discrete._pytrees import pytree
-from nonholo.discrete._scheme import Scheme
+from nonholo.discrete._scheme import Scheme, weights
 from nonholo.discrete._variety import definition, variety_of
-from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractRoute, Compact, poses_of
+from nonholo.discrete.routes._base import AbstractBodyStepper, AbstractCompiledRoute, AbstractRoute, Compact
 from nonholo.discrete.routes._forced import ComposedRoute, balanced_route, forced_route
 from nonholo.discrete.routes._matrix import MatrixRoute
 from nonholo.discrete.routes._normal_forms import ScalarRoute, SecularRoute, closed_form
@@ -21,11 +21,21 @@ from nonholo.systems import Forced
 
 @pytree
 @dataclasses.dataclass(frozen=True, eq=False)
-class DefinitionRoute(Scheme, AbstractRoute):
-    """Steps of one length or compositions, by derivatives of the discrete Lagrangian in JAX."""
+class DefinitionRoute(Scheme, AbstractCompiledRoute):
+    """Steps of one length or compositions, by derivatives of the discrete Lagrangian in JAX.
+
+    Its numbers are canonical, its poses matrices.
+    """
 
     name: ClassVar[str] = "definition"
     compiled_route: ClassVar[None] = None
+    scale: ClassVar[float] = 1.0
+    body: ClassVar[None] = None
+
+    @property
+    def sizes(self) -> tuple[int, int, int]:
+        """Numbers of momenta, chart coordinates and pose entries."""
+        return self.system.rank, len(self.variety.chart), self.system.group.size**2
 
     def stepper(self, motion: Any, *, with_poses: bool, branch: str = "principal") -> AbstractBodyStepper:
         """Return what takes the steps by the definition."""
@@ -36,10 +46,30 @@ class DefinitionRoute(Scheme, AbstractRoute):
         """Return the displacements that follow, one step of order 2 from each state."""
         return definition("A step that is not compiled").next_charts_by_definition(self, states)
 
-    def parts(self, states: Orbit, fractions: Float[np.ndarray, "K"]) -> Compact:
-        """Return momenta, charts and poses after fractions of the steps from states; NaN where none starts."""
-        by_definition = definition("A part of a step that is not compiled").parts_by_definition
-        return by_definition(self, states, poses_of(states, is_needed=True), fractions)
+    def start(self, momenta: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray, np.ndarray]:
+        """Return the outcome of the first root, its chart, and a state one step ahead."""
+        code, chart, after, place = self._leap(momenta, pose, weights(self.order)[:1])
+        place = self.encode_poses(self.system.group.normalize_pose(self.decode_poses(place)))
+        return code, chart, np.concatenate((after, 0 * after, place))
+
+    set_out = start
+
+    def follow(self, state: np.ndarray) -> tuple[int, np.ndarray]:
+        """Take the step from a state that is one ahead, in place; return the outcome and the chart of the step."""
+        k = self.system.rank
+        code, chart, state[:] = self.start(state[:k], state[2 * k :])
+        return code, chart
+
+    def parts_of_steps(self, momenta: np.ndarray, poses: np.ndarray, fraction: float = 1.0) -> Compact:
+        """Take a fraction of a step from each row of momenta and poses; return both, and the outcomes."""
+        parts = fraction * weights(self.order)
+        ends = [self._leap(m, pose, parts) for m, pose in zip(momenta, poses, strict=True)]
+        codes, _, *after = zip(*ends, strict=True)
+        return np.array(after[0]), np.array(after[1]), np.array(codes)
+
+    def _leap(self, m: np.ndarray, pose: np.ndarray, parts: np.ndarray) -> Any:
+        """Return the outcome, the chart of the first part of a step, and momenta and pose after all parts."""
+        return definition("A part of a step that is not compiled").leap(self, m, pose, parts)
 
     def whole_steps(self, momenta: Float[np.ndarray, "K k"], g: Float[np.ndarray, "K N N"]) -> Compact:
         """Take one step from each row of momenta and poses; return both after it, and the outcomes."""

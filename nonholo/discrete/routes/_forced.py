@@ -63,13 +63,13 @@ def forced_route(free: AbstractRoute, forced: Forced) -> AbstractRoute:
     """Return the route of a system with forces, by kicks at the nodes, around that of the free one."""
     if forced.forces is None:
         return free
+    if free.order > 2:
+        got = f"{free.order}: kicks around a composition leave it at order 2"
+        remedy = "Use order=2, or the scheme 'energy', which has compositions."
+        raise error("discretize(order=...)", "be 2 where forces act at the nodes", got, remedy)
     inside = free.compiled_route
-    if inside is None or free.order > 2:
-        remedy = "Use order=2, and the default difference and constraint of a system with a mass tensor."
-        got = f"order {free.order}, route {free.name!r}"
-        raise error("discretize(system=Forced(...))", "have a compiled step of order 2 inside", got, remedy)
-    if forced.is_spatial:
-        return FunctionRoute(inside, forced)
+    if inside is None or forced.is_spatial:
+        return FunctionRoute(cast(AbstractCompiledRoute, free), forced)
     return ForcedRoute(inside, forced)
 
 
@@ -162,20 +162,15 @@ class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class FunctionRoute(AbstractForcedRoute, AbstractOuterRoute):
-    """In Python, by the definition of the impulses: for constraints that are fixed in space.
+    """In Python, by the definition of the impulses: for constraints fixed in space, and steps by the definition.
 
-    Its state is that of the free kernel, one step ahead, and the number of the step.
+    Its state is that of the free step, one step ahead, and the number of the step.
     """
 
     needs_pose: ClassVar[bool] = True
     compiled_route: ClassVar[None] = None
-
-    @functools.cached_property
-    def body(self) -> kernels.ForcedBody:
-        """The body, with no half impulse: those are added here."""
-        n = self.free.sizes[0]
-        nothing = kernels.Kick(np.zeros((0, 0)), np.zeros(0), np.zeros((n, 0)), np.zeros((1, n)))
-        return kernels.ForcedBody(self.free.body, nothing)
+    body = sizes = cast(Any, None)
+    locals().update((name, property(attrgetter(f"free.{name}"))) for name in ("body", "sizes"))
 
     def start(self, momenta: np.ndarray, pose: np.ndarray) -> tuple[int, np.ndarray, np.ndarray]:
         """Return the outcome of the first root, its chart and the state of a run."""
@@ -184,25 +179,24 @@ class FunctionRoute(AbstractForcedRoute, AbstractOuterRoute):
             m_half = self._after_half(0, 0, momenta, pose)
         except OutcomeError:
             failure = Outcome.no_half_impulse
-        code, state = self.runs.start(self.body, m_half, np.array(pose))
-        return failure or code, self.runs.chart_of(self.body, state), np.append(state, 0.0)
+        code, chart, state = self.free.set_out(m_half, np.array(pose))
+        return failure or code, chart, np.append(state, 0.0)
 
     def advance(self, state: np.ndarray, steps: int, every: int, rows: Compact) -> tuple[int, int]:
         """Take steps one by one, into rows of the kernel."""
-        n, width, size = self.free.sizes
-        room = np.empty((1, n)), np.empty((1, width)), np.empty((1, size))
+        n, _, size = self.free.sizes
         with contextlib.suppress(OutcomeError):
             for good in range(steps):
                 ahead, number = state[:-1].copy(), int(state[-1])
                 place = ahead[2 * n : 2 * n + size].copy()
                 m = self._after_half(number + 1, number, ahead[:n], place)
                 ahead[:n] = self._after_half(number + 1, number + 1, m, place)
-                _, code = self.runs.advance(self.body, ahead, 1, 1, room)
+                code, chart = self.free.follow(ahead)
                 if code != 0:
                     return good, code
                 state[:] = np.append(ahead, number + 1)
                 if (good + 1) % every == 0:
-                    for column, entries in zip(rows, (m, room[1][0], place), strict=True):
+                    for column, entries in zip(rows, (m, chart, place), strict=True):
                         column[good // every] = entries
             return steps, 0
         return good, Outcome.no_half_impulse

@@ -58,8 +58,9 @@ class Forced(AbstractSystem):
       exact on every branch and at every step size (Theorem 18.1), and T changes by $\langle f, X\rangle$ exactly,
       X = (W - W^-1)/2 (Theorem 18.2). It needs a free map that keeps its energy: a mass tensor, the difference
       "matrix", the constraint "skew", fixed in the body.
-    - "variational": kicks at the nodes, with the trapezoidal rule for U in the action. The map of a body without
-      constraint is symplectic; T + U has an error of order 2, which may grow on constrained bodies.
+    - "variational": kicks at the nodes, with the trapezoidal rule for U in the action, around every step of order 2.
+      The map of a body without constraint is symplectic; T + U has an error of order 2, which may grow on constrained
+      bodies.
 
     Momenta and energies of orbits are those at the nodes. Under friction alone T never grows in steps of order 2.
 
