@@ -326,7 +326,7 @@ class AbstractParametricSystem(AbstractCoordinateSystem[DiscretizationT, OrbitT]
     parameters: Any
     force: Any
 
-    @property
+    @functools.cached_property
     def table(self) -> ForceTable | None:
         """The forces of the steps, where they are given one by one."""
         return parts_of(self.force).get("table")
@@ -336,7 +336,7 @@ class AbstractParametricSystem(AbstractCoordinateSystem[DiscretizationT, OrbitT]
         """The force as a function, where there is one."""
         return parts_of(self.force).get("function")
 
-    @property
+    @functools.cached_property
     def slips(self) -> tuple[Any, ...]:
         """The contacts whose forms may yield."""
         return slips_of(parts_of(self.force))
@@ -363,11 +363,8 @@ class AbstractParametricSystem(AbstractCoordinateSystem[DiscretizationT, OrbitT]
 
     def _check_slips(self: Any, *others: Any) -> None:
         """Refuse slips beside own discrete functions, of rows that mix forms, and of one form for two contacts."""
-        where, forms, rows = (
-            f"{type(self).__name__}(force=...)",
-            self.velocity_constraints,
-            [x.rows for x in self.slips],
-        )
+        where, forms = f"{type(self).__name__}(force=...)", self.velocity_constraints
+        rows = [each.rows for each in self.slips]
         have = [{*np.flatnonzero(each.any(axis=0))} for each in rows]
         fits = [each.shape[1] == forms and len(each) == len(own) for each, own in zip(rows, have, strict=True)]
         if not all(fits) or len(set().union(*have)) < sum(map(len, have)):

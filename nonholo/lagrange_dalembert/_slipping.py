@@ -113,7 +113,8 @@ class SlipStepper(AbstractStepper[Any]):
         if not yields.any():
             return 0, v, still, holds, hold
         laws = [(at, size, h / 2 * one.viscous) for size, (at, one) in zip(most, contacts.each, strict=True)]
-        yields = contacts.sizes(friction(inertia, -impulses, laws)[0][None])[0] > 0
+        slides = contacts.sizes(friction(inertia, -impulses, laws)[0][None])[0] > 0
+        yields = slides if slides.any() else yields
         while yields.any():  # once more where others then bear too much
             holds = holds & ~yields
             beginning = self._slide((x, p, near, v), holds, contacts, (first - pi, forms))

@@ -82,7 +82,8 @@ class AbstractCoordinateSystem(Keeper, abc.ABC, Generic[DiscretizationT, OrbitT]
         """Return a system with other fields, which need no check; it does not have a name for stores."""
         system = object.__new__(type(self))
         vars(system).update(vars(self), **fields)
-        for name in {"description", "family", "form", "free", "holding", "plain", "recipe"} - fields.keys():
+        caches = {"description", "family", "form", "free", "holding", "plain", "recipe", "slips", "table"}
+        for name in caches - fields.keys():
             vars(system).pop(name, None)
         return system
 

@@ -231,7 +231,7 @@ def test_runs_are_those_of_jax(seed: int, time_step: float, monkeypatch: pytest.
     compiled = run()
     assert _run.programs(system, (system.dimension + system.is_driven,), system.dimension) is not None
     monkeypatch.setattr(_run, "programs", lambda *_, **__: None)
-    monkeypatch.setattr(_run, "values", lambda *_: None)
+    monkeypatch.setattr(_run, "values", lambda *_, **__: None)
     orbit = run()
     assert compiled.outcome == orbit.outcome or (time_step > 0.1 and compiled.outcome and orbit.outcome)
     assert len(compiled) == len(orbit)

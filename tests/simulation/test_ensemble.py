@@ -362,7 +362,10 @@ ONE = {"restricted_velocity": (0.3, 1.0)}
 test_bad_arguments_are_refused = refusals(
     ({"restricted_velocity": [[1, 0]], "configuration": [np.ones((3, 3))]}, "lie in SE.*This is member 0"),
     ({"restricted_velocity": np.ones((2, 2)), "configuration": np.eye(3)[None]}, "1 of configuration"),
-    ({"displacement": [np.eye(3), nh.SE(2).exp([0, 0, 1.0])]}, "lie on the displacement variety.*This is member 1"),
+    (
+        {"displacement": [np.eye(3), nh.SE(2).exp(np.array([0, 0, 1.0]))]},
+        "lie on the displacement variety.*This is member 1",
+    ),
     ({}, "exactly one of"),
     ({**ONE, "momentum": [[1, 0]]}, "restricted_velocity and momentum"),
     (ONE, "`simulate` runs a single one"),

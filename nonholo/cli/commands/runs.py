@@ -228,7 +228,7 @@ def write_page(source: str, ask: Callable[[], Loaded], output: Path | None, *, b
         with store_errors(USAGE):
             io.places.check_file(output, overwrite=overwrite, where="nonholo explore -o")
     if source not in built_in() and Path(source).is_dir():
-        with store_errors(FAILED):
+        with store_errors(USAGE):
             orbit = io.load_orbit(source)
     else:
         request = ask()

@@ -28,7 +28,7 @@ from nonholo.groups import AbstractMatrixGroup
 _ROWS, _RANK = 5, 4  # of matrices and of constraints that are tried
 _REMEDY = "Only the principal branch is computed (`simulate`)."
 _DETOURS = 2  # by which paths are followed again
-_RIDGE = 1e-16  # relative, of normal equations, lest they be singular: Newton's method slows down there
+_RIDGE = 1e-16  # relative, of triangles of least squares, lest they be singular
 _LINEAR = 1e-8  # relative bend of the sum of all points, whose subspace is moved in parallel
 
 
@@ -87,10 +87,9 @@ class Section(Equations):
 
     def solve(self, x: Inexact[Array, "... m"], right: Inexact[Array, "... e"]) -> Inexact[Array, "... m"]:
         """Return the move that changes the residual most nearly by the right-hand side."""
-        J = self.slope(x)
-        normal = np.swapaxes(J.conj(), -1, -2) @ np.concatenate([J, right[..., None]], axis=-1)
-        ridge = _RIDGE * np.trace(normal, axis1=-2, axis2=-1)[..., None, None] * np.eye(x.shape[-1])
-        return np.linalg.solve(normal[..., :-1] + ridge, normal[..., -1:])[..., 0]
+        Q, R = np.linalg.qr(self.slope(x))
+        ridge = _RIDGE * np.abs(R).max((-2, -1), keepdims=True) * np.eye(x.shape[-1])
+        return np.linalg.solve(R + ridge, np.swapaxes(Q.conj(), -1, -2) @ right[..., None])[..., 0]
 
     def regularity(self, x: Inexact[Array, "... m"]) -> Float[np.ndarray, "..."]:
         """Return the least singular value of the derivative of the momenta along S, one at the identity."""
