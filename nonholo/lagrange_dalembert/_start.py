@@ -198,9 +198,16 @@ def _constraints(system: Any, q: Array, v: Array) -> tuple[Array, Array]:
     return equations.forms(system, q), equations.constraint(system, q, v)
 
 
-def _kinetics(*at: Any) -> tuple[Array, ...]:
+def _kinetics(system: Any, q: Array, v: Array) -> tuple[Array, ...]:
     """Return L, its slopes, the second of which is the momentum, and the scaled matrix of the continuous equations."""
-    return equations.lagrangian(*at), *equations.slopes(*at), equations.acceleration_matrix(*at)[0]
+
+    def of_velocity(v: Array) -> tuple[Array, tuple[Array, ...]]:
+        value, (along_q, p) = jax.value_and_grad(equations.lagrangian, argnums=(1, 2))(system, q, v)
+        return p, (value, along_q, p)
+
+    kinetic, values = jax.jacfwd(of_velocity, has_aux=True)(v)
+    A = equations.forms(system, q)
+    return *values, equations.bordered_matrix(kinetic, A, A, kinetic)[0]
 
 
 def momentum(system: Any, q: np.ndarray, v: np.ndarray) -> np.ndarray:

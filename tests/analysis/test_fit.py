@@ -102,7 +102,7 @@ def test_top_is_found_from_its_gyroscope() -> None:
 def test_exact_record_is_fitted_exactly(caplog: pytest.LogCaptureFixture) -> None:
     """Without noise the body, the start and the orbit are recovered to rounding, from other numbers far away.
 
-    A record of another length has the same program.
+    A record of another length has the same program. A fit converges where the noise is given, too.
     """
     orbit = nh.simulate(SLEIGH, restricted_velocity=(1.0, 0.5), configuration=nh.SE(2).exp([0.7, 1.0, 2.0]), steps=60)
     record = {"t": orbit.time, "x": orbit.position[:, 0], "y": orbit.position[:, 1], "theta": orbit.heading}
@@ -111,6 +111,7 @@ def test_exact_record_is_fitted_exactly(caplog: pytest.LogCaptureFixture) -> Non
     np.testing.assert_allclose(found.orbit.configuration, orbit.configuration, atol=1e-10)
     with jax.log_compiles(), caplog.at_level("WARNING"):
         shorter = nh.fit(_sleigh, {name: column[:50] for name, column in record.items()}, GUESS)
+        assert nh.fit(_sleigh, record, GUESS, noise=0.01).outcome == "converged"
     assert "by_kind" not in caplog.text
     assert shorter.residuals[0]["turn"].shape == (50, 1)
     np.testing.assert_allclose([*shorter.parameters.values()], [0.7, 0.4], rtol=1e-10)
@@ -295,11 +296,12 @@ def test_profiles_hold_more_often_than_the_covariance() -> None:
 
 @pytest.mark.profile("routes", instead="test_top_is_found_from_its_gyroscope")
 def test_poses_of_a_top_are_read_as_quaternions() -> None:
-    """The CSV columns of an orbit in space, without noise, give the body back."""
+    """The columns of an orbit in space, without noise, give the body back: those of its table, and of a CSV file."""
     orbit = nh.simulate(TOP, restricted_velocity=(0.9, -0.7), configuration=nh.SO(3).exp([0.3, 0.2, 0.1]), steps=60)
     record = {"t": orbit.time, **dict(zip(("qw", "qx", "qy", "qz"), orbit.pose.T, strict=True))}
-    found = nh.fit(_top, record, {"c": np.array([0.2, -0.1]), "b": 1.1})
-    np.testing.assert_allclose(found.parameters["c"], [0.3, -0.2], rtol=1e-9)
+    for each in (record, orbit.to_pandas()):
+        found = nh.fit(_top, each, {"c": np.array([0.2, -0.1]), "b": 1.1})
+        np.testing.assert_allclose(found.parameters["c"], [0.3, -0.2], rtol=1e-9)
 
 
 def test_lists_of_traced_numbers_are_refused() -> None:

@@ -49,7 +49,8 @@ class Problem:
         """Return by kind the residuals and both derivatives, computed once for each point."""
         if self.last is None or not np.array_equal(self.last[0], point):
             starts = point[self.count :].reshape(self.shape)
-            self.last = point.copy(), self.residuals(point[: self.count], starts, self.poses, self.kinds)
+            measured = {kind: self.kinds[kind] for kind in self.there}
+            self.last = point.copy(), self.residuals(point[: self.count], starts, self.poses, measured)
         return self.last[1]
 
     def rows(self, point: np.ndarray) -> np.ndarray:
@@ -108,7 +109,8 @@ class Estimate(NamedTuple):
         lengths: Of the columns of J.
         triangle: R, of columns of length 1.
         units: In which the growth of the loss is distributed as that of squares is, for each kind.
-        cosine: That between the residuals and the nearest direction in which they change: 0 at a minimum.
+        cosine: That between the residuals and the nearest direction in which they change: 0 at a minimum. Where the
+            residuals are smaller than the noise in sum, the way to the minimum in units of the errors.
     """
 
     levels: np.ndarray
@@ -158,7 +160,7 @@ def estimate(problem: Problem, point: np.ndarray, noise: np.ndarray, loss: str) 
     levels = noise * np.sqrt(np.bincount(kind_of, at.first**2) / _NORMAL[loss] / free)
     left = at.first / efficiency[kind_of]
     units = np.sqrt(efficiency / np.sqrt(_NORMAL[loss]))
-    cosine = float(np.linalg.norm(Q.T @ left) / (np.linalg.norm(left) or 1.0))
+    cosine = float(np.linalg.norm(Q.T @ left) / max(np.linalg.norm(left), 1.0))
     return Estimate(levels, counts, shares, lengths, R, units, cosine)
 
 

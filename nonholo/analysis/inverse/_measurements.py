@@ -26,7 +26,7 @@ Names = dict[str, tuple[tuple[str, ...], ...]]
 _NAMES: dict[AbstractMatrixGroup, Names] = {
     SE(2): {"position": (("x", "y"),), "turn": (("theta",), ("heading",)), "rate": (("omega",),)},
     SO(3): {
-        "turn": (("qw", "qx", "qy", "qz"), ("quaternion",)),
+        "turn": (("qw", "qx", "qy", "qz"), ("quaternion",), tuple(f"quaternion_{axis}" for axis in "wxyz")),
         "rate": (("omega_x", "omega_y", "omega_z"), ("angular_velocity",)),
     },
 }

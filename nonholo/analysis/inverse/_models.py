@@ -75,9 +75,12 @@ def _compile_on_group(_maker: Any, system_of: Callable[..., Any], shapes: Shapes
     def one(time_step: Array, numbers: Array, start: Array, g: Array, kinds: dict[str, Array]) -> tuple[Any, Any]:
         system = system_of(by_name(shapes, numbers))
         begin = {"restricted_velocity": start[: system.rank], "configuration": _first_pose(system, start, g)}
-        orbit = rollout(discretize(system, time_step), **begin, steps=len(kinds["turn"]) - 1)
-        inertia = jnp.asarray(system.constrained_inertia)
-        velocity = jnp.linalg.solve(inertia, orbit.restricted_momentum.T).T @ system.constraint_subspace
+        orbit = rollout(discretize(system, time_step), **begin, steps=len(next(iter(kinds.values()))) - 1)
+
+        def velocity() -> Array:
+            inertia = jnp.asarray(system.constrained_inertia)
+            return jnp.linalg.solve(inertia, orbit.restricted_momentum.T).T @ system.constraint_subspace
+
         rows = {kind: _gap(system.group, kind, values, orbit, velocity) for kind, values in kinds.items()}
         return rows, rows
 
@@ -108,14 +111,14 @@ def _in_few_lengths(run: Callable[..., Any], system: Any, *arguments: Any) -> An
     return {kind: tuple(x[:, :nodes] for x in part) for kind, part in parts.items()}
 
 
-def _gap(group: Any, kind: str, values: Array, orbit: Any, velocity: Array) -> Array:
+def _gap(group: Any, kind: str, values: Array, orbit: Any, velocity: Callable[[], Array]) -> Array:
     """Return measured minus computed numbers, zero where nothing was measured; of turns the vector of the rotation."""
     there = jnp.isfinite(values)
     values, g = jnp.where(there, values, 1.0), orbit.configuration
     if kind == "position":
         gap = values - g[:, :-1, -1]
     elif kind == "rate":
-        gap = values - velocity[:, : values.shape[1]]
+        gap = values - velocity()[:, : values.shape[1]]
     elif group == SE(2):
         cos, sin = g[:, 0, 0], g[:, 1, 0]
         c, s = jnp.cos(values[:, 0]), jnp.sin(values[:, 0])
@@ -214,7 +217,7 @@ class PoseReadings(NamedTuple):
     def gap(self, kind: str, values: Array, system: Any, states: Any) -> Array:
         """Return measured minus computed numbers, zero where nothing was measured."""
         velocity = jax.vmap(functools.partial(equations.inverse_legendre, system.plain))
-        return _gap(system.group, kind, values, states, velocity(states.configuration, states.momentum))
+        return _gap(system.group, kind, values, states, lambda: velocity(states.configuration, states.momentum))
 
 
 class CoordinateModel(NamedTuple):
