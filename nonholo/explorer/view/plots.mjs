@@ -81,13 +81,19 @@ export const curve = (pen, points) => {
   pen.stroke();
 };
 
-/** Momenta along the constraint: levels of energy, lines of equilibria, the flow, and the discrete states as dots. */
+/**
+ * Momenta along the constraint: levels of energy, lines of equilibria, the flow, and the discrete states as dots.
+ *
+ * It is drawn about zero, or about the middle of the ranges of a replay, which it names.
+ */
 export class PhasePortrait extends Picture {
   frame() {
     const { orbit, flow } = this.data;
+    this.middle = flow.ranges ? flow.back() : [0, 0];
     let reach = 1e-12;
-    for (let turn = 0; turn < 64; turn++) reach = Math.max(reach, ...this.level(1, turn).map(Math.abs));
-    for (const r of orbit.r) reach = Math.max(reach, Math.abs(r));
+    const widen = (r, i) => (reach = Math.max(reach, Math.abs(r - (this.middle[i % orbit.rank] ?? 0))));
+    for (let turn = 0; turn < 64; turn++) this.level(1, turn).forEach(widen);
+    orbit.r.forEach(widen);
     this.unit = (Math.min(this.w, this.h) / 2 - 14) / (1.22 * reach);
     this.reach = reach;
     this.flow = flow;
@@ -99,11 +105,11 @@ export class PhasePortrait extends Picture {
   }
 
   place([r1, r2]) {
-    return [this.w / 2 + this.unit * r1, this.h / 2 - this.unit * r2];
+    return [this.w / 2 + this.unit * (r1 - this.middle[0]), this.h / 2 - this.unit * (r2 - this.middle[1])];
   }
 
   momentumAt(x, y) {
-    return [(x - this.w / 2) / this.unit, (this.h / 2 - y) / this.unit];
+    return [this.middle[0] + (x - this.w / 2) / this.unit, this.middle[1] + (this.h / 2 - y) / this.unit];
   }
 
   background(pen) {
@@ -128,10 +134,12 @@ export class PhasePortrait extends Picture {
       this.dot(pen, ...this.place(orbit.r.subarray(orbit.rank * k)), 2.3, color);
     }
     pen.fillStyle = look.muted;
+    const range = ([low, high]) => [low, high].map((x) => short(Math.abs(x) < 1e-9 * (high - low) ? 0 : x)).join(" to ");
+    const [first, second] = body.momenta.map((name, i) => (flow.ranges?.[i] ? `${name}: ${range(flow.ranges[i])}` : name));
     pen.textAlign = "right";
-    pen.fillText(body.momenta[0], w - 8, h / 2 - 6);
+    pen.fillText(first, w - 8, flow.ranges ? h - 8 : h / 2 - 6);
     pen.textAlign = "left";
-    pen.fillText(body.momenta[1], w / 2 + 6, 14);
+    pen.fillText(second, flow.ranges ? 12 : w / 2 + 6, 14);
   }
 
   /** Shade momenta by how many real values the map has there: the more, the darker; borders are folds. */

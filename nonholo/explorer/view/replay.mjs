@@ -17,8 +17,12 @@ export function replayed({ time, energy, frames, momentum, coordinates, names, d
   return { count, rank: 2, outcome, r: numbersOf(momentum), energy: energies, error, frames: numbersOf(frames), coordinate, drawing, time: (k) => times[k] };
 }
 
-/** Stands in for the flow in the phase portrait: there is no closed form to draw. */
-export const noFlow = (orbit) => ({ size: 0, back: () => [0, 0], attracting: null, at: () => [NaN, NaN], orbit });
+/** Stands in for the flow in the phase portrait: there is no closed form to draw, and the momenta have ranges. */
+export function noFlow(orbit) {
+  const ranges = [0, 1].map(() => [Infinity, -Infinity]);
+  orbit.r.forEach((x, i) => (ranges[i % 2] = [Math.min(ranges[i % 2][0], x), Math.max(ranges[i % 2][1], x)]));
+  return { size: 0, ranges, back: () => ranges.map(([low, high]) => (low + high) / 2), attracting: null, at: () => [NaN, NaN], orbit };
+}
 
 const SMALLEST = 7; // the radius of a body is at least the extent of its path over this
 const LOW = 0.08, HIGH = 0.18, TOP = 0.26; // heights of the body and of what it carries, in radii of its first part
