@@ -296,10 +296,10 @@ def test_profiles_hold_more_often_than_the_covariance() -> None:
 
 @pytest.mark.profile("routes", instead="test_top_is_found_from_its_gyroscope")
 def test_poses_of_a_top_are_read_as_quaternions() -> None:
-    """The columns of an orbit in space, without noise, give the body back: those of its table, and of a CSV file."""
+    """The columns of an orbit in space, without noise, give the body back: its own, and those of a CSV file."""
     orbit = nh.simulate(TOP, restricted_velocity=(0.9, -0.7), configuration=nh.SO(3).exp([0.3, 0.2, 0.1]), steps=60)
     record = {"t": orbit.time, **dict(zip(("qw", "qx", "qy", "qz"), orbit.pose.T, strict=True))}
-    for each in (record, orbit.to_pandas()):
+    for each in (record, orbit):
         found = nh.fit(_top, each, {"c": np.array([0.2, -0.1]), "b": 1.1})
         np.testing.assert_allclose(found.parameters["c"], [0.3, -0.2], rtol=1e-9)
 

@@ -10,6 +10,7 @@ from nonholo.base.checks import array, checked_path, error, printable, shown, tr
 from nonholo.base.limits import read_text
 from nonholo.base.types import Float
 from nonholo.groups import SE, SO, AbstractMatrixGroup
+from nonholo.orbit import AbstractOrbit
 
 Kinds = dict[str, Float[np.ndarray, "T K _"]]
 """Measured numbers of all trials by kind, "position", "turn" and "rate"; NaN where nothing was measured."""
@@ -18,7 +19,7 @@ WHERE = "fit(measurements=...)"
 _OFF = 1e-3  # of a time step, by which times of samples may miss a node
 _LARGEST = 1 << 28  # bytes of a CSV file
 _HUGE = 1e300  # nodes
-_TABLES = "Pass a DataFrame, a Dataset, a dictionary of columns, the path of a CSV file, or a list of them."
+_TABLES = "Pass an orbit, a DataFrame, a Dataset, a dictionary of columns, the path of a CSV file, or a list of them."
 _COLUMN = "Pass real numbers, times in the unit of the velocities; NaN marks what was not measured."
 
 Names = dict[str, tuple[tuple[str, ...], ...]]
@@ -79,9 +80,10 @@ def _on_nodes(columns: Names, tables: list[dict[str, Any]], nodes: list[np.ndarr
 
 
 def _columns(table: Any) -> dict[str, Any]:
-    """Return the columns of a file, a table or a dataset by name, not yet looked at."""
+    """Return the columns of a file, an orbit, a table or a dataset by name, not yet looked at."""
     if isinstance(table, str | Path):
         return _of_file(checked_path(WHERE, table))
+    table = table.to_pandas() if isinstance(table, AbstractOrbit) else table
     try:
         names = list(table) if isinstance(table, Mapping) or not hasattr(table, "variables") else list(table.variables)
         columns = {str(name): table[name] for name in names}
