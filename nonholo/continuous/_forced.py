@@ -235,7 +235,7 @@ def heads(
     body_vectors = (acting.vectors @ forced.group.matrix_from_pose(poses))[..., :n].reshape(len(momenta), -1)
     pull, rub = (np.abs(V @ acts).max(initial=0.0) for acts in (acting.levers, acting.friction))
     rates = np.concatenate([applied(V, momenta), np.sqrt(pull * np.abs(body_vectors)), rub * one], axis=1)
-    units = _series.powers_of_two(rates)
+    units = _series.power_of_two(rates)
     return np.concatenate([momenta, body_vectors, one], axis=1) / units[:, None], units
 
 
