@@ -250,7 +250,11 @@ class AbstractSystem(Keeper, abc.ABC):
             configuration: g; needed where the constraint is fixed in space, where they are those of the spatial
                 momentum, $S\,\mathrm{Ad}^*_{g^{-1}}p$.
         """
-        return self.restrict(momentum)
+        return self.components_along(self._full(momentum), configuration)
+
+    def components_along(self, momentum: Covectors, configuration: Poses | None) -> Inexact[Array, "... k"]:
+        """Return the components of `restrict_at` for a momentum that is checked."""
+        return applied(self.constraint_subspace, momentum)
 
     def restricted_velocity(self, restricted_momentum: Along, configuration: Poses | None = None) -> Along:
         """Return the velocity, in rows of the constraint subspace, that has these momenta along it.
@@ -304,8 +308,11 @@ class AbstractSystem(Keeper, abc.ABC):
 
     def restrict(self, momentum: Covectors) -> Inexact[Array, "... k"]:
         """Return the components of a momentum along the rows of the constraint subspace."""
+        return applied(self.constraint_subspace, self._full(momentum))
+
+    def _full(self, momentum: Array) -> Array:
         where, remedy = lambda: f"{type(self).__name__}.restrict(momentum=...)", "Pass a full momentum."
-        return applied(self.constraint_subspace, trailing(where, momentum, (self.group.dim,), remedy))
+        return trailing(where, momentum, (self.group.dim,), remedy)
 
     def _along(self, name: str, value: Array) -> Array:
         remedy = "Pass one number for each row of the constraint subspace."
@@ -411,11 +418,6 @@ class AbstractLRSystem(AbstractSystem):
             raise error(where, "be given where the constraint is fixed in space", "none", remedy)
         return trailing(where, configuration, (self.group.size, self.group.size), remedy)
 
-    def restrict_in_space(self, momentum: Float[Array, "... dim"], configuration: Poses) -> Along:
-        r"""Return the components $S\,\mathrm{Ad}^*_{g^{-1}}p$ of the spatial momentum of a body momentum."""
-        g = self._at(configuration)
-        return self.restrict(self.group.coadjoint(self.group.inverse(g), momentum))
-
     def carried(self, configuration: Poses) -> Float[Array, "... dim dim"]:
         r"""Return $\mathrm{Ad}_g$: the constraint is fixed in space."""
         return self.group.adjoint(self._at(configuration))
@@ -432,9 +434,10 @@ class AbstractLRSystem(AbstractSystem):
         r"""Return $g^{-1}Dg$."""
         return self.group.inverse(configuration) @ displacement @ configuration
 
-    def restrict_at(self, momentum: Covectors, configuration: Poses | None = None) -> Inexact[Array, "... k"]:
-        """Return the components of the spatial momentum along the constraint subspace (`restrict_in_space`)."""
-        return self.restrict_in_space(momentum, self._at(configuration))
+    def components_along(self, momentum: Covectors, configuration: Poses | None) -> Inexact[Array, "... k"]:
+        r"""Return the components $S\,\mathrm{Ad}^*_{g^{-1}}p$ of the spatial momentum along the subspace."""
+        spatial = self.group.coadjoint(self.group.inverse(self._at(configuration)), momentum)
+        return applied(self.constraint_subspace, spatial)
 
     def restricted_velocity(self, restricted_momentum: Along, configuration: Poses | None = None) -> Along:
         """Return the spatial velocity, in rows of the constraint subspace, that has these spatial momenta along it."""

@@ -31,7 +31,8 @@ _DIFFERENCES = np.array([45.0, -9.0, 1.0]) / (60 * _OFFSET)  # of order 6, at on
 _SAME = """
     group is_spatial has_blade homogeneous_mass_tensor inertia_operator inertia_along constraint_subspace annihilator
     rank canonical frame frame_map inverse_frame_map frame_pose to_canonical from_canonical carried
-    moved in_body constraint_poses restrict_at restricted_velocity restricted_momentum momenta_along constrained_energy
+    moved in_body constraint_poses components_along restricted_velocity restricted_momentum momenta_along
+    constrained_energy
 """
 """Properties that are those of the body that moves."""
 
