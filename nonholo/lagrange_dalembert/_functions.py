@@ -18,7 +18,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import array, checked_name, error, instance, is_traced, number, shape_of, shown
+from nonholo.base.checks import array, assign, checked_name, error, instance, is_traced, number, shape_of, shown
 from nonholo.base.numerics import double_precision
 from nonholo.base.progress import compiling
 from nonholo.base.traced import TracedFunction, call_in_blocks, rows_above
@@ -403,7 +403,7 @@ class AbstractParametricSystem(AbstractCoordinateSystem[DiscretizationT, OrbitT]
         if "function" in parts:
             arguments = (jax.ShapeDtypeStruct((), float), *shapes, *self._shapes_given)
             parts["function"] = checked_value(where, parts["function"], of, arguments, (n,), of)
-        object.__setattr__(self, "force", force_of(parts))
+        assign(self, force=force_of(parts))
 
     def _with_force(self, force: Any) -> Any:
         """Return the force with another one, which may take parameters or do without; beside one a table alone."""
@@ -428,11 +428,9 @@ class AbstractParametricSystem(AbstractCoordinateSystem[DiscretizationT, OrbitT]
     def _trace(self, name: str, of: str, arguments: tuple[Any, ...], check: Any, *demands: Any) -> None:
         """Put a function as JAX traces it now in its own place, where there is one; the first of all is needed."""
         if (function := getattr(self, name)) is not None or name == self.functions[0]:
-            arguments, where = (
-                (*arguments, *self._time(name), *self._shapes_given),
-                f"{type(self).__name__}({name}=...)",
-            )
-            object.__setattr__(self, name, check(where, function, of, arguments, *demands))
+            arguments = (*arguments, *self._time(name), *self._shapes_given)
+            where = f"{type(self).__name__}({name}=...)"
+            assign(self, **{name: check(where, function, of, arguments, *demands)})
 
     def with_parameters(self, **numbers: Any) -> Self:
         r"""Return the same system with other numbers of some of its parameters; nothing is compiled again.

@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Self
 import jax
 import numpy as np
 
-from nonholo.base.checks import error, shown
+from nonholo.base.checks import assign, error, shown
 from nonholo.base.memo import memo
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float, Int
@@ -62,7 +62,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         """Steps with impacts have no impulses in the rows at their ends: others act at the wall."""
         if self.is_discrete and self.has_impacts.any():
             cut = self.has_impacts[: len(self.multipliers), None]
-            object.__setattr__(self, "multipliers", np.where(cut, np.nan, self.multipliers))
+            assign(self, multipliers=np.where(cut, np.nan, self.multipliers))
 
     @abc.abstractmethod
     def _configurations(self) -> str:

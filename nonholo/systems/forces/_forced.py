@@ -15,7 +15,7 @@ from typing import Any, ClassVar, cast
 import numpy as np
 
 from nonholo.base.calls import name_of, note_fault, number_of, numbers_of
-from nonholo.base.checks import array, choice, error, shown, trailing
+from nonholo.base.checks import array, assign, choice, error, shown, trailing
 from nonholo.base.numerics import applied, exponential_increment, inverse_of
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
@@ -137,8 +137,8 @@ class Forced(AbstractSystem):
         for each in terms:
             if not callable(each):
                 each.check(inside.group)
-        object.__setattr__(self, "potential", terms if len(terms) > 1 else terms[0] if terms else None)
-        object.__setattr__(self, "force", _friction.force_of(self._checked_parts()))
+        assign(self, potential=terms if len(terms) > 1 else terms[0] if terms else None)
+        assign(self, force=_friction.force_of(self._checked_parts()))
 
     def _checked_parts(self) -> dict[str, Any]:
         """Return what the force is made of, checked against the system."""
