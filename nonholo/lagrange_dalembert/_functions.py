@@ -19,6 +19,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.checks import array, assign, checked_name, error, instance, is_traced, number, shape_of, shown
+from nonholo.base.memo import Keeper
 from nonholo.base.numerics import double_precision
 from nonholo.base.progress import compiling
 from nonholo.base.traced import TracedFunction, call_in_blocks, rows_above
@@ -141,7 +142,7 @@ _look_up = jax.jit(_row_of_table)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class ForceTable:
+class ForceTable(Keeper):
     """Forces of the steps, one row a step; after the last one nothing acts.
 
     Attributes:

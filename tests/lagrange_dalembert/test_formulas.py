@@ -150,6 +150,14 @@ def test_rows_of_tables_are_looked_up(search: int) -> None:
         np.testing.assert_array_equal([table.row(jnp.asarray(step)) for step in steps], found[:-1])
 
 
+def test_pickles_of_tables_hold_their_rows_once() -> None:
+    """The rows that formulas look up are no part of a pickle: it has the same bytes before and after them."""
+    table = ForceTable.of(np.ones((5, 3)))
+    before = pickle.dumps(table)
+    assert np.all(table.address > 0)
+    assert pickle.dumps(table) == before
+
+
 def test_tables_are_data_of_one_program() -> None:
     """A free particle moves by sums of rows, of tables of any length, by the program of the first; families differ."""
     rng, h, start, first = np.random.default_rng(0), 0.1, np.array([0.3, -0.2]), None
