@@ -4,7 +4,6 @@ Parameters are numbers of a system by name, which all of its functions take last
 a local 64-bit scope and gives NumPy arrays.
 """
 
-import contextlib
 import dataclasses
 import difflib
 import functools
@@ -526,7 +525,6 @@ def rows_of(function: Any, rows: Int[np.ndarray, "k"]) -> Any:
 
 
 SYSTEM = "a system in coordinates"
-_calls: set[tuple[Any, Any]] = set()
 
 
 @functools.cache
@@ -564,10 +562,8 @@ def place(system: Any, q: Any, time: Any) -> Any:
 def in_double(function: Callable[..., Any], system: Any, *arguments: Any) -> Any:
     """Call a JAX function of a system, compiled once for all of its numbers, in 64 bits; return NumPy arrays."""
     family, numbers = system.form, system.numbers
-    with double_precision(), contextlib.nullcontext() if (function, family) in _calls else compiling(SYSTEM, family):
-        result = jax.tree.map(np.asarray, _compile(function)(family, numbers, *arguments))
-    _calls.add((function, family))
-    return result
+    with double_precision(), compiling(SYSTEM, family, (function, family)):
+        return jax.tree.map(np.asarray, _compile(function)(family, numbers, *arguments))
 
 
 def in_blocks(function: Callable[..., Any], system: Any, *columns: np.ndarray) -> list[np.ndarray]:

@@ -64,7 +64,7 @@ def code_of(family: Any, what: tuple[Any, ...], write: Write, search: int = 1) -
     Raises:
         UntranslatableError: `write` cannot make formulas of it.
     """
-    with compiling(SYSTEM, family):
+    with compiling(SYSTEM, family, (family, what)):
         return machine_code(write, _file(family, what), search)
 
 
