@@ -164,12 +164,10 @@ def impulse_of(discrete: Scheme, forced: Forced | None, controls: Any, steps: in
     rows = (0.0 if rows is None else rows) + forced.rows(np.arange(steps + 1))
     if is_balanced(discrete, forced):
         return None, rows
-    propagator = None
-    if forced.friction is not None and not forced.is_spatial:
-        propagator = forced.propagator(jnp.asarray(forced.constraint_subspace.T), half)
+    kick = None if forced.is_spatial else forced.kick_at(forced.group.identity, half)
 
     def impulse(r: Array, g: Array, row: Array) -> Array:
-        return forced.impulse(r, g, forced.potential_force(g) + row, half, propagator)
+        return forced.impulse(r, forced.potential_force(g) + row, half, kick or forced.kick_at(g, half))
 
     return impulse, rows
 

@@ -369,16 +369,19 @@ class Forced(AbstractSystem):
         blocks = exponential_increment(tau * block)[..., :k, :] + np.eye(k, 3 * k)
         return blocks.__array_namespace__().stack([blocks[..., j * k : (j + 1) * k] for j in range(3)])
 
-    def impulse(self, r: Array, g: Array, constant: Array, tau: Array, propagator: Any = None) -> Covectors:
+    def kick_at(self, g: Poses, tau: Array) -> tuple[Array, ...]:
+        r"""Return what kicks over a time take from poses: $E$ and $E B^{-1}$, with friction V and W as well."""
+        E = self.directions(g)
+        to_velocity = E @ inverse_of(E.swapaxes(-1, -2) @ self.inertia_operator @ E)
+        return E, to_velocity, *(() if self.friction is None else self.propagator(E, tau)[1:])
+
+    def impulse(self, r: Array, constant: Array, tau: Array, kick: tuple[Array, ...]) -> Covectors:
         """Return the impulses of constant body covectors and friction over a time, as `impulses`."""
         if self.friction is None:
             return tau * constant
-        E = self.directions(g)
-        along = E.swapaxes(-1, -2)
-        _, push, gather = self.propagator(E, tau) if propagator is None else propagator
-        integral = push @ r[..., None] + gather @ (along @ constant[..., None])
-        velocity = E @ inverse_of(along @ self.inertia_operator @ E) @ integral
-        return tau * constant + self.friction.covector(velocity[..., 0])
+        E, to_velocity, push, gather = kick
+        integral = push @ r[..., None] + gather @ (E.swapaxes(-1, -2) @ constant[..., None])
+        return tau * constant + self.friction.covector((to_velocity @ integral)[..., 0])
 
     def impulses(
         self,
@@ -405,21 +408,22 @@ class Forced(AbstractSystem):
             faults: Gets what a force says that is not finite: its impulse is NaN then.
         """
         constant, faults = self.potential_force(g) + self.rows(steps), {} if faults is None else faults
+        if self.function is None and self.friction is None:
+            return tau * constant
+        kicks = self.kick_at(g, tau)
         if self.function is None:
-            return self.impulse(r, g, constant, tau)
-        E = self.directions(g)
-        to_velocity = E @ inverse_of(E.swapaxes(-1, -2) @ self.inertia_operator @ E)
+            return self.impulse(r, constant, tau, kicks)
         covectors = np.empty((len(r), self.group.dim))
-        E, to_velocity = (np.broadcast_to(x, (len(r), *x.shape[-2:])) for x in (E, to_velocity))
-        for k in range(len(r)):
+        each = zip(*(np.broadcast_to(x, (len(r), *x.shape[-2:])) for x in kicks), strict=True)
+        for k, kick in enumerate(each):
 
-            def impulse(velocity: np.ndarray, k: int = k) -> np.ndarray:
+            def impulse(velocity: np.ndarray, k: int = k, kick: tuple[Array, ...] = kick) -> np.ndarray:
                 force = np.full(self.group.dim, np.nan)
                 with note_fault(faults, "force"):
                     force = self.driving_force(time[k], g[k], velocity)
-                return self.impulse(r[k], g[k], constant[k] + force, tau)
+                return self.impulse(r[k], constant[k] + force, tau, kick)
 
-            covectors[k] = midpoint_impulse(impulse, r[k], E[k], to_velocity[k])
+            covectors[k] = midpoint_impulse(impulse, r[k], *kick[:2])
         return covectors
 
     def work(self, time: np.ndarray, g: np.ndarray, velocity: np.ndarray, step: np.ndarray) -> Float[np.ndarray, "K"]:
