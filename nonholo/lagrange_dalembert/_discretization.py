@@ -22,9 +22,9 @@ from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import _orbit as orbits
 from nonholo.lagrange_dalembert import compiled
-from nonholo.lagrange_dalembert._functions import ROWS, configurations, in_blocks, in_double, places, room
 from nonholo.lagrange_dalembert._newton import orientation, solve
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
+from nonholo.lagrange_dalembert.functions import ROWS, configurations, in_blocks, in_double, places, room
 from nonholo.orbit import AbstractStepper, First, Rows, State
 from nonholo.systems import AbstractCoordinateDiscretization, OrbitT, Start, one_start
 

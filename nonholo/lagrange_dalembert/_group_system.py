@@ -13,7 +13,7 @@ from nonholo.base.checks import assign, instance, text
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.lagrange_dalembert import _functions as tracing
+from nonholo.lagrange_dalembert import functions as tracing
 from nonholo.lagrange_dalembert._places import Poses
 from nonholo.systems import checked_group, group_mass_tensor, inertia_form, terms_of
 

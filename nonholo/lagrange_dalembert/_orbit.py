@@ -17,7 +17,7 @@ from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float, Int
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert import _equations as equations
-from nonholo.lagrange_dalembert._functions import in_double, places, room
+from nonholo.lagrange_dalembert.functions import in_double, places, room
 from nonholo.orbit import AbstractMotion, AbstractOrbit, First
 from nonholo.systems import AbstractCoordinateSystem, Start
 

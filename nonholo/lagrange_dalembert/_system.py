@@ -11,7 +11,7 @@ import numpy as np
 from nonholo.base.calls import call
 from nonholo.base.checks import array, assign, choice, count, error, names, shown, text, within_memory
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert import _functions as tracing
+from nonholo.lagrange_dalembert import functions as tracing
 from nonholo.lagrange_dalembert._places import Coordinates
 
 if TYPE_CHECKING:

@@ -15,9 +15,9 @@ from jax import lax
 import nonholo as nh
 from nonholo.base.numerics import double_precision
 from nonholo.lagrange_dalembert import LagrangeDAlembert
-from nonholo.lagrange_dalembert._functions import ForceTable
 from nonholo.lagrange_dalembert.compiled import _run
 from nonholo.lagrange_dalembert.compiled._scalars import LOGIC, OPERATIONS, Formulas, Scalar, UntranslatableError
+from nonholo.lagrange_dalembert.functions import ForceTable
 
 EPS = np.finfo(float).eps
 CYCLE = np.array([2, 0, 1])
