@@ -225,6 +225,18 @@ class AbstractSystem(Keeper, abc.ABC):
         """
         return np.eye(self.group.dim)
 
+    def constraint_velocity(self, velocity: Array, configuration: Poses | None) -> Array:
+        r"""Return a body velocity as the constraint sees it: itself, or $\mathrm{Ad}_g\omega$ in space."""
+        return velocity
+
+    def constraint_momentum(self, momentum: Covectors, configuration: Poses | None) -> Covectors:
+        r"""Return a body momentum as the constraint sees it: itself, or $\mathrm{Ad}^*_{g^{-1}}p$."""
+        return momentum
+
+    def directions(self, configuration: Poses) -> Float[Array, "... dim k"]:
+        r"""Return E, whose columns are admissible body velocities: $S^T$, or $\mathrm{Ad}_{g^{-1}}S^T$."""
+        return np.asarray(self.constraint_subspace).T
+
     def moved(self, configuration: Poses, displacement: Array) -> Poses:
         """Return a pose after a displacement that the constraint sees: g W, or W g where it is fixed in space.
 
@@ -254,7 +266,7 @@ class AbstractSystem(Keeper, abc.ABC):
 
     def components_along(self, momentum: Covectors, configuration: Poses | None) -> Inexact[Array, "... k"]:
         """Return the components of `restrict_at` for a momentum that is checked."""
-        return applied(self.constraint_subspace, momentum)
+        return applied(self.constraint_subspace, self.constraint_momentum(momentum, configuration))
 
     def restricted_velocity(self, restricted_momentum: Along, configuration: Poses | None = None) -> Along:
         """Return the velocity, in rows of the constraint subspace, that has these momenta along it.
@@ -422,6 +434,18 @@ class AbstractLRSystem(AbstractSystem):
         r"""Return $\mathrm{Ad}_g$: the constraint is fixed in space."""
         return self.group.adjoint(self._at(configuration))
 
+    def constraint_velocity(self, velocity: Array, configuration: Poses | None) -> Array:
+        r"""Return $\mathrm{Ad}_g\omega$."""
+        return applied(self.carried(configuration), velocity)
+
+    def constraint_momentum(self, momentum: Covectors, configuration: Poses | None) -> Covectors:
+        r"""Return $\mathrm{Ad}^*_{g^{-1}}p$."""
+        return self.group.coadjoint(self.group.inverse(self._at(configuration)), momentum)
+
+    def directions(self, configuration: Poses) -> Float[Array, "... dim k"]:
+        r"""Return $\mathrm{Ad}_{g^{-1}}S^T$."""
+        return self.group.adjoint(self.group.inverse(configuration)) @ self.constraint_subspace.T
+
     def moved(self, configuration: Poses, displacement: Array) -> Poses:
         """Return W g of a displacement in space."""
         return displacement @ configuration
@@ -433,11 +457,6 @@ class AbstractLRSystem(AbstractSystem):
     def in_body(self, displacement: Array, configuration: Poses) -> Array:
         r"""Return $g^{-1}Dg$."""
         return self.group.inverse(configuration) @ displacement @ configuration
-
-    def components_along(self, momentum: Covectors, configuration: Poses | None) -> Inexact[Array, "... k"]:
-        r"""Return the components $S\,\mathrm{Ad}^*_{g^{-1}}p$ of the spatial momentum along the subspace."""
-        spatial = self.group.coadjoint(self.group.inverse(self._at(configuration)), momentum)
-        return applied(self.constraint_subspace, spatial)
 
     def restricted_velocity(self, restricted_momentum: Along, configuration: Poses | None = None) -> Along:
         """Return the spatial velocity, in rows of the constraint subspace, that has these spatial momenta along it."""

@@ -123,11 +123,7 @@ def roll_out(
 
 def _state_at(discrete: Scheme, r: Array, g: Array) -> NodeState:
     """Return what a policy sees of momenta along the constraint and a pose."""
-    system = discrete.system
-    velocity = system.restricted_velocity(r, g) @ jnp.asarray(system.constraint_subspace)
-    if system.is_spatial:
-        velocity = system.group.adjoint(system.group.inverse(g)) @ velocity
-    return NodeState(g, velocity)
+    return NodeState(g, discrete.system.directions(g) @ discrete.system.restricted_velocity(r, g))
 
 
 def _step_from(

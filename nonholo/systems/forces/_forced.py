@@ -31,8 +31,8 @@ _DIFFERENCES = np.array([45.0, -9.0, 1.0]) / (60 * _OFFSET)  # of order 6, at on
 _SAME = """
     group is_spatial has_blade homogeneous_mass_tensor inertia_operator inertia_along constraint_subspace annihilator
     rank canonical frame frame_map inverse_frame_map frame_pose to_canonical from_canonical carried
-    moved in_body constraint_poses components_along restricted_velocity restricted_momentum momenta_along
-    constrained_energy
+    constraint_velocity constraint_momentum directions moved in_body constraint_poses components_along
+    restricted_velocity restricted_momentum momenta_along constrained_energy
 """
 """Properties that are those of the body that moves."""
 
@@ -351,11 +351,6 @@ class Forced(AbstractSystem):
         table = np.zeros((0, self.group.dim)) if self.table is None else self.table
         after = table.__array_namespace__().zeros((1, self.group.dim))
         return table.__array_namespace__().concatenate([table, after])[np.minimum(steps, len(table))]
-
-    def directions(self, g: Float[Array, "... N N"]) -> Float[Array, "... dim k"]:
-        r"""Return E, whose columns are admissible body velocities: $S^T$, on LR systems $\mathrm{Ad}_{g^{-1}}S^T$."""
-        S = np.asarray(self.constraint_subspace)
-        return self.group.adjoint(self.group.inverse(g)) @ S.T if self.is_spatial else S.T
 
     def propagator(self, E: Float[Array, "... dim k"], tau: Array) -> Float[Array, "3 ... k k"]:
         r"""Return A, V and W of $\dot r = a - Dr$, friction over a time: $r' = Ar + Va$ and $\int r\,dt = Vr + Wa$."""
