@@ -1,9 +1,9 @@
 """Functions of users as JAX traces them, with or without the time step; their parameters; tables of forces."""
 
-from nonholo.lagrange_dalembert.functions._parameters import Parameters
 from nonholo.lagrange_dalembert.functions._system import (
     SYSTEM,
     AbstractParametricSystem,
+    Parameters,
     configurations,
     in_blocks,
     in_double,

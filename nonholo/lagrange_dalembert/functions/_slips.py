@@ -6,20 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from nonholo import systems
 from nonholo.base.checks import error
 from nonholo.lagrange_dalembert.functions._traced import rows_of
-from nonholo.systems import (
-    AbstractCoordinateSystem,
-    DiscretizationT,
-    OrbitT,
-    force_of,
-    parts_of,
-    slips_of,
-    without_slips,
-)
 
 
-class AbstractYieldingSystem(AbstractCoordinateSystem[DiscretizationT, OrbitT]):
+class AbstractYieldingSystem(systems.AbstractCoordinateSystem[systems.DiscretizationT, systems.OrbitT]):
     """A system with forms that may yield, where its force has contacts."""
 
     force: Any
@@ -27,12 +19,13 @@ class AbstractYieldingSystem(AbstractCoordinateSystem[DiscretizationT, OrbitT]):
     @functools.cached_property
     def slips(self) -> tuple[Any, ...]:
         """The contacts whose forms may yield."""
-        return slips_of(parts_of(self.force))
+        return systems.slips_of(systems.parts_of(self.force))
 
     @functools.cached_property
     def holding(self: Any) -> Any:
         """The system while the forms that may yield hold; itself if none may."""
-        return dataclasses.replace(self, force=force_of(without_slips(parts_of(self.force)))) if self.slips else self
+        parts = systems.without_slips(systems.parts_of(self.force))
+        return dataclasses.replace(self, force=systems.force_of(parts)) if self.slips else self
 
     @functools.cached_property
     def free(self) -> Any:
