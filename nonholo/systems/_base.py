@@ -12,7 +12,7 @@ from typing import Any, ClassVar, TypeVar, cast
 
 import numpy as np
 
-from nonholo.base.checks import error, instance, is_traced, shape_of, trailing, within_memory
+from nonholo.base.checks import assign, error, instance, is_traced, shape_of, trailing, within_memory
 from nonholo.base.html import table
 from nonholo.base.memo import Keeper, system_memo
 from nonholo.base.numerics import Factors, applied, factors_of, solve_by_factors
@@ -334,8 +334,7 @@ class AbstractSystem(Keeper, abc.ABC):
 def replace_numbers(system: SystemT, /, **numbers: Array) -> SystemT:
     """Return a system with other numbers, unchecked: they may have axes in front, where its formulas allow them."""
     other = object.__new__(type(system))
-    for name in (*system.leaves, *system.structure):
-        object.__setattr__(other, name, numbers.get(name, getattr(system, name)))
+    assign(other, **{name: numbers.get(name, getattr(system, name)) for name in (*system.leaves, *system.structure)})
     return other
 
 

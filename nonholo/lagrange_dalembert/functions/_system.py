@@ -34,15 +34,11 @@ class Parameters(Mapping[str, Any]):
     def __init__(self, numbers: Any, owner: str = "LagrangeDAlembert") -> None:
         where = f"{owner}(parameters=...)"
         instance(where, numbers, Mapping, "be a mapping of names to numbers", "Pass a dict.")
-        self._hold(
-            {checked_name(where, key, ("time_step",)): _valid_number(where, key, x) for key, x in numbers.items()}
-        )
-
-    def _hold(self, numbers: dict[str, Any]) -> None:
-        self._numbers = numbers
+        names = [checked_name(where, key, ("time_step",)) for key in numbers]
+        self._numbers = {key: _valid_number(where, key, numbers[key]) for key in names}
         self._key = tuple(
             (key, np.shape(value), id(value) if is_traced(value) else np.asarray(value).tobytes())
-            for key, value in numbers.items()
+            for key, value in self.items()
         )
 
     def __getitem__(self, name: str) -> Any:
@@ -81,10 +77,8 @@ class Parameters(Mapping[str, Any]):
             raise error(
                 where, "name parameters of the system", shown(key), f"Did you mean {near[0]}?" if near else remedy
             )
-        other, own = object.__new__(Parameters), self._numbers
-        changes = {key: _valid_number(where, key, value, np.shape(own[key])) for key, value in numbers.items()}
-        other._hold(own | changes)
-        return other
+        changes = {key: _valid_number(where, key, value, np.shape(self[key])) for key, value in numbers.items()}
+        return Parameters(self._numbers | changes)
 
 
 def _brief(value: Any) -> str:
