@@ -55,6 +55,12 @@ def error(where: Owner, requirement: str, got: str, remedy: str) -> ValueError:
     return ValueError("\n".join(map(printable, message.split("\n"))))
 
 
+def assign(thing: Any, /, **values: Any) -> None:
+    """Assign fields of a frozen object, such as arguments that were checked."""
+    for name, value in values.items():
+        object.__setattr__(thing, name, value)
+
+
 def printable(text: str) -> str:
     r"""Return a text from elsewhere as one line that a terminal only shows: what controls it is replaced.
 

@@ -20,6 +20,7 @@ _over: contextvars.ContextVar[Callable[[], bool]] = contextvars.ContextVar("over
 _overs: dict[int, Callable[[], bool]] = {}
 _numbers = itertools.count()
 _announcements: set[Any] = set()
+_calls: set[Any] = set()
 _LOOK = 0.2  # seconds between two looks at the keyboard, where a signal does not end the waiting
 
 
@@ -59,8 +60,11 @@ def is_over() -> bool:
 
 
 @contextlib.contextmanager
-def compiling(name: str, kind: Any) -> Iterator[None]:
-    """Report a wait on standard error, once for a kind of what is compiled."""
+def compiling(name: str, kind: Any, call: Any) -> Iterator[None]:
+    """Report a wait on standard error, once for a kind of what is compiled; a call that has ended compiles nothing."""
+    if call in _calls:
+        yield
+        return
 
     def say() -> None:
         if kind not in _announcements:
@@ -74,6 +78,7 @@ def compiling(name: str, kind: Any) -> Iterator[None]:
         yield
     finally:
         timer.cancel()
+    _calls.add(call)
 
 
 @contextlib.contextmanager

@@ -116,9 +116,8 @@ class ContinuousFlow(AbstractMotion):
 
     def constraint_residual(self, states: Orbit) -> Float[np.ndarray, "K s"]:
         """Return the forbidden velocities."""
-        velocity, system = states.body_velocity, self.system
-        if system.is_spatial:
-            velocity = applied(system.carried(states.configuration), velocity)
+        system = self.system
+        velocity = system.constraint_velocity(states.body_velocity, system.constraint_poses(states))
         return applied(system.annihilator, velocity)
 
     def displacements(self, states: Orbit) -> Float[np.ndarray, "K N N"]:

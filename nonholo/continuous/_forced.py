@@ -200,7 +200,7 @@ def _are_linear(forced: Forced) -> bool:
 def _linear_forces(forced: Forced) -> LinearForces:
     """Return what acts, seen from the canonical frame."""
     group, body, rows = forced.group, forced.canonical, forced.frame_map @ np.asarray(forced.constraint_subspace)
-    n = group.size - group.is_affine  # points have the last number 1, and levers none for it
+    n = group.point_size  # levers have none for the last number of points, which is 1
     vectors, levers = np.zeros((0, group.size)), np.zeros((group.dim, 0, group.size))
     if forced.potential is not None:
         vectors, levers = forced.potential.levers(group)
@@ -235,7 +235,7 @@ def heads(
     body_vectors = (acting.vectors @ forced.group.matrix_from_pose(poses))[..., :n].reshape(len(momenta), -1)
     pull, rub = (np.abs(V @ acts).max(initial=0.0) for acts in (acting.levers, acting.friction))
     rates = np.concatenate([applied(V, momenta), np.sqrt(pull * np.abs(body_vectors)), rub * one], axis=1)
-    units = _series.powers_of_two(rates)
+    units = _series.power_of_two(rates)
     return np.concatenate([momenta, body_vectors, one], axis=1) / units[:, None], units
 
 
@@ -412,7 +412,7 @@ def forced_reaction(forced: Forced, states: Orbit) -> Covectors:
     pull = force + _contact_forces(forced, velocity, force) if forced.slips else force
     acceleration = E @ np.linalg.solve(along @ inertia @ E, along @ pull[..., None])
     missing = (inertia @ acceleration)[..., 0] - force
-    return group.coadjoint(group.inverse(g), missing) if forced.is_spatial else missing
+    return forced.constraint_momentum(missing, g)
 
 
 def _contact_forces(forced: Forced, velocity: Covectors, force: Covectors) -> Covectors:

@@ -179,14 +179,9 @@ def has_compact_rates(group: AbstractMatrixGroup) -> bool:
     return group.pose_size <= _COMPACT
 
 
-def power_of_two(velocities: np.ndarray) -> float:
-    """Return the next power of two above the largest velocity."""
-    return math.ldexp(1.0, math.frexp(np.maximum.reduce(np.abs(velocities), None, initial=0.0))[1])
-
-
-def powers_of_two(velocities: Float[np.ndarray, "M j"]) -> Float[np.ndarray, "M"]:
-    """Return `power_of_two` of each row."""
-    return np.ldexp(1.0, np.frexp(np.abs(velocities).max(axis=1, initial=0.0))[1])
+def power_of_two(velocities: Float[np.ndarray, "... j"]) -> Any:
+    """Return the next power of two above the largest velocity, of rows that of each."""
+    return np.ldexp(1.0, np.frexp(np.maximum.reduce(np.abs(velocities), -1, initial=0.0))[1])
 
 
 def solve(

@@ -70,7 +70,7 @@ def members_by_series(
     group, k = system.group, momenta.shape[1]
     f, velocities, factors = _equations(system, inertias)
     if system.forces is None:
-        units = _series.powers_of_two((velocities @ momenta[..., None])[..., 0])
+        units = _series.power_of_two((velocities @ momenta[..., None])[..., 0])
         head = momenta / units[:, None]
     else:
         head, units = heads(system.forces, momenta, poses)

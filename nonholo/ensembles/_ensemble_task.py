@@ -10,7 +10,7 @@ import numpy as np
 
 from nonholo import io
 from nonholo.base.calls import call
-from nonholo.base.checks import array, count, error, flag, shown
+from nonholo.base.checks import array, assign, count, error, flag, shown
 from nonholo.base.types import Float
 from nonholo.discrete import PRINCIPAL, BranchRule, Discretization, as_discretization
 from nonholo.ensembles import _names
@@ -168,7 +168,7 @@ class EnsembleTask:
 
     def _with(self, discrete: Discretization) -> "EnsembleTask":
         task = copy.copy(self)
-        object.__setattr__(task, "discrete", discrete)
+        assign(task, discrete=discrete)
         return task
 
     @property

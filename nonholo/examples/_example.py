@@ -13,7 +13,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import array, number, scale
+from nonholo.base.checks import array, assign, number, scale
 from nonholo.base.memo import Keeper
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
@@ -151,7 +151,7 @@ def ready(
             parameters = {name: value for name, value in body.items() if name not in start.split()}
             system = _with_recipe(example.system, make_ready, json.dumps(parameters))
             example = dataclasses.replace(example, system=system)
-            object.__setattr__(example, "recipe", (functools.partial(make_ready, **arguments), ()))
+            assign(example, recipe=(functools.partial(make_ready, **arguments), ()))
             return example
 
         return make_ready
@@ -182,8 +182,8 @@ def _with_recipe(system: Any, make: Callable[..., Example], parameters: str) -> 
     """Return a system that can be described; changes of it, by `Forced` or `dataclasses.replace`, are not."""
     own = copy.copy(system)
     arguments = json.loads(parameters)
-    object.__setattr__(own, "description", (f"examples.{make.__name__}", arguments))
-    object.__setattr__(own, "recipe", (_system_of, (make, arguments)))
+    description, recipe = (f"examples.{make.__name__}", arguments), (_system_of, (make, arguments))
+    assign(own, description=description, recipe=recipe)
     return own
 
 

@@ -145,11 +145,6 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
         """The maps between coordinate vectors and matrices that the basis defines."""
         return coordinates_of(self.basis)
 
-    def _hold(self, dim: int, size: int, pose_size: int) -> None:
-        """Set the sizes."""
-        for name, value in {"dim": dim, "size": size, "pose_size": pose_size}.items():
-            object.__setattr__(self, name, value)
-
     @abc.abstractmethod
     def exp_increment(self, x: Float[Array, "... dim"]) -> Float[Array, "... N N"]:
         """Return `exp(x)` minus the identity, without cancellation."""

@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from nonholo.base import numerics
-from nonholo.base.checks import array, error
+from nonholo.base.checks import array, assign, error
 from nonholo.base.types import Array, Float
 from nonholo.groups._base import AbstractMatrixGroup, coordinates_of
 
@@ -72,11 +72,11 @@ class MatrixGroup(AbstractMatrixGroup):
     is_rigid: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "basis", checked_basis("MatrixGroup(basis=...)", self.basis))
-        dim, size, _ = self.basis.shape
-        self._hold(dim, size, size * size)
+        basis = checked_basis("MatrixGroup(basis=...)", self.basis)
+        dim, size, _ = basis.shape
+        assign(self, basis=basis, dim=dim, size=size, pose_size=size * size)
         if self.form is not None:
-            object.__setattr__(self, "form", checked_form("MatrixGroup(form=...)", self.basis, self.form))
+            assign(self, form=checked_form("MatrixGroup(form=...)", self.basis, self.form))
 
     def __repr__(self) -> str:
         return f"MatrixGroup(dim={self.dim}, N={self.size}{'' if self.form is None else ', with a form'})"

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo.base.checks import error, shown
+from nonholo.base.checks import assign, error, shown
 from nonholo.base.numerics import block_diagonal
 from nonholo.base.types import Array, Float
 from nonholo.groups._base import AbstractMatrixGroup
@@ -44,8 +44,8 @@ class ProductGroup(AbstractMatrixGroup):
         if wrong or not factors:
             got = shown(wrong[0]) if wrong else "no factor"
             raise error("ProductGroup(*factors)", "be given groups", got, "Pass groups such as SE(2), Translations(2).")
-        object.__setattr__(self, "factors", factors)
-        self._hold(*(sum(getattr(factor, name) for factor in factors) for name in ("dim", "size", "pose_size")))
+        sizes = {name: sum(getattr(factor, name) for factor in factors) for name in ("dim", "size", "pose_size")}
+        assign(self, factors=factors, **sizes)
 
     def __repr__(self) -> str:
         return f"ProductGroup({', '.join(map(repr, self.factors))})"

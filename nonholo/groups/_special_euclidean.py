@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from nonholo.base import numerics
-from nonholo.base.checks import dimension
+from nonholo.base.checks import assign, dimension
 from nonholo.base.types import Array, Float
 from nonholo.groups import _rotations
 from nonholo.groups._base import AbstractMatrixGroup, Coordinates, SeparatedCoordinates, coordinates_of
@@ -119,7 +119,7 @@ class SpecialEuclideanN(AbstractMotions, AbstractBodyGroup):
     n: int
 
     def __post_init__(self) -> None:
-        self._hold(self.n * (self.n + 1) // 2, self.n + 1, self.n * (self.n + 1))
+        assign(self, dim=self.n * (self.n + 1) // 2, size=self.n + 1, pose_size=self.n * (self.n + 1))
 
     @functools.cached_property
     def coordinates(self) -> SeparatedCoordinates:

@@ -11,7 +11,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo.base.checks import dimension, error, is_traced, within_memory
+from nonholo.base.checks import assign, dimension, error, is_traced, within_memory
 from nonholo.base.numerics import cayley_increment, cotangent_deficit, identity_like, of_length_one, sinc, versine
 from nonholo.base.types import Array, Float
 from nonholo.groups import _rotations
@@ -198,7 +198,7 @@ class SpecialOrthogonalN(AbstractRotations, AbstractBodyGroup):
     n: int
 
     def __post_init__(self) -> None:
-        self._hold(self.n * (self.n - 1) // 2, self.n, self.n * self.n)
+        assign(self, dim=self.n * (self.n - 1) // 2, size=self.n, pose_size=self.n * self.n)
 
     @functools.cached_property
     def coordinates(self) -> SeparatedCoordinates:

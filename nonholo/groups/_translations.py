@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from nonholo.base.checks import count
+from nonholo.base.checks import assign, count
 from nonholo.base.numerics import identity_like
 from nonholo.base.types import Array, Float
 from nonholo.groups._base import AbstractMatrixGroup, SeparatedCoordinates
@@ -33,8 +33,8 @@ class Translations(AbstractMatrixGroup):
     is_rigid: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "m", count("Translations(m=...)", self.m, "Pass the number of components."))
-        self._hold(self.m, self.m + 1, self.m)
+        m = count("Translations(m=...)", self.m, "Pass the number of components.")
+        assign(self, m=m, dim=m, size=m + 1, pose_size=m)
 
     def __repr__(self) -> str:
         return f"Translations({self.m})"

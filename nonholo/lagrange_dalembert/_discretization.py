@@ -16,15 +16,15 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import error, is_traced, scale
+from nonholo.base.checks import assign, error, is_traced, scale
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import _orbit as orbits
 from nonholo.lagrange_dalembert import compiled
-from nonholo.lagrange_dalembert._functions import ROWS, configurations, in_blocks, in_double, places, room
 from nonholo.lagrange_dalembert._newton import orientation, solve
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
+from nonholo.lagrange_dalembert.functions import ROWS, configurations, in_blocks, in_double, places, room
 from nonholo.orbit import AbstractStepper, First, Rows, State
 from nonholo.systems import AbstractCoordinateDiscretization, OrbitT, Start, one_start
 
@@ -57,7 +57,7 @@ class AbstractLagrangeDAlembertMap(orbits.CoordinateMotion, AbstractCoordinateDi
     time_step: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "time_step", _fixed_time_step(self.time_step))
+        assign(self, time_step=_fixed_time_step(self.time_step))
 
     def first(self, start: Start, *, with_poses: bool) -> First:
         """Return the checked momentum, place and velocity of a start."""

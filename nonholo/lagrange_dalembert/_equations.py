@@ -11,8 +11,8 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.types import Array
-from nonholo.lagrange_dalembert._functions import takes_time
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
+from nonholo.lagrange_dalembert.functions import takes_time
 
 _CORRECTIONS = 8  # of a velocity that belongs to a momentum: Newton's, one where L is quadratic
 

@@ -21,8 +21,8 @@ from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import compiled
 from nonholo.lagrange_dalembert._discretization import checked_state
 from nonholo.lagrange_dalembert._equations import solve_bordered
-from nonholo.lagrange_dalembert._functions import configurations, in_blocks, in_double, place, places, room
 from nonholo.lagrange_dalembert._orbit import ORBITS
+from nonholo.lagrange_dalembert.functions import configurations, in_blocks, in_double, place, places, room
 from nonholo.orbit import times_within
 
 _PROJECTIONS, _NEAR = 50, 1e-14  # corrections of a place, at most, and what the last one may be beside it

@@ -9,11 +9,11 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import instance, text
+from nonholo.base.checks import assign, instance, text
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.lagrange_dalembert import _functions as tracing
+from nonholo.lagrange_dalembert import functions as tracing
 from nonholo.lagrange_dalembert._places import Poses
 from nonholo.systems import checked_group, group_mass_tensor, inertia_form, terms_of
 
@@ -102,7 +102,7 @@ class GroupLagrangeDAlembert(tracing.AbstractParametricSystem["GroupDiscretizati
         remedy = "Pass nonholo.SO(n), SE(n), MatrixGroup or a product."
         instance("GroupLagrangeDAlembert(group=...)", self.group, AbstractMatrixGroup, "be a matrix group", remedy)
         text("GroupLagrangeDAlembert(name=...)", self.name)
-        object.__setattr__(self, "parameters", tracing.Parameters(self.parameters, type(self).__name__))
+        assign(self, parameters=tracing.Parameters(self.parameters, type(self).__name__))
         g = jax.ShapeDtypeStruct((self.group.size, self.group.size), float)
         n, h = self.group.dim, jax.ShapeDtypeStruct((), float)
         self._trace_at("discrete_lagrangian", (), g, h)

@@ -11,8 +11,8 @@ from nonholo.base.progress import interruptibly
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._flow import State, acceleration, admissible_velocity, bordered_solution
-from nonholo.lagrange_dalembert._functions import in_double
 from nonholo.lagrange_dalembert._tangents import flow_slopes
+from nonholo.lagrange_dalembert.functions import in_double
 
 _RTOL, _ATOL = 1e-12, 1e-13  # of the equations of variation
 

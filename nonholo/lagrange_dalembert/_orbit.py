@@ -11,13 +11,13 @@ from typing import Any, ClassVar, Self
 import jax
 import numpy as np
 
-from nonholo.base.checks import error, shown
+from nonholo.base.checks import assign, error, shown
 from nonholo.base.memo import memo
 from nonholo.base.results import Outcome
 from nonholo.base.types import Array, Float, Int
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert import _equations as equations
-from nonholo.lagrange_dalembert._functions import in_double, places, room
+from nonholo.lagrange_dalembert.functions import in_double, places, room
 from nonholo.orbit import AbstractMotion, AbstractOrbit, First
 from nonholo.systems import AbstractCoordinateSystem, Start
 
@@ -62,7 +62,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         """Steps with impacts have no impulses in the rows at their ends: others act at the wall."""
         if self.is_discrete and self.has_impacts.any():
             cut = self.has_impacts[: len(self.multipliers), None]
-            object.__setattr__(self, "multipliers", np.where(cut, np.nan, self.multipliers))
+            assign(self, multipliers=np.where(cut, np.nan, self.multipliers))
 
     @abc.abstractmethod
     def _configurations(self) -> str:

@@ -10,8 +10,8 @@ import numpy as np
 from nonholo.base.traced import NodeState, implicit, marked_rows, rows_of, run_nodes, with_policy
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
-from nonholo.lagrange_dalembert._functions import place
 from nonholo.lagrange_dalembert._newton import orientation, solve
+from nonholo.lagrange_dalembert.functions import place
 
 
 class CoordinateRollout(NamedTuple):

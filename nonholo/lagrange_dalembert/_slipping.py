@@ -26,7 +26,7 @@ from nonholo.base.types import Array, Bool
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._discretization import CoordinateStepper
 from nonholo.lagrange_dalembert._flow import bordered_solution
-from nonholo.lagrange_dalembert._functions import in_blocks, in_double
+from nonholo.lagrange_dalembert.functions import in_blocks, in_double
 from nonholo.orbit import AbstractStepper, First, Rows, State
 from nonholo.systems import Contacts, friction, update_slope
 

@@ -12,8 +12,8 @@ from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import compiled
 from nonholo.lagrange_dalembert._flow import admissible_velocity, nearest_place
-from nonholo.lagrange_dalembert._functions import in_double, place
 from nonholo.lagrange_dalembert._newton import orientation
+from nonholo.lagrange_dalembert.functions import in_double, place
 from nonholo.systems import inadmissible
 
 _TOLERANCE = 1e-9  # relative, for velocities and displacements that a user computed in floating point

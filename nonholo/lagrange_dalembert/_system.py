@@ -9,9 +9,9 @@ import jax
 import numpy as np
 
 from nonholo.base.calls import call
-from nonholo.base.checks import array, choice, count, error, names, shown, text, within_memory
+from nonholo.base.checks import array, assign, choice, count, error, names, shown, text, within_memory
 from nonholo.base.types import Array, Float
-from nonholo.lagrange_dalembert import _functions as tracing
+from nonholo.lagrange_dalembert import functions as tracing
 from nonholo.lagrange_dalembert._places import Coordinates
 
 if TYPE_CHECKING:
@@ -135,17 +135,16 @@ class LagrangeDAlembert(tracing.AbstractParametricSystem["CoordinateDiscretizati
     def __post_init__(self) -> None:
         dimension = count(_argument("dimension"), self.dimension, "Pass the number of coordinates.")
         within_memory(_argument("dimension"), 8.0 * dimension**2, "Pass the number of coordinates.")  # the mass matrix
-        object.__setattr__(self, "dimension", dimension)
-        object.__setattr__(self, "parameters", tracing.Parameters(self.parameters))
-        object.__setattr__(self, "coordinates", _names(self.coordinates, dimension))
+        parameters, coordinates = tracing.Parameters(self.parameters), _names(self.coordinates, dimension)
+        assign(self, dimension=dimension, parameters=parameters, coordinates=coordinates)
         text(_argument("name"), self.name)
         _check_heading(_argument("heading"), self.heading, self.coordinates)
         if not callable(self.outline):
-            object.__setattr__(self, "outline", _as_parts(_argument("outline"), self.outline))
+            assign(self, outline=_as_parts(_argument("outline"), self.outline))
         choice(_argument("rule"), self.rule, ("midpoint", "trapezoidal"))
         for name in ("discrete_lagrangian", "discrete_constraints"):
-            object.__setattr__(self, name, tracing.with_time_step(getattr(self, name), len(self._shapes_given)))
-        object.__setattr__(self, "prescribed", _motions(self.prescribed, dimension, self._shapes_given))
+            assign(self, **{name: tracing.with_time_step(getattr(self, name), len(self._shapes_given))})
+        assign(self, prescribed=_motions(self.prescribed, dimension, self._shapes_given))
         self._trace_functions()
 
     def _trace_functions(self) -> None:

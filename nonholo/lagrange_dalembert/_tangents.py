@@ -18,9 +18,9 @@ from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._discretization import checked_state, set_out
 from nonholo.lagrange_dalembert._flow import acceleration, nearest_place, refuse_table
-from nonholo.lagrange_dalembert._functions import in_double, places, room
 from nonholo.lagrange_dalembert._newton import orientation
 from nonholo.lagrange_dalembert._rollout import step_root
+from nonholo.lagrange_dalembert.functions import in_double, places, room
 
 _CORRECTIONS = 8  # of a velocity beside another one
 LATER = np.array([0.3719, 0.9173])  # times, not in a ratio that a rotation may have

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, cast
 
 import numpy as np
 
-from nonholo.base.checks import LARGEST, are_moderate, array, error, selection, shape_of, within_memory
+from nonholo.base.checks import LARGEST, are_moderate, array, assign, error, selection, shape_of, within_memory
 from nonholo.base.html import table
 from nonholo.base.memo import Keeper, memo
 from nonholo.base.results import Outcome
@@ -121,9 +121,9 @@ class AbstractOrbit(Keeper, abc.ABC):
         """
         good = self.outcome == Outcome.successful
         if good and not are_moderate((getattr(self, name), most) for name, most in _bounds(type(self))):
-            object.__setattr__(self, "outcome", Outcome.nonfinite)
+            assign(self, outcome=Outcome.nonfinite)
         if self.step is None or len(self.step) != len(self.time):
-            object.__setattr__(self, "step", np.arange(0, self.save_every * len(self.time), self.save_every))
+            assign(self, step=np.arange(0, self.save_every * len(self.time), self.save_every))
         if self.events is not None:
             self._mark_impacts()
 

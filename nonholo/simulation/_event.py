@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.base.calls import call, check_result, numbers_of
-from nonholo.base.checks import array, checked_name, choice, error, instance, is_name, natural, number, shown
+from nonholo.base.checks import array, assign, checked_name, choice, error, instance, is_name, natural, number, shown
 from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit
 from nonholo.systems import Gravity, central_differences
@@ -65,7 +65,7 @@ class Impact:
         bounce = number("Impact(restitution=...)", self.restitution)
         if not 0 <= bounce <= 1:
             raise error("Impact(restitution=...)", "be from 0 to 1", f"{bounce}", "1 keeps the energy, 0 the least.")
-        object.__setattr__(self, "restitution", float(bounce))
+        assign(self, restitution=float(bounce))
         if self.normal is None or callable(self.normal):
             if self.point is not None:
                 raise error("Impact(point=...)", "come with a spatial vector", shown(self.normal), "Leave it out.")
@@ -76,8 +76,7 @@ class Impact:
             raise error("Impact(normal=...)", "be no zero vector", shown(self.normal), remedy)
         place = np.zeros_like(normal) if self.point is None else self.point
         point = array("Impact(point=...)", place, normal.shape, "Pass as many numbers as the normal has.")
-        object.__setattr__(self, "normal", normal)
-        object.__setattr__(self, "point", point)
+        assign(self, normal=normal, point=point)
 
     @property
     def has_plane(self) -> bool:
@@ -176,8 +175,7 @@ class Event:
         if not callable(self.function):
             raise error("Event(function=...)", "be a function of an orbit", shown(self.function), "Pass a function.")
         remedy = "1 is from below, -1 from above, 0 both."
-        direction = choice("Event(direction=...)", self.direction, (-1, 0, 1), remedy)
-        object.__setattr__(self, "direction", direction)
+        assign(self, direction=choice("Event(direction=...)", self.direction, (-1, 0, 1), remedy))
         if self.name is not None:
             checked_name("Event(name=...)", self.name)
         if not isinstance(self.stop, bool):

@@ -12,7 +12,7 @@ from typing import Any, ClassVar, TypeVar, cast
 
 import numpy as np
 
-from nonholo.base.checks import error, instance, is_traced, shape_of, trailing, within_memory
+from nonholo.base.checks import assign, error, instance, is_traced, shape_of, trailing, within_memory
 from nonholo.base.html import table
 from nonholo.base.memo import Keeper, system_memo
 from nonholo.base.numerics import Factors, applied, factors_of, solve_by_factors
@@ -225,6 +225,18 @@ class AbstractSystem(Keeper, abc.ABC):
         """
         return np.eye(self.group.dim)
 
+    def constraint_velocity(self, velocity: Array, configuration: Poses | None) -> Array:
+        r"""Return a body velocity as the constraint sees it: itself, or $\mathrm{Ad}_g\omega$ in space."""
+        return velocity
+
+    def constraint_momentum(self, momentum: Covectors, configuration: Poses | None) -> Covectors:
+        r"""Return a body momentum as the constraint sees it: itself, or $\mathrm{Ad}^*_{g^{-1}}p$."""
+        return momentum
+
+    def directions(self, configuration: Poses) -> Float[Array, "... dim k"]:
+        r"""Return E, whose columns are admissible body velocities: $S^T$, or $\mathrm{Ad}_{g^{-1}}S^T$."""
+        return np.asarray(self.constraint_subspace).T
+
     def moved(self, configuration: Poses, displacement: Array) -> Poses:
         """Return a pose after a displacement that the constraint sees: g W, or W g where it is fixed in space.
 
@@ -250,7 +262,11 @@ class AbstractSystem(Keeper, abc.ABC):
             configuration: g; needed where the constraint is fixed in space, where they are those of the spatial
                 momentum, $S\,\mathrm{Ad}^*_{g^{-1}}p$.
         """
-        return self.restrict(momentum)
+        return self.components_along(self._full(momentum), configuration)
+
+    def components_along(self, momentum: Covectors, configuration: Poses | None) -> Inexact[Array, "... k"]:
+        """Return the components of `restrict_at` for a momentum that is checked."""
+        return applied(self.constraint_subspace, self.constraint_momentum(momentum, configuration))
 
     def restricted_velocity(self, restricted_momentum: Along, configuration: Poses | None = None) -> Along:
         """Return the velocity, in rows of the constraint subspace, that has these momenta along it.
@@ -304,8 +320,11 @@ class AbstractSystem(Keeper, abc.ABC):
 
     def restrict(self, momentum: Covectors) -> Inexact[Array, "... k"]:
         """Return the components of a momentum along the rows of the constraint subspace."""
+        return applied(self.constraint_subspace, self._full(momentum))
+
+    def _full(self, momentum: Array) -> Array:
         where, remedy = lambda: f"{type(self).__name__}.restrict(momentum=...)", "Pass a full momentum."
-        return applied(self.constraint_subspace, trailing(where, momentum, (self.group.dim,), remedy))
+        return trailing(where, momentum, (self.group.dim,), remedy)
 
     def _along(self, name: str, value: Array) -> Array:
         remedy = "Pass one number for each row of the constraint subspace."
@@ -315,8 +334,7 @@ class AbstractSystem(Keeper, abc.ABC):
 def replace_numbers(system: SystemT, /, **numbers: Array) -> SystemT:
     """Return a system with other numbers, unchecked: they may have axes in front, where its formulas allow them."""
     other = object.__new__(type(system))
-    for name in (*system.leaves, *system.structure):
-        object.__setattr__(other, name, numbers.get(name, getattr(system, name)))
+    assign(other, **{name: numbers.get(name, getattr(system, name)) for name in (*system.leaves, *system.structure)})
     return other
 
 
@@ -411,14 +429,21 @@ class AbstractLRSystem(AbstractSystem):
             raise error(where, "be given where the constraint is fixed in space", "none", remedy)
         return trailing(where, configuration, (self.group.size, self.group.size), remedy)
 
-    def restrict_in_space(self, momentum: Float[Array, "... dim"], configuration: Poses) -> Along:
-        r"""Return the components $S\,\mathrm{Ad}^*_{g^{-1}}p$ of the spatial momentum of a body momentum."""
-        g = self._at(configuration)
-        return self.restrict(self.group.coadjoint(self.group.inverse(g), momentum))
-
     def carried(self, configuration: Poses) -> Float[Array, "... dim dim"]:
         r"""Return $\mathrm{Ad}_g$: the constraint is fixed in space."""
         return self.group.adjoint(self._at(configuration))
+
+    def constraint_velocity(self, velocity: Array, configuration: Poses | None) -> Array:
+        r"""Return $\mathrm{Ad}_g\omega$."""
+        return applied(self.carried(configuration), velocity)
+
+    def constraint_momentum(self, momentum: Covectors, configuration: Poses | None) -> Covectors:
+        r"""Return $\mathrm{Ad}^*_{g^{-1}}p$."""
+        return self.group.coadjoint(self.group.inverse(self._at(configuration)), momentum)
+
+    def directions(self, configuration: Poses) -> Float[Array, "... dim k"]:
+        r"""Return $\mathrm{Ad}_{g^{-1}}S^T$."""
+        return self.group.adjoint(self.group.inverse(configuration)) @ self.constraint_subspace.T
 
     def moved(self, configuration: Poses, displacement: Array) -> Poses:
         """Return W g of a displacement in space."""
@@ -431,10 +456,6 @@ class AbstractLRSystem(AbstractSystem):
     def in_body(self, displacement: Array, configuration: Poses) -> Array:
         r"""Return $g^{-1}Dg$."""
         return self.group.inverse(configuration) @ displacement @ configuration
-
-    def restrict_at(self, momentum: Covectors, configuration: Poses | None = None) -> Inexact[Array, "... k"]:
-        """Return the components of the spatial momentum along the constraint subspace (`restrict_in_space`)."""
-        return self.restrict_in_space(momentum, self._at(configuration))
 
     def restricted_velocity(self, restricted_momentum: Along, configuration: Poses | None = None) -> Along:
         """Return the spatial velocity, in rows of the constraint subspace, that has these spatial momenta along it."""

@@ -131,13 +131,13 @@ def _of_momentum(start: Start, system: System, g: np.ndarray | None) -> np.ndarr
     size = k if shape_of(start.value) == (k,) else dim
     remedy = f"Pass {dim} body momenta or the {k} along the constraint subspace."
     value = array(start.where, start.value, (size,), remedy)
-    return of_finite_energy(start.owner, system, g, value if size == k else system.restrict_at(value, g))
+    return of_finite_energy(start.owner, system, g, value if size == k else system.components_along(value, g))
 
 
 def _of_velocity(start: Start, system: System, g: np.ndarray | None) -> np.ndarray:
     velocity = array(start.where, start.value, (system.group.dim,), "Use `vee` to turn a matrix into coordinates.")
     momentum = system.inertia_operator.dot(velocity)  # the bits of @ in half of its time
-    along = system.restrict_at(momentum, g) if system.is_spatial else applied(system.constraint_subspace, momentum)
+    along = system.components_along(momentum, g)
     if start.project:
         return of_finite_energy(start.owner, system, g, along)
     _check_admissible(start.where, system, g, velocity)
@@ -154,9 +154,8 @@ _ALONG = {"momentum": _of_momentum, "body_velocity": _of_velocity, "restricted_v
 
 
 def _check_admissible(where: str, system: System, g: Any, velocity: np.ndarray) -> None:
-    frame_velocity = system.carried(g) @ velocity if system.is_spatial else velocity
+    frame_velocity = system.constraint_velocity(velocity, g)
     forbidden = system.annihilator.dot(frame_velocity)
     if np.count_nonzero(forbidden) and np.abs(forbidden).max() > _TOLERANCE * np.abs(frame_velocity).max():
         nearest = frame_velocity - np.linalg.pinv(system.annihilator) @ forbidden
-        back = system.carried(system.group.inverse(g)) if system.is_spatial else np.eye(len(frame_velocity))
-        raise inadmissible(where, forbidden, back @ nearest)
+        raise inadmissible(where, forbidden, np.linalg.solve(system.carried(g), nearest))

@@ -2,6 +2,7 @@
 
 import functools
 import itertools
+import math
 import pickle
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -107,8 +108,10 @@ def test_units_of_many_motions_are_those_of_each() -> None:
     """The power of two above a row is that of the row alone: at powers, beside them, of tiny numbers, and of none."""
     rows = np.random.default_rng(0).normal(size=(200, 3)) * 10.0 ** np.linspace(-320, 150, 200)[:, None]
     rows = np.vstack([rows, np.zeros(3), [0, -4, 1], [np.nextafter(4, 0), 0, 3.9], [np.nextafter(4, 5), 0, 0]])
-    assert _series.powers_of_two(rows).tolist() == [_series.power_of_two(row) for row in rows]
-    assert _series.powers_of_two(rows[-3:]).tolist() == [8.0, 4.0, 8.0]
+    units = _series.power_of_two(rows)
+    assert units.tolist() == [_series.power_of_two(row) for row in rows]
+    assert units.tolist() == [math.ldexp(1.0, math.frexp(np.abs(row).max())[1]) for row in rows]
+    assert units[-3:].tolist() == [8.0, 4.0, 8.0]
 
 
 def test_kept_room_leaves_no_trace() -> None:

@@ -15,9 +15,9 @@ from jax import lax
 import nonholo as nh
 from nonholo.base.numerics import double_precision
 from nonholo.lagrange_dalembert import LagrangeDAlembert
-from nonholo.lagrange_dalembert._functions import ForceTable
 from nonholo.lagrange_dalembert.compiled import _run
 from nonholo.lagrange_dalembert.compiled._scalars import LOGIC, OPERATIONS, Formulas, Scalar, UntranslatableError
+from nonholo.lagrange_dalembert.functions import ForceTable
 
 EPS = np.finfo(float).eps
 CYCLE = np.array([2, 0, 1])
@@ -148,6 +148,14 @@ def test_rows_of_tables_are_looked_up(search: int) -> None:
     np.testing.assert_array_equal(table.acting(np.rint(steps).astype(int)), found[:-1])
     with jax.enable_x64(True):
         np.testing.assert_array_equal([table.row(jnp.asarray(step)) for step in steps], found[:-1])
+
+
+def test_pickles_of_tables_hold_their_rows_once() -> None:
+    """The rows that formulas look up are no part of a pickle: it has the same bytes before and after them."""
+    table = ForceTable.of(np.ones((5, 3)))
+    before = pickle.dumps(table)
+    assert np.all(table.address > 0)
+    assert pickle.dumps(table) == before
 
 
 def test_tables_are_data_of_one_program() -> None:

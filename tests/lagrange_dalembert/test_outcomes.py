@@ -11,8 +11,8 @@ from refusals import refusals
 
 import nonholo as nh
 from nonholo.lagrange_dalembert import LagrangeDAlembert, _discretization
-from nonholo.lagrange_dalembert._functions import in_double
 from nonholo.lagrange_dalembert._newton import solve
+from nonholo.lagrange_dalembert.functions import in_double
 
 FORCE = 0.15
 

@@ -116,6 +116,17 @@ def test_a_move_is_seen_by_the_constraint(system: AbstractSystem, g: np.ndarray)
     assert np.abs(system.annihilator @ system.carried(g) @ body).max(initial=0.0) < 1e-8
 
 
+def test_what_the_constraint_sees(system: AbstractSystem, g: np.ndarray) -> None:
+    """Its directions are those of admissible velocities; velocities and momenta as it sees them pair as before."""
+    rng, E = np.random.default_rng(3), system.directions(g)  # 1e-13: sums of a few products of |Ad| below 10
+    v, p = rng.normal(size=(2, system.group.dim))
+    assert np.linalg.matrix_rank(E) == system.rank
+    assert np.abs(system.annihilator @ system.constraint_velocity(E.T, g).T).max(initial=0.0) < 1e-13
+    pairing = system.constraint_momentum(p, g) @ system.constraint_velocity(v, g)
+    assert pairing == pytest.approx(p @ v, rel=0, abs=1e-13 * np.linalg.norm(p) * np.linalg.norm(v))
+    assert system.components_along(p, g) == pytest.approx(E.T @ p, rel=0, abs=1e-13 * np.linalg.norm(p))
+
+
 def test_poses_are_needed_in_space_alone(system: AbstractSystem) -> None:
     """Without a pose a constraint in space is refused, with the remedy; one in the body does not need it."""
     r, p = np.ones(system.rank), np.ones(system.group.dim)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from nonholo.analysis.locomotion import _equations
-from nonholo.base.checks import array, choice, count, error, instance, names, needs, shown, trailing
+from nonholo.base.checks import array, assign, choice, count, error, instance, names, needs, shown, trailing
 from nonholo.base.results import result
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup, components_of
@@ -337,8 +337,7 @@ class ShapedBody:
         if self.lagrangian is None and self.constraint_forms is None:
             remedy = "Pass lagrangian=, constraint_forms= or both."
             raise error("ShapedBody(...)", "have a Lagrangian or constraints", "neither", remedy)
-        for name, function in door("ShapedBody").traced_functions(self):
-            object.__setattr__(self, name, function)
+        assign(self, **dict(door("ShapedBody").traced_functions(self)))
 
     def __repr__(self) -> str:
         return f"<ShapedBody {self.name!r} on {self.group}: shape {', '.join(self.shape_coordinates)}>"

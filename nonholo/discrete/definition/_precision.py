@@ -16,7 +16,6 @@ from nonholo.base.progress import compiling, setting
 from nonholo.discrete import _pytrees
 
 _float32 = contextvars.ContextVar("float32_allowed", default=False)
-_calls: set[tuple[Any, Any]] = set()
 _pytrees.register()
 
 
@@ -34,14 +33,8 @@ def in_double(function: Callable[..., Any], *arguments: Any) -> Any:
     """Call a JAX function: eagerly in a 64-bit scope with NumPy results, or as it is on traced 64-bit input."""
     tracers = [x for x in jax.tree.leaves(arguments) if is_traced(x)]
     if not tracers:
-        kind = function, jax.tree.structure(arguments)
-        with (
-            double_precision(),
-            contextlib.nullcontext() if kind in _calls else compiling("a map", compiling),
-        ):
-            result = jax.tree.map(np.asarray, function(*arguments))
-        _calls.add(kind)
-        return result
+        with double_precision(), compiling("a map", compiling, (function, jax.tree.structure(arguments))):
+            return jax.tree.map(np.asarray, function(*arguments))
     if not _float32.get() and any(x.dtype == np.float32 for x in tracers):
         raise TypeError(
             "`nonholo` must be traced in 64 bits. Got float32. Wrap the call in `with jax.enable_x64(True):`, "

@@ -123,11 +123,7 @@ def roll_out(
 
 def _state_at(discrete: Scheme, r: Array, g: Array) -> NodeState:
     """Return what a policy sees of momenta along the constraint and a pose."""
-    system = discrete.system
-    velocity = system.restricted_velocity(r, g) @ jnp.asarray(system.constraint_subspace)
-    if system.is_spatial:
-        velocity = system.group.adjoint(system.group.inverse(g)) @ velocity
-    return NodeState(g, velocity)
+    return NodeState(g, discrete.system.directions(g) @ discrete.system.restricted_velocity(r, g))
 
 
 def _step_from(
@@ -164,12 +160,10 @@ def impulse_of(discrete: Scheme, forced: Forced | None, controls: Any, steps: in
     rows = (0.0 if rows is None else rows) + forced.rows(np.arange(steps + 1))
     if is_balanced(discrete, forced):
         return None, rows
-    propagator = None
-    if forced.friction is not None and not forced.is_spatial:
-        propagator = forced.propagator(jnp.asarray(forced.constraint_subspace.T), half)
+    kick = None if forced.is_spatial else forced.kick_at(forced.group.identity, half)
 
     def impulse(r: Array, g: Array, row: Array) -> Array:
-        return forced.impulse(r, g, forced.potential_force(g) + row, half, propagator)
+        return forced.impulse(r, forced.potential_force(g) + row, half, kick or forced.kick_at(g, half))
 
     return impulse, rows
 

@@ -65,10 +65,8 @@ def momentum_of(discrete: Scheme, y: Array, g: Array, side: str) -> Array:
 
 def restricted(discrete: Scheme, momentum: Array, g: Array) -> Array:
     """Return the components of a body momentum along the constraint, in space where that is fixed in space."""
-    system = discrete.system
-    if system.is_spatial:
-        momentum = system.group.coadjoint(system.group.inverse(g), momentum)
-    return jnp.asarray(system.constraint_subspace, dtype=momentum.dtype) @ momentum
+    momentum = discrete.system.constraint_momentum(momentum, g)
+    return jnp.asarray(discrete.system.constraint_subspace, dtype=momentum.dtype) @ momentum
 
 
 def principal_displacement(discrete: Scheme, r: Float[Array, "k"], g: Array) -> tuple[Array, Array]:

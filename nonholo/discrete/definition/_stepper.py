@@ -173,10 +173,10 @@ _push = equinox.filter_jit(_step.push)
 
 def leap(discrete: Scheme, m: np.ndarray, pose: np.ndarray, parts: np.ndarray) -> Any:
     """Return the outcome, the chart of the first part of a step, and canonical momenta and pose after all parts."""
-    one, system, frame, code, charts = discrete.part(1.0), discrete.system, discrete.system.frame, 0, []
+    one, system, frame, code, chart = discrete.part(1.0), discrete.system, discrete.system.frame, 0, None
     r, g = applied(system.inverse_frame_map, m), pose.reshape(frame.shape) @ system.group.inverse(frame)
     for part in parts:
         y, outcome = in_double(_root, one, part * r, g)
         r, g = in_double(_push, one, y, g)
-        r, code, charts = r / part, code or int(outcome), [*charts, y]
-    return code, charts[0], applied(system.frame_map, r), (g @ frame).ravel()
+        r, code, chart = r / part, code or int(outcome), y if chart is None else chart
+    return code, chart, applied(system.frame_map, r), (g @ frame).ravel()

@@ -92,7 +92,7 @@ def make_route(scheme: Scheme, route_name: str | None = None) -> AbstractRoute:
     if scheme.system.is_forced:
         forced = cast(Forced, scheme.system)
         free = dataclasses.replace(cast(Any, scheme), system=forced.system)
-        is_balanced = forced.forces is not None and forced.is_balanced(free.conserves_energy, scheme.order > 2)
+        is_balanced = cast(Any, scheme).is_balanced
         if forced.slips:
             return slip_route(scheme, forced, functools.partial(make_route, route_name=route_name))
         if is_balanced:

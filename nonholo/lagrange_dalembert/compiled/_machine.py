@@ -26,8 +26,8 @@ from nonholo.base.compiled.library import cache_folder, digest_of, digest_of_ker
 from nonholo.base.progress import compiling
 from nonholo.base.types import Array
 from nonholo.lagrange_dalembert import _equations as equations
-from nonholo.lagrange_dalembert._functions import SYSTEM
 from nonholo.lagrange_dalembert.compiled._scalars import DOUBLE, OPERATIONS, Scalar, Text, operations_between, reference
+from nonholo.lagrange_dalembert.functions import SYSTEM
 
 Write = Callable[[ir.Module], Any]
 _MOST = 256  # files
@@ -64,7 +64,7 @@ def code_of(family: Any, what: tuple[Any, ...], write: Write, search: int = 1) -
     Raises:
         UntranslatableError: `write` cannot make formulas of it.
     """
-    with compiling(SYSTEM, family):
+    with compiling(SYSTEM, family, (family, what)):
         return machine_code(write, _file(family, what), search)
 
 

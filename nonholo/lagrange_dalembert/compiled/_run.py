@@ -20,10 +20,10 @@ from nonholo.base.types import Array
 from nonholo.kernels import CoordinateBody, advance_coordinates, each_root, each_row, set_out_coordinates
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import _newton
-from nonholo.lagrange_dalembert._functions import ROWS
 from nonholo.lagrange_dalembert.compiled._machine import code_of, write_function
 from nonholo.lagrange_dalembert.compiled._scalars import Formulas, Scalar, UntranslatableError, operations_between
 from nonholo.lagrange_dalembert.compiled._translation import array_of, translate
+from nonholo.lagrange_dalembert.functions import ROWS
 
 State = tuple[Any, Any, Any]
 

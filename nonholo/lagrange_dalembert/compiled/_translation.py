@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from jax.lax import GatherScatterMode, RoundingMethod
 
-from nonholo.lagrange_dalembert._functions import LOOK_UP
 from nonholo.lagrange_dalembert.compiled._scalars import LOGIC, OPERATIONS, TRUTHS, Formulas, UntranslatableError
+from nonholo.lagrange_dalembert.functions import LOOK_UP
 
 _CALLS = {"jit", "pjit", "closed_call", "remat", "checkpoint", "custom_jvp_call", "custom_vjp_call"}
 _KINDS = {

@@ -15,7 +15,7 @@ from typing import Any, ClassVar, cast
 import numpy as np
 
 from nonholo.base.calls import name_of, note_fault, number_of, numbers_of
-from nonholo.base.checks import array, choice, error, shown, trailing
+from nonholo.base.checks import array, assign, choice, error, shown, trailing
 from nonholo.base.numerics import applied, exponential_increment, inverse_of
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
@@ -31,7 +31,8 @@ _DIFFERENCES = np.array([45.0, -9.0, 1.0]) / (60 * _OFFSET)  # of order 6, at on
 _SAME = """
     group is_spatial has_blade homogeneous_mass_tensor inertia_operator inertia_along constraint_subspace annihilator
     rank canonical frame frame_map inverse_frame_map frame_pose to_canonical from_canonical carried
-    moved in_body constraint_poses restrict_at restricted_velocity restricted_momentum momenta_along constrained_energy
+    constraint_velocity constraint_momentum directions moved in_body constraint_poses components_along
+    restricted_velocity restricted_momentum momenta_along constrained_energy
 """
 """Properties that are those of the body that moves."""
 
@@ -136,8 +137,8 @@ class Forced(AbstractSystem):
         for each in terms:
             if not callable(each):
                 each.check(inside.group)
-        object.__setattr__(self, "potential", terms if len(terms) > 1 else terms[0] if terms else None)
-        object.__setattr__(self, "force", _friction.force_of(self._checked_parts()))
+        assign(self, potential=terms if len(terms) > 1 else terms[0] if terms else None)
+        assign(self, force=_friction.force_of(self._checked_parts()))
 
     def _checked_parts(self) -> dict[str, Any]:
         """Return what the force is made of, checked against the system."""
@@ -351,11 +352,6 @@ class Forced(AbstractSystem):
         after = table.__array_namespace__().zeros((1, self.group.dim))
         return table.__array_namespace__().concatenate([table, after])[np.minimum(steps, len(table))]
 
-    def directions(self, g: Float[Array, "... N N"]) -> Float[Array, "... dim k"]:
-        r"""Return E, whose columns are admissible body velocities: $S^T$, on LR systems $\mathrm{Ad}_{g^{-1}}S^T$."""
-        S = np.asarray(self.constraint_subspace)
-        return self.group.adjoint(self.group.inverse(g)) @ S.T if self.is_spatial else S.T
-
     def propagator(self, E: Float[Array, "... dim k"], tau: Array) -> Float[Array, "3 ... k k"]:
         r"""Return A, V and W of $\dot r = a - Dr$, friction over a time: $r' = Ar + Va$ and $\int r\,dt = Vr + Wa$."""
         k, along = E.shape[-1], E.swapaxes(-1, -2)
@@ -368,16 +364,19 @@ class Forced(AbstractSystem):
         blocks = exponential_increment(tau * block)[..., :k, :] + np.eye(k, 3 * k)
         return blocks.__array_namespace__().stack([blocks[..., j * k : (j + 1) * k] for j in range(3)])
 
-    def impulse(self, r: Array, g: Array, constant: Array, tau: Array, propagator: Any = None) -> Covectors:
+    def kick_at(self, g: Poses, tau: Array) -> tuple[Array, ...]:
+        r"""Return what kicks over a time take from poses: $E$ and $E B^{-1}$, with friction V and W as well."""
+        E = self.directions(g)
+        to_velocity = E @ inverse_of(E.swapaxes(-1, -2) @ self.inertia_operator @ E)
+        return E, to_velocity, *(() if self.friction is None else self.propagator(E, tau)[1:])
+
+    def impulse(self, r: Array, constant: Array, tau: Array, kick: tuple[Array, ...]) -> Covectors:
         """Return the impulses of constant body covectors and friction over a time, as `impulses`."""
         if self.friction is None:
             return tau * constant
-        E = self.directions(g)
-        along = E.swapaxes(-1, -2)
-        _, push, gather = self.propagator(E, tau) if propagator is None else propagator
-        integral = push @ r[..., None] + gather @ (along @ constant[..., None])
-        velocity = E @ inverse_of(along @ self.inertia_operator @ E) @ integral
-        return tau * constant + self.friction.covector(velocity[..., 0])
+        E, to_velocity, push, gather = kick
+        integral = push @ r[..., None] + gather @ (E.swapaxes(-1, -2) @ constant[..., None])
+        return tau * constant + self.friction.covector((to_velocity @ integral)[..., 0])
 
     def impulses(
         self,
@@ -404,21 +403,22 @@ class Forced(AbstractSystem):
             faults: Gets what a force says that is not finite: its impulse is NaN then.
         """
         constant, faults = self.potential_force(g) + self.rows(steps), {} if faults is None else faults
+        if self.function is None and self.friction is None:
+            return tau * constant
+        kicks = self.kick_at(g, tau)
         if self.function is None:
-            return self.impulse(r, g, constant, tau)
-        E = self.directions(g)
-        to_velocity = E @ inverse_of(E.swapaxes(-1, -2) @ self.inertia_operator @ E)
+            return self.impulse(r, constant, tau, kicks)
         covectors = np.empty((len(r), self.group.dim))
-        E, to_velocity = (np.broadcast_to(x, (len(r), *x.shape[-2:])) for x in (E, to_velocity))
-        for k in range(len(r)):
+        each = zip(*(np.broadcast_to(x, (len(r), *x.shape[-2:])) for x in kicks), strict=True)
+        for k, kick in enumerate(each):
 
-            def impulse(velocity: np.ndarray, k: int = k) -> np.ndarray:
+            def impulse(velocity: np.ndarray, k: int = k, kick: tuple[Array, ...] = kick) -> np.ndarray:
                 force = np.full(self.group.dim, np.nan)
                 with note_fault(faults, "force"):
                     force = self.driving_force(time[k], g[k], velocity)
-                return self.impulse(r[k], g[k], constant[k] + force, tau)
+                return self.impulse(r[k], constant[k] + force, tau, kick)
 
-            covectors[k] = midpoint_impulse(impulse, r[k], E[k], to_velocity[k])
+            covectors[k] = midpoint_impulse(impulse, r[k], *kick[:2])
         return covectors
 
     def work(self, time: np.ndarray, g: np.ndarray, velocity: np.ndarray, step: np.ndarray) -> Float[np.ndarray, "K"]:

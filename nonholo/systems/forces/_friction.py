@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from nonholo.base.checks import array, error, is_traced, number, shape_of, shown, within_memory
+from nonholo.base.checks import array, assign, error, is_traced, number, shape_of, shown, within_memory
 from nonholo.base.memo import system_memo
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
@@ -48,7 +48,7 @@ class Friction:
         value = array(where, self.coefficients, sizes, "Pass (dim,) coefficients, or a (dim, dim) matrix.")
         if not value.size:
             raise error(where, "have a coefficient for each direction", "none", "Pass (dim,) coefficients.")
-        object.__setattr__(self, "coefficients", value)
+        assign(self, coefficients=value)
         if is_traced(value):
             return
         least = np.linalg.eigvalsh((self.matrix + self.matrix.T) / 2).min()
@@ -129,14 +129,14 @@ class Slip:
         rows = independent_rows(where, rows, rows.shape[1])
         if not len(rows):
             raise error(where, "have a row", "none", "Pass (s, dim) rows of the system's annihilator.")
-        object.__setattr__(self, "rows", rows)
+        assign(self, rows=rows)
         for name in ("grip", "viscous"):
             place, value = f"Slip({name}=...)", getattr(self, name)
             endless = name == "grip" and isinstance(value, float) and value == np.inf
             value = value if endless else number(place, value, "Pass one number that is not negative.")
             if not is_traced(value) and value < 0:
                 raise error(place, "never add energy", f"{value:.6g}", "Pass a number that is not negative.")
-            object.__setattr__(self, name, value)
+            assign(self, **{name: value})
 
 
 def remaining_rows(system: Any, slips: Sequence[Slip]) -> tuple[Float[np.ndarray, "s dim"], Float[np.ndarray, "j dim"]]:

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from nonholo.base.checks import array, error
+from nonholo.base.checks import array, assign, error
 from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
@@ -64,7 +64,7 @@ class Linear(AbstractLinear):
 
     def __post_init__(self) -> None:
         rows = array("Linear(matrix=...)", self.matrix, (None, None), "Pass A, as large as the matrices of the group.")
-        object.__setattr__(self, "matrix", rows)
+        assign(self, matrix=rows)
 
     def check(self, group: AbstractMatrixGroup) -> None:
         """Refuse a group of another size."""
@@ -140,8 +140,7 @@ class Gravity(AbstractLinear):
     def __post_init__(self) -> None:
         point = array("Gravity(point=...)", self.point, (None,), "Pass the n body coordinates of a point.")
         force = array("Gravity(force=...)", self.force, point.shape, "Pass as many numbers as the point has.")
-        object.__setattr__(self, "force", force)
-        object.__setattr__(self, "point", point)
+        assign(self, force=force, point=point)
 
     def check(self, group: AbstractMatrixGroup) -> None:
         """Refuse a group whose matrices move points of another dimension."""
@@ -208,11 +207,9 @@ class Spring:
     def __post_init__(self) -> None:
         x = array("Spring(body_point=...)", self.body_point, (None,), "Pass the n body coordinates of a point.")
         p = array("Spring(space_point=...)", self.space_point, x.shape, "Pass as many numbers as the body point has.")
-        values = {"body_point": x, "space_point": p}
+        assign(self, body_point=x, space_point=p)
         for name in ("stiffness", "length"):
-            values[name] = array(f"Spring({name}=...)", getattr(self, name), (), "Pass a finite number.")
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
+            assign(self, **{name: array(f"Spring({name}=...)", getattr(self, name), (), "Pass a finite number.")})
 
     def check(self, group: AbstractMatrixGroup) -> None:
         """Refuse a group whose matrices move points of another dimension."""

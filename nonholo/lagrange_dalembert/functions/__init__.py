@@ -1,0 +1,24 @@
+"""Functions of users as JAX traces them, with or without the time step; their parameters; tables of forces."""
+
+from nonholo.lagrange_dalembert.functions._system import (
+    SYSTEM,
+    AbstractParametricSystem,
+    Parameters,
+    configurations,
+    in_blocks,
+    in_double,
+    place,
+    places,
+    room,
+)
+from nonholo.lagrange_dalembert.functions._tables import LOOK_UP, ROWS, ForceTable
+from nonholo.lagrange_dalembert.functions._traced import (
+    Bound,
+    checked_rows,
+    checked_value,
+    count_of,
+    takes_time,
+    trace,
+    with_parameters,
+    with_time_step,
+)

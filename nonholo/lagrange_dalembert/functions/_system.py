@@ -1,0 +1,297 @@
+"""Systems whose functions take parameters, numbers by name, as their last argument.
+
+Calls of JAX are compiled once for all of their numbers. Every call runs in a local 64-bit scope and gives NumPy arrays.
+"""
+
+import difflib
+import functools
+import importlib
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, ClassVar, Self
+
+import jax
+import numpy as np
+
+from nonholo.base.checks import array, assign, checked_name, error, instance, is_traced, number, shape_of, shown
+from nonholo.base.numerics import double_precision
+from nonholo.base.progress import compiling
+from nonholo.base.traced import call_in_blocks
+from nonholo.base.types import Array
+from nonholo.lagrange_dalembert.functions._slips import AbstractYieldingSystem
+from nonholo.lagrange_dalembert.functions._tables import ROWS, ForceTable
+from nonholo.lagrange_dalembert.functions._traced import Bound, Resistance, checked_value, takes_time, with_parameters
+from nonholo.systems import DiscretizationT, OrbitT, force_of, parts_of
+
+
+class Parameters(Mapping[str, Any]):
+    """Numbers and arrays by name, in an order; equal where names, shapes and numbers are.
+
+    Example:
+        >>> Parameters({"mass": 1.0}) == Parameters({"mass": 1}), Parameters({"mass": 1.0})
+        (True, {'mass': 1.0})
+    """
+
+    def __init__(self, numbers: Any, owner: str = "LagrangeDAlembert") -> None:
+        where = f"{owner}(parameters=...)"
+        instance(where, numbers, Mapping, "be a mapping of names to numbers", "Pass a dict.")
+        names = [checked_name(where, key, ("time_step",)) for key in numbers]
+        self._numbers = {key: _valid_number(where, key, numbers[key]) for key in names}
+        self._key = tuple(
+            (key, np.shape(value), id(value) if is_traced(value) else np.asarray(value).tobytes())
+            for key, value in self.items()
+        )
+
+    def __getitem__(self, name: str) -> Any:
+        return self._numbers[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._numbers)
+
+    def __len__(self) -> int:
+        return len(self._numbers)
+
+    def __repr__(self) -> str:
+        return f"{{{', '.join(f'{key!r}: {_brief(value)}' for key, value in self.items())}}}"
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Parameters) and self._key == other._key
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+    @property
+    def structure(self) -> dict[str, jax.ShapeDtypeStruct]:
+        """Their shapes."""
+        return {key: jax.ShapeDtypeStruct(np.shape(value), float) for key, value in self.items()}
+
+    @property
+    def nothing(self) -> "Parameters":
+        """Zeros of the same names and shapes."""
+        return Parameters({key: np.zeros(np.shape(value)) for key, value in self.items()})
+
+    def replace(self, where: str, numbers: Mapping[str, Any]) -> "Parameters":
+        """Return them with other numbers of the same names and shapes."""
+        for key in numbers.keys() - self.keys():
+            near = difflib.get_close_matches(key, self, n=1)
+            remedy = f"It has {', '.join(self)}." if self else "It has none: make it with parameters=..."
+            raise error(
+                where, "name parameters of the system", shown(key), f"Did you mean {near[0]}?" if near else remedy
+            )
+        changes = {key: _valid_number(where, key, value, np.shape(self[key])) for key, value in numbers.items()}
+        return Parameters(self._numbers | changes)
+
+
+def _brief(value: Any) -> str:
+    return f"shape {np.shape(value)}" if is_traced(value) or np.ndim(value) else repr(float(value))
+
+
+def _valid_number(where: str, key: str, value: Any, shape: tuple[int, ...] | None = None) -> Any:
+    """Return a number, or an array of the given shape or any."""
+    where, shape = where.replace("...", f"{{{key!r}: ...}}"), shape_of(value) if shape is None else shape
+    return array(where, value, shape, "Pass real numbers.") if shape else number(where, value)
+
+
+class AbstractParametricSystem(AbstractYieldingSystem[DiscretizationT, OrbitT]):
+    """A system whose functions take its parameters last, where it has any."""
+
+    functions: ClassVar[tuple[str, ...]]
+    """The fields that are such functions."""
+    of_time: ClassVar[dict[str, int]] = {}
+    """How many arguments those have that may be called with the time after them."""
+    parameters: Any
+
+    @functools.cached_property
+    def table(self) -> ForceTable | None:
+        """The forces of the steps, where they are given one by one."""
+        return parts_of(self.force).get("table")
+
+    @property
+    def applied(self) -> Callable[[Array, Array, Array], Array] | None:
+        """The force as a function, where there is one."""
+        return parts_of(self.force).get("function")
+
+    @property
+    def has_parts(self: Any) -> bool:
+        """Whether parts of a step are defined: functions and tables that were made for one time step have none."""
+        functions = (self.discrete_lagrangian, self.discrete_constraints, self.table)
+        return not any(getattr(each, "is_of_one_step", False) for each in functions)
+
+    @property
+    def place_shape(self: Any) -> tuple[int, ...]:
+        """Shape of a place: a configuration, of a driven system with the time in one more row."""
+        first, *others = self.shapes[0]
+        return first + self.is_driven, *others
+
+    def _check_force(self: Any, of: str, *shapes: Any) -> None:
+        """Put the force in its place: a function as JAX traces it, with that of `Friction`; a table; others."""
+        where, parts, n = f"{type(self).__name__}(force=...)", parts_of(self.force), self.dimension
+        if (friction := parts.pop("friction", None)) is not None:
+            friction.check(n)
+            parts["function"] = Resistance(parts.get("function"), friction.matrix)
+        if "table" in parts and not isinstance(parts["table"], ForceTable):
+            remedy = "Pass a function of time, configuration and velocity, Friction, or one force a step."
+            parts["table"] = ForceTable.of(array(where, parts["table"], (None, n), remedy))
+        if "function" in parts:
+            arguments = (jax.ShapeDtypeStruct((), float), *shapes, *self._shapes_given)
+            parts["function"] = checked_value(where, parts["function"], of, arguments, (n,), of)
+        assign(self, force=force_of(parts))
+
+    def _with_force(self, force: Any) -> Any:
+        """Return the force with another one, which may take parameters or do without; beside one a table alone."""
+        own, parts = parts_of(self.force), parts_of(force)
+        if own and parts and (parts.keys() != {"table"} or "table" in own):
+            remedy = "Pass all forces at once; a table alone may come later."
+            raise error("Forced(system=...)", "have no force yet", repr(self), remedy)
+        if self.parameters and "function" in parts:
+            parts["function"] = with_parameters(parts["function"], 3)
+        return force_of(own | parts)
+
+    @property
+    def _shapes_given(self) -> tuple[dict[str, jax.ShapeDtypeStruct], ...]:
+        """The last argument of all functions, the shapes of the parameters, if there are any."""
+        return (self.parameters.structure,) if self.parameters else ()
+
+    def _time(self, name: str) -> tuple[Any, ...]:
+        """Return the shape of the time if a function is called with it."""
+        count = self.of_time.get(name, np.inf) + len(self._shapes_given)
+        return (jax.ShapeDtypeStruct((), float),) if takes_time(getattr(self, name), count) else ()
+
+    def _trace(self, name: str, of: str, arguments: tuple[Any, ...], check: Any, *demands: Any) -> None:
+        """Put a function as JAX traces it now in its own place, where there is one; the first of all is needed."""
+        if (function := getattr(self, name)) is not None or name == self.functions[0]:
+            arguments = (*arguments, *self._time(name), *self._shapes_given)
+            where = f"{type(self).__name__}({name}=...)"
+            assign(self, **{name: check(where, function, of, arguments, *demands)})
+
+    def with_parameters(self, **numbers: Any) -> Self:
+        r"""Return the same system with other numbers of some of its parameters; nothing is compiled again.
+
+        Args:
+            numbers: Numbers or arrays by name, as in `parameters`; JAX may trace them (`nonholo.rollout`).
+
+        Raises:
+            ValueError: A name that is none of its parameters, another shape, a value that is not finite.
+
+        Example:
+            >>> def energy(q, v, p):
+            ...     return (p["mass"] * v @ v - p["stiffness"] * q @ q) / 2
+            >>> spring = nh.LagrangeDAlembert(energy, None, dimension=1, parameters={"mass": 1.0, "stiffness": 4.0})
+            >>> heavy = spring.with_parameters(mass=4.0)
+            >>> heavy.parameters, heavy == spring
+            ({'mass': 4.0, 'stiffness': 4.0}, False)
+            >>> orbit = nh.flow(heavy, configuration=[1], body_velocity=[0], times=[0, np.pi])
+            >>> print(orbit.configuration[-1].round(9))
+            [-1.]
+        """
+        return _of_numbers(self, self.parameters.replace("with_parameters(...)", numbers), family=self.family)
+
+    @property
+    def numbers(self) -> tuple[Any, ...]:
+        """The numbers that its functions take: parameters, then the rows of a table where it has one."""
+        return *self.parameters.values(), *(() if self.table is None else (self.table.rows,))
+
+    @property
+    def numbers_of_formulas(self) -> tuple[Any, ...]:
+        """The same for formulas, which look up rows of a table at its address."""
+        return *self.parameters.values(), *(() if self.table is None else (self.table.address,))
+
+    @functools.cached_property
+    def family(self) -> Self:
+        """The system with zeros as parameters, which stands for all their numbers."""
+        if not self.parameters:
+            return self
+        family = self._with_fields(parameters=self.parameters.nothing)
+        vars(family)["family"] = family
+        return family
+
+    @functools.cached_property
+    def form(self) -> Self:
+        """The family without rows of a table, which stands for all `numbers`: what programs are made of."""
+        if self.table is None:
+            return self.family
+        form = self.family._with_fields(force=force_of(parts_of(self.force) | {"table": self.table.nothing}))
+        vars(form).update(family=form, form=form)
+        return form
+
+    def bound(self, *numbers: Any) -> Self:
+        """Return the system without parameters whose functions have these numbers within, and a table these rows."""
+        self._refuse_slips()
+        p = dict(zip(self.parameters, numbers, strict=False))
+        return self._with_fields(parameters=Parameters({}), **self._bound_fields(p, *numbers[len(p) :]))
+
+    def _bound_fields(self, p: Mapping[str, Any], *rows: Any) -> dict[str, Any]:
+        """Return the fields that are functions, with parameters within, and the force with rows of its table."""
+        own, parts = {name: getattr(self, name) for name in self.functions}, parts_of(self.force)
+        parts |= {"function": Bound(parts["function"], p)} if "function" in parts else {}
+        parts |= {"table": ForceTable(*rows)} if rows else {}
+        return {name: each and Bound(each, p) for name, each in own.items()} | {"force": force_of(parts)}
+
+    @functools.cached_property
+    def plain(self) -> Self:
+        """The same system without parameters: its functions have them within."""
+        return _plain(self)
+
+
+def _of_numbers(system: Any, parameters: Parameters, **fields: Any) -> Any:
+    """Return a system with other numbers, which is pickled as such where it is made by a call that has a name."""
+    other, recipe = system._with_fields(parameters=parameters, **fields), vars(system).get("recipe")
+    if recipe:
+        origin = recipe[1][0] if recipe[0] is _of_numbers else system
+        vars(other)["recipe"] = (_of_numbers, (origin, parameters))
+    return other
+
+
+def _plain(system: Any) -> Any:
+    """Return a system whose numbers stand within its functions, pickled as such."""
+    plain = system.bound(*system.parameters.values()) if system.parameters else system
+    recipe = vars(system).get("recipe")
+    if recipe and plain is not system:
+        vars(plain)["recipe"] = (_plain, (system,))
+    return plain
+
+
+SYSTEM = "a system in coordinates"
+
+
+@functools.cache
+def _compile(function: Callable[..., Any]) -> Callable[..., Any]:
+    def call(family: Any, numbers: tuple[Any, ...], *arguments: Any) -> Any:
+        return function(family.bound(*numbers), *arguments)
+
+    return jax.jit(call, static_argnums=0)
+
+
+def room(name: str) -> Any:
+    """Return a module that imports the caller's, or that loads slowly because of diffrax."""
+    return importlib.import_module(f"nonholo.lagrange_dalembert.{name}")
+
+
+def configurations(system: Any, places: Any) -> Any:
+    """Return the configurations of places: those of driven systems have the time in a last column."""
+    return places[:, :-1] if system.is_driven else places
+
+
+def places(system: Any, configurations: Any, time: Any) -> Any:
+    """Return the places of configurations at these times, with one more row of a driven system."""
+    if not system.is_driven:
+        return configurations
+    xp, (count, _, *row) = configurations.__array_namespace__(), configurations.shape
+    times = xp.reshape(xp.asarray(time, dtype=float), (-1, 1, *(1 for _ in row)))
+    return xp.concatenate([configurations, xp.broadcast_to(times, (count, 1, *row))], axis=1)
+
+
+def place(system: Any, q: Any, time: Any) -> Any:
+    """Return where a system is: its configuration, of a driven one with the time."""
+    return places(system, q[None], time)[0]
+
+
+def in_double(function: Callable[..., Any], system: Any, *arguments: Any) -> Any:
+    """Call a JAX function of a system, compiled once for all of its numbers, in 64 bits; return NumPy arrays."""
+    family, numbers = system.form, system.numbers
+    with double_precision(), compiling(SYSTEM, family, (function, family)):
+        return jax.tree.map(np.asarray, _compile(function)(family, numbers, *arguments))
+
+
+def in_blocks(function: Callable[..., Any], system: Any, *columns: np.ndarray) -> list[np.ndarray]:
+    """Call a JAX function of a system and many states in blocks."""
+    return call_in_blocks(functools.partial(in_double, function, system), ROWS, *columns)

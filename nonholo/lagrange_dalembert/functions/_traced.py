@@ -1,0 +1,174 @@
+"""Functions that users pass, as JAX traces them in 64 bit: their checks, and those that are made of others."""
+
+import dataclasses
+import functools
+import inspect
+import operator
+from collections.abc import Callable, Mapping
+from typing import Any, ClassVar
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from nonholo.base.checks import error, shown
+from nonholo.base.numerics import double_precision
+from nonholo.base.traced import TracedFunction
+from nonholo.base.types import Array, Float, Int
+
+_END = 120  # letters of either end of a long message
+
+
+def trace(where: str, function: Any, of: str, arguments: tuple[Any, ...]) -> TracedFunction:
+    """Return a function as JAX traces it now; `of` says in words what it is called with."""
+    if isinstance(function, TracedFunction) and function.arguments == arguments:
+        return function
+    if not callable(function):
+        raise error(where, "be a function", shown(function), "Pass a function of jax.numpy arrays.")
+    _check_parameters(where, function, arguments)
+    result = _attempt(where, of, lambda: TracedFunction(function, arguments))
+    if any(getattr(constant, "dtype", None) == jnp.float32 for constant in result.constants):
+        remedy = "Keep parameters as Python numbers or NumPy arrays, not as jax.numpy arrays made outside."
+        raise error(where, "use 64-bit numbers", "a captured 32-bit array", remedy)
+    kind = result.program.out_avals[0].dtype.kind
+    if kind in ("c" if result.shape else "biuc"):
+        got = "complex numbers" if kind == "c" else "an integer"
+        raise error(where, "return real numbers that it computes from its arguments", got, "Return a smooth formula.")
+    return result
+
+
+def _check_parameters(where: str, function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
+    """Refuse a function that does not take the parameters of its system, last."""
+    if isinstance(arguments[-1], dict) and not _binds(function, count := len(arguments)):
+        got, remedy = f"{inspect.signature(function)}", f"Let it take {count} arguments, the last a dict of parameters."
+        raise error(where, "take the parameters of the system as its last argument", got, remedy)
+
+
+def _attempt(where: str, of: str, trace: Callable[[], Any]) -> Any:
+    """Return what JAX traces, refused where it cannot."""
+    try:
+        return trace()
+    except Exception as failure:
+        words = " ".join(str(failure).split()).rstrip(".")
+        message = words if len(words) <= 2 * _END else f"{words[:_END]} ... {words[-_END:]}"
+        got, columns = f"{type(failure).__name__}: {message}", "`.to_numpy()` of columns of pandas"
+        remedy = f"Write it with jax.numpy, for arrays of {of}; use jnp.where, not `if`, and {columns}."
+        raise error(where, f"be traceable by JAX on {of}", got, remedy) from failure
+
+
+def checked_value(
+    where: str, function: Any, of: str, arguments: tuple[Any, ...], shape: tuple[int, ...], arrays: str
+) -> TracedFunction:
+    """Return a traced function; refuse one of another shape, or a scalar that is to be differentiated and cannot be.
+
+    `arrays` describes the arrays that it is called with.
+    """
+    result = trace(where, function, of, arguments)
+    if result.shape != shape:
+        demand = "a scalar" if shape == () else f"an array of shape {shape}"
+        raise error(where, f"return {demand}", f"shape {result.shape}", f"It is called with arrays of {arrays}.")
+    if shape == ():
+        numbers = tuple(i for i, each in enumerate(arguments) if hasattr(each, "shape"))
+        with double_precision():
+            _attempt(where, of, lambda: jax.make_jaxpr(jax.grad(result, numbers))(*arguments))
+    return result
+
+
+def checked_rows(
+    where: str, function: Any, of: str, arguments: tuple[Any, ...], most: int, columns: tuple[int, ...], remedy: str
+) -> TracedFunction:
+    """Return a traced function of up to `most` rows of columns, of numbers without columns; refuse another one."""
+    result = trace(where, function, of, arguments)
+    if len(result.shape) != 1 + len(columns) or result.shape[1:] != columns or not 0 < result.shape[0] <= most:
+        demand = f"(s, {most + 1}) with 0 < s < {most + 1}" if columns else f"(m,) with 0 < m <= {most}"
+        raise error(where, f"return an array of shape {demand}", f"shape {result.shape}", remedy)
+    return result
+
+
+def count_of(function: Any) -> int:
+    """Return the number of rows of what a traced function returns, none without one."""
+    return 0 if function is None else function.shape[0]
+
+
+def takes_time(function: Any, others: float) -> bool:
+    """Return whether a function must be called with one argument more than the others."""
+    try:
+        parameters = inspect.signature(function).parameters.values()
+    except (TypeError, ValueError):  # a builtin that does not tell
+        return False
+    positional = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    return sum(each.kind in positional and each.default is each.empty for each in parameters) > others
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Resistance:
+    """A force -C v beside a function, where there is one."""
+
+    function: Callable[..., Any] | None
+    friction: Float[np.ndarray, "n n"]
+
+    def __call__(self, time: Array, q: Array, v: Array, *p: Any) -> Array:
+        """Return the force."""
+        return (0 if self.function is None else self.function(time, q, v, *p)) - self.friction @ v
+
+
+@dataclasses.dataclass(frozen=True)
+class TwoPoint:
+    """A function of two configurations that was made for one time step."""
+
+    function: Callable[[Array, Array], Array]
+    is_of_one_step: ClassVar[bool] = True
+
+    def __call__(self, q: Array, q_next: Array, time_step: Array, *parameters: Any) -> Array:
+        """Return the value, which does not depend on the time step."""
+        del time_step
+        return self.function(q, q_next, *parameters)
+
+
+def with_time_step(function: Any, others: int) -> Any:
+    """Return a function of (q, q_next, time_step) and others: itself, or one without the time step wrapped."""
+    is_shorter = callable(function) and _binds(function, 2 + others) and not _binds(function, 3 + others)
+    return TwoPoint(function) if is_shorter else function
+
+
+def with_parameters(function: Any, others: int) -> Any:
+    """Return a function of others and parameters: itself, or one that does without them wrapped."""
+    if not callable(function) or _binds(function, others + 1):
+        return function
+    return lambda *arguments: function(*arguments[:-1])
+
+
+def _binds(function: Callable[..., Any], count: int) -> bool:
+    """Return whether a function takes this many arguments; a builtin need not tell, and takes all."""
+    try:
+        inspect.signature(function).bind(*range(count))
+    except TypeError:
+        return False
+    except ValueError:
+        return True
+    return True
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Bound:
+    """A function with its last argument put in: parameters by name, where there are any."""
+
+    function: Callable[..., Any]
+    parameters: Mapping[str, Any]
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Return the value."""
+        return self.function(*arguments, *([self.parameters] if self.parameters else []))
+
+    @property
+    def __signature__(self) -> inspect.Signature:
+        signature = inspect.signature(self.function)
+        return signature.replace(parameters=[*signature.parameters.values()][: -1 if self.parameters else None])
+
+    shape = property(operator.attrgetter("function.shape"))
+    is_of_one_step = property(operator.attrgetter("function.is_of_one_step"))
+
+
+def rows_of(function: Any, rows: Int[np.ndarray, "k"]) -> Any:
+    """Return a function with some rows of what another one returns."""
+    return functools.wraps(function)(lambda *arguments: function(*arguments)[rows])
