@@ -25,7 +25,7 @@ _BOXES, _ROOMS, _LINES = 16, 17, 40
 
 
 def _boxes(folder: Path) -> list[Path]:
-    files = [path for path in folder.glob("*.py") if path.stem not in ("__init__", "__main__")]
+    files = [path for path in folder.glob("*.py") if path.name != "__init__.py"]
     return files + [path for path in folder.iterdir() if (path / "__init__.py").exists()]
 
 

@@ -7,7 +7,7 @@ from mutants import ROOT, Mutant, mutants
 from profiles import room_of
 
 _LEAST = 60
-_NO_ROOMS = {"__init__", "__main__"}  # names alone, and a call
+_NO_ROOMS = {"__init__"}  # names alone
 
 
 def _rooms() -> set[str]:

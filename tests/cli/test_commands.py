@@ -13,7 +13,6 @@ from commands import Command, Figures, assert_ends, words_of
 from matplotlib.figure import Figure
 
 import nonholo as nh
-from nonholo.cli import _app
 from nonholo.cli.commands import runs
 from nonholo.cli.scenario.files import load_scenario
 from nonholo.cli.screen.report import duration
@@ -198,16 +197,6 @@ def test_stores_that_cannot_be_read(nonholo: Command) -> None:
     for command in ("info", "plot"):
         assert_ends(nonholo(command, "a.zarr"), 1, "chunk c/0/0 of the array canonical/cayley")
     assert "difference matrix" in " ".join(nonholo("info", "a.zarr").stdout.split())
-
-
-def test_package_is_the_command() -> None:
-    """`python -m nonholo` is `nonholo`: it lists the commands, and refuses others as that does."""
-    asked = [[sys.executable, "-m", "nonholo", word] for word in ("--help", "simulat")]
-    shown, refused = (subprocess.run(each, capture_output=True, text=True) for each in asked)  # noqa: S603
-    assert shown.returncode == 0
-    assert all(command.__name__ in shown.stdout for command in _app._COMMANDS)
-    assert refused.returncode == 2
-    assert "No such command 'simulat'" in refused.stderr
 
 
 def test_version(nonholo: Command) -> None:
