@@ -181,3 +181,35 @@ def test_a_fold_is_met_at_the_same_place_on_the_way_to_any_momentum(name: str) -
         assert code == Outcome.no_real_branch
         folds.append(fold)
     np.testing.assert_allclose(folds, np.tile(folds[0], (3, 1)), rtol=0, atol=1e-4)  # the root of the shortest step
+
+
+@pytest.mark.parametrize(
+    ("branch", "mass", "center", "inertia", "velocity"),
+    [
+        (
+            "smallest",
+            0.85,
+            [0.05, 1.65, 0.22],
+            [[1.24, 0.01, 0.96], [0.01, 1.07, 0.26], [0.96, 0.26, 1.84]],
+            [-0.93, -1.11, 0.56],
+        ),
+        (
+            "largest",
+            1.18,
+            [-0.09, 0.2, -0.44],
+            [[1.26, -0.28, -0.46], [-0.28, 1.33, -0.59], [-0.46, -0.59, 1.13]],
+            [-0.4, -0.78, 1.06],
+        ),
+    ],
+)
+def test_the_smallest_momentum_does_not_depend_on_the_unit_of_length(
+    branch: str, mass: float, center: list[float], inertia: list[list[float]], velocity: list[float]
+) -> None:
+    """Angular and linear momenta are compared in the unit of the body, so that a rule takes the same values."""
+    turns = []
+    for length in (1.0, 1e-3, 1e3):
+        sleigh = nh.MultidimensionalSleigh(mass, np.array(center) * length, np.array(inertia) * length**2)
+        start = np.array(velocity) * [1.0, 1.0, length]
+        orbit = nh.simulate(nh.discretize(sleigh, 0.5), restricted_velocity=start, steps=3, branch=branch)
+        turns.append(orbit.displacement[:, :3, :3])
+    np.testing.assert_allclose(turns, np.tile(turns[0], (3, 1, 1, 1)), rtol=0, atol=1e-12)

@@ -122,7 +122,7 @@ class Nearest(AbstractBranchRule):
 
 @dataclasses.dataclass(frozen=True)
 class Extreme(AbstractBranchRule):
-    """The real value whose full momentum is smallest (sign 1) or largest (-1)."""
+    """The real value whose full momentum is smallest (sign 1) or largest (-1), in the body's unit of length."""
 
     name: str
     sign: int
@@ -133,7 +133,7 @@ class Extreme(AbstractBranchRule):
         real = np.flatnonzero(values.is_real)
         if len(real) == 0:
             return _only(kick, roots, values, [])
-        norms = self.sign * np.linalg.norm(values.momentum[real], axis=1)
+        norms = self.sign * _values.momentum_sizes(kick.discrete, kick.frame, values.momentum[real])
         ties = real[norms <= norms.min() + _TIED * np.abs(norms).max()]
         return _only(kick, roots, values, ties.tolist())
 

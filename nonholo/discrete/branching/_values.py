@@ -228,6 +228,15 @@ def branches_of(
     )
 
 
+def momentum_sizes(
+    discrete: Discretization, frame: AnyFrame, momentum: Inexact[Array, "... dim"]
+) -> Float[np.ndarray, "..."]:
+    """Return the norms of full momenta in the body's unit of length, in which those of turns and slides compare."""
+    basis = discrete.system.group.hat(np.eye(discrete.system.group.dim))
+    sizes = np.linalg.norm(basis * frame.stretch, axis=(1, 2)) / np.linalg.norm(basis, axis=(1, 2))
+    return np.linalg.norm(momentum / sizes, axis=-1)
+
+
 def point_over(where: str, discrete: Discretization, frame: AnyFrame, W: np.ndarray) -> Float[np.ndarray, "m"]:
     """Return the point over a real displacement, refused with its distance from the variety."""
     system = discrete.system
@@ -516,10 +525,9 @@ def _inverse(where: str, discrete: Discretization, frame: AnyFrame, momentum: An
     system = discrete.system
     p = array(where, momentum, (system.group.dim,), "Pass all components of a body momentum.")
     values = values_over(discrete, frame, system.restrict(p))
-    units = np.linalg.norm(system.group.hat(np.eye(len(p))) * frame.stretch, axis=(1, 2))
-    distances = np.where(values.is_real, np.linalg.norm((values.momentum - p) / units, axis=1), np.inf)
-    rounding = _ROUNDING * np.abs(values.momentum / units).max(initial=0.0)  # matters at rest
-    near = np.flatnonzero(distances <= SAME * np.linalg.norm(p / units) + rounding)
+    distances = np.where(values.is_real, momentum_sizes(discrete, frame, values.momentum - p), np.inf)
+    rounding = _ROUNDING * momentum_sizes(discrete, frame, values.momentum).max(initial=0.0)  # matters at rest
+    near = np.flatnonzero(distances <= SAME * momentum_sizes(discrete, frame, p) + rounding)
     if len(near) == 0:
         away = np.linalg.norm(values.momentum - p, axis=1)[values.is_real]
         got = f"distance {away.min():.3g}" if len(away) else "components that no displacement has"
