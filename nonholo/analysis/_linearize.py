@@ -348,6 +348,7 @@ def _balance(local: Local, equations: Reduced) -> tuple[np.ndarray, np.ndarray]:
 
 
 _SHIFT = 1e-14  # relative, of eigenvalues by rounding
+_TIGHT = 1e-14  # error of a critical value, relative to those around it where they are small
 _NEUTRAL = 1e-7  # relative to the largest eigenvalue: what neither grows nor decays, up to rounding
 
 
@@ -443,7 +444,8 @@ def _change_between(linearization: Any, least: float, ends: np.ndarray, rows: Se
 
     before, after = (growth(row)[few] for row in rows)
     crosses = before * after < 0 and min(abs(before), abs(after)) > least
-    root: Any = brentq(change, *ends, xtol=1e-14) if crosses else bisect(is_alike, *ends, xtol=1e-14)
+    tight = _TIGHT * min(1.0, np.abs(ends).max())
+    root: Any = brentq(change, *ends, xtol=tight) if crosses else bisect(is_alike, *ends, xtol=tight)
     return float(root)
 
 

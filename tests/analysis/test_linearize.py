@@ -323,6 +323,19 @@ def test_a_multiple_eigenvalue_that_changes_its_sign_is_seen() -> None:
         assert nh.critical_values(at, (-1.3, 2.1), samples=samples) == pytest.approx([0.0], abs=error)
 
 
+@pytest.mark.parametrize("unit", [1e-12, 1.0, 1e12])
+@pytest.mark.parametrize("states", [1, 2])
+def test_a_critical_value_does_not_depend_on_the_unit_of_the_parameter(unit: float, states: int) -> None:
+    """Where one eigenvalue crosses the axis, and where two meet on it and part: to rounding, however small."""
+
+    def at(value: float) -> Linearization:
+        x = value / unit - 0.37
+        matrix = np.array([[np.expm1(3 * x)]]) if states == 1 else np.array([[0.0, 1.0], [x, 0.0]])
+        return Linearization(matrix, tuple("ab"[:states]), (), None)
+
+    assert nh.critical_values(at, (-0.2 * unit, unit), samples=4) == pytest.approx([0.37 * unit], rel=1e-12, abs=0.0)
+
+
 def test_eigenvalues_that_are_zero_twice_never_grow() -> None:
     """Of a snakeboard on circles all are zero: rounding, which parts double ones by its root, is no growth."""
     board = nh.examples.snakeboard()

@@ -324,9 +324,9 @@ def test_no_principal_branch_beyond_the_fold() -> None:
 
 
 def test_values_all_too_far_away_are_none() -> None:
-    """Displacements of a sleigh in space beyond 1e5 count as infinite: of a momentum of 1e20 no value is left."""
-    found = nh.displacements_over(_DEFINED["sleigh on SE(3)"][0], [3e19, 2e19, -4e19])
-    assert (len(found.is_real), found.principal) == (0, None)
+    """Doubles hold no displacement of a sleigh in space over a momentum of 1e100: none is left, all are missing."""
+    found = nh.displacements_over(_DEFINED["sleigh on SE(3)"][0], [3e99, 2e99, -4e99])
+    assert (len(found.is_real), found.real_count, found.missing, found.principal) == (0, 0, 5, None)
 
 
 @pytest.mark.parametrize(("discrete", "r"), _DEFINED.values(), ids=_DEFINED)

@@ -17,7 +17,7 @@ from nonholo import kernels
 from nonholo.base.checks import error
 from nonholo.base.numerics import applied
 from nonholo.base.results import Outcome
-from nonholo.base.types import Array, Float, Inexact
+from nonholo.base.types import Array, Bool, Float, Inexact
 from nonholo.systems import NormalForm
 
 if TYPE_CHECKING:
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 _BALANCED = 8 * np.finfo(np.float64).eps  # coupling, relative to the inertia, that counts as zero
 _RANK = 1e-13  # relative singular value below which a direction is left alone
+FAR = 1e5  # times the size that target and push ask for: a root that counts as infinite
 _AT_PI = 1e-75  # stands for the cosine of half the angle pi, which Cayley coordinates cannot be divided by
 
 
@@ -62,6 +63,28 @@ class Equations:
         """Number of complex roots in general."""
         k = len(self.stiffness)
         return 2 if self.is_balanced else 2 * k + (self.arm != 0)
+
+    @property
+    def most(self) -> int:
+        """Number of complex roots that no momentum exceeds."""
+        return self.count
+
+    @property
+    def slides(self) -> Bool[np.ndarray, "m"]:
+        """Which coordinates of a point are lengths."""
+        return np.arange(1 + len(self.stiffness) + (self.lever is not None)) > len(self.stiffness)
+
+    @property
+    def horizon(self) -> Float[np.ndarray, "m"]:
+        """Sizes of coordinates that count as infinite, by those that target and push ask for."""
+        turning = np.abs(self.target).max()
+        turn, slide = np.sqrt(max(1.0, turning, abs(self.arm * self.push))), max(1.0, turning, abs(self.push))
+        return FAR * np.where(self.slides, slide, turn)
+
+    def extent(self, x: Inexact[Array, "... m"]) -> Float[np.ndarray, "... m"]:
+        """Return units for the moves of a point: the sizes of its turn and of its slide, at least one."""
+        sizes = [np.linalg.norm(x * part, axis=-1, keepdims=True) for part in (~self.slides, self.slides)]
+        return np.maximum(1.0, np.where(self.slides, sizes[1], sizes[0]))
 
     def points(self, rows: Sequence[Inexact[Array, "m"]]) -> Inexact[np.ndarray, "B m"]:
         """Stack points, none as well."""
@@ -155,6 +178,14 @@ class Frame:
     offset: Float[np.ndarray, "j"]
     turn: Float[np.ndarray, "N N"] | None = None
     rows: Float[np.ndarray, "m m"] | None = None
+
+    @property
+    def stretch(self) -> Float[np.ndarray, "N N"]:
+        """Factors of the entries of W - I, for the body's unit of length."""
+        shrink = np.ones(len(self.stiffness) + 1 + (self.length is not None))
+        if self.length is not None:
+            shrink[:-1] /= self.length
+        return np.outer(shrink, 1 / shrink)
 
     def equations(self, momentum: Inexact[np.ndarray, "m"]) -> Equations:
         """Return the equations for canonical restricted momenta, multiplied by the time step."""
@@ -253,12 +284,12 @@ _CLOSE = 0.1  # part of the predicted move that the corrector may add
 _SMALL = 1e-3  # a corrector's move that is always accepted where the predicted one is smaller
 _CORRECTIONS = 6  # of Newton's method
 _CONVERGED = 1e-11  # a correction after which the next one is below rounding
-_SHORTEST = 1e-10  # continuation step below which the root is given up
+_SHORTEST = 1e-10  # change of target and push below which the root is given up
+_PROGRESS = 8 * np.finfo(np.float64).eps  # of a place on the segment, below which steps may be lost by rounding
 _FOLD = 1e-2  # regularity below which a root that cannot be followed has met a fold
 _SINGULAR = 1e-8  # regularity of a root that cannot be followed at all
 _CLEAR = 10.0  # times that, for a bound of it that rounding has moved
 _TRANSVERSAL = 1e-6  # part of the momentum's motion across a fold below which the singular point is no fold
-_FAR = 1e5  # length of a displacement that counts as infinite
 
 
 def follow(start: Equations, end: Equations, x: Float[np.ndarray, "m"]) -> tuple[Outcome, Float[np.ndarray, "m"]]:
@@ -270,7 +301,7 @@ def follow(start: Equations, end: Equations, x: Float[np.ndarray, "m"]) -> tuple
     if start.regularity(x) < _SINGULAR:
         return Outcome.branch_unverified, x
     direction = _motion(start, end)
-    slope = start.slope(x)
+    slope, shortest = start.slope(x), _SHORTEST / max(1.0, float(np.linalg.norm(direction)))
     side, s, size = np.sign(np.linalg.det(slope)), 0.0, 1.0
     while s < 1.0:
         tangent = np.linalg.solve(slope, direction)
@@ -280,7 +311,7 @@ def follow(start: Equations, end: Equations, x: Float[np.ndarray, "m"]) -> tuple
         next_point = _correct(_between(start, end, ahead), x + size * tangent, size * pace)
         if next_point is not None and np.sign(np.linalg.det(end.slope(next_point))) == side:
             x, s, size, slope = next_point, ahead, 2 * size, end.slope(next_point)
-        elif size > _SHORTEST:
+        elif size > max(shortest, _PROGRESS * s):
             size /= 4
         else:
             return _why_it_ended(_between(start, end, s), direction, x), x
@@ -332,7 +363,7 @@ def _why_it_ended(equations: Equations, direction: np.ndarray, x: np.ndarray) ->
     """Distinguish a fold, another singular point, a root that goes to infinity, and a failure to converge."""
     if not np.all(np.isfinite(x)):
         return Outcome.nonfinite
-    if np.abs(x).max() > _FAR:
+    if np.any(np.abs(x) > equations.horizon):
         return Outcome.branch_unverified
     if equations.regularity(x) > _FOLD:
         return Outcome.not_converged

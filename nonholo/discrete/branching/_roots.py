@@ -111,7 +111,6 @@ _CLOSE = 3e-7  # relative distance, about sqrt(eps), below which two roots canno
 _BLURRED = 3e-5  # the same for three roots, about eps^(1/3)
 _FOLDED = 1e-5  # least singular value that a root of multiplicity above one may have
 _ISOLATED = 1e-10  # least singular value of a root that has no other close by
-_FAR = 1e5  # size of a root that counts as infinite
 _SETTLED = 1e-14  # relative residual below which an iteration that gains no more has converged
 _TINY = 1e-10  # part of the largest equation that others are measured by, where their own terms vanish
 _REACHED = 1e-13  # relative residual of a root
@@ -150,17 +149,19 @@ def _is_crowded(equations: Equations, roots: list[Root]) -> bool:
 
 def place(root: Root) -> tuple:
     """Return what roots are sorted by: real ones first, by step angle."""
-    return not root.is_real, np.linalg.norm(root.point[1:]), root.point[0].imag
+    x = root.point
+    side = x.imag[np.argmax(np.abs(x.imag) > _BLURRED * np.linalg.norm(x))]  # of a pair
+    return not root.is_real, float(f"{np.linalg.norm(x[1:]):.8g}"), side
 
 
 def polish(equations: Equations, starts: Inexact[Array, "B m"]) -> Inexact[Array, "C m"]:
     """Return the roots that Newton's method reaches from points."""
-    roots, converged = _newton(equations, _finite(starts))
-    return _finite(roots[converged])
+    roots, converged = _newton(equations, _finite(equations, starts))
+    return _finite(equations, roots[converged])
 
 
-def _finite(points: Inexact[Array, "B m"]) -> Inexact[Array, "C m"]:
-    return points[np.abs(points).max(axis=1) < _FAR]
+def _finite(equations: Equations, points: Inexact[Array, "B m"]) -> Inexact[Array, "C m"]:
+    return points[(np.abs(points) < equations.horizon).all(axis=1)]
 
 
 def _newton(
@@ -170,7 +171,8 @@ def _newton(
     x, best, least, active = x.copy(), x.copy(), np.full(len(x), _REACHED), np.arange(len(x))
     for i in range(steps):
         residual, sizes = equations.residual(x[active])
-        error = (np.abs(residual) / (sizes + _TINY * sizes.max(axis=1, keepdims=True))).max(axis=1)
+        sizes[:, :-1] += _TINY * sizes.max(axis=1, keepdims=True)  # the last ones, of the sphere, do not vanish
+        error = (np.abs(residual) / sizes).max(axis=1)
         stagnates = (error > least[active] / 2) & (least[active] < _SETTLED)
         better = active[error < least[active]]
         best[better], least[active] = x[better], np.fmin(error, least[active])
@@ -180,7 +182,7 @@ def _newton(
             break
         correction = equations.solve(x[active], residual)
         if i == 0:
-            near = np.linalg.norm(correction, axis=1) <= reach * np.linalg.norm(x[active], axis=1)
+            near = _length(equations, correction, x[active]) <= reach
             active, correction = active[near], correction[near]
         x[active] -= correction
     return best, least < _REACHED
@@ -189,9 +191,9 @@ def _newton(
 def _merge(equations: Equations, points: Inexact[Array, "B m"]) -> list[Root]:
     """Join what rounding cannot tell from a multiple root; drop what is a point of a continuum of roots."""
     points = np.where(points[:, :1].real >= 0, points, -points)
-    regularity = equations.regularity(points)
+    regularity = _regularity(equations, points)
     blur = _blur(regularity)
-    near = _distance(points[:, None], points) <= np.maximum(blur[:, None], blur)
+    near = distance(equations, points[:, None], points) <= np.maximum(blur[:, None], blur)
     left, roots = np.ones(len(points), dtype=bool), []
     while left.any():
         i = int(np.argmax(left))
@@ -211,9 +213,19 @@ def _blur(regularity: Float[np.ndarray, "B"]) -> Float[np.ndarray, "B"]:
     return np.minimum(_BLURRED, _CLOSE + 10 * _EPS / np.maximum(regularity, _EPS))
 
 
-def _distance(x: Inexact[Array, "... m"], y: Inexact[Array, "... m"]) -> Float[np.ndarray, "..."]:
-    apart = np.minimum(np.linalg.norm(x - y, axis=-1), np.linalg.norm(x + y, axis=-1))
-    return apart / np.maximum(1.0, np.linalg.norm(x, axis=-1))
+def _regularity(equations: Equations, x: Inexact[Array, "B m"]) -> Float[np.ndarray, "B"]:
+    """Return the regularity of roots, far ones as if they were near."""
+    return equations.regularity(x) / equations.extent(x)[:, 0]
+
+
+def _length(equations: Equations, move: Inexact[Array, "... m"], x: Inexact[Array, "... m"]) -> Float[Array, "..."]:
+    """Return the size of a move from a point, relative to the sizes of its turn and slide."""
+    return np.linalg.norm(move / equations.extent(x), axis=-1)
+
+
+def distance(equations: Equations, x: Inexact[Array, "... m"], y: Inexact[Array, "... m"]) -> Float[Array, "..."]:
+    """Return the distance of two points, either sign of them, relative to the sizes of turn and slide of one."""
+    return np.minimum(_length(equations, x - y, x), _length(equations, x + y, x))
 
 
 def _center(equations: Equations, x: Array) -> Array:
@@ -228,7 +240,7 @@ def _center(equations: Equations, x: Array) -> Array:
 def _mark_real(equations: Equations, roots: list[Root]) -> list[Root]:
     """Mark roots that cannot be distinguished from their own conjugates as real, and make them so."""
     x = equations.points([root.point for root in roots])
-    real = _distance(x, x.conj()) <= _blur(equations.regularity(x))
+    real = distance(equations, x, x.conj()) <= _blur(_regularity(equations, x))
     pairs = zip(roots, real, strict=True)
     result = [Root(root.point.real.copy(), root.multiplicity, True) if on else root for root, on in pairs]
     simple = [i for i, root in enumerate(result) if root.is_real and root.multiplicity == 1]
@@ -248,10 +260,10 @@ def _by_continuation(equations: Equations) -> Inexact[Array, "B m"]:
             break
     if len(starts) == 0:
         generic, starts = equations.around()
-    ends = _finite(follow_all(equations, generic, starts))
+    ends = _finite(equations, follow_all(equations, generic, starts))
     if _is_complex(equations) or len(ends) == 0:
         return ends
-    alone = _distance(ends.conj()[:, None], ends).min(axis=1) > _BLURRED  # real problems have them in pairs
+    alone = distance(equations, ends.conj()[:, None], ends).min(axis=1) > _BLURRED  # real problems have them in pairs
     return np.concatenate([ends, ends[alone].conj()])
 
 
@@ -305,11 +317,11 @@ def follow_all(end: Equations, start: Equations, x: Inexact[Array, "B m"]) -> In
         change = start.residual(x)[0] - end.residual(x)[0]
         guess = x + (1 - ratio) * t * _between(start, end, t).solve(x, change)
         points, converged = _newton(_between(start, end, ratio * t), guess, 6, 0.05)
-        good = converged & (np.linalg.norm(points - x, axis=1) <= 0.5 * np.linalg.norm(x, axis=1))
+        good = converged & (_length(end, points - x, x) <= 0.5)
         if not good.all() and ratio < 1 - 1e-4:
             ratio = ratio**0.5
             continue
-        x, t = _finite(points[good]), ratio * t
+        x, t = _finite(end, points[good]), ratio * t
         ratio = max(ratio**1.5, 0.05)
     roots, converged = _newton(end, x.astype(complex), 40, 1e-3)
     return roots[converged]

@@ -21,6 +21,7 @@ from nonholo.base.types import Float
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete.branching import _values
 from nonholo.discrete.branching._equations import Equations, Frame, follow, frame_of, has_frame, nearest_body
+from nonholo.discrete.branching._roots import distance
 from nonholo.discrete.routes import AbstractBodyStepper
 from nonholo.orbit import First, Rows, State, keep_row, write_first
 
@@ -121,7 +122,7 @@ class Nearest(AbstractBranchRule):
 
 @dataclasses.dataclass(frozen=True)
 class Extreme(AbstractBranchRule):
-    """The real value whose full momentum is smallest (sign 1) or largest (-1)."""
+    """The real value whose full momentum is smallest (sign 1) or largest (-1), in the body's unit of length."""
 
     name: str
     sign: int
@@ -132,7 +133,7 @@ class Extreme(AbstractBranchRule):
         real = np.flatnonzero(values.is_real)
         if len(real) == 0:
             return _only(kick, roots, values, [])
-        norms = self.sign * np.linalg.norm(values.momentum[real], axis=1)
+        norms = self.sign * _values.momentum_sizes(kick.discrete, kick.frame, values.momentum[real])
         ties = real[norms <= norms.min() + _TIED * np.abs(norms).max()]
         return _only(kick, roots, values, ties.tolist())
 
@@ -240,7 +241,7 @@ def _check_values_known(where: str, discrete: Discretization, branch: BranchRule
 
 def _values_after(kick: Kick) -> tuple[_values.Roots, _values.Branches]:
     roots = _values.roots_over(kick.discrete, kick.frame, kick.momentum)
-    return roots, _values.branches_of(kick.discrete, kick.momentum, roots)
+    return roots, _values.branches_of(kick.discrete, kick.frame, kick.momentum, roots)
 
 
 def _only(kick: Kick, roots: _values.Roots, values: _values.Branches, choices: list[int]) -> Following:
@@ -255,9 +256,9 @@ def _only(kick: Kick, roots: _values.Roots, values: _values.Branches, choices: l
 def _nearest_of(kick: Kick, roots: _values.Roots) -> int | None:
     """Return the index of the root that the present point is followed to; None if it is lost."""
     code, end = follow(kick.now, roots.equations, kick.point)
-    distances = [min(np.linalg.norm(end - root.point), np.linalg.norm(end + root.point)) for root in roots.zeros]
+    distances = [distance(kick.now, end, root.point) for root in roots.zeros]
     best = int(np.argmin(distances))
-    return best if code == 0 and distances[best] <= _values.SAME * np.linalg.norm(end) else None
+    return best if code == 0 and distances[best] <= _values.SAME else None
 
 
 class Place(NamedTuple):

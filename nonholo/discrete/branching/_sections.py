@@ -16,11 +16,11 @@ import numpy as np
 
 from nonholo.base.checks import error
 from nonholo.base.numerics import applied
-from nonholo.base.types import Array, Float, Inexact
+from nonholo.base.types import Array, Bool, Float, Inexact
 from nonholo.discrete._discretization import Discretization
 from nonholo.discrete._scheme import matrix_legendre
 from nonholo.discrete._variety import free_rows
-from nonholo.discrete.branching._equations import Equations, Frame, frame_of, has_frame
+from nonholo.discrete.branching._equations import FAR, Equations, Frame, frame_of, has_frame
 from nonholo.discrete.branching._roots import by_loops, distinct, disturb, follow_all, roots_of
 from nonholo.discrete.routes import make_route
 from nonholo.groups import AbstractMatrixGroup
@@ -28,6 +28,7 @@ from nonholo.groups import AbstractMatrixGroup
 _ROWS, _RANK = 5, 4  # of matrices and of constraints that are tried
 _REMEDY = "Only the principal branch is computed (`simulate`)."
 _DETOURS = 2  # by which paths are followed again
+_STRIDE = 100.0  # by which general momenta grow at once
 _RIDGE = 1e-16  # relative, of triangles of least squares, lest they be singular
 _LINEAR = 1e-8  # relative bend of the sum of all points, whose subspace is moved in parallel
 
@@ -51,6 +52,22 @@ class Section(Equations):
         """Number of points over general momenta of this body."""
         return len(self.sections.generic[1])
 
+    @property
+    def most(self) -> int:
+        """Number of points of a general section of the variety, its degree."""
+        return len(_witness(self.sections.group, self.sections.directions.tobytes())[1])
+
+    @property
+    def slides(self) -> Bool[np.ndarray, "m"]:
+        """Which coordinates of a point are lengths."""
+        columns = np.arange(self.slices.shape[1]) % self.sections.group.size
+        return np.append(False, self.sections.group.is_affine & (columns == self.sections.group.size - 1))
+
+    @property
+    def horizon(self) -> Float[np.ndarray, "m"]:
+        """Sizes of coordinates that count as infinite."""
+        return np.full(1 + self.slices.shape[1], FAR * max(1.0, np.abs(self.target).max()))
+
     def points(self, rows: Sequence[Inexact[Array, "m"]]) -> Inexact[np.ndarray, "B m"]:
         """Stack points, none as well."""
         return np.array(rows).reshape(-1, 1 + self.slices.shape[1])
@@ -60,8 +77,12 @@ class Section(Equations):
         return self.points([])
 
     def around(self) -> tuple[Equations, Inexact[np.ndarray, "B m"]]:
-        """Return the problem of general momenta and its roots."""
-        return self.sections.generic
+        """Return the problem of general momenta of the same size and its roots."""
+        generic, points = self.sections.generic
+        while np.abs(self.target).max() > _STRIDE * np.abs(generic.target).max():
+            larger = dataclasses.replace(generic, target=_STRIDE * generic.target)
+            generic, points = larger, follow_all(larger, generic, points)
+        return generic, points
 
     def residual(self, x: Inexact[Array, "... m"]) -> tuple[Inexact[Array, "... e"], Inexact[Array, "... e"]]:
         """Return the equations, the last one that of the first coordinate, and the sizes of their terms."""
@@ -69,8 +90,10 @@ class Section(Equations):
         plain = np.eye(W.shape[-1])
         sections = applied(self.slices, w) - self.target
         rows = [_flat(W @ back - plain), self.sections.forbidden((W - back) / 2), sections, x[..., :1] - 1]
-        whole = _flat(np.abs(W) + np.abs(back))
-        sizes = [_flat(np.abs(W) @ np.abs(back) + plain), whole + 0 * rows[1].real]
+        size, along = np.abs(W), np.abs(self.sections.directions)
+        back_size = np.maximum(np.abs(back), np.abs(self.sections.inverse(size)))  # of terms that may cancel
+        whole = _flat(size + back_size)
+        sizes = [_flat(size @ back_size + plain), whole + applied(along.T, applied(along, whole))]
         sizes += [applied(np.abs(self.slices), np.abs(w)) + np.abs(self.target), np.abs(x[..., :1]) + 1]
         return np.concatenate(rows, axis=-1), np.concatenate(sizes, axis=-1)
 
@@ -155,15 +178,16 @@ class Sections:
     def matrices(self, x: Inexact[Array, "... m"]) -> tuple[Array, Array]:
         """Return displacements and their inverses as polynomials of the entries, in the unit of length."""
         W = self.increment(x) * self.stretch + np.eye(self.group.size)
-        return W, self._inverse(W)
+        return W, self.inverse(W)
 
     def moves(self, x: Inexact[Array, "... m"]) -> tuple[Array, Array]:
         """Return how displacements and their inverses move with the entries."""
         dW = self._units[0]
         W = self.matrices(x)[0][..., None, :, :]
-        return dW, (self._inverse(W + dW) - self._inverse(W - dW)) / 2  # of quadratic polynomials exact
+        return dW, (self.inverse(W + dW) - self.inverse(W - dW)) / 2  # of quadratic polynomials exact
 
-    def _inverse(self, W: Array) -> Array:
+    def inverse(self, W: Array) -> Array:
+        """Return what is the inverse of W if that is a displacement."""
         _, G, inverse = self._units
         back = inverse @ np.swapaxes(W, -1, -2) @ G
         if self.group.is_affine:

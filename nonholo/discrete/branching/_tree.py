@@ -122,7 +122,7 @@ def _next_generation(
     images = [_images(discrete, frame, *node) for node in zip(X, is_real, strict=True)]
     matrices, reality = (np.concatenate(column) for column in zip(*images, strict=True))
     parents = np.repeat(np.arange(len(X)), [len(each) for each, _ in images])
-    first = _first_of_equals(matrices)
+    first = _first_of_equals(matrices * frame.stretch)
     return matrices[first], reality[first], parents[first]
 
 
@@ -135,7 +135,7 @@ def _images(discrete: Discretization, frame: AnyFrame, X: Array, is_real: Array)
 
 
 def _first_of_equals(X: Array) -> Int[np.ndarray, "G"]:
-    """Return the indices of matrices minus the identity that repeat none before them."""
+    """Return the indices of matrices minus the identity, in a unit of length, that repeat none before them."""
     distinct = np.empty_like(X)
     indices: list[int] = []
     for i, candidate in enumerate(X):

@@ -117,6 +117,8 @@ class Branches:
         region: "inner", "outer" or "between", of real displacements of a top with n = 3 and det B > 2|c|^2; otherwise
             "", also from the energy h** on. See docs/theory/branches.md.
         principal: Index of the principal one; None if the principal branch does not reach this momentum.
+        missing: By how many they are fewer than the most there can be, multiplicities counted: those at infinity, not
+            isolated, or lost on a path, as over momenta so large that doubles do not hold all displacements.
         certified: Whether `certify=True` was passed and all results are proved: that these are all isolated
             displacements, each once, which of them are real, their multiplicities.
         radius: Bounds of the distance of any entry of each displacement from the exact one; None if not certified.
@@ -131,6 +133,7 @@ class Branches:
     energy: float
     region: np.ndarray
     principal: int | None
+    missing: int
     certified: bool = False
     radius: Float[np.ndarray, "B"] | None = None
     uncertified: str = ""
@@ -146,7 +149,7 @@ class Branches:
     def __repr__(self) -> str:
         real = np.count_nonzero(self.is_real)
         principal = "none is principal" if self.principal is None else f"number {self.principal} is principal"
-        mark = ", certified" if self.certified else ""
+        mark = (f", {self.missing} missing" if self.missing else "") + (", certified" if self.certified else "")
         return f"<Branches: {len(self)} values, {real} real, {principal}{mark}, energy {self.energy:.6g}>"
 
     def _repr_html_(self) -> str:
@@ -171,15 +174,16 @@ class Branches:
 def values_over(discrete: Discretization, frame: AnyFrame, r: Inexact[np.ndarray, "k"]) -> Branches:
     """Return all values over a restricted momentum in the user's frame."""
     canonical = discrete.system.to_canonical(r)
-    return branches_of(discrete, canonical, roots_over(discrete, frame, canonical))
+    return branches_of(discrete, frame, canonical, roots_over(discrete, frame, canonical))
 
 
 def values_at(node: Node, r: Inexact[np.ndarray, "k"]) -> Branches:
     """Return all values of a step under forces over a restricted momentum in the user's frame."""
     canonical = node.free.system.to_canonical(r)
-    values = branches_of(node.free, canonical, _roots_of(node.free, node.frame, node.equations(canonical)))
+    roots = _roots_of(node.free, node.frame, node.equations(canonical))
+    values = branches_of(node.free, node.frame, canonical, roots)
     code, increment = node.principal(canonical)
-    principal = _index_of(node.free, code, increment, values.displacement, values.is_real)
+    principal = _index_of(node.free, node.frame, code, increment, roots.increments, values.is_real)
     return dataclasses.replace(values, region=np.full(len(values), ""), principal=principal)
 
 
@@ -203,21 +207,34 @@ def _roots_of(discrete: Discretization, frame: AnyFrame, equations: Equations) -
     return Roots(equations, zeros, np.array(increments).reshape(-1, *system.group.identity.shape))
 
 
-def branches_of(discrete: Discretization, canonical: Inexact[np.ndarray, "k"], roots: Roots) -> Branches:
+def branches_of(
+    discrete: Discretization, frame: AnyFrame, canonical: Inexact[np.ndarray, "k"], roots: Roots
+) -> Branches:
     """Return what is known of the displacements over a canonical restricted momentum."""
     system = cast(AbstractLLSystem, discrete.system)
     equations, zeros, X = roots
-    is_real = np.array([root.is_real for root in zeros])
+    is_real = np.array([root.is_real for root in zeros], dtype=bool)
+    multiplicity = np.array([root.multiplicity for root in zeros], dtype=np.int64)
     return Branches(
         displacement=X + system.group.identity,
         momentum=legendre(discrete, X, "left"),
         is_real=is_real,
-        multiplicity=np.array([root.multiplicity for root in zeros]),
+        multiplicity=multiplicity,
         fold_distance=equations.regularity(equations.points([root.point for root in zeros])),
         energy=float(system.canonical.constrained_energy(canonical)),
         region=np.where(is_real, regions(discrete, X + system.group.identity), ""),
-        principal=_index_of(discrete, *principal_increment(discrete, canonical), X + system.group.identity, is_real),
+        principal=_index_of(discrete, frame, *principal_increment(discrete, canonical), X, is_real),
+        missing=max(0, equations.most - int(multiplicity.sum())),
     )
+
+
+def momentum_sizes(
+    discrete: Discretization, frame: AnyFrame, momentum: Inexact[Array, "... dim"]
+) -> Float[np.ndarray, "..."]:
+    """Return the norms of full momenta in the body's unit of length, in which those of turns and slides compare."""
+    basis = discrete.system.group.hat(np.eye(discrete.system.group.dim))
+    sizes = np.linalg.norm(basis * frame.stretch, axis=(1, 2)) / np.linalg.norm(basis, axis=(1, 2))
+    return np.linalg.norm(momentum / sizes, axis=-1)
 
 
 def point_over(where: str, discrete: Discretization, frame: AnyFrame, W: np.ndarray) -> Float[np.ndarray, "m"]:
@@ -225,8 +242,8 @@ def point_over(where: str, discrete: Discretization, frame: AnyFrame, W: np.ndar
     system = discrete.system
     canonical = system.group.inverse(system.frame) @ W @ system.frame
     x = frame.point(canonical)
-    distance = float(np.linalg.norm(frame.increment(x) + np.eye(len(W)) - canonical))
-    if not distance <= _ON_VARIETY * np.linalg.norm(W):
+    distance = float(np.linalg.norm((frame.increment(x) + np.eye(len(W)) - canonical) * frame.stretch))
+    if not distance <= _ON_VARIETY * np.linalg.norm(canonical * frame.stretch):
         remedy = "Build it as `group.exp(x)` with x admissible."
         raise error(where, "lie on the displacement variety", f"a matrix at distance {distance:.3g}", remedy)
     return x
@@ -241,16 +258,18 @@ def principal_increment(discrete: Discretization, canonical: Float[np.ndarray, "
     return outcome, discrete.variety.increment(chart) if outcome == Outcome.successful else None
 
 
-def _index_of(discrete: Discretization, code: int, increment: Array, W: np.ndarray, is_real: np.ndarray) -> int | None:
-    """Return the index of the verified principal root, canonical and minus the identity, among displacements."""
+def _index_of(
+    discrete: Discretization, frame: AnyFrame, code: int, increment: Array, X: np.ndarray, is_real: np.ndarray
+) -> int | None:
+    """Return the index of the verified principal root, canonical, among displacements, all minus the identity."""
     if code != 0 or not len(is_real):  # all values are too far away
         return None
-    frame = discrete.system.frame
-    principal = frame @ increment @ discrete.system.group.inverse(frame)
-    away = np.linalg.norm(W - discrete.system.group.identity - principal, axis=(1, 2))
+    system = discrete.system
+    principal = system.frame @ increment @ system.group.inverse(system.frame)
+    away = np.linalg.norm((X - principal) * frame.stretch, axis=(1, 2))
     distances = np.where(is_real, away, np.inf)
     best = int(np.argmin(distances))
-    return best if distances[best] <= SAME * max(1.0, float(np.linalg.norm(principal))) else None
+    return best if distances[best] <= SAME * max(1.0, float(np.linalg.norm(principal * frame.stretch))) else None
 
 
 def certified_over(owner: str, discrete: Discretization, frame: AnyFrame, r: Float[np.ndarray, "k"]) -> Branches:
@@ -265,7 +284,7 @@ def certified_over(owner: str, discrete: Discretization, frame: AnyFrame, r: Flo
     zeros = [Root(x if x[0].real >= 0 else -x, int(m), bool(real)) for x, (m, real) in zip(points, facts, strict=True)]
     order = sorted(range(len(zeros)), key=lambda i: place(zeros[i]))
     roots = Roots(frame.equations(discrete.time_step * canonical), [zeros[i] for i in order], balls.increment[order])
-    values = branches_of(discrete, canonical, roots)
+    values = branches_of(discrete, frame, canonical, roots)
     return dataclasses.replace(values, certified=True, radius=balls.radius[order])
 
 
@@ -506,11 +525,12 @@ def _inverse(where: str, discrete: Discretization, frame: AnyFrame, momentum: An
     system = discrete.system
     p = array(where, momentum, (system.group.dim,), "Pass all components of a body momentum.")
     values = values_over(discrete, frame, system.restrict(p))
-    distances = np.where(values.is_real, np.linalg.norm(values.momentum - p, axis=1), np.inf)
-    rounding = _ROUNDING * np.abs(values.momentum).max(initial=0.0)  # matters at rest
-    near = np.flatnonzero(distances <= SAME * np.linalg.norm(p) + rounding)
+    distances = np.where(values.is_real, momentum_sizes(discrete, frame, values.momentum - p), np.inf)
+    rounding = _ROUNDING * momentum_sizes(discrete, frame, values.momentum).max(initial=0.0)  # matters at rest
+    near = np.flatnonzero(distances <= SAME * momentum_sizes(discrete, frame, p) + rounding)
     if len(near) == 0:
-        got = f"distance {distances.min():.3g}" if values.is_real.any() else "components that no displacement has"
+        away = np.linalg.norm(values.momentum - p, axis=1)[values.is_real]
+        got = f"distance {away.min():.3g}" if len(away) else "components that no displacement has"
         raise error(where, "lie on the momentum locus", got, "Make it with `discrete_legendre`.")
     if len(near) > 1 and values.principal not in near:
         got = f"a momentum that {len(near)} of them have"
