@@ -221,8 +221,8 @@ def _system() -> LagrangeDAlembert:
 
     numbers = dict.fromkeys(("wheelbase", "trail", "tilt"), 1.0) | {"rear_wheel": np.ones(4), "rear_frame": np.ones(7)}
     numbers |= {"front_frame": np.ones(7), "front_wheel": np.ones(4), "gravity": 1.0}
-    options: Any = {"heading": "theta", "outline": _outline, "discrete_constraints": discrete, "parameters": numbers}
-    return system_in("x y theta lean pitch steer rear front", "Bicycle", lagrangian, forms, **options)
+    options: Any = {"heading": "theta", "outline": _outline, "discrete_constraints": discrete}
+    return system_in("x y theta lean pitch steer rear front", "Bicycle", numbers, lagrangian, forms, **options)
 
 
 def _machine(p: Numbers) -> _Machine:

@@ -119,8 +119,8 @@ def _system() -> LagrangeDAlembert:
         return jnp.concatenate([jnp.eye(2), -jnp.array([[cos, -sin], [sin, cos]]) @ _boat(p).rolling(q)], axis=1)
 
     numbers = {"semi_axes": np.ones(3), "center": 1.0, "inertia": np.ones(3), "product": 0.0, "gravity": 1.0}
-    options: Any = {"heading": "theta", "outline": _outline, "parameters": numbers}
-    return system_in("x y theta lean pitch", "Rattleback", lagrangian, forms, **options)
+    look = {"heading": "theta", "outline": _outline}
+    return system_in("x y theta lean pitch", "Rattleback", numbers, lagrangian, forms, **look)
 
 
 def _boat(p: Numbers) -> _Boat:
