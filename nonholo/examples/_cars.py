@@ -201,11 +201,8 @@ def two_wheeled_robot(
     free = torques is None and d == 0
     conserved = {"axle": axle, **({"energy of the sleigh": energy} if free else {})}
     motors = torques if callable(torques) else None
-    system = _robot_system(motors, free).with_parameters(
-        **dict(zip(_ROBOT, (m, J, ell, c, R, Jw), strict=True)),
-        **({} if free else {"friction": d}),
-        **({} if free or motors else {"torques": _torques(torques)}),
-    )
+    driving = () if free else (d,) if motors else (d, _torques(torques))
+    system = with_numbers(functools.partial(_robot_system, motors, free), m, J, ell, c, R, Jw, *driving)
     return Example("two_wheeled_robot", system, q, v, conserved)
 
 

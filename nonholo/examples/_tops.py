@@ -178,13 +178,11 @@ def heavy_suslov_top(
     """
     c = np.asarray(stiffness)
 
-    def integral(g: Array, v: Array, turning: int, tilting: int) -> Array:
-        return inertia[turning] * v[..., turning] ** 2 - (c[2] - c[tilting]) * g[..., 2, tilting] ** 2
+    def integral(g: Array, v: Array, axis: int) -> Array:
+        return inertia[axis] * v[..., axis] ** 2 - (c[2] - c[1 - axis]) * g[..., 2, 1 - axis] ** 2
 
-    conserved = {
-        "of the first axis": functools.partial(integral, turning=0, tilting=1),
-        "of the second axis": functools.partial(integral, turning=1, tilting=0),
-    }
+    axes = enumerate(("first", "second"))
+    conserved = {f"of the {name} axis": functools.partial(integral, axis=i) for i, name in axes}
 
     import numba
 

@@ -382,23 +382,18 @@ def _pose_rate(s: GroupSamples) -> float:
 
 
 def _everything(group: Any, x: Any) -> dict[str, Any]:
+    """Return by name the values of functions that have leading axes and are compiled."""
     g = group.exp(x)
     pose = group.pose_from_matrix(g)
-    return {
-        "exp": g,
-        "log": group.log(g),
-        "retract": group.retract(x),
-        "inverse": group.inverse(g),
-        "adjoint": group.adjoint(g),
-        "coadjoint": group.coadjoint(g, x),
-        "coad": group.coad(x, x[..., ::-1]),
-        "dexp_inverse": group.dexp_inverse(x),
-        "angle": group.angle(x),
-        "residual": group.residual(g),
-        "normalize_pose": group.normalize_pose(pose),
-        "matrix_from_pose": group.matrix_from_pose(pose),
-        "pose_rate": group.pose_rate(pose, x),
+    arguments = {
+        "log inverse adjoint residual": (g,),
+        "retract dexp_inverse angle": (x,),
+        "normalize_pose matrix_from_pose": (pose,),
+        "coadjoint": (g, x),
+        "coad": (x, x[..., ::-1]),
+        "pose_rate": (pose, x),
     }
+    return {"exp": g} | {name: getattr(group, name)(*own) for names, own in arguments.items() for name in names.split()}
 
 
 @measures(MAPS, "broadcasting", "leading axes are mapped over", 1e-12)
