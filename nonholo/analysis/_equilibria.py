@@ -103,7 +103,11 @@ def equilibria(
         return steady_motion(system, configuration, body_velocity)
     body, step = _body_and_steps("equilibria(system=...)", system)
     level = float(positive("equilibria(energy=...)", energy, "Pass the energy of the equilibrium."))
-    return _spectrum(body, step, body.equilibria(), level)
+    family = body.equilibria()
+    if body.normal_form is None and step is not None and len(family.subspace) < body.rank:
+        got, remedy = type(body).__name__, "Pass the system itself, for the rates of its flow."
+        raise error("equilibria(system=...)", "be a top or a sleigh to have known multipliers", got, remedy)
+    return _spectrum(body, step, family, level)
 
 
 def _spectrum(
@@ -111,9 +115,6 @@ def _spectrum(
 ) -> EquilibriumSpectrum:
     """Return what is known of a linear space of equilibria; multipliers and the highest energy of tops and sleighs."""
     rows, attracting, form = family.subspace, family.attracting, body.normal_form
-    if form is None and steps is not None and len(rows) < body.rank:
-        got, remedy = type(body).__name__, "Pass the system itself, for the rates of its flow."
-        raise error("equilibria(system=...)", "be a top or a sleigh to have known multipliers", got, remedy)
     others = tuple(_spectrum(body, steps, other, level) for other in family.others)
     line = rows[0] if form is None and len(rows) == 1 < body.rank else None
     direction = line if attracting is None else attracting

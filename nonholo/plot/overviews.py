@@ -152,7 +152,7 @@ def _name_of_body(system: System) -> str:
         in_body = LLSystem(system.group, system.homogeneous_mass_tensor, system.constraint_subspace).normal_form
         if system.is_spatial and in_body is not None and not in_body.is_sleigh:
             return "Veselova top"
-    return f"System with a {'right' if system.is_spatial else 'left'}-invariant constraint"
+    return f"System with a {('left', 'right')[system.is_spatial]}-invariant constraint"
 
 
 def _parameters(system: System) -> str:

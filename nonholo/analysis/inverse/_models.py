@@ -159,8 +159,11 @@ class CoordinateReadings(NamedTuple):
     ) -> tuple[np.ndarray, np.ndarray, list[int]]:
         """Return a first configuration and rates, from straight lines between nodes, and of what these are."""
         system, heading = self.system, self.system.heading
-        some = {kind: rows for kind, rows in kinds.items() if np.isfinite(rows).any()}
-        series = {kind: measured_rows(kind, rows, is_robust, is_angle=kind == heading) for kind, rows in some.items()}
+        series = {
+            kind: measured_rows(kind, rows, is_robust, is_angle=kind == heading)
+            for kind, rows in kinds.items()
+            if np.isfinite(rows).any()
+        }
         ends = ends_of(series)
         if heading and "position" in series and heading not in series:
             series[heading] = np.array(ends), _course(ends, *series["position"])
