@@ -103,37 +103,31 @@ def equilibria(
         return steady_motion(system, configuration, body_velocity)
     body, step = _body_and_steps("equilibria(system=...)", system)
     level = float(positive("equilibria(energy=...)", energy, "Pass the energy of the equilibrium."))
-    return (_of_field if body.normal_form is None else _of_form)(body, step, body.equilibria(), level)
-
-
-def _of_form(
-    body: AbstractLLSystem, steps: Float[np.ndarray, "S"] | None, family: Equilibria, level: float
-) -> EquilibriumSpectrum:
-    if family.attracting is None:
-        nothing = np.zeros(0)
-        return EquilibriumSpectrum(family.subspace, None, None, nothing, None if steps is None else nothing)
-    velocity = _with_energy(body, family.attracting, level)
-    rates = np.sort(_rates(body, velocity @ np.linalg.pinv(body.constraint_subspace)))
-    rest: Any = (None,) if steps is None else (_multipliers(body, velocity, rates, steps), _highest_energy(body, steps))
-    return EquilibriumSpectrum(family.subspace, family.attracting, velocity, rates, *rest)
-
-
-def _of_field(
-    body: AbstractLLSystem, steps: Float[np.ndarray, "S"] | None, family: Equilibria, level: float
-) -> EquilibriumSpectrum:
-    nothing, everywhere = np.zeros(0), len(family.subspace) == body.rank
-    if steps is not None and not everywhere:
+    family = body.equilibria()
+    if body.normal_form is None and step is not None and len(family.subspace) < body.rank:
         got, remedy = type(body).__name__, "Pass the system itself, for the rates of its flow."
         raise error("equilibria(system=...)", "be a top or a sleigh to have known multipliers", got, remedy)
-    others = tuple(_of_field(body, steps, other, level) for other in family.others)
-    line = family.subspace[0] if len(family.subspace) == 1 and not everywhere else None
-    direction = line if family.attracting is None else family.attracting
+    return _spectrum(body, step, family, level)
+
+
+def _spectrum(
+    body: AbstractLLSystem, steps: Float[np.ndarray, "S"] | None, family: Equilibria, level: float
+) -> EquilibriumSpectrum:
+    """Return what is known of a linear space of equilibria; multipliers and the highest energy of tops and sleighs."""
+    rows, attracting, form = family.subspace, family.attracting, body.normal_form
+    others = tuple(_spectrum(body, steps, other, level) for other in family.others)
+    line = rows[0] if form is None and len(rows) == 1 < body.rank else None
+    direction = line if attracting is None else attracting
     if direction is None:
-        multipliers = None if steps is None else nothing
-        return EquilibriumSpectrum(family.subspace, None, None, nothing, multipliers, others=others)
+        multipliers = None if steps is None else np.zeros(0)
+        return EquilibriumSpectrum(rows, None, None, np.zeros(0), multipliers, others=others)
     velocity = _with_energy(body, direction, level)
-    rates = body.transverse_rates(velocity, family.subspace)
-    return EquilibriumSpectrum(family.subspace, family.attracting, velocity, rates, None, others=others)
+    if form is None:
+        rates = body.transverse_rates(velocity, rows)
+        return EquilibriumSpectrum(rows, attracting, velocity, rates, None, others=others)
+    rates = np.sort(_rates(body, velocity @ np.linalg.pinv(body.constraint_subspace)))
+    rest: Any = (None,) if steps is None else (_multipliers(body, velocity, rates, steps), _highest_energy(body, steps))
+    return EquilibriumSpectrum(rows, attracting, velocity, rates, *rest)
 
 
 def _with_energy(body: AbstractLLSystem, direction: Float[np.ndarray, "dim"], level: float) -> Float[np.ndarray, "dim"]:

@@ -22,9 +22,9 @@ import numpy as np
 
 from nonholo import io
 from nonholo.base.checks import count, error, needs, shown
-from nonholo.base.results import Outcome
+from nonholo.ensembles._names import OUTCOME
 from nonholo.ensembles.designs import block_of
-from nonholo.ensembles.stores import OUTCOME, RAISED, Mark, Results, SweepStore, Task, attempt, attributes_of, store_of
+from nonholo.ensembles.stores import OUTCOMES, Mark, Results, SweepStore, Task, attempt, attributes_of, store_of
 from nonholo.simulation import in_one_thread
 
 
@@ -62,17 +62,11 @@ def do_block(work: Work, block: int) -> Done:
     results = Results({name: members[name] for name in draws} | outcome.arrays, outcome.messages)
     seconds = time.perf_counter() - begin
     codes, counts = np.unique(results.arrays[OUTCOME], return_counts=True)
-    outcomes = {outcome_name(int(code)): int(count) for code, count in zip(codes, counts, strict=True)}
+    names = (OUTCOMES.get(int(code), str(code)) for code in codes)  # a task may have outcomes of its own
+    outcomes = dict(zip(names, counts.tolist(), strict=True))
     mark = Mark(piece.count, outcomes, seconds, time.time(), _writer(), results.messages)
     store.write(piece, results, mark)
     return Done(block, mark, damage, io.provenance.versions_text())
-
-
-def outcome_name(code: int) -> str:
-    """Return the name of an outcome of a member, also of one of the task's own."""
-    if code == RAISED:
-        return "raised"
-    return Outcome(code).name if code in list(Outcome) else str(code)
 
 
 def _writer() -> str:

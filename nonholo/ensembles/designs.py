@@ -156,10 +156,8 @@ class RandomDesign(AbstractDesign):
     def values(self, first: int, count: int) -> Values:
         """Return the values of some members in order, by name."""
         first, count = _some(self, first, count)
-        return {
-            name: value.draw(uniform_numbers(self.seed, f"design {name}", first, count, value.width))
-            for name, value in self.distributions.items()
-        }
+        own = self.distributions.items()
+        return {name: d.draw(uniform_numbers(self.seed, f"design {name}", first, count, d.width)) for name, d in own}
 
     def describe(self) -> dict[str, Any]:
         """Return the design as plain data."""

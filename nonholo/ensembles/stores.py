@@ -29,6 +29,7 @@ from nonholo.ensembles.designs import Design, MemberBlock, axis_dimensions, desi
 
 ABSENT, RAISED = -128, 100
 """Outcomes of members that are not computed yet, and for which the task raised; the others are those of `Outcome`."""
+OUTCOMES = {ABSENT: "absent", **{int(code): code.name for code in Outcome}, RAISED: "raised"}
 _MOST_MESSAGES = 20  # failures of a block whose messages are kept
 _PROBES = 8
 
@@ -120,9 +121,8 @@ def _check_two(task: Task, block: MemberBlock, outputs: dict[str, Output]) -> No
 
 def _outputs(entries: dict[str, Any]) -> dict[str, Output]:
     """Return what a task returns, with outcomes as CF conventions write flags."""
-    meanings = {ABSENT: "absent", **{int(code): code.name for code in Outcome}, RAISED: "raised"}
-    labels = {"long_name": "how the member ended", "flag_values": list(meanings)}
-    labels |= {"flag_meanings": " ".join(meanings.values())}
+    labels = {"long_name": "how the member ended", "flag_values": list(OUTCOMES)}
+    labels |= {"flag_meanings": " ".join(OUTCOMES.values())}
     outputs = {name: Output(axes, x.shape[1:], _type_on_disk(x), about) for name, (axes, x, about) in entries.items()}
     return {**outputs, OUTCOME: Output((), (), "int8", labels)}
 
@@ -325,9 +325,8 @@ class SweepStore:
         changes = {"design": content["design"] | {"members": members}, "before": before}
         changes["layout"] = [[members], list(self.layout.chunk)]
         identity = uuid.uuid4().hex  # whoever still writes the smaller one is refused
-        io.blocks.edit_attributes(
-            self.path, {"made": identity, "sweep": json.dumps(content | changes), "finished": False}
-        )
+        attributes = {"made": identity, "sweep": json.dumps(content | changes), "finished": False}
+        io.blocks.edit_attributes(self.path, attributes)
         return SweepStore(self.path, identity)
 
     def _axis(self, name: str) -> np.ndarray:
@@ -347,10 +346,8 @@ class SweepStore:
 
     @functools.cached_property
     def _blocks(self) -> io.blocks.BlockStore:
-        arrays = {
-            name: io.blocks.opened_array("resume(store=...)", self.path, name, is_writable=True)
-            for name in self.outputs
-        }
+        array_of = functools.partial(io.blocks.opened_array, "resume(store=...)", self.path, is_writable=True)
+        arrays = {name: array_of(name) for name in self.outputs}
         for array in arrays.values():
             if [*array.shape[:1]] == self._content.get("before"):  # a sweep that has grown since it was made
                 array.resize((*self.layout.sizes, *array.shape[1:]))
@@ -468,9 +465,8 @@ def standing_of(path: str | Path) -> SweepStanding:
     count, seconds = sum(mark.members for mark in marks), sum(mark.seconds for mark in marks)
     messages = [message for mark in marks for message in mark.messages]
     rate, members = count / seconds if seconds else math.nan, math.prod(store.layout.sizes)
-    return SweepStanding(
-        count, members, dict(outcomes), rate, messages, io.places.owner_of(store.path), store.is_finished
-    )
+    end = io.places.owner_of(store.path), store.is_finished
+    return SweepStanding(count, members, dict(outcomes), rate, messages, *end)
 
 
 def opened_result(store: SweepStore) -> xarray.Dataset:

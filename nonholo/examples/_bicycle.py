@@ -131,14 +131,12 @@ class _Machine(NamedTuple):
 
     def inertias(self) -> list[Float[Array, "3 3"]]:
         """Return the tensors of rear wheel, rear frame, front frame and front wheel, each in its axes."""
-        frame, fork = (
-            jnp.array([[xx, 0.0, xz], [0.0, yy, 0.0], [xz, 0.0, zz]])
-            for _, _, _, xx, yy, zz, xz in (self.frame, self.fork)
-        )
-        rear, front = (
-            jnp.array([[across, 0.0, 0.0], [0.0, axle, 0.0], [0.0, 0.0, across]])
-            for _, _, across, axle in (self.rear, self.front)
-        )
+
+        def tensor(xx: Any, yy: Any, zz: Any, xz: Any = 0.0) -> Array:
+            return jnp.array([[xx, 0.0, xz], [0.0, yy, 0.0], [xz, 0.0, zz]])
+
+        frame, fork = (tensor(*moments) for _, _, _, *moments in (self.frame, self.fork))
+        rear, front = (tensor(across, axle, across) for _, _, across, axle in (self.rear, self.front))
         return [rear, frame, self.axes @ fork @ self.axes.T, front]
 
     def to_fork(self, q: Array, vector: Array) -> Array:
@@ -221,8 +219,8 @@ def _system() -> LagrangeDAlembert:
 
     numbers = dict.fromkeys(("wheelbase", "trail", "tilt"), 1.0) | {"rear_wheel": np.ones(4), "rear_frame": np.ones(7)}
     numbers |= {"front_frame": np.ones(7), "front_wheel": np.ones(4), "gravity": 1.0}
-    options: Any = {"heading": "theta", "outline": _outline, "discrete_constraints": discrete, "parameters": numbers}
-    return system_in("x y theta lean pitch steer rear front", "Bicycle", lagrangian, forms, **options)
+    options: Any = {"heading": "theta", "outline": _outline, "discrete_constraints": discrete}
+    return system_in("x y theta lean pitch steer rear front", "Bicycle", numbers, lagrangian, forms, **options)
 
 
 def _machine(p: Numbers) -> _Machine:

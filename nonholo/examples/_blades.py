@@ -103,8 +103,7 @@ def _edge_system() -> LagrangeDAlembert:
 
     blade = np.array([[-1.0, 0.0], [1.0, 0.0]])
     options: Any = {"heading": "phi", "outline": lambda _, p: [np.sqrt(p["inertia"] / p["mass"]) * blade]}
-    options["parameters"] = dict.fromkeys(_EDGE, 1.0)
-    return system_in("x y phi", "Knife edge on an incline", lagrangian, forms, **options)
+    return system_in("x y phi", "Knife edge on an incline", _EDGE, lagrangian, forms, **options)
 
 
 _SLEIGH = ("mass", "inertia", "moving_mass", "frequency", "a", "ahead", "amplitude")
@@ -189,9 +188,9 @@ def _sleigh_system() -> LagrangeDAlembert:
         size = np.sqrt(p["inertia"] / p["mass"])
         return [[p["a"], 0.0] + size * platform, size * contact, wheel((p["ahead"], q[3]), 0.25 * size)]
 
-    options: Any = {"heading": "theta", "outline": outline, "parameters": dict.fromkeys(_SLEIGH, 1.0)}
-    options["prescribed"] = {3: lambda time, p: p["amplitude"] * jnp.sin(p["frequency"] * time)}
-    return system_in("x y theta s", "Driven sleigh", lagrangian, blade, **options)
+    driver = {3: lambda time, p: p["amplitude"] * jnp.sin(p["frequency"] * time)}
+    options: Any = {"heading": "theta", "outline": outline, "prescribed": driver}
+    return system_in("x y theta s", "Driven sleigh", _SLEIGH, lagrangian, blade, **options)
 
 
 @ready("speed turning", reals="a stiffness speed turning")

@@ -176,8 +176,8 @@ def _handle_system(title: str, is_free: bool) -> LagrangeDAlembert:
         return [seat, *pair((0.0, 0.0), half, 0.5 * half), bar, *pair((front[0], front[1]), half, 0.5 * half, q[3])]
 
     driver = {} if is_free else {3: lambda time, p: p["amplitude"] * jnp.sin(p["frequency"] * time)}
-    options = {"heading": "theta", "outline": outline, "prescribed": driver, "parameters": dict.fromkeys(_HANDLE, 1.0)}
-    return system_in("x y theta phi", title, lagrangian, axles, **options)
+    options = {"heading": "theta", "outline": outline, "prescribed": driver}
+    return system_in("x y theta phi", title, _HANDLE, lagrangian, axles, **options)
 
 
 _BOARD = ("mass", "half_length", "rotor_inertia", "wheel_inertia")
@@ -280,8 +280,7 @@ def _board_system() -> LagrangeDAlembert:
         rotor = 0.45 * r * np.array([[-1.0, 0.0], [1.0, 0.0]]) @ turn(q[3])
         return [r * board, rotor, *pair((r, 0.0), 0.35 * r, 0.3 * r, q[4]), *pair((-r, 0.0), 0.35 * r, 0.3 * r, -q[4])]
 
-    options = {"heading": "theta", "outline": outline, "parameters": dict.fromkeys(_BOARD, 1.0)}
-    return system_in("x y theta psi phi", "Snakeboard", lagrangian, forms, **options)
+    return system_in("x y theta psi phi", "Snakeboard", _BOARD, lagrangian, forms, heading="theta", outline=outline)
 
 
 @ready(
@@ -373,9 +372,8 @@ def _snake_system() -> LagrangeDAlembert:
         headings, x, y = links(q, p["half_length"])
         return jnp.cos(headings)[:, None] * y - jnp.sin(headings)[:, None] * x
 
-    options: Any = {"heading": "theta", "outline": _outline}
-    options["parameters"] = dict.fromkeys(("half_length", "mass", "inertia"), 1.0)
-    return system_in("x y theta alpha1 alpha2", "Snake", lagrangian, forms, **options)
+    numbers = ("half_length", "mass", "inertia")
+    return system_in("x y theta alpha1 alpha2", "Snake", numbers, lagrangian, forms, heading="theta", outline=_outline)
 
 
 def _outline(q: Array, p: Numbers) -> list[Array]:

@@ -110,8 +110,7 @@ def _car_system() -> LagrangeDAlembert:
         front = [wheel(at, 2 * R, np.arctan2(at[0] * sin, at[0] * cos - at[1] * sin)) for at in places]
         return [ell * board, *pair((0.0, 0.0), 0.3 * ell, 2 * R), *front]
 
-    options = {"heading": "theta", "outline": outline, "parameters": dict.fromkeys(_CAR, 1.0)}
-    return system_in("x y theta psi phi", "Kinematic car", lagrangian, forms, **options)
+    return system_in("x y theta psi phi", "Kinematic car", _CAR, lagrangian, forms, heading="theta", outline=outline)
 
 
 @ready(
@@ -202,11 +201,8 @@ def two_wheeled_robot(
     free = torques is None and d == 0
     conserved = {"axle": axle, **({"energy of the sleigh": energy} if free else {})}
     motors = torques if callable(torques) else None
-    system = _robot_system(motors, free).with_parameters(
-        **dict(zip(_ROBOT, (m, J, ell, c, R, Jw), strict=True)),
-        **({} if free else {"friction": d}),
-        **({} if free or motors else {"torques": _torques(torques)}),
-    )
+    driving = () if free else (d,) if motors else (d, _torques(torques))
+    system = with_numbers(functools.partial(_robot_system, motors, free), m, J, ell, c, R, Jw, *driving)
     return Example("two_wheeled_robot", system, q, v, conserved)
 
 
@@ -242,9 +238,9 @@ def _robot_system(motors: Any, is_free: bool) -> LagrangeDAlembert:
         return [c * chassis, wheel((0.0, -c), diameter), wheel((0.0, c), diameter)]
 
     driven = {} if is_free else {"friction": 0.0} | ({} if motors else {"torques": np.zeros(2)})
-    options: Any = {"heading": "theta", "outline": outline, "parameters": dict.fromkeys(_ROBOT, 1.0) | driven}
-    options["force"] = None if is_free else force
-    return system_in("x y theta right left", "Two-wheeled robot", lagrangian, forms, **options)
+    numbers = dict.fromkeys(_ROBOT, 1.0) | driven
+    options: Any = {"heading": "theta", "outline": outline, "force": None if is_free else force}
+    return system_in("x y theta right left", "Two-wheeled robot", numbers, lagrangian, forms, **options)
 
 
 @ready("place angles speed turning", reals="speed turning", place="x and y")
@@ -343,9 +339,8 @@ def _trailer_system(n: int) -> LagrangeDAlembert:
         return jnp.cos(q[2:])[:, None] * y - jnp.sin(q[2:])[:, None] * x
 
     numbers = {"hitches": np.ones(n - 1)} | dict.fromkeys(("mass", "inertia", "trailer_mass", "trailer_inertia"), 1.0)
-    options: Any = {"heading": "theta", "outline": _outline, "parameters": numbers}
     names = " ".join(f"theta{i}" for i in range(1, n))
-    return system_in(f"x y theta {names}", "Trailers", lagrangian, forms, **options)
+    return system_in(f"x y theta {names}", "Trailers", numbers, lagrangian, forms, heading="theta", outline=_outline)
 
 
 def _outline(q: Array, p: Numbers) -> list[Array]:

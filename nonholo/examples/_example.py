@@ -191,10 +191,13 @@ def _system_of(make: Callable[..., Example], arguments: dict[str, Any]) -> Any:
     return make(**arguments).system
 
 
-def system_in(coordinates: str, name: str, *functions: Any, **options: Any) -> LagrangeDAlembert:
-    """Return the system of a Lagrangian and constraint forms, its coordinates named by words."""
-    names = tuple(coordinates.split())
-    return LagrangeDAlembert(*functions, dimension=len(names), coordinates=names, name=name, **options)
+def system_in(coordinates: str, name: str, numbers: Any, *functions: Any, **options: Any) -> LagrangeDAlembert:
+    """Return the system of a Lagrangian and constraint forms, its coordinates named by words.
+
+    `numbers` are its parameters, or the names of parameters that are single numbers.
+    """
+    names, own = tuple(coordinates.split()), numbers if isinstance(numbers, dict) else dict.fromkeys(numbers, 1.0)
+    return LagrangeDAlembert(*functions, dimension=len(names), coordinates=names, name=name, parameters=own, **options)
 
 
 def with_numbers(make: Callable[[], Any], *numbers: Any) -> Any:
@@ -205,11 +208,7 @@ def with_numbers(make: Callable[[], Any], *numbers: Any) -> Any:
 
 def rate(index: int) -> Callable[[Array, Array], Array]:
     """Return the function (configuration, velocity) -> one component of the velocity."""
-
-    def component(q: Array, v: Array) -> Array:
-        return v[..., index]
-
-    return component
+    return lambda _q, v: v[..., index]
 
 
 def of_states(function: Callable[[Array, Array], Array]) -> Callable[[Array, Array], Array]:

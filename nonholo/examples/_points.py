@@ -73,7 +73,7 @@ def _particle_system() -> LagrangeDAlembert:
     def forms(q: Array, p: Numbers) -> Array:
         return jnp.array([[-q[1], 0.0, 1.0]])
 
-    return system_in("x y z", "Nonholonomic particle", lagrangian, forms, parameters={"mass": 1.0})
+    return system_in("x y z", "Nonholonomic particle", ["mass"], lagrangian, forms)
 
 
 @ready(reals="coupling")
@@ -131,7 +131,7 @@ def _quartic(n: int) -> LagrangeDAlembert:
         return jnp.concatenate([jnp.ones(1), jnp.zeros(n), q[1 : n + 1]])[None]
 
     pairs = " ".join(f"{letter}{i}" for letter in "yz" for i in range(1, n + 1))
-    return system_in(f"x {pairs}", "Chaotic oscillator", lagrangian, forms, parameters={"coupling": 1.0})
+    return system_in(f"x {pairs}", "Chaotic oscillator", ["coupling"], lagrangian, forms)
 
 
 @ready("turning", reals="asymmetry turning")
@@ -191,4 +191,4 @@ def _gearbox(is_reversible: bool) -> LagrangeDAlembert:
         return jnp.stack([jnp.ones(()), jnp.sin(q[2]), jnp.zeros(())])[None]
 
     name = "Oscillators, reversible" if is_reversible else "Oscillators, not reversible"
-    return system_in("x y xi", name, lagrangian, forms, parameters={"asymmetry": 0.0})
+    return system_in("x y xi", name, {"asymmetry": 0.0}, lagrangian, forms)

@@ -113,6 +113,10 @@ def ball_in_bowl(
 
     Reference: [neimark-fufaev-1972].
 
+    Facts:
+        Without spin it moves like a spherical pendulum with five sevenths of its weight.
+        Spin, energy and a momentum about the vertical are constant.
+
     Args:
         mass: m.
         radius: r.
@@ -150,11 +154,7 @@ def ball_in_bowl(
 
     system = with_numbers(_bowl_system, m, r, J, rho, g)
     conserved = {"spin": spinning, "momentum": momentum, "energy": energy_of(system.plain.lagrangian)}
-    facts = (
-        "Without spin it moves like a spherical pendulum with five sevenths of its weight.",
-        "Spin, energy and a momentum about the vertical are constant.",
-    )
-    return Example("ball_in_bowl", system, q, rates, conserved, facts=facts)
+    return Example("ball_in_bowl", system, q, rates, conserved)
 
 
 def _normal(rho: float, q: Array, v: Array) -> tuple[Array, Array]:
@@ -182,7 +182,7 @@ def _bowl_system() -> LagrangeDAlembert:
         ahead = jnp.stack([1.0 + 0 * x, 0 * x, 0 * x, r * z, -r * y])
         return jnp.stack([ahead, jnp.stack([0 * x, 1.0 + 0 * x, -r * z, 0 * x, r * x])])
 
-    return system_in("x y alpha beta gamma", "Ball in a bowl", lagrangian, forms, parameters=dict.fromkeys(_BOWL, 1.0))
+    return system_in("x y alpha beta gamma", "Ball in a bowl", _BOWL, lagrangian, forms)
 
 
 @ready("place velocity", reals="table_rate", place="x and y", velocity="x' and y'")
@@ -208,6 +208,10 @@ def ball_on_turntable(
     $\ddot y = \kappa\dot x$. In the midpoint rule it does, too, and each step turns by $2\arctan(h\kappa/2)$.
 
     Reference: [neimark-fufaev-1972].
+
+    Facts:
+        The middle runs on a circle, at 2/7 of the rate of the table.
+        So it does in the midpoint rule.
 
     Args:
         mass: m.
@@ -240,10 +244,9 @@ def ball_on_turntable(
         "x' + kappa y": lambda q, v: v[..., 0] + kappa * q[..., 1],
         "y' - kappa x": lambda q, v: v[..., 1] - kappa * q[..., 0],
     }
-    facts = ("The middle runs on a circle, at 2/7 of the rate of the table.", "So it does in the midpoint rule.")
     q, v = np.array([x, y, 0.0, 0.0]), np.array([u, w, (Omega * x - w) / r, (u + Omega * y) / r])
     system = with_numbers(_turntable_system, m, r, J, Omega)
-    return Example("ball_on_turntable", system, q, v, conserved, exact, facts=facts)
+    return Example("ball_on_turntable", system, q, v, conserved, exact)
 
 
 def _circle(z: complex, velocity: complex, kappa: float, t: Array) -> Array:
@@ -273,9 +276,8 @@ def _turntable_system() -> LagrangeDAlembert:
     def velocities(q: Array, _time: Array, p: Numbers) -> Array:
         return p["table_rate"] * jnp.stack([-q[1], q[0]])
 
-    parameters = dict.fromkeys(("mass", "radius", "inertia", "table_rate"), 1.0)
-    options: Any = {"constraint_velocities": velocities, "parameters": parameters}
-    return system_in("x y alpha beta", "Ball on a turntable", lagrangian, forms, **options)
+    numbers, options = ("mass", "radius", "inertia", "table_rate"), {"constraint_velocities": velocities}
+    return system_in("x y alpha beta", "Ball on a turntable", numbers, lagrangian, forms, **options)
 
 
 @ready("configuration rates", configuration="x, y, theta and phi", rates="theta' and phi'")
@@ -324,16 +326,19 @@ def rolling_disk(
 
     def exact(time: Array) -> Array:
         t = np.asarray(time)
-        # the chord of the arc: its length is that of the arc times sinc, also for phi' = 0
-        chord = R * roll * t * np.sinc(turn * t / (2 * np.pi))
-        middle = q[3] + turn * t / 2
-        x, y = q[0] + chord * np.cos(middle), q[1] + chord * np.sin(middle)
-        return np.stack([x, y, q[2] + roll * t, q[3] + turn * t], axis=-1)
+        x, y = _chord(q[3], R * roll, turn, t)
+        return np.stack([q[0] + x, q[1] + y, q[2] + roll * t, q[3] + turn * t], axis=-1)
 
     conserved = {"theta'": rate(2), "phi'": rate(3)}
     v = np.array([R * np.cos(q[3]) * roll, R * np.sin(q[3]) * roll, roll, turn])
     system = with_numbers(_disk_system, mass, R, rolling_inertia, turning_inertia)
     return Example("rolling_disk", system, q, v, conserved, exact)
+
+
+def _chord(heading: float, speed: float, turning: float, time: Array) -> Array:
+    """Return the ways along the chord of an arc: its length is that of the arc times sinc, also without turning."""
+    half = turning * time / 2
+    return speed * time * np.sinc(half / np.pi) * np.array([np.cos(heading + half), np.sin(heading + half)])
 
 
 @functools.cache
@@ -346,8 +351,8 @@ def _disk_system() -> LagrangeDAlembert:
         return jnp.array([[1.0, 0.0, -R * jnp.cos(q[3]), 0.0], [0.0, 1.0, -R * jnp.sin(q[3]), 0.0]])
 
     options: Any = {"heading": "phi", "outline": lambda _, p: [wheel((0.0, 0.0), 2 * p["radius"], width=0.1)]}
-    options["parameters"] = dict.fromkeys(("mass", "radius", "rolling_inertia", "turning_inertia"), 1.0)
-    return system_in("x y theta phi", "Rolling disk", lagrangian, forms, **options)
+    numbers = ("mass", "radius", "rolling_inertia", "turning_inertia")
+    return system_in("x y theta phi", "Rolling disk", numbers, lagrangian, forms, **options)
 
 
 @ready("configuration turning lean_rate rolling", reals="turning lean_rate", configuration="x, y, theta, lean and roll")
@@ -387,6 +392,10 @@ def tilting_disk(
 
     Reference: [neimark-fufaev-1972]; [bloch-2003], section 1.4.
 
+    Facts:
+        At constant lean it runs on a circle; the default start does.
+        Upright it rolls on without falling if it is faster than sqrt(g R / 3), a uniform disk.
+
     Args:
         mass: m.
         radius: R.
@@ -419,19 +428,13 @@ def tilting_disk(
     roll = float(number(f"examples.{name}(rolling=...)", rolling))
 
     def circle(time: Array) -> Array:
-        half = turn * np.asarray(time) / 2
-        chord = R * roll * np.asarray(time) * np.sinc(half / np.pi)
-        place = chord * np.array([np.cos(q[2] + half), np.sin(q[2] + half)])
-        return q + np.array([*place, 2 * half, 0.0 * half, roll * np.asarray(time)]).T
+        t = np.asarray(time)
+        return q + np.array([*_chord(q[2], R * roll, turn, t), turn * t, 0.0 * turn * t, roll * t]).T
 
-    facts = (
-        "At constant lean it runs on a circle; the default start does.",
-        "Upright it rolls on without falling if it is faster than sqrt(g R / 3), a uniform disk.",
-    )
     v = np.array([R * np.cos(q[2]) * roll, R * np.sin(q[2]) * roll, turn, falling, roll])
     system = with_numbers(_tilting_system, m, R, axle, J, g)
     exact = circle if steady else None
-    return Example(name, system, q, v, {"energy": energy_of(system.plain.lagrangian)}, exact, facts=facts)
+    return Example(name, system, q, v, {"energy": energy_of(system.plain.lagrangian)}, exact)
 
 
 _TILTING = ("mass", "radius", "rolling_inertia", "turning_inertia", "gravity")
@@ -451,8 +454,8 @@ def _tilting_system() -> LagrangeDAlembert:
         ahead, left = -p["radius"] * jnp.cos(q[2]), -p["radius"] * jnp.sin(q[2])
         return jnp.array([[1.0, 0.0, 0.0, 0.0, ahead], [0.0, 1.0, 0.0, 0.0, left]])
 
-    options: Any = {"heading": "theta", "outline": _outline, "parameters": dict.fromkeys(_TILTING, 1.0)}
-    return system_in("x y theta lean roll", "Tilting disk", lagrangian, forms, **options)
+    look = {"heading": "theta", "outline": _outline}
+    return system_in("x y theta lean roll", "Tilting disk", _TILTING, lagrangian, forms, **look)
 
 
 def _outline(q: Array, p: Numbers) -> list[Array]:

@@ -119,8 +119,8 @@ def _system() -> LagrangeDAlembert:
         return jnp.concatenate([jnp.eye(2), -jnp.array([[cos, -sin], [sin, cos]]) @ _boat(p).rolling(q)], axis=1)
 
     numbers = {"semi_axes": np.ones(3), "center": 1.0, "inertia": np.ones(3), "product": 0.0, "gravity": 1.0}
-    options: Any = {"heading": "theta", "outline": _outline, "parameters": numbers}
-    return system_in("x y theta lean pitch", "Rattleback", lagrangian, forms, **options)
+    look = {"heading": "theta", "outline": _outline}
+    return system_in("x y theta lean pitch", "Rattleback", numbers, lagrangian, forms, **look)
 
 
 def _boat(p: Numbers) -> _Boat:
@@ -178,13 +178,11 @@ def heavy_suslov_top(
     """
     c = np.asarray(stiffness)
 
-    def integral(g: Array, v: Array, turning: int, tilting: int) -> Array:
-        return inertia[turning] * v[..., turning] ** 2 - (c[2] - c[tilting]) * g[..., 2, tilting] ** 2
+    def integral(g: Array, v: Array, axis: int) -> Array:
+        return inertia[axis] * v[..., axis] ** 2 - (c[2] - c[1 - axis]) * g[..., 2, 1 - axis] ** 2
 
-    conserved = {
-        "of the first axis": functools.partial(integral, turning=0, tilting=1),
-        "of the second axis": functools.partial(integral, turning=1, tilting=0),
-    }
+    axes = enumerate(("first", "second"))
+    conserved = {f"of the {name} axis": functools.partial(integral, axis=i) for i, name in axes}
 
     import numba
 

@@ -158,10 +158,8 @@ def _of_discretization(where: str, discrete: Discretization) -> Shown:
     steps = min(_STEPS, len(system.table)) if table else _STEPS  # type: ignore[union-attr]
     state = _state(discrete, kind, momentum, system.group.pose_from_matrix(system.group.identity), steps, table)
     orbit = _run(state, table)
-    if problem := _problem(state):
-        if not len(orbit):
-            raise error(where, "be a motion that the page can show", problem, "Run it, and pass the orbit.")
-        return _replay(orbit, _BEYOND)
+    if not len(orbit) and (problem := _problem(state)):
+        raise error(where, "be a motion that the page can show", problem, "Run it, and pass the orbit.")
     return _shown_state(system, orbit, state, table)
 
 
@@ -177,13 +175,14 @@ def _live(orbit: Orbit) -> Shown | None:
     steps = min(step_count, MOST_STEPS)
     table = _table(orbit.system, kind, orbit.step[0])
     state = _state(discrete, kind, orbit.reduced_momentum[0], orbit.canonical_pose[0], steps, table)
-    if _problem(state):
-        return _replay(orbit, _BEYOND)
     cut = f" The first {steps:,} of {step_count:,} steps." if steps < step_count else ""
     return _shown_state(orbit.system, orbit, state, table, cut)
 
 
 def _shown_state(system: AbstractSystem, orbit: Orbit, state: dict[str, Any], table: Any, cut: str = "") -> Shown:
+    """Return what a page runs from a state, or a replay where the numbers of the state are too large or too small."""
+    if _problem(state):
+        return _replay(orbit, _BEYOND)
     preview = replay(orbit, spread(orbit, _RECORDED))[0] if len(orbit) else None
     data = {"kind": state["kind"], "state": state, "recorded": preview, "table": table}
     return Shown(data, _name(system), _frame_note(system) + cut)
@@ -207,10 +206,12 @@ def _forces(system: AbstractSystem) -> dict[str, float] | None:
 
 
 def _table(system: Any, kind: str, first: int) -> dict[str, Any] | None:
-    """Return the table of forces from a step on, as the data of a page hold it; None without one."""
+    """Return the table of forces from a step on, with a name by which a state can call it; None without one."""
     if not system.is_forced or system.table is None:
         return None
-    return packed_table(kind.removeprefix("forced_"), np.asarray(system.table)[first : first + MOST_STEPS + 1])
+    content = np.asarray(system.table)[first : first + MOST_STEPS + 1].astype("<f8").tobytes()
+    name = hashlib.sha256(content).hexdigest()[:12]
+    return {"body": kind.removeprefix("forced_"), "name": name, "rows": base64.b64encode(content).decode()}
 
 
 def _parameters(system: AbstractSystem) -> dict[str, float]:
@@ -329,13 +330,6 @@ def under_forces(system: AbstractSystem, numbers: Mapping[str, float], rows: Flo
     weight, scale = Gravity(F, x) if any(F) else None, number("Page.orbit()", numbers.get("s", 0.0))
     forces = [Friction([*c, 0.0])] * any(c) + [scale * rows] * bool(scale)
     return Forced(system, weight, forces[0] if len(forces) == 1 else tuple(forces) or None)
-
-
-def packed_table(body: str, rows: Float[np.ndarray, "K dim"]) -> dict[str, Any]:
-    """Return a table as the data of a page hold it, for a body, with a name by which a state can call it."""
-    content = rows.astype("<f8").tobytes()
-    name = hashlib.sha256(content).hexdigest()[:12]
-    return {"body": body, "name": name, "rows": base64.b64encode(content).decode()}
 
 
 def table_of(table: dict[str, Any] | None, least: int) -> Float[np.ndarray, "K dim"]:

@@ -161,13 +161,15 @@ def rows_of(
 ) -> Iterator[Float[np.ndarray, "R c"]]:
     """Return one in `every` of the states as rows of the columns; rows do not depend on how the motion is cut.
 
-    The first row continues from the one `before`, if there is one.
+    The first row continues from the one `before`, if there is one. Coordinates are columns as they are.
     """
-    position, turn = layout(system.group)
+    names = list(getattr(system, "coordinates", ()))
+    position, turn = (names, []) if names else layout(system.group)
     first = 0
     for time, pose, headings in _with_headings(stretches, before) if turn == HEADING else stretches:
         own_rows = slice(-first % every, None, every)
-        place, turns = _places_and_turns(system, pose[own_rows], len(position), turn)
+        own = pose[own_rows]
+        place, turns = (own, own[:, :0]) if names else _places_and_turns(system, own, len(position), turn)
         if turn == HEADING:
             turns = np.asarray(headings)[own_rows, None]
         if turn == QUATERNION:
@@ -184,14 +186,6 @@ def _places_and_turns(system: Any, pose: np.ndarray, n: int, turn: list[str]) ->
         return compact[:, 4 - n :], compact
     g = pose if pose.ndim == 3 else configurations(system, pose)
     return g[:, :n, n], _turns(g, turn)
-
-
-def coordinate_rows(stretches: Iterable[Stretch], every: int) -> Iterator[Float[np.ndarray, "R c"]]:
-    """Return times and coordinates of one in `every` of the states."""
-    first = 0
-    for time, q, _ in stretches:
-        yield np.concatenate([time[:, None], q], axis=1)[-first % every :: every]
-        first += len(time)
 
 
 def layout(group: AbstractMatrixGroup) -> tuple[list[str], list[str]]:

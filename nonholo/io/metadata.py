@@ -181,6 +181,7 @@ def check_array(where: str, name: str, array: zarr.Array) -> None:
 
 
 def _quotient(size: int, chunk: int) -> int:
+    """Return the number of chunks, of any size: that of zarr itself is a float."""
     return -(-size // chunk)
 
 

@@ -147,9 +147,8 @@ def _blocks_of(
 
     arrays = {name: array_of(name, shape) for name, shape in json.loads(attributes["arrays"]).items()}
     layout = blocks.Layout((rows,), arrays["time"].chunks)
-    return blocks.BlockStore(
-        path, attributes["made"], layout, arrays, array_of(EVENTS) if "events" in attributes else None
-    )
+    log = array_of(EVENTS) if "events" in attributes else None
+    return blocks.BlockStore(path, attributes["made"], layout, arrays, log)
 
 
 def create_stream(

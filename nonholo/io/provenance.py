@@ -302,14 +302,11 @@ def on_route_of(attributes: dict[str, Any], motion: Any) -> Any:
 def identity_of(motion: Any) -> dict[str, str]:
     """Return what a motion is."""
     options = {"kind": type(motion).__name__, **fields_of(motion)}
+    options.pop("system", None)
     if motion.route_name is not None:
         options["route"] = motion.route_name
     system, parameters = described_system(motion.system)
-    return {
-        "system": system,
-        "parameters": json.dumps(parameters),
-        "motion": json.dumps({key: value for key, value in options.items() if key != "system"}),
-    }
+    return {"system": system, "parameters": json.dumps(parameters), "motion": json.dumps(options)}
 
 
 def other_versions(attributes: dict[str, Any]) -> str:

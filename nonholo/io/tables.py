@@ -11,7 +11,7 @@ import numpy as np
 
 from nonholo.base import checks
 from nonholo.base.progress import progress_bar
-from nonholo.io.datasets import Stretch, column_names, coordinate_rows, rows_of
+from nonholo.io.datasets import Stretch, column_names, rows_of
 from nonholo.io.places import check_file, new_file
 from nonholo.orbit import AbstractOrbit, any_orbit
 
@@ -101,8 +101,7 @@ def _lines(system: Any, stretches: Iterable[Stretch], every: int) -> Iterator[st
     coordinates = getattr(system, "coordinates", ())
     names = ["t", *coordinates] if coordinates else column_names(system.group)
     parts = _cut(stretches, max(1, _NUMBERS // len(names)))
-    pieces = coordinate_rows(parts, every) if coordinates else rows_of(system, parts, every)
-    return table_lines(names, (rows.T for rows in pieces))
+    return table_lines(names, (rows.T for rows in rows_of(system, parts, every)))
 
 
 def table_lines(names: list[str], pieces: Iterable[Iterable[np.ndarray]]) -> Iterator[str]:

@@ -20,9 +20,8 @@ if TYPE_CHECKING:
     import xarray
 
 OUTCOME, DRAWN = "outcome", "value of the design"
-_SUCCESSFUL = "successful"
 _ENDED = {
-    _SUCCESSFUL: "#56b4e9",
+    "successful": "#56b4e9",
     "no_real_branch": "#cfd3da",
     "branch_unverified": "#8a8f98",
     "not_converged": "#cc79a7",

@@ -32,11 +32,6 @@ class Panel(NamedTuple):
     projection: str | None = None
 
 
-def panels_of(orbit: AbstractOrbit, flow: AbstractOrbit | None) -> list[Panel]:
-    """Return the panels of an orbit, the large one first; there is always one."""
-    return _of_body(orbit, cast(Any, flow)) if isinstance(orbit, Orbit) else _in_coordinates(orbit, flow)
-
-
 def _in_coordinates(orbit: AbstractOrbit, flow: AbstractOrbit | None) -> list[Panel]:
     """Return the panels of an orbit of a Lagrange-d'Alembert system."""
     track = coordinates.track_of(orbit)
@@ -51,6 +46,7 @@ def _in_coordinates(orbit: AbstractOrbit, flow: AbstractOrbit | None) -> list[Pa
 
 
 def _of_body(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
+    """Return the panels of an orbit of a body, the large one first; there is always one."""
     energy = Panel(functools.partial(time_series.energy_error, orbit), is_timed=True)
     if orbit.system.is_wide and sheet_of(orbit.system) is None:
         return [_components(orbit, flow), energy]
@@ -113,9 +109,6 @@ def _velocity(orbit: Orbit, flow: Orbit | None, axes: Axes) -> None:
     (time_series.heading_and_speed if has_heading else time_series.velocity_components)(orbit, axes, flow)
 
 
-_FIXED = {False: "System with a left-invariant constraint", True: "System with a right-invariant constraint"}
-
-
 def _facts(orbit: AbstractOrbit) -> list[str]:
     run, step = f"from time {orbit.time[0]:g} to {orbit.time[-1]:g}", orbit.time_step
     if orbit.is_measured:
@@ -159,7 +152,7 @@ def _name_of_body(system: System) -> str:
         in_body = LLSystem(system.group, system.homogeneous_mass_tensor, system.constraint_subspace).normal_form
         if system.is_spatial and in_body is not None and not in_body.is_sleigh:
             return "Veselova top"
-    return _FIXED[system.is_spatial]
+    return f"System with a {('left', 'right')[system.is_spatial]}-invariant constraint"
 
 
 def _parameters(system: System) -> str:
@@ -217,7 +210,7 @@ def overview(
     smooth = drawable_in_time("overview(orbit=...)", orbit)
     flow = same_space("overview(flow=...)", flow, orbit, "Pass a motion of the same system.")
     figure = new_page("overview", _SIZE, path, overwrite=overwrite)
-    panels = panels_of(smooth, flow)
+    panels = (_of_body if isinstance(smooth, Orbit) else _in_coordinates)(smooth, cast(Any, flow))
     axes = _axes(figure, panels)
     for panel, own in zip(panels, axes, strict=True):
         theme.begin(own)

@@ -327,17 +327,16 @@ def component_colors(count: int) -> list[Any]:
 
 def end_colors(orbit: AbstractOrbit) -> list[tuple[float, float, float, float]]:
     """Return the colors of the first and the last state."""
-    first, last = (tuple(color) for color in time_colors(orbit, orbit.time[[0, -1]]))
-    return [first, last]
+    return list(map(tuple, time_colors(orbit, orbit.time[[0, -1]])))
 
 
 component_colours, end_colours = component_colors, end_colors  # names they had, which still work
 
 
-def mark_time(axes: Axes, orbit: AbstractOrbit) -> LineCollection | None:
+def mark_time(axes: Axes, orbit: AbstractOrbit) -> None:
     """Lay the colors of time along the bottom of axes whose abscissa is time: the key to the other panels."""
     if len(orbit) < 2 or option("color", None):
-        return None
+        return
     scale = time_scale(orbit)
     times = scale.inverse(np.linspace(0.0, 1.0, 129))
     ends = np.unique(np.concatenate([orbit.time[[0, -1]], times]))
@@ -346,7 +345,6 @@ def mark_time(axes: Axes, orbit: AbstractOrbit) -> LineCollection | None:
     strip = LineCollection(pieces(ground), transform=axes.get_xaxis_transform())
     strip.set(colors=time_colors(orbit, (ends[:-1] + ends[1:]) / 2), **look)
     axes.add_collection(strip, autolim=False)
-    return strip
 
 
 def pieces(points: Float[np.ndarray, "K 2"]) -> list[Float[np.ndarray, "2 2"]]:

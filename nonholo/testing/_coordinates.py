@@ -17,7 +17,6 @@ from nonholo.testing._report import Check, derivative, gap, largest, measures, n
 SYSTEM: list[Check] = []
 MAP: list[Check] = []
 _OFFSET, _STATES = 1e-3, 5  # between times at which a flow is differentiated
-_SECOND = "errors against the flow fall with the square of the step: |slope - 2|"
 
 
 class CoordinateSamples:
@@ -254,12 +253,12 @@ def _reversal(s: CoordinateSamples) -> float:
     return gap(back.configuration[::-1], q[1:])
 
 
-@measures(MAP, "order of momenta", _SECOND, 0.15)
+@measures(MAP, "order of momenta", report.SECOND, 0.15)
 def _order_of_momenta(s: CoordinateSamples) -> float:
     return report.off_two([relative(orbit.restricted_momentum[-1], s.end.restricted_momentum[-1]) for orbit in s.paths])
 
 
-@measures(MAP, "order of configurations", _SECOND, 0.15)
+@measures(MAP, "order of configurations", report.SECOND, 0.15)
 def _order_of_configurations(s: CoordinateSamples) -> float:
     return report.off_two([gap(orbit.configuration[-1], s.end.configuration[-1]) for orbit in s.paths])
 

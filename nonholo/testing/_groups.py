@@ -11,7 +11,8 @@ from nonholo.base.checks import error, flags, generator, within_memory
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Float
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.testing._report import Check, NotApplicableError, Report, derivative, gap, largest, need, run_checks
+from nonholo.testing import _report as report
+from nonholo.testing._report import Check, Report, derivative, gap, largest, measures, need, run_checks
 
 _COUNT = 4
 
@@ -139,6 +140,12 @@ _OFF = 1e-3  # how far matrices are moved off the group
 _BLIND = 1e3  # a residual is sound if it sees at least this part of the distance
 
 
+ALGEBRA: list[Check] = []
+MAPS: list[Check] = []
+"""In the order of the report; tolerances leave room for a few hundred rounding errors at norms of a few units."""
+
+
+@measures(ALGEBRA, "sizes", "basis, identity, exp and poses are float64 arrays of the sizes stated", 0.0)
 def _sizes(s: GroupSamples) -> float:
     group = s.group
     sizes = [
@@ -150,11 +157,18 @@ def _sizes(s: GroupSamples) -> float:
     return sum(np.shape(array) != shape or np.asarray(array).dtype != np.float64 for array, shape in sizes)
 
 
+@measures(ALGEBRA, "hash", "the group can be a fixed argument of compiled functions", 0.0)
+def _hash(s: GroupSamples) -> float:
+    return float(hash(s.group) != hash(s.group))
+
+
+@measures(ALGEBRA, "basis", "the basis is linearly independent", 0.0)
 def _basis(s: GroupSamples) -> float:
     flat = s.group.basis.reshape(s.group.dim, -1)
     return s.group.dim - np.linalg.matrix_rank(flat / np.linalg.norm(flat, axis=1)[:, None])
 
 
+@measures(ALGEBRA, "closure", "brackets of basis matrices lie in their span", 1e-10)
 def _closure(s: GroupSamples) -> float:
     rows = s.group.basis.reshape(s.group.dim, -1)
     unit = np.diag(1 / np.linalg.norm(rows, axis=1))
@@ -162,56 +176,72 @@ def _closure(s: GroupSamples) -> float:
     return largest(brackets - s.matrix(s.coordinates(brackets)))
 
 
+measures(ALGEBRA, "hat", "hat(x) = sum x_i E_i", 1e-13)(lambda s: gap(s.group.hat(s.x), s.matrix(s.x)))
+
+
+measures(ALGEBRA, "vee", "vee(sum x_i E_i) = x", 1e-12)(lambda s: gap(s.group.vee(s.matrix(s.x)), s.x))
+
+
+@measures(ALGEBRA, "bracket", "hat(bracket(x, y)) = X Y - Y X", 1e-12)
 def _bracket(s: GroupSamples) -> float:
     return gap(s.matrix(s.group.bracket(s.x, s.y)), s.commutator(s.x, s.y))
 
 
+@measures(ALGEBRA, "Jacobi", "[x, [y, z]] + [y, [z, x]] + [z, [x, y]] = 0", 1e-12)
 def _jacobi(s: GroupSamples) -> float:
     bracket, x, y, z = s.group.bracket, s.x, s.y, s.x[::-1]
     terms = np.stack([bracket(x, bracket(y, z)), bracket(y, bracket(z, x)), bracket(z, bracket(x, y))])
     return largest(terms.sum(axis=0)) / (1 + largest(terms))
 
 
-def _hash(s: GroupSamples) -> float:
-    return float(hash(s.group) != hash(s.group))
-
-
+@measures(ALGEBRA, "ad", "ad(x) y = [x, y]", 1e-12)
 def _ad(s: GroupSamples) -> float:
     return gap((s.group.ad(s.x) @ s.y[:, :, None])[:, :, 0], s.coordinates(s.commutator(s.x, s.y)))
 
 
+@measures(ALGEBRA, "coad", "<coad(x, p), y> = <p, [x, y]>", 1e-12)
 def _coad(s: GroupSamples) -> float:
     pairing = np.sum(s.group.coad(s.x, s.p) * s.y, axis=-1)
     return gap(pairing, np.sum(s.p * s.coordinates(s.commutator(s.x, s.y)), axis=-1))
 
 
+@measures(ALGEBRA, "inverse", "inverse(g) g = I", 1e-12)
+def _inverse(s: GroupSamples) -> float:
+    return gap(s.group.inverse(s.g) @ s.g, np.broadcast_to(s.group.identity, s.g.shape))
+
+
+@measures(ALGEBRA, "adjoint", "hat(adjoint(g) x) = g X g^-1", 1e-11)
 def _adjoint(s: GroupSamples) -> float:
     return gap((s.group.adjoint(s.g) @ s.y[:, :, None])[:, :, 0], s.conjugate(s.g, s.y))
 
 
+@measures(ALGEBRA, "adjoint of products", "adjoint(g h) = adjoint(g) adjoint(h)", 1e-11)
 def _adjoint_of_products(s: GroupSamples) -> float:
     adjoint, h = s.group.adjoint, s.g[::-1]
     return gap(adjoint(s.g @ h), adjoint(s.g) @ adjoint(h))
 
 
+@measures(ALGEBRA, "adjoint of exp", "adjoint(exp(x)) = expm(ad(x))", 1e-11)
 def _adjoint_of_exp(s: GroupSamples) -> float:
     return gap(s.group.adjoint(s.group.exp(s.x)), scipy.linalg.expm(s.group.ad(s.x)))
 
 
+@measures(ALGEBRA, "coadjoint", "<coadjoint(g, p), x> = <p, adjoint(g) x>", 1e-11)
 def _coadjoint(s: GroupSamples) -> float:
     pairing = np.sum(s.group.coadjoint(s.g, s.p) * s.y, axis=-1)
     return gap(pairing, np.sum(s.p * s.conjugate(s.g, s.y), axis=-1))
 
 
-def _inverse(s: GroupSamples) -> float:
-    return gap(s.group.inverse(s.g) @ s.g, np.broadcast_to(s.group.identity, s.g.shape))
+measures(ALGEBRA, "random", "residual(random(rng)) = 0", 1e-11)(lambda s: largest(s.group.residual(s.elements)))
 
 
+@measures(ALGEBRA, "products", "residual(g h) = 0", 1e-11)
 def _products(s: GroupSamples) -> float:
     """Multiply elements so near the identity that their product has a logarithm."""
     return largest(s.group.residual(s.element(s.x / 4) @ s.element(s.y / 4)))
 
 
+@measures(ALGEBRA, "residual", "distance / residual of matrices off the group is bounded", _BLIND)
 def _blindness(s: GroupSamples) -> float:
     """Return the part of a distance from the group that the residual does not see, as distance over residual."""
     normal = scipy.linalg.null_space(s.group.basis.reshape(s.group.dim, -1))
@@ -221,50 +251,37 @@ def _blindness(s: GroupSamples) -> float:
     return float(np.max(_OFF / np.maximum(residual, np.finfo(float).tiny)))
 
 
-ALGEBRA = (
-    Check("sizes", "basis, identity, exp and poses are float64 arrays of the sizes stated", 0.0, _sizes),
-    Check("hash", "the group can be a fixed argument of compiled functions", 0.0, _hash),
-    Check("basis", "the basis is linearly independent", 0.0, _basis),
-    Check("closure", "brackets of basis matrices lie in their span", 1e-10, _closure),
-    Check("hat", "hat(x) = sum x_i E_i", 1e-13, lambda s: gap(s.group.hat(s.x), s.matrix(s.x))),
-    Check("vee", "vee(sum x_i E_i) = x", 1e-12, lambda s: gap(s.group.vee(s.matrix(s.x)), s.x)),
-    Check("bracket", "hat(bracket(x, y)) = X Y - Y X", 1e-12, _bracket),
-    Check("Jacobi", "[x, [y, z]] + [y, [z, x]] + [z, [x, y]] = 0", 1e-12, _jacobi),
-    Check("ad", "ad(x) y = [x, y]", 1e-12, _ad),
-    Check("coad", "<coad(x, p), y> = <p, [x, y]>", 1e-12, _coad),
-    Check("inverse", "inverse(g) g = I", 1e-12, _inverse),
-    Check("adjoint", "hat(adjoint(g) x) = g X g^-1", 1e-11, _adjoint),
-    Check("adjoint of products", "adjoint(g h) = adjoint(g) adjoint(h)", 1e-11, _adjoint_of_products),
-    Check("adjoint of exp", "adjoint(exp(x)) = expm(ad(x))", 1e-11, _adjoint_of_exp),
-    Check("coadjoint", "<coadjoint(g, p), x> = <p, adjoint(g) x>", 1e-11, _coadjoint),
-    Check("random", "residual(random(rng)) = 0", 1e-11, lambda s: largest(s.group.residual(s.elements))),
-    Check("products", "residual(g h) = 0", 1e-11, _products),
-    Check("residual", "distance / residual of matrices off the group is bounded", _BLIND, _blindness),
-)
-"""In the order of the report; tolerances leave room for a few hundred rounding errors at norms of a few units."""
-
-
 _SMALL = 1e-6
 _TURN = 3.0  # an angle near the edge of injectivity, pi
 _STRETCH = 5.0  # samples that need a matrix of larger norm to turn so far are left out
 
 
+measures(MAPS, "exp of zero", "exp(0) = I", 0.0)(lambda s: largest(s.group.exp(0 * s.x) - s.group.identity))
+
+
+@measures(MAPS, "exp", "exp(x) = expm(hat(x))", 1e-12)
 def _exp(s: GroupSamples) -> float:
     return max(gap(s.group.exp(x), s.element(x)) for x in (s.x, s.vectors(2.5, which=1)))
 
 
+@measures(MAPS, "exp_increment", "exp_increment(x) = X + X^2/2 + ... to relative accuracy", 1e-13)
 def _exp_increment(s: GroupSamples) -> float:
     x = s.vectors(_SMALL)
     X = s.matrix(x)
     return largest(s.group.exp_increment(x) - X - X @ X / 2 - X @ X @ X / 6) / _SMALL
 
 
+@measures(MAPS, "log of small motions", "log(exp(x)) = x to nine digits at |X| = 1e-6", 1e-9)
 def _log_small(s: GroupSamples) -> float:
     x = s.vectors(_SMALL)
     X = s.matrix(x)
     return largest(s.matrix(s.group.log(s.group.identity + X + X @ X / 2) - x)) / _SMALL
 
 
+measures(MAPS, "log", "log(exp(x)) = x at |X| = 1", 1e-12)(lambda s: gap(s.group.log(s.g), s.x))
+
+
+@measures(MAPS, "log of large turns", "log(exp(x)) = x at angle 3", 1e-10)
 def _log_large(s: GroupSamples) -> float:
     x, turn = s.turning
     turning = turn > _TURN / _STRETCH  # rounding gives nilpotent matrices small imaginary parts
@@ -273,39 +290,48 @@ def _log_large(s: GroupSamples) -> float:
     return gap(s.group.log(s.element(x)), x)
 
 
+@measures(MAPS, "exp of log", "exp(log(g)) = g for random elements", 1e-11)
 def _exp_of_log(s: GroupSamples) -> float:
     return gap(s.group.exp(s.group.log(s.elements)), s.elements)
 
 
-def _cayley_of(s: GroupSamples, x: np.ndarray) -> np.ndarray:
+def _cayley_of(s: GroupSamples) -> np.ndarray:
     """Return Cayley images; a group that is not rigid may refuse."""
     try:
-        return s.group.cayley(x)
+        return s.group.cayley(s.x)
     except ValueError as refusal:
         if s.group.is_rigid:
             raise
-        raise NotApplicableError(str(refusal)) from None
+        raise report.NotApplicableError(str(refusal)) from None
 
 
+@measures(MAPS, "Cayley", "(I - X/2) cayley(x) = I + X/2", 1e-12)
 def _cayley(s: GroupSamples) -> float:
     X, eye = s.matrix(s.x), s.group.identity
-    return gap((eye - X / 2) @ _cayley_of(s, s.x), eye + X / 2)
+    return gap((eye - X / 2) @ _cayley_of(s), eye + X / 2)
 
 
+measures(MAPS, "Cayley stays", "residual(cayley(x)) = 0", 1e-12)(lambda s: largest(s.group.residual(_cayley_of(s))))
+
+
+@measures(MAPS, "retract", "retract(x) - exp(x) is of third order: at most |X|^3", 1.0)
 def _retract(s: GroupSamples) -> float:
     size = 1e-2
     x = s.vectors(size)
     return largest(s.group.retract(x) - s.element(x)) / size**3
 
 
+@measures(MAPS, "retract stays", "residual(retract(x)) = 0", 1e-12)
 def _retract_stays(s: GroupSamples) -> float:
     return largest(s.group.residual(s.group.retract(s.x)))
 
 
+@measures(MAPS, "retract_increment", "I + retract_increment(x) = retract(x)", 1e-14)
 def _retract_increment(s: GroupSamples) -> float:
     return gap(s.group.identity + s.group.retract_increment(s.x), s.group.retract(s.x))
 
 
+@measures(MAPS, "dexp_inverse", "dexp_inverse(x) = (integral of expm(t ad(x)), 0 < t < 1)^-1", 1e-11)
 def _dexp_inverse(s: GroupSamples) -> float:
     ad, eye = s.group.ad(s.x), np.eye(s.group.dim)
     upper = np.concatenate([ad, np.broadcast_to(eye, ad.shape)], axis=-1)
@@ -314,6 +340,7 @@ def _dexp_inverse(s: GroupSamples) -> float:
     return gap(s.group.dexp_inverse(s.x) @ dexp, np.broadcast_to(eye, ad.shape))
 
 
+@measures(MAPS, "dexp_inverse and log", "d/dt log(exp(t y) exp(x)) = dexp_inverse(x) y", 1e-8)
 def _dexp_of_log(s: GroupSamples) -> float:
     def logarithm(t: float) -> np.ndarray:
         return s.group.log(s.element(t * s.y / 2) @ s.element(s.x / 2))
@@ -322,25 +349,31 @@ def _dexp_of_log(s: GroupSamples) -> float:
     return gap(derivative(logarithm), exact)
 
 
+# eigenvalues of defective matrices are found to the root of rounding only
+@measures(MAPS, "angle", "angle(x) = largest imaginary part of an eigenvalue of hat(x)", 1e-7)
 def _angle(s: GroupSamples) -> float:
     return gap(s.group.angle(s.x), np.abs(np.linalg.eigvals(s.matrix(s.x)).imag).max(axis=-1))
 
 
+@measures(MAPS, "poses", "matrix_from_pose(pose_from_matrix(g)) = g", 1e-13)
 def _poses(s: GroupSamples) -> float:
     return gap(s.group.matrix_from_pose(s.group.pose_from_matrix(s.elements)), s.elements)
 
 
+@measures(MAPS, "pose_product", "matrix_from_pose(pose_product(p, q)) = matrix_from_pose(p) matrix_from_pose(q)", 1e-12)
 def _pose_product(s: GroupSamples) -> float:
     group, others = s.group, s.elements[::-1]
     product = group.pose_product(group.pose_from_matrix(s.elements), group.pose_from_matrix(others))
     return gap(group.matrix_from_pose(product), s.elements @ others)
 
 
+@measures(MAPS, "normalize_pose", "normalize_pose keeps poses of the group", 1e-13)
 def _normalize(s: GroupSamples) -> float:
     pose = s.group.pose_from_matrix(s.elements)
     return gap(s.group.normalize_pose(pose), pose)
 
 
+@measures(MAPS, "pose_rate", "d/dt matrix_from_pose(pose + t pose_rate) = g hat(x)", 1e-8)
 def _pose_rate(s: GroupSamples) -> float:
     """Differentiate matrices, since several poses may have the same one."""
     pose = s.group.pose_from_matrix(s.elements)
@@ -349,25 +382,21 @@ def _pose_rate(s: GroupSamples) -> float:
 
 
 def _everything(group: Any, x: Any) -> dict[str, Any]:
+    """Return by name the values of functions that have leading axes and are compiled."""
     g = group.exp(x)
     pose = group.pose_from_matrix(g)
-    return {
-        "exp": g,
-        "log": group.log(g),
-        "retract": group.retract(x),
-        "inverse": group.inverse(g),
-        "adjoint": group.adjoint(g),
-        "coadjoint": group.coadjoint(g, x),
-        "coad": group.coad(x, x[..., ::-1]),
-        "dexp_inverse": group.dexp_inverse(x),
-        "angle": group.angle(x),
-        "residual": group.residual(g),
-        "normalize_pose": group.normalize_pose(pose),
-        "matrix_from_pose": group.matrix_from_pose(pose),
-        "pose_rate": group.pose_rate(pose, x),
+    arguments = {
+        "log inverse adjoint residual": (g,),
+        "retract dexp_inverse angle": (x,),
+        "normalize_pose matrix_from_pose": (pose,),
+        "coadjoint": (g, x),
+        "coad": (x, x[..., ::-1]),
+        "pose_rate": (pose, x),
     }
+    return {"exp": g} | {name: getattr(group, name)(*own) for names, own in arguments.items() for name in names.split()}
 
 
+@measures(MAPS, "broadcasting", "leading axes are mapped over", 1e-12)
 def _broadcast(s: GroupSamples) -> float:
     """Compare a stack of two by two with its entries one by one."""
     whole = _everything(s.group, s.x.reshape(2, 2, -1))
@@ -384,36 +413,7 @@ def _jax(s: GroupSamples) -> float:
             arrays = jax.jit(lambda x: _everything(s.group, x))(jax.numpy.asarray(s.x))
             values = {name: np.asarray(array) for name, array in arrays.items()}
         return max(gap(values[name], exact) for name, exact in _everything(s.group, s.x).items())
-    raise NotApplicableError("JAX is not installed")
+    raise report.NotApplicableError("JAX is not installed")
 
 
-MAPS = (
-    Check("exp of zero", "exp(0) = I", 0.0, lambda s: largest(s.group.exp(0 * s.x) - s.group.identity)),
-    Check("exp", "exp(x) = expm(hat(x))", 1e-12, _exp),
-    Check("exp_increment", "exp_increment(x) = X + X^2/2 + ... to relative accuracy", 1e-13, _exp_increment),
-    Check("log of small motions", "log(exp(x)) = x to nine digits at |X| = 1e-6", 1e-9, _log_small),
-    Check("log", "log(exp(x)) = x at |X| = 1", 1e-12, lambda s: gap(s.group.log(s.g), s.x)),
-    Check("log of large turns", "log(exp(x)) = x at angle 3", 1e-10, _log_large),
-    Check("exp of log", "exp(log(g)) = g for random elements", 1e-11, _exp_of_log),
-    Check("Cayley", "(I - X/2) cayley(x) = I + X/2", 1e-12, _cayley),
-    Check("Cayley stays", "residual(cayley(x)) = 0", 1e-12, lambda s: largest(s.group.residual(_cayley_of(s, s.x)))),
-    Check("retract", "retract(x) - exp(x) is of third order: at most |X|^3", 1.0, _retract),
-    Check("retract stays", "residual(retract(x)) = 0", 1e-12, _retract_stays),
-    Check("retract_increment", "I + retract_increment(x) = retract(x)", 1e-14, _retract_increment),
-    Check("dexp_inverse", "dexp_inverse(x) = (integral of expm(t ad(x)), 0 < t < 1)^-1", 1e-11, _dexp_inverse),
-    Check("dexp_inverse and log", "d/dt log(exp(t y) exp(x)) = dexp_inverse(x) y", 1e-8, _dexp_of_log),
-    # eigenvalues of defective matrices are found to the root of rounding only
-    Check("angle", "angle(x) = largest imaginary part of an eigenvalue of hat(x)", 1e-7, _angle),
-    Check("poses", "matrix_from_pose(pose_from_matrix(g)) = g", 1e-13, _poses),
-    Check(
-        "pose_product",
-        "matrix_from_pose(pose_product(p, q)) = matrix_from_pose(p) matrix_from_pose(q)",
-        1e-12,
-        _pose_product,
-    ),
-    Check("normalize_pose", "normalize_pose keeps poses of the group", 1e-13, _normalize),
-    Check("pose_rate", "d/dt matrix_from_pose(pose + t pose_rate) = g hat(x)", 1e-8, _pose_rate),
-    Check("broadcasting", "leading axes are mapped over", 1e-12, _broadcast),
-)
-"""In the order of the report; tolerances leave room for a few hundred rounding errors at norms of a few units."""
 COMPILED = Check("JAX", "compiled JAX functions give the numbers of NumPy", 1e-11, _jax)

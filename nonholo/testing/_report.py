@@ -223,6 +223,7 @@ def _result_of(check: Check, subject: Any, factor: float) -> Result:
 
 
 EXACT = 1e-11  # errors below it are rounding, and have no order
+SECOND = "errors against the flow fall with the square of the step: |slope - 2|"
 COUNTS = (10, 20, 40)  # steps for the path whose order is measured
 
 

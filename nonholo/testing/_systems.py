@@ -10,7 +10,7 @@ from nonholo.analysis import ConservedMomenta, conserved_momenta
 from nonholo.base.checks import error, flags, generator, refuse_given
 from nonholo.base.types import Float
 from nonholo.continuous import vector_field
-from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, Equilibria, Forced, refuse_slip
+from nonholo.systems import AbstractCoordinateSystem, AbstractSystem, Equilibria, refuse_slip
 from nonholo.testing import _report as report
 from nonholo.testing._coordinates import SYSTEM, CoordinateSamples
 from nonholo.testing._report import Check, Report, derivative, gap, largest, measures, need, relative, run_checks
@@ -29,7 +29,7 @@ class SystemSamples:
     """
 
     def __init__(self, system: AbstractSystem, rng: np.random.Generator) -> None:
-        self.moving = system
+        self.moving, self.forced = system, system.forces
         self.system = system.inside  # forces are all that is added to it
         self.group = system.group
         self.spatial = system.is_spatial
@@ -91,11 +91,6 @@ class SystemSamples:
         states = zip(self.g, self.body_velocity, strict=True)
         rows = [] if self.forced is None else [self.forced.applied_force(0.0, *state) for state in states]
         return np.reshape(rows or np.zeros_like(self.momentum), self.momentum.shape)
-
-    @property
-    def forced(self) -> Forced | None:
-        """The system with its forces; None of a free one."""
-        return self.moving.forces
 
     def potential(self, g: np.ndarray) -> Any:
         """Return the potential energy."""

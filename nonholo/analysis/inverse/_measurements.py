@@ -158,11 +158,8 @@ def first(
     Positions see all of a pose, turns alone its turn, angular velocities nothing of it. Outliers do not count
     if they are to be borne.
     """
-    poses = {
-        kind: measured_rows(kind, rows, is_robust, is_angle=rows.shape[1] == 1)
-        for kind, rows in kinds.items()
-        if kind != "rate" and np.isfinite(rows).any()
-    }
+    some = {kind: rows for kind, rows in kinds.items() if kind != "rate" and np.isfinite(rows).any()}
+    poses = {kind: measured_rows(kind, rows, is_robust, is_angle=rows.shape[1] == 1) for kind, rows in some.items()}
     if not poses:
         rate = kinds["rate"]
         whole = rate[np.isfinite(rate).all(axis=1)][:1].ravel()

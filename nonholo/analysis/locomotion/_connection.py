@@ -250,7 +250,7 @@ def _free_components(where: str, reduction: Any, shapes: Array, poses: Array) ->
     """Return the components of the body velocity that the constraints leave free, of those choices the best one."""
     at_identity, elsewhere = (door().call(type(reduction).rows, reduction, g, shapes) for g in (np.zeros(3), poses))
     usable = np.isfinite(at_identity).all((1, 2)) & np.isfinite(elsewhere).all((1, 2))
-    at_identity, elsewhere = _unit(at_identity[usable]), _unit(elsewhere[usable])
+    at_identity, elsewhere = (_equations.unit_rows(rows[usable]) for rows in (at_identity, elsewhere))
     d = reduction.group.dim
     least = np.linalg.svd(at_identity[..., :d], compute_uv=False).min(-1, initial=1.0)
     if not (least > _INDEPENDENT).any():
@@ -275,10 +275,6 @@ def _check_energy(where: str, reduction: Any, shapes: Array, poses: Array, u: Ar
     momenta, quadratic = door().call(door().momenta, reduction, shapes, u), np.einsum("...ab,...b->...a", M, u)
     if np.nanmax(np.abs(momenta - quadratic) / (1 + np.abs(quadratic))) > _SYMMETRIC:
         raise error(where, "have a kinetic energy quadratic in velocities", "another one", "Leave other terms out.")
-
-
-def _unit(rows: Array) -> Array:
-    return rows / np.maximum(np.linalg.norm(rows, axis=-1, keepdims=True), np.finfo(float).tiny)
 
 
 @functools.cache

@@ -50,9 +50,14 @@ def _of_pose(matrix: Array) -> Array:
     return matrix[..., : matrix.shape[-2]]
 
 
+def unit_rows(matrix: Array) -> Array:
+    """Return a matrix with its rows at length one; those that are zero stay."""
+    return matrix / np.maximum(np.linalg.norm(matrix, axis=-1, keepdims=True), np.finfo(float).tiny)
+
+
 def regularity(matrix: Array) -> Array:
     """Return the determinant of a matrix with its rows at length one: zero where it is singular."""
-    return np.linalg.det(matrix / np.maximum(np.linalg.norm(matrix, axis=-1, keepdims=True), np.finfo(float).tiny))
+    return np.linalg.det(unit_rows(matrix))
 
 
 def solve(matrix: Array, right: Array) -> Array:

@@ -21,9 +21,8 @@ _ITERATIONS = 60
 _ROUNDING = 4e-16
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 _POWERS = np.polynomial.legendre.legint(np.eye(20), lbnd=-1, axis=0)  # integrals of Legendre polynomials
-_TO_NODES = (
-    np.polynomial.legendre.legval(_NODES, _POWERS).T @ np.linalg.inv(np.polynomial.legendre.legvander(_NODES, 19)) / 2
-)
+_VALUES = np.polynomial.legendre.legvander(_NODES, 19)
+_TO_NODES = np.polynomial.legendre.legval(_NODES, _POWERS).T @ np.linalg.inv(_VALUES) / 2
 _NODES, _WEIGHTS = (_NODES + 1) / 2, _WEIGHTS / 2
 
 

@@ -19,6 +19,7 @@ import jax.numpy as jnp
 import numpy as np
 from scipy.linalg import qr
 
+from nonholo.analysis.locomotion._equations import unit_rows
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.groups import SE, AbstractMatrixGroup
@@ -159,10 +160,8 @@ def traced_functions(body: Any) -> Iterator[tuple[str, Any]]:
     if body.constraint_forms is not None:
         where = "ShapedBody(constraint_forms=...)"
         remedy = f"Return rows over {dim} components of the body velocity, then {m} of the shape."
-        yield (
-            "constraint_forms",
-            checked_rows(where, body.constraint_forms, what, (s,), dim + m - 1, (dim + m,), remedy),
-        )
+        forms = checked_rows(where, body.constraint_forms, what, (s,), dim + m - 1, (dim + m,), remedy)
+        yield "constraint_forms", forms
     if body.lagrangian is not None:
         where, of, arrays = "ShapedBody(lagrangian=...)", f"{what} and both velocities", f"{called_with}, {dim}, {m}"
         yield "lagrangian", checked_value(where, body.lagrangian, of, (s, xi, s), (), arrays)
@@ -175,8 +174,7 @@ Rows = tuple[Callable[[Any, Array], Array], Any]
 
 def forms_at(forms: Rows, q: Float[np.ndarray, "n"]) -> Float[np.ndarray, "s n"]:
     """Return the constraint forms as rows of length one."""
-    rows = _taylor(forms, q, 0)[()]
-    return rows / np.maximum(np.linalg.norm(rows, axis=1, keepdims=True), np.finfo(float).tiny)
+    return unit_rows(_taylor(forms, q, 0)[()])
 
 
 def brackets(forms: Rows, q: Float[np.ndarray, "n"], longest: int) -> Iterator[Float[np.ndarray, "n words"]]:

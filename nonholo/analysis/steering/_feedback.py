@@ -187,10 +187,8 @@ def tracking_feedback(
         from nonholo.simulation.traced import roll
     track = track_of(where, discrete, start)
     k, dim = track.rows.shape
-    Q, F = (
-        _weight(f"{where}({name}=...)", value, dim + k)
-        for name, value in (("state_weight", state_weight), ("final_weight", final_weight))
-    )
+    Q = _weight(f"{where}(state_weight=...)", state_weight, dim + k)
+    F = _weight(f"{where}(final_weight=...)", final_weight, dim + k)
     R = _weight(f"{where}(control_weight=...)", control_weight, k)
     positive_definite(f"{where}(control_weight=...)", R, "the weight", "Pass a positive number, or one for each row.")
     table = array(f"{where}(controls=...)", controls, (None, dim), "Pass a body covector for each step.")

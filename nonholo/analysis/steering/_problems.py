@@ -148,10 +148,8 @@ class CoordinateNodes(NamedTuple):
 
     def goal_gap(self, x: Array) -> Array:
         """Return by how much the last pose is missed, and the last momentum along the constraint."""
-        place, p = self.state(x)
-        off_pose = (
-            jnp.zeros(0) if self.pose is None else self.system.places.departure(self.pose, place[: len(self.pose)])
-        )
+        (place, p), departure = self.state(x), self.system.places.departure
+        off_pose = jnp.zeros(0) if self.pose is None else departure(self.pose, place[: len(self.pose)])
         if not len(self.directions):
             return off_pose
         rows, off = equations.forms(self.system, place), p - equations.momentum(self.system, place, self.velocity)

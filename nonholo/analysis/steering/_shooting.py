@@ -173,17 +173,13 @@ class _Plane:
     def __getitem__(self, at: np.ndarray) -> "_Plane":
         return _Plane(self.free[at], self.slopes[at], self.inverse[at])
 
-    def weights(self, v: np.ndarray) -> np.ndarray:
-        """Return the multipliers whose forces are nearest to v."""
-        return _times(self.inverse, _times(self.slopes, v))
-
     def across(self, c: np.ndarray) -> np.ndarray:
         """Return the least forces that change the goal by c."""
         return _times(self.slopes.swapaxes(1, 2), _times(self.inverse, c))
 
     def along(self, v: np.ndarray) -> np.ndarray:
         """Return the part of free forces that does not change the goal."""
-        return np.where(self.free, v, 0.0) - _times(self.slopes.swapaxes(1, 2), self.weights(v))
+        return np.where(self.free, v, 0.0) - self.across(_times(self.slopes, v))
 
 
 def _times(A: np.ndarray, x: np.ndarray) -> np.ndarray:

@@ -69,10 +69,6 @@ class Steps(NamedTuple):
         return weight * self.cost(window) + weights @ self.conditions(window, row)
 
 
-def _weighted_goal(steps: Steps, last: Array, weights: Array) -> Array:
-    return weights @ steps.nodes.goal_gap(last)
-
-
 @equinox.filter_jit
 def _values(steps: Steps, windows: Array, rows: Array, last: Array) -> Any:
     return jax.vmap(steps.conditions)(windows, rows), steps.nodes.goal_gap(last)
@@ -91,7 +87,7 @@ def _slopes(steps: Steps, windows: Array, rows: Array, last: Array) -> Any:
 @equinox.filter_jit
 def _curvatures(steps: Steps, windows: Array, rows: Array, last: Array, weights: Any, weight: Array) -> Any:
     hessian = jax.vmap(jax.hessian(steps.lagrangian), in_axes=(0, 0, 0, None))
-    return hessian(windows, rows, weights[0], weight), jax.hessian(_weighted_goal, argnums=1)(steps, last, weights[1])
+    return hessian(windows, rows, weights[0], weight), jax.hessian(lambda x: weights[1] @ steps.nodes.goal_gap(x))(last)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

@@ -2,7 +2,7 @@
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -55,14 +55,12 @@ def dataset(
         return
     if name is None or output is None:
         leave("Pass a name and -o FOLDER; `nonholo dataset --list` lists the names.", USAGE)
-    options = {"orbits": orbits, "steps": steps, "time_step": time_step, "rng": rng, "noise": noise}
+    options: dict[str, Any] = {"orbits": orbits, "steps": steps, "time_step": time_step, "rng": rng, "noise": noise}
+    options |= {"file_format": file_format, "license_name": license_name, "progress": sys.stderr.isatty() and not quiet}
     with scenario_errors(), store_errors(USAGE), reporting_warnings():
         own = scenario.files.take_module(module)
         try:
-            how = {"split": _fractions(split), "file_format": file_format, "license_name": license_name}
-            folder = nonholo.dataset(
-                own.get(name, name), output, **options, **how, progress=sys.stderr.isatty() and not quiet
-            )
+            folder = nonholo.dataset(own.get(name, name), output, split=_fractions(split), **options)
         except KeyboardInterrupt:
             leave("Stopped; the same command resumes it.", FAILED)
     typer.echo(folder if quiet else f"{folder / 'README.md'} describes the files.")

@@ -277,9 +277,8 @@ def load_sweep_scenario(
     try:
         design = request.scenario.design.with_members()
     except ValueError as failure:
-        raise sections.ScenarioError(
-            [sections.problem("design.members", str(failure), source, request.options)]
-        ) from None
+        flaw = sections.problem("design.members", str(failure), source, request.options)
+        raise sections.ScenarioError([flaw]) from None
     return request._replace(scenario=request.scenario.model_copy(update={"design": design}))
 
 

@@ -111,6 +111,7 @@ def draw_trail(
     pieces, past = theme.pieces(path[at]), np.searchsorted(at, part.past - 1, side="right")
     if color is None:
         color = theme.CONTINUOUS if part.is_flow else theme.time_colors(orbit, part.path.time[at][1:])
+        look["label"] = "continuous" if part.is_flow else theme.option("label", None)
     look = {"linewidth": 1.2 if part.is_flow else 2, "zorder": 2} | look
     trail = LineCollection(pieces, colors=color, **look)
     axes.add_collection(trail, autolim=False)
@@ -123,11 +124,6 @@ def draw_point(axes: Axes, part: Part, points: Float[np.ndarray, "F 2"]) -> Show
     face = "none" if part.is_flow else color
     dot = axes.plot([], [], "o", markersize=8, markerfacecolor=face, color=color, zorder=4)[0]
     return lambda frame: dot.set_data(*points[frame : frame + 1].T)
-
-
-def name_of_trail(part: Part) -> str | None:
-    """Return what the legend calls a trail."""
-    return "continuous" if part.is_flow else theme.option("label", None)
 
 
 Drawn: TypeAlias = Callable[[Any], Bodies | None]
@@ -194,7 +190,7 @@ def _draw_in_plane(
     axes.set_axisbelow(True)
     shows = []
     for part, path, at in motions:
-        shows.append(draw_trail(axes, orbit, part, path, label=name_of_trail(part)))
+        shows.append(draw_trail(axes, orbit, part, path))
         shows.append(draw_point(axes, part, points(part.frames)) if at is None else _draw_outline(axes, part, at))
     theme.legend(axes, loc="best")
     return together(shows)
@@ -267,7 +263,7 @@ def _draw_in_space(axes: Axes, orbit: AbstractOrbit, parts: list[Part], points: 
     shows = []
     for part, path in zip(parts, paths, strict=True):
         shows.append(draw_trail(axes, orbit, part, _shadow(path, floor), color=theme.LEVEL, zorder=1))
-        shows.append(draw_trail(axes, orbit, part, _VIEW(path)[0], zorder=2.5, label=name_of_trail(part)))
+        shows.append(draw_trail(axes, orbit, part, _VIEW(path)[0], zorder=2.5))
         if box is None:
             shows.append(draw_point(axes, part, _VIEW(points(part.frames))[0]))
         else:

@@ -92,12 +92,10 @@ class Bodies(NamedTuple):
         look: Any = {"edgecolors": [ink], "linewidths": 0.9}
         bodies, cargo = ([part for outline in self.outlines for part in outline[layer]] for layer in _LAYERS)
         size = f"body, {self.larger:.2g} times as large" if self.larger > 1 else None
-        layers: list[Artist] = [
-            axes.add_collection(PolyCollection(bodies, facecolors=theme.INSIDE, zorder=2.0, label=size, **look)),
-            axes.add_collection(PolyCollection(cargo, facecolors=[ink], zorder=2.2, **look)),
-        ]
+        light = axes.add_collection(PolyCollection(bodies, facecolors=theme.INSIDE, zorder=2.0, label=size, **look))
+        dark = axes.add_collection(PolyCollection(cargo, facecolors=[ink], zorder=2.2, **look))
         arrow: Any = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.0028, "color": [ink], "zorder": 4.5}
-        return *layers, axes.quiver(*self.place.T, *self.arrows.T, **arrow)
+        return light, dark, axes.quiver(*self.place.T, *self.arrows.T, **arrow)
 
 
 _LAYERS = slice(0, 1), slice(1, None)
