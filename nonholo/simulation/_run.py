@@ -247,10 +247,7 @@ def _through(stepper: Stepper, watch: Watch, state: State, place: tuple[int, int
     keep_row(state, room, good)
     if after is None:
         return state, good, outcome, watch
-    end = part_of(room, good + 1, good + 2)
-    write_first(after, end)
-    if stepper.has_drift and stepper.sound(end) == 0:
-        return state, good, Outcome.nonfinite, watch
+    write_first(after, part_of(room, good + 1, good + 2))
     return after, good + 1, outcome, watch
 
 

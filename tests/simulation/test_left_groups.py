@@ -17,8 +17,8 @@ from nonholo.lagrange_dalembert import GroupLagrangeDAlembert
 
 BOOSTS = nh.MatrixGroup([[[0.0, 1.0], [1.0, 0.0]]], form=np.diag([1.0, -1.0]))
 WIDE = nh.ProductGroup(BOOSTS, nh.Translations(1))
-FAR, GOOD = 6.0, 20
-MISS = 1e-9 * np.cosh(FAR - 0.1 * GOOD - 0.05) ** 2 / 2
+FAR, STEP, GOOD = 6.0, 0.125, 16
+MISS = 1e-9 * np.cosh(FAR - STEP * (GOOD + 0.5)) ** 2 / 2
 
 
 def _action(W: Any, h: Any) -> Any:
@@ -71,7 +71,7 @@ def ended(run: Any, *arguments: Any, **options: Any) -> Any:
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_a_map_ends_before_the_step_that_leaves(name: str) -> None:
     """Whatever is saved, and however the run is cut, the last state is the one before the first pose off the group."""
-    discrete, start = nh.discretize(SYSTEMS[name], 0.1), start_of(SYSTEMS[name])
+    discrete, start = nh.discretize(SYSTEMS[name], STEP), start_of(SYSTEMS[name])
     whole = nh.simulate(discrete, **start, steps=40, throw=False)
     assert (len(whole), whole.outcome) == (1 + GOOD, nh.Outcome.nonfinite)
     states = "configuration", "body_velocity", "time"
@@ -87,7 +87,7 @@ def test_a_map_ends_before_the_step_that_leaves(name: str) -> None:
 @pytest.mark.parametrize("name", FLOWS)
 def test_a_flow_ends_before_the_time_at_which_it_has_left(name: str) -> None:
     """The requested times up to then remain, with the bits of a flow that ends there, alone and among members."""
-    system, times = SYSTEMS[name], np.linspace(0.0, 4.0, 41)
+    system, times = SYSTEMS[name], np.linspace(0.0, 5.0, 41)
     start = start_of(system)
     whole, states = ended(nh.flow, system, **start, times=times), ("configuration", "body_velocity", "time")
     assert len(whole) == 1 + GOOD
@@ -144,11 +144,11 @@ def test_rounding_takes_poses_off(name: str) -> None:
 
 def test_stores_and_ensembles_end_there(tmp_path: Path) -> None:
     """A store that is extended, resumed or begun so long has the states of the run in memory; so have members."""
-    discrete, start = nh.discretize(SYSTEMS["form"], 0.1), start_of(SYSTEMS["form"])
+    discrete, start = nh.discretize(SYSTEMS["form"], STEP), start_of(SYSTEMS["form"])
     whole = nh.simulate(discrete, **start, steps=40, throw=False)
-    nh.simulate(discrete, **start, steps=15, store=tmp_path / "longer", checkpoint_every=6)
+    nh.simulate(discrete, **start, steps=13, store=tmp_path / "longer", checkpoint_every=6)
     nh.simulate(discrete, **start, steps=40, store=tmp_path / "whole", checkpoint_every=6, throw=False)
-    for orbit in (nh.extend(tmp_path / "longer", 25, throw=False), nh.resume(tmp_path / "whole", throw=False)):
+    for orbit in (nh.extend(tmp_path / "longer", 27, throw=False), nh.resume(tmp_path / "whole", throw=False)):
         assert_same(orbit, whole)
         assert orbit.outcome == nh.Outcome.nonfinite
     for every in (1, None):
@@ -159,15 +159,15 @@ def test_stores_and_ensembles_end_there(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("flows", [False, True])
-@pytest.mark.parametrize("ahead", [GOOD / 10, GOOD / 10 + 0.05, 1.0])
+@pytest.mark.parametrize("ahead", [STEP * GOOD, STEP * (GOOD + 0.5), 1.0])
 def test_walls_before_a_pose_leaves(ahead: float, flows: bool) -> None:
     """Impacts before the pose leaves, at the last good node and in the step in which it leaves end no run otherwise."""
     wall = nh.Event(lambda x: x.configuration[:, 2, 3], name="wall", reset=nh.Impact())
     start: Any = start_of(SYSTEMS["product"], place=ahead, speed=-1.0) | {"events": [wall]}
     if flows:
-        orbit = ended(nh.flow, SYSTEMS["product"], **start, times=np.linspace(0.0, 4.0, 41))
+        orbit = ended(nh.flow, SYSTEMS["product"], **start, times=np.linspace(0.0, 5.0, 41))
     else:
-        orbit = nh.simulate(nh.discretize(SYSTEMS["product"], 0.1), **start, steps=1 + GOOD, throw=False)
+        orbit = nh.simulate(nh.discretize(SYSTEMS["product"], STEP), **start, steps=1 + GOOD, throw=False)
     assert (len(orbit), orbit.outcome) == (1 + GOOD, nh.Outcome.nonfinite)
     assert np.abs(orbit.configuration[:, 2, 3] - np.abs(ahead - orbit.time)).max() < 1e-12
 
