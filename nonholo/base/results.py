@@ -24,16 +24,18 @@ def result(kind: type[_T]) -> type[_T]:
 
 
 def as_table(self: Any) -> str:
-    """Return the values of a dataclass as lines."""
-    names = [field.name for field in dataclasses.fields(self) if field.repr]
+    """Return the values of a dataclass or a named tuple as lines."""
+    names = getattr(self, "_fields", None) or [field.name for field in dataclasses.fields(self) if field.repr]
     margin = max(map(len, names)) + 4
     rows = (f"{name:>{margin - 2}}: {_cell(getattr(self, name), ' ' * margin)}" for name in names)
     return "\n".join([type(self).__name__, *rows])
 
 
 def _cell(value: Any, margin: str) -> str:
+    if getattr(value, "size", 0) > _MANY:  # of JAX, too
+        return f"shape {value.shape}"
     if isinstance(value, np.ndarray):
-        return f"shape {value.shape}" if value.size > _MANY else np.array2string(value, _WIDE, 6, prefix=margin)
+        return np.array2string(value, _WIDE, 6, prefix=margin)
     if isinstance(value, tuple) and value and dataclasses.is_dataclass(value[0]):
         return f"{len(value)} of {type(value[0]).__name__}"
     text = f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -77,6 +77,8 @@ def members_by_series(
     parts, numbers = (poses, _series.first_heading(group, poses), head), (velocities, factors)
     limits = (elapsed, units), tolerance * _series.GUARD
     (path, angles, heads_after), counts = solve_members(f, numbers, parts, *limits, stop)
+    for rows in (path, angles, heads_after):  # the first time that is not reached may have numbers that overflowed
+        rows[np.arange(len(elapsed)) >= counts[:, None]] = np.nan
     path = group.normalize_pose(path)
     headings = turned_near(angles[..., 0], path) if group == _series.PLANE else None
     return States(heads_after[..., :k] * units[:, None, None], path, headings), counts

@@ -117,6 +117,7 @@ def _pair(X: Array, matrices: np.ndarray) -> Array:
 
 
 _WIDE = 1000  # from this size on it is asked whether a matrix fits into memory
+_LEFT = 1e-9  # residual of a pose, that of starts of moderate size
 
 
 class AbstractMatrixGroup(Keeper, abc.ABC):
@@ -137,6 +138,8 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
     """Whether the group moves the points of a body, SO(n) or SE(n)."""
     curvature: float | None = None
     """Of the surface whose motions it has: 1 of the sphere, SO(3); 0 of the plane, SE(2); None of other groups."""
+    has_drift: bool = False
+    """Whether poses that grow leave the group by rounding, and its `residual` is relative to their size."""
     form: np.ndarray | None = None
     """G of a quadratic group, whose inverse is G^-1 W^T G; None for SO(n), where it is the identity, and all others."""
 
@@ -172,6 +175,12 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
     @abc.abstractmethod
     def residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
         """Return the distance of matrices from the group: zero on it, up to rounding."""
+
+    def sound(self, g: Float[Array, "... K N N"]) -> Int[Array, "..."]:
+        """Return how many of the first poses of a motion precede one that has left the group by rounding."""
+        with np.errstate(invalid="ignore"):  # a member of an ensemble has NaN after its end
+            is_on = self.residual(g) <= _LEFT
+        return np.logical_and.accumulate(is_on, axis=-1).sum(axis=-1)
 
     @abc.abstractmethod
     def angle(self, x: Float[Array, "... dim"]) -> Float[Array, "..."]:

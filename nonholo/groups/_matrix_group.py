@@ -91,6 +91,11 @@ class MatrixGroup(AbstractMatrixGroup):
     def _content(self) -> tuple:
         return self.basis.shape, self.basis.tobytes(), None if self.form is None else self.form.tobytes()
 
+    @property
+    def has_drift(self) -> bool:  # type: ignore[override]
+        """Whether poses that grow leave the group by rounding, which is known where there is a form."""
+        return self.form is not None
+
     @functools.cached_property
     def has_cayley(self) -> bool:
         """Whether the Cayley map stays in the group: with a form, or by trying random elements of the algebra."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from nonholo.base.checks import assign, error, shown
 from nonholo.base.numerics import block_diagonal
-from nonholo.base.types import Array, Float
+from nonholo.base.types import Array, Float, Int
 from nonholo.groups._base import AbstractMatrixGroup
 
 
@@ -83,6 +83,16 @@ class ProductGroup(AbstractMatrixGroup):
         outside = xp.max(abs(g - block_diagonal(blocks)), axis=(-2, -1))
         inside = [factor.residual(block) for factor, block in zip(self.factors, blocks, strict=True)]
         return functools.reduce(xp.maximum, inside, outside)
+
+    @property
+    def has_drift(self) -> bool:  # type: ignore[override]
+        """Whether poses of a factor that grow leave it by rounding."""
+        return any(factor.has_drift for factor in self.factors)
+
+    def sound(self, g: Float[Array, "... K N N"]) -> Int[Array, "..."]:
+        """Return how many of the first poses precede one of which a part has left its factor."""
+        pairs = zip(self.factors, self._blocks(g), strict=True)
+        return np.minimum.reduce([factor.sound(block) for factor, block in pairs if factor.has_drift])
 
     def angle(self, x: Float[Array, "... dim"]) -> Float[Array, "..."]:
         """Return the largest angle of a factor."""

@@ -247,6 +247,10 @@ class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
         arrays = h * number, configurations(system, q), displacement, v, momentum, impulses, energy, residual
         return orbits.ORBITS[system.orbits](*arrays, outcome, system, float(h), every, step=number)
 
+    def matrices(self, rows: Rows) -> Float[np.ndarray, "K N N"]:
+        """Return the poses."""
+        return configurations(self.motion.system, self._places(rows[0]))
+
     def _places(self, rows: np.ndarray) -> np.ndarray:
         """Return places from flat ones."""
         return rows.reshape(-1, *self.motion.system.place_shape)

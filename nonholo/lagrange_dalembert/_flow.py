@@ -216,7 +216,7 @@ def solve(system: Any, first: State, time: Float[np.ndarray, "K"], rtol: float |
     rows, solution = motion or room("_integration").flow(system, first, time, errors)
     count = len(rows[0])
     outcome = Outcome.successful if count == len(time) else Outcome.not_converged
-    return _successful(_orbit(system, time[:count], rows, outcome, solution), time, errors)
+    return _successful(_orbit(system, time[:count], rows, outcome, solution).on_group(), time, errors)
 
 
 def _successful(orbit: Any, time: np.ndarray, errors: tuple[float, float]) -> Any:

@@ -7,6 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from nonholo.base.results import as_table
 from nonholo.base.traced import NodeState, implicit, marked_rows, rows_of, run_nodes, with_policy
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
@@ -35,6 +36,7 @@ class CoordinateRollout(NamedTuple):
     energy: Float[Array, "K"]
     controls: Float[Array, "K n"]
     outcome: Array
+    __repr__ = as_table
 
 
 class _Node(NamedTuple):

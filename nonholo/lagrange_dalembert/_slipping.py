@@ -22,7 +22,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo.base.results import OUTCOMES, Outcome
-from nonholo.base.types import Array, Bool
+from nonholo.base.types import Array, Bool, Float
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._discretization import CoordinateStepper
 from nonholo.lagrange_dalembert._flow import bordered_solution
@@ -200,6 +200,10 @@ class SlipStepper(AbstractStepper[Any]):
 
     def _parts(self, state: np.ndarray) -> list[np.ndarray]:
         return np.split(state, np.cumsum([*self.columns.values(), len(self.rows), len(self.slips)]))
+
+    def matrices(self, rows: Rows) -> Float[np.ndarray, "K N N"]:
+        """Return the poses."""
+        return self.whole.matrices(rows)
 
     def orbit(self, rows: Rows, step: int, every: int, outcome: Outcome) -> Any:
         """Return rows as an orbit."""

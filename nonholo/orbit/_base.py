@@ -117,10 +117,11 @@ class AbstractOrbit(Keeper, abc.ABC):
     def __post_init__(self) -> None:
         """Number the rows of a whole run; let no orbit be successful with a number that is not finite.
 
-        Nor with a momentum whose square overflows.
+        Nor with a momentum whose square overflows, or a pose that has left its group.
         """
         good = self.outcome == Outcome.successful
-        if good and not are_moderate((getattr(self, name), most) for name, most in _bounds(type(self))):
+        columns = ((getattr(self, name), most) for name, most in _bounds(type(self)))
+        if good and not (are_moderate(columns) and (self.is_measured or self.states_on_group == len(self))):
             assign(self, outcome=Outcome.nonfinite)
         if self.step is None or len(self.step) != len(self.time):
             assign(self, step=np.arange(0, self.save_every * len(self.time), self.save_every))
@@ -145,6 +146,21 @@ class AbstractOrbit(Keeper, abc.ABC):
                 number = np.arange(own["steps"].start, own["steps"].stop, own["steps"].step)
                 own[key] = number if name == "step" else self.motion.time_step * number
             return own[key]
+
+    @property
+    def states_on_group(self) -> int:
+        """How many of the first states precede one whose pose has left its group by rounding."""
+        group = self.group
+        if group is None or not (group.has_drift and self.has_poses):
+            return len(self)
+        return int(group.sound(self.configuration))
+
+    def on_group(self: SelfT) -> SelfT:
+        """Return the states before the first whose pose has left its group, by which the motion then has ended."""
+        count = max(1, self.states_on_group)
+        if count >= len(self):
+            return self
+        return dataclasses.replace(cast(Any, self.chosen(slice(0, count))), outcome=Outcome.nonfinite)
 
     def _mark_impacts(self) -> None:
         """Mark what steps with impacts do not have."""

@@ -119,10 +119,19 @@ class AbstractStepper(abc.ABC, Generic[OrbitT]):
         cut into calls.
         """
 
-    def sound(self, rows: Rows, count: int) -> int:
-        """Return how many of the first rows, as `advance` writes them, precede one whose pose has left its group."""
-        del rows
-        return count
+    @functools.cached_property
+    def has_drift(self) -> bool:
+        """Whether poses of its rows leave their group by rounding as they grow."""
+        group = getattr(self.motion.system, "group", None)
+        return group is not None and group.has_drift and self.has_poses
+
+    @abc.abstractmethod
+    def matrices(self, rows: Rows) -> Float[np.ndarray, "K N N"]:
+        """Return the poses of rows, as `advance` writes them, on a group."""
+
+    def sound(self, rows: Rows) -> int:
+        """Return how many of the first rows precede one whose pose has left its group by rounding."""
+        return int(self.motion.system.group.sound(self.matrices(rows)))
 
     def settle(self, rows: Rows) -> Outcome:
         """Bring rows to the numbers of an orbit, in place, as far as they fit; return what is known of them then."""

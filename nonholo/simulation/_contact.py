@@ -206,18 +206,19 @@ def flow_through_impacts(first: Any, time: np.ndarray, flights: Flights, events:
         until = min(begin + span, end)
         elapsed = np.append(time[(time > begin) & (time < until)], until) - begin
         looks, flown, fault = flights.fly(there, elapsed)
+        looks = looks.on_group()
         there, watch, outcome = _pass_impact(flights, watch, looks)
         if len(watch.impacts) > before:
             span, since = _SPAN * float(there.time[0] - since), float(watch.impacts[-1].time[0])
         elif there.time[0] == looks.time[-1]:
-            outcome, message, span = max(outcome, flown), fault, 2 * span
+            outcome, message, span = max(outcome, flown, looks.outcome), fault, 2 * span
     return _whole(first, time, flights, watch, float(there.time[0]), outcome), message
 
 
 def _pass_impact(flights: Flights, watch: Watch, looks: Orbit) -> tuple[Orbit, Watch, Outcome]:
     """Return the state after the first step between two looks with an impact, or the last one; what is known there."""
     there, at, share = looks.chosen(slice(0, 1)), 0, 0.0
-    if not watch.is_at_wall:
+    if len(looks) == 1 or not watch.is_at_wall:
         watch, last = search(dataclasses.replace(watch, part=between_times(looks, 1.0)), looks)
         if watch.reset_by is None:
             return looks.chosen(slice(last - 1, last)), watch, Outcome.successful

@@ -127,12 +127,12 @@ r"""The event of a sleigh whose velocity $v_1$ along the blade changes sign: its
 def flow_in_coordinates(solve: Callable[[], Any], by_name: dict[str, Event]) -> Any:
     """Solve the equations of a system in coordinates; return the orbit with what was found."""
     try:
-        orbit, failure = solve(), None
+        orbit, where = solve(), ""
     except OutcomeError as early:
-        orbit, failure = cast(AbstractOrbit, early.orbit), early
+        orbit, where = cast(AbstractOrbit, early.orbit), early.where
     result = flow_with_events(by_name, orbit, cast(Any, orbit).solution.looks())
-    if failure is not None and result.events.stopped_by is None:
-        raise OutcomeError(failure.outcome, failure.where, result)
+    if result.outcome != Outcome.successful:
+        raise OutcomeError(result.outcome, where or f"Flow after time {result.time[-1]:g}", result)
     return result
 
 
@@ -148,9 +148,9 @@ def flow_with_events(events: dict[str, Event], orbit: Any, steps: Float[np.ndarr
     outputs = forward * orbit.time
     inside = steps[(forward * steps > outputs[0]) & (forward * steps < outputs[-1])]
     times = np.unique(np.concatenate([outputs, forward * inside]))
-    looks = orbit.at(forward * times) if len(inside) else orbit
+    looks = orbit.at(forward * times).on_group() if len(inside) else orbit
     watch, last = search(Watch(events, between_times(looks, forward)), looks)
-    outcome, log = Outcome.successful if watch.stopped_by else orbit.outcome, watch.log()
+    outcome, log = Outcome.successful if watch.stopped_by else looks.outcome, watch.log()
     count = int(np.searchsorted(outputs, forward * looks.time[last - 1], "right"))
     parts = tuple(of_requested(part, outputs, forward) for part in log.found)
     events_there = EventLog(log.names, parts, log.stopped_by)

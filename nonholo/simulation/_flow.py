@@ -215,7 +215,7 @@ def _solve_flow(task: _Task, solver: Solver, first: FirstState, events: dict[str
     outcome = solution.outcome or (Outcome.successful if is_finite else Outcome.nonfinite)
     motion = ContinuousFlow(task.system, (time[0], time[count - 1]), solution.at)
     rows = {"reduced_momentum": states.momenta, "cayley": None, "canonical_pose": states.poses, "turned": states.turned}
-    orbit = Orbit.of_run(range(count), motion=motion, time=time[:count], **rows, outcome=outcome)
+    orbit = Orbit.of_run(range(count), motion=motion, time=time[:count], **rows, outcome=outcome).on_group()
     if events is not None:
         orbit = flow_with_events(events, orbit, time[0] + solution.steps())
     return _successful(task, orbit, solution.fault)

@@ -141,8 +141,8 @@ class _Table:
     def room(self, step: int, pace: int) -> tuple[int, int, Rows]:
         """Return how many steps to take from a step, after how many of them a row is written, and where.
 
-        Whole rows are written in place. A part of a row is written beside them, and so are the single steps that are
-        searched for events.
+        Whole rows are written in place. A part of a row is written beside them, and so are single steps, each of which
+        is looked at: for events, and on a group that poses leave by rounding.
         """
         past = (step - self.begin) % self.every
         most = min(max(step - self.fresh, self.least) if self.fine else pace, self.stop - step)
@@ -197,7 +197,7 @@ def blocks(
 
 def compute_block(stepper: Stepper, plan: Plan, number: int, start: Reached, report: Report) -> tuple[Any, Reached]:
     """Take the steps of a block: the only loop over steps."""
-    table, watch = _Table(stepper, plan, number, fine=start.watch is not None), start.watch
+    table, watch = _Table(stepper, plan, number, fine=start.watch is not None or stepper.has_drift), start.watch
     state, step, code, pace = start.state, table.begin, 0, stepper.pace
     if watch is not None:  # a block without steps has a log too
         watch, _ = search(dataclasses.replace(watch, parts=()), orbit_at(stepper, state, step))
@@ -254,14 +254,14 @@ def _through(stepper: Stepper, watch: Watch, state: State, place: tuple[int, int
 def _advance(stepper: Stepper, state: State, steps: int, each: int, room: Rows) -> tuple[State, int, int]:
     """Return the state after the last good step, how many steps were good, and the outcome.
 
-    No good step leads to a row whose pose has left its group.
+    No good step leads to a row whose pose has left its group. Where poses may, each step has a row.
     """
     after = state.copy()
     good, code = stepper.advance(after, steps, each, room)
-    last = stepper.sound(room, 1 + good // each) - 1
-    has_left = last < good // each
+    last = max(1, stepper.sound(part_of(room, 0, 1 + good))) - 1 if stepper.has_drift else good
+    has_left = last < good
     if has_left:
-        good, code = max(last, 0) * each, Outcome.nonfinite
+        good, code = last, Outcome.nonfinite
     if good % each or has_left:  # no row stands there
         after = state.copy()
         if good:

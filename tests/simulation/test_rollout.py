@@ -340,3 +340,17 @@ def test_flows_are_differentiated_by_diffrax(reverse: bool) -> None:
     slope = np.tensordot(by_tensor, along_tensor, 2) + by_velocity @ along_velocity
     difference = (8 * (flowed(1e-3) - flowed(-1e-3)) - flowed(2e-3) + flowed(-2e-3)) / 12e-3
     np.testing.assert_allclose(slope, difference, rtol=0, atol=1e-8)
+
+
+def test_rollouts_print_as_tables() -> None:
+    """On a group and in coordinates, alone and of many, a line for each field has a few numbers or a shape."""
+    sleigh = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.5), 0.1)
+    point = nh.discretize(nh.LagrangeDAlembert(lambda q, v: (v @ v - q @ q) / 2, None, dimension=1), 0.1)
+    alone = nh.rollout(point, configuration=[1.0], body_velocity=[0.0], steps=50)
+    with jax.enable_x64(True):
+        many = jax.vmap(lambda v: nh.rollout(sleigh, restricted_velocity=v, steps=50))(jnp.eye(2))
+    for orbit, shape, outcome in ((alone, "(51, 1)", "0"), (many, "(2, 51, 3, 3)", "[0 0]")):
+        name, *lines = repr(orbit).split("\n")
+        assert (name, len(lines)) == (type(orbit).__name__, len(orbit))
+        assert f"configuration: shape {shape}" in repr(orbit)
+        assert lines[-1].strip() == f"outcome: {outcome}"

@@ -14,7 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from nonholo import kernels
-from nonholo.base.results import Outcome
+from nonholo.base.results import Outcome, as_table
 from nonholo.base.traced import NodeState, marked_rows, rows_of, run_nodes, with_policy
 from nonholo.base.types import Array, Float
 from nonholo.discrete._scheme import Scheme, weights
@@ -52,6 +52,7 @@ class Rollout(NamedTuple):
     energy: Float[Array, "K"]
     controls: Float[Array, "K dim"]
     outcome: Array
+    __repr__ = as_table
 
 
 class _Node(NamedTuple):

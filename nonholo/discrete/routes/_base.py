@@ -20,7 +20,6 @@ from nonholo.systems import System
 
 Part = Callable[[np.ndarray, np.ndarray, float, int, float], "Compact | None"]
 """From momenta, pose, time, step and a fraction of it to what is reached; None where there is no such step."""
-_LEFT = 1e-9  # relative residual of a pose, that of starts of moderate size
 Compact = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Canonical momenta and charts, and compact canonical poses, of which each is empty where there are none."""
 
@@ -55,13 +54,9 @@ class AbstractBodyStepper(AbstractStepper[Orbit]):
         """Return poses as compact canonical ones, which they are by default."""
         return poses
 
-    def sound(self, rows: Rows, count: int) -> int:
-        """Return how many of the first rows precede one whose pose has left a group of a form, by rounding."""
-        group = self.motion.system.group
-        if group.form is None or not rows[2].size:
-            return count
-        has_left = ~(group.residual(group.matrix_from_pose(self.decode_poses(rows[2][:count]))) <= _LEFT)
-        return int(has_left.argmax()) if has_left.any() else count
+    def matrices(self, rows: Rows) -> Float[np.ndarray, "K N N"]:
+        """Return poses as matrices."""
+        return self.motion.system.group.matrix_from_pose(self.decode_poses(rows[2]))
 
     def settle(self, rows: Rows) -> Outcome:
         """Bring momenta and charts to canonical ones, in place; return whether all that is saved is finite."""

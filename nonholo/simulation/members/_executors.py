@@ -287,7 +287,7 @@ def run_by_series(members: Members, starts: Firsts, plan: Plan, threads: int, re
 
     numbers = sum(x.shape[1] for x in starts.places) * len(time)
     size = max(1, min(_FLOWS, _NUMBERS // numbers, max(_BESIDE, -(-count // 8))))
-    free = members.discrete.system.forces is None
+    group, free = members.discrete.system.group, members.discrete.system.forces is None
     is_short = free and count <= _FLOWS and count * numbers <= _SOON
     if is_short and count * _motion_bound(members, starts, time) <= _SOON_TURNED:
         size, threads = count, 0
@@ -300,6 +300,11 @@ def run_by_series(members: Members, starts: Firsts, plan: Plan, threads: int, re
     good = np.concatenate(counts)
     early = Outcome.not_converged if free else Outcome.too_stiff
     codes = np.where(good == len(time), int(Outcome.successful), int(early))
+    if group.has_drift:
+        sound = np.maximum(1, group.sound(group.matrix_from_pose(columns["canonical_pose"])))
+        codes[sound < good], good = int(Outcome.nonfinite), np.minimum(sound, good)
+        for column in columns.values():
+            column[np.arange(len(time)) >= good[:, None]] = np.nan
     return Ensemble(members, plan.steps, plan.every, columns | _times(plan, count), codes, good - 1, *starts.places)
 
 
