@@ -49,8 +49,8 @@ class Problem:
         """Return by kind the residuals and both derivatives, computed once for each point."""
         if self.last is None or not np.array_equal(self.last[0], point):
             starts = point[self.count :].reshape(self.shape)
-            given = {kind: self.kinds[kind] for kind in self.there}
-            self.last = point.copy(), self.residuals(point[: self.count], starts, self.poses, given)
+            rows = {kind: self.kinds[kind] for kind in self.there}
+            self.last = point.copy(), self.residuals(point[: self.count], starts, self.poses, rows)
         return self.last[1]
 
     def rows(self, point: np.ndarray) -> np.ndarray:
