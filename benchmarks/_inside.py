@@ -31,7 +31,7 @@ HOMES = {
     "in_one_thread": "nonholo.simulation",
     "kernels": "nonholo",
     "loop_in_jax": "nonholo.lagrange_dalembert._discretization:_advance",
-    "in_double_precision": "nonholo.lagrange_dalembert._functions:in_double",
+    "in_double_precision": "nonholo.lagrange_dalembert.functions:in_double",
     "locate": "nonholo.discrete.certificate._certificate",
     "Located": "nonholo.discrete.certificate._certificate",
     "problem_of": "nonholo.discrete.certificate._roots",

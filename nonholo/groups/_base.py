@@ -176,7 +176,7 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
     def residual(self, g: Float[Array, "... N N"]) -> Float[Array, "..."]:
         """Return the distance of matrices from the group: zero on it, up to rounding."""
 
-    def sound(self, g: Float[Array, "... K N N"]) -> Int[Array, "..."]:
+    def leading_elements(self, g: Float[Array, "... K N N"]) -> Int[Array, "..."]:
         """Return how many of the first poses of a motion precede one that has left the group by rounding."""
         with np.errstate(invalid="ignore"):  # a member of an ensemble has NaN after its end
             is_on = self.residual(g) <= _LEFT

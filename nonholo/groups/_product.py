@@ -89,10 +89,11 @@ class ProductGroup(AbstractMatrixGroup):
         """Whether poses of a factor that grow leave it by rounding."""
         return any(factor.has_drift for factor in self.factors)
 
-    def sound(self, g: Float[Array, "... K N N"]) -> Int[Array, "..."]:
+    def leading_elements(self, g: Float[Array, "... K N N"]) -> Int[Array, "..."]:
         """Return how many of the first poses precede one of which a part has left its factor."""
         pairs = zip(self.factors, self._blocks(g), strict=True)
-        return np.minimum.reduce([factor.sound(block) for factor, block in pairs if factor.has_drift])
+        counts = [factor.leading_elements(block) for factor, block in pairs if factor.has_drift]
+        return np.minimum.reduce(counts, initial=g.shape[-3])
 
     def angle(self, x: Float[Array, "... dim"]) -> Float[Array, "..."]:
         """Return the largest angle of a factor."""

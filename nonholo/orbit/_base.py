@@ -153,7 +153,7 @@ class AbstractOrbit(Keeper, abc.ABC):
         group = self.group
         if group is None or not (group.has_drift and self.has_poses):
             return len(self)
-        return int(group.sound(self.configuration))
+        return int(group.leading_elements(self.configuration))
 
     def on_group(self: SelfT) -> SelfT:
         """Return the states before the first whose pose has left its group, by which the motion then has ended."""

@@ -129,9 +129,9 @@ class AbstractStepper(abc.ABC, Generic[OrbitT]):
     def matrices(self, rows: Rows) -> Float[np.ndarray, "K N N"]:
         """Return the poses of rows, as `advance` writes them, on a group."""
 
-    def sound(self, rows: Rows) -> int:
+    def states_on_group(self, rows: Rows) -> int:
         """Return how many of the first rows precede one whose pose has left its group by rounding."""
-        return int(self.motion.system.group.sound(self.matrices(rows)))
+        return int(self.motion.system.group.leading_elements(self.matrices(rows)))
 
     def settle(self, rows: Rows) -> Outcome:
         """Bring rows to the numbers of an orbit, in place, as far as they fit; return what is known of them then."""

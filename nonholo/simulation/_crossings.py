@@ -157,11 +157,11 @@ def flow_with_events(events: dict[str, Event], orbit: Any, steps: Float[np.ndarr
     return dataclasses.replace(orbit.chosen(slice(0, count)), outcome=outcome, events=events_there)
 
 
-def between_times(looks: Orbit, forward: float) -> Part:
+def between_times(looks: AbstractOrbit, forward: float) -> Part:
     """Return the function of states and fractions that gives those on a part of the way to the next."""
     times, spans = forward * looks.time, np.diff(looks.time)
 
-    def between(states: Orbit, fractions: Float[np.ndarray, "K"]) -> Orbit:
+    def between(states: Any, fractions: Float[np.ndarray, "K"]) -> Any:
         if not len(states):
             return states
         begin = np.searchsorted(times, forward * states.time)

@@ -258,7 +258,7 @@ def _advance(stepper: Stepper, state: State, steps: int, each: int, room: Rows) 
     """
     after = state.copy()
     good, code = stepper.advance(after, steps, each, room)
-    last = max(1, stepper.sound(part_of(room, 0, 1 + good))) - 1 if stepper.has_drift else good
+    last = max(1, stepper.states_on_group(part_of(room, 0, 1 + good))) - 1 if stepper.has_drift else good
     has_left = last < good
     if has_left:
         good, code = last, Outcome.nonfinite

@@ -51,5 +51,6 @@ def _methods(name: str, group: nh.groups.AbstractMatrixGroup) -> list[Call]:
         call(f"{name}.normalize_pose", group.normalize_pose, pose=pose),
         call(f"{name}.pose_product", group.pose_product, pose=pose, other=pose),
         call(f"{name}.pose_rate", group.pose_rate, pose=pose, x=x),
+        call(f"{name}.leading_elements", group.leading_elements, g=array(g.value[None], "batch")),
         call(f"{name}.random", group.random, rng=anything(np.random.default_rng(0))),
     ]

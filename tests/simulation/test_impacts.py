@@ -352,7 +352,8 @@ def test_multipliers_of_cut_steps_are_unknown() -> None:
 def test_starts_at_a_wall(side: float) -> None:
     """With a direction a body that starts at a wall is before it: the motion toward it is reflected at once."""
     for speed, direction in itertools.product((1.0, -1.0), (-1, 0)):
-        start: dict[str, Any] = {"body_velocity": (0.1, speed, 0.0), "configuration": nh.SE(2).exp([0.0, side, 0.0])}
+        place = nh.SE(2).exp(np.array([0.0, side, 0.0]))
+        start: dict[str, Any] = {"body_velocity": (0.1, speed, 0.0), "configuration": place}
         east = wall("east", (side, 0.0), direction=direction)
         orbit = nh.simulate(nh.discretize(SLEIGH, 0.05), steps=40, events=[east], **start)
         flow = nh.flow(SLEIGH, times=np.linspace(0, 2, 11), events=[east], **start)

@@ -48,7 +48,7 @@ FLOWS = ["form", "product", "functions"]
 
 def start_of(system: Any, place: float = 0.0, speed: float = 0.0) -> dict[str, Any]:
     """Return a start far out that comes in, its pose already off the group by what is no error there."""
-    boost, is_wide = BOOSTS.exp([FAR]) * (1 + MISS), system.group.size > 2
+    boost, is_wide = BOOSTS.exp(np.array([FAR])) * (1 + MISS), system.group.size > 2
     pose = np.eye(system.group.size)
     pose[:2, :2] = boost
     if is_wide:
@@ -182,5 +182,5 @@ def test_which_groups_are_left() -> None:
         assert not nh.ProductGroup(group, group).has_drift
     poses = np.tile(np.eye(4), (2, 5, 1, 1))
     poses[1, 3:, 2:, 2:] *= 1 + 1e-8
-    assert nh.ProductGroup(shear, BOOSTS).sound(poses).tolist() == [5, 3]
-    assert nh.ProductGroup(BOOSTS, shear).sound(poses).tolist() == [5, 5]
+    assert nh.ProductGroup(shear, BOOSTS).leading_elements(poses).tolist() == [5, 3]
+    assert nh.ProductGroup(BOOSTS, shear).leading_elements(poses).tolist() == [5, 5]

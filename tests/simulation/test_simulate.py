@@ -191,7 +191,7 @@ def test_an_index_of_an_orbit_is_refused() -> None:
         nh.simulate(SLEIGH, body_velocity=(1, 0, 0), steps=3)[0]
 
 
-def test_numbers_and_truth_values_of_numpy_are_taken() -> None:
+def test_numbers_and_truth_values_of_numpy_are_not_refused() -> None:
     """Integers and truth values of NumPy are those of Python: an order, a direction, a choice of poses."""
     sleigh = nh.ChaplyginSleigh(1.0, 1.0, 0.5)
     plain, other = (nh.discretize(sleigh, 0.1, order=order) for order in (4, np.int64(4)))

@@ -230,7 +230,7 @@ def branches_of(
 
 def momentum_sizes(
     discrete: Discretization, frame: AnyFrame, momentum: Inexact[Array, "... dim"]
-) -> Float[np.ndarray, "..."]:
+) -> Float[Array, "..."]:
     """Return the norms of full momenta in the body's unit of length, in which those of turns and slides compare."""
     basis = discrete.system.group.hat(np.eye(discrete.system.group.dim))
     sizes = np.linalg.norm(basis * frame.stretch, axis=(1, 2)) / np.linalg.norm(basis, axis=(1, 2))

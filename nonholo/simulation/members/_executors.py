@@ -301,7 +301,7 @@ def run_by_series(members: Members, starts: Firsts, plan: Plan, threads: int, re
     early = Outcome.not_converged if free else Outcome.too_stiff
     codes = np.where(good == len(time), int(Outcome.successful), int(early))
     if group.has_drift:
-        sound = np.maximum(1, group.sound(group.matrix_from_pose(columns["canonical_pose"])))
+        sound = np.maximum(1, group.leading_elements(group.matrix_from_pose(columns["canonical_pose"])))
         codes[sound < good], good = int(Outcome.nonfinite), np.minimum(sound, good)
         for column in columns.values():
             column[np.arange(len(time)) >= good[:, None]] = np.nan
