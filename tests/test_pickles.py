@@ -30,7 +30,7 @@ WITH_A_FUNCTION = {  # of the user's, which the examples define where they stand
     "Impact": "wall",
     "LagrangeDAlembert": "discrete orbit particle pendulum swing",
     "LagrangeDAlembert.regularity": "free",
-    "LagrangeDAlembert.with_parameters": "heavy orbit spring",
+    "AbstractParametricSystem.with_parameters": "heavy orbit spring",
     "ShapedBody": "body",
     "equilibria": "pendulum",
     "linearize": "pendulum",
@@ -128,7 +128,7 @@ def test_what_calls_a_function_of_a_script_names_it() -> None:
 
 
 def examples() -> Iterator[doctest.DocTest]:
-    """Yield the examples of every public name, its methods too."""
+    """Yield the examples of every public name, its methods too, also those of a class below it."""
     finder, names = doctest.DocTestFinder(), {name: getattr(nh, name) for name in dir(nh)}
     rooms = {name: thing for name, thing in names.items() if inspect.ismodule(thing)}
     public = {f"{room}.{name}": getattr(rooms[room], name) for room in rooms for name in rooms[room].__all__}
@@ -136,11 +136,14 @@ def examples() -> Iterator[doctest.DocTest]:
     for name, thing in (names | public).items():
         if not inspect.isclass(thing) and not inspect.isfunction(thing):
             continue
-        module = inspect.getmodule(thing)
-        for test in finder.find(thing, name, globs={**vars(module), **names, "np": np, "nh": nh}):
-            if test.examples and test.docstring not in met:
-                met.add(test.docstring)
-                yield test
+        classes = inspect.getmro(thing)[1:] if inspect.isclass(thing) else ()
+        owners = {name: thing} | {each.__name__: each for each in classes if each.__module__.startswith("nonholo")}
+        for own, each in owners.items():
+            module = inspect.getmodule(each)
+            for test in finder.find(each, own, globs={**vars(module), **names, "np": np, "nh": nh}):
+                if test.examples and test.docstring not in met:
+                    met.add(test.docstring)
+                    yield test
 
 
 def results(test: doctest.DocTest, request: pytest.FixtureRequest) -> dict[str, Any]:

@@ -9,9 +9,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from formulas import forget
 
 import nonholo as nh
-from nonholo.lagrange_dalembert.compiled import _flow, _machine, _run
+from nonholo.lagrange_dalembert.compiled import _machine
 
 START = {"configuration": (0.1, 0.0, 0.3), "body_velocity": (1.0, 0.5, 0.0)}
 
@@ -19,14 +20,9 @@ START = {"configuration": (0.1, 0.0, 0.3), "body_velocity": (1.0, 0.5, 0.0)}
 @pytest.fixture(name="folder", autouse=True)
 def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    _forget()
+    forget()
     yield tmp_path / "nonholo" / "formulas"
-    _forget()
-
-
-def _forget() -> None:
-    for each in (_run.programs, _run.values, _flow.formulation, _machine._digest):
-        each.cache_clear()
+    forget()
 
 
 def _particle(slope: Any = 1.0, potential: Any = None) -> nh.LagrangeDAlembert:
@@ -53,13 +49,13 @@ def test_a_second_process_translates_nothing(folder: Path, monkeypatch: pytest.M
     first = _motions(_particle())
     files = sorted(folder.iterdir())
     assert len(files) >= 5
-    _forget()
+    forget()
     with monkeypatch.context() as patch:
         patch.setattr(_machine, "object_of", lambda *_, **__: pytest.fail("compiled again"))
         assert all(map(np.array_equal, _motions(_particle()), first))
     for file, damage in zip(files, (b"", b"{}\n", b"[1]\n\xff", files[0].read_bytes()[:-1]), strict=False):
         file.write_bytes(damage)
-    _forget()
+    forget()
     assert all(map(np.array_equal, _motions(_particle()), first))
     assert sorted(folder.iterdir()) == files
 
@@ -88,7 +84,7 @@ def test_numbers_within_functions_count(folder: Path) -> None:
     one, other = _motions(_particle(1.0)), _motions(_particle(2.0))
     assert not np.array_equal(one[0], other[0])
     count = len(list(folder.iterdir()))
-    _forget()
+    forget()
     assert all(map(np.array_equal, _motions(_particle(2.0)), other))
     assert len(list(folder.iterdir())) == count
 
@@ -108,7 +104,7 @@ def test_derivatives_of_users_are_not_kept(folder: Path, potential: Any) -> None
     """What the value of a function does not show leaves no file."""
     assert not np.array_equal(_motions(_particle(potential=potential))[0], _motions(_particle())[0])
     files = len(list(folder.iterdir()))
-    _forget()
+    forget()
     _motions(_particle(potential=potential))
     assert len(list(folder.iterdir())) == files
 
@@ -124,7 +120,7 @@ def test_parameters_share_a_file_and_old_files_go(folder: Path, monkeypatch: pyt
         orbit = nh.simulate(nh.discretize(system, 0.1), configuration=[0], body_velocity=[1], steps=3)
         assert orbit.momentum[0, 0] == mass
         count = len(list(folder.iterdir()))
-        _forget()
+        forget()
         if mass == 1.0:
             before = count
     assert count == before
@@ -139,6 +135,6 @@ def test_without_a_home_nothing_is_kept(monkeypatch: pytest.MonkeyPatch, tmp_pat
     file.write_text("")
     for home in (str(file), "relative"):
         monkeypatch.setenv("XDG_CACHE_HOME", home)
-        _forget()
+        forget()
         assert len(_motions(_particle())) == 5
     assert not (Path.cwd() / "relative").exists()

@@ -1,11 +1,13 @@
 """Every kind of group, system and discretization of the library passes the checks that users run on their own."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
 import pytest
 from bodies import GENERAL
+from formulas import forget
 from groups.examples import GROUPS, HEISENBERG, RIGID, SL2, SL3, WHEELED
 from problems import PROBLEMS
 from refusals import refusals
@@ -13,6 +15,7 @@ from refusals import refusals
 import nonholo as nh
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert import _equations, _flow, _places
+from nonholo.lagrange_dalembert.compiled import _machine
 from nonholo.systems import AbstractSystem
 from nonholo.testing import check_discretization, check_group, check_order, check_system
 
@@ -236,7 +239,17 @@ def test_systems_on_groups_by_functions_pass(potential: Any) -> None:
     assert {report[name].status for name in names} == {"ok"}
 
 
+@pytest.fixture(name="changed_equations")
+def _changed_equations(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """What is compiled from wrong equations is remembered neither on disk nor in the process."""
+    monkeypatch.setattr(_machine, "_file", lambda *_: None)
+    forget()
+    yield
+    forget()
+
+
 @HERE
+@pytest.mark.usefixtures("changed_equations")
 def test_errors_on_groups(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without the term ad* the equations fail; a crooked rule for the constraint is of order one."""
     action = nh.mass_tensor_lagrangian(nh.SE(2), nh.ChaplyginSleigh(1.3, 0.5, a=0.3).homogeneous_mass_tensor)
@@ -249,6 +262,7 @@ def test_errors_on_groups(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @HERE
+@pytest.mark.usefixtures("changed_equations")
 @pytest.mark.parametrize(
     ("home", "name", "expected"),
     [
@@ -261,7 +275,7 @@ def test_errors_in_equations(monkeypatch: pytest.MonkeyPatch, home: Any, name: s
     """Forces, an energy and a power that are a tenth too large fail the checks of their own."""
     original = getattr(home, name)
     monkeypatch.setattr(home, name, lambda *given: 1.1 * original(*given))
-    body = nh.Forced(nh.LagrangeDAlembert(lambda q, v: _ball(q, v), None, dimension=2), force=_pushed)
+    body = nh.Forced(nh.LagrangeDAlembert(_ball, None, dimension=2), force=_pushed)
     report = check_system(body, throw=False)
     assert {result.name for result in report.failed} == expected
 

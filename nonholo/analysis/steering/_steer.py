@@ -158,7 +158,7 @@ def steer(
     method = _method(discrete, method, extras)
     if not is_on_group:
         return _steered_in_coordinates(discrete, (start, goal), (bounds, state_bounds), way, steps)
-    subject = _in_jax(discrete, steps)
+    subject = _in_jax(discrete, steps, "jax" if method == "shooting" else "steer")
     ends, is_one = _arguments.checked_ends(discrete.system, start, goal, bool(way.via))
     _refuse_too_many(discrete, steps, method, min(len(ends[0]), BLOCK))
     way = way._replace(bounds=_arguments.bounds_of_body(state_bounds, discrete.system, ends))
@@ -186,9 +186,9 @@ def _method(discrete: Any, method: Any, extras: dict[str, Any]) -> str:
     return method or ("shooting" if all(each is None for each in extras.values()) else "ipopt")
 
 
-def _in_jax(discrete: Discretization, steps: int) -> Discretization:
+def _in_jax(discrete: Discretization, steps: int, extra: str) -> Discretization:
     """Return a discretization that JAX sees into, none with a constraint fixed in space or what `rollout` refuses."""
-    with needs("jax", "steer"):
+    with needs(extra, "steer"):
         from nonholo.simulation.traced import with_traced_potential
     refuse_fixed_in_space("steer(discrete=...)", discrete.system, "Steer it by `nh.rollout`.")
     refuse_wide("steer(discrete=...)", discrete.system)
