@@ -20,7 +20,7 @@ _over: contextvars.ContextVar[Callable[[], bool]] = contextvars.ContextVar("over
 _overs: dict[int, Callable[[], bool]] = {}
 _numbers = itertools.count()
 _announcements: set[Any] = set()
-_calls: set[Any] = set()
+_calls: set[int] = set()
 _LOOK = 0.2  # seconds between two looks at the keyboard, where a signal does not end the waiting
 
 
@@ -62,7 +62,7 @@ def is_over() -> bool:
 @contextlib.contextmanager
 def compiling(name: str, kind: Any, call: Any) -> Iterator[None]:
     """Report a wait on standard error, once for a kind of what is compiled; a call that has ended compiles nothing."""
-    if call in _calls:
+    if (number := hash(call)) in _calls:  # the call itself would keep every system that was compiled
         yield
         return
 
@@ -78,7 +78,7 @@ def compiling(name: str, kind: Any, call: Any) -> Iterator[None]:
         yield
     finally:
         timer.cancel()
-    _calls.add(call)
+    _calls.add(number)
 
 
 @contextlib.contextmanager

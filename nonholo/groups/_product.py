@@ -93,7 +93,7 @@ class ProductGroup(AbstractMatrixGroup):
         """Return how many of the first poses precede one of which a part has left its factor."""
         pairs = zip(self.factors, self._blocks(g), strict=True)
         counts = [factor.leading_elements(block) for factor, block in pairs if factor.has_drift]
-        return np.minimum.reduce(counts, initial=g.shape[-3])
+        return np.minimum.reduce([np.full(g.shape[:-3], g.shape[-3]), *counts])
 
     def angle(self, x: Float[Array, "... dim"]) -> Float[Array, "..."]:
         """Return the largest angle of a factor."""

@@ -250,5 +250,10 @@ def mass_matrix(system: LagrangeDAlembert, x: Array, v: Array) -> Array:
 
 def acceleration_matrix(system: LagrangeDAlembert, q: Array, v: Array) -> tuple[Array, Scaled]:
     """Return the scaled matrix of the continuous equations: the regularity matrix for h -> 0."""
-    kinetic, A = mass_matrix(system, q, v), forms(system, q)
-    return bordered_matrix(kinetic, A, A, kinetic)
+    return matrix_of_mass(system, q, mass_matrix(system, q, v))
+
+
+def matrix_of_mass(system: LagrangeDAlembert, q: Array, mass: Array) -> tuple[Array, Scaled]:
+    """Return the same matrix of a mass matrix at a place."""
+    A = forms(system, q)
+    return bordered_matrix(mass, A, A, mass)

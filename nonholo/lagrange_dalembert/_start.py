@@ -206,8 +206,7 @@ def _kinetics(system: Any, q: Array, v: Array) -> tuple[Array, ...]:
         return p, (value, along_q, p)
 
     kinetic, values = jax.jacfwd(of_velocity, has_aux=True)(v)
-    A = equations.forms(system, q)
-    return *values, equations.bordered_matrix(kinetic, A, A, kinetic)[0]
+    return *values, equations.matrix_of_mass(system, q, kinetic)[0]
 
 
 def momentum(system: Any, q: np.ndarray, v: np.ndarray) -> np.ndarray:

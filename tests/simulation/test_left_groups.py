@@ -183,4 +183,5 @@ def test_which_groups_are_left() -> None:
     poses = np.tile(np.eye(4), (2, 5, 1, 1))
     poses[1, 3:, 2:, 2:] *= 1 + 1e-8
     assert nh.ProductGroup(shear, BOOSTS).leading_elements(poses).tolist() == [5, 3]
+    assert nh.ProductGroup(nh.SO(2), nh.SO(2)).leading_elements(np.ones((3, 4, 4, 4))).tolist() == [4, 4, 4]
     assert nh.ProductGroup(BOOSTS, shear).leading_elements(poses).tolist() == [5, 5]

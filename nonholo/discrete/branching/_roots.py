@@ -151,7 +151,7 @@ def place(root: Root) -> tuple:
     """Return what roots are sorted by: real ones first, by step angle."""
     x = root.point
     side = x.imag[np.argmax(np.abs(x.imag) > _BLURRED * np.linalg.norm(x))]  # of a pair
-    return not root.is_real, float(f"{np.linalg.norm(x[1:]):.8g}"), side
+    return not root.is_real, float(f"{np.linalg.norm(x[1:]):.8g}"), side  # lengths that rounding parts are one
 
 
 def polish(equations: Equations, starts: Inexact[Array, "B m"]) -> Inexact[Array, "C m"]:
