@@ -3,6 +3,7 @@
 Declarations for numba wait until numba is needed: a process that the library serves never loads it.
 """
 
+import contextlib
 import ctypes
 import functools
 import hashlib
@@ -272,7 +273,8 @@ class Library:
         self.path, self._code = path, ctypes.CDLL(str(path))
         self._release = self._code.nonholo_release
         self._release.restype, self._release.argtypes = None, (ctypes.c_void_p,)
-        self._variants = ("_wide", "") if _is_wide() else ("",)
+        flags = _flags_of_processor()
+        self._variants = [variant for variant, needs in _VARIANTS.items() if flags.issuperset(needs.split())]
 
     def entry(self, kernel: Kernel, key: str) -> Callable[[list[Any]], Any] | None:
         """Return what runs a kernel for arguments of a kind; None if the library does not have it."""
@@ -298,12 +300,16 @@ def symbol_of(name: str, key: str) -> str:
     return "nonholo_" + hashlib.sha256(f"{name} {key}".encode()).hexdigest()[:24]
 
 
-def _is_wide() -> bool:
-    """Return whether the processor has vectors of eight numbers."""
-    try:
-        return "avx512f" in Path("/proc/cpuinfo").read_text(encoding="utf-8")
-    except OSError:
-        return False
+_V3 = "abm avx2 bmi1 bmi2 f16c fma movbe"
+_VARIANTS = {"_v4": f"{_V3} avx512bw avx512cd avx512dq avx512f avx512vl", "_v3": _V3, "": ""}
+"""What a processor must have for a variant of a function, the best one first."""
+
+
+def _flags_of_processor() -> set[str]:
+    """Return what the processor can do, as Linux names it; nothing elsewhere."""
+    with contextlib.suppress(OSError):
+        return set(Path("/proc/cpuinfo").read_text(encoding="utf-8").split())
+    return set()
 
 
 @functools.cache

@@ -17,6 +17,7 @@ import itertools
 import multiprocessing
 import os
 import pkgutil
+import re
 import shutil
 import subprocess
 import sys
@@ -51,8 +52,12 @@ MACHINES: dict[str, tuple[str, tuple[str, ...]]] = {
     "windows-amd64": ("x86_64-pc-windows-gnu", ("-target", "x86_64-windows-gnu")),
 }
 """For each machine the target of LLVM, and the options of a linker that knows all targets, `ziglang`."""
-_PROCESSORS = {"linux-x86_64": {"": "x86-64", "_wide": "x86-64-v4"}, "windows-amd64": {"": "x86-64"}}
-_WIDE = "ensemble", "taylor"  # what is worth a second variant, for vectors of eight numbers
+_PROCESSORS = {
+    "linux-x86_64": {"": "x86-64", "_v3": "x86-64-v3", "_v4": "x86-64-v4"},
+    "windows-amd64": {"": "x86-64"},
+}
+_WORTH = {"": "", "_v3": "ensemble|taylor|advance(_many)? General", "_v4": "ensemble|taylor"}
+"""The lines that are worth a variant: runs with vectors of four numbers, and of eight."""
 _RUNTIME = Path(__file__).with_name("runtime.ll")
 _ENTRY = """
 define void @{symbol}(ptr %words, ptr %room) {{
@@ -242,7 +247,7 @@ def write_objects(line: str, folders: dict[str, Path]) -> None:
     text, symbol = text_of(line), compiled.symbol_of(*line.split(" "))
     for name, folder in folders.items():
         for variant, processor in _processors(name).items():
-            if not variant or any(room in line for room in _WIDE):
+            if re.search(_WORTH[variant], line):
                 own = text.replace(symbol, symbol + variant)
                 (folder / f"{symbol}{variant}.o").write_bytes(_object(own, name, processor, symbol))
 
