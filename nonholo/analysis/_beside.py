@@ -22,13 +22,11 @@ from nonholo.discrete.definition import compile_double, step_slopes
 from nonholo.lagrange_dalembert import CoordinateFlow, tangents
 from nonholo.simulation import refuse_many_matrices, simulate
 from nonholo.simulation.traced import definition_of
-from nonholo.systems import AbstractCoordinateSystem, Start, refuse_slip, refuse_wide
+from nonholo.systems import AbstractCoordinateSystem, Start, central_differences, refuse_slip, refuse_wide
 
 _TIMES = np.array([0.0, 0.3719, 0.9173])  # not in a ratio that a rotation may have
 _OTHERS, _SPREAD = 3, 0.3
 _RTOL, _ATOL = 1e-11, 1e-12  # of the equations of variation
-_OFFSET = 8e-3  # of a state, for central differences: its sixth power is at rounding
-_WEIGHTS = np.array([45.0, -9.0, 1.0]) / (60 * _OFFSET)  # of order 6, at one, two and three offsets
 
 Move = Callable[[Array, Array, Array], tuple[Array, Array]]
 """Takes time, pose and momentum to velocity and rate; of a map to the next pose and the change of momentum."""
@@ -192,9 +190,9 @@ def _by_differences(subject: Any, *states: np.ndarray) -> tuple[np.ndarray, np.n
 
 
 def _differences(function: Callable[[np.ndarray], np.ndarray], z: np.ndarray) -> Float[np.ndarray, "m m"]:
-    offsets = _OFFSET * np.arange(1, 1 + len(_WEIGHTS))
-    ends = [[function(z + x * e) - function(z - x * e) for x in offsets] for e in np.eye(len(z))]
-    return np.einsum("iwj,w->ji", np.array(ends), _WEIGHTS)
+    offsets, weights = central_differences(len(z))
+    ends = [[function(z + to) - function(z + fro) for to, fro in along] for along in offsets]
+    return np.einsum("iwj,w->ji", np.array(ends), weights)
 
 
 def beside_state(owner: str, subject: Any, configuration: Any, velocity: Any) -> tuple[Local, Any]:

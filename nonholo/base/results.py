@@ -144,3 +144,12 @@ def conclude(orbit: Any, time_step: float, good: int, steps: int, throw: bool) -
         faults = " ".join(getattr(route, "faults", {}).values())
         raise OutcomeError(orbit.outcome, f"{where} (time_step {time_step:g})", orbit, faults)
     return orbit
+
+
+def conclude_flow(orbit: Any, time: Any, errors: tuple[float, float], acting: str = "", reason: str = "") -> Any:
+    """Return a flow, or raise if it ended before the last of its times; `acting` names the force on it."""
+    if orbit.outcome != Outcome.successful:
+        (rtol, atol), count = errors, len(orbit)
+        where = f"Flow from time {time[count - 1]:g} to {time[count]:g}{acting} (rtol {rtol:g}, atol {atol:g})"
+        raise OutcomeError(orbit.outcome, where, orbit, reason)
+    return orbit

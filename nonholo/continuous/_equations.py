@@ -120,10 +120,6 @@ class ContinuousFlow(AbstractMotion):
         velocity = system.constraint_velocity(states.body_velocity, system.constraint_poses(states))
         return applied(system.annihilator, velocity)
 
-    def displacements(self, states: Orbit) -> Float[np.ndarray, "K N N"]:
-        """Refuse: a continuous motion has no displacements."""
-        return self.displaced(states.canonical_chart)
-
     def displaced(self, cayley: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
         """Refuse: a continuous motion has no displacements."""
         got = f"chart coordinates {cayley} of a continuous flow"

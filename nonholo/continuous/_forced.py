@@ -42,7 +42,7 @@ from nonholo.continuous import _series
 from nonholo.continuous._series import PLANE, Covectors, Problem, Solved, States
 from nonholo.kernels import Quadratic
 from nonholo.orbit import Orbit, turned_near
-from nonholo.systems import Contacts, Forced, Mode, Widened
+from nonholo.systems import Contacts, Forced, Mode, Widened, refuse_table
 
 Field = Callable[[float, np.ndarray], np.ndarray]
 _LOOKS = 0.25, 0.5, 0.75, 1.0  # parts of a step, at which it is seen whether a contact changes
@@ -262,7 +262,7 @@ def by_runge_kutta(forced: Forced, begins: float, problem: Problem, *, is_stiff:
     By DOP853, or if they are known to be stiff by the implicit Radau; piece by piece where rows may yield.
     """
     reduced_momentum, pose, elapsed, tolerances = problem
-    _refuse_table("flow", forced)
+    refuse_table("flow(system=Forced(...))", forced.table)
     group, k = forced.group, forced.rank
     r, g = forced.from_canonical(reduced_momentum), group.matrix_from_pose(pose) @ group.inverse(forced.frame)
     start = np.concatenate([r, g.ravel(), _series.first_heading(group, pose)])
@@ -345,7 +345,7 @@ def _is_short(solver: Any) -> bool:
 
 def forced_field(forced: Forced) -> Field:
     """Return the equations of motion as a function of time and states, as `vector_field` does."""
-    _refuse_table("vector_field", forced)
+    refuse_table("vector_field(system=Forced(...))", forced.table)
     field = _field(forced, 0.0, forced.rank, None)
 
     def derivative(now: float, rows: np.ndarray) -> np.ndarray:
@@ -354,13 +354,6 @@ def forced_field(forced: Forced) -> Field:
         return np.apply_along_axis(lambda row: field(now, row), -1, rows)
 
     return derivative
-
-
-def _refuse_table(owner: str, forced: Forced) -> None:
-    """Refuse forces that belong to steps."""
-    if forced.table is not None:
-        remedy = "Discretize the system, or pass a function of time."
-        raise error(f"{owner}(system=Forced(...))", "have forces at times", "one force for each step", remedy)
 
 
 def _field(forced: Forced, begins: float, k: int, faults: dict[str, str] | None) -> Field:

@@ -45,10 +45,6 @@ class MeasuredMotion(AbstractMotion):
         """Return the displacements, in the user's frame, of chart coordinates."""
         return self._increments(cayley) + self.system.group.identity
 
-    def displacements(self, states: Orbit) -> Float[np.ndarray, "K N N"]:
-        """Return the displacements to the next poses, from the last one back; spatial ones of LR systems."""
-        return self.displaced(states.canonical_chart)
-
     def full_momentum(self, states: Orbit) -> Float[np.ndarray, "K dim"]:
         """Return the discrete momenta at the displacements, with the default difference of the system."""
         return self.momenta(states.canonical_chart, self.system.constraint_poses(states))

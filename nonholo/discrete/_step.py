@@ -111,7 +111,9 @@ def _step(discrete: Discretization, scalar_step: ScalarStep | None, nearest: boo
     full, nowhere = momentum.shape[0] != subspace.shape[0], system.group.identity
     y, code = definition.principal_of(discrete, scalar_step, subspace @ momentum if full else momentum, nowhere)
     if full:
-        code = jnp.where((code == 0) & _off_locus(discrete, y, momentum), int(Outcome.off_momentum_locus), code)
+        gap = definition.momentum_of(discrete, y, nowhere, "left") - momentum
+        is_off = jnp.sum(gap**2) > definition.ON_LOCUS**2 * jnp.sum(momentum**2)
+        code = jnp.where((code == 0) & is_off, int(Outcome.off_momentum_locus), code)
     arriving = definition.momentum_of(discrete, y, nowhere, "right")
     if nearest:
         following, later = definition.nearest_displacement(discrete, y, subspace @ arriving)
@@ -123,8 +125,3 @@ def _step(discrete: Discretization, scalar_step: ScalarStep | None, nearest: boo
     good = code == 0
     W = definition.displacement_of(discrete, following)
     return StepResult(*(jnp.where(good, x, jnp.nan) for x in (after, W, multipliers)), outcome=code)
-
-
-def _off_locus(discrete: Discretization, y: Array, momentum: Array) -> Array:
-    gap = definition.momentum_of(discrete, y, discrete.system.group.identity, "left") - momentum
-    return jnp.sum(gap**2) > definition.ON_LOCUS**2 * jnp.sum(momentum**2)

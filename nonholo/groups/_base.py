@@ -207,9 +207,11 @@ class AbstractMatrixGroup(Keeper, abc.ABC):
         """Return the compact pose of the product g k of the elements with two compact poses."""
         return self.pose_from_matrix(self.matrix_from_pose(pose) @ self.matrix_from_pose(other))
 
-    @abc.abstractmethod
     def pose_rate(self, pose: Float[Array, "... size"], x: Float[Array, "... dim"]) -> Float[Array, "... size"]:
-        """Return the rate of change of a compact pose that moves with the body velocity `x`."""
+        """Return the rate of change of a compact pose that moves with the body velocity `x`: by default g hat(x)."""
+        pose, x = self._pose(pose), self._vector(x)
+        rows = pose.reshape(*pose.shape[:-1], self.size, self.size)
+        return self.pose_from_matrix(rows @ self.hat(x))
 
     @property
     def has_skew_part(self) -> bool:

@@ -186,11 +186,6 @@ class MatrixGroup(AbstractMatrixGroup):
         """Return the pose as it is: nothing is known about the nearest element."""
         return self._pose(pose)
 
-    def pose_rate(self, pose: Float[Array, "... size"], x: Float[Array, "... dim"]) -> Float[Array, "... size"]:
-        """Return the entries of g hat(x)."""
-        pose, x = self._pose(pose), self._vector(x)
-        return self.pose_from_matrix(self.matrix_from_pose(pose) @ self.hat(x))
-
 
 def _checked_logarithm(g: np.ndarray) -> np.ndarray:
     """Return principal logarithms, NaN where the exponential does not lead back."""

@@ -227,12 +227,6 @@ class SpecialOrthogonalN(AbstractRotations, AbstractBodyGroup):
         pose = self._pose(pose)
         return _rotations.nearest(pose.reshape(*pose.shape[:-1], self.n, self.n))
 
-    def pose_rate(self, pose: Float[Array, "... size"], x: Float[Array, "... dim"]) -> Float[Array, "... size"]:
-        """Return the entries of R hat(x)."""
-        pose, x = self._pose(pose), self._vector(x)
-        rows = pose.reshape(*pose.shape[:-1], self.n, self.n)
-        return self.pose_from_matrix(rows @ self.hat(x))
-
 
 def SO(n: int) -> AbstractMatrixGroup:
     r"""Return the rotation group $SO(n)$, $n \ge 2$.

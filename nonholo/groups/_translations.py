@@ -58,9 +58,7 @@ class Translations(AbstractMatrixGroup):
         """Return the vector."""
         return self.vee(g)
 
-    def cayley_increment(self, x: Float[Array, "... m"]) -> Float[Array, "... N N"]:
-        """Return `hat(x)`, whose square is zero."""
-        return self.hat(x)
+    cayley_increment = exp_increment
 
     def dexp_inverse(self, x: Float[Array, "... m"]) -> Float[Array, "... m m"]:
         """Return the identity matrix: the group is commutative."""

@@ -119,7 +119,6 @@ class CoordinateDiscretization(AbstractLagrangeDAlembertMap[orbits.CoordinateOrb
     """
 
     system: LagrangeDAlembert
-    time_step: float
 
     def regularity(self, q: Any, q_next: Any) -> float:
         """Return the smallest singular value of the scaled regularity matrix of a step; zero at a fold.
@@ -273,22 +272,16 @@ def set_out(system: Any, h: Array, q: Array, v: Array, p: Array) -> tuple[Motion
     return (q, first, first), sign, code
 
 
-def _step(system: Any, h: Array, state: Motion, sign: Array) -> tuple[Motion, Array, Array]:
-    """Return the next state, the impulses and the outcome."""
-    q, v, before = state
-    ahead, arriving = equations.arrival(system, q, v, h)
-    following, multipliers, code = solve(system, h, ahead, arriving, v, 2 * v - before, sign)
-    return (ahead, following, v), multipliers, code
-
-
 def _advance(system: Any, h: Array, state: Motion, sign: Array, rows: Array, every: Array) -> tuple:
     """Run `rows` times `every` steps; return the states before each row, the first impulse of each row, and the end."""
     s = system.constraints
 
     def one(carry: tuple) -> tuple:
         count, current, impulse, _ = carry
-        following, multipliers, code = _step(system, h, current, sign)
-        next_state = jax.tree.map(lambda new, old: jnp.where(code == 0, new, old), following, current)
+        q, v, before = current
+        ahead, arriving = equations.arrival(system, q, v, h)
+        following, multipliers, code = solve(system, h, ahead, arriving, v, 2 * v - before, sign)
+        next_state = jax.tree.map(lambda new, old: jnp.where(code == 0, new, old), (ahead, following, v), current)
         return count + (code == 0), next_state, jnp.where(count == 0, multipliers, impulse), code
 
     def row(carry: tuple) -> tuple:

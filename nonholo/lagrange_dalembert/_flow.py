@@ -14,8 +14,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from nonholo import systems
 from nonholo.base.checks import error, flow_times, flow_tolerances, is_traced, number, trailing
-from nonholo.base.results import Outcome, OutcomeError
+from nonholo.base.results import Outcome, OutcomeError, conclude_flow
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import compiled
@@ -73,19 +74,15 @@ def nearest_place(system: Any, x: Array) -> Array:
         after = z + step
         return count + 1, after, jnp.linalg.norm(step[:n]) / (jnp.linalg.norm(x) + jnp.linalg.norm(after[:n]))
 
-    def goes_on(carry: tuple[Array, Array, Array]) -> Array:
-        return (carry[0] < _PROJECTIONS) & (carry[2] > _NEAR)
-
     start = jnp.asarray(0), jnp.zeros(n + system.constraints - first), jnp.asarray(jnp.inf)
-    _, z, size = jax.lax.while_loop(goes_on, correct, start)
+    _, z, size = jax.lax.while_loop(lambda c: (c[0] < _PROJECTIONS) & (c[2] > _NEAR), correct, start)
     return jnp.where(size <= _NEAR, x.at[:n].add(z[:n]), jnp.nan)
 
 
 def refuse_table(owner: str, system: Any) -> None:
     """Refuse forces that belong to steps."""
-    if system.is_driven and system.table is not None:
-        remedy = "Discretize the system, or pass a function of time."
-        raise error(f"{owner}(system=...)", "have forces at times", "one force for each step", remedy)
+    if system.is_driven:
+        systems.refuse_table(f"{owner}(system=...)", system.table)
 
 
 def vector_field(system: Any) -> Callable[[Array, Float[Array, "size"]], Float[Array, "size"]]:
@@ -166,7 +163,7 @@ class Flights(NamedTuple):
 
     def successful(self, orbit: Any, time: np.ndarray) -> Any:
         """Return a flow, or raise if it ended early."""
-        return _successful(orbit, time, _checked_errors(*self.errors))
+        return conclude_flow(orbit, time, _checked_errors(*self.errors))
 
 
 class Broken(NamedTuple):
@@ -216,16 +213,7 @@ def solve(system: Any, first: State, time: Float[np.ndarray, "K"], rtol: float |
     rows, solution = motion or room("_integration").flow(system, first, time, errors)
     count = len(rows[0])
     outcome = Outcome.successful if count == len(time) else Outcome.not_converged
-    return _successful(_orbit(system, time[:count], rows, outcome, solution).on_group(), time, errors)
-
-
-def _successful(orbit: Any, time: np.ndarray, errors: tuple[float, float]) -> Any:
-    """Return a flow, or raise if it ended early."""
-    count = len(orbit)
-    if orbit.outcome != Outcome.successful:
-        where = f"Flow from time {time[count - 1]:g} to {time[count]:g} (rtol {errors[0]:g}, atol {errors[1]:g})"
-        raise OutcomeError(orbit.outcome, where, orbit)
-    return orbit
+    return conclude_flow(_orbit(system, time[:count], rows, outcome, solution).on_group(), time, errors)
 
 
 def at(orbit: Any, times: Any) -> Any:

@@ -156,9 +156,8 @@ def root(system: Equations, near: Array, guess: Array, sign: Array) -> tuple[Arr
         fast, first = path.count == 0, path.count == 1
         ahead = jnp.where(first, 0.0, jnp.where(fast, 1.0, jnp.minimum(path.s + path.stride, 1.0)))
         begin = jnp.where(fast, guess, path.root.velocity)
-        left = jnp.where(
-            ahead == 1, 0.0, (1 - ahead) * offset
-        )  # which need not be finite, if the guess leads to a root
+        # The offset need not be finite, if the guess leads to a root.
+        left = jnp.where(ahead == 1, 0.0, (1 - ahead) * offset)
         trial = _newton(system, begin, path.root.multipliers, left)
         good = trial.converged & (trial.sign == sign) & ~first
         best = jax.tree.map(lambda new, old: jnp.where(good, new, old), trial, path.root)

@@ -3,7 +3,6 @@
 And their motions as stores keep them: what orbits tell, and systems without functions.
 """
 
-import abc
 import dataclasses
 from collections.abc import Mapping
 from typing import Any, ClassVar, Self
@@ -64,13 +63,11 @@ class AbstractCoordinateOrbit(AbstractOrbit):
             cut = self.has_impacts[: len(self.multipliers), None]
             assign(self, multipliers=np.where(cut, np.nan, self.multipliers))
 
-    @abc.abstractmethod
-    def _configurations(self) -> str:
-        """Return in words what configurations are."""
-
     def __repr__(self) -> str:
+        n, *columns = self.configuration.shape[1:]
+        place = f"{n} x {n} matrices" if columns else f"{n} coordinates"
         span = f", time {self.time[0]:g} to {self.time[-1]:g}" if len(self) else ""
-        return f"<{type(self).__name__}: {len(self)} states of {self._configurations()}{span}, {self.outcome}>"
+        return f"<{type(self).__name__}: {len(self)} states of {place}{span}, {self.outcome}>"
 
     def as_start(self) -> First:
         """Return the momentum, the place and the velocity of the first state."""
@@ -96,8 +93,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     @property
     def motion(self) -> Any:
         """The discretization or the flow."""
-        flow = CoordinateFlow
-        return flow(self.system) if self.time_step is None else self.system.discrete_map(self.time_step)
+        return CoordinateFlow(self.system) if self.time_step is None else self.system.discrete_map(self.time_step)
 
     @property
     def span(self) -> tuple[float, float] | None:  # type: ignore[override]
@@ -205,17 +201,11 @@ class AbstractCoordinateOrbit(AbstractOrbit):
             for name, (dimensions, meaning) in labels.items()
             if name in rows
         }
-        coords: dict[str, Any] = {
-            "step": self.step,
-            "time": ("step", self.time, {"long_name": "time"}),
-            **self._names(),
-        }
+        coords: dict[str, Any] = {"step": self.step, "time": ("step", self.time, {"long_name": "time"})}
+        if self.coordinates:
+            coords["coordinate"] = np.array(self.coordinates, dtype=object)
         step = {} if self.time_step is None else {"time_step": self.time_step}
         return xarray.Dataset(variables, coords=coords, attrs={"outcome": self.outcome.name, **step})
-
-    @abc.abstractmethod
-    def _names(self) -> dict[str, Any]:
-        """Return the names of numbers along dimensions."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -261,16 +251,7 @@ class CoordinateOrbit(AbstractCoordinateOrbit):
         """The names of the coordinates."""
         return self.system.coordinates
 
-    @property
-    def space(self) -> tuple[str, ...]:
-        """The names of the coordinates."""
-        return self.system.coordinates
-
-    def _names(self) -> dict[str, Any]:
-        return {"coordinate": np.array(self.coordinates, dtype=object)}
-
-    def _configurations(self) -> str:
-        return f"{self.configuration.shape[1]} coordinates"
+    space = coordinates
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -317,13 +298,6 @@ class GroupOrbit(AbstractCoordinateOrbit):
 
     space = group
 
-    def _names(self) -> dict[str, Any]:
-        return {}
-
-    def _configurations(self) -> str:
-        n = self.configuration.shape[-1]
-        return f"{n} x {n} matrices"
-
 
 def _forms_at(system: Any, q: Array) -> Array:
     return jax.vmap(lambda x: equations.forms(system, x))(q)
@@ -350,10 +324,8 @@ class CoordinateMotion:
         """
         del branch
         system, last = self.system, None if self.time_step is None else -1
-        if system.constraints:
-            rows["multipliers"] = rows["multipliers"] if rows["multipliers"] is None else rows["multipliers"][:last]
-        else:  # which is not stored
-            rows["multipliers"] = rows["body_velocity"][:last, :0]
+        impulses = rows["multipliers"] if system.constraints else rows["body_velocity"][:, :0]  # none are stored
+        rows["multipliers"] = impulses if impulses is None else impulses[:last]
         shapes = {name: None if rows[name] is None else rows[name].shape[1:] for name in self.columns}
         if shapes != self._shapes():
             remedy = "The store was edited: copy it again from its source, or run it again."

@@ -210,9 +210,8 @@ class SlipStepper(AbstractStepper[Any]):
         (q, v, p, impulses), system = rows, self.motion.system
         orbit = self.stepper_of(*[False] * len(self.slips)).orbit((q, v, impulses), step, every, outcome)
         places = q.reshape(-1, *system.place_shape)
-        return dataclasses.replace(
-            orbit, system=system, momentum=p, energy=in_blocks(_energies, system.free, places, p)[0]
-        )
+        energy = in_blocks(_energies, system.free, places, p)[0]
+        return dataclasses.replace(orbit, system=system, momentum=p, energy=energy)
 
 
 def _node(system: Any, x: Array, p: Array, rows: Array) -> tuple[Array, Array]:

@@ -74,20 +74,11 @@ def _check_rows(what: str, A: Float[np.ndarray, "s n"], at: np.ndarray) -> None:
     """Refuse constraint forms that are not finite, or not independent, at a configuration."""
     if not np.all(np.isfinite(A)):
         raise error(what, "be finite at the start", f"{A.tolist()}", "Start where the constraint is defined.")
-    if len(A) > A.shape[1] or _least_value(A) < _DEGENERATE:
+    lengths = np.linalg.norm(A, axis=1, keepdims=True)
+    units = A / np.where(lengths == 0, 1, lengths)
+    if len(A) > A.shape[1] or (len(A) and np.linalg.svd(units, compute_uv=False)[-1] < _DEGENERATE):
         got = f"rank {np.linalg.matrix_rank(A)} of {len(A)} rows at {at.tolist()}"
         raise error(what, "have independent rows", got, "Drop the constraints that follow from others.")
-
-
-def _unit_rows(rows: Float[np.ndarray, "s n"]) -> Float[np.ndarray, "s n"]:
-    """Return rows of length one; zeros stay."""
-    lengths = np.linalg.norm(rows, axis=1, keepdims=True)
-    return rows / np.where(lengths == 0, 1, lengths)
-
-
-def _least_value(rows: Float[np.ndarray, "s n"]) -> float:
-    """Return the least singular value of rows of length one."""
-    return float(np.linalg.svd(_unit_rows(rows), compute_uv=False)[-1]) if len(rows) else 1.0
 
 
 def consistent(system: Any, q: np.ndarray, h: Any) -> None:

@@ -6,7 +6,7 @@ as $g\,e^\xi$.
 
 import functools
 from collections.abc import Callable
-from typing import Any
+from typing import Any, cast
 
 import jax
 import jax.numpy as jnp
@@ -72,10 +72,8 @@ def slopes(
     motion: Any, x: Float[np.ndarray, "K ..."], v: Float[np.ndarray, "K n"]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return how states change beside given ones; NaN where there is no next step."""
-    change, slope, rows = call_in_blocks(
-        functools.partial(in_double, _each, motion.system, *_step_of(motion)), FEW, x, v
-    )
-    return change, slope, rows
+    each = functools.partial(in_double, _each, motion.system, *_step_of(motion))
+    return cast(Any, tuple(call_in_blocks(each, FEW, x, v)))
 
 
 def tangent_map(orbit: Any) -> Float[np.ndarray, "L d d"]:
@@ -140,7 +138,9 @@ def flow_slopes(system: Any, x: Array, v: Array) -> Slopes:
 def _step_slopes(system: Any, h: Array, x: Array, v: Array) -> Slopes:
 
     def change(xi: Array, w: Array) -> Array:
-        after, w_after = _after_step(system, h, system.places.beside(x, xi), w)
+        beside = system.places.beside(x, xi)
+        after, p = equations.arrival(system, beside, w, h)
+        w_after = _step_velocity(system, h, after, p, (beside, w))
         xi_after = system.places.departure(system.places.frame(x, v, h), after)
         return jnp.concatenate([xi_after - xi, w_after - w])
 
@@ -167,12 +167,6 @@ def _slopes_of(system: Any, change: Callable[[Array, Array], Array], x: Array, v
 
     (slope, rows), value = jax.jacfwd(both, has_aux=True)(jnp.append(jnp.zeros(size), v))
     return value, slope, rows
-
-
-def _after_step(system: Any, h: Array, x: Array, v: Array) -> tuple[Array, Array]:
-    """Return the state after a step, with the derivatives of the implicit function."""
-    after, p = equations.arrival(system, x, v, h)
-    return after, _step_velocity(system, h, after, p, (x, v))
 
 
 def _step_velocity(system: Any, h: Array, x: Array, p: Array, near: tuple[Array, Array]) -> Array:

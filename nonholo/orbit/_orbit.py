@@ -106,9 +106,9 @@ class AbstractMotion(Keeper, abc.ABC):
     def constraint_residual(self, states: "Orbit") -> Float[np.ndarray, "K j"]:
         """Return what the constraint wants to be zero."""
 
-    @abc.abstractmethod
     def displacements(self, states: "Orbit") -> Float[np.ndarray, "K N N"]:
         """Return the displacements of whole steps from the states, in the user's frame; spatial ones of LR systems."""
+        return self.displaced(states.canonical_chart)
 
     @abc.abstractmethod
     def displaced(self, cayley: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:

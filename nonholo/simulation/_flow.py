@@ -8,7 +8,7 @@ import numpy as np
 
 from nonholo.base.checks import LARGEST, are_moderate, error, flags, flow_times, flow_tolerances, within_memory
 from nonholo.base.progress import telling
-from nonholo.base.results import Outcome, OutcomeError
+from nonholo.base.results import Outcome, conclude_flow
 from nonholo.continuous import ContinuousFlow, Problem, Solver, solver_of
 from nonholo.orbit import First, Orbit
 from nonholo.simulation._contact import BodyFlights, Flights, flow_through_impacts
@@ -232,12 +232,9 @@ def _flow_between_walls(opening: Any, time: np.ndarray, flights: Flights, events
 
 def _successful(task: _Task, orbit: Orbit, message: str) -> Orbit:
     """Return a flow, or raise if it ended early."""
-    if orbit.outcome != Outcome.successful:
-        (rtol, atol), count, forces, time = task.tolerances, len(orbit), task.system.forces, task.time
-        acting = "" if forces is None else f" under {forces.names}"
-        where = f"Flow from time {time[count - 1]:g} to {time[count]:g}{acting} (rtol {rtol:g}, atol {atol:g})"
-        raise OutcomeError(orbit.outcome, where, orbit, message)
-    return orbit
+    forces = task.system.forces
+    acting = "" if forces is None else f" under {forces.names}"
+    return conclude_flow(orbit, task.time, task.tolerances, acting, message)
 
 
 def _check_momentum(momentum: Any, nearest: np.ndarray) -> None:

@@ -65,6 +65,7 @@ from nonholo.systems.forces import (
     force_of,
     friction,
     parts_of,
+    refuse_table,
     slips_of,
     terms_of,
     update_slope,

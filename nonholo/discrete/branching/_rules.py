@@ -147,7 +147,7 @@ class Region(AbstractBranchRule):
     def check(self, where: str, discrete: Discretization) -> None:
         """Refuse systems whose invariant curves have no parts."""
         super().check(where, discrete)
-        if not _values.is_regular(discrete):
+        if _values.regular_landscape(discrete) is None:
             kind = type(discrete.system).__name__
             got = f"{self.name!r} for {kind}, whose invariant curves have no inner and outer part"
             remedy = "Pass 'nearest'. Only a SuslovTop with n = 3 and det B > 2|c|^2 has regions."
@@ -355,7 +355,8 @@ class RuleStepper(AbstractBodyStepper):
         code, place = first_place("simulate", self.motion, frame, self.rule, reduced, first.demand)
         if place is None:
             return np.concatenate((reduced, np.full_like(reduced, np.nan), pose)), code
-        now = _Now(place, *self._origin(frame, place.momentum), group.matrix_from_pose(pose), 0)
+        goal = goal_of(self.motion, frame, place.momentum)
+        now = _Now(place, goal, place.momentum, group.matrix_from_pose(pose), 0)
         return np.concatenate((place.momentum, frame.chart(place.point), pose, now.vector)), code
 
     def advance(self, state: State, steps: int, every: int, rows: Rows) -> tuple[int, int]:
@@ -378,7 +379,7 @@ class RuleStepper(AbstractBodyStepper):
             good, step, place = good + count, now.step + count, Place(points[-1], ahead.momentum[-1])
             begin = now.begin
             if goal is None or step % often == 0:
-                goal, begin = self._origin(frame, place.momentum)
+                goal, begin = goal_of(self.motion, frame, place.momentum), place.momentum
             g = matrices[-1] if step % often else group.matrix_from_pose(poses[-1])
             now = _Now(place, goal, begin, g, step)
         state[width:] = now.vector
@@ -398,14 +399,10 @@ class RuleStepper(AbstractBodyStepper):
         rows = slice(0, int(code == 0))
         return code, Place(following.point[None][rows], following.momentum[None][rows]), None
 
-    def _origin(self, frame: Frame, momentum: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the goal and the momentum at which clear steps begin to be summed."""
-        return goal_of(self.motion, frame, momentum), momentum
-
     def _now(self, frame: Frame, state: State) -> "_Now":
         """Return the numbers of a state."""
         k, size = self.motion.system.rank, self.motion.system.group.size
-        own, goal = state[self.width :], len(self._origin(frame, state[:k])[0])
+        own, goal = state[self.width :], len(goal_of(self.motion, frame, state[:k]))
         ends = np.cumsum([len(own) - goal - k - size**2 - 1, goal, k, size**2])
         point, goals, begin, g, (step,) = np.split(own, ends)
         place = Place(point.copy(), state[:k].copy())

@@ -63,11 +63,6 @@ def landscape(form: NormalForm) -> Landscape:
     return Landscape(axes, inertia, sharpness, inverses, vectors)
 
 
-def is_regular(discrete: Discretization) -> bool:
-    r"""Return whether a discretization has regions: a top, n = 3, with $\det B > 2|c|^2$ that conserves its energy."""
-    return _regular_landscape(discrete) is not None
-
-
 def regions(discrete: Discretization, displacement: Inexact[np.ndarray, "B N N"]) -> np.ndarray:
     r"""Return the region of each real displacement: "inner", "outer", "between", or "" where there is none.
 
@@ -75,7 +70,7 @@ def regions(discrete: Discretization, displacement: Inexact[np.ndarray, "B N N"]
     $E < h^*$, $\varrho < 1/(2\kappa)$, around the identity; "outer" lies beyond the ridge $\varrho = 1/(2\kappa)$;
     "between" is $h^* \le E < h^{**}$, where the two are connected. Other systems and other regimes have no regions.
     """
-    land = _regular_landscape(discrete)
+    land = regular_landscape(discrete)
     if land is None:
         return np.full(len(displacement), "", dtype="<U7")
     frame = discrete.system.form_frame
@@ -89,7 +84,8 @@ def regions(discrete: Discretization, displacement: Inexact[np.ndarray, "B N N"]
     return np.select([below & (ascent < 0.5), below, energy < center], kinds, default="")
 
 
-def _regular_landscape(discrete: Discretization) -> Landscape | None:
+def regular_landscape(discrete: Discretization) -> Landscape | None:
+    r"""Return the landscape that has regions: of a top, n = 3, with $\det B > 2|c|^2$ that conserves its energy."""
     form = discrete.system.normal_form
     if form is None or form.is_sleigh or not form.is_planar or not discrete.conserves_energy:
         return None

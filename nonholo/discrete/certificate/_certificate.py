@@ -92,7 +92,8 @@ def _values(problem: Problem, places: list[Located], bits: int) -> tuple[np.ndar
 def _as_matrices(discrete: Discretization, problem: Problem, values: tuple[np.ndarray, ...]) -> Enclosures:
     """Return the displacements in the user's frame."""
     products, radii, multiplicity, is_real = values
-    X = _increments(products, len(problem.excess), problem.lever is not None)
+    index, sign = _places(1 + len(problem.excess), problem.lever is not None)
+    X = sign * products[:, index]  # only signs are changed
     group, frame = discrete.system.group, np.asarray(discrete.system.frame)
     if not np.array_equal(frame, group.identity):
         X, radii = _turn(X, radii, frame, np.asarray(group.inverse(frame)))
@@ -131,12 +132,6 @@ def _across(lever: Lever, S: list[list[acb]]) -> list[acb]:
 
 def _sum(terms: Iterable[acb]) -> acb:
     return sum(terms, acb(0))
-
-
-def _increments(products: np.ndarray, k: int, sleigh: bool) -> np.ndarray:
-    """Return the canonical displacements minus the identity; only signs are changed."""
-    index, sign = _places(k + 1, sleigh)
-    return sign * products[:, index]
 
 
 @functools.cache

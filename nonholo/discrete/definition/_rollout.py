@@ -137,7 +137,7 @@ def _step_from(
         return step, at, (C @ r, jnp.asarray([1.0, 0.0, 0.0, 0.0], r.dtype), 2)
     has_stages = balance is not None or discrete.order > 2
     step = _in_stages(discrete, scalar, _stage_of(balance)) if has_stages else _matrix_step(discrete, impulse)
-    return step, _as_it_is, (r, g, len(discrete.variety.chart))
+    return step, lambda node: (node.m, node.y, node.g, node.after[1]), (r, g, len(discrete.variety.chart))
 
 
 def _half_impulses(discrete: Scheme, forces: _Forces, states: tuple[Array, ...], rows: Array | None) -> Array:
@@ -178,10 +178,6 @@ def half_impulse(discrete: Scheme, forced: Forced, y: Array, g: Array, row: Arra
     """Return half the impulse of a balanced step by the chart of its displacement, a body covector."""
     h = discrete.time_step
     return h / 2 * forced.mean_force(g, _step.displacement_of(discrete, y), h, row)
-
-
-def _as_it_is(node: _Node) -> tuple[Array, ...]:
-    return node.m, node.y, node.g, node.after[1]
 
 
 def _along(discrete: Scheme, name: str, value: Array, g: Array) -> Array:

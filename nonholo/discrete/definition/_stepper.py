@@ -19,22 +19,13 @@ from nonholo.discrete.routes import AbstractBodyStepper, Compact
 from nonholo.orbit import First, Rows, State, keep_row, write_first
 
 
-def _substep(discrete: Scheme, weight: Array, r: Array, g: Array) -> tuple[Array, Array, Array, Array]:
-    """Return momentum and pose after a substep, the chart of its displacement and the outcome."""
-    part = discrete.part(weight)
-    y, code = _step.principal_displacement(part, r, g)
-    W = _step.displacement_of(part, y)
-    after = discrete.system.moved(g, W)
-    return _step.restricted(part, _step.momentum_of(part, y, g, "right"), after), after, y, code
-
-
 def _sweep(discrete: Scheme, r: Array, g: Array) -> tuple[tuple[Array, Array], Array, Array]:
     """Return momentum and pose after a whole step, the chart of its first substep and the outcome."""
 
     def advance(carry: tuple[Array, ...], weight: Array) -> tuple[tuple[Array, ...], Array]:
-        *now, code = carry
-        *ahead, y, outcome = _substep(discrete, weight, *now)
-        good = (code == 0) & (outcome == 0)
+        (*now, code), part = carry, discrete.part(weight)
+        y, outcome = _step.principal_displacement(part, *now)
+        good, ahead = (code == 0) & (outcome == 0), _step.push(part, y, now[1])
         after = (jnp.where(good, new, old) for new, old in zip(ahead, now, strict=True))
         return (*after, jnp.where(code == 0, outcome, code)), y
 

@@ -45,11 +45,6 @@ def _sleigh(form: NormalForm) -> kernels.SleighBody:
     return kernels.SleighBody(*(x if is_traced(x) or np.ndim(x) else float(x) for x in numbers))
 
 
-def _turns(form: NormalForm) -> bool:
-    """A body that does not slide is a top."""
-    return not form.is_sleigh
-
-
 def _top(form: NormalForm) -> kernels.SuslovBody:
     if form.stiffness.ndim > 2:
         return kernels.SuslovBody(*kernels.suslov_table(form.stiffness, form.coupling))
@@ -58,7 +53,7 @@ def _top(form: NormalForm) -> kernels.SuslovBody:
 
 _CLOSED_FORMS = (
     ClosedForm(_slides_with_inertia, _sleigh, 1.0, np.diag([-1.0, 1.0])),  # by omega, against e1 ^ e2 of the form
-    ClosedForm(_turns, _top, 0.5, None),
+    ClosedForm(lambda form: not form.is_sleigh, _top, 0.5, None),
 )
 """Looked through from the first to the last: one that is for fewer bodies comes first."""
 

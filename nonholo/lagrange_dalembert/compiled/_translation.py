@@ -89,11 +89,6 @@ def _sign(f: Formulas, x: Any) -> Any:
     return f("select", f("gt", x, zero), not_positive, f.constant(1.0))
 
 
-def _logistic(f: Formulas, x: Any) -> Any:
-    one = f.constant(1.0)
-    return f("div", one, f("add", one, f("exp", f("neg", x))))
-
-
 def _power(f: Formulas, x: np.ndarray, *, y: int, **_: Any) -> np.ndarray:
     """Return integer powers by repeated squaring."""
 
@@ -177,10 +172,6 @@ def _pad(_f: Formulas, x: np.ndarray, value: np.ndarray, *, padding_config: Any)
     result = np.full(end + np.maximum(high, 0), value.item(), dtype=object)
     result[tuple(map(slice, begin, end, inner + 1))] = x
     return result[tuple(map(slice, begin - low, np.array(result.shape) + np.minimum(high, 0)))]
-
-
-def _counting(f: Formulas, *, dtype: Any, shape: Any, dimension: int, **_: Any) -> np.ndarray:
-    return _constants(f, np.indices(shape, dtype)[dimension])
 
 
 def _platform(f: Formulas, *, platforms: Any) -> np.ndarray:
@@ -293,7 +284,7 @@ _TABLE: dict[str, Rule] = {
     "clamp": _numberwise(lambda f, least, x, most: f("min", f("max", x, least), most)),
     "is_finite": _numberwise(lambda f, x: f("eq", f("sub", x, x), f.constant(0.0))),
     "sign": _numberwise(_sign),
-    "logistic": _numberwise(_logistic),
+    "logistic": _numberwise(lambda f, x: f("div", f.constant(1.0), f("add", f.constant(1.0), f("exp", f("neg", x))))),
     **dict.fromkeys(("copy", "stop_gradient"), _numberwise(lambda _f, x: x)),
     "integer_pow": _power,
     "round": _round,
@@ -306,7 +297,7 @@ _TABLE: dict[str, Rule] = {
     "argmax": _greatest,
     "cumsum": _cumulate,
     "dot_general": _product,
-    "iota": _counting,
+    "iota": lambda f, *, dtype, shape, dimension, **_: _constants(f, np.indices(shape, dtype)[dimension]),
     "platform_index": _platform,
     "broadcast_in_dim": _broadcast,
     "pad": _pad,

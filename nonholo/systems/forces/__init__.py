@@ -8,6 +8,7 @@ from nonholo.systems.forces._friction import (
     Widened,
     force_of,
     parts_of,
+    refuse_table,
     slips_of,
     terms_of,
     without_slips,

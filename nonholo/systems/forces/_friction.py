@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import numpy as np
+import scipy  # its parts load on first use
 
 from nonholo.base.checks import array, assign, error, is_traced, number, shape_of, shown, within_memory
 from nonholo.base.memo import system_memo
@@ -213,7 +214,7 @@ class Widened(AbstractLLSystem):
     @system_memo
     def inertia_along(self) -> Float[np.ndarray, "k k"]:
         """The operator of the system inside beside M: nothing couples them, not even a rounding error."""
-        return beside(np.asarray(self.system.constrained_inertia), self.slip_inertia)
+        return scipy.linalg.block_diag(self.system.constrained_inertia, self.slip_inertia)
 
     @functools.cached_property
     def canonical(self) -> "Widened":  # type: ignore[override]
@@ -226,13 +227,7 @@ class Widened(AbstractLLSystem):
     @system_memo
     def frame_map(self) -> Float[Array, "k k"]:
         """The frame map of the system inside; the slip is the same in every frame."""
-        return beside(np.asarray(self.system.frame_map), np.eye(len(self.rows)))
-
-
-def beside(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Return the block diagonal matrix of two."""
-    k, s = len(first), len(second)
-    return np.block([[first, np.zeros((k, s))], [np.zeros((s, k)), second]])
+        return scipy.linalg.block_diag(self.system.frame_map, np.eye(len(self.rows)))
 
 
 def parts_of(force: Any) -> dict[str, Any]:
@@ -278,6 +273,13 @@ def force_of(parts: dict[str, Any]) -> Any:
     """Return the force of parts: None of nothing, a single one as it is, a tuple of several."""
     forces = tuple(parts.values())
     return forces if len(forces) > 1 else forces[0] if forces else None
+
+
+def refuse_table(where: str, table: Any) -> None:
+    """Refuse forces that belong to steps, where they are needed at times."""
+    if table is not None:
+        remedy = "Discretize the system, or pass a function of time."
+        raise error(where, "have forces at times", "one force for each step", remedy)
 
 
 def _kind(force: Any) -> str:
