@@ -13,7 +13,7 @@ import os
 import re
 import shutil
 import sys
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from typing import Any, TypeAlias, TypeVar, cast
 
@@ -125,11 +125,6 @@ def shown(value: Any) -> str:
     except Exception:  # an integer of thousands of digits, nested lists, whatever it is made of
         text = f"a {type(value).__name__} that cannot be shown"
     return text if len(text) <= 200 else f"{text[:200]}..."
-
-
-def are_moderate(columns: Iterable[tuple[np.ndarray | None, float]]) -> bool:
-    """Return whether every number of columns, if there is any, is finite and at most as large as it may be."""
-    return all(rows is None or is_moderate(rows, most) for rows, most in columns)
 
 
 def is_moderate(value: np.ndarray, most: float = LARGEST) -> bool:

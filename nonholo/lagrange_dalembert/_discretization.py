@@ -214,7 +214,7 @@ class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
         system, h, (p, q, v) = self.motion.system, np.float64(self.motion.time_step), first.numbers
         definition = functools.partial(in_double, set_out, system, h)
         motion, sign, code = compiled.set_out(definition, system, h, q, v, p)
-        return self._state(motion, np.ravel(sign)), Outcome(int(code))
+        return self._state(motion, sign), Outcome(int(code))
 
     def advance(self, state: State, steps: int, every: int, rows: Rows) -> tuple[int, int]:
         """Take steps by compiled formulas, or by JAX."""
@@ -228,7 +228,7 @@ class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
         for column, entries in zip(rows, (*motion[:2], np.nan), strict=True):
             if count % every == 0:
                 column[count // every] = np.ravel(entries)
-        state[:] = self._state(motion, [sign])
+        state[:] = self._state(motion, sign)
         return count, int(code)
 
     def orbit(self, rows: Rows, step: int, every: int, outcome: Outcome) -> orbits.AbstractCoordinateOrbit:
@@ -257,12 +257,11 @@ class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
     def _state(self, motion: Motion, sign: Any) -> State:
         q, v, before = motion
         impulse = np.zeros(self.motion.system.constraints)  # unknown; a store takes NaN for a chunk that is lost
-        return np.concatenate([np.ravel(q), v, impulse, before, sign])
+        return np.concatenate([q.ravel(), v, impulse, before, [sign]])
 
     def _motion(self, state: State) -> Motion:
-        place, rate, impulse = self.columns.values()
-        q, v, _, before, _ = np.split(state, np.cumsum([place, rate, impulse, rate]))
-        return self._places(q[None])[0], v, before
+        place, rate, _ = self.columns.values()
+        return self._places(state[:place])[0], state[place : place + rate], state[-1 - rate : -1]
 
 
 def set_out(system: Any, h: Array, q: Array, v: Array, p: Array) -> tuple[Motion, Array, Array]:

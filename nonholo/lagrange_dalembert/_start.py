@@ -6,7 +6,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from nonholo.base.checks import array, error, scale
+from nonholo.base.checks import array, error, is_moderate, scale
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
@@ -72,10 +72,10 @@ def _check_holonomic(where: str, system: Any, x: np.ndarray, A: Float[np.ndarray
 
 def _check_rows(what: str, A: Float[np.ndarray, "s n"], at: np.ndarray) -> None:
     """Refuse constraint forms that are not finite, or not independent, at a configuration."""
-    if not np.all(np.isfinite(A)):
+    if not is_moderate(A, np.inf):
         raise error(what, "be finite at the start", f"{A.tolist()}", "Start where the constraint is defined.")
     lengths = np.linalg.norm(A, axis=1, keepdims=True)
-    units = A / np.where(lengths == 0, 1, lengths)
+    units = A / (lengths + (lengths == 0))
     if len(A) > A.shape[1] or (len(A) and np.linalg.svd(units, compute_uv=False)[-1] < _DEGENERATE):
         got = f"rank {np.linalg.matrix_rank(A)} of {len(A)} rows at {at.tolist()}"
         raise error(what, "have independent rows", got, "Drop the constraints that follow from others.")
@@ -112,6 +112,8 @@ def velocity(
         v = in_double(admissible_velocity, system, q, v)
         return momentum(system, q, v), v
     A, residual = _at(_constraints, system, q, v)
+    if not np.count_nonzero(residual):
+        return p, v
     rounding = np.finfo(float).eps * np.linalg.norm(A, axis=1) * np.linalg.norm(v)  # of forms where their terms vanish
     if np.any(np.abs(residual) > _TOLERANCE * (np.abs(A) @ np.abs(v) + np.abs(A @ v - residual)) + rounding):
         raise inadmissible(where, residual, v - np.linalg.pinv(A) @ residual)
@@ -120,14 +122,15 @@ def velocity(
 
 def _check_regular(system: Any, q: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Return the momentum, of a Lagrangian with finite derivatives, of accelerations and without contradictions."""
-    what, at = _argument(system, system.energy_argument), f"at {q.tolist()}, velocity {v.tolist()}"
+    what = _argument(system, system.energy_argument)
     value, *gradients, matrix = _at(_kinetics, system, q, v)
-    if not all(np.all(np.isfinite(x)) for x in (value, *gradients)):
-        got = f"value {value.tolist()}, gradients {[x.tolist() for x in gradients]} {at}"
+    if not all(is_moderate(x, np.inf) for x in (value, *gradients)):
+        number, *slopes = (x.tolist() for x in (value, *gradients))
+        got = f"value {number}, gradients {slopes} at {q.tolist()}, velocity {v.tolist()}"
         raise error(what, "be finite and differentiable", got, "Start elsewhere, or smooth it with jnp.where.")
     least = np.linalg.svd(matrix, compute_uv=False)[-1]
     if not least > _DEGENERATE:
-        got = f"least singular value {least:.3g} of the equations {at}"
+        got = f"least singular value {least:.3g} of the equations at {q.tolist()}, velocity {v.tolist()}"
         raise error(what, "determine the accelerations", got, "Give every admissible direction a kinetic energy.")
     if system.has_limit and np.any(v):
         _check_limit(system, q, v, gradients[1])

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, cast
 
 import numpy as np
 
-from nonholo.base.checks import LARGEST, are_moderate, array, assign, error, selection, shape_of, within_memory
+from nonholo.base.checks import LARGEST, array, assign, error, is_moderate, selection, shape_of, within_memory
 from nonholo.base.html import table
 from nonholo.base.memo import Keeper, memo
 from nonholo.base.results import Outcome
@@ -119,10 +119,11 @@ class AbstractOrbit(Keeper, abc.ABC):
 
         Nor with a momentum whose square overflows, or a pose that has left its group.
         """
-        good = self.outcome == Outcome.successful
-        columns = ((getattr(self, name), most) for name, most in _bounds(type(self)))
-        if good and not (are_moderate(columns) and (self.is_measured or self.states_on_group == len(self))):
-            assign(self, outcome=Outcome.nonfinite)
+        if self.outcome == Outcome.successful:
+            columns = ((getattr(self, name), most) for name, most in _bounds(type(self)))
+            good = all(rows is None or is_moderate(rows, most) for rows, most in columns)
+            if not (good and (self.is_measured or self.states_on_group == len(self))):
+                assign(self, outcome=Outcome.nonfinite)
         if self.step is None or len(self.step) != len(self.time):
             assign(self, step=np.arange(0, self.save_every * len(self.time), self.save_every))
         if self.events is not None:

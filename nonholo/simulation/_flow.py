@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, TypeAlias, overload
 
 import numpy as np
 
-from nonholo.base.checks import LARGEST, are_moderate, error, flags, flow_times, flow_tolerances, within_memory
+from nonholo.base.checks import error, flags, flow_times, flow_tolerances, is_moderate, within_memory
 from nonholo.base.progress import telling
 from nonholo.base.results import Outcome, conclude_flow
 from nonholo.continuous import ContinuousFlow, Problem, Solver, solver_of
@@ -211,7 +211,8 @@ def _solve_flow(task: _Task, solver: Solver, first: FirstState, events: dict[str
     states = solution.states
     if not reconstruct:  # nor is the memory kept, of which the momenta are a part
         states = states._replace(momenta=states.momenta.copy(), poses=None, turned=None)
-    count, is_finite = len(states.momenta), are_moderate(((states.momenta, LARGEST), (states.poses, np.inf)))
+    count, is_finite = len(states.momenta), is_moderate(states.momenta)
+    is_finite = is_finite and (states.poses is None or is_moderate(states.poses, np.inf))
     outcome = solution.outcome or (Outcome.successful if is_finite else Outcome.nonfinite)
     motion = ContinuousFlow(task.system, (time[0], time[count - 1]), solution.at)
     rows = {"reduced_momentum": states.momenta, "cayley": None, "canonical_pose": states.poses, "turned": states.turned}

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from nonholo import kernels
-from nonholo.base.checks import LARGEST, are_moderate
+from nonholo.base.checks import is_moderate
 from nonholo.base.numerics import applied
 from nonholo.base.results import OUTCOMES, Outcome, OutcomeError
 from nonholo.base.types import Array, Float
@@ -62,13 +62,14 @@ class AbstractBodyStepper(AbstractStepper[Orbit]):
         """Bring momenta and charts to canonical ones, in place; return whether all that is saved is finite."""
         momenta, charts, poses = rows
         momenta[:], charts[:] = self.decode(momenta, charts)
-        good = are_moderate(((momenta, LARGEST), (charts, np.inf), (poses if self.with_poses else None, np.inf)))
+        good = is_moderate(momenta) and is_moderate(charts, np.inf)
+        good = good and (not self.with_poses or is_moderate(poses, np.inf))
         return Outcome.successful if good else Outcome.nonfinite
 
     def orbit(self, rows: Rows, step: int, every: int, outcome: Outcome) -> Orbit:
         """Return settled rows as an orbit."""
         (momenta, charts, raw), poses = rows, None
-        if self.with_poses and (poses := self.decode_poses(raw)) is not raw and not are_moderate([(poses, np.inf)]):
+        if self.with_poses and (poses := self.decode_poses(raw)) is not raw and not is_moderate(poses, np.inf):
             outcome = outcome or Outcome.nonfinite
         steps, motion = range(step, step + every * len(momenta), every), self.motion
         states = {"reduced_momentum": momenta, "cayley": charts, "canonical_pose": poses}

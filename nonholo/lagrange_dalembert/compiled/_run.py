@@ -159,8 +159,8 @@ def _body(system: Any, h: Any, q: Any, v: Any, *, at_node: bool = False) -> Coor
     size, constants = n + system.constraints, [np.ravel(x) for x in (float(h), *system.numbers_of_formulas)]
     departure, arrival = (np.concatenate([np.zeros(room), *constants]) for room in (place + n, place + 2 * n + 1))
     inputs, equations = np.zeros(code.border + size), np.zeros(size * size + 2 * size + 2)
-    matrix, residual, units, _ = np.split(equations, np.cumsum([size * size, size, size]))
-    parts = inputs[code.border :], equations, matrix.reshape(size, size), residual, units, np.zeros((size, size + 1))
+    rows = equations[:-2].reshape(size + 2, size)
+    parts = inputs[code.border :], equations, rows[:size], rows[size], rows[size + 1], np.zeros((size, size + 1))
     return CoordinateBody(*code[:3], departure, arrival, inputs, *parts, place, n)
 
 
@@ -196,13 +196,12 @@ def advance(
         for column, entries in zip(table, columns, strict=True):
             column[:row_count] = entries[:row_count].reshape(row_count, column.shape[1])
         return int(good), after, code
-    shape, ends = np.shape(state[0]), [body.place, body.place + body.velocity]
+    shape, first, second = np.shape(state[0]), body.place, body.place + body.velocity
 
     def unpack(flat: np.ndarray) -> State:
-        q, v, before = np.split(flat, ends)
-        return q.reshape(shape), v, before
+        return flat[:first].reshape(shape), flat[first:second], flat[second:]
 
-    flat, total, code = np.concatenate([np.ravel(x) for x in state]), rows * every, np.int64(0)
+    flat, total, code = np.concatenate([x.ravel() for x in state]), rows * every, np.int64(0)
     count = advance_coordinates(body, flat, float(sign), 0, total, every, *table)
     while count < total:
         _, after, code, (*_, impulses) = definition(unpack(flat), sign, np.int64(1), np.int64(1))
@@ -210,7 +209,7 @@ def advance(
             break
         if count % every == 0:
             table[2][count // every] = impulses[0]
-        flat = np.concatenate([np.ravel(x) for x in after])
+        flat = np.concatenate([x.ravel() for x in after])
         count = advance_coordinates(body, flat, float(sign), count + 1, total, every, *table)
     return int(count), unpack(flat), code
 
@@ -245,13 +244,13 @@ def evaluate(code: Values, count: int, *columns: np.ndarray) -> list[Any] | None
         part[...] = column
     each_row(code.function, inputs, table)
     *results, doubt = _blocks(table, [*code.shapes, ()])
-    return None if np.any(doubt) else results
+    return None if np.count_nonzero(doubt) else results
 
 
 def _blocks(table: np.ndarray, shapes: list[tuple[int, ...]]) -> list[np.ndarray]:
     """Return arrays of these shapes, whose numbers stand side by side in each row of a table."""
     ends = [0, *itertools.accumulate(map(math.prod, shapes))]
-    return [table[:, a:b].reshape(len(table), *s) for a, b, s in zip(ends[:-1], ends[1:], shapes, strict=True)]
+    return [table[:, a:b].reshape(len(table), *s) for (a, b), s in zip(itertools.pairwise(ends), shapes, strict=True)]
 
 
 def _nodes(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray] | None:

@@ -261,6 +261,7 @@ def _compile(function: Callable[..., Any]) -> Callable[..., Any]:
     return jax.jit(call, static_argnums=0)
 
 
+@functools.cache
 def room(name: str) -> Any:
     """Return a module that imports the caller's, or that loads slowly because of diffrax."""
     return importlib.import_module(f"nonholo.lagrange_dalembert.{name}")
