@@ -274,7 +274,7 @@ class Library:
         self._release = self._code.nonholo_release
         self._release.restype, self._release.argtypes = None, (ctypes.c_void_p,)
         flags = _flags_of_processor()
-        self._variants = [variant for variant, needs in _VARIANTS.items() if flags.issuperset(needs.split())]
+        self._variants = [name for name, demand in _VARIANTS.items() if flags.issuperset(demand.split())]
 
     def entry(self, kernel: Kernel, key: str) -> Callable[[list[Any]], Any] | None:
         """Return what runs a kernel for arguments of a kind; None if the library does not have it."""
@@ -302,11 +302,11 @@ def symbol_of(name: str, key: str) -> str:
 
 _V3 = "abm avx2 bmi1 bmi2 f16c fma movbe"
 _VARIANTS = {"_v4": f"{_V3} avx512bw avx512cd avx512dq avx512f avx512vl", "_v3": _V3, "": ""}
-"""What a processor must have for a variant of a function, the best one first."""
+"""The abilities of a processor that variants of functions demand; the best variant is the first."""
 
 
 def _flags_of_processor() -> set[str]:
-    """Return what the processor can do, as Linux names it; nothing elsewhere."""
+    """Return the abilities of the processor by their names in Linux; none elsewhere."""
     with contextlib.suppress(OSError):
         return set(Path("/proc/cpuinfo").read_text(encoding="utf-8").split())
     return set()

@@ -56,7 +56,11 @@ _PROCESSORS = {
     "linux-x86_64": {"": "x86-64", "_v3": "x86-64-v3", "_v4": "x86-64-v4"},
     "windows-amd64": {"": "x86-64"},
 }
-_WORTH = {"": "", "_v3": "ensemble|taylor|advance(_many)? General", "_v4": "ensemble|taylor"}
+_WORTH = {
+    "": "",
+    "_v3": "ensemble|taylor|advance(_many)? General|advance Secular",
+    "_v4": "ensemble|taylor|run.advance Secular",
+}
 """The lines that are worth a variant: runs with vectors of four numbers, and of eight."""
 _RUNTIME = Path(__file__).with_name("runtime.ll")
 _ENTRY = """

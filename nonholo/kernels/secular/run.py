@@ -99,29 +99,51 @@ def move(p: SecularBody, m0: float, nu: float, tau: float, y: np.ndarray, pose: 
     z0 = 1 / math.sqrt(1 + tau)
     sign = -z0 if p.slides else z0
     length = 2 * slide(p, m0, nu, tau, y) * z0 if p.slides else 0.0
-    for begin in range(0, len(pose), width):
-        row = pose[begin : begin + width]
-        along = _reflect(row, first, axis, z0, sign, y)
-        if p.slides:
-            row[k + 1] += length * along
+    for begin in range(0, len(pose), 4 * width):  # four sums at once: each term waits for the one before
+        last = len(pose) - width
+        places = (begin, min(begin + width, last), min(begin + 2 * width, last), min(begin + 3 * width, last))
+        along, square = _reflect(pose, places, first, axis, z0, sign, y)
+        for i in range(min(4, (len(pose) - begin) // width)):
+            row = pose[places[i] : places[i] + width]
+            row[axis] = 2 * z0 * along[i] - row[axis]
+            length_squared = square[i] + row[axis] ** 2
+            if length_squared > 0.5:
+                for j in range(k + 1):
+                    row[j] *= (3 - length_squared) / 2
+            if p.slides:
+                row[k + 1] += length * along[i]
 
 
-@njit(nogil=True, **COMPILED)
-def _reflect(row: np.ndarray, first: int, axis: int, z0: float, sign: float, y: np.ndarray) -> float:
-    """Reflect the turning entries of a row in (z0, sign z0 y), keep their length; return their part along it."""
-    k = len(y)
-    along, square = z0 * row[axis], 0.0
-    for i in range(k):
-        along += sign * y[i] * row[first + i]
-    for i in range(k):
-        row[first + i] -= 2 * along * sign * y[i]
-        square += row[first + i] ** 2
-    row[axis] = 2 * z0 * along - row[axis]
-    square += row[axis] ** 2
-    if square > 0.5:
-        for i in range(k + 1):
-            row[i] *= (3 - square) / 2
-    return along
+@njit(forceinline=True, **COMPILED)
+def _reflect(
+    pose: np.ndarray, places: tuple[int, int, int, int], first: int, axis: int, z0: float, sign: float, y: np.ndarray
+) -> tuple[tuple[float, float, float, float], tuple[float, float, float, float]]:
+    """Reflect the turning entries of four rows in (z0, sign z0 y), but for the one on the axis.
+
+    Return the parts of the rows along it, and the sums of squares. A row that comes twice is reflected once.
+    """
+    a, b, c, d = places
+    along0, along1, along2, along3 = z0 * pose[a + axis], z0 * pose[b + axis], z0 * pose[c + axis], z0 * pose[d + axis]
+    square0 = square1 = square2 = square3 = 0.0
+    for i in range(len(y)):
+        x, j = sign * y[i], first + i  # a signed index would be tested for counting from the end
+        along0 += x * pose[np.uint64(a + j)]
+        along1 += x * pose[np.uint64(b + j)]
+        along2 += x * pose[np.uint64(c + j)]
+        along3 += x * pose[np.uint64(d + j)]
+    for i in range(len(y)):
+        j = first + i
+        at0, at1, at2, at3 = np.uint64(a + j), np.uint64(b + j), np.uint64(c + j), np.uint64(d + j)
+        value0 = pose[at0] - 2 * along0 * sign * y[i]
+        value1 = pose[at1] - 2 * along1 * sign * y[i]
+        value2 = pose[at2] - 2 * along2 * sign * y[i]
+        value3 = pose[at3] - 2 * along3 * sign * y[i]
+        pose[at0], pose[at1], pose[at2], pose[at3] = value0, value1, value2, value3
+        square0 += value0 * value0
+        square1 += value1 * value1
+        square2 += value2 * value2
+        square3 += value3 * value3
+    return (along0, along1, along2, along3), (square0, square1, square2, square3)
 
 
 @njit(nogil=True, **COMPILED)
