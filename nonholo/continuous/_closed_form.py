@@ -123,6 +123,7 @@ def blade_path(
 
 
 def _short_path(ratio: float, start: float, elapsed: Float[np.ndarray, "K"]) -> Float[np.ndarray, "K"]:
+    """Return the path of `blade_path` by Gauss's quadrature."""
     nodes, weights = np.polynomial.legendre.leggauss(_NODES)
     parts = (1 + nodes) / 2 * elapsed[:, None]
     direction = np.exp(1j * ratio * _gudermannian_difference(start, parts))
