@@ -92,6 +92,7 @@ def _quarter_turn(x: Float[np.ndarray, "2"]) -> Float[np.ndarray, "2"]:
 _FRACTION_DEPTH = 200  # enough to rounding for every ratio on the near side of the border
 _SERIES_LENGTH = 60  # enough to rounding on the far side
 _LEAST_BORDER = 2.5
+_NODES = 16  # to rounding on half a unit with one radian of turning
 
 
 def blade_path(
@@ -99,7 +100,8 @@ def blade_path(
 ) -> tuple[Float[np.ndarray, "K"], Float[np.ndarray, "K"]]:
     r"""Return $\phi - \phi_0$ and $e^{-i\Lambda\phi_0}[G(s) - G(s_0)]$ for $s = s_0 +$ `elapsed`, $\Lambda$ = `ratio`.
 
-    Where both ends lie far out on the same side, the straight part is subtracted analytically.
+    Where both ends lie far out on the same side, the straight part is subtracted analytically. A short path that turns
+    little, on which the antiderivative hardly changes, is a quadrature of Gauss.
 
     Example:
         >>> angle, path = blade_path(2.0, 0.0, np.array([800.0]))
@@ -116,7 +118,16 @@ def blade_path(
         straight = np.copysign(1.0, start) * elapsed + _remainder(ratio, np.exp(-abs(s))) - _remainder(ratio, q0)
         far = np.exp(2j * ratio * np.arctan(q0)) * straight
         path = np.where(together, far if start > 0 else far.conj(), path)
-    return angle, path
+    short = (abs(elapsed) <= 0.5) & (ratio * abs(angle) <= 1)
+    return angle, np.where(short, _short_path(ratio, start, elapsed), path)
+
+
+def _short_path(ratio: float, start: float, elapsed: Float[np.ndarray, "K"]) -> Float[np.ndarray, "K"]:
+    """Return the path of `blade_path` by Gauss's quadrature."""
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    parts = (1 + nodes) / 2 * elapsed[:, None]
+    direction = np.exp(1j * ratio * _gudermannian_difference(start, parts))
+    return elapsed / 2 * ((np.tanh(start + parts) * direction) @ weights)
 
 
 def _gudermannian_difference(start: float, elapsed: np.ndarray) -> np.ndarray:

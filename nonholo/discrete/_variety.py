@@ -23,6 +23,7 @@ Constraint = str | tuple[Callable[[Array], Array], ...]
 
 _NAMES = ("skew", "exponential", "naive")
 _ROUNDING = 1e-10  # relative, of cubes that must stay in the subspace, and of tangents of functions
+_ROWS = 1e-12  # relative to the largest entry: a row in axes that are nearly those of the body has small ones
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -98,15 +99,15 @@ def variety_of(system: AbstractSystem, constraint: Constraint) -> Variety:
     canonical = system.canonical
     subspace, annihilator = np.asarray(canonical.constraint_subspace), np.asarray(canonical.annihilator)
     rows = (subspace.tobytes(), subspace.shape, annihilator.tobytes(), annihilator.shape)
-    return _variety(system.group, rows, constraint)
+    return _variety(system.group, rows, constraint, has_form=canonical.normal_form is not None)
 
 
 @functools.lru_cache(maxsize=256)
-def _variety(group: AbstractMatrixGroup, rows: tuple, constraint: str) -> Variety:
+def _variety(group: AbstractMatrixGroup, rows: tuple, constraint: str, *, has_form: bool) -> Variety:
     data, shape, other, other_shape = rows
     subspace = np.frombuffer(data).reshape(shape)
     annihilator = np.frombuffer(other).reshape(other_shape)
-    is_closed = group.has_skew_part and _cubes_stay(group, subspace, annihilator)
+    is_closed = has_form or (group.has_skew_part and _cubes_stay(group, subspace, annihilator))
     exponential = constraint == "exponential" and not is_closed
     chart = subspace if is_closed or exponential else np.eye(group.dim)
     return Variety(group, chart, annihilator, constraint, exponential)
@@ -118,10 +119,13 @@ def _cubes_stay(group: AbstractMatrixGroup, subspace: np.ndarray, annihilator: n
     forbidden = forbidden_matrices(group, annihilator)
     escape = np.einsum("jab,iab->ij", forbidden, X @ X @ X)
     sizes = np.abs(X) @ np.abs(X) @ np.abs(X)
-    terms = np.einsum("jab,iab->ij", np.abs(forbidden), sizes)  # lengths in any unit
+    bound = _ROUNDING * np.einsum("jab,iab->ij", np.abs(forbidden), sizes)  # lengths in any unit
     if group.form is not None:  # no lengths: zeros of a slanted basis may be rounding errors
-        terms = np.abs(forbidden).max(initial=0.0) * sizes.max(initial=0.0)
-    return bool(np.all(np.abs(escape) <= _ROUNDING * terms))
+        bound = _ROUNDING * np.abs(forbidden).max(initial=0.0) * sizes.max(initial=0.0)
+    for part in (sizes[..., : group.point_size], sizes[..., group.point_size :]):  # turns, slides
+        part[:] = part.max((-2, -1), initial=0.0, keepdims=True)
+    bound = np.maximum(bound, _ROWS * np.einsum("jab,iab->ij", np.abs(forbidden), sizes))
+    return bool(np.all(np.abs(escape) <= bound))
 
 
 def forbidden_matrices(group: AbstractMatrixGroup, annihilator: np.ndarray) -> Float[np.ndarray, "s N N"]:

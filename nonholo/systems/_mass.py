@@ -169,9 +169,9 @@ def form_mass_tensor(where: str, group: AbstractMatrixGroup, value: Array) -> Ar
 
 
 def rotation_to(axis: np.ndarray) -> np.ndarray:
-    """Return the shortest rotation taking e3 to the unit vector `axis`; diag(1, -1, -1) for -e3."""
+    """Return the shortest rotation taking e3 to the unit vector `axis`; diag(1, -1, -1) for -e3, to 1e-150."""
     x, y, z = axis
-    if z < 0 and x == 0 and y == 0:
+    if z < 0 and x * x + y * y < 1e-300:  # whose squares underflow
         return np.diag([1.0, -1.0, -1.0])
     scale = 1 / (1 + z) if z > -0.5 else (1 - z) / (x * x + y * y)
     return np.array([[1 - scale * x * x, -scale * x * y, x], [-scale * x * y, 1 - scale * y * y, y], [-x, -y, z]])

@@ -60,6 +60,16 @@ def test_balanced_sleigh_moves_on_a_circle() -> None:
     assert np.abs(orbit.heading - 0.4 * orbit.time).max() <= 1e-14
 
 
+@pytest.mark.parametrize("omega", [1e-12, 1e-6, 0.1])
+@pytest.mark.parametrize("a", [-1e-14, 1e-9, 1e-5])
+def test_a_center_of_mass_next_to_the_blade(a: float, omega: float) -> None:
+    """Short paths have all digits of the series, where antiderivatives of size 1/a and 1/omega are subtracted."""
+    start = {"restricted_velocity": (omega, 1.0), "times": np.linspace(0.0, 4.0, 9)}
+    sleigh = nh.ChaplyginSleigh(1.0, 0.5, a, 0.3)
+    exact, solved = nh.flow(sleigh, method="closed_form", **start), nh.flow(sleigh, **start)
+    assert np.abs(exact.position - solved.position).max() <= 4e-15
+
+
 def test_nearly_balanced_sleigh_is_continuous() -> None:
     """As a tends to zero the closed form tends to the circle, uniformly down to the smallest number."""
     times = np.linspace(0.0, 10.0, 21)

@@ -10,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from bodies import elsewhere, tensor
+from comparisons import assert_same
 from problems import PROBLEMS, Problem
 
 import nonholo as nh
@@ -78,6 +79,13 @@ def test_logarithmic_momenta_against_the_series() -> None:
     inverse = sum(b * np.linalg.matrix_power(ad, k) for k, b in enumerate(bernoulli))
     P = nh.discrete_legendre(nh.discretize(system, h, difference="logarithmic"), system.group.exp(x))
     assert np.abs(P - inverse.T @ system.inertia_operator @ x / h).max() < 1e-9
+
+
+def test_a_heavier_body_moves_in_the_same_way() -> None:
+    """Masses in grams, or in another unit, are a factor of the equations: displacements have the same bits."""
+    J, start = PROBLEMS[0].system.mass_tensor, {"restricted_velocity": (0.3, 0.2), "steps": 10}
+    light, heavy = (nh.discretize(nh.SuslovTop(unit * J), 0.1, difference="logarithmic") for unit in (1.0, 2.0**40))
+    assert_same(nh.simulate(light, **start), nh.simulate(heavy, **start), "displacement")
 
 
 @pytest.mark.profile("routes", keep=["offset sleigh"])

@@ -12,6 +12,7 @@ from nonholo.systems import AbstractLLSystem
 
 SLEIGH = nh.ChaplyginSleigh(1.0, 0.75, 0.5, 0.3)
 TILTED = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]], axis=[0.6, 0.0, 0.8])
+IN_SPACE = nh.MultidimensionalSleigh(1.3, [0.3, 0.2, -0.1], np.diag([0.5, 0.7, 0.4]) + 0.1)
 TOP = nh.SuslovTop([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]])
 
 
@@ -50,6 +51,21 @@ def test_angles_of_displacements_are_those_of_their_logarithms(system: nh.Suslov
     directions = np.random.default_rng(3).normal(size=(60, len(variety.chart)))
     y = directions * np.repeat([0.0, 1e-200, 1e-9, 0.3, 4.0, 1e4], 10)[:, None]
     assert np.abs(variety.angle(y) - group.angle(group.log(variety.displaced(y)))).max() <= 1e-14
+
+
+@pytest.mark.parametrize("tilt", [6e-17, 1e-9, 1e-6])
+@pytest.mark.parametrize("name", ["SO(3)", "SO(4)", "SE(3)"])
+def test_rows_in_axes_next_to_those_of_the_body(name: str, tilt: float) -> None:
+    """Their small entries have few digits or none: the chart, and what is read of it, are those of the named class."""
+    body = {"SO(3)": TOP, "SO(4)": nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0]) + 0.1), "SE(3)": IN_SPACE}[name]
+    group, velocity = body.group, np.linspace(0.3, 0.5, body.rank) @ body.constraint_subspace
+    g = group.exp(tilt * np.cos(np.arange(group.dim)))
+    forbidden = body.annihilator @ group.adjoint(group.inverse(g))
+    same = nh.LLSystem(group, g @ body.homogeneous_mass_tensor @ g.T, annihilator=forbidden)
+    expected = nh.simulate(nh.discretize(body, 0.1), body_velocity=velocity, steps=9)
+    moved = nh.simulate(nh.discretize(same, 0.1), body_velocity=group.adjoint(g) @ velocity, steps=9)
+    assert np.abs(moved.displacement - g @ expected.displacement @ group.inverse(g)).max() < 1e-14
+    assert np.abs(moved.momentum @ group.adjoint(g) - expected.momentum).max() < 1e-13
 
 
 @pytest.mark.profile("routes", instead="test_functions_of_the_same_variety_give_the_same_orbit")

@@ -152,7 +152,7 @@ def _continue(
     def advance(path: _Path) -> _Path:
         first, last = path.count < 0, ~_is_unfinished(path)
         ahead = jnp.where(first, 0.0, jnp.where(last, 1.0, jnp.minimum(path.s + path.size, 1.0)))
-        det, values, correction, tangent = evaluate(path.iterate, ahead)
+        det, correction, tangent = evaluate(path.iterate, ahead)
         y = path.iterate - correction
         is_small = jnp.sum(correction**2) <= eps * (1 + jnp.sum(y**2))
         move, off = jnp.sum((y - path.root) ** 2), jnp.sum((y - path.guess) ** 2)
@@ -165,7 +165,7 @@ def _continue(
         size = jnp.where(is_root, 2 * path.size, jnp.where(ends, path.size / 4, path.size))
         following = path._replace(s=s, size=size, root=root, tangent=tangent, now=now)
         ahead = jnp.where(_is_unfinished(following), root + jnp.minimum(size, 1 - s) * tangent, root)
-        at_rest = jnp.all(jnp.abs(values) < eps**0.65) & jnp.all(jnp.abs(correction) < eps**0.65 * (1 + jnp.abs(y)))
+        at_rest = jnp.all(jnp.abs(correction) < eps**0.65 * (1 + jnp.abs(y)))  # momenta have any unit
         following = following._replace(
             start=jnp.where(first, det, path.start),
             guess=jnp.where(ends, ahead, path.guess),
@@ -208,15 +208,15 @@ def _verdict(end: _Path) -> tuple[Array, Array]:
 
 
 def _evaluation(residual: Residual, before: Array, target: Array) -> Callable[[Array, Array], tuple[Array, ...]]:
-    """Return the function of y and s that gives Jacobian determinant, residual, Newton correction and tangent."""
+    """Return the function of y and s that gives Jacobian determinant, Newton correction and tangent."""
 
     def values(y: Array, s: Array) -> tuple[Array, Array]:
         gap = residual(y, before + s * (target - before))
         return gap, gap
 
-    def evaluate(y: Array, s: Array) -> tuple[Array, Array, Array, Array]:
+    def evaluate(y: Array, s: Array) -> tuple[Array, Array, Array]:
         (slope, rate), gap = jax.jacfwd(values, argnums=(0, 1), has_aux=True)(y, s)
         det, solutions = _solve(slope, jnp.stack([gap, -rate], axis=1))
-        return det, gap, solutions[:, 0], solutions[:, 1]
+        return det, solutions[:, 0], solutions[:, 1]
 
     return evaluate
