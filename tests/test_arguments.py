@@ -25,6 +25,7 @@ BAD: dict[str, tuple[Callable[[Any], Any], str]] = {
     "start": (lambda x: nh.simulate(TOP, steps=2, momentum=x), "simulate(momentum=...)"),
     "rollout": (lambda x: nh.rollout(TOP, steps=2, momentum=x), "rollout(momentum=...)"),
     "step": (lambda x: nh.step(TOP, momentum=x), "step(momentum=...)"),
+    "chart": (lambda x: TOP.displaced([x, 0.0]), "Discretization.displaced(cayley=...)"),
     "legendre": (lambda x: nh.discrete_legendre(TOP, x), "discrete_legendre(displacement=...)"),
     "subspace": (lambda x: nh.reference_point_subspace(x, np.eye(3)), "reference_point_subspace(n=...)"),
     "depth": (lambda x: nh.branch_tree(TOP, np.eye(3), x), "branch_tree(depth=...)"),

@@ -144,7 +144,7 @@ def _check_finite(where: Owner, value: np.ndarray, remedy: str) -> None:
         raise error(where, "be finite", f"{value[position]}{place}", remedy)
 
 
-def _refuse_large(where: str, value: np.ndarray, remedy: str) -> None:
+def _refuse_large(where: Owner, value: np.ndarray, remedy: str) -> None:
     """Refuse numbers that are not finite, or whose squares overflow."""
     if not (most := float(np.abs(value).max(initial=0.0))) <= LARGEST:
         _check_finite(where, value, remedy)
@@ -176,10 +176,13 @@ def _as_floats(result: Array) -> Array:
         return result.astype(np.complex128 if result.dtype.kind == "c" else np.float64)
 
 
-def trailing(where: Owner, value: Any, shape: tuple[int, ...], remedy: str, *, real: bool = False) -> Array:
+def trailing(
+    where: Owner, value: Any, shape: tuple[int, ...], remedy: str, *, real: bool = False, moderate: bool = False
+) -> Array:
     """Return an array (a sequence becomes float64) whose last axes have the given shape; leading axes are free.
 
     One element has to be finite. In a stack NaN stays NaN: it marks what has no value, such as a member that has ended.
+    Of functions that compute without warnings, numbers have to be `moderate`.
     """
     if _is_as_wanted(value, shape):
         return value
@@ -193,7 +196,8 @@ def trailing(where: Owner, value: Any, shape: tuple[int, ...], remedy: str, *, r
     try:
         result = _as_floats(raw)
         if not is_moderate(result):
-            _check_finite(where, result if result.ndim == len(shape) else np.where(np.isnan(result), 0, result), remedy)
+            rows = result if result.ndim == len(shape) else np.where(np.isnan(result), 0, result)
+            (_refuse_large if moderate else _check_finite)(where, rows, remedy)
     except MemoryError:
         raise error(where, "fit into memory", f"shape {raw.shape}", remedy) from None
     return result

@@ -2,6 +2,7 @@
 
 import contextlib
 import signal
+import sys
 from typing import Annotated
 
 import typer
@@ -33,7 +34,10 @@ def main() -> None:
             number = getattr(signal, name)
             if signal.getsignal(number) == signal.SIG_DFL:  # nohup has it ignored
                 signal.signal(number, signal.default_int_handler)
-    app()
+    try:
+        app()
+    except OSError as failure:  # a full disk under the standard output; commands report other files
+        sys.exit(str(failure))
 
 
 def _show_version(is_asked: bool) -> None:

@@ -129,7 +129,7 @@ class Discretization(Scheme, AbstractMotion):
     def displaced(self, cayley: Float[np.ndarray, "... m"]) -> Float[np.ndarray, "... N N"]:
         """Return the elements of the variety, in the user's frame, with canonical chart coordinates."""
         where, size = "Discretization.displaced(cayley=...)", len(self.variety.chart)
-        charts = trailing(where, cayley, (size,), f"Pass {size} chart coordinates.", real=True)
+        charts = trailing(where, cayley, (size,), f"Pass {size} chart coordinates.", real=True, moderate=True)
         return self.displacement_decoder.displacement(charts)
 
     def displacements(self, states: Orbit) -> Float[np.ndarray, "K N N"]:

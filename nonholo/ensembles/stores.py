@@ -324,7 +324,8 @@ class SweepStore:
         content, before = self._content, list(self.layout.sizes)
         changes = {"design": content["design"] | {"members": members}, "before": before}
         changes["layout"] = [[members], list(self.layout.chunk)]
-        identity = uuid.uuid4().hex  # whoever still writes the smaller one is refused
+        origin = self.made[: io.blocks.ORIGIN]  # which the seals hold
+        identity = origin + uuid.uuid4().hex[len(origin) :]  # whoever still writes the smaller one is refused
         attributes = {"made": identity, "sweep": json.dumps(content | changes), "finished": False}
         io.blocks.edit_attributes(self.path, attributes)
         return SweepStore(self.path, identity)

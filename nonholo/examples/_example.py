@@ -167,7 +167,7 @@ def _row(where: str, value: Any, default: Any, words: str, positive: bool) -> tu
 
 def _number(where: str, value: Any, default: Any, real: bool) -> Any:
     """Return a checked number; an argument whose default is no number is left to its function."""
-    if not isinstance(default, float) or value is None:
+    if not isinstance(default, float):
         return value
     return float(number(where, value) if real else scale(where, value, _POSITIVE))
 

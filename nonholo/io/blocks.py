@@ -1,9 +1,9 @@
 """A store of blocks of named arrays: one block is one chunk of each array, then its mark, which is written last.
 
 A mark is a small file under `run/blocks`: a checksum, and as JSON the attributes of the block and its seal. A checksum
-of a chunk does not know its place, so the seal is one number of the places and the checksums of all chunks of the
-block. Rows of which a block has any number, such as crossings, are in whole chunks of a log, an array that grows. All
-writes are atomic, so a writer can be killed at any moment.
+of a chunk does not know its place, so the seal is one number of the store, the places and the checksums of all chunks
+of the block. Rows of which a block has any number, such as crossings, are in whole chunks of a log, an array that
+grows. All writes are atomic, so a writer can be killed at any moment.
 """
 
 import asyncio
@@ -198,6 +198,7 @@ BEFORE = -1
 Variables: TypeAlias = Mapping[str, Variable]
 _MARKS = Path("run", "blocks")
 _CRC, _BITS = 4, 48  # bytes at the end of a chunk; bits of a seal
+ORIGIN = 16  # digits at the beginning of what identifies a store, which it keeps when it grows
 
 
 class Piece(NamedTuple):
@@ -416,21 +417,22 @@ class BlockStore:
         consolidate(self.path)
 
     def _seal(self, block: int, mark: BlockMark) -> int:
-        """Return one number of the places and the checksums of the chunks of a block, and of the block's number."""
-        seal = hashlib.sha256(f"{block}".encode())
+        """Return one number of the store, the block's number, and the places and checksums of its chunks."""
+        seal = hashlib.sha256(f"{self.made[:ORIGIN]} {block}".encode())
         for name, index in self._chunks(block, mark):
             chunk = chunk_path(self.path, name, self.array(name), index)
             seal.update(f"\n{chunk.relative_to(self.path).as_posix()} {_crc(chunk).hex()}".encode())
         return int.from_bytes(seal.digest()[: _BITS // 8])
 
     def _check_seal(self, block: int, mark: BlockMark) -> None:
-        """Refuse a block of which a chunk is missing, or of another place."""
+        """Refuse a block of which a chunk is missing, or of another place or store."""
         if mark.seal == self._seal(block, mark):
             return
         for name, index in self._chunks(block, mark):
             if not chunk_path(self.path, name, self.array(name), index).is_file():
                 raise DamagedError(f"no such chunk, {chunk_name(name, self.array(name), index)}")
-        raise DamagedError(f"a chunk of another place in block {block}, which {self._mark_file(block).name} seals")
+        mark_name = self._mark_file(block).name
+        raise DamagedError(f"a chunk of another place or store in block {block}, which {mark_name} seals")
 
     def _chunks(self, block: int, mark: BlockMark) -> Iterator[tuple[str, Shape]]:
         """Return the chunks of a block by the names of their arrays."""

@@ -19,7 +19,7 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection
 from nonholo.base.checks import checked_path, error, shown
 from nonholo.base.types import Float, Int
 from nonholo.discrete import Discretization
-from nonholo.io.places import check_file
+from nonholo.io.places import check_file, complete_file
 from nonholo.orbit import AbstractOrbit, Orbit, any_orbit, as_orbit
 from nonholo.plot import theme
 from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, System, refuse_fixed_in_space
@@ -189,7 +189,8 @@ def finish_page(figure: Figure, title: str, facts: list[str], path: str | Path |
     layout = ConstrainedLayoutEngine(rect=(0.004, 0.004, 0.992, below), hspace=0.05, wspace=0.03)
     figure.set_layout_engine(layout)
     if path is not None:
-        figure.savefig(path)
+        with complete_file(Path(path)) as part:
+            figure.savefig(part)
     return figure
 
 

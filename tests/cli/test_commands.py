@@ -221,6 +221,16 @@ print(sorted(heavy & set(sys.modules)))
     assert done.stdout.strip() == "[]"
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="only Linux has a device that is full")
+@pytest.mark.parametrize("arguments", [("cite",), ("new", "sleigh"), ("systems",), ("--help",)], ids=" ".join)
+def test_full_standard_output_is_one_sentence(arguments: tuple[str, ...]) -> None:
+    """Where the standard output cannot be written the command ends with code 1 and the reason of the system."""
+    command = [sys.executable, "-c", "from nonholo.cli._app import main; main()", *arguments]
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)  # noqa: S603
+    assert (done.returncode, done.stderr) == (1, "[Errno 28] No space left on device\n")
+
+
 @pytest.mark.parametrize("steps", [10**13, 10**30])
 def test_more_states_than_memory(steps: int, nonholo: Command) -> None:
     """A run that could never be held on the disk is refused in words."""

@@ -46,6 +46,17 @@ def test_every_kind_of_picture() -> None:
             assert (axes.get_xlabel(), axes.get_ylabel()) == ("body velocity.0", "heading")
 
 
+@pytest.mark.parametrize("place", [".", ".."])
+def test_a_store_that_is_where_one_stands(place: str, nonholo: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Inside of a store its picture lies beside it, too; the root of all folders is no store."""
+    nh.save_orbit(_sleigh(steps=2), "a.zarr")
+    picture = Path("a.png").absolute()
+    monkeypatch.chdir("a.zarr" if place == "." else "a.zarr/time")
+    assert_ends(nonholo("plot", place), 0)
+    assert picture.exists()
+    assert_ends(nonholo("plot", "/"), 2, "must be a store of an orbit")
+
+
 def test_options_of_pictures(nonholo: Command) -> None:
     """Kind, title, size, dots per inch and background of the picture are what the options say."""
     nh.save_orbit(_sleigh(steps=20), "a.zarr")

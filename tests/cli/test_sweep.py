@@ -232,6 +232,7 @@ def test_all_problems_at_once_are_refused() -> None:
         ('kind = "grid"', 'kind = "gird"', "design: must have a known kind. Got 'gird'. Did you mean grid?"),
         ('kind = "grid"', 'kind = "random"', "design.members: is missing"),
         ("[0.3, 0.5]", "{from = 0.1, to = 1}", "body.a.count: is missing"),
+        ("[0.3, 0.5]", "{uniform = [0, 1]}", "body.a.uniform: is not a known key. Known: from, to, count, spacing."),
         ("[0.3, 0.5]", "{from = -1, to = 1, count = 3, spacing = 'logarithmic'}", "must have positive bounds"),
         ("[0.3, 0.5]", "{from = 0, to = 1, count = 3, spacing = 'log'}", "body.a.spacing: must be 'linear' or"),
         ("steps = 20", 'steps = 20\nbranch = "next"', "run.branch: must be 'principal', 'nearest', "),

@@ -262,9 +262,9 @@ def test_a_block_in_the_place_of_another_is_computed_again(one: str, other: str,
     path = tmp_path / "run.zarr"
     whole = swept(path)
     swap(path, one, other)
-    with pytest.raises(ValueError, match="of another place in block"):
+    with pytest.raises(ValueError, match="of another place or store in block"):
         nh.load_sweep(path)
-    with pytest.warns(RuntimeWarning, match="of another place in block"):
+    with pytest.warns(RuntimeWarning, match="of another place or store in block"):
         assert same(resumed(path), whole)
     assert same(nh.load_sweep(path), whole)
 

@@ -137,6 +137,7 @@ test_bad_parameters_are_refused = refusals(
     (lambda: nh.examples.kinematic_car(configuration=(0, 0, 0, 0, 1.6)), r"have \|phi\| < pi/2"),
     (lambda: nh.examples.two_wheeled_robot(half_width=-1.0), r"half_width=...\)` must be positive"),
     (lambda: nh.examples.chaotic_quartic_oscillator(pairs=0), r"pairs=...\)` must be a positive integer"),
+    (lambda: nh.examples.driven_sleigh(speed=None), r"speed=...\)` must be an array of real numbers"),
     (lambda: nh.examples.non_reversible(turning="fast"), r"turning=...\)` must be an array of real numbers"),
 )
 

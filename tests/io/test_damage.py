@@ -68,6 +68,19 @@ def test_a_chunk_in_the_place_of_another_is_refused(one: str, other: str, tmp_pa
     assert found.events["north"].step.tolist() == whole.events["north"].step.tolist()
 
 
+def test_attributes_of_another_store_are_refused(tmp_path: Path) -> None:
+    """Those of another run of this length have a checksum, too; the seals tell that they belong to other chunks."""
+    own, other = tmp_path / "own.zarr", tmp_path / "other.zarr"
+    _run(own)
+    nh.simulate(nh.discretize(nh.ChaplyginSleigh(2.0, 0.7, 0.3, 0.1), 0.1), **RUN, store=other)
+    shutil.copy(other / "zarr.json", own)
+    for opened in (nh.load_orbit, lambda store: store_to_csv(store, tmp_path / "poses.csv")):
+        with pytest.raises(ValueError, match="another place or store in block 0"):
+            opened(own)
+    with pytest.warns(RuntimeWarning, match="another place"), pytest.raises(ValueError, match="start of the run"):
+        nh.resume(own)
+
+
 def test_an_orbit_that_was_saved_whole_is_sealed(tmp_path: Path) -> None:
     """Chunks of two of its arrays that have one shape are not taken for each other."""
     nh.save_orbit(nh.simulate(SLEIGH, body_velocity=(0.3, -1.0, 0.0), steps=20), tmp_path / "orbit.zarr")

@@ -1,12 +1,14 @@
 """The overview: its panels for every kind of orbit, its files, and that no settings leak."""
 
 import dataclasses
+import errno
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from PIL import Image
 from plot.runs import MASS_TENSOR, top_run
 
@@ -75,6 +77,23 @@ def test_older_pictures_are_kept(draw: str, sleigh_orbit: nh.Orbit, tmp_path: Pa
     path.mkdir()
     with pytest.raises(FileExistsError, match="not a file"):
         functions[draw](overwrite=True)
+
+
+def test_a_picture_that_fails_leaves_nothing(
+    sleigh_orbit: nh.Orbit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On a full disk an older picture stays as it was, and no part of the new one is left."""
+    path = tmp_path / "a.png"
+    path.write_text("mine")
+
+    def write_half(_: Figure, file: str) -> None:
+        Path(file).write_text("half")
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Figure, "savefig", write_half)
+    with pytest.raises(OSError, match=r"No space left on device\. Nothing at this path was changed"):
+        sleigh_orbit.plot(str(path), overwrite=True)
+    assert [file.read_text() for file in tmp_path.iterdir()] == ["mine"]
 
 
 def test_global_settings_are_unchanged(sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:

@@ -104,7 +104,8 @@ class Section(BaseModel):
         try:
             return handler(table)
         except ValidationError as failure:
-            flaws = [_details_of(entry, cls.model_fields) for entry in failure.errors(include_url=False)]
+            keys = [field.alias or name for name, field in cls.model_fields.items()]
+            flaws = [_details_of(entry, keys) for entry in failure.errors(include_url=False)]
             raise ValidationError.from_exception_data(cls.__name__, flaws) from None
 
 

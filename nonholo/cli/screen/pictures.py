@@ -85,7 +85,8 @@ def _quantity(side: str, name: str | None) -> Callable[["Orbit"], "np.ndarray"]:
 
 def beside(store: Path, suffix: str) -> Path:
     """Return the path of a picture that belongs to a store."""
-    return store.with_name(f"{store.name.removesuffix('.zarr')}.{suffix}")
+    place = store.resolve() if store.name in ("", "..") else store
+    return place.parent / f"{place.name.removesuffix('.zarr')}.{suffix}"
 
 
 @contextlib.contextmanager
