@@ -22,7 +22,14 @@ from nonholo.discrete.definition import compile_double, step_slopes
 from nonholo.lagrange_dalembert import CoordinateFlow, tangents
 from nonholo.simulation import refuse_many_matrices, simulate
 from nonholo.simulation.traced import definition_of
-from nonholo.systems import AbstractCoordinateSystem, Start, central_differences, refuse_slip, refuse_wide
+from nonholo.systems import (
+    AbstractCoordinateSystem,
+    Start,
+    central_differences,
+    extent_of,
+    refuse_slip,
+    refuse_wide,
+)
 
 _TIMES = np.array([0.0, 0.3719, 0.9173])  # not in a ratio that a rotation may have
 _OTHERS, _SPREAD = 3, 0.3
@@ -199,17 +206,27 @@ def beside_state(owner: str, subject: Any, configuration: Any, velocity: Any) ->
     """Return the changes beside a state of a system or of its map, and the function that gives states beside it."""
     motion = CoordinateFlow(subject) if isinstance(subject, AbstractCoordinateSystem) else subject
     x, v = tangents.begin(motion, owner, configuration, velocity)
-    later = tangents.following(motion, x, v)
-    rng, size = np.random.default_rng(0), len(v) + motion.system.is_driven
-    xi, w = _SPREAD * rng.uniform(-1, 1, (_OTHERS, size)), _SPREAD * rng.uniform(-1, 1, (_OTHERS, len(v)))
-    places, velocities = tangents.beside(motion, x, v, xi, (np.abs(v).max() or 1.0) * w)
-    velocities = np.concatenate([np.tile(v, (1 + len(later), 1)), velocities])
-    slopes = tangents.slopes(motion, np.concatenate([x[None], later, places]), velocities)
-    names, state = _names_of_coordinates(motion.system), np.append(np.zeros(size), v)
-    frame = None if motion.system.coordinates else _frame(slopes[1][0], size)
+    places, units = np.concatenate([x[None], tangents.following(motion, x, v)]), tangents.units(motion.system, x, v)
+    steady = tangents.slopes(motion, places, np.tile(v, (len(places), 1)))
+    rng, n, in_coordinates = np.random.default_rng(0), len(v), motion.system.coordinates
+    size = n + motion.system.is_driven
+    state = np.append(x if in_coordinates else np.zeros(size), v)
+    reach = np.minimum(1.0, units * extent_of(state[:n], units))
+    speed = units * np.abs(v / units).max() if np.any(v) else reach * _rate(steady[1][0]) / (motion.time_step or 1.0)
+    xi = _SPREAD * np.append(reach, np.ones(size - n)) * rng.uniform(-1, 1, (_OTHERS, size))
+    others = tangents.beside(motion, x, v, xi, _SPREAD * speed * rng.uniform(-1, 1, (_OTHERS, n)))
+    pairs = zip(steady, tangents.slopes(motion, *others), strict=True)
+    change, slope, rows = (np.concatenate(pair) for pair in pairs)
+    names = _names_of_coordinates(motion.system)
+    frame = None if in_coordinates else _frame(steady[1][0], size)
     times = np.append(0.0, tangents.LATER)
-    local = Local(names, size, state, *slopes, times, tangents.units(motion.system, x, v), frame)
+    local = Local(names, size, state, change, slope, rows, times, units, frame)
     return local, functools.partial(_coordinates_beside, motion, x, v)
+
+
+def _rate(slope: Float[np.ndarray, "m m"]) -> float:
+    """Return the fastest rate of the motion beside a state; one where there is none."""
+    return float(np.abs(np.linalg.eigvals(slope)).max()) or 1.0 if np.isfinite(slope).all() else 1.0
 
 
 def _coordinates_beside(motion: Any, x: Array, v: Array, xi: Array, w: Array) -> tuple[np.ndarray, np.ndarray]:

@@ -16,12 +16,12 @@ from nonholo.base.types import Bool, Float, Inexact, Int
 from nonholo.continuous import ContinuousFlow, flow_tangents
 from nonholo.discrete import Discretization
 from nonholo.orbit import Orbit, as_orbit
-from nonholo.systems import AbstractCoordinateDiscretization, AbstractCoordinateSystem, AbstractSystem
+from nonholo.systems import AbstractCoordinateDiscretization, AbstractCoordinateSystem, AbstractSystem, extent_of
 
 _CHOICES = 1000  # of velocities
 _SHARE = 0.05  # least singular value of the dependent columns of constraints, orthonormal in units of equal energy
 _UNSEEN = 1e-11  # of the largest derivative
-_STEADY = 1e-7  # of a state
+_STEADY = 1e-7  # of the extent of a state
 
 
 class Local(NamedTuple):
@@ -30,7 +30,7 @@ class Local(NamedTuple):
     Attributes:
         names: Those of m numbers of a state: first coordinates seen from its place, then velocities or momenta.
         places: How many of them are coordinates.
-        state: The steady state, shape (m,).
+        state: The steady state, shape (m,), of poses seen from there.
         change: Rates of the states, or what a step adds to them, shape (K, m).
         slope: Their derivatives by the states, shape (K, m, m).
         rows: Derivatives of the constraints, shape (K, s, m); those of holonomic ones by velocities are zero.
@@ -61,6 +61,9 @@ class Reduced(NamedTuple):
         directions: Changes of the whole state, a column for each of these states.
         is_steady: Whether they do, and the derivatives stay the same.
         ignorable: Numbers of the coordinates that are left out.
+        units: Units of all numbers of a state.
+        extent: The size of the state in these.
+        rate: The largest derivative in these.
     """
 
     states: Int[np.ndarray, "d"]
@@ -69,6 +72,9 @@ class Reduced(NamedTuple):
     directions: Float[np.ndarray, "m d"]
     is_steady: bool
     ignorable: Int[np.ndarray, "_"]
+    units: Float[np.ndarray, "m"]
+    extent: float
+    rate: float
 
 
 def reduced(local: Local) -> Reduced:
@@ -102,16 +108,21 @@ def _without(local: Local, dependent: list[int]) -> Reduced:
     depends = _depends(slope * ratios[independent][:, independent])
     matters = _influences(depends, int((independent < local.places).sum()))
     states = independent[matters]
-    matrix, defects = slope[:count, matters][:, :, matters], change[:count, matters]
-    largest, z = np.abs(local.slope[0] * ratios).max(), 1 + np.abs(local.state[states])
-    bound = _STEADY * np.abs(matrix[0]) @ z + _UNSEEN * largest * (z / sizes[states]).max(initial=0.0) * sizes[states]
-    same = np.abs((matrix - matrix[0]) * ratios[states][:, states]).max(initial=0.0) <= _STEADY * largest
-    is_steady = bool(same and np.all(np.abs(defects) <= bound))
-    worst = defects[np.argmax(np.abs(defects).max(axis=1, initial=0.0))]
+    matrix, defects, units = slope[:count, matters][:, :, matters], change[:count, matters], sizes[states]
+    rates, largest = matrix * ratios[states][:, states], np.abs(local.slope[0] * ratios).max()
     free = independent[independent < local.places]
+    ignorable, places = np.setdiff1d(free, states), states[states < local.places]
+    extents = np.abs(local.state) / sizes
+    first = places if len(places) else states
+    extents += extent_of(local.state[first], sizes[first])
+    bound = _STEADY * np.abs(rates[0]) @ extents[states] + _UNSEEN * largest * extents[states].max(initial=0.0)
+    same = np.abs(rates - rates[0]).max(initial=0.0) <= _STEADY * largest
+    is_steady = bool(same and np.all(np.abs(defects) / units <= bound))
+    worst = defects[np.argmax(np.abs(defects).max(axis=1, initial=0.0))]
     directions = np.eye(len(local.state))[:, independent]
     directions[dependent] = dependence[0]
-    return Reduced(states, matrix[0], worst, directions[:, matters], is_steady, np.setdiff1d(free, states))
+    extent = np.delete(extents, ignorable).max()
+    return Reduced(states, matrix[0], worst, directions[:, matters], is_steady, ignorable, sizes, extent, largest)
 
 
 def _sizes(local: Local) -> Float[np.ndarray, "m"]:
@@ -270,7 +281,7 @@ def _step(matrix: Float[np.ndarray, "d d"], defect: Float[np.ndarray, "d"]) -> F
 
 
 _MOST = 50  # corrections
-_CLOSE = 1e-13  # of a state, for the last one
+_CLOSE = 1e-13  # of the extent of a state, for the last one
 _RANK = 1e-10  # of the largest singular value
 _STABLE = 1e-7  # of the largest eigenvalue: rounding moves double ones by its root
 
@@ -323,10 +334,10 @@ def steady_motion(system: Any, configuration: Any, body_velocity: Any) -> Steady
             raise error(where, "be near a steady motion", "equations of the time", remedy)
         is_rest = body_velocity is None or not np.any(body_velocity)
         matrix, defect = _balance(local._replace(frame=None) if is_rest else local, equations)
-        is_seen = np.abs(matrix) > _UNSEEN * np.abs(local.slope[0]).max()
-        change = equations.directions @ _step(matrix * is_seen, defect)
+        is_seen, units = np.abs(matrix) > _UNSEEN * equations.rate, equations.units * equations.extent
+        change = equations.directions @ (units[equations.states] * _step(matrix * is_seen, defect))
         state = beside(-change[: local.places], -change[local.places :])
-        if np.abs(change).max(initial=0.0) <= _CLOSE * (1 + np.abs(local.state).max()):
+        if np.abs(change / units).max(initial=0.0) <= _CLOSE:
             if not equations.is_steady:
                 break
             return SteadyMotion(*state, linearize(system, configuration=state[0], body_velocity=state[1]))
@@ -335,20 +346,24 @@ def steady_motion(system: Any, configuration: Any, body_velocity: Any) -> Steady
 
 
 def _balance(local: Local, equations: Reduced) -> tuple[np.ndarray, np.ndarray]:
-    r"""Return derivatives of what vanishes in a steady motion by the states that matter, and its values.
+    r"""Return derivatives of what vanishes in a steady motion by the states that matter, and its values, in units.
 
     In coordinates and at rest these are the changes of the states. Seen from a frame that moves along, a motion is
     steady if its velocity is constant at all its poses: $\dot w(g e^{\xi} e^{t (v + w)}, v + w) = 0$.
     """
+    states, units = equations.states, equations.units
     if local.frame is None:
-        return equations.matrix, local.change[0][equations.states]
-    rates, count = slice(local.places, None), len(local.times)
-    transport = scipy.linalg.expm(local.times[:, None, None] * local.frame) @ equations.directions
-    return np.concatenate(local.slope[:count, rates] @ transport), local.change[:count, rates].ravel()
+        sizes, matrix, change = units[states], equations.matrix, local.change[0][states]
+    else:
+        rates, count = slice(local.places, None), len(local.times)
+        transport = scipy.linalg.expm(local.times[:, None, None] * local.frame) @ equations.directions
+        sizes, matrix = np.tile(units[rates], count), np.concatenate(local.slope[:count, rates] @ transport)
+        change = local.change[:count, rates].ravel()
+    return matrix * (units[states] / sizes[:, None]), change / sizes / equations.extent
 
 
 _SHIFT = 1e-14  # relative, of eigenvalues by rounding
-_TIGHT = 1e-14  # error of a critical value, relative to those around it where they are small
+_TIGHT = 1e-14  # error of a critical value, relative to those around it
 _NEUTRAL = 1e-7  # relative to the largest eigenvalue: what neither grows nor decays, up to rounding
 
 
@@ -406,8 +421,10 @@ def _rates(linearization: Callable[[float], Linearization], value: float) -> tup
     result: Any = linearization(float(value))
     remedy = "Return nh.linearize(...) of the value."
     instance("critical_values(linearization=...)", result, Linearization, "return a Linearization", remedy)
-    values, left, right = cast(Any, scipy.linalg.eig(result.matrix, left=True))
-    size, most = np.linalg.norm(result.matrix), 2 * _SHIFT ** (1 / max(1, len(values)))
+    with np.errstate(invalid="ignore"):  # units that are no integers
+        matrix: Any = scipy.linalg.matrix_balance(result.matrix, permute=False)[0]
+    values, left, right = cast(Any, scipy.linalg.eig(matrix, left=True))
+    size, most = np.linalg.norm(matrix), 2 * _SHIFT ** (1 / max(1, len(values)))
     with np.errstate(divide="ignore"):
         shift = size * np.minimum(_SHIFT / np.abs((left.conj() * right).sum(axis=0)), most)
     h = result.time_step
@@ -444,7 +461,7 @@ def _change_between(linearization: Any, least: float, ends: np.ndarray, rows: Se
 
     before, after = (growth(row)[few] for row in rows)
     crosses = before * after < 0 and min(abs(before), abs(after)) > least
-    tight = _TIGHT * min(1.0, np.abs(ends).max())
+    tight = _TIGHT * np.abs(ends).max()
     root: Any = brentq(change, *ends, xtol=tight) if crosses else bisect(is_alike, *ends, xtol=tight)
     return float(root)
 

@@ -108,14 +108,28 @@ def transitions(system: Any, x: np.ndarray, v: np.ndarray, time: Float[np.ndarra
 
 
 def _transitions(system: Any, xs: Array, vs: Array, spans: Array) -> Array:
-    def rate(_: Array, current: tuple[Array, ...]) -> tuple[Array, ...]:
-        x, v, D = current
-        return system.places.rate(x, v), acceleration(system, x, v)[0], flow_slopes(system, x, v)[1] @ D
-
     def one(state: tuple[Array, Array, Array]) -> Array:
         x, v, span = state
-        begin = x, v, jnp.eye(2 * len(v) + system.is_driven)
+        way, speed = _sizes(system, *state)
+        sizes, length = jnp.concatenate([way, speed]), way if x.ndim == 1 else 1.0
+
+        def rate(_: Array, current: tuple[Array, ...]) -> tuple[Array, ...]:
+            (x, v), D = (current[0] * length, current[1] * speed), current[2]
+            slope = flow_slopes(system, x, v)[1] * (sizes / sizes[:, None])
+            return system.places.rate(x, v) / length, acceleration(system, x, v)[0] / speed, slope @ D
+
+        begin = x / length, v / speed, jnp.eye(len(sizes))
         rest, good = sweep(rate, lambda current: current, begin, span, (jnp.asarray(_RTOL), jnp.asarray(_ATOL)))
-        return jnp.where(good[0], rest[2][0], jnp.nan)
+        return jnp.where(good[0], rest[2][0] * (sizes[:, None] / sizes), jnp.nan)
 
     return jax.lax.map(one, (xs, vs, spans))
+
+
+def _sizes(system: Any, x: Array, v: Array, span: Array) -> tuple[Array, Array]:
+    """Return units of places and of velocities, from their masses and the time in which they are passed."""
+    unit, time = equations.acceleration_matrix(system, x, v)[1].velocity, jnp.abs(span[1] - span[0])
+    time = jnp.where(time == 0, 1.0, time)
+    numbers = x[: len(v)] if x.ndim == 1 else jnp.zeros(len(v))
+    extent = jnp.clip(jnp.max(jnp.abs(numbers / unit)), jnp.min(1 / unit), jnp.max(1 / unit))
+    speed = unit * (jnp.max(jnp.abs(v / unit)) + extent / time)
+    return jnp.append(speed * time, jnp.full(int(system.is_driven), time)), speed

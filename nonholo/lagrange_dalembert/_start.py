@@ -14,7 +14,7 @@ from nonholo.lagrange_dalembert import compiled
 from nonholo.lagrange_dalembert._flow import admissible_velocity, nearest_place
 from nonholo.lagrange_dalembert._newton import orientation
 from nonholo.lagrange_dalembert.functions import in_double, place
-from nonholo.systems import inadmissible
+from nonholo.systems import extent_of, inadmissible
 
 _TOLERANCE = 1e-9  # relative, for velocities and displacements that a user computed in floating point
 _DEGENERATE = 1e-10  # least singular value of scaled matrices, below which they are called singular
@@ -45,24 +45,43 @@ def point(
     if project and system.constraints > system.velocity_constraints:
         nearest = in_double(nearest_place, system, place(system, q, time))[:n]
         q = q if np.isnan(nearest).any() else nearest
+    x = place(system, q, time)
+    A, *_ = _at(_constraints, system, x, np.zeros(n))
+    units = units_of(system, x)
+    reach = _reach(x, units)
     for index, motion in system.plain.prescribed:
         with double_precision():
             target = float(motion(np.float64(time)))
-        if not abs(q[index] - target) <= _TOLERANCE * (1 + abs(target)):
+        if not abs(q[index] - target) <= _TOLERANCE * (reach[index] + abs(target)):
             got, remedy = f"{q[index]:.17g}", f"Set coordinate {index} to {target:.17g}."
             raise error(where, "agree with prescribed motions", got, remedy)
-    x = place(system, q, time)
-    A, *_ = _at(_constraints, system, x, np.zeros(n))
     if system.holonomic is not None:
-        _check_holonomic(where, system, x, A)
-    _check_rows(_argument(system, "constraint_forms" if system.holonomic is None else "holonomic"), A, q)
+        _check_holonomic(where, system, x, (A, reach))
+    _check_rows(_argument(system, "constraint_forms" if system.holonomic is None else "holonomic"), A * units, q)
     return x
 
 
-def _check_holonomic(where: str, system: Any, x: np.ndarray, A: Float[np.ndarray, "s n"]) -> None:
-    """Refuse a place that holonomic constraints do not allow, with the residual and the nearest one that they do."""
-    n, residual = system.dimension, in_double(equations.holonomic_residual, system, x)
-    if np.all(np.abs(residual) <= _TOLERANCE * np.linalg.norm(A, axis=1) * (1 + np.linalg.norm(x[:n]))):
+def units_of(system: Any, x: np.ndarray) -> Float[np.ndarray, "n"]:
+    """Return units of velocities in which each has the same kinetic energy; 1 where they have none."""
+    units = _at(_kinetics, system, x, np.zeros(system.dimension))[-1]
+    return np.where(np.isfinite(units), units, 1.0)
+
+
+def _reach(x: np.ndarray, units: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
+    """Return lengths beside which a place is measured: 1 in each coordinate, or less by its masses and the place."""
+    numbers = x[: len(units)] if x.ndim == 1 else np.zeros(len(units))
+    return np.minimum(1.0, units * extent_of(numbers, units))
+
+
+def _check_holonomic(where: str, system: Any, x: np.ndarray, along: tuple[np.ndarray, np.ndarray]) -> None:
+    """Refuse a place that holonomic constraints do not allow, with the residual and the nearest one that they do.
+
+    Where a surface is curved its radius measures the place, too.
+    """
+    (A, reach), n, residual = along, system.dimension, in_double(equations.holonomic_residual, system, x)
+    bend = np.abs(in_double(_bend, system, x))
+    reach = np.minimum(reach, np.divide(np.abs(A), bend, out=np.full_like(bend, np.inf), where=bend > 0))
+    if np.all(np.abs(residual) <= _TOLERANCE * (np.abs(A) * (np.abs(x[:n]) + reach)).sum(axis=1)):
         return
     nearest = in_double(nearest_place, system, x)[:n]
     got = f"residual {np.array2string(in_double(equations.holonomic, system, x), precision=6)}"
@@ -87,7 +106,8 @@ def consistent(system: Any, q: np.ndarray, h: Any) -> None:
         return
     where, rest = _argument(system, "discrete_constraints"), system.places.at_rest
     at_rest, slope = _at(_constraint_slope, system, q, np.zeros(system.dimension), h)
-    if not np.all(np.isfinite(at_rest)) or np.abs(at_rest).max() > _TOLERANCE * (1 + np.abs(slope).max()):
+    most = _TOLERANCE / h * np.abs(slope) @ _reach(q, units_of(system, q))
+    if not np.all(np.isfinite(at_rest)) or np.any(np.abs(at_rest) > most):
         raise error(where, f"vanish {rest}", f"{at_rest.tolist()} at {q.tolist()}", "Subtract its value there.")
     A, *_ = _at(_constraints, system, q, np.zeros(system.dimension))
     directions = np.linalg.svd(A)[2][len(A) :]
@@ -107,23 +127,23 @@ def velocity(
     """
     where = f"{owner}(body_velocity=...)"
     v = array(where, value, (system.dimension,), f"Pass the {system.dimension} velocities.")
-    p = _check_regular(system, q, v)
+    p, units = _check_regular(system, q, v)
     if project:
         v = in_double(admissible_velocity, system, q, v)
         return momentum(system, q, v), v
     A, residual = _at(_constraints, system, q, v)
     if not np.count_nonzero(residual):
         return p, v
-    rounding = np.finfo(float).eps * np.linalg.norm(A, axis=1) * np.linalg.norm(v)  # of forms where their terms vanish
+    rounding = np.finfo(float).eps * np.linalg.norm(A * units, axis=1) * np.linalg.norm(v / units)  # of small terms
     if np.any(np.abs(residual) > _TOLERANCE * (np.abs(A) @ np.abs(v) + np.abs(A @ v - residual)) + rounding):
         raise inadmissible(where, residual, v - np.linalg.pinv(A) @ residual)
     return p, v
 
 
-def _check_regular(system: Any, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Return the momentum, of a Lagrangian with finite derivatives, of accelerations and without contradictions."""
+def _check_regular(system: Any, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return momentum and units, of a Lagrangian with finite derivatives, of accelerations, without contradictions."""
     what = _argument(system, system.energy_argument)
-    value, *gradients, matrix = _at(_kinetics, system, q, v)
+    value, *gradients, matrix, units = _at(_kinetics, system, q, v)
     if not all(is_moderate(x, np.inf) for x in (value, *gradients)):
         number, *slopes = (x.tolist() for x in (value, *gradients))
         got = f"value {number}, gradients {slopes} at {q.tolist()}, velocity {v.tolist()}"
@@ -134,7 +154,7 @@ def _check_regular(system: Any, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         raise error(what, "determine the accelerations", got, "Give every admissible direction a kinetic energy.")
     if system.has_limit and np.any(v):
         _check_limit(system, q, v, gradients[1])
-    return gradients[1]
+    return gradients[1], units
 
 
 def _check_limit(system: Any, q: np.ndarray, v: np.ndarray, limit: np.ndarray) -> None:
@@ -193,14 +213,20 @@ def _constraints(system: Any, q: Array, v: Array) -> tuple[Array, Array]:
 
 
 def _kinetics(system: Any, q: Array, v: Array) -> tuple[Array, ...]:
-    """Return L, its slopes, the second of which is the momentum, and the scaled matrix of the continuous equations."""
+    """Return L, its slopes, the second of which is the momentum, and the scaled continuous equations with units."""
 
     def of_velocity(v: Array) -> tuple[Array, tuple[Array, ...]]:
         value, (along_q, p) = jax.value_and_grad(equations.lagrangian, argnums=(1, 2))(system, q, v)
         return p, (value, along_q, p)
 
     kinetic, values = jax.jacfwd(of_velocity, has_aux=True)(v)
-    return *values, equations.matrix_of_mass(system, q, kinetic)[0]
+    matrix, units = equations.matrix_of_mass(system, q, kinetic)
+    return *values, matrix, units.velocity
+
+
+def _bend(system: Any, x: Array) -> Array:
+    """Return the second derivatives of all constraints by each coordinate; zero but of holonomic ones."""
+    return jnp.diagonal(jax.jacfwd(equations.forms, argnums=1)(system, x)[:, :, : system.dimension], axis1=1, axis2=2)
 
 
 def momentum(system: Any, q: np.ndarray, v: np.ndarray) -> np.ndarray:

@@ -25,6 +25,7 @@ from nonholo.systems._equilibria import gyroscopic_form
 from nonholo.systems._mass import (
     ImpossibleBodyWarning,
     checked_group,
+    extent_of,
     group_mass_tensor,
     inertia_form,
     inertia_from_mass_tensor,

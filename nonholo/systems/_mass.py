@@ -102,6 +102,13 @@ def mass_tensor_from_inertia(inertia: Float[Array, "3 3"]) -> Float[Array, "3 3"
     return xp.trace(tensor) / 2 * xp.eye(3) - tensor
 
 
+def extent_of(numbers: Float[np.ndarray, "d"], units: Float[np.ndarray, "d"]) -> float:
+    """Return the largest number in its unit; the least and the largest one that are 1 in the user's bound it."""
+    if not len(units):
+        return 1.0
+    return float(np.clip(np.abs(numbers / units).max(), (1 / units).min(), (1 / units).max()))
+
+
 def inertia_form(group: AbstractMatrixGroup, matrices: Array, mass_tensor: Tensor) -> Float[Array, "... k k"]:
     r"""Return $\bigl(\mathrm{tr}(D_i\mathbb{J}D_j^*)\bigr)_{ij}$ for velocities $D_i$ and a (homogeneous) mass tensor.
 

@@ -279,7 +279,7 @@ def test_momenta_and_curvature_of_the_snakeboard_follow_from_its_matrices() -> N
         dW[:, row, :3, 1] = np.stack([-side * HALF * np.sin(phi), -side * np.cos(phi), -np.sin(phi)], -1)
     M = np.diag([MASS * HALF**2, MASS, MASS, ROTOR, 0.2])
     M[0, 3] = M[3, 0] = ROTOR
-    at = _equations.terms((1,), W, dW, np.broadcast_to(M, (9, 5, 5)), np.zeros((9, 5, 5, 2)))
+    at = _equations.terms((1,), np.ones(3), W, dW, np.broadcast_to(M, (9, 5, 5)), np.zeros((9, 5, 5, 2)))
     F = _equations.curvature(nh.SE(2), at)[:, :, 0, 1]
     wanted = ROTOR / (MASS * HALF) * np.stack([-np.sin(2 * phi) / HALF, -np.cos(2 * phi), 0 * phi], -1)
     np.testing.assert_allclose(F, wanted, rtol=0, atol=1e-12)
@@ -291,7 +291,7 @@ def test_the_curvature_of_two_wheels_is_a_bracket() -> None:
     """A is constant, so F = -[A_right, A_left]: a robot that turns one wheel after the other moves aside."""
     turn, ahead = 0.25 / (2 * 0.5), 0.25 / 2
     W = np.array([[0.0, 0, 1, 0, 0], [0, 1, 0, -ahead, -ahead], [1, 0, 0, -turn, turn]])
-    at = _equations.terms((), W, np.zeros((3, 5, 2)), W, W)
+    at = _equations.terms((), np.ones(3), W, np.zeros((3, 5, 2)), W, W)
     F = _equations.curvature(nh.SE(2), at)[:, 0, 1]
     np.testing.assert_allclose(F, [0, 0, -2 * turn * ahead], rtol=0, atol=1e-16)
 

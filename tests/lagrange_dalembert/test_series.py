@@ -43,13 +43,13 @@ BINARY: dict[str, Any] = {
 
 def _series(build: Any, start: list[float]) -> np.ndarray:
     """Return coefficients of x and z, x_i' = 1 and z' = the formula of x."""
-    f, inputs = Formulas(), [Scalar("input") for _ in range(len(start) + 1)]
-    one = f.constant(1.0)
-    expansion = Expansion(f, inputs, [one] * len(start) + [build(f, *inputs[:-1])])
+    f, inputs = Formulas(), [Scalar("input") for _ in range(len(start) + 2)]
+    rates = [f.constant(1.0)] * len(start) + [build(f, *inputs[:-2]), f.constant(0.0)]
+    expansion = Expansion(f, inputs, rates)
     module, width = ir.Module(), 8
     expansion.write(module, "expansion", width)
     series, room, none = np.zeros((ORDER + 1, width)), np.zeros(expansion.room), np.zeros(1)
-    series[0, : len(start)] = start
+    series[0, : len(start)], series[0, len(inputs) - 1] = start, 1.0
     expand_at(compile_text(str(module), "expansion"), (none, room, series, none, none), ORDER)
     return series
 

@@ -36,6 +36,7 @@ class LocalConnection:
     momentum_components: tuple[str, ...]
     _reduction: Any
     _free: tuple[int, ...]
+    _units: Float[np.ndarray, "d"]
 
     def __repr__(self) -> str:
         shape, momenta = ", ".join(self.shape_coordinates), ", ".join(self.momentum_components) or "none"
@@ -152,7 +153,7 @@ class LocalConnection:
         functions = door()
         W = functions.call(functions.constraint_terms, self._reduction, shape)
         M = functions.call(functions.inertia_terms, self._reduction, shape) if self._free else W
-        return _equations.terms(self._free, *W, *M)
+        return _equations.terms(self._free, self._units, *W, *M)
 
     def checked_momentum(self, owner: str, momentum: Any) -> Array:
         """Return momenta p, zero for None."""
@@ -222,13 +223,23 @@ def _connection(reduction: Any, system: Any, shape: tuple[str, ...]) -> LocalCon
     """Return the connection of a system whose constraints and Lagrangian are checked at random shapes and poses."""
     where, rng, names = "local_connection(system=...)", np.random.default_rng(0), components_of(reduction.group)
     shapes, poses = rng.normal(0.0, 0.6, (_SAMPLES, len(shape))), rng.normal(0.0, 2.0, (_SAMPLES, 3))
-    free = _free_components(where, reduction, shapes, poses)
+    units = _units(reduction, shapes)
+    free = _free_components(where, reduction, (shapes, poses), units)
     if free and system.lagrangian is None:
         got, remedy = f"{len(names) - len(free)} constraints", "Pass lagrangian=, or a constraint for each component."
         raise error(where, f"determine {len(names)} components of the body velocity", got, remedy)
     if free:
-        _check_energy(where, reduction, shapes, poses, rng.normal(size=(_SAMPLES, len(names) + len(shape))))
-    return LocalConnection(system, shape, tuple(names[i] for i in free), reduction, free)
+        _check_energy(where, reduction, shapes, poses, units * rng.normal(size=(_SAMPLES, len(units))))
+    return LocalConnection(system, shape, tuple(names[i] for i in free), reduction, free, units[: len(names)])
+
+
+def _units(reduction: Any, shapes: Array) -> Float[np.ndarray, "d+m"]:
+    r"""Return units of $(\xi, \dot s)$ in which each has the same kinetic energy; without a Lagrangian 1."""
+    if reduction.has_energy:
+        sizes = np.diagonal(door().call(door().inertia_terms, reduction, shapes)[0], axis1=-2, axis2=-1)
+        sizes = np.abs(sizes[np.isfinite(sizes).all(axis=1)]).max(axis=0, initial=0.0)
+        return 1 / np.sqrt(np.where(sizes > 0, sizes, 1.0))
+    return np.ones(reduction.group.dim + shapes.shape[1])
 
 
 def checked_system(owner: str, system: Any) -> Any:
@@ -246,11 +257,12 @@ def checked_system(owner: str, system: Any) -> Any:
     return free
 
 
-def _free_components(where: str, reduction: Any, shapes: Array, poses: Array) -> tuple[int, ...]:
+def _free_components(where: str, reduction: Any, samples: tuple[Array, Array], units: Array) -> tuple[int, ...]:
     """Return the components of the body velocity that the constraints leave free, of those choices the best one."""
+    shapes, poses = samples
     at_identity, elsewhere = (door().call(type(reduction).rows, reduction, g, shapes) for g in (np.zeros(3), poses))
     usable = np.isfinite(at_identity).all((1, 2)) & np.isfinite(elsewhere).all((1, 2))
-    at_identity, elsewhere = (_equations.unit_rows(rows[usable]) for rows in (at_identity, elsewhere))
+    at_identity, elsewhere = (_equations.unit_rows(rows[usable] * units) for rows in (at_identity, elsewhere))
     d = reduction.group.dim
     least = np.linalg.svd(at_identity[..., :d], compute_uv=False).min(-1, initial=1.0)
     if not (least > _INDEPENDENT).any():
@@ -267,14 +279,23 @@ def _free_components(where: str, reduction: Any, shapes: Array, poses: Array) ->
 
 def _check_energy(where: str, reduction: Any, shapes: Array, poses: Array, u: Array) -> None:
     """Refuse a Lagrangian that depends on the pose, or that is not quadratic in the velocities."""
-    here, there = (door().call(type(reduction).lagrangian, reduction, g, shapes, u) for g in (np.zeros(3), poses))
-    if np.nanmax(np.abs(there - here) / (1 + np.abs(here))) > _SYMMETRIC:
-        got = "one that changes where it is moved and turned"
-        raise error(where, "have a Lagrangian that is the same at every pose", got, "Leave potentials of the pose out.")
-    M = door().call(door().inertia_terms, reduction, shapes)[0]
-    momenta, quadratic = door().call(door().momenta, reduction, shapes, u), np.einsum("...ab,...b->...a", M, u)
-    if np.nanmax(np.abs(momenta - quadratic) / (1 + np.abs(quadratic))) > _SYMMETRIC:
-        raise error(where, "have a kinetic energy quadratic in velocities", "another one", "Leave other terms out.")
+    functions = door()
+    M = functions.call(functions.inertia_terms, reduction, shapes)[0]
+    for w in (0 * u, u):  # at rest a potential is seen beside itself
+        here, there = (
+            functions.call(type(reduction).lagrangian, reduction, g, shapes, w) for g in (np.zeros(3), poses)
+        )
+        if np.nanmax(np.abs(there - here)) > _SYMMETRIC * np.nanmax(np.abs(here)):
+            got = "one that changes where it is moved and turned"
+            raise error(
+                where, "have a Lagrangian that is the same at every pose", got, "Leave potentials of the pose out."
+            )
+        momenta, quadratic = (
+            functions.call(functions.momenta, reduction, shapes, w),
+            np.einsum("...ab,...b->...a", M, w),
+        )
+        if np.any(np.nanmax(np.abs(momenta - quadratic), axis=0) > _SYMMETRIC * np.nanmax(np.abs(quadratic), axis=0)):
+            raise error(where, "have a kinetic energy quadratic in velocities", "another one", "Leave other terms out.")
 
 
 @functools.cache
@@ -369,8 +390,8 @@ def accessibility(system: Any, configuration: Any, *, depth: int | None = None) 
     part of the constraint is integrable; what can be reached with forces on the shape alone is another question. The
     gradients of holonomic constraints are rows of A.
 
-    Derivatives of the constraints are by JAX; ranks count singular values above $10^{-9}$ of the largest, so
-    choose units in which coordinates are of one size.
+    Derivatives of the constraints are by JAX; ranks count singular values above $10^{-9}$ of the largest, in units of
+    coordinates in which velocities have the same kinetic energy at q.
 
     Args:
         system: A `LagrangeDAlembert` system whose constraints do not depend on time, or a `ShapedBody`, whose
@@ -389,8 +410,9 @@ def accessibility(system: Any, configuration: Any, *, depth: int | None = None) 
     """
     functions = door("accessibility")
     where = "accessibility(configuration=...)"
-    rows, q, whole = _constraints(where, system, configuration)
-    forms = functions.forms_at(rows, q)
+    rows, q, units, whole = _constraints(where, system, configuration)
+    units = units * functions.reach(rows, q, units)
+    forms = functions.forms_at(rows, q, units)
     rank = np.linalg.matrix_rank(forms) if np.isfinite(forms).all() else -1
     if rank < len(forms):
         remedy = "Choose another configuration, or drop constraints that follow from others."
@@ -400,26 +422,27 @@ def accessibility(system: Any, configuration: Any, *, depth: int | None = None) 
         remedy = "Pass a smaller `depth=`: higher derivatives grow too large."
         raise error("accessibility(depth=...)", f"be at most {_MOST}", str(longest), remedy)
     growth, fields = [], np.zeros((len(q), 0))
-    for longer in functions.brackets(rows, q, longest):
+    for longer in functions.brackets(rows, q, units, longest):
         fields = np.hstack([fields, longer])
         growth.append(int(np.linalg.matrix_rank(fields, rtol=_RANK)))
         if growth[-1] == whole:
             break
-    directions = np.linalg.svd(fields)[0][:, : growth[-1]].T
+    span = np.linalg.svd(fields)[0][:, : growth[-1]]
+    directions = np.linalg.qr(units[:, None] * span)[0].T
     return Accessibility(tuple(growth), directions, growth[-1] == whole)
 
 
-def _constraints(where: str, system: Any, configuration: Any) -> tuple[Any, Float[np.ndarray, "n"], int]:
-    """Return the function of the constraint forms with its system, the checked place, and the reach of brackets."""
-    from nonholo.lagrange_dalembert import checked_state, equations
+def _constraints(where: str, system: Any, configuration: Any) -> tuple[Any, np.ndarray, np.ndarray, int]:
+    """Return the function of the constraint forms with its system, checked place, units, and the reach of brackets."""
+    from nonholo.lagrange_dalembert import checked_state, equations, units_of
 
     has_shape, reduced = hasattr(system, "shape_coordinates"), door("accessibility").Reduced
     own: Any = reduced(system) if has_shape else checked_system("accessibility", system)
     names = system.shape_coordinates if has_shape else own.coordinates
     q = array(where, configuration, (len(names),), f"Pass {len(names)} coordinates.")
     if has_shape:
-        q = np.append(np.zeros(system.group.dim), q)
-        return (reduced.constraint_forms, own), q, len(q)
+        units, q = _units(own, q[None]), np.append(np.zeros(system.group.dim), q)
+        return (reduced.constraint_forms, own), q, units, len(q)
     if own.holonomic is not None:
         checked_state(own, q, {"body_velocity": np.zeros(len(q))}, 0.0, "accessibility")
-    return (equations.forms, own), q, len(q) - (own.constraints - own.velocity_constraints)
+    return (equations.forms, own), q, units_of(own, q), len(q) - (own.constraints - own.velocity_constraints)

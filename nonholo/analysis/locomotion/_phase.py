@@ -149,7 +149,10 @@ def _poses(
 
     In each piece $g_j = 1 + h\sum_l T_{jl}\,g_l\hat\xi_l$ are linear equations.
     """
-    speed, one = h[:, None, None, None] * group.hat(xi), group.identity
+    speed, one, n = h[:, None, None, None] * group.hat(xi), group.identity, group.point_size
+    unit = np.ones_like(one)  # of lengths, in which one is as a turn
+    unit[:n, n:] = np.abs(speed[..., :n, n:]).max(initial=0.0) or 1.0
+    speed = speed / unit
     pieces, k, N = speed.shape[:3]
     steps = np.einsum("jl,tlba->tjalb", _TO_NODES, speed).reshape(pieces, k * N, k * N)
     matrices = np.linalg.solve(np.eye(k * N) - steps, np.tile(one, (k, 1)))
@@ -158,7 +161,7 @@ def _poses(
     before = [one]
     for each in across:
         before.append(before[-1] @ each)
-    return np.array(before[:-1])[:, None] @ inside, before[-1]
+    return np.array(before[:-1])[:, None] @ inside * unit, before[-1] * unit
 
 
 def _momenta(
@@ -179,8 +182,18 @@ def _momenta(
 
 
 def _distances(one: GeometricPhase, other: GeometricPhase) -> tuple[float, float]:
-    """Return by how much two motions and two area rules differ; NaN if they are not finite."""
-    ends = [(x.configuration[-1], x.momentum[-1:], x.holonomy, x.area_rule) for x in (one, other)]
+    """Return by how much two motions and two area rules differ, beside the whole way; NaN if they are not finite."""
+    n, momentum = one.connection.group.point_size, np.abs(other.momentum).max(axis=0)
+    way, momentum = (
+        np.abs(other.configuration[:, :n, n:]).max(initial=0.0) or 1.0,
+        np.where(momentum == 0, 1.0, momentum),
+    )
+    unit = np.ones_like(one.holonomy)
+    unit[:n, n:] = way
+    ends = [
+        (x.configuration[-1] / unit, x.momentum[-1:] / momentum, x.holonomy / unit, x.area_rule / unit)
+        for x in (one, other)
+    ]
     gaps = [np.abs(a - b).max(initial=0.0) / (1 + np.abs(a).max(initial=0.0)) for a, b in zip(*ends, strict=True)]
     return float(np.max(gaps[:3])), float(gaps[3])
 
@@ -198,7 +211,7 @@ def _without_area_rule(phase: GeometricPhase, gap: float) -> GeometricPhase:
 def _check_closed(connection: LocalConnection, shape: Array) -> None:
     """Refuse a gait with a gap, with numbers that are not finite, or across a singular shape."""
     where = "geometric_phase(gait=...)"
-    if not np.abs(shape[-1] - shape[0]).max() <= _CLOSED * (1 + np.abs(shape).max()):
+    if not np.all(np.abs(shape[-1] - shape[0]) <= _CLOSED * np.abs(shape).max(axis=0)):
         remedy = "Pass its period, and a gait that returns to its first shape."
         raise error(where, "be closed and finite", f"{shape[0].tolist()} to {shape[-1].tolist()}", remedy)
     regular = _equations.singularity(connection.terms(shape))

@@ -44,6 +44,7 @@ class Planar:
     pose: tuple[int, int, int]
     shape: tuple[int, ...]
     group: ClassVar[AbstractMatrixGroup] = SE(2)
+    has_energy: ClassVar[bool] = True
 
     def rows(self, pose: Array, s: Array) -> Array:
         """Return the constraints at a pose (x, y, theta) as rows W = (B, C)."""
@@ -65,6 +66,11 @@ class Reduced:
     def group(self) -> AbstractMatrixGroup:
         """The group."""
         return self.body.group
+
+    @property
+    def has_energy(self) -> bool:
+        """Whether it has a Lagrangian."""
+        return self.body.lagrangian is not None
 
     def rows(self, _pose: Array, s: Array) -> Array:
         """Return the constraints as rows W = (B, C)."""
@@ -172,18 +178,29 @@ Rows = tuple[Callable[[Any, Array], Array], Any]
 """A function of a system and a configuration, and the system, whose constraint forms it gives."""
 
 
-def forms_at(forms: Rows, q: Float[np.ndarray, "n"]) -> Float[np.ndarray, "s n"]:
-    """Return the constraint forms as rows of length one."""
-    return unit_rows(_taylor(forms, q, 0)[()])
+def forms_at(forms: Rows, q: Float[np.ndarray, "n"], units: Float[np.ndarray, "n"]) -> Float[np.ndarray, "s n"]:
+    """Return the constraint forms as rows of length one, in units of coordinates."""
+    return unit_rows(_taylor(forms, q, units, 0)[()])
 
 
-def brackets(forms: Rows, q: Float[np.ndarray, "n"], longest: int) -> Iterator[Float[np.ndarray, "n words"]]:
+def reach(forms: Rows, q: Float[np.ndarray, "n"], units: Float[np.ndarray, "n"]) -> float:
+    """Return in how many units the constraint forms turn by a radian; between what is 1 in the user's."""
+    polynomial, one = _taylor(forms, q, units, 1), 1 / units
+    lengths = np.linalg.norm(polynomial[()], axis=1)
+    slopes = [np.linalg.norm(rows, axis=1) for power, rows in polynomial.items() if power]
+    rate = max(float((each / np.where(lengths > 0, lengths, 1.0)).max(initial=0.0)) for each in slopes)
+    return float(np.clip(1 / rate if rate > 0 else np.inf, one.min(), one.max()))
+
+
+def brackets(
+    forms: Rows, q: Float[np.ndarray, "n"], units: Float[np.ndarray, "n"], longest: int
+) -> Iterator[Float[np.ndarray, "n words"]]:
     """Yield the brackets [X_i, [X_j, ... ]] of each length, one for each word, as columns.
 
     The basis is X = (I, Y(q)), the identity in coordinates that the constraints leave free at q.
     """
     n, order = len(q), longest - 1
-    basis = _basis(forms_at(forms, q), _taylor(forms, q, order), order)
+    basis = _basis(forms_at(forms, q, units), _taylor(forms, q, units, order), order)
     fields, slopes = basis, _slopes(basis, n)
     yield basis[()]
     for _ in range(order):
@@ -234,9 +251,9 @@ def _product(a: Polynomial, b: Polynomial, order: int) -> Polynomial:
 
 
 @double_precision()
-def _taylor(forms: Rows, q: Float[np.ndarray, "n"], order: int) -> Polynomial:
-    """Return the constraint forms as a polynomial about q."""
-    derivatives = [np.asarray(tensor) for tensor in _derivatives(forms, order)(jnp.asarray(q))]
+def _taylor(forms: Rows, q: Float[np.ndarray, "n"], units: Float[np.ndarray, "n"], order: int) -> Polynomial:
+    """Return the constraint forms as a polynomial about q in coordinates with units."""
+    derivatives = [np.asarray(tensor) for tensor in _derivatives(forms, order)(jnp.asarray(q), jnp.asarray(units))]
     return {
         power: derivatives[degree][(..., *power)] / math.prod(map(math.factorial, Counter(power).values()))
         for degree in range(order + 1)
@@ -245,10 +262,14 @@ def _taylor(forms: Rows, q: Float[np.ndarray, "n"], order: int) -> Polynomial:
 
 
 @functools.cache
-def _derivatives(forms: Rows, order: int) -> Callable[[Array], list[Array]]:
+def _derivatives(forms: Rows, order: int) -> Callable[[Array, Array], list[Array]]:
     """Return the compiled derivatives of the constraint forms up to an order."""
     rows, system = forms
-    derivatives: list[Callable[..., Any]] = [functools.partial(rows, system)]
+
+    def beside(y: Array, q: Array, units: Array) -> Array:
+        return rows(system, q + units * y) * units
+
+    derivatives: list[Callable[..., Any]] = [beside]
     for _ in range(order):
         derivatives.append(jax.jacfwd(derivatives[-1]))
-    return jax.jit(lambda q: [each(q) for each in derivatives])
+    return jax.jit(lambda q, units: [each(jnp.zeros_like(q), q, units) for each in derivatives])

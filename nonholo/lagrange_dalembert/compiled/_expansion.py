@@ -153,7 +153,7 @@ class Expansion:
     """A function while it is written.
 
     Attributes:
-        inputs: The numbers of the state.
+        inputs: The numbers of the state, the last of which is a constant: the unit of time.
         rates: Their rates.
         order: The operations, one after another, with those that the rates of functions need.
         functions: The rates of each function.
@@ -287,12 +287,13 @@ class Expansion:
     def _write_states(self) -> None:
         """Write the coefficients of order k of the state."""
         b, earlier = self.builder, self.builder.gep(self.first, [self.before])
+        unit = self._of(_constant(self._place(self.inputs[-1])), self.first)
         for m, (x, rate) in enumerate(zip(self.inputs, self.rates, strict=True)):
             if rate.value is None:
-                coefficient = b.fdiv(self._of(_constant(self._place(rate)), earlier), self.divisor)
+                coefficient = b.fdiv(b.fmul(unit, self._of(_constant(self._place(rate)), earlier)), self.divisor)
             else:
                 is_first = b.icmp_signed("==", self.before, _constant(0))
-                coefficient = b.select(is_first, _constant(float(rate.value)), _constant(0.0))
+                coefficient = b.select(is_first, b.fmul(unit, _constant(float(rate.value))), _constant(0.0))
             row = b.add(b.mul(self.k, _constant(self.width)), _constant(m))
             b.store(coefficient, b.gep(self.series, [row]))
             self._keep(x, coefficient, *map(_constant, self._row(x)))

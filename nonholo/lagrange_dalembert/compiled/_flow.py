@@ -11,7 +11,7 @@ import numpy as np
 from llvmlite import ir
 
 from nonholo.base.compiled import FUNCTION
-from nonholo.base.types import Array
+from nonholo.base.types import Array, Float
 from nonholo.kernels import Columns, Quadratic, revisit_series, solve_series
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert.compiled._expansion import Expansion, bordered_elimination
@@ -25,6 +25,7 @@ _MOST = 100_000  # steps; what needs more is stiff
 _GUARD = 1 / 64  # the error of a step as a share of what was asked for
 _SMALLEST = 1e-12  # of a pivot beside its diagonal
 _SIDE = 8  # numbers of a row of series come in eights
+_SPAN = 32  # binary digits of times and masses that need no other unit
 
 
 class Formulation(NamedTuple):
@@ -47,13 +48,13 @@ class Formulation(NamedTuple):
 def formulation(family: Any, place: tuple[int, ...], n: int) -> Formulation | None:
     """Return the continuous equations of a family of systems; None if they are no formulas, or none that are smooth.
 
-    Parameters are numbers of the state that stay as they are. A place moves with the velocity that keeps holonomic
-    constraints, so that what rounding takes from the velocity does not gather in the place.
+    Parameters and a unit of time are numbers of the state that stay as they are. A place moves with the velocity that
+    keeps holonomic constraints, so that what rounding takes from the velocity does not gather in the place.
     """
     size = math.prod(place)
 
     def at(x: Array, v: Array, *numbers: Array) -> tuple[Array, ...]:
-        system = family.bound(*numbers)
+        system = family.bound(*numbers[:-1])
         rate = system.places.rate(x, v)
         residual, constraint_rate = jax.jvp(lambda y: equations.constraint(system, y, v), (x,), (rate,))
         away = jax.jvp(lambda y: equations.holonomic_residual(system, y), (x,), (rate,))
@@ -62,7 +63,7 @@ def formulation(family: Any, place: tuple[int, ...], n: int) -> Formulation | No
         return *matrices, equations.force(system, x, v), -constraint_rate, rate, *columns
 
     def write(module: ir.Module) -> int:
-        whole = program(at, place, (n,), *map(np.shape, family.parameters.values()))
+        whole = program(at, place, (n,), *map(np.shape, family.parameters.values()), ())
         f, parts = whole.formulas, iter(whole.results)
         mass, A, force, off, rate, momentum, energy, residual, away, leaving = (
             array_of(list(itertools.islice(parts, math.prod(shape))), shape) for shape in whole.shapes
@@ -77,8 +78,8 @@ def formulation(family: Any, place: tuple[int, ...], n: int) -> Formulation | No
         forces, pivots = (f("neg", each) for each in acceleration[n:]), matrix.pivots[:n]
         columns = [*momentum, *forces, energy.item(), *residual, *pivots, *np.diagonal(mass)]
         doubt = functools.reduce(functools.partial(f, "add"), f.doubts, zero)
-        write_function(module, "settle", whole.inputs, [*admissible, doubt])
-        write_function(module, "decode", whole.inputs, [*columns, doubt])
+        write_function(module, "settle", whole.inputs[:-1], [*admissible, doubt])
+        write_function(module, "decode", whole.inputs[:-1], [*columns, doubt])
         return expansion.room
 
     try:
@@ -101,16 +102,20 @@ class Series(NamedTuple):
     Attributes:
         system: The system.
         shapes: Of a place and of a velocity.
-        nodes: Beginnings of steps.
+        blocks: The block of each number of a state.
+        nodes: Beginnings of steps, whose times are in the unit of time.
         end: The last of the given times.
         tolerance: Of a step.
+        unit: The unit of time, a power of two, in which no coefficient over- or underflows.
     """
 
     system: Any
     shapes: tuple[tuple[int, ...], tuple[int, ...]]
+    blocks: tuple[int, ...]
     nodes: np.ndarray
     end: float
     tolerance: float
+    unit: float
 
     @property
     def code(self) -> Formulation:
@@ -122,8 +127,8 @@ class Series(NamedTuple):
         """Return places and velocities at times in the order in which the motion was solved."""
         (place, (n,)), size, code = self.shapes, self.nodes.shape[2] - 1, self.code
         widths = math.prod(place), n, size - math.prod(place) - n
-        f, limits = _equations(code, self.shapes, size), (self.end, self.tolerance)
-        return self.settle(revisit_series(f, self.nodes, widths, times, *limits, code.expansion))
+        f, limits = _equations(code, self.blocks), (self.end / self.unit, self.tolerance)
+        return self.settle(revisit_series(f, self.nodes, widths, times / self.unit, *limits, code.expansion))
 
     def settle(self, columns: Columns) -> list[np.ndarray]:
         """Return places and admissible velocities of states of the series."""
@@ -133,11 +138,11 @@ class Series(NamedTuple):
     @property
     def span(self) -> tuple[float, float]:
         """The first and the last time."""
-        return float(self.nodes[0, 0, -1]), self.end
+        return float(self.nodes[0, 0, -1]) * self.unit, self.end
 
     def looks(self) -> np.ndarray:
         """Return times at which the state is looked at for events."""
-        return looked_at([*self.nodes[:, 0, -1], self.end])
+        return looked_at([*self.nodes[:, 0, -1], self.end / self.unit], 1 / self.unit)
 
 
 def flow(system: Any, first: tuple[Any, Any], times: np.ndarray, rtol: float) -> tuple[list[np.ndarray], Series] | None:
@@ -148,27 +153,44 @@ def flow(system: Any, first: tuple[Any, Any], times: np.ndarray, rtol: float) ->
     if not code or start is None or not np.all(start[-2] > _SMALLEST * start[-1]):
         return None
     shapes, tolerance = (x.shape, v.shape), rtol * _GUARD
-    still = np.concatenate([np.zeros(0), *map(np.ravel, system.parameters.values())])
-    f = _equations(code, shapes, x.size + len(v) + len(still))
-    columns, nodes = solve_series(f, (x.ravel(), v, still), times, tolerance, _MOST, code.expansion)
+    unit = np.ldexp(1.0, _SPAN * round(np.log2(abs(times[-1] - times[0]) or 1.0) / _SPAN))
+    still = np.array([*itertools.chain(*map(np.ravel, system.parameters.values())), unit])
+    blocks = _blocks(system, x, start[-1][0], len(still))
+    f = _equations(code, blocks)
+    columns, nodes = solve_series(f, (x.ravel(), v, still), times / unit, tolerance, _MOST, code.expansion)
     if len(columns[0]) < len(times):
         return None
-    series = Series(system, shapes, nodes, float(times[-1]), tolerance)
+    series = Series(system, shapes, blocks, nodes, float(times[-1]), tolerance, float(unit))
     return series.settle(columns), series
 
 
-def _equations(code: Formulation, shapes: tuple[tuple[int, ...], tuple[int, ...]], size: int) -> Quadratic:
+def _blocks(system: Any, x: np.ndarray, masses: Float[np.ndarray, "n"], still: int) -> tuple[int, ...]:
+    """Return which numbers are measured together: places apart from times, rates and constants.
+
+    Coordinates with masses of very different sizes, as in micrometers and radians, are apart, too.
+    """
+    order, times = np.argsort(masses), (x.shape[1] if x.ndim > 1 else 1) * system.is_driven
+    kinds = np.zeros(len(masses), dtype=np.int64)
+    kinds[order[1:]] = np.cumsum(np.diff(np.log2(masses[order])) > _SPAN)
+    count, places = kinds.max() + 1, kinds if x.ndim == 1 else np.zeros(x.size - times, dtype=np.int64)
+    return *map(int, places), *(2 * int(count),) * times, *map(int, count + kinds), *(2 * int(count),) * still
+
+
+def _equations(code: Formulation, blocks: tuple[int, ...]) -> Quadratic:
     """Return equations without quadratic terms, whose numbers are the room of the code."""
-    return _structure(*map(math.prod, shapes), size)._replace(factors=np.zeros((1, code.room)))
+    return _structure(blocks)._replace(factors=np.zeros((1, code.room)))
 
 
 @functools.lru_cache(maxsize=64)
-def _structure(places: int, rates: int, size: int) -> Quadratic:
-    """Return what equations of one size have in common; places are measured apart from their rates, and constants."""
-    blocks, none = np.repeat([0, 1, 2], [places, rates, size - places - rates]), np.zeros(0, dtype=np.int64)
+def _structure(blocks: tuple[int, ...]) -> Quadratic:
+    """Return what equations with these blocks have in common."""
+    size = len(blocks)
+    none = np.zeros(0, dtype=np.int64)
     sparse = np.zeros((2, 0), dtype=np.int64), np.zeros(size + 1, dtype=np.int64), none, np.zeros((1, 0))
     ends = np.zeros(0), np.zeros((0, 0)), np.zeros(0)
-    return Quadratic(np.zeros((0, 0)), *sparse, np.arange(size), blocks, np.zeros(3, dtype=np.bool_), *ends)
+    return Quadratic(
+        np.zeros((0, 0)), *sparse, np.arange(size), np.array(blocks), np.zeros(1 + max(blocks), dtype=np.bool_), *ends
+    )
 
 
 def flow_rows(system: Any, x: np.ndarray, v: np.ndarray) -> list[np.ndarray] | None:
