@@ -97,9 +97,10 @@ def graph_of(ready: Any) -> Any:
 
 
 def integrator_of(graph: Any, state: np.ndarray) -> Any:
-    """Return heyoka's method for a graph."""
-    z = heyoka.make_vars(*(f"z{i}" for i in range(len(graph.inputs))))
-    terms = dict(zip(graph.inputs, z, strict=True))
+    """Return heyoka's method for a graph, whose last number is the unit of time: it has no part in rates."""
+    *inputs, _ = graph.inputs
+    z = heyoka.make_vars(*(f"z{i}" for i in range(len(inputs))))
+    terms = dict(zip(inputs, z, strict=True))
 
     def term(x: Any) -> Any:
         return terms[x] if x.value is None else heyoka.expression(float(x.value))
@@ -107,7 +108,7 @@ def integrator_of(graph: Any, state: np.ndarray) -> Any:
     for x in graph.order:
         make = TWO.get(x.operation) or getattr(heyoka, x.operation)
         terms[x] = make(*map(term, x.arguments))
-    equations, is_large = list(zip(z, map(term, graph.rates), strict=True)), len(graph.order) > LARGE
+    equations, is_large = list(zip(z, map(term, graph.rates[:-1]), strict=True)), len(graph.order) > LARGE
     return heyoka.taylor_adaptive(equations, state, tol=TOLERANCE, compact_mode=is_large)
 
 

@@ -26,7 +26,7 @@ from nonholo.systems import (
     AbstractCoordinateSystem,
     Start,
     central_differences,
-    extent_of,
+    reach_of,
     refuse_slip,
     refuse_wide,
 )
@@ -208,17 +208,17 @@ def beside_state(owner: str, subject: Any, configuration: Any, velocity: Any) ->
     x, v = tangents.begin(motion, owner, configuration, velocity)
     places, units = np.concatenate([x[None], tangents.following(motion, x, v)]), tangents.units(motion.system, x, v)
     steady = tangents.slopes(motion, places, np.tile(v, (len(places), 1)))
-    rng, n, in_coordinates = np.random.default_rng(0), len(v), motion.system.coordinates
+    rng, n, coordinates = np.random.default_rng(0), len(v), motion.system.coordinates
     size = n + motion.system.is_driven
-    state = np.append(x if in_coordinates else np.zeros(size), v)
-    reach = np.minimum(1.0, units * extent_of(state[:n], units))
+    state = np.append(x if coordinates else np.zeros(size), v)
+    reach = reach_of(state[:n], units)
     speed = units * np.abs(v / units).max() if np.any(v) else reach * _rate(steady[1][0]) / (motion.time_step or 1.0)
     xi = _SPREAD * np.append(reach, np.ones(size - n)) * rng.uniform(-1, 1, (_OTHERS, size))
     others = tangents.beside(motion, x, v, xi, _SPREAD * speed * rng.uniform(-1, 1, (_OTHERS, n)))
     pairs = zip(steady, tangents.slopes(motion, *others), strict=True)
     change, slope, rows = (np.concatenate(pair) for pair in pairs)
     names = _names_of_coordinates(motion.system)
-    frame = None if in_coordinates else _frame(steady[1][0], size)
+    frame = None if coordinates else _frame(steady[1][0], size)
     times = np.append(0.0, tangents.LATER)
     local = Local(names, size, state, change, slope, rows, times, units, frame)
     return local, functools.partial(_coordinates_beside, motion, x, v)

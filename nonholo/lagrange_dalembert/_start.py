@@ -14,7 +14,7 @@ from nonholo.lagrange_dalembert import compiled
 from nonholo.lagrange_dalembert._flow import admissible_velocity, nearest_place
 from nonholo.lagrange_dalembert._newton import orientation
 from nonholo.lagrange_dalembert.functions import in_double, place
-from nonholo.systems import extent_of, inadmissible
+from nonholo.systems import inadmissible, reach_of
 
 _TOLERANCE = 1e-9  # relative, for velocities and displacements that a user computed in floating point
 _DEGENERATE = 1e-10  # least singular value of scaled matrices, below which they are called singular
@@ -48,15 +48,8 @@ def point(
     x = place(system, q, time)
     A, *_ = _at(_constraints, system, x, np.zeros(n))
     units = units_of(system, x)
-    reach = _reach(x, units) if len(A) > system.velocity_constraints else units  # which nothing then asks
-    for index, motion in system.plain.prescribed:
-        with double_precision():
-            target = float(motion(np.float64(time)))
-        if not abs(q[index] - target) <= _TOLERANCE * (reach[index] + abs(target)):
-            got, remedy = f"{q[index]:.17g}", f"Set coordinate {index} to {target:.17g}."
-            raise error(where, "agree with prescribed motions", got, remedy)
-    if system.holonomic is not None:
-        _check_holonomic(where, system, x, (A, reach))
+    if system.constraints > system.velocity_constraints:
+        _check_place(where, system, x, (A, _reach(x, units)))
     _check_rows(_argument(system, "constraint_forms" if system.holonomic is None else "holonomic"), A * units, q)
     return x
 
@@ -68,9 +61,20 @@ def units_of(system: Any, x: np.ndarray) -> Float[np.ndarray, "n"]:
 
 
 def _reach(x: np.ndarray, units: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
-    """Return lengths beside which a place is measured: 1 in each coordinate, or less by its masses and the place."""
-    numbers = x[: len(units)] if x.ndim == 1 else np.zeros(len(units))
-    return np.minimum(1.0, units * extent_of(numbers, units))
+    """Return lengths beside which a place is measured; one on a group is seen from itself."""
+    return reach_of(x[: len(units)] if x.ndim == 1 else np.zeros(len(units)), units)
+
+
+def _check_place(where: str, system: Any, x: np.ndarray, along: tuple[np.ndarray, np.ndarray]) -> None:
+    """Refuse a place that prescribed motions or holonomic constraints do not allow."""
+    for index, motion in system.plain.prescribed:
+        with double_precision():
+            target = float(motion(x[-1]))
+        if not abs(x[index] - target) <= _TOLERANCE * (along[1][index] + abs(target)):
+            got, remedy = f"{x[index]:.17g}", f"Set coordinate {index} to {target:.17g}."
+            raise error(where, "agree with prescribed motions", got, remedy)
+    if system.holonomic is not None:
+        _check_holonomic(where, system, x, along)
 
 
 def _check_holonomic(where: str, system: Any, x: np.ndarray, along: tuple[np.ndarray, np.ndarray]) -> None:

@@ -31,6 +31,7 @@ from nonholo.systems._mass import (
     inertia_from_mass_tensor,
     inertia_tensor,
     mass_tensor_from_inertia,
+    reach_of,
 )
 from nonholo.systems._normal_form import NormalForm
 from nonholo.systems._start import Start, in_group, inadmissible, of_finite_energy, one_start, refuse_in_coordinates

@@ -109,6 +109,11 @@ def extent_of(numbers: Float[np.ndarray, "d"], units: Float[np.ndarray, "d"]) ->
     return float(np.clip(np.abs(numbers / units).max(), (1 / units).min(), (1 / units).max()))
 
 
+def reach_of(numbers: Float[np.ndarray, "d"], units: Float[np.ndarray, "d"]) -> Float[np.ndarray, "d"]:
+    """Return lengths beside which a place is measured: 1 in each coordinate, or less by its masses and the place."""
+    return np.minimum(1.0, units * extent_of(numbers, units))
+
+
 def inertia_form(group: AbstractMatrixGroup, matrices: Array, mass_tensor: Tensor) -> Float[Array, "... k k"]:
     r"""Return $\bigl(\mathrm{tr}(D_i\mathbb{J}D_j^*)\bigr)_{ij}$ for velocities $D_i$ and a (homogeneous) mass tensor.
 
