@@ -117,14 +117,14 @@ def _refused(name: str, *units: float) -> Answer:
 def _rest(guess: float, *units: float) -> Answer:
     sizes = np.array([units[1], 1.0])
     found = nh.equilibria(_cart(*units), configuration=np.array([0.8 + guess, guess]) * sizes)
-    return {"place": found.configuration / sizes, "rates": np.sort_complex(found.rates * units[2])}
+    return {"place": found.configuration / sizes, "rates": found.rates * units[2]}
 
 
 def _linear(step: float | None, *units: float) -> Answer:
     system: Any = _cart(*units) if step is None else nh.discretize(_cart(*units), step * units[2])
     found = nh.linearize(system, configuration=np.array([0.8 * units[1], 0.0]))
     rates = found.eigenvalues if step else found.eigenvalues * units[2]
-    return {"names": found.names, "ignorable": found.ignorable, "rates": np.sort_complex(rates)}
+    return {"names": found.names, "ignorable": found.ignorable, "rates": rates}
 
 
 def _critical(mass: float, length: float, time: float) -> Answer:

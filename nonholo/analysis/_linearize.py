@@ -175,7 +175,10 @@ class Linearization(Keeper):
 
     @property
     def eigenvalues(self) -> Inexact[np.ndarray, "d"]:
-        """Rates, the one that grows fastest first; of a map multipliers of a step, the largest first."""
+        """Rates, the one that grows fastest first; of a map multipliers of a step, the largest first.
+
+        Of those that grow alike, to nine digits, the fastest oscillation is first.
+        """
         return self._spectrum[0]
 
     @property
@@ -187,7 +190,8 @@ class Linearization(Keeper):
     def _spectrum(self) -> tuple[np.ndarray, np.ndarray]:
         values, modes = np.linalg.eig(self.matrix)
         size = np.real(values) if self.time_step is None else np.abs(values)
-        order = np.lexsort((-np.imag(values), -size))
+        growth = np.round(size / (np.abs(values).max(initial=0.0) or 1.0), 9)  # rounding orders nothing
+        order = np.lexsort((-np.imag(values), -np.abs(np.imag(values)), -growth))
         return values[order], modes[:, order]
 
     def to_pandas(self) -> Any:
