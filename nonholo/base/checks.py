@@ -152,7 +152,7 @@ def _refuse_large(where: Owner, value: np.ndarray, remedy: str) -> None:
 
 
 def _fits(actual: tuple[int, ...], demand: tuple[int | None, ...]) -> bool:
-    return len(actual) == len(demand) and all(w in (None, a) for a, w in zip(actual, demand, strict=True))
+    return len(actual) == len(demand) and not [a for a, w in zip(actual, demand, strict=True) if w not in (None, a)]
 
 
 def _shape_text(shape: tuple[int | None, ...]) -> str:

@@ -18,6 +18,6 @@ with needs("jax", "nonholo.lagrange_dalembert"):
     )
     from nonholo.lagrange_dalembert._rollout import CoordinateRollout
     from nonholo.lagrange_dalembert._rollout import roll as rolled_in_coordinates
-    from nonholo.lagrange_dalembert._start import momentum, units_of
+    from nonholo.lagrange_dalembert._start import forms_and_units, momentum
     from nonholo.lagrange_dalembert._system import LagrangeDAlembert
     from nonholo.lagrange_dalembert.functions import checked_rows, checked_value, in_double, place, trace

@@ -46,18 +46,17 @@ def point(
         nearest = in_double(nearest_place, system, place(system, q, time))[:n]
         q = q if np.isnan(nearest).any() else nearest
     x = place(system, q, time)
-    A, *_ = _at(_constraints, system, x, np.zeros(n))
-    units = units_of(system, x)
+    A, units = forms_and_units(system, x)
     if system.constraints > system.velocity_constraints:
         _check_place(where, system, x, (A, _reach(x, units)))
     _check_rows(_argument(system, "constraint_forms" if system.holonomic is None else "holonomic"), A * units, q)
     return x
 
 
-def units_of(system: Any, x: np.ndarray) -> Float[np.ndarray, "n"]:
-    """Return units of velocities in which each has the same kinetic energy; 1 where they have none."""
-    units = _at(_kinetics, system, x, np.zeros(system.dimension))[-1]
-    return np.where(np.isfinite(units), units, 1.0)
+def forms_and_units(system: Any, x: np.ndarray) -> tuple[Float[np.ndarray, "s n"], Float[np.ndarray, "n"]]:
+    """Return the forms, and units of velocities in which each has the same kinetic energy; 1 where they have none."""
+    *_, units, A, _ = _at(_kinetics, system, x, np.zeros(system.dimension))
+    return A, np.where(np.isfinite(units), units, 1.0)
 
 
 def _reach(x: np.ndarray, units: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
@@ -110,10 +109,10 @@ def consistent(system: Any, q: np.ndarray, h: Any) -> None:
         return
     where, rest = _argument(system, "discrete_constraints"), system.places.at_rest
     at_rest, slope = _at(_constraint_slope, system, q, np.zeros(system.dimension), h)
-    most = _TOLERANCE / h * np.abs(slope) @ _reach(q, units_of(system, q))
+    A, units = forms_and_units(system, q)
+    most = _TOLERANCE / h * np.abs(slope) @ _reach(q, units)
     if not np.all(np.isfinite(at_rest)) or np.any(np.abs(at_rest) > most):
         raise error(where, f"vanish {rest}", f"{at_rest.tolist()} at {q.tolist()}", "Subtract its value there.")
-    A, *_ = _at(_constraints, system, q, np.zeros(system.dimension))
     directions = np.linalg.svd(A)[2][len(A) :]
     span_gap = np.abs(slope @ directions.T)
     if not span_gap.max() <= _CONSISTENT * np.linalg.norm(slope, axis=1).max() or np.linalg.matrix_rank(slope) < len(A):
@@ -131,11 +130,10 @@ def velocity(
     """
     where = f"{owner}(body_velocity=...)"
     v = array(where, value, (system.dimension,), f"Pass the {system.dimension} velocities.")
-    p, units = _check_regular(system, q, v)
+    p, units, A, residual = _check_regular(system, q, v)
     if project:
         v = in_double(admissible_velocity, system, q, v)
         return momentum(system, q, v), v
-    A, residual = _at(_constraints, system, q, v)
     if not np.count_nonzero(residual):
         return p, v
     rounding = np.finfo(float).eps * np.linalg.norm(A * units, axis=1) * np.linalg.norm(v / units)  # of small terms
@@ -144,10 +142,10 @@ def velocity(
     return p, v
 
 
-def _check_regular(system: Any, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return momentum and units, of a Lagrangian with finite derivatives, of accelerations, without contradictions."""
+def _check_regular(system: Any, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Return the momentum and what follows the matrix in `_kinetics`, of a Lagrangian that determines accelerations."""
     what = _argument(system, system.energy_argument)
-    value, *gradients, matrix, units = _at(_kinetics, system, q, v)
+    value, *gradients, matrix, units, A, residual = _at(_kinetics, system, q, v)
     if not all(is_moderate(x, np.inf) for x in (value, *gradients)):
         number, *slopes = (x.tolist() for x in (value, *gradients))
         got = f"value {number}, gradients {slopes} at {q.tolist()}, velocity {v.tolist()}"
@@ -158,7 +156,7 @@ def _check_regular(system: Any, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarra
         raise error(what, "determine the accelerations", got, "Give every admissible direction a kinetic energy.")
     if system.has_limit and np.any(v):
         _check_limit(system, q, v, gradients[1])
-    return gradients[1], units
+    return gradients[1], units, A, residual
 
 
 def _check_limit(system: Any, q: np.ndarray, v: np.ndarray, limit: np.ndarray) -> None:
@@ -212,12 +210,8 @@ def _constraint_slope(system: Any, q: Array, v: Array, h: Array) -> tuple[Array,
     return equations.discrete_constraints(system, q, v, h), slope
 
 
-def _constraints(system: Any, q: Array, v: Array) -> tuple[Array, Array]:
-    return equations.forms(system, q), equations.constraint(system, q, v)
-
-
 def _kinetics(system: Any, q: Array, v: Array) -> tuple[Array, ...]:
-    """Return L, its slopes, the second of which is the momentum, and the scaled continuous equations with units."""
+    """Return L, its slopes, the second of which is the momentum, the scaled continuous equations, units, A, A v - b."""
 
     def of_velocity(v: Array) -> tuple[Array, tuple[Array, ...]]:
         value, (along_q, p) = jax.value_and_grad(equations.lagrangian, argnums=(1, 2))(system, q, v)
@@ -225,7 +219,7 @@ def _kinetics(system: Any, q: Array, v: Array) -> tuple[Array, ...]:
 
     kinetic, values = jax.jacfwd(of_velocity, has_aux=True)(v)
     matrix, units = equations.matrix_of_mass(system, q, kinetic)
-    return *values, matrix, units.velocity
+    return *values, matrix, units.velocity, equations.forms(system, q), equations.constraint(system, q, v)
 
 
 def _bend(system: Any, x: Array) -> Array:

@@ -156,6 +156,6 @@ _ALONG = {"momentum": _of_momentum, "body_velocity": _of_velocity, "restricted_v
 def _check_admissible(where: str, system: System, g: Any, velocity: np.ndarray) -> None:
     frame_velocity = system.constraint_velocity(velocity, g)
     forbidden = system.annihilator.dot(frame_velocity)
-    if np.count_nonzero(forbidden) and np.abs(forbidden).max() > _TOLERANCE * np.abs(frame_velocity).max():
+    if any(forbidden.tolist()) and np.abs(forbidden).max() > _TOLERANCE * np.abs(frame_velocity).max():
         nearest = frame_velocity - np.linalg.pinv(system.annihilator) @ forbidden
         raise inadmissible(where, forbidden, np.linalg.solve(system.carried(g), nearest))

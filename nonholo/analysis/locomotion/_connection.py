@@ -434,7 +434,7 @@ def accessibility(system: Any, configuration: Any, *, depth: int | None = None) 
 
 def _constraints(where: str, system: Any, configuration: Any) -> tuple[Any, np.ndarray, np.ndarray, int]:
     """Return the function of the constraint forms with its system, checked place, units, and the reach of brackets."""
-    from nonholo.lagrange_dalembert import checked_state, equations, units_of
+    from nonholo.lagrange_dalembert import checked_state, equations, forms_and_units
 
     has_shape, reduced = hasattr(system, "shape_coordinates"), door("accessibility").Reduced
     own: Any = reduced(system) if has_shape else checked_system("accessibility", system)
@@ -445,4 +445,4 @@ def _constraints(where: str, system: Any, configuration: Any) -> tuple[Any, np.n
         return (reduced.constraint_forms, own), q, units, len(q)
     if own.holonomic is not None:
         checked_state(own, q, {"body_velocity": np.zeros(len(q))}, 0.0, "accessibility")
-    return (equations.forms, own), q, units_of(own, q), len(q) - (own.constraints - own.velocity_constraints)
+    return (equations.forms, own), q, forms_and_units(own, q)[1], len(q) - (own.constraints - own.velocity_constraints)

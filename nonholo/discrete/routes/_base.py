@@ -69,8 +69,9 @@ class AbstractBodyStepper(AbstractStepper[Orbit]):
     def orbit(self, rows: Rows, step: int, every: int, outcome: Outcome) -> Orbit:
         """Return settled rows as an orbit."""
         (momenta, charts, raw), poses = rows, None
-        if self.with_poses and (poses := self.decode_poses(raw)) is not raw and not is_moderate(poses, np.inf):
-            outcome = outcome or Outcome.nonfinite
+        if self.with_poses and (poses := self.decode_poses(raw)) is not raw:
+            momenta, charts = momenta.copy(), charts.copy()  # the block of memory with the raw poses is not kept
+            outcome = outcome or (Outcome.successful if is_moderate(poses, np.inf) else Outcome.nonfinite)
         steps, motion = range(step, step + every * len(momenta), every), self.motion
         states = {"reduced_momentum": momenta, "cayley": charts, "canonical_pose": poses}
         return Orbit.of_run(steps, motion=motion, **states, outcome=outcome, save_every=every, branch=self.branch)

@@ -4,7 +4,6 @@ The equations of a system become C functions, made of the definitions of this ro
 """
 
 import functools
-import itertools
 import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -249,8 +248,11 @@ def evaluate(code: Values, count: int, *columns: np.ndarray) -> list[Any] | None
 
 def _blocks(table: np.ndarray, shapes: list[tuple[int, ...]]) -> list[np.ndarray]:
     """Return arrays of these shapes, whose numbers stand side by side in each row of a table."""
-    ends = [0, *itertools.accumulate(map(math.prod, shapes))]
-    return [table[:, a:b].reshape(len(table), *s) for (a, b), s in zip(itertools.pairwise(ends), shapes, strict=True)]
+    blocks, end = [], 0
+    for shape in shapes:
+        begin, end = end, end + math.prod(shape)
+        blocks.append(table[:, begin:end].reshape(len(table), *shape))
+    return blocks
 
 
 def _nodes(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray] | None:

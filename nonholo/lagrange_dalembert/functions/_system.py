@@ -6,7 +6,7 @@ Calls of JAX are compiled once for all of their numbers. Every call runs in a lo
 import difflib
 import functools
 import importlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, ValuesView
 from typing import Any, ClassVar, Self
 
 import jax
@@ -49,6 +49,10 @@ class Parameters(Mapping[str, Any]):
 
     def __len__(self) -> int:
         return len(self._numbers)
+
+    def values(self) -> ValuesView[Any]:
+        """Return the numbers."""
+        return self._numbers.values()
 
     def __repr__(self) -> str:
         return f"{{{', '.join(f'{key!r}: {_brief(value)}' for key, value in self.items())}}}"
