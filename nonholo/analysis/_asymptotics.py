@@ -37,7 +37,8 @@ class Approach(NamedTuple):
         constant: The part of the body velocity that never changes.
         energy: The energy of the rest.
         spectrum: The equilibria that the rest tends to.
-        beside: Sine of the distance of the first state from the equilibria: near the repelling ones it leaves late.
+        beside: Sine of the distance of the first state from the equilibria, in the body's units: near the
+            repelling ones it leaves late.
     """
 
     constant: Float[np.ndarray, "dim"]
@@ -50,8 +51,8 @@ def approach(orbit: Orbit) -> Approach | None:
     """Return what an orbit of a top or a sleigh tends to; None if its velocity never changes."""
     system, velocity = cast("AbstractLLSystem", orbit.system), orbit.body_velocity[0]
     family = system.equilibria()
-    rows = family.subspace
-    beside = float(np.linalg.norm(velocity - velocity @ np.linalg.pinv(rows) @ rows) / (np.linalg.norm(velocity) or 1))
+    rows, v = family.subspace / system.displacement_units, velocity / system.displacement_units
+    beside = float(np.linalg.norm(v - v @ np.linalg.pinv(rows) @ rows) / (np.linalg.norm(v) or 1))
     if family.attracting is None or beside <= _ROUNDING:
         return None
     constant, energy = kept_velocity(orbit)

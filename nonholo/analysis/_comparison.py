@@ -10,6 +10,7 @@ import numpy as np
 from nonholo.base.checks import error, instance, shown
 from nonholo.base.types import Float, Int
 from nonholo.orbit import AbstractOrbit
+from nonholo.systems import have_same_rows
 
 _SAME_TIME = 1e-9  # in units of the shortest time between two states
 _ROUNDING = 1e-12  # errors below this part of a quantity say nothing of an order
@@ -217,18 +218,18 @@ def _check_alike(orbit: AbstractOrbit, flow: AbstractOrbit) -> None:
     where = "compare(flow=...)"
     if orbit.space != flow.space:
         raise error(where, f"move in {orbit.space}", f"{flow.space}", "Pass a motion of the same body.")
-    rows = [_directions(each) for each in (orbit, flow)]
-    if rows[0].shape != rows[1].shape or not np.allclose(*rows, rtol=0.0, atol=_ROUNDING):
+    if _has_rows(orbit) and _has_rows(flow):
+        is_alike = have_same_rows(orbit.system, flow.system)
+    else:
+        is_alike = orbit.restricted_momentum.shape[1] == flow.restricted_momentum.shape[1]
+    if not is_alike:
         remedy = "Momenta along different directions are no two values of one thing."
         raise error(where, "have the constraint of the orbit", "another constraint", remedy)
 
 
-def _directions(orbit: AbstractOrbit) -> np.ndarray:
-    """Return the rows along which momenta are measured; of very large bodies, and in coordinates, their number."""
-    system = orbit.system
-    count = orbit.restricted_momentum.shape[1]
-    has_rows = not system.is_wide and hasattr(system, "constraint_subspace")
-    return system.constraint_subspace if has_rows else np.array([count])
+def _has_rows(orbit: AbstractOrbit) -> bool:
+    """Return whether there are rows along which momenta are measured: not of very large bodies, nor in coordinates."""
+    return not orbit.system.is_wide and hasattr(orbit.system, "constraint_subspace")
 
 
 def _common_rows(orbit: AbstractOrbit, flow: AbstractOrbit) -> tuple[Rows, Rows]:

@@ -4,13 +4,13 @@ The integrals follow from linear algebra on the quadratic terms of the equations
 """
 
 import dataclasses
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
 from nonholo.base.checks import error, instance
 from nonholo.base.results import Outcome, as_table, result
-from nonholo.base.types import Array, Float
+from nonholo.base.types import Float
 from nonholo.discrete import Discretization, reversal_defects
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractOrbit, Orbit, any_orbit
@@ -198,26 +198,69 @@ def conserved_momenta(system: AbstractSystem) -> ConservedMomenta:
 
 
 def _left(system: AbstractSystem) -> ConservedMomenta:
-    group, rows = system.group, row_space(system.constraint_subspace)
-    inertia, everything = np.asarray(system.inertia_operator), np.eye(group.dim)
-    form = gyroscopic_form(inertia, _brackets(group, rows, rows), rows)
-    coefficients = _vanishing(form.reshape(len(rows) ** 2, len(rows)), _scale(group, inertia))
-    reactions = _reactions(inertia, rows, _brackets(group, rows, everything))
-    return ConservedMomenta(coefficients @ rows, _largest_ideal(group, _vanishing(reactions, _scale(group, inertia))))
+    algebra = _Algebra.of(system)
+    rows, inertia, everything = algebra.rows, algebra.inertia, np.eye(system.group.dim)
+    form = gyroscopic_form(inertia, algebra.brackets(rows, rows), rows)
+    coefficients = algebra.vanishing(form.reshape(len(rows) ** 2, len(rows)))
+    reactions = _reactions(inertia, rows, algebra.brackets(rows, everything))
+    return algebra.conserved(coefficients @ rows, algebra.largest_ideal(algebra.vanishing(reactions)))
 
 
 def _right(system: AbstractSystem) -> ConservedMomenta:
-    group, rows, everything = system.group, row_space(system.constraint_subspace), np.eye(system.group.dim)
-    inertia, rng = np.asarray(system.inertia_operator), np.random.default_rng(0)
-    brackets, rates, reactions = _brackets(group, rows, everything), [], []
+    algebra, group, rng = _Algebra.of(system), system.group, np.random.default_rng(0)
+    rows, units, everything = algebra.rows, algebra.units, np.eye(group.dim)
+    brackets, rates, reactions = algebra.brackets(rows, everything), [], []
     for _ in range(group.dim + 1):
-        back = group.adjoint(group.inverse(group.random(rng)))
-        spatial = back.T @ inertia @ back
+        back = group.adjoint(group.exp(units * rng.normal(size=group.dim))) * units / units[:, None]
+        spatial = back.T @ algebra.inertia @ back
         reactions.append(_reactions(spatial, rows, brackets))
         gyroscopic = gyroscopic_form(spatial, brackets, rows).reshape(-1, group.dim)
         rates.append((gyroscopic + reactions[-1]) @ np.linalg.inv(back))
-    scale = _scale(group, inertia)
-    return ConservedMomenta(_vanishing(np.concatenate(rates), scale), _vanishing(np.concatenate(reactions), scale))
+    return algebra.conserved(*(algebra.vanishing(np.concatenate(part)) for part in (rates, reactions)))
+
+
+class _Algebra(NamedTuple):
+    """The algebra of a system in the units of its displacements.
+
+    Attributes:
+        group: The group.
+        units: Of displacements.
+        rows: Orthonormal in these units, along the constraint.
+        inertia: The inertia operator in these units.
+    """
+
+    group: AbstractMatrixGroup
+    units: Float[np.ndarray, "dim"]
+    rows: Float[np.ndarray, "k dim"]
+    inertia: Float[np.ndarray, "dim dim"]
+
+    @classmethod
+    def of(cls, system: AbstractSystem) -> "_Algebra":
+        group, units = system.group, system.displacement_units
+        rows = _span(system.constraint_subspace / units)
+        return cls(group, units, rows, system.inertia_operator * units * units[:, None])
+
+    def brackets(self, x: np.ndarray, y: np.ndarray) -> Float[np.ndarray, "i j dim"]:
+        """Return the brackets of rows."""
+        return self.group.bracket((x * self.units)[:, None, :], (y * self.units)[None, :, :]) / self.units
+
+    def vanishing(self, torques: Float[np.ndarray, "c m"]) -> Float[np.ndarray, "n m"]:
+        """Return orthonormal rows on which torques vanish."""
+        return _vanishing(torques, np.abs(self.inertia).max())
+
+    def largest_ideal(self, subspace: Float[np.ndarray, "m dim"]) -> Float[np.ndarray, "n dim"]:
+        """Return the largest subspace of the given one that all brackets map to itself."""
+        while len(subspace):
+            escape = self.brackets(subspace, np.eye(self.group.dim)) @ null_space(subspace).T
+            smaller = _vanishing(escape.reshape(len(subspace), -1).T, 1.0) @ subspace
+            if len(smaller) == len(subspace):
+                break
+            subspace = smaller
+        return subspace
+
+    def conserved(self, body: np.ndarray, spatial: np.ndarray) -> ConservedMomenta:
+        """Return the momenta along rows, which are orthonormal in the user's units then."""
+        return ConservedMomenta(_span(body * self.units), _span(spatial * self.units))
 
 
 def _reactions(
@@ -233,35 +276,14 @@ def _reactions(
     return torque @ rows.T @ np.linalg.solve(along @ rows.T, along) - torque
 
 
-def _largest_ideal(group: AbstractMatrixGroup, subspace: Float[np.ndarray, "m dim"]) -> Float[np.ndarray, "n dim"]:
-    """Return the largest subspace of the given one that all brackets map to itself."""
-    everything, scale = np.eye(group.dim), _bracket_scale(group)
-    while len(subspace):
-        escape = _brackets(group, subspace, everything) @ null_space(subspace).T
-        smaller = _vanishing(escape.reshape(len(subspace), -1).T, scale) @ subspace
-        if len(smaller) == len(subspace):
-            break
-        subspace = smaller
-    return subspace
-
-
 def _vanishing(conditions: Float[np.ndarray, "c m"], scale: float) -> Float[np.ndarray, "n m"]:
     """Return orthonormal rows on which the conditions vanish; entries that are small beside `scale` count as zero."""
     return null_space(np.where(np.abs(conditions) > _RANK * scale, conditions / scale, 0.0), _RANK)
 
 
-def _scale(group: AbstractMatrixGroup, inertia: Array) -> float:
-    return max(float(np.abs(inertia).max()) * _bracket_scale(group), np.finfo(np.float64).tiny)
-
-
-def _bracket_scale(group: AbstractMatrixGroup) -> float:
-    """Return the largest structure constant; 1 for a commutative group."""
-    everything = np.eye(group.dim)
-    return float(np.abs(_brackets(group, everything, everything)).max()) or 1.0
-
-
-def _brackets(group: AbstractMatrixGroup, x: np.ndarray, y: np.ndarray) -> Float[np.ndarray, "i j dim"]:
-    return group.bracket(x[:, None, :], y[None, :, :])
+def _span(rows: Float[np.ndarray, "n dim"]) -> Float[np.ndarray, "n dim"]:
+    """Return orthonormal rows that span what independent ones do, whose sizes may differ by any factor."""
+    return row_space(rows / np.linalg.norm(rows, axis=1, keepdims=True), 0.0)
 
 
 def lyapunov_exponents(orbit: AbstractOrbit) -> Float[np.ndarray, "k"]:
@@ -270,9 +292,9 @@ def lyapunov_exponents(orbit: AbstractOrbit) -> Float[np.ndarray, "k"]:
     $$ \lambda_i = \frac{1}{t_K - t_0}\sum_k \log R^{(k)}_{ii}, \qquad
        \frac{\partial r_{k+1}}{\partial r_k}\,Q^{(k)} = Q^{(k+1)}R^{(k+1)}, $$
 
-    Benettin's method: an orthonormal frame is carried by the tangent map (`Orbit.tangent`) and made orthonormal again
-    at each step. Their sum is the mean rate at which volumes of states grow: of momenta, where nothing else decides
-    them, in coordinates of configurations with admissible velocities.
+    Benettin's method: a frame, orthonormal in the body's units, is carried by the tangent map (`Orbit.tangent`) and
+    made orthonormal again at each step. Their sum is the mean rate at which volumes of states grow: of momenta, where
+    nothing else decides them, in coordinates of configurations with admissible velocities.
 
     Args:
         orbit: One that has a `tangent`.
@@ -287,7 +309,7 @@ def lyapunov_exponents(orbit: AbstractOrbit) -> Float[np.ndarray, "k"]:
         >>> nh.lyapunov_exponents(nh.simulate(sleigh, restricted_velocity=(0.0, 1.0), steps=200)).round(3) + 0.0
         array([ 0. , -0.4])
     """
-    steps = any_orbit("lyapunov_exponents(orbit=...)", orbit).tangent
+    steps = _tangent_in_units(any_orbit("lyapunov_exponents(orbit=...)", orbit))
     if not len(steps):
         raise error("lyapunov_exponents(orbit=...)", "have a step", "one state", "Run longer.")
     frame, growth = np.eye(steps.shape[-1]), np.zeros(steps.shape[-1])
@@ -295,3 +317,16 @@ def lyapunov_exponents(orbit: AbstractOrbit) -> Float[np.ndarray, "k"]:
         frame, triangle = np.linalg.qr(step @ frame)
         growth += np.log(np.abs(triangle.diagonal()))
     return np.sort(growth / float(orbit.time[-1] - orbit.time[0]))[::-1]
+
+
+def _tangent_in_units(orbit: AbstractOrbit) -> Float[np.ndarray, "L d d"]:
+    """Return the derivatives of states in units of the body and of the time between states."""
+    if not isinstance(orbit, Orbit):
+        from nonholo.lagrange_dalembert import tangents
+
+        return tangents.tangent_map(orbit, in_own_units=True)
+    system, steps = orbit.system, orbit.tangent
+    lengths, interval = system.direction_lengths, float(np.ptp(orbit.time)) / max(1, len(steps))
+    momenta = lengths * np.mean(np.diagonal(system.constrained_inertia) / lengths**2) / (interval or 1.0)
+    sizes = np.append(system.displacement_units, momenta)[-steps.shape[-1] :]
+    return steps * (sizes / sizes[:, None])

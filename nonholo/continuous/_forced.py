@@ -179,6 +179,7 @@ class LinearForces(NamedTuple):
         levers: L.
         friction: C.
         velocities: V of w = V r.
+        sizes: Units of the momenta, in which the three before are.
         fastest: The largest rate at which friction alone slows the body down.
     """
 
@@ -187,6 +188,7 @@ class LinearForces(NamedTuple):
     levers: Float[np.ndarray, "k m"]
     friction: Float[np.ndarray, "k k"]
     velocities: Float[np.ndarray, "k k"]
+    sizes: Float[np.ndarray, "k"]
     fastest: float
 
 
@@ -208,10 +210,12 @@ def _linear_forces(forced: Forced) -> LinearForces:
     body_levers = np.tensordot(rows, levers, 1) @ np.linalg.inv(forced.frame).T
     C = np.zeros((group.dim, group.dim)) if forced.friction is None else forced.friction.matrix
     V, _ = _series.body_numbers(group, body.constraint_subspace, body.inertia_operator)
-    friction, turns = rows @ C @ rows.T, group.hat(body.constraint_subspace).swapaxes(-1, -2)[:, :n, :n]
+    sizes = _series.direction_sizes(group, body.constraint_subspace, body.inertia_operator)
+    turns = group.hat(body.constraint_subspace).swapaxes(-1, -2)[:, :n, :n]
+    friction = rows @ C @ rows.T / sizes[:, None]
     fastest = float(np.linalg.eigvals(V @ friction).real.max(initial=0.0))
-    own_levers = body_levers[..., :n].reshape(len(rows), n * len(vectors))
-    return LinearForces(vectors, turns, own_levers, friction, V, fastest)
+    own_levers = body_levers[..., :n].reshape(len(rows), n * len(vectors)) / sizes[:, None]
+    return LinearForces(vectors, turns, own_levers, friction, V, sizes, fastest)
 
 
 @functools.lru_cache(maxsize=16)
@@ -231,9 +235,10 @@ def heads(
 ) -> tuple[Float[np.ndarray, "M K"], Float[np.ndarray, "M"]]:
     """Return momenta, vectors seen from the body and the constant at starts, divided by the unit of time, and this."""
     acting, one = _linear_forces(forced), np.ones((len(momenta), 1))
-    V, n = acting.velocities, acting.turns.shape[-1]
+    n, sizes, momenta = acting.turns.shape[-1], acting.sizes, momenta / acting.sizes
+    V = sizes[:, None] * acting.velocities
     body_vectors = (acting.vectors @ forced.group.matrix_from_pose(poses))[..., :n].reshape(len(momenta), -1)
-    pull, rub = (np.abs(V @ acts).max(initial=0.0) for acts in (acting.levers, acting.friction))
+    pull, rub = (np.abs(V @ acts).max(initial=0.0) for acts in (acting.levers, acting.friction / sizes))
     rates = np.concatenate([applied(V, momenta), np.sqrt(pull * np.abs(body_vectors)), rub * one], axis=1)
     units = _series.power_of_two(rates)
     return np.concatenate([momenta, body_vectors, one], axis=1) / units[:, None], units
@@ -251,8 +256,8 @@ def under_forces(forced: Forced, begins: float, problem: Problem) -> Solved:
     if not has_series_under(forced, problem.elapsed[-1]):
         return by_runge_kutta(forced, begins, problem, is_stiff=_are_linear(forced))
     (head,), (unit,) = heads(forced, problem.momentum[None], problem.pose[None])
-    f, rank = quadratic_under(forced), forced.rank
-    solution = _series.solve(forced.group, f, head, rank, None, float(unit), problem, _MOST)
+    f, rank, sizes = quadratic_under(forced), forced.rank, _linear_forces(forced).sizes
+    solution = _series.solve(forced.group, f, head, rank, None, float(unit), problem, _MOST, sizes)
     return solution if solution.outcome == Outcome.successful else solution._replace(outcome=Outcome.too_stiff)
 
 

@@ -24,7 +24,7 @@ from nonholo.base.types import Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.kernels import Columns, Quadratic, revisit_series, solve_series, sparse_products
 from nonholo.orbit import looked_at, turned_near
-from nonholo.systems import AbstractSystem
+from nonholo.systems import AbstractSystem, displacement_units
 
 PLANE = SE(2)
 Covectors = Float[np.ndarray, "K dim"]
@@ -117,6 +117,7 @@ class Series(NamedTuple):
         momentum: r, if the constraint is fixed in space, where it is constant; else None.
         unit: The unit of time, inverted: a power of two that brings the velocities near to one, so that no coefficient
             over- or underflows without need.
+        sizes: Units of the momenta.
         tolerance: Of a step.
         end: The last of the given times.
         nodes: Beginnings of steps.
@@ -129,6 +130,7 @@ class Series(NamedTuple):
     compact: bool
     momentum: Float[np.ndarray, "k"] | None
     unit: float
+    sizes: Any
     tolerance: float
     end: float
     nodes: Float[np.ndarray, "steps 2 state"]
@@ -156,7 +158,7 @@ class Series(NamedTuple):
                 headings[part] = turned_near(headings[part], poses[part])
         if self.momentum is None:
             head *= self.unit
-            momenta = np.ascontiguousarray(head[:, : self.rank])
+            momenta = np.ascontiguousarray(head[:, : self.rank] * self.sizes)
         else:
             momenta = np.broadcast_to(self.momentum, (len(poses), len(self.momentum))).copy()
         return States(momenta, poses, headings)
@@ -164,14 +166,15 @@ class Series(NamedTuple):
 
 def by_series(system: AbstractSystem, problem: Problem) -> Solved:
     """Solve the equations of a system."""
-    reduced_momentum, f, constant = problem.momentum, quadratic(system), None
+    reduced_momentum, f, constant, sizes = problem.momentum, quadratic(system), None, 1.0
     if system.is_spatial:
         unit = power_of_two(system.restricted_velocity(reduced_momentum, system.group.matrix_from_pose(problem.pose)))
         f, head, constant = f._replace(momentum=reduced_momentum / unit), np.zeros(f.tensor.size), reduced_momentum
     else:
-        unit = power_of_two(f.velocities.dot(reduced_momentum))
-        head = reduced_momentum / unit
-    return solve(system.group, f, head, len(reduced_momentum), constant, unit, problem)
+        sizes = _own_sizes(system)
+        unit = power_of_two(sizes * f.velocities.dot(reduced_momentum / sizes))
+        head = reduced_momentum / sizes / unit
+    return solve(system.group, f, head, len(reduced_momentum), constant, unit, problem, sizes=sizes)
 
 
 def has_compact_rates(group: AbstractMatrixGroup) -> bool:
@@ -193,13 +196,14 @@ def solve(
     unit: float,
     problem: Problem,
     most: float = math.inf,
+    sizes: Any = 1.0,
 ) -> Solved:
     """Solve equations from a head and a pose, in up to as many steps; see `Series` for the others."""
     _, pose, elapsed, tolerances = problem
     compact, tolerance = has_compact_rates(group) and not len(f.forms), tolerances[0] * GUARD
     g = pose if compact else group.matrix_from_pose(pose).ravel()
     columns, nodes = solve_series(f, (g, first_heading(group, pose), head), elapsed * unit, tolerance, most)
-    series = Series(group, f, len(head), rank, compact, constant, unit, tolerance, float(elapsed[-1]), nodes)
+    series = Series(group, f, len(head), rank, compact, constant, unit, sizes, tolerance, float(elapsed[-1]), nodes)
     outcome = Outcome.successful if len(columns[0]) == len(elapsed) else Outcome.not_converged
     return Solved(series.decode(columns), outcome, series, series.looks)
 
@@ -216,13 +220,26 @@ def quadratic(system: AbstractSystem) -> Quadratic:
 def body_numbers(
     group: AbstractMatrixGroup, S: np.ndarray, inertia: Float[np.ndarray, "... dim dim"]
 ) -> tuple[Float[np.ndarray, "... k k"], Float[np.ndarray, "... k k k"]]:
-    """Return V and the coefficients of products w_a w_b, a <= b, of velocities in the rates of momenta."""
+    """Return V and the coefficients of products w_a w_b, a <= b, in the rates of momenta, which are in their units."""
     momenta = S @ inertia.swapaxes(-1, -2)
     torques = np.zeros((*inertia.shape[:-2], len(S), len(S), len(S)))
     for a, row in enumerate(S):
         torques[..., a, :, :] = group.coad(np.broadcast_to(row, momenta.shape), momenta) @ S.T
     upper = (np.tri(len(S)).T - np.eye(len(S)) / 2)[..., None]
-    return np.linalg.inv(S @ inertia @ S.T), (torques + torques.swapaxes(-3, -2)) * upper
+    sizes = direction_sizes(group, S, inertia)
+    torques = (torques + torques.swapaxes(-3, -2)) * upper / sizes[..., None, None, :]
+    return np.linalg.inv(S @ inertia @ S.T) * sizes[..., None, :], torques
+
+
+def direction_sizes(group: AbstractMatrixGroup, S: np.ndarray, inertia: Float[np.ndarray, "... dim dim"]) -> Any:
+    """Return lengths of rows in units of displacements, as powers of two: inverse units of velocities along them."""
+    lengths = np.linalg.norm(S / displacement_units(group, inertia)[..., None, :], axis=-1)
+    return np.exp2(np.round(np.log2(lengths)))
+
+
+@functools.lru_cache(maxsize=16)
+def _own_sizes(system: AbstractSystem) -> Float[np.ndarray, "k"]:
+    return direction_sizes(system.group, system.constraint_subspace, system.inertia_operator)
 
 
 def body_equations(
@@ -337,17 +354,18 @@ def flow_tangents(
     """Return the derivative of each momentum by the one before, for restricted momenta of a flow."""
     k = system.rank
     V, torques = body_numbers(system.group, system.constraint_subspace, system.inertia_operator)
+    sizes = _own_sizes(system)
     slopes = np.einsum("abn,bc->acn", torques + torques.swapaxes(0, 1), V)
     a, c, n = np.nonzero(slopes)
     column = np.arange(k)[:, None]
     places = np.stack([np.broadcast_to(a, (k, len(a))), k * c + column, k * n + column]).reshape(3, -1)
     f = assemble(V, Rates(places, np.tile(slopes[a, c, n], k), np.zeros((k, k * k))), torques)
     out = np.empty((len(time) - 1, k, k))
-    for j, (r, step) in enumerate(zip(momenta, np.diff(time), strict=False)):
-        unit = power_of_two(V @ r)
+    for j, (r, step) in enumerate(zip(momenta / sizes, np.diff(time), strict=False)):
+        unit = power_of_two(sizes * (V @ r))
         parts = np.eye(k).ravel(), np.zeros(0), r / unit
         (tangents, *_), _ = solve_series(f, parts, np.array([0.0, step * unit]), _TOLERANCE * GUARD)
         if len(tangents) < 2:
             raise error(where, "be of a motion that can be integrated", f"none from state {j}", "Ask for closer times.")
-        out[j] = tangents[1].reshape(k, k)
+        out[j] = tangents[1].reshape(k, k) * (sizes[:, None] / sizes)
     return out

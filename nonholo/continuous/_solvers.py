@@ -69,9 +69,11 @@ def members_by_series(
     """
     group, k = system.group, momenta.shape[1]
     f, velocities, factors = _equations(system, inertias)
+    sizes = _series.direction_sizes(group, system.canonical.constraint_subspace, inertias)
     if system.forces is None:
-        units = _series.power_of_two((velocities @ momenta[..., None])[..., 0])
-        head = momenta / units[:, None]
+        head = momenta / sizes
+        units = _series.power_of_two((velocities @ head[..., None])[..., 0] * sizes)
+        head = head / units[:, None]
     else:
         head, units = heads(system.forces, momenta, poses)
     parts, numbers = (poses, _series.first_heading(group, poses), head), (velocities, factors)
@@ -81,7 +83,7 @@ def members_by_series(
         rows[np.arange(len(elapsed)) >= counts[:, None]] = np.nan
     path = group.normalize_pose(path)
     headings = turned_near(angles[..., 0], path) if group == _series.PLANE else None
-    return States(heads_after[..., :k] * units[:, None, None], path, headings), counts
+    return States(heads_after[..., :k] * units[:, None, None] * sizes[:, None], path, headings), counts
 
 
 Solver = Callable[[Problem], Solved]

@@ -76,8 +76,12 @@ def slopes(
     return cast(Any, tuple(call_in_blocks(each, FEW, x, v)))
 
 
-def tangent_map(orbit: Any) -> Float[np.ndarray, "L d d"]:
-    """Return the derivative of each state of an orbit by the one before, in orthonormal bases of admissible changes."""
+def tangent_map(orbit: Any, *, in_own_units: bool = False) -> Float[np.ndarray, "L d d"]:
+    """Return the derivative of each state of an orbit by the one before, in orthonormal bases of admissible changes.
+
+    Its own units are those in which all velocities have the same kinetic energy at the first state, and the time
+    between states.
+    """
     motion, system, time = orbit.motion, orbit.system, orbit.time
     where, n = "Orbit.tangent", orbit.body_velocity.shape[1]
     if orbit.has_impacts.any():
@@ -95,8 +99,13 @@ def tangent_map(orbit: Any) -> Float[np.ndarray, "L d d"]:
     )
     matters = np.r_[:n, n + system.is_driven : slope.shape[-1]]  # all but the time, and places that it prescribes
     matters = np.setdiff1d(matters, [index for index, _ in system.plain.prescribed])
-    bases = np.linalg.svd(rows[..., matters])[2][:, rows.shape[1] :].swapaxes(1, 2)
-    return bases[1:].swapaxes(1, 2) @ maps[:, matters][:, :, matters] @ bases[:-1]
+    maps, rows = maps[:, matters][:, :, matters], rows[..., matters]
+    if in_own_units and len(maps):
+        unit, interval = units(system, x[0], v[0]), abs(time[-1] - time[0]) / len(maps)
+        sizes = np.concatenate([unit * interval, np.full(int(system.is_driven), interval), unit])[matters]
+        maps, rows = maps * (sizes / sizes[:, None]), rows * sizes
+    bases = np.linalg.svd(rows)[2][:, rows.shape[1] :].swapaxes(1, 2)
+    return bases[1:].swapaxes(1, 2) @ maps @ bases[:-1]
 
 
 def _step_of(motion: Any) -> tuple[np.float64, ...]:

@@ -15,7 +15,7 @@ from nonholo.plot.parts import evenly_in_box, finish_page, new_page
 
 _MOST_POINTS = 2000
 _TITLES = {"pose": "Pose", "momentum": "Momentum along admissible directions", "energy": "Energy"}
-_LEAST = 1e-17  # of an error that a picture against a logarithmic scale shows
+_LEAST = 1e-17  # of the largest error, or absolute where there is none, on a logarithmic scale
 
 
 @theme.in_style
@@ -89,7 +89,7 @@ def convergence(
     theme.begin(axes)
     h, orders = convergence.time_step, convergence.order._asdict()
     for name, errors in _by_name(convergence.largest).items():
-        _draw_slope(axes, h, np.maximum(errors, _LEAST), orders[name], name)
+        _draw_slope(axes, h, np.maximum(errors, _LEAST * (errors.max() or 1.0)), orders[name], name)
     axes.margins(x=0.12, y=0.1)
     axes.grid(which="major", color=theme.LEVEL, linewidth=0.5, alpha=0.6)
     axes.set_xticks(h, [f"{step:g}" for step in h])
@@ -113,7 +113,7 @@ def _color(name: str) -> Any:
 def _draw_errors(axes: Axes, time: Float[np.ndarray, "K"], name: str, errors: Float[np.ndarray, "K"]) -> None:
     """Draw errors in units of a power of ten, and a ring about the largest."""
     most = int(np.abs(errors).argmax())
-    unit = 10.0 ** np.floor(np.log10(max(abs(errors[most]), _LEAST)))
+    unit = 10.0 ** np.floor(np.log10(abs(errors[most]) or _LEAST))
     at = evenly_in_box(np.stack([time, errors], axis=1), _MOST_POINTS)
     color = _color(name)
     axes.plot(time[at], errors[at] / unit, color=color, label=theme.option("label", None), linewidth=1.6, zorder=3)

@@ -22,7 +22,7 @@ from nonholo.discrete import Discretization
 from nonholo.io.places import check_file, complete_file
 from nonholo.orbit import AbstractOrbit, Orbit, any_orbit, as_orbit
 from nonholo.plot import theme
-from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, System, refuse_fixed_in_space
+from nonholo.systems import AbstractLLSystem, AbstractSystem, Equilibria, System, have_same_rows, refuse_fixed_in_space
 
 MOST_DOTS = 1500  # of most pictures
 
@@ -277,6 +277,7 @@ def corner_axes(axes: Axes, track: Float[np.ndarray, "L 2"], view: Square, near:
 
 _SMOOTH = 1000  # states of a flow, in which a curve has no corners
 _ROUNDING = 1e-12  # relative
+_SEEN = 1e-5  # of the extent of a path
 NEAR_EQUILIBRIUM = 0.03  # sine, in the metric of the energy, of the angle to the line of equilibria
 
 
@@ -341,13 +342,18 @@ def check_directions(where: str, value: Any, system: AbstractSystem, number: tup
         raise error(where, f"have a {number[1]}-dimensional constraint subspace", got, remedy)
 
 
+def is_closed(points: Float[np.ndarray, "K d"]) -> bool:
+    """Return whether a path ends where it starts, to what is seen of it."""
+    return bool(np.abs(points[-1] - points[0]).max() <= _SEEN * np.ptp(points, axis=0).max())
+
+
 def is_same_body(system: System, other: System) -> bool:
     """Return whether two systems have the same constraint and inertia, up to rounding, in any classes."""
     if (system.group, system.is_spatial, system.rank) != (other.group, other.is_spatial, other.rank):
         return False
-    same_rows = np.allclose(system.constraint_subspace, other.constraint_subspace, rtol=0.0, atol=_ROUNDING)
-    scale = np.abs(other.inertia_operator).max(initial=0.0)
-    return same_rows and np.allclose(system.inertia_operator, other.inertia_operator, rtol=0.0, atol=_ROUNDING * scale)
+    units = other.displacement_units
+    each, inertia = (x.inertia_operator * units * units[:, None] for x in (system, other))
+    return have_same_rows(system, other) and bool(np.abs(each - inertia).max() <= _ROUNDING * np.abs(inertia).max())
 
 
 def own_orbit(where: str, orbit: Any, discrete: Discretization) -> None:

@@ -8,6 +8,7 @@ from nonholo.systems._base import (
     Equilibria,
     System,
     as_system,
+    have_same_rows,
     refuse_fixed_in_space,
     refuse_forces,
     refuse_slip,
@@ -25,6 +26,7 @@ from nonholo.systems._equilibria import gyroscopic_form
 from nonholo.systems._mass import (
     ImpossibleBodyWarning,
     checked_group,
+    displacement_units,
     extent_of,
     group_mass_tensor,
     inertia_form,

@@ -19,10 +19,11 @@ from nonholo.base.numerics import Factors, applied, factors_of, solve_by_factors
 from nonholo.base.types import Array, Bool, Float, Inexact
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.systems._equilibria import Equilibria, equilibria_of, transverse_rates
-from nonholo.systems._mass import WideInertia, inertia_form, inertia_from_mass_tensor
+from nonholo.systems._mass import WideInertia, displacement_units, inertia_form, inertia_from_mass_tensor
 from nonholo.systems._normal_form import NormalForm
 from nonholo.systems._subspace import complement
 
+_ROUNDING = 1e-12  # relative
 SystemT = TypeVar("SystemT", bound="AbstractSystem")
 Covectors = Inexact[Array, "... dim"]
 Along = Float[Array, "... k"]
@@ -71,6 +72,16 @@ class AbstractSystem(Keeper, abc.ABC):
     def inertia_operator(self) -> Float[Array, "... dim dim"]:
         """The symmetric matrix that takes body velocity to body momentum, by default that of the mass tensor."""
         return inertia_from_mass_tensor(self.group, self.homogeneous_mass_tensor)
+
+    @property
+    def displacement_units(self) -> Float[np.ndarray, "dim"]:
+        """Units of the algebra: see `displacement_units`."""
+        return displacement_units(self.group, np.asarray(self.inertia_operator))
+
+    @property
+    def direction_lengths(self) -> Float[np.ndarray, "k"]:
+        """Lengths of the rows of the constraint subspace in the units of displacements, to which momenta are alike."""
+        return np.linalg.norm(self.constraint_subspace / self.displacement_units, axis=1)
 
     @property
     @abc.abstractmethod
@@ -470,6 +481,12 @@ class AbstractLRSystem(AbstractSystem):
 
 System = AbstractSystem
 """Any system on a group."""
+
+
+def have_same_rows(system: AbstractSystem, other: AbstractSystem) -> bool:
+    """Return whether two systems have the same constraint subspace up to rounding, in the units of the second."""
+    first, second = (each.constraint_subspace / other.displacement_units for each in (system, other))
+    return first.shape == second.shape and np.allclose(first, second, 0.0, _ROUNDING * np.abs(second).max(initial=0.0))
 
 
 def as_system(where: str, value: Any) -> "AbstractSystem":

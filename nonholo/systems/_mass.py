@@ -114,6 +114,26 @@ def reach_of(numbers: Float[np.ndarray, "d"], units: Float[np.ndarray, "d"]) -> 
     return np.minimum(1.0, units * extent_of(numbers, units))
 
 
+def displacement_units(group: AbstractMatrixGroup, inertia: Float[Array, "... dim dim"]) -> Float[Array, "... dim"]:
+    """Return units of the algebra: of a body radians and its length, in which slides have about the energy of turns.
+
+    Of other groups those in which each velocity has the same energy and no bracket of two is above 1.
+    """
+    xp = inertia.__array_namespace__()
+    energies = xp.abs(xp.linalg.diagonal(inertia))
+    if not group.is_rigid:
+        units, everything = 1 / xp.sqrt(xp.where(energies > 0, energies, 1.0)), np.eye(group.dim)
+        brackets = np.abs(group.bracket(everything[:, None], everything[None]))
+        along, across, beside = units[..., :, None, None], units[..., None, :, None], units[..., None, None, :]
+        largest = xp.max(brackets * (along * across / beside), axis=(-3, -2, -1))
+        return units / xp.where(largest > 0, largest, 1.0)[..., None]
+    slides = ~np.any(group.basis[:, : group.point_size, : group.point_size], axis=(1, 2))
+    if not slides.any():
+        return xp.ones_like(energies)
+    length = xp.sqrt(xp.mean(energies[..., ~slides], axis=-1) / xp.mean(energies[..., slides], axis=-1))
+    return xp.where(xp.asarray(slides), xp.where(length > 0, length, 1.0)[..., None], 1.0)
+
+
 def inertia_form(group: AbstractMatrixGroup, matrices: Array, mass_tensor: Tensor) -> Float[Array, "... k k"]:
     r"""Return $\bigl(\mathrm{tr}(D_i\mathbb{J}D_j^*)\bigr)_{ij}$ for velocities $D_i$ and a (homogeneous) mass tensor.
 

@@ -16,12 +16,12 @@ from nonholo.base.types import Array
 from nonholo.discrete import discretize
 from nonholo.discrete.definition import in_double
 from nonholo.groups import SE, matrix_from_quaternion
-from nonholo.lagrange_dalembert import checked_state, equations, place
+from nonholo.lagrange_dalembert import checked_state, equations, place, tangents
 from nonholo.lagrange_dalembert import in_double as of_system
 from nonholo.orbit import Orbit
 from nonholo.simulation import simulate
 from nonholo.simulation.traced import rollout
-from nonholo.systems import AbstractCoordinateSystem
+from nonholo.systems import AbstractCoordinateSystem, reach_of
 
 _COPIES = 8  # of matrices at a node, and their derivatives
 
@@ -262,9 +262,12 @@ class CoordinateModel(NamedTuple):
 
     def _free(self, at: list[int], x: np.ndarray, v: np.ndarray, h: float) -> list[int]:
         """Return the directions whose beginning is fitted: those measured, and those that the equations contain."""
-        rng, n = np.random.default_rng(0), len(v)
-        xis = rng.normal(0.0, 0.3, (_SAMPLES, n + self.system.is_driven))
-        vs = v + rng.normal(0.0, 0.3, (_SAMPLES, n))
+        rng, n, units = np.random.default_rng(0), len(v), tangents.units(self.system, x, v)
+        reach = reach_of(x[:n] if self.system.coordinates else np.zeros(n), units)
+        speed = units * np.abs(v / units).max() if np.any(v) else reach
+        sizes = np.append(reach, np.ones(int(self.system.is_driven)))
+        xis = rng.normal(0.0, 0.3, (_SAMPLES, len(sizes))) * sizes
+        vs = v + rng.normal(0.0, 0.3, (_SAMPLES, n)) * speed
         matters = np.abs(of_system(_slopes, self.system, x, xis, vs, np.float64(h))).max((0, 1))[:n] > 0
         driven = {index for index, _ in self.system.prescribed}
         return [i for i in range(n) if (i in at or matters[i]) and i not in driven]

@@ -337,7 +337,7 @@ def group_problem(discrete: Discretization, ends: tuple[Any, ...], limits: Limit
 
     def first_guess(rng: np.random.Generator, spread: float) -> np.ndarray:
         spread *= way.guess.trust
-        noise = spread * sizes(discrete, steps).reshape(steps, -1) * rng.normal(size=(steps, system.rank))
+        noise = spread * sizes(discrete, steps, ends).reshape(steps, -1) * rng.normal(size=(steps, system.rank))
         bent = _bent(discrete, poses, spread * rng.normal(size=system.group.dim), way)
         return _group_unknowns(nodes, bent, forces + noise)
 

@@ -168,7 +168,11 @@ class _Plane:
     @classmethod
     def of(cls, J: np.ndarray, free: np.ndarray) -> "_Plane":
         slopes = np.where(free[:, None], np.nan_to_num(J), 0.0)
-        return cls(free, slopes, np.linalg.pinv(slopes @ slopes.swapaxes(1, 2), rcond=1e-14, hermitian=True))
+        lengths = np.linalg.norm(slopes, axis=2, keepdims=True)
+        lengths = np.where(lengths > 0, lengths, 1.0)  # they differ as torques and forces do
+        rows = slopes / lengths
+        inverse = np.linalg.pinv(rows @ rows.swapaxes(1, 2), rcond=1e-14, hermitian=True)
+        return cls(free, slopes, inverse / lengths / lengths.swapaxes(1, 2))
 
     def __getitem__(self, at: np.ndarray) -> "_Plane":
         return _Plane(self.free[at], self.slopes[at], self.inverse[at])
@@ -240,30 +244,52 @@ TOLERANCE = 1e-8  # of the goal
 _GRADIENT = 1e-4  # of the gradient at a minimum
 
 
-def shot(discrete: Discretization, ends: Ends, limits: Limits) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the forces of members, (members, steps k), what they miss, and whether they are of least effort."""
+def shot(discrete: Discretization, ends: Ends, limits: Limits) -> tuple[np.ndarray, ...]:
+    """Return the forces of members, (members, steps k), what they miss, whether it is met, and with least effort."""
     k, block = discrete.system.rank, min(BLOCK, len(ends[0]))
     steps = len(limits[0]) // k
+    units = _units(discrete, ends, steps)
 
     def gaps(forces: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         go_on()
-        return goal_gaps(discrete, forces.reshape(-1, steps, k), members_of(ends, at), block)
+        c, J = goal_gaps(discrete, forces.reshape(-1, steps, k), members_of(ends, at), block)
+        return c / units, J / units[:, None]
 
-    return best(gaps, sizes(discrete, steps), len(ends[0]), limits)
+    forces, gap, is_least = best(gaps, sizes(discrete, steps, ends), len(ends[0]), limits)
+    miss = np.abs(gaps(forces, np.arange(len(forces)))[0] * units).max(axis=1)
+    return forces, np.where(np.isfinite(gap), miss, np.inf), gap < TOLERANCE, is_least
 
 
-def sizes(discrete: Discretization, steps: int) -> np.ndarray:
-    """Return how large forces are that move a body by about one unit, or turn it by one radian."""
-    each = discrete.system.constrained_inertia.diagonal()
-    return np.tile(np.sqrt(steps) * each / (steps * float(discrete.time_step)) ** 2, steps)
+def _units(discrete: Discretization, ends: Ends, steps: int) -> np.ndarray:
+    """Return units of what is missed: radians and the body's length, for velocities in the time of the motion."""
+    units, duration = discrete.system.displacement_units, steps * float(discrete.time_step)
+    speeds = 1 / discrete.system.direction_lengths / duration
+    return np.concatenate([part for part, end in zip((units, speeds), ends[2:], strict=True) if end is not None])
+
+
+def sizes(discrete: Discretization, steps: int, ends: Ends) -> np.ndarray:
+    """Return how large forces are that turn bodies by about one radian, or move them by their length or half the way.
+
+    Ends may be those of one member, or of many.
+    """
+    system, (_, g, to_pose, _) = discrete.system, ends
+    units = np.broadcast_to(system.displacement_units, (*g.shape[:-2], system.group.dim)).copy()
+    if system.group.is_affine and to_pose is not None:
+        n = system.group.point_size
+        way = np.linalg.norm(to_pose[..., :n, n] - g[..., :n, n], axis=-1, keepdims=True) / 2
+        units[..., -n:] = np.maximum(units[..., -n:], way)
+    along = system.constrained_inertia.diagonal() / np.linalg.norm(
+        system.constraint_subspace / units[..., None, :], axis=-1
+    )
+    return np.tile(np.sqrt(steps) * along / (steps * float(discrete.time_step)) ** 2, steps)
 
 
 def best(gaps: Gaps, size: np.ndarray, members: int, limits: Limits) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the forces of least effort, or those that come nearest, what they miss, and whether they are least."""
-    rng, left = np.random.default_rng(0), np.arange(members)
-    forces, gap, is_least = np.zeros((members, len(size))), np.full(members, np.inf), np.zeros(members, dtype=bool)
+    rng, left, size = np.random.default_rng(0), np.arange(members), np.broadcast_to(size, (members, size.shape[-1]))
+    forces, gap, is_least = np.zeros(size.shape), np.full(members, np.inf), np.zeros(members, dtype=bool)
     for spread in SPREAD:
-        first = spread * size * rng.normal(size=(len(left), len(size)))
+        first = spread * size[left] * rng.normal(size=size[left].shape)
         there = left
         near, miss, rest = least_effort(lambda f, at, there=there: gaps(f, there[at]), first, limits)
         better = miss < gap[left]

@@ -31,7 +31,8 @@ class Steering(Keeper):
         cost: Half the time integral of the squared forces along the rows of the constraint subspace.
         missed: The largest of the numbers by which the orbit under the controls misses the goal, a place on the way,
             the clearance of an obstacle, or bounds of states.
-        outcome: "converged": nothing is missed by 1e-8, and the cost is at a minimum nearby. "not least": nothing is
+        outcome: "converged": nothing is missed by 1e-8, and the cost is at a minimum nearby; by shooting lengths are
+            measured in that of the body, velocities in the time of the motion. "not least": nothing is
             missed, but there may be less cost. "infeasible": from every guess IPOPT came to where the equations and
             bounds contradict each other, which proves nothing of other ways. "not found": none of these.
     """
@@ -209,10 +210,10 @@ def _refuse_too_many(discrete: Discretization, steps: int, method: str, members:
 def _by_shooting(discrete: Discretization, ends: Ends, limits: Limits) -> tuple[Any, ...]:
     """Return forces along the rows, what is missed, and outcomes of members, all at once."""
     with needs("jax", "steer"):
-        from nonholo.analysis.steering._shooting import TOLERANCE, shot
-    forces, gap, is_least = shot(discrete, ends, limits)
-    outcome = np.where(is_least, "converged", np.where(gap < TOLERANCE, "not least", "not found"))
-    return forces.reshape(len(gap), -1, discrete.system.rank), gap, outcome
+        from nonholo.analysis.steering._shooting import shot
+    forces, miss, is_met, is_least = shot(discrete, ends, limits)
+    outcome = np.where(is_least, "converged", np.where(is_met, "not least", "not found"))
+    return forces.reshape(len(miss), -1, discrete.system.rank), miss, outcome
 
 
 def _by_ipopt(

@@ -105,7 +105,7 @@ def _sides(bounds: Any, path: Array | None, shapes: list[int]) -> Float[np.ndarr
     where, remedy = "plot.curvature(bounds=...)", "Pass ((from, to), (from, to))."
     if bounds is None and path is not None:
         low, high = path[:, shapes].min(0), path[:, shapes].max(0)
-        margin = _MARGIN * np.maximum(high - low, 1e-3)
+        margin = _MARGIN * np.where(high > low, high - low, np.abs([low, high]).max(0))
         return np.stack([low - margin, high + margin], -1)
     sides = array(where, ((-_REACH, _REACH),) * 2 if bounds is None else bounds, (2, 2), remedy)
     if not (sides[:, 0] < sides[:, 1]).all():
@@ -152,6 +152,5 @@ def _draw_gait(axes: Axes, path: Float[np.ndarray, "K 2"]) -> Line2D:
     line = axes.plot(*path.T, linewidth=2.0, zorder=4, **look)[0]
     k = int(np.argmax(np.abs(np.diff(path, axis=0)).sum(-1)))
     arrow: Any = {"arrowstyle": "-|>", "color": line.get_color(), "mutation_scale": 18, "linewidth": 0}
-    ahead = path[k] + 1e-3 * (path[k + 1] - path[k]) / max(np.abs(path[k + 1] - path[k]).max(), 1e-12)
-    axes.annotate("", ahead, path[k], arrowprops=arrow, zorder=4)
+    axes.annotate("", path[k + 1], path[k], arrowprops=arrow, zorder=4)
     return line

@@ -50,7 +50,7 @@ def mark_path_ends(axes: Any, points: Float[np.ndarray, "L d"], orbit: AbstractO
     """Mark and name the first and the last point of a path."""
     parts.draw_ends(axes, points, orbit)
     axes.text(*points[0], "  start", zorder=9, path_effects=theme.HALO)
-    if not np.allclose(points[0], points[-1]):
+    if not parts.is_closed(points):
         axes.text(*points[-1], "  end", zorder=9, path_effects=theme.HALO)
 
 

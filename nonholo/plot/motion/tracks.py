@@ -84,7 +84,7 @@ def blade_track(
     ends = parts.draw_ends(axes, position, orbit)
     middle = position[parts.evenly_spread(position)].mean(axis=0)
     _name(axes, "start", position[0], middle)
-    if not np.allclose(position[0], position[-1]):
+    if not parts.is_closed(position):
         _name(axes, "end", position[-1], middle)
     stars = _stars(axes, position, cusps) if len(cusps) else None
     theme.legend_above(axes, "Track of the blade")

@@ -1,0 +1,190 @@
+"""Questions to bodies on groups, and to fits and controls, in any unit of mass, length and time: the same answers."""
+
+from collections.abc import Callable
+from typing import Any
+
+import jax.numpy as jnp
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from unit_changes import UNITS, Answer, same_answers
+
+import nonholo as nh
+from nonholo.plot.parts import is_same_body
+
+WIDE = np.cov(np.random.default_rng(0).normal(size=(4, 9)))
+MIXED = np.random.default_rng(5).normal(size=(3, 6))
+X, Y, Z = np.zeros((3, 3, 3))
+X[0, 1] = Y[1, 2] = Z[0, 2] = 1.0
+HEISENBERG = nh.MatrixGroup(np.array([X, Y, Z]))  # areas beside lengths
+
+
+def _sleigh(mass: float, length: float, a: float = 0.5, b: float = 0.3) -> nh.ChaplyginSleigh:
+    return nh.ChaplyginSleigh(mass, 1.2 * mass * length**2, a * length, b * length)
+
+
+def _in_space(mass: float, length: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return a mass tensor and rows that mix turns and slides."""
+    lengths = np.append(np.full(3, length), 1.0)
+    return WIDE * np.outer(lengths, lengths) * mass, MIXED * np.repeat([1.0, length], 3)
+
+
+def _heisenberg(mass: float, length: float) -> nh.LLSystem:
+    inertia = mass * np.diag([1.0, 1.3, 0.7 / length**2])
+    return nh.LLSystem(HEISENBERG, inertia_operator=inertia, constraint_subspace=np.eye(3)[:2])
+
+
+BODIES: dict[str, Callable[[float, float], Any]] = {
+    "sleigh": _sleigh,
+    "balanced sleigh": lambda mass, length: _sleigh(mass, length, a=0.0),
+    "LL in space": lambda mass, length: nh.LLSystem(nh.SE(3), *_in_space(mass, length)),
+    "LR in space": lambda mass, length: nh.LRSystem(nh.SE(3), *_in_space(mass, length)),
+    "free in space": lambda mass, length: nh.RigidBody(_in_space(mass, length)[0], nh.SE(3)),
+    "Heisenberg": _heisenberg,
+}
+
+
+def _conserved(name: str, mass: float, length: float, _: float) -> Answer:
+    found = nh.conserved_momenta(BODIES[name](mass, length))
+    return {"body": found.body.shape, "spatial": found.spatial.shape}
+
+
+def _motion(mass: float, length: float, time: float, **forces: Any) -> tuple[Any, Answer]:
+    system = nh.Forced(_sleigh(mass, length), **forces) if forces else _sleigh(mass, length)
+    return system, {"restricted_velocity": np.array([0.7, 0.4 * length]) / time}
+
+
+def _weight(mass: float, length: float, time: float) -> Answer:
+    """Return a weight beside the axis, and friction."""
+    friction = nh.Friction(np.diag([0.1 * length**2, 0.2, 0.2]) * mass / time)
+    weight = nh.Gravity([0.0, -0.9 * mass * length / time**2], [0.2 * length, 0.1 * length])
+    return {"potential": weight, "force": friction}
+
+
+def _flow(is_heavy: bool, mass: float, length: float, time: float) -> Answer:
+    """Return a flow of one body, and that of one of two in an ensemble."""
+    system, start = _motion(mass, length, time, **(_weight(mass, length, time) if is_heavy else {}))
+    times, sizes = np.linspace(0, 3, 4) * time, np.array([1.0, length, length]) / time
+    flow = nh.flow(system, **start, times=times)
+    between = flow.at(np.array([0.3, 2.2]) * time).body_velocity / sizes
+    both = nh.ensemble(
+        system, restricted_velocity=np.array([1.0, 0.5])[:, None] * start["restricted_velocity"], times=times
+    )
+    member = np.array_equal(both.restricted_momentum[0], flow.restricted_momentum)
+    return {"place": flow.position / length, "velocity": flow.body_velocity / sizes, "at": between, "member": member}
+
+
+def _exponents(mass: float, length: float, time: float) -> Answer:
+    system, start = _motion(mass, length, time)
+    orbit = nh.simulate(nh.discretize(system, 0.1 * time), **start, steps=40)
+    flow = nh.flow(system, **start, times=np.linspace(0, 4, 5) * time)
+    return {"map": nh.lyapunov_exponents(orbit) * time, "flow": nh.lyapunov_exponents(flow) * time}
+
+
+def _exponents_under_weight(mass: float, length: float, time: float) -> Answer:
+    system, start = _motion(mass, length, time, **_weight(mass, length, time))
+    return {"map": nh.lyapunov_exponents(nh.simulate(nh.discretize(system, 0.1 * time), **start, steps=10)) * time}
+
+
+def _connection(mass: float, length: float, time: float) -> Answer:
+    discrete = nh.discretize(_sleigh(mass, length), 0.3 * time)
+    orbit = nh.heteroclinic(discrete, energy=0.3 * mass * (length / time) ** 2).orbit
+    return {"states": len(orbit), "velocity": orbit.body_velocity * [time, time / length, time / length]}
+
+
+def _alike(mass: float, length: float, _: float) -> Answer:
+    others = {"same": 1.2 * (1 + 1e-15), "heavier": 1.3}
+    body = _sleigh(mass, length)
+    return {
+        name: is_same_body(nh.ChaplyginSleigh(mass, x * mass * length**2, body.a, body.b), body)
+        for name, x in others.items()
+    }
+
+
+def _compared(mass: float, length: float, time: float) -> Answer:
+    """Return of which bodies in space motions are compared."""
+    tensor, rows = _in_space(mass, length)
+
+    def run(off: float) -> nh.Orbit:
+        turned = rows * np.repeat([1.0, off], 3)
+        start = {"restricted_velocity": np.array([0.1, 0.2, 0.1]) / time, "steps": 1}
+        return nh.simulate(nh.discretize(nh.LLSystem(nh.SE(3), tensor, turned), 0.1 * time), **start)
+
+    def is_refused(off: float) -> bool:
+        try:
+            nh.compare(run(off), run(1.0))
+        except ValueError:
+            return True
+        return False
+
+    return {"refused": [is_refused(off) for off in (1 + 1e-15, 1.1)]}
+
+
+def _track(mass: float, length: float, time: float) -> Answer:
+    """Return which ends of a track have names: those of a closed one have one."""
+    start: Any = {"body_velocity": np.array([1.0, length, 0.0]) / time}
+    names = []
+    for turns in (0.5, 1.0):
+        orbit = nh.flow(_sleigh(mass, length, a=0.0, b=0.0), **start, times=(0.0, 2 * np.pi * turns * time))
+        axes = nh.plot.blade_track(orbit).axes
+        names.append(sorted(text.get_text().strip() for text in axes.texts))
+        plt.close(axes.figure)
+    return {"names": names}
+
+
+def _turned(mass: float, length: float, time: float) -> Answer:
+    """Return the torques that turn a top to a place at rest."""
+    tensor = np.array([[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]) * mass * length**2
+    goal = {"configuration": nh.SO(3).exp([0.4, 0.2, 0.1]), "restricted_velocity": (0.0, 0.0)}
+    found = nh.steer(nh.discretize(nh.SuslovTop(tensor), 0.1 * time), {}, goal, steps=20)
+    return {"outcome": str(found.outcome), "torques": found.controls * time**2 / (mass * length**2)}
+
+
+def _fitted(mass: float, length: float, time: float) -> Answer:
+    """Return a length from a record of lengths alone."""
+    size = length**1.5
+
+    def lagrangian(q: Any, v: Any, p: Any) -> Any:
+        return p["mass"] * v[0] ** 2 / 2 + p["spring"] * p["length"] ** 2 * jnp.cos(q[0] / p["length"])
+
+    parameters = {"mass": mass, "spring": 1.3 * mass / time**2, "length": 0.4 * size}
+    system: Any = nh.LagrangeDAlembert(lagrangian, None, dimension=1, parameters=parameters, coordinates=("s",))
+    start: Any = {"configuration": [0.7 * size], "body_velocity": [0.2 * size / time]}
+    orbit = nh.simulate(nh.discretize(system, 0.1 * time), **start, steps=40)
+    record = {"t": orbit.time, "s": orbit.configuration[:, 0] + 1e-3 * size * np.random.default_rng(0).normal(size=41)}
+    found = nh.fit(lambda p: system.with_parameters(**p), record, {"length": 0.3 * size}, noise={"s": 1e-3 * size})
+    return {"outcome": found.outcome, "length": np.array(found.parameters["length"] / size)}
+
+
+QUESTIONS: dict[str, tuple[Callable[..., Answer], tuple[Any, ...], float]] = {  # with the rounding errors of answers
+    **{f"momenta of {name}": (_conserved, (name,), 0.0) for name in BODIES},
+    "flow": (_flow, (False,), 1e-13),
+    "flow of a heavy body": (_flow, (True,), 1e-13),
+    "exponents": (_exponents, (), 1e-10),
+    "exponents under a weight": (_exponents_under_weight, (), 1e-10),
+    "connection": (_connection, (), 1e-11),
+    "bodies alike": (_alike, (), 0.0),
+    "bodies compared": (_compared, (), 0.0),
+    "track": (_track, (), 0.0),
+    "controls": (_turned, (), 1e-6),
+    "fit": (_fitted, (), 1e-6),
+}
+KEPT = (
+    "momenta of sleigh",
+    "momenta of LR in space",
+    "momenta of Heisenberg",
+    "flow",
+    "flow of a heavy body",
+    "exponents",
+    "connection",
+)
+
+
+@pytest.mark.profile(
+    "problems", keep=[f"{name}-length" for name in (*KEPT, "bodies alike", "bodies compared", "track")]
+)
+@pytest.mark.parametrize("unit", UNITS)
+@pytest.mark.parametrize("question", QUESTIONS)
+def test_units_do_not_matter_to_questions(question: str, unit: str) -> None:
+    """Words, counts and outcomes are the same, numbers up to rounding."""
+    same_answers(*QUESTIONS[question], unit)
