@@ -19,8 +19,9 @@ from nonholo.systems import Gravity, central_differences
 
 _SCALES = 8.0 ** np.arange(-16, 17)  # of the offsets of differences, beside one unit
 _ORDER_4 = np.array([40.0, -5.0, 0.0]) / 45  # weights of differences, by the first one of order 6
-_ALIKE, _UNSEEN = 2.0**-30, 2.0**-12  # relative: differences of two orders, a derivative beside the largest one
+_ALIKE, _UNSEEN = 2.0**-26, 2.0**-14  # relative: differences of two orders, a derivative beside the largest one
 _UNCERTAIN, _RESOLVED = 2.0**-38, 2.0**-10  # relative, of values whose difference is taken; of three differences
+_GRAIN = 2.0**-44  # relative, of differences with the first offsets: the rounding of a place
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -141,29 +142,28 @@ def _slope_of(gap: Any, states: AbstractOrbit) -> Float[np.ndarray, "dim"]:
     The first ones fit most gaps: differences of order 4 are alike there. Otherwise each direction takes the offset that
     is most like the ones before and after it; a gap does not depend on a direction in which none are alike.
     """
-    lengths = _lengths(states)
+    reach = _reach(states)
+    lengths = np.maximum(1.0, reach)
     slope, off = _differences(gap, states, lengths)
     if (off * lengths <= _ALIKE * np.maximum(np.abs(slope) * lengths, _UNSEEN * np.abs(slope * lengths).max())).all():
         return slope
     slopes = np.array([_differences(gap, states, scale * lengths)[0] for scale in _SCALES])
-    if np.isnan(slopes).all():
-        values = gap(states.chosen(np.zeros(1, dtype=int)).beside(_SCALES[:1] * np.ones((1, len(lengths)))))
-        return np.full_like(lengths, values[0])
     with np.errstate(all="ignore"):
         steps = np.abs(np.diff(slopes, axis=0))
         off = np.maximum(steps[1:], steps[:-1]) / np.abs(slopes[1:-1])
+    off += _GRAIN * (reach / lengths) / _SCALES[1:-1, None]
     off = np.where(np.isnan(off), np.inf, off)
     best, each = np.argmin(off, axis=0), np.arange(len(lengths))
     return np.where(off[best, each] < _RESOLVED, slopes[1:-1][best, each], 0.0)
 
 
-def _lengths(states: AbstractOrbit) -> Float[np.ndarray, "dim"]:
-    """Return lengths beside which the first state is moved: those of its place, where that is large."""
+def _reach(states: AbstractOrbit) -> Float[np.ndarray, "dim"]:
+    """Return the lengths of the place of the first state in each direction: a radian, or how large its numbers are."""
     group, place = states.group, states.configuration[0]
     if group is None:
-        return np.full(states.body_velocity.shape[1], max(1.0, np.abs(place).max()))
-    reach = max(1.0, np.abs(place[:, -1]).max()) if group.is_affine else 1.0
-    return np.where(group.basis[:, :, -1].any(axis=1), reach, 1.0)
+        return np.full(states.body_velocity.shape[1], np.abs(place).max())
+    moves = group.basis[:, :, -1].any(axis=1) & group.is_affine
+    return np.where(moves, np.abs(place[:-1, -1]).max(), 1.0)
 
 
 def _differences(gap: Any, states: AbstractOrbit, lengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -177,7 +177,7 @@ def _differences(gap: Any, states: AbstractOrbit, lengths: np.ndarray) -> tuple[
     except ValueError:
         return np.full(len(lengths), np.nan), np.full(len(lengths), np.nan)
     changes = (values[..., 0] - values[..., 1]) / lengths[:, None]
-    rounding = _UNCERTAIN * np.abs(values).max(axis=(1, 2)) / lengths
+    rounding = _UNCERTAIN * np.ptp(values, axis=(1, 2)) / lengths
     return changes @ weights, np.abs(changes @ (weights - _ORDER_4 * weights[0])) + rounding * weights[0]
 
 
