@@ -86,6 +86,10 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         """Return one state after the impulse of a wall along a covector; None where the motion is not toward it."""
         return room("_flow").reflection(self, normal, bounce, direction)
 
+    def rate_along(self, normal: Float[np.ndarray, "n"]) -> float:
+        """Return the rate of a gap in the first state, whose derivative is a covector; zero if it is rounding."""
+        return self.sum_of_rates(normal * room("_flow").answer(self, normal)[0])
+
     def refuse_reset(self, where: str) -> None:
         """Refuse Lagrangians whose masses depend on velocities: Newton's rule does not keep their energy."""
         room("_flow").refuse_varying_mass(where, self)

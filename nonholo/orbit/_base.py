@@ -19,6 +19,7 @@ _COLUMNS = {"time", "configuration", "body_velocity", "momentum", "energy"}  # i
 _COLUMNS |= {"reduced_momentum", "cayley", "canonical_pose"}  # compact
 
 _LOOKS = 8  # in a step of a flow, for events
+_CANCELED, _ENDED = 2.0**-40, 2.0**-46  # relative: of the parts of a rate, of a change that ends a momentum
 
 OrbitT = TypeVar("OrbitT")
 SelfT = TypeVar("SelfT", bound="AbstractOrbit")
@@ -191,8 +192,24 @@ class AbstractOrbit(Keeper, abc.ABC):
             None where the motion is not toward the wall.
         """
 
+    @abc.abstractmethod
+    def rate_along(self, normal: Float[np.ndarray, "dim"]) -> float:
+        """Return the rate of a gap in the first state, whose derivative is a covector; zero if it is rounding."""
+
     @staticmethod
-    def impulse_of_wall(rate: Any, response: Any, bounce: float, direction: int) -> Any:
+    def sum_of_rates(parts: Float[np.ndarray, "k"]) -> float:
+        """Return the sum of the parts of a rate; zero if what they leave is rounding."""
+        rate = float(parts.sum())
+        return rate if abs(rate) > _CANCELED * np.abs(parts).sum() else 0.0
+
+    @staticmethod
+    def after_impulse(momentum: np.ndarray, change: np.ndarray) -> np.ndarray:
+        """Return a momentum after a change; zero where what this leaves is rounding."""
+        after = momentum + change
+        return np.where(np.abs(after) <= _ENDED * np.abs(change), 0.0, after)
+
+    @staticmethod
+    def impulse_of_wall(rate: float, response: Any, bounce: float, direction: int) -> Any:
         """Return the size of the impulse along a normal from the rate of the gap and its change by a unit impulse.
 
         None where the motion is not toward the wall.

@@ -246,14 +246,21 @@ class Orbit(AbstractOrbit):
 
     def reflection(self, normal: Float[np.ndarray, "dim"], bounce: float, direction: int) -> "Orbit | None":
         """Return one state after the impulse of a wall along a covector; None where the motion is not toward it."""
-        system, g = self.system, self.configuration[0]
-        nu = system.restrict_at(normal, g)
-        push = system.restricted_velocity(nu, g)
-        impulse = self.impulse_of_wall(push @ self.restricted_momentum[0], push @ nu, bounce, direction)
+        nu, push = self._push_of(normal)
+        impulse = self.impulse_of_wall(self.rate_along(normal), push @ nu, bounce, direction)
         if impulse is None:
             return None
-        change = system.to_canonical(impulse * nu)
-        return dataclasses.replace(self, reduced_momentum=self.reduced_momentum + change)
+        momentum = self.after_impulse(self.reduced_momentum, self.system.to_canonical(impulse * nu))
+        return dataclasses.replace(self, reduced_momentum=momentum)
+
+    def rate_along(self, normal: Float[np.ndarray, "dim"]) -> float:
+        """Return the rate of a gap in the first state, whose derivative is a covector; zero if it is rounding."""
+        return self.sum_of_rates(self._push_of(normal)[1] * self.restricted_momentum[0])
+
+    def _push_of(self, normal: Float[np.ndarray, "dim"]) -> tuple[np.ndarray, np.ndarray]:
+        """Return a covector along the constraint, and the velocity of this momentum."""
+        nu = self.system.restrict_at(normal, self.configuration[0])
+        return nu, self.system.restricted_velocity(nu, self.configuration[0])
 
     def at(self, times: Any) -> "Orbit":
         """Return the states of a flow at any of its times, from its Taylor series or closed form, without a new run.

@@ -7,6 +7,7 @@ reflected momentum.
 
 import dataclasses
 import functools
+import itertools
 from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol, runtime_checkable
 
@@ -18,13 +19,14 @@ from nonholo.continuous import ContinuousFlow, Problem, Solved, States, solver_o
 from nonholo.orbit import Crossings, EventLog, Orbit
 from nonholo.simulation._crossings import between_times, of_requested
 from nonholo.simulation._event import Event
-from nonholo.simulation._search import Watch, search, struck, values_of
+from nonholo.simulation._search import Watch, rate_of, search, struck, values_of
 
 _TURN = 2 * np.pi
 _MOST = 200  # impacts in a step
 _LEAST = 2.0**-52  # of the part that is left, where the body is looked at
 _SHORT = 2.0**-36  # of a step: too short for the sign of a gap
 _ROUNDING = 2.0**-54  # of a step, that is left and gone at least
+_AHEAD = 2.0 ** np.arange(-10, 1)  # of a step, where the rate of a gap says whether the body is pressed
 
 
 def after_contact(
@@ -60,12 +62,38 @@ def after_contact(
     return None, watch, Outcome.lasting_contact
 
 
+def _ways_ahead(watch: Watch, there: Orbit, name: str) -> list[float]:
+    """Return the rates of the gap of a wall ahead of a state at it, where they are seen: positive toward it."""
+    toward = -float(np.sign(watch.values[tuple(watch.events).index(name), 0]))  # type: ignore[index]
+    ends = [watch.part(there, np.array([place])) for place in _AHEAD]
+    rates = [toward * rate_of(name, watch.events[name], end) for end in ends if _is_finite(end)]
+    return [rate for rate in rates if rate != 0]
+
+
+def _stays(watch: Watch, there: Orbit) -> bool:
+    """Return whether a body stays at the wall that was struck last, which left it no speed, pressed against it."""
+    if (name := watch.reset_by) is None or watch.events[name].reset.restitution > 0:  # type: ignore[union-attr]
+        return False
+    return [*_ways_ahead(watch, there, name), 0.0][0] > 0
+
+
 def _move_on(watch: Watch, there: Orbit, share: float) -> tuple[Watch, Orbit, Outcome]:
     """Continue to the next impact or to the end of the step; return what is known, the state at the end, the outcome.
 
-    A motion that the curve of the step alone leads through a wall, while its velocity turns away from it, is let go.
+    A motion that the curve of the step alone, or rounding, leads through a wall to which it is not pressed is let go.
     """
-    rest, grazes = max(1 - share, _ROUNDING), watch.grazes
+    rest = max(1 - share, _ROUNDING)
+    if _stays(watch, there):
+        return watch, there, Outcome.lasting_contact
+    slides = watch.slides_at(there)
+    if slides.any() and _is_finite(end := watch.part(there, np.array([rest]))):
+        slides &= watch.slides_at(end)
+    new_watch, end, outcome = _look_on(watch.along(slides), there, share, rest)
+    return dataclasses.replace(new_watch, events=watch.events), end, outcome
+
+
+def _look_on(watch: Watch, there: Orbit, share: float, rest: float) -> tuple[Watch, Orbit, Outcome]:
+    """Continue as `_move_on` by the gaps of walls, for the rest of a step."""
     places, looks, inside = _looks(watch, there, rest)
     end, watch = looks.chosen(slice(-1, None)), dataclasses.replace(watch, reset_by=None)
     if not _is_finite(looks):
@@ -74,11 +102,17 @@ def _move_on(watch: Watch, there: Orbit, share: float) -> tuple[Watch, Orbit, Ou
         watch = _struck_here(watch, there, max(share, _ROUNDING), inside)
         if watch.reset_by is not None:
             return watch, end, Outcome.successful
-        leaves = grazes and _struck_here(watch, end, 1.0, inside).reset_by is None
-        return watch.seen_at(end), end, Outcome.successful if leaves else Outcome.lasting_contact
+        walls = itertools.compress(watch.events, inside[:, 0])
+        is_pressed = any(rate > 0 for name in walls for rate in _ways_ahead(watch, there, name))
+        return watch.seen_at(end), end, Outcome.lasting_contact if is_pressed else Outcome.successful
     if rest < _SHORT:
         return watch.seen_at(end), end, Outcome.successful
-    return _search_rest(watch, there, places, looks, share), end, Outcome.successful
+    new_watch = _search_rest(watch, there, places, looks, share)
+    if new_watch.reset_by is None and new_watch.stopped_by is None:
+        stays = watch.slides_at(end)
+        values = np.where(stays, watch.values, new_watch.values)  # type: ignore[arg-type]
+        new_watch = dataclasses.replace(new_watch, values=values)
+    return new_watch, end, Outcome.successful
 
 
 def _looks(watch: Watch, there: Orbit, rest: float) -> tuple[np.ndarray, Orbit, Bool[np.ndarray, "E 1"]]:
@@ -200,14 +234,15 @@ def flow_through_impacts(first: Any, time: np.ndarray, flights: Flights, events:
     """Return the flow from its first state at requested times, and what a function said that ended it."""
     there, span, since, end = first.with_headings(None), np.inf, float(time[0]), float(time[-1])
     watch, _ = search(Watch(events, between_times(there, 1.0)), there)
-    outcome, message = Outcome.successful, ""
+    outcome, message, pace = Outcome.successful, "", 0.0
     while outcome == Outcome.successful and watch.stopped_by is None and there.time[0] < end:
         begin, before = float(there.time[0]), len(watch.impacts)
         until = min(begin + span, end)
         elapsed = np.append(time[(time > begin) & (time < until)], until) - begin
         looks, flown, fault = flights.fly(there, elapsed)
         looks = looks.on_group()
-        there, watch, outcome = _pass_impact(flights, watch, looks)
+        there, watch, outcome = _pass_impact(flights, watch, looks, begin + pace)
+        pace = float(there.time[0]) - begin if watch.is_at_wall else 0.0  # along a wall ends are not approached forever
         if len(watch.impacts) > before:
             span, since = _SPAN * float(there.time[0] - since), float(watch.impacts[-1].time[0])
         elif there.time[0] == looks.time[-1]:
@@ -215,15 +250,20 @@ def flow_through_impacts(first: Any, time: np.ndarray, flights: Flights, events:
     return _whole(first, time, flights, watch, float(there.time[0]), outcome), message
 
 
-def _pass_impact(flights: Flights, watch: Watch, looks: Orbit) -> tuple[Orbit, Watch, Outcome]:
-    """Return the state after the first step between two looks with an impact, or the last one; what is known there."""
+def _pass_impact(flights: Flights, watch: Watch, looks: Orbit, least: float) -> tuple[Orbit, Watch, Outcome]:
+    """Return the state after the first step between two looks with an impact, or the last one; what is known there.
+
+    One that begins at a wall leads to the first look after the least time, or the last one.
+    """
     there, at, share = looks.chosen(slice(0, 1)), 0, 0.0
+    last = 1 + int(np.searchsorted(looks.time[1:-1], least))
     if len(looks) == 1 or not watch.is_at_wall:
         watch, last = search(dataclasses.replace(watch, part=between_times(looks, 1.0)), looks)
         if watch.reset_by is None:
             return looks.chosen(slice(last - 1, last)), watch, Outcome.successful
         there, at, share = watch.begun_at(last - 1)
-    ends = looks.time[at + 1 : at + 2]
+        last = at + 1
+    ends = looks.time[last : last + 1]
     watch = dataclasses.replace(watch, part=functools.partial(_part, flights, float(ends[0] - looks.time[at]), {}))
     after, watch, outcome = after_contact(lambda states: (states, Outcome.successful), watch, there, at, share)
     return there if after is None else dataclasses.replace(after, time=ends), watch, outcome

@@ -17,6 +17,12 @@ from nonholo.base.types import Float
 from nonholo.orbit import AbstractOrbit
 from nonholo.systems import Gravity, central_differences
 
+_SCALES = 8.0 ** np.arange(-16, 17)  # of the offsets of differences, beside one unit
+_ORDER_4 = np.array([40.0, -5.0, 0.0]) / 45  # weights of differences, by the first one of order 6
+_ALIKE, _UNSEEN = 2.0**-26, 2.0**-14  # relative: differences of two orders, a derivative beside the largest one
+_UNCERTAIN, _RESOLVED = 2.0**-38, 2.0**-10  # relative, of values whose difference is taken; of three differences
+_GRAIN = 2.0**-44  # relative, of differences with the first offsets: the rounding of a place
+
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Impact:
@@ -40,8 +46,8 @@ class Impact:
         normal: n, in the direction in which the gap grows: a spatial vector, the gap being that of the body's `point`
             from a plane across it; or a function from a configuration (N, N) to the derivatives (dim,) of the gap
             along body directions. In coordinates n numbers, or a function from coordinates to n numbers. By default
-            these are taken from the function of the event by central differences of order 6, whose error is about 1e-13
-            of what it changes by over one radian or one unit of length.
+            these are taken from the function of the event by central differences of order 6, with offsets that fit it:
+            their error is about 1e-12 in any unit of length, or what the rounding of the function leaves.
         restitution: e, from 0 to 1.
         point: The point of the body that touches, n body coordinates; by default their origin. Only with a vector.
 
@@ -105,10 +111,7 @@ class Impact:
             return Gravity(self.normal, self.point).covector(states.group, place)
         if callable(self.normal):
             return numbers_of("Impact(normal=...)", self.normal, (dim,), "Return a body covector.", place)
-        offsets, weights = central_differences(dim)
-        rows = offsets.reshape(-1, dim)
-        values = gap(states.chosen(np.zeros(len(rows), dtype=int)).beside(rows)).reshape(offsets.shape[:-1])
-        return (values[..., 0] - values[..., 1]) @ weights
+        return _slope_of(gap, states)
 
     def struck(self, where: str, gap: Any, states: AbstractOrbit, direction: int) -> Any:
         """Return a state after an impact; None where the motion is not toward the wall, or cannot be.
@@ -131,6 +134,51 @@ class Impact:
         if self.covector(gap, states) @ Impact().covector(gap, states) < 0:
             got, remedy = f"its opposite at time {states.time[0]:.17g}", "Pass the other direction."
             raise error(where, "have a normal in whose direction the function grows", got, remedy)
+
+
+def _slope_of(gap: Any, states: AbstractOrbit) -> Float[np.ndarray, "dim"]:
+    """Return the derivatives of a gap at a state by differences of order 6, whose offsets fit the gap.
+
+    The first ones fit most gaps: differences of order 4 are alike there. Otherwise each direction takes the offset that
+    is most like the ones before and after it; a gap does not depend on a direction in which none are alike.
+    """
+    reach = _reach(states)
+    lengths = np.maximum(1.0, reach)
+    slope, off = _differences(gap, states, lengths)
+    if (off * lengths <= _ALIKE * np.maximum(np.abs(slope) * lengths, _UNSEEN * np.abs(slope * lengths).max())).all():
+        return slope
+    slopes = np.array([_differences(gap, states, scale * lengths)[0] for scale in _SCALES])
+    with np.errstate(all="ignore"):
+        steps = np.abs(np.diff(slopes, axis=0))
+        off = np.maximum(steps[1:], steps[:-1]) / np.abs(slopes[1:-1])
+    off += _GRAIN * (reach / lengths) / _SCALES[1:-1, None]
+    off = np.where(np.isnan(off), np.inf, off)
+    best, each = np.argmin(off, axis=0), np.arange(len(lengths))
+    return np.where(off[best, each] < _RESOLVED, slopes[1:-1][best, each], 0.0)
+
+
+def _reach(states: AbstractOrbit) -> Float[np.ndarray, "dim"]:
+    """Return the lengths of the place of the first state in each direction: a radian, or how large its numbers are."""
+    group, place = states.group, states.configuration[0]
+    if group is None:
+        return np.full(states.body_velocity.shape[1], np.abs(place).max())
+    moves = group.basis[:, :, -1].any(axis=1) & group.is_affine
+    return np.where(moves, np.abs(place[:-1, -1]).max(), 1.0)
+
+
+def _differences(gap: Any, states: AbstractOrbit, lengths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return derivatives of a gap by differences, and the error of those of order 4; NaN where it is undefined."""
+    offsets, weights = central_differences(len(lengths))
+    rows = lengths * offsets.reshape(-1, len(lengths))
+    beside = states.chosen(np.zeros(len(rows), dtype=int)).beside(rows)
+    try:
+        with np.errstate(all="ignore"):
+            values = gap(beside).reshape(offsets.shape[:-1])
+    except ValueError:
+        return np.full(len(lengths), np.nan), np.full(len(lengths), np.nan)
+    changes = (values[..., 0] - values[..., 1]) / lengths[:, None]
+    rounding = _UNCERTAIN * np.ptp(values, axis=(1, 2)) / lengths
+    return changes @ weights, np.abs(changes @ (weights - _ORDER_4 * weights[0])) + rounding * weights[0]
 
 
 @dataclasses.dataclass(frozen=True)

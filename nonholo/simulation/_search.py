@@ -2,6 +2,7 @@
 
 import dataclasses
 import functools
+import itertools
 import operator
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple, cast
@@ -64,7 +65,7 @@ class Watch:
     @property
     def is_at_wall(self) -> bool:
         """Whether the last state is at a wall."""
-        return self.has_walls and self.values is not None and bool((abs(self.values) == _TOUCH).any())
+        return self.has_walls and self.values is not None and bool(self.at_walls.any())
 
     @property
     def impacts(self) -> list[Any]:
@@ -76,14 +77,6 @@ class Watch:
     def impact(self) -> Crossings:
         """The impact that is the last thing that was seen."""
         return self.parts[-1][tuple(self.events).index(self.reset_by or "")].chosen(slice(-1, None))
-
-    @property
-    def grazes(self) -> bool:
-        """Whether the last thing that was seen is the crossing of a wall that the motion was not toward."""
-        if self.reset_by is None:
-            return False
-        before, after = self.impact.states, self.impact.after
-        return np.array_equal(getattr(before, before.momenta[0]), getattr(after, after.momenta[0]))
 
     def begun_at(self, last: int) -> tuple[Any, int, float]:
         """Return the state after the impact, the step that is cut, and how much of it is gone; `last` came before it.
@@ -103,14 +96,39 @@ class Watch:
     def after_impact(self, before: np.ndarray) -> "Watch":
         """Return what is known at the impact that was seen last, from values before it: nothing is beyond a wall."""
         hit, before = self.impact, np.array(before)
-        before[tuple(self.events).index(self.reset_by or "")] = -hit.direction
-        return dataclasses.replace(self, values=before).seen_at(hit.after)
+        wall = tuple(self.events).index(self.reset_by or "")
+        before[wall] = -hit.direction
+        watch = dataclasses.replace(self, values=before).seen_at(hit.after)
+        cast(Any, watch.values)[wall] = -_TOUCH * hit.direction
+        return watch
+
+    def along(self, walls: Bool[np.ndarray, "E 1"]) -> "Watch":
+        """Return the search in which gaps of walls, along which the body slides, are not looked at."""
+        events = dict(self.events)
+        for name in itertools.compress(events, walls[:, 0]):
+            value = float(cast(Any, self.values)[tuple(events).index(name), 0])
+            events[name] = dataclasses.replace(
+                events[name], function=lambda states, value=value: np.full(len(states), value)
+            )
+        return dataclasses.replace(self, events=events)
 
     def seen_at(self, there: Any) -> "Watch":
         """Return what is known at a state so near to the last one that no side of a wall was left."""
         values = values_of(self.events, there)
-        values = np.where(self.is_beyond(values), _TOUCH * np.sign(self.values), values)  # type: ignore[arg-type]
+        stays = self.is_beyond(values) | self.slides_at(there)
+        values = np.where(stays, _TOUCH * np.sign(self.values), values)  # type: ignore[arg-type]
         return dataclasses.replace(self, values=values, heading=None if there.turned is None else there.turned[-1])
+
+    @property
+    def at_walls(self) -> Bool[np.ndarray, "E 1"]:
+        """The walls at which the last state is."""
+        walls = np.array([[event.reset is not None] for event in self.events.values()])
+        return walls & (abs(cast(Any, self.values)) == _TOUCH)
+
+    def slides_at(self, there: Any) -> Bool[np.ndarray, "E 1"]:
+        """Return the walls at which the last state is, and whose gaps do not change at a state."""
+        pairs = zip(self.events.items(), self.at_walls[:, 0], strict=True)
+        return np.array([[bool(at) and rate_of(*item, there) == 0] for item, at in pairs])
 
     def is_beyond(self, values: Float[np.ndarray, "E 1"]) -> Bool[np.ndarray, "E 1"]:
         """Return the events whose values mean that the body is beyond a wall, or at one, before which it was last."""
@@ -171,6 +189,11 @@ def _crossings_of(watch: Watch, first: int, position: int, stretch: Any, row: np
         return crossings
     after = struck(watch, name, crossings.states, crossings.direction) if len(crossings) else None
     return dataclasses.replace(crossings, after=crossings.states if after is None else after)
+
+
+def rate_of(name: str, event: Event, there: Any) -> float:
+    """Return the rate of the gap of a wall at a state; zero if it is rounding."""
+    return there.rate_along(cast(Impact, event.reset).covector(functools.partial(values_at, name, event), there))
 
 
 def struck(watch: Watch, name: str, states: Any, direction: Int[np.ndarray, "1"]) -> Any:

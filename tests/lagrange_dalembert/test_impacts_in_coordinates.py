@@ -229,9 +229,13 @@ def test_thinned_iterated_and_stored_runs_have_the_same_bits(tmp_path: pathlib.P
 
 
 QUARTIC = nh.LagrangeDAlembert(lambda _, v: v @ v / 2 + jnp.sum(v**4), None, dimension=2)
+FAST = nh.LagrangeDAlembert(lambda _, v: -jnp.sqrt(1 - v @ v), None, dimension=2)
+SLOW = nh.LagrangeDAlembert(lambda _, v: v @ v / 2 - 1e-12 * jnp.cos(1e5 * v[0]) ** 2, None, dimension=2)
 POINT = {"configuration": np.zeros(2), "body_velocity": SPEED}
 REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
     "masses": (lambda: bounced(QUARTIC), "Lagrangian quadratic in velocities"),
+    "masses of fast motions": (lambda: bounced(FAST), "Lagrangian quadratic in velocities"),
+    "masses of slow motions": (lambda: bounced(SLOW), "Lagrangian quadratic in velocities"),
     "normal": (lambda: bounced(events=box(normal=(1.0, 0.0, 0.0))), "have a normal of the space"),
     "point": (lambda: bounced(events=box(normal=(-1.0, 0.0), point=(0.1, 0.0))), "and no point"),
     "opposite": (lambda: bounced(steps=20, events=box(normal=(1.0, 0.0))[:1]), "in whose direction the function grows"),

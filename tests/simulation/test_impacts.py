@@ -123,6 +123,35 @@ def test_normals_of_all_kinds_are_one(name: str) -> None:
             assert np.abs(known - nh.Impact().covector(gap, state)).max() < 2e-11
 
 
+@pytest.mark.parametrize("size", 2.0 ** np.array([-40, -20, 0, 20, 40]))
+def test_normals_of_curved_walls_are_exact_in_every_unit_of_length(size: float) -> None:
+    """In a circle, an ellipse and a sphere, and at a post that touches the body anywhere, to 1e-11 of the normal."""
+    point, far, axes = np.array([0.2, 0.1]) * size, np.array([-9.0, 4.0]) * size, np.array([1.3, 0.7]) * size
+    body = nh.RigidBody.from_inertia(1.0, 0.3 * size**2, (0.0, 0.0), nh.SE(2))
+    start: dict[str, Any] = {"configuration": nh.SE(2).exp([0.7, 0.6 * size, 0.3 * size]), "body_velocity": np.ones(3)}
+    state = nh.simulate(nh.discretize(body, 0.1), steps=1, **start)[:1]
+
+    def place(states: nh.Orbit) -> np.ndarray:
+        return states.configuration[:, :2] @ np.append(point, 1.0)
+
+    (at,), turned = place(state), state.configuration[0, :2, :2]
+    for gap, slope in (
+        (lambda states: size - np.hypot(*place(states).T), -at / np.hypot(*at)),
+        (lambda states: np.hypot(*(place(states) - far).T) - size, (at - far) / np.hypot(*(at - far))),
+        (lambda states: 1 - (place(states) ** 2 / axes**2).sum(axis=1), -2 * at / axes**2),
+        (lambda states: np.sqrt(2 * size**2 - (place(states) ** 2).sum(axis=1)), -at / np.sqrt(2 * size**2 - at @ at)),
+    ):
+        along = slope @ turned
+        wanted = np.append(along @ (-point[1], point[0]), along)
+        off = np.abs(nh.Impact().covector(gap, state) - wanted) / np.array([size, 1.0, 1.0])
+        assert off.max() < 1e-11 * np.linalg.norm(along)
+    there = nh.SE(3).exp([0.7, 0.2, 0.1, 0.6 * size, 0.3 * size, 0.1 * size])
+    state = nh.simulate(nh.discretize(BODY, 0.1), steps=1, momentum=np.ones(6), configuration=there)[:1]
+    normal = nh.Impact().covector(lambda states: size - np.linalg.norm(states.position, axis=1), state)
+    center = -state.position[0] / np.linalg.norm(state.position[0]) @ state.configuration[0, :3, :3]
+    assert np.abs(normal - np.append(np.zeros(3), center)).max() < 1e-11
+
+
 def test_impacts_are_values() -> None:
     """An impact with another restitution has the same normal, whatever kind that is."""
     for given in (nh.Impact(), nh.Impact((0.0, 1.0), point=(0.3, 0.0)), nh.Impact(np.cos)):
@@ -287,6 +316,39 @@ def test_chattering_ends(bounce: float) -> None:
     with pytest.raises(nh.OutcomeError, match=r"lasting_contact\. The body comes to stay at a wall") as failure:
         nh.flow(FALLING, times=np.linspace(0, 40, 81), **start)
     assert limit - 0.5 <= failure.value.orbit.time[-1] <= limit  # type: ignore[attr-defined]
+
+
+HEAVY = nh.Forced(TOP, nh.Gravity([0.0, 0.0, -1.0], [0.0, 0.0, 0.5]))
+ECCENTRIC = nh.RigidBody.from_inertia(1.0, 0.5, (0.1, 0.05), nh.SE(2))
+PLASTIC: dict[str, tuple[Any, dict[str, Any], Callable[[nh.Orbit], np.ndarray], bool]] = {
+    "falls": (FALLING, {"body_velocity": (0.7, 0.3, 0.1)}, lambda states: 1 + states.position @ (0.2, 1.0), True),
+    "turns in a circle": (BODY, {"body_velocity": (0.3, 0.5, 1.0, 0.4, 1.0, 0.2)}, ROUND.function, True),
+    "tips over": (HEAVY, {"body_velocity": (0.4, 0.2, 0.0)}, lambda states: states.configuration[:, 2, 2] - 0.3, True),
+    "turns into it": (ECCENTRIC, {"body_velocity": (0.3, 1.0, 0.5)}, lambda states: 1 - states.position[:, 0], True),
+    "slides": (DISK, {"body_velocity": (0.0, 1.0, 0.3)}, lambda states: 1 - states.position @ (0.8, 0.6), False),
+    "stops": (DISK, {"body_velocity": (0.0, 0.8, 0.6)}, ROUND.function, False),
+    "falls off": (FALLING, {"body_velocity": (0.3, 0.4, 1.0)}, lambda states: 0.1 - states.position[:, 1], False),
+}
+
+
+@pytest.mark.profile("problems", keep=["*-0.0625"])
+@pytest.mark.parametrize("step", [0.0625, 0.1, 0.173])
+@pytest.mark.parametrize("name", PLASTIC)
+def test_a_plastic_impact_is_one(name: str, step: float) -> None:
+    """Without restitution a body that is pressed stays at the wall from the first impact; another moves on."""
+    system, start, gap, is_pressed = PLASTIC[name]
+    events = [nh.Event(gap, name="wall", reset=nh.Impact(restitution=0.0))]
+    wanted = nh.Outcome.lasting_contact if is_pressed else nh.Outcome.successful
+    orbit = nh.simulate(nh.discretize(system, step), steps=40, events=events, throw=False, **start)
+    flow: Any
+    try:
+        flow = nh.flow(system, times=np.linspace(0, 40 * step, 9), events=events, **start)
+    except nh.OutcomeError as early:
+        flow = early.orbit
+    for found in orbit, flow:
+        assert found.outcome == wanted
+        assert len(found.events["wall"]) == 1
+        assert gap(found).min() > -1e-13
 
 
 def test_motion_is_reversed() -> None:
