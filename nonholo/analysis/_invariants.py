@@ -7,6 +7,7 @@ import dataclasses
 from typing import Any, cast
 
 import numpy as np
+import scipy  # its parts load on first use
 
 from nonholo.base.checks import error, instance
 from nonholo.base.results import Outcome, as_table, result
@@ -17,6 +18,7 @@ from nonholo.orbit import AbstractOrbit, Orbit, any_orbit
 from nonholo.systems import AbstractSystem, NormalForm, gyroscopic_form, null_space, refuse_forces, row_space
 
 _SAMPLED = 100_000  # states on which the matrix residuals are measured, spread evenly; the energy uses all
+_HIDDEN = 1e-10  # growth of one direction relative to that of another one, of which rounding leaves six digits
 _SAMPLED_LARGE = 1_000  # of them where the group has more than three dimensions, and logarithms cost more
 
 
@@ -272,13 +274,15 @@ def lyapunov_exponents(orbit: AbstractOrbit) -> Float[np.ndarray, "k"]:
 
     Benettin's method: an orthonormal frame is carried by the tangent map (`Orbit.tangent`) and made orthonormal again
     at each step. Their sum is the mean rate at which volumes of states grow: of momenta, where nothing else decides
-    them, in coordinates of configurations with admissible velocities.
+    them, in coordinates of configurations with admissible velocities. An exponent of a map is minus infinity where a
+    step takes a direction away.
 
     Args:
         orbit: One that has a `tangent`.
 
     Raises:
-        ValueError: An orbit without a tangent map, or of a single state.
+        ValueError: An orbit without a tangent map, or of a single state; a flow with times so far apart that rounding
+            hides a direction that decays.
 
     Example:
         A sleigh tends to its straight motion: one momentum keeps what it is, the other decays.
@@ -290,8 +294,21 @@ def lyapunov_exponents(orbit: AbstractOrbit) -> Float[np.ndarray, "k"]:
     steps = any_orbit("lyapunov_exponents(orbit=...)", orbit).tangent
     if not len(steps):
         raise error("lyapunov_exponents(orbit=...)", "have a step", "one state", "Run longer.")
+    if not orbit.is_discrete:
+        _check_spread(steps)
     frame, growth = np.eye(steps.shape[-1]), np.zeros(steps.shape[-1])
     for step in steps:
         frame, triangle = np.linalg.qr(step @ frame)
-        growth += np.log(np.abs(triangle.diagonal()))
+        with np.errstate(divide="ignore"):
+            growth += np.log(np.abs(triangle.diagonal()))
     return np.sort(growth / float(orbit.time[-1] - orbit.time[0]))[::-1]
+
+
+def _check_spread(steps: Float[np.ndarray, "L d d"]) -> None:
+    """Refuse tangent maps of a flow that show a direction to few digits, in any units of the states."""
+    sizes = np.linalg.svd(steps, compute_uv=False)
+    for step in steps[~(sizes[:, -1] >= _HIDDEN * sizes[:, 0])]:
+        ratio = np.linalg.cond(scipy.linalg.matrix_balance(step, permute=False)[0])
+        if not ratio <= 1 / _HIDDEN:
+            where, got = "lyapunov_exponents(orbit=...)", f"a tangent map of condition {ratio:.3g}"
+            raise error(where, "have times between which all directions are seen", got, "Pass more times to `flow`.")
