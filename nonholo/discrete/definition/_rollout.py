@@ -291,12 +291,12 @@ def _balanced_stage(forced: Forced, part: Any, scalar: ScalarStep | None, state:
     begin = jnp.where(code == 0, free, 0 * free), jnp.asarray(jnp.inf, free.dtype), 0
     y, last, _ = jax.lax.while_loop(lambda c: (c[1] > _CLOSE) & (c[2] < _MOST), better, begin)
     code = jnp.where((code == 0) & ~(last <= _CLOSE), int(Outcome.not_converged), code)
-    y = _corrected(problem, jnp.where(code == 0, y, 0.0))
+    y = _correct(problem, jnp.where(code == 0, y, 0.0))
     return y, code, *_arrival(part, (None, forced), state, y)[1:]
 
 
 @jax.custom_jvp
-def _corrected(problem: tuple[Any, Forced, _State], y: Array) -> Array:
+def _correct(problem: tuple[Any, Forced, _State], y: Array) -> Array:
     """Return the root next to a chart, with the derivatives of the implicit function.
 
     Where JAX forgets the rule, as in reverse mode of reverse mode, the corrections have two more of them.
@@ -308,9 +308,9 @@ def _corrected(problem: tuple[Any, Forced, _State], y: Array) -> Array:
     return y
 
 
-@_corrected.defjvp
+@_correct.defjvp
 def _implicit(primals: Any, tangents: Any) -> tuple[Array, Array]:
-    return implicit(lambda y, *problem: _balanced_gap(*problem, y), _corrected(*primals), primals[0], tangents[0])
+    return implicit(lambda y, *problem: _balanced_gap(*problem, y), _correct(*primals), primals[0], tangents[0])
 
 
 def _balanced_gap(part: Any, forced: Forced, state: _State, y: Array) -> Array:
