@@ -310,7 +310,10 @@ def _correct(problem: tuple[Any, Forced, _State], y: Array) -> Array:
 
 @_correct.defjvp
 def _implicit(primals: Any, tangents: Any) -> tuple[Array, Array]:
-    return implicit(lambda y, *problem: _balanced_gap(*problem, y), _correct(*primals), primals[0], tangents[0])
+    def residual(y: Array, part: Any, forced: Forced, state: _State) -> Array:
+        return _balanced_gap(part, forced, state, y)
+
+    return implicit(residual, _correct(*primals), primals[0], tangents[0])
 
 
 def _balanced_gap(part: Any, forced: Forced, state: _State, y: Array) -> Array:
