@@ -17,6 +17,7 @@ from nonholo.orbit import AbstractOrbit, Orbit, any_orbit
 from nonholo.systems import AbstractSystem, NormalForm, gyroscopic_form, null_space, refuse_forces, row_space
 
 _SAMPLED = 100_000  # states on which the matrix residuals are measured, spread evenly; the energy uses all
+_HIDDEN = 1e-10  # growth of one direction relative to that of another one, of which rounding leaves six digits
 _SAMPLED_LARGE = 1_000  # of them where the group has more than three dimensions, and logarithms cost more
 
 
@@ -294,13 +295,15 @@ def lyapunov_exponents(orbit: AbstractOrbit) -> Float[np.ndarray, "k"]:
 
     Benettin's method: a frame, orthonormal in the body's units, is carried by the tangent map (`Orbit.tangent`) and
     made orthonormal again at each step. Their sum is the mean rate at which volumes of states grow: of momenta, where
-    nothing else decides them, in coordinates of configurations with admissible velocities.
+    nothing else decides them, in coordinates of configurations with admissible velocities. An exponent of a map is
+    minus infinity where a step takes a direction away.
 
     Args:
         orbit: One that has a `tangent`.
 
     Raises:
-        ValueError: An orbit without a tangent map, or of a single state.
+        ValueError: An orbit without a tangent map, or of a single state; a flow with times so far apart that rounding
+            hides a direction that decays.
 
     Example:
         A sleigh tends to its straight motion: one momentum keeps what it is, the other decays.
@@ -312,10 +315,13 @@ def lyapunov_exponents(orbit: AbstractOrbit) -> Float[np.ndarray, "k"]:
     steps = _tangent_in_units(any_orbit("lyapunov_exponents(orbit=...)", orbit))
     if not len(steps):
         raise error("lyapunov_exponents(orbit=...)", "have a step", "one state", "Run longer.")
+    if not orbit.is_discrete:
+        _check_spread(steps)
     frame, growth = np.eye(steps.shape[-1]), np.zeros(steps.shape[-1])
     for step in steps:
         frame, triangle = np.linalg.qr(step @ frame)
-        growth += np.log(np.abs(triangle.diagonal()))
+        with np.errstate(divide="ignore"):
+            growth += np.log(np.abs(triangle.diagonal()))
     return np.sort(growth / float(orbit.time[-1] - orbit.time[0]))[::-1]
 
 
@@ -330,3 +336,11 @@ def _tangent_in_units(orbit: AbstractOrbit) -> Float[np.ndarray, "L d d"]:
     momenta = lengths * np.mean(np.diagonal(system.constrained_inertia) / lengths**2) / (interval or 1.0)
     sizes = np.append(system.displacement_units, momenta)[-steps.shape[-1] :]
     return steps * (sizes / sizes[:, None])
+
+
+def _check_spread(steps: Float[np.ndarray, "L d d"]) -> None:
+    """Refuse tangent maps of a flow that show a direction to few digits."""
+    conditions = np.linalg.cond(steps)
+    if not (conditions <= 1 / _HIDDEN).all():
+        where, got = "lyapunov_exponents(orbit=...)", f"a tangent map of condition {conditions.max():.3g}"
+        raise error(where, "have times between which all directions are seen", got, "Pass more times to `flow`.")

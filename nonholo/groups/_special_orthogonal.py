@@ -17,6 +17,8 @@ from nonholo.base.types import Array, Float
 from nonholo.groups import _rotations
 from nonholo.groups._base import AbstractMatrixGroup, Coordinates, SeparatedCoordinates
 
+_SMALL = 1e-5  # squared sine below which a series is exact, and derivatives of its quotient lose digits
+
 
 class AbstractRotations(AbstractMatrixGroup):
     """Rotations: the inverse is the transpose."""
@@ -156,9 +158,10 @@ class SpecialOrthogonal3(AbstractRotations, AbstractRodriguesGroup):
         xp = g.__array_namespace__()
         q = quaternion_from_matrix(g)
         square = (q[..., 1:] * q[..., 1:]).sum(axis=-1)
-        tiny = square < np.finfo(np.float64).tiny
-        sine = xp.sqrt(xp.where(tiny, 1.0, square))
-        scale = xp.where(tiny, 2.0, 2 * xp.arctan2(sine, q[..., 0]) / sine)
+        small = square < _SMALL
+        sine = xp.sqrt(xp.where(small, 1.0, square))
+        series = 1 + square * (1 / 6 + square * (3 / 40 + square * (5 / 112)))
+        scale = 2 * xp.where(small, series, xp.arctan2(sine, q[..., 0]) / sine)
         return scale[..., None] * q[..., 1:]
 
     def angle(self, x: Float[Array, "... 3"]) -> Float[Array, "..."]:

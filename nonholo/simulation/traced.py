@@ -54,7 +54,8 @@ def rollout(
     of the whole closed loop.
 
     It works under `jax.jit`, `jax.vmap`, `jax.jvp`, `jax.vjp`, `jax.jacfwd`, `jax.grad` and repeated ones, and never
-    raises there. Derivatives are those of the implicit function of a step, to rounding, never of the iteration that
+    raises there; only reverse mode of reverse mode has no rule in JAX for searches in a loop: take `jax.hessian`.
+    Derivatives are those of the implicit function of a step, to rounding, never of the iteration that
     finds its root; they are finite at rest, and up to displacements of half a turn. Where roots of the map merge, at a
     fold, the step has no derivative: its Jacobian matrix is singular, and beyond it the principal branch ends. The
     outcome reports it; states from there on are NaN and have the derivative NaN, states before keep theirs.

@@ -42,6 +42,12 @@ def _run(y: np.ndarray, few: int, known: tuple[float, ...]) -> tuple[Solution, n
     return search.run(np.zeros(2)), columns
 
 
+def test_a_single_number_of_a_kind_has_no_steps() -> None:
+    """One turn of known noise beside forty rates: a fit converges, without a warning of what is not there."""
+    search, _ = _search(1.0 + np.random.default_rng(5).normal(scale=0.02, size=41), 1, (0.02, np.nan))
+    assert search.outcome_of(search.run(np.zeros(2)), np.ones(2), np.full(2, 0.1)) == "converged"
+
+
 def test_levels_have_the_largest_restricted_likelihood() -> None:
     """Seven numbers of one kind and forty of another: levels are where the restricted likelihood is largest."""
     rng, few = np.random.default_rng(5), 7

@@ -7,7 +7,7 @@ import pytest
 from refusals import refusals
 
 import nonholo as nh
-from nonholo.analysis.steering import Steering
+from nonholo.analysis.steering import Steering, _shooting
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.2), 0.1)
 ASIDE = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]])
@@ -48,6 +48,14 @@ def _starts(count: int) -> dict[str, np.ndarray]:
     rng = np.random.default_rng(0)
     poses = np.array([nh.SE(2).random(rng) for _ in range(count)])
     return {"configuration": poses, "restricted_velocity": rng.normal(scale=0.5, size=(count, 2))}
+
+
+def test_a_way_of_least_effort_counts_more_than_a_smaller_miss(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A start that comes nearer to the goal, at no minimum of the cost, does not hide a later one at a minimum."""
+    ends = iter([([[2.0]], [1e-12], [1.0]), ([[1.0]], [1e-10], [0.0])])
+    monkeypatch.setattr(_shooting, "least_effort", lambda *_: tuple(map(np.array, next(ends))))
+    forces, gap, is_least = _shooting.best(lambda f, _: (f, f), np.ones(1), 1, (-np.ones(1), np.ones(1)))
+    assert (forces.item(), gap.item(), is_least.item()) == (1.0, 1e-10, True)
 
 
 @pytest.mark.profile("routes", instead="test_bounds_hold")

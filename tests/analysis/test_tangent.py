@@ -60,6 +60,19 @@ def test_tangent_map_of_a_sleigh_in_closed_form() -> None:
     np.testing.assert_array_equal(rest.tangent[0], np.eye(2))
 
 
+def test_exponents_are_right_or_refused() -> None:
+    """A flow with times too far apart to see what decays is refused; a map whose step takes turning away is not."""
+    sleigh = nh.ChaplyginSleigh(mass=1.0, inertia=1.0, a=0.5)
+    few, many, too_few = (
+        nh.flow(sleigh, body_velocity=(0.3, 2.0, 0.0), times=np.linspace(0.0, 200.0, n)) for n in (11, 1001, 3)
+    )
+    np.testing.assert_allclose(nh.lyapunov_exponents(few), nh.lyapunov_exponents(many), rtol=1e-6)
+    with pytest.raises(ValueError, match=r"directions are seen. Got a tangent map of condition .* Pass more times"):
+        nh.lyapunov_exponents(too_few)
+    fast = nh.simulate(nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 1.0), 1.0), restricted_velocity=(0.0, 4.0), steps=5)
+    np.testing.assert_array_equal(nh.lyapunov_exponents(fast), [0.0, -np.inf])
+
+
 def test_exponents_of_a_straight_motion() -> None:
     """A sleigh that slides straight ahead loses turning at a constant factor a step, which the cubic gives."""
     mass, inertia, a, h, p = 1.0, 1.0, 0.5, 0.1, 1.0

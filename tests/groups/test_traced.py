@@ -89,6 +89,18 @@ def test_derivatives_at_the_identity(group: AbstractMatrixGroup, derivative: obj
         assert close(np.asarray(found), np.eye(group.dim), 20)
 
 
+@pytest.mark.profile("routes", keep=["SO(3)"])
+@pytest.mark.parametrize("group", [SO(3), SE(2), SE(3), SO(4), SL2], ids=str)
+def test_higher_derivatives_beside_the_identity(group: AbstractMatrixGroup) -> None:
+    """The second and third derivative of log(exp(x)) are zero at the identity, and at every distance from it."""
+    x, way = vectors(group, 2, 1.0)
+    second = jax.jacfwd(jax.jacfwd(lambda t, x: group.log(group.exp(x + t * way))))
+    both = jax.jit(lambda x: (second(0.0, x), jax.jacfwd(second)(0.0, x)))
+    for size in (0.0, 1e-100, 1e-12, 1e-8, 1e-4, 0.01, 0.1):
+        for order, found in zip((2, 3), both(size * x), strict=True):  # of quotients that lose digits
+            assert np.abs(np.asarray(found)).max() < 1e-14 / max(size, 0.003) ** (order - 1)
+
+
 @pytest.mark.profile("routes", keep=["SE(3)"])
 @pytest.mark.parametrize("group", [SO(4), SE(3), SL2], ids=str)
 def test_derivative_of_the_traced_logarithm(group: AbstractMatrixGroup) -> None:

@@ -235,6 +235,42 @@ def test_second_derivatives() -> None:
             np.testing.assert_allclose(hessian(point), (there - back) / 2e-4, rtol=1e-6, atol=1e-7)
 
 
+@pytest.mark.profile("routes", instead="test_derivatives_agree_with_40_digits")
+@pytest.mark.parametrize("forces", [(), (nh.Gravity([0.4, -1.0], [0.5, 0.3]), nh.Friction([0.3, 0.2, 0.1]))])
+def test_third_derivatives(forces: tuple) -> None:
+    """The third derivative is the difference of second ones, free and where forces act at the displacement."""
+    discrete = nh.discretize(nh.Forced(SLEIGH.system, *forces), 0.3) if forces else SLEIGH
+
+    def place(x: jax.Array) -> jax.Array:
+        velocity = jnp.stack([0.8 + x, -0.5 + 2 * x])
+        return nh.rollout(discrete, restricted_velocity=velocity, steps=1).configuration[-1, 0, 2]
+
+    with jax.enable_x64(True):
+        second = jax.jit(jax.jacfwd(jax.grad(place)))
+        third = jax.jit(jax.jacfwd(jax.jacfwd(jax.grad(place))))(0.0)
+        np.testing.assert_allclose(third, (second(1e-4) - second(-1e-4)) / 2e-4, rtol=1e-6)
+
+
+@pytest.mark.profile("routes", keep=["variational"])
+@pytest.mark.parametrize("scheme", ["energy", "variational"])
+def test_a_spring_without_length_pulls_smoothly_at_its_end(scheme: str) -> None:
+    """A sleigh that leaves the place where it is held swings by the linear map of the scheme, and so from rest."""
+    spring, h, steps = nh.Spring([0.0, 0.0], [0.0, 0.0], 2.0), 0.1, 5
+    held = nh.discretize(nh.Forced(nh.ChaplyginSleigh(1.0, 1.0, 0.2), spring, scheme=scheme), h)
+    rate = np.sqrt(2.0)
+    angle = 2 * np.arctan(h * rate / 2) if scheme == "energy" else 2 * np.arcsin(h * rate / 2)
+    expected = np.sin(steps * angle) * (1 / rate if scheme == "energy" else h / np.sin(angle))
+
+    def end(speed: jax.Array) -> jax.Array:
+        orbit = nh.rollout(held, restricted_velocity=jnp.stack([0.0, speed]), steps=steps)
+        return orbit.configuration[-1, 0, 2] + orbit.energy[0] - speed**2 / 2
+
+    with jax.enable_x64(True):
+        run = jax.jit(lambda speed: (end(speed), jax.grad(end)(speed), jax.jacfwd(jax.grad(end))(speed)))
+        for speed in (0.0, 0.3):
+            np.testing.assert_allclose(run(speed), (expected * speed, expected, 0.0), rtol=0, atol=1e-14)
+
+
 PUSHED = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.2), 1.0)
 
 

@@ -284,10 +284,15 @@ class Search(NamedTuple):
         """Return whether residuals of a kind are many times the noise, which is given or that from sample to sample."""
         there, rows = self.problem.there[kind], self.problem.at(solution.point)[kind][0]
         columns = [rows[t, there[t, :, c], c] for t in range(len(rows)) for c in range(rows.shape[2])]
-        both = columns, [np.diff(column) / np.sqrt(2) for column in columns]
-        typical, step = (float(np.median(np.abs(np.concatenate(parts)))) / _MEDIAN for parts in both)
+        typical, step = _deviation(columns), _deviation([np.diff(column) / np.sqrt(2) for column in columns])
         level = float(self.levels[list(self.problem.there).index(kind)])
         if np.isfinite(level):
             return typical > _LOST * level
         most = 1.0 if kind == "turn" else float(np.abs(self.problem.kinds[kind][there]).max())
         return (typical > _LOST * step and typical > _PART * most) or (kind == "turn" and typical > most)
+
+
+def _deviation(parts: list[np.ndarray]) -> float:
+    """Return the deviation of normal numbers by their median size; infinity of none, such as steps of one sample."""
+    sizes = np.abs(np.concatenate(parts))
+    return float(np.median(sizes)) / _MEDIAN if len(sizes) else np.inf

@@ -292,10 +292,10 @@ def best(gaps: Gaps, size: np.ndarray, members: int, limits: Limits) -> tuple[np
         first = spread * size[left] * rng.normal(size=size[left].shape)
         there = left
         near, miss, rest = least_effort(lambda f, at, there=there: gaps(f, there[at]), first, limits)
-        better = miss < gap[left]
+        least = (miss < TOLERANCE) & (rest < _GRADIENT)
+        better = least | (miss < gap[left])
         now = left[better]
-        forces[now], gap[now] = near[better], miss[better]
-        is_least[now] = (miss < TOLERANCE)[better] & (rest < _GRADIENT)[better]
+        forces[now], gap[now], is_least[now] = near[better], miss[better], least[better]
         left = left[~is_least[left]]
         if not len(left):
             break

@@ -15,7 +15,7 @@ import numpy as np
 
 from nonholo import kernels
 from nonholo.base.results import Outcome, as_table
-from nonholo.base.traced import NodeState, marked_rows, rows_of, run_nodes, with_policy
+from nonholo.base.traced import NodeState, implicit, marked_rows, rows_of, run_nodes, with_policy
 from nonholo.base.types import Array, Float
 from nonholo.discrete._scheme import Scheme, weights
 from nonholo.discrete._variety import free_rows
@@ -276,29 +276,49 @@ def _free_stage(part: Any, scalar: ScalarStep | None, state: _State) -> tuple[Ar
 def _balanced_stage(forced: Forced, part: Any, scalar: ScalarStep | None, state: _State) -> tuple[Array, ...]:
     """Take the step over momenta r + j whose half impulses j are those at its displacement.
 
-    Newton's method from the free displacement, which derivatives do not see; two corrections with its last slope give
-    them up to the second.
+    Newton's method from the free displacement, which derivatives do not see.
     """
-
-    def residual(problem: Any, y: Array) -> Array:
-        part, forced, state = problem
-        return _arrival(part, (None, forced), state, y)[0]
+    problem = part, forced, state
+    constants, still = jax.tree.map(jax.lax.stop_gradient, (problem, scalar))
+    residual = functools.partial(_balanced_gap, *constants)
 
     def better(carry: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
         y, _, count = carry
-        change = jnp.linalg.solve(jax.jacfwd(lambda y: residual(constants, y))(y), residual(constants, y))
+        change = jnp.linalg.solve(jax.jacfwd(residual)(y), residual(y))
         return y - change, jnp.max(jnp.abs(change)), count + 1
 
-    problem = part, forced, state
-    constants, still = jax.tree.map(jax.lax.stop_gradient, (problem, scalar))
     free, code = _step.principal_of(constants[0], still, constants[2][0], constants[2][1])
     begin = jnp.where(code == 0, free, 0 * free), jnp.asarray(jnp.inf, free.dtype), 0
     y, last, _ = jax.lax.while_loop(lambda c: (c[1] > _CLOSE) & (c[2] < _MOST), better, begin)
-    slope = jax.lax.stop_gradient(jax.jacfwd(lambda y: residual(constants, y))(y))
-    for _ in range(2):
-        y = y - jnp.linalg.solve(slope, residual(problem, y))
     code = jnp.where((code == 0) & ~(last <= _CLOSE), int(Outcome.not_converged), code)
+    y = _correct(problem, jnp.where(code == 0, y, 0.0))
     return y, code, *_arrival(part, (None, forced), state, y)[1:]
+
+
+@jax.custom_jvp
+def _correct(problem: tuple[Any, Forced, _State], y: Array) -> Array:
+    """Return the root next to a chart, with the derivatives of the implicit function.
+
+    Where JAX forgets the rule, as in reverse mode of reverse mode, the corrections have two more of them.
+    """
+    residual = functools.partial(_balanced_gap, *problem)
+    slope = jax.jacfwd(residual)(y)
+    for _ in range(2):
+        y = y - jnp.linalg.solve(slope, residual(y))
+    return y
+
+
+@_correct.defjvp
+def _implicit(primals: Any, tangents: Any) -> tuple[Array, Array]:
+    def residual(y: Array, part: Any, forced: Forced, state: _State) -> Array:
+        return _balanced_gap(part, forced, state, y)
+
+    return implicit(residual, _correct(*primals), primals[0], tangents[0])
+
+
+def _balanced_gap(part: Any, forced: Forced, state: _State, y: Array) -> Array:
+    """Return what vanishes at the chart of a step under forces at its displacement."""
+    return _arrival(part, (None, forced), state, y)[0]
 
 
 def _move(discrete: Scheme, r: Array, y: Array, g: Array) -> tuple[Array, Array]:

@@ -217,7 +217,10 @@ class Spring:
 
     def energy(self, group: AbstractMatrixGroup, configuration: Poses) -> Float[Array, "..."]:
         """Return U at configurations."""
-        return self.stiffness * (self._size(self._arm(group, configuration)) - self.length) ** 2 / 2
+        arm = self._arm(group, configuration)
+        xp: Any = arm.__array_namespace__()
+        square, size = (arm * arm).sum(axis=-1), self._size(arm)
+        return self.stiffness / 2 * xp.where(size > 0, (size - self.length) ** 2, square + self.length**2)
 
     def covector(self, group: AbstractMatrixGroup, configuration: Poses) -> Covectors:
         """Return -dU along the body directions at configurations."""
@@ -238,11 +241,14 @@ class Spring:
         return g @ homogeneous(group, self.body_point, 1.0) - homogeneous(group, self.space_point, 1.0)
 
     def _size(self, arm: Array) -> Array:
+        """Return lengths; that of none has the derivative zero, which is right beside a length L of zero."""
         xp: Any = arm.__array_namespace__()
-        return xp.sqrt((arm * arm).sum(axis=-1))
+        square = (arm * arm).sum(axis=-1)
+        return xp.where(square > 0, xp.sqrt(xp.where(square > 0, square, 1.0)), 0.0)
 
     def _pull(self, group: AbstractMatrixGroup, arm: Array, sizes: Array, leaning: Array) -> Array:
         xp: Any = leaning.__array_namespace__()
-        stiff = self.stiffness * (1 - 2 * self.length / sizes)
+        is_known = (sizes > 0) | (self.length == 0)  # which way the spring pushes
+        stiff = self.stiffness * xp.where(is_known, 1 - 2 * self.length / xp.where(sizes > 0, sizes, 1.0), xp.nan)
         directions = group.basis @ homogeneous(group, self.body_point, 1.0)
         return -stiff[..., None] * xp.einsum("...a,...ab,db->...d", arm, leaning, xp.asarray(directions))
