@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from damage import damage
 from stopping import stopped_in
 
 import nonholo as nh
@@ -154,24 +153,6 @@ def test_extended_run_has_the_crossings_of_the_long_run(lengths: tuple[int, ...]
         nh.extend(path, steps, events=events)
     whole = begun(None, events, sum(lengths))
     assert whole.events.stopped_by == "east"
-    assert same(nh.load_orbit(path), whole)
-
-
-@pytest.mark.profile("faults", instead="test_damaged_chunk_is_named_and_computed_again")
-@pytest.mark.parametrize("chunk", ["run/events/c/2/0", "run/blocks/3.json", "canonical/pose/c/3/0"])
-@pytest.mark.parametrize("how", ["missing", "flipped"])
-def test_damaged_block_is_computed_again(chunk: str, how: str, tmp_path: Path) -> None:
-    """A missing or changed chunk of crossings or of states, or a mark, is named, and the run is whole again."""
-    path = tmp_path / "run.zarr"
-    whole = begun(path, [TURNS, entry])
-    damage(path / chunk, how)
-    array, _, key = chunk.partition("/c/")
-    named = f"chunk c/{key} of the array {array}" if key else r"mark 3\.json"
-    with pytest.raises(ValueError, match=named):
-        nh.load_orbit(path)
-    with pytest.warns(RuntimeWarning, match=named):
-        again = nh.resume(path, events=[TURNS, entry])
-    assert same(again, whole)
     assert same(nh.load_orbit(path), whole)
 
 
