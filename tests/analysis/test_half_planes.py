@@ -204,6 +204,48 @@ def test_it_is_beyond_all_orders() -> None:
     assert amplitudes[-1] <= 1e-12
 
 
+def _spread(h: float) -> Any:
+    """Return how far s_+ - s_- varies over eight starts within a step of the light sleigh, time step h; 60 digits."""
+    J, M, g = CASES["light"]
+    speed, inertia = mpmath.sqrt(g / mpmath.mpf(M)) * h, mpmath.mpf(J) + mpmath.mpf(M)
+    a = mpmath.sqrt(mpmath.mpf(M))
+
+    def along(t: mpmath.mpf) -> tuple:
+        return mpmath.sqrt(inertia) * speed * mpmath.sech(t), speed * mpmath.tanh(t)
+
+    first = mpmath.mpf("0.1")
+    pi, p = _following(mpmath.mpf(J), a, along(first))
+    period = mpmath.asinh(p * mpmath.sqrt(inertia) / pi) - first
+    found = [_difference(J, M, along(first + period * k / 8)) for k in range(8)]
+    return max(found) - min(found)
+
+
+@pytest.mark.profile("problems", instead="test_difference_against_fifty_digits")
+@pytest.mark.parametrize(("h", "shorter"), [(0.6, 0.5), (0.5, 0.4), (0.4, 0.3)])
+def test_it_falls_as_an_exponential_of_the_inverse_step(h: float, shorter: float) -> None:
+    """Its logarithm falls as -pi^2/(nu h), up to five parts in a hundred that become less with h."""
+    rate = np.sqrt(CASES["light"][2]) / 1.3  # nu = M u/(a I) with a u = sqrt(g), m = 1
+    with mpmath.workdps(60):
+        fall = float(mpmath.log(_spread(h) / _spread(shorter)))
+    ratio = fall / (np.pi**2 / rate * (1 / shorter - 1 / h))
+    assert 1 < ratio < 1 + 0.13 * h * h
+
+
+@pytest.mark.parametrize("angle", [-0.9, 0.2, 1.1])
+def test_time_that_a_step_takes(angle: float) -> None:
+    """A step takes h (1 + (h^2/12)(nu^2 + 3 (J/I) omega^2)) of the flow's time, to six digits of the second term."""
+    with mpmath.workdps(40):
+        J, a, h = mpmath.mpf(1), mpmath.sqrt(mpmath.mpf("0.3")), mpmath.mpf("1e-3")
+        inertia, speed = J + a * a, mpmath.mpf("1.1")
+        rate = a * speed / inertia
+        before = mpmath.sqrt(inertia) * speed * mpmath.cos(angle), speed * mpmath.sin(angle)
+        after = tuple(x / h for x in _following(J, a, (h * before[0], h * before[1])))
+        first, last = (mpmath.asinh(mpmath.sqrt(inertia) * p / pi) / rate for pi, p in (before, after))
+        turning = (before[0] + after[0]) / 2 / inertia
+        expected = (rate**2 + 3 * J / inertia * turning**2) / 12
+        assert abs((last - first - h) / h**3 / expected - 1) <= 1e-6
+
+
 @pytest.mark.parametrize("name", CASES)
 def test_it_is_a_function_of_the_phase(name: str) -> None:
     """One step on, both coordinates have grown by 1; the difference is the same."""

@@ -69,15 +69,17 @@ def test_blocks_end_where_the_run_ends(throw: bool, block_steps: int) -> None:
 @pytest.mark.profile("faults", keep=["1", "3"])
 @pytest.mark.parametrize("block_steps", [1, 2, 3, 4, 5])
 def test_run_that_ends_early_is_kept(block_steps: int, tmp_path: Path) -> None:
-    """A stored run that cannot continue keeps its good steps and outcome; extending it is refused with the reason."""
-    whole = nh.simulate(FOLDING, steps=500, throw=False, **FOLDS)
+    """A stored run that cannot continue keeps its good steps, crossings and outcome; it is not extended."""
+    events = [nh.Event(lambda orbit: orbit.configuration[:, 2, 2], name="level")]
+    whole = nh.simulate(FOLDING, steps=500, events=events, throw=False, **FOLDS)
     path = tmp_path / "run.zarr"
     with pytest.raises(nh.OutcomeError, match=f"Step {len(whole)} of 500"):
-        nh.simulate(FOLDING, steps=500, store=path, checkpoint_every=block_steps, **FOLDS)
-    assert _same(nh.load_orbit(path), whole)
-    assert _same(nh.resume(path, throw=False), whole)
+        nh.simulate(FOLDING, steps=500, store=path, checkpoint_every=block_steps, events=events, **FOLDS)
+    for found in (nh.load_orbit(path), nh.resume(path, events=events, throw=False)):
+        assert _same(found, whole)
+        assert found.events["level"].time.tolist() == whole.events["level"].time.tolist() != []
     with pytest.raises(ValueError, match="be a run that can continue"):
-        nh.extend(path, 10)
+        nh.extend(path, 10, events=events)
 
 
 def test_failed_run_that_was_not_cut_is_resumed_in_silence(tmp_path: Path) -> None:
