@@ -31,6 +31,8 @@ WIDEST = nh.SuslovTop.arrowhead(np.arange(1.0, 10**6 + 1.0), np.full(10**6 - 1, 
 BROAD = nh.discretize(WIDEST, 0.1)
 ALONG = np.full(10**6 - 1, 1e-4)
 MATRICES = nh.SO(400), np.eye(400), np.eye(1, 400 * 399 // 2)
+ACTION = nh.mass_tensor_lagrangian(nh.SE(2), np.eye(3))
+PUSHED: dict[str, Any] = {"body_velocity": (1.0, 0.0), "steps": 10**12}
 ASIDE = {"configuration": np.array([[1.0, 0, 0], [0, 1, 1], [0, 0, 1]])}
 
 
@@ -76,6 +78,14 @@ TOO_MUCH: dict[str, tuple[Callable[[], Any], str]] = {
     ),
     "extend": (_extended, "fit on the disk"),
     "iterate": (lambda: nh.iterate(TOP, steps=10**13, block_steps=10**12, **START), "fit into memory"),
+    "simulate, in coordinates": (
+        lambda: nh.simulate(nh.discretize(nh.LagrangeDAlembert(_kinetic, None, dimension=2), 0.1), **PUSHED),
+        "simulate(steps=...)",
+    ),
+    "simulate, on a group": (
+        lambda: nh.simulate(nh.discretize(nh.GroupLagrangeDAlembert(nh.SE(2), ACTION, None), 0.1), **PUSHED),
+        "simulate(steps=...)",
+    ),
     "rollout": (lambda: nh.rollout(SLEIGH, steps=10**12, **START), "rollout(steps=...)"),
     "fit": (
         lambda: nh.fit(
@@ -228,24 +238,6 @@ def test_every_public_name_is_asked_for_too_much() -> None:
     named = {name for name in _public_names() if name.startswith("examples.")} - asked - set(FEW)  # numbers of a body
     assert asked | set(FEW) | drawn | named == _public_names()
     assert not asked & set(FEW)
-
-
-PARTICLES = {
-    "in coordinates": (lambda: nh.LagrangeDAlembert(_kinetic, None, dimension=2), (1.0, 0.0)),
-    "on a group": (
-        lambda: nh.GroupLagrangeDAlembert(nh.SO(3), nh.mass_tensor_lagrangian(nh.SO(3), np.eye(3)), None),
-        (1.0, 0.0, 0.0),
-    ),
-}
-
-
-@pytest.mark.parametrize("name", PARTICLES)
-def test_runs_by_the_discrete_principle_are_bounded(name: str) -> None:
-    """The states of a run in coordinates or on any group are held in memory."""
-    system, start = PARTICLES[name]
-    discrete = nh.discretize(system(), 0.1)
-    with pytest.raises(ValueError, match=r"simulate\(steps=...\)` must fit into memory"):
-        nh.simulate(discrete, configuration=None, body_velocity=start, steps=10**12)
 
 
 @pytest.mark.parametrize("name", TOO_MUCH)

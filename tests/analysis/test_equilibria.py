@@ -165,19 +165,6 @@ def test_the_shortest_correction_is_taken() -> None:
     assert found.is_stable
 
 
-@pytest.mark.profile("routes", instead="test_rest_under_a_constraint")
-def test_a_heavy_top_hangs() -> None:
-    """Under weight a top is at rest with its center of mass below or above, of the flow and the map."""
-    point = np.array([0.1, 0.05, -0.3])
-    heavy = nh.Forced(nh.SuslovTop(np.diag([1.0, 1.2, 0.6]) + 0.1), nh.Gravity([0.0, 0.0, -G], point))
-    for subject in (heavy, nh.discretize(heavy, 0.05)):
-        for pose, is_stable in ((np.eye(3), True), (np.diag([1.0, -1.0, -1.0]), False)):
-            found = nh.equilibria(subject, configuration=pose)
-            down = found.configuration @ point / np.linalg.norm(point)
-            np.testing.assert_allclose(down, [0, 0, -1 if is_stable else 1], rtol=0, atol=1e-12)
-            assert found.is_stable == is_stable
-
-
 REFUSED = {
     "a slope": (
         nh.LagrangeDAlembert(lambda q, v: v @ v / 2 - jnp.exp(q[0]), None, dimension=1),

@@ -150,28 +150,6 @@ def test_multipliers_tend_to_rates() -> None:
 
 
 @pytest.mark.profile("routes", instead="test_a_sleeping_top")
-@pytest.mark.parametrize("heading", [0.0, 1.0, np.pi / 2])
-def test_a_sleigh_in_coordinates_is_that_on_the_group(heading: float) -> None:
-    """The rate -a m u/(J + m a^2) is found in both, of the flow and of the map."""
-    m, J, a, u = 2.0, 1.0, 0.5, 0.8
-
-    def lagrangian(q: Array, v: Array) -> Array:
-        c, s = jnp.cos(q[2]), jnp.sin(q[2])
-        return m * ((v[0] - a * s * v[2]) ** 2 + (v[1] + a * c * v[2]) ** 2) / 2 + J * v[2] ** 2 / 2
-
-    forms = lambda q: jnp.array([[-jnp.sin(q[2]), jnp.cos(q[2]), 0.0]])  # noqa: E731
-    plane = nh.LagrangeDAlembert(lagrangian, forms, dimension=3, coordinates=("x", "y", "theta"))
-    velocity = u * np.array([np.cos(heading), np.sin(heading), 0.0])
-    start = {"configuration": (0.1, 0.2, heading), "body_velocity": velocity}
-    sleigh, rate = nh.ChaplyginSleigh(m, J, a), -a * m * u / (J + m * a * a)
-    assert abs(nh.linearize(plane, **start).eigenvalues[-1] - rate) < 1e-12
-    assert abs(nh.linearize(sleigh, body_velocity=(0.0, u, 0.0)).eigenvalues[-1] - rate) < 1e-14
-    step = nh.linearize(nh.discretize(sleigh, 0.1), body_velocity=(0.0, u, 0.0)).eigenvalues
-    wanted = np.asarray(nh.equilibria(nh.discretize(sleigh, 0.1), energy=m * u * u / 2).multipliers)
-    np.testing.assert_allclose(step[-1:], wanted, rtol=0, atol=1e-13)
-
-
-@pytest.mark.profile("routes", instead="test_a_sleeping_top")
 def test_transverse_rates_of_tops_of_any_dimension() -> None:
     """Eigenvalues beside an equilibrium of a top on SO(4) are the rates and multipliers of `equilibria`, and a zero."""
     top = nh.SuslovTop(np.diag([1.0, 2.0, 1.5, 1.0]) + 0.1)
@@ -371,45 +349,3 @@ def test_what_depends_on_what_does_not_depend_on_units() -> None:
     for states, matrix in results[1:]:
         np.testing.assert_array_equal(states, results[0][0])
         np.testing.assert_allclose(matrix, results[0][1], 1e-12)
-
-
-@pytest.mark.profile("routes", instead="test_what_depends_on_what_does_not_depend_on_units")
-def test_trailers_in_other_units_have_the_same_linear_equations() -> None:
-    """In kilometers and minutes the last trailer is among the states, which was unseen beside 1 of 1e11."""
-    results = []
-    for length, mass, time in ((1.0, 1.0, 1.0), (1e3, 1e-3, 60.0), (1e-3, 1e3, 1 / 60)):
-        inertias = {"inertia": 0.2 * mass * length**2, "trailer_inertia": 0.1 * mass * length**2}
-        how = {"hitches": length * np.array([1.0, 0.8, 1.1]), "speed": 0.6 * length / time, "turning": 0.0}
-        ready = nh.examples.trailers(mass=mass, trailer_mass=mass / 2, **inertias, **how)
-        found = nh.linearize(ready.system, configuration=ready.configuration, body_velocity=ready.body_velocity)
-        results.append((found.names, found.eigenvalues * time))
-    for names, rates in results[1:]:
-        assert names == results[0][0]
-        np.testing.assert_allclose(rates, results[0][1], 0, 1e-12)
-
-
-def in_units(system: Any, length: float, mass: float, time: float) -> tuple[Any, np.ndarray]:
-    """Return a system of x, y and angles in other units, and the factors of its coordinates."""
-    plain, names = system.plain, system.coordinates
-    factors = np.where(np.isin(names, ["x", "y"]), length, 1.0)
-
-    def lagrangian(q: Array, v: Array) -> Array:
-        return mass * length**2 / time**2 * plain.lagrangian(q / factors, v * time / factors)
-
-    def forms(q: Array) -> Array:
-        return plain.constraint_forms(q / factors) / factors
-
-    return nh.LagrangeDAlembert(lagrangian, forms, dimension=len(names), coordinates=names), factors
-
-
-@pytest.mark.profile("long", instead="test_what_depends_on_what_does_not_depend_on_units")
-@pytest.mark.parametrize("unit", range(3))
-@pytest.mark.parametrize("factor", [1e-3, 1e3])
-def test_a_board_in_other_units_has_the_same_linear_equations(unit: int, factor: float) -> None:
-    """Lengths, masses and times in other units: the names stay, and eigenvalues are rates in the new unit."""
-    board, (length, mass, time) = CASES["snakeboard on a circle"], np.where(np.arange(3) == unit, factor, 1.0)
-    system, factors = in_units(board[0], length, mass, time)
-    q, v = np.array(board[1]["configuration"]) * factors, np.array(board[1]["body_velocity"]) * factors / time
-    found, known = nh.linearize(system, configuration=q, body_velocity=v), nh.linearize(board[0], **board[1])
-    assert found.names == known.names
-    np.testing.assert_allclose(found.eigenvalues * time, known.eigenvalues, 0, 1e-12)

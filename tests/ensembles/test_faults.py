@@ -120,15 +120,6 @@ def test_full_disk_leaves_a_valid_store(scheduler: str, tmp_path: Path) -> None:
     assert same(resumed(path), swept(tmp_path / "whole.zarr"))
 
 
-def test_no_room_for_a_store(tmp_path: Path) -> None:
-    """If not even the empty store can be written, nothing is left at its path nor beside it."""
-    full = OSError(errno.ENOSPC, "No space left on device")
-    told = r"No space left on device. Nothing at this path was changed.*run\.zarr"
-    with stopped_in("nonholo.io.blocks.create_array", full, told):
-        swept(tmp_path / "run.zarr")
-    assert not list(tmp_path.iterdir())
-
-
 @pytest.mark.profile("faults", instead="test_second_process_is_refused")
 def test_second_process_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """While one process writes a store, another one is refused, and told who writes it."""

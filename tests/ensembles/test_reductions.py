@@ -188,8 +188,9 @@ def test_lyapunov_of_members_that_end_early() -> None:
         ("lyapunov", nh.discretize(GENERAL["any d on SO(4)"][0], 0.05)),
         ("lyapunov", nh.discretize(GENERAL["veselova 3"][0], 0.05)),
         ("branch_counts", nh.discretize(SLEIGH.system, 0.1, order=4)),
+        ("turning_deviation", TOP),
     ],
-    ids=["angle, order 4", "angle, n = 3", "order 4", "logarithmic", "no pair", "right-invariant", "counts, order 4"],
+    ids=["angle, order 4", "angle, n = 3", "order 4", "logarithmic", "no pair", "in space", "counts", "top"],
 )
 def test_reductions_without_a_meaning_are_refused(name: str, discrete: nh.Discretization) -> None:
     """A reduction that has no meaning for a system, or no formula, is refused whatever the states are."""
@@ -282,14 +283,6 @@ def test_balanced_sleigh_has_no_deviation(tmp_path: Path) -> None:
     options = {"steps": 20, "restricted_velocity": (0.5, -1.0), "reductions": "turning_deviation"}
     found = nh.sweep(nh.EnsembleTask(discrete, **options), nh.Grid({"a": [0.0, 1.0]}), tmp_path / "s.zarr")
     assert np.isnan(found["turning_deviation"].values).tolist() == [True, False]
-
-
-def test_turning_of_a_top_is_refused(tmp_path: Path) -> None:
-    """Only plane sleighs have a total turn."""
-    top = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0])), 0.1)
-    task = nh.EnsembleTask(top, steps=5, restricted_velocity=(0.5, 0.1), reductions="turning_deviation")
-    with pytest.raises(ValueError, match="must have a plane sleigh"):
-        nh.sweep(task, nh.Grid({"time_step": [0.1]}), tmp_path / "s.zarr")
 
 
 def test_lost_sleighs_are_sound_chunks(tmp_path: Path) -> None:

@@ -22,8 +22,7 @@ FORCES["sleigh"] = (nh.Gravity([0.3, -0.2], [0.5, 0.1]), nh.Friction([0.2, 0.1, 
 FORCED = {f"forced_{name}": nh.Forced(BODIES[name], *FORCES[name]) for name in BODIES}
 TABLE = np.random.default_rng(1).normal(size=(350, 3)).round(3) / 4
 DRIVEN = {f"driven_{name}": nh.Forced(BODIES[name], w, (f, TABLE)) for name, (w, f) in FORCES.items()}
-
-
+SENT = BODIES | FORCED | DRIVEN
 FOUR = {"J11": 1.4, "J22": 1.0, "J33": 0.7, "J44": 0.9, "J14": 0.5, "J24": -0.3, "J34": 0.2}
 START = {"momentum": (1.2, -0.5, 0.6), "configuration": nh.SO(4).exp(np.linspace(-0.4, 0.6, 6))}
 
@@ -32,26 +31,23 @@ def _top4(p: dict[str, float]) -> Any:
     return nh.SuslovTop.arrowhead([p[f"J{i}{i}"] for i in "1234"], [p[f"J{i}4"] for i in "123"])
 
 
-ORBIT = nh.simulate(nh.discretize(_top4(FOUR), 0.1), **START, steps=300)
-
-
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """Pages of a top and a sleigh, free, under forces and a table; on SO(4); replayed: on SO(5), a snakeboard."""
     folder = tmp_path_factory.mktemp("pages")
-    found = {name: folder / f"{name}.html" for name in (*BODIES, *FORCED, *DRIVEN, "replay", "outline", "top4")}
-    for name, body in (BODIES | FORCED | DRIVEN).items():
-        _sent(name, body).to_html(found[name])
-    ORBIT.to_html(found["top4"])
+    found = {name: folder / f"{name}.html" for name in (*SENT, "replay", "outline", "top4")}
+    for name in (*SENT, "top4"):
+        _sent(name).to_html(found[name])
     wide = nh.discretize(nh.SuslovTop(np.diag([1.0, 2.0, 3.0, 4.0, 5.0]) + 0.3), 0.1)
     nh.simulate(wide, restricted_velocity=(1.0, 0.5, 0.2, 0.1), steps=100).to_html(found["replay"])
     nh.examples.snakeboard().simulate(steps=50).to_html(found["outline"])
     return found
 
 
-def _sent(name: str, body: Any) -> nh.Orbit:
+def _sent(name: str) -> nh.Orbit:
     """Return the motion of a file."""
-    return nh.simulate(nh.discretize(body, 0.1), body_velocity=VELOCITY[name.rpartition("_")[2]], steps=300)
+    start = START if name == "top4" else {"body_velocity": VELOCITY[name.rpartition("_")[2]]}
+    return nh.simulate(nh.discretize(SENT.get(name) or _top4(FOUR), 0.1), **start, steps=300)
 
 
 def _same(page: Any, orbit: nh.Orbit, rounding: float = 0.0, poses: float = 0.0) -> None:
@@ -63,7 +59,7 @@ def _same(page: Any, orbit: nh.Orbit, rounding: float = 0.0, poses: float = 0.0)
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("size", [(1280, 800), (390, 844)], ids=["desk", "phone"])
-@pytest.mark.parametrize("name", [*BODIES, *FORCED, *DRIVEN, "replay", "outline", "top4"])
+@pytest.mark.parametrize("name", [*SENT, "replay", "outline", "top4"])
 def test_opens_quietly(visit: Callable, files: dict, name: str, size: tuple[int, int], scheme: str) -> None:
     """No error, no request but the file, nothing wider than the screen, and pictures that are not empty."""
     look = {"viewport": {"width": size[0], "height": size[1]}, "color_scheme": scheme}
@@ -96,20 +92,22 @@ def test_requests_are_counted(visit: Callable, files: dict) -> None:
     assert len(page.requests) == 2
 
 
-@pytest.mark.parametrize("name", [*BODIES, *FORCED])
+@pytest.mark.parametrize("name", [*BODIES, *FORCED, "top4"])
 def test_same_numbers(visit: Callable, files: dict, name: str) -> None:
-    """The motion as it was sent, and a hundred thousand steps of others, are those of Python to the last bit."""
-    page, body = visit(files[name]), (BODIES | FORCED)[name]
-    _same(page, _sent(name, body))
-    rng = np.random.default_rng(5)
+    """The motion as it was sent, and a hundred thousand steps of other bodies, are those of Python to the last bit."""
+    page, rng = visit(files[name]), np.random.default_rng(5)
+    _same(page, _sent(name))
+    first = page.page.evaluate("nonholo.state")
     for _ in range(5):
-        momentum, step = rng.normal(size=2).round(3).tolist(), round(float(rng.uniform(0.01, 0.2)), 4)
-        link = "&".join([f"h={step!r}", "steps=20000", "r={!r}+{!r}".format(*momentum)])
-        numbers = page.page.evaluate("new URLSearchParams(Object.entries(nonholo.state.parameters)).toString()")
-        page.page.evaluate("(link) => { location.hash = link; }", f"kind={name}&{numbers}&{link}")
+        p = {key: round(x * rng.uniform(0.8, 1.2), 3) for key, x in first["parameters"].items()}
+        momentum = rng.normal(size=len(first["momentum"])).round(3).tolist()
+        step = round(float(rng.uniform(0.01, 0.2)), 4)
+        numbers = "&".join(f"{key}={x!r}" for key, x in {**p, "h": step, "steps": 20_000}.items())
+        link = f"kind={name}&{numbers}&r={'+'.join(map(repr, momentum))}"
+        page.page.evaluate("(link) => { location.hash = link; }", link)
         page.until(f"nonholo.state.time_step === {step!r}")
         page.settle()
-        _same(page, nh.simulate(nh.discretize(body, step), momentum=momentum, steps=20000))
+        _same(page, nh.simulate(nh.discretize(_made(name, p), step), momentum=momentum, steps=20_000))
 
 
 SLIDERS = {
@@ -134,10 +132,8 @@ def test_sliders(visit: Callable, files: dict, name: str) -> None:
         assert state != before
         before, state = state, json.loads(state)
         p = state["parameters"]
-        body = _MADE[name.rpartition("_")[2]](p)
-        body = _pushed(body, p) if name in FORCED else body
         start = {**(START if is_wide else {}), "momentum": state["momentum"]}
-        motion = nh.simulate(nh.discretize(body, state["time_step"]), **start, steps=state["steps"])
+        motion = nh.simulate(nh.discretize(_made(name, p), state["time_step"]), **start, steps=state["steps"])
         _same(page, motion, poses=1e-14 * is_wide)
     momentum = {f"r{number}": r for number, r in enumerate(state["momentum"], 1)}
     assert {**p, **RUN, **momentum} == {**SLIDERS[name], **RUN}
@@ -149,7 +145,13 @@ def _top(p: dict[str, float]) -> nh.SuslovTop:
     return nh.SuslovTop([[p[name] for name in row] for row in rows])
 
 
-_MADE = {"top": _top, "top4": _top4, "sleigh": lambda p: nh.ChaplyginSleigh(p["mass"], p["inertia"], p["a"])}
+BODY_OF = {"top": _top, "top4": _top4, "sleigh": lambda p: nh.ChaplyginSleigh(p["mass"], p["inertia"], p["a"])}
+
+
+def _made(name: str, p: dict[str, float]) -> Any:
+    """Return the body of the sliders of a page."""
+    body = BODY_OF[name.rpartition("_")[2]](p)
+    return _pushed(body, p) if name in FORCED else body
 
 
 def _pushed(body: Any, p: dict[str, float]) -> nh.Forced:
@@ -182,7 +184,7 @@ def test_forces_at_zero(visit: Callable, files: dict, name: str) -> None:
 @pytest.mark.parametrize("name", [*FORCED, *DRIVEN])
 def test_balance_of_energy(visit: Callable, files: dict, name: str) -> None:
     """The page has energy, kinetic energy and work of Python, and says that they agree, not that energy is kept."""
-    page, orbit = visit(files[name]), _sent(name, (FORCED | DRIVEN)[name])
+    page, orbit = visit(files[name]), _sent(name)
     kinetic = BODIES[name.rpartition("_")[2]].constrained_energy(orbit.reduced_momentum)
     for key, values in (("energy", orbit.energy), ("work", orbit.work), ("kinetic", kinetic)):
         np.testing.assert_allclose(page.numbers(key), values, rtol=1e-12, atol=1e-12)
@@ -193,8 +195,8 @@ def test_balance_of_energy(visit: Callable, files: dict, name: str) -> None:
 
 def test_points_of_a_pushed_orbit(visit: Callable, files: dict) -> None:
     """An orbit under forces runs on the surface of momenta of displacements."""
-    for name, forced in FORCED.items():
-        page, orbit = visit(files[name]), _sent(name, forced)
+    for name in FORCED:
+        page, orbit = visit(files[name]), _sent(name)
         P = nh.discrete_legendre(nh.discretize(BODIES[name.removeprefix("forced_")], 0.1), orbit.displacement[7])
         assert np.abs(P[:2] - orbit.momentum[7, :2]).max() > 1e-4
         point = page.page.evaluate("nonholo.point(7)")
@@ -204,17 +206,25 @@ def test_points_of_a_pushed_orbit(visit: Callable, files: dict) -> None:
             np.testing.assert_allclose(point[0], 0.5 * 0.1 * P[1] + 2 * 0.5**2, atol=1e-14)
 
 
-def test_presets(visit: Callable, files: dict) -> None:
-    """Every ready motion runs, or says that it has no real branch."""
-    page = visit(files["top"])
+TITLES = {"top": "Suslov top", "top4": "Arrowhead top, SO(4)"}
+
+
+@pytest.mark.parametrize("name", TITLES)
+def test_presets(visit: Callable, files: dict, name: str) -> None:
+    """Every ready motion runs, or says that it has no real branch; a page in four dimensions has its own."""
+    page = visit(files[name])
     names = page.page.eval_on_selector_all("#preset option", "all => all.map((o) => [o.value, o.textContent])")
+    assert len(names) > 4
     for value, label in names:
         page.page.select_option("#preset", value)
         page.settle()
-        assert ("no real branch" in page.status) == ("no real branch" in label), label
-        title = "Chaplygin sleigh" if "Sleigh" in label else "Suslov top"
+        assert ("no real branch" in page.status) == ("no real branch" in label.lower()), label
         forced = page.page.evaluate("nonholo.state.kind").startswith("forced")
+        title = "Chaplygin sleigh" if "Sleigh" in label else TITLES[name]
         assert page.page.text_content("#title") == f"{title}{', under forces' * forced}"
+    page.page.select_option("#preset", "own")
+    page.settle()
+    _same(page, _sent(name))
     assert page.errors == []
 
 
@@ -277,16 +287,19 @@ def test_drag_to_start(visit: Callable, files: dict) -> None:
     assert abs(r2) < 0.1 * r1
 
 
-@pytest.mark.parametrize(("name", "key"), [("sleigh", "a"), ("forced_top", "c2"), ("forced_sleigh", "F1")])
+LINKED = [("sleigh", "a"), ("forced_top", "c2"), ("forced_sleigh", "F1"), ("top4", "J34")]
+
+
+@pytest.mark.parametrize(("name", "key"), LINKED)
 def test_link(visit: Callable, files: dict, name: str, key: str) -> None:
-    """A link opens the motion it was made of, in any page."""
+    """A link opens the motion it was made of, in any page of as many dimensions."""
     page = visit(files[name])
     page.set(key, 0.25)
     page.set("r1", 1.1)
     page.page.click("#share summary")
     page.page.click("#copy-link")
     link = page.page.input_value("#dialog-text")
-    again = visit(files["sleigh"], link.partition("#")[1] + link.partition("#")[2])
+    again = visit(files["top4" if name == "top4" else "sleigh"], "#" + link.partition("#")[2])
     assert again.page.evaluate("JSON.stringify(nonholo.state)") == page.page.evaluate("JSON.stringify(nonholo.state)")
 
 
@@ -316,7 +329,7 @@ def test_bad_links(visit: Callable, files: dict, name: str, fragment: str) -> No
     """What a link holds is read as data: the motion in the file stays, and the page says what is wrong."""
     page = visit(files[name], f"#{fragment}")
     assert "This link could not be read" in page.status
-    _same(page, ORBIT if name == "top4" else _sent(name, BODIES[name]))
+    _same(page, _sent(name))
     assert page.errors == []
 
 
@@ -388,11 +401,14 @@ def test_save_and_open(visit: Callable, files: dict, tmp_path: Path) -> None:
     assert again.numbers("r") == page.numbers("r")
 
 
-@pytest.mark.parametrize("name", list(BODIES))
+@pytest.mark.parametrize("name", [*BODIES, "top4"])
 def test_copied_programs(visit: Callable, files: dict, name: str, tmp_path: Path) -> None:
-    """Copied Python and a copied scenario give the numbers of the page."""
+    """Copied Python and a copied scenario give the numbers of the page, from its pose and from the identity."""
     page = visit(files[name])
     page.set("r2", 0.35)
+    _copies_repeat(page, tmp_path)
+    page.page.select_option("#preset", "0")
+    page.settle()
     _copies_repeat(page, tmp_path)
 
 
@@ -411,7 +427,7 @@ def test_copied_forces(visit: Callable, files: dict, name: str, key: str, tmp_pa
 def test_table_of_forces(visit: Callable, files: dict, name: str, steps: int, tmp_path: Path) -> None:
     """A page scales the table that it brings along; before its end and after it the motion is that of Python."""
     page, body = visit(files[name]), name.rpartition("_")[2]
-    _same(page, _sent(name, DRIVEN[name]))
+    _same(page, _sent(name))
     page.set("steps", steps)
     for scale in (-1.3, 0.7, 0.0):
         page.set("s", scale)
@@ -440,25 +456,26 @@ def test_links_of_a_table(visit: Callable, files: dict) -> None:
     assert again.page.evaluate("[nonholo.state.table ?? null, nonholo.state.parameters.s]") == [None, 0]
     again.page.select_option("#preset", "own")
     again.settle()
-    _same(again, _sent("driven_top", DRIVEN["driven_top"]))
+    _same(again, _sent("driven_top"))
 
 
 def _copies_repeat(page: Any, folder: Path) -> None:
-    """Copied Python and a copied scenario give the numbers of the page."""
+    """Copied Python and a copied scenario, which no page in four dimensions has, give the numbers of the page."""
     from nonholo.cli.scenario.files import load_scenario
 
-    text = {}
-    for kind in ("python", "toml"):
+    is_wide, text = page.page.evaluate("nonholo.state.kind") == "top4", {}
+    for kind in ("python", "toml")[: 1 if is_wide else 2]:
         page.page.click("#share summary")
         page.page.click(f"#copy-{kind}")
         text[kind] = page.page.input_value("#dialog-text")
         page.page.click("#dialog-close")
     names: dict[str, Any] = {}
     exec(text["python"], names)  # noqa: S102
-    _same(page, names["orbit"])
-    (folder / "copied.toml").write_text(text["toml"])
-    scenario = load_scenario(str(folder / "copied.toml"), []).scenario
-    _same(page, nh.simulate(scenario.discretization(), steps=scenario.run.steps, **scenario.options()))
+    _same(page, names["orbit"], poses=1e-14 * is_wide)
+    if not is_wide:
+        (folder / "copied.toml").write_text(text["toml"])
+        scenario = load_scenario(str(folder / "copied.toml"), []).scenario
+        _same(page, nh.simulate(scenario.discretization(), steps=scenario.run.steps, **scenario.options()))
 
 
 @pytest.mark.parametrize("view", ["body", "phase", "surface", "energy"])
@@ -541,24 +558,11 @@ def test_in_a_notebook(visit: Callable, tmp_path: Path) -> None:
     assert page.errors == []
 
 
-def test_same_numbers_in_four_dimensions(visit: Callable, files: dict) -> None:
-    """The motion as it was sent, and ten thousand steps of others, are those of Python to the last bit."""
-    page, rng = visit(files["top4"]), np.random.default_rng(5)
-    _same(page, ORBIT)
-    for _ in range(5):
-        p = {key: round(float(x + rng.uniform(-0.2, 0.2)), 3) for key, x in FOUR.items()}
-        momentum, step = rng.normal(size=3).round(3).tolist(), round(float(rng.uniform(0.01, 0.2)), 4)
-        numbers = "&".join(f"{key}={x!r}" for key, x in {**p, "h": step, "steps": 2_000}.items())
-        link = f"kind=top4&{numbers}&r={'+'.join(map(repr, momentum))}"
-        page.page.evaluate("(link) => { location.hash = link; }", link)
-        page.until(f"nonholo.state.time_step === {step!r}")
-        page.settle()
-        _same(page, nh.simulate(nh.discretize(_top4(p), step), momentum=momentum, steps=2_000))
-
-
 def test_continuous_motion_in_four_dimensions(visit: Callable, files: dict) -> None:
     """The momenta of the continuous motion are those of `flow` to the last bit, for slow, fast and resting motions."""
     page = visit(files["top4"])
+    assert not any(page.page.is_visible(f"#{name}") for name in ("values", "whole", "many", "copy-toml", "forces"))
+    assert "300 steps computed here" in page.status
     for moved in ({}, {"r1": 2.5, "J11": 0.1, "time_step": 0.7, "steps": 900}, {"r1": 0.0, "r2": 0.0, "r3": 0.0}):
         for key, value in moved.items():
             page.set(key, value)
@@ -566,24 +570,6 @@ def test_continuous_motion_in_four_dimensions(visit: Callable, files: dict) -> N
         body, times = _top4(state["parameters"]), np.arange(state["steps"] + 1) * state["time_step"]
         motion = nh.flow(body, momentum=state["momentum"], times=times, reconstruct=False)
         np.testing.assert_array_equal(page.page.evaluate("nonholo.flow.rows"), motion.reduced_momentum)
-    assert page.errors == []
-
-
-def test_ready_motions_in_four_dimensions(visit: Callable, files: dict) -> None:
-    """Every ready motion is of a top on SO(4), and runs from the identity or says that it has no real branch."""
-    page = visit(files["top4"])
-    names = page.page.eval_on_selector_all("#preset option", "all => all.map((o) => [o.value, o.textContent])")
-    assert len(names) > 4
-    assert not any(page.page.is_visible(f"#{name}") for name in ("values", "whole", "many", "copy-toml", "forces"))
-    assert "300 steps computed here" in page.status
-    for value, label in names:
-        page.page.select_option("#preset", value)
-        page.settle()
-        assert ("no real branch" in page.status) == (label == "No real branch"), label
-        assert page.page.evaluate("nonholo.state.kind") == "top4"
-    page.page.select_option("#preset", "own")
-    page.settle()
-    _same(page, ORBIT)
     assert page.errors == []
 
 
@@ -603,28 +589,3 @@ def test_start_by_hand_in_four_dimensions(visit: Callable, files: dict) -> None:
     after = page.page.evaluate("nonholo.state.momentum")
     assert after[1] > r[1]
     assert (after[0], after[2]) == (r[0], 0.6)
-
-
-def test_link_and_program_in_four_dimensions(visit: Callable, files: dict) -> None:
-    """A link opens the motion it was made of, with its pose, and the copied program gives its numbers."""
-    page = visit(files["top4"])
-    page.set("J34", 0.25)
-    page.set("r3", 1.1)
-    page.page.click("#share summary")
-    page.page.click("#copy-link")
-    link = page.page.input_value("#dialog-text")
-    page.page.click("#dialog-close")
-    again = visit(files["top4"], "#" + link.partition("#")[2])
-    assert again.page.evaluate("JSON.stringify(nonholo.state)") == page.page.evaluate("JSON.stringify(nonholo.state)")
-    page.page.click("#share summary")
-    page.page.click("#copy-python")
-    names: dict[str, Any] = {}
-    exec(page.page.input_value("#dialog-text"), names)  # noqa: S102
-    _same(page, names["orbit"], poses=1e-14)
-    page.page.click("#dialog-close")
-    page.page.select_option("#preset", "0")
-    page.settle()
-    page.page.click("#share summary")
-    page.page.click("#copy-python")
-    exec(page.page.input_value("#dialog-text"), names)  # noqa: S102
-    _same(page, names["orbit"])

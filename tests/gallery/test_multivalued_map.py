@@ -80,27 +80,6 @@ def test_portraits_print_closed_forms() -> None:
     assert np.isclose(found["multiplier of the sleigh at energy 0.5"], 9 / 11, rtol=1e-12)
 
 
-def test_critical_levels_are_stationary() -> None:
-    """At each critical point of both tops the energy of the momentum is stationary to the square of the step away."""
-    module = script("multivalued_map_3_levels")
-    for top in (module.REGULAR, module.ROD):
-        for point in nh.critical_energies(top).points:
-            z = point.half_turn_vector
-            quaternion = np.array([np.sqrt(max(0.0, 1 - z @ z)), *z])
-            for direction in np.eye(3):
-                away = [_energy(top, quaternion + side * 1e-4 * direction) for side in (1, -1)]
-                assert abs(away[0] - away[1]) < 1e-7  # third order in 1e-4, times h^-2 and the size of the body
-            assert np.isclose(_energy(top, quaternion), point.energy, atol=1e-12)
-
-
-def _energy(top: nh.Discretization, quaternion: np.ndarray) -> float:
-    """Return the energy at a point of the variety, from its displacement by the definition."""
-    z0, z1, z2 = quaternion / np.linalg.norm(quaternion)
-    n = np.array([z1, z2, z0])
-    W = (np.eye(3) - 2 * np.outer(n, n)) @ np.diag([1.0, 1.0, -1.0])
-    return float(top.system.constrained_energy(nh.discrete_legendre(top, W)))
-
-
 def test_turn_of_the_flow_is_one_turn() -> None:
     """J = 3 m a^2: the heading turns by 360 degrees; errors of the map fall fourfold with half the step."""
     found = script("multivalued_map_7_limits").numbers()

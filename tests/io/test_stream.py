@@ -64,17 +64,6 @@ def test_lock_names_its_owner_and_goes(store: Path) -> None:
     assert list((store / "run").iterdir()) == []
 
 
-def test_held_lock_is_refused(store: Path) -> None:
-    """A second owner is refused, the first one is named, and its lock stays."""
-    with places.write_lock(store):
-        with (
-            pytest.raises(BlockingIOError, match=f"being written by process {os.getpid()} on"),
-            places.write_lock(store),
-        ):
-            pass
-        assert places.owner_of(store) is not None
-
-
 @pytest.mark.parametrize("left", ["", "{", "[]", '{"pid": "x", "host": 3}', "[" * 100_000, '{"pid": 1e400}'])
 def test_what_is_left_does_not_lock(left: str, store: Path) -> None:
     """Files of a lock whose process has ended do not count, whatever they say, and are gone afterwards."""

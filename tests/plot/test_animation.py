@@ -180,13 +180,3 @@ def test_films_of_ffmpeg(kind: str, suffix: str, codec: str, tmp_path: Path, req
     frames = pixels.reshape(9, 360, 640).astype(int)
     assert np.all(np.mean(np.abs(np.diff(frames, axis=0)) > 40, axis=(1, 2)) > 0.002)
     assert done == [(k, 9) for k in range(1, 10)]
-
-
-def test_refusals(top_orbit: nh.Orbit, tmp_path: Path) -> None:
-    """Another suffix, no frames, and missing poses are refused in words."""
-    with pytest.raises(ValueError, match=r"`animate\(path=...\)` must end in .gif, .mp4 or .webm"):
-        nh.plot.animate(top_orbit, tmp_path / "a.avi")
-    with pytest.raises(ValueError, match=r"`animate\(frames=...\)` must be a positive integer. Got 0"):
-        nh.plot.animate(top_orbit, tmp_path / "a.gif", frames=0)
-    with pytest.raises(ValueError, match="must have poses"):
-        nh.plot.animate(top_run((0.4, 0.9, 0.0), steps=3, reconstruct=False), tmp_path / "a.gif")

@@ -130,17 +130,6 @@ def test_a_system_with_three_momenta_is_drawn_on_given_axes() -> None:
     picture.plane.figure.canvas.draw()
 
 
-def test_other_things_are_refused() -> None:
-    """No tree, the root alone and a tree of another group are refused in words."""
-    with pytest.raises(ValueError, match=r"`plot.branch_tree\(tree=...\)` must be a tree"):
-        nh.plot.branch_tree(SLEIGH, ORBIT)
-    with pytest.raises(ValueError, match=r"must have a generation of images. Got the root alone"):
-        nh.plot.branch_tree(SLEIGH, nh.branch_tree(SLEIGH, np.eye(3), 0))
-    four = nh.discretize(nh.SuslovTop(np.diag([1.0, 1.5, 2.0, 2.5]) + 0.2), 0.1)
-    with pytest.raises(ValueError, match=r"must be in SO\(4\)"):
-        nh.plot.branch_tree(four, TREE)
-
-
 def test_images_on_the_portrait_are_values_of_the_map() -> None:
     """The far end of an edge from the first image of the orbit is reached by one of its other values."""
     picture = nh.plot.phase_portrait(SLEIGH.system, ORBIT, branches="all")
@@ -152,9 +141,12 @@ def test_images_on_the_portrait_are_values_of_the_map() -> None:
         assert np.linalg.norm(ends[:, 1] - place, axis=1).min() < 1e-9
 
 
-def test_all_branches_without_an_orbit_are_refused() -> None:
-    """All branches need a discrete orbit, and there is no third choice."""
-    with pytest.raises(ValueError, match=r"`phase_portrait\(branches=...\)` must be 'principal' without a discrete"):
-        nh.plot.phase_portrait(SLEIGH.system, branches="all")
-    with pytest.raises(ValueError, match=r"`phase_portrait\(branches=...\)` must be one of 'principal', 'all'"):
-        nh.plot.phase_portrait(SLEIGH.system, ORBIT, branches="both")
+_WIDE = nh.discretize(nh.SuslovTop(np.diag([1.0, 1.5, 2.0, 2.5]) + 0.2), 0.1)
+# No tree, the root alone, a tree of another group; all branches need a discrete orbit, and there is no third choice.
+test_other_things_are_refused = refusals(
+    (lambda: nh.plot.branch_tree(SLEIGH, ORBIT), r"`plot.branch_tree\(tree=...\)` must be a tree"),
+    (lambda: nh.plot.branch_tree(SLEIGH, nh.branch_tree(SLEIGH, np.eye(3), 0)), "of images. Got the root alone"),
+    (lambda: nh.plot.branch_tree(_WIDE, TREE), r"must be in SO\(4\)"),
+    (lambda: nh.plot.phase_portrait(SLEIGH.system, branches="all"), "must be 'principal' without a discrete"),
+    (lambda: nh.plot.phase_portrait(SLEIGH.system, ORBIT, branches="both"), "must be one of 'principal', 'all'"),
+)

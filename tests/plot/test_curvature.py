@@ -69,11 +69,6 @@ test_what_cannot_be_drawn_is_refused = refusals(
     ({"component": "v3"}, "component=...\\)` must be one of"),
     ({"along": ("psi", "psi")}, "name two shape variables"),
     ({"bounds": ((1, -1), (-1, 1))}, "ascend"),
-    ask=lambda asked: nh.plot.curvature(car(), **asked),
+    ({"connection": nh.local_connection(nh.examples.roller_racer().system)}, "have two shape variables"),
+    ask=lambda asked: nh.plot.curvature(**{"connection": car()} | asked),
 )
-
-
-def test_one_shape_variable_has_no_curvature() -> None:
-    """The roller racer moves its handle alone."""
-    with pytest.raises(ValueError, match="have two shape variables"):
-        nh.plot.curvature(nh.local_connection(nh.examples.roller_racer().system))

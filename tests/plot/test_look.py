@@ -14,6 +14,7 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from plot.runs import MASS_TENSOR, run_of, sleigh_run, top_run
+from refusals import refusals
 
 import nonholo as nh
 import nonholo.plot.geometry._locus
@@ -307,16 +308,28 @@ def test_axes_have_names() -> None:
     assert [axes.get_ylabel() for axes in figure.axes[1:3]] == ["momentum", "velocity"]
 
 
-@pytest.mark.parametrize(
-    ("look", "words"),
-    [
-        ({"title": 3}, r"`energy_error\(title=...\)` must be a text"),
-        ({"legend": "no"}, r"`energy_error\(legend=...\)`"),
-        ({"size": (0, 3)}, r"`energy_error\(size=...\)` must be positive. Got 0"),
-        ({"color": "no color"}, r"`energy_error\(color=...\)` must be a color of matplotlib. Got 'no color'"),
-    ],
+# What is no title, flag, size or color is refused before anything is drawn.
+test_looks_are_refused = refusals(
+    ({"title": 3}, r"title=...\)` must be a text"),
+    ({"legend": "no"}, r"legend=...\)`"),
+    ({"size": (0, 3)}, r"size=...\)` must be positive. Got 0"),
+    ({"color": "no color"}, r"color=...\)` must be a color of matplotlib. Got 'no color'"),
+    ask=lambda look: nh.plot.energy_error(_short(), **look),
+    begin=r"`energy_error\(",
 )
-def test_refusals(look: dict[str, Any], words: str, sleigh_orbit: nh.Orbit) -> None:
-    """What is no title, flag, size or color is refused before anything is drawn."""
-    with pytest.raises(ValueError, match=words):
-        nh.plot.energy_error(sleigh_orbit, **look)
+
+_LOST = sleigh_run((0.1, -1.0, 0.0), steps=3, reconstruct=False)
+# What a picture cannot show, and where it cannot be written, is refused in words.
+test_other_subjects_are_refused = refusals(
+    (lambda: nh.plot.energy_error(_short()[:0]), "must have a state to draw. Got none. `orbit.outcome` has"),
+    (lambda: nh.plot.overview(_short(), "picture.zarr"), r"`overview\(path=...\)` must end in a picture format"),
+    (lambda: nh.plot.phase_portrait(_TOP.system, _short()), r"`phase_portrait\(orbit=...\)` must be an orbit of the"),
+    (lambda: nh.plot.phase_portrait(_short()), "must be a system on a group. .* Pass `orbit.system` first"),
+    (lambda: nh.plot.phase_portrait(_TOP.system, energies=[1.0, -1.0]), r"energies=...\)` must be positive. Got -1"),
+    (lambda: nh.plot.animate(_short(), "a.avi"), r"`animate\(path=...\)` must end in .gif, .mp4 or .webm"),
+    (
+        lambda: nh.plot.animate(_short(), "a.gif", frames=0),
+        r"`animate\(frames=...\)` must be a positive integer. Got 0",
+    ),
+    (lambda: nh.plot.animate(_LOST, "a.gif"), "must have poses"),
+)

@@ -53,12 +53,6 @@ def test_files(suffix: str, sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:
         assert ">Chaplygin sleigh</text>" in path.read_text()
 
 
-def test_refuses_other_suffixes(sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:
-    """A suffix that is no picture format is refused before anything is drawn."""
-    with pytest.raises(ValueError, match=r"`overview\(path=...\)` must end in a picture format"):
-        nh.plot.overview(sleigh_orbit, tmp_path / "picture.zarr")
-
-
 @pytest.mark.parametrize("draw", ["plot", "animate"])
 def test_older_pictures_are_kept(draw: str, sleigh_orbit: nh.Orbit, tmp_path: Path) -> None:
     """A picture at the path is kept unless it is to be replaced; a folder is never replaced."""
@@ -136,12 +130,6 @@ def test_at_rest_the_error_is_absolute() -> None:
     drawn = nh.plot.energy_error(top_run((0.0, 0.0, 0.0), steps=5))
     assert not np.any(drawn.error.get_offsets()[:, 1])
     assert "/E" not in drawn.axes.get_ylabel()
-
-
-def test_refuses_an_orbit_without_states(top_orbit: nh.Orbit) -> None:
-    """An orbit that did not start is refused, and its outcome is pointed at."""
-    with pytest.raises(ValueError, match=r"must have a state to draw. Got none. `orbit.outcome` has"):
-        nh.plot.energy_error(top_orbit[:0])
 
 
 ARROW = np.array([[1.4, 0.0, 0.5], [0.0, 1.0, -0.3], [0.5, -0.3, 0.9]])

@@ -188,18 +188,23 @@ def test_bars_of_outcomes(draws: xarray.Dataset) -> None:
         ("plane", {"quantity": "value", "x": "a", "y": "a"}, "Got 'a' twice"),
         ("draws", {"quantity": "wide", "y": "b"}, "must come with x"),
         ("draws", {"quantity": "wide", "x": "c"}, "must be one number of each member. Got 'c'. Choose among"),
+        ("one member", {"quantity": "value"}, "Got one member"),
+        ("nothing", {}, "Got Dataset. Pass what nh.sweep or nh.load_sweep returned"),
     ],
 )
-def test_what_is_refused(request: pytest.FixtureRequest, result: str, arguments: dict[str, str], told: str) -> None:
-    """A quantity or an axis that is not there, an axis twice or too many, and draws over y alone are refused."""
+def test_what_is_refused(
+    plane: xarray.Dataset,
+    space: xarray.Dataset,
+    draws: xarray.Dataset,
+    result: str,
+    arguments: dict[str, str],
+    told: str,
+) -> None:
+    """A quantity or an axis that is not there, an axis twice or too many, no axes, and draws over y alone."""
+    results = {"plane": plane, "space": space, "draws": draws, "nothing": xarray.Dataset()}
+    results["one member"] = plane.isel(a=0, b=0)
     with pytest.raises(ValueError, match=told):
-        nh.plot.sweep_map(request.getfixturevalue(result), **arguments)
-
-
-def test_one_member_is_refused(plane: xarray.Dataset) -> None:
-    """A result without axes has no picture."""
-    with pytest.raises(ValueError, match="Got one member"):
-        nh.plot.sweep_map(plane.isel(a=0, b=0), "value")
+        nh.plot.sweep_map(results[result], **arguments)
 
 
 def test_draws_that_all_failed(draws: xarray.Dataset) -> None:
@@ -215,9 +220,3 @@ def test_axis_of_vectors_is_numbered(tmp_path: Path) -> None:
     design = nh.Grid({"v": [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]})
     found = nh.sweep(lambda block: {"value": block["v"].sum(axis=1)}, design, tmp_path / "s.zarr")
     assert nh.plot.sweep_map(found, "value").drawn.get_xydata().tolist() == [[0, 1], [1, 1], [2, 2]]
-
-
-def test_other_objects_are_refused() -> None:
-    """What is no result of a sweep is refused."""
-    with pytest.raises(ValueError, match=r"Got Dataset. Pass what nh.sweep or nh.load_sweep returned"):
-        nh.plot.sweep_map(xarray.Dataset())

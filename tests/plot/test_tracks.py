@@ -77,16 +77,6 @@ def test_the_flow_is_drawn_over_it(sleigh_orbit: nh.Orbit) -> None:
     assert np.linalg.norm(drawn[:, None] - exact, axis=2).min(axis=1).max() < 0.01
 
 
-def test_refuses_a_top_and_an_orbit_without_poses(top_orbit: nh.Orbit) -> None:
-    """A top has no blade, and without poses there is no track; both refusals say what to do."""
-    with pytest.raises(ValueError, match=r"must be an orbit of a sleigh in the plane. .* `body_axis_track` for a top"):
-        nh.plot.blade_track(top_orbit)
-    with pytest.raises(ValueError, match=r"must have poses. .* Run with reconstruct=True"):
-        nh.plot.blade_track(sleigh_run((0.1, -1.0, 0.0), steps=5, reconstruct=False))
-    with pytest.raises(ValueError, match=r"must be an orbit of a system on a group. Got 3. Pass what `simulate`"):
-        nh.plot.blade_track(3)
-
-
 def test_points_are_the_forbidden_axis_in_space(top_orbit: nh.Orbit) -> None:
     """The path is R_k gamma for every state of a short orbit."""
     drawn = nh.plot.body_axis_track(top_orbit)
@@ -128,12 +118,6 @@ def test_axes_are_left_out_where_the_orbit_is_not_near() -> None:
     drawn = nh.plot.body_axis_track(top_run((0.4, 0.9, 0.0), steps=40))
     assert drawn.axis_before is None
     assert drawn.axis_after is None
-
-
-def test_refuses_a_sleigh(sleigh_orbit: nh.Orbit) -> None:
-    """A sleigh has no forbidden axis of rotation; the refusal names the picture for it."""
-    with pytest.raises(ValueError, match=r"must be an orbit on SO\(3\). .* Use `blade_track` for a sleigh"):
-        nh.plot.body_axis_track(sleigh_orbit)
 
 
 PLANAR = {
@@ -195,10 +179,8 @@ def test_small_bodies_are_drawn_larger() -> None:
 
 
 def test_without_heading_there_is_a_path() -> None:
-    """A point has no outline; a space without x and y has no path to draw."""
+    """A point has no outline."""
     assert nh.plot.point_track(_orbit(_free(heading=None))).frames == ()
-    with pytest.raises(ValueError, match=r"point_track\(orbit=...\)` must have coordinates named x and y. Got u, y, a"):
-        nh.plot.point_track(_orbit(_free(coordinates=("u", "y", "a"), heading=None)))
 
 
 @pytest.mark.parametrize("name", PLANAR)
@@ -218,4 +200,28 @@ test_what_is_no_drawing_is_refused = refusals(
     ({"outline": [[(0, 0)]]}, r"outline=...\)` must have parts of at least two points"),
     ({"outline": [[(0, 0, 0), (1, 1, 1)]]}, r"outline=...\)` must have shape"),
     ask=lambda given: _free(**given),
+)
+
+
+_BARE = {"steps": 5, "reconstruct": False}
+# A picture of another body, and of an orbit without poses, says what to do or to draw.
+test_orbits_without_such_a_track_are_refused = refusals(
+    (
+        nh.plot.blade_track,
+        lambda: top_run((0.4, 0.9, 0.0), steps=5),
+        r"a sleigh in the plane. .* `body_axis_track` for a top",
+    ),
+    (nh.plot.blade_track, lambda: sleigh_run((0.1, -1.0, 0.0), **_BARE), "must have poses. .* with reconstruct=True"),
+    (nh.plot.blade_track, lambda: 3, "must be an orbit of a system on a group. Got 3. Pass what `simulate`"),
+    (
+        nh.plot.body_axis_track,
+        lambda: sleigh_run((0.1, -1.0, 0.0), steps=5),
+        r"on SO\(3\). .* Use `blade_track` for a sleigh",
+    ),
+    (
+        nh.plot.point_track,
+        lambda: _orbit(_free(coordinates=("u", "y", "a"), heading=None)),
+        r"point_track\(orbit=...\)` must have coordinates named x and y. Got u, y, a",
+    ),
+    ask=lambda draw, run: draw(run()),
 )

@@ -28,19 +28,6 @@ def test_starts_agree(discrete: nh.Discretization) -> None:
     assert np.abs(orbit.body_velocity[0] - w @ system.constraint_subspace).max() < 1e-15
 
 
-@pytest.mark.parametrize("discrete", [TOP, SLEIGH], ids=["top", "sleigh"])
-def test_thinning_keeps_single_steps(discrete: nh.Discretization) -> None:
-    """save_every keeps one state in save_every; displacements and multipliers are still those of single steps."""
-    whole = nh.simulate(discrete, restricted_velocity=(0.7, -0.3), steps=20)
-    thin = nh.simulate(discrete, restricted_velocity=(0.7, -0.3), steps=20, save_every=6)
-    assert len(thin) == 4
-    assert np.array_equal(thin.time, whole.time[:19:6])
-    assert np.array_equal(thin.reduced_momentum, whole.reduced_momentum[:19:6])
-    assert np.array_equal(thin.displacement, whole.displacement[:19:6])
-    assert np.abs(thin.multipliers - whole.multipliers[:18:6]).max() < 1e-14
-    assert np.abs(whole[2:15:6].multipliers - whole.multipliers[2:14:6]).max() < 1e-14
-
-
 def test_parts_of_a_thinned_orbit_are_thinned() -> None:
     """A part of a thinned orbit has the multipliers of single steps too, and is thinned by both strides."""
     thin = nh.simulate(TOP, restricted_velocity=(0.7, -0.3), steps=24, save_every=6)

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from damage import damage
 from stopping import stopped_in
 
 import nonholo as nh
@@ -17,8 +16,6 @@ from nonholo.io.orbits import Stream, standing
 MASS = [[1.4, 0.2, 0.5], [0.2, 1.0, -0.3], [0.5, -0.3, 0.9]]
 TOP = nh.discretize(nh.SuslovTop(MASS), 0.1)
 ROUND = nh.discretize(nh.ChaplyginSleigh(1.0, 1.0, 0.0), 0.1)
-FOLDING = nh.discretize(TOP.system, 1.0)
-FOLDS = {"momentum": np.array([1.93257157, -0.68979744])}
 STATE = ("time", "reduced_momentum", "cayley", "canonical_pose", "turned")
 CUTS = 3  # of each kind of run
 BLOCKS = 11  # of 44 states
@@ -155,36 +152,6 @@ def test_extended_run_has_the_crossings_of_the_long_run(lengths: tuple[int, ...]
     whole = begun(None, events, sum(lengths))
     assert whole.events.stopped_by == "east"
     assert same(nh.load_orbit(path), whole)
-
-
-@pytest.mark.profile("faults", instead="test_damaged_chunk_is_named_and_computed_again")
-@pytest.mark.parametrize("chunk", ["run/events/c/2/0", "run/blocks/3.json", "canonical/pose/c/3/0"])
-@pytest.mark.parametrize("how", ["missing", "flipped"])
-def test_damaged_block_is_computed_again(chunk: str, how: str, tmp_path: Path) -> None:
-    """A missing or changed chunk of crossings or of states, or a mark, is named, and the run is whole again."""
-    path = tmp_path / "run.zarr"
-    whole = begun(path, [TURNS, entry])
-    damage(path / chunk, how)
-    array, _, key = chunk.partition("/c/")
-    named = f"chunk c/{key} of the array {array}" if key else r"mark 3\.json"
-    with pytest.raises(ValueError, match=named):
-        nh.load_orbit(path)
-    with pytest.warns(RuntimeWarning, match=named):
-        again = nh.resume(path, events=[TURNS, entry])
-    assert same(again, whole)
-    assert same(nh.load_orbit(path), whole)
-
-
-def test_failed_run_keeps_its_crossings(tmp_path: Path) -> None:
-    """A stored run that cannot continue keeps the crossings up to there, and its outcome."""
-    event = nh.Event(lambda orbit: orbit.configuration[:, 2, 2], name="level")
-    run = {"steps": 500, "events": [event], "throw": False, **FOLDS}
-    whole = nh.simulate(FOLDING, **run)
-    assert len(whole) < 400
-    assert len(whole.events["level"]) > 0
-    path = tmp_path / "run.zarr"
-    assert same(nh.simulate(FOLDING, **run, store=path, checkpoint_every=5), whole)
-    assert same(nh.resume(path, events=[event], throw=False), whole)
 
 
 def test_many_crossings_fill_several_chunks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,9 +3,9 @@
 import errno
 import json
 import os
+import re
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ import pytest
 from bodies import GENERAL
 from damage import DAMAGE, damage
 from problems import PROBLEMS
+from refusals import refusals
 from stopping import stopped_at, stopped_in
 
 import nonholo as nh
@@ -68,15 +69,17 @@ def test_blocks_end_where_the_run_ends(throw: bool, block_steps: int) -> None:
 @pytest.mark.profile("faults", keep=["1", "3"])
 @pytest.mark.parametrize("block_steps", [1, 2, 3, 4, 5])
 def test_run_that_ends_early_is_kept(block_steps: int, tmp_path: Path) -> None:
-    """A stored run that cannot continue keeps its good steps and outcome; extending it is refused with the reason."""
-    whole = nh.simulate(FOLDING, steps=500, throw=False, **FOLDS)
+    """A stored run that cannot continue keeps its good steps, crossings and outcome; it is not extended."""
+    events = [nh.Event(lambda orbit: orbit.configuration[:, 2, 2], name="level")]
+    whole = nh.simulate(FOLDING, steps=500, events=events, throw=False, **FOLDS)
     path = tmp_path / "run.zarr"
     with pytest.raises(nh.OutcomeError, match=f"Step {len(whole)} of 500"):
-        nh.simulate(FOLDING, steps=500, store=path, checkpoint_every=block_steps, **FOLDS)
-    assert _same(nh.load_orbit(path), whole)
-    assert _same(nh.resume(path, throw=False), whole)
+        nh.simulate(FOLDING, steps=500, store=path, checkpoint_every=block_steps, events=events, **FOLDS)
+    for found in (nh.load_orbit(path), nh.resume(path, events=events, throw=False)):
+        assert _same(found, whole)
+        assert found.events["level"].time.tolist() == whole.events["level"].time.tolist() != []
     with pytest.raises(ValueError, match="be a run that can continue"):
-        nh.extend(path, 10)
+        nh.extend(path, 10, events=events)
 
 
 def test_failed_run_that_was_not_cut_is_resumed_in_silence(tmp_path: Path) -> None:
@@ -98,19 +101,24 @@ def test_full_disk_leaves_a_valid_store(tmp_path: Path) -> None:
 
 
 @pytest.mark.profile("faults", keep=["missing-run/blocks", "flipped-energy"])
-@pytest.mark.parametrize("array", ["time", "energy", "x", "heading", *COMPACT, "run/blocks"])
+@pytest.mark.parametrize("array", ["time", "energy", "x", "heading", *COMPACT, "run/blocks", "run/events"])
 @pytest.mark.parametrize("how", DAMAGE)
 def test_damaged_chunk_is_named_and_computed_again(array: str, how: str, tmp_path: Path) -> None:
     """A missing, changed or cut chunk of a finished block, or its mark, is named, and the orbit is whole again."""
     path = tmp_path / "run.zarr"
-    orbit = _begun(path)
+    events = [nh.Event(lambda states: np.sin(7 * states.time), name="beat")]
+    orbit = _begun(path, events=events)
     key = "c/4" if array in ("time", "energy", "x", "heading") else "c/4/0"
     key = "3.json" if array == "run/blocks" else key
     damage(path / array / key, how)
-    with pytest.warns(RuntimeWarning, match=f"mark {key}|chunk {key} of the array {array}"):
-        again = nh.resume(path)
-    assert _same(again, orbit)
-    assert _same(nh.resume(path), orbit)
+    named = f"mark {re.escape(key)}|chunk {key} of the array {array}|place or store in block 4"
+    with pytest.raises(ValueError, match=named):
+        nh.load_orbit(path)
+    with pytest.warns(RuntimeWarning, match=named):
+        again = nh.resume(path, events=events)
+    for each in (again, nh.resume(path, events=events), nh.load_orbit(path)):
+        assert _same(each, orbit)
+        assert np.array_equal(each.events["beat"].time, orbit.events["beat"].time)
 
 
 def test_lost_start_is_refused(tmp_path: Path) -> None:
@@ -156,15 +164,6 @@ def test_other_versions_are_told(tmp_path: Path) -> None:
         nh.extend(path, 10)
 
 
-def test_lost_metadata_are_refused(tmp_path: Path) -> None:
-    """Where the metadata of an array are gone, the array is named."""
-    path = tmp_path / "run.zarr"
-    _begun(path)
-    (path / "canonical" / "pose" / "zarr.json").unlink()
-    with pytest.raises(ValueError, match="hold the array canonical/pose"):
-        nh.resume(path)
-
-
 @pytest.mark.parametrize(
     "system", [nh.SuslovTop.arrowhead([1.0, 1.4, 0.7, 1.2, 0.9], [0.1, -0.2, 0.3, 0.1]), WIDE.system]
 )
@@ -199,39 +198,29 @@ def test_second_process_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert _same(orbit, _whole())
 
 
-def _existing(path: Path) -> None:
-    _begun(path)
-    _begun(path)
-
-
-def _saved_whole(path: Path) -> None:
-    nh.save_orbit(_whole(), path)
-    nh.resume(path)
-
-
-def _another_body(path: Path) -> None:
-    _begun(path)
-    nh.resume(path, discrete=nh.discretize(PROBLEMS[7].system, 0.2))
-
-
-@pytest.mark.parametrize(
-    ("attempt", "kind", "words"),
-    [
-        (_existing, FileExistsError, "must be new"),
-        (_saved_whole, ValueError, "have checkpoints.*saved whole"),
-        (_another_body, ValueError, "motion .*0.2.* instead of .*0.1"),
-        (nh.resume, FileNotFoundError, "must exist"),
-        (lambda path: _begun(path, checkpoint_every=41), ValueError, r"multiple of save_every = 2\. Got 41\. Pass 42"),
-        (lambda path: _begun(path, branch=lambda *_: 0), ValueError, "be a rule that a store can name"),
-        (lambda _: nh.simulate(SLEIGH, steps=9, checkpoint_every=4, **START), ValueError, "come with a store"),
-        (lambda path: nh.extend(path, 0), ValueError, "positive integer"),
-        (lambda _: nh.iterate(SLEIGH, steps=9, block_steps=0, **START), ValueError, "positive integer"),
-    ],
+_RUN = Path("run.zarr")
+# Bad arguments and stores that are not there are refused with the reason.
+test_refused = refusals(
+    (lambda: nh.resume(_RUN), "must exist"),
+    (lambda: _begun(_RUN, checkpoint_every=41), r"multiple of save_every = 2\. Got 41\. Pass 42"),
+    (lambda: _begun(_RUN, branch=lambda *_: 0), "be a rule that a store can name"),
+    (lambda: nh.simulate(SLEIGH, steps=9, checkpoint_every=4, **START), "come with a store"),
+    (lambda: nh.extend(_RUN, 0), "positive integer"),
+    (lambda: nh.iterate(SLEIGH, steps=9, block_steps=0, **START), "positive integer"),
+    kind=(ValueError, FileNotFoundError),
 )
-def test_refused(attempt: Callable[[Path], object], kind: type[Exception], words: str, tmp_path: Path) -> None:
-    """Bad arguments, foreign stores and stores of other runs are refused with the reason."""
-    with pytest.raises(kind, match=words):
-        attempt(tmp_path / "run.zarr")
+
+
+def test_other_stores_are_refused(tmp_path: Path) -> None:
+    """A path that is taken, an orbit that was saved whole, and the store of another run."""
+    _begun(tmp_path / "run.zarr")
+    with pytest.raises(FileExistsError, match="must be new"):
+        _begun(tmp_path / "run.zarr")
+    with pytest.raises(ValueError, match=r"motion .*0.2.* instead of .*0.1"):
+        nh.resume(tmp_path / "run.zarr", discrete=nh.discretize(PROBLEMS[7].system, 0.2))
+    nh.save_orbit(_whole(), tmp_path / "whole.zarr")
+    with pytest.raises(ValueError, match=r"have checkpoints.*saved whole"):
+        nh.resume(tmp_path / "whole.zarr")
 
 
 def test_a_replaced_store_is_not_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

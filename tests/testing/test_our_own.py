@@ -206,14 +206,6 @@ def test_a_spring_passes() -> None:
     assert {result.status for result in report.results} == {"ok"}
 
 
-@HERE
-def test_a_body_that_is_pushed_passes() -> None:
-    """The map of a spring with a force of time, place and velocity."""
-    body = nh.Forced(nh.LagrangeDAlembert(_ball, None, dimension=2), force=_pushed)
-    report = check_discretization(nh.discretize(body, 0.05), steps=4)
-    assert report["discrete principle"].status == report["order of the balance"].status == "ok"
-
-
 def _turning(g: Any) -> Any:
     return jnp.array([[0.0, -jnp.sin(g[0, 2]), jnp.cos(g[0, 2])]])
 
