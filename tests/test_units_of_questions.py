@@ -1,9 +1,8 @@
-"""Questions to bodies on groups, and to fits and controls, in any unit of mass, length and time: the same answers."""
+"""Questions to bodies on groups, and to controls, in any unit of mass, length and time: the same answers."""
 
 from collections.abc import Callable
 from typing import Any
 
-import jax.numpy as jnp
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
@@ -140,22 +139,6 @@ def _turned(mass: float, length: float, time: float) -> Answer:
     return {"outcome": str(found.outcome), "torques": found.controls * time**2 / (mass * length**2)}
 
 
-def _fitted(mass: float, length: float, time: float) -> Answer:
-    """Return a length from a record of lengths alone."""
-    size = length**1.5
-
-    def lagrangian(q: Any, v: Any, p: Any) -> Any:
-        return p["mass"] * v[0] ** 2 / 2 + p["spring"] * p["length"] ** 2 * jnp.cos(q[0] / p["length"])
-
-    parameters = {"mass": mass, "spring": 1.3 * mass / time**2, "length": 0.4 * size}
-    system: Any = nh.LagrangeDAlembert(lagrangian, None, dimension=1, parameters=parameters, coordinates=("s",))
-    start: Any = {"configuration": [0.7 * size], "body_velocity": [0.2 * size / time]}
-    orbit = nh.simulate(nh.discretize(system, 0.1 * time), **start, steps=40)
-    record = {"t": orbit.time, "s": orbit.configuration[:, 0] + 1e-3 * size * np.random.default_rng(0).normal(size=41)}
-    found = nh.fit(lambda p: system.with_parameters(**p), record, {"length": 0.3 * size}, noise={"s": 1e-3 * size})
-    return {"outcome": found.outcome, "length": np.array(found.parameters["length"] / size)}
-
-
 QUESTIONS: dict[str, tuple[Callable[..., Answer], tuple[Any, ...], float]] = {  # with the rounding errors of answers
     **{f"momenta of {name}": (_conserved, (name,), 0.0) for name in BODIES},
     "flow": (_flow, (False,), 1e-13),
@@ -167,7 +150,6 @@ QUESTIONS: dict[str, tuple[Callable[..., Answer], tuple[Any, ...], float]] = {  
     "bodies compared": (_compared, (), 0.0),
     "track": (_track, (), 0.0),
     "controls": (_turned, (), 1e-6),
-    "fit": (_fitted, (), 1e-6),
 }
 KEPT = (
     "momenta of sleigh",

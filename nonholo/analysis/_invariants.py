@@ -14,7 +14,15 @@ from nonholo.base.types import Float
 from nonholo.discrete import Discretization, reversal_defects
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractOrbit, Orbit, any_orbit
-from nonholo.systems import AbstractSystem, NormalForm, gyroscopic_form, null_space, refuse_forces, row_space
+from nonholo.systems import (
+    AbstractSystem,
+    NormalForm,
+    alike_in_time,
+    gyroscopic_form,
+    null_space,
+    refuse_forces,
+    row_space,
+)
 
 _SAMPLED = 100_000  # states on which the matrix residuals are measured, spread evenly; the energy uses all
 _HIDDEN = 1e-10  # growth of one direction relative to that of another one, of which rounding leaves six digits
@@ -326,15 +334,17 @@ def lyapunov_exponents(orbit: AbstractOrbit) -> Float[np.ndarray, "k"]:
 
 
 def _tangent_in_units(orbit: AbstractOrbit) -> Float[np.ndarray, "L d d"]:
-    """Return the derivatives of states in units of the body and of the time between states."""
+    """Return the derivatives of states in units of the body and of a time."""
     if not isinstance(orbit, Orbit):
         from nonholo.lagrange_dalembert import tangents
 
         return tangents.tangent_map(orbit, in_own_units=True)
     system, steps = orbit.system, orbit.tangent
-    lengths, interval = system.direction_lengths, float(np.ptp(orbit.time)) / max(1, len(steps))
-    momenta = lengths * np.mean(np.diagonal(system.constrained_inertia) / lengths**2) / (interval or 1.0)
+    lengths = system.direction_lengths
+    momenta = lengths * np.mean(np.diagonal(system.constrained_inertia) / lengths**2)
     sizes = np.append(system.displacement_units, momenta)[-steps.shape[-1] :]
+    steps = steps * (sizes / sizes[:, None])
+    sizes = alike_in_time(steps, len(sizes) - len(momenta), np.ptp(orbit.time))
     return steps * (sizes / sizes[:, None])
 
 

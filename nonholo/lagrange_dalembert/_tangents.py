@@ -21,6 +21,7 @@ from nonholo.lagrange_dalembert._flow import acceleration, nearest_place, refuse
 from nonholo.lagrange_dalembert._newton import orientation
 from nonholo.lagrange_dalembert._rollout import step_root
 from nonholo.lagrange_dalembert.functions import in_double, places, room
+from nonholo.systems import alike_in_time
 
 _CORRECTIONS = 8  # of a velocity beside another one
 LATER = np.array([0.3719, 0.9173])  # times, not in a ratio that a rotation may have
@@ -79,8 +80,7 @@ def slopes(
 def tangent_map(orbit: Any, *, in_own_units: bool = False) -> Float[np.ndarray, "L d d"]:
     """Return the derivative of each state of an orbit by the one before, in orthonormal bases of admissible changes.
 
-    Its own units are those in which all velocities have the same kinetic energy at the first state, and the time
-    between states.
+    Its own units are those in which all velocities have the same kinetic energy at the first state, and a time.
     """
     motion, system, time = orbit.motion, orbit.system, orbit.time
     where, n = "Orbit.tangent", orbit.body_velocity.shape[1]
@@ -101,8 +101,10 @@ def tangent_map(orbit: Any, *, in_own_units: bool = False) -> Float[np.ndarray, 
     matters = np.setdiff1d(matters, [index for index, _ in system.plain.prescribed])
     maps, rows = maps[:, matters][:, :, matters], rows[..., matters]
     if in_own_units and len(maps):
-        unit, interval = units(system, x[0], v[0]), abs(time[-1] - time[0]) / len(maps)
-        sizes = np.concatenate([unit * interval, np.full(int(system.is_driven), interval), unit])[matters]
+        unit = units(system, x[0], v[0])
+        sizes = np.concatenate([unit, np.ones(int(system.is_driven)), unit])[matters]
+        maps, rows = maps * (sizes / sizes[:, None]), rows * sizes
+        sizes = alike_in_time(maps, np.searchsorted(matters, n + system.is_driven), np.ptp(time))
         maps, rows = maps * (sizes / sizes[:, None]), rows * sizes
     bases = np.linalg.svd(rows)[2][:, rows.shape[1] :].swapaxes(1, 2)
     return bases[1:].swapaxes(1, 2) @ maps @ bases[:-1]

@@ -25,6 +25,7 @@ from nonholo.systems._displacements import euler_angle_discrete_lagrangian, in_e
 from nonholo.systems._equilibria import gyroscopic_form
 from nonholo.systems._mass import (
     ImpossibleBodyWarning,
+    alike_in_time,
     checked_group,
     displacement_units,
     extent_of,

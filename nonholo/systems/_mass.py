@@ -17,6 +17,7 @@ from nonholo.base.numerics import applied
 from nonholo.base.types import Array, Float
 from nonholo.groups import AbstractMatrixGroup
 
+_SEEN = 1e-14  # squared, of what a step of a tangent map carries
 Tensor = Float[Array, "... N N"]
 """A mass tensor, as large as the matrices of its group."""
 LARGEST = 100_000
@@ -114,19 +115,32 @@ def reach_of(numbers: Float[np.ndarray, "d"], units: Float[np.ndarray, "d"]) -> 
     return np.minimum(1.0, units * extent_of(numbers, units))
 
 
+def alike_in_time(maps: Float[np.ndarray, "L d d"], places: int, duration: float) -> Float[np.ndarray, "d"]:
+    """Return sizes of places and velocities in a time in which tangent maps carry the one to the other alike.
+
+    It is the duration where they do not, as in free motions, which have no time scale.
+    """
+    forth, back = np.linalg.norm(maps[:, :places, places:]), np.linalg.norm(maps[:, places:, :places])
+    time = np.sqrt(forth / back) if forth * back > _SEEN * len(maps) else duration or 1.0
+    return np.append(np.full(places, time), np.ones(maps.shape[-1] - places))
+
+
 def displacement_units(group: AbstractMatrixGroup, inertia: Float[Array, "... dim dim"]) -> Float[Array, "... dim"]:
     """Return units of the algebra: of a body radians and its length, in which slides have about the energy of turns.
 
-    Of other groups those in which each velocity has the same energy and no bracket of two is above 1.
+    Of other groups those in which each velocity has the same energy and no bracket of two is above 1; where products of
+    inertia show that not all have one, there are no units but the user's.
     """
     xp = inertia.__array_namespace__()
     energies = xp.abs(xp.linalg.diagonal(inertia))
     if not group.is_rigid:
-        units, everything = 1 / xp.sqrt(xp.where(energies > 0, energies, 1.0)), np.eye(group.dim)
+        products = xp.sqrt(energies[..., :, None] * energies[..., None, :])
+        is_definite = xp.all(xp.abs(inertia) <= 2 * products, axis=(-2, -1))[..., None]
+        units, everything = 1 / xp.sqrt(xp.where(is_definite & (energies > 0), energies, 1.0)), np.eye(group.dim)
         brackets = np.abs(group.bracket(everything[:, None], everything[None]))
         along, across, beside = units[..., :, None, None], units[..., None, :, None], units[..., None, None, :]
         largest = xp.max(brackets * (along * across / beside), axis=(-3, -2, -1))
-        return units / xp.where(largest > 0, largest, 1.0)[..., None]
+        return units / xp.where((largest > 0)[..., None] & is_definite, largest[..., None], 1.0)
     slides = ~np.any(group.basis[:, : group.point_size, : group.point_size], axis=(1, 2))
     if not slides.any():
         return xp.ones_like(energies)

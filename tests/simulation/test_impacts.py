@@ -128,7 +128,10 @@ def test_normals_of_curved_walls_are_exact_in_every_unit_of_length(size: float) 
     """In a circle, an ellipse and a sphere, and at a post that touches the body anywhere, to 1e-11 of the normal."""
     point, far, axes = np.array([0.2, 0.1]) * size, np.array([-9.0, 4.0]) * size, np.array([1.3, 0.7]) * size
     body = nh.RigidBody.from_inertia(1.0, 0.3 * size**2, (0.0, 0.0), nh.SE(2))
-    start: dict[str, Any] = {"configuration": nh.SE(2).exp([0.7, 0.6 * size, 0.3 * size]), "body_velocity": np.ones(3)}
+    start: dict[str, Any] = {
+        "configuration": nh.SE(2).exp(np.array([0.7, 0.6 * size, 0.3 * size])),
+        "body_velocity": np.ones(3),
+    }
     state = nh.simulate(nh.discretize(body, 0.1), steps=1, **start)[:1]
 
     def place(states: nh.Orbit) -> np.ndarray:
@@ -145,7 +148,7 @@ def test_normals_of_curved_walls_are_exact_in_every_unit_of_length(size: float) 
         wanted = np.append(along @ (-point[1], point[0]), along)
         off = np.abs(nh.Impact().covector(gap, state) - wanted) / np.array([size, 1.0, 1.0])
         assert off.max() < 1e-11 * np.linalg.norm(along)
-    there = nh.SE(3).exp([0.7, 0.2, 0.1, 0.6 * size, 0.3 * size, 0.1 * size])
+    there = nh.SE(3).exp(np.array([0.7, 0.2, 0.1, 0.6 * size, 0.3 * size, 0.1 * size]))
     state = nh.simulate(nh.discretize(BODY, 0.1), steps=1, momentum=np.ones(6), configuration=there)[:1]
     normal = nh.Impact().covector(lambda states: size - np.linalg.norm(states.position, axis=1), state)
     center = -state.position[0] / np.linalg.norm(state.position[0]) @ state.configuration[0, :3, :3]

@@ -178,17 +178,11 @@ class _Search(NamedTuple):
 
 
 def least_squares_at(
-    begin: np.ndarray, rows: Any, slope: Any, tolerance: float, most: int | None, ends: Any = ((-np.inf,), (np.inf,))
+    begin: np.ndarray, rows: Any, slope: Any, tolerance: float, most: int | None, ends: Any = (-np.inf, np.inf)
 ) -> np.ndarray:
-    """Return where a sum of squares is least, from a begin on, by the derivatives of its rows.
-
-    Numbers are searched in units of their errors: SciPy measures gradients and steps in those that it is given.
-    """
-    lengths = np.linalg.norm(slope(begin), axis=0)
-    unit = np.exp2(-np.round(np.log2(np.where((lengths > 0) & np.isfinite(lengths), lengths, 1.0))))  # no rounding
+    """Return where a sum of squares is least, from a begin on, by the derivatives of its rows."""
     options: Any = {"x_scale": "jac", "max_nfev": most, **dict.fromkeys(("ftol", "xtol", "gtol"), tolerance)}
-    options["jac"] = lambda x: slope(x * unit) * unit
-    return least_squares(lambda x: rows(x * unit), begin / unit, bounds=tuple(ends / unit), **options).x * unit
+    return least_squares(rows, begin, slope, ends, **options).x
 
 
 def _along(slope: np.ndarray, at: int) -> tuple[np.ndarray, np.ndarray]:
