@@ -22,14 +22,7 @@ from nonholo.discrete.definition import compile_double, step_slopes
 from nonholo.lagrange_dalembert import CoordinateFlow, tangents
 from nonholo.simulation import refuse_many_matrices, simulate
 from nonholo.simulation.traced import definition_of
-from nonholo.systems import (
-    AbstractCoordinateSystem,
-    Start,
-    central_differences,
-    reach_of,
-    refuse_slip,
-    refuse_wide,
-)
+from nonholo.systems import AbstractCoordinateSystem, Start, central_differences, narrow, reach_of, refuse_slip
 
 _TIMES = np.array([0.0, 0.3719, 0.9173])  # not in a ratio that a rotation may have
 _OTHERS, _SPREAD = 3, 0.3
@@ -44,6 +37,7 @@ def on_group(owner: str, subject: Any, configuration: Any, velocity: Any) -> tup
     is_map = isinstance(subject, Discretization)
     system: Any = subject.system if is_map else subject
     _refuse(f"{owner}(system=...)", system)
+    narrow(f"Full vectors of {system.group}", system.group.dim)
     still = np.zeros(system.group.dim)
     start = Start.of(owner, configuration, body_velocity=still if velocity is None else velocity)
     g = start.pose(system.group)
@@ -118,7 +112,6 @@ def along_flow(orbit: Any) -> Float[np.ndarray, "L d d"]:
 
 
 def _refuse(where: str, system: Any) -> None:
-    refuse_wide(where, system, "Linearize `system.dense`.")
     refuse_slip(where, system)
     if system.forces is not None and system.forces.table is not None:
         got, remedy = "one force for each step", "Linearize it without the table."

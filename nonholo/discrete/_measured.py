@@ -17,7 +17,7 @@ from nonholo.discrete._discretize import discretize
 from nonholo.discrete._scheme import legendre
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.orbit import AbstractMotion, AliasingWarning, Orbit, configurations
-from nonholo.systems import AbstractSystem, System, refuse_wide
+from nonholo.systems import AbstractSystem, System
 
 _NEAR = 1e-5  # relative distance from the group of poses in single precision, or written with six digits
 _WIDE = 90.0  # degrees of a turn; half a turn is the most that poses can tell
@@ -76,7 +76,6 @@ def orbit_of_poses(system: Any, time: Any, configuration: Any) -> Orbit:
     """Return the orbit of given poses; see `Orbit.from_poses`."""
     where, remedy = "Orbit.from_poses(system=...)", "Pass a SuslovTop, a sleigh or an LLSystem."
     instance(where, system, AbstractSystem, "be a system on a group", remedy)
-    refuse_wide(where, system, "Pass its `dense` twin.")
     times, g = _times(time), _elements(system.group, configuration)
     if len(times) != len(g):
         got = f"{len(times)} times for {len(g)} poses"

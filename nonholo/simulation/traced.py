@@ -18,7 +18,7 @@ from nonholo.discrete import Discretization, ScalarRoute, as_discretization
 from nonholo.discrete.definition import in_double, roll_out, traceable
 from nonholo.lagrange_dalembert import checked_value, rolled_in_coordinates
 from nonholo.simulation._options import check_forces, refuse_many_matrices
-from nonholo.systems import AbstractCoordinateDiscretization, Start, refuse_in_coordinates, refuse_wide
+from nonholo.systems import AbstractCoordinateDiscretization, Start, refuse_in_coordinates
 
 _roll_out = equinox.filter_jit(roll_out)
 _roll_in_coordinates = equinox.filter_jit(rolled_in_coordinates)
@@ -186,7 +186,6 @@ def with_traced_potential(owner: str, discrete: Any) -> Any:
 
 def _on_group(discrete: Any, start: Start, sizes: tuple[int, ...], controls: Any) -> tuple[Any, ...]:
     """Return the arguments of a rollout on a group; of traced starts the shapes are checked."""
-    refuse_wide(f"{start.owner}(discrete=...)", discrete.system)
     discrete = with_traced_potential(start.owner, discrete)
     refuse_many_matrices(f"{start.owner}(steps=...)", discrete, 1 + sizes[0] // sizes[1], "Raise save_every.")
     value, g = _checked_start(discrete, start)

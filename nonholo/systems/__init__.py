@@ -12,7 +12,6 @@ from nonholo.systems._base import (
     refuse_fixed_in_space,
     refuse_forces,
     refuse_slip,
-    refuse_wide,
 )
 from nonholo.systems._coordinate_system import (
     AbstractCoordinateDiscretization,
@@ -34,6 +33,7 @@ from nonholo.systems._mass import (
     inertia_from_mass_tensor,
     inertia_tensor,
     mass_tensor_from_inertia,
+    narrow,
     reach_of,
 )
 from nonholo.systems._normal_form import NormalForm

@@ -508,12 +508,6 @@ def refuse_fixed_in_space(where: str, system: Any, remedy: str, got: str = "") -
         raise error(where, "have a left-invariant constraint", got or type(system).__name__, remedy)
 
 
-def refuse_wide(where: str, system: Any, remedy: str = "Discretize `system.dense`.") -> None:
-    """Refuse a system that has its mass tensor without a matrix."""
-    if system.is_wide:
-        raise error(where, "have matrices", "a system without", remedy)
-
-
 def refuse_slip(where: str, system: Any) -> None:
     """Refuse rows of a constraint that may yield, which steps of the discrete map alone decide."""
     if system.forces is not None and system.forces.slips:

@@ -60,17 +60,17 @@ class WideInertia:
         """Return the momenta of velocities."""
         if self.mass is None:
             return velocity * self.turning
-        w, v = velocity[..., :-1], velocity[..., -1:]
+        w, v, xp = velocity[..., :-1], velocity[..., -1:], self.turning.__array_namespace__()
         along = self.mass * (v + applied(self.offset[None], w))
-        return np.concatenate([w * self.turning + along * self.offset, along], axis=-1)
+        return xp.concatenate([w * self.turning + along * self.offset, along], axis=-1)
 
     def velocities(self, momenta: Float[np.ndarray, "... k"]) -> Float[np.ndarray, "... k"]:
         """Return the velocities that have these momenta."""
         if self.mass is None:
             return momenta / self.turning
-        along = momenta[..., -1:]
+        along, xp = momenta[..., -1:], self.turning.__array_namespace__()
         w = (momenta[..., :-1] - along * self.offset) / self.turning
-        return np.concatenate([w, along / self.mass - applied(self.offset[None], w)], axis=-1)
+        return xp.concatenate([w, along / self.mass - applied(self.offset[None], w)], axis=-1)
 
 
 _MADE = "Of a mass, an inertia and a center of mass `LLSystem.from_inertia` and `RigidBody.from_inertia` make it."
@@ -358,9 +358,17 @@ def arrow_numbers(owner: str, diagonal: object, coupling: object) -> tuple[np.nd
     return d, c
 
 
+def arrowhead(owner: str, diagonal: Array, coupling: Array, corner: int) -> Float[Array, "n n"]:
+    """Return the matrix of an arrowhead, whose row and column meet in the first corner, 0, or the last, -1."""
+    n, xp = len(diagonal), diagonal.__array_namespace__()
+    narrow(f"A dense mass tensor of {owner}", n * (n - 1) // 2)
+    place, row = xp.eye(n)[corner], xp.roll(xp.concatenate([xp.zeros(1), coupling]), corner)
+    return xp.diag(diagonal) + xp.outer(place, row) + xp.outer(row, place)
+
+
 def refuse_negative(where: str, inertia: WideInertia) -> None:
     """Refuse an inertia along the constraint that is not positive."""
     turning = inertia.turning
-    if not turning.min() > 0:
+    if not is_traced(turning) and not turning.min() > 0:
         got = f"{turning.min():.3g} at entry {int(np.argmin(turning))}"
         raise error(where, "give a positive inertia along the constraint", got, "Pass the mass tensor of a body.")

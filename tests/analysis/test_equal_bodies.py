@@ -143,3 +143,44 @@ def test_two_directions_have_a_closed_form(group: Any) -> None:
     exact, solved = (nh.flow(system, method=method, **start) for method in ("closed_form", None))
     assert np.allclose(exact.momentum, solved.momentum, rtol=1e-9, atol=1e-9)
     assert np.allclose(exact.configuration, solved.configuration, atol=1e-9)
+
+
+ARROWHEADS = {
+    "top": nh.SuslovTop.arrowhead(np.diag(WIDE), WIDE[-1, :-1]),
+    "sleigh": nh.MultidimensionalSleigh.arrowhead(1.3, [0.4, 0.1, -0.2], np.diag(TENSOR), TENSOR[0, 1:]),
+}
+
+
+def _forced(map_: nh.Discretization) -> nh.Forced:
+    pull = np.linspace(0.1, 0.3, map_.system.group.size**2).reshape(map_.system.group.identity.shape)
+    return nh.Forced(map_.system, nh.Linear(pull), nh.Friction(np.full(map_.system.group.dim, 0.1)))
+
+
+ANSWERS = {
+    "step": lambda one, w: nh.step(one, one.system.restricted_momentum(w)).momentum,
+    "definition": lambda one, w: nh.simulate(one, restricted_velocity=w, steps=5, backend="jax").momentum,
+    "rollout": lambda one, w: nh.rollout(one, restricted_velocity=w, steps=5).configuration,
+    "forces": lambda one, w: (
+        nh.simulate(nh.discretize(_forced(one), one.time_step), restricted_velocity=w, steps=20).configuration
+    ),
+    "flow under forces": lambda one, w: nh.flow(_forced(one), restricted_velocity=w, times=(0.0, 1.0)).momentum,
+    "poses": lambda one, w: (
+        nh.Orbit.from_poses(
+            one.system,
+            np.arange(4.0),
+            one.system.group.exp(0.1 * np.outer(np.arange(4.0), w @ one.system.constraint_subspace)),
+        ).restricted_momentum
+    ),
+    "linearization": lambda one, w: (
+        nh.linearize(one.system, body_velocity=0 * (w @ one.system.constraint_subspace)).matrix
+    ),
+}
+
+
+@pytest.mark.parametrize("answer", ANSWERS.values(), ids=ANSWERS)
+@pytest.mark.parametrize("body", ARROWHEADS.values(), ids=ARROWHEADS)
+def test_arrowheads_with_matrices(body: Any, answer: Any) -> None:
+    """What takes matrices treats an arrowhead as the same body with its mass tensor as a matrix."""
+    w = np.linspace(0.9, 0.4, body.rank)
+    one, two = (answer(nh.discretize(system, 0.1), w) for system in (body, body.dense))
+    assert np.allclose(one, two, rtol=0, atol=1e-13 * np.abs(two).max())

@@ -13,6 +13,7 @@ from scipy.stats import binom, norm
 
 import nonholo as nh
 from nonholo.analysis.inverse import Fit
+from nonholo.analysis.inverse._measurements import kinds_of, names_of
 from nonholo.base.types import Array
 
 SLEIGH = nh.discretize(nh.ChaplyginSleigh(mass=1.0, inertia=0.7, a=0.4), 0.05)
@@ -245,6 +246,21 @@ def test_trials_share_the_body_and_tables_may_have_any_form(tmp_path: Path) -> N
     assert len(both.orbit) == len(both.residuals) == 2
     assert (both.covariance.diagonal() < 0.7 * alone.covariance.diagonal()).all()
     np.testing.assert_allclose([*nh.fit(_sleigh, one_path, GUESS).parameters.values()], [*alone.parameters.values()])
+
+
+@pytest.mark.parametrize("motion", [SLEIGH, nh.discretize(nh.RigidBody(np.diag([1.0, 2, 3, 1]), nh.SE(3)), 0.1)])
+def test_what_an_orbit_writes_is_a_record(motion: nh.Discretization, tmp_path: Path) -> None:
+    """An orbit, its dataset, its table and its CSV file are one record, with the same numbers of poses."""
+    orbit = nh.simulate(motion, restricted_velocity=np.linspace(1.0, 0.5, motion.system.rank), steps=4)
+    orbit.to_csv(path := tmp_path / "orbit.csv")
+    names = names_of(motion.system.group)
+    (whole, h), *others = (
+        kinds_of(names, one, None, 8.0) for one in (orbit, orbit.to_dataset(), orbit.to_pandas(), path)
+    )
+    for kinds, step in others:
+        assert step == h
+        for name in ("position", "turn"):
+            np.testing.assert_array_equal(kinds[name], whole[name])
 
 
 def test_residuals_and_profiles_are_drawn() -> None:

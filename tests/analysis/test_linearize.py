@@ -248,7 +248,11 @@ REFUSED = {
     "no place": (DISK, {}, r"`linearize\(configuration=...\)` must be given"),
     "a table": (nh.Forced(TOP, force=np.zeros((3, 3))), {}, "must have forces that stay"),
     "table in coordinates": (DISK.forced(None, np.zeros((3, 5))), rolling(0.0, 0.0, 1.0), "must have forces at times"),
-    "a wide top": (nh.SuslovTop.arrowhead(np.linspace(1, 2, 3000), np.full(2999, 0.01)), {}, "must have matrices"),
+    "a wide top": (
+        nh.SuslovTop.arrowhead(np.linspace(1, 2, 3000), np.full(2999, 0.01)),
+        {},
+        "at most 100000 components",
+    ),
     "an orbit": (nh.examples.particle(), {}, "must be a system or its map"),
 }
 

@@ -56,7 +56,7 @@ RULES: tuple[Rule, ...] = (
         "multipliers|checks|page|gradient",
         "wide",
         "SO(300) has 44,850 dimensions: its basis takes 32 GB, the complement of the constraint 16 GB.",
-        "must (fit into memory|have matrices)",
+        "must fit into memory",
     ),
     Rule("vector field", "wide", "Flows in hundreds of dimensions are those of momenta alone.", "needs poses"),
     Rule("scenario file", "wide", "Scenario files hold matrices.", "cannot be run"),

@@ -1,6 +1,5 @@
 """Recorded motions on the nodes of a time grid, poses and angular velocities with gaps, and nearly their starts."""
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -85,7 +84,7 @@ def _columns(table: Any) -> dict[str, Any]:
         return _of_file(checked_path(WHERE, table))
     table = table.to_pandas() if isinstance(table, AbstractOrbit) else table
     try:
-        names = list(table) if isinstance(table, Mapping) or not hasattr(table, "variables") else list(table.variables)
+        names = table.variables if hasattr(table, "data_vars") else table  # of a dataset coordinates too
         columns = {str(name): table[name] for name in names}
     except (TypeError, ValueError, KeyError, IndexError):
         raise error(WHERE, "be tables of numbers", shown(table), _TABLES) from None

@@ -15,7 +15,7 @@ from nonholo.base.results import result
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, as_discretization
 from nonholo.simulation import check_forces, refuse_many_matrices
-from nonholo.systems import AbstractCoordinateDiscretization, in_coordinates, refuse_fixed_in_space, refuse_wide
+from nonholo.systems import AbstractCoordinateDiscretization, in_coordinates, refuse_fixed_in_space
 
 _PER_ENTRY = 24.0  # bytes of a second derivative: its value, and where it stands
 
@@ -192,7 +192,6 @@ def _in_jax(discrete: Discretization, steps: int, extra: str) -> Discretization:
     with needs(extra, "steer"):
         from nonholo.simulation.traced import with_traced_potential
     refuse_fixed_in_space("steer(discrete=...)", discrete.system, "Steer it by `nh.rollout`.")
-    refuse_wide("steer(discrete=...)", discrete.system)
     subject = with_traced_potential("steer", discrete)
     check_forces("steer", subject, steps, in_jax=True)
     return subject

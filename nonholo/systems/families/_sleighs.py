@@ -10,7 +10,7 @@ from nonholo.base.memo import system_memo
 from nonholo.base.types import Array, Bool, Float
 from nonholo.groups import SE, AbstractMatrixGroup
 from nonholo.systems._base import AbstractLLSystem, replace_numbers
-from nonholo.systems._mass import WideInertia, arrow_numbers, narrow, refuse_negative
+from nonholo.systems._mass import WideInertia, arrow_numbers, arrowhead, refuse_negative
 from nonholo.systems._normal_form import NormalForm, sleigh_form
 from nonholo.systems._subspace import sleigh_rows
 
@@ -254,9 +254,7 @@ class ArrowheadSleigh(AbstractLLSystem):
     @property
     def dense(self) -> MultidimensionalSleigh:
         """The same sleigh with its mass tensor as a matrix."""
-        narrow("A dense mass tensor of MultidimensionalSleigh.arrowhead", self.group.dim)
-        J = np.diag(self.diagonal)
-        J[0, 1:] = J[1:, 0] = self.coupling
+        J = arrowhead("MultidimensionalSleigh.arrowhead", self.diagonal, self.coupling, 0)
         return MultidimensionalSleigh(self.mass, self.center_of_mass, J)
 
     @system_memo
@@ -278,7 +276,7 @@ class ArrowheadSleigh(AbstractLLSystem):
     @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "n dim"]:
         r"""Rows $e_1\wedge e_j$, then the velocity along body axis 1."""
-        return self.dense.constraint_subspace
+        return sleigh_rows(self.group)
 
     @system_memo
     def normal_form(self) -> NormalForm:

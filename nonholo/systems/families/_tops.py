@@ -294,20 +294,17 @@ class ArrowheadTop(AbstractLLSystem):
     @system_memo
     def homogeneous_mass_tensor(self) -> Float[np.ndarray, "n n"]:
         """The mass tensor as a matrix."""
-        _mass.narrow("A dense mass tensor of SuslovTop.arrowhead", self.group.dim)
-        J = np.diag(self.diagonal)
-        J[-1, :-1] = J[:-1, -1] = self.coupling
-        return J
+        return _mass.arrowhead("SuslovTop.arrowhead", self.diagonal, self.coupling, -1)
 
     @system_memo
     def inertia_along(self) -> _mass.WideInertia:
         """The diagonal of B."""
-        return _mass.WideInertia(self.diagonal[:-1] + self.diagonal[-1], None, np.zeros_like(self.coupling))
+        return _mass.WideInertia(self.diagonal[:-1] + self.diagonal[-1], None, 0 * self.coupling)
 
     @system_memo
     def constraint_subspace(self) -> Float[np.ndarray, "k dim"]:
         r"""Rows $e_i\wedge e_n$."""
-        return self.dense.constraint_subspace
+        return top_rows(self.group)
 
     @system_memo
     def normal_form(self) -> NormalForm:

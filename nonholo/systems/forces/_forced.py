@@ -129,9 +129,9 @@ class Forced(AbstractSystem):
 
     def __post_init__(self) -> None:
         inside = self.system
-        if not isinstance(inside, AbstractSystem) or inside.is_forced or inside.is_wide:
+        if not isinstance(inside, AbstractSystem) or inside.is_forced:
             remedy = "Pass a SuslovTop, a sleigh or an LLSystem, with all forces at once."
-            raise error("Forced(system=...)", "be a system on a group, with matrices", shown(inside), remedy)
+            raise error("Forced(system=...)", "be a system on a group", shown(inside), remedy)
         choice("Forced(scheme=...)", self.scheme, (None, *SCHEMES), "Leave it out for the one that keeps most.")
         terms = _friction.terms_of(self.potential)
         for each in terms:
