@@ -74,6 +74,7 @@ from nonholo.systems.forces import (
     slips_of,
     terms_of,
     update_slope,
+    with_later_parts,
     without_slips,
 )
 

@@ -250,13 +250,13 @@ def test_trials_share_the_body_and_tables_may_have_any_form(tmp_path: Path) -> N
 
 @pytest.mark.parametrize("motion", [SLEIGH, nh.discretize(nh.RigidBody(np.diag([1.0, 2, 3, 1]), nh.SE(3)), 0.1)])
 def test_what_an_orbit_writes_is_a_record(motion: nh.Discretization, tmp_path: Path) -> None:
-    """An orbit, its dataset, its table and its CSV file are one record, with the same numbers of poses."""
-    orbit = nh.simulate(motion, restricted_velocity=np.linspace(1.0, 0.5, motion.system.rank), steps=4)
+    """An orbit, its dataset, its table, its CSV file and an ensemble of it have the same numbers of poses."""
+    start = np.linspace(1.0, 0.5, motion.system.rank)
+    orbit = nh.simulate(motion, restricted_velocity=start, steps=4)
     orbit.to_csv(path := tmp_path / "orbit.csv")
-    names = names_of(motion.system.group)
-    (whole, h), *others = (
-        kinds_of(names, one, None, 8.0) for one in (orbit, orbit.to_dataset(), orbit.to_pandas(), path)
-    )
+    members = nh.ensemble(motion, restricted_velocity=start[None], steps=4, save_every=1)
+    records = orbit, orbit.to_dataset(), orbit.to_pandas(), path, members
+    (whole, h), *others = (kinds_of(names_of(motion.system.group), one, None, 8.0) for one in records)
     for kinds, step in others:
         assert step == h
         for name in ("position", "turn"):

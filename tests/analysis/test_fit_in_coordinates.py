@@ -10,6 +10,7 @@ from refusals import refusals
 from scipy.stats import chi2
 
 import nonholo as nh
+from nonholo.analysis.inverse._measurements import kinds_of
 
 H, STEPS, NOISE = 0.05, 60, 1e-3
 TRUTH = {"inertia": 0.7, "arm": 0.4}
@@ -200,3 +201,13 @@ def test_95_of_100_twistcars_are_within_three_deviations() -> None:
     off = np.array([misses(1000 + seed) for seed in range(100)])
     assert np.count_nonzero((np.abs(off) <= 3.0).all(axis=1)) >= 95
     assert np.sqrt(np.mean(off**2)) == pytest.approx(1.0, abs=0.15)
+
+
+def test_the_dataset_of_an_orbit_is_a_record() -> None:
+    """An orbit and its dataset have the same numbers of each coordinate."""
+    orbit = nh.simulate(nh.discretize(ROBOT, H), configuration=(0.5, -0.2, 0.0, 0), momentum=(0.8, 0, 1, 0.8), steps=3)
+    names = {name: ((name,),) for name in ROBOT.coordinates}
+    (one, _), (two, _) = (kinds_of(names, record, None, 8.0) for record in (orbit, orbit.to_dataset()))
+    for k, name in enumerate(names):
+        np.testing.assert_array_equal(one[name][0, :, 0], orbit.configuration[:, k])
+        np.testing.assert_array_equal(two[name], one[name])

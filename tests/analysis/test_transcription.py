@@ -136,8 +136,7 @@ def test_a_disc_is_kept_clear_of() -> None:
     """Run again by the compiled map under a table, the controls meet the goal and the clearance, which is used up."""
     found = _around()
     assert found.outcome == "converged"
-    driven = nh.discretize(nh.Forced(SLEIGH.system, force=found.controls), 0.25)
-    orbit = nh.simulate(driven, restricted_velocity=(0.0, 0.0), steps=STEPS)
+    orbit = found.orbit
     np.testing.assert_allclose(orbit.configuration[-1], ASIDE, rtol=0, atol=1e-8)
     np.testing.assert_allclose(orbit.restricted_momentum[-1], 0.0, rtol=0, atol=1e-8)
     assert -1e-8 < np.linalg.norm(orbit.position - DISC[0], axis=1).min() - DISC[1] < 1e-6
@@ -275,8 +274,7 @@ def test_a_snakeboard_moves_by_its_rotor_and_wheels() -> None:
     found = nh.steer(nh.discretize(board, 0.1), start, goal, steps=80, bounds=(-motors, motors), obstacles=disc)
     assert found.outcome == "converged"
     assert not found.controls[:, :3].any()
-    driven = nh.discretize(nh.Forced(board, force=found.controls), 0.1)
-    orbit = nh.simulate(driven, configuration=np.zeros(5), body_velocity=np.zeros(5), steps=80)
+    orbit = found.orbit
     np.testing.assert_allclose(orbit.configuration[-1, :3], [1.0, 0.3, 0.0], rtol=0, atol=1e-8)
     v = (orbit.configuration[-1] - orbit.configuration[-2]) / 0.1
     assert np.abs(orbit.body_velocity[-1]).max() < 1e-8 < np.abs(v).max()  # the step after the last rests
@@ -317,8 +315,7 @@ def test_bounds_of_states_are_kept_and_used_up(given: dict) -> None:
     pytest.importorskip("casadi")
 
     def states(found: Steering) -> dict[str, np.ndarray]:
-        driven = nh.discretize(nh.Forced(SLEIGH.system, force=found.controls), 0.25)
-        orbit = nh.simulate(driven, restricted_velocity=(0.0, 0.0), steps=STEPS)
+        orbit = found.orbit
         velocity = SLEIGH.system.restricted_velocity(orbit.restricted_momentum)
         return {"theta": orbit.heading, "x": orbit.position[:, 0], "restricted_velocity": velocity}
 
@@ -347,8 +344,7 @@ def test_wheels_are_kept_from_turning_over() -> None:
     assert not nh.steer(discrete, **arguments).converged
     found = nh.steer(discrete, **arguments, state_bounds=limit)
     assert found.outcome == "converged"
-    driven = nh.discretize(nh.Forced(board, force=found.controls), 0.1)
-    orbit = nh.simulate(driven, configuration=np.zeros(5), body_velocity=np.zeros(5), steps=80)
+    orbit = found.orbit
     np.testing.assert_allclose(orbit.configuration[-1, [0, 1, 2, 4]], [1.0, 1.0, 0.0, 0.0], rtol=0, atol=1e-8)
     assert -1e-8 < 1.2 - np.abs(orbit.configuration[:, 4]).max() < 1e-5
     slow = nh.steer(discrete, **arguments, state_bounds={**limit, "body_velocity": (-0.1, 0.1)})

@@ -45,6 +45,7 @@ def kinds_of(columns: Names, records: Any, time_step: float | None, each: float)
 
     A node takes `each` bytes; `columns` are the names of columns by kind.
     """
+    records = getattr(records, "orbits", records)  # of an ensemble
     tables = [_columns(one) for one in (records if isinstance(records, list | tuple) else [records])]
     if not tables:
         raise error(WHERE, "hold at least one trial", "none", "Pass a table, or a list of them.")
@@ -86,6 +87,8 @@ def _columns(table: Any) -> dict[str, Any]:
     try:
         names = table.variables if hasattr(table, "data_vars") else table  # of a dataset coordinates too
         columns = {str(name): table[name] for name in names}
+        if (rows := columns.get("configuration")) is not None and "coordinate" in getattr(rows, "coords", ()):
+            columns |= {str(name): rows.sel(coordinate=name) for name in rows["coordinate"].values}
     except (TypeError, ValueError, KeyError, IndexError):
         raise error(WHERE, "be tables of numbers", shown(table), _TABLES) from None
     index = getattr(table, "index", None)

@@ -17,16 +17,16 @@ import numpy as np
 from nonholo import lagrange_dalembert
 from nonholo.analysis.steering import _arguments
 from nonholo.analysis.steering._arguments import Limits, Way
-from nonholo.analysis.steering._shooting import driven, sizes
+from nonholo.analysis.steering._shooting import driven_side_by_side, sizes
+from nonholo.analysis.steering._steer import driven
 from nonholo.analysis.steering._transcription import Problem, Program, Steps, bounds_of
 from nonholo.base.checks import array, error, shown
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Array, Float
-from nonholo.discrete import Discretization, discretize
+from nonholo.discrete import Discretization
 from nonholo.discrete.definition import Rollout, free_rows, step_residual
 from nonholo.groups import SE
 from nonholo.lagrange_dalembert import LagrangeDAlembert, equations, in_double, place
-from nonholo.simulation import simulate
 from nonholo.simulation.traced import rollout
 from nonholo.systems import Forced
 
@@ -226,15 +226,6 @@ def _checked_coordinates(where: str, system: Any, q: Any) -> dict[int, float]:
     return dict(zip(map(system.coordinates.index, q), numbers.tolist(), strict=True))
 
 
-def driven_in_coordinates(
-    discrete: Any, start: tuple[np.ndarray, np.ndarray], forces: Float[np.ndarray, "steps n"]
-) -> Any:
-    """Return the orbit under forces, as far as it goes."""
-    v, q = start
-    table = discretize(discrete.system.forced(None, forces), discrete.time_step)
-    return simulate(table, configuration=q, body_velocity=v, steps=len(forces), throw=False)
-
-
 def _roll(discrete: Any, start: tuple[np.ndarray, np.ndarray], forces: Float[np.ndarray, "steps n"]) -> Any:
     """Return the rollout under forces: compiled once for all of them."""
     v, q = start
@@ -265,7 +256,7 @@ def coordinate_problem(
         return _coordinate_unknowns(nodes, bent, forces + spread * rng.normal(size=(steps, n)))
 
     def gap_of(forces: np.ndarray) -> float:
-        by = _roll if system.discrete_lagrangian or system.discrete_constraints else driven_in_coordinates
+        by = _roll if system.discrete_lagrangian or system.discrete_constraints else driven
         return _coordinate_gap(program, goal, way, by(discrete, (v, q), forces))
 
     return Problem(program, bounds_of(program, limits, pins), first_guess, gap_of)
@@ -343,7 +334,7 @@ def group_problem(discrete: Discretization, ends: tuple[Any, ...], limits: Limit
 
     def gap_of(forces: np.ndarray) -> float:
         covectors = forces @ np.linalg.pinv(system.constraint_subspace).T
-        return _group_gap(discrete, ends, way, driven(discrete, covectors[None], (w[None], g[None])))
+        return _group_gap(discrete, ends, way, driven_side_by_side(discrete, covectors[None], (w[None], g[None])))
 
     return Problem(program, bounds_of(program, limits, pins), first_guess, gap_of)
 

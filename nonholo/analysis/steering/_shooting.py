@@ -55,7 +55,7 @@ def _gaps(discrete: Discretization, forces: Array, ends: Ends) -> tuple[Array, A
 
 
 @compile_double
-def driven(discrete: Discretization, controls: Array, start: tuple[Array, Array]) -> Rollout:
+def driven_side_by_side(discrete: Discretization, controls: Array, start: tuple[Array, Array]) -> Rollout:
     """Return the orbits under body covectors from velocities and poses of members."""
     return jax.vmap(lambda controls, start: _orbit(discrete, controls, start, 1))(controls, start)
 

@@ -1,8 +1,9 @@
 """`steer`: the controls that take a body from one state to another, by shooting over the exact step or by IPOPT."""
 
+import dataclasses
 import functools
 from collections.abc import Callable, Mapping
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -14,8 +15,8 @@ from nonholo.base.progress import interruptibly, progress_bar
 from nonholo.base.results import result
 from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization, as_discretization
-from nonholo.simulation import check_forces, refuse_many_matrices
-from nonholo.systems import AbstractCoordinateDiscretization, in_coordinates, refuse_fixed_in_space
+from nonholo.simulation import check_forces, refuse_many_matrices, simulate
+from nonholo.systems import AbstractCoordinateDiscretization, Forced, in_coordinates, refuse_fixed_in_space
 
 _PER_ENTRY = 24.0  # bytes of a second derivative: its value, and where it stands
 
@@ -56,18 +57,20 @@ class Steering(Keeper):
 
     @functools.cached_property
     def orbit(self) -> Any:
-        """The motion under the controls, a `Rollout`; an orbit in coordinates."""
+        """The motion under the controls as far as it goes, an orbit; of many members a `Rollout`."""
+        if self.controls.ndim < 3:
+            return driven(self.discrete, self.start, self.controls)
         with needs("jax", "Steering.orbit"):
-            from nonholo.analysis.steering._shooting import driven
-        if in_coordinates(self.discrete):
-            from nonholo.analysis.steering._problems import driven_in_coordinates
+            from nonholo.analysis.steering._shooting import driven_side_by_side
 
-            return driven_in_coordinates(cast(Any, self.discrete), self.start, self.controls)
-        w, g = self.start
-        steps, dim = self.controls.shape[-2:]
-        members = w.reshape(-1, w.shape[-1]), g.reshape(-1, *g.shape[-2:])
-        orbits = driven(self.discrete, self.controls.reshape(-1, steps, dim), members)
-        return orbits if self.controls.ndim == 3 else type(orbits)(*(x[0] for x in orbits))
+        return driven_side_by_side(self.discrete, self.controls, self.start)
+
+
+def driven(motion: Any, start: tuple[np.ndarray, np.ndarray], controls: Float[np.ndarray, "steps dim"]) -> Any:
+    """Return the orbit under forces that act besides those of the system, as far as it goes."""
+    velocity = {"body_velocity" if in_coordinates(motion) else "restricted_velocity": start[0]}
+    motion = dataclasses.replace(motion, system=Forced(motion.system, force=controls))
+    return simulate(motion, configuration=start[1], **velocity, steps=len(controls), throw=False)
 
 
 def steer(

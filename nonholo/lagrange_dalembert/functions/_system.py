@@ -20,7 +20,7 @@ from nonholo.base.types import Array
 from nonholo.lagrange_dalembert.functions._slips import AbstractYieldingSystem
 from nonholo.lagrange_dalembert.functions._tables import ROWS, ForceTable
 from nonholo.lagrange_dalembert.functions._traced import Bound, Resistance, checked_value, takes_time, with_parameters
-from nonholo.systems import DiscretizationT, OrbitT, force_of, parts_of
+from nonholo.systems import DiscretizationT, OrbitT, force_of, parts_of, with_later_parts
 
 
 class Parameters(Mapping[str, Any]):
@@ -142,13 +142,9 @@ class AbstractParametricSystem(AbstractYieldingSystem[DiscretizationT, OrbitT]):
 
     def _with_force(self, force: Any) -> Any:
         """Return the force with another one, which may take parameters or do without; beside one a table alone."""
-        own, parts = parts_of(self.force), parts_of(force)
-        if own and parts and (parts.keys() != {"table"} or "table" in own):
-            remedy = "Pass all forces at once; a table alone may come later."
-            raise error("Forced(system=...)", "have no force yet", repr(self), remedy)
-        if self.parameters and "function" in parts:
-            parts["function"] = with_parameters(parts["function"], 3)
-        return force_of(own | parts)
+        if self.parameters and "function" in (parts := parts_of(force)):
+            force = force_of(parts | {"function": with_parameters(parts["function"], 3)})
+        return force_of(with_later_parts(self, force))
 
     @property
     def _shapes_given(self) -> tuple[dict[str, jax.ShapeDtypeStruct], ...]:

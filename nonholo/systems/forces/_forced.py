@@ -15,7 +15,7 @@ from typing import Any, ClassVar, cast
 import numpy as np
 
 from nonholo.base.calls import name_of, note_fault, number_of, numbers_of
-from nonholo.base.checks import array, assign, choice, error, shown, trailing
+from nonholo.base.checks import array, assign, choice, error, refuse_given, shown, trailing
 from nonholo.base.numerics import applied, exponential_increment, inverse_of
 from nonholo.base.results import Outcome, OutcomeError
 from nonholo.base.types import Array, Float
@@ -67,7 +67,7 @@ class Forced(AbstractSystem):
 
     Args:
         system: A system on a group, `LLSystem` or `LRSystem` or one of their kinds; or a `LagrangeDAlembert`, which is
-            returned with U(q) and f(time, q, v), of q.size components.
+            returned with U(q) and f(time, q, v), of q.size components. One with forces takes a table besides.
         potential: `Gravity`, `Linear`, `Spring`, or U, a function from a configuration (N, N) to a number; several are
             a tuple. The derivative of a function is taken by central differences of order 6 along the body directions;
             their error is about 1e-13 of what U changes by over one radian or one unit of length.
@@ -84,8 +84,8 @@ class Forced(AbstractSystem):
     microseconds a step.
 
     Raises:
-        ValueError: A system that is forced already or that has no matrices; a potential or force
-            of another kind or shape; `discretize` refuses the scheme "energy" where it is not defined.
+        ValueError: A system with forces, and one that is no table; a potential or force of another kind or shape;
+            `discretize` refuses the scheme "energy" where it is not defined.
 
     Example:
         A heavy top that is not let spin about its own axis:
@@ -129,9 +129,15 @@ class Forced(AbstractSystem):
 
     def __post_init__(self) -> None:
         inside = self.system
-        if not isinstance(inside, AbstractSystem) or inside.is_forced:
-            remedy = "Pass a SuslovTop, a sleigh or an LLSystem, with all forces at once."
+        if not isinstance(inside, AbstractSystem):
+            remedy = "Pass a SuslovTop, a sleigh or an LLSystem."
             raise error("Forced(system=...)", "be a system on a group", shown(inside), remedy)
+        if inside.is_forced:
+            refuse_given("Forced", "be left out", "Pass it with the first forces.", potential=(self.potential, None))
+            force = _friction.force_of(_friction.with_later_parts(inside, self.force))
+            scheme = self.scheme or inside.scheme
+            assign(self, system=inside.system, potential=inside.potential, force=force, scheme=scheme)
+            inside = self.system
         choice("Forced(scheme=...)", self.scheme, (None, *SCHEMES), "Leave it out for the one that keeps most.")
         terms = _friction.terms_of(self.potential)
         for each in terms:
