@@ -69,9 +69,16 @@ def separate_variables(group: AbstractMatrixGroup, g: Float[np.ndarray, "... K N
     return variables
 
 
+def posed(group: AbstractMatrixGroup, g: Float[np.ndarray, "... K N N"], *before: str) -> Variables:
+    """Return the same variables with their dimensions: any before those of the states, `step`."""
+    own = separate_variables(group, g).items()
+    return {name: ((*before, "step", *axes), values, dict(labels)) for name, (axes, values, labels) in own}
+
+
 def joined_rows(group: AbstractMatrixGroup, g: Float[np.ndarray, "... K N N"]) -> Float[np.ndarray, "... K c"]:
     """Return poses as rows of the columns but for the time; headings and signs of quaternions continue along K."""
-    rows = separate_rows(group, g.reshape(-1, *g.shape[-2:])).reshape(*g.shape[:-2], -1)
+    rows = separate_rows(group, g.reshape(-1, *g.shape[-2:]))
+    rows = rows.reshape(*g.shape[:-2], rows.shape[-1])
     turn = layout(group)[1]
     if turn == HEADING:
         rows[..., -1] = np.unwrap(rows[..., -1], axis=-1)
@@ -344,7 +351,8 @@ def stored_variables(orbit: Any, before: Float[np.ndarray, "1 c"] | None = None)
         before: The heading or the quaternion of the state before the first one, in a row.
     """
     if not orbit.is_compact:
-        return variables_of(orbit)
+        rows = {"time", *orbit.rows()}
+        return {name: each for name, each in variables_of(orbit).items() if name in rows}
     rows = {name: getattr(orbit, state) for name, state in zip(_COMPACT, STATES[1:], strict=True)}
     compact = {CANONICAL + name: _variable(orbit, name, own) for name, own in rows.items() if own is not None}
     states = {name: _variable(orbit, name) for name in _STORED if _is_known(orbit, name)} | _posed(orbit, before)
@@ -422,9 +430,8 @@ def orbit_to_pandas(orbit: AbstractOrbit) -> Any:
     columns: dict[str, tuple[str, np.ndarray]] = {}
     dataset: Any = orbit.to_dataset()
     if not orbit.coordinates and "configuration" in dataset:
-        poses_by_name = separate_variables(orbit.space, orbit.configuration).items()
-        own = {name: (("step", *axes), rows) for name, (axes, rows, _) in poses_by_name}  # as people know them
-        dataset = dataset.drop_vars(["configuration", "displacement"], errors="ignore").assign(own)
+        poses = posed(orbit.space, orbit.configuration)  # as people know them
+        dataset = dataset.drop_vars(["configuration", "displacement"], errors="ignore").assign(poses)
     for name, variable in dataset.data_vars.items():
         labels: list[Any] = [_PARTS.get(str(name), dataset[axis].values) for axis in variable.dims[1:]]
         for place in np.ndindex(variable.shape[1:]):

@@ -4,6 +4,7 @@ And their motions as stores keep them: what orbits tell, and systems without fun
 """
 
 import dataclasses
+import importlib
 from collections.abc import Mapping
 from typing import Any, ClassVar, Self
 
@@ -195,12 +196,13 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     def to_dataset(self) -> Any:
         """Return the orbit as a labeled `xarray.Dataset`; rows that do not exist, of multipliers, are NaN.
 
-        Along `coordinate` numbers have the names of the coordinates: `dataset.configuration.sel(coordinate="x")`.
+        Along `coordinate` numbers have the names of the coordinates: `dataset.configuration.sel(coordinate="x")`. On a
+        group poses have the names of `nonholo.io.orbit_to_dataset` besides.
         """
         import xarray
 
         rows, labels = self.rows(), self._labels | _SHARED
-        variables = {
+        variables: dict[str, Any] = {
             name: (("step", *dimensions), rows[name], {"long_name": meaning})
             for name, (dimensions, meaning) in labels.items()
             if name in rows
@@ -208,6 +210,8 @@ class AbstractCoordinateOrbit(AbstractOrbit):
         coords: dict[str, Any] = {"step": self.step, "time": ("step", self.time, {"long_name": "time"})}
         if self.coordinates:
             coords["coordinate"] = np.array(self.coordinates, dtype=object)
+        else:
+            variables |= importlib.import_module("nonholo.io.datasets").posed(self.space, self.configuration)
         step = {} if self.time_step is None else {"time_step": self.time_step}
         return xarray.Dataset(variables, coords=coords, attrs={"outcome": self.outcome.name, **step})
 

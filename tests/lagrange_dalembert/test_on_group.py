@@ -444,9 +444,10 @@ test_bad_systems_are_refused_at_the_start = refusals(
 
 
 def test_orbits_on_groups_have_tables_files_and_pictures(tmp_path) -> None:  # noqa: ANN001
-    """Poses are columns x, y, heading; the CSV and the path in the picture hold them, too."""
+    """Poses are columns x, y, heading; the dataset, the CSV and the path in the picture hold them, too."""
     orbit = run(0.1, 10)
-    table = orbit.to_pandas()
+    table, dataset = orbit.to_pandas(), orbit.to_dataset()
+    assert all(np.array_equal(dataset[name], table[name]) for name in ("x", "y", "heading"))
     assert np.array_equal(table[["x", "y"]].to_numpy(), orbit.configuration[:, :2, 2])
     assert np.array_equal(table[[f"momentum_{i}" for i in range(3)]].to_numpy(), orbit.momentum)
     orbit.to_csv(tmp_path / "poses.csv")

@@ -150,8 +150,8 @@ def fit(
             with a header, a list of such trials, or an ensemble. Columns: `t`; `x`, `y`, (`z`); `theta` or `heading` in
             the plane; `qw`, `qx`, `qy`, `qz` or `quaternion` in space; angular velocities in the body `omega`, or
             `omega_x`, `omega_y`, `omega_z`; in coordinates the names of the coordinates. NaN marks what was not
-            measured, and kinds may have different rates. Positions alone determine the pose of a body that moves forward in the
-            plane; without poses trials start at the identity. A CSV file has at most 256 MB.
+            measured, and kinds may have different rates. Positions alone determine the pose of a body that moves
+            forward in the plane; without poses trials start at the identity. A CSV file has at most 256 MB.
         guess: The parameters to begin with, numbers or arrays.
         time_step: h; by default the smallest time between two samples. Samples lie on multiples of it.
         noise: Standard deviations that are known, by kind ("position", "turn", "rate", a coordinate), or one for all;

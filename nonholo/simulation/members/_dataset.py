@@ -48,12 +48,14 @@ def _of_bodies(ensemble: Ensemble) -> dict[str, Any]:
             axes, labels = io.datasets.labels_of(system, name)
             variables[name] = (*_EACH, *axes), getattr(ensemble, name), labels
     if has_poses:
-        poses = io.datasets.separate_variables(system.group, ensemble.configuration)
-        variables |= {name: ((*_EACH, *axes), values, labels) for name, (axes, values, labels) in poses.items()}
+        variables |= io.datasets.posed(system.group, ensemble.configuration, "member")
     return variables
 
 
 def _in_coordinates(ensemble: Ensemble, none: Any) -> dict[str, Any]:
     """Return all that an orbit tells."""
-    variables = none.to_dataset().data_vars.items()
-    return {str(name): (("member", *x.dims), getattr(ensemble, str(name)), x.attrs) for name, x in variables}
+    told = ((str(name), x) for name, x in none.to_dataset().data_vars.items() if name in none.rows())
+    variables: dict[str, Any] = {name: (("member", *x.dims), getattr(ensemble, name), x.attrs) for name, x in told}
+    if not none.coordinates:
+        variables |= io.datasets.posed(none.space, ensemble.configuration, "member")
+    return variables
