@@ -113,7 +113,7 @@ def _states(stepper: Stepper, rows: Rows, step: int) -> Any:
 
 
 def empty_rows(stepper: Stepper, places: int) -> Rows:
-    """Return rows to be written: an orbit keeps the memory of its own columns alone."""
+    """Return rows to be written, each column in separate memory: an orbit keeps its columns alone."""
     return tuple([np.empty((places, width)) for width in stepper.columns.values()])
 
 
