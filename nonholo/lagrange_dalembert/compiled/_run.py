@@ -194,9 +194,9 @@ def advance(
             state = flat[: ends[0]].reshape(state[0].shape), flat[ends[0] : ends[1]], flat[ends[1] :]
         if count < total:
             good, state, code, columns = definition(state, sign, np.int64(min(most, total - count)))
-            kept = np.arange(-count % every, good, every)
+            marks = np.arange(-count % every, good, every)
             for column, entries in zip(table, columns, strict=True):
-                column[(count + kept) // every] = entries[kept].reshape(len(kept), column.shape[1])
+                column[(count + marks) // every] = entries[marks].reshape(len(marks), column.shape[1])
             count += int(good)
     return count, state, code
 
