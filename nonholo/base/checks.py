@@ -129,11 +129,13 @@ def shown(value: Any) -> str:
 
 def is_moderate(value: np.ndarray, most: float = LARGEST) -> bool:
     """Return whether every number is finite and at most as large: without copies, if sums of squares show it."""
-    if value.size > _FEW and value.flags.c_contiguous:  # other arrays may repeat one number without end
+    if value.size <= _FEW:
+        if float(_vdot(value, value).real) <= _LARGEST_SUM:
+            return True
+    elif value.flags.c_contiguous:  # other arrays may repeat one number without end
         numbers = value.reshape(-1)
         return all(is_moderate(numbers[begin : begin + _FEW], most) for begin in range(0, value.size, _FEW))
-    are_few = value.size <= _FEW and float(_vdot(value, value).real) <= _LARGEST_SUM
-    return are_few or bool((np.isfinite(value) & (np.abs(value) <= most)).all())
+    return bool((np.isfinite(value) & (np.abs(value) <= most)).all())
 
 
 def _check_finite(where: Owner, value: np.ndarray, remedy: str) -> None:

@@ -18,17 +18,16 @@ import numpy as np
 
 from nonholo.base.checks import assign, error, is_traced, scale
 from nonholo.base.results import Outcome
+from nonholo.base.traced import FEW, call_in_blocks
 from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert import _orbit as orbits
 from nonholo.lagrange_dalembert import compiled
 from nonholo.lagrange_dalembert._newton import orientation, solve
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
-from nonholo.lagrange_dalembert.functions import ROWS, configurations, in_blocks, in_double, places, room
+from nonholo.lagrange_dalembert.functions import ROWS, configurations, in_double, in_rows, places, room
 from nonholo.orbit import AbstractStepper, First, Rows, State
 from nonholo.systems import AbstractCoordinateDiscretization, OrbitT, Start, one_start
-
-_PARTS = 32  # states of one call, one after another: the bits of each do not depend on the others
 
 Motion = tuple[Array, Array, Array]
 """Place, velocity of its step, velocity of the step before."""
@@ -57,7 +56,11 @@ class AbstractLagrangeDAlembertMap(orbits.CoordinateMotion, AbstractCoordinateDi
     time_step: float
 
     def __post_init__(self) -> None:
-        assign(self, time_step=_fixed_time_step(self.time_step))
+        where = "discretize(time_step=...)"
+        if is_traced(self.time_step):
+            remedy = "Runs in coordinates are compiled by themselves: call them outside jax.jit and jax.grad."
+            raise error(where, "be a number", "a traced value", remedy)
+        assign(self, time_step=float(scale(where, self.time_step, "Pass a positive real time step.")))
 
     def first(self, start: Start, *, with_poses: bool) -> First:
         """Return the checked momentum, place and velocity of a start."""
@@ -89,15 +92,10 @@ class AbstractLagrangeDAlembertMap(orbits.CoordinateMotion, AbstractCoordinateDi
 
     def after_parts(self, states: Any, fractions: Float[np.ndarray, "K"]) -> Any:
         """Return what is reached after fractions of the steps from states; NaN where there is no such step."""
-        system, h, count = self.system, np.float64(self.time_step), len(states)
+        system, h, number = self.system, np.float64(self.time_step), np.arange(len(states))
         x, v = places(system, states.configuration, states.time), states.body_velocity
-        columns = [_pad(rows) for rows in (fractions, x, v, states.momentum)]
         run = functools.partial(in_double, _after_parts, system, h)
-        parts = [
-            run(np.int64(min(_PARTS, count - i)), *(rows[i : i + _PARTS] for rows in columns))
-            for i in range(0, count, _PARTS)
-        ]
-        ends, ahead = (np.concatenate(column)[:count] for column in zip(*parts, strict=True)) if parts else (x, v)
+        ends, ahead = call_in_blocks(run, FEW, number, fractions, x, v, states.momentum)
         none = np.empty((0, system.constraints))
         orbit = CoordinateStepper(self).states(ends, ahead, none, 0, 1, Outcome.successful)
         step = states.step + fractions.astype(np.int64)
@@ -166,15 +164,6 @@ def checked_state(
     return q, checks.velocity(owner, system, q, starts[name], project=project)[1]
 
 
-def _fixed_time_step(value: Any) -> float:
-    """Return a positive time step that is a number."""
-    where = "discretize(time_step=...)"
-    if is_traced(value):
-        remedy = "Runs in coordinates are compiled by themselves: call them outside jax.jit and jax.grad."
-        raise error(where, "be a number", "a traced value", remedy)
-    return float(scale(where, value, "Pass a positive real time step."))
-
-
 @dataclasses.dataclass(frozen=True, eq=False)
 class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
     """The steps of a discretized system in coordinates or on a group.
@@ -212,19 +201,15 @@ class CoordinateStepper(AbstractStepper[orbits.AbstractCoordinateOrbit]):
     def start(self, first: First) -> tuple[State, Outcome]:
         """Return the state at the root next to a velocity."""
         system, h, (p, q, v) = self.motion.system, np.float64(self.motion.time_step), first.numbers
-        definition = functools.partial(in_double, set_out, system, h)
-        motion, sign, code = compiled.set_out(definition, system, h, q, v, p)
+        motion, sign, code = compiled.set_out(system, h, q, v, p) or in_double(set_out, system, h, q, v, p)
         return self._state(motion, sign), Outcome(int(code))
 
     def advance(self, state: State, steps: int, every: int, rows: Rows) -> tuple[int, int]:
         """Take steps by compiled formulas, or by JAX."""
-        system, h, count, code = self.motion.system, np.float64(self.motion.time_step), 0, 0
-        by_jax = functools.partial(in_double, _advance, system, h)
-        motion, sign = self._motion(state), state[-1]
-        while code == 0 and count < steps:
-            table = tuple(column[count // every : steps // every] for column in rows)
-            good, motion, code = compiled.advance(by_jax, system, h, motion, sign, every, table)
-            count += good
+        system, h = self.motion.system, np.float64(self.motion.time_step)
+        by_jax, sign = functools.partial(in_double, _advance, system, h), state[-1]
+        table = tuple(column[: steps // every] for column in rows)
+        count, motion, code = compiled.advance(by_jax, system, h, self._motion(state), sign, every, table)
         for column, entries in zip(rows, (*motion[:2], np.nan), strict=True):
             if count % every == 0:
                 column[count // every] = np.ravel(entries)
@@ -271,38 +256,27 @@ def set_out(system: Any, h: Array, q: Array, v: Array, p: Array) -> tuple[Motion
     return (q, first, first), sign, code
 
 
-def _advance(system: Any, h: Array, state: Motion, sign: Array, rows: Array, every: Array) -> tuple:
-    """Run `rows` times `every` steps; return the states before each row, the first impulse of each row, and the end."""
-    s = system.constraints
+def _advance(system: Any, h: Array, state: Motion, sign: Array, steps: Array) -> tuple:
+    """Take steps, at most `ROWS`; return how many were good, the end, the outcome, and the states with impulses."""
 
     def one(carry: tuple) -> tuple:
-        count, current, impulse, _ = carry
+        count, current, _, table = carry
         q, v, before = current
         ahead, arriving = equations.arrival(system, q, v, h)
         following, multipliers, code = solve(system, h, ahead, arriving, v, 2 * v - before, sign)
         next_state = jax.tree.map(lambda new, old: jnp.where(code == 0, new, old), (ahead, following, v), current)
-        return count + (code == 0), next_state, jnp.where(count == 0, multipliers, impulse), code
+        table = [rows.at[count].set(new) for rows, new in zip(table, (q, v, multipliers), strict=True)]
+        return count + (code == 0), next_state, code, table
 
-    def row(carry: tuple) -> tuple:
-        i, total, current, _, (configurations, velocities, impulses) = carry
-        start = (jnp.asarray(0), current, jnp.zeros(s), jnp.asarray(0))
-        count, end, impulse, code = jax.lax.while_loop(lambda c: (c[0] < every) & (c[3] == 0), one, start)
-        table = (configurations.at[i].set(current[0]), velocities.at[i].set(current[1]), impulses.at[i].set(impulse))
-        return i + 1, total + count, end, code, table
-
-    tables = tuple(jnp.zeros((ROWS, *shape)) for shape in (state[0].shape, state[1].shape, (s,)))
-    start = (jnp.asarray(0), jnp.asarray(0), state, jnp.asarray(0), tables)
-    return jax.lax.while_loop(lambda c: (c[0] < rows) & (c[3] == 0), row, start)[1:]
+    table = [jnp.zeros((ROWS, *shape)) for shape in (state[0].shape, state[1].shape, (system.constraints,))]
+    start = (jnp.asarray(0), state, jnp.asarray(0), table)
+    return jax.lax.while_loop(lambda c: (c[0] < steps) & (c[2] == 0), one, start)
 
 
 def _decoded(system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> list[np.ndarray]:
     """Return displacements, momenta, energies and residuals of all saved states, by JAX in blocks of one size."""
     columns = compiled.decoded(_decode, system, h, q, v)
-    return columns or in_blocks(_decode_all, system, np.broadcast_to(h, len(q)), q, v)
-
-
-def _decode_all(system: Any, h: Array, q: Array, v: Array) -> tuple[Array, ...]:
-    return jax.vmap(functools.partial(_decode, system, h[0]))(q, v)
+    return columns or call_in_blocks(functools.partial(in_rows, _decode, system, h), ROWS, q, v)
 
 
 def _decode(system: Any, h: Array, q: Array, v: Array, *node: Array) -> tuple[Array, ...]:
@@ -311,15 +285,13 @@ def _decode(system: Any, h: Array, q: Array, v: Array, *node: Array) -> tuple[Ar
     return system.places.displacement(v, h), momentum, energy, residual
 
 
-def _pad(rows: np.ndarray) -> np.ndarray:
-    """Return rows up to a multiple of those of one call, the others zero."""
-    return np.concatenate([rows, np.zeros((-len(rows) % _PARTS, *rows.shape[1:]))])
-
-
 def _after_parts(
-    system: Any, h: Array, count: Array, fractions: Array, x: Array, v: Array, p: Array
+    system: Any, h: Array, number: Array, fractions: Array, x: Array, v: Array, p: Array
 ) -> tuple[Array, Array]:
-    """Return the places after parts of steps, and the velocities of the whole steps that begin there."""
+    """Return the places after parts of steps, and the velocities of the whole steps that begin there.
+
+    One after another: the bits of each do not depend on the others. Rows with the number of the last one are left out.
+    """
 
     def leg(carry: tuple[Array, Array, Array], length: Array) -> tuple[tuple[Array, Array, Array], tuple]:
         begin, near, p = carry
@@ -333,4 +305,4 @@ def _after_parts(
         end = jnp.where(codes[0] == 0, begins[1], jnp.nan)
         return i + 1, places.at[i].set(end), velocities.at[i].set(jnp.where(jnp.all(codes == 0), w[1], jnp.nan))
 
-    return jax.lax.while_loop(lambda c: c[0] < count, one, (jnp.asarray(0), x, v))[1:]
+    return jax.lax.while_loop(lambda c: c[0] <= number[-1] - number[0], one, (jnp.asarray(0), x, v))[1:]

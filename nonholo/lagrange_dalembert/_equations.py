@@ -14,7 +14,7 @@ from nonholo.base.types import Array
 from nonholo.lagrange_dalembert._system import LagrangeDAlembert
 from nonholo.lagrange_dalembert.functions import takes_time
 
-_CORRECTIONS = 8  # of a velocity that belongs to a momentum: Newton's, one where L is quadratic
+_CORRECTIONS = 8  # of a velocity, Newton's: one where L is quadratic, and constraints are linear
 
 
 def _value_at(function: Any, system: LagrangeDAlembert, x: Array, *velocity: Array) -> Array:
@@ -97,6 +97,21 @@ def discrete_constraints(system: LagrangeDAlembert, x: Array, v: Array, h: Array
     steps = (v[i : i + 1] - (s(x[-1] + h) - s(x[-1])) / h for i, s in system.prescribed)
     at_end = [] if system.holonomic is None else [holonomic(system, system.places.ahead(x, v, h)) / h]
     return jnp.concatenate([_discrete_velocity_constraint(system, x, v, h), *at_end, *steps])
+
+
+def constraint_of(system: LagrangeDAlembert, h: Array | None, x: Array, v: Array) -> Array:
+    """Return what the constraint of a step, or without a time step of the flow, lacks."""
+    return constraint(system, x, v) if h is None else discrete_constraints(system, x, v, h)
+
+
+def corrected_velocity(system: LagrangeDAlembert, h: Array | None, x: Array, v: Array) -> Array:
+    """Return a velocity next to another one at which nothing lacks."""
+
+    def correct(_: Array, w: Array) -> Array:
+        slope = jax.jacfwd(constraint_of, argnums=3)(system, h, x, w)
+        return w - jnp.linalg.pinv(slope) @ constraint_of(system, h, x, w)
+
+    return jax.lax.fori_loop(0, _CORRECTIONS, correct, v)
 
 
 def _discrete_velocity_constraint(system: LagrangeDAlembert, x: Array, v: Array, h: Array) -> Array:

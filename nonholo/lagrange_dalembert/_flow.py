@@ -27,8 +27,6 @@ from nonholo.lagrange_dalembert.functions import configurations, in_blocks, in_d
 from nonholo.orbit import times_within
 
 _PROJECTIONS, _NEAR = 50, 1e-14  # corrections of a place, at most, and what the last one may be beside it
-_QUADRATIC = 1e-9  # what masses may change with velocities, relative
-_SPEEDS = 2.0 ** np.arange(-64, 65, 2)  # at which they are compared, in any unit
 _REMEDY = "Pass the configuration, row by row, then the velocity."
 
 
@@ -149,7 +147,9 @@ class Flights(NamedTuple):
     def fly(self, there: Any, elapsed: np.ndarray) -> tuple[Any, Outcome, str]:
         """Return the flow from a state up to times since then where it is looked at, the outcome and what it says."""
         try:
-            orbit = solve(self.system, _state_of(there), there.time[0] + np.union1d(0.0, elapsed), *self.errors)
+            orbit = solve(
+                self.system, there.as_start().numbers[1:], there.time[0] + np.union1d(0.0, elapsed), *self.errors
+            )
         except OutcomeError as early:
             orbit = cast(Any, early.orbit)
         looks = orbit.solution.looks()
@@ -159,7 +159,9 @@ class Flights(NamedTuple):
         """Return the motion from several states, each up to the next one."""
         nodes = np.array([*(each.time[0] for each in begins), until])
         spans = zip(begins, nodes[:-1], nodes[1:], strict=True)
-        flows = [solve(self.system, _state_of(each), np.unique(span), *self.errors) for each, *span in spans]
+        flows = [
+            solve(self.system, each.as_start().numbers[1:], np.unique(span), *self.errors) for each, *span in spans
+        ]
         return {"solution": Broken(nodes, tuple(flow.solution for flow in flows))}
 
     def successful(self, orbit: Any, time: np.ndarray) -> Any:
@@ -203,10 +205,6 @@ def _checked_errors(rtol: float | None, atol: float) -> tuple[float, float]:
     return flow_tolerances(_COARSE if rtol is None else rtol, atol)
 
 
-def _state_of(there: Any) -> State:
-    return places(there.system, there.configuration, there.time)[0], there.body_velocity[0]
-
-
 def solve(system: Any, first: State, time: Float[np.ndarray, "K"], rtol: float | None, atol: float = 1e-12) -> Any:
     """Return the orbit from a checked place and velocity."""
     errors = _checked_errors(rtol, atol)
@@ -229,42 +227,22 @@ def reflection(orbit: Any, normal: Float[np.ndarray, "n"], bounce: float, direct
 
     The velocity w of its momentum becomes w + j u, the momentum p + j n: $M u - A^T\lambda = n$, A u = 0.
     """
-    w, push = answer(orbit, normal)
+    p, x, _ = orbit.as_start().numbers
+    w, push = in_double(answer, orbit.system, x, p, normal)
     impulse = orbit.impulse_of_wall(orbit.rate_along(normal), normal @ push, bounce, direction)
     if impulse is None:
         return None
     p, v = orbit.after_impulse(orbit.momentum, impulse * normal), orbit.after_impulse(w, impulse * push)[None]
     if orbit.is_discrete:
         return dataclasses.replace(orbit, momentum=p, body_velocity=v)
-    rows = [places(orbit.system, orbit.configuration, orbit.time), v]
-    return dataclasses.replace(_orbit(orbit.system, orbit.time, rows, orbit.outcome, orbit.solution), step=orbit.step)
+    after = _orbit(orbit.system, orbit.time, [x[None], v], orbit.outcome, orbit.solution)
+    return dataclasses.replace(after, step=orbit.step)
 
 
-def answer(orbit: Any, normal: Float[np.ndarray, "n"]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the velocity of the momentum of the first state, and how it changes with an impulse along a covector."""
-    x = places(orbit.system, orbit.configuration, orbit.time)[0]
-    return in_double(_answer, orbit.system, x, orbit.momentum[0], normal)
-
-
-def _answer(system: Any, x: Array, p: Array, normal: Array) -> tuple[Array, Array]:
+def answer(system: Any, x: Array, p: Array, normal: Array) -> tuple[Array, Array]:
     """Return the velocity of a momentum, and how velocities change with an impulse along a covector."""
     w = equations.inverse_legendre(system, x, p)
     return w, bordered_solution(system, x, w, normal, jnp.zeros(system.constraints))[0]
-
-
-def refuse_varying_mass(where: str, orbit: Any) -> None:
-    """Refuse impacts where the mass matrix depends on the velocity: the rule of reflection does not keep the energy."""
-    system, x = orbit.system, places(orbit.system, orbit.configuration, orbit.time)[0]
-    fast = _SPEEDS[:, None] / np.arange(1.0, 1 + orbit.body_velocity.shape[1])
-    masses = in_double(_mass_matrices, system, x, np.concatenate([fast, -fast]))
-    if not np.ptp(masses, axis=0).max() <= _QUADRATIC * np.abs(masses[0]).max():
-        got = "another mass matrix at another velocity"
-        raise error(where, "be of a Lagrangian quadratic in velocities", got, "Leave the reset out.")
-
-
-def _mass_matrices(system: Any, x: Array, velocities: Array) -> Array:
-    """Return the mass matrices at velocities."""
-    return jax.vmap(lambda v: equations.mass_matrix(system, x, v))(velocities)
 
 
 def _orbit(system: Any, time: np.ndarray, rows: list[np.ndarray], outcome: Outcome, solution: Any) -> Any:
@@ -297,11 +275,8 @@ def _powers(system: Any, *columns: Float[np.ndarray, "K n"]) -> Float[np.ndarray
 
 
 def _power(system: Any, x: Array, p: Array, row: Array) -> tuple[Array, Array]:
-    def one(x: Array, p: Array, row: Array) -> tuple[Array, Array]:
-        v = equations.inverse_legendre(system, x, p)
-        force = row + equations.applied(system, x, v)
-        rates = equations.forms(system, x) @ v - equations.constraint(system, x, v)
-        time_slope = jnp.sum(jax.grad(equations.lagrangian, argnums=1)(system, x, v)[-1])
-        return force @ v + acceleration(system, x, v, row)[1] @ rates - time_slope, v
-
-    return jax.vmap(one)(x, p, jnp.asarray(row))
+    v = equations.inverse_legendre(system, x, p)
+    force = row + equations.applied(system, x, v)
+    rates = equations.forms(system, x) @ v - equations.constraint(system, x, v)
+    time_slope = jnp.sum(jax.grad(equations.lagrangian, argnums=1)(system, x, v)[-1])
+    return force @ v + acceleration(system, x, v, row)[1] @ rates - time_slope, v

@@ -12,7 +12,7 @@ from nonholo.base.types import Array, Float
 from nonholo.lagrange_dalembert import _equations as equations
 from nonholo.lagrange_dalembert._flow import State, acceleration, admissible_velocity, bordered_solution
 from nonholo.lagrange_dalembert._tangents import flow_slopes
-from nonholo.lagrange_dalembert.functions import in_double
+from nonholo.lagrange_dalembert.functions import in_double, in_rows
 
 _RTOL, _ATOL = 1e-12, 1e-13  # of the equations of variation
 
@@ -48,9 +48,7 @@ class Pieces(NamedTuple):
         columns = [np.full((len(times), *column.shape[1:]), np.nan) for column in self.rows]
         for i, (at, time) in enumerate(zip(begin, times, strict=True)):
             first = self.rows[0][at], self.rows[1][at]
-            span = pad(np.array([self.times[at], time]))
-            rest, good = in_double(_sweep, self.system, first, span, self.errors)
-            ends = good_rows(first, rest, good, 2)
+            ends, _ = flow(self.system, first, np.array([self.times[at], time]), self.errors)
             for column, end in zip(columns, ends, strict=True):
                 column[i : i + len(end) - 1] = end[1:]
         return columns
@@ -83,18 +81,13 @@ def _sweep(system: Any, state: State, times: Array, errors: tuple[Array, Array])
 
 def columns(system: Any, rows: list[np.ndarray]) -> list[np.ndarray]:
     """Return momenta, forces of constraint, energies and residuals of places and velocities."""
-    return [x[: len(rows[0])] for x in in_double(_decode, system, *map(pad, rows))]
+    return [x[: len(rows[0])] for x in in_rows(_decode, system, *map(pad, rows))]
 
 
 def _decode(system: Any, q: Array, v: Array) -> tuple[Array, ...]:
-    """Return momenta, forces of constraint, energies and residuals of many states."""
-
-    def one(q: Array, v: Array) -> tuple[Array, ...]:
-        residual = jnp.max(jnp.abs(equations.constraint(system, q, v)), initial=0.0)
-        momentum, force = equations.momentum(system, q, v), acceleration(system, q, v)[1]
-        return momentum, force, equations.energy(system, q, v), residual
-
-    return jax.vmap(one)(q, v)
+    residual = jnp.max(jnp.abs(equations.constraint(system, q, v)), initial=0.0)
+    momentum, force = equations.momentum(system, q, v), acceleration(system, q, v)[1]
+    return momentum, force, equations.energy(system, q, v), residual
 
 
 def transitions(system: Any, x: np.ndarray, v: np.ndarray, time: Float[np.ndarray, "K"]) -> Float[np.ndarray, "L m m"]:

@@ -8,16 +8,15 @@ import importlib
 from collections.abc import Mapping
 from typing import Any, ClassVar, Self
 
-import jax
 import numpy as np
 
 from nonholo.base.checks import assign, error, shown
 from nonholo.base.memo import memo
 from nonholo.base.results import Outcome
-from nonholo.base.types import Array, Float, Int
+from nonholo.base.types import Float, Int
 from nonholo.groups import AbstractMatrixGroup
 from nonholo.lagrange_dalembert import _equations as equations
-from nonholo.lagrange_dalembert.functions import in_double, places, room
+from nonholo.lagrange_dalembert.functions import in_double, in_rows, places, room
 from nonholo.orbit import AbstractMotion, AbstractOrbit, First
 from nonholo.systems import AbstractCoordinateSystem, Start
 
@@ -29,6 +28,8 @@ _SHARED: Labels = {
     "energy": ((), "energy"),
     "constraint_residual": ((), "largest residual of the constraint"),
 }
+_QUADRATIC = 1e-9  # what masses may change with velocities, relative
+_SPEEDS = 2.0 ** np.arange(-64, 65, 2)  # at which they are compared, in any unit
 _ROWS = ("step", "time", "configuration", "displacement", "body_velocity", "momentum", "energy", "constraint_residual")
 
 
@@ -89,11 +90,18 @@ class AbstractCoordinateOrbit(AbstractOrbit):
 
     def rate_along(self, normal: Float[np.ndarray, "n"]) -> float:
         """Return the rate of a gap in the first state, whose derivative is a covector; zero if it is rounding."""
-        return self.sum_of_rates(normal * room("_flow").answer(self, normal)[0])
+        p, x, _ = self.as_start().numbers
+        return self.sum_of_rates(normal * in_double(room("_flow").answer, self.system, x, p, normal)[0])
 
     def refuse_reset(self, where: str) -> None:
         """Refuse Lagrangians whose masses depend on velocities: Newton's rule does not keep their energy."""
-        room("_flow").refuse_varying_mass(where, self)
+        _, x, v = self.as_start().numbers
+        fast = _SPEEDS[:, None] / np.arange(1.0, 1 + len(v))
+        speeds = np.concatenate([fast, -fast])
+        masses = in_rows(equations.mass_matrix, self.system, np.broadcast_to(x, (len(speeds), *x.shape)), speeds)
+        if not np.ptp(masses, axis=0).max() <= _QUADRATIC * np.abs(masses[0]).max():
+            got = "another mass matrix at another velocity"
+            raise error(where, "be of a Lagrangian quadratic in velocities", got, "Leave the reset out.")
 
     @property
     def motion(self) -> Any:
@@ -164,7 +172,7 @@ class AbstractCoordinateOrbit(AbstractOrbit):
     @memo
     def restricted_momentum(self) -> Float[np.ndarray, "K n"]:
         r"""Momenta less their parts $A^T\mu$ across the constraint: those along admissible directions."""
-        A = in_double(_forms_at, self.system.free, places(self.system, self.configuration, self.time))
+        A = in_rows(equations.forms, self.system.free, places(self.system, self.configuration, self.time))
         p = self.momentum[..., None]
         return (p - np.linalg.pinv(A) @ (A @ p))[..., 0]
 
@@ -305,10 +313,6 @@ class GroupOrbit(AbstractCoordinateOrbit):
         return self.system.group
 
     space = group
-
-
-def _forms_at(system: Any, q: Array) -> Array:
-    return jax.vmap(lambda x: equations.forms(system, x))(q)
 
 
 ORBITS: dict[str, Any] = {orbit.__name__: orbit for orbit in (CoordinateOrbit, GroupOrbit)}

@@ -210,7 +210,7 @@ class SlipStepper(AbstractStepper[Any]):
         (q, v, p, impulses), system = rows, self.motion.system
         orbit = self.stepper_of(*[False] * len(self.slips)).orbit((q, v, impulses), step, every, outcome)
         places = q.reshape(-1, *system.place_shape)
-        energy = in_blocks(_energies, system.free, places, p)[0]
+        energy = in_blocks(_energy, system.free, places, p)[0]
         return dataclasses.replace(orbit, system=system, momentum=p, energy=energy)
 
 
@@ -231,6 +231,6 @@ def _ends(system: Any, h: Array, x: Array, v: Array, rows: Array) -> tuple[Array
     return leaving, arriving, first, last, own, slips, rows @ forms, end, forms
 
 
-def _energies(system: Any, x: Array, p: Array) -> tuple[Array]:
-    """Return the energies of nodes."""
-    return (jax.vmap(lambda x, p: equations.energy(system, x, equations.inverse_legendre(system, x, p)))(x, p),)
+def _energy(system: Any, x: Array, p: Array) -> tuple[Array]:
+    """Return the energy of a node."""
+    return (equations.energy(system, x, equations.inverse_legendre(system, x, p)),)

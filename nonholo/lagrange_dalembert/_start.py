@@ -19,7 +19,6 @@ from nonholo.systems import inadmissible, reach_of
 _TOLERANCE = 1e-9  # relative, for velocities and displacements that a user computed in floating point
 _DEGENERATE = 1e-10  # least singular value of scaled matrices, below which they are called singular
 _CONSISTENT = 1e-7  # relative; looser, since the functions may difference numerically
-_CORRECTIONS = 8  # of a displacement
 _SMALL = 1e-6  # length of the displacement at which l_d is compared with its limit
 _CLOSE = 1e-4  # what the comparison must reach: far above rounding and the error of the limit
 
@@ -188,7 +187,7 @@ def velocity_of_displacement(system: Any, q: np.ndarray, value: Any, h: float) -
     _check_regular(system, q, v)
     residual, slope = _at(_constraint_slope, system, q, v, h)
     if np.any(np.abs(residual) > _TOLERANCE * (np.abs(slope) @ np.abs(v) + np.abs(slope @ v - residual))):
-        nearest = system.places.displacement(in_double(_admissible, system, q, v, h), h)
+        nearest = system.places.displacement(in_double(equations.corrected_velocity, system, h, q, v), h)
         got = f"residual {np.array2string(residual, precision=6)}"
         remedy = f"The nearest admissible displacement is {nearest.tolist()}."
         raise error(where, "satisfy the discrete constraint", got, remedy)
@@ -230,11 +229,3 @@ def _bend(system: Any, x: Array) -> Array:
 def momentum(system: Any, q: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Return the momentum of a velocity."""
     return _at(_kinetics, system, q, v)[2]
-
-
-def _admissible(system: Any, q: Array, v: Array, h: Array) -> Array:
-    def correct(_: Array, w: Array) -> Array:
-        residual, slope = _constraint_slope(system, q, w, h)
-        return w - jnp.linalg.pinv(slope) @ residual
-
-    return jax.lax.fori_loop(0, _CORRECTIONS, correct, v)

@@ -20,10 +20,9 @@ from nonholo.lagrange_dalembert._discretization import checked_state, set_out
 from nonholo.lagrange_dalembert._flow import acceleration, nearest_place, refuse_table
 from nonholo.lagrange_dalembert._newton import orientation
 from nonholo.lagrange_dalembert._rollout import step_root
-from nonholo.lagrange_dalembert.functions import in_double, places, room
+from nonholo.lagrange_dalembert.functions import in_double, in_rows, places, room
 from nonholo.systems import alike_in_time
 
-_CORRECTIONS = 8  # of a velocity beside another one
 LATER = np.array([0.3719, 0.9173])  # times, not in a ratio that a rotation may have
 
 Slopes = tuple[Array, Array, Array]
@@ -46,34 +45,26 @@ def begin(motion: Any, owner: str, configuration: Any, velocity: Any) -> tuple[n
 
 def beside(motion: Any, x: np.ndarray, v: np.ndarray, xi: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the states at places beside x, with the admissible velocities next to v + w."""
-    return in_double(_beside, motion.system, *_step_of(motion), x, v, xi, w)
+    return in_double(_beside, motion.system, motion.time_step, x, v, xi, w)
 
 
 def following(motion: Any, x: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Return where the frame of a steady motion is at later times, of a map after steps."""
     h = motion.time_step
     times = LATER if h is None else h * np.arange(1.0, 1 + len(LATER))
-    return np.stack([in_double(_frame, motion.system, x, v, t) for t in times])
+    return np.stack([motion.system.places.frame(x, v, t) for t in times])
 
 
 def units(system: Any, x: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Return units of the velocities in which each has the same kinetic energy."""
-    return in_double(_units, system, x, v)
-
-
-def _units(system: Any, x: Array, v: Array) -> Array:
-    return equations.acceleration_matrix(system, x, v)[1].velocity
-
-
-def _frame(system: Any, x: Array, v: Array, time: Array) -> Array:
-    return system.places.frame(x, v, time)
+    return in_double(equations.acceleration_matrix, system, x, v)[1].velocity
 
 
 def slopes(
     motion: Any, x: Float[np.ndarray, "K ..."], v: Float[np.ndarray, "K n"]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return how states change beside given ones; NaN where there is no next step."""
-    each = functools.partial(in_double, _each, motion.system, *_step_of(motion))
+    each = functools.partial(in_double, _each, motion.system, motion.time_step)
     return cast(Any, tuple(call_in_blocks(each, FEW, x, v)))
 
 
@@ -110,28 +101,13 @@ def tangent_map(orbit: Any, *, in_own_units: bool = False) -> Float[np.ndarray, 
     return bases[1:].swapaxes(1, 2) @ maps @ bases[:-1]
 
 
-def _step_of(motion: Any) -> tuple[np.float64, ...]:
-    return () if motion.time_step is None else (np.float64(motion.time_step),)
-
-
-def _constraint(system: Any, x: Array, v: Array, *h: Array) -> Array:
-    return equations.discrete_constraints(system, x, v, *h) if h else equations.constraint(system, x, v)
-
-
-def _beside(system: Any, *arguments: Array) -> tuple[Array, Array]:
-    *h, x, v, xis, ws = arguments
-
+def _beside(system: Any, h: Array | None, x: Array, v: Array, xis: Array, ws: Array) -> tuple[Array, Array]:
     def one(offset: tuple[Array, Array]) -> tuple[Array, Array]:
         xi, w = offset
         place = system.places.beside(x, xi)
         if system.holonomic is not None:
             place = nearest_place(system, place)
-
-        def correct(_: Array, w: Array) -> Array:
-            slope = jax.jacfwd(lambda w: _constraint(system, place, w, *h))(w)
-            return w - jnp.linalg.pinv(slope) @ _constraint(system, place, w, *h)
-
-        return place, jax.lax.fori_loop(0, _CORRECTIONS, correct, v + w)
+        return place, equations.corrected_velocity(system, h, place, v + w)
 
     return jax.lax.map(one, (xis, ws))
 
@@ -143,11 +119,10 @@ def flow_slopes(system: Any, x: Array, v: Array) -> Slopes:
         beside = system.places.beside(x, xi)
         return jnp.concatenate([system.places.departure_rate(v, xi, w), acceleration(system, beside, w)[0]])
 
-    return _slopes_of(system, change, x, v)
+    return _slopes_of(system, None, change, x, v)
 
 
 def _step_slopes(system: Any, h: Array, x: Array, v: Array) -> Slopes:
-
     def change(xi: Array, w: Array) -> Array:
         beside = system.places.beside(x, xi)
         after, p = equations.arrival(system, beside, w, h)
@@ -155,26 +130,25 @@ def _step_slopes(system: Any, h: Array, x: Array, v: Array) -> Slopes:
         xi_after = system.places.departure(system.places.frame(x, v, h), after)
         return jnp.concatenate([xi_after - xi, w_after - w])
 
-    return _slopes_of(system, change, x, v, h)
+    return _slopes_of(system, h, change, x, v)
 
 
-def _each(system: Any, *arguments: Array) -> Slopes:
+def _each(system: Any, h: Array | None, xs: Array, vs: Array) -> Slopes:
     """Return the slopes at states, one after another: the bits of each do not depend on the others."""
-    *h, xs, vs = arguments
-
-    def one(state: tuple[Array, Array]) -> Slopes:
-        return _step_slopes(system, h[0], *state) if h else flow_slopes(system, *state)
-
-    return jax.lax.map(one, (xs, vs))
+    one = functools.partial(flow_slopes, system) if h is None else functools.partial(_step_slopes, system, h)
+    return jax.lax.map(lambda state: one(*state), (xs, vs))
 
 
-def _slopes_of(system: Any, change: Callable[[Array, Array], Array], x: Array, v: Array, *h: Array) -> Slopes:
+def _slopes_of(system: Any, h: Array | None, change: Callable[[Array, Array], Array], x: Array, v: Array) -> Slopes:
     size = len(v) + system.is_driven
 
     def both(z: Array) -> tuple[tuple[Array, Array], Array]:
         xi, w = z[:size], z[size:]
         value, place = change(xi, w), system.places.beside(x, xi)
-        return (value, jnp.concatenate([_constraint(system, place, w, *h), equations.holonomic(system, place)])), value
+        return (
+            value,
+            jnp.concatenate([equations.constraint_of(system, h, place, w), equations.holonomic(system, place)]),
+        ), value
 
     (slope, rows), value = jax.jacfwd(both, has_aux=True)(jnp.append(jnp.zeros(size), v))
     return value, slope, rows
@@ -189,11 +163,7 @@ def _step_velocity(system: Any, h: Array, x: Array, p: Array, near: tuple[Array,
 
 def node_velocities(system: Any, time: np.ndarray, q: np.ndarray, p: np.ndarray) -> np.ndarray:
     """Return the admissible velocities of momenta at configurations, (K, n) all three."""
-    return in_double(_node_velocities, system, places(system, q, time), p)
-
-
-def _node_velocities(system: Any, x: Array, p: Array) -> Array:
-    return jax.vmap(lambda x, p: equations.inverse_legendre(system, x, p))(x, p)
+    return in_rows(equations.inverse_legendre, system, places(system, q, time), p)
 
 
 def forced_slopes(motion: Any, q: np.ndarray, v: np.ndarray, forces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -83,6 +83,8 @@ class AbstractOrbit(Keeper, abc.ABC):
         conserves_energy: Whether its map conserves the energy exactly; None for a flow, and where there is no map.
         events: Crossings of `events=`, an `EventLog`; None without.
         turned: Heading without ambiguity of full turns, where the run knows it, shape (K,).
+        group: The group that configurations are matrices of; None in coordinates.
+        momenta: The columns that an impact changes, the momentum first.
     """
 
     system: Any
@@ -111,9 +113,7 @@ class AbstractOrbit(Keeper, abc.ABC):
     events: Any
     turned: Float[np.ndarray, "K"] | None = None
     group: Any = None
-    """The group that configurations are matrices of; None in coordinates."""
     momenta: ClassVar[tuple[str, ...]]
-    """The columns that an impact changes, the momentum first."""
 
     def __post_init__(self) -> None:
         """Number the rows of a whole run; let no orbit be successful with a number that is not finite.

@@ -48,17 +48,22 @@ def step_poses(states: Any) -> Float[np.ndarray, "K N N"]:
 
 
 class AbstractMotion(Keeper, abc.ABC):
-    """A rule of motion of a system: a discretization or the continuous flow."""
+    """A rule of motion of a system: a discretization or the continuous flow.
+
+    Attributes:
+        system: The system.
+        span: The first and the last time between which `at` knows all states; None if saved states are all there is.
+        is_balanced: Whether forces act by equal half impulses at the displacement, so that T + U and every balance is
+            exact.
+        is_measured: Whether poses were given, and everything else follows from them.
+        columns: The arrays of its orbits, as stores keep them.
+    """
 
     system: System
     span: tuple[float, float] | None = None
-    """The first and the last time between which `at` knows all states; None if saved states are all there is."""
     is_balanced: bool = False
-    """Whether forces act by equal half impulses at the displacement, so that T + U and every balance is exact."""
     is_measured: bool = False
-    """Whether poses were given, and everything else follows from them."""
     columns: ClassVar[tuple[str, ...]] = STATES
-    """The arrays of its orbits, as stores keep them."""
 
     @functools.cached_property
     def decoder(self) -> Decoder:

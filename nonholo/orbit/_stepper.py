@@ -76,19 +76,20 @@ class AbstractStepper(abc.ABC, Generic[OrbitT]):
         motion: The discretization.
         columns: The names of what a saved row holds, with the numbers of each.
         branch: The name of the branch rule.
+        lead: 1 if a column belongs to the row that a step leads to; 0 if one belongs to the step ahead, known at its
+            end.
+        in_threads: Whether `advance` releases the interpreter's lock.
+        pace: Steps of the first call, before the time of any is known.
+        block: Steps of a block of a store, about a second.
     """
 
     motion: Any
     columns: Mapping[str, int]
     branch: str = "principal"
     lead: ClassVar[int] = 1
-    """1 if a column belongs to the row that a step leads to; 0 if one belongs to the step ahead, known at its end."""
     in_threads: bool = True
-    """Whether `advance` releases the interpreter's lock."""
     pace: ClassVar[int] = 256
-    """Steps of the first call, before the time of any is known."""
     block: int = 1 << 14
-    """Steps of a block of a store, about a second."""
 
     @functools.cached_property
     def has_poses(self) -> bool:
@@ -146,25 +147,30 @@ class AbstractStepper(abc.ABC, Generic[OrbitT]):
         """
 
 
-def write_first(state: State, rows: Rows) -> int:
-    """Write the row of a state to the first place of rows; return its width."""
+def write_first(state: State, rows: Rows) -> None:
+    """Write the row of a state to the first place of rows."""
     begin = 0
     for column in rows:
         column[0], begin = state[begin : begin + column.shape[1]], begin + column.shape[1]
-    return begin
 
 
 def keep_row(state: State, rows: Rows, place: int) -> None:
     """Write the row at a place of rows into a state."""
-    np.concatenate([column[place] for column in rows], out=state[: sum(column.shape[1] for column in rows)])
+    begin = 0
+    for column in rows:
+        end = begin + column.shape[1]
+        state[begin:end], begin = column[place], end
 
 
 @runtime_checkable
 class DiscreteMotion(Protocol[OrbitT]):
-    """A discretized system: what `simulate`, `iterate` and stores ask of it."""
+    """A discretized system: what `simulate`, `iterate` and stores ask of it.
+
+    Attributes:
+        starts: The names of its starts.
+    """
 
     starts: ClassVar[tuple[str, ...]]
-    """The names of its starts."""
 
     @property
     def system(self) -> Any:

@@ -85,7 +85,7 @@ def open_run(run: Run, first: First) -> tuple[Reached, AbstractOrbit | None]:
     """Begin a run; return how it stands at its start, and the empty orbit of one that cannot continue from there."""
     state, outcome = run.stepper.start(first)
     start = Reached(0, outcome, state, run.watch)
-    if outcome == Outcome.successful and first.demand is None and run.watch is None:
+    if not outcome and first.demand is None and run.watch is None:
         return start, None
     there = orbit_at(run.stepper, state, 0)
     if outcome != Outcome.successful:
@@ -113,12 +113,8 @@ def _states(stepper: Stepper, rows: Rows, step: int) -> Any:
 
 
 def empty_rows(stepper: Stepper, places: int) -> Rows:
-    """Return rows to be written, in one block of memory: a large one has large pages, which are there sooner."""
-    block, rows, end = np.empty(places * stepper.width), [], 0
-    for width in stepper.columns.values():
-        begin, end = end, end + places * width
-        rows.append(block[begin:end].reshape(places, width))
-    return tuple(rows)
+    """Return rows to be written, each column in separate memory: an orbit keeps its columns alone."""
+    return tuple([np.empty((places, width)) for width in stepper.columns.values()])
 
 
 def part_of(rows: Rows, begin: int, end: int) -> Rows:
@@ -134,13 +130,14 @@ def _certain_rows(stepper: Stepper, rows: Rows) -> Rows:
 class _Table:
     """The rows of a block: where the steps of a call are written, and which of them are kept."""
 
+    outcome = Outcome.successful
+
     def __init__(self, stepper: Stepper, plan: Plan, number: int, *, fine: bool) -> None:
         self.stepper, self.every, self.fine = stepper, plan.every, fine
         self.number, self.begin, self.stop, self.ends = number, *plan.stretch(number)
         self.places = 1 + (self.stop - self.begin) // self.every
         self.rows = empty_rows(stepper, 1 if fine else self.places)  # an event may stop the run long before
         self.fresh, self.least = 0, _SHORT  # where steps of searched calls begin to double, and from how many on
-        self.outcome = Outcome.successful
 
     def room(self, step: int, pace: int) -> tuple[int, int, Rows]:
         """Return how many steps to take from a step, after how many of them a row is written, and where.

@@ -120,6 +120,18 @@ def test_rows_that_are_not_finite_are_no_success(system: Any, column: int, most:
             assert stepper.settle(rows) == expected
 
 
+@pytest.mark.parametrize("reconstruct", [True, False])
+@pytest.mark.parametrize("system", [TOP, FOUR], ids=["scalar", "matrices"])
+def test_an_orbit_keeps_the_memory_of_its_columns_alone(system: Any, reconstruct: bool) -> None:
+    """Poses of the kernel that are not saved, or that are decoded anew, are given back."""
+    orbit = nh.simulate(
+        nh.discretize(system, H), restricted_velocity=[0.1] * system.rank, steps=9, reconstruct=reconstruct
+    )
+    columns = [each for each in (orbit.reduced_momentum, orbit.cayley, orbit.canonical_pose) if each is not None]
+    memory = {id(owner): owner.nbytes for each in columns for owner in [each if each.base is None else each.base]}
+    assert sum(memory.values()) == sum(each.nbytes for each in columns)
+
+
 def test_times_of_a_run_are_computed_when_they_are_read() -> None:
     """They are h times the numbers of steps, also in copies; other names do not exist."""
     orbit = _run(TOP, steps=24, save_every=2)

@@ -15,7 +15,7 @@ from nonholo.base.results import OUTCOMES, Outcome, OutcomeError
 from nonholo.base.types import Array, Float
 from nonholo.discrete._scheme import weights
 from nonholo.groups import AbstractMatrixGroup
-from nonholo.orbit import AbstractStepper, First, Orbit, Rows, State, step_poses
+from nonholo.orbit import AbstractStepper, First, Orbit, Rows, State, keep_row, step_poses
 from nonholo.systems import System
 
 Part = Callable[[np.ndarray, np.ndarray, float, int, float], "Compact | None"]
@@ -70,7 +70,6 @@ class AbstractBodyStepper(AbstractStepper[Orbit]):
         """Return settled rows as an orbit."""
         (momenta, charts, raw), poses = rows, None
         if self.with_poses and (poses := self.decode_poses(raw)) is not raw:
-            momenta, charts = momenta.copy(), charts.copy()  # the block of memory with the raw poses is not kept
             outcome = outcome or (Outcome.successful if is_moderate(poses, np.inf) else Outcome.nonfinite)
         steps, motion = range(step, step + every * len(momenta), every), self.motion
         states = {"reduced_momentum": momenta, "cayley": charts, "canonical_pose": poses}
@@ -123,8 +122,7 @@ class CompiledStepper(AbstractBodyStepper):
         for column in rows:
             column[0], begin = state[begin : begin + column.shape[1]], begin + column.shape[1]
         good, code = self.route.advance(state[width:], steps, every, tuple([column[1:] for column in rows]))
-        place = good // every
-        np.concatenate([column[place] for column in rows], out=state[:width])
+        keep_row(state, rows, good // every)
         return good, code
 
     def decode(self, momenta: np.ndarray, charts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -163,15 +163,12 @@ def _body(system: Any, h: Any, q: Any, v: Any, *, at_node: bool = False) -> Coor
     return CoordinateBody(*code[:3], departure, arrival, inputs, *parts, place, n)
 
 
-def set_out(definition: Callable[..., Any], system: Any, h: Any, q: Any, v: Any, p: Any) -> Any:
-    """Return the state, the orientation and the outcome of the root next to v with a momentum.
-
-    `definition(q, v, p)` finds it by JAX.
-    """
+def set_out(system: Any, h: Any, q: Any, v: Any, p: Any) -> Any:
+    """Return the state, the orientation and the outcome of the root next to v with a momentum; None if JAX must."""
     body = _body(system, h, q, v)
     sign = set_out_coordinates(body, *map(np.array, (np.ravel(q), p, v))) if body else 0.0  # one type of arrays
     if body is None or sign == 0:
-        return definition(q, v, p)
+        return None
     first = body.root[: len(v)].copy()
     return (q, first, first), np.float64(sign), np.int64(0)
 
@@ -181,36 +178,27 @@ def advance(
 ) -> tuple[int, State, Any]:
     """Run `every` steps for each row of a table, into flat places, velocities and impulses.
 
-    `definition(state, sign, rows, every)` does it by JAX. A step that is not trusted here it takes alone, so that the
+    `definition(state, sign, steps)` takes some by JAX. A step that is not trusted here it takes alone, so that the
     bits of an orbit do not depend on the rows that are kept.
 
     Returns:
-        The good steps, those of the first `ROWS` rows at most, the state there and the outcome.
+        The good steps, the state there and the outcome.
     """
-    rows, body = len(table[0]), _body(system, h, *state[:2])
-    if body is None:
-        rows = min(rows, ROWS)
-        good, after, code, columns = definition(state, sign, np.int64(rows), np.int64(every))
-        row_count = min(rows, int(good) // every + 1)
-        for column, entries in zip(table, columns, strict=True):
-            column[:row_count] = entries[:row_count].reshape(row_count, column.shape[1])
-        return int(good), after, code
-    shape, first, second = np.shape(state[0]), body.place, body.place + body.velocity
-
-    def unpack(flat: np.ndarray) -> State:
-        return flat[:first].reshape(shape), flat[first:second], flat[second:]
-
-    flat, total, code = np.concatenate([x.ravel() for x in state]), rows * every, np.int64(0)
-    count = advance_coordinates(body, flat, float(sign), 0, total, every, *table)
-    while count < total:
-        _, after, code, (*_, impulses) = definition(unpack(flat), sign, np.int64(1), np.int64(1))
-        if code:
-            break
-        if count % every == 0:
-            table[2][count // every] = impulses[0]
-        flat = np.concatenate([x.ravel() for x in after])
-        count = advance_coordinates(body, flat, float(sign), count + 1, total, every, *table)
-    return int(count), unpack(flat), code
+    body, count, total, code = _body(system, h, *state[:2]), 0, len(table[0]) * every, 0
+    most = 1 if body else ROWS
+    while code == 0 and count < total:
+        if body:
+            flat = np.concatenate([x.ravel() for x in state])
+            count = int(advance_coordinates(body, flat, float(sign), count, total, every, *table))
+            ends = np.cumsum([body.place, body.velocity])
+            state = flat[: ends[0]].reshape(state[0].shape), flat[ends[0] : ends[1]], flat[ends[1] :]
+        if count < total:
+            good, state, code, columns = definition(state, sign, np.int64(min(most, total - count)))
+            marks = np.arange(-count % every, good, every)
+            for column, entries in zip(table, columns, strict=True):
+                column[(count + marks) // every] = entries[marks].reshape(len(marks), column.shape[1])
+            count += int(good)
+    return count, state, code
 
 
 def decoded(function: Callable[..., Any], system: Any, h: Any, q: np.ndarray, v: np.ndarray) -> list[Any] | None:

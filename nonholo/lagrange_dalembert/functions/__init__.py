@@ -7,6 +7,7 @@ from nonholo.lagrange_dalembert.functions._system import (
     configurations,
     in_blocks,
     in_double,
+    in_rows,
     place,
     places,
     room,

@@ -6,7 +6,7 @@ Calls of JAX are compiled once for all of their numbers. Every call runs in a lo
 import difflib
 import functools
 import importlib
-from collections.abc import Callable, Iterator, Mapping, ValuesView
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, ClassVar, Self
 
 import jax
@@ -50,10 +50,6 @@ class Parameters(Mapping[str, Any]):
     def __len__(self) -> int:
         return len(self._numbers)
 
-    def values(self) -> ValuesView[Any]:
-        """Return the numbers."""
-        return self._numbers.values()
-
     def __repr__(self) -> str:
         return f"{{{', '.join(f'{key!r}: {_brief(value)}' for key, value in self.items())}}}"
 
@@ -96,12 +92,16 @@ def _valid_number(where: str, key: str, value: Any, shape: tuple[int, ...] | Non
 
 
 class AbstractParametricSystem(AbstractYieldingSystem[DiscretizationT, OrbitT]):
-    """A system whose functions take its parameters last, where it has any."""
+    """A system whose functions take its parameters last, where it has any.
+
+    Attributes:
+        functions: The fields that are such functions.
+        of_time: How many arguments those have that may be called with the time after them.
+        parameters: The numbers.
+    """
 
     functions: ClassVar[tuple[str, ...]]
-    """The fields that are such functions."""
     of_time: ClassVar[dict[str, int]] = {}
-    """How many arguments those have that may be called with the time after them."""
     parameters: Any
 
     @functools.cached_property
@@ -293,6 +293,19 @@ def in_double(function: Callable[..., Any], system: Any, *arguments: Any) -> Any
         return jax.tree.map(np.asarray, _compile(function)(family, numbers, *arguments))
 
 
+@functools.cache
+def _of_rows(function: Callable[..., Any]) -> Callable[..., Any]:
+    def call(system: Any, *rows: Any) -> Any:
+        return jax.vmap(functools.partial(function, system), [0 if np.ndim(each) else None for each in rows])(*rows)
+
+    return call
+
+
+def in_rows(function: Callable[..., Any], system: Any, *columns: np.ndarray) -> Any:
+    """Call a JAX function of a system and a state with each row of the columns; a number is the same for all."""
+    return in_double(_of_rows(function), system, *columns)
+
+
 def in_blocks(function: Callable[..., Any], system: Any, *columns: np.ndarray) -> list[np.ndarray]:
-    """Call a JAX function of a system and many states in blocks."""
-    return call_in_blocks(functools.partial(in_double, function, system), ROWS, *columns)
+    """Do the same with many rows, in blocks, for a function with several results."""
+    return call_in_blocks(functools.partial(in_rows, function, system), ROWS, *columns)
