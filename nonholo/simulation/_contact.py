@@ -26,6 +26,7 @@ _MOST = 200  # impacts in a step
 _LEAST = 2.0**-52  # of the part that is left, where the body is looked at
 _SHORT = 2.0**-36  # of a step: too short for the sign of a gap
 _ROUNDING = 2.0**-54  # of a step, that is left and gone at least
+_NO_TIME = 8  # units in the last place of a time
 _AHEAD = 2.0 ** np.arange(-10, 1)  # of a step, where the rate of a gap says whether the body is pressed
 
 
@@ -40,16 +41,17 @@ def after_contact(
         node: The state at the beginning of the step.
 
     Returns:
-        The state at its end, None if it is not reached; what is known then, and the outcome.
+        The state at its end, None if it is not reached; what is known then, and the outcome. A body stays that comes
+        back to a wall in no time, at once or from others without restitution.
     """
-    there, share, since = node, 0.0, None
+    there, share, times = node, 0.0, dict[str, float]()
     for _ in range(_MOST):
-        if watch.reset_by is not None:
+        if (wall := watch.reset_by) is not None:
             hit = watch.impact
             there, share = hit.after, float(hit.fraction[0] + (hit.step[0] - node.step[0]))
-        if since == (there.time[0], watch.reset_by):  # the body comes back in no time
-            break
-        since = there.time[0], watch.reset_by
+            if there.time[0] - times.get(wall, -np.inf) <= _NO_TIME * np.spacing(abs(there.time[0])):
+                break
+            times = {wall: there.time[0]} | (times if watch.restitution(wall) == 0 else {})
         there = dataclasses.replace(there.with_headings(watch.heading), step=node.step)
         if (outcome := begin(there)[1]) == Outcome.successful:
             watch, end, outcome = _move_on(watch, there, share)
@@ -80,7 +82,7 @@ def _move_on(watch: Watch, there: Orbit, share: float) -> tuple[Watch, Orbit, Ou
         walls = itertools.compress(watch.events, inside[:, 0])
         if new_watch.reset_by is not None:
             return new_watch, end, Outcome.successful
-        is_pressed = any(rate > 0 for name in walls for rate in _rates_ahead(watch, there, name))
+        is_pressed = any(rate > 0 for name in walls for _, rate in _rates_ahead(watch, there, name))
         return watch.seen_at(end), end, Outcome.lasting_contact if is_pressed else Outcome.successful
     new_watch = _search_rest(watch, there, places, looks, share)
     if new_watch.reset_by is None:
@@ -90,18 +92,23 @@ def _move_on(watch: Watch, there: Orbit, share: float) -> tuple[Watch, Orbit, Ou
 
 
 def _stays(watch: Watch, there: Orbit) -> bool:
-    """Return whether a body stays at the wall that was struck last, which left it no speed, pressed against it."""
-    if (name := watch.reset_by) is None or watch.events[name].reset.restitution > 0:  # type: ignore[union-attr]
+    """Return whether a body stays at the wall that was struck last: it is pressed, and no bounce of it can be seen.
+
+    From the speed u away from the wall and the acceleration a toward it the height of a bounce is u^2/2a.
+    """
+    if (name := watch.reset_by) is None or watch.restitution(name) == 1:
         return False
-    return next(_rates_ahead(watch, there, name), 0.0) > 0
+    speed = watch.rate_toward(name, there)
+    end, rate = next(_rates_ahead(watch, there, name), (there, speed))
+    time = end.time[0] - there.time[0]
+    return rate > speed and speed**2 * time <= 2 * (rate - speed) * watch.lowest_bounce(name, there)
 
 
-def _rates_ahead(watch: Watch, there: Orbit, name: str) -> Iterator[float]:
-    """Give the rates of the gap of a wall ahead of a state at it, where they are seen: positive toward it."""
-    toward = -float(np.sign(watch.values[tuple(watch.events).index(name), 0]))  # type: ignore[index]
+def _rates_ahead(watch: Watch, there: Orbit, name: str) -> Iterator[tuple[Orbit, float]]:
+    """Give states ahead of one at a wall, with the rates toward it, where they are seen."""
     for place in _AHEAD:
-        if _is_finite(end := watch.part(there, np.array([place]))) and (rate := watch.rate_at(name, end)):
-            yield toward * rate
+        if _is_finite(end := watch.part(there, np.array([place]))) and (rate := watch.rate_toward(name, end)):
+            yield end, rate
 
 
 def _looks(watch: Watch, there: Orbit, end: Orbit, rest: float) -> tuple[np.ndarray, Orbit, Bool[np.ndarray, "E 1"]]:

@@ -37,7 +37,7 @@ class Watch:
         heading: The heading at the last state, in the plane.
         stopped_by: The name of the event that ended the motion.
         reset_by: The name of the event whose impact is the last thing that was seen.
-        sliding: Walls along which the body slides in the next stretch, whose gaps say nothing there.
+        sliding: Walls along which the body slides in the next stretch, whose gaps are rounding there.
     """
 
     events: dict[str, Event]
@@ -115,17 +115,27 @@ class Watch:
     def slides_at(self, there: Any) -> Bool[np.ndarray, "E 1"]:
         """Return the walls at which the last state is, and whose gaps do not change at a state."""
         pairs = zip(self.events, self.at_walls[:, 0], strict=True)
-        return np.array([[bool(at) and self.rate_at(name, there) == 0] for name, at in pairs])
+        return np.array([[bool(at) and self.rate_toward(name, there) == 0] for name, at in pairs])
 
     def is_beyond(self, values: Float[np.ndarray, "E 1"]) -> Bool[np.ndarray, "E 1"]:
         """Return the events whose values mean that the body is beyond a wall, or at one, before which it was last."""
         rows = np.hstack([cast(Any, self.values), values])
         return self.walls & [changes(event, row) for event, row in zip(self.events.values(), rows, strict=True)]
 
-    def rate_at(self, name: str, there: Any) -> float:
-        """Return the rate of the gap of a wall at a state; zero if it is rounding."""
+    def rate_toward(self, name: str, there: Any) -> float:
+        """Return the rate at which a gap shrinks at a state; zero if it is rounding."""
         reset, gap = self._wall(name)
-        return there.rate_along(reset.covector(gap, there))
+        side = np.sign(cast(Any, self.values)[tuple(self.events).index(name), 0])
+        return float(-side * there.rate_along(reset.covector(gap, there)))
+
+    def restitution(self, name: str) -> float:
+        """Return the restitution of a wall."""
+        return self._wall(name)[0].restitution
+
+    def lowest_bounce(self, name: str, there: Any) -> float:
+        """Return the height in the gap of a wall from which on a bounce at a state is one."""
+        reset, gap = self._wall(name)
+        return reset.lowest_bounce(gap, there)
 
     def struck(self, name: str, states: Any, direction: Int[np.ndarray, "1"]) -> Any:
         """Return the state after the impact of an event at a state; None where the motion is not toward the wall."""
