@@ -321,8 +321,8 @@ def _steps(
             pieces.append(solver.dense_output())
             nodes.append(stop(pieces[-1]))
             report(int(_PARTS * solver.t / end), _PARTS)
-            gone, lately = np.abs(solver.t - np.array([begin, nodes[-_FIRST:][0]])) / abs(end - begin)
-            if tries > _FIRST and _is_endless(tries, vain, gone, lately):
+            share, last_share = np.abs(solver.t - np.array([begin, nodes[-_FIRST:][0]])) / abs(end - begin)
+            if tries > _FIRST and _is_endless(tries, vain, share, last_share):
                 return nodes, pieces, Outcome.too_stiff
     return nodes, pieces, Outcome.successful
 
@@ -338,9 +338,9 @@ def _failure(rates: np.ndarray) -> Outcome:
     return Outcome.not_converged if np.isfinite(rates).all() else Outcome.nonfinite
 
 
-def _is_endless(tries: int, vain: int, gone: float, lately: float) -> bool:
-    """Return whether steps are too many, by those so far, those in vain, and the parts of the time that are gone."""
-    return lately < _NOWHERE or tries > gone * (_FEW if vain > tries / 3 else _MOST)
+def _is_endless(tries: int, vain: int, share: float, last_share: float) -> bool:
+    """Return whether steps are too many, by those so far, those in vain, and the shares of the time behind."""
+    return last_share < _NOWHERE or tries > share * (_FEW if vain > tries / 3 else _MOST)
 
 
 def _is_short(solver: Any) -> bool:
