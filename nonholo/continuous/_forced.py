@@ -163,6 +163,7 @@ class Phase:
 _LEAST_RTOL, _SHARE = 1e-13, 1e-3  # SciPy allows no less; absolute errors are that part of the relative ones
 _LEAST_IMPLICIT = 1e-9  # relative, for some hundred steps of order 5
 _FIRST, _FEW, _MOST = 1000, 10_000, 10_000_000  # steps tried before any judgment, and in total
+_NOWHERE = 1e-9  # of the whole time, in `_FIRST` steps
 _STABLE = 3.0  # half of h |lambda| at the bound of stability; smooth motions have less than 1
 _PARTS = 1000  # of the time, for progress
 _WHOLE = operator.attrgetter("t")  # the end of a step
@@ -299,7 +300,8 @@ def _steps(
     """Return the ends of the steps in a span, what interpolates within them, and the outcome; they may stop earlier.
 
     Steps are too many where the whole time needs more than `_MOST` at the rate so far, or `_FEW` if many of them are as
-    short as they are for stability alone, or follow others that were too long, as over jumps.
+    short as they are for stability alone, or follow others that were too long, as over jumps; or where the last ones
+    lead nowhere, as at a jump that drives the motion back to it.
     """
     begin, end = span
     nodes, pieces, tries, vain, first = [begin], [], 0, 0, field(begin, start)
@@ -319,7 +321,8 @@ def _steps(
             pieces.append(solver.dense_output())
             nodes.append(stop(pieces[-1]))
             report(int(_PARTS * solver.t / end), _PARTS)
-            if tries > _FIRST and tries * (end - begin) / (solver.t - begin) > _most(tries, vain):
+            share, last_share = np.abs(solver.t - np.array([begin, nodes[-_FIRST:][0]])) / abs(end - begin)
+            if tries > _FIRST and _is_endless(tries, vain, share, last_share):
                 return nodes, pieces, Outcome.too_stiff
     return nodes, pieces, Outcome.successful
 
@@ -335,9 +338,9 @@ def _failure(rates: np.ndarray) -> Outcome:
     return Outcome.not_converged if np.isfinite(rates).all() else Outcome.nonfinite
 
 
-def _most(tries: int, vain: int) -> int:
-    """Return how many steps are too many, by those so far and those of them in vain."""
-    return _FEW if vain > tries / 3 else _MOST
+def _is_endless(tries: int, vain: int, share: float, last_share: float) -> bool:
+    """Return whether steps are too many, by those so far, those in vain, and the shares of the time behind."""
+    return last_share < _NOWHERE or tries > share * (_FEW if vain > tries / 3 else _MOST)
 
 
 def _is_short(solver: Any) -> bool:

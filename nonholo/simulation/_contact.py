@@ -8,7 +8,7 @@ reflected momentum.
 import dataclasses
 import functools
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
@@ -19,62 +19,48 @@ from nonholo.continuous import ContinuousFlow, Problem, Solved, States, solver_o
 from nonholo.orbit import Crossings, EventLog, Orbit
 from nonholo.simulation._crossings import between_times, of_requested
 from nonholo.simulation._event import Event
-from nonholo.simulation._search import Watch, rate_of, search, struck, values_of
+from nonholo.simulation._search import Watch, search
 
 _TURN = 2 * np.pi
 _MOST = 200  # impacts in a step
 _LEAST = 2.0**-52  # of the part that is left, where the body is looked at
 _SHORT = 2.0**-36  # of a step: too short for the sign of a gap
 _ROUNDING = 2.0**-54  # of a step, that is left and gone at least
+_NO_TIME = 8  # units in the last place of a time
 _AHEAD = 2.0 ** np.arange(-10, 1)  # of a step, where the rate of a gap says whether the body is pressed
 
 
 def after_contact(
-    begin: Callable[[Orbit], tuple[Any, Outcome]], watch: Watch, there: Orbit, number: int, share: float
+    begin: Callable[[Orbit], tuple[Any, Outcome]], watch: Watch, node: Orbit
 ) -> tuple[Any, Watch, Outcome]:
-    """Take the part of a step that is left after an impact, or a step from a node at a wall.
+    """Take a step from a node at a wall, or what is left of it after the impact that was seen last.
 
     Args:
         begin: Gives the state of a run that begins at a state of an orbit, and the outcome.
         watch: The search for events.
-        there: One state: after the impact, or at the node.
-        number: The number of the step.
-        share: The part of it that is gone.
+        node: The state at the beginning of the step.
 
     Returns:
-        The state at its end, None if it is not reached; what is known then, and the outcome.
+        The state at its end, None if it is not reached; what is known then, and the outcome. A body stays that comes
+        back to a wall in no time, at once or from others without restitution.
     """
+    there, share, times = node, 0.0, dict[str, float]()
     for _ in range(_MOST):
-        since = there.time[0], watch.reset_by
-        there = dataclasses.replace(there.with_headings(watch.heading), step=np.array([number]))
-        if (outcome := begin(there)[1]) != Outcome.successful:
-            return None, watch, outcome
-        watch, end, outcome = _move_on(watch, there, share)
+        if (wall := watch.reset_by) is not None:
+            hit = watch.impact
+            there, share = hit.after, float(hit.fraction[0] + (hit.step[0] - node.step[0]))
+            if there.time[0] - times.get(wall, -np.inf) <= _NO_TIME * np.spacing(abs(there.time[0])):
+                break
+            times = {wall: there.time[0]} | (times if watch.restitution(wall) == 0 else {})
+        there = dataclasses.replace(there.with_headings(watch.heading), step=node.step)
+        if (outcome := begin(there)[1]) == Outcome.successful:
+            watch, end, outcome = _move_on(watch, there, share)
         if outcome != Outcome.successful or watch.stopped_by is not None:
             return None, watch, outcome
         if watch.reset_by is None:
             state, outcome = begin(end)
             return state if outcome == Outcome.successful else None, watch, outcome
-        hit = watch.impact
-        there, share = hit.after, float(hit.fraction[0] + hit.step[0] - number)
-        if (there.time[0], watch.reset_by) == since:  # the body comes back in no time
-            break
     return None, watch, Outcome.lasting_contact
-
-
-def _ways_ahead(watch: Watch, there: Orbit, name: str) -> list[float]:
-    """Return the rates of the gap of a wall ahead of a state at it, where they are seen: positive toward it."""
-    toward = -float(np.sign(watch.values[tuple(watch.events).index(name), 0]))  # type: ignore[index]
-    ends = [watch.part(there, np.array([place])) for place in _AHEAD]
-    rates = [toward * rate_of(name, watch.events[name], end) for end in ends if _is_finite(end)]
-    return [rate for rate in rates if rate != 0]
-
-
-def _stays(watch: Watch, there: Orbit) -> bool:
-    """Return whether a body stays at the wall that was struck last, which left it no speed, pressed against it."""
-    if (name := watch.reset_by) is None or watch.events[name].reset.restitution > 0:  # type: ignore[union-attr]
-        return False
-    return [*_ways_ahead(watch, there, name), 0.0][0] > 0
 
 
 def _move_on(watch: Watch, there: Orbit, share: float) -> tuple[Watch, Orbit, Outcome]:
@@ -82,68 +68,71 @@ def _move_on(watch: Watch, there: Orbit, share: float) -> tuple[Watch, Orbit, Ou
 
     A motion that the curve of the step alone, or rounding, leads through a wall to which it is not pressed is let go.
     """
-    rest = max(1 - share, _ROUNDING)
     if _stays(watch, there):
         return watch, there, Outcome.lasting_contact
-    slides = watch.slides_at(there)
-    if slides.any() and _is_finite(end := watch.part(there, np.array([rest]))):
-        slides &= watch.slides_at(end)
-    new_watch, end, outcome = _look_on(watch.along(slides), there, share, rest)
-    return dataclasses.replace(new_watch, events=watch.events), end, outcome
-
-
-def _look_on(watch: Watch, there: Orbit, share: float, rest: float) -> tuple[Watch, Orbit, Outcome]:
-    """Continue as `_move_on` by the gaps of walls, for the rest of a step."""
-    places, looks, inside = _looks(watch, there, rest)
-    end, watch = looks.chosen(slice(-1, None)), dataclasses.replace(watch, reset_by=None)
-    if not _is_finite(looks):
+    rest = max(1 - share, _ROUNDING)
+    if not _is_finite(end := watch.part(there, np.array([rest]))):
         return watch, end, Outcome.not_converged
-    if inside.any():
-        watch = _struck_here(watch, there, max(share, _ROUNDING), inside)
-        if watch.reset_by is not None:
-            return watch, end, Outcome.successful
-        walls = itertools.compress(watch.events, inside[:, 0])
-        is_pressed = any(rate > 0 for name in walls for rate in _ways_ahead(watch, there, name))
-        return watch.seen_at(end), end, Outcome.lasting_contact if is_pressed else Outcome.successful
+    watch = dataclasses.replace(watch, reset_by=None, sliding=watch.slides_at(there) & watch.slides_at(end))
     if rest < _SHORT:
         return watch.seen_at(end), end, Outcome.successful
+    places, looks, inside = _looks(watch, there, end, rest)
+    if inside.any():
+        new_watch = _struck_here(watch, there, max(share, _ROUNDING), inside)
+        walls = itertools.compress(watch.events, inside[:, 0])
+        if new_watch.reset_by is not None:
+            return new_watch, end, Outcome.successful
+        is_pressed = any(rate > 0 for name in walls for _, rate in _rates_ahead(watch, there, name))
+        return watch.seen_at(end), end, Outcome.lasting_contact if is_pressed else Outcome.successful
     new_watch = _search_rest(watch, there, places, looks, share)
-    if new_watch.reset_by is None and new_watch.stopped_by is None:
-        stays = watch.slides_at(end)
-        values = np.where(stays, watch.values, new_watch.values)  # type: ignore[arg-type]
-        new_watch = dataclasses.replace(new_watch, values=values)
+    if new_watch.reset_by is None:
+        values = np.where(watch.slides_at(end), watch.values, new_watch.values)  # type: ignore[arg-type]
+        new_watch = dataclasses.replace(new_watch, values=values, sliding=False)
     return new_watch, end, Outcome.successful
 
 
-def _looks(watch: Watch, there: Orbit, rest: float) -> tuple[np.ndarray, Orbit, Bool[np.ndarray, "E 1"]]:
+def _stays(watch: Watch, there: Orbit) -> bool:
+    """Return whether a body stays at the wall that was struck last: it is pressed, and no bounce of it can be seen.
+
+    From the speed u away from the wall and the acceleration a toward it the height of a bounce is u^2/2a.
+    """
+    if (name := watch.reset_by) is None or watch.restitution(name) == 1:
+        return False
+    speed = watch.rate_toward(name, there)
+    end, rate = next(_rates_ahead(watch, there, name), (there, speed))
+    time = end.time[0] - there.time[0]
+    return rate > speed and speed**2 * time <= 2 * (rate - speed) * watch.lowest_bounce(name, there)
+
+
+def _rates_ahead(watch: Watch, there: Orbit, name: str) -> Iterator[tuple[Orbit, float]]:
+    """Give states ahead of one at a wall, with the rates toward it, where they are seen."""
+    for place in _AHEAD:
+        if _is_finite(end := watch.part(there, np.array([place]))) and (rate := watch.rate_toward(name, end)):
+            yield end, rate
+
+
+def _looks(watch: Watch, there: Orbit, end: Orbit, rest: float) -> tuple[np.ndarray, Orbit, Bool[np.ndarray, "E 1"]]:
     """Return fractions of what is left of a step, the states there, and which walls the body has not left at any."""
-
-    def look(place: float) -> Orbit:
-        return watch.part(there, np.array([place * rest]))
-
-    places, looks, inside = [1.0], [look(1.0)], np.zeros((len(watch.events), 1), dtype=bool)
-    if rest >= _SHORT and _is_finite(looks[0]):
-        inside = watch.is_beyond(values_of(watch.events, looks[0]))
+    places, looks, inside = [1.0], [end], watch.is_beyond(watch.values_there(end))
     while inside.any() and places[-1] > _LEAST:
         places.append(places[-1] / 2)
-        looks.append(look(places[-1]))
-        inside &= watch.is_beyond(values_of(watch.events, looks[-1]))
+        looks.append(watch.part(there, np.array([places[-1] * rest])))
+        inside &= watch.is_beyond(watch.values_there(looks[-1]))
     return np.array([0.0, *places[::-1]]), there.joined(looks[::-1]), inside
 
 
-def _is_finite(looks: Orbit) -> bool:
-    return bool(np.isfinite(getattr(looks, looks.momenta[0])).all())
+def _is_finite(there: Orbit) -> bool:
+    return bool(np.isfinite(getattr(there, there.momenta[0])).all())
 
 
 def _struck_here(watch: Watch, there: Orbit, share: float, inside: Bool[np.ndarray, "E 1"]) -> Watch:
     """Return what is known after an impact of one of several walls at a place, where the motion is toward one."""
     sides = np.sign(watch.values).astype(np.int64)  # type: ignore[call-overload]
     for position, name in enumerate(watch.events):
-        if inside[position] and (after := struck(watch, name, there, -sides[position])) is not None:
+        if inside[position] and (after := watch.struck(name, there, -sides[position])) is not None:
             crossings = [each.chosen(slice(0, 0)) for each in watch.parts[0]]
             crossings[position] = Crossings(there.step, np.array([share]), -sides[position], there, after)
-            struck_watch = dataclasses.replace(watch.after_stretch(tuple(crossings)), reset_by=name)
-            return struck_watch.after_impact(watch.values)  # type: ignore[arg-type]
+            return watch.after_stretch(tuple(crossings)).after_impact(name, watch.values)  # type: ignore[arg-type]
     return watch
 
 
@@ -255,17 +244,17 @@ def _pass_impact(flights: Flights, watch: Watch, looks: Orbit, least: float) -> 
 
     One that begins at a wall leads to the first look after the least time, or the last one.
     """
-    there, at, share = looks.chosen(slice(0, 1)), 0, 0.0
-    last = 1 + int(np.searchsorted(looks.time[1:-1], least))
+    at, last = 0, 1 + int(np.searchsorted(looks.time[1:-1], least))
     if len(looks) == 1 or not watch.is_at_wall:
         watch, last = search(dataclasses.replace(watch, part=between_times(looks, 1.0)), looks)
         if watch.reset_by is None:
             return looks.chosen(slice(last - 1, last)), watch, Outcome.successful
-        there, at, share = watch.begun_at(last - 1)
+        at = watch.cut - looks.step[0]
         last = at + 1
-    ends = looks.time[last : last + 1]
-    watch = dataclasses.replace(watch, part=functools.partial(_part, flights, float(ends[0] - looks.time[at]), {}))
-    after, watch, outcome = after_contact(lambda states: (states, Outcome.successful), watch, there, at, share)
+    node, ends = looks.chosen(slice(at, at + 1)), looks.time[last : last + 1]
+    there = node if watch.reset_by is None else watch.impact.after
+    watch = dataclasses.replace(watch, part=functools.partial(_part, flights, float(ends[0] - node.time[0]), {}))
+    after, watch, outcome = after_contact(lambda states: (states, Outcome.successful), watch, node)
     return there if after is None else dataclasses.replace(after, time=ends), watch, outcome
 
 

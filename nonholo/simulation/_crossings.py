@@ -22,7 +22,7 @@ def watch_for(owner: str, stepper: AbstractStepper[Any], events: Any) -> Watch:
         remedy = "Look for changes of sign in the states yourself."
         raise error(f"{owner}(events=...)", "have parts of a step", stepper.part_refused, remedy)
     watch = Watch(by_name, stepper.motion.after_parts, functools.partial(_with_step, stepper))
-    if watch.has_walls:
+    if has_resets(by_name):
         _check_walls(owner, stepper, by_name)
     return watch
 

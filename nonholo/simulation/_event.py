@@ -22,6 +22,7 @@ _ORDER_4 = np.array([40.0, -5.0, 0.0]) / 45  # weights of differences, by the fi
 _ALIKE, _UNSEEN = 2.0**-26, 2.0**-14  # relative: differences of two orders, a derivative beside the largest one
 _UNCERTAIN, _RESOLVED = 2.0**-38, 2.0**-10  # relative, of values whose difference is taken; of three differences
 _GRAIN = 2.0**-44  # relative, of differences with the first offsets: the rounding of a place
+_LOW = 7e-13  # relative to a place: the height of the last bounce, of whose gaps rounding leaves three digits
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -112,6 +113,12 @@ class Impact:
         if callable(self.normal):
             return numbers_of("Impact(normal=...)", self.normal, (dim,), "Return a body covector.", place)
         return _slope_of(gap, states)
+
+    def lowest_bounce(self, gap: Any, states: AbstractOrbit) -> float:
+        """Return the height in a gap, as its rounding lets it be seen, from which on a bounce is one."""
+        if states.system.is_wide:
+            return 0.0
+        return _LOW * float(np.abs(self.covector(gap, states)) @ _reach(states))
 
     def struck(self, where: str, gap: Any, states: AbstractOrbit, direction: int) -> Any:
         """Return a state after an impact; None where the motion is not toward the wall, or cannot be.

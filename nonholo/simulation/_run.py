@@ -226,28 +226,25 @@ def _watch_steps(stepper: Stepper, watch: Watch, state: State, stretch: tuple[in
     step, steps = stretch
     if watch.is_at_wall:
         write_first(state, room)
-        return _through(stepper, watch, state, (step, 0), room)
+        return _through(stepper, watch, state, step, room)
     state, good, code = _advance(stepper, state, steps, 1, room)
     rows = tuple([column[: 1 + good].copy() for column in room])
     watch, states = search(watch, _states(stepper, rows, step))
     if watch.reset_by is not None:
-        return _through(stepper, watch, state, (step, states - 1), room)
+        return _through(stepper, watch, state, step, room)
     if watch.stopped_by is not None:
         keep_row(state, room, states - 1)
     return state, states - 1, code, watch
 
 
-def _through(stepper: Stepper, watch: Watch, state: State, place: tuple[int, int], room: Rows) -> Searched:
+def _through(stepper: Stepper, watch: Watch, state: State, step: int, room: Rows) -> Searched:
     """Take the step from a node at a wall, or the part that is left of the step with the impact that was seen last."""
-    state, (step, good) = state.copy(), place
-    if watch.reset_by is None:
-        there, share = orbit_at(stepper, state, step), 0.0
-    else:
-        there, good, share = watch.begun_at(good)
-    after, watch, outcome = after_contact(functools.partial(begun_at, stepper), watch, there, step + good, share)
-    keep_row(state, room, good)
+    node, good = state.copy(), 0 if watch.reset_by is None else watch.cut - step
+    keep_row(node, room, good)
+    begin = functools.partial(begun_at, stepper)
+    after, watch, outcome = after_contact(begin, watch, orbit_at(stepper, node, step + good))
     if after is None:
-        return state, good, outcome, watch
+        return node, good, outcome, watch
     write_first(after, part_of(room, good + 1, good + 2))
     return after, good + 1, outcome, watch
 

@@ -2,7 +2,6 @@
 
 import dataclasses
 import functools
-import itertools
 import operator
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple, cast
@@ -11,7 +10,7 @@ import numpy as np
 
 from nonholo.base.types import Bool, Float, Int
 from nonholo.orbit import AbstractOrbit, Crossings, EventLog, joined_crossings
-from nonholo.simulation._event import Event, Impact, has_resets, values_at
+from nonholo.simulation._event import Event, Impact, values_at
 
 Part = Callable[[Any, Float[np.ndarray, "K"]], Any]
 """Gives what is reached from states after fractions of the steps that begin there."""
@@ -38,6 +37,7 @@ class Watch:
         heading: The heading at the last state, in the plane.
         stopped_by: The name of the event that ended the motion.
         reset_by: The name of the event whose impact is the last thing that was seen.
+        sliding: Walls along which the body slides in the next stretch, whose gaps are rounding there.
     """
 
     events: dict[str, Event]
@@ -49,43 +49,34 @@ class Watch:
     heading: float | None = None
     stopped_by: str | None = None
     reset_by: str | None = None
+    sliding: Bool[np.ndarray, "E 1"] | bool = False
 
     @property
     def left(self) -> list[float]:
         """The number of further crossings of every event that ends the motion, or breaks it; infinite if none does."""
         counts = self.counts or (0,) * len(self.events)
-        left = [event.last - count for event, count in zip(self.events.values(), counts, strict=True)]
-        return [rest if event.reset is None else 1.0 for event, rest in zip(self.events.values(), left, strict=True)]
-
-    @property
-    def has_walls(self) -> bool:
-        """Whether an event has a reset."""
-        return has_resets(self.events)
+        pairs = zip(self.events.values(), counts, strict=True)
+        return [1.0 if event.reset is not None else event.last - count for event, count in pairs]
 
     @property
     def is_at_wall(self) -> bool:
         """Whether the last state is at a wall."""
-        return self.has_walls and self.values is not None and bool(self.at_walls.any())
+        return bool(self.at_walls.any())
 
     @property
     def impacts(self) -> list[Any]:
         """The states after impacts, in their order."""
-        hits = (crossings for part in self.parts for crossings in part if crossings.after is not None)
-        return [crossings.after for crossings in hits if len(crossings)]
+        return [each.after for part in self.parts for each in part if each.after is not None and len(each)]
 
     @property
     def impact(self) -> Crossings:
         """The impact that is the last thing that was seen."""
         return self.parts[-1][tuple(self.events).index(self.reset_by or "")].chosen(slice(-1, None))
 
-    def begun_at(self, last: int) -> tuple[Any, int, float]:
-        """Return the state after the impact, the step that is cut, and how much of it is gone; `last` came before it.
-
-        One at the end of a step cuts that one.
-        """
-        hit = self.impact
-        exact = hit.fraction[0] == 0
-        return hit.after, last - int(exact), 1.0 if exact else float(hit.fraction[0])
+    @property
+    def cut(self) -> int:
+        """The number of the step that this impact cuts; one at the end of a step cuts that one."""
+        return int(self.impact.step[0] - (self.impact.fraction[0] == 0))
 
     def after_stretch(self, crossings: tuple[Crossings, ...]) -> "Watch":
         """Return what is known after another stretch, but for what is known of its last state."""
@@ -93,49 +84,68 @@ class Watch:
         parts = (*self.parts, crossings) if not self.parts or any(map(len, crossings)) else self.parts
         return dataclasses.replace(self, parts=parts, counts=counts, reset_by=None)
 
-    def after_impact(self, before: np.ndarray) -> "Watch":
-        """Return what is known at the impact that was seen last, from values before it: nothing is beyond a wall."""
-        hit, before = self.impact, np.array(before)
-        wall = tuple(self.events).index(self.reset_by or "")
-        before[wall] = -hit.direction
-        watch = dataclasses.replace(self, values=before).seen_at(hit.after)
-        cast(Any, watch.values)[wall] = -_TOUCH * hit.direction
-        return watch
+    def after_impact(self, name: str, before: Float[np.ndarray, "E 1"]) -> "Watch":
+        """Return what is known at the impact of an event that was seen last, from values before it."""
+        watch = dataclasses.replace(self, reset_by=name, values=before)
+        return watch.seen_at(watch.impact.after, np.array([[each == name] for each in self.events]))
 
-    def along(self, walls: Bool[np.ndarray, "E 1"]) -> "Watch":
-        """Return the search in which gaps of walls, along which the body slides, are not looked at."""
-        events = dict(self.events)
-        for name in itertools.compress(events, walls[:, 0]):
-            value = float(cast(Any, self.values)[tuple(events).index(name), 0])
-            events[name] = dataclasses.replace(
-                events[name], function=lambda states, value=value: np.full(len(states), value)
-            )
-        return dataclasses.replace(self, events=events)
-
-    def seen_at(self, there: Any) -> "Watch":
+    def seen_at(self, there: Any, is_struck: Bool[np.ndarray, "E 1"] | bool = False) -> "Watch":
         """Return what is known at a state so near to the last one that no side of a wall was left."""
-        values = values_of(self.events, there)
-        stays = self.is_beyond(values) | self.slides_at(there)
+        values = self.values_there(there)
+        stays = is_struck | self.is_beyond(values) | self.slides_at(there)
         values = np.where(stays, _TOUCH * np.sign(self.values), values)  # type: ignore[arg-type]
-        return dataclasses.replace(self, values=values, heading=None if there.turned is None else there.turned[-1])
+        heading = None if there.turned is None else there.turned[-1]
+        return dataclasses.replace(self, values=values, heading=heading, sliding=False)
+
+    def values_there(self, states: Any) -> Values:
+        """Return the values of all events at states; along a wall the one before."""
+        values = values_of(self.events, states)
+        return values if self.values is None else np.where(self.sliding, self.values, values)
+
+    @property
+    def walls(self) -> Bool[np.ndarray, "E 1"]:
+        """The events that are walls."""
+        return np.array([event.reset is not None for event in self.events.values()], dtype=bool)[:, None]
 
     @property
     def at_walls(self) -> Bool[np.ndarray, "E 1"]:
         """The walls at which the last state is."""
-        walls = np.array([[event.reset is not None] for event in self.events.values()])
-        return walls & (abs(cast(Any, self.values)) == _TOUCH)
+        return self.walls & (abs(cast(Any, self.values)) == _TOUCH)
 
     def slides_at(self, there: Any) -> Bool[np.ndarray, "E 1"]:
         """Return the walls at which the last state is, and whose gaps do not change at a state."""
-        pairs = zip(self.events.items(), self.at_walls[:, 0], strict=True)
-        return np.array([[bool(at) and rate_of(*item, there) == 0] for item, at in pairs])
+        pairs = zip(self.events, self.at_walls[:, 0], strict=True)
+        return np.array([[bool(at) and self.rate_toward(name, there) == 0] for name, at in pairs])
 
     def is_beyond(self, values: Float[np.ndarray, "E 1"]) -> Bool[np.ndarray, "E 1"]:
         """Return the events whose values mean that the body is beyond a wall, or at one, before which it was last."""
-        side = np.sign(self.values)  # type: ignore[call-overload]
-        guards = [(event.reset is not None, event.direction) for event in self.events.values()]
-        has_wall, direction = np.array(guards).T[:, :, None]
-        return (has_wall != 0) & (direction * side <= 0) & (side != 0) & (np.sign(values) != side)
+        rows = np.hstack([cast(Any, self.values), values])
+        return self.walls & [changes(event, row) for event, row in zip(self.events.values(), rows, strict=True)]
+
+    def rate_toward(self, name: str, there: Any) -> float:
+        """Return the rate at which a gap shrinks at a state; zero if it is rounding."""
+        reset, gap = self._wall(name)
+        side = np.sign(cast(Any, self.values)[tuple(self.events).index(name), 0])
+        return float(-side * there.rate_along(reset.covector(gap, there)))
+
+    def restitution(self, name: str) -> float:
+        """Return the restitution of a wall."""
+        return self._wall(name)[0].restitution
+
+    def lowest_bounce(self, name: str, there: Any) -> float:
+        """Return the height in the gap of a wall from which on a bounce at a state is one."""
+        reset, gap = self._wall(name)
+        return reset.lowest_bounce(gap, there)
+
+    def struck(self, name: str, states: Any, direction: Int[np.ndarray, "1"]) -> Any:
+        """Return the state after the impact of an event at a state; None where the motion is not toward the wall."""
+        reset, gap = self._wall(name)
+        after = reset.struck(f"Event(reset=...) of {name!r}", gap, states, int(direction[0]))
+        return None if after is None else self.begin(after)
+
+    def _wall(self, name: str) -> tuple[Impact, Callable[[Any], Float[np.ndarray, "K"]]]:
+        """Return the impact of an event, and the function of states that gives its gap."""
+        return cast(Impact, self.events[name].reset), functools.partial(values_at, name, self.events[name])
 
     def log(self) -> EventLog:
         """Return what has been found."""
@@ -150,11 +160,12 @@ def search(watch: Watch, stretch: AbstractOrbit) -> tuple[Watch, int]:
         What is known now, and how many states of the stretch belong to the motion: all, unless an event ended it.
     """
     stretch = stretch.with_headings(watch.heading)
-    values = values_of(watch.events, stretch)
+    values = watch.values_there(stretch)
     if watch.values is not None:  # those of a state that was seen before stay what they were
         values[:, :1] = watch.values
-    else:
-        values[:, :1] = _opening_values(watch.events, values[:, :1])
+    else:  # at a wall with a direction a body is on the side that leads through it
+        sides = [-event.direction * (event.reset is not None) for event in watch.events.values()]
+        values[:, :1] += _TOUCH * np.reshape(sides, (-1, 1)) * (values[:, :1] == 0)
     owner, left = np.zeros(len(stretch), dtype=int), np.array([watch.left]).T
     places = find_crossings(watch.events, stretch, values, owner, left, watch.part)
     first, count = int(places.stopper[0]), len(stretch)
@@ -164,19 +175,17 @@ def search(watch: Watch, stretch: AbstractOrbit) -> tuple[Watch, int]:
         _crossings_of(watch, first, position, stretch, row, at)
         for position, (row, at) in enumerate(zip(values, places.at, strict=True))
     )
-    new_watch = watch.after_stretch(crossings)
-    if len(stretch):
-        new_watch = dataclasses.replace(new_watch, values=values[:, count - 1 : count])
-    heading = float(stretch.turned[count - 1]) if stretch.turned is not None else None
-    new_watch = dataclasses.replace(new_watch, heading=heading)
+    last = values[:, count - 1 : count] if count else None
+    heading = None if stretch.turned is None else float(stretch.turned[count - 1])
+    new_watch = dataclasses.replace(watch.after_stretch(crossings), values=last, heading=heading)
     if first < 0:
         return new_watch, count
     name, event = tuple(watch.events.items())[first]
     if event.reset is None or new_watch.counts[first] >= event.last:
         return dataclasses.replace(new_watch, stopped_by=name), count
-    new_watch = dataclasses.replace(new_watch, reset_by=name)
-    _, before, _ = new_watch.begun_at(count - 1)  # at a wall a gap says nothing of sides
-    return new_watch.after_impact(values[:, before : before + 1]), count
+    hit = crossings[first]
+    before = hit.step[-1] - (hit.fraction[-1] == 0) - stretch.step[0]  # at a wall a gap says nothing of sides
+    return new_watch.after_impact(name, values[:, before : before + 1]), count
 
 
 def _crossings_of(watch: Watch, first: int, position: int, stretch: Any, row: np.ndarray, at: np.ndarray) -> Crossings:
@@ -187,27 +196,8 @@ def _crossings_of(watch: Watch, first: int, position: int, stretch: Any, row: np
     crossings = locate(name, event, stretch, row, at, watch.part)
     if event.reset is None:
         return crossings
-    after = struck(watch, name, crossings.states, crossings.direction) if len(crossings) else None
+    after = watch.struck(name, crossings.states, crossings.direction) if len(crossings) else None
     return dataclasses.replace(crossings, after=crossings.states if after is None else after)
-
-
-def rate_of(name: str, event: Event, there: Any) -> float:
-    """Return the rate of the gap of a wall at a state; zero if it is rounding."""
-    return there.rate_along(cast(Impact, event.reset).covector(functools.partial(values_at, name, event), there))
-
-
-def struck(watch: Watch, name: str, states: Any, direction: Int[np.ndarray, "1"]) -> Any:
-    """Return the state after the impact of an event at a state; None where the motion is not toward the wall."""
-    event, where = watch.events[name], f"Event(reset=...) of {name!r}"
-    gap = functools.partial(values_at, name, event)
-    after = cast(Impact, event.reset).struck(where, gap, states, int(direction[0]))
-    return None if after is None else watch.begin(after)
-
-
-def _opening_values(events: Events, values: Values) -> Values:
-    """Return values at the first state: one at a wall with a direction is on the side that leads through it."""
-    side = [[-event.direction * (event.reset is not None)] for event in events.values()]
-    return np.where(values == 0, _TOUCH * np.reshape(side, (-1, 1)), values)
 
 
 def values_of(events: Events, states: AbstractOrbit) -> Values:

@@ -17,7 +17,7 @@ from nonholo.discrete import BranchRule
 from nonholo.io.checkpoints import Checkpoint, Seen
 from nonholo.orbit import AbstractStepper, First
 from nonholo.simulation._crossings import watch_for
-from nonholo.simulation._event import Event, checked_events
+from nonholo.simulation._event import Event, checked_events, has_resets
 from nonholo.simulation._options import check_forces, stepper_of
 from nonholo.simulation._run import Reached, Run, blocks, compute_block, open_run, orbit_at, rows_of_block
 from nonholo.simulation._search import Watch, search
@@ -209,7 +209,7 @@ def refuse_other_functions(owner: str, stream: "Stream", run: Run) -> None:
     begin, end = stream.checkpoint(block), stream.sound(block)
     plan = stream.plan._replace(steps=min(begin.done + run.every, end.done))
     reached_then = reached_at(run, begin)
-    if reached_then.watch is None or not reached_then.watch.has_walls:
+    if reached_then.watch is None or not has_resets(reached_then.watch.events):
         reached_then = Reached(begin.done, Outcome.successful, begin.vector, None)
     orbit, again = compute_block(run.stepper, plan, block, reached_then, lambda *_: None)
     tolerance = _SAME if io.provenance.other_versions(io.metadata.read_attributes(stream.path)) else 0.0

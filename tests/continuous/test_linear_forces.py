@@ -236,6 +236,10 @@ def _switch(*state: Any) -> np.ndarray:
     return np.array([np.sign(np.sin(1e3 * state[0])), 0.0, 0.0])
 
 
+def _stick(*state: Any) -> np.ndarray:
+    return -3.0 * np.sign(state[2])
+
+
 def _drag(*state: Any) -> np.ndarray:
     return -1e8 * state[2]
 
@@ -247,6 +251,7 @@ def _flow(potential: Any, force: Any, times: Any = SOON) -> nh.Orbit:
 ENDLESS: dict[str, tuple[Any, Any, str, str]] = {
     "drag": (None, _drag, "too_stiff", "_drag"),
     "switch": (None, _switch, "too_stiff", "_switch"),
+    "sticks": (None, _stick, "too_stiff", "_stick"),
     "weight": (nh.Gravity([1e149, 0.0], [0.1, 0.2]), None, "too_stiff", "Gravity"),
     "at once": (None, lambda *_: np.array([1e200, 0.0, 0.0]), "nonfinite", "<lambda>"),
 }

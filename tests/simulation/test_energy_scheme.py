@@ -338,3 +338,23 @@ def test_roots_are_those_of_a_path_of_our_own(bodies: int) -> None:
         assert np.abs(run.displacement[0] - wanted).max() < 1e-8, case
     assert 0 < ended < bodies / 3
     assert turned > 1.0
+
+
+def test_a_spring_with_a_length_has_no_direction_at_its_end() -> None:
+    """Maps and flows end there, systems by functions refuse it; beside it kicks have the exact force."""
+    disk, spring = (
+        nh.RigidBody.from_inertia(1.0, 0.5, (0.0, 0.0), nh.SE(2)),
+        nh.Spring([0.0, 0.0], [0.0, 0.0], 2.0, 0.3),
+    )
+    turning = {"body_velocity": (0.5, 0.0, 0.0)}
+    for forced in (nh.Forced(disk, spring, scheme=scheme) for scheme in ("variational", "energy")):
+        orbit = nh.simulate(nh.discretize(forced, 0.1), steps=3, throw=False, **turning)
+        assert (str(orbit.outcome), len(orbit)) == ("nonfinite", 0)
+        with pytest.raises(nh.OutcomeError, match="nonfinite"):
+            nh.flow(forced, times=(0.0, 0.1), **turning)
+    by_functions = nh.GroupLagrangeDAlembert(nh.SE(2), nh.mass_tensor_lagrangian(nh.SE(2), np.diag([0.5, 1, 1])), None)
+    with pytest.raises(ValueError, match="be finite and differentiable"):
+        nh.flow(nh.Forced(by_functions, spring), times=(0.0, 0.1), configuration=np.eye(3), **turning)
+    beside = {"configuration": nh.SE(2).exp(np.array([0.0, 1e-4, 0.0])), "body_velocity": np.zeros(3)}
+    pulled = nh.simulate(nh.discretize(nh.Forced(disk, spring, scheme="variational"), 1e-3), steps=1, **beside)
+    assert abs(pulled.position[1, 0] - 1e-4 - 1e-6 * 2.0 * (0.3 - 1e-4) / 2) < 1e-15

@@ -147,15 +147,13 @@ class ForcedRoute(AbstractForcedRoute, AbstractOuterRoute):
     @property
     def compiled_route(self) -> "ForcedRoute | None":  # type: ignore[override]
         """The route itself, if numba compiled all functions that it calls."""
-        forced = self.forced
-        is_jitted = forced.is_jitted and driven_potential(forced) in (None, forced.own_potential)
-        return self if is_jitted else None
+        return self if self.forced.is_jitted and not exact_terms(self.forced) else None
 
     @functools.cached_property
     def body(self) -> kernels.ForcedBody:
         """The body and its half impulse."""
         free, forced = self.free, self.forced
-        has_function = forced.function is not None or driven_potential(forced) is not None
+        has_function = forced.needs_function or exact_terms(forced)
         half = half_drive(free, forced, self.faults) if has_function else half_kick(free, forced)
         return kernels.ForcedBody(free.body, half)
 
@@ -221,11 +219,12 @@ def half_kick(free: AbstractCompiledRoute, forced: Forced) -> kernels.Kick:
 def half_drive(free: AbstractCompiledRoute, forced: Forced, faults: dict[str, str]) -> kernels.Drive:
     """Return half the impulse of functions; those that numba compiled are asked before a run."""
     kick, along = _linear_part(free, forced)
-    S, has = np.asarray(forced.constraint_subspace), (forced.function is not None, driven_potential(forced) is not None)
+    S, exact = np.asarray(forced.constraint_subspace), exact_terms(forced)
+    has = forced.function is not None or bool(exact), forced.own_potential is not None
     momenta = forced.from_canonical(free.decode(np.eye(forced.rank)))
     velocity = S.T @ np.linalg.solve(S @ np.asarray(forced.inertia_operator) @ S.T, momenta.T)
     moves, weights = forced.differences
-    force, potential = functions_of(forced, driven_potential(forced), faults)
+    force, potential = functions_of(forced, exact, faults)
     return kernels.Drive(
         kick=kick,
         planar=(2 if forced.group == SE(2) else 3) if free.is_scalar else 0,
@@ -241,16 +240,18 @@ def half_drive(free: AbstractCompiledRoute, forced: Forced, faults: dict[str, st
     )
 
 
-def driven_potential(forced: Forced) -> Callable[..., Any] | None:
-    """Return U as kicks at nodes take it: a function, unless it is a single weight."""
-    whole = len(forced.terms) > 1 or (forced.terms and forced.gravity is None and forced.own_potential is None)
-    return forced.potential_energy if whole else forced.own_potential
+def exact_terms(forced: Forced) -> list[Any]:
+    """Return the potentials whose covectors are known, unless there is a single weight, which a kernel takes."""
+    return [] if forced.gravity is not None else [each for each in forced.terms if not callable(each)]
 
 
-def functions_of(forced: Forced, potential: Callable[..., Any] | None, faults: dict[str, str]) -> tuple[Any, Any]:
-    """Return force and potential as kernels call them: addresses if numba compiled all of them, else in Python."""
-    if not forced.is_jitted or potential not in (None, forced.own_potential):
-        return _in_python(forced, potential, faults)
+def functions_of(forced: Forced, exact: list[Any], faults: dict[str, str]) -> tuple[Any, Any]:
+    """Return force and potential as kernels call them: addresses if numba compiled all of them, else in Python.
+
+    The force has the covectors of potentials where they are known.
+    """
+    if not forced.is_jitted or exact:
+        return _in_python(forced, exact, faults)
     shape = (forced.group.size, forced.group.dim)
     if not forced.needs_function:
         return 0, 0
@@ -258,22 +259,28 @@ def functions_of(forced: Forced, potential: Callable[..., Any] | None, faults: d
 
     _check_compiled(forced)
     force = 0 if forced.function is None else function_of(forced.function, shape, 3)
-    return force, 0 if potential is None else function_of(potential, shape, 1)
+    return force, 0 if forced.own_potential is None else function_of(forced.own_potential, shape, 1)
 
 
-def _in_python(forced: Forced, own: Any, faults: dict[str, str]) -> tuple[Callable[..., None], Callable[..., None]]:
+def _in_python(
+    forced: Forced, exact: list[Any], faults: dict[str, str]
+) -> tuple[Callable[..., None], Callable[..., None]]:
     """Return what writes force and potential by the definition: NaN where they are not finite, which is noted."""
 
     def force(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:
         out[:] = np.nan
         with note_fault(faults, "force"):
             out[:] = forced.driving_force(time, g, velocity)
+        for each in exact:
+            out += each.covector(forced.group, g)
 
     def potential(time: float, g: np.ndarray, velocity: np.ndarray, out: np.ndarray) -> None:
         del time, velocity
         out[0] = np.nan
         with note_fault(faults, "potential"):
-            out[0] = number_of("Forced(potential=...)", cast(Any, own), "Return U of a configuration.", g)
+            out[0] = number_of(
+                "Forced(potential=...)", cast(Any, forced.own_potential), "Return U of a configuration.", g
+            )
 
     return force, potential
 
@@ -437,7 +444,7 @@ def balance(free: AbstractCompiledRoute, forced: Forced, order: int, faults: dic
     C = np.zeros((0, 0)) if forced.friction is None else along @ forced.friction.matrix @ velocity
     rows = forced.rows(np.arange(1 + (0 if forced.table is None else len(forced.table)))) @ along.T
     moves, parts = forced.differences
-    force, potential = functions_of(forced, forced.own_potential, faults)
+    force, potential = functions_of(forced, [], faults)
     numbers = kernels.Impulses(
         turn=plain(kernel_frame(free, forced)),
         directions=plain(frame @ group.hat(charts @ variety.chart) @ group.inverse(frame)),

@@ -175,7 +175,8 @@ class Gravity(AbstractLinear):
 class Spring:
     r"""The potential of a spring between the body point x and the space point p, $U(g) = \tfrac k2(|gx - p| - L)^2$.
 
-    Under the scheme "energy" its covector of a step between ends at distances $d_0$, $d_1$ is exact:
+    With a length L it has no direction where $gx = p$: its force is undefined there, and the motion `nonfinite`. Under
+    the scheme "energy" its covector of a step between ends at distances $d_0$, $d_1$ is exact:
 
     $$ \langle G, \xi\rangle = k\Bigl(1 - \frac{2L}{d_0 + d_1}\Bigr)
        \Bigl(\frac{gx + g'x}2 - p\Bigr)\cdot g(I + Y)\xi x. $$
@@ -219,8 +220,10 @@ class Spring:
         """Return U at configurations."""
         arm = self._arm(group, configuration)
         xp: Any = arm.__array_namespace__()
-        square, size = (arm * arm).sum(axis=-1), self._size(arm)
-        return self.stiffness / 2 * xp.where(size > 0, (size - self.length) ** 2, square + self.length**2)
+        square = (arm * arm).sum(axis=-1)
+        is_rough = (square > 0) | (self.length != 0)  # with a length dU is undefined at zero
+        size = xp.sqrt(xp.where(is_rough, square, 1.0))
+        return self.stiffness / 2 * xp.where(is_rough, (size - self.length) ** 2, square + self.length**2)
 
     def covector(self, group: AbstractMatrixGroup, configuration: Poses) -> Covectors:
         """Return -dU along the body directions at configurations."""
