@@ -229,9 +229,7 @@ def _turns(g: np.ndarray, names: list[str]) -> Float[np.ndarray, "R c"]:
     return g[:, :size, :size].reshape(len(g), len(names))
 
 
-def continuous(
-    q: Float[np.ndarray, "... R 4"], before: Float[np.ndarray, "... 1 4"] | None = None
-) -> Float[np.ndarray, "... R 4"]:
+def continuous(q: Float[np.ndarray, "... R 4"], before: np.ndarray | None = None) -> Float[np.ndarray, "... R 4"]:
     """Return the quaternions, each with the sign that is nearer to the one before it."""
     chain = np.concatenate([q[..., :1, :] if before is None else before, q], axis=-2)
     signs = np.where(np.sum(chain[..., 1:, :] * chain[..., :-1, :], axis=-1) < 0, -1.0, 1.0)
@@ -282,11 +280,8 @@ _MATRICES = {
     "configuration": (("row", "column"), "pose as a matrix", "1"),
     "displacement": (("row", "column"), "displacement of one step as a matrix", "1"),
 }
-_MULTIPLIERS = "multipliers: forces of a flow, impulses to the next state of a discrete orbit"
-_OTHERS = {
-    "time": ((), "time", "time unit"),
-    "multipliers": (("multiplier",), _MULTIPLIERS, "force unit, or times time"),
-}
+_IMPULSES = "multipliers: forces of a flow, impulses to the next state of a discrete orbit"
+_OTHERS = {"time": ((), "time", "time unit"), "multipliers": (("multiplier",), _IMPULSES, "force unit, or times time")}
 _LABELS = _COMPACT | _KNOWN | _MATRICES | _OTHERS
 _SPATIAL = {  # of a right-invariant constraint
     "reduced_momentum": "spatial momentum along the constraint subspace",
@@ -383,8 +378,7 @@ def is_known(system: System, name: str, *, posed: bool, discrete: bool) -> bool:
 def labels_of(system: System, name: str) -> tuple[tuple[str, ...], dict[str, str]]:
     """Return the dimensions of a quantity after those of the states, and its attributes."""
     axes, meaning, units = _LABELS[name]
-    long_name = _SPATIAL.get(name, meaning) if system.is_spatial else meaning
-    return axes, {"long_name": long_name, "units": units}
+    return axes, {"long_name": _SPATIAL.get(name, meaning) if system.is_spatial else meaning, "units": units}
 
 
 def _is_known(orbit: Orbit, name: str) -> bool:

@@ -128,9 +128,7 @@ class Result:
         """One of "ok", "FAILED", "reported" (no tolerance), "not checked" (the note has the reason)."""
         if not self.passed:
             return "FAILED"
-        if self.value is None:
-            return "not checked"
-        return "ok" if self.tolerance is not None else "reported"
+        return "not checked" if self.value is None else "ok" if self.tolerance is not None else "reported"
 
     def __str__(self) -> str:
         """Return what is required and what was found."""
