@@ -90,8 +90,7 @@ def dataset(
     h = definition.time_step if time_step is None else time_step
     h = float(scale("dataset(time_step=...)", h, "Pass a positive time step."))
     steps = count("dataset(steps=...)", steps, "Pass the number of steps.")
-    deviation = float(number("dataset(noise=...)", noise))
-    if deviation < 0:
+    if (deviation := float(number("dataset(noise=...)", noise))) < 0:
         raise error("dataset(noise=...)", "not be negative", f"{deviation}", "Pass a standard deviation, or 0.")
     task = DatasetTask(label, definition, h, steps, deviation, _ends(split, members))
     design = RandomDesign(members, definition.distributions, seed("dataset(rng=...)", rng))

@@ -159,8 +159,7 @@ def show_provenance(store: Path, attributes: Facts, orbit: AbstractOrbit | None,
         show_json({"store": str(store), "provenance": record, **numbers})
         return
     thinning = "" if record["save_every"] == 1 else f", one in {record['save_every']} steps"
-    heading = {"title": str(store), "states": f"{record['arrays']['time'][0]}{thinning}"}
-    show(numbers, heading | _origin(record))
+    show(numbers, {"title": str(store), "states": f"{record['arrays']['time'][0]}{thinning}"} | _origin(record))
 
 
 def show_standing(store: Path, attributes: Facts, standing: Standing, *, json: bool) -> None:
@@ -179,8 +178,7 @@ def show_sweep_standing(store: Path, attributes: Facts, *, json: bool) -> None:
     record = _record(attributes)
     result = failure = None
     with store_errors(USAGE):
-        sweep = open_store(store)
-        if sweep.is_finished and sweep.layout.blocks <= _MOST_BLOCKS:
+        if (sweep := open_store(store)).is_finished and sweep.layout.blocks <= _MOST_BLOCKS:
             try:
                 result = load_sweep(store)
             except ValueError as caught:
@@ -291,8 +289,7 @@ def _ranges(result: xarray.Dataset) -> dict[str, tuple[float, float, str]]:
             if name == OUTCOME or values.attrs.get("long_name") == AXIS["long_name"] or values.dtype.kind not in "if":
                 continue
             finite = values.where(good).values
-            finite = finite[np.isfinite(finite)]
-            if finite.size:
+            if (finite := finite[np.isfinite(finite)]).size:
                 meaning = str(values.attrs.get("long_name", ""))
                 least, most, _ = ranges.get(str(name), (math.inf, -math.inf, ""))
                 ranges[str(name)] = (min(least, float(finite.min())), max(most, float(finite.max())), meaning)
