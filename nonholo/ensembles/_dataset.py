@@ -18,7 +18,6 @@ from nonholo.ensembles.designs import RandomDesign
 from nonholo.ensembles.stores import open_store
 
 STORE, METADATA, CARD = "orbits.zarr", "metadata.json", "README.md"
-_FORMATS = ("zarr", "csv")
 _REMEDY = "`nonholo dataset --list` describes them; a function may be your own."
 
 
@@ -83,7 +82,7 @@ def dataset(
     """
     label = function_name(name) if callable(name) else choice("dataset(name=...)", name, tuple(DEFINITIONS), _REMEDY)
     definition = family_of(name) if callable(name) else DEFINITIONS[label]
-    choice("dataset(file_format=...)", file_format, _FORMATS)
+    choice("dataset(file_format=...)", file_format, ("zarr", "csv"))
     flags("dataset", progress=progress)
     text("dataset(license_name=...)", license_name)
     members = count("dataset(orbits=...)", orbits, "Pass how many.")

@@ -20,7 +20,6 @@ from nonholo.simulation import ensemble
 
 _EXAMPLES, _READY, _FINAL = "nonholo.examples", "examples.", "final_state"
 _STEP, _STARTS = "time_step", ("configuration", "body_velocity")
-_OWN = (*_STARTS, _STEP)
 _STEPS, _MEMBERS = 1 << 20, 1 << 12  # at most in a block
 
 
@@ -92,7 +91,7 @@ class FamilyTask:
 
     def check_design(self, names: list[str]) -> None:
         """Refuse a design that names what the family does not have."""
-        own = [*self._arguments, *(name for name in _OWN if name not in self._arguments)]
+        own = [*self._arguments, *(name for name in (*_STARTS, _STEP) if name not in self._arguments)]
         for name in names:
             part = component_of(name)
             if name not in own and not (part and part[0] in own):

@@ -346,7 +346,6 @@ def _description(task: Any, design: Design) -> dict[str, Any]:
 
 
 _CSV = "sweep_to_csv(store=...)"
-_WANTED = ("outcome", "final_time", "final_pose")
 
 
 def sweep_to_csv(store: str | Path, target: str | Path | TextIO, *, overwrite: bool = False) -> None:
@@ -397,7 +396,7 @@ def _task_with_poses(store: SweepStore) -> EnsembleTask:
 def _columns(store: SweepStore, task: EnsembleTask, block: int) -> list[np.ndarray]:
     piece = store.layout.piece(block)
     members = block_of(store.design, piece.first, piece.count)
-    outcome, time, compact = (store.rows(name, piece) for name in _WANTED)
+    outcome, time, compact = (store.rows(name, piece) for name in ("outcome", "final_time", "final_pose"))
     group = task.discrete.system.group
     pose = io.datasets.separate_rows(group, group.matrix_from_pose(compact))
     return [members.index, *(values for _, values in _flat(members)), outcome, time, *pose.T]

@@ -348,10 +348,9 @@ class SweepStore:
     def _blocks(self) -> io.blocks.BlockStore:
         array_of = functools.partial(io.blocks.opened_array, "resume(store=...)", self.path, is_writable=True)
         arrays = {name: array_of(name) for name in self.outputs}
-        for array in arrays.values():
+        for name, array in arrays.items():
             if [*array.shape[:1]] == self._content.get("before"):  # a sweep that has grown since it was made
                 array.resize((*self.layout.sizes, *array.shape[1:]))
-        for name, array in arrays.items():
             self._check_described(name, array)
         return io.blocks.BlockStore(self.path, self.made, self.layout, arrays, holds_nan=True)
 

@@ -426,8 +426,6 @@ def _set_coordinates(frames: Float[np.ndarray, "K 4 3"], orbit: AbstractOrbit) -
 
 _HEIGHT = 760  # pixels in a notebook
 
-_VIEW = Path(__file__).with_name("view")
-
 
 @dataclasses.dataclass(frozen=True, repr=False)
 class Page(Keeper):
@@ -553,7 +551,7 @@ def page_text(data: dict[str, Any], title: str, note: str, version: str) -> str:
 
 @functools.cache
 def _text(name: str) -> str:
-    return (_VIEW / name).read_text("utf-8")
+    return (Path(__file__).with_name("view") / name).read_text("utf-8")
 
 
 def _hash(text: str) -> str:

@@ -20,9 +20,7 @@ from nonholo.systems import System
 Variables: TypeAlias = dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]
 """Dimensions after those of the states, values and attributes, by name."""
 
-_AXIS = ("axis",)
 _ENTRIES = ("row", "column")
-
 HEADING = ["theta"]
 QUATERNION = ["qw", "qx", "qy", "qz"]
 
@@ -88,7 +86,7 @@ def _variables_of(group: AbstractMatrixGroup, rows: Float[np.ndarray, "... c"]) 
     if position and set(position) <= set("xyz"):
         variables |= {name: ((), where[..., i], _labels("position", "length unit")) for i, name in enumerate(position)}
     elif position:
-        variables["position"] = _AXIS, where, _labels("position", "length unit")
+        variables["position"] = ("axis",), where, _labels("position", "length unit")
     return variables | _turn(group, turn, turns)
 
 
@@ -277,8 +275,8 @@ _KNOWN = {
 }
 _STORED = ("energy", "restricted_momentum")
 _MATRICES = {
-    "configuration": (("row", "column"), "pose as a matrix", "1"),
-    "displacement": (("row", "column"), "displacement of one step as a matrix", "1"),
+    "configuration": (_ENTRIES, "pose as a matrix", "1"),
+    "displacement": (_ENTRIES, "displacement of one step as a matrix", "1"),
 }
 _IMPULSES = "multipliers: forces of a flow, impulses to the next state of a discrete orbit"
 _OTHERS = {"time": ((), "time", "time unit"), "multipliers": (("multiplier",), _IMPULSES, "force unit, or times time")}

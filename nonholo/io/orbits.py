@@ -341,7 +341,6 @@ def _events(store: blocks.BlockStore, attributes: dict[str, Any], orbit: Orbit, 
 
 
 _WHERE = "store_to_csv(store=...)"
-_COMPACT, _RECORDED = ("time", "canonical_pose", "turned"), ("time", "configuration")
 
 
 class StoredPoses(NamedTuple):
@@ -371,7 +370,7 @@ def open_poses(path: Path) -> StoredPoses:
         shapes = json.loads(attributes["arrays"])
         remedy = "Write the orbit of nonholo.load_orbit(path, discrete=...) with its to_csv."
         system = system_of(attributes, _WHERE, remedy)
-        names = _RECORDED if "constraint_residual" in shapes else _COMPACT
+        names = ("time", "configuration") if "constraint_residual" in shapes else ("time", "canonical_pose", "turned")
         places = {name: array for name, array in _stored_names(shapes, names).items() if array in shapes}
     except KeyError as failure:
         raise error(_WHERE, "hold complete attributes", f"'{path}' without {failure}", "Run it again.") from failure

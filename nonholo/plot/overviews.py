@@ -163,7 +163,6 @@ def _parameters(system: System) -> str:
     return f"{system.group},  {free} of {all_directions} directions of velocity allowed, fixed in {side}"
 
 
-_SIZE = (13.0, 7.6)
 _LARGER = 2.2  # times as high as a panel against time
 
 
@@ -206,7 +205,7 @@ def overview(
     """
     smooth = drawable_in_time("overview(orbit=...)", orbit)
     flow = same_space("overview(flow=...)", flow, orbit, "Pass a motion of the same system.")
-    figure = new_page("overview", _SIZE, path, overwrite=overwrite)
+    figure = new_page("overview", (13.0, 7.6), path, overwrite=overwrite)
     panels = (_of_body if isinstance(smooth, Orbit) else _in_coordinates)(smooth, cast(Any, flow))
     axes = _axes(figure, panels)
     for panel, own in zip(panels, axes, strict=True):

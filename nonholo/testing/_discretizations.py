@@ -214,12 +214,10 @@ def impulses_of(
         return half, half
     ends, arriving = np.concatenate([g[1:], g[-1:] @ W[-1:]]), group.coadjoint(W, leaving)
     time, nodes, half = orbit.time.tolist(), orbit.restricted_momentum, time_step / 2
-    first, last = [], []
-    for k in range(len(orbit)):
-        first.append(_impulse(forced, g[k], time[k], nodes[k], forced.directions(g[k]).T @ leaving[k], k, half))
-    for k in range(len(orbit) - 1):
-        before = forced.directions(ends[k]).T @ arriving[k]
-        last.append(_impulse(forced, ends[k], time[k + 1], before, nodes[k + 1], k, half))
+    before = [forced.directions(pose).T @ momentum for pose, momentum in zip(ends, arriving, strict=True)]
+    after = [forced.directions(pose).T @ momentum for pose, momentum in zip(g, leaving, strict=True)]
+    first = [_impulse(forced, g[k], time[k], nodes[k], after[k], k, half) for k in range(len(g))]
+    last = [_impulse(forced, ends[k], time[k + 1], before[k], nodes[k + 1], k, half) for k in range(len(g) - 1)]
     return np.array(first), np.array([*last, np.full(group.dim, np.nan)])
 
 

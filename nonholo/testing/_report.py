@@ -59,7 +59,6 @@ def derivative(function: Callable[[float], Any], step: float = 1e-3) -> np.ndarr
 
 
 Measure = TypeVar("Measure", bound=Callable[[Any], float])
-_HEADINGS = ("", "measured", "allowed", "", "property")
 
 
 class NotApplicableError(Exception):
@@ -174,7 +173,7 @@ class Report:
     def __repr__(self) -> str:
         count = sum(result.status in ("ok", "FAILED") for result in self.results)
         verdict = f"{len(self.failed)} of {count} checks FAILED" if self.failed else f"all {count} checks passed"
-        rows = [_HEADINGS, *map(_cells, self.results)]
+        rows = [("", "measured", "allowed", "", "property"), *map(_cells, self.results)]
         widths = [max(len(row[i]) for row in rows) for i in range(4)]
         lines = ["  ".join([*map(str.ljust, row, widths), row[4]]).rstrip() for row in rows]
         return "\n  ".join([f"{self.owner}: {verdict}", *lines])

@@ -114,7 +114,7 @@ def _show(example: "Example") -> None:
 
 
 def new(
-    kind: Annotated[str, Argument(help="suslov, sleigh, ..., see `nonholo systems` and `examples`; or sweep.")],
+    kind: Annotated[str, Argument(metavar="KIND", help="suslov, ..., see `nonholo systems` and `examples`; or sweep.")],
     module: Module = None,
 ) -> None:
     """Print a commented scenario: every key, with its meaning.

@@ -14,9 +14,7 @@ if TYPE_CHECKING:
 
 
 def paper(
-    output: Annotated[
-        Path, Option("-o", "--output", metavar="DIR", help="Where to write: empty, new, or an earlier page.")
-    ] = Path("paper"),
+    output: Annotated[Path, Option("-o", "--output", metavar="DIR", help="Empty, new, or a page.")] = Path("paper"),
     only: Annotated[
         list[str] | None,
         Option("--only", metavar="LABEL", help="A label, a row of the errata or a figure; repeatable."),

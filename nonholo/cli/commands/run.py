@@ -11,8 +11,7 @@ from nonholo import io
 from nonholo.cli import commands
 from nonholo.cli.screen.errors import USAGE, leave
 
-Scenario = Annotated[str, Argument(help="A TOML file, or a name of `nonholo systems` or `nonholo examples`.")]
-RunStore = Annotated[Path | None, Option("-o", "--output", metavar="STORE", help="Where to keep the run.")]
+Scenario = Annotated[str, Argument(metavar="SCENARIO", help="A TOML file, or a name of `systems` or `examples`.")]
 Steps = Annotated[int | None, Option(metavar="N", help="Instead of run.steps.")]
 TimeStep = Annotated[float | None, Option(metavar="H", help="Instead of run.time_step.")]
 Settings = Annotated[list[str] | None, Option("--set", metavar="KEY=VALUE", help="Set a value, in TOML; repeatable.")]
@@ -24,7 +23,7 @@ Quiet = Annotated[bool, Option("--quiet", "-q", help="Print only the path of the
 
 def simulate(
     scenario: Scenario,
-    output: RunStore = None,
+    output: Annotated[Path | None, Option("-o", "--output", metavar="STORE", help="Where to keep the run.")] = None,
     steps: Steps = None,
     time_step: TimeStep = None,
     settings: Settings = None,
@@ -86,7 +85,7 @@ def explore(
     echo(commands.runs.write_page(source, ask, output, browser=browser, overwrite=overwrite))
 
 
-SweepScenario = Annotated[str, Argument(help="A TOML file; `nonholo new sweep` writes one, with comments.")]
+SweepScenario = Annotated[str, Argument(metavar="SCENARIO", help="A TOML file; `nonholo new sweep` writes one.")]
 SweepStore = Annotated[Path | None, Option("-o", "--output", metavar="STORE", help="Where to keep it; a new path.")]
 Members = Annotated[float | None, Option(metavar="N", help="About how many, as 1e6; ranges of a grid scale alike.")]
 Scheduler = Annotated[str | None, Option(metavar="HOW", help="threads (default), processes, tcp://HOST:PORT of Dask.")]

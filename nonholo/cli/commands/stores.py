@@ -106,8 +106,6 @@ def _ending_with_the_reader() -> Iterator[None]:
 
 Output = Annotated[Path | None, Option("-o", "--output", metavar="PICTURE", help="Another place: .png, .svg or .pdf.")]
 Kind = Annotated[str, Option(metavar="KIND", help="Of a run: a picture of nonholo.plot, such as blade-track; or all.")]
-Across = Annotated[str | None, Option("--x", metavar="NAME", help="Of a sweep or section: what runs across.")]
-Dark = Annotated[bool | None, Option("--dark/--light", help="Colors for a dark or a light background.")]
 
 
 def plot(
@@ -116,12 +114,12 @@ def plot(
     kind: Kind = "overview",
     gif: Annotated[bool, Option("--gif", help="Of a run: draw an animation instead.")] = False,
     color: Annotated[str | None, Option(metavar="NAME", help="Of a sweep: the quantity that is shown.")] = None,
-    x: Across = None,
+    x: Annotated[str | None, Option("--x", metavar="NAME", help="Of a sweep or section: what runs across.")] = None,
     y: Annotated[str | None, Option("--y", metavar="NAME", help="Of a sweep or section: what runs up.")] = None,
     title: Annotated[str | None, Option(help="Instead of the picture's own; '' for none.")] = None,
     size: Annotated[str | None, Option(metavar="WxH", help="In inches, as 16x9; fonts grow with it.")] = None,
     dpi: Annotated[float, Option(min=10, max=1200, help="Dots per inch of a .png.")] = 150,
-    dark: Dark = None,
+    dark: Annotated[bool | None, Option("--dark/--light", help="Colors for a dark or a light background.")] = None,
     overwrite: Overwrite = False,
 ) -> None:
     """Draw the overview of a run, another picture or an animation of it, or the map of a sweep.

@@ -32,7 +32,6 @@ from nonholo.orbit import AbstractOrbit
 
 Facts = dict[str, Any]
 _SLAB = 1 << 22  # members whose numbers are in memory at once
-_MESSAGES = 3
 _MOST_BLOCKS = 1000  # of a sweep that are read, some milliseconds each
 _NESTED = ("parameters", "motion", "versions", "arrays", "run", "sweep")
 ROUNDING = "rounding"
@@ -235,7 +234,7 @@ def sweep_figures(store: Path, result: xarray.Dataset | None, seconds: float | N
         "members_per_second_of_one_worker": rate,
         "steps_per_second_of_one_worker": rate * steps if rate and steps and not standing.failure_count else None,
         "bytes": sum(file.stat().st_size for file in store.rglob("*") if file.is_file()),
-        "messages": [list(message) for message in standing.messages[:_MESSAGES]],
+        "messages": [list(message) for message in standing.messages[:3]],
         "state": standing.state,
     }
 
@@ -270,10 +269,8 @@ def _sweep_rows(store: Path, figures: Facts) -> dict[str, str]:
     speed = figures["members_per_second"]
     time = {"time": f"{duration(figures['seconds'])}, {speed:,.3g} members/s"} if speed else {}
     rows = {"members": came} | ({} if state == "finished" else {"sweep": state})
-    for name, count in figures["outcomes"].items():
-        rows[f"  {name}"] = f"{count:,}  ({100 * count / count_done:.3g} %)"
-    for name, (least, most, meaning) in figures["ranges"].items():
-        rows[name] = f"{least:.6g} to {most:.6g}  {meaning}"
+    rows |= {f"  {name}": f"{n:,}  ({100 * n / count_done:.3g} %)" for name, n in figures["outcomes"].items()}
+    rows |= {name: f"{least:.6g} to {most:.6g}  {words}" for name, (least, most, words) in figures["ranges"].items()}
     return rows | time | {"one worker": ", ".join(rates) or "unknown", "size on disk": size_text(figures["bytes"])}
 
 
