@@ -18,7 +18,6 @@ from nonholo.ensembles.designs import RandomDesign
 from nonholo.ensembles.stores import open_store
 
 STORE, METADATA, CARD = "orbits.zarr", "metadata.json", "README.md"
-_FORMATS = ("zarr", "csv")
 _REMEDY = "`nonholo dataset --list` describes them; a function may be your own."
 
 
@@ -83,15 +82,14 @@ def dataset(
     """
     label = function_name(name) if callable(name) else choice("dataset(name=...)", name, tuple(DEFINITIONS), _REMEDY)
     definition = family_of(name) if callable(name) else DEFINITIONS[label]
-    choice("dataset(file_format=...)", file_format, _FORMATS)
+    choice("dataset(file_format=...)", file_format, ("zarr", "csv"))
     flags("dataset", progress=progress)
     text("dataset(license_name=...)", license_name)
     members = count("dataset(orbits=...)", orbits, "Pass how many.")
     h = definition.time_step if time_step is None else time_step
     h = float(scale("dataset(time_step=...)", h, "Pass a positive time step."))
     steps = count("dataset(steps=...)", steps, "Pass the number of steps.")
-    deviation = float(number("dataset(noise=...)", noise))
-    if deviation < 0:
+    if (deviation := float(number("dataset(noise=...)", noise))) < 0:
         raise error("dataset(noise=...)", "not be negative", f"{deviation}", "Pass a standard deviation, or 0.")
     task = DatasetTask(label, definition, h, steps, deviation, _ends(split, members))
     design = RandomDesign(members, definition.distributions, seed("dataset(rng=...)", rng))

@@ -135,8 +135,7 @@ class EnsembleTask:
         lanes, steps = (_LANES, _STEPS) if is_compiled else (1, _STEPS_EACH)
         states = 1 if self._every is None else 1 + self.steps // self._every
         state = 2 * self.discrete.system.rank + self.discrete.system.group.pose_size
-        members = min(_BLOCK, _NUMBERS // (states * state), steps // self.steps)
-        return max(1, members // lanes) * lanes
+        return max(1, min(_BLOCK, _NUMBERS // (states * state), steps // self.steps) // lanes) * lanes
 
     @property
     def _every(self) -> int | None:
@@ -178,34 +177,28 @@ class EnsembleTask:
 
     def describe(self) -> dict[str, Any]:
         """Return the task as plain data."""
-        names = [r if isinstance(r, str) else function_name(r) for r in self.reductions]
-        start = None if self.start is None else [self.start[0], self.start[1].tolist()]
         rule = {"branch": self.branch} if isinstance(self.branch, str) else {RULE: function_name(self.branch)}
         rule = {} if self.branch == PRINCIPAL.name else rule  # a store says nothing of the principal one
         return {
             "kind": "EnsembleTask",
             **io.provenance.identity_of(self.discrete),
-            "steps": self.steps,
-            "start": start,
-            "reductions": names,
-            "save_every": self.save_every,
-            "reconstruct": self.reconstruct,
+            **{name: getattr(self, name) for name in ("steps", "save_every", "reconstruct")},
+            "start": None if self.start is None else [self.start[0], self.start[1].tolist()],
+            "reductions": [r if isinstance(r, str) else function_name(r) for r in self.reductions],
             **rule,
         }
 
 
 def ensemble_task_from(entry: dict[str, Any]) -> EnsembleTask:
     """Return the task of a description, whose functions are imported; refuse one of which data are not enough."""
-    missing = missing_part(json.loads(entry["motion"])) or missing_part(json.loads(entry["parameters"]))
-    if missing:
+    if missing := missing_part(json.loads(entry["motion"])) or missing_part(json.loads(entry["parameters"])):
         raise ValueError(f"one whose {missing}")
     reductions = [name if name in REDUCTIONS else function_from(name) for name in entry["reductions"]]
     start = dict([entry["start"]]) if entry["start"] else {}
     options = {name: entry[name] for name in ("steps", "save_every", "reconstruct", "branch") if name in entry}
     if RULE in entry:
         options["branch"] = function_from(entry[RULE])
-    motion: Any = io.provenance.restore_motion(entry, None)
-    return EnsembleTask(motion, reductions=reductions, **options, **start)
+    return EnsembleTask(io.provenance.restore_motion(entry, None), reductions=reductions, **options, **start)
 
 
 def _add(results: dict[str, Any], more: Any) -> None:
@@ -229,8 +222,7 @@ def _join(members: list[dict[str, Any]]) -> dict[str, Any]:
 
 def _check_starts(discrete: Discretization, start: Start | None, names: Sequence[str]) -> None:
     """Refuse a design that varies several starts, components that the start does not have, or leaves none."""
-    whole = [name for name in names if name in _names.STARTS]
-    if len(whole) > 1:
+    if len(whole := [name for name in names if name in _names.STARTS]) > 1:
         raise error("sweep(design=...)", "vary one start", " and ".join(whole), "Choose one.")
     parts = {name: part for name in names if (part := _names.start_component(name))}
     if not whole and start is None:
@@ -252,8 +244,7 @@ def _check_components(start: Start | None, parts: dict[str, tuple[str, int]]) ->
 def _rows_of_starts(start: Start | None, block: MemberBlock) -> dict[str, Float[np.ndarray, "count n"]]:
     """Return the start of each member of a block, by its name."""
     parts = {name: part for name in block if (part := _names.start_component(name))}
-    whole = [name for name in block if name in _names.STARTS]
-    if whole:
+    if whole := [name for name in block if name in _names.STARTS]:
         name, value = whole[0], block[whole[0]]
     elif start is not None:
         name, value = start
@@ -267,8 +258,7 @@ def _rows_of_starts(start: Start | None, block: MemberBlock) -> dict[str, Float[
 
 def _check_all(discrete: Discretization, parts: dict[str, tuple[str, int]]) -> None:
     """Refuse components that are not all of one start, where the task has none."""
-    owners = {owner for owner, _ in parts.values()}
-    if not owners:
+    if not (owners := {owner for owner, _ in parts.values()}):
         raise error("sweep(task=...)", "have a start", "none", "Pass body_velocity=..., or vary it in the design.")
     if len(owners) > 1:
         raise error("sweep(design=...)", "vary components of one start", " and ".join(parts), "Choose one.")

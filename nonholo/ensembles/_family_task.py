@@ -20,7 +20,6 @@ from nonholo.simulation import ensemble
 
 _EXAMPLES, _READY, _FINAL = "nonholo.examples", "examples.", "final_state"
 _STEP, _STARTS = "time_step", ("configuration", "body_velocity")
-_OWN = (*_STARTS, _STEP)
 _STEPS, _MEMBERS = 1 << 20, 1 << 12  # at most in a block
 
 
@@ -92,7 +91,7 @@ class FamilyTask:
 
     def check_design(self, names: list[str]) -> None:
         """Refuse a design that names what the family does not have."""
-        own = [*self._arguments, *(name for name in _OWN if name not in self._arguments)]
+        own = [*self._arguments, *(name for name in (*_STARTS, _STEP) if name not in self._arguments)]
         for name in names:
             part = component_of(name)
             if name not in own and not (part and part[0] in own):
@@ -131,13 +130,12 @@ class FamilyTask:
 
     def _ensemble(self, systems: list[Any], starts: dict[str, np.ndarray], numbers: list[int]) -> Any:
         """Run members with systems of one family."""
-        discrete = discretize(systems[0], self.time_step)
         parameters = {_STEP: starts.pop(_STEP)} if _STEP in starts else {}
         for name in getattr(systems[0], "parameters", ()):
             parameters[name] = np.stack([system.parameters[name] for system in systems])
         run = {"steps": self.steps, "save_every": self.save_every}
         with _names.numbering(numbers.__getitem__):
-            return ensemble(discrete, parameters=parameters or None, **starts, **run)
+            return ensemble(discretize(systems[0], self.time_step), parameters=parameters or None, **starts, **run)
 
     def _reduced(self, batch: Any) -> dict[str, tuple[Any, np.ndarray, Any]]:
         """Return dimensions, rows and labels of what is kept of members, by name."""
@@ -151,24 +149,20 @@ class FamilyTask:
         """Return the task as plain data."""
         name = function_name(self.family)
         own = name.partition(":")[2]
-        parameters = {name: np.asarray(value).tolist() for name, value in self.parameters.items()}
         reductions = [_FINAL if reduction == _FINAL else function_name(reduction) for reduction in self.reductions]
         return {
             "kind": "FamilyTask",
             "family": f"{_READY}{own}" if name.startswith(f"{_EXAMPLES}.") and own in _ready_names() else name,
-            "parameters": parameters,
-            "time_step": self.time_step,
-            "steps": self.steps,
+            "parameters": {name: np.asarray(value).tolist() for name, value in self.parameters.items()},
+            **{name: getattr(self, name) for name in ("time_step", "steps", "save_every")},
             "reductions": reductions,
-            "save_every": self.save_every,
         }
 
 
 def family_task_from(entry: dict[str, Any]) -> FamilyTask:
     """Return the task of a description, whose functions are imported; those of the library are its ready systems."""
     name = entry["family"]
-    own = name.removeprefix(_READY)
-    if own != name and own not in _ready_names():
+    if (own := name.removeprefix(_READY)) != name and own not in _ready_names():
         raise ValueError(f"one of {name!r}, which is no ready system of this version")
     family = function_from(name) if own == name else getattr(importlib.import_module(_EXAMPLES), own)
     reductions = [each if each == _FINAL else function_from(each) for each in entry["reductions"]]

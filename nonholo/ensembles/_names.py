@@ -155,12 +155,10 @@ def is_force_number(system: Any, name: str) -> bool:
 
 def with_force_numbers(system: Any, values: Mapping[str, Any]) -> Any:
     """Return a system under the same forces with other numbers."""
-    numbers = force_numbers(system)
-    own = {name: with_components(name, value, values) for name, value in numbers.items()}
+    own = {name: with_components(name, value, values) for name, value in force_numbers(system).items()}
 
     def change(part: Any) -> Any:
-        fields = {field: own[name] for name, field in _names(part) if name in own}
-        return dataclasses.replace(part, **fields)
+        return dataclasses.replace(part, **{field: own[name] for name, field in _names(part) if name in own})
 
     parts = {name: change(part) if dataclasses.is_dataclass(part) else part for name, part in system.parts.items()}
     terms = tuple(change(term) if dataclasses.is_dataclass(term) else term for term in system.terms)
@@ -170,9 +168,7 @@ def with_force_numbers(system: Any, values: Mapping[str, Any]) -> Any:
 def function_name(function: Callable[..., Any]) -> str:
     """Return the name under which any process can import a function, or that there is none."""
     module, name = getattr(function, "__module__", None), getattr(function, "__qualname__", None)
-    if module in (None, "__main__") or name is None or "<" in name:
-        return NO_NAME
-    return f"{module}:{name}"
+    return NO_NAME if module in (None, "__main__") or name is None or "<" in name else f"{module}:{name}"
 
 
 def is_own(name: str) -> bool:

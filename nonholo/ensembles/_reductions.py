@@ -70,8 +70,7 @@ def _is_plane_sleigh(system: AbstractSystem) -> bool:
 
 
 def _limit_angle(batch: Ensemble) -> Reduced:
-    form = batch.members.discrete.system.normal_form
-    if form is None or not in_lanes(batch.members):
+    if (form := batch.members.discrete.system.normal_form) is None or not in_lanes(batch.members):
         got, remedy = shown(batch.members.discrete), "Write your own reduction."
         raise error("reduction 'limit_angle'", "have a plane sleigh or a top with n = 3", got, remedy)
     if form.is_sleigh:
@@ -82,8 +81,7 @@ def _limit_angle(batch: Ensemble) -> Reduced:
 def _heading_turn(batch: Ensemble) -> Float[np.ndarray, "M"]:
     """Sum the angles of the steps, which know of full turns: the first chart coordinate is the tangent of the half."""
     angles = 2 * np.arctan(ScalarMembers(batch.members).charts(batch.cayley[:, :-1])[..., 0])
-    is_step = np.arange(angles.shape[1]) < batch.steps_done[:, None]
-    turn = np.where(is_step, angles, 0.0).sum(axis=1)
+    turn = np.where(np.arange(angles.shape[1]) < batch.steps_done[:, None], angles, 0.0).sum(axis=1)
     return np.where(np.isfinite(batch.reduced_momentum[:, 0, 0]), turn, np.nan)
 
 

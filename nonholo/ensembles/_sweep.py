@@ -95,7 +95,7 @@ def sweep(
         sweep_store = open_store(store)
         task = _same_task(sweep_store, task, design)
     else:
-        sweep_store = _begin_store(task, design, store, block, scenario, progress=progress)
+        sweep_store = _begin(task, design, store, block, scenario, progress=progress)
     return continue_sweep(Work(sweep_store, task), name, workers, progress)
 
 
@@ -114,8 +114,7 @@ def load_sweep(store: str | Path) -> xarray.Dataset:
         >>> result = nh.load_sweep("sweep.zarr")  # doctest: +SKIP
     """
     where = "load_sweep(store=...)"
-    sweep_store = open_store(checked_path(where, store))
-    if not sweep_store.is_finished:
+    if not (sweep_store := open_store(checked_path(where, store))).is_finished:
         got, remedy = f"'{store}', at {standing_of(store)}", f"Resume with nonholo.resume('{store}')."
         raise error(where, "be a finished sweep", got, remedy)
     sweep_store.check(where, range(sweep_store.layout.blocks))
@@ -173,8 +172,7 @@ def resume(
     """
     flags("resume", trust=trust, throw=throw, progress=progress)
     store = checked_path("resume(store=...)", store)
-    kind = io.places.format_of(store)
-    if kind is None and store.exists():
+    if (kind := io.places.format_of(store)) is None and store.exists():
         got, remedy = f"'{store}', whose zarr.json does not record it", "Check the path, or run it again."
         raise error("resume(store=...)", "be a store of a run or a sweep", got, remedy)
     if kind == io.places.SWEEP_FORMAT:
@@ -247,9 +245,7 @@ def _check_task(task: Any, design: Any) -> None:
         task.check_design([*design.axes, *design.drawn])
 
 
-def _begin_store(
-    task: Task, design: Design, place: Path, block: Any, scenario: str | None, *, progress: bool
-) -> SweepStore:
+def _begin(task: Task, design: Design, place: Path, block: Any, scenario: str | None, *, progress: bool) -> SweepStore:
     """Make the store of a sweep, after its task has been tried."""
     io.places.check_suffix(place, "sweep(store=...)")
     most, least = (task.block, _LANES) if isinstance(task, DESCRIBED) else (_BLOCK, 1)
@@ -304,9 +300,7 @@ def _same_task(store: SweepStore, task: Any, design: Design) -> Task:
     theirs = store.description
     if isinstance(task, EnsembleTask) and theirs["task"]["kind"] == "EnsembleTask":
         task = task.on_route_of(theirs["task"])
-    ours = json.loads(json.dumps(_description(task, design)))
-    flaws = list(differences(ours, theirs))
-    if flaws:
+    if flaws := list(differences(json.loads(json.dumps(_description(task, design))), theirs)):
         remedy = "Pass that task and design, or choose another path."
         raise error("sweep(store=...)", "hold this sweep", f"'{store.path}', where {'; '.join(flaws[:5])}", remedy)
     return task
@@ -330,8 +324,7 @@ def _restored_task(store: SweepStore, task: Any, *, trust: bool = False) -> Task
     _refuse_untrusted(store, functions_of(store.path), trust=trust)
     entry = store.description["task"]
     try:
-        make = _MAKERS.get(entry["kind"], lambda entry: function_from(entry["name"]))
-        return make(entry)
+        return _MAKERS.get(entry["kind"], lambda entry: function_from(entry["name"]))(entry)
     except (ImportError, ValueError) as failure:
         remedy = f"Pass it: nonholo.resume('{store.path}', task=...)."
         raise error("resume(store=...)", "be a sweep whose task can be made again", f"{failure}", remedy) from failure
@@ -353,7 +346,6 @@ def _description(task: Any, design: Design) -> dict[str, Any]:
 
 
 _CSV = "sweep_to_csv(store=...)"
-_WANTED = ("outcome", "final_time", "final_pose")
 
 
 def sweep_to_csv(store: str | Path, target: str | Path | TextIO, *, overwrite: bool = False) -> None:
@@ -398,14 +390,13 @@ def _task_with_poses(store: SweepStore) -> EnsembleTask:
         return ensemble_task_from(entry | {"reductions": []})
     except ValueError as failure:
         remedy = "nonholo.load_sweep(store) has the poses as they are kept."
-        got = f"'{store.path}', {str(failure).rstrip('.')}"
-        raise error(_CSV, "hold its system as data", got, remedy) from failure
+        raise error(_CSV, "hold its system as data", f"'{store.path}', {str(failure).rstrip('.')}", remedy) from failure
 
 
 def _columns(store: SweepStore, task: EnsembleTask, block: int) -> list[np.ndarray]:
     piece = store.layout.piece(block)
     members = block_of(store.design, piece.first, piece.count)
-    outcome, time, compact = (store.rows(name, piece) for name in _WANTED)
+    outcome, time, compact = (store.rows(name, piece) for name in ("outcome", "final_time", "final_pose"))
     group = task.discrete.system.group
     pose = io.datasets.separate_rows(group, group.matrix_from_pose(compact))
     return [members.index, *(values for _, values in _flat(members)), outcome, time, *pose.T]

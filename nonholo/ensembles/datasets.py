@@ -114,8 +114,7 @@ class Family(NamedTuple):
 
     def member(self, name: str, draws: dict[str, Any]) -> Member:
         """Return the system of an orbit, and how it starts."""
-        make = self.function or getattr(importlib.import_module("nonholo.examples"), name)
-        ready = make(**draws)
+        ready = (self.function or getattr(importlib.import_module("nonholo.examples"), name))(**draws)
         return ready.system, {"configuration": ready.configuration, "body_velocity": ready.body_velocity}
 
 
@@ -212,7 +211,10 @@ class DatasetTask:
 
     def __call__(self, block: MemberBlock) -> dict[str, Any]:
         """Run some orbits."""
-        each = [self._orbit({name: rows[member] for name, rows in block.items()}) for member in range(block.count)]
+        draws = ({name: rows[member] for name, rows in block.items()} for member in range(block.count))
+        starts = (self.definition.member(self.dataset, own) for own in draws)
+        run: Any = {"steps": self.steps, "throw": False}
+        each = [simulate(discretize(system, self.time_step), **first, **run) for system, first in starts]
         fields = [_fields(orbit) for orbit in each]
         results: dict[str, Field] = {}
         for name, (axes, rows, labels) in fields[0].items():
@@ -227,11 +229,6 @@ class DatasetTask:
             OUTCOME: np.array([int(orbit.outcome) for orbit in each]),
             "split": ((), np.searchsorted(self.ends, block.index, side="right"), _FLAGS),
         }
-
-    def _orbit(self, start: dict[str, np.ndarray]) -> Any:
-        """Run the orbit of what is drawn."""
-        system, first = self.definition.member(self.dataset, start)
-        return simulate(discretize(system, self.time_step), **first, steps=self.steps, throw=False)
 
     def _observations(self, block: MemberBlock, fields: dict[str, Field]) -> dict[str, Field]:
         """Return what can be observed with normal noise, which depends on nothing but `rng`, orbit and name."""
@@ -298,9 +295,7 @@ def record_of(store: SweepStore, task: DatasetTask, file_format: str, license_na
         "command": _command(store, task, file_format, license_name),
         "rng": store.design.seed,
         "orbits": store.design.members,
-        "steps": task.steps,
-        "time_step": task.time_step,
-        "noise": task.noise,
+        **{name: getattr(task, name) for name in ("steps", "time_step", "noise")},
         "split": {part: [begin, end] for part, begin, end in parts},
         "outcomes": standing_of(store.path).outcomes,
         "license": license_name,
@@ -390,8 +385,7 @@ def _rows(store: SweepStore, names: list[str], begin: int, end: int) -> Iterator
     for block in range(store.layout.blocks):
         piece = store.layout.piece(block)
         members = np.arange(piece.first, piece.first + piece.count)
-        is_within = (members >= begin) & (members < end)
-        if not is_within.any():
+        if not (is_within := (members >= begin) & (members < end)).any():
             continue
         fields = [store.rows(name, piece)[is_within] for name in names]
         states = np.concatenate([each.reshape(*each.shape[:2], -1) for each in fields], axis=2)

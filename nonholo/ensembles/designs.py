@@ -36,8 +36,7 @@ def uniform_numbers(seed: int, stream: str, first: int, count: int, width: int) 
         True
     """
     rounds = -(-width // _WORDS)
-    key = np.array([seed, zlib.crc32(stream.encode())], dtype=np.uint64)
-    bits = np.random.Philox(key=key, counter=first * rounds)
+    bits = np.random.Philox(key=np.array([seed, zlib.crc32(stream.encode())], dtype=np.uint64), counter=first * rounds)
     return np.random.Generator(bits).random((count, _WORDS * rounds))[:, :width]
 
 
@@ -115,8 +114,7 @@ class Grid(AbstractDesign):
 
     def describe(self) -> dict[str, Any]:
         """Return the design as plain data; values along axes are named by their hash and have their own arrays."""
-        hashes = {name: _hash(values) for name, values in self.axes.items()}
-        return {"kind": "Grid", "seed": self.seed, "axes": hashes}
+        return {"kind": "Grid", "seed": self.seed, "axes": {name: _hash(values) for name, values in self.axes.items()}}
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -210,8 +208,7 @@ def axis_dimensions(name: str, values: Float[np.ndarray, "count ..."]) -> tuple[
 def _own_names(where: str, names: Mapping[Any, Any]) -> dict[str, str]:
     """Return the given names by those of the result, refused if two are one."""
     plain = {name: component_name(name) if isinstance(name, str) else name for name in names}
-    own_by_name = {checked_name(where, own, _COLUMNS): name for name, own in plain.items()}
-    if len(own_by_name) < len(names):
+    if len(own_by_name := {checked_name(where, own, _COLUMNS): name for name, own in plain.items()}) < len(names):
         raise error(where, "name each value once", ", ".join(names), "Leave one out.")
     return own_by_name
 

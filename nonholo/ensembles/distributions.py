@@ -55,8 +55,7 @@ class Uniform(AbstractBounded):
 
     def draw(self, uniform: Float[np.ndarray, "count width"]) -> Float[np.ndarray, "count ..."]:
         """Return draws, one for each row of uniform numbers."""
-        u = uniform.reshape(-1, *self.shape)
-        return self.low + (np.asarray(self.high) - self.low) * u
+        return self.low + (np.asarray(self.high) - self.low) * uniform.reshape(-1, *self.shape)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -140,8 +140,7 @@ def _entries(result: Any, count: int) -> dict[str, tuple[tuple[str, ...], np.nda
 
 def _entry(name: str, value: Any, count: int) -> tuple[tuple[str, ...], np.ndarray, dict[str, Any]]:
     dimensions, rows, attributes = entry_of(name, value)
-    rows = _rows(name, rows, count)
-    if len(dimensions) != rows.ndim - 1:
+    if len(dimensions) != (rows := _rows(name, rows, count)).ndim - 1:
         got = f"{len(dimensions)} dimensions for shape {rows.shape}"
         raise error(f"task(...)[{name!r}]", "name each axis but the first", got, "Name them.")
     return dimensions, rows, attributes
@@ -349,10 +348,9 @@ class SweepStore:
     def _blocks(self) -> io.blocks.BlockStore:
         array_of = functools.partial(io.blocks.opened_array, "resume(store=...)", self.path, is_writable=True)
         arrays = {name: array_of(name) for name in self.outputs}
-        for array in arrays.values():
+        for name, array in arrays.items():
             if [*array.shape[:1]] == self._content.get("before"):  # a sweep that has grown since it was made
                 array.resize((*self.layout.sizes, *array.shape[1:]))
-        for name, array in arrays.items():
             self._check_described(name, array)
         return io.blocks.BlockStore(self.path, self.made, self.layout, arrays, holds_nan=True)
 
@@ -386,16 +384,11 @@ def create_store(
     target, identity = path.resolve(), uuid.uuid4().hex
     io.places.check_target(target, new="sweep(store=...)")
     content = description | {"layout": layout, "outputs": {name: dataclasses.astuple(o) for name, o in outputs.items()}}
-    about = {
-        "format": io.places.SWEEP_FORMAT,
-        "schema": io.places.SCHEMAS[io.places.SWEEP_FORMAT],
-        "made": identity,
-        "finished": False,
-        "sweep": json.dumps(content),
-    }
+    about: Data = {"format": io.places.SWEEP_FORMAT, "schema": io.places.SCHEMAS[io.places.SWEEP_FORMAT]}
+    about |= {"made": identity, "finished": False, "sweep": json.dumps(content)} | extra
+    about |= {"versions": io.provenance.versions_text(), "kernels": way_of_kernels()}
     with io.places.new_beside(path) as part:
-        made_with = {"versions": io.provenance.versions_text(), "kernels": way_of_kernels()}
-        group = io.blocks.new_group(part, about | made_with | extra, io.metadata.SweepMetadata)
+        group = io.blocks.new_group(part, about, io.metadata.SweepMetadata)
         _create_arrays(group, design, layout, outputs)
         io.blocks.make_marks(group, part)
         io.places.put_in_place(part, target, new="sweep(store=...)")
@@ -404,8 +397,7 @@ def create_store(
 
 def open_store(path: str | Path) -> SweepStore:
     """Return the store of a sweep."""
-    attributes = attributes_of(path)
-    return SweepStore(Path(path).resolve(), attributes["made"])
+    return SweepStore(Path(path).resolve(), attributes_of(path)["made"])
 
 
 def attributes_of(path: str | Path) -> dict[str, Any]:
@@ -445,9 +437,7 @@ class SweepStanding(NamedTuple):
     @property
     def state(self) -> str:
         """Whether it is finished, or who works at it."""
-        if self.finished:
-            return "finished"
-        return f"written by {self.owner}" if self.owner else "stopped"
+        return "finished" if self.finished else f"written by {self.owner}" if self.owner else "stopped"
 
     @property
     def failure_count(self) -> int:

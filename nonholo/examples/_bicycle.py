@@ -20,7 +20,7 @@ _CORNERS = np.array([[-1.0, -0.4], [0.0, -1.0], [1.0, -0.6], [1.0, 0.6], [0.0, 1
 
 @ready(
     "place speed lean_rate steer_rate",
-    reals="trail tilt speed lean_rate steer_rate",
+    reals="trail tilt",
     positive="rear_wheel front_wheel",
     **dict.fromkeys(("rear_wheel", "front_wheel"), "radius, mass and two moments of inertia"),
     **dict.fromkeys(("rear_frame", "front_frame"), "place, mass and inertia"),

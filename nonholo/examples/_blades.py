@@ -15,7 +15,7 @@ from nonholo.systems import ChaplyginSleigh, Forced
 _EDGE = ("mass", "inertia", "slope_acceleration")
 
 
-@ready("configuration speed turning", reals="slope_acceleration speed turning", configuration="x, y and phi")
+@ready("configuration speed turning", reals="slope_acceleration", configuration="x, y and phi")
 def knife_edge_on_incline(
     *,
     mass: float = 1.0,
@@ -80,8 +80,7 @@ def knife_edge_on_incline(
 
     def exact(time: Array) -> Array:
         phi = q[2] + omega * np.asarray(time)
-        place = q[:2] + antiderivative(phi) - antiderivative(q[2])
-        return np.concatenate([place, phi[..., None]], axis=-1)
+        return np.concatenate([q[:2] + antiderivative(phi) - antiderivative(q[2]), phi[..., None]], axis=-1)
 
     def drive(q: Array, v: Array) -> Array:
         along = v[..., 0] * np.cos(q[..., 2]) + v[..., 1] * np.sin(q[..., 2])
@@ -109,7 +108,7 @@ def _edge_system() -> LagrangeDAlembert:
 _SLEIGH = ("mass", "inertia", "moving_mass", "frequency", "a", "ahead", "amplitude")
 
 
-@ready("configuration speed turning", reals="a ahead amplitude speed turning", configuration="x, y and theta")
+@ready("configuration speed turning", reals="a ahead amplitude", configuration="x, y and theta")
 def driven_sleigh(
     *,
     mass: float = 1.0,
@@ -193,7 +192,7 @@ def _sleigh_system() -> LagrangeDAlembert:
     return system_in("x y theta s", "Driven sleigh", _SLEIGH, lagrangian, blade, **options)
 
 
-@ready("speed turning", reals="a stiffness speed turning")
+@ready("speed turning", reals="a stiffness")
 def sleigh_in_a_well(
     *,
     mass: float = 1.0,
@@ -244,8 +243,7 @@ def sleigh_in_a_well(
         return k * (g[0, 2] ** 2 + g[1, 2] ** 2) / 2
 
     def energy(g: Array, v: Array) -> Array:
-        well = k * (g[..., 0, 2] ** 2 + g[..., 1, 2] ** 2)
-        return (m * v[..., 1] ** 2 + (J + m * a**2) * v[..., 0] ** 2 + well) / 2
+        return (m * v[..., 1] ** 2 + (J + m * a**2) * v[..., 0] ** 2 + k * (g[..., :2, 2] ** 2).sum(axis=-1)) / 2
 
     conserved = {"energy": energy} | ({} if a else {"turning rate": lambda _g, v: v[..., 0]})
     system = Forced(ChaplyginSleigh(m, J, a), potential)

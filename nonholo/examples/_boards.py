@@ -12,7 +12,7 @@ from nonholo.examples._example import Example, Numbers, energy_of, pair, rate, r
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
 
-@ready("configuration speed", reals="center amplitude speed", configuration="x, y and theta")
+@ready("configuration speed", reals="center amplitude", configuration="x, y and theta")
 def roller_racer(
     *,
     mass: float = 1.0,
@@ -72,7 +72,7 @@ def roller_racer(
     return _of_handle("roller_racer", "Roller racer", body, amplitude, configuration, speed)
 
 
-@ready("configuration speed", reals="center handle_center amplitude speed", configuration="x, y and theta")
+@ready("configuration speed", reals="center handle_center amplitude", configuration="x, y and theta")
 def twistcar(
     *,
     mass: float = 1.0,
@@ -136,10 +136,8 @@ def twistcar(
     return _of_handle("twistcar", "Twistcar", body, amplitude, configuration, speed)
 
 
-_HANDLE = (
-    *("mass", "inertia", "handle_inertia", "joint", "handle"),
-    *("frequency", "center", "handle_mass", "handle_center", "amplitude"),
-)
+_HANDLE = ("mass", "inertia", "handle_inertia", "joint", "handle", "frequency", "center")
+_HANDLE += ("handle_mass", "handle_center", "amplitude")
 
 
 def _of_handle(name: str, title: str, body: Any, amplitude: float | None, place: Any, speed: float) -> Example:
@@ -183,11 +181,7 @@ def _handle_system(title: str, is_free: bool) -> LagrangeDAlembert:
 _BOARD = ("mass", "half_length", "rotor_inertia", "wheel_inertia")
 
 
-@ready(
-    "configuration speed rotor_rate wheel_rate",
-    reals="speed rotor_rate wheel_rate",
-    configuration="x, y, theta, psi and phi",
-)
+@ready("configuration speed rotor_rate wheel_rate", configuration="x, y, theta, psi and phi")
 def snakeboard(
     *,
     mass: float = 1.0,
@@ -244,8 +238,7 @@ def snakeboard(
         raise error(f"{where}(rotor_inertia=...)", f"be less than m r^2 = {m * r * r:g}", f"{J0:g}", "Lighten it.")
     if not abs(q[4]) < np.pi / 2:
         raise error(f"{where}(configuration=...)", "have |phi| < pi/2", f"{q[4]:g}", "The wheels must not be crossed.")
-    turning = speed / r * np.tan(q[4])
-    v = np.array([speed * np.cos(q[2]), speed * np.sin(q[2]), turning, rotor_rate, wheel_rate])
+    v = np.array([speed * np.cos(q[2]), speed * np.sin(q[2]), speed / r * np.tan(q[4]), rotor_rate, wheel_rate])
 
     def spin(q: Array, v: Array) -> Array:
         return v[..., 2] + v[..., 3]
@@ -283,12 +276,7 @@ def _board_system() -> LagrangeDAlembert:
     return system_in("x y theta psi phi", "Snakeboard", _BOARD, lagrangian, forms, heading="theta", outline=outline)
 
 
-@ready(
-    "place joints joint_rates",
-    place="x, y and theta",
-    joints="alpha1 and alpha2",
-    joint_rates="the rates of alpha1 and alpha2",
-)
+@ready("place joints joint_rates", place="x, y and theta", joints="alpha1 and alpha2", joint_rates="both rates")
 def snake(
     *,
     half_length: float = 0.5,

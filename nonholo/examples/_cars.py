@@ -9,12 +9,13 @@ import numpy as np
 from nonholo.base.checks import array, error
 from nonholo.base.types import Array
 from nonholo.examples._example import Example, Numbers, pair, rate, ready, scales, system_in, turn, wheel, with_numbers
+from nonholo.examples._rolling import chord
 from nonholo.lagrange_dalembert import LagrangeDAlembert
 
 _CAR = ("mass", "inertia", "wheelbase", "wheel_radius", "wheel_inertia", "steering_inertia")
 
 
-@ready("configuration speed steering_rate", reals="speed steering_rate", configuration="x, y, theta, psi and phi")
+@ready("configuration speed steering_rate", configuration="x, y, theta, psi and phi")
 def kinematic_car(
     *,
     mass: float = 1.0,
@@ -81,10 +82,7 @@ def kinematic_car(
         return along * np.sqrt(m + Jw / R**2 + J / ell**2 * np.tan(q[..., 4]) ** 2)
 
     def circle(time: Array) -> Array:
-        half = omega * time / 2
-        chord = u * time * np.sinc(half / np.pi)
-        place = chord * np.array([np.cos(q[2] + half), np.sin(q[2] + half)])
-        return q + np.array([*place, 2 * half, u / R * time, 0 * time]).T
+        return q + np.array([*chord(q[2], u, omega, time), omega * time, u / R * time, 0 * time]).T
 
     conserved = {"phi'": rate(4), "momentum along the constraint": momentum}
     system = with_numbers(_car_system, m, J, ell, R, Jw, steering_inertia)
@@ -113,9 +111,7 @@ def _car_system() -> LagrangeDAlembert:
     return system_in("x y theta psi phi", "Kinematic car", _CAR, lagrangian, forms, heading="theta", outline=outline)
 
 
-@ready(
-    "configuration speed turning", reals="offset speed turning friction", configuration="x, y, theta, right and left"
-)
+@ready("configuration speed turning", reals="offset friction", configuration="x, y, theta, right and left")
 def two_wheeled_robot(
     *,
     mass: float = 1.0,
@@ -243,7 +239,7 @@ def _robot_system(motors: Any, is_free: bool) -> LagrangeDAlembert:
     return system_in("x y theta right left", "Two-wheeled robot", numbers, lagrangian, forms, **options)
 
 
-@ready("place angles speed turning", reals="speed turning", place="x and y")
+@ready("place angles speed turning", place="x and y")
 def trailers(
     *,
     hitches: tuple[float, ...] = (1.0, 1.0, 1.0),
@@ -295,8 +291,7 @@ def trailers(
         (('x', 'y', 'theta', 'theta1', 'theta2'), 3)
     """
     where = "examples.trailers"
-    lengths = array(f"{where}(hitches=...)", hitches, (None,), "Pass one length for each trailer.")
-    if not len(lengths):
+    if not len(lengths := array(f"{where}(hitches=...)", hitches, (None,), "Pass one length for each trailer.")):
         raise error(f"{where}(hitches=...)", "have at least one length", "none", "Pass one for each trailer.")
     d = scales(f"{where}(hitches=...)", lengths)
     m, J, trailer, moment = mass, inertia, trailer_mass, trailer_inertia

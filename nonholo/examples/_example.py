@@ -118,19 +118,20 @@ class Example(Keeper):
         return f"<Example {self.name}: {', '.join(self.coordinates)}>"
 
 
-def ready(
-    start: str = "", *, reals: str = "", positive: str = "", **arrays: str
-) -> Callable[[Callable[..., Example]], Callable[..., Example]]:
+Maker = Callable[..., Example]
+
+
+def ready(start: str = "", *, reals: str = "", positive: str = "", **arrays: str) -> Callable[[Maker], Maker]:
     """Let the system of what a function makes tell stores the function and its arguments but for those of the start.
 
     Args:
-        start: The arguments of the start, in words.
-        reals: Those that may be any numbers; all others with a number as default are positive.
+        start: The arguments of the start, in words, which may be any numbers.
+        reals: Others that may be; all others with a number as default are positive.
         positive: Arrays of positive numbers.
         **arrays: What arrays are, for messages; they are as long as their defaults.
     """
 
-    def decorator(make: Callable[..., Example]) -> Callable[..., Example]:
+    def decorator(make: Maker) -> Maker:
         defaults = {name: each.default for name, each in inspect.signature(make).parameters.items()}
         _, _, words = inspect.cleandoc(make.__doc__ or "").partition("Facts:\n")
         facts = tuple(map(str.strip, words.partition("\n\n")[0].splitlines()))
@@ -138,8 +139,9 @@ def ready(
         def valid_value(name: str, value: Any) -> Any:
             where, default = f"examples.{make.__name__}({name}=...)", defaults.get(name)
             if name in arrays:
-                return _row(where, value, default, arrays[name], name in positive.split())
-            return _number(where, value, default, name in reals.split())
+                rows = array(where, value, np.shape(defaults[name]), f"Pass {arrays[name]}.")
+                return scales(where, rows) if name in positive.split() else tuple(rows.tolist())
+            return _number(where, value, default, name in f"{start} {reals}".split())
 
         @functools.wraps(make)
         def make_ready(**arguments: Any) -> Example:
@@ -159,12 +161,6 @@ def ready(
     return decorator
 
 
-def _row(where: str, value: Any, default: Any, words: str, positive: bool) -> tuple[float, ...]:
-    """Return a checked array of as many numbers as its default has."""
-    rows = array(where, value, np.shape(default), f"Pass {words}.")
-    return scales(where, rows) if positive else tuple(rows.tolist())
-
-
 def _number(where: str, value: Any, default: Any, real: bool) -> Any:
     """Return a checked number; an argument whose default is no number is left to its function."""
     if not isinstance(default, float):
@@ -178,7 +174,7 @@ def _plain(value: Any, default: Any) -> Any:
 
 
 @functools.lru_cache(maxsize=64)  # one with a new function each time is another one
-def _with_recipe(system: Any, make: Callable[..., Example], parameters: str) -> Any:
+def _with_recipe(system: Any, make: Maker, parameters: str) -> Any:
     """Return a system that can be described; changes of it, by `Forced` or `dataclasses.replace`, are not."""
     own = copy.copy(system)
     arguments = json.loads(parameters)
@@ -187,7 +183,7 @@ def _with_recipe(system: Any, make: Callable[..., Example], parameters: str) -> 
     return own
 
 
-def _system_of(make: Callable[..., Example], arguments: dict[str, Any]) -> Any:
+def _system_of(make: Maker, arguments: dict[str, Any]) -> Any:
     return make(**arguments).system
 
 

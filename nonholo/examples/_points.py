@@ -56,9 +56,8 @@ def particle(
         y = y0 + b * t
         # the quotients (f(y) - f(y0))/b in a form that stays accurate for b = 0
         root, root0 = np.sqrt(1 + y**2), np.sqrt(1 + y0**2)
-        z = c * t * (y + y0) / (root + root0)
         x = c * t / root0 if b == 0 else c / b * (np.arcsinh(y) - np.arcsinh(y0))
-        return np.stack([q[0] + x, y, q[2] + z], axis=-1)
+        return np.stack([q[0] + x, y, q[2] + c * t * (y + y0) / (root + root0)], axis=-1)
 
     conserved = {"y'": rate(1), "x' sqrt(1 + y^2)": lambda q, v: v[..., 0] * np.sqrt(1 + q[..., 1] ** 2)}
     v = np.array([a, b, y0 * a])
@@ -134,7 +133,7 @@ def _quartic(n: int) -> LagrangeDAlembert:
     return system_in(f"x {pairs}", "Chaotic oscillator", ["coupling"], lagrangian, forms)
 
 
-@ready("turning", reals="asymmetry turning")
+@ready("turning", reals="asymmetry")
 def non_reversible(*, asymmetry: float = 0.5, turning: float = 2.6) -> Example:
     r"""Two oscillators in a gearbox whose ratio is set by a rotating, asymmetric pendulum: q = (x, y, xi).
 
@@ -177,9 +176,8 @@ def non_reversible(*, asymmetry: float = 0.5, turning: float = 2.6) -> Example:
         if asymmetry
         else "The reflection (x, -y, -xi) reverses the motion: the discrete energy does not drift.",
     )
-    conserved = {"energy": energy, "energy of the pendulum": pendulum}
     system = with_numbers(functools.partial(_gearbox, asymmetry == 0), asymmetry)
-    return Example("non_reversible", system, q, v, conserved, facts=facts)
+    return Example("non_reversible", system, q, v, {"energy": energy, "energy of the pendulum": pendulum}, facts=facts)
 
 
 @functools.cache

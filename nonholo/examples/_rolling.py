@@ -84,7 +84,7 @@ def _rolling_ball() -> GroupLagrangeDAlembert:
     return GroupLagrangeDAlembert(SE(3), action, forms, **options)
 
 
-@ready("place velocity spin", reals="spin", place="x and y", velocity="x and y")
+@ready("place velocity spin", place="x and y", velocity="x and y")
 def ball_in_bowl(
     *,
     mass: float = 1.0,
@@ -142,7 +142,6 @@ def ball_in_bowl(
         raise error(where, demand, str(c.tolist()), "Start in the bowl.")
     q = np.append(c, np.zeros(3))
     n, dn = _normal(rho, q, np.append(velocity, np.zeros(3)))
-    rates = np.append(velocity, spin * n - rho / r * np.cross(n, dn))
     kappa = J * r / (rho * (J + m * r**2))
 
     def spinning(q: Array, v: Array) -> Array:
@@ -154,7 +153,7 @@ def ball_in_bowl(
 
     system = with_numbers(_bowl_system, m, r, J, rho, g)
     conserved = {"spin": spinning, "momentum": momentum, "energy": energy_of(system.plain.lagrangian)}
-    return Example("ball_in_bowl", system, q, rates, conserved)
+    return Example("ball_in_bowl", system, q, np.append(velocity, spin * n - rho / r * np.cross(n, dn)), conserved)
 
 
 def _normal(rho: float, q: Array, v: Array) -> tuple[Array, Array]:
@@ -245,8 +244,7 @@ def ball_on_turntable(
         "y' - kappa x": lambda q, v: v[..., 1] - kappa * q[..., 0],
     }
     q, v = np.array([x, y, 0.0, 0.0]), np.array([u, w, (Omega * x - w) / r, (u + Omega * y) / r])
-    system = with_numbers(_turntable_system, m, r, J, Omega)
-    return Example("ball_on_turntable", system, q, v, conserved, exact)
+    return Example("ball_on_turntable", with_numbers(_turntable_system, m, r, J, Omega), q, v, conserved, exact)
 
 
 def _circle(z: complex, velocity: complex, kappa: float, t: Array) -> Array:
@@ -326,16 +324,15 @@ def rolling_disk(
 
     def exact(time: Array) -> Array:
         t = np.asarray(time)
-        x, y = _chord(q[3], R * roll, turn, t)
+        x, y = chord(q[3], R * roll, turn, t)
         return np.stack([q[0] + x, q[1] + y, q[2] + roll * t, q[3] + turn * t], axis=-1)
 
-    conserved = {"theta'": rate(2), "phi'": rate(3)}
     v = np.array([R * np.cos(q[3]) * roll, R * np.sin(q[3]) * roll, roll, turn])
     system = with_numbers(_disk_system, mass, R, rolling_inertia, turning_inertia)
-    return Example("rolling_disk", system, q, v, conserved, exact)
+    return Example("rolling_disk", system, q, v, {"theta'": rate(2), "phi'": rate(3)}, exact)
 
 
-def _chord(heading: float, speed: float, turning: float, time: Array) -> Array:
+def chord(heading: float, speed: float, turning: float, time: Array) -> Array:
     """Return the ways along the chord of an arc: its length is that of the arc times sinc, also without turning."""
     half = turning * time / 2
     return speed * time * np.sinc(half / np.pi) * np.array([np.cos(heading + half), np.sin(heading + half)])
@@ -355,7 +352,7 @@ def _disk_system() -> LagrangeDAlembert:
     return system_in("x y theta phi", "Rolling disk", numbers, lagrangian, forms, **options)
 
 
-@ready("configuration turning lean_rate rolling", reals="turning lean_rate", configuration="x, y, theta, lean and roll")
+@ready("configuration turning lean_rate rolling", configuration="x, y, theta, lean and roll")
 def tilting_disk(
     *,
     mass: float = 1.0,
@@ -429,12 +426,11 @@ def tilting_disk(
 
     def circle(time: Array) -> Array:
         t = np.asarray(time)
-        return q + np.array([*_chord(q[2], R * roll, turn, t), turn * t, 0.0 * turn * t, roll * t]).T
+        return q + np.array([*chord(q[2], R * roll, turn, t), turn * t, 0.0 * turn * t, roll * t]).T
 
     v = np.array([R * np.cos(q[2]) * roll, R * np.sin(q[2]) * roll, turn, falling, roll])
     system = with_numbers(_tilting_system, m, R, axle, J, g)
-    exact = circle if steady else None
-    return Example(name, system, q, v, {"energy": energy_of(system.plain.lagrangian)}, exact)
+    return Example(name, system, q, v, {"energy": energy_of(system.plain.lagrangian)}, circle if steady else None)
 
 
 _TILTING = ("mass", "radius", "rolling_inertia", "turning_inertia", "gravity")
@@ -454,8 +450,8 @@ def _tilting_system() -> LagrangeDAlembert:
         ahead, left = -p["radius"] * jnp.cos(q[2]), -p["radius"] * jnp.sin(q[2])
         return jnp.array([[1.0, 0.0, 0.0, 0.0, ahead], [0.0, 1.0, 0.0, 0.0, left]])
 
-    look = {"heading": "theta", "outline": _outline}
-    return system_in("x y theta lean roll", "Tilting disk", _TILTING, lagrangian, forms, **look)
+    names = "x y theta lean roll"
+    return system_in(names, "Tilting disk", _TILTING, lagrangian, forms, heading="theta", outline=_outline)
 
 
 def _outline(q: Array, p: Numbers) -> list[Array]:

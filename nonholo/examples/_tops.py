@@ -15,7 +15,7 @@ from nonholo.systems import Forced, SuslovTop
 
 @ready(
     "tilt spin rates",
-    reals="center product spin",
+    reals="center product",
     positive="semi_axes inertia",
     semi_axes="three numbers",
     inertia="three numbers",
@@ -119,8 +119,8 @@ def _system() -> LagrangeDAlembert:
         return jnp.concatenate([jnp.eye(2), -jnp.array([[cos, -sin], [sin, cos]]) @ _boat(p).rolling(q)], axis=1)
 
     numbers = {"semi_axes": np.ones(3), "center": 1.0, "inertia": np.ones(3), "product": 0.0, "gravity": 1.0}
-    look = {"heading": "theta", "outline": _outline}
-    return system_in("x y theta lean pitch", "Rattleback", numbers, lagrangian, forms, **look)
+    names = "x y theta lean pitch"
+    return system_in(names, "Rattleback", numbers, lagrangian, forms, heading="theta", outline=_outline)
 
 
 def _boat(p: Numbers) -> _Boat:

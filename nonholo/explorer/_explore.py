@@ -28,7 +28,7 @@ from nonholo.base.checks import MissingExtraError, checked_path, error, flags, n
 from nonholo.base.compiled import library
 from nonholo.base.memo import Keeper
 from nonholo.base.results import Outcome
-from nonholo.base.types import Float, Int
+from nonholo.base.types import Array, Float, Int
 from nonholo.discrete import Discretization, discretize
 from nonholo.groups import SE, SO, matrix_from_quaternion
 from nonholo.io.places import check_file, new_file
@@ -61,8 +61,7 @@ def kernel(body: str) -> bytes:
         >>> kernel("sleigh")[:4]
         b'\x00asm'
     """
-    file = library.place(library.name_of_module(body))
-    if file is not None:
+    if (file := library.place(library.name_of_module(body))) is not None:
         return file.read_bytes()
     with needs("compile", "nonholo.explore"):
         from nonholo.base.compiled import wasm
@@ -139,26 +138,22 @@ def shown_motion(where: str, value: Any) -> Shown:
         value = discretize(cast(Any, value), _TIME_STEP)
     if isinstance(value, Discretization):
         return _of_discretization(where, value)
-    orbit = any_orbit(where, value)
-    if not orbit.has_poses or not len(orbit):
+    if not (orbit := any_orbit(where, value)).has_poses or not len(orbit):
         got = "reconstruct=False" if len(orbit) else "no state"
         raise error(where, "have poses", got, "Run with reconstruct=True, from a start that has a real branch.")
     return (_live(orbit) if isinstance(orbit, Orbit) else None) or _replay(orbit)
 
 
 def _of_discretization(where: str, discrete: Discretization) -> Shown:
-    kind = _kind(discrete)
-    if kind is None:
-        remedy = "Run it, and pass the orbit: a page replays any."
+    if (kind := _kind(discrete)) is None:
         demand = "be a top with n = 3 or 4 or a sleigh in the plane, of order 2"
-        raise error(where, demand, shown(discrete.system), remedy)
+        raise error(where, demand, shown(discrete.system), "Run it, and pass the orbit: a page replays any.")
     system = discrete.system
     lower = np.linalg.cholesky(system.canonical.constrained_inertia)
     table, momentum = _table(system, kind, 0), lower @ np.array([0.4, -0.9, 0.3])[: len(lower)] * lower[0, 0]
     steps = min(_STEPS, len(system.table)) if table else _STEPS  # type: ignore[union-attr]
     state = _state(discrete, kind, momentum, system.group.pose_from_matrix(system.group.identity), steps, table)
-    orbit = _run(state, table)
-    if not len(orbit) and (problem := _problem(state)):
+    if not len(orbit := _run(state, table)) and (problem := _problem(state)):
         raise error(where, "be a motion that the page can show", problem, "Run it, and pass the orbit.")
     return _shown_state(system, orbit, state, table)
 
@@ -195,8 +190,7 @@ def _kind(discrete: Discretization) -> str | None:
         return None
     if form.frame_map is not None and not form.is_sleigh:
         return None
-    own = _KERNELS.get((discrete.route_name, form.is_sleigh, len(form.coupling)), "")
-    kind = "forced_" * system.is_forced + own
+    kind = "forced_" * system.is_forced + _KERNELS.get((discrete.route_name, form.is_sleigh, len(form.coupling)), "")
     return kind if kind in KINDS else None
 
 
@@ -228,9 +222,7 @@ def _parameters(system: AbstractSystem) -> dict[str, float]:
     return {name: float(value) for name, value in (names | (_forces(system) or {})).items()}
 
 
-def _state(
-    discrete: Discretization, kind: str, momentum: np.ndarray, pose: np.ndarray, steps: int, table: Any
-) -> dict[str, Any]:
+def _state(discrete: Discretization, kind: str, momentum: Array, pose: Array, steps: int, table: Any) -> dict[str, Any]:
     form = cast(NormalForm, discrete.system.inside.normal_form)
     if kind == "top4" and form.principal[1] is not None:  # a matrix with rows of the pose turned, its last column stays
         momentum, g = form.to_principal(momentum), pose.reshape(4, 4)
@@ -297,8 +289,7 @@ def _replay(orbit: AbstractOrbit, why: str = "there is no kernel in the page for
     data = {"kind": "replay", "replay": numbers, "momenta": names}
     part = f" {len(states):,} of {len(orbit):,} saved states." if len(states) < len(orbit) else ""
     note = f"A replay of numbers from Python: {why}.{part}{forces}"
-    title = _name(orbit.system) if isinstance(orbit, Orbit) else orbit.system.name
-    return Shown(data, title, note)
+    return Shown(data, _name(orbit.system) if isinstance(orbit, Orbit) else orbit.system.name, note)
 
 
 def force_numbers(forced: Forced) -> dict[str, float] | None:
@@ -364,8 +355,7 @@ def _base64(numbers: Any, kind: str) -> str:
 
 def _energy(orbit: AbstractOrbit) -> tuple[Float[np.ndarray, "K"], str]:
     """Return the energy, under forces less their work and from its largest value on, and a note on that."""
-    work = np.nan_to_num(orbit.known_work)
-    if not work.any():
+    if not (work := np.nan_to_num(orbit.known_work)).any():
         return orbit.energy, ""
     left = orbit.energy - orbit.energy[0] - work
     return np.abs(orbit.energy).max() + left, " The energy is shown less the work of forces, from its largest value on."
@@ -436,8 +426,6 @@ def _set_coordinates(frames: Float[np.ndarray, "K 4 3"], orbit: AbstractOrbit) -
 
 _HEIGHT = 760  # pixels in a notebook
 
-_VIEW = Path(__file__).with_name("view")
-
 
 @dataclasses.dataclass(frozen=True, repr=False)
 class Page(Keeper):
@@ -458,10 +446,9 @@ class Page(Keeper):
 
     def _repr_html_(self) -> str:
         permissions = "allow-scripts allow-downloads allow-modals"
-        inner = html.escape(self.text, quote=True)
         look = f"width:100%;height:{_HEIGHT}px;border:0"
         about = f'sandbox="{permissions}" style="{look}" title="The live page of nonholo"'
-        return f'<iframe {about} srcdoc="{inner}"></iframe>'
+        return f'<iframe {about} srcdoc="{html.escape(self.text, quote=True)}"></iframe>'
 
     def _repr_mimebundle_(self, **_: Any) -> Any:
         if self.widget is None:
@@ -564,7 +551,7 @@ def page_text(data: dict[str, Any], title: str, note: str, version: str) -> str:
 
 @functools.cache
 def _text(name: str) -> str:
-    return (_VIEW / name).read_text("utf-8")
+    return (Path(__file__).with_name("view") / name).read_text("utf-8")
 
 
 def _hash(text: str) -> str:

@@ -17,7 +17,7 @@ import threading
 import uuid
 import warnings
 import zlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
@@ -105,8 +105,7 @@ def write_whole(path: Path, text: str, *, is_settled: bool = False) -> None:
 def edit_attributes(path: Path, changes: dict[str, Any]) -> None:
     """Change attributes (None removes one) and drop the consolidated metadata, in one atomic write."""
     document = json.loads((path / "zarr.json").read_text())
-    together = document["attributes"] | changes
-    attributes = {name: value for name, value in together.items() if value is not None}
+    attributes = {name: x for name, x in (document["attributes"] | changes).items() if x is not None}
     document["attributes"] = attributes | {"checksum": checksum(attributes)}
     document.pop("consolidated_metadata", None)
     write_whole(path / "zarr.json", json.dumps(document), is_settled=True)
@@ -117,9 +116,7 @@ AGAIN = "The store is damaged: copy it again from its source, or run it again."
 _NAN = "NaN"
 
 
-def opened_array(
-    where: str, root: Path, name: str, shape: Sequence[int] | None = None, *, is_writable: bool = False
-) -> zarr.Array:
+def opened_array(where: str, root: Path, name: str, shape: Any = None, *, is_writable: bool = False) -> zarr.Array:
     """Open an array of a store, of a known shape; the number of rows is that of the array where it is to be written."""
     try:
         array = zarr.open_array(root / name, mode="r+" if is_writable else "r", zarr_format=3)
@@ -153,8 +150,7 @@ def checked_array(store: "BlockStore", name: str, *, last: bool) -> np.ndarray:
         return checked_block(store, name, len(indices) - 1)
     if all(chunk_path(store.path, name, array, index).is_file() for index in indices):
         with contextlib.suppress(Exception):  # which one it is appears when they are read one by one
-            values = np.asarray(array[...])
-            if not _lacks_numbers(name, values):
+            if not _lacks_numbers(name, values := np.asarray(array[...])):
                 return values
     return np.concatenate([checked_block(store, name, chunk) for chunk in range(len(indices))])
 
@@ -334,8 +330,7 @@ class BlockStore:
         """
         file = self._mark_file(block)
         try:
-            line = file.read_text()
-            check, _, text = line.partition(" ")
+            check, _, text = file.read_text().partition(" ")
             mark = _MARK.validate_python(json.loads(text))
         except FileNotFoundError:
             return None
@@ -356,8 +351,7 @@ class BlockStore:
 
     def mark_of(self, block: int) -> BlockMark:
         """Return the mark of a block, which must be there."""
-        mark = self.mark(block)
-        if mark is None:
+        if (mark := self.mark(block)) is None:
             raise DamagedError(f"no mark {self._mark_file(block).name}")
         return mark
 

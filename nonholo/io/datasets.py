@@ -20,9 +20,7 @@ from nonholo.systems import System
 Variables: TypeAlias = dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]
 """Dimensions after those of the states, values and attributes, by name."""
 
-_AXIS = ("axis",)
 _ENTRIES = ("row", "column")
-
 HEADING = ["theta"]
 QUATERNION = ["qw", "qx", "qy", "qz"]
 
@@ -95,7 +93,7 @@ def _variables_of(group: AbstractMatrixGroup, rows: Float[np.ndarray, "... c"]) 
     if position and set(position) <= set("xyz"):
         variables |= {name: ((), where[..., i], _labels("position", "length unit")) for i, name in enumerate(position)}
     elif position:
-        variables["position"] = _AXIS, where, _labels("position", "length unit")
+        variables["position"] = ("axis",), where, _labels("position", "length unit")
     return variables | _turn(group, turn, turns)
 
 
@@ -236,9 +234,7 @@ def _turns(g: np.ndarray, names: list[str]) -> Float[np.ndarray, "R c"]:
     return g[:, :size, :size].reshape(len(g), len(names))
 
 
-def continuous(
-    q: Float[np.ndarray, "... R 4"], before: Float[np.ndarray, "... 1 4"] | None = None
-) -> Float[np.ndarray, "... R 4"]:
+def continuous(q: Float[np.ndarray, "... R 4"], before: np.ndarray | None = None) -> Float[np.ndarray, "... R 4"]:
     """Return the quaternions, each with the sign that is nearer to the one before it."""
     chain = np.concatenate([q[..., :1, :] if before is None else before, q], axis=-2)
     signs = np.where(np.sum(chain[..., 1:, :] * chain[..., :-1, :], axis=-1) < 0, -1.0, 1.0)
@@ -286,14 +282,11 @@ _KNOWN = {
 }
 _STORED = ("energy", "restricted_momentum")
 _MATRICES = {
-    "configuration": (("row", "column"), "pose as a matrix", "1"),
-    "displacement": (("row", "column"), "displacement of one step as a matrix", "1"),
+    "configuration": (_ENTRIES, "pose as a matrix", "1"),
+    "displacement": (_ENTRIES, "displacement of one step as a matrix", "1"),
 }
-_MULTIPLIERS = "multipliers: forces of a flow, impulses to the next state of a discrete orbit"
-_OTHERS = {
-    "time": ((), "time", "time unit"),
-    "multipliers": (("multiplier",), _MULTIPLIERS, "force unit, or times time"),
-}
+_IMPULSES = "multipliers: forces of a flow, impulses to the next state of a discrete orbit"
+_OTHERS = {"time": ((), "time", "time unit"), "multipliers": (("multiplier",), _IMPULSES, "force unit, or times time")}
 _LABELS = _COMPACT | _KNOWN | _MATRICES | _OTHERS
 _SPATIAL = {  # of a right-invariant constraint
     "reduced_momentum": "spatial momentum along the constraint subspace",
@@ -391,8 +384,7 @@ def is_known(system: System, name: str, *, posed: bool, discrete: bool) -> bool:
 def labels_of(system: System, name: str) -> tuple[tuple[str, ...], dict[str, str]]:
     """Return the dimensions of a quantity after those of the states, and its attributes."""
     axes, meaning, units = _LABELS[name]
-    long_name = _SPATIAL.get(name, meaning) if system.is_spatial else meaning
-    return axes, {"long_name": long_name, "units": units}
+    return axes, {"long_name": _SPATIAL.get(name, meaning) if system.is_spatial else meaning, "units": units}
 
 
 def _is_known(orbit: Orbit, name: str) -> bool:

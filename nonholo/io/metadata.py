@@ -26,8 +26,7 @@ Positive = Annotated[int, Field(gt=0, le=_MOST, strict=True)]
 
 def _name(text: str) -> str:
     """Return what is a name, also of an array within a group of ours."""
-    plain = text.removeprefix("canonical/")
-    if not is_name(plain) or plain in TAKEN:
+    if not is_name(plain := text.removeprefix("canonical/")) or plain in TAKEN:
         raise ValueError(f"{shown(text)} is no name: a letter, then letters, digits and underscores, all ASCII")
     return text
 
@@ -92,8 +91,7 @@ class _Sweep(BaseModel):
         sizes, chunk = self.layout
         if not sizes or len(sizes) != len(chunk) or any(map(int.__gt__, chunk, sizes)) or math.prod(sizes) > _MOST:
             raise ValueError("layout: must cut members into blocks")
-        members = self.design.get("members", math.prod(sizes))
-        if members != math.prod(sizes):
+        if self.design.get("members", math.prod(sizes)) != math.prod(sizes):
             raise ValueError(f"design.members: must be {math.prod(sizes)}, as in the layout")
         components = (attributes.get("components", ()) for *_, attributes in self.outputs.values())
         for name in (*self.design.get("axes", ()), *self.design.get("distributions", ()), *chain(*components)):

@@ -60,8 +60,7 @@ class Stream:
     def write(self, block: int, orbit: Any, checkpoint: Checkpoint) -> None:
         """Write a block, and the state of the run at its end."""
         rows = self.columns(orbit, block * self.plan.rows) if len(orbit) else {}
-        log = None if orbit.events is None else rows_of(orbit.events)
-        self.store.write(block, rows, said_of(checkpoint), log)
+        self.store.write(block, rows, said_of(checkpoint), None if orbit.events is None else rows_of(orbit.events))
 
     def columns(self, orbit: Any, first: int) -> dict[str, np.ndarray]:
         """Return the arrays that the store has, of an orbit whose first state is a row of it."""
@@ -146,9 +145,8 @@ def _blocks_of(
         return blocks.opened_array(where, path, name, shape, is_writable=is_writable)
 
     arrays = {name: array_of(name, shape) for name, shape in json.loads(attributes["arrays"]).items()}
-    layout = blocks.Layout((rows,), arrays["time"].chunks)
     log = array_of(EVENTS) if "events" in attributes else None
-    return blocks.BlockStore(path, attributes["made"], layout, arrays, log)
+    return blocks.BlockStore(path, attributes["made"], blocks.Layout((rows,), arrays["time"].chunks), arrays, log)
 
 
 def create_stream(
@@ -179,8 +177,7 @@ def create_stream(
 
 def open_stream(path: str | Path) -> Stream:
     """Return the stream of a store that a run was written to."""
-    attributes = read_attributes(path)
-    if "run" not in attributes:
+    if "run" not in (attributes := read_attributes(path)):
         remedy = "Run it again with simulate(..., store=...) to be able to resume."
         raise error("resume(store=...)", "have checkpoints", f"'{path}', which was saved whole", remedy)
     run = json.loads(attributes["run"])
@@ -197,8 +194,7 @@ class Standing(NamedTuple):
 
 def standing(path: str | Path) -> Standing | None:
     """Return the progress of the run of a store; None if it is finished."""
-    attributes = read_attributes(path)
-    if "run" not in attributes or "outcome" in attributes:
+    if "run" not in (attributes := read_attributes(path)) or "outcome" in attributes:
         return None
     stream = open_stream(path)
     return Standing(stream.steps_done(), stream.plan.steps, owner_of(stream.path))
@@ -285,8 +281,7 @@ def load_orbit(path: str | Path, *, discrete: Any = None) -> Any:
 
 def load_states(root: Path, discrete: Any, *, last: bool = False) -> Any:
     """Load the states in all chunks of a store, or in the last one."""
-    attributes = read_attributes(root)
-    if "run" in attributes and "outcome" not in attributes:
+    if "run" in (attributes := read_attributes(root)) and "outcome" not in attributes:
         remedy = f"Resume with nonholo.resume('{root}') (nonholo resume); `nonholo info` shows its progress."
         raise error(WHERE, "be a finished run", f"'{root}', which is not", remedy)
     try:
@@ -346,7 +341,6 @@ def _events(store: blocks.BlockStore, attributes: dict[str, Any], orbit: Orbit, 
 
 
 _WHERE = "store_to_csv(store=...)"
-_COMPACT, _RECORDED = ("time", "canonical_pose", "turned"), ("time", "configuration")
 
 
 class StoredPoses(NamedTuple):
@@ -376,7 +370,7 @@ def open_poses(path: Path) -> StoredPoses:
         shapes = json.loads(attributes["arrays"])
         remedy = "Write the orbit of nonholo.load_orbit(path, discrete=...) with its to_csv."
         system = system_of(attributes, _WHERE, remedy)
-        names = _RECORDED if "constraint_residual" in shapes else _COMPACT
+        names = ("time", "configuration") if "constraint_residual" in shapes else ("time", "canonical_pose", "turned")
         places = {name: array for name, array in _stored_names(shapes, names).items() if array in shapes}
     except KeyError as failure:
         raise error(_WHERE, "hold complete attributes", f"'{path}' without {failure}", "Run it again.") from failure

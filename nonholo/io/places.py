@@ -183,8 +183,7 @@ def check_file(target: str | Path | TextIO, *, overwrite: bool, where: str = "to
     """Refuse, in the name of `where`, a path that exists, unless it is a file that may be replaced."""
     if hasattr(target, "writelines"):
         return
-    path = checked_path(where, target)
-    if path.exists() and not (overwrite and path.is_file()):
+    if (path := checked_path(where, target)).exists() and not (overwrite and path.is_file()):
         how = "Choose another path"
         remedy = f"It is not a file. {how}." if overwrite else f"{how}, or pass overwrite=True (--overwrite)."
         raise FileExistsError(f"`{where}` must be new. Got '{path}', which exists. {remedy}")
@@ -208,8 +207,7 @@ def format_of(path: str | Path) -> str | None:
 def check_suffix(path: str | Path, where: str = "save_orbit(path=...)") -> None:
     """Refuse, in the name of `where`, a path with the suffix of another format, and any where zarr does not work."""
     check_assertions(where)
-    suffix = Path(path).suffix.lower()
-    if suffix in _OTHER_FORMATS:
+    if (suffix := Path(path).suffix.lower()) in _OTHER_FORMATS:
         store, how = f"Write a store: '{Path(path).with_suffix('.zarr')}'", _OTHER_FORMATS[suffix]
         remedy = f"{store}, or {how}." if how and where.startswith("save_orbit") else f"{store}."
         raise error(where, "be the path of a Zarr store, usually *.zarr", f"'{path}'", remedy)

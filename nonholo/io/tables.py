@@ -56,9 +56,8 @@ def orbit_to_csv(orbit: AbstractOrbit, path: str | Path, *, overwrite: bool = Fa
         raise checks.error("Orbit.to_csv(...)", "be called on an orbit with poses", "reconstruct=False", remedy)
     own: Any = orbit
     pose, heading = (own.canonical_pose, own.turned) if orbit.is_compact else (own.configuration, None)
-    lines = _lines(orbit.system, [Stretch(orbit.time, np.asarray(pose), heading)], 1)
     with new_file(checks.checked_path("Orbit.to_csv(path=...)", path), overwrite=overwrite) as file:
-        file.writelines(lines)
+        file.writelines(_lines(orbit.system, [Stretch(orbit.time, np.asarray(pose), heading)], 1))
 
 
 def store_to_csv(

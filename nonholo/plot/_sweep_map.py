@@ -74,8 +74,7 @@ def subject_of(result: Any, quantity: str | None) -> Subject:
     if quantity is None:
         quantity = _first_of_the_task(result, numbers)
     values = result[choice(f"{where}(quantity=...)", quantity, tuple(numbers))]
-    more = [str(name) for name in values.dims if name not in codes.dims]
-    if more:
+    if more := [str(name) for name in values.dims if name not in codes.dims]:
         got, remedy = f"{quantity} along {', '.join(more)}", f"Pass result.isel({more[0]}=0), or another one."
         raise error(f"{where}(quantity=...)", "be one number of each member", got, remedy)
     successes = values.astype(float) if quantity == OUTCOME else values.where(codes == 0)
@@ -126,8 +125,7 @@ def scale_of(subject: Subject) -> Normalize:
     distinct = np.unique(finite)
     if subject.has_integers and 0 < len(distinct) <= _FEW:
         middles = (distinct[:-1] + distinct[1:]) / 2
-        borders = np.concatenate([[distinct[0] - 1], middles, [distinct[-1] + 1]])
-        return BoundaryNorm(borders, theme.TIME.N)
+        return BoundaryNorm(np.concatenate([[distinct[0] - 1], middles, [distinct[-1] + 1]]), theme.TIME.N)
     if ranges_widely(finite):
         return LogNorm(finite.min(), finite.max())
     return Normalize(finite.min(), finite.max()) if len(finite) else Normalize(0.0, 1.0)
@@ -238,8 +236,7 @@ def _colored_dots(axes: Axes, subject: Subject, x: "xarray.DataArray", y: "xarra
     members = bar = None
     if not of_outcome:
         good = codes == 0
-        colors: Any = {"c": values[good], "cmap": theme.TIME, "norm": scale_of(subject)}
-        members = axes.scatter(across[good], up[good], **colors, **look)
+        members = axes.scatter(across[good], up[good], c=values[good], cmap=theme.TIME, norm=scale_of(subject), **look)
         bar = color_key(axes, members, subject)
     axes.set(xlabel=label(x), xscale=scale_along(across))
     axes.set(ylabel=label(y), yscale=scale_along(up))
@@ -340,8 +337,7 @@ def sweep_map(
         >>> picture.drawn.get_array().shape, picture.axes.get_xlabel()
         ((2, 3), 'inertia')
     """
-    subject = subject_of(result, quantity)
-    if subject.codes.dims == ("member",):
+    if (subject := subject_of(result, quantity)).codes.dims == ("member",):
         axes = theme.axes_or_new(axes, (7.2, 5.4))
         return SweepMap(axes, *_draw_draws(axes, result, subject, x, y))
     names = [str(name) for name in subject.values.dims]

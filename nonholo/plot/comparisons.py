@@ -122,10 +122,9 @@ def _draw_errors(axes: Axes, time: Float[np.ndarray, "K"], name: str, errors: Fl
     largest = "0" if errors[most] == 0 else rf"${mantissa}\cdot10^{{{int(power)}}}$"
     ring: Any = {"s": 46, "facecolors": theme.PAPER, "edgecolors": color, "linewidths": 1.6, "zorder": 5}
     axes.scatter(time[most], errors[most] / unit, label=f"largest {largest}", **ring)
-    theme.write_title(axes, _TITLES[name])
     axes.set(ylabel=rf"error   [$10^{{{round(np.log10(unit))}}}$]")
     axes.margins(x=0.02, y=0.16)
-    theme.legend_above(axes)
+    theme.legend_above(axes, _TITLES[name])
 
 
 def _draw_slope(axes: Axes, h: Float[np.ndarray, "R"], errors: Float[np.ndarray, "R"], order: float, name: str) -> None:

@@ -54,9 +54,8 @@ def _of_body(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
     velocity = Panel(functools.partial(_velocity, orbit, flow), is_timed=True)
     if not orbit.system.is_spatial:
         return [*path, *momentum, velocity, energy]
-    if orbit.canonical_pose is None:
-        return [_components(orbit, flow)]
-    return [*path, velocity, *momentum, energy]  # the momenta along such a constraint are constant: nothing to enlarge
+    # the momenta along such a constraint are constant: nothing to enlarge
+    return [_components(orbit, flow)] if orbit.canonical_pose is None else [*path, velocity, *momentum, energy]
 
 
 def _path(orbit: Orbit, flow: Orbit | None) -> list[Panel]:
@@ -142,8 +141,7 @@ _NAMES = {  # by is_sleigh and is_planar: of its own class, and of an LLSystem t
 def _name_of_body(system: System) -> str:
     if system.is_forced:
         return f"{_name_of_body(system.inside)}, under forces"
-    form = system.normal_form
-    if form is not None:
+    if (form := system.normal_form) is not None:
         name, synonym = _NAMES[form.is_sleigh, form.is_planar]
         return f"LLSystem, {synonym}" if type(system) is LLSystem else name
     if system.homogeneous_mass_tensor is not None and system.group.is_rigid:
@@ -156,8 +154,7 @@ def _name_of_body(system: System) -> str:
 
 
 def _parameters(system: System) -> str:
-    sheet = sheet_of(system)
-    if sheet is not None:
+    if (sheet := sheet_of(system)) is not None:
         return sheet.facts(system)
     free, all_directions = system.rank, system.group.dim
     if free == all_directions:
@@ -166,7 +163,6 @@ def _parameters(system: System) -> str:
     return f"{system.group},  {free} of {all_directions} directions of velocity allowed, fixed in {side}"
 
 
-_SIZE = (13.0, 7.6)
 _LARGER = 2.2  # times as high as a panel against time
 
 
@@ -209,7 +205,7 @@ def overview(
     """
     smooth = drawable_in_time("overview(orbit=...)", orbit)
     flow = same_space("overview(flow=...)", flow, orbit, "Pass a motion of the same system.")
-    figure = new_page("overview", _SIZE, path, overwrite=overwrite)
+    figure = new_page("overview", (13.0, 7.6), path, overwrite=overwrite)
     panels = (_of_body if isinstance(smooth, Orbit) else _in_coordinates)(smooth, cast(Any, flow))
     axes = _axes(figure, panels)
     for panel, own in zip(panels, axes, strict=True):

@@ -36,8 +36,7 @@ def evenly_spread(points: Float[np.ndarray, "K d"], most: int = MOST_DOTS) -> In
     """
     if len(points) <= most:
         return np.arange(len(points))
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    distance = np.concatenate([[0.0], np.cumsum(steps)])
+    distance = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     at = np.searchsorted(distance, np.linspace(0.0, distance[-1], most))
     return np.unique(np.concatenate([[0], at, [len(points) - 1]]))
 
@@ -80,8 +79,7 @@ def window(orbit: Orbit, step: float, finest: float, most: int) -> slice:
         most: Number of states.
     """
     stride = max(1, int(finest / step)) if step > 0 else max(1, len(orbit) // most)
-    span = stride * most
-    if len(orbit) <= span:
+    if len(orbit) <= (span := stride * most):
         return slice(0, len(orbit), stride)
     first = min(max(0, transition(orbit) - span // 2), len(orbit) - span)
     return slice(first, first + span, stride)
@@ -183,11 +181,9 @@ def finish_page(figure: Figure, title: str, facts: list[str], path: str | Path |
     figure.text(0.012, 0.985, title, va="top", fontsize="xx-large", fontweight="bold")
     below = 0.985 - 2.8 * line * bool(title)
     if theme.option("annotate", True):
-        words = "      ".join(facts).replace("-", "\u2212")
-        figure.text(0.012, below, words, va="top", color=theme.QUIET)
+        figure.text(0.012, below, "      ".join(facts).replace("-", "\u2212"), va="top", color=theme.QUIET)
         below -= 1.6 * line
-    layout = ConstrainedLayoutEngine(rect=(0.004, 0.004, 0.992, below), hspace=0.05, wspace=0.03)
-    figure.set_layout_engine(layout)
+    figure.set_layout_engine(ConstrainedLayoutEngine(rect=(0.004, 0.004, 0.992, below), hspace=0.05, wspace=0.03))
     if path is not None:
         with complete_file(Path(path)) as part:
             figure.savefig(part)
@@ -300,8 +296,7 @@ def drawable_in_time(where: str, orbit: Any) -> Any:
 
 def orbit_with_poses(where: str, orbit: Any) -> Orbit:
     """Return the same of an orbit with poses."""
-    orbit = drawable(where, orbit)
-    if orbit.canonical_pose is None:
+    if (orbit := drawable(where, orbit)).canonical_pose is None:
         raise error(where, "have poses", "an orbit without them", "Run with reconstruct=True.")
     return orbit
 
@@ -380,8 +375,7 @@ def permanent_velocity(orbit: Orbit, state: int) -> Float[np.ndarray, "dim"] | N
     Close means that the sine of the angle to the line of equilibria is small, in the metric of the kinetic energy.
     """
     system = orbit.system
-    equilibria = known_equilibria(system)
-    if equilibria is None or len(equilibria.subspace) == 0:
+    if (equilibria := known_equilibria(system)) is None or len(equilibria.subspace) == 0:
         return None
     velocity, inertia = orbit[state : state + 1].body_velocity[0], np.asarray(system.inertia_operator)
     if not velocity @ inertia @ velocity > 0:

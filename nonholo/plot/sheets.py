@@ -109,8 +109,7 @@ class DiscSheet:
 
     def pieces(self, points: Float[np.ndarray, "K 3"]) -> list[Float[np.ndarray, "L 2"]]:
         """Return the runs of a curve on the sphere, each turned to the upper half and laid on the disc."""
-        halves = (1 * points, -1 * points)
-        return [_laid(half[run]) for half in halves for run in runs(half[:, 0] >= 0)]
+        return [_laid(half[run]) for half in (points, -points) for run in runs(half[:, 0] >= 0)]
 
     def step_angles(self, points: Float[np.ndarray, "K 3"]) -> Float[np.ndarray, "K"]:
         """Return the angles, 0 to pi."""
@@ -196,9 +195,8 @@ class StripSheet:
 
     def pieces(self, points: Float[np.ndarray, "K 2"]) -> list[Float[np.ndarray, "L 2"]]:
         """Return the runs of a curve between the angles -pi and pi, turned over after each full turn."""
-        turn = np.floor((points[:, 0] + np.pi) / (2 * np.pi)).astype(int)
         cut = []
-        for number in np.unique(turn):
+        for number in np.unique(np.floor((points[:, 0] + np.pi) / (2 * np.pi)).astype(int)):
             shift, flip = 2 * np.pi * number, (-1) ** int(number)
             inside = (points[:, 0] >= shift - np.pi) & (points[:, 0] <= shift + np.pi)
             cut += [(points[run] - [shift, 0.0]) * [1.0, flip] for run in runs(inside)]
@@ -285,8 +283,7 @@ def momenta_on_plane(orbit: Orbit) -> Float[np.ndarray, "K k"]:
 
 
 def _to_plane(system: AbstractSystem, canonical: Float[np.ndarray, "... k"]) -> Float[np.ndarray, "... k"]:
-    sheet = sheet_of(system)
-    if sheet is None:
+    if (sheet := sheet_of(system)) is None:
         return canonical
     to_form = sheet.variety.form.frame_map  # None for tops and sleighs by name, whose map is exactly the identity
     return canonical @ (sheet.signs[:, None] * (np.eye(2) if to_form is None else to_form)).T

@@ -160,10 +160,9 @@ def draw_path(
     pieces = max(1, int(np.ceil(step / _PIECE)))
     colors = np.repeat(theme.time_colors(whole, states.time[1:]), pieces, axis=0)
     sparse = step > _SPARSE
-    width = 0.6 if sparse else 1.5
     name, color = theme.option("label", None), theme.option("color", colors[len(colors) // 2] if len(colors) else None)
     axes.plot([], [], color=color, label=name)  # the curve's own first piece may be faint
-    path = draw_curve(axes, eye, arcs(points, pieces), colors.reshape(-1, 4), width=width, zorder=4)
+    path = draw_curve(axes, eye, arcs(points, pieces), colors.reshape(-1, 4), width=0.6 if sparse else 1.5, zorder=4)
     if not whole.is_discrete:
         return path, None
     flat, depth = eye(points)
@@ -175,8 +174,7 @@ def draw_path(
 
 def draw_axis(axes: Axes, eye: View, axis: Float[np.ndarray, "3"], color: str) -> None:
     """Draw a unit vector as an arrow out of the sphere, with the great circle about it dashed."""
-    circle = great_circle(axis)
-    draw_curve(axes, eye, circle, np.array(to_rgb(color)), width=0.9, zorder=2, linestyles=(0, (5, 4)))
+    draw_curve(axes, eye, great_circle(axis), np.array(to_rgb(color)), width=0.9, zorder=2, linestyles=(0, (5, 4)))
     (tip, pole, foot), depth = eye(np.array([1.26, 1.0, -1.0])[:, None] * axis)
     axes.plot(*np.stack([foot, pole], axis=1), color=color, linewidth=0.9, alpha=0.45, zorder=2.5)
     look: dict[str, Any] = {"arrowstyle": "-|>", "linewidth": 1.8, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 14}

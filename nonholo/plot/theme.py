@@ -318,8 +318,7 @@ def time_colors(orbit: AbstractOrbit, time: Float[np.ndarray, "K"]) -> Float[np.
 
 def component_colors(count: int) -> list[Any]:
     """Return colors for this many lines: the palette, or shades from one end to the other if they are too many."""
-    colors = __getattr__("COMPONENTS")
-    if count <= len(colors):
+    if count <= len(colors := __getattr__("COMPONENTS")):
         return list(colors[:count])
     ends = (0.55, 1.0) if is_dark() else (0.0, 0.88)
     return [tuple(shade) for shade in matplotlib.colormaps["plasma"](np.linspace(*ends, count))]
@@ -337,8 +336,7 @@ def mark_time(axes: Axes, orbit: AbstractOrbit) -> None:
     """Lay the colors of time along the bottom of axes whose abscissa is time: the key to the other panels."""
     if len(orbit) < 2 or option("color", None):
         return
-    scale = time_scale(orbit)
-    times = scale.inverse(np.linspace(0.0, 1.0, 129))
+    times = time_scale(orbit).inverse(np.linspace(0.0, 1.0, 129))
     ends = np.unique(np.concatenate([orbit.time[[0, -1]], times]))
     ground = np.stack([ends, np.zeros_like(ends)], axis=-1)
     look: Any = {"linewidth": 4, "capstyle": "butt", "clip_on": False, "zorder": 5}

@@ -47,8 +47,7 @@ class CoordinateSamples:
 
     def _at(self, name: str, *state: Any) -> np.ndarray:
         """Return the value of a function of the system at a state, whose last entry is the time."""
-        arguments = state if self.system.takes_time(name) else state[:-1]
-        return self._value(getattr(self.system.plain, name), *arguments)
+        return self._value(getattr(self.system.plain, name), *(state if self.system.takes_time(name) else state[:-1]))
 
     def lagrangian(self, q: np.ndarray, v: np.ndarray, t: float) -> np.ndarray:
         """Return L."""
@@ -88,8 +87,7 @@ class CoordinateSamples:
     @functools.cached_property
     def _opening(self) -> Any:
         free = dataclasses.replace(self.system, force=None) if self.system.table else self.system  # which has no flow
-        start = {"configuration": self._place, "momentum": self._drawn, "project": self._is_random}
-        return flow(free, times=[0.0], **start)
+        return flow(free, times=[0.0], configuration=self._place, momentum=self._drawn, project=self._is_random)
 
     @property
     def q(self) -> np.ndarray:
@@ -99,8 +97,7 @@ class CoordinateSamples:
     @functools.cached_property
     def momentum(self) -> Float[np.ndarray, "n"]:
         """A momentum at the start, of velocities of about norm one."""
-        speed = np.linalg.norm(self._opening.body_velocity)
-        return self._drawn / max(1.0, float(speed))
+        return self._drawn / max(1.0, float(np.linalg.norm(self._opening.body_velocity)))
 
     @functools.cached_property
     def near(self) -> Any:

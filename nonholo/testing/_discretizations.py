@@ -9,7 +9,7 @@ import numpy as np
 import scipy.integrate
 
 from nonholo.analysis import Convergence, compare, invariants
-from nonholo.base.checks import count, error, flags, generator, instance, needs, positive, refuse_given
+from nonholo.base.checks import count, flags, generator, instance, needs, positive, refuse_given
 from nonholo.base.results import OutcomeError
 from nonholo.base.types import Float
 from nonholo.continuous import vector_field
@@ -105,8 +105,7 @@ class OrbitSamples:
         if self.forced is None or not divides:
             return simulate(self.discrete, steps=count, **self.start(norm / count))
         need(not callable(self.discrete.difference), "a discrete Lagrangian of one time step under forces")
-        forced = self.forced
-        if forced.table is not None:
+        if (forced := self.forced).table is not None:
             rows = np.repeat(forced.rows(np.arange(report.COUNTS[0])), count // report.COUNTS[0], axis=0)
             forced = dataclasses.replace(forced, force=force_of(forced.parts | {"table": rows}))
         discrete = dataclasses.replace(self.discrete, system=forced, time_step=np.float64(self.span / count))
@@ -140,12 +139,10 @@ class OrbitSamples:
         """The continuous path: its first displacements, one for each count, its last momentum and pose."""
         norm = report.result_of(self.finer, "the finer orbits failed")[1]
         k, h, start = len(self.S), self.span, self.moving(norm / self.span)
-        velocity = start["restricted_velocity"] @ self.directions
-        r = self.directions @ (self.system.inertia_operator @ velocity)
-        times = [h / n for n in reversed(report.COUNTS)]
+        r = self.directions @ (self.system.inertia_operator @ (start["restricted_velocity"] @ self.directions))
         options: Any = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-13 * (1 + np.abs(r).max())}
         state, states = np.concatenate([r, self.pose.ravel()]), np.zeros((0, k + self.pose.size))
-        for field, ends in fields_of(self.system, times, h):
+        for field, ends in fields_of(self.system, [h / n for n in reversed(report.COUNTS)], h):
             rows = scipy.integrate.solve_ivp(field, (ends[0], ends[-1]), state, t_eval=ends[1:], **options).y.T
             state, states = rows[-1], np.concatenate([states, rows])
         states = states[[0, 1, 2, -1]]
@@ -181,8 +178,7 @@ class OrbitSamples:
 
         In space if the constraint is.
         """
-        arriving = self.group.coadjoint(before, self.momentum(before)) + kick
-        jump = self.momentum(after) - arriving
+        jump = self.momentum(after) - (self.group.coadjoint(before, self.momentum(before)) + kick)
         return self.group.coadjoint(np.linalg.inv(g), jump) if self.spatial else jump
 
     def momentum(self, W: np.ndarray) -> Float[np.ndarray, "K dim"]:
@@ -218,12 +214,10 @@ def impulses_of(
         return half, half
     ends, arriving = np.concatenate([g[1:], g[-1:] @ W[-1:]]), group.coadjoint(W, leaving)
     time, nodes, half = orbit.time.tolist(), orbit.restricted_momentum, time_step / 2
-    first, last = [], []
-    for k in range(len(orbit)):
-        first.append(_impulse(forced, g[k], time[k], nodes[k], forced.directions(g[k]).T @ leaving[k], k, half))
-    for k in range(len(orbit) - 1):
-        before = forced.directions(ends[k]).T @ arriving[k]
-        last.append(_impulse(forced, ends[k], time[k + 1], before, nodes[k + 1], k, half))
+    before = [forced.directions(pose).T @ momentum for pose, momentum in zip(ends, arriving, strict=True)]
+    after = [forced.directions(pose).T @ momentum for pose, momentum in zip(g, leaving, strict=True)]
+    first = [_impulse(forced, g[k], time[k], nodes[k], after[k], k, half) for k in range(len(g))]
+    last = [_impulse(forced, ends[k], time[k + 1], before[k], nodes[k + 1], k, half) for k in range(len(g) - 1)]
     return np.array(first), np.array([*last, np.full(group.dim, np.nan)])
 
 
@@ -371,8 +365,7 @@ def check_discretization(
         title = f"{owner}({there.system.name}, time_step={h:g}, {there.system.rule})"
         return run_checks(title, MAP, there, tolerance_factor, throw)
     refuse_given(owner, "be left out on a group", "Leave it out.", configuration=(configuration, None))
-    if not isinstance(discrete, Discretization):
-        raise error(where, "be a discretization", type(discrete).__name__, "Pass `discretize(system, time_step)`.")
+    instance(where, discrete, Discretization, "be a discretization", "Pass `discretize(system, time_step)`.")
     refuse_composition(where, discrete, "Check the discretization of order 2.")
     refuse_slip(where, discrete.system)
     refuse_many_matrices(f"{owner}(steps=...)", discrete, number, "Pass fewer steps.")
@@ -478,10 +471,7 @@ def on_variety(s: OrbitSamples) -> float:
     return largest(s.forbidden(s.W, s.orbit.configuration))
 
 
-@measures(CHECKS, "group", "residual(g_k) = 0", 1e-11)
-def on_group(s: OrbitSamples) -> float:
-    """Return the largest distance of a pose from the group."""
-    return largest(s.group.residual(s.orbit.configuration))
+measures(CHECKS, "group", "residual(g_k) = 0", 1e-11)(lambda s: largest(s.group.residual(s.orbit.configuration)))
 
 
 @measures(CHECKS, "reconstruction", "g_(k+1) = g_k W_k", 1e-12)

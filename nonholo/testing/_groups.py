@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
-from nonholo.base.checks import error, flags, generator, within_memory
+from nonholo.base.checks import flags, generator, instance, within_memory
 from nonholo.base.numerics import double_precision
 from nonholo.base.types import Float
 from nonholo.groups import AbstractMatrixGroup
@@ -126,9 +126,8 @@ def check_group(
         >>> nh.testing.check_group(nh.ProductGroup(nh.SE(2), nh.Translations(1))).passed
         True
     """
-    if not isinstance(group, AbstractMatrixGroup):
-        remedy = "Pass SO(n), a MatrixGroup or your own class that implements AbstractMatrixGroup."
-        raise error("check_group(group=...)", "be a group", type(group).__name__, remedy)
+    remedy = "Pass SO(n), a MatrixGroup or your own class that implements AbstractMatrixGroup."
+    instance("check_group(group=...)", group, AbstractMatrixGroup, "be a group", remedy)
     flags("check_group", compiled=compiled, throw=throw)
     within_memory("check_group(group=...)", 8.0 * group.dim**2 * group.size**2, "Check a smaller group of its kind.")
     samples = GroupSamples(group, generator("check_group(rng=...)", rng))
@@ -336,8 +335,7 @@ def _dexp_inverse(s: GroupSamples) -> float:
     ad, eye = s.group.ad(s.x), np.eye(s.group.dim)
     upper = np.concatenate([ad, np.broadcast_to(eye, ad.shape)], axis=-1)
     block = scipy.linalg.expm(np.concatenate([upper, np.zeros_like(upper)], axis=-2))
-    dexp = block[:, : s.group.dim, s.group.dim :]
-    return gap(s.group.dexp_inverse(s.x) @ dexp, np.broadcast_to(eye, ad.shape))
+    return gap(s.group.dexp_inverse(s.x) @ block[:, : s.group.dim, s.group.dim :], np.broadcast_to(eye, ad.shape))
 
 
 @measures(MAPS, "dexp_inverse and log", "d/dt log(exp(t y) exp(x)) = dexp_inverse(x) y", 1e-8)
@@ -345,8 +343,7 @@ def _dexp_of_log(s: GroupSamples) -> float:
     def logarithm(t: float) -> np.ndarray:
         return s.group.log(s.element(t * s.y / 2) @ s.element(s.x / 2))
 
-    exact = (s.group.dexp_inverse(s.x / 2) @ s.y[:, :, None])[:, :, 0] / 2
-    return gap(derivative(logarithm), exact)
+    return gap(derivative(logarithm), (s.group.dexp_inverse(s.x / 2) @ s.y[:, :, None])[:, :, 0] / 2)
 
 
 # eigenvalues of defective matrices are found to the root of rounding only

@@ -59,7 +59,6 @@ def derivative(function: Callable[[float], Any], step: float = 1e-3) -> np.ndarr
 
 
 Measure = TypeVar("Measure", bound=Callable[[Any], float])
-_HEADINGS = ("", "measured", "allowed", "", "property")
 
 
 class NotApplicableError(Exception):
@@ -128,9 +127,7 @@ class Result:
         """One of "ok", "FAILED", "reported" (no tolerance), "not checked" (the note has the reason)."""
         if not self.passed:
             return "FAILED"
-        if self.value is None:
-            return "not checked"
-        return "ok" if self.tolerance is not None else "reported"
+        return "not checked" if self.value is None else "ok" if self.tolerance is not None else "reported"
 
     def __str__(self) -> str:
         """Return what is required and what was found."""
@@ -176,7 +173,7 @@ class Report:
     def __repr__(self) -> str:
         count = sum(result.status in ("ok", "FAILED") for result in self.results)
         verdict = f"{len(self.failed)} of {count} checks FAILED" if self.failed else f"all {count} checks passed"
-        rows = [_HEADINGS, *map(_cells, self.results)]
+        rows = [("", "measured", "allowed", "", "property"), *map(_cells, self.results)]
         widths = [max(len(row[i]) for row in rows) for i in range(4)]
         lines = ["  ".join([*map(str.ljust, row, widths), row[4]]).rstrip() for row in rows]
         return "\n  ".join([f"{self.owner}: {verdict}", *lines])

@@ -74,9 +74,8 @@ class SystemSamples:
     def rate(self) -> tuple[Float[np.ndarray, "4 k"], Float[np.ndarray, "4 N N"]]:
         """The rates of restricted momentum and pose by the vector field of the system."""
         k = len(self.S)
-        state = np.concatenate([self.restricted, self.g.reshape(_COUNT, -1)], axis=-1)
         need(self.forced is None or self.forced.table is None, "one force for each step")
-        rate = vector_field(self.moving)(0.0, state)
+        rate = vector_field(self.moving)(0.0, np.concatenate([self.restricted, self.g.reshape(_COUNT, -1)], axis=-1))
         return rate[:, :k], rate[:, k:].reshape(self.g.shape)
 
     def along_the_motion(self, quantity: Callable[[np.ndarray, np.ndarray], Any]) -> np.ndarray:
@@ -172,8 +171,7 @@ def _velocity(s: SystemSamples) -> float:
 @measures(CHECKS, "energy", "constrained_energy = kinetic energy of the admissible velocity", 1e-11)
 def _kinetic_energy(s: SystemSamples) -> float:
     need_motion(s)
-    kinetic = np.sum(s.momentum * s.body_velocity, axis=-1) / 2
-    return relative(s.energy(s.restricted, s.g), kinetic)
+    return relative(s.energy(s.restricted, s.g), np.sum(s.momentum * s.body_velocity, axis=-1) / 2)
 
 
 @measures(CHECKS, "energy of full momenta", "constrained_energy(p) = constrained_energy(p along S)", 1e-11)
@@ -189,15 +187,12 @@ def _into_canonical(s: SystemSamples) -> np.ndarray:
     return s.group.adjoint(np.asarray(s.system.frame))
 
 
-@measures(CHECKS, "frame", "residual(frame) = 0", 1e-12)
-def _frame(s: SystemSamples) -> float:
-    return largest(s.group.residual(np.asarray(s.system.frame)))
+measures(CHECKS, "frame", "residual(frame) = 0", 1e-12)(lambda s: largest(s.group.residual(np.asarray(s.system.frame))))
 
 
 @measures(CHECKS, "frame and constraint", "Ad of frame^-1 maps d to the canonical d", 1e-12)
 def _frame_of_subspace(s: SystemSamples) -> float:
-    into = _into_canonical(s)
-    return largest(np.asarray(s.system.canonical.annihilator) @ np.linalg.solve(into, s.S.T))
+    return largest(np.asarray(s.system.canonical.annihilator) @ np.linalg.solve(_into_canonical(s), s.S.T))
 
 
 @measures(CHECKS, "frame and inertia", "canonical inertia = Ad_T^T I Ad_T", 1e-11)
@@ -273,8 +268,7 @@ def check_system(
         raise error("check_system(system=...)", "be a system", kind, "Pass an LLSystem or your own class.")
     refuse_slip("check_system(system=...)", system)
     samples = SystemSamples(system, generator("check_system(rng=...)", rng))
-    owner = f"check_system({kind} on {system.group!r})"
-    return run_checks(owner, CHECKS, samples, tolerance_factor, throw)
+    return run_checks(f"check_system({kind} on {system.group!r})", CHECKS, samples, tolerance_factor, throw)
 
 
 @measures(CHECKS, "equations of motion", "rate of <p, S_i> = <p, [omega, S_i]> (in space: zero) + <f - dU, S_i>", 1e-11)
@@ -297,8 +291,7 @@ def _reconstruction(s: SystemSamples) -> float:
 @measures(CHECKS, "constraint", "the vector field keeps the constraint", 1e-11)
 def _constraint(s: SystemSamples) -> float:
     back = np.linalg.inv(s.g)
-    velocity = s.rate[1] @ back if s.spatial else back @ s.rate[1]
-    return largest(s.group.vee(velocity) @ s.A.T)
+    return largest(s.group.vee(s.rate[1] @ back if s.spatial else back @ s.rate[1]) @ s.A.T)
 
 
 @measures(CHECKS, "energy conserved", "along the vector field the energy changes by the power of the force", 1e-8)
@@ -350,8 +343,7 @@ def _rate_at(s: SystemSamples, velocity: np.ndarray) -> np.ndarray:
 def _at_rest(s: SystemSamples) -> float:
     spaces = [family.subspace for family in _equilibria(s)]
     velocities = np.concatenate([*spaces, *(rows.sum(axis=0)[None] for rows in spaces)])
-    forbidden = largest(velocities @ s.A.T)
-    return max(forbidden, largest(_rate_at(s, velocities)))
+    return max(largest(velocities @ s.A.T), largest(_rate_at(s, velocities)))
 
 
 @measures(CHECKS, "attraction", "small deviations from the attracting equilibrium decay: negative growth rate", -1e-9)
@@ -367,8 +359,7 @@ def _growth_beside(s: SystemSamples, family: Equilibria) -> float:
     w = velocity @ np.linalg.pinv(s.S)
     slope = derivative(lambda t: _rate_at(s, (w + t * np.eye(len(w))) @ s.S), 0.1)
     rates = np.sort(np.linalg.eigvals(slope.T).real)
-    across = len(w) - len(family.subspace)
-    return float(rates[across - 1] / np.linalg.norm(velocity))
+    return float(rates[len(w) - len(family.subspace) - 1] / np.linalg.norm(velocity))
 
 
 @measures(CHECKS, "conserved body momenta", "conserved_momenta(...).body are constant along the vector field", 1e-8)
@@ -393,5 +384,4 @@ def _conserved(s: SystemSamples) -> ConservedMomenta:
 
 def _change(s: SystemSamples, rows: np.ndarray, quantity: Any) -> float:
     need(len(rows), "none is conserved")
-    slope = s.along_the_motion(quantity) @ rows.T
-    return largest(slope) / (1 + largest(quantity(s.restricted, s.g)))
+    return largest(s.along_the_motion(quantity) @ rows.T) / (1 + largest(quantity(s.restricted, s.g)))

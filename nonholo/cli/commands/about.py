@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
+from typer import Argument, BadParameter, Option, echo
 
 from nonholo.cli import scenario, screen
 from nonholo.cli.commands.run import Module
@@ -15,11 +15,7 @@ if TYPE_CHECKING:
 _ABOUT = "name", "description"
 
 
-def cite(
-    cff: Annotated[
-        bool, typer.Option("--cff", help="Print CITATION.cff, for repositories and reference managers.")
-    ] = False,
-) -> None:
+def cite(cff: Annotated[bool, Option("--cff", help="Print CITATION.cff, for reference managers.")] = False) -> None:
     """Print BibTeX entries of this version of the library and of the paper behind it.
 
     Please cite both: the discrete maps of tops and sleighs are the paper's.
@@ -33,14 +29,14 @@ def cite(
     file = next(path for path in (room / "CITATION.cff", room.parents[1] / "CITATION.cff") if path.exists())
     text = file.read_text("utf-8")
     if cff:
-        typer.echo(text, nl=False)
+        echo(text, nl=False)
         return
     about = yaml.safe_load(text)
     entries = [_entry("nonholo", about)]
     for each in about["references"]:
         names = (author["family-names"].lower() for author in each["authors"])
         entries.append(_entry("-".join([*names, str(each["year"])]), each))
-    typer.echo("\n\n".join(entries))
+    echo("\n\n".join(entries))
 
 
 def _entry(key: str, about: dict[str, Any]) -> str:
@@ -64,9 +60,7 @@ def _author(about: dict[str, str]) -> str:
     return f"{about['family-names']}, {about['given-names']}" if "family-names" in about else f"{{{about['name']}}}"
 
 
-def examples(
-    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="One of those that are listed.")] = None,
-) -> None:
+def examples(name: Annotated[str | None, Argument(metavar="[NAME]", help="One that is listed.")] = None) -> None:
     """List the ready systems of the literature and the built-in scenarios; of one, show what is known.
 
     All of them are for `nonholo simulate`, `explore` and `new`.
@@ -75,9 +69,8 @@ def examples(
     nonholo examples snakeboard
     nonholo examples suslov
     """
-    scenarios = scenario.files.built_in_titles()
-    if name in scenarios:
-        typer.echo(f"{name}: {scenarios[name]}\n\n{_commands(name)}")
+    if name in (scenarios := scenario.files.built_in_titles()):
+        echo(f"{name}: {scenarios[name]}\n\n{_commands(name)}")
         return
     with store_errors(USAGE):
         ready = scenario.bodies.examples()
@@ -113,17 +106,15 @@ def _show(example: "Example") -> None:
             "orbit = nh.simulate(discrete, **start, steps=400)",
         ],
     }
-    typer.echo(scenario.bodies.summary(scenario.bodies.examples()[example.name]))
+    echo(scenario.bodies.summary(scenario.bodies.examples()[example.name]))
     for title, lines in parts.items():
         if lines:
-            typer.echo("\n".join([f"\n{title}", *(f"  {line}" for line in lines)]))
-    typer.echo(f"\nHere\n{_commands(example.name)}")
+            echo("\n".join([f"\n{title}", *(f"  {line}" for line in lines)]))
+    echo(f"\nHere\n{_commands(example.name)}")
 
 
 def new(
-    kind: Annotated[
-        str, typer.Argument(metavar="KIND", help="suslov, sleigh, ..., see `nonholo systems` and `examples`; or sweep.")
-    ],
+    kind: Annotated[str, Argument(metavar="KIND", help="suslov, ..., see `nonholo systems` and `examples`; or sweep.")],
     module: Module = None,
 ) -> None:
     """Print a commented scenario: every key, with its meaning.
@@ -138,12 +129,12 @@ def new(
     with scenario_errors():
         files.take_module(module)
     if kind in own:
-        typer.echo(own[kind], nl=False)
+        echo(own[kind], nl=False)
         return
     try:
-        typer.echo(scenario.files.template(kind), nl=False)
+        echo(scenario.files.template(kind), nl=False)
     except KeyError:
-        raise typer.BadParameter(f"there is no kind {kind!r}. {scenario.bodies.nearest_kind(kind)}") from None
+        raise BadParameter(f"there is no kind {kind!r}. {scenario.bodies.nearest_kind(kind)}") from None
 
 
 def systems(module: Module = None) -> None:
@@ -159,4 +150,4 @@ def systems(module: Module = None) -> None:
     rows = ((kind, body.__doc__ or "", ", ".join([*body.model_fields][1:])) for kind, body in tables)
     screen.tables.show_table(("kind", "description", "parameters"), rows, "Bodies")
     screen.tables.show_table(_ABOUT, scenario.files.built_in_titles().items(), "Built-in scenarios")
-    typer.echo("And every ready system of `nonholo examples`.")
+    echo("And every ready system of `nonholo examples`.")

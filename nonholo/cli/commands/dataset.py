@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 from typing import Annotated, Any
 
-import typer
+from typer import Argument, Option, echo
 
 import nonholo
 from nonholo.cli import scenario, screen
@@ -13,19 +13,17 @@ from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, 
 
 
 def dataset(
-    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="One of those that --list shows.")] = None,
-    output: Annotated[Path | None, typer.Option("-o", "--output", metavar="FOLDER", help="A new folder.")] = None,
-    orbits: Annotated[int, typer.Option(metavar="N", min=1, help="How many orbits.")] = 1000,
-    steps: Annotated[int, typer.Option(metavar="N", min=1, help="Steps of each; there is one state more.")] = 500,
-    time_step: Annotated[float | None, typer.Option(metavar="H", help="Time between states.")] = None,
-    rng: Annotated[int, typer.Option(metavar="N", min=0, help="The same integer gives the same numbers.")] = 0,
-    noise: Annotated[float, typer.Option(metavar="SIGMA", help="Also write fields `observed_...` with noise.")] = 0.0,
-    split: Annotated[str, typer.Option(metavar="A/B/C", help="For training, validation, test.")] = "0.8/0.1/0.1",
-    file_format: Annotated[str, typer.Option("--format", metavar="HOW", help="zarr, or csv: tables.")] = "zarr",
-    license_name: Annotated[
-        str, typer.Option("--license", metavar="NAME", help="The license in the data card.")
-    ] = "CC0-1.0",
-    shown: Annotated[bool, typer.Option("--list", help="List the data sets.")] = False,
+    name: Annotated[str | None, Argument(metavar="[NAME]", help="One of those that --list shows.")] = None,
+    output: Annotated[Path | None, Option("-o", "--output", metavar="FOLDER", help="A new folder.")] = None,
+    orbits: Annotated[int, Option(metavar="N", min=1, help="How many orbits.")] = 1000,
+    steps: Annotated[int, Option(metavar="N", min=1, help="Steps of each; there is one state more.")] = 500,
+    time_step: Annotated[float | None, Option(metavar="H", help="Time between states.")] = None,
+    rng: Annotated[int, Option(metavar="N", min=0, help="The same integer gives the same numbers.")] = 0,
+    noise: Annotated[float, Option(metavar="SIGMA", help="Also write fields `observed_...` with noise.")] = 0.0,
+    split: Annotated[str, Option(metavar="A/B/C", help="For training, validation, test.")] = "0.8/0.1/0.1",
+    file_format: Annotated[str, Option("--format", metavar="HOW", help="zarr, or csv: tables.")] = "zarr",
+    license_name: Annotated[str, Option("--license", metavar="NAME", help="The license in the data card.")] = "CC0-1.0",
+    shown: Annotated[bool, Option("--list", help="List the data sets.")] = False,
     module: Module = None,
     quiet: Quiet = False,
 ) -> None:
@@ -63,7 +61,7 @@ def dataset(
             folder = nonholo.dataset(own.get(name, name), output, split=_fractions(split), **options)
         except KeyboardInterrupt:
             leave("Stopped; the same command resumes it.", FAILED)
-    typer.echo(folder if quiet else f"{folder / 'README.md'} describes the files.")
+    echo(folder if quiet else f"{folder / 'README.md'} describes the files.")
 
 
 def _fractions(split: str) -> list[float]:

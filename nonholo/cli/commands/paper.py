@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
+from typer import Option, echo
 
 from nonholo.cli import screen
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, store_errors
@@ -14,16 +14,12 @@ if TYPE_CHECKING:
 
 
 def paper(
-    output: Annotated[
-        Path, typer.Option("-o", "--output", metavar="DIR", help="Where to write: empty, new, or an earlier page.")
-    ] = Path("paper"),
+    output: Annotated[Path, Option("-o", "--output", metavar="DIR", help="Empty, new, or a page.")] = Path("paper"),
     only: Annotated[
         list[str] | None,
-        typer.Option("--only", metavar="LABEL", help="A label, a row of the errata or a figure; repeatable."),
+        Option("--only", metavar="LABEL", help="A label, a row of the errata or a figure; repeatable."),
     ] = None,
-    is_list: Annotated[
-        bool, typer.Option("--list", help="List labels and verdicts; measure and write nothing.")
-    ] = False,
+    is_list: Annotated[bool, Option("--list", help="List labels and verdicts; measure and write nothing.")] = False,
 ) -> None:
     """Recompute every statement and figure of the paper; write a page with claims and measured values.
 
@@ -48,16 +44,14 @@ def paper(
     with progress_bar("findings", sys.stderr.isatty()) as report:
         results = evaluate_all(selection, report)
     with store_errors(FAILED):
-        remark = f"Only a part, chosen with --only: {', '.join(only)}." if only else ""
-        write_folder(output, results, remark)
+        write_folder(output, results, f"Only a part, chosen with --only: {', '.join(only)}." if only else "")
     if only:
         columns = "label", "verdict", "defect", "of what is denied", "tolerance", "holds", "seconds"
         screen.tables.show_table(columns, _findings(results))
     else:
         screen.tables.show_table(("section", "findings", "hold", "seconds"), _sections(results))
-    typer.echo(output / "index.html")
-    failures = [result.entry.finding.label for result in results if not result.holds]
-    if failures:
+    echo(output / "index.html")
+    if failures := [result.entry.finding.label for result in results if not result.holds]:
         leave(f"{len(failures)} of {len(results)} findings fail: {', '.join(failures)}.", FAILED)
 
 

@@ -4,38 +4,31 @@ import functools
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, Option, echo
 
 import nonholo
 from nonholo import io
 from nonholo.cli import commands
 from nonholo.cli.screen.errors import USAGE, leave
 
-Scenario = Annotated[
-    str, typer.Argument(metavar="SCENARIO", help="A TOML file, or a name of `nonholo systems` or `nonholo examples`.")
-]
-RunStore = Annotated[Path | None, typer.Option("-o", "--output", metavar="STORE", help="Where to keep the run.")]
-Steps = Annotated[int | None, typer.Option(metavar="N", help="Instead of run.steps.")]
-TimeStep = Annotated[float | None, typer.Option(metavar="H", help="Instead of run.time_step.")]
-Settings = Annotated[
-    list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change any value, in TOML; repeatable.")
-]
-Module = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Run your own Python file, whose functions are kinds of bodies.")
-]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of the table.")]
-Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace what an earlier call wrote there.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print only the path of the store.")]
+Scenario = Annotated[str, Argument(metavar="SCENARIO", help="A TOML file, or a name of `systems` or `examples`.")]
+Steps = Annotated[int | None, Option(metavar="N", help="Instead of run.steps.")]
+TimeStep = Annotated[float | None, Option(metavar="H", help="Instead of run.time_step.")]
+Settings = Annotated[list[str] | None, Option("--set", metavar="KEY=VALUE", help="Set a value, in TOML; repeatable.")]
+Module = Annotated[Path | None, Option(metavar="FILE", help="Run your Python file; its functions are kinds of bodies.")]
+Json = Annotated[bool, Option("--json", help="Print one JSON object instead of the table.")]
+Overwrite = Annotated[bool, Option("--overwrite", help="Replace what an earlier call wrote there.")]
+Quiet = Annotated[bool, Option("--quiet", "-q", help="Print only the path of the store.")]
 
 
 def simulate(
     scenario: Scenario,
-    output: RunStore = None,
+    output: Annotated[Path | None, Option("-o", "--output", metavar="STORE", help="Where to keep the run.")] = None,
     steps: Steps = None,
     time_step: TimeStep = None,
     settings: Settings = None,
-    plot: Annotated[bool | None, typer.Option("--plot/--no-plot", help="Draw a picture beside the store.")] = None,
-    gif: Annotated[bool | None, typer.Option("--gif/--no-gif", help="Draw an animation beside the store.")] = None,
+    plot: Annotated[bool | None, Option("--plot/--no-plot", help="Draw a picture beside the store.")] = None,
+    gif: Annotated[bool | None, Option("--gif/--no-gif", help="Draw an animation beside the store.")] = None,
     module: Module = None,
     json: Json = False,
     overwrite: Overwrite = False,
@@ -63,10 +56,8 @@ def simulate(
     commands.runs.simulate_and_keep(request, output, json=json, overwrite=overwrite, quiet=quiet)
 
 
-Source = Annotated[
-    str, typer.Argument(metavar="[SCENARIO | STORE]", help="A scenario, or a store of `nonholo simulate`.")
-]
-Page = Annotated[Path | None, typer.Option("-o", "--output", metavar="FILE", help="Where to write the page.")]
+Source = Annotated[str, Argument(metavar="[SCENARIO | STORE]", help="A scenario, or a store of `nonholo simulate`.")]
+Page = Annotated[Path | None, Option("-o", "--output", metavar="FILE", help="Where to write the page.")]
 
 
 def explore(
@@ -76,7 +67,7 @@ def explore(
     time_step: TimeStep = None,
     settings: Settings = None,
     module: Module = None,
-    browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")] = True,
+    browser: Annotated[bool, Option("--browser/--no-browser", help="Open the page in the browser.")] = True,
     overwrite: Overwrite = False,
 ) -> None:
     """Write the live page of a motion, one file, and open it in the browser.
@@ -91,24 +82,14 @@ def explore(
     """
     options = {"run.steps": ("--steps", steps), "run.time_step": ("--time-step", time_step)}
     ask = functools.partial(commands.runs.request_of, source, options, settings, module)
-    typer.echo(commands.runs.write_page(source, ask, output, browser=browser, overwrite=overwrite))
+    echo(commands.runs.write_page(source, ask, output, browser=browser, overwrite=overwrite))
 
 
-SweepScenario = Annotated[
-    str, typer.Argument(metavar="SCENARIO", help="A TOML file; `nonholo new sweep` writes one, with comments.")
-]
-SweepStore = Annotated[
-    Path | None, typer.Option("-o", "--output", metavar="STORE", help="Where to keep the result; a new path.")
-]
-Members = Annotated[
-    float | None,
-    typer.Option(metavar="N", help="Approximate number of members, such as 1e6: scales every range of a grid alike."),
-]
-Scheduler = Annotated[
-    str | None,
-    typer.Option(metavar="HOW", help="threads (default), processes, or tcp://HOST:PORT of a Dask scheduler."),
-]
-Workers = Annotated[int | None, typer.Option(metavar="N", min=1, help="Threads or processes; by default one a core.")]
+SweepScenario = Annotated[str, Argument(metavar="SCENARIO", help="A TOML file; `nonholo new sweep` writes one.")]
+SweepStore = Annotated[Path | None, Option("-o", "--output", metavar="STORE", help="Where to keep it; a new path.")]
+Members = Annotated[float | None, Option(metavar="N", help="About how many, as 1e6; ranges of a grid scale alike.")]
+Scheduler = Annotated[str | None, Option(metavar="HOW", help="threads (default), processes, tcp://HOST:PORT of Dask.")]
+Workers = Annotated[int | None, Option(metavar="N", min=1, help="Threads or processes; by default one a core.")]
 
 
 def sweep(
@@ -118,7 +99,7 @@ def sweep(
     scheduler: Scheduler = None,
     workers: Workers = None,
     settings: Settings = None,
-    plot: Annotated[bool | None, typer.Option("--plot/--no-plot", help="Draw a map beside the store.")] = None,
+    plot: Annotated[bool | None, Option("--plot/--no-plot", help="Draw a map beside the store.")] = None,
     module: Module = None,
     json: Json = False,
     quiet: Quiet = False,
@@ -149,21 +130,18 @@ def sweep(
     whole = int(members) if members is not None and members.is_integer() else members  # 1e6 is a whole number
     options = {"design.members": ("--members", whole), "output.plot": ("--plot", plot)}
     request = commands.runs.request_of(scenario, options, settings, module, of_sweep=True)
-    how = {"scheduler": scheduler, "workers": workers}
-    commands.runs.sweep_and_keep(request, output, how, json=json, quiet=quiet)
+    commands.runs.sweep_and_keep(request, output, {"scheduler": scheduler, "workers": workers}, json=json, quiet=quiet)
 
 
-Store = Annotated[Path, typer.Argument(metavar="STORE", help="A store made by sweep, or by simulate(..., store=...).")]
-Trust = Annotated[
-    bool, typer.Option("--trust", help="Import the functions that the store of a sweep names, with your rights.")
-]
+Store = Annotated[Path, Argument(metavar="STORE", help="A store made by sweep, or by simulate(..., store=...).")]
+Trust = Annotated[bool, Option("--trust", help="Import functions that the store of a sweep names, with your rights.")]
 
 
 def resume(
     store: Store,
     scheduler: Scheduler = None,
     workers: Workers = None,
-    members: Annotated[int | None, typer.Option(metavar="N", help="Members that a random design is to have.")] = None,
+    members: Annotated[int | None, Option(metavar="N", help="Members that a random design is to have.")] = None,
     module: Module = None,
     trust: Trust = False,
     json: Json = False,
@@ -189,7 +167,7 @@ def resume(
 
 def extend(
     store: Store,
-    steps: Annotated[int, typer.Option("--steps", metavar="N", help="How many steps more.")],
+    steps: Annotated[int, Option("--steps", metavar="N", help="How many steps more.")],
     module: Module = None,
     json: Json = False,
 ) -> None:

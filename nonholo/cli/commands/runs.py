@@ -34,7 +34,6 @@ from nonholo.simulation import resume_run, simulate, size_in_blocks
 
 RUNS = Path("runs")
 _MOST_WARNINGS = 5  # warnings of a sweep that are reported
-Chosen = dict[str, tuple[str, Any]]
 Result = TypeVar("Result")
 
 
@@ -46,13 +45,11 @@ class Ran(NamedTuple):
     reason: str | None
 
 
-def request_of(
-    name: str, options: Chosen, settings: list[str] | None, module: Path | None, *, of_sweep: bool = False
-) -> Any:
+def request_of(name: str, options: Any, settings: list[str] | None, module: Path | None, of_sweep: bool = False) -> Any:
     """Load a scenario; options of the command line come before the settings of `--set`."""
     with scenario_errors(), reporting_warnings():
-        load = load_sweep_scenario if of_sweep else load_scenario
-        return load(name, given_settings(options, settings or []), module)
+        own = given_settings(options, settings or [])
+        return (load_sweep_scenario if of_sweep else load_scenario)(name, own, module)
 
 
 def simulate_and_keep(request: Loaded, output: Path | None, *, json: bool, overwrite: bool, quiet: bool) -> None:
@@ -85,9 +82,7 @@ def _reporting_stops() -> Iterator[None]:
         leave("The states do not fit in memory. Keep fewer of them: raise run.save_every.", USAGE)
 
 
-def _is_stopped(
-    output: Path | None, kind: str, text: Callable[[], str], pictures: list[str], *, overwrite: bool
-) -> bool:
+def _is_stopped(output: Path | None, kind: str, text: Callable[[], str], pictures: list[str], overwrite: bool) -> bool:
     """Return whether this very command began the store at a path, and was stopped before all of it was there.
 
     Refuse, before any work is done, what else is in the way, and a place where the results cannot go.
@@ -143,8 +138,7 @@ def run_and_keep(request: Loaded, store: Path | None, *, overwrite: bool, progre
         scenario, (discrete, starts) = request.scenario, _try(request)
     task: Any = functools.partial(simulate, discrete, steps=scenario.run.steps, progress=progress, **scenario.options())
     text = _scenario_text(request)
-    size = size_in_blocks(discrete, scenario.run.branch, scenario.run.steps, scenario.run.save_every)
-    if size and starts:
+    if (size := size_in_blocks(discrete, scenario.run.branch, scenario.run.steps, scenario.run.save_every)) and starts:
         with store_errors(USAGE):
             folder = RUNS if store is None else store.parent
             within_disk("run.save_every", size, folder, "Raise it to keep fewer states.")
@@ -152,8 +146,7 @@ def run_and_keep(request: Loaded, store: Path | None, *, overwrite: bool, progre
             check_target(store, overwrite=True)
             io.places.remove_store(store)
         return at_free_path(request.name, store, lambda path: _run(task, store=path, scenario=text))
-    ran = _run(task)
-    if ran.orbit is None:
+    if (ran := _run(task)).orbit is None:
         return None, ran
     orbit, replace = ran.orbit, overwrite and store is not None  # what has a number is never replaced
     path, _ = at_free_path(request.name, store, lambda at: io.save_orbit(orbit, at, overwrite=replace, scenario=text))
@@ -243,9 +236,7 @@ def write_page(source: str, ask: Callable[[], Loaded], output: Path | None, *, b
     return path
 
 
-def sweep_and_keep(
-    request: Loaded[SweepScenario], output: Path | None, how: dict[str, Any], *, json: bool, quiet: bool
-) -> None:
+def sweep_and_keep(request: Loaded[Any], output: Path | None, how: dict[str, Any], *, json: bool, quiet: bool) -> None:
     """Run, draw, report; how: scheduler and workers."""
     with scenario_errors(), reporting_warnings(), request.reporting():
         task = request.scenario.task()

@@ -7,20 +7,20 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any
 
-import typer
+from typer import Argument, Exit, Option, echo
 
 from nonholo import io
 from nonholo.cli import screen
 from nonholo.cli.commands.run import Json, Overwrite
 from nonholo.cli.screen.errors import FAILED, USAGE, leave, reporting_warnings, store_errors
 
-Store = Annotated[Path, typer.Argument(metavar="STORE", help="A store made by simulate, sweep or save_orbit.")]
+Store = Annotated[Path, Argument(metavar="STORE", help="A store made by simulate, sweep or save_orbit.")]
 
 
 def info(
     store: Store,
     json: Json = False,
-    scenario: Annotated[bool, typer.Option("--scenario", help="Print the scenario that was run, as TOML.")] = False,
+    scenario: Annotated[bool, Option("--scenario", help="Print the scenario that was run, as TOML.")] = False,
 ) -> None:
     """Show the provenance of a run and measure again what it should keep.
 
@@ -35,7 +35,7 @@ def info(
     if scenario:
         if "scenario" not in attributes:
             leave("This store was not made from a scenario.", FAILED)
-        typer.echo(attributes["scenario"], nl=False)
+        echo(attributes["scenario"], nl=False)
         return
     if is_sweep:
         screen.report.show_sweep_standing(store, attributes, json=json)
@@ -53,11 +53,11 @@ def info(
 
 
 def export(
-    store: Annotated[Path, typer.Argument(metavar="STORE", help="A store of a run or a sweep, finished or not.")],
+    store: Annotated[Path, Argument(metavar="STORE", help="A store of a run or a sweep, finished or not.")],
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="CSV", help="A new file; by default standard output.")
+        Path | None, Option("-o", "--output", metavar="CSV", help="A new file; by default standard output.")
     ] = None,
-    every: Annotated[int, typer.Option(metavar="N", min=1, help="Write one in N of the saved states.")] = 1,
+    every: Annotated[int, Option(metavar="N", min=1, help="Write one in N of the saved states.")] = 1,
     overwrite: Overwrite = False,
 ) -> None:
     """Write the poses of a run as CSV, read back exactly, in the body frame of the scenario.
@@ -87,7 +87,7 @@ def export(
             shown = output is not None and sys.stderr.isatty()
             io.store_to_csv(store, output or sys.stdout, every=every, overwrite=overwrite, progress=shown)
     if output:
-        typer.echo(output)
+        echo(output)
 
 
 def _is_sweep(store: Path) -> bool:
@@ -104,29 +104,22 @@ def _ending_with_the_reader() -> Iterator[None]:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-Output = Annotated[
-    Path | None,
-    typer.Option("-o", "--output", metavar="PICTURE", help="A .png, .svg or .pdf; by default beside STORE."),
-]
-Kind = Annotated[
-    str, typer.Option(metavar="KIND", help="Of a run: a picture of nonholo.plot, such as blade-track; or all of them.")
-]
-Across = Annotated[str | None, typer.Option("--x", metavar="NAME", help="Of a sweep or section: what runs across.")]
-Dark = Annotated[bool | None, typer.Option("--dark/--light", help="Colors for a dark or a light background.")]
+Output = Annotated[Path | None, Option("-o", "--output", metavar="PICTURE", help="Another place: .png, .svg or .pdf.")]
+Kind = Annotated[str, Option(metavar="KIND", help="Of a run: a picture of nonholo.plot, such as blade-track; or all.")]
 
 
 def plot(
     store: Store,
     output: Output = None,
     kind: Kind = "overview",
-    gif: Annotated[bool, typer.Option("--gif", help="Of a run: draw an animation instead.")] = False,
-    color: Annotated[str | None, typer.Option(metavar="NAME", help="Of a sweep: the quantity that is shown.")] = None,
-    x: Across = None,
-    y: Annotated[str | None, typer.Option("--y", metavar="NAME", help="Of a sweep or section: what runs up.")] = None,
-    title: Annotated[str | None, typer.Option(help="Instead of the picture's own; '' for none.")] = None,
-    size: Annotated[str | None, typer.Option(metavar="WxH", help="In inches, as 16x9; fonts grow with it.")] = None,
-    dpi: Annotated[float, typer.Option(min=10, max=1200, help="Dots per inch of a .png.")] = 150,
-    dark: Dark = None,
+    gif: Annotated[bool, Option("--gif", help="Of a run: draw an animation instead.")] = False,
+    color: Annotated[str | None, Option(metavar="NAME", help="Of a sweep: the quantity that is shown.")] = None,
+    x: Annotated[str | None, Option("--x", metavar="NAME", help="Of a sweep or section: what runs across.")] = None,
+    y: Annotated[str | None, Option("--y", metavar="NAME", help="Of a sweep or section: what runs up.")] = None,
+    title: Annotated[str | None, Option(help="Instead of the picture's own; '' for none.")] = None,
+    size: Annotated[str | None, Option(metavar="WxH", help="In inches, as 16x9; fonts grow with it.")] = None,
+    dpi: Annotated[float, Option(min=10, max=1200, help="Dots per inch of a .png.")] = 150,
+    dark: Annotated[bool | None, Option("--dark/--light", help="Colors for a dark or a light background.")] = None,
     overwrite: Overwrite = False,
 ) -> None:
     """Draw the overview of a run, another picture or an animation of it, or the map of a sweep.
@@ -154,8 +147,8 @@ def plot(
         names = {"across": x, "up": y} if kind == "section" else {}
         paths = pictures.draw_stored_run(store, path, look, gif=gif, kind=kind, dpi=dpi, **names)
     if not any(paths):
-        raise typer.Exit(FAILED)
-    typer.echo("\n".join(filter(None, paths)))
+        raise Exit(FAILED)
+    echo("\n".join(filter(None, paths)))
 
 
 def _check_kind(kind: str, gif: bool, color: str | None, axis: str | None) -> None:

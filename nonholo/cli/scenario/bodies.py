@@ -3,6 +3,7 @@
 A table is of a class or a function, whose arguments are the keys; its docstring describes them.
 """
 
+import contextlib
 import functools
 import importlib.util
 import inspect
@@ -53,11 +54,9 @@ def group_of(text: Any) -> "AbstractMatrixGroup":
 
 
 def _factor(name: str) -> "AbstractMatrixGroup":
-    try:
+    with contextlib.suppress(ValueError):
         if match := _NAME.fullmatch(name):
             return getattr(nonholo, match[1])(int(match[2]))
-    except ValueError:
-        pass
     raise ValueError(f"{_HOW}. Got {name!r}")
 
 
@@ -119,10 +118,9 @@ def table_of(word: str, make: Maker, kind: bool = False, plain: bool = True) -> 
     for way in (make, *others):
         about = meanings(way)
         for name, each in arguments(way).items():
-            default = _default_of(each) if name in common else None
             shape = Group if name == "group" else Numbers if plain else Any
             meaning = about.get(name, f"As in `{way.__qualname__}`.")
-            fields.setdefault(name, (shape, Field(default, description=meaning)))
+            fields.setdefault(name, (shape, Field(_default_of(each) if name in common else None, description=meaning)))
     table = create_model(word, __base__=MadeTable, __doc__=summary(make), **fields)
     table.make, table.others = make, others
     return table
@@ -171,9 +169,7 @@ def body_table(kind: str) -> type[MadeTable]:
     Raises:
         KeyError: There is none of this name.
     """
-    if kind in _OWN:
-        return table_of(kind, _OWN[kind], kind=True, plain=False)
-    return _library_table(kind)
+    return table_of(kind, _OWN[kind], kind=True, plain=False) if kind in _OWN else _library_table(kind)
 
 
 @functools.cache
@@ -218,8 +214,7 @@ def _module_at(path: Path) -> Any:
     name = path.stem
     if not (path.suffix == ".py" and name.isidentifier() and path.is_file()):
         raise ValueError(f"`--module` must be the path of a Python file. Got '{path}'. Pass one such as my_robot.py.")
-    spec = importlib.util.find_spec(name)
-    if spec is None:
+    if (spec := importlib.util.find_spec(name)) is None:
         sys.path.insert(0, str(path.resolve().parent))  # where other processes find it too
     elif spec.origin != str(path.resolve()):
         got = f"'{path}', but there is a module {name} at {spec.origin}"

@@ -113,8 +113,7 @@ def by_table(document: Document) -> None:
     values = table_in(table_in(document, "design"), "values")
     for path in [path for path in values if "." in path]:
         table, _, name = path.partition(".")
-        own = values.setdefault(table, {})
-        if isinstance(own, dict):
+        if isinstance(own := values.setdefault(table, {}), dict):
             own.setdefault(name, values.pop(path))
 
 
@@ -221,8 +220,7 @@ def built_in_titles() -> dict[str, str]:
 def effective_text(scenario: Scenario) -> str:
     """Return a scenario as TOML with every value that was in force; running it again repeats the run."""
     document = scenario.model_dump(exclude_none=True, serialize_as_any=True)
-    tables = {name: value for name, value in document.items() if isinstance(value, dict)}
-    return toml_text(document["title"], tables)
+    return toml_text(document["title"], {name: value for name, value in document.items() if isinstance(value, dict)})
 
 
 def toml_text(title: str, tables: dict[str, dict[str, Any]]) -> str:
@@ -253,8 +251,7 @@ def _text_of(name: str, own: dict[str, str]) -> tuple[str, str]:
         may_be_kind = own == built_in() and name.isidentifier()
         if may_be_kind and is_example(name) and name in kinds():
             return f"{name} (example)", toml_text(summary(body_table(name).make), {"body": {"kind": name}})
-        remedy = _remedy(name, own, may_be_kind)
-        text = f"there is no such file, and no built-in scenario of this name. {remedy}"
+        text = f"there is no such file, and no built-in scenario of this name. {_remedy(name, own, may_be_kind)}"
     except (OSError, UnicodeDecodeError) as failure:
         text = f"cannot be read as a text file: {failure}"
     raise ScenarioError([Problem(name, "", text)])
@@ -271,8 +268,7 @@ def assign(document: Document, setting: Setting) -> None:
     """Put a value of the command line into a document."""
     *tables, last = setting.key.split(".")
     for table in tables:
-        document = document.setdefault(table, {})
-        if not isinstance(document, dict):
+        if not isinstance(document := document.setdefault(table, {}), dict):
             raise ScenarioError([Problem(setting.option, setting.key, f"{table} is a value, not a table")])
     document[last] = setting.value
 
@@ -288,14 +284,12 @@ def template(kind: str) -> str:
         ['title = "ArrowheadTop"', '', '[body]', 'kind = "ArrowheadTop"']
     """
     table = body_table(kind)
-    about = inspect.getdoc(table.make) or ""
-    heading = _comment(about.split("\n\n")[0])
     whole: dict[str, Any] = {"body": {"kind": kind}}
     with contextlib.suppress(ValueError):  # it needs values, or cannot be made: running the template says why
         complete_ready(whole)
     starts = whole.get("start", {})
     parts = [
-        heading,
+        _comment((inspect.getdoc(table.make) or "").split("\n\n")[0]),
         f"title = {json.dumps(kind)}",
         _section("body", table, {"kind": kind}),
         _section("start", Start, starts, as_comments=bool(starts)),

@@ -45,8 +45,7 @@ class Start(Section):
 
     @model_validator(mode="after")
     def _is_one_start(self) -> Self:
-        own = [name for name in SPEEDS if getattr(self, name) is not None]
-        if len(own) != 1:
+        if len(own := [name for name in SPEEDS if getattr(self, name) is not None]) != 1:
             raise ValueError(f"must hold exactly one of {', '.join(SPEEDS)}. Got {' and '.join(own) or 'none'}.")
         return self
 
@@ -124,8 +123,7 @@ def _requirement(failure: ValueError) -> str:
 def _acting(parts: list[Any]) -> dict[str, Any]:
     """Return the arguments of `Forced`: what has an energy is a potential."""
     potentials = [part for part in parts if hasattr(part, "energy")]
-    forces = [part for part in parts if not hasattr(part, "energy")]
-    several = {"potential": potentials, "force": forces}
+    several = {"potential": potentials, "force": [part for part in parts if not hasattr(part, "energy")]}
     return {name: tuple(own) if len(own) > 1 else own[0] for name, own in several.items() if own}
 
 
@@ -263,8 +261,7 @@ def complete_ready(document: dict[str, Any], *, start: bool = True) -> None:
     match document:
         case {"body": {"kind": str(kind)} as body} if is_example(kind):
             with contextlib.suppress(KeyError):  # of an unknown kind, which is reported with the rest
-                product = body_table(kind).model_validate(body).creation
-                if is_ready(product):
+                if is_ready(product := body_table(kind).model_validate(body).creation):
                     _complete_by(product, document, start=start)
 
 

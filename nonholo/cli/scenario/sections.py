@@ -114,17 +114,13 @@ def _details_of(entry: Any, keys: Iterable[str]) -> InitErrorDetails:
     if entry["type"] == "extra_forbidden" and len(entry["loc"]) == 1:
         text = f"is not a known key. {suggestion(str(entry['loc'][0]), keys)}"
         return flaw | {"type": PydanticCustomError(UNKNOWN, "{text}", {"text": text})}
-    if entry["type"] == UNKNOWN:
-        return flaw | {"type": PydanticCustomError(UNKNOWN, "{text}", entry["ctx"])}
-    return flaw
+    return flaw | {"type": PydanticCustomError(UNKNOWN, "{text}", entry["ctx"])} if entry["type"] == UNKNOWN else flaw
 
 
 def by_kind(table_of: Callable[[str], type[Section]], remedy: Callable[[str], str]) -> AfterValidator:
     """Return the check of a table by its kind; `table_of` raises a `KeyError` for an unknown one."""
 
     def read(table: Any) -> Any:
-        if isinstance(table, Section):
-            return table
         if not isinstance(table, dict):
             flaw: InitErrorDetails = {"type": "model_type", "input": table, "ctx": {"class_name": ""}}
             raise ValidationError.from_exception_data("", [flaw])

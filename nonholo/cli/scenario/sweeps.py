@@ -286,8 +286,7 @@ def sweep_text(scenario: SweepScenario) -> str:
     """Return the scenario of a sweep as TOML with every value that was in force; running it again repeats it."""
     document = scenario.model_dump(exclude_none=True, serialize_as_any=True)
     title, design = document.pop("title"), document.pop("design")
-    entries = design.pop("values").items()
-    values = {f"{table}.{name}": value for table, own in entries for name, value in own.items()}
+    values = {f"{table}.{name}": x for table, own in design.pop("values").items() for name, x in own.items()}
     return files.toml_text(title, {**document, "design": design, "design.values": values})
 
 
@@ -295,8 +294,7 @@ def _complete(document: dict[str, Any]) -> None:
     """Take the size of a distribution from the value it varies; give a value that is varied and not given."""
     values = files.table_in(files.table_in(document, "design"), "values")
     for table in ("body", "start", "run"):
-        own = files.table_in(values, table)
-        if own:
+        if own := files.table_in(values, table):
             document.setdefault(table, {})
         for name, value in own.items():
             _complete_one(files.table_in(document, table), name, value)
@@ -347,9 +345,7 @@ def _refusals(scenario: SweepScenario) -> list[tuple[str, str]]:
 
 def _refused_values(scenario: SweepScenario) -> list[tuple[str, str]]:
     """Return key paths and texts of what a design cannot vary."""
-    values = scenario.design.values
-    entries = [(table, name) for table in TABLES for name in getattr(values, table)]
-    if not entries:
+    if not (entries := [(table, name) for table in TABLES for name in getattr(scenario.design.values, table)]):
         return [("design.values", 'must name what is varied, for example "body.a" = [0.1, 0.2]')]
     names = _varied_names(scenario)
     return [flaw for table, name in entries if (flaw := _flaw(scenario, table, name, names[table]))]

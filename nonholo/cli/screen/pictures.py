@@ -8,7 +8,7 @@ import functools
 import inspect
 import os
 import sys
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -64,8 +64,7 @@ def figure_of(kind: str, orbit: "Orbit", look: dict[str, Any], **names: str | No
     make = kinds()[kind]
     parameters = {*inspect.signature(make).parameters} | ({"displacement"} if kind == "branches" else set())
     own = {name: give(orbit) for name, give in _GIVEN.items() if name in parameters}
-    quantities = {side: _quantity(side, name) for side, name in names.items()}
-    picture = make(**own, **quantities, **look)
+    picture = make(**own, **{side: _quantity(side, name) for side, name in names.items()}, **look)
     return picture if kind == OVERVIEW else (picture.axes if hasattr(picture, "axes") else picture.plane).figure
 
 
@@ -131,7 +130,7 @@ def draw(
     return paths
 
 
-def draw_all(orbit: Any, picture: Path, *, progress: bool, look: dict[str, Any], dpi: float) -> list[str]:
+def draw_all(orbit: Any, picture: Path, *, progress: bool, look: dict[str, Any], dpi: float) -> list[str | None]:
     """Draw every kind that this orbit has, each in a separate file; return their paths, and warn of the others."""
     os.environ.setdefault("MPLBACKEND", "agg")
     paths, others = [], []
@@ -177,9 +176,7 @@ def draw_sweep(sweep: "xarray.Dataset", picture: Path, *names: str | None, dpi: 
     return None
 
 
-def draw_stored_run(
-    store: Path, path: Path, look: dict[str, Any], *, gif: bool, **options: Any
-) -> Collection[str | None]:
+def draw_stored_run(store: Path, path: Path, look: dict[str, Any], *, gif: bool, **options: Any) -> list[str | None]:
     """Draw a picture or the animation of a run, and return the paths of what was drawn."""
     with store_errors(USAGE):
         read_attributes(store)
@@ -189,17 +186,15 @@ def draw_stored_run(
     if options["kind"] == ALL:
         return draw_all(orbit, path, progress=progress, look=look, dpi=options["dpi"])
     paths = (None, path) if gif else (path, None)
-    return draw(orbit, *paths, progress=progress, look=look, **options).values()
+    return [*draw(orbit, *paths, progress=progress, look=look, **options).values()]
 
 
-def draw_stored_sweep(
-    store: Path, picture: Path, color: str | None, x: str | None, y: str | None, **options: Any
-) -> tuple[str | None]:
-    """Draw the sweep of a store: the given quantities, or those of its scenario."""
+def draw_stored_sweep(store: Path, picture: Path, *names: str | None, **options: Any) -> list[str | None]:
+    """Draw the sweep of a store: the given quantities for color, x and y, or those of its scenario."""
     with store_errors(FAILED):
         result = nonholo.load_sweep(store)
-    if not (color or x or y):
+    if not any(names):
         with contextlib.suppress(ValueError):  # a store may keep a text that is no scenario
             output = table_in(parse_toml(read_attributes(store, SWEEP_FORMAT).get("scenario", "")), "output")
-            color, x, y = (output.get(name) for name in ("color", "x", "y"))
-    return (draw_sweep(result, picture, color, x, y, **options),)
+            names = tuple(output.get(name) for name in ("color", "x", "y"))
+    return [draw_sweep(result, picture, *names, **options)]

@@ -32,7 +32,6 @@ from nonholo.orbit import AbstractOrbit
 
 Facts = dict[str, Any]
 _SLAB = 1 << 22  # members whose numbers are in memory at once
-_MESSAGES = 3
 _MOST_BLOCKS = 1000  # of a sweep that are read, some milliseconds each
 _NESTED = ("parameters", "motion", "versions", "arrays", "run", "sweep")
 ROUNDING = "rounding"
@@ -159,8 +158,7 @@ def show_provenance(store: Path, attributes: Facts, orbit: AbstractOrbit | None,
         show_json({"store": str(store), "provenance": record, **numbers})
         return
     thinning = "" if record["save_every"] == 1 else f", one in {record['save_every']} steps"
-    heading = {"title": str(store), "states": f"{record['arrays']['time'][0]}{thinning}"}
-    show(numbers, heading | _origin(record))
+    show(numbers, {"title": str(store), "states": f"{record['arrays']['time'][0]}{thinning}"} | _origin(record))
 
 
 def show_standing(store: Path, attributes: Facts, standing: Standing, *, json: bool) -> None:
@@ -179,8 +177,7 @@ def show_sweep_standing(store: Path, attributes: Facts, *, json: bool) -> None:
     record = _record(attributes)
     result = failure = None
     with store_errors(USAGE):
-        sweep = open_store(store)
-        if sweep.is_finished and sweep.layout.blocks <= _MOST_BLOCKS:
+        if (sweep := open_store(store)).is_finished and sweep.layout.blocks <= _MOST_BLOCKS:
             try:
                 result = load_sweep(store)
             except ValueError as caught:
@@ -237,7 +234,7 @@ def sweep_figures(store: Path, result: xarray.Dataset | None, seconds: float | N
         "members_per_second_of_one_worker": rate,
         "steps_per_second_of_one_worker": rate * steps if rate and steps and not standing.failure_count else None,
         "bytes": sum(file.stat().st_size for file in store.rglob("*") if file.is_file()),
-        "messages": [list(message) for message in standing.messages[:_MESSAGES]],
+        "messages": [list(message) for message in standing.messages[:3]],
         "state": standing.state,
     }
 
@@ -272,10 +269,8 @@ def _sweep_rows(store: Path, figures: Facts) -> dict[str, str]:
     speed = figures["members_per_second"]
     time = {"time": f"{duration(figures['seconds'])}, {speed:,.3g} members/s"} if speed else {}
     rows = {"members": came} | ({} if state == "finished" else {"sweep": state})
-    for name, count in figures["outcomes"].items():
-        rows[f"  {name}"] = f"{count:,}  ({100 * count / count_done:.3g} %)"
-    for name, (least, most, meaning) in figures["ranges"].items():
-        rows[name] = f"{least:.6g} to {most:.6g}  {meaning}"
+    rows |= {f"  {name}": f"{n:,}  ({100 * n / count_done:.3g} %)" for name, n in figures["outcomes"].items()}
+    rows |= {name: f"{least:.6g} to {most:.6g}  {words}" for name, (least, most, words) in figures["ranges"].items()}
     return rows | time | {"one worker": ", ".join(rates) or "unknown", "size on disk": size_text(figures["bytes"])}
 
 
@@ -291,8 +286,7 @@ def _ranges(result: xarray.Dataset) -> dict[str, tuple[float, float, str]]:
             if name == OUTCOME or values.attrs.get("long_name") == AXIS["long_name"] or values.dtype.kind not in "if":
                 continue
             finite = values.where(good).values
-            finite = finite[np.isfinite(finite)]
-            if finite.size:
+            if (finite := finite[np.isfinite(finite)]).size:
                 meaning = str(values.attrs.get("long_name", ""))
                 least, most, _ = ranges.get(str(name), (math.inf, -math.inf, ""))
                 ranges[str(name)] = (min(least, float(finite.min())), max(most, float(finite.max())), meaning)

@@ -93,12 +93,10 @@ def animate(
     """
     orbit = drawable_in_time("animate(orbit=...)", orbit)
     motion, scene = _scene_of("animate(orbit=...)", orbit)
-    beside = same_space("animate(flow=...)", flow, orbit, "Pass a motion of the same body.")
-    if beside is not None:
+    if (beside := same_space("animate(flow=...)", flow, orbit, "Pass a motion of the same body.")) is not None:
         _scene_of("animate(flow=...)", beside)
     target = film_path("animate(path=...)", path, overwrite=overwrite)
-    remedy = "Pass how many frames there should be."
-    total = min(count("animate(frames=...)", frames, remedy), len(orbit))
+    total = min(count("animate(frames=...)", frames, "Pass how many frames there should be."), len(orbit))
     if progress is not None:
         function("animate(progress=...)", progress)
     rate = float(positive("animate(fps=...)", fps, "Pass frames per second."))
@@ -129,8 +127,7 @@ def _stage(orbit: AbstractOrbit, times: Float[np.ndarray, "F"]) -> tuple[Figure,
     """Return a figure with a title, the time and a strip that shows the progress; its axes; what sets both."""
     figure = theme.new_figure((_SIZE, _SIZE), None)
     axes = figure.add_axes((0.02, 0.05, 0.96, 0.88))
-    title = theme.option("title", name_of(orbit))
-    figure.text(0.03, 0.965, title, va="center", fontsize="large", fontweight="bold")
+    figure.text(0.03, 0.965, theme.option("title", name_of(orbit)), va="center", fontsize="large", fontweight="bold")
     clock = figure.text(0.97, 0.965, "", va="center", ha="right", family="monospace", color=theme.QUIET)
     strip = figure.add_axes((0.03, 0.022, 0.94, 0.012), xlim=(0, 1), ylim=(0, 1))
     strip.set_axis_off()
@@ -149,8 +146,7 @@ def _stage(orbit: AbstractOrbit, times: Float[np.ndarray, "F"]) -> tuple[Figure,
 def film_path(where: str, path: str | Path, *, overwrite: bool) -> Path:
     """Return a path at which a film can be written on this machine."""
     target = checked_path(where, path)
-    suffix = target.suffix.lower()
-    if suffix not in (".gif", *_CODECS):
+    if (suffix := target.suffix.lower()) not in (".gif", *_CODECS):
         raise error(where, "end in .gif, .mp4 or .webm", shown(str(path)), "Use `orbit.to_html` for a page.")
     if suffix in _CODECS and not FFMpegWriter.isAvailable():
         remedy = "Install it (on Debian the package ffmpeg), or write a .gif."
@@ -161,8 +157,7 @@ def film_path(where: str, path: str | Path, *, overwrite: bool) -> Path:
 
 def write_film(path: str, figure: Figure, draw: Show, total: int, rate: float, progress: Progress = None) -> None:
     """Write a film with this many frames a second, of whose figure `draw` makes each."""
-    codec = _CODECS.get(Path(path).suffix.lower())
-    if codec is None:
+    if (codec := _CODECS.get(Path(path).suffix.lower())) is None:
         _write_gif(path, figure, draw, total, rate, progress)
         return
     with FFMpegWriter(cast(Any, rate), codec[0], bitrate=-1, extra_args=codec[1]).saving(figure, path, _DPI) as writer:
@@ -195,8 +190,7 @@ def _write_gif(path: str, figure: Figure, draw: Show, total: int, rate: float, p
         samples.append(photograph())
     look: Any = {"palette": _palette(samples), "dither": Image.Dither.NONE}
     first, *others = [photograph().quantize(**look) for _ in _frames(draw, total, progress)]
-    duration = max(20, round(1000 / rate))
-    first.save(path, save_all=True, append_images=others, duration=duration, loop=0, optimize=True)
+    first.save(path, save_all=True, append_images=others, duration=max(20, round(1000 / rate)), loop=0, optimize=True)
 
 
 def _palette(samples: list[Image.Image]) -> Image.Image:

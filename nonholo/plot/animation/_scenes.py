@@ -103,9 +103,7 @@ def together(shows: Sequence[Show]) -> Show:
     return show
 
 
-def draw_trail(
-    axes: Axes, orbit: AbstractOrbit, part: Part, path: Float[np.ndarray, "L 2"], *, color: Any = None, **look: Any
-) -> Show:
+def draw_trail(axes: Axes, orbit: AbstractOrbit, part: Part, path: np.ndarray, color: Any = None, **look: Any) -> Show:
     """Return what draws the points of a path up to a frame, in the colors of time, or as the line of a flow."""
     at = evenly_spread(path, _MOST_PIECES)
     pieces, past = theme.pieces(path[at]), np.searchsorted(at, part.past - 1, side="right")
@@ -200,9 +198,7 @@ def _draw_outline(axes: Axes, part: Part, bodies: Bodies) -> Show:
     """Return what draws the outline of a frame: the body in a light shade, what it carries in a dark one."""
     edge: Any = theme.CONTINUOUS if part.is_flow else theme.option("color", theme.INK)
     look: Any = {"edgecolors": [edge], "linewidths": 1.2}
-    faces = ("none", "none") if part.is_flow else (theme.INSIDE, edge)
-    layers = (2.2, 2.2) if part.is_flow else (1.0, 3.0)  # below the trail and above it
-    kinds = zip(faces, layers, strict=True)
+    kinds = [("none", 2.2)] * 2 if part.is_flow else [(theme.INSIDE, 1.0), (edge, 3.0)]  # below the trail and above it
     body, cargo = (PolyCollection([], facecolors=[face], zorder=layer, **look) for face, layer in kinds)
     for collection in (body, cargo):
         axes.add_collection(collection, autolim=False)
@@ -366,8 +362,7 @@ def _beside(axes: Axes, view: View, other: Part, gamma: Axis) -> Show:
     axes.plot([], [], color=theme.CONTINUOUS, label="continuous")
     show_trace = _trace(axes, view, other, gamma, colors, 1.2)
     show_box = draw_box(axes, view, box_in_sphere(other.frames.system), zorder=4.5, ghost=True)
-    poses = other.frames.configuration
-    return together([show_trace, lambda frame: show_box(poses[frame])])
+    return together([show_trace, lambda frame: show_box(other.frames.configuration[frame])])
 
 
 def _trace(axes: Axes, view: View, of: Part, gamma: Axis, colors: Float[np.ndarray, "L 4"], width: float) -> Show:

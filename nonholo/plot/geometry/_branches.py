@@ -32,15 +32,13 @@ def draw_deltoid(axes: Axes, region: Deltoid) -> tuple[Polygon, Line2D, PathColl
     around, cusps = on_plane(system, region.boundary(601)), on_plane(system, region.cusps)
     inside = axes.fill(*around.T, color=theme.INSIDE, linewidth=0, zorder=1)[0]
     boundary = axes.plot(*around.T, color=theme.DISCRETE, linewidth=1.8, zorder=2, label="two meet")[0]
-    dots = axes.scatter(*cusps.T, s=34, color=theme.DISCRETE, zorder=4, label="three meet")
-    return inside, boundary, dots
+    return inside, boundary, axes.scatter(*cusps.T, s=34, color=theme.DISCRETE, zorder=4, label="three meet")
 
 
 def name_inside(axes: Axes, region: Deltoid, words: str) -> None:
     """Write words into the region with three real values."""
     x, y = on_plane(region.discrete.system, region.cusps).T @ [0.4, 0.3, 0.3]
-    look: Any = {"ha": "center", "va": "center", "color": theme.DISCRETE, "fontweight": "bold", "zorder": 5}
-    axes.annotate(words, (x, y), **look)
+    axes.annotate(words, (x, y), ha="center", va="center", color=theme.DISCRETE, fontweight="bold", zorder=5)
 
 
 def dress_momenta(axes: Axes, region: Deltoid, title: str) -> None:
@@ -186,8 +184,7 @@ def branches(
         >>> len(picture.others.get_offsets()), picture.labels[0].get_text()
         (3, '0: 49°')
     """
-    where = "plot.branches"
-    discrete = planar_map(f"{where}(discrete=...)", discrete)[0]
+    discrete = planar_map("plot.branches(discrete=...)", discrete)[0]
     on_momenta = _is_over_momenta(discrete, plane)
     values = maps.branches(discrete, momentum=momentum, displacement=displacement)
     if displacement is not None:
@@ -217,12 +214,10 @@ def _on_displacements(axes: Axes, discrete: Discretization, values: Branches, W:
     curves, level, sheet = [], None, _sheet(discrete)
     if values.energy > 0:
         curves = [invariant_curve(discrete, values.energy)]
-        look = {"color": theme.DISCRETE, "linewidth": 1.5, "zorder": 2}
-        level = draw_level(axes, sheet, curves[0], label="its energy", **look)
+        level = draw_level(axes, sheet, curves[0], label="its energy", color=theme.DISCRETE, linewidth=1.5, zorder=2)
     real = np.flatnonzero(values.is_real)
     places = sheet.places(sheet.variety.points(values.displacement[real].real))
-    here = sheet.places(sheet.variety.points(W[None]))
-    dots = _dots(axes, values, places, here)
+    dots = _dots(axes, values, places, sheet.places(sheet.variety.points(W[None])))
     labels = _labels(axes, sheet, values, places, places * sheet.inwards(places))
     theme.write_title(axes, _title(values))
     sheet.dress(axes, curves, places)
@@ -393,8 +388,7 @@ def _growth(axes: Axes, tree: BranchTree) -> tuple[Line2D, Line2D, Line2D]:
     level, images = np.arange(len(tree.counts)), int(tree.counts[1])
     real = np.bincount(tree.level[tree.is_real], minlength=len(level))
     bound = axes.plot(level, images**level, color=theme.MUTED, dashes=(4, 3), label=f"${images}^k$", zorder=1)[0]
-    own = theme.own_look(theme.DISCRETE, "distinct images")
-    counts = axes.plot(level, tree.counts, "o", markersize=7, **own)[0]
+    counts = axes.plot(level, tree.counts, "o", markersize=7, **theme.own_look(theme.DISCRETE, "distinct images"))[0]
     look: Any = {"markerfacecolor": theme.PAPER, "markeredgewidth": 1.6, "linestyle": "none"}
     reals = axes.plot(level, real, "o", color=theme.UNSTABLE, markersize=7, label="real ones", **look)[0]
     axes.set(xlabel="generation k", ylabel="number of images", yscale="log")

@@ -79,8 +79,7 @@ def curvature(
         ((120, 120), '$\\psi$')
     """
     instance("plot.curvature(connection=...)", connection, LocalConnection, "be a local connection", "Call it first.")
-    names = connection.shape_coordinates
-    if len(names) < 2:
+    if len(names := connection.shape_coordinates) < 2:
         raise error("plot.curvature(connection=...)", "have two shape variables", shown(names), "One encloses no area.")
     choice("plot.curvature(component=...)", component, connection.components)
     two = names[:2] if along is None else pair("plot.curvature(along=...)", along)
@@ -148,8 +147,7 @@ def _map(axes: Axes, component: str, sides: Array, values: Array) -> tuple[QuadM
 
 def _draw_gait(axes: Axes, path: Float[np.ndarray, "K 2"]) -> Line2D:
     """Draw a gait, with an arrow that shows its sense."""
-    look: Any = theme.own_look(theme.INK, "gait")
-    line = axes.plot(*path.T, linewidth=2.0, zorder=4, **look)[0]
+    line = axes.plot(*path.T, linewidth=2.0, zorder=4, **theme.own_look(theme.INK, "gait"))[0]
     k = int(np.argmax(np.abs(np.diff(path, axis=0)).sum(-1)))
     arrow: Any = {"arrowstyle": "-|>", "color": line.get_color(), "mutation_scale": 18, "linewidth": 0}
     axes.annotate("", path[k + 1], path[k], arrowprops=arrow, zorder=4)

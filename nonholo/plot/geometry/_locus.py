@@ -220,8 +220,7 @@ def locus_section(
     """
     where = "plot.locus_section"
     instance(f"{where}(locus=...)", locus, MomentumLocus, "be a locus", "Pass what `nh.momentum_locus` returned.")
-    n = array(f"{where}(normal=...)", normal, (3,), "Pass three components.")
-    if not np.any(n):
+    if not np.any(n := array(f"{where}(normal=...)", normal, (3,), "Pass three components.")):
         raise error(f"{where}(normal=...)", "not be zero", "0, 0, 0", "Pass a direction.")
     n = n / np.linalg.norm(n)
     height = float(array(f"{where}(offset=...)", offset, (), "Pass one number."))
@@ -232,15 +231,13 @@ def locus_section(
     axes = theme.axes_or_new(axes, (6.0, 5.6))
     curve = _curve(axes, locus, plane, height * n)
     crossings = _meeting(axes, locus.double_lines, plane, n, height, color=theme.UNSTABLE, label="crosses itself")
-    outside = locus.whiskers(_LONG_WHISKER)
     empty: Any = {"facecolors": theme.PAPER, "edgecolors": theme.UNSTABLE, "linewidths": 1.5}
-    alone = _meeting(axes, outside, plane, n, height, label="equation alone", **empty)
+    alone = _meeting(axes, locus.whiskers(_LONG_WHISKER), plane, n, height, label="equation alone", **empty)
     names = cast(Sheet, sheet_of(locus.discrete.system)).component_names
     across, up, along_normal = (_words(row, names) for row in (*plane, n))
     axes.set(xlabel=across, ylabel=up)
-    theme.write_title(axes, f"Section  {along_normal} = {height:g}")
     axes.set_aspect("equal", adjustable="datalim")
-    theme.legend_above(axes)
+    theme.legend_above(axes, f"Section  {along_normal} = {height:g}")
     return LocusSection(axes, curve, plane, crossings, alone)
 
 
@@ -261,8 +258,7 @@ def _meeting(
 ) -> PathCollection | None:
     """Mark the points where segments meet the plane."""
     first, last = segments[:, 0] @ n - height, segments[:, 1] @ n - height
-    meets = first * last < 0
-    if not np.any(meets):
+    if not np.any(meets := first * last < 0):
         return None
     part = (first / np.where(meets, first - last, 1.0))[meets, None]
     points = segments[meets, 0] + part * (segments[meets, 1] - segments[meets, 0])
@@ -276,8 +272,7 @@ def _words(row: Float[np.ndarray, "3"], names: tuple[str, ...]) -> str:
         if abs(x) > 1e-12:
             size = "" if abs(abs(x) - 1) < 1e-12 else f"{abs(x):.2g}\\,"
             terms.append(f"{'-' if x < 0 else '+'} {size}{name}")
-    text = " ".join(terms)
-    return f"${text.removeprefix('+ ')}$"
+    return f"${' '.join(terms).removeprefix('+ ')}$"
 
 
 _POINTS = 300

@@ -125,10 +125,8 @@ def bodies_of(orbit: AbstractOrbit, points: Float[np.ndarray, "K d"], states: An
     return Bodies(place, ahead, outlines, size, larger)
 
 
-_GREEK = (
-    *("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu"),
-    *("nu", "xi", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega"),
-)
+_GREEK = ("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu")
+_GREEK += ("nu", "xi", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega")
 _PLACES = ("x", "y", "z")
 Drawn = tuple[Artist, tuple[Artist, ...], Artist | None]
 """The path, the body now and then, the path of a flow."""
@@ -152,8 +150,7 @@ class Track(NamedTuple):
 
 def track_of(orbit: AbstractOrbit) -> Track | None:
     """Return the path of an orbit: where a body is, if its coordinates or its group have it; two coordinates else."""
-    space = orbit.coordinates
-    if not space:
+    if not (space := orbit.coordinates):
         return _track_on(orbit.space)
     if len(space) == 1:
         names = [symbol(space[0]), symbol(space[0], is_rate=True)]
@@ -168,10 +165,8 @@ def track_of(orbit: AbstractOrbit) -> Track | None:
 
 def momentum_track(orbit: AbstractOrbit) -> Track:
     """Return the path in the plane of the two largest momenta along the constraint; of one, against time."""
-    size = np.abs(orbit.restricted_momentum).max(axis=0, initial=0.0)
-    largest = np.sort(np.argsort(-size, kind="stable")[:2])
-    names = [f"$r_{{{i + 1}}}$" for i in largest]
-    if len(names) == 2:
+    largest = np.sort(np.argsort(-np.abs(orbit.restricted_momentum).max(axis=0, initial=0.0), kind="stable")[:2])
+    if len(names := [f"$r_{{{i + 1}}}$" for i in largest]) == 2:
         return Track("Plane of momenta", names, lambda of: of.restricted_momentum[:, largest], is_place=False)
 
     def against_time(of: AbstractOrbit) -> Float[np.ndarray, "K 2"]:
@@ -184,7 +179,6 @@ def draw_track(track: Track, orbit: AbstractOrbit, flow: AbstractOrbit | None, a
     """Draw the path in the colors of time, its ends, the body now and then, and the path of a flow beside it."""
     points = track.points(orbit)
     at = parts.evenly_in_box(points)
-    theme.write_title(axes, track.title)
     bodies = bodies_of(orbit, points) if track.is_place else None
     if track.is_place:
         dress_path(axes, points[at] if bodies is None else bodies.with_corners(points), track.names)
@@ -195,7 +189,7 @@ def draw_track(track: Track, orbit: AbstractOrbit, flow: AbstractOrbit | None, a
     curve = None if flow is None else parts.draw_flow(axes, track.points(flow))
     artists = () if bodies is None else bodies.draw(axes)
     mark_path_ends(axes, points, orbit)
-    theme.legend_above(axes)
+    theme.legend_above(axes, track.title)
     return path, artists, curve
 
 
@@ -210,19 +204,16 @@ def draw_shape(orbit: AbstractOrbit, flow: AbstractOrbit | None, axes: Axes) -> 
     places = [name for name in _PLACES if name in names]
     first = places if places[:2] == ["x", "y"] else list(names[:2])
     others = [i for i, name in enumerate(names) if name not in first] or list(range(len(names)))
-    theme.write_title(axes, "Coordinates")
-    draw_components(axes, orbit, flow, functools.partial(_columns, others), [symbol(names[i]) for i in others])
-    axes.set_ylabel("coordinates")
+    symbols = [symbol(names[i]) for i in others]
+    draw_components(axes, orbit, flow, functools.partial(_columns, others), symbols, "Coordinates", "coordinates")
 
 
 @theme.in_style
 def draw_velocity(orbit: AbstractOrbit, flow: AbstractOrbit | None, axes: Axes) -> None:
     """Draw the velocities against time."""
     symbols = [symbol(name, is_rate=True) for name in orbit.coordinates]
-    names = symbols or velocity_names(orbit.space)
-    theme.write_title(axes, "Velocity" if symbols else "Body velocity")
-    draw_components(axes, orbit, flow, lambda states: states.body_velocity, names)
-    axes.set_ylabel("velocity")
+    names, title = symbols or velocity_names(orbit.space), "Velocity" if symbols else "Body velocity"
+    draw_components(axes, orbit, flow, lambda states: states.body_velocity, names, title, "velocity")
 
 
 def symbol(name: str, *, is_rate: bool = False) -> str:
@@ -245,9 +236,8 @@ def _columns(at: list[int], orbit: Any) -> np.ndarray:
 
 def _track_on(group: AbstractMatrixGroup) -> Track | None:
     if group == SO(3):
-        names = [symbol(name) for name in _PLACES]
-        return Track("Body axis 3", names, lambda orbit: orbit.configuration[:, :, 2])
+        return Track("Body axis 3", [*map(symbol, _PLACES)], lambda orbit: orbit.configuration[:, :, 2])
     n = group.size - 1
     if n not in (2, 3) or group != SE(n):
         return None
-    return Track("Reference point", [symbol(name) for name in _PLACES[:n]], lambda orbit: orbit.configuration[:, :n, n])
+    return Track("Reference point", [*map(symbol, _PLACES[:n])], lambda orbit: orbit.configuration[:, :n, n])

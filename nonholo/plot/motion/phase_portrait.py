@@ -139,8 +139,7 @@ def phase_portrait(
     path = None
     if orbit is not None:
         momentum = momenta_on_plane(orbit)
-        stays = np.ptp(momentum, axis=0).max() <= 1e-6 * np.abs(momentum).max()
-        size = 60 if stays else None
+        size = 60 if np.ptp(momentum, axis=0).max() <= 1e-6 * np.abs(momentum).max() else None
         path = parts.draw_in_time(axes, orbit, momentum, parts.evenly_in_box(momentum), zorder=6, size=size)
     images, edges = _draw_images(axes, orbit, trees) if orbit is not None and trees else (None, None)
     name_axes(axes, system)
@@ -171,11 +170,9 @@ def _energies(system: AbstractLLSystem, orbit: Orbit | None, energies: Any) -> F
 
 def _equilibria(axes: Axes, system: AbstractLLSystem, sizes: Float[np.ndarray, "L"]) -> tuple[Any, ...]:
     to_ellipse = half_axes(system)
-    equilibria = parts.known_equilibria(system)
-    if equilibria is None:
+    if (equilibria := parts.known_equilibria(system)) is None:
         return None, None, None, ()
-    attracting = equilibria.attracting
-    if attracting is None:
+    if (attracting := equilibria.attracting) is None:
         angle = np.arange(24) * (np.pi / 12)
         circle = np.array([np.cos(angle), np.sin(angle)])
         x, y = np.concatenate([size * to_ellipse @ circle for size in sizes], axis=1)

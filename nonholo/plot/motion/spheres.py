@@ -89,8 +89,7 @@ def body_axis_track(
         (True, True)
     """
     where = "body_axis_track(orbit=...)"
-    orbit = parts.orbit_with_poses(where, orbit)
-    if orbit.system.group != SO(3):
+    if (orbit := parts.orbit_with_poses(where, orbit)).system.group != SO(3):
         raise error(where, "be an orbit on SO(3)", shown(orbit), _REMEDY)
     flow = parts.same_group("body_axis_track(flow=...)", flow, orbit)
     gamma = _body_axis(orbit, body_axis)
@@ -119,16 +118,14 @@ def _body_axis(orbit: Orbit, vector: Any) -> Float[np.ndarray, "3"]:
         forbidden = parts.forbidden_axis(orbit.system)
         vector = (0.0, 0.0, 1.0) if forbidden is None else forbidden
     where, remedy = "body_axis_track(body_axis=...)", "Pass a vector in body coordinates."
-    axis = array(where, vector, (3,), remedy)
-    if not axis.any():
+    if not (axis := array(where, vector, (3,), remedy)).any():
         raise error(where, "have a direction", "the vector 0", remedy)
     return axis / np.linalg.norm(axis)
 
 
 def _fixed_axis(orbit: Orbit) -> Axis:
     """Return the direction in space that the constraint, or the lack of one, singles out."""
-    system = orbit.system
-    if parts.is_free(system):
+    if parts.is_free(system := orbit.system):
         axis = orbit[:1].spatial_momentum[0]
     elif system.is_spatial and len(system.annihilator) == 1:
         axis = system.annihilator[0]
@@ -166,8 +163,7 @@ def _axes_to_draw(before: Axis, after: Axis, still: Axis, orbit: Orbit) -> list[
     if before is not None and after is not None and np.linalg.norm(before - after) < 1e-6:
         before, names = None, ("", "rotation axis")
     third = "spatial\nmomentum" if parts.is_free(orbit.system) else "no rotation\nabout this axis"
-    colors = (theme.UNSTABLE, theme.STABLE, theme.STABLE)
-    every = zip((before, after, still), (*names, third), colors, strict=True)
+    every = zip((before, after, still), (*names, third), (theme.UNSTABLE, theme.STABLE, theme.STABLE), strict=True)
     return [(axis, name, color) for axis, name, color in every if axis is not None]
 
 
@@ -253,8 +249,8 @@ def momentum_sphere(
     stable, unstable = _equilibria(axes, eye, attracting)
     theme.write_title(axes, "Momentum on its energy sphere")
     if axes.get_legend_handles_labels()[0]:
-        is_narrow = theme.is_narrow(axes)  # then beside the axes, otherwise in the corner beside the sphere
-        place = ("lower left", (1.0, 0.0)) if is_narrow else ("lower right", None)
+        # beside narrow axes, otherwise in the corner beside the sphere
+        place = ("lower left", (1.0, 0.0)) if theme.is_narrow(axes) else ("lower right", None)
         theme.legend(axes, loc=place[0], bbox_to_anchor=place[1])
     return MomentumSphere(axes, eye, points, path, dots, stable, unstable)
 

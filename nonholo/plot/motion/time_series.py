@@ -3,7 +3,7 @@
 import itertools
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple, TypeVar, Unpack, cast
+from typing import Any, NamedTuple, Unpack, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -20,7 +20,7 @@ from nonholo.plot import theme
 from nonholo.plot.parts import drawable_in_time, evenly_in_box, orbit_with_poses
 from nonholo.plot.sheets import Blade, blade_of_system
 
-AnyOrbit = TypeVar("AnyOrbit", bound=AbstractOrbit)
+Series = Callable[[Any], np.ndarray]
 _MOST_POINTS = 2000
 _MOST_LINES = 60  # momenta in one panel
 
@@ -31,10 +31,8 @@ def velocity_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> 
     system = orbit.system
     directions = np.eye(system.group.dim) if system.is_spatial else system.constraint_subspace
     free = np.flatnonzero(np.abs(directions).max(axis=0, initial=0.0) > 0)
-    names = velocity_names(system.group)
-    theme.write_title(axes, "Body velocity")
-    draw_components(axes, orbit, flow, lambda states: states.body_velocity[:, free], [names[i] for i in free])
-    axes.set_ylabel("velocity")
+    names = [velocity_names(system.group)[i] for i in free]
+    draw_components(axes, orbit, flow, lambda states: states.body_velocity[:, free], names, "Body velocity", "velocity")
 
 
 @theme.in_style
@@ -48,10 +46,8 @@ def momentum_components(orbit: Orbit, axes: Axes, flow: Orbit | None = None) -> 
     largest = np.sort(np.argsort(-np.abs(momentum).max(axis=0, initial=0.0), kind="stable")[:_MOST_LINES])
     kind = "Spatial momentum" if orbit.system.is_spatial else "Momentum"
     of_many = "" if k <= _MOST_LINES else f", the {_MOST_LINES} largest of {k}"
-    theme.write_title(axes, f"{kind} along the constraint{of_many}")
-    names = [f"$r_{{{i + 1}}}$" for i in largest]
-    draw_components(axes, orbit, flow, lambda states: states.restricted_momentum[:, largest], names)
-    axes.set_ylabel("momentum")
+    title, names = f"{kind} along the constraint{of_many}", [f"$r_{{{i + 1}}}$" for i in largest]
+    draw_components(axes, orbit, flow, lambda states: states.restricted_momentum[:, largest], names, title, "momentum")
 
 
 @theme.in_style
@@ -89,24 +85,25 @@ def _flow(axes: Axes, time: Float[np.ndarray, "K"], values: Float[np.ndarray, "K
 
 
 def draw_components(
-    axes: Axes, orbit: AnyOrbit, flow: AnyOrbit | None, quantity: Callable[[AnyOrbit], np.ndarray], names: list[str]
+    axes: Axes, orbit: AbstractOrbit, flow: AbstractOrbit | None, of: Series, names: list[str], title: str, up: str
 ) -> None:
     """Draw one line for each component of a quantity, thin and without names where there are many."""
     few = len(names) <= len(theme.COMPONENTS)
-    for values, color, name in zip(quantity(orbit).T, theme.component_colors(len(names)), names, strict=True):
+    for values, color, name in zip(of(orbit).T, theme.component_colors(len(names)), names, strict=True):
         look = {"color": color, "linewidth": 2.0 if few else 1.0, "label": name if few else None, "zorder": 3}
         _line(axes, orbit.time, values, **look)
     if not few:
         axes.text(0.99, 0.97, f"{names[0]} to {names[-1]}", transform=axes.transAxes, ha="right", va="top")
     if flow is not None:
-        for number, values in enumerate(quantity(flow).T, start=1):
+        for number, values in enumerate(of(flow).T, start=1):
             _flow(axes, flow.time, values, has_label=number == len(names))
     axes.axhline(0.0, color=theme.LEVEL, linewidth=0.8, zorder=1)
     if not any(np.any(line.get_ydata()) for line in axes.lines):
         axes.set_ylim(-1.0, 1.0)
     axes.margins(y=0.12)
+    axes.set_ylabel(up)
     theme.mark_time(axes, orbit)
-    theme.legend_above(axes)
+    theme.legend_above(axes, title)
 
 
 def velocity_names(group: AbstractMatrixGroup) -> list[str]:
@@ -126,11 +123,8 @@ _MOST_DOTS = 2000
 _COLUMNS = 600
 _EPS = float(np.finfo(np.float64).eps)
 _VISIBLE = 1e-3  # half-width of the band, in units of the axis, from which it is wider than a hairline
-_EXPECTED = {
-    True: "exact by theorem, up to rounding",
-    False: "not exact for this discretization",
-    None: "error of the solver",
-}
+_EXPECTED: Any = {True: "exact by theorem, up to rounding", False: "not exact for this discretization"}
+_EXPECTED[None] = "error of the solver"
 _THINNED = "includes the work of forces, which a thinned run does not record"
 
 
@@ -177,8 +171,7 @@ def energy_error(orbit: AbstractOrbit, axes: Axes | None = None, **look: Unpack[
         >>> nh.plot.energy_error(orbit).unit
         1e-16
     """
-    orbit = drawable_in_time("energy_error(orbit=...)", orbit)
-    if not orbit.has_poses and orbit.system.is_spatial:
+    if not (orbit := drawable_in_time("energy_error(orbit=...)", orbit)).has_poses and orbit.system.is_spatial:
         orbit_with_poses("energy_error(orbit=...)", orbit)
     axes = theme.axes_or_new(axes, (6.0, 2.6))
     work, is_known = np.nan_to_num(orbit.known_work), bool(np.isfinite(orbit.known_work).all())
@@ -192,8 +185,7 @@ def energy_error(orbit: AbstractOrbit, axes: Axes | None = None, **look: Unpack[
     _dress(axes, orbit.time, error / unit, unit, rf"\Delta {name}{'/E' if size else ''}")
     small: Any = {"color": theme.QUIET, "fontsize": "medium", "va": "top", "path_effects": theme.HALO, "zorder": 6}
     outlook = _expectation(orbit, has_work) if is_known else _THINNED
-    words = axes.text(0.012, 0.97, outlook, transform=axes.transAxes, **small)
-    return EnergyError(axes, dots, rounding, unit, words)
+    return EnergyError(axes, dots, rounding, unit, axes.text(0.012, 0.97, outlook, transform=axes.transAxes, **small))
 
 
 @theme.in_style
@@ -242,9 +234,8 @@ def _unit(largest: float) -> float:
 
 
 def _dress(axes: Axes, time: Any, error: Float[np.ndarray, "K"], unit: float, name: str) -> None:
-    exponent = math.floor(math.log10(unit) + 0.5)
     reach = 1.4 * max(float(np.abs(error).max()), 1.6 * _EPS / unit)
-    axes.set(xlabel="time", ylabel=rf"${name}$   [$10^{{{exponent}}}$]")
+    axes.set(xlabel="time", ylabel=rf"${name}$   [$10^{{{math.floor(math.log10(unit) + 0.5)}}}$]")
     axes.margins(y=0.0)
     axes.update_datalim([(time[0], -reach), (time[-1], reach)])
     axes.autoscale_view()

@@ -95,8 +95,7 @@ def blade_track(
 def _with_blade(where: str, orbit: Any) -> tuple[Orbit, Blade]:
     """Return an orbit with poses, dense enough for a curve, and its blade."""
     orbit = parts.drawable(where, orbit)
-    blade = blade_of_system(orbit.system)
-    if blade is None:
+    if (blade := blade_of_system(orbit.system)) is None:
         raise error(where, "be an orbit of a sleigh in the plane", shown(orbit), "Use `body_axis_track` for a top.")
     return parts.orbit_with_poses(where, orbit), blade
 
@@ -216,8 +215,7 @@ def point_track(
         (31, 3)
     """
     where = "point_track(orbit=...)"
-    orbit = parts.drawable_in_time(where, orbit)
-    if orbit.coordinates:
+    if (orbit := parts.drawable_in_time(where, orbit)).coordinates:
         return _in_coordinates(where, orbit, axes, flow)
     orbit = parts.orbit_with_poses(where, orbit)
     group = orbit.system.group
@@ -232,19 +230,17 @@ def point_track(
     position = orbit.position[:, largest]
     points = position[at]
     names = [f"${letter}$" for letter in "xyz"] if largest.max() < 3 else [f"$x_{i + 1}$" for i in largest]
-    theme.write_title(axes, "Reference point")
     view = dress_path(axes, points, names[: len(largest)])
     track = parts.draw_in_time(axes, orbit, position, at, zorder=3)
     curve = None if flow is None else parts.draw_flow(axes, flow.position[:, largest])
     frames = _frames(axes, orbit, largest, _ARM * np.ptp(view, axis=1).max())
     mark_path_ends(axes, points, orbit)
-    theme.legend_above(axes)
+    theme.legend_above(axes, "Reference point")
     return PointTrack(axes, tuple(largest.tolist()), points, track, frames, curve)
 
 
 def _in_coordinates(where: str, orbit: AbstractOrbit, axes: Any, flow: AbstractOrbit | None) -> PointTrack:
-    track = track_of(orbit)
-    if track is None or not track.is_place:
+    if (track := track_of(orbit)) is None or not track.is_place:
         remedy = "Name its coordinates, `LagrangeDAlembert(coordinates=...)`, or use `overview`."
         raise error(where, "have coordinates named x and y", f"{', '.join(orbit.coordinates)}", remedy)
     parts.same_space("point_track(flow=...)", flow, orbit, "Pass one of the same system.")
