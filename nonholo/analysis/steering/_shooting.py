@@ -20,6 +20,7 @@ from nonholo.base.types import Array, Float
 from nonholo.discrete import Discretization
 from nonholo.discrete.definition import Rollout, compile_double, in_double
 from nonholo.simulation.traced import rollout
+from nonholo.systems import direction_lengths
 
 
 def goal_gaps(
@@ -263,7 +264,7 @@ def shot(discrete: Discretization, ends: Ends, limits: Limits) -> tuple[np.ndarr
 def _units(discrete: Discretization, ends: Ends, steps: int) -> np.ndarray:
     """Return units of what is missed: radians and the body's length, for velocities in the time of the motion."""
     units, duration = discrete.system.displacement_units, steps * float(discrete.time_step)
-    speeds = 1 / discrete.system.direction_lengths / duration
+    speeds = 1 / direction_lengths(discrete.system.constraint_subspace, units) / duration
     return np.concatenate([part for part, end in zip((units, speeds), ends[2:], strict=True) if end is not None])
 
 
@@ -278,9 +279,7 @@ def sizes(discrete: Discretization, steps: int, ends: Ends) -> np.ndarray:
         n = system.group.point_size
         way = np.linalg.norm(to_pose[..., :n, n] - g[..., :n, n], axis=-1, keepdims=True) / 2
         units[..., -n:] = np.maximum(units[..., -n:], way)
-    along = system.constrained_inertia.diagonal() / np.linalg.norm(
-        system.constraint_subspace / units[..., None, :], axis=-1
-    )
+    along = system.constrained_inertia.diagonal() / direction_lengths(system.constraint_subspace, units)
     return np.tile(np.sqrt(steps) * along / (steps * float(discrete.time_step)) ** 2, steps)
 
 
