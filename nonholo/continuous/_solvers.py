@@ -97,14 +97,12 @@ def solver_of(system: System, method: str | None, begins: float, *, reconstruct:
             raise error("flow(method=...)", "be None under forces", repr(method), remedy)
         return functools.partial(under_forces, system.forces, begins), True
     alone = not reconstruct and method is None and system.canonical.normal_form is not None
-    return functools.partial(_method_solver(method, alone=alone), system.canonical), not alone
+    return functools.partial(momenta_by_series if alone else _solver_named(method), system.canonical), not alone
 
 
-def _method_solver(method: str | None, *, alone: bool) -> Callable[..., Solved]:
-    if method is None:
-        return momenta_by_series if alone else _series.by_series
-    if method == "closed_form":
-        return closed_form
+def _solver_named(method: str | None) -> Callable[..., Solved]:
+    if method != "diffrax":
+        return _series.by_series if method is None else closed_form
     with needs("jax", "flow(method='diffrax')"):
         from nonholo.continuous._integration_jax import integrate_by_diffrax
 

@@ -235,7 +235,8 @@ def _forced_slopes(system: Any, h: Array, *rows: Array) -> tuple[Array, Array]:
     def one(row: tuple[Array, Array, Array]) -> tuple[Array, Array]:
         (x, v, force), still = row, jnp.zeros(2 * n)
         A, B = jax.jacfwd(after, (0, 1))(still, force, x, v)
-        across = jax.jacfwd(limits)(still, x, v)
-        return A - A @ jnp.linalg.pinv(across) @ across, B
+        sizes = jnp.outer(jnp.array([h, 1.0]), _units(system, x, v)).ravel()  # so that units do not matter
+        across = jax.jacfwd(limits)(still, x, v) * sizes
+        return A - (A * sizes) @ jnp.linalg.pinv(across) @ (across / sizes), B
 
     return jax.lax.map(one, rows)

@@ -190,10 +190,6 @@ def _times(A: np.ndarray, x: np.ndarray) -> np.ndarray:
     return (A @ x[..., None])[..., 0]
 
 
-def _dot(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    return (x * y).sum(axis=1)[:, None]
-
-
 def _along(
     gaps: Gaps, point: Point, plane: _Plane, length: np.ndarray, members: np.ndarray
 ) -> Float[np.ndarray, "m n"]:
@@ -208,13 +204,13 @@ def _along(
         size = (_OFFSET * length[at] / np.linalg.norm(p[at], axis=1))[:, None]
         change = (gaps(f[at] + size * p[at], members[at])[1] - J[at]) * weights[at, :, None]
         Hp = plane[at].along(p[at] - np.nan_to_num(change.sum(axis=1)) / size)
-        good = (_dot(p[at], Hp) > _BENT * _dot(p[at], p[at]))[:, 0]
+        good = np.vecdot(p[at], Hp) > _BENT * np.vecdot(p[at], p[at])
         total[at[~good]] += (count == 0) * p[at[~good]]
-        at, Hp, square = at[good], Hp[good], _dot(r[at], r[at])[good]
-        size = square / _dot(p[at], Hp)
+        at, Hp, square = at[good], Hp[good], np.vecdot(r[at], r[at])[good, None]
+        size = square / np.vecdot(p[at], Hp)[:, None]
         total[at] += size * p[at]
         r[at] -= size * Hp
-        p[at] = r[at] + _dot(r[at], r[at]) / square * p[at]
+        p[at] = r[at] + np.vecdot(r[at], r[at])[:, None] / square * p[at]
     return total
 
 
@@ -225,7 +221,7 @@ def _shorten(
     now, fell = tuple(x.copy() for x in point), np.zeros(len(step), dtype=bool)
 
     def merit(at: np.ndarray, f: np.ndarray, c: np.ndarray) -> np.ndarray:
-        return _dot(f, f)[:, 0] / 2 + penalty[at] * np.abs(c).sum(axis=1)
+        return np.vecdot(f, f) / 2 + penalty[at] * np.abs(c).sum(axis=1)
 
     for count in range(_HALVINGS + 1):
         at = np.flatnonzero(~fell)
@@ -298,12 +294,12 @@ def best(gaps: Gaps, size: Float[np.ndarray, "m n"], limits: Limits) -> tuple[np
 
     Each member has a random stream of its own, so that no other one changes where it begins.
     """
-    left, streams, ends = np.arange(len(size)), [np.random.default_rng(member) for member in range(len(size))], None
+    left, streams = np.arange(len(size)), [np.random.default_rng(member) for member in range(len(size))]
+    ends: Any = None
     for spread in SPREAD:
         first = spread * size[left] * np.array([streams[member].normal(size=size.shape[1]) for member in left])
         near, missed, rest = least_effort(lambda f, at, there=left: gaps(f, there[at]), first, limits)
-        gap = _largest(missed)
-        least = (gap < TOLERANCE) & (rest < _GRADIENT)
+        least = ((gap := _largest(missed)) < TOLERANCE) & (rest < _GRADIENT)
         ends = ends or (np.zeros_like(size), np.full_like(missed, np.inf), np.zeros_like(least))
         better = least | (gap < _largest(ends[1][left]))
         for whole, part in zip(ends, (near, missed, least), strict=True):
