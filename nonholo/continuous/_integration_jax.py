@@ -34,8 +34,8 @@ def integrate_by_diffrax(system: AbstractSystem, problem: Problem) -> Solved:
     outcome = Outcome.successful if len(momenta) == len(elapsed) else Outcome.not_converged
     poses = system.group.normalize_pose(poses)
     at = functools.partial(_solved_again, system, problem)
-    turned = turned_near(headings[:, 0], poses) if system.group == PLANE else None
-    return Solved(States(momenta, poses, turned), outcome, at)
+    angles = turned_near(headings[:, 0], poses) if system.group == PLANE else None
+    return Solved(States(momenta, poses, angles), outcome, at)
 
 
 def _solved_again(system: AbstractSystem, problem: Problem, elapsed: np.ndarray) -> States:

@@ -259,19 +259,19 @@ def shot(discrete: Discretization, ends: Ends, limits: Limits) -> tuple[np.ndarr
         return c / units, J * unit / units[:, None]
 
     size, unit = sizes(discrete, steps, ends), np.tile(np.exp2(np.round(np.log2(lengths))), steps)
-    forces, missed, is_least = best(functools.partial(gaps, everyone, 1.0), size, limits)
-    lost = np.flatnonzero(_largest(missed) >= TOLERANCE)
-    if len(lost) and (unit != unit[0]).any():
-        own = functools.partial(gaps, lost, unit)
-        others, left, _ = best(own, size[lost] / unit, (limits[0] / unit, limits[1] / unit))
-        is_nearer = _largest(left) < _largest(missed[lost])
-        forces[lost[is_nearer]], missed[lost[is_nearer]] = others[is_nearer] * unit, left[is_nearer]
-    words = np.where(is_least, "converged", np.where(_largest(missed) < TOLERANCE, "not least", "not found"))
-    return forces.reshape(len(forces), steps, -1), _largest(missed * units), words
+    forces, misses, is_least = best(functools.partial(gaps, everyone, 1.0), size, limits)
+    failures = np.flatnonzero(_largest(misses) >= TOLERANCE)
+    if len(failures) and (unit != unit[0]).any():
+        own = functools.partial(gaps, failures, unit)
+        others, left, _ = best(own, size[failures] / unit, (limits[0] / unit, limits[1] / unit))
+        is_nearer = _largest(left) < _largest(misses[failures])
+        forces[failures[is_nearer]], misses[failures[is_nearer]] = others[is_nearer] * unit, left[is_nearer]
+    words = np.where(is_least, "converged", np.where(_largest(misses) < TOLERANCE, "not least", "not found"))
+    return forces.reshape(len(forces), steps, -1), _largest(misses * units), words
 
 
-def _largest(missed: Float[np.ndarray, "m c"]) -> Float[np.ndarray, "m"]:
-    return np.abs(missed).max(axis=1)
+def _largest(misses: Float[np.ndarray, "m c"]) -> Float[np.ndarray, "m"]:
+    return np.abs(misses).max(axis=1)
 
 
 def sizes(discrete: Discretization, steps: int, ends: Ends) -> np.ndarray:
@@ -292,17 +292,17 @@ def sizes(discrete: Discretization, steps: int, ends: Ends) -> np.ndarray:
 def best(gaps: Gaps, size: Float[np.ndarray, "m n"], limits: Limits) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the forces of least effort, or those that come nearest, what they miss, and whether they are least.
 
-    Each member has a random stream of its own, so that no other one changes where it begins.
+    Each member has a separate random stream, so that no other one changes where it begins.
     """
     left, streams = np.arange(len(size)), [np.random.default_rng(member) for member in range(len(size))]
     ends: Any = None
     for spread in SPREAD:
         first = spread * size[left] * np.array([streams[member].normal(size=size.shape[1]) for member in left])
-        near, missed, rest = least_effort(lambda f, at, there=left: gaps(f, there[at]), first, limits)
-        least = ((gap := _largest(missed)) < TOLERANCE) & (rest < _GRADIENT)
-        ends = ends or (np.zeros_like(size), np.full_like(missed, np.inf), np.zeros_like(least))
+        near, misses, rest = least_effort(lambda f, at, there=left: gaps(f, there[at]), first, limits)
+        least = ((gap := _largest(misses)) < TOLERANCE) & (rest < _GRADIENT)
+        ends = ends or (np.zeros_like(size), np.full_like(misses, np.inf), np.zeros_like(least))
         better = least | (gap < _largest(ends[1][left]))
-        for whole, part in zip(ends, (near, missed, least), strict=True):
+        for whole, part in zip(ends, (near, misses, least), strict=True):
             whole[left[better]] = part[better]
         left = np.flatnonzero(~ends[2])
         if not len(left):
