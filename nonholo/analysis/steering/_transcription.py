@@ -321,7 +321,7 @@ def minimize(
     conditions = casadi.Sparsity.dense(len(rows))
     patterns: Any = program.slope_places.pattern, program.curvature_places.pattern
     slopes, curvatures = (
-        casadi.Sparsity(*each.shape, each.indptr.tolist(), each.indices.tolist()) for each in patterns
+        casadi.Sparsity(each.shape[0], each.shape[1], each.indptr.tolist(), each.indices.tolist()) for each in patterns
     )
     scales = [(each * unit * by[:, None]).tocsc().data for each, by in zip(patterns, (1 / rows, unit), strict=True)]
     effort = max(program.cost(unit)[1] * unit)
